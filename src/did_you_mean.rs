@@ -1,11 +1,11 @@
-//! "Did you mean": the closest of a list of words.
+//! Finds the word that a user probably meant.
 
-/// The word of `candidates` that `typed` most likely stands for, if one is close: at most one slip (a wrong, missing,
-/// extra or swapped character) for every three characters, ignoring case.
+/// Returns the word of `candidates` that `typed` most likely means, if one is close. Close means at most one
+/// slip (a wrong, missing, extra or swapped character) per three characters, ignoring case.
 pub fn closest<'a>(typed: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let typed: Vec<char> = typed.chars().take(64).flat_map(char::to_lowercase).collect();
     let allowed = (typed.len() / 3).max(1);
-    // As many slips as the lengths differ by are needed at least.
+    // The number of slips is at least the difference of the lengths.
     let is_near = |word: &&str| word.chars().count().abs_diff(typed.len()) <= allowed;
     candidates
         .into_iter()
@@ -16,12 +16,12 @@ pub fn closest<'a>(typed: &str, candidates: impl IntoIterator<Item = &'a str>) -
         .map(|(_, word)| word)
 }
 
-/// `; did you mean WORD?` with the closest of `candidates`, or nothing when none is close.
+/// Returns `; did you mean WORD?` with the closest of `candidates`, or an empty string if none is close.
 pub fn suffix<'a>(typed: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
     closest(typed, candidates).map_or_else(String::new, |word| format!("; did you mean {word}?"))
 }
 
-/// `did you mean FLYOVER? allowed: FLYOVER, FLYBY, …`: what may be written instead.
+/// Returns `did you mean FLYOVER? allowed: FLYOVER, FLYBY, …` with the allowed words.
 pub fn hint<'a>(typed: &str, words: impl IntoIterator<Item = &'a str>) -> String {
     let words: Vec<&str> = words.into_iter().collect();
     let guess = closest(typed, words.iter().copied());
@@ -29,7 +29,8 @@ pub fn hint<'a>(typed: &str, words: impl IntoIterator<Item = &'a str>) -> String
     format!("{guess}allowed: {}", words.join(", "))
 }
 
-/// Optimal string alignment distance: insertions, deletions, substitutions and swaps of neighbours.
+/// Returns the optimal string alignment distance: insertions, deletions, substitutions and swaps of
+/// neighbours.
 fn slips(a: &[char], b: &[char]) -> usize {
     let mut before_previous = vec![0; b.len() + 1];
     let mut previous: Vec<usize> = (0..=b.len()).collect();

@@ -1,6 +1,6 @@
 //! betadeck: a terminal ground station with an embedded flight controller, autopilot and quadcopter.
 //!
-//! `docs/architecture.md` draws the rooms; each module says what it may use.
+//! `docs/architecture.md` draws the modules and lists the modules that each of them may use.
 
 #![forbid(unsafe_code)]
 

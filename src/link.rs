@@ -1,9 +1,10 @@
-//! The links: how configurators, scripts, simulators and command lines reach the vehicle.
+//! The links through which configurators, scripts, simulators and command lines reach the vehicle.
 //!
-//! [`proto`] holds the protocols as pure state machines over bytes: they are told the time and never wait. Everything
-//! else here moves bytes between sockets and those machines and turns what arrives into [`Request`]s to the session: the doors
-//! in the files of this folder with their `notices`, the streams to a flight controller in `fc_stream`, and the SITL executable as
-//! a child process in `sitl_child`. The protocols are in `proto`.
+//! [`proto`] holds the protocols as pure state machines over bytes. They get the time from the caller and
+//! never wait. Everything else here moves bytes between sockets and those machines, and turns the incoming
+//! messages into [`Request`]s to the session: the files of this folder hold the doors, `notices` their
+//! messages to the user, `fc_stream` the streams to a flight controller, and `sitl_child` the SITL executable
+//! as a child process.
 //!
 //! ```text
 //! tcp 5761 ──┐                                      ┌── Msp, EnterCli, Cli, LeftCli, Restart ─▶ session

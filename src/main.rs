@@ -1,4 +1,4 @@
-//! The executable: everything is in the library.
+//! The executable. All code is in the library.
 
 #![forbid(unsafe_code)]
 

@@ -1,32 +1,32 @@
-//! Text that a terminal shows as it is.
+//! Makes text safe to show in a terminal.
 //!
-//! Names, keys, notes and messages come from files and from links. What a terminal would obey instead of show (control
-//! characters), and what would make a reader see other letters than there are (directions of writing, invisible tags), does
-//! not reach it.
+//! Names, keys, notes and messages come from files and from links. This module removes characters that a
+//! terminal would execute instead of show (control characters), and those that would show a reader other
+//! letters than the text has (writing direction, invisible tags).
 
 use std::borrow::Cow;
 use std::fmt::Write as _;
 
-/// Stands for a character that is not shown.
+/// The replacement of a character that is not shown.
 const PLACEHOLDER: char = '?';
-/// Most characters of a line: more is no sentence.
+/// The maximum number of characters of a line. Longer text is no sentence.
 const LONGEST_LINE: usize = 400;
-/// Most characters of a name in the middle of a line.
+/// The maximum number of characters of a name inside a line.
 const LONGEST_NAME: usize = 60;
 
-/// Whether a terminal shows this character as it is.
+/// Returns `true` if a terminal shows this character as it is.
 pub fn is_printable(c: char) -> bool {
     !matches!(c,
         '\0'..='\u{1f}' | '\u{7f}'..='\u{9f}'
-        // Marks and overrides of the direction of writing.
+        // Marks and overrides of the writing direction.
         | '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}'
-        // What takes no place although it stands between letters.
+        // Characters without width between letters.
         | '\u{ad}' | '\u{180e}' | '\u{200b}' | '\u{2060}'..='\u{2064}' | '\u{115f}' | '\u{1160}' | '\u{3164}' | '\u{ffa0}'
         // Line and paragraph separators, the byte order mark, annotations and tags.
         | '\u{2028}' | '\u{2029}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}')
 }
 
-/// A single line of text.
+/// Returns a single line of printable text.
 pub fn line(text: &str) -> Cow<'_, str> {
     let is_short = text.len() <= LONGEST_LINE || text.chars().nth(LONGEST_LINE).is_none();
     if is_short && text.chars().all(is_printable) {
@@ -35,12 +35,12 @@ pub fn line(text: &str) -> Cow<'_, str> {
     Cow::Owned(cut(text, LONGEST_LINE))
 }
 
-/// A name inside a line.
+/// Returns a printable name for the inside of a line.
 pub fn name(text: &str) -> String {
     cut(text, LONGEST_NAME)
 }
 
-/// Text of several lines; tabs between words stay.
+/// Returns printable text of several lines. Tabs between words become spaces.
 pub fn lines(text: &str) -> Cow<'_, str> {
     let is_clean = |part: &str| matches!(line(part), Cow::Borrowed(_));
     if text.split('\n').all(|part| is_clean(part.strip_suffix('\r').unwrap_or(part))) {
@@ -58,7 +58,7 @@ pub fn lines(text: &str) -> Cow<'_, str> {
     Cow::Owned(clean)
 }
 
-/// A line of JSON: what is not shown is escaped, which changes nothing for its readers.
+/// Returns a line of JSON in which unprintable characters are escaped. This changes nothing for its readers.
 pub fn json(text: &str) -> Cow<'_, str> {
     if text.chars().all(is_printable) {
         return Cow::Borrowed(text);

@@ -1,13 +1,14 @@
-//! The cables between the airframe, its sensors and the flight controller: plain data that neither side owns.
+//! The signals between the airframe, its sensors and the flight controller: plain data that belongs to
+//! neither side.
 //!
-//! Frames: world ENU (x east, y north, z up); body FLU (x forward, y left, z up); quaternions are body → world,
-//! Hamilton. All SI. A measurement that did not arrive with this frame is `None`.
+//! Frames: world ENU (x east, y north, z up); body FLU (x forward, y left, z up). Quaternions are body →
+//! world, Hamilton. All units are SI. A measurement that did not arrive with this frame is `None`.
 
 pub mod fdm;
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-/// Simulated time since boot in whole microseconds: the only time the core knows.
+/// The simulated time since boot in whole microseconds, the only time that the core uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Hash)]
 pub struct SimTime(pub u64);
 
@@ -15,17 +16,18 @@ impl SimTime {
     /// The time of boot.
     pub const ZERO: Self = Self(0);
 
-    /// A time from seconds, rounded to the microsecond; negative or non-finite values give zero.
+    /// Converts seconds to a time, rounded to the microsecond. Negative or non-finite values give zero.
     pub fn from_secs_f64(seconds: f64) -> Self {
         Self((seconds * 1e6).round() as u64)
     }
 
-    /// Seconds since boot, the nearest to the exact quotient: 100 000 µs is the number that `0.1` is.
+    /// Returns the seconds since boot, as the nearest number to the exact quotient: 100 000 µs gives the
+    /// number `0.1`.
     pub fn as_secs_f64(self) -> f64 {
         self.0 as f64 / 1e6
     }
 
-    /// Seconds from `earlier` to this time; zero when `earlier` is later.
+    /// Returns the seconds from `earlier` to this time; zero if `earlier` is later.
     pub fn seconds_since(self, earlier: Self) -> f64 {
         self.0.saturating_sub(earlier.0) as f64 / 1e6
     }
@@ -35,29 +37,30 @@ impl SimTime {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MotorCommand(pub [f64; 4]);
 
-/// What the sensors delivered at one instant.
+/// The measurements of the sensors at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SensorFrame {
-    /// When the inertial samples were taken.
+    /// The time of the inertial samples.
     pub time: SimTime,
     /// Body rates, FLU, rad/s.
     pub rate_flu: Vector3<f64>,
     /// Specific force, FLU, m/s²: +9.81 on z at rest.
     pub specific_force_flu: Vector3<f64>,
-    /// Static pressure, Pa, when a new sample arrived.
+    /// Static pressure, Pa, if a new sample arrived.
     pub pressure_pa: Option<f64>,
-    /// Magnetic field, FLU, in the field's own units (only the direction matters), when a new sample arrived.
+    /// Magnetic field, FLU, in the field's own units (only the direction matters), if a new sample arrived.
     pub mag_flu: Option<Vector3<f64>>,
-    /// A navigation solution, when a new one arrived; a solution without a fix is also a message.
+    /// A navigation solution, if a new one arrived. A solution without a fix is also a message.
     pub gps: Option<GpsSample>,
-    /// Battery, when a new sample arrived.
+    /// The battery, if a new sample arrived.
     pub battery: Option<BatterySample>,
-    /// True attitude, body FLU → ENU, for a firmware that is told to trust it; `None` when the source has none.
+    /// True attitude, body FLU → ENU, for a firmware that is configured to trust it; `None` if the source has
+    /// none.
     pub truth_attitude: Option<UnitQuaternion<f64>>,
 }
 
 impl Default for SensorFrame {
-    /// At rest, level, facing east, nothing new.
+    /// Returns a frame at rest, level, facing east, without new samples.
     fn default() -> Self {
         Self {
             time: SimTime::ZERO,
@@ -72,10 +75,10 @@ impl Default for SensorFrame {
     }
 }
 
-/// Where an external simulator says the craft is, as no sensor shows it.
+/// The pose of the craft according to an external simulator. No sensor measures it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {
-    /// Latitude and longitude, degrees; `None` when the simulator gives none.
+    /// Latitude and longitude, degrees; `None` if the simulator gives none.
     pub place_deg: Option<(f64, f64)>,
     /// Altitude above the simulator's datum, m.
     pub alt_m: f64,
@@ -88,7 +91,7 @@ pub struct Pose {
 /// One GPS navigation solution.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct GpsSample {
-    /// Whether the solution is a 3-D fix; without one the position fields are meaningless.
+    /// `true` for a 3-D fix. Without one the position fields are meaningless.
     pub fix: bool,
     pub sats: u8,
     /// Position, degrees × 10⁷.
@@ -105,7 +108,7 @@ pub struct GpsSample {
     pub vertical_accuracy_m: f64,
     /// Speed accuracy estimate, m/s; 0 = not reported.
     pub speed_accuracy_mps: f64,
-    /// Age of the solution when it was delivered, s: receivers stamp the instant their solution describes.
+    /// The age of the solution at its delivery, s: receivers stamp the instant that their solution describes.
     pub latency_s: f64,
 }
 
@@ -119,10 +122,10 @@ pub struct BatterySample {
     pub drawn_mah: f64,
 }
 
-/// Number of RC channels on the wire.
+/// The number of RC channels on the wire.
 pub const RC_CHANNELS: usize = 16;
 
-/// Who sent an RC frame.
+/// The source of an RC frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumCount, strum::EnumIter)]
 #[strum(serialize_all = "lowercase")]
 pub enum RcSource {

@@ -1,22 +1,23 @@
-//! The part of a line that a message shows: files may have lines of any length, people and terminals do not read them.
+//! Shortens a line for a message. Files may have lines of any length, which neither people nor terminals can
+//! read.
 
-/// Most characters of a line that are shown.
+/// The maximum number of characters that are shown of a line.
 const MOST: usize = 200;
-/// Most characters before the place.
+/// The maximum number of characters before the position.
 const BEFORE: usize = 100;
-/// Most characters of a text from a file in a sentence.
+/// The maximum number of characters of a text from a file in a sentence.
 const SENTENCE: usize = 300;
 
-/// A line, or the part of it around a place.
+/// A line, or the part of it around a position.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SourceSnippet {
-    /// The text; control characters are replaced by spaces, and `…` stands where it was cut.
+    /// The text. Spaces replace control characters, and `…` marks a cut.
     pub text: String,
-    /// Column of the place in the text, in characters, from 1.
+    /// The column of the position in the text, in characters, from 1.
     pub column: usize,
 }
 
-/// What is shown of a line to point at a column, in characters, from 1.
+/// Returns the part of a line that is shown for a column, in characters, from 1.
 pub fn source_snippet(line: &str, column: usize) -> SourceSnippet {
     let shown = |c: char| if c.is_control() { ' ' } else { c };
     let is_short = line.chars().nth(MOST).is_none();
@@ -30,7 +31,7 @@ pub fn source_snippet(line: &str, column: usize) -> SourceSnippet {
     SourceSnippet { text, column: column - first + usize::from(first > 0) }
 }
 
-/// A sentence about a file without the middle of what makes it too long.
+/// Shortens a sentence about a file by cutting out its middle if it is too long.
 pub fn shortened(sentence: String) -> String {
     let Some((start, _)) = sentence.char_indices().nth(SENTENCE / 2) else { return sentence };
     match sentence.char_indices().nth_back(SENTENCE / 2 - 1) {

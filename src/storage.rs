@@ -1,6 +1,6 @@
-//! Where the configuration is kept: `eeprom.bin` in a directory, or memory.
+//! The storage of the configuration: `eeprom.bin` in a directory, or memory.
 //!
-//! A save never leaves less than one good copy, whenever it is interrupted:
+//! A save always leaves at least one good copy, even if it is interrupted:
 //!
 //! ```text
 //! 1 write eeprom.bin.tmp and flush it      old image intact
@@ -9,8 +9,8 @@
 //! 4 flush the directory
 //! ```
 //!
-//! A damaged file is renamed to `eeprom.bin.bad` and never deleted; the file of another firmware is left alone. The
-//! directory is locked, so that a second process in it runs but cannot save.
+//! A damaged file is renamed to `eeprom.bin.bad` and never deleted. The file of another firmware is not
+//! touched. The directory is locked: a second process in it runs but cannot save.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -25,31 +25,32 @@ pub mod state_file;
 pub use files::link_target;
 use files::{Files, read_image};
 
-/// The files that a store in this directory uses or leaves behind, there or not; a link leads to those beside its target.
+/// Returns the files that a store in this directory uses or leaves, including missing ones. If the image is a
+/// link, they are beside its target.
 pub fn files_in(directory: &Path) -> Vec<PathBuf> {
     Files::new(directory).all()
 }
 
-/// Name of the file.
+/// The name of the file.
 pub const FILE_NAME: &str = "eeprom.bin";
 
-/// Why the configuration cannot be saved or the directory not be used.
+/// The reason why the configuration cannot be saved or the directory cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum StorageError {
     /// The directory cannot be used.
     #[error("cannot use the directory {}: {source}; choose another one", path.display())]
     Directory { path: PathBuf, source: std::io::Error },
-    /// The file is that of another firmware.
+    /// The file belongs to another firmware.
     #[error(
         "{} is not overwritten because {reason}: move it away, or use another directory",
         path.display()
     )]
     Protected {
         path: PathBuf,
-        /// What it is, or why it cannot be read.
+        /// The kind of the file, or the reason why it cannot be read.
         reason: String,
     },
-    /// What is there cannot be read, or is no configuration.
+    /// The file cannot be read, or is no configuration.
     #[error("{} is left alone because {reason}: move it away, or use another directory", path.display())]
     Unusable { path: PathBuf, reason: String },
     /// Another process uses the directory.
@@ -59,14 +60,14 @@ pub enum StorageError {
     Write { path: PathBuf, source: std::io::Error },
 }
 
-/// A configuration as it was found.
+/// A configuration as loaded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Loaded {
     /// The configuration, made consistent.
     pub configuration: Configuration,
-    /// What went wrong, in sentences for the user.
+    /// Problems, as sentences for the user.
     pub findings: Vec<String>,
-    /// Nothing was stored before.
+    /// `true` if nothing was stored before.
     pub first_boot: bool,
 }
 
@@ -86,32 +87,32 @@ enum Place {
 #[derive(Debug)]
 struct Directory {
     files: Files,
-    /// Holds the lock for as long as the store lives; `None` when another process has it.
+    /// Holds the lock during the lifetime of the store; `None` if another process has it.
     lock: Option<File>,
     overwrite: bool,
-    /// The stored image, when it is ours and good.
+    /// The stored image, if it is valid and from this firmware.
     current: Option<Vec<u8>>,
-    /// Why the file must not be replaced, if so.
+    /// The reason why the file must not be replaced, if there is one.
     protected: Option<Protection>,
 }
 
-/// Why a file is not replaced, with the words for it.
+/// The reason why a file is not replaced, with its words for the user.
 #[derive(Debug, Clone)]
 enum Protection {
     /// It belongs to another firmware.
     Foreign(String),
-    /// It cannot be read, or a link leads to something else than a configuration.
+    /// It cannot be read, or a link leads to something other than a configuration.
     Unusable(String),
 }
 
 impl Store {
-    /// A store that forgets with the process.
+    /// Creates a store that lasts only as long as the process.
     pub fn in_memory() -> Self {
         Self { place: Place::Memory(None), used_bytes: 0, note: None }
     }
 
-    /// A store in a directory, which is created when it is missing. `overwrite` allows replacing the file of another
-    /// firmware.
+    /// Opens a store in a directory, which is created if it is missing. `overwrite` allows replacing the file
+    /// of another firmware.
     pub fn open(directory: &Path, overwrite: bool) -> Result<Self, StorageError> {
         let unusable = |source| StorageError::Directory { path: directory.to_owned(), source };
         std::fs::create_dir_all(directory).map_err(unusable)?;
@@ -121,15 +122,15 @@ impl Store {
         Ok(Self { place: Place::Directory(Box::new(place)), used_bytes: 0, note: None })
     }
 
-    /// The store in a directory that is there, only to be read: nothing is written, moved or locked.
+    /// Opens the store in an existing directory for reading only: nothing is written, moved or locked.
     pub fn read_only(directory: &Path) -> Self {
         let files = Files::new(directory);
         let place = Directory { files, lock: None, overwrite: false, current: None, protected: None };
         Self { place: Place::Directory(Box::new(place)), used_bytes: 0, note: None }
     }
 
-    /// Reads the stored configuration; what cannot be read is replaced as well as possible, and told. On the first
-    /// boot the defaults are stored.
+    /// Reads the stored configuration. Unreadable parts are replaced as well as possible, and reported. On
+    /// the first boot the defaults are stored.
     pub fn load(&mut self) -> Loaded {
         let (stored, mut findings) = match &mut self.place {
             Place::Memory(image) => (image.clone(), Vec::new()),
@@ -154,7 +155,7 @@ impl Store {
         Loaded { configuration, findings, first_boot }
     }
 
-    /// Stores a configuration; an unchanged one is not written again.
+    /// Stores a configuration. An unchanged one is not written again.
     pub fn save(&mut self, configuration: &Configuration) -> Result<(), StorageError> {
         let image = encode(configuration);
         let length = image.len();
@@ -174,7 +175,7 @@ impl Store {
         Ok(())
     }
 
-    /// Why [`Store::save`] cannot work, if that is known beforehand.
+    /// Returns the reason why [`Store::save`] cannot work, if it is known beforehand.
     pub fn refusal(&self) -> Option<StorageError> {
         match &self.place {
             Place::Memory(_) => None,
@@ -182,7 +183,7 @@ impl Store {
         }
     }
 
-    /// What `status` and `save` tell about the store.
+    /// Returns the facts about the store for `status` and `save`.
     pub fn facts(&self) -> StorageFacts {
         let save_refusal = self.refusal().map(|error| error.to_string());
         let read_only = || save_refusal.as_ref().map(|why| format!("read-only: {why}"));
@@ -207,7 +208,7 @@ impl Directory {
         })
     }
 
-    /// The best image there is, and what was wrong with the others.
+    /// Returns the best available image, and the problems of the others.
     fn load(&mut self) -> (Option<Vec<u8>>, Vec<String>) {
         let mut findings = Vec::new();
         self.current = None;
@@ -255,7 +256,7 @@ impl Directory {
         }
     }
 
-    /// Keeps a damaged file under another name; only the process that holds the lock may.
+    /// Keeps a damaged file under another name. Only the process that holds the lock may do that.
     fn set_aside(&self, name: &str) -> String {
         if self.lock.is_none() {
             return format!("{name} is damaged");
@@ -284,8 +285,8 @@ impl Directory {
 }
 
 impl Drop for Directory {
-    /// Frees the directory at once. Closing it is not enough: a child that is being started has its descriptor, too, and
-    /// would keep the lock until it runs.
+    /// Unlocks the directory at once. Closing it is not enough: a child process that is just starting has its
+    /// descriptor, too, and would keep the lock until it runs.
     fn drop(&mut self) {
         if let Some(lock) = &self.lock {
             lock.unlock().ok();

@@ -1,6 +1,6 @@
-//! What is observed: modes, arming flags, guards and refusals, events and the snapshot of a vehicle.
+//! Observations of a vehicle: modes, arming disable flags, guards and refusals, events and the snapshot.
 //!
-//! Plain data without behaviour of its own, made by the core and read by session, record, link and ui alike.
+//! Plain data without behaviour, produced by the core and read by session, record, link and ui.
 
 mod arming_flag;
 mod battery_alarm;

@@ -1,5 +1,5 @@
-//! One client of the TCP or the websocket door: moves bytes between its stream and its serial session, and asks the
-//! session.
+//! One client of the TCP or the websocket door. Moves bytes between its stream and its serial session, and
+//! sends its requests to the session of the craft.
 
 #![allow(clippy::disallowed_methods, reason = "the doors wait for people and programs")]
 
@@ -19,33 +19,33 @@ use super::proto::serial_session::{SerialRequest, SerialSession};
 use super::request::{ClientId, Request};
 use super::seats::Seat;
 
-/// A client that neither sends nor gets anything for this long is closed.
+/// The time after which a client that neither sends nor receives anything is closed.
 const IDLE_TIMEOUT: Duration = Duration::from_secs(120);
-/// A client that does not take what it asked for within this time is closed.
+/// The time within which a client must take its answers; otherwise it is closed.
 const WRITE_TIMEOUT: Duration = Duration::from_secs(10);
-/// How long closing may take.
+/// The longest time that closing may take.
 const CLOSE_TIMEOUT: Duration = Duration::from_secs(1);
 
-/// What every client of the doors shares.
+/// The channels that all clients of the doors share.
 #[derive(Debug, Clone)]
 pub(super) struct SharedChannels {
     pub(super) requests: mpsc::Sender<Request>,
     pub(super) shutdown: CancellationToken,
-    /// Changes when the firmware started anew.
+    /// Changes each time the firmware restarts.
     pub(super) restarts: watch::Receiver<u64>,
 }
 
-/// Why a client is not served any longer.
+/// The reason why a client is no longer served.
 enum Stop {
-    /// The session is gone, or the link is to be closed.
+    /// The session is gone, or the link must close.
     Ended,
     /// The client cannot be reached.
     Failed,
-    /// The client does not take its answers.
+    /// The client does not take its answers in time.
     Deaf,
-    /// The client speaks neither MSP nor to the command line.
+    /// The client sends neither MSP nor command lines.
     Foreign(Stranger),
-    /// The client said nothing, and another one has its place.
+    /// The client was silent, and its place went to another one.
     Evicted,
 }
 
@@ -55,7 +55,6 @@ impl From<io::Error> for Stop {
     }
 }
 
-/// One client being served.
 pub(super) struct Client {
     id: ClientId,
     seat: Seat,
@@ -76,7 +75,7 @@ impl Client {
         notices: Notices,
         stats: Arc<EndpointStats>,
     ) -> Self {
-        // A restart before the client came does not concern it.
+        // A restart before the client connected does not concern it.
         channels.restarts.mark_unchanged();
         Self {
             id: seat.client(),
@@ -91,7 +90,7 @@ impl Client {
         }
     }
 
-    /// Serves the client until it goes, the firmware restarts or the doors close.
+    /// Serves the client until it disconnects, the firmware restarts or the doors close.
     pub(super) async fn serve(mut self) {
         let stop = self.exchange().await;
         let door = self.stream.door();
@@ -116,11 +115,11 @@ impl Client {
         let _gone = tokio::time::timeout(CLOSE_TIMEOUT, self.stream.close()).await;
     }
 
-    /// Reads and answers until something ends it.
+    /// Reads requests and answers them until something ends the exchange.
     async fn exchange(&mut self) -> Stop {
         loop {
             let answered = self.answer_all().await;
-            // What was answered before the end still goes out.
+            // Answers that were ready before the end are still sent.
             let flushed = self.flush().await;
             if let Err(stop) = answered.and(flushed) {
                 return stop;
@@ -151,7 +150,7 @@ impl Client {
         }
     }
 
-    /// Answers everything that the bytes so far ask for.
+    /// Answers all requests in the bytes received so far.
     async fn answer_all(&mut self) -> Result<(), Stop> {
         let before = self.session.dropped();
         while let Some(request) = self.session.next(self.arrived.elapsed()) {
@@ -207,7 +206,7 @@ impl Client {
         let (reply, answer) = oneshot::channel();
         self.send(request(reply)).await?;
         tokio::select! {
-            // An answer that is there is delivered, even when the doors close.
+            // A ready answer is delivered even while the doors close.
             biased;
             answer = answer => answer.map_err(|_| Stop::Ended),
             () = self.channels.shutdown.cancelled() => Err(Stop::Ended),

@@ -8,20 +8,20 @@ use tokio::net::TcpStream;
 use tokio_tungstenite::WebSocketStream;
 use tokio_tungstenite::tungstenite::{self, Bytes, Message};
 
-/// Most bytes taken from TCP at once.
+/// The maximum number of bytes read from TCP at once.
 const CHUNK: usize = 4096;
-/// Largest websocket message, either way.
+/// The largest websocket message in both directions.
 pub(super) const MESSAGE_MAX: usize = 64 * 1024;
 
 #[derive(Debug)]
 pub(super) enum ClientStream {
     Tcp(TcpStream),
-    /// Boxed, for it is large.
+    /// Boxed because it is large.
     WebSocket(Box<WebSocketStream<TcpStream>>),
 }
 
 impl ClientStream {
-    /// The next bytes; `None` when the client is gone. Nothing is lost when the wait is given up.
+    /// Returns the next bytes, or `None` when the client is gone. Cancelling the wait loses nothing.
     pub(super) async fn read(&mut self) -> io::Result<Option<Bytes>> {
         match self {
             Self::Tcp(stream) => {
@@ -30,7 +30,7 @@ impl ClientStream {
                 Ok((count > 0).then(|| Bytes::copy_from_slice(&chunk[..count])))
             }
             Self::WebSocket(socket) => match socket.next().await {
-                // Text is taken for the bytes it is made of.
+                // A text message counts as its bytes.
                 Some(Ok(Message::Binary(bytes))) => Ok(Some(bytes)),
                 Some(Ok(Message::Text(text))) => Ok(Some(text.into())),
                 Some(Ok(Message::Ping(_) | Message::Pong(_) | Message::Frame(_))) => Ok(Some(Bytes::new())),
@@ -40,8 +40,8 @@ impl ClientStream {
         }
     }
 
-    /// Sends bytes, as one message where there are messages, unless they are more than one may hold. Without bytes only
-    /// what is left is sent: answers to control frames.
+    /// Sends bytes. A websocket carries them as one message unless they exceed [`MESSAGE_MAX`]. An empty
+    /// vector only flushes pending data, such as answers to control frames.
     pub(super) async fn write(&mut self, bytes: Vec<u8>) -> io::Result<()> {
         match self {
             Self::Tcp(stream) => stream.write_all(&bytes).await,
@@ -56,7 +56,7 @@ impl ClientStream {
         }
     }
 
-    /// The door that it came through.
+    /// Returns the name of the door through which the client came.
     pub(super) fn door(&self) -> &'static str {
         match self {
             Self::Tcp(_) => "TCP",
@@ -67,13 +67,13 @@ impl ClientStream {
     pub(super) async fn close(&mut self) -> io::Result<()> {
         match self {
             Self::Tcp(stream) => stream.shutdown().await,
-            // The sink's close, which also sends the answer to a client that closed first.
+            // Uses the sink's `close`, which also answers a client that closed first.
             Self::WebSocket(socket) => SinkExt::close(socket.as_mut()).await.or_else(ended),
         }
     }
 }
 
-/// A client that closes is no error.
+/// Treats a closed connection as a normal end instead of an error.
 fn ended(error: tungstenite::Error) -> io::Result<()> {
     match error {
         tungstenite::Error::ConnectionClosed | tungstenite::Error::AlreadyClosed => Ok(()),

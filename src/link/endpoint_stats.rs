@@ -1,14 +1,14 @@
-//! What an endpoint has seen, counted where it happens and read where it is shown.
+//! The counters of an endpoint, updated by its tasks and read for display.
 
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
 use crate::telemetry::{ClientStats, PacketStats};
 
-/// After this long without a packet the rate counts as zero.
+/// The time without a packet after which the rate counts as zero.
 const RATE_EXPIRES: Duration = Duration::from_secs(2);
 
-/// Marks that no message was asked yet.
+/// Marks that no message was requested yet.
 const NO_MESSAGE: u32 = u32::MAX;
 
 /// The counters of one endpoint.
@@ -22,7 +22,7 @@ pub(super) struct EndpointStats {
     packets: AtomicU64,
     wrong_size: AtomicU64,
     errors: AtomicU64,
-    /// Time of the newest packet, ms since opened.
+    /// The time of the newest packet, ms since `opened`.
     newest_ms: AtomicU64,
     window_start_ms: AtomicU64,
     window_packets: AtomicU64,
@@ -79,7 +79,7 @@ impl EndpointStats {
         self.wrong_size.fetch_add(1, Relaxed);
     }
 
-    /// Counts a good packet.
+    /// Counts a valid packet.
     pub(super) fn packet(&self, now: Instant) {
         let now_ms = self.millis(now);
         self.packets.fetch_add(1, Relaxed);
@@ -97,7 +97,7 @@ impl EndpointStats {
         now.saturating_duration_since(self.opened).as_millis() as u64
     }
 
-    /// The server's counters as they are now.
+    /// Returns the current counters of a server.
     pub(super) fn client_stats(&self) -> ClientStats {
         let last = self.last_message.load(Relaxed);
         ClientStats {
@@ -109,7 +109,7 @@ impl EndpointStats {
         }
     }
 
-    /// The receiver's counters as they are at `now`.
+    /// Returns the counters of a receiver at `now`.
     pub(super) fn packet_stats(&self, now: Instant) -> PacketStats {
         let packets = self.packets.load(Relaxed);
         let age_ms = (packets > 0).then(|| self.millis(now).saturating_sub(self.newest_ms.load(Relaxed)));

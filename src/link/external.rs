@@ -9,12 +9,12 @@ use crate::signals::fdm::MotorOrder;
 use crate::signals::{MotorCommand, SensorFrame};
 use crate::telemetry::{EndpointKind, EndpointState, EndpointStatus, LinkState, SimulatorStats};
 
-/// Drives a firmware by the packets of a simulator.
+/// Drives a firmware with the packets of a simulator.
 #[derive(Debug)]
 pub struct ExternalSimulator {
     link: FdmLink,
     port: MotorPort,
-    /// Where its packets wait before they become requests.
+    /// The queue in which its packets wait before they become requests.
     states: Option<StateQueue>,
     order: MotorOrder,
     started: Instant,
@@ -22,7 +22,7 @@ pub struct ExternalSimulator {
 }
 
 impl ExternalSimulator {
-    /// A link that starts now, with a first packet of motors at rest.
+    /// Starts the link at `now` and sends a first packet with the motors at rest.
     pub fn start(config: FdmLinkConfig, order: MotorOrder, port: MotorPort, now: Instant) -> Self {
         let mut simulator = Self {
             link: FdmLink::new(config, 0),
@@ -37,21 +37,22 @@ impl ExternalSimulator {
         simulator
     }
 
-    /// The simulator with the queue in which its packets wait.
+    /// Returns the simulator with the queue in which its packets wait.
     pub fn with_states(self, states: Option<StateQueue>) -> Self {
         Self { states, ..self }
     }
 
-    /// Makes requests of the packets that have arrived by now. A packet that was there before something is sent unasked
-    /// is not the answer to that, however late it is read: first of all on waking, what is queued is read.
+    /// Turns the packets that have arrived by now into requests. Call this first after waking: a packet that
+    /// was queued before an unsolicited send is not the answer to it, however late it is read.
     pub fn pass_on_queued(&self) {
         if let Some(states) = &self.states {
             states.pass_on();
         }
     }
 
-    /// Takes a datagram that arrived at `at`. When it describes the craft, `run` steps the firmware that many ticks on
-    /// those sensors and gives the motors; the simulator is answered as it expects.
+    /// Takes a datagram that arrived at `at`. If it describes the craft, `run` steps the firmware by the
+    /// given number of ticks on those sensors and returns the motor command. The simulator gets the reply
+    /// that it expects.
     pub fn receive(
         &mut self,
         datagram: &[u8],
@@ -73,29 +74,29 @@ impl ExternalSimulator {
         received
     }
 
-    /// Sends what is due unasked; [`Self::pass_on_queued`] and [`Self::receive`] come first.
+    /// Sends unsolicited packets that are due. Call [`Self::pass_on_queued`] and [`Self::receive`] first.
     pub fn poll(&mut self, now: Instant) {
         if self.link.poll(self.micros(now)) {
             self.send_servo();
         }
     }
 
-    /// When [`Self::poll`] has something to do.
+    /// Returns the time at which [`Self::poll`] must run next.
     pub fn due(&self) -> Instant {
         self.started + Duration::from_micros(self.link.due_us())
     }
 
-    /// Whether the simulator is there.
+    /// Returns the state of the link to the simulator.
     pub fn state(&self, now: Instant) -> LinkState {
         self.link.state(self.micros(now))
     }
 
-    /// How many datagrams there were.
+    /// Returns the counters of received datagrams.
     pub fn counters(&self) -> Counters {
         self.link.counters()
     }
 
-    /// Where motors are sent, and whether the simulator is there.
+    /// Returns the address to which motor values are sent, and the state of the link to the simulator.
     pub fn status(&self, now: Instant) -> EndpointStatus {
         let Counters { senseless, old, .. } = self.link.counters();
         EndpointStatus {

@@ -1,5 +1,5 @@
-//! The byte stream to a flight controller that runs outside: bytes and changes of the connection, moved by a task that
-//! connects again by itself.
+//! The byte stream to a remote flight controller. A task moves the bytes, reports changes of the connection
+//! and reconnects by itself.
 #![allow(clippy::disallowed_methods, reason = "a lost connection is tried again in wall time")]
 
 mod place;
@@ -16,48 +16,49 @@ use tokio::time::Instant;
 
 pub use place::{DEFAULT_BAUD, FcPlace, FcPlaceError};
 
-/// Pieces that may wait in each direction; a full queue towards the session stops the reading.
+/// The maximum number of pieces that may wait in each direction. A full queue towards the session stops the
+/// reading.
 const QUEUE: usize = 64;
-/// Most bytes taken from a stream at once.
+/// The maximum number of bytes read from a stream at once.
 const CHUNK: usize = 4096;
-/// Pause before the first new attempt; it doubles with each that fails.
+/// The pause before the first new attempt. It doubles with each failure.
 const PAUSE_FIRST: Duration = Duration::from_millis(200);
-/// Longest pause between two attempts.
+/// The longest pause between two attempts.
 const PAUSE_LONGEST: Duration = Duration::from_secs(2);
 
-/// Why most connections end.
+/// The most common reason for the end of a connection.
 const CLOSED: &str = "the other end closed the connection";
-/// Why one ends that has just been made, most likely.
+/// The most likely reason for the end of a connection that has just been made.
 const CLOSED_AT_ONCE: &str = "the other end closed the connection at once, as one does that serves a single client: close the \
                               other program that is connected to it";
 
-/// What comes from the stream.
+/// An event of the stream.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum StreamEvent {
-    /// Connected, with nothing said yet. Also after every loss.
+    /// The connection is made and has carried nothing yet. Also sent after every loss.
     Connected,
     /// Bytes from the flight controller.
     Bytes(Vec<u8>),
-    /// The connection is gone, or none could be made: why, as a part of a sentence. Another attempt follows by itself; the
-    /// same reason is not told again until there was a connection.
+    /// The connection is lost or could not be made, with the reason as part of a sentence. Another attempt
+    /// follows by itself. The same reason is not reported again until a connection was made.
     Lost(String),
 }
 
 /// The session's end of the stream. The task at the other end ends when this is dropped.
 #[derive(Debug)]
 pub struct FcStream {
-    /// Bytes to the flight controller; what is sent while there is no connection is dropped.
+    /// Bytes to the flight controller. Bytes sent without a connection are dropped.
     pub to: mpsc::Sender<Vec<u8>>,
-    /// What comes from it.
+    /// Events from the flight controller.
     pub from: mpsc::Receiver<StreamEvent>,
-    /// Where it leads, as the user writes it: `tcp:127.0.0.1:5761`, `serial:/dev/ttyACM0`.
+    /// The address as the user writes it, such as `tcp:127.0.0.1:5761` or `serial:/dev/ttyACM0`.
     pub place: String,
-    /// Bytes a second that it carries; `None` = more than anybody asks for.
+    /// The capacity in bytes per second; `None` if it exceeds every need.
     pub bytes_per_s: Option<u32>,
 }
 
 impl FcStream {
-    /// Opens the stream on the present tokio runtime; its first event says whether there is somebody.
+    /// Opens the stream on the current tokio runtime. The first event reports whether a connection was made.
     pub fn open(place: FcPlace) -> Self {
         let (to, outgoing) = mpsc::channel(QUEUE);
         let (incoming, from) = mpsc::channel(QUEUE);
@@ -67,12 +68,12 @@ impl FcStream {
     }
 }
 
-/// How a connection ended.
+/// The end of a connection.
 #[derive(Debug, PartialEq, Eq)]
 enum Ended {
-    /// Nobody wants it any more.
+    /// The session no longer needs it.
     Dropped,
-    /// It is gone, for this reason.
+    /// It is lost, for this reason.
     Lost(String),
 }
 
@@ -93,7 +94,7 @@ async fn keep_connected(place: FcPlace, mut to: mpsc::Receiver<Vec<u8>>, from: m
             () = from.closed() => return,
         };
         let Ended::Lost(reason) = attempt else { return };
-        // One that is closed as soon as it is made is no better than none.
+        // A connection that closes at once counts as a failed attempt.
         pause = if begun.elapsed() > PAUSE_LONGEST { PAUSE_FIRST } else { pause };
         if told.as_ref() != Some(&reason) {
             if from.send(StreamEvent::Lost(reason.clone())).await.is_err() {
@@ -109,7 +110,7 @@ async fn keep_connected(place: FcPlace, mut to: mpsc::Receiver<Vec<u8>>, from: m
     }
 }
 
-/// One connection, from the attempt to its end.
+/// Runs one connection, from the attempt to its end.
 async fn connect(
     place: &FcPlace,
     to: &mut mpsc::Receiver<Vec<u8>>,
@@ -127,7 +128,7 @@ async fn connect(
         Ok(connection) => connection,
         Err(reason) => return Ended::Lost(reason),
     };
-    // What was meant for the connection before.
+    // Drops bytes that were meant for the previous connection.
     while to.try_recv().is_ok() {}
     *told = None;
     if from.send(StreamEvent::Connected).await.is_err() {
@@ -153,12 +154,12 @@ async fn connect(
 enum Connection {
     Serial(serial2_tokio::SerialPort),
     Tcp(tokio::net::TcpStream),
-    /// Boxed, for it is large.
+    /// Boxed because it is large.
     WebSocket(Box<ws::Socket>),
 }
 
-/// Moves bytes until the connection is lost or nobody wants them any more; `heard` tells whether any came. Reading goes on
-/// while a write is held up.
+/// Moves bytes until the connection is lost or the session no longer needs them. Sets `heard` once bytes have
+/// arrived. Reading continues while a write is blocked.
 async fn pump(
     stream: impl AsyncRead + AsyncWrite,
     to: &mut mpsc::Receiver<Vec<u8>>,
@@ -196,7 +197,7 @@ async fn pump(
     }
 }
 
-/// What the system says, as a part of a sentence.
+/// Returns the system's error as part of a sentence.
 fn reason(error: &io::Error) -> String {
     match error.kind() {
         ErrorKind::ConnectionRefused => "nobody listens there (connection refused)".to_owned(),

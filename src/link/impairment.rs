@@ -1,7 +1,7 @@
-//! What goes wrong on the way from a simulator: packets that are lost, late, doubled or out of order.
+//! Impairments of the link from a simulator: packets that are lost, late, doubled or out of order.
 //!
-//! The caller tells when a packet was sent and what is wrong then, and takes out what has arrived by now. With the same
-//! seed the same packets are impaired alike.
+//! The caller passes the time of sending and the current impairments, and takes out the packets that have
+//! arrived. The same seed impairs the same packets alike.
 
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
@@ -9,28 +9,28 @@ use std::time::{Duration, Instant};
 use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;
 
-/// Most packets that are on the way together; what is sent beyond them is lost, as in a socket that is full.
+/// The maximum number of packets in transit. Further packets are lost, as in a full socket.
 const MAX_IN_FLIGHT: usize = 16_384;
 
-/// What goes wrong on the way.
+/// The impairments of a link.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LinkImpairment {
     pub stall: bool,
-    /// Fraction of packets lost.
+    /// The fraction of packets lost.
     pub loss: f64,
-    /// Delay of every packet, ms.
+    /// The delay of every packet, ms.
     pub late_ms: f64,
-    /// Fraction of packets that come twice.
+    /// The fraction of packets that arrive twice.
     pub duplicated: f64,
-    /// Greatest additional random delay, ms.
+    /// The greatest additional random delay, ms.
     pub jitter_ms: f64,
 }
 
-/// The way from a simulator to the firmware.
+/// The link from a simulator to the firmware.
 #[derive(Debug, Clone)]
 pub struct ImpairedLink {
     rng: ChaCha8Rng,
-    /// In the order of arrival.
+    /// Sorted by arrival.
     in_flight: VecDeque<DelayedPacket>,
 }
 
@@ -41,18 +41,19 @@ struct DelayedPacket {
 }
 
 impl ImpairedLink {
-    /// A link on which nothing is in_flight; `rng` decides the fate of packets.
+    /// Creates a link without packets in transit. `rng` decides the fate of packets.
     pub fn new(rng: ChaCha8Rng) -> Self {
         Self { rng, in_flight: VecDeque::new() }
     }
 
-    /// Sends a packet on its way at `at`, through these impairments.
+    /// Sends a packet at `at` through these impairments.
     pub fn send(&mut self, datagram: Vec<u8>, at: Instant, impairment: &LinkImpairment) {
         if *impairment == LinkImpairment::default() {
             self.put(datagram, at);
             return;
         }
-        // All drawn for each packet, so that one of them leaves the fate of the others' packets as it is.
+        // All four are drawn for each packet, so that one impairment does not change which packets another
+        // one hits.
         let [loss, doubling, jitter, jitter_of_second] = std::array::from_fn(|_| self.rng.random::<f64>());
         if impairment.stall || loss < impairment.loss {
             return;
@@ -66,13 +67,13 @@ impl ImpairedLink {
         self.put(datagram, at + late(jitter));
     }
 
-    /// The next packet that has arrived by `now`, and when.
+    /// Returns the next packet that has arrived by `now`, with its time of arrival.
     pub fn arrived(&mut self, now: Instant) -> Option<(Vec<u8>, Instant)> {
         let packet = self.in_flight.pop_front_if(|packet| packet.arrives <= now)?;
         Some((packet.datagram, packet.arrives))
     }
 
-    /// When the next packet arrives, when any is on its way.
+    /// Returns the arrival time of the next packet in transit, if any.
     pub fn due(&self) -> Option<Instant> {
         self.in_flight.front().map(|packet| packet.arrives)
     }
@@ -99,7 +100,8 @@ mod tests {
         ImpairedLink::new(ChaCha8Rng::seed_from_u64(seed))
     }
 
-    /// Sends packets 0, 1, 2… one a millisecond; gives number and time of arrival (µs after the first was sent).
+    /// Sends packets 0, 1, 2…, one per millisecond. Returns the number of each packet and its time of arrival
+    /// (µs after the first was sent).
     fn carry(seed: u64, count: u32, impairment: &LinkImpairment) -> Vec<(u32, u128)> {
         let start = Instant::now();
         let mut way = link(seed);

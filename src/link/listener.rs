@@ -1,4 +1,5 @@
-//! The TCP and the websocket door: listens, lets clients in, refuses web pages of foreign origins and foreign hosts.
+//! The TCP and the websocket door: listens, admits clients, and refuses web pages of foreign origins and
+//! foreign hosts.
 
 #![allow(clippy::disallowed_methods, reason = "the doors wait for people and programs")]
 
@@ -21,17 +22,18 @@ use super::origin::{self, Refusal};
 use super::request::ClientId;
 use super::seats::{CLIENTS_MAX, Seat, Seats};
 
-/// How long a websocket handshake may take.
+/// The longest time that a websocket handshake may take.
 const HANDSHAKE_TIMEOUT: Duration = Duration::from_secs(10);
-/// Pause after a client could not be accepted (too many open files).
+/// The pause after a client could not be accepted (too many open files).
 const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
-/// Bytes that a websocket reads at once.
+/// The bytes that a websocket reads at once.
 const READ_BUFFER: usize = 16 * 1024;
-/// Most bytes that a websocket holds until the client takes them: a message, and answers to control frames.
+/// The maximum number of bytes that a websocket holds until the client takes them: one message and the
+/// answers to control frames.
 const WRITE_BUFFER_MAX: usize = 2 * MESSAGE_MAX;
 /// The sub-protocol of the Betaflight App.
 const BINARY: &str = "binary";
-/// Numbers for clients, shared by all doors.
+/// The next client number, shared by all doors.
 static NEXT_CLIENT: AtomicU64 = AtomicU64::new(1);
 
 /// The protocol below the serial session.
@@ -39,7 +41,7 @@ static NEXT_CLIENT: AtomicU64 = AtomicU64::new(1);
 pub(super) enum ListenerKind {
     Tcp,
     WebSocket {
-        /// Origins that are served besides the usual ones.
+        /// Origins that are served in addition to the usual ones.
         allow_origin: Arc<[String]>,
     },
 }
@@ -53,7 +55,7 @@ impl ListenerKind {
     }
 }
 
-/// Lets clients in until the doors close.
+/// Admits clients until the doors close.
 pub(super) async fn listen(
     listener: TcpListener,
     kind: ListenerKind,
@@ -87,7 +89,7 @@ pub(super) async fn listen(
         let (kind, channels, stats) = (kind.clone(), channels.clone(), Arc::clone(&stats));
         let notices = notices.clone();
         tasks.spawn(async move {
-            // An interactive line is small packets both ways.
+            // An interactive line consists of small packets in both directions.
             let _only_slower = stream.set_nodelay(true);
             match admit(stream, &kind, &channels, &notices, &seat).await {
                 Some(stream) => {
@@ -103,7 +105,7 @@ pub(super) async fn listen(
     }
 }
 
-/// The client's stream, once it is admitted.
+/// Returns the client's stream once it is admitted.
 async fn admit(
     stream: TcpStream,
     kind: &ListenerKind,
@@ -142,7 +144,7 @@ async fn admit(
     accepted.ok().map(|socket| ClientStream::WebSocket(Box::new(socket)))
 }
 
-/// Whether a handshake comes from somebody who is served. A header that is there twice counts twice.
+/// Checks the origin and the host of a handshake. Every copy of a repeated header must pass.
 fn judge(request: &Handshake, own_address: IpAddr, allowed: &[String]) -> Result<(), Refusal> {
     let values = |name: HeaderName| {
         request.headers().get_all(name).into_iter().map(|value| value.to_str().unwrap_or("?"))
@@ -151,7 +153,8 @@ fn judge(request: &Handshake, own_address: IpAddr, allowed: &[String]) -> Result
     values(header::HOST).try_for_each(|host| origin::judge_host(host, own_address, allowed))
 }
 
-/// Chooses the sub-protocol when it is offered: browsers fail a handshake that ignores what they asked for.
+/// Selects the sub-protocol if the client offers it. Browsers fail a handshake that ignores the sub-protocol
+/// they offered.
 fn with_sub_protocol(request: &Handshake, mut response: Response) -> Response {
     let offered = request.headers().get_all(header::SEC_WEBSOCKET_PROTOCOL);
     let mut offered =

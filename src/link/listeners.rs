@@ -1,4 +1,4 @@
-//! The listeners, at which other programs reach the vehicle: opens them, shows their state, closes them.
+//! The listeners at which other programs reach the vehicle: opens them, reports their state, closes them.
 
 #![allow(clippy::disallowed_methods, reason = "the state of a listener shows the age of its newest packet")]
 
@@ -21,13 +21,13 @@ use super::seats::Seats;
 use super::udp::{DatagramPort, Datagrams, StateQueue};
 use crate::telemetry::{EndpointKind, EndpointState, EndpointStatus};
 
-/// How long the listeners may take to close.
+/// The longest time that the listeners may take to close.
 const CLOSING: Duration = Duration::from_secs(1);
 
-/// What to listen for, and where. Port 0 lets the system choose; `None` leaves an endpoint closed.
+/// The endpoints to open and their ports. Port 0 lets the system choose; `None` leaves an endpoint closed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ListenConfig {
-    /// Address to listen on; `None` = 127.0.0.1, for TCP and websocket ::1 as well.
+    /// The address to listen on; `None` = 127.0.0.1, for TCP and websocket ::1 as well.
     pub listen: Option<IpAddr>,
     /// MSP and command line over TCP.
     pub tcp_port: Option<u16>,
@@ -35,14 +35,14 @@ pub struct ListenConfig {
     pub ws_port: Option<u16>,
     /// RC from scripts, UDP.
     pub rc_port: Option<u16>,
-    /// States from a simulator, UDP.
+    /// States of the craft from a simulator, UDP.
     pub fdm_port: Option<u16>,
-    /// Web pages that are served besides the usual ones.
+    /// Web pages that are served in addition to the usual ones.
     pub allow_origin: Vec<String>,
 }
 
 impl Default for ListenConfig {
-    /// The usual endpoints of a craft whose physics is embedded.
+    /// Returns the usual endpoints of a craft with embedded physics.
     fn default() -> Self {
         Self {
             listen: None,
@@ -55,7 +55,7 @@ impl Default for ListenConfig {
     }
 }
 
-/// The option that moves an endpoint.
+/// Returns the option that sets the port of an endpoint.
 fn option(kind: EndpointKind) -> &'static str {
     match kind {
         EndpointKind::WebSocket => "--ws-port",
@@ -64,36 +64,36 @@ fn option(kind: EndpointKind) -> &'static str {
     }
 }
 
-/// Why an endpoint is closed.
+/// The reason why an endpoint is closed.
 #[derive(Debug, thiserror::Error)]
 pub enum ListenError {
-    /// Something else has the port.
+    /// Another program has the port.
     #[error(
         "{} port {port} is in use: stop the program that has it, or choose another with {} (0 = any free one)",
         .kind.transport(), option(*.kind)
     )]
     Busy {
-        /// What it is for.
+        /// The endpoint that needs the port.
         kind: EndpointKind,
         port: u16,
     },
     /// The system refused for another reason.
     #[error("cannot listen on {address} ({}): {error}; see --listen and {}", .kind.transport(), option(*.kind))]
     Refused {
-        /// What it is for.
+        /// The endpoint that needs the address.
         kind: EndpointKind,
-        /// Where it was to listen.
+        /// The requested address.
         address: SocketAddr,
-        /// What the system says.
+        /// The system's error.
         error: io::Error,
     },
 }
 
-/// One endpoint that listens, or should.
+/// One endpoint that listens or should listen.
 #[derive(Debug)]
 struct Listener {
     kind: EndpointKind,
-    /// Where it listens, or why it does not.
+    /// The address, or the reason why it is closed.
     place: Result<SocketAddr, ListenError>,
     stats: Arc<EndpointStats>,
 }
@@ -104,12 +104,12 @@ pub struct Listeners {
     shutdown: CancellationToken,
     tasks: TaskTracker,
     restarts: watch::Sender<u64>,
-    /// What comes from an external simulator, when one is listened to.
+    /// The packets from an external simulator, if that endpoint is open.
     states: Option<StateQueue>,
 }
 
 impl Listeners {
-    /// Opens the endpoints. One that cannot be opened says why in its status; the others work.
+    /// Opens the endpoints. An endpoint that cannot be opened has the reason in its status; the others work.
     pub async fn open(config: &ListenConfig, requests: mpsc::Sender<Request>) -> (Self, Vec<EndpointStatus>) {
         let (restarts, restarted) = watch::channel(0);
         let mut listeners = Self {
@@ -204,39 +204,39 @@ impl Listeners {
         self.all.push(Listener { kind, place, stats });
     }
 
-    /// How each is doing.
+    /// Returns the status of each endpoint.
     pub fn status(&self) -> Vec<EndpointStatus> {
         let now = Instant::now();
         self.all.iter().map(|listener| listener.status(now)).collect()
     }
 
-    /// Why endpoints are closed, as sentences.
+    /// Returns the reasons why endpoints are closed, as sentences.
     pub fn problems(&self) -> impl Iterator<Item = &ListenError> {
         self.all.iter().filter_map(|listener| listener.place.as_ref().err())
     }
 
-    /// Where an endpoint listens.
+    /// Returns the address at which an endpoint listens.
     pub fn address(&self, kind: EndpointKind) -> Option<SocketAddr> {
         let listener = self.all.iter().find(|listener| listener.kind == kind)?;
         listener.place.as_ref().ok().copied()
     }
 
-    /// How many clients an endpoint has.
+    /// Returns the number of clients of an endpoint.
     pub fn clients(&self, kind: EndpointKind) -> u32 {
         self.all.iter().find(|listener| listener.kind == kind).map_or(0, |listener| listener.stats.clients())
     }
 
-    /// The states of an external simulator, when they are listened to.
+    /// Returns the queue of states from an external simulator, if that endpoint is open.
     pub fn states(&self) -> Option<StateQueue> {
         self.states.clone()
     }
 
-    /// The signal that a restart of the firmware sends.
+    /// Returns the signal that a restart of the firmware sends.
     pub fn restart_signal(&self) -> RestartSignal {
         RestartSignal(self.restarts.clone())
     }
 
-    /// Closes all endpoints and waits for their clients to be told.
+    /// Closes all endpoints and waits until their clients are closed.
     pub async fn close(self) {
         self.shutdown.cancel();
         self.tasks.close();
@@ -250,12 +250,12 @@ impl Drop for Listeners {
     }
 }
 
-/// Closes the links of all clients, as a restart of the firmware does; they may come back at once.
+/// Closes the links of all clients, as a restart of the firmware does. They may reconnect at once.
 #[derive(Debug, Clone)]
 pub struct RestartSignal(watch::Sender<u64>);
 
 impl RestartSignal {
-    /// The firmware started anew.
+    /// Signals that the firmware has restarted.
     pub fn send(&self) {
         self.0.send_modify(|restarts| *restarts += 1);
     }

@@ -1,5 +1,5 @@
-//! What a door reports to the user: each thing once, however many clients cause it at however many addresses, and
-//! connections that speak something else by their number.
+//! The notices of a door to the user. Each is sent once, however many clients at however many addresses cause
+//! it. Connections that use another protocol are counted.
 
 #![allow(clippy::disallowed_methods, reason = "the doors wait for people and programs")]
 
@@ -15,9 +15,9 @@ use super::request::Request;
 pub(super) use flood::Stranger;
 use flood::{Flood, sentence};
 
-/// Most notices of one door.
+/// The maximum number of notices of one door.
 const NOTICES_MAX: usize = 64;
-/// How long connections of strangers are counted before the first notice of them.
+/// The time for which connections of strangers are counted before their first notice.
 const COUNTED_FOR: Duration = Duration::from_secs(1);
 
 /// The notices of one door, shared by all its listeners and clients.
@@ -33,8 +33,8 @@ impl Notices {
         Self { requests, told: Arc::default(), floods: Arc::default() }
     }
 
-    /// Tells this unless it was told before. When nobody has time to listen it is told the next time; until then it is seen
-    /// in the door's count of errors.
+    /// Sends this notice unless it was sent before. If the session's queue is full, the notice is sent the
+    /// next time; until then only the door's error count shows it.
     pub(super) fn tell(&self, notice: String) {
         let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
         if told.len() < NOTICES_MAX
@@ -45,7 +45,8 @@ impl Notices {
         }
     }
 
-    /// Counts a connection to a door that was closed for what it spoke. Reports a flood of them once, a moment after it began.
+    /// Counts a connection that was closed because of its protocol. Reports a flood of them once, a moment
+    /// after it began.
     pub(super) fn count_stranger(&self, door: &'static str, stranger: Stranger) {
         if !self.change(stranger, |flood| flood.count(Instant::now())) {
             return;

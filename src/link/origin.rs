@@ -1,18 +1,18 @@
-//! Which web pages may reach the craft.
+//! Decides which web pages may reach the craft.
 //!
-//! A browser lets any page on the net open a websocket to this machine and names the page's origin. Without a check a
-//! stranger's page could fly the craft. The host that the client names is checked too: a page whose name was made to point
-//! to this machine after it was loaded is not of a foreign origin.
+//! A browser lets any page on the net open a websocket to this machine, and names the page's origin. Without
+//! a check a stranger's page could fly the craft. The host that the client names is checked too: a page can
+//! make its own name point to this machine after it was loaded, and then its origin is not foreign.
 
 use std::net::IpAddr;
 
 /// The page of the hosted App.
 const APP: &str = "https://app.betaflight.com";
 
-/// Most characters of an origin or a host in a notice.
+/// The maximum number of characters of an origin or a host in a notice.
 const SHOWN_MAX: usize = 100;
 
-/// A client that is not served, as a notice tells it.
+/// The reason why a client is not served, worded for a notice.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub(super) enum Refusal {
     /// A web page whose origin can be allowed.
@@ -21,13 +21,13 @@ pub(super) enum Refusal {
          --allow-origin {0} to serve it."
     )]
     Origin(String),
-    /// A web page that could be anybody's.
+    /// A web page that could belong to anybody.
     #[error(
         "A web page without an origin of its own (a file, a sandboxed frame) tried to reach the craft through the \
          websocket and was refused: serve it from this machine, under http://localhost."
     )]
     NoOrigin,
-    /// A name that is not this machine's: a page may have made it point here.
+    /// A name that does not belong to this machine. A page may have made it point here.
     #[error(
         "A client that took this machine for {0:?} tried to reach the craft through the websocket and was refused: \
          connect to its address, or start with --allow-origin http://NAME."
@@ -35,7 +35,7 @@ pub(super) enum Refusal {
     Host(String),
 }
 
-/// Whether a page of this origin is served. Clients that are no browsers name none.
+/// Checks the origin of a page. Clients other than browsers do not name one.
 pub(super) fn judge_origin(origin: &str, allowed: &[String]) -> Result<(), Refusal> {
     let origin = origin.trim().trim_end_matches('/');
     let is_served = origin.eq_ignore_ascii_case(APP)
@@ -44,14 +44,14 @@ pub(super) fn judge_origin(origin: &str, allowed: &[String]) -> Result<(), Refus
     if is_served {
         return Ok(());
     }
-    // One that is cut would not be served.
+    // A truncated origin would not be served.
     let can_be_allowed = host(origin).is_some_and(|host| !host.is_empty()) && origin.len() <= SHOWN_MAX;
     Err(if can_be_allowed { Refusal::Origin(origin.to_owned()) } else { Refusal::NoOrigin })
 }
 
-/// Whether a client is served that calls this machine so: by a name of the loopback, by the address at which it has
-/// reached the door, or by a host that is allowed. A page of a stranger whose name was made to point to this machine is of
-/// the same origin as what it reaches.
+/// Checks the name by which a client calls this machine. Allowed are names of the loopback, the address at
+/// which the client reached the door, and the allowed hosts. A stranger's page whose name was made to point
+/// to this machine has the same origin as the door that it reaches.
 pub(super) fn judge_host(named: &str, own_address: IpAddr, allowed: &[String]) -> Result<(), Refusal> {
     let named = named.trim();
     let is_own = |host: &str| {
@@ -69,7 +69,7 @@ pub(super) fn judge_host(named: &str, own_address: IpAddr, allowed: &[String]) -
     }
 }
 
-/// The host of `scheme://host` or `scheme://host:port`; `None` for anything else.
+/// Returns the host of `scheme://host` or `scheme://host:port`; `None` for anything else.
 fn host(origin: &str) -> Option<&str> {
     let (scheme, authority) = origin.split_once("://")?;
     let in_scheme = |byte: u8| byte.is_ascii_alphanumeric() || b"+-.".contains(&byte);
@@ -79,7 +79,7 @@ fn host(origin: &str) -> Option<&str> {
     host_of_authority(authority)
 }
 
-/// The host of `host` or `host:port`; `None` for anything else.
+/// Returns the host of `host` or `host:port`; `None` for anything else.
 fn host_of_authority(authority: &str) -> Option<&str> {
     let (host, port) = match authority.strip_prefix('[') {
         Some(rest) => match rest.split_once(']')? {
@@ -96,8 +96,8 @@ fn host_of_authority(authority: &str) -> Option<&str> {
     (port.is_none_or(is_port) && host.bytes().all(in_host)).then_some(host)
 }
 
-/// This machine by name or address. Names below `localhost` belong to this machine too; the App's desktop and mobile
-/// shells use them, under schemes of their own.
+/// Returns `true` for this machine by name or address. Names below `localhost` belong to this machine too:
+/// the App's desktop and mobile shells use them, under their own schemes.
 fn is_loopback(host: &str) -> bool {
     let host = host.to_ascii_lowercase();
     host == "localhost"

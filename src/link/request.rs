@@ -1,5 +1,5 @@
-//! What the doors ask of the session. Requests are data; an answer goes back through a channel of one, so a client
-//! that went away costs nothing.
+//! The requests of the doors to the session. Requests are data. An answer returns through a channel for one
+//! value, so a disconnected client costs nothing.
 
 use std::net::SocketAddr;
 use std::time::Instant;
@@ -9,28 +9,28 @@ use tokio::sync::oneshot;
 use super::proto::command_line::{Completion, LineReply, LineSource};
 use crate::signals::RcFrame;
 
-/// A client of the TCP or the websocket door, by a number that is never used twice.
+/// A client of the TCP or the websocket door, identified by a number that is never reused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ClientId(pub u64);
 
-/// A request to the session. The session carries requests out between two ticks, in the order they came, and answers
-/// before it acts on what the answer announced (a restart, for one).
+/// A request to the session. The session handles requests between two ticks in the order of arrival. It
+/// answers before it acts on the announced effect, such as a restart.
 #[derive(Debug)]
 pub enum Request {
     Msp {
         client: ClientId,
-        /// The message's code.
+        /// The code of the message.
         code: u16,
         payload: Vec<u8>,
-        /// Gets the reply's payload, or `None` for the protocol's error.
+        /// Receives the payload of the reply, or `None` for the protocol's error.
         reply: oneshot::Sender<Option<Vec<u8>>>,
     },
-    /// A client wants the command line.
+    /// A client requests the command line.
     EnterCli {
         client: ClientId,
-        /// For a person: from now until the next restart, the craft does not arm.
+        /// `true` for a person: the craft does not arm from now until the next restart.
         interactive: bool,
-        /// Gets whether it opens; it does not while armed.
+        /// Receives `true` if the command line opens. It does not open while the craft is armed.
         reply: oneshot::Sender<bool>,
     },
     /// A line of the command line.
@@ -38,29 +38,32 @@ pub enum Request {
         client: ClientId,
         /// The line, without its end.
         line: String,
-        /// What kind of session it comes from: the one that the client entered, or a message, which is its own.
+        /// The kind of session that the line comes from: the one that the client entered, or a message, which
+        /// is a session of its own.
         source: LineSource,
         reply: oneshot::Sender<LineReply>,
     },
-    /// How a line being typed may go on.
+    /// A client requests the completion of a line being typed.
     Complete {
         /// The line so far.
         line: String,
         reply: oneshot::Sender<Completion>,
     },
-    /// A client left the command line, or went away inside it: what lasts for a session (a motor on the bench) ends.
+    /// A client closed the command line, or disconnected while it was open. Effects that last for a session
+    /// (a motor on the bench) end.
     LeftCli { client: ClientId },
-    /// A client sent lines of text while its command line was closed; they were ignored. Comes once for lines of one paste.
+    /// A client sent lines of text while its command line was closed; they were ignored. Sent once per paste
+    /// of several lines.
     Ignored {
         client: ClientId,
         /// The first word of the first line.
         word: String,
     },
-    /// A client wants the firmware to start anew, losing what was not saved, and the links to close.
+    /// A client requests a restart of the firmware, which loses unsaved settings and closes the links.
     Restart { client: ClientId },
     /// An RC frame from a script.
     Rc {
-        /// The script's clock, s; nothing depends on it.
+        /// The script's clock, s; unused.
         stamp_s: f64,
         frame: RcFrame,
         from: SocketAddr,
@@ -68,11 +71,11 @@ pub enum Request {
     },
     /// A datagram from a simulator.
     Fdm {
-        /// Its bytes, the surplus cut.
+        /// The bytes, without the surplus.
         datagram: Vec<u8>,
         from: SocketAddr,
         at: Instant,
     },
-    /// Something the user should read, as a sentence.
+    /// A message to the user, as a sentence.
     Notice(String),
 }

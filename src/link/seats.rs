@@ -1,5 +1,5 @@
-//! The places of a door's clients. When all are taken, a connection that has said nothing yet gives its place to the next
-//! one: half-finished handshakes and silent connections shut no door.
+//! The places of a door's clients. When all are taken, a connection that has not sent a request yet gives its
+//! place to the next one. Half-finished handshakes and silent connections thus do not block a door.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -7,10 +7,10 @@ use tokio_util::sync::CancellationToken;
 
 use super::request::ClientId;
 
-/// Most clients of one door.
+/// The maximum number of clients of one door.
 pub(super) const CLIENTS_MAX: usize = 32;
 
-/// One place that is taken.
+/// One occupied place.
 #[derive(Debug)]
 struct Taken {
     by: ClientId,
@@ -18,11 +18,11 @@ struct Taken {
     evicted: CancellationToken,
 }
 
-/// The places of one door, in the order in which they were taken; all listeners of the door share them.
+/// The places of one door, in the order in which they were taken. All listeners of the door share them.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Seats(Arc<Mutex<Vec<Taken>>>);
 
-/// The place of one client, free again when this is dropped.
+/// The place of one client. Dropping it frees the place.
 #[derive(Debug)]
 pub(super) struct Seat {
     client: ClientId,
@@ -31,8 +31,8 @@ pub(super) struct Seat {
 }
 
 impl Seats {
-    /// Returns a place for a client, if need be that of the connection that has been silent for the longest; `None` when all
-    /// are taken by clients that have spoken.
+    /// Returns a place for a client. If all places are taken, the client gets that of the oldest connection
+    /// without a request. Returns `None` if all clients have sent one.
     pub(super) fn take(&self, client: ClientId) -> Option<Seat> {
         let evicted = CancellationToken::new();
         self.change(|taken| {
@@ -56,7 +56,7 @@ impl Seat {
         self.client
     }
 
-    /// The client has asked something: it keeps its place.
+    /// Keeps the place for the client, because it has sent a request.
     pub(super) fn keep(&self) {
         self.seats.change(|taken| {
             if let Some(seat) = taken.iter_mut().find(|seat| seat.by == self.client) {

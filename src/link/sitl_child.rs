@@ -1,7 +1,7 @@
-//! A SITL executable as a child of this program: started in a directory of its own, started anew when its `save` has ended
-//! it, ended with this program, whatever ends that.
+//! A SITL executable as a child of this program. It runs in its own directory, is restarted after its `save`
+//! has ended it, and ends with this program, whatever the cause.
 //!
-//! A thread of its own waits for the child. What the child prints and how it ends are told in order.
+//! A separate thread waits for the child. The lines that the child prints and its end are reported in order.
 
 mod events;
 mod group;
@@ -18,46 +18,46 @@ use std::time::{Duration, Instant};
 use events::Events;
 pub use launch::{LaunchError, launch_firmware};
 
-/// Between two looks at the child.
+/// The interval between two checks of the child.
 const LOOK: Duration = Duration::from_millis(20);
-/// How long a child may take to end when it is asked to, and its output when it has ended.
+/// The longest time that a child may take to end on request, and to deliver its output after its end.
 const GRACE: Duration = Duration::from_millis(500);
-/// Before a child that ended is started again.
+/// The pause before a child that ended is restarted.
 const PAUSE: Duration = Duration::from_millis(100);
-/// Before one is started again that crashed, so that a log can be read.
+/// The pause before a child that crashed is restarted, so that a log can be read.
 const PAUSE_AFTER_CRASH: Duration = Duration::from_secs(1);
-/// Longest line of its output that is told whole, bytes.
+/// The longest line of its output that is reported whole, bytes.
 const LINE_MAX: u64 = 4096;
-/// How the lines begin that are not told: the thousands about its storing, and those of each second about its flight, which
-/// is seen here anyway.
+/// The beginnings of lines that are not reported: the thousands about its storing, and those of each second
+/// about its flight, which this program shows anyway.
 const NOT_TOLD: [&str; 2] = ["[FLASH_ProgramWord]", "[SITL] t="];
 
-/// How a SITL executable is started.
+/// The settings to start a SITL executable.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ChildConfig {
     pub program: PathBuf,
     pub arguments: Vec<String>,
-    /// Where it runs and keeps its `eeprom.bin`.
+    /// The directory in which it runs and keeps its `eeprom.bin`.
     pub directory: PathBuf,
-    /// This program, which starts the child so that it cannot outlive it.
+    /// This program. It starts the child in such a way that the child cannot outlive it.
     pub launcher: PathBuf,
 }
 
-/// What happened to the child.
+/// An event of the child.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ChildEvent {
     Started,
     /// A line of its output.
     Line(String),
-    /// So many lines of its output are not told: it prints more than can be read.
+    /// The number of lines that are not reported because the child prints more than can be read.
     NotShown(u64),
-    /// It ended; it is started again.
+    /// The child ended. It is restarted.
     Ended(ChildEnd),
-    /// It cannot be started: why, as a part of a sentence. Nothing follows.
+    /// The child cannot be started, with the reason as part of a sentence. No events follow.
     Failed(String),
 }
 
-/// How the child ended.
+/// The way in which the child ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ChildEnd {
     /// With this exit code.
@@ -66,14 +66,14 @@ pub enum ChildEnd {
 }
 
 impl ChildEnd {
-    /// Whether it ended as it does to reboot.
+    /// Returns `true` if it ended in the way of a reboot.
     pub fn is_reboot(self) -> bool {
         self == Self::Code(0)
     }
 }
 
 impl std::fmt::Display for ChildEnd {
-    /// How it ended, as a part of a sentence.
+    /// Writes the end as part of a sentence.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Code(code) => write!(f, "with exit code {code}"),
@@ -101,10 +101,10 @@ pub struct SitlChild {
 }
 
 impl SitlChild {
-    /// Starts the executable; [`SitlChild::take_event`] tells what becomes of it.
+    /// Starts the executable. [`SitlChild::take_event`] reports its events.
     ///
     /// # Errors
-    /// When the system gives no thread.
+    /// Returns an error if the system cannot start a thread.
     pub fn start(config: ChildConfig) -> std::io::Result<Self> {
         let events = Arc::new(Events::default());
         let stop = Arc::new(AtomicBool::new(false));
@@ -122,13 +122,13 @@ impl Drop for SitlChild {
     fn drop(&mut self) {
         self.stop.store(true, Ordering::Relaxed);
         if let Some(keeper) = self.keeper.take() {
-            // It does not panic.
+            // The thread does not panic.
             drop(keeper.join());
         }
     }
 }
 
-/// Waits for the child and starts it again.
+/// Waits for the child and restarts it.
 struct Keeper {
     config: ChildConfig,
     events: Arc<Events>,
@@ -173,7 +173,8 @@ impl Keeper {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// How the child ended; `None` when it was ended from here. What it started ends with it.
+    /// Waits for the end of the child. Returns `None` if this program ended it. Its own child processes end
+    /// with it.
     fn wait(&self, child: &mut Child) -> std::io::Result<Option<ChildEnd>> {
         let by_itself = loop {
             if group::has_ended(child)? {
@@ -200,7 +201,7 @@ impl Keeper {
         }
     }
 
-    /// Tells the lines of an output until it ends.
+    /// Reports the lines of an output until it ends.
     fn listen(&self, output: impl Read + Send + 'static) -> JoinHandle<()> {
         let events = Arc::clone(&self.events);
         std::thread::spawn(move || {
@@ -217,8 +218,8 @@ impl Keeper {
     }
 }
 
-/// Waits for those who read the output of a child that has ended. One whose output somebody else still holds, who has left
-/// the child's group, is left to it.
+/// Waits for the threads that read the output of a child that has ended. A thread is abandoned if a process
+/// that has left the child's group still holds its output.
 fn read_to_the_end(readers: impl Iterator<Item = JoinHandle<()>>) {
     let until = now() + GRACE;
     for reader in readers {

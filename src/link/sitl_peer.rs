@@ -1,4 +1,4 @@
-//! The sockets beside a SITL executable: states and RC go to it, motors come from it.
+//! The sockets to a SITL executable: states and RC are sent to it, motor commands come from it.
 
 use std::io;
 use std::net::{IpAddr, SocketAddr, UdpSocket};
@@ -11,32 +11,32 @@ use crate::signals::fdm::Dialect;
 use crate::signals::{MotorCommand, RcFrame, SensorFrame};
 use crate::telemetry::{EndpointKind, EndpointState, EndpointStatus};
 
-/// Longer than any motor packet.
+/// A size above that of any motor packet.
 const BUFFER: usize = 128;
-/// Most packets that are taken from a socket in one go.
+/// The maximum number of packets read from a socket at once.
 const QUEUED_MAX: usize = 4096;
-/// Between two frames of the transmitter.
+/// The interval between two frames of the transmitter.
 const RC_PERIOD: Duration = Duration::from_millis(20);
-/// The link of the transmitter was up where its newest frame is no older, µs.
+/// The greatest age at which the newest frame of the transmitter shows that its link was up, µs.
 const RC_IS_UP_US: u64 = 60_000;
-/// After its first motor packet an executable is certainly ready.
+/// The time after its first motor packet after which an executable is certainly ready.
 const BOOT: Duration = Duration::from_millis(500);
 
-/// Where a SITL executable listens, and where it sends to.
+/// The ports at which a SITL executable receives, and those to which it sends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SitlPorts {
     pub ip: IpAddr,
-    /// Motor pulses come to this port.
+    /// The executable sends motor pulses to this port.
     pub raw: u16,
-    /// Motor values come to this port.
+    /// The executable sends motor values to this port.
     pub motors: u16,
-    /// It takes states here.
+    /// The executable receives states here.
     pub fdm: u16,
-    /// It takes RC here.
+    /// The executable receives RC here.
     pub rc: u16,
 }
 
-/// A port that its motors are to come to is not free.
+/// A port for its motor packets is not free.
 #[derive(Debug, thiserror::Error)]
 #[error(
     "cannot take the motors of the firmware at UDP {address}: {error}; end what holds the port (a simulator such as Gazebo, \
@@ -52,21 +52,21 @@ pub struct MotorsInError {
 pub struct SitlPeer {
     feed: SitlFeed,
     motors: UdpSocket,
-    /// Bound so that nobody else's is taken for it; its pulses say what the values say.
+    /// Bound so that no other program takes the port. Its pulses repeat the motor values.
     raw: UdpSocket,
     fdm: SocketAddr,
     rc: SocketAddr,
     started: Instant,
-    /// It is up: states that come while it boots may crash it, or leave it deaf.
+    /// `true` once it is up. States that arrive while it boots may crash it or make it ignore all later ones.
     is_up: bool,
-    /// When its first motor packet came, which it sends shortly before it is ready.
+    /// The time of its first motor packet, which it sends shortly before it is ready.
     boots_since: Option<Instant>,
     /// The newest frame of the transmitter.
     newest_rc: Option<SentRc>,
     stats: EndpointStats,
 }
 
-/// A frame of the transmitter, when it was measured, and when it was sent last.
+/// A frame of the transmitter with the times of its measurement and of its last transmission.
 #[derive(Debug, Clone, Copy)]
 struct SentRc {
     frame: RcFrame,
@@ -75,11 +75,11 @@ struct SentRc {
 }
 
 impl SitlPeer {
-    /// Sockets for an executable, which gets nothing before [`Self::came_up`] tells that it has booted, or its first motor
-    /// packet of half a second ago does.
+    /// Opens the sockets for an executable. It gets nothing until it has booted: [`Self::came_up`] reports
+    /// that, or half a second has passed since its first motor packet.
     ///
     /// # Errors
-    /// When a port for motors is not free.
+    /// Returns an error if a port for motors is not free.
     pub fn open(config: FeedConfig, ports: SitlPorts, now: Instant) -> Result<Self, MotorsInError> {
         Ok(Self {
             feed: SitlFeed::new(config),
@@ -95,9 +95,9 @@ impl SitlPeer {
         })
     }
 
-    /// The executable ended, or is about to: nothing is sent before it has booted again.
+    /// Records that the executable has ended or is about to. Nothing is sent before it has booted again.
     pub fn went_down(&mut self) {
-        // What it sent last is no sign of the next one's boot.
+        // Its last packets are no sign that the next one has booted.
         discard(&self.motors);
         discard(&self.raw);
         self.feed.restart();
@@ -105,16 +105,16 @@ impl SitlPeer {
         self.boots_since = None;
     }
 
-    /// The executable has booted.
+    /// Records that the executable has booted.
     pub fn came_up(&mut self) {
         if !self.is_up {
             self.is_up = true;
-            // The motors of its boot answered nothing.
+            // The motor packets of its boot were no answers.
             self.feed.restart();
         }
     }
 
-    /// Sends what the sensors measured. Without an executable it is lost.
+    /// Sends the sensors' measurements. Without an executable they are lost.
     pub fn send_state(&mut self, frame: &SensorFrame, now: Instant) {
         if self.boots_since.is_some_and(|since| now.saturating_duration_since(since) >= BOOT) {
             self.came_up();
@@ -127,7 +127,7 @@ impl SitlPeer {
         }
     }
 
-    /// Takes in what the sensors measured in a step whose state is not sent, for a later one is.
+    /// Stores the measurements of a step whose state is not sent because a later one is.
     pub fn pass_over(&mut self, frame: &SensorFrame) {
         self.feed.sense(frame);
     }
@@ -138,8 +138,8 @@ impl SitlPeer {
         self.send_rc_frame(frame, now);
     }
 
-    /// While the craft waits, its transmitter does so too: its newest frame is sent again in the rhythm of RC, or the executable
-    /// takes the link for lost as soon as it goes on.
+    /// Sends the newest frame of the transmitter again at the rate of RC while the craft waits. Otherwise the
+    /// executable would detect a lost link as soon as it continues.
     pub fn repeat_rc(&mut self, now: Instant) {
         let Some(SentRc { frame, measured, sent }) = self.newest_rc else { return };
         let Some(since_us) =
@@ -147,7 +147,7 @@ impl SitlPeer {
         else {
             return;
         };
-        // A link that was cut before stays so.
+        // A link that was cut before stays cut.
         let was_up = self.micros(measured) + RC_IS_UP_US >= since_us;
         if was_up && now.saturating_duration_since(sent) >= RC_PERIOD {
             self.newest_rc = Some(SentRc { frame, measured, sent: now });
@@ -160,7 +160,7 @@ impl SitlPeer {
         self.send(&rc::encode(stamp_s, frame), self.rc);
     }
 
-    /// The newest motor command that has come since, the older ones read and dropped.
+    /// Returns the newest motor command since the last call. Older ones are read and dropped.
     pub fn take_motors(&mut self, now: Instant) -> Option<MotorCommand> {
         let now_us = self.micros(now);
         let mut buffer = [0; BUFFER];
@@ -185,22 +185,22 @@ impl SitlPeer {
         newest
     }
 
-    /// Whether the executable answers.
+    /// Returns the state of the answers from the executable.
     pub fn state(&self, now: Instant) -> FeedState {
         self.feed.state(self.micros(now))
     }
 
-    /// Whether the craft is to wait for it: see [`SitlFeed::waits`].
+    /// Returns `true` while the craft must wait for the executable, see [`SitlFeed::waits`].
     pub fn waits(&self, now: Instant) -> bool {
         self.feed.waits(self.micros(now))
     }
 
-    /// What its packets mean.
+    /// Returns the dialect of its packets.
     pub fn dialect(&self) -> Dialect {
         self.feed.dialect()
     }
 
-    /// Its line among the endpoints.
+    /// Returns its status as an endpoint.
     pub fn status(&self, now: Instant) -> EndpointStatus {
         EndpointStatus {
             kind: EndpointKind::Motors,
@@ -212,7 +212,7 @@ impl SitlPeer {
     fn send(&self, datagram: &[u8], to: SocketAddr) {
         match self.motors.send_to(datagram, to) {
             Ok(size) => self.stats.sent(size),
-            // Nobody listens yet, or not any more: the other side's silence tells that.
+            // Nobody listens yet or any more. The silence of the other side shows that.
             Err(_) => self.stats.error(),
         }
     }
@@ -222,7 +222,7 @@ impl SitlPeer {
     }
 }
 
-/// Drops what waits in a socket.
+/// Drops the packets that wait in a socket.
 fn discard(socket: &UdpSocket) {
     let mut buffer = [0; BUFFER];
     for _ in 0..QUEUED_MAX {
@@ -234,7 +234,7 @@ fn discard(socket: &UdpSocket) {
 
 fn bind(address: SocketAddr) -> Result<UdpSocket, MotorsInError> {
     let socket = UdpSocket::bind(address).and_then(|socket| {
-        // The flight waits for nobody.
+        // The flight must never wait for a socket.
         socket.set_nonblocking(true)?;
         Ok(socket)
     });

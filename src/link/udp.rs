@@ -14,23 +14,23 @@ use super::endpoint_stats::EndpointStats;
 use super::proto::{fdm, rc, servo};
 use super::request::Request;
 
-/// What a UDP door takes.
+/// The kind of datagrams that a UDP door accepts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Datagrams {
     Rc,
     Fdm,
 }
 
-/// More than any datagram that is looked at.
+/// A size above that of any accepted datagram.
 const BUFFER: usize = 2048;
-/// Most datagrams that are taken from a socket in one go.
+/// The maximum number of datagrams read from a socket at once.
 const QUEUED_MAX: usize = 4096;
 
-/// A socket whose datagrams become requests. The task that waits for them and the session may both empty it.
+/// A socket whose datagrams become requests. Both the task that waits for them and the session may empty it.
 #[derive(Debug)]
 pub(super) struct DatagramPort {
     socket: UdpSocket,
-    /// The same socket, which is asked without waiting. Locked until what it gave is among the requests.
+    /// The same socket, read without waiting. It stays locked until the datagram is among the requests.
     queue: Mutex<StdUdpSocket>,
     datagrams: Datagrams,
     requests: mpsc::Sender<Request>,
@@ -38,7 +38,7 @@ pub(super) struct DatagramPort {
 }
 
 impl DatagramPort {
-    /// A port at this address, and where it is.
+    /// Binds a port at this address. Returns the port and its actual address.
     pub(super) fn bind(
         address: SocketAddr,
         datagrams: Datagrams,
@@ -57,7 +57,7 @@ impl DatagramPort {
         loop {
             tokio::select! {
                 () = shutdown.cancelled() => return,
-                // It fails when the runtime ends.
+                // Fails when the runtime ends.
                 ready = self.socket.readable() => if ready.is_err() { return },
             }
             let passed_on = self.socket.try_io(Interest::READABLE, || self.pass_one_on());
@@ -67,7 +67,7 @@ impl DatagramPort {
         }
     }
 
-    /// Passes on what has arrived by now, also what nobody was woken for yet.
+    /// Passes on all datagrams that have arrived by now, including those that have not woken the task yet.
     pub(super) fn pass_on_queued(&self) {
         for _ in 0..QUEUED_MAX {
             match self.pass_one_on() {
@@ -78,12 +78,13 @@ impl DatagramPort {
         }
     }
 
-    /// Passes a datagram on. The session is never waited for: what comes while its queue is full is dropped and counted as
-    /// an error.
+    /// Passes on a datagram. Never waits for the session: while its queue is full, datagrams are dropped and
+    /// counted as errors.
     #[allow(clippy::disallowed_methods, reason = "the age of RC counts in wall time from its arrival")]
     fn pass_one_on(&self) -> io::Result<()> {
         let mut buffer = [0; BUFFER];
-        // Held until it is among the requests, so that none is on its way when the other side finds the socket empty.
+        // Held until the datagram is among the requests, so that none is in between when the other side finds
+        // the socket empty.
         let queue = self.queue.lock().unwrap_or_else(PoisonError::into_inner);
         let (size, from) = queue.recv_from(&mut buffer)?;
         let at = Instant::now();
@@ -94,7 +95,7 @@ impl DatagramPort {
                 rc::decode(datagram).map(|(stamp_s, frame)| Request::Rc { stamp_s, frame, from, at })
             }
             Datagrams::Fdm => (size >= fdm::SIZE).then(|| {
-                // Its size tells the dialect.
+                // The size identifies the dialect.
                 let datagram = datagram[..size.min(fdm::GZ_PLUGIN_SIZE + 1)].to_vec();
                 Request::Fdm { datagram, from, at }
             }),
@@ -112,27 +113,29 @@ impl DatagramPort {
     }
 }
 
-/// The states of an external simulator that are on their way to the session.
+/// The states of an external simulator on their way to the session.
 #[derive(Debug, Clone)]
 pub struct StateQueue(pub(super) Arc<DatagramPort>);
 
 impl StateQueue {
-    /// Makes everything that has arrived by now a request.
+    /// Turns everything that has arrived by now into requests.
     pub(super) fn pass_on(&self) {
         self.0.pass_on_queued();
     }
 }
 
-/// Where motors are sent to: the simulator's socket for normalised values, and the one for pulses.
+/// The port that sends motor values: to the simulator's socket for normalised values, and to the one for
+/// pulses.
 ///
-/// Nobody needs to listen there. The socket for the simulator is connected, so that the system tells when nobody does.
+/// Nobody needs to listen there. The socket for the simulator is connected, so that the system reports when
+/// nobody does.
 #[derive(Debug)]
 pub struct MotorPort {
     servo: StdUdpSocket,
     raw: StdUdpSocket,
 }
 
-/// What became of a datagram.
+/// The result of sending a datagram.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sent {
     /// It is on its way.
@@ -141,12 +144,12 @@ pub enum Sent {
 }
 
 impl MotorPort {
-    /// A port that sends to these addresses; it binds none of them.
+    /// Opens a port that sends to these addresses. It binds neither of them.
     pub fn open(servo: SocketAddr, raw: SocketAddr) -> io::Result<Self> {
         Ok(Self { servo: connected(servo)?, raw: connected(raw)? })
     }
 
-    /// Where the normalised values go.
+    /// Returns the address to which the normalised values are sent.
     pub fn address(&self) -> Option<SocketAddr> {
         self.servo.peer_addr().ok()
     }
@@ -154,14 +157,14 @@ impl MotorPort {
     /// Sends the normalised values of four motor pulses, µs.
     pub fn send_servo(&self, pulses_us: [f32; 4]) -> Sent {
         let datagram = servo::encode(pulses_us);
-        // An error that is waiting here is that of an earlier datagram.
+        // A pending error belongs to an earlier datagram.
         let earlier_refused = self.take_refusal();
         let sent = self.servo.send(&datagram);
-        // On this machine a refusal is known at once; from elsewhere with a later datagram.
+        // On this machine a refusal is known at once; from other machines it arrives with a later datagram.
         if self.take_refusal() || earlier_refused || sent.is_err() { Sent::Refused } else { Sent::Sent }
     }
 
-    /// Sends motor pulses, µs. Nobody needs to take them.
+    /// Sends motor pulses, µs. A receiver is optional.
     pub fn send_raw(&self, pulses_us: [f32; 4]) {
         let datagram = servo::encode_raw(pulses_us.len() as u16, &pulses_us);
         let _nobody_there = self.raw.send(&datagram);

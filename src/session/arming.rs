@@ -1,27 +1,28 @@
-//! Says why a script that holds the ARM switch on does not arm: it cannot see what blocks arming.
+//! Reports why a script that holds the ARM switch on does not arm: the script cannot see the arming disable
+//! flags.
 
 use crate::signals::{RcSource, SimTime};
 use crate::telemetry::{ArmingFlag, Mode, Snapshot};
 
-/// How long the switch is on before the user is told, s.
+/// The time for which the switch is on before the user gets a notice, s.
 const REPORT_AFTER_S: f64 = 1.0;
 
-/// Looks at the ARM switch of RC that comes over a link.
+/// Watches the ARM switch of RC that comes over a link.
 #[derive(Debug, Default)]
 pub(super) struct ArmingWatch {
     request: Option<ArmRequest>,
 }
 
-/// The switch is on.
+/// The ARM switch is on.
 #[derive(Debug)]
 struct ArmRequest {
     since: SimTime,
-    /// It has armed, or it was told why not.
+    /// `true` once the craft has armed or the reason was reported.
     done: bool,
 }
 
 impl ArmingWatch {
-    /// Looks at the craft; gives the sentence for the user, once each time the switch is moved in vain.
+    /// Checks the craft. Returns a sentence for the user once each time the switch is moved without effect.
     pub(super) fn check(&mut self, vehicle: &Snapshot) -> Option<String> {
         let craft = &vehicle.craft;
         let from_outside = matches!(craft.rc_source, Some(RcSource::Udp | RcSource::Msp));
@@ -49,7 +50,7 @@ mod tests {
     use super::*;
     use crate::telemetry::snapshot::ModeRange;
 
-    /// A craft whose script holds the ARM switch on.
+    /// Returns a craft whose script holds the ARM switch on.
     fn vehicle(seconds: f64, flags: &[ArmingFlag]) -> Snapshot {
         let mut vehicle = Snapshot { time: SimTime::from_secs_f64(seconds), ..Snapshot::default() };
         let craft = &mut vehicle.craft;

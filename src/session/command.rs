@@ -1,4 +1,4 @@
-//! What a user interface or a link can ask of the session, and what it gets back.
+//! The requests of user interfaces and links to the session, and the replies.
 
 use std::sync::Arc;
 
@@ -12,184 +12,187 @@ use crate::telemetry::{EndpointStatus, InFlightCommand, LinkState, LostTime, Sna
 use crate::timeline::{RecordedFlight, TimelineView};
 use crate::vehicle::Vehicle;
 
-/// Why time cannot be paused, stepped or made faster with an external simulator.
+/// Refusal to pause, step or accelerate time with an external simulator.
 pub const TIME_IS_EXTERNAL: &str = "The simulator sets the time: pause it or change its speed there.";
 
-/// Why time cannot be paused, stepped or made faster with a flight controller outside.
+/// Refusal to pause, step or accelerate time with a remote flight controller.
 pub const TIME_IS_THE_FIRMWARES: &str =
     "The firmware outside runs on the wall clock: time cannot be paused, stepped or made faster.";
 
-/// Why the craft cannot be put back home with an external simulator.
+/// Refusal to put the craft back home with an external simulator.
 pub const PLACE_IS_EXTERNAL: &str =
     "The simulator places the craft: reset its world there, and the firmware starts anew by itself.";
 
-/// Why a flight cannot be taken back whose flight controller runs somewhere else.
+/// Refusal to rewind a flight whose flight controller is remote.
 pub const NOT_RECORDED: &str = "The flight controller runs elsewhere: its time cannot be taken back.";
 
-/// Why what was recorded is not the whole flight.
+/// Notice that the recording is not the whole flight.
 pub const BEGINNING_LOST: &str =
     "The recording does not reach back to where this flight began: put the craft back home and fly again.";
 
-/// Why nothing is steered while an earlier instant is shown.
+/// Refusal of control inputs while an earlier instant is shown.
 pub const REWOUND: &str = "An earlier instant is shown: `b` flies on from here, `e` goes back to the end.";
 
-/// Why clients of the doors change nothing while an earlier instant is shown.
+/// Refusal of changes by clients of the doors while an earlier instant is shown.
 pub const REWOUND_FOR_CLIENTS: &str =
     "An earlier instant is shown on the screen: changes are refused until it is left there";
 
-/// Why a plan is not uploaded while another is.
+/// Refusal of an upload while another one is under way.
 pub const UPLOADING: &str = "another upload is under way: wait for its end, then upload again";
 
-/// Which instant to show.
+/// The instant to show.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Seek {
     /// The instant at this time.
     Time(SimTime),
-    /// So many seconds later; negative: earlier.
+    /// This many seconds later; earlier if negative.
     Seconds(f64),
-    /// The event before; of the autopilot's states alone, or any.
+    /// The previous event: any event, or only state changes of the autopilot.
     Back {
-        /// Only its states count.
+        /// `true` to count only state changes of the autopilot.
         states_only: bool,
     },
     /// Shortly before the link loss, the disarming or another alarm that led to the shown crash or fall.
     BeforeMishap,
-    /// The event after; from the newest instant on, the flight goes on until there is one.
+    /// The next event. From the newest instant on, the flight continues until there is one.
     Forward {
-        /// Only the autopilot's states count.
+        /// `true` to count only state changes of the autopilot.
         states_only: bool,
     },
-    /// The newest instant; time goes on if it did before.
+    /// The newest instant. Time continues if it did before.
     Newest,
 }
 
-/// A request to the session. Requests are carried out between two ticks, in the order they were sent.
+/// A request to the session. Requests are handled between two ticks, in the order of sending.
 #[derive(Debug)]
 pub enum Command {
-    /// Pause (`true`) or go on.
+    /// Pauses (`true`) or resumes.
     Pause(bool),
-    /// Advance this many ticks while paused.
+    /// Advances this many ticks while paused.
     Step(u32),
-    /// Show another instant of the flight, which waits meanwhile.
+    /// Shows another instant of the flight. The flight waits meanwhile.
     Seek(Seek),
-    /// Fly on from the earlier instant that is shown: what came after it is left behind.
+    /// Continues the flight from the earlier instant that is shown. The part after it is discarded.
     FlyOn,
-    /// Run at this many times real time; [`f64::INFINITY`] = as fast as possible.
+    /// Runs at this multiple of real time; [`f64::INFINITY`] = as fast as possible.
     Speed(f64),
-    /// The virtual sticks: sent 50 times a simulated second until replaced.
+    /// Sets the virtual sticks, which are sent 50 times per simulated second until replaced.
     Sticks(RcFrame),
-    /// Cut (`true`) or restore the RC link of the virtual sticks.
+    /// Cuts (`true`) or restores the RC link of the virtual sticks.
     CutRc(bool),
-    /// Run a CLI line of the console session; the reply is its output.
+    /// Runs a CLI line of the console session. The reply is its output.
     Cli {
         /// The line, without line end.
         line: String,
         reply: tokio::sync::oneshot::Sender<CliOutput>,
     },
-    /// Hand a plan to the craft the way a ground station does; the reply says what the craft answered.
+    /// Uploads a plan to the craft as a ground station does. The reply is the craft's answer.
     Upload {
         plan: Box<FlightPlan>,
         /// Setting lines that come with the plan file, without `set `.
         settings: Vec<String>,
-        /// Gets what was done, or the sentence of the first refusal.
+        /// Receives a report, or the sentence of the first refusal.
         reply: tokio::sync::oneshot::Sender<Result<UploadReport, String>>,
     },
-    /// Read the plan of the craft the way a ground station does.
+    /// Reads the plan of the craft as a ground station does.
     Download {
-        /// Gets the plan, or the sentence of the refusal.
+        /// Receives the plan, or the sentence of the refusal.
         reply: tokio::sync::oneshot::Sender<Result<Box<FlightPlan>, String>>,
     },
-    /// Save the configuration of the craft, plan included, without a restart.
+    /// Saves the configuration of the craft, plan included, without a restart.
     Save {
-        /// Gets `Ok` or why not, as a sentence.
+        /// Receives `Ok`, or the reason as a sentence.
         reply: tokio::sync::oneshot::Sender<Result<(), String>>,
     },
-    /// Start (`true`) or stop the scripted pilot that flies the whole mission: arm, climb, engage.
+    /// Starts (`true`) or stops the scripted pilot that flies the whole mission: arm, climb, engage.
     Pilot(bool),
-    /// Go to a waypoint, hold here, go on.
+    /// Goes to a waypoint, holds the position or continues.
     InFlight(InFlightCommand),
-    /// Fly home and land.
+    /// Flies home and lands.
     ReturnHome,
-    /// Take [`Command::ReturnHome`] back: the AUTOPILOT switch decides again.
+    /// Cancels [`Command::ReturnHome`]. The AUTOPILOT switch decides again.
     CancelReturn,
-    /// Put the craft back home, disarmed; plan and settings are kept.
+    /// Puts the craft back home, disarmed. Plan and settings are kept.
     ResetCraft,
-    /// Let the craft outside be changed over the connection of this number, until that ends.
+    /// Permits changes to the remote craft over the connection with this number, until it ends.
     PermitChanges(u32),
-    /// Change the air, the noise or a fault: `wind=5@270`, `fault=motor,,2:0.8`, `end=all`…
+    /// Changes the air, the noise or a fault: `wind=5@270`, `fault=motor,,2:0.8`, `end=all`…
     World {
         line: String,
-        /// Gets `Ok` or why not.
+        /// Receives `Ok`, or the reason.
         reply: tokio::sync::oneshot::Sender<Result<(), String>>,
     },
-    /// Copy the vehicle as it is shown between two ticks, for a forecast; the reply is the copy, or why there can be none.
+    /// Copies the vehicle as shown between two ticks, for a forecast. The reply is the copy, or the reason
+    /// why there is none.
     CopyVehicle(tokio::sync::oneshot::Sender<Result<VehicleCopy, String>>),
-    /// Copy the recorded flight to which the shown instant belongs, to its end; or why there is none.
+    /// Copies the recorded flight of the shown instant up to its end. The reply is the copy, or the reason
+    /// why there is none.
     RecordedFlight(tokio::sync::oneshot::Sender<Result<Box<RecordedFlight>, String>>),
     Quit,
 }
 
-/// A copy of the vehicle to fly forecasts with.
+/// A copy of the vehicle for forecasts.
 #[derive(Debug)]
 pub struct VehicleCopy {
     pub(super) vehicle: Box<Vehicle>,
-    /// Altitude to which the scripted pilot climbs, m.
+    /// The altitude to which the scripted pilot climbs, m.
     pub(super) takeoff_m: f64,
 }
 
-/// Output of a CLI line.
+/// The output of a CLI line.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct CliOutput {
     /// Text, lines separated by CRLF.
     pub text: String,
-    /// The way out of a refusal, or what is still to do; not part of what the firmware says.
+    /// The remedy for a refusal, or the remaining steps. Not part of the firmware's output.
     pub advice: Option<String>,
-    /// Whether the firmware restarted (save, exit, defaults).
+    /// `true` if the firmware restarted (save, exit, defaults).
     pub restarted: bool,
 }
 
-/// What is published after each slice of simulation.
+/// The state that is published after each slice of simulation.
 #[derive(Debug, Clone, Default)]
 pub struct SessionView {
     pub vehicle: Arc<Snapshot>,
     pub paused: bool,
-    /// Requested times real time; infinite = as fast as possible.
+    /// The requested multiple of real time; infinite = as fast as possible.
     pub speed_wanted: f64,
-    /// Achieved over the last second.
+    /// The multiple of real time achieved over the last second.
     pub speed_achieved: f64,
-    /// Real time that was lost.
+    /// The real time that was lost.
     pub lost_time: LostTime,
     /// The frame of the virtual sticks.
     pub sticks: RcFrame,
-    /// The virtual sticks are cut.
+    /// `true` while the virtual sticks are cut.
     pub rc_cut: bool,
-    /// An upload to a remote flight controller that is under way.
+    /// The current upload to a remote flight controller.
     pub upload: Option<UploadView>,
-    /// The scripted pilot is flying, and what it is doing in a word or two.
+    /// The activity of the scripted pilot in a word or two; `None` unless it is flying.
     pub pilot: Option<&'static str>,
-    /// Where other programs reach the craft.
+    /// The endpoints at which other programs reach the craft.
     pub endpoints: Vec<EndpointStatus>,
-    /// Whether the external simulator speaks; `None` when the physics is our own.
+    /// The link to the external simulator; `None` if the physics is embedded.
     pub simulator: Option<LinkState>,
-    /// The flight controller, when it runs outside.
+    /// The remote flight controller, if there is one.
     pub remote: Option<RemoteView>,
-    /// Files or doors influence the flight: not repeatable.
+    /// `true` if files or doors influence the flight, which makes it not repeatable.
     pub live: bool,
-    /// The recording; `None` when the flight cannot be taken back.
+    /// The recording; `None` if the flight cannot be rewound.
     pub timeline: Option<TimelineView>,
 }
 
-/// How far an upload is, in lines of the command line.
+/// The progress of an upload, in lines of the command line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct UploadView {
-    /// How many lines were sent.
+    /// The number of lines sent.
     pub sent: usize,
-    /// How many there are, reading the plan back among them.
+    /// The total number of lines, including those that read the plan back.
     pub total: usize,
 }
 
 impl SessionView {
-    /// What a session would have shown of this vehicle: for a flight that was flown before it began.
+    /// Returns the view that a session would have shown of this vehicle, for a flight that was flown before
+    /// the session began.
     pub fn of_recorded(vehicle: &Vehicle) -> Self {
         Self {
             vehicle: Arc::new(vehicle.snapshot()),
@@ -209,12 +212,12 @@ impl SessionView {
         }
     }
 
-    /// Whether an earlier instant is shown while the flight waits.
+    /// Returns `true` if an earlier instant is shown while the flight waits.
     pub fn is_rewound(&self) -> bool {
         self.timeline.as_ref().is_some_and(|timeline| timeline.rewound)
     }
 
-    /// Whether the craft is armed, at the newest instant while an earlier one is shown.
+    /// Returns `true` if the craft is armed. While an earlier instant is shown, the newest one counts.
     pub fn is_armed_now(&self) -> bool {
         match &self.timeline {
             Some(timeline) if timeline.rewound => timeline.head_is_armed,

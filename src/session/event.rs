@@ -1,4 +1,4 @@
-//! What a session reports: the vehicle's events, and what concerns the program around it.
+//! The reports of a session: the vehicle's events, and events of the program around it.
 
 use std::net::SocketAddr;
 
@@ -11,7 +11,7 @@ use crate::telemetry::{self, EventKind, FirmwareEvent};
 use crate::timeline::Marks;
 use crate::vehicle::Vehicle;
 
-/// An event of the session and when it happened.
+/// An event of the session with its time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Event {
     /// Simulated time since boot.
@@ -24,15 +24,15 @@ pub enum SessionEvent {
     Vehicle(EventKind),
     /// A notice for the user, as a sentence.
     Notice(String),
-    /// About the flight controller that runs outside.
+    /// A notice about the remote flight controller.
     Remote(RemoteNotice),
-    /// Why a craft does not arm whose script holds the ARM switch on, as a sentence.
+    /// The reason why a craft does not arm although its script holds the ARM switch on, as a sentence.
     ArmingBlocked(String),
     /// Other programs can reach the vehicle from now on.
     Endpoints(EndpointAddresses),
-    /// About the external simulator that moves the craft.
+    /// A notice about the external simulator that moves the craft.
     Simulator(SimulatorNotice),
-    /// A state from an external simulator came in while none had been accepted yet.
+    /// A state from an external simulator that arrived before any was accepted.
     FirstState {
         /// The simulator's clock, s.
         stamp_s: f64,
@@ -44,18 +44,18 @@ pub enum SessionEvent {
         stamp_s: f64,
         frame: RcFrame,
     },
-    /// The firmware started anew on what is stored, as a client of a link asked.
+    /// A client of a link restarted the firmware, which loaded the stored configuration.
     Restarted,
-    /// The flight went on from an earlier instant, that of this event; what came after it is left behind.
+    /// The flight continued from an earlier instant, that of this event. The part after it is discarded.
     Branch {
-        /// How often that has happened.
+        /// The number of branches so far.
         number: u32,
-        /// The newest instant of the flight that is left.
+        /// The newest instant of the discarded part.
         left: SimTime,
     },
 }
 
-/// Where other programs reach the vehicle; `None` = that endpoint is closed.
+/// The addresses at which other programs reach the vehicle; `None` = that endpoint is closed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct EndpointAddresses {
     /// The websocket of the Betaflight App.
@@ -69,7 +69,7 @@ pub struct EndpointAddresses {
 }
 
 impl Event {
-    /// A notice at this time.
+    /// Creates a notice at this time.
     pub fn notice(time: SimTime, text: impl Into<String>) -> Self {
         Self { time, kind: SessionEvent::Notice(text.into()) }
     }
@@ -81,12 +81,13 @@ impl From<telemetry::Event> for Event {
     }
 }
 
-/// Sends the events of a vehicle and the notices about it in the order in which they happened, and marks them.
+/// Sends the events of a vehicle and the notices about it in the order of their occurrence, and adds the
+/// marks for them.
 #[derive(Debug)]
 pub(super) struct EventSender {
     events: mpsc::UnboundedSender<Event>,
     marks: Marks,
-    /// The craft was disarmed since this was asked last.
+    /// `true` if the craft was disarmed since the last query.
     disarmed: bool,
 }
 
@@ -99,13 +100,13 @@ impl EventSender {
         &self.marks
     }
 
-    /// Tells that the flight of `vehicle` goes on from here, an earlier instant than `left`.
+    /// Reports that the flight of `vehicle` continues from here, an earlier instant than `left`.
     pub(super) fn branch(&mut self, vehicle: &mut Vehicle, number: u32, left: SimTime) {
         self.marks.forget_after(vehicle.time());
         self.report(vehicle, SessionEvent::Branch { number, left });
     }
 
-    /// Sends what happened in a flight that was flown before.
+    /// Sends the events of a flight that was flown before.
     pub(super) fn send_all(&mut self, events: Vec<telemetry::Event>) {
         for event in events {
             self.marks.note(&event);
@@ -113,7 +114,7 @@ impl EventSender {
         }
     }
 
-    /// Sends what has happened to the vehicle.
+    /// Sends the new events of the vehicle.
     pub(super) fn send_events_of(&mut self, vehicle: &mut Vehicle) {
         vehicle.drain_events(|event| {
             self.marks.note(&event);
@@ -122,17 +123,17 @@ impl EventSender {
         });
     }
 
-    /// Whether the craft was disarmed since this was asked last.
+    /// Returns `true` if the craft was disarmed since the last call.
     pub(super) fn take_disarmed(&mut self) -> bool {
         std::mem::take(&mut self.disarmed)
     }
 
-    /// Sends a notice, after what has happened to the vehicle before.
+    /// Sends a notice after the earlier events of the vehicle.
     pub(super) fn notice(&mut self, vehicle: &mut Vehicle, text: impl Into<String>) {
         self.report(vehicle, SessionEvent::Notice(text.into()));
     }
 
-    /// As [`Self::notice`], for any event.
+    /// Sends any event, in the same way as [`Self::notice`].
     pub(super) fn report(&mut self, vehicle: &mut Vehicle, kind: SessionEvent) {
         self.send_events_of(vehicle);
         send(&self.events, Event { time: vehicle.time(), kind });

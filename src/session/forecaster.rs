@@ -1,6 +1,7 @@
-//! Flies forecasts on a thread of its own, beside the session, on copies of its vehicle.
+//! Flies forecasts on copies of the session's vehicle, in a thread of its own.
 //!
-//! Of each kind the newest job counts: it takes the place of an older one, which is dropped unfinished and not answered.
+//! Only the newest job of each kind counts. It replaces an older one, which is dropped unfinished without a
+//! reply.
 #![allow(clippy::disallowed_methods, reason = "slices are cut by wall time, so that a newer job never waits")]
 
 use std::sync::mpsc;
@@ -11,25 +12,26 @@ use crate::flight::forecast::{Forecast, ForecastKind, ForecastRun, WhatIf};
 use crate::plan::FlightPlan;
 use crate::session::command::VehicleCopy;
 
-/// Longest time for which new jobs are not looked at.
+/// The longest time without a check for new jobs.
 const SLICE: Duration = Duration::from_millis(8);
-/// Ticks between two looks at the clock.
+/// The number of ticks between two reads of the clock.
 const TICKS: u32 = 100;
-/// How much the thread yields to the others of this process, 0…19: the flight comes first.
+/// The niceness of the thread, 0…19. It yields to the other threads of this process, because the flight has
+/// priority.
 const NICENESS: i32 = 5;
 
-/// What is to be flown ahead.
+/// The flight to forecast.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ForecastRequest {
     /// This plan with its settings, from home.
     PlanEstimate {
         plan: Box<FlightPlan>,
-        /// Setting lines that come with it, without `set `.
+        /// Setting lines that come with the plan, without `set `.
         settings: Vec<String>,
     },
-    /// The present flight as things stand.
+    /// The current flight if nothing changes.
     LookAhead,
-    /// The present flight with something going wrong now.
+    /// The current flight with a failure or change that begins now.
     WhatIf(WhatIf),
 }
 
@@ -43,44 +45,44 @@ impl ForecastRequest {
     }
 }
 
-/// A request, and a number that comes back with its answer.
+/// A request with a number that comes back with its reply.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForecastJob {
-    /// Tells the answer to this request from those to older ones.
+    /// Distinguishes the reply to this request from those to older ones.
     pub revision: u64,
-    /// What is to be flown ahead.
+    /// The flight to forecast.
     pub request: ForecastRequest,
 }
 
-/// The answer to a job.
+/// The reply to a job.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForecastReply {
-    /// That of the job.
+    /// The revision of the job.
     pub revision: u64,
-    /// That of the request.
+    /// The kind of the request.
     pub kind: ForecastKind,
-    /// The forecast, or why there is none, as a sentence.
+    /// The forecast, or the reason why there is none, as a sentence.
     pub forecast: Result<Box<Forecast>, String>,
 }
 
-/// A job with the copy of the vehicle to fly it with.
+/// A job with a copy of the vehicle for it.
 #[derive(Debug)]
 struct Order {
     job: ForecastJob,
     copy: VehicleCopy,
 }
 
-/// The thread, from outside; it ends when this is dropped.
+/// A handle to the thread, which ends when the handle is dropped.
 #[derive(Debug, Clone)]
 pub struct Forecaster {
     orders: mpsc::Sender<Order>,
 }
 
 impl Forecaster {
-    /// Starts the thread; `answer` gets the forecasts.
+    /// Starts the thread. `answer` receives the forecasts.
     ///
     /// # Errors
-    /// When the system gives no thread.
+    /// Returns an error if the system cannot start a thread.
     pub fn start(answer: impl FnMut(ForecastReply) + Send + 'static) -> std::io::Result<Self> {
         let (orders, incoming) = mpsc::channel();
         thread::Builder::new().name("forecast".to_owned()).spawn(move || {
@@ -90,21 +92,22 @@ impl Forecaster {
         Ok(Self { orders })
     }
 
-    /// Flies `job` ahead with this copy of the vehicle.
+    /// Orders a forecast of `job` with this copy of the vehicle.
     pub fn order(&self, job: ForecastJob, copy: VehicleCopy) {
-        // The thread ends only with this handle.
+        // The thread ends only together with this handle.
         drop(self.orders.send(Order { job, copy }));
     }
 }
 
-/// Lowers the priority of this thread. Where that is not possible, the flight still gets its time: it sleeps most of it.
+/// Lowers the priority of this thread. If that is impossible, the flight still gets its time, because it
+/// sleeps most of it.
 fn yield_to_the_flight() {
     #[cfg(target_os = "linux")]
-    // Of the calling thread alone: none is named.
+    // No process is named, so this affects only the calling thread.
     let _ = rustix::process::setpriority_process(None, NICENESS);
 }
 
-/// A forecast under way.
+/// A forecast in progress.
 #[derive(Debug)]
 struct Flying {
     revision: u64,
@@ -142,7 +145,7 @@ impl<A: FnMut(ForecastReply)> Worker<A> {
         let ForecastJob { revision, request } = job;
         let VehicleCopy { vehicle, takeoff_m } = copy;
         let kind = request.kind();
-        // Copies of the vehicle need not come in the order in which they were asked for.
+        // Copies of the vehicle may arrive in another order than they were requested.
         if self.flying.iter().any(|flying| flying.kind == kind && flying.revision > revision) {
             return;
         }
@@ -160,7 +163,7 @@ impl<A: FnMut(ForecastReply)> Worker<A> {
         }
     }
 
-    /// A slice of the forecast that waits longest.
+    /// Runs a slice of the forecast that has waited longest.
     fn fly_on(&mut self) {
         if self.flying.is_empty() {
             return;

@@ -1,4 +1,4 @@
-//! What may hurt a craft when it flies the plan it has with the settings it has.
+//! The hazards to a craft that flies its stored plan with its current settings.
 
 use crate::firmware::Firmware;
 use crate::geo::{LatLon, LocalFrame};
@@ -6,8 +6,8 @@ use crate::plan::estimate::Assumptions;
 use crate::plan::review::{Finding, review};
 use crate::vehicle::{FlightController, Vehicle};
 
-/// Returns a sentence for each hazard of the stored plan, for a mission that begins `start_alt_m` above home and is to stay
-/// below `max_alt_m`, where that is given; none for a flight controller whose settings are not known.
+/// Returns a sentence for each hazard of the stored plan. The mission begins `start_alt_m` above home and
+/// must stay below `max_alt_m`, if given. Returns nothing for a flight controller with unknown settings.
 pub fn hazards(vehicle: &Vehicle, start_alt_m: f64, max_alt_m: Option<f64>) -> Vec<String> {
     let place = |frame: &LocalFrame| LatLon::from_degrees(frame.lat_deg, frame.lon_deg);
     let armed_at = vehicle.controller().embedded().and_then(Firmware::home);
@@ -15,7 +15,7 @@ pub fn hazards(vehicle: &Vehicle, start_alt_m: f64, max_alt_m: Option<f64>) -> V
     hazards_from(vehicle.controller(), home, start_alt_m, max_alt_m)
 }
 
-/// The hazards of a mission that begins above `home`.
+/// Returns the hazards of a mission that begins above `home`.
 fn hazards_from(
     controller: &FlightController,
     home: Option<LatLon>,
@@ -26,7 +26,7 @@ fn hazards_from(
     let assumptions = Assumptions { start_alt_m, max_alt_m, ..firmware.settings_view().assumptions() };
     let found = review(firmware.stored_plan(), home.unwrap_or_default(), &assumptions);
     let hazards = found.iter().filter(|finding| Finding::is_hazard(finding));
-    // How steep a leg is depends on where home is.
+    // The steepness of a leg depends on the position of home.
     let known = hazards.filter(|finding| home.is_some() || !matches!(finding, Finding::SteepLeg(_)));
     known.map(|finding| format!("Beware: {finding}.")).collect()
 }

@@ -1,11 +1,11 @@
-//! Altitude gains for firmware that falls in LAND with those of the test guide.
+//! Replacement of the test guide's altitude gains on firmware that falls in LAND with them.
 //!
 //! Upstream's master, whose waypoint altitudes count from sea level, sets the target of LAND 200 m below the craft and limits
 //! neither the error of its altitude loop nor the answer to it: 20 000 cm · 0.005 µs/cm · `ap_altitude_p` is 5000 µs with
 //! the guide's 50. The motors go to `ap_throttle_min`, and the craft comes down at 18 m/s. With little P against much D it
 //! comes down at 2 m/s (measured).
 
-/// A gain that the guide gives, and the one for landing.
+/// A gain of the guide with its replacement for landing.
 struct Gain {
     name: &'static str,
     of_guide: &'static str,
@@ -17,8 +17,8 @@ const GAINS: [Gain; 2] = [
     Gain { name: "ap_altitude_d", of_guide: "20", for_landing: "200" },
 ];
 
-/// The setting `NAME = VALUE` for such a firmware, when it is one of the guide's that lets it fall. Other values are somebody's
-/// choice.
+/// Returns the replacement `NAME = VALUE` for a setting of the guide that lets such a firmware fall. Other
+/// values are the user's choice.
 pub(super) fn landing_gain(setting: &str) -> Option<String> {
     let (name, value) = setting.split_once('=')?;
     let (name, value) = (name.trim(), value.trim());
@@ -26,7 +26,7 @@ pub(super) fn landing_gain(setting: &str) -> Option<String> {
     Some(format!("{} = {}", gain.name, gain.for_landing))
 }
 
-/// Replaces such settings; gives those that stand there now.
+/// Replaces such settings. Returns the replacements.
 pub(super) fn replace_falling_gains(settings: &mut [String]) -> Vec<String> {
     let mut replaced = Vec::new();
     for setting in settings {
@@ -38,7 +38,7 @@ pub(super) fn replace_falling_gains(settings: &mut [String]) -> Vec<String> {
     replaced
 }
 
-/// Tells the user that these settings were given instead of the guide's; `None` when there are none.
+/// Returns the notice that these settings replaced the guide's; `None` if there are none.
 pub(super) fn landing_gains_told(settings: &[String]) -> Option<String> {
     (!settings.is_empty()).then(|| {
         format!(

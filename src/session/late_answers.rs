@@ -1,23 +1,24 @@
-//! Requests to a remote flight controller whose answers are still to come.
+//! Requests to a remote flight controller that still wait for their answers.
 
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use crate::vehicle::Ticket;
 
-/// How long an answer is awaited, wall time. The client of the flight controller's serial port answers each request itself,
-/// that it gave up as well, and one request may take a minute: this is for answers that were lost after that.
+/// The longest wait for an answer, wall time. The client of the flight controller's serial port answers every
+/// request itself, even one that it gave up, and one request may take a minute. This limit covers answers
+/// that were lost after that.
 const ANSWER_TIMEOUT: Duration = Duration::from_secs(600);
 
-/// What is said in place of an answer that did not come.
+/// The text in place of a missing answer.
 pub(super) const NO_ANSWER: &str = "the flight controller does not answer";
 
-/// What a command line prints in place of the output of a line that was not answered.
+/// Returns the command line's output in place of a missing answer.
 pub(super) fn no_answer_line() -> String {
     format!("###ERROR: {}###", NO_ANSWER.to_uppercase())
 }
 
-/// Who awaits which answer.
+/// The recipients of pending answers, by ticket.
 #[derive(Debug)]
 pub(super) struct LateAnswers<R>(BTreeMap<Ticket, (Instant, R)>);
 
@@ -28,22 +29,22 @@ impl<R> Default for LateAnswers<R> {
 }
 
 impl<R> LateAnswers<R> {
-    /// `recipient` awaits the answer with this ticket from `now` on.
+    /// Registers `recipient` for the answer with this ticket, from `now` on.
     pub(super) fn expect(&mut self, ticket: Ticket, recipient: R, now: Instant) {
         self.0.insert(ticket, (now, recipient));
     }
 
-    /// Who awaits this answer, which has come.
+    /// Returns the recipient of an answer that has arrived.
     pub(super) fn take(&mut self, ticket: Ticket) -> Option<R> {
         self.0.remove(&ticket).map(|(_, recipient)| recipient)
     }
 
-    /// Who awaits an answer.
+    /// Returns the recipients of all pending answers.
     pub(super) fn recipients(&self) -> impl Iterator<Item = &R> {
         self.0.values().map(|(_, recipient)| recipient)
     }
 
-    /// Those who have waited for too long.
+    /// Returns the recipients that have waited too long.
     pub(super) fn take_overdue(&mut self, now: Instant) -> Vec<R> {
         let overdue = |_: &Ticket, (asked, _): &mut (Instant, R)| {
             now.saturating_duration_since(*asked) >= ANSWER_TIMEOUT

@@ -1,4 +1,4 @@
-//! Opens what a session is reached by: the doors, and the socket for the motors of an external simulator.
+//! Opens the links of a session: the doors, and the socket for the motors of an external simulator.
 
 use std::io;
 use std::net::{IpAddr, SocketAddr};
@@ -10,48 +10,48 @@ use super::runtime::Endpoints;
 use crate::link::{ExternalSimulator, ListenConfig, Listeners, MotorPort, Request};
 use crate::telemetry::EndpointStatus;
 
-/// Requests that may wait for the session.
+/// The maximum number of requests that may wait for the session.
 const WAITING: usize = 1024;
 
-/// Where the motors of a craft go that an external simulator moves.
+/// The destination of the motors of a craft that an external simulator moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MotorTargets {
     /// The machine of the simulator.
     pub ip: IpAddr,
-    /// Port for motor commands, 0…1.
+    /// The port for motor commands, 0…1.
     pub motors: u16,
-    /// Port for motor pulses, µs.
+    /// The port for motor pulses, µs.
     pub raw: u16,
 }
 
-/// There is no socket for the motors.
+/// The error that there is no socket for the motors.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot send motors to {to}: {error}")]
 pub struct MotorsError {
-    /// Where they were to go.
+    /// The destination.
     to: SocketAddr,
-    /// What the system says.
+    /// The system's error.
     error: io::Error,
 }
 
-/// Open doors that no session answers yet.
+/// Open doors that are not yet connected to a session.
 #[derive(Debug)]
 pub struct Links {
-    /// The doors; some may have problems.
+    /// The doors. Some may have problems.
     pub doors: Listeners,
     requests: mpsc::Receiver<Request>,
     status: Vec<EndpointStatus>,
 }
 
 impl Links {
-    /// Opens the doors. One that cannot be opened is among their problems, the others work.
+    /// Opens the doors. A door that cannot be opened appears among their problems; the others work.
     pub async fn open(config: &ListenConfig) -> Self {
         let (inbox, requests) = mpsc::channel(WAITING);
         let (doors, status) = Listeners::open(config, inbox).await;
         Self { doors, requests, status }
     }
 
-    /// The session's side of them, and where their state is to be published.
+    /// Returns the doors, the session's side of them, and the channel that publishes their state.
     pub fn endpoints(
         self,
         simulator: Option<ExternalSimulator>,
@@ -64,15 +64,15 @@ impl Links {
 }
 
 impl MotorTargets {
-    /// Where motor commands go.
+    /// Returns the destination of motor commands.
     pub fn motors(self) -> SocketAddr {
         SocketAddr::new(self.ip, self.motors)
     }
 
-    /// Opens the socket for them; sends nothing yet.
+    /// Opens the socket for the motors. Sends nothing yet.
     ///
     /// # Errors
-    /// When there is no socket.
+    /// Returns an error if there is no socket.
     pub fn open(self) -> Result<MotorPort, MotorsError> {
         let to = self.motors();
         MotorPort::open(to, SocketAddr::new(self.ip, self.raw)).map_err(|error| MotorsError { to, error })

@@ -1,36 +1,37 @@
-//! Decides how many ticks are due: the only place where wall time meets simulated time.
+//! Computes the number of due ticks. This is the only place at which wall time meets simulated time.
 //!
-//! The pacer reads no clock itself; it is told how much wall time has passed since the session began. It never
-//! stretches a step and never skips one: whatever it decides, the trajectory is the same.
+//! The pacer reads no clock itself; it gets the wall time since the start of the session. It never stretches
+//! or skips a step, so its decisions do not change the trajectory.
 
 use std::time::Duration;
 
-/// Backlog of wall time that is caught up with; what exceeds it is dropped.
+/// The greatest backlog of wall time that is made up for. Any excess is dropped.
 const MAX_BACKLOG: Duration = Duration::from_millis(50);
-/// Window of the achieved-speed average.
+/// The window of the average of the achieved speed.
 const WINDOW: Duration = Duration::from_secs(1);
-/// Slowest and fastest factor that is paced; beyond the upper one the loop runs freely.
+/// The slowest and the fastest speed that is paced. Beyond the upper one the loop runs freely.
 pub const SPEED_RANGE: std::ops::RangeInclusive<f64> = 0.05..=1000.0;
 
-/// How the vehicle's time follows the wall clock.
+/// Relates the vehicle's time to the wall clock.
 #[derive(Debug, Clone)]
 pub struct Pacer {
     step: Duration,
     speed: f64,
     paused: bool,
-    /// Wall time up to which the due ticks were handed out.
+    /// The wall time up to which the due ticks were returned.
     handed_out: Duration,
-    /// Part of a step left from the last call, in steps.
+    /// The fraction of a step left from the last call, in steps.
     carry: f64,
     window_start: Duration,
     window_ticks: u64,
     achieved: f64,
-    /// Wall time that was dropped and not told yet.
+    /// The wall time that was dropped and not reported yet.
     lost: Duration,
 }
 
 impl Pacer {
-    /// A pacer for steps of `step_us` microseconds at `speed` times real time (infinite: as fast as possible).
+    /// Creates a pacer for steps of `step_us` microseconds at `speed` times real time (infinite: as fast as
+    /// possible).
     pub fn new(step_us: u64, speed: f64) -> Self {
         Self {
             step: Duration::from_micros(step_us),
@@ -45,23 +46,23 @@ impl Pacer {
         }
     }
 
-    /// Requested times real time; infinite = as fast as possible.
+    /// Returns the requested multiple of real time; infinite = as fast as possible.
     pub fn speed(&self) -> f64 {
         self.speed
     }
 
-    /// Changes the factor; values outside [`SPEED_RANGE`] are limited, infinity is kept.
+    /// Changes the speed. Values outside [`SPEED_RANGE`] are clamped, infinity is kept.
     pub fn set_speed(&mut self, speed: f64, now: Duration) {
         self.speed = clamp_speed(speed);
         self.drop_backlog(now);
     }
 
-    /// Whether time stands still.
+    /// Returns `true` while time is paused.
     pub fn is_paused(&self) -> bool {
         self.paused
     }
 
-    /// Stops time or lets it go on.
+    /// Pauses or resumes time.
     pub fn set_paused(&mut self, paused: bool, now: Duration) {
         self.paused = paused;
         self.drop_backlog(now);
@@ -72,12 +73,13 @@ impl Pacer {
         self.window_ticks = 0;
     }
 
-    /// Achieved times real time, averaged over the last second.
+    /// Returns the achieved multiple of real time, averaged over the last second.
     pub fn achieved(&self) -> f64 {
         self.achieved
     }
 
-    /// Ticks due at wall time `now`, at most `most`. Whatever is not handed out stays due, up to 50 ms of wall time.
+    /// Returns the ticks due at wall time `now`, at most `most`. The rest stays due, up to 50 ms of wall
+    /// time.
     pub fn due(&mut self, now: Duration, most: u64) -> u64 {
         if self.paused {
             self.handed_out = now;
@@ -92,7 +94,7 @@ impl Pacer {
         let steps_per_second = self.speed / self.step.as_secs_f64();
         let due_steps = self.carry + now.saturating_sub(self.handed_out).as_secs_f64() * steps_per_second;
         let ticks = (due_steps as u64).min(most);
-        // What was not handed out stays due, but only as much as 50 ms are worth.
+        // Ticks that were not returned stay due, but only up to 50 ms of wall time.
         let left = due_steps - ticks as f64;
         self.carry = left.min(MAX_BACKLOG.as_secs_f64() * steps_per_second);
         self.lost += dropped + Duration::from_secs_f64((left - self.carry) / steps_per_second);
@@ -100,7 +102,8 @@ impl Pacer {
         ticks
     }
 
-    /// Wall time, counted as `now` is, at which the next step is due; none while time stands still.
+    /// Returns the wall time, counted like `now`, at which the next step is due; `None` while time is paused
+    /// or runs as fast as possible.
     pub fn next_due(&self) -> Option<Duration> {
         if self.paused || self.speed.is_infinite() {
             return None;
@@ -109,17 +112,17 @@ impl Pacer {
         Some(self.handed_out + Duration::from_secs_f64(wait_s))
     }
 
-    /// Whether a step was due that was not handed out.
+    /// Returns `true` if a due step was not returned yet.
     pub fn is_behind(&self) -> bool {
         self.carry >= 1.0
     }
 
-    /// Wall time that was dropped since this was asked last.
+    /// Returns the wall time that was dropped since the last call.
     pub fn take_lost(&mut self) -> Duration {
         std::mem::take(&mut self.lost)
     }
 
-    /// Notes that `ticks` were run by wall time `now`.
+    /// Records that `ticks` were run by wall time `now`.
     pub fn ran(&mut self, ticks: u64, now: Duration) {
         self.window_ticks += ticks;
         let span = now.saturating_sub(self.window_start);
@@ -175,7 +178,7 @@ mod tests {
         assert_eq!(pacer.take_lost(), ms(0));
         pacer.due(ms(5_080), 10_000);
         assert_eq!(pacer.take_lost(), ms(5_000));
-        // A machine that does half of what is due: 50 ms of it wait, the rest is dropped.
+        // A machine that manages half of the due ticks: 50 ms of them wait, the rest is dropped.
         for step in 1..=100 {
             pacer.due(ms(5_080 + step * 10), 5);
         }

@@ -1,43 +1,44 @@
-//! Saves the configuration of the flight controller and restarts it, the same for the clients of the links and for the
-//! console. A remote flight controller stores its configuration itself.
+//! Saves the configuration of the flight controller and restarts it, for the clients of the links and for the
+//! console alike. A remote flight controller stores its configuration itself.
 
 use crate::firmware::cli::{CliAction, CliReply};
 use crate::firmware::config::Configuration;
 use crate::storage::Store;
 use crate::vehicle::FlightController;
 
-/// Where the configuration of an embedded flight controller is kept.
+/// The storage for the configuration of an embedded flight controller.
 #[derive(Debug)]
 pub struct Persistence {
     store: Store,
-    /// What a restart returns to until something is saved: beside what was stored, what the plan and the options gave.
+    /// The configuration that a restart returns to until something is saved: the stored one, plus the
+    /// settings from the plan and the options.
     at_boot: Option<Box<Configuration>>,
-    /// A craft without mode conditions gets the starter modes at every restart.
+    /// `true` if a craft without mode conditions gets the starter modes at every restart.
     starter_modes: bool,
 }
 
-/// What saving and restarting for a line of the command line led to.
+/// The effects of saving and restarting for a line of the command line.
 #[derive(Debug, Default)]
 pub(super) struct CarriedOut {
-    /// The flight controller restarted; whether the clients' links are closed.
+    /// `Some` if the flight controller restarted, with `true` if the clients' links are closed.
     pub restarted: Option<bool>,
     /// Sentences for the user.
     pub notices: Vec<String>,
 }
 
 impl Persistence {
-    /// Keeps the configuration of `controller`, which has just booted, in `store`; `starter_modes` gives a craft without
-    /// mode conditions the usual ones at every restart.
+    /// Keeps the configuration of `controller`, which has just booted, in `store`. With `starter_modes`, a
+    /// craft without mode conditions gets the usual ones at every restart.
     pub fn new(store: Store, controller: &mut FlightController, starter_modes: bool) -> Self {
         controller.set_storage_facts(store.facts());
         let at_boot = controller.configuration().cloned().map(Box::new);
         Self { store, at_boot, starter_modes }
     }
 
-    /// Stores what the flight controller has in memory.
+    /// Stores the configuration in the flight controller's memory.
     ///
     /// # Errors
-    /// The sentence for the user when it could not be stored.
+    /// Returns the sentence for the user if it could not be stored.
     pub(super) fn save(&mut self, controller: &mut FlightController) -> Result<(), String> {
         let Some(configuration) = controller.configuration() else { return Ok(()) };
         let saved = self.store.save(configuration);
@@ -48,13 +49,13 @@ impl Persistence {
         saved.map_err(|error| format!("Not saved: {error}."))
     }
 
-    /// Tells `controller`, which was brought back from an earlier instant, what is stored now.
+    /// Updates the storage facts of `controller`, which was restored from an earlier instant.
     pub(super) fn tell(&self, controller: &mut FlightController) {
         controller.set_storage_facts(self.store.facts());
     }
 
-    /// Saves and restarts as the answer to a line asks for, the restart last. A save that fails makes the answer a refusal,
-    /// and nothing restarts.
+    /// Saves and restarts as the answer to a line requires, with the restart last. If saving fails, the
+    /// answer becomes a refusal, and nothing restarts.
     pub(super) fn carry_out(
         &mut self,
         reply: &mut CliReply,
@@ -78,8 +79,9 @@ impl Persistence {
         done
     }
 
-    /// Restarts the flight controller on what was saved last, or what it booted with. Gives sentences for the user: what
-    /// is wrong with the stored configuration, and that the craft got the starter modes.
+    /// Restarts the flight controller on the configuration that was saved last, or the one at boot. Returns
+    /// sentences for the user: the faults of the stored configuration, and that the craft got the starter
+    /// modes.
     pub(super) fn restart(&mut self, controller: &mut FlightController) -> Vec<String> {
         let mut notices = Vec::new();
         controller.restart(|| {

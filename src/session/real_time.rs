@@ -1,21 +1,21 @@
-//! Counts the real time that is lost, and decides when to tell it.
+//! Counts the lost real time and decides when to report it.
 
 use std::fmt;
 use std::time::Duration;
 
 use crate::telemetry::LostTime;
 
-/// Time between two notices.
+/// The time between two notices.
 const NOTICE_INTERVAL: Duration = Duration::from_secs(60);
-/// Less than this since the notice before is not told.
+/// The least loss since the last notice that is reported.
 const NOTABLE: Duration = Duration::from_millis(500);
 
-/// Real time was lost: what a notice tells.
+/// A notice that real time was lost.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct LostTimeNotice {
-    /// How far the flight is behind.
+    /// The loss so far.
     lost: LostTime,
-    /// Times real time it was to run.
+    /// The requested multiple of real time.
     wanted: f64,
 }
 
@@ -34,34 +34,34 @@ impl fmt::Display for LostTimeNotice {
 /// The real time that a session has lost.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct RealTime {
-    /// Time that was never flown.
+    /// The time that was never flown.
     dropped: Duration,
-    /// By how much a simulator's time is behind the wall clock …
+    /// The current lag of a simulator's time after the wall clock …
     behind: Duration,
-    /// … and was at most: what it catches up with later was lost all the same.
+    /// … and its maximum. Time that the simulator makes up for later was lost all the same.
     most_behind: Duration,
-    /// When it was told last, since the session began, and what.
+    /// The time of the last notice, since the session began, and the loss that it reported.
     told: Option<(Duration, Duration)>,
 }
 
 impl RealTime {
-    /// Time was dropped, since the machine is too slow.
+    /// Adds time that was dropped because the machine is too slow.
     pub(super) fn lose(&mut self, dropped: Duration) {
         self.dropped += dropped;
     }
 
-    /// A simulator advanced the flight by `simulated` in this much wall time.
+    /// Records that a simulator advanced the flight by `simulated` in this much wall time.
     pub(super) fn advance(&mut self, wall: Duration, simulated: Duration) {
         self.behind = (self.behind + wall).saturating_sub(simulated);
         self.most_behind = self.most_behind.max(self.behind);
     }
 
-    /// How far it is behind, at this speed.
+    /// Returns the loss at this achieved speed.
     pub(super) fn lost(&self, achieved: f64) -> LostTime {
         LostTime { sum: self.dropped + self.most_behind, achieved }
     }
 
-    /// What is to be told at `now`, counted since the session began.
+    /// Returns the notice that is due at `now`, counted since the session began.
     pub(super) fn notice(&mut self, now: Duration, wanted: f64, achieved: f64) -> Option<LostTimeNotice> {
         let (told_at, told) = self.told.unzip();
         let is_due = told_at.is_none_or(|at| now.saturating_sub(at) >= NOTICE_INTERVAL);

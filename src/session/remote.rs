@@ -1,4 +1,5 @@
-//! Speaks with a flight controller that runs outside: what the vehicle's mailbox holds goes out, what comes back is delivered.
+//! Exchanges data with a remote flight controller: sends the contents of the vehicle's mailbox and delivers
+//! the answers.
 //!
 //! ```text
 //!                    ┌── sensor and RC frames ──▶ SitlPeer ──▶ UDP        (a SITL executable only)
@@ -7,7 +8,7 @@
 //!                    └◀─ answers, telemetry ── Observer ◀── polling ──┘
 //! ```
 //!
-//! Nothing here waits: [`RemoteLink::exchange`] is called between two steps.
+//! Nothing here blocks: [`RemoteLink::exchange`] is called between two steps.
 
 mod answers;
 mod identify;
@@ -49,50 +50,51 @@ pub use view::{RemoteNotice, RemoteState, RemoteView};
 
 /// The message that restarts a flight controller.
 const REBOOT: u16 = 68;
-/// Simulated time between two exchanges at real time, µs.
+/// The simulated time between two exchanges at real time, µs.
 const EXCHANGE_US: f64 = 1000.0;
-/// Least wall time between two exchanges: time that was missed is caught up with at twice the speed.
+/// The least wall time between two exchanges. Lost time is made up for at twice the speed.
 pub const EXCHANGE_PAUSE: Duration = Duration::from_micros(500);
-/// Most events of its program between two steps, so that one that prints much does not hold the craft up.
+/// The maximum number of events of the child process between two steps. A process that prints much must not
+/// hold up the craft.
 const MOST_EVENTS: usize = 64;
-/// How far from the place where a real craft was seen first another one may be seen, for it to be drawn around the same place, m.
+/// The greatest distance between the first fixes of two real craft for which the drawing keeps its origin, m.
 const SAME_FIELD_M: f64 = 1000.0;
-/// How long a program may take until it answers for the first time.
+/// The longest time that a program may take for its first answer.
 const FIRST_ANSWER: Duration = Duration::from_secs(10);
 
-/// The ends by which a flight controller is reached.
+/// The links to a flight controller.
 #[derive(Debug)]
 pub struct RemoteEnds {
-    /// What it is called in sentences: a file, or where it is.
+    /// The name for sentences: a file, or the address.
     pub name: String,
     pub stream: FcStream,
-    /// Where its states, RC and motors go, when it is a SITL executable.
+    /// The sockets for states, RC and motors, if it is a SITL executable.
     pub peer: Option<SitlPeer>,
-    /// Its process, when it is a child of this program.
+    /// The process, if it is a child of this program.
     pub child: Option<SitlChild>,
 }
 
-/// What an answer is for.
+/// The purpose of a request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Purpose {
-    /// A line that somebody in this program asked for, and whether it may change something.
+    /// A line for a part of this program. `true` if it may change something.
     Line(Ticket, bool),
-    /// The line that shows the plan, likewise.
+    /// The line that shows the plan, for a part of this program.
     Plan(Ticket),
-    /// A message, likewise.
+    /// A message for a part of this program. `true` if it may change something.
     Message(Ticket, bool),
-    /// To know what it is.
+    /// A question about its identity.
     Identity(Question),
     Provision,
-    /// To show how it is.
+    /// A poll for the display.
     Polled(Subject),
-    /// To know how it is set now.
+    /// A question about its current settings.
     Refreshed(Question),
-    /// Nothing: what it causes is seen elsewhere.
+    /// No purpose; the effect is observed elsewhere.
     Nothing,
 }
 
-/// The link to a flight controller outside.
+/// The link to a remote flight controller.
 #[derive(Debug)]
 pub struct RemoteLink {
     ends: RemoteEnds,
@@ -104,15 +106,16 @@ pub struct RemoteLink {
     waiting: BTreeMap<AskId, Purpose>,
     next_ask: u64,
     started: Instant,
-    /// When the first connection was made.
+    /// The time of the first connection.
     first_connected: Option<Instant>,
-    /// When the present connection was made, until it has been told that nothing comes over it.
+    /// The time of the current connection, until the notice that it is silent.
     connected: Option<Instant>,
-    /// Something came over the present connection, or the last one.
+    /// `true` once data came over the current connection, or the last one.
     heard: bool,
-    /// Why the connection was lost, as it was told last; nothing has come over one since.
+    /// The last reported reason for a lost connection; `None` once data has arrived since.
     told_loss: Option<String>,
-    /// Requests that it has answered since its program was started first; motors are no answer.
+    /// The number of requests that it has answered since the first start of its program. Motor packets do not
+    /// count.
     answers: u64,
     motors: FeedState,
     self_check: SelfCheck,
@@ -125,7 +128,7 @@ pub struct RemoteLink {
 }
 
 impl RemoteLink {
-    /// A link over these ends, whose program, if it has one here, starts now.
+    /// Creates a link over these ends. A program that is a child of this one starts now.
     pub fn new(ends: RemoteEnds, now: Instant) -> Self {
         Self {
             schedule: Schedule::new(ends.stream.bytes_per_s),
@@ -153,12 +156,12 @@ impl RemoteLink {
         }
     }
 
-    /// How far the flight controller is known.
+    /// Returns the state of the link.
     pub fn state(&self) -> &RemoteState {
         &self.state
     }
 
-    /// What a screen shows of it.
+    /// Returns the view for the display.
     pub fn view(&self) -> RemoteView {
         RemoteView {
             name: self.ends.name.clone(),
@@ -171,61 +174,62 @@ impl RemoteLink {
         }
     }
 
-    /// What may be done with it.
+    /// Returns the permitted access.
     pub fn access(&self) -> Access {
         if self.is_fed() { Access::Everything } else { self.permission.access() }
     }
 
-    /// Requests that it has answered so far; motors are no answer.
+    /// Returns the number of requests that it has answered. Motor packets do not count.
     pub fn answers(&self) -> u64 {
         self.answers
     }
 
-    /// The number of the present connection.
+    /// Returns the number of the current connection.
     pub fn connection(&self) -> u32 {
         self.permission.connection()
     }
 
-    /// Whether a line opens the interactive command line, which stays open then.
+    /// Returns `true` if a line would open the interactive command line, which then stays open.
     pub fn opens_cli(&self) -> bool {
         let is_disarmed = self.observer.armed() == Some(false);
         self.permission.opens_cli() && is_disarmed && !self.client.is_in_cli()
     }
 
-    /// The user permits changes over this connection; an earlier one's permission means nothing.
+    /// Permits changes over this connection. Permission for an earlier connection has no effect.
     pub fn permit_changes(&mut self, connection: u32) {
         self.permission.permit(connection);
         self.tell_client();
     }
 
-    /// The client does what is permitted now.
+    /// Passes the current permission on to the client.
     fn tell_client(&mut self) {
         self.client.set_cli(self.permission.cli());
         self.client.set_may_leave_cli(self.access() != Access::Reading);
     }
 
-    /// What it is called in sentences.
+    /// Returns the name for sentences.
     pub fn name(&self) -> &str {
         &self.ends.name
     }
 
-    /// What it was to be set to and is not.
+    /// Returns the settings that were not applied as requested.
     pub fn unset(&self) -> Option<&Unset> {
         self.unset.as_ref()
     }
 
-    /// What is known of it.
+    /// Returns the observed state of the flight controller.
     pub fn observer(&self) -> &Observer {
         &self.observer
     }
 
-    /// Whether it gets the states of the craft from here, in the rhythm of the steps.
+    /// Returns `true` if this program feeds it with the states of the craft, at the rate of the steps.
     pub fn is_fed(&self) -> bool {
         self.ends.peer.is_some()
     }
 
-    /// Most steps of `step_us` at `speed` times real time that may be flown before the next exchange: motors are not to stand
-    /// still for many steps where it is the machine that was held up.
+    /// Returns the maximum number of steps of `step_us` at `speed` times real time that may be flown before
+    /// the next exchange. If only the machine was held up, the motor command must not stay the same for many
+    /// steps.
     pub fn most_steps(&self, step_us: u64, speed: f64, now: Instant) -> u64 {
         match &self.ends.peer {
             None => u64::MAX,
@@ -234,13 +238,13 @@ impl RemoteLink {
         }
     }
 
-    /// Its lines among the endpoints.
+    /// Returns its status as an endpoint.
     pub fn status(&self, now: Instant) -> Vec<EndpointStatus> {
         self.ends.peer.iter().map(|peer| peer.status(now)).collect()
     }
 
-    /// Sends what the vehicle's mailbox holds and delivers what has come back since; what is to be told of it comes back.
-    /// With a context the caller is woken when more comes over the serial port.
+    /// Sends the contents of the vehicle's mailbox and delivers the data received since. Returns the notices
+    /// for the user. If a context is given, the caller is woken when more data arrives over the serial port.
     pub fn exchange(
         &mut self,
         vehicle: &mut Vehicle,
@@ -250,7 +254,7 @@ impl RemoteLink {
         self.follow_program(vehicle);
         self.read_stream(vehicle, context, now);
         self.exchange_frames(vehicle, now);
-        // First, so that nothing is asked that was answered just now.
+        // First, so that a question that was just answered is not sent again.
         self.take_answers(vehicle, now);
         self.take_requests(vehicle);
         self.ask_what_is_due(now);
@@ -260,7 +264,7 @@ impl RemoteLink {
         std::mem::take(&mut self.notices)
     }
 
-    /// Tells what became of its program since.
+    /// Reports the events of its program.
     fn follow_program(&mut self, vehicle: &mut Vehicle) {
         for _ in 0..MOST_EVENTS {
             let Some(event) = self.ends.child.as_mut().and_then(SitlChild::take_event) else { return };
@@ -287,7 +291,7 @@ impl RemoteLink {
         }
     }
 
-    /// The executable ended: another life of it begins at home.
+    /// Begins another run of an executable that ended. The craft is at home.
     fn begin_anew(&mut self, vehicle: &mut Vehicle, notice: String) {
         if let Some(peer) = &mut self.ends.peer {
             peer.went_down();
@@ -305,7 +309,7 @@ impl RemoteLink {
         }
     }
 
-    /// Sensor and RC frames go out, motors come in.
+    /// Sends sensor and RC frames, and receives motors.
     fn exchange_frames(&mut self, vehicle: &mut Vehicle, now: Instant) {
         let Some(mailbox) = vehicle.controller_mut().remote_mut() else { return };
         let Some(peer) = &mut self.ends.peer else {
@@ -320,7 +324,7 @@ impl RemoteLink {
             match frame {
                 FrameOut::Rc(frame, _) => peer.send_rc(&frame, now),
                 FrameOut::Sensors(frame) => {
-                    // Late by several steps: one packet, of the newest.
+                    // After a delay of several steps, only the newest state is sent.
                     if let Some(older) = state.replace(frame) {
                         peer.pass_over(&older);
                     }
@@ -342,7 +346,7 @@ impl RemoteLink {
         self.motors = motors;
     }
 
-    /// Asks what somebody in this program wants to know or to be done.
+    /// Sends the requests of other parts of this program.
     fn take_requests(&mut self, vehicle: &mut Vehicle) {
         loop {
             let Some(mailbox) = vehicle.controller_mut().remote_mut() else { return };
@@ -374,7 +378,7 @@ impl RemoteLink {
         self.client.ask(id, ask);
     }
 
-    /// While nobody else asks: what it is, then how it is.
+    /// Asks for the identity, then for the state, while there are no other requests.
     fn ask_what_is_due(&mut self, now: Instant) {
         if !self.client.is_idle() {
             return;
@@ -392,13 +396,13 @@ impl RemoteLink {
                     next.map(|subject| (Purpose::Polled(subject), subject.ask()))
                 }
             },
-            // A board that still starts, or a plug that is put into another one, answers later.
+            // A board that is still starting answers later, as does one that is plugged in later.
             RemoteState::Unusable(_) if !self.is_fed() => self
                 .identification
                 .next()
                 .filter(|question| *question == Question::ApiVersion)
                 .map(|question| (Purpose::Identity(question), question.ask())),
-            // The connection is there, and nobody answers.
+            // The connection is there, but nothing answers.
             RemoteState::Lost => Some((Purpose::Nothing, Question::ApiVersion.ask())),
             RemoteState::Connecting | RemoteState::Unusable(_) => None,
         };
@@ -407,7 +411,7 @@ impl RemoteLink {
         }
     }
 
-    /// Delivers what was observed since, and what follows from it.
+    /// Delivers the observations and handles their consequences.
     fn observe(&mut self, vehicle: &mut Vehicle, now: Instant) {
         self.tell_silence(now);
         self.client.set_armed(self.observer.is_armed());
@@ -429,7 +433,7 @@ impl RemoteLink {
     }
 }
 
-/// Whether a drawing around one place shows the other as it is.
+/// Returns `true` if a drawing around one place also shows the other undistorted.
 fn is_near(frame: &LocalFrame, other: &LocalFrame) -> bool {
     frame.to_enu(other.lat_deg, other.lon_deg, other.alt_amsl_m).xy().norm() < SAME_FIELD_M
 }

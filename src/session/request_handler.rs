@@ -1,5 +1,5 @@
-//! Passes the requests of the links on to the flight controller between two steps, and the answers back. A remote flight
-//! controller answers later, by ticket.
+//! Passes the requests of the links to the flight controller between two steps, and returns the answers. A
+//! remote flight controller answers later, by ticket.
 
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
@@ -15,41 +15,41 @@ use crate::link::{ClientId, Request, RestartSignal};
 use crate::signals::{RcFrame, RcSource};
 use crate::vehicle::{Answer, FlightController, LateAnswer, Ticket};
 
-/// A frame from a script counts as fresh for this long of wall time.
+/// The wall time for which a frame from a script counts as fresh.
 const RC_FRESH: Duration = Duration::from_millis(150);
 
-/// What handling a request led to, beyond the answer.
+/// The effects of a request besides the answer.
 #[derive(Debug, Default)]
 pub struct Handled {
     /// Sentences for the user.
     pub notices: Vec<String>,
-    /// The flight controller restarts.
+    /// `true` if the flight controller restarts.
     pub restarted: bool,
-    /// A datagram from a simulator, which is not for the flight controller, and when it came.
+    /// A datagram from a simulator, which is not meant for the flight controller, with its time of arrival.
     pub fdm: Option<(Vec<u8>, Instant)>,
 }
 
-/// The newest frame of a source that comes through a socket.
+/// The newest frame of a source that uses a socket.
 #[derive(Debug, Clone, Copy)]
 struct ReceivedRc {
     frame: RcFrame,
     at: Instant,
 }
 
-/// The command line of one client, from its entry until it is left.
+/// The command line of one client while it is open.
 #[derive(Debug)]
 struct CliSession {
     interpreter: Interpreter,
-    /// Of a person: blocks arming.
+    /// `true` for a person, which blocks arming.
     interactive: bool,
 }
 
-/// A client that awaits the answer of a remote flight controller.
+/// A client that waits for the answer of a remote flight controller.
 #[derive(Debug)]
 enum WaitingClient {
-    /// Of an MSP message.
+    /// Waits for the answer to an MSP message.
     Message(oneshot::Sender<Option<Vec<u8>>>),
-    /// Of a line of the command line.
+    /// Waits for the answer to a line of the command line.
     Line(oneshot::Sender<LineReply>),
 }
 
@@ -62,13 +62,13 @@ pub struct RequestHandler {
     udp: Option<ReceivedRc>,
     msp: Option<ReceivedRc>,
     cli_sessions: BTreeMap<ClientId, CliSession>,
-    /// The client whose command line turned motors on the bench last.
+    /// The last client whose command line turned motors on the bench.
     bench: Option<ClientId>,
     told_altitude_units: bool,
 }
 
 impl RequestHandler {
-    /// A handler that sends `restart_signal` when the flight controller restarts.
+    /// Creates a handler that sends `restart_signal` when the flight controller restarts.
     pub fn new(restart_signal: RestartSignal) -> Self {
         Self {
             restart_signal,
@@ -126,12 +126,12 @@ impl RequestHandler {
             Request::Complete { line, reply } => answer(reply, completion(&line)),
             Request::LeftCli { client } => {
                 self.cli_sessions.remove(&client);
-                // Motors that somebody else turns go on.
+                // Motors that another client turns keep turning.
                 if self.bench.take_if(|bench| *bench == client).is_some() {
                     controller.cli_closed();
                 }
             }
-            // The command line was opened before the craft was armed; a restart in flight would make it fall.
+            // The command line was opened before the craft was armed. A restart in flight would make it fall.
             Request::Restart { .. } if controller.armed() != Some(false) => {}
             Request::Restart { .. } => self.restart(true, controller, persistence, &mut handled),
             Request::Rc { frame, at, .. } => {
@@ -144,12 +144,12 @@ impl RequestHandler {
         handled
     }
 
-    /// Passes a late answer on to the client that awaits it.
+    /// Passes a late answer to the client that waits for it.
     pub fn deliver(&mut self, ticket: Ticket, late: LateAnswer) {
         match (self.late_answers.take(ticket), late) {
             (Some(WaitingClient::Message(reply)), LateAnswer::Msp(payload)) => answer(reply, payload),
             (Some(WaitingClient::Line(reply)), LateAnswer::Cli(said)) => answer(reply, said.into()),
-            // The answer to a request that was given up, or to another one.
+            // The answer belongs to a request that was given up, or has another type.
             _ => {}
         }
     }
@@ -175,8 +175,8 @@ impl RequestHandler {
         }
     }
 
-    /// Runs a line in the client's session. A message is a session of its own, and so is a line that was underway when a
-    /// restart ended the client's.
+    /// Runs a line in the client's session. A message is a session of its own, and so is a line that was in
+    /// progress when a restart ended the client's session.
     fn run_line(
         &mut self,
         client: ClientId,
@@ -195,8 +195,8 @@ impl RequestHandler {
         }
     }
 
-    /// Does what a message asks for; gives the payload of the reply. Links are closed before the reply goes out: who comes
-    /// back after it is a new client.
+    /// Carries out the action of a message and returns the payload of the reply. Links are closed before the
+    /// reply goes out, so a client that reconnects after it is a new one.
     fn act_on_message(
         &mut self,
         outcome: Outcome,
@@ -223,7 +223,7 @@ impl RequestHandler {
             Some(MspAction::SetClock { unix_s, millis }) => {
                 self.clock = Some((UtcTime { unix_s, millis }, now));
             }
-            // The firmware has used it; from here on it ages in wall time.
+            // The firmware has used it. From here on it ages in wall time.
             Some(MspAction::RawRc(frame)) => {
                 self.msp = Some(ReceivedRc { frame, at: now });
             }
@@ -241,7 +241,7 @@ impl RequestHandler {
         outcome.reply
     }
 
-    /// Does what a line asks for; the answer becomes a refusal when what it announced could not be saved.
+    /// Carries out the actions of a line. If saving fails, the answer becomes a refusal.
     fn act_on_line(
         &mut self,
         client: ClientId,
@@ -280,8 +280,8 @@ impl RequestHandler {
         self.after_restart(close_links, controller);
     }
 
-    /// Brings the clients' sessions up to date after a restart of the flight controller: closes the links, or, where they are kept,
-    /// lets those who are at a command line block arming as before.
+    /// Updates the clients' sessions after a restart of the flight controller. Closes the links. If the links
+    /// stay open, clients at a command line block arming as before.
     pub fn after_restart(&mut self, close_links: bool, controller: &mut FlightController) {
         (self.udp, self.msp, self.bench) = (None, None, None);
         if close_links {
@@ -292,14 +292,15 @@ impl RequestHandler {
         }
     }
 
-    /// Keeps RC from sockets alive while simulated time runs `speed` times faster than the wall clock: a script sends
-    /// 50 frames of wall time a second, and the flight controller would miss it. To be called about every 20 ms of simulated
+    /// Keeps RC from sockets alive while simulated time runs `speed` times faster than the wall clock. A
+    /// script sends 50 frames per second of wall time, and the flight controller would detect a loss. Call
+    /// this about every 20 ms of simulated time.
     /// time.
     pub fn keep_rc_fresh(&self, controller: &mut FlightController, speed: f64, now: Instant) {
         if speed <= 1.0 {
             return;
         }
-        // The receiver itself notices a loss after as much simulated time.
+        // The receiver itself detects a loss after the same amount of simulated time.
         let still_fresh = RC_FRESH.mul_f64(1.0 - 1.0 / speed);
         for (source, heard) in [(RcSource::Udp, self.udp), (RcSource::Msp, self.msp)] {
             if let Some(ReceivedRc { frame, at }) = heard
@@ -310,7 +311,7 @@ impl RequestHandler {
         }
     }
 
-    /// The time of day, when a client has set it.
+    /// Returns the time of day if a client has set it.
     fn clock_at(&self, now: Instant) -> Option<UtcTime> {
         let (set, at) = self.clock?;
         let millis = u128::from(set.millis) + now.saturating_duration_since(at).as_millis();
@@ -335,7 +336,8 @@ impl From<CliReply> for LineReply {
     }
 }
 
-/// Why a client got no answer to lines that begin with this word, when they are commands and the craft is armed.
+/// Returns the reason why a client got no answer to lines that begin with this word, if it is a command and
+/// the craft is armed.
 fn ignored_in_flight(word: &str, controller: &FlightController) -> Option<String> {
     let command = COMMANDS.iter().find(|command| command.name.eq_ignore_ascii_case(word))?;
     controller.is_armed().then(|| {
@@ -348,13 +350,13 @@ fn ignored_in_flight(word: &str, controller: &FlightController) -> Option<String
     })
 }
 
-/// How a line being typed may go on.
+/// Returns the completion of a line being typed.
 fn completion(line: &str) -> Completion {
     let found = complete(line);
     Completion { tail: found.tail(line).to_owned(), words: found.candidates }
 }
 
-/// A client that went away needs no answer.
+/// Sends an answer. A client that has disconnected needs none.
 fn answer<T>(reply: oneshot::Sender<T>, value: T) {
     drop(reply.send(value));
 }

@@ -1,8 +1,9 @@
 //! The thread that owns the vehicle: takes commands and requests, runs the due ticks, publishes views and events.
 //!
-//! `commands` carries out what the user interface asks, `console` its command line, `requests` what comes over the links;
-//! `limits` keeps off what may not be done with a real craft; `late` passes on what a remote flight controller answers;
-//! `rewind` shows earlier instants and flies on from them; `publishing` makes the view.
+//! `commands` carries out the commands of the user interface, `console` its command line, `requests` those of
+//! the links. `limits` refuses actions that are not allowed on a real craft. `late` passes on the answers of
+//! a remote flight controller. `rewind` shows earlier instants and continues the flight from them.
+//! `publishing` builds the view.
 #![allow(clippy::disallowed_methods, reason = "this is where wall time meets simulated time")]
 
 mod commands;
@@ -42,47 +43,47 @@ use crate::vehicle::Vehicle;
 use late::WaitingInterface;
 use rewind::RunOn;
 
-/// Interval of published views.
+/// The interval of published views.
 const VIEW_INTERVAL: Duration = Duration::from_millis(16);
-/// Longest sleep of the loop while time is paced.
+/// The longest sleep of the loop while time is paced.
 const PACED_SLEEP: Duration = Duration::from_millis(2);
-/// Longest sleep of the loop while nothing moves.
+/// The longest sleep of the loop while nothing moves.
 const PAUSED_SLEEP: Duration = Duration::from_millis(8);
-/// Ticks between two looks at the clock and the commands.
+/// The number of ticks between two checks of the clock and the commands.
 const SLICE: u64 = 500;
 
 /// The session's side of the endpoints.
 #[derive(Debug)]
 pub struct Endpoints {
-    /// What clients, scripts and simulators ask.
+    /// The requests of clients, scripts and simulators.
     pub requests: mpsc::Receiver<Request>,
     pub handler: RequestHandler,
-    /// How they are doing.
+    /// The status of the endpoints.
     pub status: watch::Receiver<Vec<EndpointStatus>>,
-    /// The simulator that moves the craft, when the physics is external.
+    /// The simulator that moves the craft, if the physics is external.
     pub simulator: Option<ExternalSimulator>,
 }
 
-/// What a session starts with.
+/// The initial state of a session.
 #[derive(Debug)]
 pub struct SessionConfig {
     /// The vehicle at boot.
     pub vehicle: Vehicle,
-    /// Where `save` goes.
+    /// The storage for `save`.
     pub store: Store,
-    /// A craft without mode conditions gets the starter modes at every restart.
+    /// `true` if a craft without mode conditions gets the starter modes at every restart.
     pub starter_modes: bool,
-    /// Times real time at the start; infinite = as fast as possible.
+    /// The multiple of real time at the start; infinite = as fast as possible.
     pub speed: f64,
-    /// Altitude to which the scripted pilot climbs, m.
+    /// The altitude to which the scripted pilot climbs, m.
     pub takeoff_m: f64,
-    /// Keeps a recording, so that earlier instants can be shown. Without a screen nobody can ask for one.
+    /// `true` to keep a recording, so that earlier instants can be shown. Without a screen it is not needed.
     pub is_recorded: bool,
-    /// The endpoints, when any are open; they make the flight live.
+    /// The endpoints, if any are open. They make the flight live.
     pub endpoints: Option<Endpoints>,
-    /// The link to the vehicle's flight controller, when that is remote.
+    /// The link to the vehicle's flight controller, if that is remote.
     pub remote: Option<RemoteLink>,
-    /// What is reported first, after the boot.
+    /// The events that are reported first, after the boot.
     pub first_events: Vec<SessionEvent>,
 }
 
@@ -90,25 +91,25 @@ pub struct SessionConfig {
 #[derive(Debug)]
 pub struct FlownBefore {
     pub timeline: Timeline,
-    /// What happened in it.
+    /// The events of the flight.
     pub events: Vec<telemetry::Event>,
     /// The instant to show.
     pub show: SimTime,
 }
 
-/// The ends of a running session that the outside holds.
+/// The caller's ends of a running session.
 #[derive(Debug)]
 pub struct Handle {
     pub commands: mpsc::Sender<Command>,
     pub view: watch::Receiver<SessionView>,
     /// Every event, in order.
     pub events: mpsc::UnboundedReceiver<Event>,
-    /// The thread; it ends on [`Command::Quit`] or when all senders are gone, and by itself when there is nothing to fly
-    /// with: then it gives the sentence why.
+    /// The thread. It ends on [`Command::Quit`] or when all senders are gone. It also ends by itself when
+    /// there is no usable flight controller, and then returns the reason as a sentence.
     pub thread: std::thread::JoinHandle<Option<String>>,
 }
 
-/// A speed as a multiple of real time.
+/// Formats a speed as a multiple of real time.
 fn factor(speed: f64) -> String {
     if speed.is_infinite() { "full speed".to_owned() } else { format!("{speed}×") }
 }
@@ -116,16 +117,16 @@ fn factor(speed: f64) -> String {
 /// Starts the session's thread.
 ///
 /// # Errors
-/// When the system gives no thread.
+/// Returns an error if the system cannot start a thread.
 pub fn start(config: SessionConfig) -> std::io::Result<Handle> {
     start_at(config, None)
 }
 
-/// As [`start`], at the end of a flight that was flown before: the vehicle is as that flight left it, one of its instants is
-/// shown, and time stands still.
+/// Starts the session at the end of a flight that was flown before. The vehicle is in the state after that
+/// flight, one of its instants is shown, and time is paused.
 ///
 /// # Errors
-/// When the system gives no thread.
+/// Returns an error if the system cannot start a thread.
 pub fn start_at(config: SessionConfig, flown: Option<FlownBefore>) -> std::io::Result<Handle> {
     let (command_tx, command_rx) = mpsc::channel(256);
     let (event_tx, event_rx) = mpsc::unbounded_channel();
@@ -140,7 +141,7 @@ struct Session {
     vehicle: Vehicle,
     persistence: Persistence,
     pacer: Pacer,
-    /// Times real time at the start, to which the speed falls back after a flight.
+    /// The multiple of real time at the start. The speed returns to it after a flight.
     usual_speed: f64,
     console: Interpreter,
     takeoff_m: f64,
@@ -148,35 +149,35 @@ struct Session {
     remote: Option<RemoteLink>,
     endpoints: Option<Endpoints>,
     commands: mpsc::Receiver<Command>,
-    /// A command that was taken out and is carried out next.
+    /// A command that was taken from the queue and is carried out next.
     held_back: Option<Command>,
     events: EventSender,
     arming: ArmingWatch,
-    /// What the user interface asked of a remote flight controller.
+    /// The requests of the user interface to a remote flight controller.
     late_answers: LateAnswers<WaitingInterface>,
     real_time: RealTime,
-    /// The recording, unless the flight cannot be taken back.
+    /// The recording, unless the flight cannot be rewound.
     timeline: Option<Timeline>,
-    /// The flight goes on, as fast as it goes, until this.
+    /// The target up to which the flight continues as fast as possible.
     run_on: Option<RunOn>,
-    /// Time stood still already when the earlier instant was shown.
+    /// `true` if time was already paused when the earlier instant was shown.
     was_paused: bool,
-    /// A script has sent RC.
+    /// `true` once a script has sent RC.
     rc_received: bool,
-    /// Why clients were refused something over the present connection: each is told once.
+    /// The refusals to clients over the current connection. Each reason is reported once.
     refused_over: Vec<(Option<u32>, Denial)>,
-    /// A client was refused a change since an earlier instant is shown.
+    /// `true` once a client was refused a change while the earlier instant is shown.
     refused_while_rewound: bool,
-    /// Something other than time changed what the view shows.
+    /// `true` if something other than time has changed the view.
     changed: bool,
-    /// Clients asked more than one round of the loop has time for.
+    /// `true` if there are more requests than one round of the loop can handle.
     more_waits: bool,
     quit: bool,
-    /// Why there is nothing to fly with.
+    /// The reason why there is no usable flight controller.
     failure: Option<String>,
 }
 
-/// Wakes the session's thread when a command or a request comes.
+/// Wakes the session's thread when a command or a request arrives.
 struct ThreadWaker(Thread);
 
 impl Wake for ThreadWaker {
@@ -281,8 +282,8 @@ impl Session {
         self.failure.take()
     }
 
-    /// Sets the speed back to that of the start when the craft was disarmed. A speed that is chosen later, while the craft is
-    /// disarmed, is kept.
+    /// Resets the speed to that of the start when the craft was disarmed. A speed chosen later, while the
+    /// craft is disarmed, is kept.
     fn slow_down_after_flight(&mut self, now: Duration) {
         let (fast, usual) = (self.pacer.speed(), self.usual_speed);
         if !self.events.take_disarmed() || !self.sets_time() || fast <= usual {
@@ -297,24 +298,25 @@ impl Session {
         ));
     }
 
-    /// Whether the session sets the time, and neither an external simulator nor a firmware outside.
+    /// Returns `true` if the session sets the time, rather than an external simulator or a remote firmware.
     fn sets_time(&self) -> bool {
         self.simulator.is_none() && self.remote.is_none()
     }
 
-    /// Most steps of one round.
+    /// Returns the maximum number of steps of one round.
     fn most_steps(&self) -> u64 {
         let (step_us, speed) = (self.vehicle.step_us(), self.pacer.speed());
         let of_remote = self.remote.as_ref().map(|remote| remote.most_steps(step_us, speed, Instant::now()));
         SLICE.min(of_remote.unwrap_or(SLICE))
     }
 
-    /// Until an external simulator speaks, and without one, time passes with the wall clock.
+    /// Returns `true` while time follows the wall clock: without an external simulator, or until it sends its
+    /// first state.
     fn follows_wall_clock(&self) -> bool {
         self.simulator.as_ref().is_none_or(|simulator| simulator.state() == LinkState::Waiting)
     }
 
-    /// Counts the real time that was lost by `now`, and tells it.
+    /// Counts the real time that was lost by `now`, and reports it.
     fn count_lost_time(&mut self, now: Duration) {
         self.real_time.lose(self.pacer.take_lost());
         if let Some(simulator) = &mut self.simulator {
@@ -322,7 +324,7 @@ impl Session {
             self.real_time.advance(wall, simulated);
         }
         let wanted = if self.simulator.is_some() { 1.0 } else { self.pacer.speed() };
-        // While time stands still there is no speed to tell, and a real craft does not wait for it.
+        // While time is paused there is no speed to report, and a real craft does not wait for it.
         if !self.pacer.is_paused()
             && !self.access().is_limited()
             && let Some(notice) = self.real_time.notice(now, wanted, self.pacer.achieved())
@@ -331,8 +333,8 @@ impl Session {
         }
     }
 
-    /// How long the thread may sleep at `present` when nothing comes; its round began at `now`. A remote flight controller
-    /// that is fed gets its states in the rhythm of the steps.
+    /// Returns the longest sleep of the thread at `present` if nothing arrives; its round began at `now`. A
+    /// remote flight controller that this program feeds gets its states at the rate of the steps.
     fn sleep_from(&self, now: Duration, present: Duration) -> Duration {
         if let Some(remote) = &self.remote
             && remote.is_fed()
@@ -343,7 +345,7 @@ impl Session {
         self.longest_sleep().saturating_sub(present.saturating_sub(now))
     }
 
-    /// How long the thread may sleep when nothing comes.
+    /// Returns the longest sleep of the thread if nothing arrives.
     fn longest_sleep(&self) -> Duration {
         match &self.simulator {
             Some(simulator) if !self.follows_wall_clock() => {

@@ -1,4 +1,4 @@
-//! An external simulator that moves the craft: its packets are the time, its silence stops it.
+//! An external simulator that moves the craft: its packets advance the time, and its silence stops it.
 
 use std::fmt;
 use std::time::{Duration, Instant};
@@ -14,30 +14,30 @@ use crate::sim::LinkFaults;
 use crate::telemetry::{EndpointStatus, LinkState};
 use crate::vehicle::Vehicle;
 
-/// How often frames from sockets are repeated while time runs fast, µs of simulated time.
+/// The interval at which frames from sockets are repeated while time runs fast, µs of simulated time.
 pub(super) const RC_REPEAT_US: u64 = 20_000;
 
-/// A simulator that is silent for this long is paused, not slow.
+/// The silence after which a simulator counts as paused instead of slow.
 const PAUSE: Duration = Duration::from_secs(1);
 
-/// Kinds of refusals, each of which is told once.
+/// The number of kinds of refusals. Each is reported once.
 const REFUSALS: usize = 6;
 
-/// What a session tells about its external simulator.
+/// A notice about the external simulator.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SimulatorNotice {
     /// The first packet was accepted.
     Connected,
     /// A packet was accepted after a silence.
     Resumed {
-        /// Wall time without an accepted packet, s.
+        /// The wall time without an accepted packet, s.
         silence_s: f64,
     },
     /// It has stopped sending.
     Silent,
-    /// Packets are refused for this reason; told once for each.
+    /// Packets are refused for this reason. Reported once for each reason.
     Refused(PacketError),
-    /// The link has adapted to what the packets show.
+    /// The link has adapted to the packets.
     Adapted(FdmNotice),
 }
 
@@ -55,20 +55,20 @@ impl fmt::Display for SimulatorNotice {
     }
 }
 
-/// The simulator of a session.
+/// The external simulator of a session.
 #[derive(Debug)]
 pub(super) struct Simulator {
     link: ExternalSimulator,
-    /// What goes wrong before its packets arrive.
+    /// The impairments of the link through which its packets arrive.
     incoming: ImpairedLink,
-    /// The state that was told last.
+    /// The last reported state.
     state: LinkState,
-    /// When it spoke last.
+    /// The time of its last packet.
     received_at: Instant,
     reported_refusals: ArrayVec<PacketError, REFUSALS>,
-    /// Wall and simulated time since it was asked last, silences left out.
+    /// The wall and simulated time since the last query, without silences.
     passed: (Duration, Duration),
-    /// Something happened that the view should show at once.
+    /// `true` if the view should be updated at once.
     changed: bool,
 }
 
@@ -85,18 +85,19 @@ impl Simulator {
         }
     }
 
-    /// The state of the link that was reported last.
+    /// Returns the last reported state of the link.
     pub(super) fn state(&self) -> LinkState {
         self.state
     }
 
-    /// How long to wait at most until [`Self::poll`] has something to do.
+    /// Returns the longest wait until [`Self::poll`] must run.
     pub(super) fn longest_wait(&self, now: Instant) -> Duration {
         let due = self.incoming.due().map_or(self.link.due(), |arrives| arrives.min(self.link.due()));
         due.saturating_duration_since(now)
     }
 
-    /// Whether something is due to be sent unasked. What the simulator has sent by now goes before: it is made requests.
+    /// Returns `true` if an unsolicited packet is due. Packets that the simulator has sent by now come first:
+    /// they are turned into requests.
     pub(super) fn read_before_sending(&self, now: Instant) -> bool {
         let is_due = self.link.due() <= now;
         if is_due {
@@ -105,13 +106,13 @@ impl Simulator {
         is_due
     }
 
-    /// Its line among the endpoints.
+    /// Returns its status as an endpoint.
     pub(super) fn status(&self, now: Instant) -> EndpointStatus {
         self.link.status(now)
     }
 
-    /// Takes a datagram that was sent at `at`, while simulated time has run `speed` times as fast as the wall clock;
-    /// flies on with what has arrived by then and gives the ticks.
+    /// Takes a datagram that was sent at `at`, while simulated time has run `speed` times as fast as the wall
+    /// clock. Flies on with the packets that have arrived by then, and returns the ticks.
     pub(super) fn receive(
         &mut self,
         datagram: Vec<u8>,
@@ -126,7 +127,7 @@ impl Simulator {
         self.take_arrived(at, vehicle, handler, events, speed)
     }
 
-    /// Flies on with what has arrived by `now`.
+    /// Flies on with the packets that have arrived by `now`, and returns the ticks.
     fn take_arrived(
         &mut self,
         now: Instant,
@@ -142,7 +143,8 @@ impl Simulator {
         ticks
     }
 
-    /// The firmware's time stands still while nothing arrives: that of the faults which are the reason goes on.
+    /// Ends link faults whose time is over. The firmware's time stops while nothing arrives, but the time of
+    /// the faults that cause the silence continues.
     fn end_faults(&mut self, now: Instant, vehicle: &mut Vehicle) {
         if self.state != LinkState::Waiting {
             let silence = now.saturating_duration_since(self.received_at);
@@ -166,7 +168,7 @@ impl Simulator {
                     handler.keep_rc_fresh(vehicle.controller_mut(), speed, at);
                 }
                 vehicle.tick_on(&frame);
-                // Held inputs; a sample is new only once.
+                // Inputs are held; a sample is new only once.
                 (frame.pressure_pa, frame.mag_flu, frame.gps) = (None, None, None);
             }
             vehicle.controller().motors()
@@ -191,8 +193,8 @@ impl Simulator {
         u64::from(received.ticks)
     }
 
-    /// Carries out what is due by time, as [`Self::receive`] does; gives the ticks. Sends unasked only when everything
-    /// that it sent before has been received.
+    /// Processes the packets that are due by time, as [`Self::receive`] does, and returns the ticks. Sends
+    /// unsolicited packets only when all packets that the simulator sent before have been received.
     pub(super) fn poll(
         &mut self,
         now: Instant,
@@ -215,12 +217,12 @@ impl Simulator {
         ticks
     }
 
-    /// Whether there is something to show at once.
+    /// Returns `true` if the view should be updated at once.
     pub(super) fn take_changed(&mut self) -> bool {
         std::mem::take(&mut self.changed)
     }
 
-    /// Counts the time since the packet before, unless the simulator paused.
+    /// Counts the time since the previous packet, unless the simulator paused.
     fn count_time(&mut self, at: Instant, ticks: u32, step_us: u64) {
         let wall = at.saturating_duration_since(self.received_at);
         if self.state == LinkState::Flowing && wall < PAUSE {
@@ -229,7 +231,7 @@ impl Simulator {
         }
     }
 
-    /// Wall and simulated time that passed since this was asked last.
+    /// Returns the wall and simulated time since the last call.
     pub(super) fn take_passed(&mut self) -> (Duration, Duration) {
         std::mem::take(&mut self.passed)
     }
@@ -256,7 +258,7 @@ impl Simulator {
     }
 }
 
-/// The simulated faults of the link, for the link that carries the packets.
+/// Converts the simulated faults of the link to impairments.
 fn impairment(faults: LinkFaults) -> LinkImpairment {
     let LinkFaults { stall, loss, late_ms, duplicated, jitter_ms } = faults;
     LinkImpairment { stall, loss, late_ms, duplicated, jitter_ms }
@@ -266,7 +268,7 @@ fn report(notice: SimulatorNotice, vehicle: &mut Vehicle, events: &mut EventSend
     events.report(vehicle, SessionEvent::Simulator(notice));
 }
 
-/// A notice of the link as a sentence.
+/// Formats a notice of the link as a sentence.
 fn sentence(notice: &str) -> String {
     let mut letters = notice.chars();
     letters.next().map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))

@@ -1,6 +1,6 @@
 //! The firmware alone, as a drop-in for the SITL executable: same ports, same lines, driven by an external simulator.
 //!
-//! It is a session like any other whose physics is external; `host` prints lines from its events and views.
+//! It is a normal session with external physics; `host` prints lines from its events and views.
 
 mod host;
 mod lines;

@@ -1,4 +1,5 @@
-//! Uploads a plan as a ground station does, through the command line, and reads it back; downloads one the same way.
+//! Uploads a plan through the command line, as a ground station does, and reads it back. Downloads a
+//! plan in the same way.
 
 use super::command::UploadView;
 use super::landing_gains::landing_gains_told;
@@ -10,7 +11,8 @@ use crate::vehicle::{Answer, FlightController, Ticket};
 /// Stores `settings` and `plan` in an embedded flight controller.
 ///
 /// # Errors
-/// The sentence of the first refusal; what came before it stays. A remote flight controller answers too late for this.
+/// Returns the sentence of the first refusal; earlier lines keep their effect. A remote flight controller
+/// answers too late for this function.
 pub fn upload(
     controller: &mut FlightController,
     plan: &FlightPlan,
@@ -28,19 +30,19 @@ pub fn upload(
     }
 }
 
-/// What was done so that the craft holds a plan.
+/// The result of an upload.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct UploadReport {
-    /// What was added to every altitude, m, because the craft counts from elsewhere than home.
+    /// The value added to every altitude, m, because the craft's altitudes are not above home.
     pub added_m: f64,
-    /// Settings that the craft got instead of the guide's, because it falls in LAND with them.
+    /// The settings that replaced the guide's, because the craft falls in LAND with them.
     pub landing_gains: Vec<String>,
-    /// Settings of the plan that a firmware outside does not know or take, with what it says.
+    /// The settings of the plan that a remote firmware does not know or accept, with its answer.
     pub refused: Vec<String>,
 }
 
 impl UploadReport {
-    /// How altitudes were converted, as a sentence; `None` when they were not.
+    /// Returns the conversion of altitudes as a sentence; `None` if there was none.
     pub fn conversion(&self) -> Option<String> {
         let added_m = self.added_m;
         (added_m != 0.0).then(|| {
@@ -48,7 +50,7 @@ impl UploadReport {
         })
     }
 
-    /// What the user is to know of it, as sentences; `None` when the craft holds what was sent.
+    /// Returns notices for the user, as sentences; `None` if the craft stores exactly the plan as sent.
     pub fn remark(&self) -> Option<String> {
         let refused = (!self.refused.is_empty()).then(|| {
             format!(
@@ -67,18 +69,18 @@ impl UploadReport {
     }
 }
 
-/// What prints the plan in the craft.
+/// The line that prints the plan in the craft.
 pub(super) const LIST: &str = "waypoint list";
 
-/// The plan that an answer to [`LIST`] shows, as the craft counts its altitudes.
+/// Returns the plan in an answer to [`LIST`], with the craft's own altitudes.
 ///
 /// # Errors
-/// A sentence, when it is none.
+/// Returns a sentence if the answer is no plan.
 pub(super) fn plan_of_list(reply: &CliReply) -> Result<FlightPlan, String> {
     if reply.failed {
         return Err(format!("the craft refused `{LIST}`: {}", reply.text.trim()));
     }
-    // Some releases print nothing when there is no plan.
+    // Some releases print nothing if there is no plan.
     if reply.text.trim().is_empty() {
         return Ok(FlightPlan::default());
     }
@@ -87,43 +89,43 @@ pub(super) fn plan_of_list(reply: &CliReply) -> Result<FlightPlan, String> {
     })
 }
 
-/// The plan that an answer to [`LIST`] shows, its altitudes above home.
+/// Returns the plan in an answer to [`LIST`], with altitudes above home.
 ///
 /// # Errors
-/// A sentence, when it is none or when that cannot be known.
+/// Returns a sentence if the answer is no plan, or if the reference of its altitudes is unknown.
 pub(super) fn plan_above_home(reply: &CliReply, reference: AltitudeReference) -> Result<FlightPlan, String> {
     let plan = plan_of_list(reply)?;
     reference.plan_of_craft(&plan).map_err(|unknown| unknown.to_string())
 }
 
-/// An upload under way.
+/// An upload in progress.
 #[derive(Debug)]
 pub struct Upload {
-    /// What the craft is to hold at the end, as it counts altitudes.
+    /// The plan that the craft must store, with the craft's own altitudes.
     plan: FlightPlan,
     report: UploadReport,
     /// The lines that were not sent yet.
     lines: std::vec::IntoIter<String>,
     total: usize,
-    /// The line that was sent last.
+    /// The last line sent.
     sent: String,
     interpreter: Interpreter,
 }
 
-/// What sending on led to.
+/// The progress of an upload.
 #[derive(Debug)]
 pub enum UploadProgress {
-    /// Through, or refused with this sentence; what came before the refusal stays.
+    /// The upload is finished, or was refused with this sentence. Lines before the refusal keep their effect.
     Done(Result<UploadReport, String>),
-    /// It goes on with the answer to the last line, which comes with this ticket.
+    /// The upload continues with the answer to the last line, which comes with this ticket.
     Waiting(Ticket),
 }
 
 impl Upload {
-    /// An upload to a craft that counts altitudes from there.
+    /// Creates an upload to a craft with this reference of altitudes.
     ///
     /// # Errors
-    /// When that cannot be known.
+    /// Returns an error if the reference is unknown.
     pub fn new(
         plan: &FlightPlan,
         settings: &[String],
@@ -141,12 +143,12 @@ impl Upload {
         })
     }
 
-    /// Has these settings, which stand in place of the guide's, told in the report.
+    /// Adds these settings, which replace the guide's, to the report.
     pub(super) fn tell_landing_gains(&mut self, settings: Vec<String>) {
         self.report.landing_gains = settings;
     }
 
-    /// How many lines were sent, the reading back among them, and of how many.
+    /// Returns the number of lines sent and the total. Both include the line that reads the plan back.
     pub(super) fn lines_sent(&self) -> UploadView {
         UploadView { sent: self.total - self.lines.len(), total: self.total }
     }
@@ -165,11 +167,11 @@ impl Upload {
         UploadProgress::Done(Ok(self.report.clone()))
     }
 
-    /// Takes the answer to the last line and goes on.
+    /// Takes the answer to the last line and continues.
     pub fn take_answer(&mut self, reply: &CliReply, controller: &mut FlightController) -> UploadProgress {
         match reply.failed {
             _ if self.is_last() => self.read_back(reply),
-            // Another version has other settings: the plan can be flown all the same.
+            // Another version has other settings. The plan can be flown all the same.
             true if let Some(setting) = self.sent.strip_prefix("set ") => {
                 self.report.refused.push(format!("{setting} ({})", complaint(&reply.text)));
                 self.send_lines(controller)
@@ -179,12 +181,12 @@ impl Upload {
         }
     }
 
-    /// Whether the line that was sent last reads the plan back.
+    /// Returns `true` if the last line sent reads the plan back.
     fn is_last(&self) -> bool {
         self.lines.as_slice().is_empty()
     }
 
-    /// Compares what the craft holds with what it was sent.
+    /// Compares the stored plan with the plan sent.
     fn read_back(&self, reply: &CliReply) -> UploadProgress {
         UploadProgress::Done(plan_of_list(reply).and_then(|held| {
             if held == self.plan {
@@ -210,7 +212,7 @@ impl Upload {
     }
 }
 
-/// What a refusal says: the words of its first line, without the marks around them.
+/// Returns the words of a refusal's first line, without the marks around them.
 fn complaint(text: &str) -> String {
     let line = text.trim().lines().next().unwrap_or_default();
     let words =
@@ -224,7 +226,7 @@ mod tests {
     use crate::plan::{Waypoint, plan_lines};
     use crate::vehicle::RemoteRequest;
 
-    /// What the remote flight controller was asked since.
+    /// Returns the new requests to the remote flight controller.
     fn asked(controller: &mut FlightController) -> Vec<String> {
         let mailbox = controller.remote_mut().unwrap();
         std::iter::from_fn(|| mailbox.take_request())

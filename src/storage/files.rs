@@ -9,7 +9,7 @@ use rustix::fs::{Mode, OFlags};
 use super::FILE_NAME;
 use crate::firmware::storage::MAX_IMAGE;
 
-/// The names in one directory.
+/// The file names of a store.
 #[derive(Debug, Clone)]
 pub(super) struct Files {
     pub(super) directory: PathBuf,
@@ -17,11 +17,11 @@ pub(super) struct Files {
     pub(super) backup: PathBuf,
     temporary: PathBuf,
     temporary_backup: PathBuf,
-    /// The image is found by a symbolic link.
+    /// `true` if the image is reached through a symbolic link.
     pub(super) is_linked: bool,
 }
 
-/// One step of a save; after each of them the directory holds a good image.
+/// One step of a save. After each step the directory holds a good image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Step {
     WriteTemporary,
@@ -43,8 +43,8 @@ impl Step {
 }
 
 impl Files {
-    /// The names in `directory`, or, when the image there is a symbolic link, beside the file that it leads to: a save keeps
-    /// the link.
+    /// Returns the names in `directory`. If the image there is a symbolic link, returns the names beside its
+    /// target: a save keeps the link.
     pub(super) fn new(directory: &Path) -> Self {
         let named_image = directory.join(FILE_NAME);
         let image = link_target(&named_image);
@@ -69,7 +69,7 @@ impl Files {
         }
     }
 
-    /// Every file of the store that there is, and those that it will use.
+    /// Returns the existing files of the store, and those that it will use.
     pub(super) fn all(&self) -> Vec<PathBuf> {
         let name = self.image.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let listed = std::fs::read_dir(&self.directory).into_iter().flatten().flatten();
@@ -81,13 +81,14 @@ impl Files {
         files
     }
 
-    /// Locks the directory; `None` when another process has it.
+    /// Locks the directory. Returns `None` if another process has the lock.
     pub(super) fn lock(&self) -> std::io::Result<Option<File>> {
         let directory = File::open(&self.directory)?;
         match directory.try_lock() {
             Ok(()) => Ok(Some(directory)),
             Err(TryLockError::WouldBlock) => Ok(None),
-            // Some file systems know no locks; a store there is only as safe as its user.
+            // Some file systems do not support locks. The user must then keep other processes away from the
+            // store.
             Err(TryLockError::Error(error)) if error.kind() == std::io::ErrorKind::Unsupported => {
                 Ok(Some(directory))
             }
@@ -95,12 +96,12 @@ impl Files {
         }
     }
 
-    /// Whether the stored image is exactly this one.
+    /// Returns `true` if the stored image is exactly this one.
     pub(super) fn holds(&self, image: &[u8]) -> bool {
         read_image(&self.image).ok().flatten().is_some_and(|stored| stored == image)
     }
 
-    /// Replaces the image, keeping the previous one as the backup if it is worth keeping.
+    /// Replaces the image, and keeps the previous one as the backup if `keep_previous`.
     pub(super) fn replace(&self, image: &[u8], keep_previous: bool) -> std::io::Result<()> {
         Step::ALL.into_iter().try_for_each(|step| self.perform(step, image, keep_previous))
     }
@@ -108,11 +109,11 @@ impl Files {
     pub(super) fn perform(&self, step: Step, image: &[u8], keep_previous: bool) -> std::io::Result<()> {
         match step {
             Step::WriteTemporary => {
-                // What an interrupted save left behind goes; a link that somebody put there is not followed.
+                // Removes the rest of an interrupted save. A link in its place is not followed.
                 remove_if_there(&self.temporary)?;
                 let mut file = File::create_new(&self.temporary)?;
                 file.write_all(image).and_then(|()| file.sync_all()).inspect_err(|_| {
-                    // Part of an image, in a directory that is perhaps full.
+                    // It is an incomplete image, perhaps in a full directory.
                     std::fs::remove_file(&self.temporary).ok();
                 })
             }
@@ -124,13 +125,13 @@ impl Files {
         }
     }
 
-    /// Gives the present image a second name; file systems without links get a copy.
+    /// Gives the current image a second name. File systems without hard links get a copy.
     fn link_previous(&self) -> std::io::Result<()> {
         remove_if_there(&self.temporary_backup)?;
         if std::fs::hard_link(&self.image, &self.temporary_backup).is_ok() {
             return Ok(());
         }
-        // Created here: a link that appeared meanwhile is not followed.
+        // Creates the file itself: a link that appeared meanwhile is not followed.
         let mut copy = File::create_new(&self.temporary_backup)?;
         std::io::copy(&mut File::open(&self.image)?, &mut copy)?;
         copy.sync_all()
@@ -154,13 +155,13 @@ impl Files {
     }
 }
 
-/// Where a path leads when it is a symbolic link, there or not; else the path itself.
+/// Returns the target of a symbolic link, even if it does not exist, or the path itself if it is no link.
 pub fn link_target(path: &Path) -> PathBuf {
     const MOST_LINKS: usize = 40;
     let mut path = path.to_owned();
     for _ in 0..MOST_LINKS {
         let Ok(target) = std::fs::read_link(&path) else { break };
-        // An absolute target takes the place of the whole path.
+        // An absolute target replaces the whole path.
         path = path.parent().map_or_else(|| target.clone(), |parent| parent.join(&target));
     }
     path
@@ -175,7 +176,7 @@ fn remove_if_there(path: &Path) -> std::io::Result<()> {
 
 /// Reads a regular file if it exists, at most a little more than the largest image.
 pub(super) fn read_image(path: &Path) -> std::io::Result<Option<Vec<u8>>> {
-    // Without waiting for the writer of a FIFO.
+    // Opens without waiting for the writer of a FIFO.
     let flags = OFlags::RDONLY | OFlags::NONBLOCK | OFlags::CLOEXEC | OFlags::NOCTTY;
     let file = match rustix::fs::open(path, flags, Mode::empty()) {
         Err(rustix::io::Errno::NOENT) => return Ok(None),
@@ -207,7 +208,7 @@ mod tests {
         loaded.configuration.settings.text("craft_name").to_owned()
     }
 
-    /// A directory in which `old` is stored over `older`.
+    /// Returns a directory in which `old` was saved after `older`.
     fn directory_with_two_saves() -> tempfile::TempDir {
         let directory = tempfile::tempdir().expect("a directory");
         let mut store = Store::open(directory.path(), false).expect("a store");

@@ -1,7 +1,7 @@
 //! Opens and replaces the files of the state directory.
 //!
-//! Nothing is read or written through a symbolic link, and a pipe or a device does not make the program wait. A file that is
-//! replaced is written under a fresh name first, which nobody can have taken beforehand.
+//! Nothing is read or written through a symbolic link, and a pipe or a device does not block the program. A
+//! replacement is first written under a fresh name, which no other program can have taken beforehand.
 
 use std::ffi::OsStr;
 use std::fs::{File, Permissions, TryLockError};
@@ -13,23 +13,23 @@ use rustix::fs::{Mode, OFlags};
 use rustix::io::Errno;
 use tempfile::NamedTempFile;
 
-/// Start and end of the names of temporary files.
+/// The start and the end of the names of temporary files.
 const TEMPORARY: (&str, &str) = (".betadeck-", ".tmp");
 
-/// What a file is opened for.
+/// The access with which a file is opened.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Access {
     Read,
-    /// To read it and append to it.
+    /// Reading and appending.
     Append,
-    /// The same, and it is created when it is missing.
+    /// Reading and appending. A missing file is created.
     AppendOrCreate,
 }
 
 /// Opens a regular file, without following a link in its last component.
 ///
 /// # Errors
-/// When the system says so, or when the name is that of a link, a pipe or a device.
+/// Returns an error if the system refuses, or if the name is that of a link, a pipe or a device.
 pub fn open(path: &Path, access: Access) -> io::Result<File> {
     let usual = OFlags::NOFOLLOW | OFlags::NONBLOCK | OFlags::CLOEXEC | OFlags::NOCTTY;
     let flags = match access {
@@ -48,7 +48,7 @@ pub fn open(path: &Path, access: Access) -> io::Result<File> {
 /// Reads a regular file if it exists.
 ///
 /// # Errors
-/// As [`open`], and when the file has more than `most` bytes.
+/// Returns the errors of [`open`], and an error if the file has more than `most` bytes.
 pub fn read(path: &Path, most: u64) -> io::Result<Option<Vec<u8>>> {
     let file = match open(path, Access::Read) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
@@ -62,7 +62,7 @@ pub fn read(path: &Path, most: u64) -> io::Result<Option<Vec<u8>>> {
     Ok(Some(contents))
 }
 
-/// Whether a file has other names: what is written to it appears there, too.
+/// Returns `true` if a file has other names, under which everything written to it also appears.
 pub fn has_other_names(file: &File) -> bool {
     file.metadata().is_ok_and(|metadata| metadata.nlink() > 1)
 }
@@ -70,7 +70,7 @@ pub fn has_other_names(file: &File) -> bool {
 /// Creates a temporary file in a directory. It is locked while it is open, and deleted when it is dropped.
 ///
 /// # Errors
-/// When the system says so.
+/// Returns an error if the system refuses.
 pub fn temporary_in(directory: &Path, mode: u32) -> io::Result<NamedTempFile> {
     let file = tempfile::Builder::new()
         .prefix(TEMPORARY.0)
@@ -78,16 +78,16 @@ pub fn temporary_in(directory: &Path, mode: u32) -> io::Result<NamedTempFile> {
         .append(true)
         .permissions(Permissions::from_mode(mode))
         .tempfile_in(directory)?;
-    // Some file systems know no locks.
+    // Some file systems do not support locks.
     file.as_file().try_lock().ok();
     Ok(file)
 }
 
-/// Replaces a file as a whole, or creates it. A link in its place is replaced, not followed. Returns the new file, locked
-/// and open to append to it.
+/// Replaces a file as a whole, or creates it. A link in its place is replaced, not followed. Returns the new
+/// file, locked and open for appending.
 ///
 /// # Errors
-/// When the system says so; then the file is as it was.
+/// Returns an error if the system refuses. The file is then unchanged.
 pub fn replace(path: &Path, contents: &[u8]) -> io::Result<File> {
     let directory = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut temporary = temporary_in(directory, 0o600)?;
@@ -104,7 +104,7 @@ pub fn sweep(directory: &Path) {
             continue;
         }
         let Ok(file) = open(&entry.path(), Access::Read) else { continue };
-        // One without contents may be that of a program that has not locked it yet.
+        // An empty file may belong to a program that has not locked it yet.
         let is_left = file.metadata().is_ok_and(|there| there.uid() == user && there.len() > 0)
             && !matches!(file.try_lock(), Err(TryLockError::WouldBlock));
         if is_left {
@@ -113,7 +113,7 @@ pub fn sweep(directory: &Path) {
     }
 }
 
-/// Whether a name is that of a temporary file of this program.
+/// Returns `true` for the name of a temporary file of this program.
 pub fn is_temporary(name: &OsStr) -> bool {
     name.to_str().is_some_and(|name| name.starts_with(TEMPORARY.0) && name.ends_with(TEMPORARY.1))
 }

@@ -1,15 +1,15 @@
-//! The reasons why arming is refused.
+//! The arming disable flags.
 
 use strum::IntoEnumIterator as _;
 
-/// A reason why arming is refused. The discriminant is its bit on the wire, `Display` its name.
+/// A reason why arming is refused. The discriminant is its bit on the wire. `Display` gives its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumIter, strum::IntoStaticStr)]
 #[strum(serialize_all = "SCREAMING_SNAKE_CASE")]
 #[repr(u8)]
 pub enum ArmingFlag {
     #[strum(to_string = "NOGYRO")]
     NoGyro = 0,
-    /// A failsafe landing ended the flight and the link is not good again.
+    /// A failsafe landing ended the flight, and the link has not recovered yet.
     Failsafe = 1,
     #[strum(to_string = "RXLOSS")]
     RxLoss = 2,
@@ -23,7 +23,7 @@ pub enum ArmingFlag {
     /// Crash detection stopped the motors.
     Crash = 6,
     Throttle = 7,
-    /// Tilted, or the attitude is not known yet.
+    /// The craft is tilted, or the attitude is not known yet.
     Angle = 8,
     #[strum(to_string = "BOOTGRACE")]
     BootGrace = 9,
@@ -40,7 +40,7 @@ pub enum ArmingFlag {
     Cms = 14,
     /// A BST device is active.
     Bst = 15,
-    /// An MSP client asked for it (on hardware).
+    /// An MSP client requested it (on hardware).
     Msp = 16,
     /// The PARALYZE switch was on.
     Paralyze = 17,
@@ -72,12 +72,12 @@ pub enum ArmingFlag {
     /// The AUTOPILOT switch is on.
     #[strum(to_string = "AUTOPILOT_SW")]
     AutopilotSwitch = 28,
-    /// The ARM switch was on while another reason stood.
+    /// The ARM switch was on while there was another reason.
     ArmSwitch = 29,
 }
 
 impl ArmingFlag {
-    /// What sets it, as a phrase; for flags that are known but never set here, why not.
+    /// Returns the cause of the flag as a phrase. For flags that are never set here, returns the reason.
     pub fn cause(self) -> &'static str {
         match self {
             Self::NoGyro => "never: the simulated gyro is always there",
@@ -116,7 +116,7 @@ impl ArmingFlag {
         }
     }
 
-    /// What to do about it, as a phrase.
+    /// Returns the remedy as a phrase.
     pub fn hint(self) -> &'static str {
         match self {
             Self::NoGyro => "no gyro",
@@ -151,7 +151,7 @@ impl ArmingFlag {
     }
 }
 
-/// A set of reasons; the bits are those of the wire.
+/// A set of reasons. The bits are those on the wire.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 pub struct ArmingFlags(u32);
 
@@ -159,7 +159,7 @@ impl ArmingFlags {
     /// No reason: the craft can be armed.
     pub const NONE: Self = Self(0);
 
-    /// Whether the flag is set.
+    /// Returns `true` if the flag is set.
     pub fn has(self, flag: ArmingFlag) -> bool {
         self.0 & (1 << flag as u32) != 0
     }
@@ -169,35 +169,35 @@ impl ArmingFlags {
         self.0 = if on { self.0 | (1 << flag as u32) } else { self.0 & !(1 << flag as u32) };
     }
 
-    /// The set with one flag taken out.
+    /// Returns the set without one flag.
     pub fn without(mut self, flag: ArmingFlag) -> Self {
         self.set(flag, false);
         self
     }
 
-    /// Whether nothing blocks arming.
+    /// Returns `true` if nothing blocks arming.
     pub fn is_empty(self) -> bool {
         self.0 == 0
     }
 
-    /// The bits of the wire.
+    /// Returns the bits on the wire.
     pub fn bits(self) -> u32 {
         self.0
     }
 
-    /// The flags without those that only say that the ARM switch must be moved again.
+    /// Returns the flags without those that only mean that the ARM switch must be moved again.
     pub fn causes(self) -> Self {
         self.without(ArmingFlag::ArmSwitch).without(ArmingFlag::NotDisarmed)
     }
 
-    /// The flags in bit order.
+    /// Returns the flags in bit order.
     pub fn iter(self) -> impl Iterator<Item = ArmingFlag> {
         ArmingFlag::iter().filter(move |&flag| self.has(flag))
     }
 }
 
 impl std::fmt::Display for ArmingFlags {
-    /// The names in bit order.
+    /// Writes the names in bit order.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         for (at, flag) in self.iter().enumerate() {
             let gap = if at > 0 { " " } else { "" };

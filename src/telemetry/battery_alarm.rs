@@ -1,6 +1,6 @@
-//! What is told of a battery that runs low.
+//! Alarms of a low battery.
 
-/// How far a battery is discharged; `Display` is the name in events.
+/// The discharge level of a battery. `Display` gives the name in events.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display)]
 #[strum(serialize_all = "UPPERCASE")]
 pub enum BatteryAlarm {

@@ -1,6 +1,6 @@
-//! A craft that cannot stay where it should.
+//! The deviation of a craft that cannot hold its position.
 
-/// What keeps a craft from its place; `Display` is the word of events.
+/// The limit that keeps a craft from holding its position. `Display` gives the word in events.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::Display, strum::IntoStaticStr)]
 #[strum(serialize_all = "lowercase")]
 pub enum HoldLimit {
@@ -8,19 +8,19 @@ pub enum HoldLimit {
     Lean,
     /// The throttle is at `ap_throttle_max`.
     Throttle,
-    /// The throttle is at `ap_throttle_max`, and the battery is low: it gives no more thrust.
+    /// The throttle is at `ap_throttle_max`, and a low battery gives no more thrust.
     Battery,
-    /// Nothing that the autopilot knows of.
+    /// No limit is known to the autopilot.
     #[default]
     None,
 }
 
-/// How far a craft is from where it should stay.
+/// The deviation of a craft from its target.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct CannotHold {
-    /// Horizontal distance from the target, m.
+    /// The horizontal distance from the target, m.
     pub distance_m: f64,
-    /// Height above the altitude setpoint, m; negative below it.
+    /// The height above the altitude setpoint, m; negative below it.
     pub vertical_m: f64,
     pub limit: HoldLimit,
 }

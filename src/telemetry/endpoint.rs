@@ -1,8 +1,8 @@
-//! The ends at which other programs reach the craft, and how they are doing.
+//! The endpoints at which other programs reach the craft, and their status.
 
 use super::LinkState;
 
-/// What an endpoint is for. `Display` gives its name.
+/// The purpose of an endpoint. `Display` gives its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display)]
 pub enum EndpointKind {
     /// MSP and command line over a websocket.
@@ -22,7 +22,7 @@ pub enum EndpointKind {
 }
 
 impl EndpointKind {
-    /// The protocol below it.
+    /// Returns the underlying protocol.
     pub fn transport(self) -> Transport {
         match self {
             Self::WebSocket | Self::Tcp => Transport::Tcp,
@@ -30,7 +30,7 @@ impl EndpointKind {
         }
     }
 
-    /// Its name without the transport, where there is little room.
+    /// Returns the name without the transport, for narrow displays.
     pub fn short_name(self) -> &'static str {
         match self {
             Self::WebSocket => "ws",
@@ -42,7 +42,7 @@ impl EndpointKind {
     }
 }
 
-/// The protocol below an endpoint.
+/// The protocol that an endpoint uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::Display)]
 #[strum(serialize_all = "UPPERCASE")]
 pub enum Transport {
@@ -52,70 +52,69 @@ pub enum Transport {
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct EndpointStatus {
-    /// What it is for.
+    /// The purpose of the endpoint.
     pub kind: EndpointKind,
-    /// Address it listens on or sends to.
+    /// The address on which it listens or to which it sends.
     pub address: String,
-    /// How it is doing.
     pub state: EndpointState,
 }
 
-/// How an endpoint is doing.
+/// The state of an endpoint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum EndpointState {
-    /// Not open: something else has the port.
+    /// Not open, because another program has the port.
     Busy,
     /// Not open for another reason.
     Closed,
-    /// A server for clients that speak MSP and the command line.
+    /// A server for clients that use MSP and the command line.
     Clients(ClientStats),
     /// A receiver of datagrams.
     Packets(PacketStats),
-    /// The link to an external simulator, seen from the side that sends the motors.
+    /// The link to an external simulator, on the side that sends the motors.
     Simulator(SimulatorStats),
 }
 
-/// What a server for clients has seen.
+/// The counters of a server for clients.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ClientStats {
-    /// Clients that are connected.
+    /// The number of connected clients.
     pub clients: u32,
-    /// Code of the newest MSP request.
+    /// The code of the newest MSP request.
     pub last_message: Option<u16>,
     pub received_bytes: u64,
     pub sent_bytes: u64,
-    /// Clients turned away or lost, frames given up.
+    /// Clients that were refused or lost, and dropped frames.
     pub errors: u64,
 }
 
-/// What a receiver of datagrams has seen.
+/// The counters of a receiver of datagrams.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct PacketStats {
     pub packets: u64,
-    /// Good packets a second; 0 once they stay away.
+    /// Valid packets per second; 0 once they stop.
     pub rate_hz: u32,
-    /// Age of the newest good packet, ms; `None` before the first.
+    /// The age of the newest valid packet, ms; `None` before the first.
     pub age_ms: Option<u64>,
-    /// Packets of a size that means nothing.
+    /// Packets of an unknown size.
     pub wrong_size: u64,
     /// Packets lost on this side.
     pub errors: u64,
 }
 
-/// What the link to an external simulator has seen.
+/// The counters of the link to an external simulator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SimulatorStats {
-    /// Whether it is there.
+    /// The state of the link.
     pub link: LinkState,
-    /// Its dialect, once known.
+    /// The dialect, once known.
     pub dialect: Option<&'static str>,
     pub refused: u64,
-    /// Packets from before the newest one.
+    /// Packets that are older than the newest one.
     pub old: u64,
 }
 
 impl EndpointState {
-    /// Whether nobody uses it at present.
+    /// Returns `true` if no program uses the endpoint at present.
     pub fn is_idle(&self) -> bool {
         match self {
             Self::Busy | Self::Closed => true,
@@ -126,17 +125,17 @@ impl EndpointState {
     }
 }
 
-/// Datagrams of scripts and simulators that were of no use.
+/// Unusable datagrams of scripts and simulators.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct BadPackets {
-    /// Of a size that means nothing.
+    /// Datagrams of an unknown size.
     pub wrong_size: u64,
-    /// Long enough, but with numbers that cannot be.
+    /// Datagrams that are long enough but have impossible values.
     pub senseless: u64,
 }
 
 impl BadPackets {
-    /// What all endpoints have seen.
+    /// Returns the sum over all endpoints.
     pub fn of(endpoints: &[EndpointStatus]) -> Self {
         endpoints.iter().fold(Self::default(), |sum, endpoint| match endpoint.state {
             EndpointState::Packets(stats) => Self { wrong_size: sum.wrong_size + stats.wrong_size, ..sum },
@@ -145,7 +144,7 @@ impl BadPackets {
         })
     }
 
-    /// Whether there was none.
+    /// Returns `true` if there are none.
     pub fn is_none(&self) -> bool {
         *self == Self::default()
     }

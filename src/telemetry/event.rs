@@ -1,9 +1,9 @@
-//! Everything that happens to the vehicle, with its time.
+//! The events of the vehicle.
 
 use crate::signals::SimTime;
 use crate::telemetry::{FaultKind, FaultValue, FirmwareEvent};
 
-/// An event and when it happened.
+/// An event of the vehicle with its time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Event {
     /// Simulated time since boot.
@@ -15,12 +15,12 @@ pub struct Event {
 pub enum EventKind {
     /// The vehicle was started.
     Boot {
-        /// Seed of all randomness.
+        /// The seed of all randomness.
         seed: u64,
         rate_hz: u32,
-        /// Name of the airframe.
+        /// The name of the airframe.
         airframe: String,
-        /// Whether other programs can influence the flight, so that it is not repeatable.
+        /// `true` if other programs can influence the flight, which makes it not repeatable.
         live: bool,
     },
     Firmware(FirmwareEvent),
@@ -45,21 +45,22 @@ pub enum EventKind {
     Crash {
         cause: CrashCause,
     },
-    /// All of the battery's charge is drawn: a real pack is empty now, whether it acts on the rotors or not.
+    /// The full charge of the battery is drawn. A real pack is empty now, even if the simulated one still
+    /// drives the rotors.
     BatteryEmpty {
-        /// Voltage a cell, V.
+        /// The voltage per cell, V.
         cell_v: f64,
     },
-    /// Something else that the user should know.
+    /// Another notice for the user.
     Notice(VehicleNotice),
 }
 
-/// How a craft was lost; `Display` ends a sentence.
+/// The cause of a crash. `Display` ends a sentence.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum CrashCause {
-    /// It came down too fast, m/s.
+    /// The craft came down too fast, m/s.
     HardLanding(f64),
-    /// It was moving sideways too fast when it touched, m/s.
+    /// The craft moved sideways too fast at the contact, m/s.
     SidewaysLanding(f64),
     /// The hull touched the ground.
     HullContact,
@@ -75,7 +76,7 @@ impl std::fmt::Display for CrashCause {
     }
 }
 
-/// How an integration failed; `Display` ends a sentence.
+/// The cause of a failed integration. `Display` ends a sentence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::Display)]
 pub enum DivergeCause {
     /// A number is not finite.
@@ -89,12 +90,12 @@ pub enum DivergeCause {
     Rate,
 }
 
-/// What the vehicle itself has to say; `Display` is the sentence.
+/// A notice of the vehicle itself. `Display` gives the sentence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum VehicleNotice {
-    /// The firmware's last events of a step were lost: how many.
+    /// This many of the last firmware events of a step were lost.
     EventsLost(u32),
-    /// The simulation left the range where its numbers mean something.
+    /// The simulation left the range in which its numbers are valid.
     Diverged(DivergeCause),
     /// The craft was put back home.
     BackHome,

@@ -1,6 +1,6 @@
-//! What a lost receiver link leads to.
+//! The reactions to a lost receiver link.
 
-/// What a lost receiver link does to a mission: `ap_rx_loss_policy`.
+/// The effect of a lost receiver link on a mission: `ap_rx_loss_policy`.
 #[derive(
     Debug,
     Clone,
@@ -21,36 +21,36 @@ pub enum RxLossPolicy {
     /// The mission ends and the configured failsafe procedure runs.
     #[default]
     Disable = 0,
-    /// The mission goes on.
+    /// The mission continues.
     Continue = 1,
-    /// Land where the link was lost.
+    /// The craft lands at the place of the loss.
     Land = 2,
 }
 
-/// What stage 2 of the failsafe does.
+/// The procedure of failsafe stage 2.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::IntoStaticStr)]
 pub enum FailsafeProcedure {
     #[strum(to_string = "DROP")]
     Drop,
-    /// Level, hold the place, descend.
+    /// Level, hold the position, descend.
     #[strum(to_string = "AUTO-LAND")]
     AutoLand,
     /// Fly home and land.
     #[strum(to_string = "GPS-RESCUE")]
     GpsRescue,
-    /// The mission goes on.
+    /// The mission continues.
     #[strum(to_string = "CONTINUE")]
     Continue,
-    /// The navigator lands where the craft is.
+    /// The navigator lands at the current place.
     #[strum(to_string = "LAND")]
     Land,
 }
 
-/// The failsafe that comes while the receiver link is lost and its guard time runs.
+/// The failsafe that will start after the guard time of a lost receiver link.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FailsafeAhead {
     /// Time until the procedure starts, s.
     pub in_s: f64,
-    /// What it would be now.
+    /// The procedure that would start now.
     pub procedure: FailsafeProcedure,
 }

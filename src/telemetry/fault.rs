@@ -1,8 +1,8 @@
-//! The identity of faults: which there are, and the value of one as plain data.
+//! The kinds of faults, and the value of a fault as plain data.
 
 use std::fmt;
 
-/// A kind of fault; `Display` is its name on the command line.
+/// A kind of fault. `Display` gives its name on the command line.
 #[derive(
     Debug,
     Clone,
@@ -22,7 +22,7 @@ pub enum FaultKind {
     GpsLoss,
     /// The GPS position is shifted.
     GpsGlitch,
-    /// The same GPS solution again and again.
+    /// The GPS repeats the same solution.
     GpsFreeze,
     GpsNoise,
     BaroDrift,
@@ -47,7 +47,7 @@ pub enum FaultKind {
     Gust,
     Wind,
     Push,
-    /// The craft is moved at once.
+    /// The craft is moved instantly.
     Teleport,
     /// A weight below the craft.
     Payload,
@@ -63,21 +63,21 @@ pub enum FaultKind {
     FdmJitter,
 }
 
-/// The value of a fault; `Display` shows it as it is written on the command line.
+/// The value of a fault. `Display` gives its form on the command line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FaultValue {
-    /// The kind has none.
+    /// A kind without a value.
     None,
     /// One number, in the unit of its kind.
     Number(f64),
-    /// A number that concerns one motor.
+    /// A number for one motor.
     Motor {
         /// Motor number, 1…4.
         motor: u8,
         /// Efficiency, command or acceleration.
         value: f64,
     },
-    /// A size and the direction it points to or comes from.
+    /// A size with the direction to which it points or from which it comes.
     Bearing {
         /// Metres, or metres per second.
         size: f64,

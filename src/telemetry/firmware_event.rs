@@ -1,4 +1,4 @@
-//! What the flight controller reports as having happened.
+//! The events that the flight controller reports.
 
 use super::battery_alarm::BatteryAlarm;
 use super::failsafe::{FailsafeProcedure, RxLossPolicy};
@@ -6,15 +6,15 @@ use super::firmware_notice::FirmwareNotice;
 use super::mode::ModeFlags;
 use super::nav::NavEvent;
 
-/// Why the craft was disarmed. The discriminant is the code of logs and protocols.
+/// The reason for a disarming. The discriminant is the code in logs and protocols.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumIter)]
 #[strum(serialize_all = "SCREAMING_SNAKE_CASE")]
 #[repr(u8)]
 pub enum DisarmReason {
-    /// An arming-disable flag appeared.
+    /// An arming disable flag appeared.
     ArmingDisabled = 0,
     Failsafe = 1,
-    /// Throttle low for too long.
+    /// The throttle was low for too long.
     ThrottleTimeout = 2,
     Sticks = 3,
     Switch = 4,
@@ -24,7 +24,7 @@ pub enum DisarmReason {
     SerialCommand = 8,
     Landing = 9,
     Crashflip = 10,
-    /// A remote flight controller does not tell.
+    /// The reason is unknown because a remote flight controller does not report it.
     Unknown = 254,
     System = 255,
 }
@@ -32,7 +32,7 @@ pub enum DisarmReason {
 /// An event of the flight controller.
 #[derive(Debug, Clone, PartialEq)]
 pub enum FirmwareEvent {
-    /// The first fix, or the fix came back.
+    /// The GPS got its first fix, or has a fix again.
     GpsFix {
         sats: u8,
     },
@@ -50,26 +50,26 @@ pub enum FirmwareEvent {
     RxRecovered,
     /// A failsafe stage began.
     Failsafe {
-        /// `ap_rx_loss_policy` in force.
+        /// The `ap_rx_loss_policy` in force.
         policy: RxLossPolicy,
         /// 1 at the loss, 2 when the procedure starts.
         stage: u8,
         procedure: FailsafeProcedure,
     },
     Nav(NavEvent),
-    /// The battery runs low; nothing is done about it but telling.
+    /// The battery is low. This is only reported.
     Battery {
         state: BatteryAlarm,
-        /// Voltage a cell, V.
+        /// The voltage per cell, V.
         cell_v: f64,
     },
     /// The magnetometer disagrees with the course over ground, or agrees again.
     HeadingDoubt {
-        /// Whether it is doubted, and the course taken instead.
+        /// `true` if the magnetometer is doubted, and the course is used instead.
         on: bool,
-        /// Magnetic heading less the heading by the course, degrees.
+        /// The magnetic heading minus the heading by the course, degrees.
         error_deg: f64,
     },
-    /// Something the pilot should read.
+    /// A notice for the pilot.
     Notice(FirmwareNotice),
 }

@@ -1,9 +1,9 @@
-//! What the flight controller has to say to its pilot.
+//! The notices of the flight controller to its pilot.
 
-/// Something the pilot should read; `Display` is the sentence.
+/// A notice for the pilot. `Display` gives the sentence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display)]
 pub enum FirmwareNotice {
-    /// The airframe type of the configuration is not flown.
+    /// The configured airframe type is not supported.
     #[strum(
         to_string = "This mixer type does not fly here: QUADX, QUADP, QUADX1234 and CUSTOM do; QUADX is flown instead."
     )]
@@ -27,7 +27,7 @@ pub enum FirmwareNotice {
     /// A magnetometer calibration ended.
     #[strum(to_string = "Magnetometer calibrated; save keeps the result.")]
     MagCalibrated,
-    /// A magnetometer calibration ended in vain.
+    /// A magnetometer calibration ended without a result.
     #[strum(
         to_string = "Magnetometer not calibrated: the craft was not turned about all its axes; its offsets stay."
     )]
@@ -35,27 +35,27 @@ pub enum FirmwareNotice {
     /// The offsets that a magnetometer calibration found are too large.
     #[strum(to_string = "Magnetometer not calibrated: its field is out of range; its offsets stay.")]
     MagOutOfRange,
-    /// Position hold is asked for without a position.
+    /// Position hold is requested without a position.
     #[strum(to_string = "POS HOLD has no position: the craft is only levelled.")]
     NoPosition,
-    /// Position hold is asked for without a heading.
+    /// Position hold is requested without a heading.
     #[strum(to_string = "POS HOLD has no heading: the craft is only levelled.")]
     NoHeading,
-    /// The inertial sensors hang.
+    /// The inertial sensors repeat one sample.
     #[strum(to_string = "The inertial sensors repeat one sample: they hang.")]
     ImuFrozen,
-    /// A setting took a value that current firmware refuses.
+    /// A setting accepted a value that current firmware refuses.
     #[strum(
         to_string = "{name} = {value} is taken here, but current Betaflight refuses it: it allows {min} to {max}."
     )]
     BeyondCurrentFirmware {
-        /// Name of the setting.
+        /// The name of the setting.
         name: &'static str,
-        /// The value that it took.
+        /// The accepted value.
         value: i64,
-        /// Least value of current firmware.
+        /// The least value in current firmware.
         min: i64,
-        /// Greatest value of current firmware.
+        /// The greatest value in current firmware.
         max: i64,
     },
     /// A crash was detected.

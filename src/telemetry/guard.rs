@@ -1,6 +1,6 @@
 //! A condition of the state machine with its value, limit and unit.
 
-/// Comparison a guard makes.
+/// The comparison of a guard.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::Display)]
 pub enum GuardOp {
     #[strum(to_string = "≤")]
@@ -13,13 +13,13 @@ pub enum GuardOp {
     Above,
 }
 
-/// What a guard compares.
+/// The quantity that a guard compares.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::IntoStaticStr)]
 pub enum GuardName {
     /// A 3-D fix is present, 0 or 1.
     #[strum(to_string = "fix")]
     Fix,
-    /// Waypoints in the active plan.
+    /// Number of waypoints in the active plan.
     #[strum(to_string = "plan")]
     Plan,
     #[strum(to_string = "fence")]
@@ -51,7 +51,7 @@ pub enum GuardName {
     /// Distance to the plane through the waypoint.
     #[strum(to_string = "plane")]
     Plane,
-    /// Distance from the waypoint where its plane was crossed.
+    /// Distance from the waypoint at the crossing of its plane.
     #[strum(to_string = "beside")]
     Beside,
     /// Time in the hold.
@@ -69,10 +69,10 @@ pub enum GuardName {
     /// Climb rate of a landing.
     #[strum(to_string = "touchdown sink")]
     TouchdownSink,
-    /// Way down since the landing began.
+    /// Descent since the landing began.
     #[strum(to_string = "descent")]
     Descent,
-    /// Commanded throttle under the hover throttle in use.
+    /// Commanded throttle below the hover throttle in use.
     #[strum(to_string = "below hover")]
     BelowHover,
     /// Time for which all other conditions of the touchdown have held.
@@ -84,7 +84,7 @@ pub enum GuardName {
 }
 
 impl GuardName {
-    /// What is compared and what follows, in a sentence or two.
+    /// Returns the compared quantity and the consequence, in a sentence or two.
     pub fn explanation(self) -> &'static str {
         match self {
             Self::Fix => "A GPS fix with altitude is needed: 1 when there is one.",
@@ -130,7 +130,7 @@ impl GuardName {
         }
     }
 
-    /// Unit of the value and its limit.
+    /// Returns the unit of the value and its limit.
     pub fn unit(self) -> GuardUnit {
         match self {
             Self::Fix => GuardUnit::None,
@@ -157,7 +157,7 @@ impl GuardName {
     }
 }
 
-/// Unit of a guard's value and limit.
+/// The unit of a guard's value and limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::IntoStaticStr)]
 pub enum GuardUnit {
     /// A yes or no.
@@ -180,28 +180,28 @@ pub enum GuardUnit {
     Microseconds,
 }
 
-/// A named condition of the state machine with everything needed to say why it does or does not hold.
+/// A named condition of the state machine with all values that explain its result.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Guard {
     pub name: GuardName,
     pub value: f64,
-    /// The limit it is compared with, in the same unit.
+    /// The limit in the same unit.
     pub limit: f64,
     pub op: GuardOp,
 }
 
 impl Guard {
-    /// A condition on a measured value.
+    /// Creates a condition on a measured value.
     pub fn new(name: GuardName, value: f64, op: GuardOp, limit: f64) -> Self {
         Self { name, value, limit, op }
     }
 
-    /// Unit of value and limit.
+    /// Returns the unit of value and limit.
     pub fn unit(&self) -> GuardUnit {
         self.name.unit()
     }
 
-    /// Whether the condition holds; never for NaN.
+    /// Returns `true` if the condition holds; `false` for NaN.
     pub fn holds(&self) -> bool {
         match self.op {
             GuardOp::AtMost => self.value <= self.limit,
@@ -211,7 +211,7 @@ impl Guard {
         }
     }
 
-    /// How far the value is on the fulfilled side: ≥ 0 when the condition holds.
+    /// Returns the distance from the limit on the fulfilled side: ≥ 0 if the condition holds.
     pub fn margin(&self) -> f64 {
         match self.op {
             GuardOp::AtMost | GuardOp::Below => self.limit - self.value,

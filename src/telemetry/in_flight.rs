@@ -1,4 +1,4 @@
-//! Commands to the navigator while it flies a plan, and why it does not take one.
+//! Commands to the navigator while it flies a plan, and the reasons for which it refuses them.
 
 use super::nav::PlanSource;
 use super::refusal::Refusal;
@@ -6,41 +6,41 @@ use super::refusal::Refusal;
 /// A command to a navigator that flies the stored plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum InFlightCommand {
-    /// To this waypoint of the stored plan, now. When another plan has been stored meanwhile, that one is flown from here
-    /// on.
+    /// Fly to this waypoint of the stored plan now. If another plan was stored meanwhile, that one is flown
+    /// from here on.
     GoTo(u8),
-    /// Hold this place and altitude until another command.
+    /// Hold this position and altitude until another command.
     HoldHere,
-    /// Go on to the current waypoint after a hold.
+    /// Continue to the current waypoint after a hold.
     Resume,
 }
 
-/// Why such a command is not taken.
+/// The reason for a refusal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum InFlightRefusal {
     NotFlying,
-    /// A procedure of the receiver failsafe runs.
+    /// A procedure of the receiver failsafe is running.
     Failsafe,
-    /// A return home or an emergency landing is flown.
+    /// A return home or an emergency landing is in progress.
     Injected(PlanSource),
-    /// The stored plan has no waypoint of this index to fly to.
+    /// The stored plan has no waypoint with this index to fly to.
     NoWaypoint {
         wp: u8,
-        /// Waypoints in the plan.
+        /// The number of waypoints in the plan.
         count: u8,
     },
     /// The plan that was stored meanwhile cannot be flown.
     Plan(Refusal),
-    /// The plan is flown and the craft parked.
+    /// The plan is complete and the craft parked.
     Parked,
-    /// Nothing is held by command.
+    /// No hold by command is active.
     NotHeld,
-    /// The flight controller is another program, which has no such commands.
+    /// The flight controller is remote and has no such commands.
     Remote,
 }
 
 impl InFlightRefusal {
-    /// One sentence: why not, and what to do.
+    /// Returns one sentence with the reason and the remedy.
     pub fn sentence(&self) -> String {
         match self {
             Self::NotFlying => "The autopilot does not fly: engage it first.".to_owned(),

@@ -1,13 +1,12 @@
-//! Whether an external simulator speaks.
+//! The state of the link to an external simulator.
 
-/// State of the link to an external simulator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display)]
 pub enum LinkState {
     #[strum(to_string = "waiting for a simulator")]
     Waiting,
     #[strum(to_string = "flying")]
     Flowing,
-    /// It has not spoken for a second.
+    /// It has sent nothing for a second.
     #[strum(to_string = "no FDM")]
     Silent,
 }

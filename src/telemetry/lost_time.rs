@@ -1,21 +1,21 @@
-//! Real time that a flight could not keep up with.
+//! The real time that a flight has lost.
 
 use std::time::Duration;
 
-/// How far a flight that should run with the wall clock has fallen behind it.
+/// The lag of a flight that should follow the wall clock.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LostTime {
-    /// Wall time lost since the start.
+    /// The wall time lost since the start.
     pub sum: Duration,
-    /// Achieved times real time, lately.
+    /// The multiple of real time achieved lately.
     pub achieved: f64,
 }
 
 impl LostTime {
-    /// Less than this is no matter: a machine is busy now and then.
+    /// The least loss that is reported. Less does not matter: a machine is busy now and then.
     const NOTABLE: Duration = Duration::from_millis(500);
 
-    /// Whether it is worth to be told.
+    /// Returns `true` if the loss is large enough for a report.
     pub fn is_notable(&self) -> bool {
         self.sum >= Self::NOTABLE
     }

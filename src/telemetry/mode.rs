@@ -1,4 +1,4 @@
-//! Flight modes as users see them.
+//! The flight modes as users see them.
 
 /// A set of active modes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
@@ -37,7 +37,7 @@ pub enum Mode {
 impl ModeFlags {
     pub const NONE: Self = Self(0);
 
-    /// Whether `mode` is in the set.
+    /// Returns `true` if `mode` is in the set.
     pub fn has(self, mode: Mode) -> bool {
         self.0 & (1 << mode as u32) != 0
     }
@@ -51,7 +51,7 @@ impl ModeFlags {
         }
     }
 
-    /// The active modes in a fixed order.
+    /// Returns the active modes in a fixed order.
     pub fn iter(self) -> impl Iterator<Item = Mode> {
         use strum::IntoEnumIterator as _;
         Mode::iter().filter(move |&mode| self.has(mode))

@@ -1,8 +1,8 @@
-//! The boxes: what a mode condition binds to a switch.
+//! The boxes that mode conditions bind to switches.
 
 use super::mode::Mode;
 
-/// A box. The discriminant is its permanent id in mode conditions and protocols, `Display` its name.
+/// A box. The discriminant is its permanent id in mode conditions and protocols. `Display` gives its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::FromRepr, strum::IntoStaticStr)]
 #[repr(u8)]
 pub enum ModeBox {
@@ -16,16 +16,16 @@ pub enum ModeBox {
     Horizon = 2,
     #[strum(to_string = "ALTHOLD")]
     AltHold = 3,
-    /// Gains rise in quick throttle changes.
+    /// Raises gains during quick throttle changes.
     #[strum(to_string = "ANTI GRAVITY")]
     AntiGravity = 4,
     /// Heading hold while the yaw stick is centred.
     #[strum(to_string = "MAG")]
     Mag = 5,
-    /// Sticks relative to the heading at arming.
+    /// Interprets the sticks relative to the heading at arming.
     #[strum(to_string = "HEADFREE")]
     HeadFree = 6,
-    /// Takes the present heading as the headfree reference.
+    /// Takes the current heading as the headfree reference.
     #[strum(to_string = "HEADADJ")]
     HeadAdjust = 7,
     #[strum(to_string = "CAMSTAB")]
@@ -44,13 +44,10 @@ pub enum ModeBox {
     OsdDisable = 19,
     #[strum(to_string = "TELEMETRY")]
     Telemetry = 20,
-    /// SERVO1.
     #[strum(to_string = "SERVO1")]
     Servo1 = 23,
-    /// SERVO2.
     #[strum(to_string = "SERVO2")]
     Servo2 = 24,
-    /// SERVO3.
     #[strum(to_string = "SERVO3")]
     Servo3 = 25,
     #[strum(to_string = "BLACKBOX")]
@@ -60,51 +57,42 @@ pub enum ModeBox {
     /// Full stabilisation at zero throttle.
     #[strum(to_string = "AIR MODE")]
     AirMode = 28,
-    /// 3D DISABLE.
     #[strum(to_string = "3D DISABLE")]
     ThreeDDisable = 29,
     #[strum(to_string = "FPV ANGLE MIX")]
     FpvAngleMix = 30,
     #[strum(to_string = "BLACKBOX ERASE")]
     BlackboxErase = 31,
-    /// CAMERA CONTROL 1.
     #[strum(to_string = "CAMERA CONTROL 1")]
     CameraControl1 = 32,
-    /// CAMERA CONTROL 2.
     #[strum(to_string = "CAMERA CONTROL 2")]
     CameraControl2 = 33,
-    /// CAMERA CONTROL 3.
     #[strum(to_string = "CAMERA CONTROL 3")]
     CameraControl3 = 34,
-    /// Turn the craft over after a crash.
+    /// Turns the craft over after a crash.
     #[strum(to_string = "FLIP OVER AFTER CRASH")]
     CrashFlip = 35,
     /// Must be on for arming.
     #[strum(to_string = "PREARM")]
     Prearm = 36,
-    /// GPS BEEP SATELLITE COUNT.
     #[strum(to_string = "GPS BEEP SATELLITE COUNT")]
     GpsBeepSatelliteCount = 37,
     #[strum(to_string = "VTX PIT MODE")]
     VtxPitMode = 39,
-    /// USER1.
     #[strum(to_string = "USER1")]
     User1 = 40,
-    /// USER2.
     #[strum(to_string = "USER2")]
     User2 = 41,
-    /// USER3.
     #[strum(to_string = "USER3")]
     User3 = 42,
-    /// USER4.
     #[strum(to_string = "USER4")]
     User4 = 43,
     #[strum(to_string = "PID AUDIO")]
     PidAudio = 44,
-    /// No arming until reboot.
+    /// Prevents arming until reboot.
     #[strum(to_string = "PARALYZE")]
     Paralyze = 45,
-    /// Fly home and land.
+    /// Flies home and lands.
     #[strum(to_string = "GPS RESCUE")]
     GpsRescue = 46,
     #[strum(to_string = "ACRO TRAINER")]
@@ -115,7 +103,7 @@ pub enum ModeBox {
     LaunchControl = 49,
     #[strum(to_string = "MSP OVERRIDE")]
     MspOverride = 50,
-    /// The sticks do not arm or disarm.
+    /// Prevents arming and disarming by the sticks.
     #[strum(to_string = "STICK COMMANDS DISABLE")]
     StickCommandsDisable = 51,
     #[strum(to_string = "BEEPER MUTE")]
@@ -134,7 +122,7 @@ pub enum ModeBox {
 }
 
 impl From<Mode> for ModeBox {
-    /// The box whose switch asks for the mode.
+    /// Returns the box whose switch requests the mode.
     fn from(mode: Mode) -> Self {
         match mode {
             Mode::Arm => Self::Arm,

@@ -1,4 +1,4 @@
-//! The navigator as seen from outside: state, demands, events and the values that displays, logs and samples show.
+//! The public state of the navigator: state, demands, events and the values for displays, logs and samples.
 //!
 //! Sign conventions of demands: roll right +, pitch **nose down** + (accelerates forward), yaw rate clockwise +.
 
@@ -11,7 +11,7 @@ use super::transition::TransitionReason;
 use crate::geo::LatLon;
 use crate::plan::{FlightPlan, WaypointType};
 
-/// The eight states of the waypoint state machine; the discriminant is the code on the wire.
+/// The eight states of the waypoint state machine. The discriminant is the code on the wire.
 #[derive(
     Debug,
     Clone,
@@ -33,11 +33,11 @@ pub enum NavState {
     Idle = 0,
     /// On the way to the current waypoint.
     Approaching = 1,
-    /// Reached it; lasts one update.
+    /// At the current waypoint. Lasts one update.
     Arrived = 2,
     Holding = 3,
     Orbiting = 4,
-    /// Flying the figure of eight.
+    /// Flying a figure of eight.
     Figure8 = 5,
     Landing = 6,
     Complete = 7,
@@ -58,7 +58,7 @@ pub struct NavOutput {
     pub throttle_us: f64,
 }
 
-/// Where the active plan came from.
+/// The origin of the active plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, strum::Display)]
 #[strum(serialize_all = "lowercase")]
 pub enum PlanSource {
@@ -71,19 +71,19 @@ pub enum PlanSource {
     Emergency,
 }
 
-/// How the aim point of the current leg was chosen.
+/// The choice of the aim point on the current leg.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, strum::Display)]
 #[strum(serialize_all = "UPPERCASE")]
 pub enum L1Mode {
     #[default]
     Off,
-    /// The carrot runs on the leg.
+    /// The aim point moves along the leg.
     Track,
-    /// The aim is the end of the leg.
+    /// The aim point is the end of the leg.
     Direct,
 }
 
-/// What leaving the fence does.
+/// The reaction to leaving the fence.
 #[derive(
     Debug,
     Clone,
@@ -107,76 +107,76 @@ pub enum FenceAction {
     Rth = 1,
 }
 
-/// Something that happened in the navigator.
+/// An event of the navigator.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NavEvent {
     /// A new active plan.
     Plan {
-        /// Where it came from.
+        /// The origin of the plan.
         source: PlanSource,
         plan: Box<FlightPlan>,
     },
     State {
         from: NavState,
         to: NavState,
-        /// Index of the current waypoint in the active plan.
+        /// The index of the current waypoint in the active plan.
         wp: u8,
-        /// Its type, when there is one.
+        /// The type of the waypoint, if there is one.
         kind: Option<WaypointType>,
         reason: TransitionReason,
-        /// The guard that fired, if one did.
+        /// The guard that caused the transition, if there is one.
         guard: Option<Guard>,
         target: LatLon,
-        /// Target altitude above home, m.
+        /// The target altitude above home, m.
         target_alt_m: f64,
     },
     /// The climb before the first leg began (`true`) or ended.
     Climbing(bool),
-    /// The thrust does not suffice for the lean that is asked for: this much is flown, and the speed follows; sent once a
-    /// leg.
+    /// The thrust does not suffice for the requested lean, so the lean is limited and the speed is lower.
+    /// Sent once per leg.
     Limited {
-        /// Greatest lean now, rad.
+        /// The current greatest lean, rad.
         lean_rad: f64,
     },
     /// The craft left the fence.
     Geofence {
         /// Distance from home, m.
         distance_m: f64,
-        /// The fence, m.
+        /// The radius of the fence, m.
         limit_m: f64,
-        /// What is done about it.
+        /// The reaction.
         action: FenceAction,
     },
-    /// The craft cannot stay where it should (`on`), or can again.
+    /// The craft cannot hold its position (`on`), or can again.
     CannotHold {
         on: bool,
-        /// How far off the craft is.
+        /// The deviation of the craft.
         deviation: CannotHold,
     },
-    /// The switch is on and the autopilot does not engage; sent once per cause.
+    /// The switch is on and the autopilot does not engage. Sent once per cause.
     Refused(Refusal),
-    /// The navigator saw the touchdown: disarm now, reason LANDING.
+    /// The navigator detected the touchdown: disarm now, with reason LANDING.
     Disarm,
 }
 
-/// The navigator's state for displays, logs and samples; refreshed by each update.
+/// The navigator's state for displays, logs and samples. Each update refreshes it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct NavTelemetry {
-    /// State of the machine.
+    /// The state of the machine.
     pub state: NavState,
-    /// Whether a mission is being flown.
+    /// `true` while a mission is flown.
     pub engaged: bool,
-    /// The climb before the first leg is on.
+    /// `true` during the climb before the first leg.
     pub climbing: bool,
-    /// Why the switch has no effect, if it has none.
+    /// The reason why the switch has no effect, if it has none.
     pub refusal: Option<Refusal>,
     /// The cause of the last transition.
     pub reason: Option<TransitionReason>,
     /// Index of the current waypoint in the active plan.
     pub wp: u8,
-    /// Index of the positional waypoint after it; the same when it is the last.
+    /// The index of the positional waypoint after it; the same index for the last one.
     pub next_wp: u8,
-    /// Waypoints in the active plan.
+    /// The number of waypoints in the active plan.
     pub count: u8,
     /// Origin of the active plan.
     pub source: PlanSource,
@@ -192,7 +192,7 @@ pub struct NavTelemetry {
     pub along_m: Option<f64>,
     /// Effective lookahead, m.
     pub lookahead_m: Option<f64>,
-    /// How the aim was chosen, when it is told.
+    /// The choice of the aim point, if it is reported.
     pub l1_mode: Option<L1Mode>,
     /// Aim point, north and east of the origin of the local frame, m.
     pub aim_ne: Option<Vector2<f64>>,
@@ -210,34 +210,34 @@ pub struct NavTelemetry {
     pub speed_setpoint_mps: Option<f64>,
     /// Phase of the hold pattern, rad.
     pub pattern_angle_rad: Option<f64>,
-    /// Hold time left, ds, when it is told; 65535 = endless, 0 outside a hold.
+    /// The remaining hold time, ds, if it is reported; 65535 = endless, 0 outside a hold.
     pub hold_remaining_ds: Option<u16>,
-    /// The hold was commanded, not planned.
+    /// `true` if the hold was commanded, not planned.
     pub held_by_command: bool,
     /// Distance from home, m.
     pub home_distance_m: Option<f64>,
-    /// Distance left to the fence, m.
+    /// Distance remaining to the fence, m.
     pub fence_margin_m: Option<f64>,
     /// Time to the waypoint, s.
     pub eta_s: Option<f64>,
-    /// Roll and pitch are flown by the pilot's sticks.
+    /// `true` while the pilot's sticks control roll and pitch.
     pub stick_override: bool,
-    /// Yaw is flown by the pilot's stick.
+    /// `true` while the pilot's stick controls yaw.
     pub yaw_override: bool,
-    /// The craft cannot stay where it should.
+    /// The deviation while the craft cannot hold its position.
     pub cannot_hold: Option<CannotHold>,
-    /// Time the touchdown conditions have held, s.
+    /// Time for which the touchdown conditions have held, s.
     pub touchdown_held_s: Option<f64>,
-    /// Hover throttle in use, µs.
+    /// The hover throttle in use, µs.
     pub hover_us: f64,
-    /// The guards of the active state, in the order they are evaluated.
+    /// The guards of the active state, in the order of evaluation.
     pub guards: arrayvec::ArrayVec<Guard, 9>,
     /// The demands of this update.
     pub output: NavOutput,
 }
 
 impl NavTelemetry {
-    /// That of a navigator that flies nothing and tells everything.
+    /// Returns the telemetry of a navigator that flies nothing and reports everything.
     pub fn idle() -> Self {
         Self { l1_mode: Some(L1Mode::Off), hold_remaining_ds: Some(0), ..Self::default() }
     }

@@ -1,9 +1,9 @@
-//! Why the autopilot does not engage or left the mission.
+//! The reasons why the autopilot does not engage or left the mission.
 
 use std::borrow::Cow;
 
-/// Why the autopilot does not engage or left the mission; `Display` gives the name (without the waypoint
-/// number).
+/// The reason why the autopilot does not engage or left the mission. `Display` gives the name (without the
+/// waypoint number).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::IntoStaticStr)]
 #[strum(serialize_all = "SCREAMING_SNAKE_CASE")]
 pub enum Refusal {
@@ -25,27 +25,27 @@ pub enum Refusal {
     NoHome,
     /// This waypoint lies outside the fence.
     Geofence {
-        /// Index of the waypoint in the stored plan.
+        /// The index of the waypoint in the stored plan.
         wp: u8,
-        /// Its distance from home, cm.
+        /// The distance of the waypoint from home, cm.
         distance_cm: u32,
-        /// The fence, m.
+        /// The radius of the fence, m.
         limit_m: u16,
     },
-    /// The least throttle lifts the craft.
+    /// The lowest throttle already lifts the craft.
     ThrottleMin {
         /// `ap_throttle_min`, µs.
         throttle_min_us: u16,
-        /// Hover throttle that this flight has shown, µs.
+        /// The hover throttle observed in this flight, µs.
         hover_us: u16,
     },
     /// The receiver failsafe is active.
     Failsafe,
-    /// The mission was given up for this cause; cycle the switch.
+    /// The mission was aborted for this reason. Cycle the switch.
     Aborted(AbortReason),
 }
 
-/// Why a mission ended without completing.
+/// The reason why a mission ended without completing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::IntoStaticStr)]
 #[strum(serialize_all = "SCREAMING_SNAKE_CASE")]
 pub enum AbortReason {
@@ -60,7 +60,7 @@ pub enum AbortReason {
 }
 
 impl Refusal {
-    /// One sentence: what is missing and what to do.
+    /// Returns one sentence with the missing condition and the remedy.
     pub fn sentence(&self) -> Cow<'static, str> {
         match self {
             Self::NotArmed => "Autopilot needs an armed craft: arm first, then switch on.".into(),
@@ -103,7 +103,8 @@ impl Refusal {
     }
 }
 
-/// The highest `ap_throttle_min` that lets a craft with this hover throttle come down, in tens of µs.
+/// Returns the highest `ap_throttle_min` with which a craft of this hover throttle can descend, in tens of
+/// µs.
 fn highest_floor_us(hover_us: u16) -> u16 {
     (hover_us.saturating_sub(100) / 10 * 10).max(1050)
 }

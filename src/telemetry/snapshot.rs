@@ -1,6 +1,7 @@
-//! A picture of the whole vehicle at one instant: plain data for displays, links and recorders.
+//! A snapshot of the whole vehicle at one instant: plain data for displays, links and recorders.
 //!
-//! All `n`, `e`, `alt` count in metres from the place where the craft stood at boot, estimates and targets too.
+//! All `n`, `e` and `alt`, including those of estimates and targets, are in metres from the position of the
+//! craft at boot.
 
 use nalgebra::Vector2;
 
@@ -17,28 +18,28 @@ use crate::telemetry::{
 pub struct Snapshot {
     /// Simulated time since boot.
     pub time: SimTime,
-    /// The place from which positions count, when it is known.
+    /// The origin of positions, if known.
     pub origin: Option<LatLon>,
-    /// What the world knows; `None` with an external simulator that does not tell.
+    /// The true state; `None` with an external simulator that does not report it.
     pub truth: Option<TruthView>,
-    /// What the firmware believes.
+    /// The firmware's estimate.
     pub estimate: EstimateView,
     /// Modes, arming and receiver.
     pub craft: CraftView,
-    /// The navigator; like everything else of the flight controller `None` when a remote one does not tell.
+    /// The navigator. Like all data of the flight controller it is `None` if a remote one does not report it.
     pub nav: Option<NavTelemetry>,
-    /// The plan being flown, when one is.
+    /// The plan that is being flown, if any.
     pub active_plan: Option<FlightPlan>,
     /// The plan stored in the craft.
     pub stored_plan: Option<FlightPlan>,
-    /// Settings the displays need, as the firmware uses them.
+    /// The settings for displays, as the firmware uses them.
     pub settings: Option<SettingsView>,
     /// Wind, noise and faults.
     pub world: WorldView,
 }
 
 impl Snapshot {
-    /// Whether the autopilot is known to fly a mission.
+    /// Returns `true` if the autopilot is known to fly a mission.
     pub fn is_engaged(&self) -> bool {
         self.nav.as_ref().is_some_and(|nav| nav.engaged)
     }
@@ -51,11 +52,11 @@ pub struct TruthView {
     pub lat_deg: f64,
     /// Longitude, degrees.
     pub lon_deg: f64,
-    /// North of the boot place, m.
+    /// North of the boot position, m.
     pub n: f64,
-    /// East of the boot place, m.
+    /// East of the boot position, m.
     pub e: f64,
-    /// Above the boot place, m.
+    /// Above the boot position, m.
     pub alt: f64,
     /// Velocity north, m/s.
     pub vn: f64,
@@ -71,23 +72,24 @@ pub struct TruthView {
     pub heading_deg: f64,
     /// Motor commands M1…M4, 0…1.
     pub motors: [f64; 4],
-    /// Wind at the craft, towards north and east, m/s; `None` from an external simulator, which does not tell.
+    /// Wind at the craft, towards north and east, m/s; `None` from an external simulator, which does not
+    /// report it.
     pub wind_ne: Option<Vector2<f64>>,
-    /// Standing on the ground; with an external simulator: low and slow.
+    /// `true` on the ground; with an external simulator: low and slow.
     pub on_ground: bool,
     pub crashed: bool,
-    /// The simulation left the range where its numbers mean something.
+    /// `true` once the simulation has left the range in which its numbers are valid.
     pub diverged: bool,
 }
 
-/// What the estimator believes.
+/// The state as estimated by the firmware.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct EstimateView {
-    /// North of the boot place, m; `None` before the first fix.
+    /// North of the boot position, m; `None` before the first fix.
     pub n: Option<f64>,
-    /// East of the boot place, m.
+    /// East of the boot position, m.
     pub e: Option<f64>,
-    /// Above the boot place, m.
+    /// Above the boot position, m.
     pub alt: Option<f64>,
     /// Ground speed, m/s.
     pub ground_speed_mps: Option<f64>,
@@ -105,21 +107,21 @@ pub struct EstimateView {
     pub pitch_demand_deg: Option<f64>,
 }
 
-/// Modes, arming, receiver, battery; `None` is what a remote flight controller does not tell.
+/// Modes, arming, receiver, battery. Values that a remote flight controller does not report are `None`.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CraftView {
     pub armed: Option<bool>,
     pub modes: Option<ModeFlags>,
-    /// The arming-disable flags that are set; none while armed.
+    /// The arming disable flags that are set; empty while armed.
     pub arming_blocked_by: Option<ArmingFlags>,
-    /// A 3-D fix.
+    /// `true` with a 3-D fix.
     pub gps_fix: Option<bool>,
-    /// What the GPS said last, when it has said anything; old once the fix is lost.
+    /// The last GPS data, if any; outdated once the fix is lost.
     pub gps: Option<GpsView>,
     pub sats: Option<u8>,
-    /// Horizontal dilution of precision, when reported.
+    /// Horizontal dilution of precision, if reported.
     pub hdop: Option<f64>,
-    /// Home position, when known.
+    /// The home position, if known.
     pub home: Option<LatLon>,
     /// Battery voltage, V.
     pub battery_v: Option<f64>,
@@ -127,31 +129,31 @@ pub struct CraftView {
     pub battery_a: Option<f64>,
     /// Charge drawn, mAh.
     pub battery_mah: Option<f64>,
-    /// Cells of the battery, once counted.
+    /// The number of battery cells, once counted.
     pub battery_cells: Option<u8>,
     /// Throttle that drives the mixer, RC µs.
     pub throttle_us: Option<f64>,
     /// Motor outputs M1…M4 in force, 0…1.
     pub motors: Option<[f64; 4]>,
-    /// Channel values the firmware uses, µs (substituted while the link is lost).
+    /// Channel values that the firmware uses, µs (substituted while the link is lost).
     pub channels: Option<[u16; RC_CHANNELS]>,
-    /// Who drives the channels; `None` before the first frame.
+    /// The source of the channels; `None` before the first frame.
     pub rc_source: Option<RcSource>,
     /// Age of the newest frame, s.
     pub rc_age_s: Option<f64>,
-    /// Whether the receiver link is up.
+    /// `true` while the receiver link is up.
     pub rc_link: Option<bool>,
     /// Failsafe stage: 0 none, 1 guard time, 2 procedure.
     pub failsafe_stage: Option<u8>,
-    /// The failsafe that is about to start; `None` while none is, or where it is not known.
+    /// The failsafe that is about to start; `None` if there is none, or if it is not known.
     pub failsafe_ahead: Option<FailsafeAhead>,
-    /// A command, not a switch, has the craft fly home or land.
+    /// `true` while a command instead of a switch makes the craft fly home or land.
     pub commanded: Option<bool>,
-    /// The mode conditions in force: what the RC panel draws on the AUX bars.
+    /// The mode conditions in force, which the RC panel draws on the AUX bars.
     pub mode_ranges: Option<Vec<ModeRange>>,
 }
 
-/// What the GPS said, unfiltered.
+/// The unfiltered data of the GPS.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct GpsView {
     pub position: LatLon,
@@ -162,37 +164,38 @@ pub struct GpsView {
 }
 
 impl CraftView {
-    /// Whether the craft is known to be armed.
+    /// Returns `true` if the craft is known to be armed.
     pub fn is_armed(&self) -> bool {
         self.armed == Some(true)
     }
 
-    /// Whether a mode is known to be active.
+    /// Returns `true` if a mode is known to be active.
     pub fn is_active(&self, mode: Mode) -> bool {
         self.modes.is_some_and(|modes| modes.has(mode))
     }
 
-    /// Whether there is known to be a fix.
+    /// Returns `true` if there is known to be a fix.
     pub fn has_fix(&self) -> bool {
         self.gps_fix == Some(true)
     }
 
-    /// Whether the craft is known to fly home or land by a command.
+    /// Returns `true` if the craft is known to fly home or land by a command.
     pub fn is_commanded(&self) -> bool {
         self.commanded == Some(true)
     }
 
-    /// The mode conditions that are known.
+    /// Returns the known mode conditions.
     pub fn mode_ranges(&self) -> &[ModeRange] {
         self.mode_ranges.as_deref().unwrap_or_default()
     }
 
-    /// Whether the switch of a mode is known to be on, as the flight controller sees its channel.
+    /// Returns `true` if the switch of a mode is known to be on, by the channel value in the flight
+    /// controller.
     pub fn is_switched_on(&self, mode: Mode) -> bool {
         self.channels.is_some_and(|channels| switch::is_on(mode, self.mode_ranges(), &channels))
     }
 
-    /// The arming-disable flags that are known to be set.
+    /// Returns the arming disable flags that are known to be set.
     pub fn arming_flags(&self) -> ArmingFlags {
         self.arming_blocked_by.unwrap_or_default()
     }
@@ -201,18 +204,18 @@ impl CraftView {
 /// A switch range that turns a mode on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ModeRange {
-    /// The box that it switches on.
+    /// The box that the range switches on.
     pub mode_box: ModeBox,
-    /// Index into [`CraftView::channels`].
+    /// The index into [`CraftView::channels`].
     pub channel: u8,
-    /// First value inside, µs.
+    /// The first value inside the range, µs.
     pub start_us: u16,
-    /// First value outside, µs.
+    /// The first value above the range, µs.
     pub end_us: u16,
 }
 
 impl ModeRange {
-    /// Whether a value is inside.
+    /// Returns `true` if a value is inside the range.
     pub fn contains(&self, us: u16) -> bool {
         (self.start_us..self.end_us).contains(&us)
     }
@@ -249,18 +252,18 @@ pub struct SettingsView {
     pub buildup_deg: f64,
     /// `ap_position_p`.
     pub position_p: f64,
-    /// What a touchdown asks of the throttle.
+    /// The throttle condition of a touchdown.
     pub touchdown_throttle: TouchdownThrottle,
-    /// Where the throttle stick rests in ALTHOLD, µs.
+    /// The rest position of the throttle stick in ALTHOLD, µs.
     pub hover_stick_us: u16,
-    /// The throttle stick from which the throttle counts as raised, µs.
+    /// The throttle stick position above which the throttle counts as raised, µs.
     pub raised_stick_us: u16,
-    /// The throttle stick that brings the craft down gently in ALTHOLD, µs; `None` when no stick does.
+    /// The throttle stick position that brings the craft down gently in ALTHOLD, µs; `None` if there is none.
     pub sink_stick_us: Option<u16>,
 }
 
 impl SettingsView {
-    /// Returns what estimates and reviews of plans are made with on this craft.
+    /// Returns the assumptions for estimates and reviews of plans on this craft.
     pub fn assumptions(&self) -> Assumptions {
         Assumptions {
             max_velocity_mps: self.max_velocity_mps,
@@ -281,12 +284,12 @@ impl SettingsView {
         }
     }
 
-    /// Radius of a coordinated turn at this speed, m: R = V² / (g·tan θ) with the greatest lean.
+    /// Returns the radius of a coordinated turn at this speed, m: R = V² / (g·tan θ) with the greatest lean.
     pub fn turn_radius_m(&self, speed_mps: f64) -> f64 {
         speed_mps * speed_mps / (GRAVITY * self.max_angle_deg.to_radians().tan()).max(0.1)
     }
 
-    /// How many laps of its ring an ORBIT of this waypoint flies in its time; `None` when it has no end.
+    /// Returns the number of laps that an ORBIT of this waypoint flies in its time; `None` if it has no end.
     pub fn orbit_laps(&self, wp: &Waypoint) -> Option<f64> {
         if wp.duration_ds == 0 {
             return None;
@@ -296,19 +299,19 @@ impl SettingsView {
             cms => f64::from(cms) / 100.0,
         };
         let radius_m = self.orbit_radius_m.max(0.1);
-        // As the autopilot limits it: by the setting, the speed of the leg and half of the greatest lean.
+        // The autopilot has the same limits: the setting, the speed of the leg and half of the greatest lean.
         let by_lean = (0.5 * GRAVITY * self.max_angle_deg.to_radians().tan() / radius_m).sqrt();
         let rate_rps = self.max_turn_rate_dps.to_radians().min(speed_mps / radius_m).min(by_lean);
         Some(rate_rps * f64::from(wp.duration_ds) / 10.0 / std::f64::consts::TAU)
     }
 }
 
-/// The air and what is wrong with the craft.
+/// The air and the faults of the craft.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct WorldView {
     /// Name of the airframe.
     pub airframe: String,
-    /// The mean wind, when known.
+    /// The mean wind, if known.
     pub wind: Option<WindView>,
     /// Gust amplitude, m/s.
     pub gust_mps: f64,
@@ -321,15 +324,15 @@ pub struct WorldView {
 pub struct WindView {
     /// Speed, m/s.
     pub speed_mps: f64,
-    /// Direction it comes from, degrees.
+    /// The direction from which it comes, degrees.
     pub from_deg: f64,
 }
 
-/// A fault that is on.
+/// An active fault.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FaultView {
     pub kind: FaultKind,
     pub value: FaultValue,
-    /// Seconds left; `None` = to the end.
+    /// The remaining time, s; `None` = until the end of the flight.
     pub left_s: Option<f64>,
 }

@@ -1,4 +1,4 @@
-//! The switch of the transmitter that turns a mode on, found from the craft's mode conditions.
+//! The transmitter's switch for a mode, found from the craft's mode conditions.
 
 use crate::signals::RC_CHANNELS;
 use crate::telemetry::snapshot::ModeRange;
@@ -16,7 +16,7 @@ pub struct Switch {
 }
 
 impl Switch {
-    /// The first switch of a mode; `None` when no channel turns it on.
+    /// Returns the first switch of a mode; `None` if no channel turns it on.
     pub fn of(mode: Mode, ranges: &[ModeRange]) -> Option<Self> {
         let range = own(mode, ranges).next()?;
         let channel = usize::from(range.channel).min(RC_CHANNELS - 1);
@@ -26,13 +26,13 @@ impl Switch {
     }
 }
 
-/// Whether these channels turn a mode on.
+/// Returns `true` if these channels turn a mode on.
 pub fn is_on(mode: Mode, ranges: &[ModeRange], channels: &[u16; RC_CHANNELS]) -> bool {
     own(mode, ranges)
         .any(|range| channels.get(usize::from(range.channel)).is_some_and(|&us| range.contains(us)))
 }
 
-/// The ranges of a mode that can be reached.
+/// Returns the ranges of a mode that contain any value.
 fn own(mode: Mode, ranges: &[ModeRange]) -> impl Iterator<Item = &ModeRange> {
     let mode_box = ModeBox::from(mode);
     ranges.iter().filter(move |range| range.mode_box == mode_box && range.start_us < range.end_us)

@@ -1,44 +1,44 @@
-//! Why the state machine changed its state.
+//! The reasons for transitions of the state machine.
 
 use std::fmt;
 
 use super::refusal::{AbortReason, Refusal};
 
-/// The cause of a transition; `Display` gives the word in events and on the screen.
+/// The cause of a transition. `Display` gives the word in events and on the screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum TransitionReason {
     Reset,
-    /// The mission goes on where it was left.
+    /// The mission continues where it was interrupted.
     Resume,
-    /// Sent to a waypoint.
+    /// Commanded to go to a waypoint.
     SetCurrent,
-    /// Ordered to hold here.
+    /// Commanded to hold here.
     HoldHere,
-    /// Ordered to land here.
+    /// Commanded to land here.
     Emergency,
-    /// Ordered to return home.
+    /// Commanded to return home.
     ReturnHome,
     /// The switch went off.
     Disengage,
     Disarm,
-    /// The mission cannot start over.
+    /// The mission cannot start again.
     Refused(Refusal),
-    /// The mission is given up.
+    /// The mission is aborted.
     GivenUp(AbortReason),
     Fence,
     /// The climb before the first leg is done.
     Climb,
     /// Within the radius of the waypoint.
     Arrival,
-    /// At the place of a HOLD, but no longer getting nearer to its altitude.
+    /// At the position of a HOLD, but no longer approaching its altitude.
     HeldOffAltitude,
     /// Passed the plane through the waypoint.
     Plane,
     /// Within the turn radius of a FLYBY.
     TurnRadius,
-    /// Passed the waypoint too far beside.
+    /// Passed too far beside the waypoint.
     Missed,
-    /// On to the next waypoint, or the plan is flown.
+    /// Continues with the next waypoint, or completes the plan.
     Advance,
     Hold,
     /// The wait of a LAND or TAKEOFF begins.
@@ -46,13 +46,13 @@ pub enum TransitionReason {
     Land,
     /// The hold pattern begins.
     Pattern,
-    /// The time of the hold is over.
+    /// The time of the hold has elapsed.
     HoldTime,
     Touchdown,
 }
 
 impl TransitionReason {
-    /// The words of all causes but refusals and aborts, which have their own.
+    /// The words of all causes except refusals and aborts, which have their own.
     pub const WORDS: [&'static str; 22] = [
         "reset",
         "resume",
@@ -78,7 +78,7 @@ impl TransitionReason {
         "touchdown",
     ];
 
-    /// The cause in a word.
+    /// Returns the cause as a word.
     pub fn word(self) -> &'static str {
         match self {
             Self::Reset => "reset",

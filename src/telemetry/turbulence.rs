@@ -1,6 +1,6 @@
-//! How rough the air is.
+//! The turbulence of the air.
 
-/// Level of turbulence after MIL-F-8785C; `Display` is its name on the command line.
+/// The level of turbulence after MIL-F-8785C. `Display` gives its name on the command line.
 #[derive(
     Debug,
     Clone,

@@ -1,4 +1,4 @@
-//! Where a flight controller is reached: a serial port, a TCP port or a websocket.
+//! The address of a flight controller: a serial port, a TCP port or a websocket.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -6,32 +6,32 @@ use std::str::FromStr;
 
 use tokio_tungstenite::tungstenite::http::Uri;
 
-/// Speed of a serial port when none is given, bit/s.
+/// The default speed of a serial port, bit/s.
 pub const DEFAULT_BAUD: u32 = 115_200;
-/// Bits on a serial line for each byte: start, eight of data, stop.
+/// The bits on a serial line for each byte: one start bit, eight data bits, one stop bit.
 const BITS_PER_BYTE: u32 = 10;
 
-/// Where a flight controller is reached.
+/// The address of a flight controller.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum FcPlace {
-    /// A serial port, USB among them.
+    /// A serial port, including one over USB.
     Serial {
         device: PathBuf,
-        /// Its speed, bit/s.
+        /// The speed, bit/s.
         baud: u32,
     },
     Tcp {
-        /// Name or address; an IPv6 address without brackets.
+        /// A name or an address. An IPv6 address has no brackets.
         host: String,
         port: u16,
     },
     WebSocket(
-        /// Its address, `ws://…` or `wss://…`.
+        /// The address, `ws://…` or `wss://…`.
         Uri,
     ),
 }
 
-/// Why a text names no place of a flight controller.
+/// The error for a text that is not the address of a flight controller.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{what}; allowed are serial:DEVICE[,BAUD], tcp:HOST:PORT and ws:URL, such as {example}")]
 pub struct FcPlaceError {
@@ -46,7 +46,7 @@ impl FcPlaceError {
 }
 
 impl FcPlace {
-    /// Bytes a second that the line carries; `None` = more than anybody asks for.
+    /// Returns the capacity in bytes per second, or `None` if it exceeds every need.
     pub fn bytes_per_s(&self) -> Option<u32> {
         match self {
             Self::Serial { baud, .. } => Some(baud / BITS_PER_BYTE),
@@ -143,7 +143,7 @@ impl fmt::Display for FcPlace {
             Self::Serial { device, baud } => write!(f, "serial:{},{baud}", device.display()),
             Self::Tcp { host, port } if host.contains(':') => write!(f, "tcp:[{host}]:{port}"),
             Self::Tcp { host, port } => write!(f, "tcp:{host}:{port}"),
-            // An address without a path ends in a slash otherwise.
+            // Without a path, the address would end in a slash.
             Self::WebSocket(uri) if uri.path_and_query().is_none_or(|path| path == "/") => {
                 write!(f, "{}", uri.to_string().trim_end_matches('/'))
             }

@@ -1,4 +1,4 @@
-//! A serial port, USB among them.
+//! A serial port, including one over USB.
 
 use std::io::{self, ErrorKind};
 use std::path::Path;
@@ -8,18 +8,18 @@ use serial2_tokio::SerialPort;
 
 use super::reason;
 
-/// Opens the port, raw, with eight bits, no parity and one stop bit.
+/// Opens the port in raw mode with eight data bits, no parity and one stop bit.
 ///
 /// # Errors
-/// Why not, as a part of a sentence.
+/// Returns the reason as part of a sentence.
 pub(super) fn open(device: &Path, baud: u32) -> Result<SerialPort, String> {
     let port = SerialPort::open(device, baud).map_err(|error| refusal(device, baud, &error))?;
-    // The firmware's USB port is silent without it; a pseudo-terminal has no such line.
+    // Without DTR the firmware's USB port is silent. A pseudo-terminal has no such line.
     let _only_on_real_ports = port.set_dtr(true);
     Ok(port)
 }
 
-/// Why the port cannot be opened, with the way out.
+/// Returns the reason why the port cannot be opened, and the remedy.
 fn refusal(device: &Path, baud: u32, error: &io::Error) -> String {
     let name = device.display();
     let is = |errno: Errno| error.raw_os_error() == Some(errno.raw_os_error());
@@ -42,7 +42,7 @@ fn refusal(device: &Path, baud: u32, error: &io::Error) -> String {
     }
 }
 
-/// The serial ports of this machine.
+/// Returns the names of the serial ports of this machine.
 fn ports_here() -> Option<String> {
     let mut ports = SerialPort::available_ports().ok()?;
     ports.sort();

@@ -7,13 +7,13 @@ use tokio::net::TcpStream;
 
 use super::reason;
 
-/// How long a host may be silent before the attempt is given up.
+/// The time after which an attempt to reach a silent host is given up.
 pub(super) const CONNECT_TIMEOUT: Duration = Duration::from_secs(5);
 
-/// Connects.
+/// Connects to a TCP port.
 ///
 /// # Errors
-/// Why not, as a part of a sentence.
+/// Returns the reason as part of a sentence.
 pub(super) async fn connect(host: &str, port: u16) -> Result<TcpStream, String> {
     match tokio::time::timeout(CONNECT_TIMEOUT, TcpStream::connect((host, port))).await {
         Ok(Ok(stream)) => {

@@ -17,17 +17,17 @@ use tokio_tungstenite::{Connector, MaybeTlsStream, WebSocketStream, connect_asyn
 use super::tcp::CONNECT_TIMEOUT;
 use super::{CHUNK, CLOSED, Ended, StreamEvent, reason};
 
-/// The sub-protocol under which firmware and bridges speak bytes.
+/// The sub-protocol under which firmware and bridges exchange bytes.
 const BINARY: &str = "binary";
-/// Largest message that is taken in.
+/// The largest message that is accepted.
 const MESSAGE_MAX: usize = 1024 * 1024;
 
 pub(super) type Socket = WebSocketStream<MaybeTlsStream<TcpStream>>;
 
-/// Connects.
+/// Connects to a websocket.
 ///
 /// # Errors
-/// Why not, as a part of a sentence.
+/// Returns the reason as part of a sentence.
 pub(super) async fn connect(uri: &Uri) -> Result<Socket, String> {
     let attempt = async {
         let connector = match uri.scheme_str() {
@@ -35,7 +35,7 @@ pub(super) async fn connect(uri: &Uri) -> Result<Socket, String> {
             _ => Connector::Plain,
         };
         match handshake(uri, connector.clone(), true).await {
-            // A bridge that knows no sub-protocols speaks bytes all the same.
+            // A bridge without support for sub-protocols exchanges bytes all the same.
             Err(Error::Protocol(ProtocolError::SecWebSocketSubProtocolError(
                 SubProtocolError::NoSubProtocol,
             ))) => handshake(uri, connector, false).await,
@@ -62,7 +62,7 @@ async fn handshake(uri: &Uri, connector: Connector, offer_binary: bool) -> Resul
     Ok(socket)
 }
 
-/// TLS with the certificates that this machine trusts.
+/// Returns a TLS configuration with the certificates that this machine trusts.
 async fn tls_config() -> Result<Arc<ClientConfig>, String> {
     let load = tokio::task::spawn_blocking(|| {
         let mut roots = RootCertStore::empty();
@@ -81,7 +81,8 @@ async fn tls_config() -> Result<Arc<ClientConfig>, String> {
     Ok(Arc::new(config))
 }
 
-/// Moves bytes until the connection is lost or nobody wants them any more; `heard` tells whether any came.
+/// Moves bytes until the connection is lost or the session no longer needs them. Sets `heard` once bytes have
+/// arrived.
 pub(super) async fn pump(
     socket: Socket,
     to: &mut mpsc::Receiver<Vec<u8>>,
@@ -92,7 +93,7 @@ pub(super) async fn pump(
     let read = async {
         loop {
             let bytes = match stream.next().await {
-                // Text is taken for the bytes it is made of.
+                // A text message counts as its bytes.
                 Some(Ok(Message::Binary(bytes))) => bytes,
                 Some(Ok(Message::Text(text))) => text.into(),
                 Some(Ok(Message::Ping(_) | Message::Pong(_) | Message::Frame(_))) => continue,
@@ -100,7 +101,8 @@ pub(super) async fn pump(
                 Some(Err(error)) => return Ended::Lost(refusal(&error)),
             };
             *heard = true;
-            // A message may be long, and whoever takes the pieces takes as many between two steps as over a slow line.
+            // A message may be long. Pieces keep the amount that the receiver takes between two steps as
+            // small as on a slow line.
             for piece in bytes.chunks(CHUNK) {
                 if from.send(StreamEvent::Bytes(piece.to_vec())).await.is_err() {
                     return Ended::Dropped;
@@ -123,7 +125,7 @@ pub(super) async fn pump(
     }
 }
 
-/// What went wrong, as a part of a sentence.
+/// Returns the error as part of a sentence.
 fn refusal(error: &Error) -> String {
     match error {
         Error::ConnectionClosed

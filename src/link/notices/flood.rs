@@ -1,18 +1,18 @@
-//! Counts connections that speak something else, so that many of them give one notice.
+//! Counts connections that use another protocol, so that many of them cause one notice.
 
 use std::time::{Duration, Instant};
 
 use crate::link::proto::first_line::ForeignProtocol;
 
-/// A flood is over when nothing has come for this long.
+/// The time without a connection after which a flood is over.
 const OVER_AFTER: Duration = Duration::from_secs(600);
 
-/// How a connection showed that no serial client is at its other end.
+/// The evidence that the other end of a connection is no serial client.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(in crate::link) enum Stranger {
-    /// By its first bytes.
+    /// Its first bytes.
     Began(ForeignProtocol),
-    /// By bytes that came later.
+    /// Bytes that came later.
     WentOn,
 }
 
@@ -24,20 +24,20 @@ pub(super) struct Flood {
 }
 
 impl Flood {
-    /// Counts a connection. Returns whether a flood begins with it.
+    /// Counts a connection. Returns `true` if it begins a flood.
     pub(super) fn count(&mut self, now: Instant) -> bool {
         self.number += 1;
         let last = self.newest.replace(now);
         last.is_none_or(|last| now.saturating_duration_since(last) > OVER_AFTER)
     }
 
-    /// Returns the number of connections since the last notice, and begins to count again.
+    /// Returns the number of connections since the last notice and restarts the count.
     pub(super) fn take_number(&mut self) -> u64 {
         std::mem::take(&mut self.number)
     }
 }
 
-/// The notice of this number of connections.
+/// Returns the notice for this number of connections.
 pub(super) fn sentence(door: &str, stranger: Stranger, number: u64) -> String {
     let (connections, were) = match number {
         1 => (format!("A connection to the {door} door"), "was"),

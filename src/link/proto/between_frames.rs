@@ -1,60 +1,61 @@
-//! Bytes between the frames of MSP and outside of the command line: text is ignored, as a flight controller ignores it,
-//! and anything else shows that the other side is no serial client.
+//! The bytes between MSP frames when the command line is closed. Text is ignored, as a flight controller
+//! ignores it. Anything else shows that the other side is no serial client.
 //!
-//! A `#` or STX opens the command line only where a line begins, so that none in the middle of other bytes does.
+//! A `#` or STX opens the command line only at the beginning of a line, so that one in the middle of other
+//! bytes does not.
 
 use std::time::Duration;
 
-/// Ignored lines that follow each other faster than this are one paste.
+/// Ignored lines that follow each other faster than this count as one paste.
 const PASTE_GAP: Duration = Duration::from_secs(1);
-/// Most characters of a line's first word; a longer one is no command.
+/// The maximum number of characters of a line's first word. A longer word is no command.
 const WORD_MAX: usize = 24;
 
 /// A byte that belongs neither to MSP nor to text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct NotText;
 
-/// What has come since the last frame or command line.
+/// The bytes since the last frame or command line.
 #[derive(Debug, Clone, Default)]
 pub(super) struct BetweenFrames {
-    /// The first word of the line, as far as it came.
+    /// The first word of the line as received so far.
     word: arrayvec::ArrayString<WORD_MAX>,
     word_is_over: bool,
-    /// Something other than blanks has come in this line.
+    /// `true` once this line has something other than blanks.
     line_has_begun: bool,
-    /// Bytes that a UTF-8 character still needs.
+    /// The number of bytes that a UTF-8 character still needs.
     continuation: u8,
-    /// Bytes that belong to a frame that was too long to be taken.
+    /// The remaining bytes of a frame that was too long to be accepted.
     frame_rest: usize,
-    /// When the last ignored line ended.
+    /// The time at which the last ignored line ended.
     ignored_at: Option<Duration>,
 }
 
 impl BetweenFrames {
-    /// Whether a line begins here, so that `#` and STX may open the command line.
+    /// Returns `true` at the beginning of a line, at which `#` and STX may open the command line.
     pub(super) fn is_at_line_start(&self) -> bool {
         !self.line_has_begun && self.continuation == 0 && self.frame_rest == 0
     }
 
-    /// A frame or a command line is over: what comes now begins a line.
+    /// Begins a line after a frame or a command line has ended.
     pub(super) fn begin_line(&mut self) {
         *self = Self { ignored_at: self.ignored_at, ..Self::default() };
     }
 
-    /// What comes now is the rest of a frame that was given up, at most this many bytes.
+    /// Expects the rest of an abandoned frame, at most this many bytes.
     pub(super) fn expect_frame_rest(&mut self, bytes: usize) {
         self.begin_line();
         self.line_has_begun = true;
         self.frame_rest = bytes;
     }
 
-    /// What comes now is in the middle of a line.
+    /// Treats the following bytes as the middle of a line.
     pub(super) fn begin_inside_line(&mut self) {
         self.line_has_begun = true;
         self.word_is_over = true;
     }
 
-    /// Takes a byte. Returns the first word of a line that ends with it, once for lines that come in one paste.
+    /// Takes a byte. Returns the first word of a line that ends with it, once per paste of several lines.
     pub(super) fn take(&mut self, byte: u8, now: Duration) -> Result<Option<String>, NotText> {
         if self.frame_rest > 0 {
             self.frame_rest -= 1;
@@ -75,7 +76,7 @@ impl BetweenFrames {
                     self.word_is_over = true;
                 }
             }
-            // Begin and end of a batch of lines.
+            // The begin and the end of a batch of lines.
             0x02 | 0x03 => {}
             // Keys of a terminal.
             0x04 | 0x08 | 0x0c | 0x1b | 0x7f => self.begin_inside_line(),

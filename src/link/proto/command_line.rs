@@ -1,6 +1,7 @@
-//! The command line as a link sees it: lines go to the session, text comes back. What they mean is the firmware's affair.
+//! The command line as a link sees it: lines go to the session, text comes back. Only the firmware interprets
+//! them.
 
-/// What kind of session a line comes from.
+/// The kind of session that a line comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LineSource {
     /// A person or a script at a prompt.
@@ -14,31 +15,31 @@ pub enum LineSource {
 /// The answer to a line.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct LineReply {
-    /// Text as it goes over the link, without echo and prompt.
+    /// The text as it goes over the link, without echo and prompt.
     pub text: String,
-    /// Whether the line was refused.
+    /// `true` if the line was refused.
     pub refused: bool,
-    /// What the line means for the link.
+    /// The consequence of the line for the link.
     pub then: AfterLine,
 }
 
-/// What a line means for the link that it came over.
+/// The consequence of a line for the link that carried it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum AfterLine {
     /// The command line stays open.
     #[default]
     Stay,
-    /// The command line is left: the link speaks MSP again.
+    /// The command line closes, and the link uses MSP again.
     Leave,
-    /// The firmware starts anew, and the link is closed.
+    /// The firmware restarts, and the link is closed.
     Close,
 }
 
-/// How the last word of a line may go on.
+/// The possible continuations of the last word of a line.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Completion {
-    /// What is certain to follow.
+    /// The text that is certain to follow.
     pub tail: String,
-    /// The words it may become.
+    /// The words that it may become.
     pub words: Vec<&'static str>,
 }

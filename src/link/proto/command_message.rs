@@ -1,4 +1,4 @@
-//! The command line in a message: `CLI_COMMAND` runs a line and answers with its output, in pages when it is long.
+//! The command line in a message. `CLI_COMMAND` runs a line and returns its output, in pages when it is long.
 //!
 //! ```text
 //! request  line [0  offset:u16]     offset 0 or none runs the line, a larger one pages through its output
@@ -8,21 +8,21 @@
 use super::command_line::LineReply;
 use super::msp::Frame;
 
-/// The message's code.
+/// The code of the message.
 pub(super) const CLI_COMMAND: u16 = 0x3012;
-/// Most output that is kept.
+/// The maximum number of output bytes that are kept.
 const OUTPUT_MAX: usize = 2048;
-/// Most output of one reply.
+/// The maximum number of output bytes of one reply.
 const PAGE_MAX: usize = 512;
-/// The output was longer than what is kept.
+/// Flag: the output was longer than the kept part.
 pub(super) const CUT: u8 = 1;
-/// The line was refused.
+/// Flag: the line was refused.
 pub(super) const REFUSED: u8 = 2;
 
 /// The last line and its output.
 #[derive(Debug, Clone, Default)]
 pub(super) struct CommandMessage {
-    /// The request that is being run.
+    /// The request whose line is running.
     open: Option<Frame>,
     line: String,
     output: Vec<u8>,
@@ -30,7 +30,8 @@ pub(super) struct CommandMessage {
 }
 
 impl CommandMessage {
-    /// Takes a frame: `None` when it is another message, else a line to run or the reply's payload.
+    /// Takes a frame. Returns `None` for another message, otherwise a line to run or the payload of the
+    /// reply.
     pub(super) fn take(&mut self, frame: &Frame) -> Option<Result<String, Option<Vec<u8>>>> {
         if frame.code != CLI_COMMAND {
             return None;
@@ -52,7 +53,8 @@ impl CommandMessage {
         Some(Ok(line.to_owned()))
     }
 
-    /// Takes the answer of the line that was run: the frame to send, unless the line came from elsewhere.
+    /// Takes the answer to the line that was run. Returns the frame to send, unless the line came from
+    /// elsewhere.
     pub(super) fn answer(&mut self, reply: &LineReply) -> Option<Frame> {
         let request = self.open.take()?;
         let text = reply.text.as_bytes();

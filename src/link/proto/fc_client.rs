@@ -1,4 +1,5 @@
-//! The client of a flight controller's serial port: MSP messages and command lines, one after the other.
+//! The client of a flight controller's serial port: exchanges MSP messages and command lines, one after the
+//! other.
 //!
 //! ```text
 //! ask() ─▶ queue ─▶ one exchange ─▶ take_output() ═══▶ flight controller
@@ -6,10 +7,11 @@
 //!                        └── push(bytes), poll(now) ◀════════╝        answers: next_answer()
 //! ```
 //!
-//! Like every protocol here it is told the time, never waits and holds a bounded amount. Answers come in the order of the
-//! requests, exactly one each. Whatever goes wrong on the line (lost, damaged or late answers, a command line that somebody
-//! left open) costs the request that it hit: after one that was given up, a message whose answer is known to be the newest
-//! is exchanged before anything else is asked.
+//! Like every protocol here it gets the time from the caller, never waits and holds a bounded amount. Each
+//! request gets exactly one answer, in the order of the requests. Any failure on the line (lost, damaged or
+//! late answers, a command line that another client left open) costs only the request that it hit. After a
+//! request was given up, the client first exchanges a message whose answer is certainly new; then it
+//! continues with the queue.
 
 mod ask;
 mod exchange;
@@ -35,29 +37,30 @@ use request::{Request, Waiting};
 
 use super::msp::{Decoder, Frame};
 
-/// Most requests that wait; one more is not taken.
+/// The maximum number of requests that may wait. Further requests are refused.
 const MAX_QUEUE: usize = 256;
 /// `API_VERSION`, which every flight controller answers.
 const API_VERSION: u16 = 1;
 /// Opens the framed command line.
 const STX: u8 = 0x02;
-/// Ends a command line that an earlier client left open; releases that know the word do not restart.
+/// Ends a command line that an earlier client left open. Releases that support the word do not restart.
 const LEAVE_CLI: &[u8] = b"\nexit noreboot\n";
 
 #[derive(Debug)]
 pub struct FcClient {
     connected: bool,
     access: CliAccess,
-    /// A command line that an earlier client left open may be left, which restarts some releases.
+    /// `true` if the client may leave a command line that an earlier client left open. Some releases restart
+    /// on that.
     may_leave_cli: bool,
     armed: bool,
-    /// The prompt is open.
+    /// `true` while the prompt is open.
     in_prompt: bool,
-    /// Whether lines by message are known; `None` before the first.
+    /// `Some(true)` if the firmware supports lines by message; `None` before the first.
     knows_messages: Option<bool>,
-    /// Every request so far was answered, so that the next answer belongs to the next request.
+    /// `true` while every request so far was answered, so that the next answer belongs to the next request.
     in_step: bool,
-    /// The flight controller echoes: what is sent is taken for typing.
+    /// Detects that the flight controller echoes, which means that it takes requests for typing.
     echoes: Echo,
     queue: VecDeque<(AskId, Ask)>,
     exchange: Option<(Option<AskId>, Exchange)>,
@@ -66,13 +69,13 @@ pub struct FcClient {
     answers: VecDeque<(AskId, Answer)>,
 }
 
-/// Whether requests come back as typing does at a prompt.
+/// Detects requests that come back as typing does at a prompt.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 struct Echo {
     /// The newest bytes, oldest first.
     tail: [u8; 3],
     seen: bool,
-    /// The prompt was left because of it.
+    /// `true` once the prompt was left because of the echo.
     answered: bool,
 }
 
@@ -104,7 +107,7 @@ impl Default for FcClient {
 }
 
 impl FcClient {
-    /// There is a new connection, over which nothing was said yet.
+    /// Begins a new connection that has carried nothing yet.
     pub fn connected(&mut self) {
         self.disconnected();
         self.connected = true;
@@ -113,7 +116,8 @@ impl FcClient {
         self.echoes = Echo::default();
     }
 
-    /// The connection is gone. A line that restarts the flight controller is answered by that, all else is not answered.
+    /// Ends the connection. A closed link answers a line that restarts the flight controller; all other
+    /// requests fail.
     pub fn disconnected(&mut self) {
         if let Some((id, exchange)) = self.exchange.take() {
             let answer = exchange.when_link_closes().unwrap_or(Answer::NotAnswered(Unanswered::LinkLost));
@@ -127,38 +131,38 @@ impl FcClient {
         self.output.clear();
     }
 
-    /// How lines reach the command line from now on.
+    /// Sets the way in which lines reach the command line.
     pub fn set_cli(&mut self, access: CliAccess) {
         self.access = access;
     }
 
-    /// Whether a command line that an earlier client left open may be left from now on; some releases restart on that. Where
-    /// it may not, requests are answered by [`Unanswered::InCli`].
+    /// Allows or forbids leaving a command line that an earlier client left open; some releases restart on
+    /// that. While it is forbidden, such requests fail with [`Unanswered::InCli`].
     pub fn set_may_leave_cli(&mut self, may: bool) {
         self.may_leave_cli = may;
     }
 
-    /// Whether the craft is armed, as far as is known: then its command line does not open.
+    /// Sets the known arming state. The command line of an armed craft does not open.
     pub fn set_armed(&mut self, armed: bool) {
         self.armed = armed;
     }
 
-    /// Whether lines by MSP message work; `None` before the first was asked.
+    /// Returns `true` if lines by MSP message work; `None` before the first was sent.
     pub fn knows_message_lines(&self) -> Option<bool> {
         self.knows_messages
     }
 
-    /// Whether the interactive command line is open, in which MSP rests.
+    /// Returns `true` while the interactive command line is open, which suspends MSP.
     pub fn is_in_cli(&self) -> bool {
         self.in_prompt
     }
 
-    /// Whether an MSP message would be asked at once.
+    /// Returns `true` if a new MSP message would be sent at once.
     pub fn is_idle(&self) -> bool {
         self.connected && self.exchange.is_none() && self.queue.is_empty() && !self.in_prompt
     }
 
-    /// Asks; it is sent by the next [`Self::poll`] once everything before it is answered.
+    /// Queues a request. [`Self::poll`] sends it once all earlier requests are answered.
     pub fn ask(&mut self, id: AskId, ask: Ask) {
         if !self.connected {
             self.answer(Some(id), Answer::NotAnswered(Unanswered::LinkLost));
@@ -174,7 +178,7 @@ impl FcClient {
         if self.connected {
             for &byte in bytes {
                 self.take(byte, now);
-                // So that it does not matter where the bytes are cut.
+                // Makes the result independent of how the bytes are split.
                 if self.exchange.is_none() {
                     self.poll(now);
                 }
@@ -183,7 +187,7 @@ impl FcClient {
         }
     }
 
-    /// Sends what is to be sent by now, and gives up what has waited for too long.
+    /// Sends the requests that are due and gives up those that have waited too long.
     pub fn poll(&mut self, now: Duration) {
         loop {
             if let Some((_, exchange)) = &mut self.exchange {
@@ -191,7 +195,8 @@ impl FcClient {
                     Exchange::Synchronise(request) | Exchange::Msp(request) => {
                         match request.poll(now, &mut self.output) {
                             Waiting::Patient => {}
-                            // Garbage that began like a long frame may have taken the reply for its payload.
+                            // Garbage that looked like the start of a long frame may have swallowed the reply
+                            // as its payload.
                             Waiting::Repeated => self.decoder = Decoder::client(),
                             Waiting::Overdue => self.give_up(now),
                         }
@@ -218,7 +223,7 @@ impl FcClient {
         }
     }
 
-    /// When [`Self::poll`] has something to do even without bytes.
+    /// Returns the time at which [`Self::poll`] must run even without bytes.
     pub fn due(&self) -> Option<Duration> {
         match &self.exchange {
             Some((_, exchange)) => Some(exchange.due()),
@@ -227,12 +232,12 @@ impl FcClient {
         }
     }
 
-    /// What is to be sent, taken away.
+    /// Takes the bytes to send.
     pub fn take_output(&mut self) -> Vec<u8> {
         std::mem::take(&mut self.output)
     }
 
-    /// The oldest answer that was not taken yet.
+    /// Takes the oldest answer.
     pub fn next_answer(&mut self) -> Option<(AskId, Answer)> {
         self.answers.pop_front()
     }
@@ -243,14 +248,14 @@ impl FcClient {
         }
     }
 
-    /// Ends the exchange that is under way.
+    /// Ends the current exchange.
     fn finish(&mut self, answer: Answer) {
         if let Some((id, _)) = self.exchange.take() {
             self.answer(id, answer);
         }
     }
 
-    /// Late answers may come from now on.
+    /// Marks that late answers may arrive from now on.
     fn lose_step(&mut self) {
         self.in_step = false;
         self.in_prompt = false;
@@ -303,7 +308,7 @@ impl FcClient {
         None
     }
 
-    /// Runs a line by message; the answer at once when that cannot be.
+    /// Runs a line by message. Returns the answer at once if that is impossible.
     fn start_message(&mut self, id: AskId, line: &str, now: Duration) -> Option<Answer> {
         if self.knows_messages == Some(false) || !MessageLine::fits(line) {
             return Some(Answer::NotAnswered(Unanswered::CliClosed));
@@ -395,7 +400,7 @@ impl FcClient {
         }
     }
 
-    /// Gives up the message that was asked.
+    /// Gives up the current message.
     fn give_up(&mut self, now: Duration) {
         self.lose_step();
         let Some((id, exchange)) = self.exchange.take() else { return };

@@ -7,38 +7,38 @@
 //!        16     altitude, m                     17     pressure, Pa
 //! ```
 //!
-//! Eighteen little-endian doubles, 144 bytes. The same numbers mean different things depending on who wrote the
-//! sender: [`Dialect`](crate::signals::fdm::Dialect). Inside, everything is body FLU, world ENU, SI.
+//! Eighteen little-endian doubles, 144 bytes. The meaning of the numbers depends on the sender:
+//! [`Dialect`](crate::signals::fdm::Dialect). The program itself uses body FLU, world ENU, SI.
 
 mod dialect;
 
 pub use dialect::{Gravity, State, mirrored};
 
-/// Doubles that are looked at.
+/// The number of doubles that are read.
 pub const FIELDS: usize = 18;
 
-/// Size of the datagram. A shorter one is refused, a longer one is cut.
+/// The size of the datagram. A shorter one is refused, a longer one is truncated.
 pub const SIZE: usize = 8 * FIELDS;
 
-/// Size of the datagram of the public Gazebo plugin, which appends values of the motors.
+/// The size of the datagram of the public Gazebo plugin, which appends values of the motors.
 pub const GZ_PLUGIN_SIZE: usize = 296;
 
-/// Greatest rate that is believed, rad/s.
+/// The greatest plausible rate, rad/s.
 const MAX_RATE: f64 = 200.0;
 
-/// Greatest acceleration that is believed, m/s².
+/// The greatest plausible acceleration, m/s².
 const MAX_ACCELERATION: f64 = 2000.0;
 
-/// Greatest velocity that is believed, m/s.
+/// The greatest plausible velocity, m/s.
 const MAX_VELOCITY: f64 = 10_000.0;
 
-/// Greatest distance from sea level that is believed, m.
+/// The greatest plausible distance from sea level, m.
 const MAX_ALTITUDE: f64 = 100_000.0;
 
-/// Norms of a quaternion that are close enough to 1 to be repaired.
+/// The norms of a quaternion that are close enough to 1 for normalisation.
 const QUATERNION_NORM: std::ops::RangeInclusive<f64> = 0.9..=1.1;
 
-/// Why a datagram was refused.
+/// The reason why a datagram was refused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display)]
 pub enum PacketError {
     /// Fewer than [`SIZE`] bytes.
@@ -61,17 +61,18 @@ pub enum PacketError {
     OutOfThisWorld,
 }
 
-/// The numbers of one datagram, before anybody decided what they mean.
+/// The numbers of one datagram, not yet interpreted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Packet {
     /// The fields, in wire order.
     pub fields: [f64; FIELDS],
-    /// Size of the datagram they came in.
+    /// The size of the datagram.
     pub size: usize,
 }
 
 impl Packet {
-    /// The numbers of a datagram, checked for sense. The pressure is not: some senders leave it uninitialised.
+    /// Parses a datagram and checks its numbers for plausibility. The pressure is not checked: some senders
+    /// leave it uninitialised.
     pub fn parse(datagram: &[u8]) -> Result<Self, PacketError> {
         let mut fields = [0.0; FIELDS];
         let bytes = datagram.get(..SIZE).ok_or(PacketError::TooShort)?;
@@ -97,7 +98,7 @@ impl Packet {
         Ok(packet)
     }
 
-    /// The 144 bytes of the datagram.
+    /// Returns the 144 bytes of the datagram.
     pub fn to_bytes(&self) -> [u8; SIZE] {
         let mut bytes = [0; SIZE];
         for (bytes, field) in bytes.as_chunks_mut::<8>().0.iter_mut().zip(self.fields) {
@@ -106,13 +107,13 @@ impl Packet {
         bytes
     }
 
-    /// Whether another datagram has the same size and the same numbers, bit by bit.
+    /// Returns `true` if another datagram has the same size and the same numbers, bit by bit.
     pub fn is_same(&self, other: &Self) -> bool {
         let bits = |packet: &Self| packet.fields.map(f64::to_bits);
         self.size == other.size && bits(self) == bits(other)
     }
 
-    /// The sender's clock, s.
+    /// Returns the sender's clock, s.
     pub fn stamp_s(&self) -> f64 {
         self.fields[0]
     }
@@ -122,7 +123,7 @@ fn norm(fields: &[f64]) -> f64 {
     fields.iter().map(|field| field * field).sum::<f64>().sqrt()
 }
 
-/// Pressure (Pa) of the standard atmosphere at a height (m) in the troposphere.
+/// Returns the pressure (Pa) of the standard atmosphere at a height (m) in the troposphere.
 pub fn pressure_pa(altitude_m: f64) -> f64 {
     101_325.0 * (1.0 - 2.255_77e-5 * altitude_m).max(0.0).powf(5.255_88)
 }

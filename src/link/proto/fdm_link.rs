@@ -1,16 +1,16 @@
-//! The packet exchange with an external simulator: what each state datagram is, when to reply, and when to send
-//! unasked. The caller moves the bytes, owns the firmware and tells the time.
+//! The packet exchange with an external simulator: classifies each state datagram and decides when to reply
+//! and when to send unsolicited packets. The caller moves the bytes, owns the firmware and supplies the time.
 //!
 //! ```text
 //!            datagram ─▶ receive() ─┬─ refused, old, double  dropped, no answer
 //!                                   ├─ resync (> 0.5 s gap)  time base taken, data unused, servo packet only
 //!                                   └─ state                 sensors + ticks to run, then servo and raw packet
 //!   silence, refused ─▶ poll() ───── repeat the last servo packet ("kick"), since a simulator that lost one packet
-//!                                    waits for it; packets too many are made up for by answers withheld later
+//!                                    waits for it; surplus packets are compensated by replies withheld later
 //! ```
 //!
-//! Times are microseconds of a steady clock. The firmware's own time advances by the simulator's stamps, so the
-//! simulator may run at any speed, and its pause pauses the flight.
+//! Times are microseconds of a steady clock. The firmware's own time advances with the simulator's stamps.
+//! The simulator may therefore run at any speed, and its pause pauses the flight.
 
 mod clock;
 mod conventions;
@@ -26,20 +26,20 @@ use conventions::{GravityTest, MirrorTest};
 use kicks::Kicks;
 use virtual_sensors::VirtualSensors;
 
-/// A pause after which the next packet only sets the time base, µs.
+/// The pause after which the next packet only sets the time base, µs.
 const RESYNC_AFTER_US: u64 = 500_000;
 
-/// Silence after which the link counts as lost, µs.
+/// The silence after which the link counts as lost, µs.
 const SILENT_AFTER_US: u64 = 1_000_000;
 
-/// How to read and answer the packets of the simulator.
+/// The settings for the packets of the simulator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FdmLinkConfig {
-    /// The simulator's dialect; `None` = found out from its packets.
+    /// The dialect of the simulator; `None` = detected from its packets.
     pub dialect: Option<Dialect>,
-    /// Whether its positions are mirrored.
+    /// The handling of mirrored positions.
     pub mirror: Mirror,
-    /// Length of a firmware tick, µs.
+    /// The length of a firmware tick, µs.
     pub tick_us: u64,
 }
 
@@ -49,7 +49,7 @@ impl Default for FdmLinkConfig {
     }
 }
 
-/// What to send back.
+/// The packets to send back.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Reply {
     Nothing,
@@ -59,34 +59,34 @@ pub enum Reply {
     Both,
 }
 
-/// What a datagram was.
+/// The classification of a datagram.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum PacketKind {
     Refused(PacketError),
-    /// From before the newest packet.
+    /// A packet that is older than the newest one.
     Old,
-    /// The first after a pause: the time base, nothing else.
+    /// The first packet after a pause. It only sets the time base.
     Resync {
-        /// Its stamp is earlier than before: the simulator was started anew, and the firmware disarms.
+        /// `true` if its stamp is earlier than before: the simulator was restarted, and the firmware disarms.
         restarted: bool,
     },
-    /// The same as the one before, stamp and all.
+    /// A packet identical to the previous one, including the stamp.
     Duplicate,
     /// The craft's state.
     State,
 }
 
-/// Something to tell the user, once.
+/// A message to the user, sent once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display)]
 pub enum FdmNotice {
-    /// The packets show whether gravity is in the acceleration, and it is not as usual.
+    /// The packets show that the acceleration contains gravity, unlike the dialect's default.
     #[strum(
         to_string = "the simulator's acceleration contains gravity, unlike that of the public plugin: adapted"
     )]
     GravityIncluded,
     #[strum(to_string = "the simulator's acceleration lacks gravity, unlike that of this dialect: adapted")]
     GravityMissing,
-    /// The acceleration at rest makes no sense.
+    /// The acceleration at rest is implausible.
     #[strum(
         to_string = "the simulator's acceleration at rest is neither 0 nor 1 g: the attitude may be wrong, try another --fdm-dialect"
     )]
@@ -96,27 +96,27 @@ pub enum FdmNotice {
         to_string = "the simulator's positions are not mirrored: taken as they are from now on (--fdm-mirror off does so from the start)"
     )]
     NotMirrored,
-    /// The stamps stand still.
+    /// The stamps do not advance.
     #[strum(to_string = "the simulator's clock stands still: the firmware follows the wall clock")]
     WallClock,
-    /// The simulator was started anew.
+    /// The simulator was restarted.
     #[strum(to_string = "the simulator was restarted: disarmed")]
     Restarted,
 }
 
-/// What to do about one datagram.
+/// The action for one datagram.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Received {
     pub kind: PacketKind,
-    /// The sensors to run the firmware on, for [`PacketKind::State`]; their time is the caller's to set.
+    /// The sensors to run the firmware on, for [`PacketKind::State`]. The caller sets their time.
     pub sensors: Option<Box<SensorFrame>>,
-    /// Where the craft is, for [`PacketKind::State`], mirroring undone.
+    /// The pose of the craft, for [`PacketKind::State`], with mirroring undone.
     pub pose: Option<Pose>,
-    /// Ticks by which the firmware advances, before the answer.
+    /// The number of ticks by which the firmware advances before the reply.
     pub ticks: u32,
-    /// What to send, after the ticks.
+    /// The packets to send after the ticks.
     pub reply: Reply,
-    /// What to tell the user.
+    /// The messages to the user.
     pub notices: arrayvec::ArrayVec<FdmNotice, 4>,
 }
 
@@ -133,20 +133,20 @@ impl Received {
     }
 }
 
-/// How many datagrams there were.
+/// Counters of the datagrams.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Counters {
     pub received: u64,
     pub wrong_size: u64,
-    /// Long enough but senseless.
+    /// Long enough but implausible.
     pub senseless: u64,
-    /// From before the newest.
+    /// Older than the newest.
     pub old: u64,
-    /// The same as the one before.
+    /// Identical to the previous one.
     pub duplicates: u64,
     /// Used as a time base only.
     pub resyncs: u64,
-    /// Servo packets sent unasked.
+    /// Unsolicited servo packets.
     pub kicks: u64,
 }
 
@@ -161,13 +161,13 @@ pub struct FdmLink {
     mirror: MirrorTest,
     sensors: VirtualSensors,
     counters: Counters,
-    /// The state that was taken last.
+    /// The last state packet.
     newest: Option<Packet>,
 }
 
 impl FdmLink {
-    /// A link that starts at `now_us`. The caller sends one servo and one raw packet at once and reports with
-    /// [`Self::refused`] when nobody was there to take them.
+    /// Creates a link that starts at `now_us`. The caller sends one servo and one raw packet at once, and
+    /// calls [`Self::refused`] if nobody receives them.
     pub fn new(config: FdmLinkConfig, now_us: u64) -> Self {
         Self {
             config,
@@ -196,7 +196,7 @@ impl FdmLink {
         };
         self.kicks.heard(now_us);
         if self.clock.gap_us(now_us) > RESYNC_AFTER_US {
-            // Its data is not used, so the same again is news.
+            // Its data is not used. A repetition of it is therefore no duplicate.
             self.newest = None;
             return self.resync(packet.stamp_s(), now_us);
         }
@@ -212,7 +212,7 @@ impl FdmLink {
         let restarted = self.clock.is_old(stamp_s);
         self.clock.take(stamp_s, now_us);
         let mut received = Received::only(PacketKind::Resync { restarted });
-        // A resync is always answered, as the reference does: answers to make up for are withheld later.
+        // A resync always gets a reply, as in the reference. Surplus replies are withheld later.
         received.reply = Reply::Servo;
         if restarted {
             self.dialect = self.config.dialect;
@@ -227,8 +227,8 @@ impl FdmLink {
         let mut received = Received::only(PacketKind::State);
         let was_wall_clock = self.clock.is_wall_clock();
         let ticks = self.clock.advance(packet.stamp_s(), now_us);
-        // A simulator that reads one answer a step would keep the second one for ever. One whose clock stands still
-        // repeats itself while nothing moves, and waits for the replies.
+        // A simulator that reads one reply per step would keep the second one for ever. A simulator whose
+        // clock does not advance repeats itself while nothing moves, and waits for the replies.
         if self.newest.replace(*packet).is_some_and(|newest| newest.is_same(packet))
             && !self.clock.is_wall_clock()
         {
@@ -270,24 +270,24 @@ impl FdmLink {
         received
     }
 
-    /// When [`Self::poll`] will have something to do, if nothing comes before.
+    /// Returns the time at which [`Self::poll`] must run next, if no packet arrives before.
     pub fn due_us(&self) -> u64 {
         self.kicks.due_us()
     }
 
-    /// Whether to send the last servo packet again now.
+    /// Returns `true` if the last servo packet must be sent again now.
     pub fn poll(&mut self, now_us: u64) -> bool {
         let kicks = self.kicks.poll(now_us);
         self.counters.kicks += u64::from(kicks);
         kicks
     }
 
-    /// The newest servo packet was refused: nobody listens.
+    /// Reports that the newest servo packet was refused because nobody listens.
     pub fn refused(&mut self) {
         self.kicks.refused();
     }
 
-    /// Whether the simulator is there at `now_us`.
+    /// Returns the state of the link to the simulator at `now_us`.
     pub fn state(&self, now_us: u64) -> LinkState {
         match self.kicks.heard_at_us() {
             None => LinkState::Waiting,
@@ -296,12 +296,12 @@ impl FdmLink {
         }
     }
 
-    /// The simulator's dialect, once known.
+    /// Returns the dialect of the simulator, once known.
     pub fn dialect(&self) -> Option<Dialect> {
         self.dialect
     }
 
-    /// How many datagrams there were.
+    /// Returns the counters of the datagrams.
     pub fn counters(&self) -> Counters {
         self.counters
     }
@@ -312,14 +312,14 @@ mod tests {
     use super::*;
     use crate::link::proto::fdm::FIELDS;
 
-    /// A craft at rest at a stamp, heading by the last field.
+    /// Returns the datagram of a craft at rest with this stamp and first body rate.
     fn datagram(stamp_s: f64, field_1: f64) -> Vec<u8> {
         let mut fields = [0.0; FIELDS];
         (fields[0], fields[1], fields[6], fields[10]) = (stamp_s, field_1, -9.8, 1.0);
         Packet { fields, size: 144 }.to_bytes().to_vec()
     }
 
-    /// A link that has taken a hundred packets, the newest with stamp 0.099.
+    /// Returns a link that has received a hundred packets, the newest with stamp 0.099.
     fn flowing() -> FdmLink {
         let mut link = FdmLink::new(FdmLinkConfig::default(), 0);
         for ms in 0..100_u32 {

@@ -1,29 +1,30 @@
-//! Tells serial clients from everything else by the first bytes of a connection.
+//! Separates serial clients from everything else by the first bytes of a connection.
 //!
-//! Any web page can make a browser connect to a port of this machine: a request of HTTP carries bytes of the page's choice,
-//! and WebRTC sends STUN messages with random bytes in them. So the first byte that is no blank decides, before any byte is
-//! interpreted: a serial client begins with `$` of an MSP frame, `#` or STX. Anything else ends the connection, and so does a
-//! first line that turns out to be a request line of HTTP.
+//! Any web page can make a browser connect to a port of this machine: an HTTP request carries bytes of the
+//! page's choice, and WebRTC sends STUN messages that contain random bytes. So the first byte that is not
+//! blank decides before any byte is interpreted: a serial client begins with the `$` of an MSP frame, `#` or
+//! STX. Anything else ends the connection, and so does a first line that turns out to be an HTTP request
+//! line.
 
 /// Opens the command line for a person.
 const HASH: u8 = b'#';
 /// Opens the command line for one batch of lines.
 const STX: u8 = 0x02;
-/// How a frame of MSP begins.
+/// The first byte of an MSP frame.
 const DOLLAR: u8 = b'$';
-/// How a TLS hello begins: the type of a handshake record.
+/// The first byte of a TLS hello: the type of a handshake record.
 const TLS_HANDSHAKE: u8 = 0x16;
-/// What ends a request line, before the digits of the version.
+/// The end of a request line, before the digits of the version.
 const HTTP_VERSION: &[u8] = b" HTTP/";
-/// As much of the line as is looked back at.
+/// The number of recent bytes that are kept for comparison.
 const TAIL: usize = HTTP_VERSION.len() + 1;
-/// A first line that is longer is no request line: browsers send less.
+/// The longest request line. Browsers send less.
 const LINE_MAX: usize = 4 * 1024 * 1024;
 
-/// What speaks where only MSP and the command line are understood, as far as the first byte says.
+/// The protocol of a stranger, as far as the first byte shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum ForeignProtocol {
-    /// A request of HTTP, or a word in capitals, which cannot be told from one.
+    /// An HTTP request, or a word in capitals, which cannot be distinguished from one.
     Http,
     Tls,
     /// Binary data, such as the STUN messages of WebRTC.
@@ -33,7 +34,7 @@ pub enum ForeignProtocol {
 }
 
 impl ForeignProtocol {
-    /// The protocol of a connection that begins with this byte, which no serial client begins with.
+    /// Returns the protocol of a connection that begins with this byte. No serial client begins with it.
     fn of(first: u8) -> Self {
         match first {
             TLS_HANDSHAKE => Self::Tls,
@@ -44,18 +45,18 @@ impl ForeignProtocol {
     }
 }
 
-/// What is known of a connection.
+/// The progress of a first line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Stage {
-    /// Nothing has come but blanks.
+    /// Only blanks have arrived.
     Blank,
-    /// A serial client, whose first line goes on.
+    /// A serial client, whose first line continues.
     Serial,
-    /// The first line is over.
+    /// The first line has ended.
     Over,
 }
 
-/// Looks at the first line of one connection. Holds at most a few bytes of it.
+/// Examines the first line of one connection. Keeps at most a few bytes of it.
 #[derive(Debug, Clone)]
 pub struct FirstLine {
     stage: Stage,
@@ -70,10 +71,12 @@ impl Default for FirstLine {
 }
 
 impl FirstLine {
-    /// Takes the next bytes of the connection; returns those that are for the serial session, without the blanks before them.
+    /// Takes the next bytes of the connection. Returns the bytes for the serial session, without the blanks
+    /// before them.
     ///
     /// # Errors
-    /// When the connection is to be closed, and nothing that came is to be interpreted.
+    /// Returns the foreign protocol if the connection must be closed and none of its bytes may be
+    /// interpreted.
     pub fn take<'a>(&mut self, bytes: &'a [u8]) -> Result<&'a [u8], ForeignProtocol> {
         let mut rest = bytes;
         while self.stage == Stage::Blank
@@ -116,7 +119,7 @@ mod tests {
 
     const FRAME: &[u8] = b"$M<\x00\x01\x01";
 
-    /// What is passed on of bytes that come in pieces of this size.
+    /// Returns the bytes that are passed on when they arrive in pieces of this size.
     fn take(bytes: &[u8], size: usize) -> Result<Vec<u8>, ForeignProtocol> {
         let mut line = FirstLine::default();
         let pieces: Result<Vec<_>, _> = bytes.chunks(size).map(|piece| line.take(piece)).collect();

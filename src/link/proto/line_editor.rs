@@ -1,15 +1,15 @@
-//! The line editor of one serial link: bytes in, lines and echo out. It holds no clock and no socket; time since the
-//! link opened is an argument.
+//! The line editor of one serial link: bytes in, lines and echo out. It holds no clock and no socket; the
+//! time since the link opened is an argument.
 
 use std::time::Duration;
 
 use super::command_line::{AfterLine, Completion, LineReply};
 
-/// How long the link must be quiet after a `#` for it to mean the command line.
+/// The silence that must follow a `#` before it opens the command line.
 pub(super) const ENTRY_QUIET: Duration = Duration::from_millis(100);
-/// The most characters of a line; the rest is dropped.
+/// The maximum number of characters of a line; the rest is dropped.
 pub const MAX_LINE: usize = 255;
-/// How long a framed session may last.
+/// The longest duration of a framed session.
 const FRAMED_LIMIT: Duration = Duration::from_secs(2);
 
 const STX: u8 = 0x02;
@@ -25,38 +25,38 @@ const ERASE: &[u8] = b"\x08 \x08";
 const CLEAR_SCREEN: &str = "\x1b[2J\x1b[1;1H";
 const CLEAR_LINE: &str = "\r\n\x1b[K";
 
-/// What the bytes of the link mean at the moment.
+/// The current meaning of the bytes on the link.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum LinkMode {
     /// MSP frames; a byte between frames may open the command line.
     #[default]
     Msp,
-    /// A `#` came and the link has been quiet since.
+    /// A `#` has arrived, and the link has been quiet since.
     Entering {
-        /// Time of the last byte.
+        /// The time of the last byte.
         since: Duration,
     },
     /// The command line with echo and prompt.
     Interactive,
     /// Lines between STX and ETX, without echo and prompt.
     Framed {
-        /// Time of the STX.
+        /// The time of the STX.
         since: Duration,
     },
 }
 
-/// What a byte caused.
+/// The effect of a byte.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct EditorOutput {
     /// Bytes to send now.
     pub bytes: Vec<u8>,
     /// A line to run; its reply goes through [`LineEditor::answer`].
     pub line: Option<String>,
-    /// The word being typed is to be completed; how it may go on goes through [`LineEditor::complete`].
+    /// `true` if the word being typed must be completed. The completion goes to [`LineEditor::complete`].
     pub completes: bool,
-    /// The link asked for a restart without saving.
+    /// `true` if the client requests a restart without saving.
     pub restart: bool,
-    /// The byte belongs to MSP.
+    /// `true` if the byte belongs to MSP.
     pub for_msp: bool,
 }
 
@@ -74,12 +74,12 @@ pub struct LineEditor {
 }
 
 impl LineEditor {
-    /// What the link speaks at the moment.
+    /// Returns the current mode of the link.
     pub fn mode(&self) -> LinkMode {
         self.mode
     }
 
-    /// Takes one byte. In [`LinkMode::Msp`] only bytes between frames may be offered.
+    /// Takes one byte. In [`LinkMode::Msp`], pass only bytes between frames.
     pub fn feed(&mut self, byte: u8, armed: bool, now: Duration) -> EditorOutput {
         match self.mode {
             LinkMode::Msp => self.between_frames(byte, armed, now),
@@ -89,7 +89,7 @@ impl LineEditor {
         }
     }
 
-    /// Completes an entry by silence: returns the greeting once the link was quiet long enough after the `#`.
+    /// Completes an entry by silence. Returns the greeting once the link was quiet long enough after the `#`.
     pub fn poll(&mut self, armed: bool, now: Duration) -> Option<Vec<u8>> {
         let LinkMode::Entering { since } = self.mode else { return None };
         if now.saturating_sub(since) < ENTRY_QUIET {
@@ -104,7 +104,7 @@ impl LineEditor {
         Some(format!("{GREETING}{PROMPT}").into_bytes())
     }
 
-    /// The bytes that answer a line, with the prompt where one follows.
+    /// Returns the bytes that answer a line, followed by the prompt if the command line stays open.
     pub fn answer(&mut self, reply: &LineReply) -> Vec<u8> {
         let mut bytes = reply.text.clone().into_bytes();
         if self.mode == LinkMode::Interactive {
@@ -116,13 +116,13 @@ impl LineEditor {
         bytes
     }
 
-    /// The line as it was typed so far.
+    /// Returns the line as typed so far.
     pub fn line(&self) -> &str {
         &self.buffer
     }
 
-    /// Extends the last word as far as it is certain, and lists the possibilities when there are several: the bytes to
-    /// send.
+    /// Extends the last word as far as it is certain, and lists the possibilities if there are several.
+    /// Returns the bytes to send.
     pub fn complete(&mut self, found: Completion) -> Vec<u8> {
         let Completion { mut tail, words } = found;
         if words.len() == 1 {
@@ -205,7 +205,7 @@ impl LineEditor {
         }
     }
 
-    /// Buffers a printable byte; leading spaces and what exceeds the longest line vanish.
+    /// Buffers a printable byte. Drops leading spaces and everything beyond the longest line.
     fn keep(&mut self, byte: u8) -> bool {
         let leading_space = byte == b' ' && self.buffer.is_empty();
         let kept = (b' '..=b'~').contains(&byte) && !leading_space && self.buffer.len() < MAX_LINE;

@@ -8,17 +8,17 @@
 //! tunnel  '$' 'M' kind n 255 [flags code:u16 size:u16 payload… crc8] xor      n counts the brackets
 //! ```
 //!
-//! All integers are little-endian. The CRC is CRC-8/DVB-S2. In a jumbo tunnel `n` is 255 and the `u16` length of the
-//! brackets stands between the five header bytes of version 2 and its payload.
+//! All integers are little-endian. The CRC is CRC-8/DVB-S2. In a jumbo tunnel `n` is 255, and the `u16`
+//! length of the brackets follows the five header bytes of version 2, before its payload.
 
 mod decoder;
 
 pub use decoder::{Decoder, Dropped};
 
-/// Largest payload of a request; a longer one is dropped without an answer.
+/// The largest payload of a request. A longer one is dropped without an answer.
 pub const MAX_REQUEST: usize = 192;
 
-/// Largest payload of a reply that a [`Decoder::client`] accepts.
+/// The largest payload of a reply that a [`Decoder::client`] accepts.
 pub const MAX_REPLY: usize = 8192;
 
 /// The version 1 code that marks a tunnelled version 2 frame.
@@ -43,14 +43,14 @@ pub enum Form {
     V2OverV1,
 }
 
-/// What a frame is, the character after the header.
+/// The kind of a frame, the character after the header.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Kind {
     /// `<`: to the flight controller.
     Request,
-    /// `>`: the answer.
+    /// `>`: the reply.
     Reply,
-    /// `!`: the answer when the request is unknown or refused.
+    /// `!`: the reply when the request is unknown or refused.
     Error,
 }
 
@@ -75,11 +75,11 @@ impl Kind {
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Frame {
-    /// Its shape on the wire.
+    /// The shape on the wire.
     pub form: Form,
     /// Request, reply or error.
     pub kind: Kind,
-    /// Message code; version 1 carries the low byte only.
+    /// The message code. Version 1 carries only the low byte.
     pub code: u16,
     pub payload: Vec<u8>,
 }
@@ -89,14 +89,14 @@ impl Frame {
         Self { form, kind: Kind::Request, code, payload: payload.to_vec() }
     }
 
-    /// The answer to this frame: `Some` payload is a reply, `None` an error.
+    /// Returns the answer to this frame: a reply with the payload, or an error for `None`.
     pub fn answer(&self, payload: Option<Vec<u8>>) -> Self {
         let kind = if payload.is_some() { Kind::Reply } else { Kind::Error };
         Self { form: self.form, kind, code: self.code, payload: payload.unwrap_or_default() }
     }
 
-    /// Appends the frame's bytes to `out`. A payload above 65 529 bytes is cut there, the most that the size fields
-    /// of every form can name.
+    /// Appends the frame's bytes to `out`. A payload above 65 529 bytes is truncated to that length, the
+    /// maximum that the size fields of every form can express.
     pub fn encode(&self, out: &mut Vec<u8>) {
         let payload = &self.payload[..self.payload.len().min(usize::from(u16::MAX) - V2_HEADER - 1)];
         match self.form {
@@ -106,7 +106,7 @@ impl Frame {
         }
     }
 
-    /// The frame's bytes.
+    /// Returns the frame's bytes.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut out = Vec::with_capacity(self.payload.len() + 16);
         self.encode(&mut out);

@@ -1,4 +1,4 @@
-//! The RC datagram of scripts and joysticks: a timestamp that nobody looks at and sixteen pulses.
+//! The RC datagram of scripts and joysticks: an unused timestamp and sixteen pulses.
 //!
 //! ```text
 //! 0   f64       timestamp, s
@@ -7,10 +7,10 @@
 
 use crate::signals::{RC_CHANNELS, RcFrame};
 
-/// Size of the datagram. A shorter one is refused, a longer one is cut.
+/// The size of the datagram. A shorter one is refused, a longer one is truncated.
 pub const SIZE: usize = 8 + 2 * RC_CHANNELS;
 
-/// The timestamp (s) and the pulses of a datagram; `None` when it is too short.
+/// Returns the timestamp (s) and the pulses of a datagram; `None` if it is too short.
 pub fn decode(datagram: &[u8]) -> Option<(f64, RcFrame)> {
     let (stamp, rest) = datagram.split_first_chunk::<8>()?;
     let pulses = rest.get(..2 * RC_CHANNELS)?;
@@ -21,7 +21,7 @@ pub fn decode(datagram: &[u8]) -> Option<(f64, RcFrame)> {
     Some((f64::from_le_bytes(*stamp), RcFrame { channels }))
 }
 
-/// The datagram of a frame.
+/// Returns the datagram of a frame.
 pub fn encode(timestamp_s: f64, frame: &RcFrame) -> [u8; SIZE] {
     let mut datagram = [0; SIZE];
     let (stamp, pulses) = datagram.split_at_mut(8);

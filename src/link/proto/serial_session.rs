@@ -9,9 +9,9 @@
 //!                            └─ Restart, LeftCli
 //! ```
 //!
-//! The owner of the stream reads more bytes only when [`SerialSession::next`] has nothing left, so memory is bounded by
-//! what it reads at once, [`OUTPUT_MAX`] and one reply. One byte may cause kilobytes of output: a tab that lists all
-//! settings.
+//! The owner of the stream reads more bytes only when [`SerialSession::next`] has nothing left. Memory is
+//! therefore bounded by the bytes of one read, [`OUTPUT_MAX`] and one reply. One byte may cause kilobytes of
+//! output: a tab that lists all settings.
 
 use std::time::Duration;
 
@@ -24,40 +24,41 @@ use super::msp::{Decoder, Dropped, Frame};
 /// Opens the command line for one batch of lines.
 const STX: u8 = 0x02;
 
-/// Output that is sent before more is asked for, bytes.
+/// The amount of output that is sent before the next request is processed, bytes.
 pub const OUTPUT_MAX: usize = 64 * 1024;
 
-/// What the client asks of the owner of the stream.
+/// A request to the owner of the stream.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum SerialRequest {
-    /// Answer an MSP message; tell [`SerialSession::reply`].
+    /// Answer an MSP message with [`SerialSession::reply`].
     Msp(Frame),
-    /// May the command line open? Not while armed; tell [`SerialSession::admit`].
+    /// Open the command line unless the craft is armed. Answer with [`SerialSession::admit`].
     EnterCli {
-        /// For a person, which blocks arming until the next restart; else for one batch of lines.
+        /// `true` for a person, which blocks arming until the next restart; `false` for one batch of lines.
         interactive: bool,
     },
-    /// Run a line; tell [`SerialSession::answer`].
+    /// Run a line. Answer with [`SerialSession::answer`].
     Line {
         /// The line, without its end.
         line: String,
-        /// What kind of session it comes from.
+        /// The kind of session that the line comes from.
         source: LineSource,
     },
-    /// How may this line go on? Tell [`SerialSession::complete`].
+    /// Complete this line. Answer with [`SerialSession::complete`].
     Complete {
-        /// The line as far as it was typed.
+        /// The line as typed so far.
         line: String,
     },
-    /// Send what there is: [`SerialSession::take_output`].
+    /// Send the bytes of [`SerialSession::take_output`].
     Flush,
-    /// The firmware is to start anew, and the link to be closed.
+    /// Restart the firmware and close the link.
     Restart,
-    /// The command line was left.
+    /// The command line was closed.
     LeftCli,
-    /// A line of text came while the command line was closed, and was ignored. Asked once for lines that come in one paste.
+    /// A line of text arrived while the command line was closed, and was ignored. Reported once per paste of
+    /// several lines.
     Ignored { word: String },
-    /// What came is neither MSP nor text: the link is to be closed. Nothing that comes later is interpreted.
+    /// The received bytes are neither MSP nor text. Close the link; later bytes are not interpreted.
     Foreign,
 }
 
@@ -78,7 +79,7 @@ pub struct SerialSession {
 }
 
 impl Default for SerialSession {
-    /// A new client starts with MSP.
+    /// Creates the state of a new client, which starts with MSP.
     fn default() -> Self {
         Self {
             decoder: Decoder::server(),
@@ -104,7 +105,7 @@ impl SerialSession {
         }
     }
 
-    /// What the client asks next; `None` when more bytes or more time are needed. `now` counts from the client's
+    /// Returns the next request; `None` if more bytes or more time are needed. `now` counts from the client's
     /// arrival.
     pub fn next(&mut self, now: Duration) -> Option<SerialRequest> {
         while !self.is_foreign {
@@ -148,7 +149,7 @@ impl SerialSession {
         None
     }
 
-    /// Whether the next byte is neither in a frame nor for the command line.
+    /// Returns `true` if the next byte is neither in a frame nor for the command line.
     fn is_outside(&self) -> bool {
         match self.editor.mode() {
             LinkMode::Msp => self.decoder.is_between_frames(),
@@ -214,7 +215,7 @@ impl SerialSession {
         }
     }
 
-    /// Ends the session: the other side speaks something else.
+    /// Ends the session because the other side uses another protocol.
     fn give_up(&mut self) -> SerialRequest {
         self.is_foreign = true;
         self.input.clear();
@@ -222,7 +223,7 @@ impl SerialSession {
         SerialRequest::Foreign
     }
 
-    /// Says whether the command line that was asked for opens.
+    /// Answers a request to open the command line.
     pub fn admit(&mut self, admitted: bool, now: Duration) {
         self.between.begin_line();
         if let LinkMode::Entering { .. } = self.editor.mode() {
@@ -236,12 +237,12 @@ impl SerialSession {
         self.in_cli = admitted;
     }
 
-    /// Answers a request: a payload, or `None` for the protocol's error.
+    /// Answers a request with a payload, or with the protocol's error for `None`.
     pub fn reply(&mut self, request: &Frame, payload: Option<Vec<u8>>) {
         request.answer(payload).encode(&mut self.output);
     }
 
-    /// Answers a line. Says whether the link is to be closed.
+    /// Answers a line. Returns `true` if the link must close.
     pub fn answer(&mut self, reply: &LineReply) -> bool {
         if let Some(frame) = self.message.answer(reply) {
             frame.encode(&mut self.output);
@@ -252,18 +253,18 @@ impl SerialSession {
         reply.then == AfterLine::Close
     }
 
-    /// Answers how a line may go on.
+    /// Answers a completion request.
     pub fn complete(&mut self, completion: Completion) {
         let bytes = self.editor.complete(completion);
         self.output.extend(bytes);
     }
 
-    /// What is to be sent, taken away.
+    /// Takes the bytes to send.
     pub fn take_output(&mut self) -> Vec<u8> {
         std::mem::take(&mut self.output)
     }
 
-    /// When [`Self::next`] will have something even without bytes.
+    /// Returns the time at which [`Self::next`] has a request even without bytes.
     pub fn due(&self) -> Option<Duration> {
         match self.editor.mode() {
             LinkMode::Entering { since } => Some(since + ENTRY_QUIET),
@@ -271,12 +272,12 @@ impl SerialSession {
         }
     }
 
-    /// Whether the command line is open.
+    /// Returns `true` while the command line is open.
     pub fn is_in_cli(&self) -> bool {
         self.in_cli
     }
 
-    /// Frames given up so far.
+    /// Returns the numbers of frames dropped so far.
     pub fn dropped(&self) -> Dropped {
         self.decoder.dropped()
     }
@@ -290,7 +291,8 @@ mod tests {
     const FRAME: &[u8] = b"$M<\x00\x01\x01";
     const QUIET: Duration = Duration::from_millis(150);
 
-    /// What is asked after each of these bursts, with a quiet moment behind it; the command line does not open.
+    /// Returns the requests after each of these bursts, which are followed by a quiet moment. The command
+    /// line does not open.
     fn asked(bursts: &[&[u8]]) -> Vec<SerialRequest> {
         let (mut session, mut now, mut all) = (SerialSession::default(), Duration::ZERO, Vec::new());
         for burst in bursts {

@@ -10,17 +10,18 @@
 use crate::signals::MotorCommand;
 use crate::signals::fdm::MotorOrder;
 
-/// Size of the normalised datagram. Receivers refuse a shorter one and ignore what is longer.
+/// The size of the normalised datagram. Receivers refuse a shorter one and ignore the surplus of a longer
+/// one.
 pub const SIZE: usize = 16;
 
-/// Size of the raw datagram.
+/// The size of the raw datagram.
 pub const RAW_SIZE: usize = 68;
 
-/// Outputs in the raw datagram.
+/// The number of outputs in the raw datagram.
 pub const RAW_OUTPUTS: usize = 16;
 
 impl MotorOrder {
-    /// Values of M1 … M4 in the order of the packet.
+    /// Arranges the values of M1 … M4 in the order of the packet.
     pub fn arrange<T>(self, [m1, m2, m3, m4]: [T; 4]) -> [T; 4] {
         match self {
             Self::Native => [m1, m2, m3, m4],
@@ -28,7 +29,7 @@ impl MotorOrder {
         }
     }
 
-    /// Values of M1 … M4 from the order of the packet.
+    /// Arranges the values of a packet in the order M1 … M4.
     pub fn in_native_order<T>(self, [first, second, third, fourth]: [T; 4]) -> [T; 4] {
         match self {
             Self::Native => [first, second, third, fourth],
@@ -37,19 +38,19 @@ impl MotorOrder {
     }
 }
 
-/// Motor pulses in µs, 1000 at rest, 2000 at full power.
+/// Returns the motor pulses in µs, 1000 at rest, 2000 at full power.
 pub fn pulses_us(motors: &MotorCommand) -> [f32; 4] {
     motors
         .0
         .map(|motor| (1000.0 + 1000.0 * if motor.is_finite() { motor.clamp(0.0, 1.0) } else { 0.0 }) as f32)
 }
 
-/// The normalised value of a pulse: its whole microseconds above 1000 in thousandths, rounded down.
+/// Returns the normalised value of a pulse: its whole microseconds above 1000 in thousandths, rounded down.
 pub fn normalised(pulse_us: f32) -> f32 {
     (pulse_us.trunc() - 1000.0) / 1000.0
 }
 
-/// The normalised datagram of four motor pulses, µs.
+/// Returns the normalised datagram of four motor pulses, µs.
 pub fn encode(pulses_us: [f32; 4]) -> [u8; SIZE] {
     let mut datagram = [0; SIZE];
     for (field, pulse) in datagram.as_chunks_mut::<4>().0.iter_mut().zip(pulses_us) {
@@ -58,7 +59,8 @@ pub fn encode(pulses_us: [f32; 4]) -> [u8; SIZE] {
     datagram
 }
 
-/// The four normalised motor values of a datagram; `None` when it is too short or a value is not a number.
+/// Returns the four normalised motor values of a datagram; `None` if it is too short or a value is not a
+/// number.
 pub fn decode(datagram: &[u8]) -> Option<[f32; 4]> {
     let mut motors = [0.0; 4];
     for (motor, field) in motors.iter_mut().zip(datagram.get(..SIZE)?.as_chunks::<4>().0) {
@@ -70,7 +72,7 @@ pub fn decode(datagram: &[u8]) -> Option<[f32; 4]> {
     Some(motors)
 }
 
-/// The raw datagram: pulses in µs, motors first, of which there are `motor_count`; what is not given is 0.
+/// Returns the raw datagram: the number of motors and the pulses in µs, motors first. Missing pulses are 0.
 pub fn encode_raw(motor_count: u16, pulses_us: &[f32]) -> [u8; RAW_SIZE] {
     let mut datagram = [0; RAW_SIZE];
     datagram[..2].copy_from_slice(&motor_count.to_le_bytes());

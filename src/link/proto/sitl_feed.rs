@@ -1,9 +1,11 @@
-//! What a SITL executable is fed with: the state of the craft as its sensors measured it, and what its motors say.
+//! The data exchange with a SITL executable: its input is the state of the craft as its sensors measured it,
+//! its output the motor command.
 //!
-//! The executable's clock is the wall clock times the rate of the stamps, so that jitter becomes time: every packet
-//! carries the same stamp, and the clock stays the wall clock. Positions are mirrored about the first one it processes:
-//! until it has answered for a while the craft is shown at home, exactly, and with a fix. The packet carries one altitude
-//! for GPS and barometer; it is the barometer's. It carries no battery.
+//! The executable's clock is the wall clock times the rate of the stamps, which turns jitter into time. Every
+//! packet therefore carries the same stamp, and the clock stays the wall clock. Positions are mirrored about
+//! the first one that the executable processes. Until it has answered for a while, the craft is reported at
+//! home, exactly, and with a fix. The packet carries one altitude for GPS and barometer; it is the
+//! barometer's. It carries no battery.
 
 use super::fdm::{Packet, State, mirrored, pressure_pa};
 use super::servo;
@@ -14,31 +16,33 @@ use nalgebra::{UnitQuaternion, Vector2, Vector3};
 
 /// The stamp of every packet, s.
 const STAMP_S: f64 = 1.0;
-/// How long after its first answer the executable is shown the true home, s: the first position that it processes is
-/// the centre of the mirror.
+/// The time after its first answer for which the executable gets the true home, µs: the first position that
+/// it processes is the centre of the mirror.
 const AT_HOME_US: u64 = 200_000;
-/// Silence after which the motors stop, µs. What counts is how long packets have gone without an answer: nobody answers
-/// while this program is held up and sends none.
+/// The silence after which the motors stop, µs. It counts the time for which packets have gone without an
+/// answer: while this program is held up and sends none, there are no answers either.
 const SILENCE_US: u64 = 1_000_000;
-/// Wall time without an answer after which the craft waits for one, µs: motors that stand for longer let it tip over.
+/// The wall time without an answer after which the craft waits for one, µs. A motor command that stays the
+/// same for longer lets it tip over.
 const PATIENCE_US: u64 = 10_000;
-/// What stands for latitude and longitude without a fix, degrees: out of range, so that the executable skips the GPS.
+/// The value of latitude and longitude without a fix, degrees. It is out of range, so that the executable
+/// skips the GPS.
 const NO_FIX_DEG: f64 = 999.0;
 
-/// How an executable is fed.
+/// The settings of the feed of an executable.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FeedConfig {
-    /// What its packets mean.
+    /// The dialect of its packets.
     pub dialect: Dialect,
-    /// What their stamps are.
+    /// The kind of stamps in its packets.
     pub stamps: Stamps,
     /// The order of the motors in its packets.
     pub motor_order: MotorOrder,
-    /// Where the craft stands at boot: latitude and longitude, degrees, and metres above mean sea level.
+    /// The position of the craft at boot: latitude and longitude, degrees, and metres above mean sea level.
     pub home: (f64, f64, f64),
 }
 
-/// Whether the executable answers.
+/// The state of the answers from the executable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FeedState {
     /// It has not answered yet.
@@ -54,18 +58,18 @@ pub struct SitlFeed {
     config: FeedConfig,
     frame: SensorFrame,
     alt_amsl_m: f64,
-    /// The newest solution of the GPS, and when it was delivered.
+    /// The newest GPS solution and the time of its delivery.
     gps: Option<(GpsSample, SimTime)>,
-    /// When the first motor packet came, µs of wall time.
+    /// The time of the first motor packet, µs of wall time.
     first_answer_us: Option<u64>,
-    /// Since when packets are without an answer, µs of wall time.
+    /// The time of the first packet that is still without an answer, µs of wall time.
     unanswered_us: Option<u64>,
-    /// When the newest packet was sent, µs of wall time.
+    /// The time of the newest packet sent, µs of wall time.
     sent_us: u64,
 }
 
 impl SitlFeed {
-    /// A feed that has sent nothing yet.
+    /// Creates a feed that has sent nothing yet.
     pub fn new(config: FeedConfig) -> Self {
         let (_, _, alt_amsl_m) = config.home;
         Self {
@@ -79,17 +83,17 @@ impl SitlFeed {
         }
     }
 
-    /// What its packets mean.
+    /// Returns the dialect of its packets.
     pub fn dialect(&self) -> Dialect {
         self.config.dialect
     }
 
-    /// The executable started anew: its first position is the centre of the mirror again.
+    /// Starts again for a restarted executable: its first position is the centre of the mirror again.
     pub fn restart(&mut self) {
         *self = Self::new(self.config);
     }
 
-    /// Takes in what the sensors measured.
+    /// Stores the sensors' measurements.
     pub fn sense(&mut self, frame: &SensorFrame) {
         self.frame = *frame;
         if let Some(pressure_pa) = frame.pressure_pa {
@@ -100,7 +104,7 @@ impl SitlFeed {
         }
     }
 
-    /// The packet for what was sensed last; `now_us` is wall time.
+    /// Returns the packet for the newest measurements. `now_us` is wall time.
     pub fn packet(&self, now_us: u64) -> Packet {
         let Position { lat_deg, lon_deg, vel_enu } = match self.gps {
             Some((gps, at)) if !self.is_at_home(now_us) => self.measured(&gps, at),
@@ -131,13 +135,13 @@ impl SitlFeed {
         })
     }
 
-    /// A packet was sent at `now_us` of wall time.
+    /// Records that a packet was sent at `now_us` of wall time.
     pub fn sent(&mut self, now_us: u64) {
         self.unanswered_us.get_or_insert(now_us);
         self.sent_us = now_us;
     }
 
-    /// The motor command of a packet that came at `now_us` of wall time; `None` when it is none.
+    /// Returns the motor command of a packet that arrived at `now_us` of wall time; `None` if it is none.
     pub fn answered(&mut self, datagram: &[u8], now_us: u64) -> Option<MotorCommand> {
         let values = self.config.motor_order.in_native_order(servo::decode(datagram)?);
         self.first_answer_us.get_or_insert(now_us);
@@ -155,19 +159,21 @@ impl SitlFeed {
         }
     }
 
-    /// Whether the craft is to wait: an executable that answered and is held up now would find it elsewhere. Every 10 ms a
-    /// step is flown all the same, for its packet or the answer may have been lost.
+    /// Returns `true` while the craft must wait: an executable that answered and is held up now would find
+    /// the craft elsewhere. A step is flown every 10 ms all the same, because its packet or the answer may
+    /// have been lost.
     pub fn waits(&self, now_us: u64) -> bool {
         self.is_held_up(now_us) && now_us.saturating_sub(self.sent_us) < PATIENCE_US
     }
 
-    /// Whether the executable has not answered for longer than motors may stand still, and not as long as to be silent.
+    /// Returns `true` if the executable has not answered for longer than the motor command may stay the same,
+    /// but not long enough to count as silent.
     pub fn is_held_up(&self, now_us: u64) -> bool {
         let is_late = |since_us| now_us.saturating_sub(since_us) >= PATIENCE_US;
         self.state(now_us) == FeedState::Answering && self.unanswered_us.is_some_and(is_late)
     }
 
-    /// Since when packets are without an answer, µs of wall time.
+    /// Returns the time since which packets are without an answer, µs of wall time.
     pub fn unanswered_since_us(&self) -> Option<u64> {
         self.unanswered_us
     }
@@ -181,7 +187,8 @@ impl SitlFeed {
         Position { lat_deg, lon_deg, vel_enu: Vector3::zeros() }
     }
 
-    /// Where the receiver's solution puts the craft now: a packet is read at any time, so it is carried on by its velocity.
+    /// Returns the current position by the receiver's solution. It is extrapolated with the velocity because
+    /// a packet may be read at any time.
     fn measured(&self, gps: &GpsSample, at: SimTime) -> Position {
         if !gps.fix {
             return Position { lat_deg: NO_FIX_DEG, lon_deg: NO_FIX_DEG, vel_enu: Vector3::zeros() };
@@ -199,7 +206,8 @@ struct Position {
     vel_enu: Vector3<f64>,
 }
 
-/// Height (m) in the troposphere of the standard atmosphere at a pressure (Pa), the inverse of [`pressure_pa`].
+/// Returns the height (m) in the troposphere of the standard atmosphere at a pressure (Pa), the inverse of
+/// [`pressure_pa`].
 fn altitude_m(pressure_pa: f64) -> f64 {
     (1.0 - (pressure_pa / 101_325.0).max(0.0).powf(1.0 / 5.255_88)) / 2.255_77e-5
 }
@@ -238,7 +246,7 @@ mod tests {
         feed.answered(&servo::encode([1100.0, 1200.0, 1300.0, 1400.0]), ms * MS)
     }
 
-    /// Latitude on the wire.
+    /// Returns the latitude on the wire.
     fn latitude(feed: &SitlFeed, ms: u64) -> f64 {
         feed.packet(ms * MS).fields[15]
     }
@@ -285,7 +293,7 @@ mod tests {
         }
         assert!(motors(&mut feed, 1000).is_some());
         assert!((latitude(&feed, 1199) - HOME.0).abs() < 1e-12);
-        // Mirrored about home, and carried on by 5 m/s since the solution of half a second before.
+        // Mirrored about home, and extrapolated at 5 m/s from the solution of half a second before.
         feed.sense(&SensorFrame { time: SimTime(1000 * MS), gps: None, ..frame_at(0, 0.0, true) });
         let carried_m = (HOME.0 - 0.001 - latitude(&feed, 1200)) * 111_319.5;
         assert!((carried_m - 2.5).abs() < 0.01, "{carried_m}");

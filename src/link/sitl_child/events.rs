@@ -1,4 +1,5 @@
-//! What happened to the child, on its way to the session: every change of its state, and as many lines as can be read.
+//! The events of the child on their way to the session: every change of its state, and as many lines as can
+//! be read.
 
 use std::collections::VecDeque;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -6,14 +7,14 @@ use std::time::{Duration, Instant};
 
 use super::ChildEvent;
 
-/// Most lines that wait to be told.
+/// The maximum number of lines that may wait.
 const WAITING_MAX: usize = 512;
-/// Most lines that are told in a [`WINDOW`]: what shows and records them has to keep up.
+/// The maximum number of lines in a [`WINDOW`]. Display and recording must keep up with them.
 const TOLD_MAX: usize = 500;
-/// In which the lines are counted.
+/// The period in which the lines are counted.
 const WINDOW: Duration = Duration::from_secs(1);
 
-/// The events that wait. Nobody who adds one is held up, for a firmware whose output is not read stands still.
+/// The queue of events. Adding an event never blocks, because a firmware whose output is not read would stop.
 #[derive(Debug, Default)]
 pub(super) struct Events(Mutex<Queue>);
 
@@ -22,19 +23,19 @@ struct Queue {
     events: VecDeque<ChildEvent>,
     lines: usize,
     window: Option<Instant>,
-    /// Lines that were taken in since the window began.
+    /// The number of lines accepted since the window began.
     told: usize,
-    /// Lines that were left out and are not counted in an event yet.
+    /// The number of omitted lines that no event counts yet.
     not_shown: u64,
 }
 
 impl Events {
-    /// Adds a line of its output, or counts it.
+    /// Adds a line of the output, or counts it as omitted.
     pub(super) fn add_line(&self, line: &[u8], now: Instant) {
         self.lock().add_line(line, now);
     }
 
-    /// Adds a change of its state.
+    /// Adds a change of the child's state.
     pub(super) fn add(&self, event: ChildEvent) {
         let mut queue = self.lock();
         queue.count_not_shown();
@@ -46,7 +47,7 @@ impl Events {
     }
 
     fn lock(&self) -> MutexGuard<'_, Queue> {
-        // Nobody panics with it.
+        // No code panics while it holds the lock.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -82,7 +83,7 @@ impl Queue {
         self.window.is_none_or(|began| now.saturating_duration_since(began) >= WINDOW)
     }
 
-    /// Has the lines that were left out told.
+    /// Adds an event with the number of omitted lines.
     fn count_not_shown(&mut self) {
         let more = std::mem::take(&mut self.not_shown);
         match self.events.back_mut() {
@@ -98,7 +99,7 @@ mod tests {
     use super::*;
     use crate::link::ChildEnd;
 
-    /// Lines and lines not shown among the events that wait, and the last event.
+    /// Returns the numbers of lines and of omitted lines among the waiting events, and the last event.
     fn drain(queue: &mut Queue, now: Instant) -> (usize, u64, Option<ChildEvent>) {
         let (mut lines, mut not_shown, mut last) = (0, 0, None);
         while let Some(event) = queue.take(now) {
@@ -119,7 +120,7 @@ mod tests {
         for _ in 0..TOLD_MAX + 7 {
             queue.add_line(b"y", begin);
         }
-        // Whether more follow is not known yet.
+        // It is not known yet if more lines follow.
         assert_eq!(drain(&mut queue, begin), (TOLD_MAX, 0, Some(ChildEvent::Line("y".to_owned()))));
         assert_eq!(drain(&mut queue, begin + WINDOW), (0, 7, Some(ChildEvent::NotShown(7))));
         queue.add_line(b"later", begin + WINDOW);

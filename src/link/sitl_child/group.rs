@@ -1,5 +1,5 @@
-//! The child with the processes that it started: a script in place of the executable may have started that without becoming
-//! it.
+//! The child with the processes that it started. A script in place of the executable may have started it as a
+//! separate process.
 
 use std::io;
 use std::process::{Child, ExitStatus};
@@ -7,7 +7,7 @@ use std::process::{Child, ExitStatus};
 #[cfg(unix)]
 use rustix::process::{Pid, Signal, WaitId, WaitIdOptions};
 
-/// Whether the child has ended. Its number stays its own until [`reap`].
+/// Returns `true` if the child has ended. Its process id stays reserved until [`reap`].
 pub(super) fn has_ended(child: &mut Child) -> io::Result<bool> {
     #[cfg(unix)]
     {
@@ -20,14 +20,14 @@ pub(super) fn has_ended(child: &mut Child) -> io::Result<bool> {
     Ok(child.try_wait()?.is_some())
 }
 
-/// Asks all of them to end.
+/// Asks all processes of the group to end.
 pub(super) fn ask_to_end(child: &Child) {
     #[cfg(unix)]
     signal(child, Signal::TERM);
     let _ = child;
 }
 
-/// Ends all that are left, and tells how the child ended.
+/// Ends all remaining processes and returns the exit status of the child.
 pub(super) fn reap(child: &mut Child) -> io::Result<ExitStatus> {
     #[cfg(unix)]
     signal(child, Signal::KILL);
@@ -39,7 +39,7 @@ pub(super) fn reap(child: &mut Child) -> io::Result<ExitStatus> {
 #[cfg(unix)]
 fn signal(child: &Child, signal: Signal) {
     if let Some(pid) = pid(child) {
-        // They may have ended by themselves meanwhile.
+        // They may have ended by themselves in the meantime.
         let _gone = rustix::process::kill_process_group(pid, signal);
     }
 }

@@ -1,5 +1,6 @@
-//! Starts the executable by way of this program: a process that asks the system to be ended with its parent, and then
-//! becomes the executable. So no executable is left behind when this program is killed.
+//! Starts the executable through a second process of this program. That process asks the system to end it
+//! with its parent, and then becomes the executable. So no executable keeps running when this program is
+//! killed.
 
 use std::ffi::OsString;
 use std::io;
@@ -8,39 +9,39 @@ use std::process::{Child, Command, Stdio};
 
 use super::ChildConfig;
 
-/// Exit codes of a launcher that could not become the executable; as shells have them.
+/// Exit codes of a launcher that could not become the executable, as used by shells.
 const NOT_EXECUTABLE: i32 = 126;
 const NOT_FOUND: i32 = 127;
-/// The parent was gone before the child could ask to be ended with it.
+/// The exit code for a parent that was gone before the child could ask to end with it.
 const ORPHAN: i32 = 125;
 
-/// The command of this program by which it starts an executable; for itself only.
+/// The subcommand by which this program starts an executable. For internal use only.
 const LAUNCH: &str = "launch-firmware";
 
-/// What stands in the environment for the options of this program; nothing for the executable.
+/// The prefix of environment variables for this program's options. They are not passed to the executable.
 const OUR_VARIABLES: &str = "BETADECK_";
 
-/// Why an executable could not be started.
+/// The reason why an executable could not be started.
 #[derive(Debug, thiserror::Error)]
 pub enum LaunchError {
-    /// Its directory cannot be made.
+    /// Its directory cannot be created.
     #[error("cannot make the directory {directory} for the firmware: {error}")]
     Directory {
         directory: PathBuf,
-        /// What the system says.
+        /// The system's error.
         error: io::Error,
     },
-    /// The system starts nothing.
+    /// The system cannot start the process.
     #[error("cannot start {program}: {error}")]
     Start {
-        /// What was to be started.
+        /// The program to start.
         program: PathBuf,
-        /// What the system says.
+        /// The system's error.
         error: io::Error,
     },
 }
 
-/// Starts the executable in its directory, with its output to be read.
+/// Starts the executable in its directory, with its output piped.
 pub(super) fn spawn(config: &ChildConfig) -> Result<Child, LaunchError> {
     std::fs::create_dir_all(&config.directory)
         .map_err(|error| LaunchError::Directory { directory: config.directory.clone(), error })?;
@@ -54,13 +55,13 @@ pub(super) fn spawn(config: &ChildConfig) -> Result<Child, LaunchError> {
         }
     }
     #[cfg(unix)]
-    // The terminal's interrupt is for this program, which ends the child itself.
+    // The terminal's interrupt is meant for this program, which ends the child itself.
     std::os::unix::process::CommandExt::process_group(&mut command, 0);
     command.spawn().map_err(|error| LaunchError::Start { program: config.launcher.clone(), error })
 }
 
-/// When this is the command line of a launcher (program name first): becomes the executable that it names. Comes back only
-/// when that failed, with an exit code after a sentence on standard error; `None` for any other command line.
+/// Becomes the executable that a launcher's command line (program name first) names. Returns only if that
+/// failed, with an exit code after a sentence on standard error. Returns `None` for any other command line.
 pub fn launch_firmware(arguments: &[OsString]) -> Option<u8> {
     let [_, command, parent, program, arguments @ ..] = arguments else { return None };
     if command != LAUNCH {
@@ -78,7 +79,7 @@ fn exec_with_parent(parent: i32, program: &Path, arguments: &[OsString]) -> u8 {
         if let Err(error) = set_parent_process_death_signal(Some(Signal::KILL)) {
             eprintln!("betadeck: the firmware may outlive this program: {error}");
         }
-        // Ended meanwhile, the parent sends no signal.
+        // A parent that ended in the meantime sends no signal.
         if getppid().is_none_or(|pid| pid.as_raw_nonzero().get() != parent) {
             return ORPHAN as u8;
         }
@@ -95,7 +96,7 @@ fn exec_with_parent(parent: i32, program: &Path, arguments: &[OsString]) -> u8 {
     (if error.kind() == io::ErrorKind::NotFound { NOT_FOUND } else { NOT_EXECUTABLE }) as u8
 }
 
-/// What an exit code of the launcher says of the executable; `None` when it is the executable's own.
+/// Returns the error that an exit code of the launcher means; `None` if the code is the executable's own.
 pub(super) fn error_of_code(code: i32, config: &ChildConfig) -> Option<String> {
     let program = config.program.display();
     match code {

@@ -13,13 +13,14 @@ fn estimate(revision: u64, plan: &str) -> ForecastJob {
     ForecastJob { revision, request: ForecastRequest::PlanEstimate { plan, settings: Vec::new() } }
 }
 
-/// A worker and what it answers.
+/// Starts a worker. Returns its handle and its replies.
 fn start() -> (Forecaster, mpsc::Receiver<ForecastReply>) {
     let (answers, answered) = mpsc::channel();
     (Forecaster::start(move |reply| drop(answers.send(reply))).unwrap(), answered)
 }
 
-/// A worker that finds all of these jobs when it begins, so that none is flown before the next one comes.
+/// Starts a worker that finds all of these jobs at its start, so that no job is flown before the next one
+/// arrives.
 fn start_on(jobs: Vec<ForecastJob>) -> (Forecaster, mpsc::Receiver<ForecastReply>) {
     let (orders, incoming) = mpsc::channel();
     let (answers, answered) = mpsc::channel();

@@ -1,4 +1,4 @@
-//! Takes what a flight controller answered to whoever asked.
+//! Delivers the answers of a flight controller to the parts of the program that asked.
 
 use std::time::Instant;
 
@@ -9,11 +9,11 @@ use crate::link::proto::fc_client::Answer;
 use crate::link::proto::fc_client::telemetry::code;
 use crate::vehicle::{LateAnswer, Vehicle};
 
-/// What tells where the switches stand.
+/// The poll for the positions of the switches.
 const SWITCHES: Subject = Subject::Message(code::RC);
 
 impl RemoteLink {
-    /// Takes what was answered since the last time.
+    /// Takes the answers that have arrived since the last call.
     pub(super) fn take_answers(&mut self, vehicle: &mut Vehicle, now: Instant) {
         while let Some((id, answer)) = self.client.next_answer() {
             let Some(purpose) = self.waiting.remove(&id) else { continue };
@@ -39,7 +39,7 @@ impl RemoteLink {
                     mailbox.deliver_answer(ticket, LateAnswer::Cli(cli_reply(answer)));
                 }
                 Purpose::Plan(ticket) => {
-                    // An upload ends with it: the plan is another one than it was.
+                    // An upload ends with it: the plan has changed.
                     self.observer.learn(Question::Plan, &answer);
                     mailbox.deliver_answer(ticket, LateAnswer::Cli(cli_reply(answer)));
                 }
@@ -79,7 +79,8 @@ impl RemoteLink {
     }
 
     fn identify(&mut self, question: Question, answer: &Answer) {
-        // A simulated one that stands at a breakpoint is asked again: how long it may stand is looked at elsewhere.
+        // A simulated one that is stopped at a breakpoint is asked again. The time limit for that is checked
+        // elsewhere.
         let is_first = matches!(question, Question::ApiVersion | Question::Variant);
         if self.is_fed() && is_first && matches!(answer, Answer::NotAnswered(_)) {
             return;

@@ -1,31 +1,31 @@
-//! Asks a flight controller what it is and how it is set, one question after the other.
+//! Asks a flight controller for its identity and settings, one question after the other.
 
 use super::observer::Observer;
 use crate::link::proto::fc_client::telemetry::code;
 use crate::link::proto::fc_client::{Answer, Ask, Unanswered};
 use crate::session::upload::LIST;
 
-/// What is asked after each connection, in this order.
+/// The questions after each new connection, in this order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Question {
-    /// The version of its MSP.
+    /// The version of its MSP API.
     ApiVersion,
-    /// Which firmware it is.
+    /// The kind of firmware.
     Variant,
-    /// The firmware's version.
+    /// The version of the firmware.
     Version,
     Board,
-    /// When and with what it was built.
+    /// The date, time and revision of the build, and its options.
     Build,
-    /// Its boxes, in the order of the mode bits.
+    /// The boxes, in the order of the mode bits.
     Boxes,
     /// The conditions of its modes …
     ModeRanges,
-    /// … and which of them follow others.
+    /// … and the links between them.
     ModeLinks,
-    /// Settings that displays and the pilot need: all whose names contain this.
+    /// Settings that displays and the pilot need: all whose names contain this text.
     Settings(&'static str),
-    /// The plan that it holds.
+    /// The stored plan.
     Plan,
 }
 
@@ -45,12 +45,12 @@ const QUESTIONS: [Question; 13] = [
     Question::Plan,
 ];
 
-/// What is asked again once it may have changed.
+/// Returns the questions that are asked again once the answers may have changed.
 pub(super) fn how_it_is_set() -> impl Iterator<Item = Question> {
     QUESTIONS.into_iter().filter(|question| matches!(question, Question::Settings(_) | Question::Plan))
 }
 
-/// The only firmware that is spoken with.
+/// The only supported firmware.
 const BETAFLIGHT: &[u8] = b"BTFL";
 
 impl Question {
@@ -62,7 +62,7 @@ impl Question {
         }
     }
 
-    /// The code of the message; `None` for a line.
+    /// Returns the code of the message; `None` for a line.
     pub(super) fn code(self) -> Option<u16> {
         Some(match self {
             Self::ApiVersion => code::API_VERSION,
@@ -78,22 +78,22 @@ impl Question {
     }
 }
 
-/// How far the questions are.
+/// The progress of the questions.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Identification {
     asked: usize,
 }
 
 impl Identification {
-    /// The next question, when its turn has come.
+    /// Returns the next question.
     pub(super) fn next(&self) -> Option<Question> {
         QUESTIONS.get(self.asked).copied()
     }
 
-    /// Takes an answer; says whether it was the last.
+    /// Takes an answer. Returns `true` if it was the last.
     ///
     /// # Errors
-    /// Why the flight controller is of no use, as a part of a sentence.
+    /// Returns the reason why the flight controller cannot be used, as part of a sentence.
     pub(super) fn take(
         &mut self,
         question: Question,
@@ -101,7 +101,7 @@ impl Identification {
         observer: &mut Observer,
     ) -> Result<bool, String> {
         match (question, answer) {
-            // The connection is gone: everything is asked again over the next.
+            // The connection is lost. All questions are asked again over the next one.
             (_, Answer::NotAnswered(Unanswered::LinkLost)) => return Ok(false),
             (Question::ApiVersion, Answer::NotAnswered(Unanswered::InCli)) => {
                 return Err(

@@ -1,4 +1,4 @@
-//! What a remote flight controller has told of itself, and what follows from it.
+//! The data that a remote flight controller has reported, and the conclusions from it.
 
 mod events;
 mod mission;
@@ -19,26 +19,27 @@ use crate::vehicle::{RemoteController, RemoteTelemetry};
 use events::EventObserver;
 use settings::Settings;
 
-/// How far the altitude of a GPS at rest wanders, m: it is the same place.
+/// The variation of the GPS altitude at rest that still counts as the same place, m.
 const SAME_ALT_M: f64 = 3.0;
 
-/// What is known of a flight controller.
+/// The known state of a flight controller.
 #[derive(Debug, Default)]
 pub struct Observer {
     identity: Identity,
     observation: Observation,
     settings: Settings,
-    /// As it holds it.
+    /// The plan as the flight controller stores it.
     stored_plan: Option<FlightPlan>,
     mission: Option<Mission>,
-    /// Where the craft was first seen: a drawing of it begins there when no world says where it stood.
+    /// The first position of the craft. It is the origin of drawings when no world gives a starting place.
     first_fix: Option<Origin>,
-    /// Where a craft stands that is known to be disarmed, m above mean sea level: arming makes that home's altitude.
+    /// The altitude above mean sea level of a craft that is known to be disarmed, m. Arming makes it the
+    /// altitude of home.
     standing_alt_m: Option<f64>,
-    /// It disarmed, and where its switches stand was not asked since.
+    /// `true` if it has disarmed and the positions of its switches were not requested since.
     awaits_switches: bool,
     events: EventObserver,
-    /// Something new is known.
+    /// `true` if there is new data to deliver.
     changed: bool,
 }
 
@@ -50,17 +51,18 @@ struct Identity {
     build: Option<BuildInfo>,
 }
 
-/// What is known of a craft because it is simulated here.
+/// Facts about a craft that are known because it is simulated here.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Simulated {
-    /// Altitude of its home above mean sea level, m.
+    /// The altitude of its home above mean sea level, m.
     pub(super) home_m: Option<f64>,
-    /// The switch that has it fly home is on; `None` without one.
+    /// `true` while the switch that makes it fly home is on; `None` without such a switch.
     pub(super) commanded: Option<bool>,
 }
 
 impl Observer {
-    /// The connection is gone: what was told is old. What it was set to and where it was seen first may still hold.
+    /// Forgets the reported data after the connection was lost. Its settings and its first position may still
+    /// be valid.
     pub(super) fn forget(&mut self) {
         self.observation = Observation::default();
         self.mission = None;
@@ -69,17 +71,17 @@ impl Observer {
         self.changed = true;
     }
 
-    /// It started anew, or another one may be there: nothing of before counts.
+    /// Forgets everything, because it has restarted or another one may have taken its place.
     pub(super) fn restarted(&mut self) {
         *self = Self { changed: true, ..Self::default() };
     }
 
-    /// Something that is delivered with the rest is different now.
+    /// Marks that other data of the delivery has changed.
     pub(super) fn deliver_again(&mut self) {
         self.changed = true;
     }
 
-    /// Takes in the answer to a question.
+    /// Takes the answer to a question.
     pub(super) fn learn(&mut self, question: Question, answer: &Answer) {
         self.changed = true;
         match (question, answer) {
@@ -103,7 +105,7 @@ impl Observer {
         }
     }
 
-    /// Takes in the reply to a message that was polled.
+    /// Takes the reply to a polled message.
     pub(super) fn take_message(&mut self, code: u16, payload: &[u8]) {
         let was_armed = self.is_armed();
         self.changed |= self.observation.take(code, payload);
@@ -119,12 +121,13 @@ impl Observer {
         }
     }
 
-    /// Where its switches stand was asked, whether it answered or not.
+    /// Records that the positions of its switches were requested, with or without an answer.
     pub(super) fn asked_for_switches(&mut self) {
         self.awaits_switches = false;
     }
 
-    /// Takes in the output of `waypoint status`; gives a sentence when the mission was given up since the last.
+    /// Takes the output of `waypoint status`. Returns a sentence if the mission was aborted since the last
+    /// one.
     pub(super) fn take_mission(&mut self, output: &str) -> Option<String> {
         let mission = Mission::parse(output)?;
         self.changed = true;
@@ -140,15 +143,15 @@ impl Observer {
         }
     }
 
-    /// The frame of the place where the craft was seen first.
+    /// Returns the frame at the first position of the craft.
     pub(super) fn first_fix(&self) -> Option<LocalFrame> {
         self.first_fix.map(|Origin { position, alt_amsl_m }| {
             LocalFrame::new(position.lat_deg(), position.lon_deg(), alt_amsl_m)
         })
     }
 
-    /// Delivers what is new: telemetry, and the events that it shows. Positions count from the origin of `frame`. Of a
-    /// disarming is told once it is known whether a switch did it.
+    /// Delivers new telemetry and the events that it shows. Positions are relative to the origin of `frame`.
+    /// A disarming is reported only once it is known if a switch caused it.
     pub(super) fn deliver(
         &mut self,
         mailbox: &mut RemoteController,
@@ -181,7 +184,7 @@ impl Observer {
         });
     }
 
-    /// From where it counts the altitudes of waypoints.
+    /// Returns the reference of the altitudes of waypoints.
     fn altitude_reference(&self, home_m: Option<f64>) -> AltitudeReference {
         if !self.settings.tell_altitude_reference() {
             AltitudeReference::Untold
@@ -192,53 +195,55 @@ impl Observer {
         }
     }
 
-    /// Whether its settings are known, as far as they say from where it counts the altitudes of waypoints.
+    /// Returns `true` if its settings are known, at least those that show the reference of waypoint
+    /// altitudes.
     pub(super) fn knows_settings(&self) -> bool {
         self.settings.tell_altitude_reference()
     }
 
-    /// Whether it has just disarmed, and where its switches stand is to be asked.
+    /// Returns `true` if it has just disarmed and the positions of its switches must be requested.
     pub(super) fn awaits_switches(&self) -> bool {
         self.awaits_switches
     }
 
-    /// The conditions of its modes, as far as they were told.
+    /// Returns the conditions of its modes, as far as they were reported.
     pub(super) fn mode_ranges(&self) -> Vec<ModeRange> {
         self.observation.mode_ranges().unwrap_or_default()
     }
 
-    /// Whether its waypoints' altitudes count from home; else from sea level.
+    /// Returns `true` if its waypoint altitudes are above home, `false` if they are above sea level.
     pub fn counts_from_home(&self) -> bool {
         self.settings.waypoints_from_home()
     }
 
-    /// Whether its altitude loop has no limit in LAND, as in upstream's master, which counts altitudes from sea level.
+    /// Returns `true` if its altitude loop has no limit in LAND, as in upstream's master, whose altitudes are
+    /// above sea level.
     pub(super) fn falls_in_land(&self) -> bool {
         self.settings.tell_altitude_reference() && !self.counts_from_home()
     }
 
-    /// Whether its heading is that of the magnetometer, so that it is known at rest.
+    /// Returns `true` if it uses the magnetometer for its heading, so that the heading is known at rest.
     pub(super) fn trusts_mag(&self) -> bool {
         self.settings.trusts_mag()
     }
 
-    /// Whether it holds and flies plans, as far as it has told.
+    /// Returns `true` if it is known to store and fly plans.
     pub fn has_plans(&self) -> bool {
         let built_in = self.identity.build.as_ref().and_then(BuildInfo::has_flight_plan);
         self.stored_plan.is_some() || built_in == Some(true)
     }
 
-    /// Whether it is armed, once it has told.
+    /// Returns `true` if it is armed; `None` until it has reported that.
     pub(super) fn armed(&self) -> Option<bool> {
         self.observation.armed()
     }
 
-    /// Whether it is known to be armed.
+    /// Returns `true` if it is known to be armed.
     pub fn is_armed(&self) -> bool {
         self.observation.armed() == Some(true)
     }
 
-    /// What it is, as a sentence.
+    /// Returns its identity as a sentence.
     pub(super) fn introduction(&self, name: &str) -> String {
         let Identity { api, version, board, .. } = &self.identity;
         let version = version.as_deref().unwrap_or("of an unknown version");
@@ -250,7 +255,7 @@ impl Observer {
         format!("{name} answers: Betaflight {version} on {board}{api}; {plans}.")
     }
 
-    /// From where the altitudes of its waypoints count, as a part of a sentence.
+    /// Returns the reference of its waypoint altitudes as part of a sentence.
     pub(super) fn about_altitudes(&self) -> &'static str {
         match (self.knows_settings(), self.counts_from_home()) {
             (false, _) => "from where its waypoints' altitudes count is not known yet",

@@ -1,4 +1,5 @@
-//! What may be done with a craft outside: reading is free, changes are permitted once a connection, nothing moves it.
+//! The permitted actions on a remote craft: reading is always allowed, changes need permission once per
+//! connection, and nothing may move it.
 
 mod impact;
 
@@ -7,35 +8,35 @@ use std::fmt;
 use crate::link::proto::fc_client::{Answer, CliAccess, Unanswered};
 pub use impact::Impact;
 
-/// Why an order that would move a craft outside is not carried out.
+/// Refusal of an order that would move a remote craft.
 pub const NOTHING_MOVES: &str =
     "This craft is real: it is armed, flown and its motors are turned by its own transmitter, not from here.";
 
-/// Why the world of a craft outside cannot be changed.
+/// Refusal to change the world of a remote craft.
 pub const NOTHING_SIMULATED: &str =
     "Nothing is simulated here: this craft is real, and so are its place and its air.";
 
-/// Why a change is not made that the user has not permitted.
+/// Refusal of a change that the user has not permitted.
 pub const NOT_PERMITTED: &str =
     "Changes are not permitted over this connection: the command allow-changes permits them.";
 
-/// What may be done with a flight controller outside.
+/// The access to a remote flight controller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Access {
-    /// Everything: its craft is simulated here.
+    /// Everything is allowed: its craft is simulated here.
     Everything,
-    /// Reading, until the user permits changes.
+    /// Only reading, until the user permits changes.
     Reading,
     /// Reading and changing, until the connection ends.
     Changing,
 }
 
-/// Why something is not done now. `Display` gives a sentence.
+/// The reason for a refusal. `Display` gives a sentence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Denial {
     /// The user has not permitted changes over this connection.
     NotPermitted,
-    /// It is never done: why, as a sentence.
+    /// It is never allowed, with the reason as a sentence.
     Never(&'static str),
 }
 
@@ -49,10 +50,10 @@ impl fmt::Display for Denial {
 }
 
 impl Access {
-    /// Whether something with this impact may be done.
+    /// Checks that an action with this impact is allowed.
     ///
     /// # Errors
-    /// Why not.
+    /// Returns the reason for the refusal.
     pub fn check(self, impact: Impact) -> Result<(), Denial> {
         match (self, impact) {
             (Self::Everything, _) | (_, Impact::Reads) | (Self::Changing, Impact::Changes) => Ok(()),
@@ -61,49 +62,49 @@ impl Access {
         }
     }
 
-    /// Whether the craft is real.
+    /// Returns `true` if the craft is real.
     pub fn is_limited(self) -> bool {
         self != Self::Everything
     }
 }
 
-/// What the user has permitted over the present connection.
+/// The permission for the current connection.
 #[derive(Debug, Default)]
 pub(super) struct Permission {
     /// The number of the connection.
     connection: u32,
     may_change: bool,
-    /// What became of lines so far.
+    /// The results of lines so far.
     lines: Lines,
 }
 
-/// What became of the lines of a connection.
+/// The results of the lines of a connection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum Lines {
     #[default]
     NoneYet,
-    /// None was answered: the craft is armed, or its command line has no framing.
+    /// No line was answered: the craft is armed, or its command line has no framing.
     Closed,
     Work,
 }
 
 impl Permission {
-    /// There is a new connection, over which nothing is permitted yet.
+    /// Begins a new connection, over which nothing is permitted yet.
     pub(super) fn connected(&mut self) {
         *self = Self { connection: self.connection + 1, ..Self::default() };
     }
 
-    /// The connection is gone.
+    /// Ends the permission after the connection was lost.
     pub(super) fn lost(&mut self) {
         self.may_change = false;
     }
 
-    /// The user permits changes over a connection; one that is gone does not matter any more.
+    /// Permits changes over a connection, if it is the current one.
     pub(super) fn permit(&mut self, connection: u32) {
         self.may_change |= connection == self.connection;
     }
 
-    /// Takes in what became of a line.
+    /// Records the result of a line.
     pub(super) fn line_answered(&mut self, answer: &Answer) {
         self.lines = match answer {
             Answer::Line { .. } => Lines::Work,
@@ -112,27 +113,28 @@ impl Permission {
         };
     }
 
-    /// The craft has disarmed: lines that were not answered in flight may be answered now.
+    /// Tries lines again after the craft has disarmed: lines that failed in flight may work now.
     pub(super) fn try_lines_again(&mut self) {
         self.lines = Lines::NoneYet;
     }
 
-    /// The number of the connection.
+    /// Returns the number of the connection.
     pub(super) fn connection(&self) -> u32 {
         self.connection
     }
 
-    /// Whether a line would have to open the command line of a disarmed craft, which is a change itself.
+    /// Returns `true` if a line would have to open the command line of a disarmed craft, which is itself a
+    /// change.
     pub(super) fn opens_cli(&self) -> bool {
         self.lines == Lines::Closed
     }
 
-    /// How lines reach the command line.
+    /// Returns the way in which lines reach the command line.
     pub(super) fn cli(&self) -> CliAccess {
         if self.opens_cli() && self.may_change { CliAccess::Interactive } else { CliAccess::Framed }
     }
 
-    /// What may be done with a real craft.
+    /// Returns the access to a real craft.
     pub(super) fn access(&self) -> Access {
         if self.may_change { Access::Changing } else { Access::Reading }
     }

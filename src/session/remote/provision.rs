@@ -1,12 +1,13 @@
-//! Sets a flight controller outside as lines say: looks what it holds, writes what differs, saves, and looks again.
+//! Configures a remote flight controller with command lines: compares them with its state, writes the
+//! differences, saves, and compares again.
 //!
 //! ```text
 //! look ─▶ nothing differs ───────────────────────────────▶ done
-//!      ─▶ it may not be written: the differences are told ─▶ done
+//!      ─▶ it may not be written: report the differences ─▶ done
 //!      ─▶ write ─▶ save ─▶ restart ─▶ look again ──────────▶ done
 //! ```
 //!
-//! Where it is not known whether it was ever set, it is asked first what is changed in its configuration.
+//! If it is unknown whether it was ever configured, its configuration is first checked for changes.
 
 mod held;
 mod lines;
@@ -28,49 +29,49 @@ use super::self_check::SelfCheck;
 use super::{Identification, RemoteLink, RemoteNotice, RemoteState};
 use crate::link::proto::fc_client::{Answer, Ask, Unanswered};
 
-/// Stores what was written, and restarts.
+/// The line that stores the written settings and restarts.
 const SAVE: &str = "save";
-/// What a firmware says of a setting that it does not have.
+/// The firmware's answer for a setting that it does not have.
 const UNKNOWN_NAME: &str = "INVALID NAME";
-/// How often a lost connection has it begin anew.
+/// The number of lost connections after which the procedure no longer starts again.
 const MOST_LOST: usize = 3;
 
-/// A flight controller that is being set.
+/// The configuration of one flight controller.
 #[derive(Debug)]
 pub struct Provision {
     lines: ProvisionLines,
     wishes: Vec<Wish>,
     may_write: bool,
     phase: Phase,
-    /// What was asked last and is not answered yet.
+    /// The last question or line without an answer yet.
     asked: Option<Asked>,
     held: Held,
     report: ProvisionReport,
     restarted: bool,
-    /// Settings in place of the guide's.
+    /// The settings that replace the guide's.
     landing_gains: Vec<String>,
-    /// What it gets in place of the lines when nothing was ever changed in its configuration, until that is known.
+    /// The lines for a flight controller whose configuration was never changed, until that is known.
     when_bare: Option<ProvisionLines>,
     was_bare: bool,
-    /// A file that says that it was set, and with which words.
+    /// A file to be written after success, with its contents.
     note: Option<(PathBuf, String)>,
-    /// Connections that were lost before it was written.
+    /// The number of connections that were lost before it was written.
     lost: usize,
 }
 
 #[derive(Debug)]
 enum Phase {
-    /// These questions are left; `written` when everything was.
+    /// Reading the remaining answers; `written` is `true` after the settings were written.
     Look {
         left: VecDeque<Question>,
         written: bool,
     },
-    /// The numbers of the wishes that are left.
+    /// Writing the remaining wishes, by number.
     Write {
         left: VecDeque<usize>,
     },
     Restart,
-    /// Through, or given up for this reason.
+    /// Finished, or given up for this reason.
     Done(Result<(), String>),
 }
 
@@ -82,8 +83,8 @@ enum Asked {
 }
 
 impl Provision {
-    /// Sets what these command lines say; with `may_write` unset they are only compared with what the flight controller
-    /// holds. Comments, `save` and batches are passed over.
+    /// Applies these command lines. Without `may_write` they are only compared with the flight controller's
+    /// state. Comments, `save` and batches are skipped.
     pub fn new(lines: ProvisionLines, may_write: bool) -> Self {
         let wishes = wish::wishes(lines.in_order());
         let left = held::questions(&wishes);
@@ -104,21 +105,21 @@ impl Provision {
         }
     }
 
-    /// One in whose configuration nothing was ever changed is set by these lines instead, which may be written: whether it was
-    /// set before is not known.
+    /// Applies these lines instead if nothing was ever changed in the configuration. They may be written. Use
+    /// this if it is unknown whether the flight controller was configured before.
     pub fn or_when_bare(mut self, lines: ProvisionLines) -> Self {
         self.when_bare = Some(lines);
         self.begin();
         self
     }
 
-    /// Once it is through, `file` holds these words.
+    /// Writes these words to `file` after success.
     pub fn noted_in(mut self, file: PathBuf, words: String) -> Self {
         self.note = Some((file, words));
         self
     }
 
-    /// The flight controller turned out to be one that falls in LAND with the guide's altitude gains.
+    /// Adapts the lines to a flight controller that falls in LAND with the guide's altitude gains.
     fn replace_falling_gains(&mut self) {
         let replaced = self.lines.replace_falling_gains();
         if replaced.is_empty() {
@@ -131,7 +132,7 @@ impl Provision {
         self.landing_gains = replaced.into_iter().filter(is_wished).collect();
     }
 
-    /// What to ask next; `None` while an answer or a restart is awaited, and at the end.
+    /// Returns the next request; `None` while an answer or a restart is pending, and at the end.
     fn next(&mut self) -> Option<Ask> {
         if self.asked.is_some() {
             return None;
@@ -153,7 +154,7 @@ impl Provision {
         }
     }
 
-    /// Takes the answer to what was asked last.
+    /// Takes the answer to the last request.
     fn take(&mut self, answer: &Answer) {
         let Some(asked) = self.asked.take() else { return };
         if let (Answer::NotAnswered(Unanswered::LinkLost), true) = (answer, self.lost < MOST_LOST) {
@@ -162,7 +163,7 @@ impl Provision {
         }
         let Answer::Line { text, failed, restarted } = answer else {
             if let Asked::Question(Question::Changes) = asked {
-                // It is left as it is.
+                // The flight controller stays as it is.
                 return;
             }
             let why = match answer {
@@ -188,14 +189,14 @@ impl Provision {
         }
     }
 
-    /// The flight controller has restarted and answers again.
+    /// Continues after the flight controller has restarted and answers again.
     fn reconnected(&mut self) {
         if let Phase::Restart = self.phase {
             self.look_again();
         }
     }
 
-    /// What became of it, at the end; or why it was given up, as a part of a sentence.
+    /// Returns the report at the end, or the reason for a failure as part of a sentence.
     fn result(&self) -> Option<Result<&ProvisionReport, &str>> {
         match &self.phase {
             Phase::Done(Ok(())) => Some(Ok(&self.report)),
@@ -204,7 +205,7 @@ impl Provision {
         }
     }
 
-    /// Whether something was written and no restart followed, so that what was known of the flight controller is old.
+    /// Returns `true` if something was written without a restart, so that the known settings are outdated.
     fn is_changed_without_restart(&self) -> bool {
         self.report.written > 0 && !self.restarted
     }
@@ -224,7 +225,7 @@ impl Provision {
         }
     }
 
-    /// From the beginning: what was written and not saved is gone.
+    /// Starts from the beginning. Lines that were written but not saved are lost.
     fn begin(&mut self) {
         self.report = ProvisionReport { was_bare: self.was_bare, ..ProvisionReport::default() };
         let left = match self.when_bare {
@@ -238,7 +239,7 @@ impl Provision {
         self.phase = Phase::Look { left: held::questions(&self.wishes), written: true };
     }
 
-    /// Everything was looked at.
+    /// Evaluates the answers once all questions are answered.
     fn conclude(&mut self) {
         if let Some(lines) = self.when_bare.take() {
             if self.held.is_bare() {
@@ -265,12 +266,12 @@ impl Provision {
 }
 
 impl RemoteLink {
-    /// Sets the flight controller once it is known, before it counts as ready.
+    /// Configures the flight controller once it is identified, before it counts as ready.
     pub fn provision(&mut self, provision: Provision) {
         self.provision = Some(provision);
     }
 
-    /// It is known and set: from now on it is asked how it is.
+    /// Marks the identified and configured flight controller as ready. Polling starts.
     pub(super) fn become_ready(&mut self) {
         self.state = RemoteState::Ready;
         self.self_check = SelfCheck::default();
@@ -278,7 +279,7 @@ impl RemoteLink {
         self.notices.push(RemoteNotice::Told(self.observer.introduction(&self.ends.name)));
     }
 
-    /// It is known what it is, perhaps after a restart.
+    /// Continues after the flight controller was identified, perhaps after a restart.
     pub(super) fn go_on_with_provision(&mut self) {
         if let Some(provision) = &mut self.provision {
             provision.reconnected();
@@ -303,7 +304,7 @@ impl RemoteLink {
         self.end_provision();
     }
 
-    /// Tells what came of it, once it is over.
+    /// Reports the result once the configuration is finished.
     fn end_provision(&mut self) {
         let Some(provision) = self.provision.take_if(|provision| provision.result().is_some()) else {
             return;

@@ -1,4 +1,5 @@
-//! Asks a flight controller again how it is set, once that may have changed or when it could not tell before.
+//! Reads the settings of a flight controller again after they may have changed, or if they could not be read
+//! before.
 
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
@@ -7,10 +8,10 @@ use super::identify::{Question, how_it_is_set};
 use super::{RemoteLink, RemoteNotice};
 use crate::link::proto::fc_client::{Answer, Unanswered};
 
-/// How long nothing may change for it to be asked: of several changes the last counts.
+/// The time without further changes before the settings are read. The last of several changes counts.
 const SETTLED: Duration = Duration::from_millis(500);
 
-/// What is to be asked again.
+/// The questions to ask again.
 #[derive(Debug, Default)]
 pub(super) struct Refresh {
     due: Option<Instant>,
@@ -18,12 +19,12 @@ pub(super) struct Refresh {
 }
 
 impl Refresh {
-    /// What was read is old.
+    /// Marks the settings as outdated.
     pub(super) fn request(&mut self, now: Instant) {
         self.due = Some(now + SETTLED);
     }
 
-    /// The next question, when its turn has come.
+    /// Returns the next question that is due.
     fn next(&mut self, now: Instant) -> Option<Question> {
         if self.due.take_if(|due| now >= *due).is_some() {
             self.left = how_it_is_set().collect();
@@ -33,13 +34,14 @@ impl Refresh {
 }
 
 impl RemoteLink {
-    /// What to ask again now: while disarmed, for the command line does not open in flight, and where no line opens it for good.
+    /// Returns the next question that is due. Questions are only asked while the craft is disarmed, because
+    /// the command line does not open in flight, and only if a line does not leave the command line open.
     pub(super) fn next_to_refresh(&mut self, now: Instant) -> Option<Question> {
         let can_tell = self.observer.armed() == Some(false) && !self.permission.opens_cli();
         if can_tell { self.refresh.next(now) } else { None }
     }
 
-    /// It disarmed: what it could not tell in flight is asked again.
+    /// Retries the questions that were not answered in flight, after the craft has disarmed.
     pub(super) fn disarmed(&mut self, now: Instant) {
         if !self.observer.knows_settings() || self.permission.opens_cli() {
             self.permission.try_lines_again();

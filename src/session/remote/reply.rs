@@ -1,9 +1,9 @@
-//! Answers of a flight controller outside as the embedded one gives them.
+//! Converts answers of a remote flight controller to those of the embedded one.
 
 use crate::firmware::cli::{CliAction, CliReply};
 use crate::link::proto::fc_client::Answer;
 
-/// The answer to a line as the command line of an embedded flight controller gives it.
+/// Converts the answer to a line to that of an embedded flight controller's command line.
 pub(super) fn cli_reply(answer: Answer) -> CliReply {
     match answer {
         Answer::Line { text, failed, restarted } => {

@@ -1,4 +1,4 @@
-//! The way home of a firmware outside, which has no command for it, but a mode.
+//! The return home of a remote firmware, which has a mode for it instead of a command.
 
 use super::{RemoteLink, RemoteNotice};
 use crate::telemetry::Mode;
@@ -6,7 +6,7 @@ use crate::telemetry::switch::{self, Switch};
 use crate::vehicle::Vehicle;
 
 impl RemoteLink {
-    /// Moves the switch of that mode.
+    /// Moves the switch of GPS RESCUE.
     pub(super) fn switch_rescue(&mut self, vehicle: &mut Vehicle, on: bool) {
         match Switch::of(Mode::GpsRescue, &vehicle.controller().mode_ranges()) {
             Some(Switch { channel, on_us, off_us }) => {
@@ -20,7 +20,7 @@ impl RemoteLink {
         }
     }
 
-    /// Whether the switch that has it fly home is on; `None` without one.
+    /// Returns `true` while the switch that makes it fly home is on; `None` without such a switch.
     pub(super) fn rescue_switch(&self, vehicle: &Vehicle) -> Option<bool> {
         let mut ranges = self.observer.mode_ranges();
         let Switch { channel, .. } = Switch::of(Mode::GpsRescue, &ranges)?;

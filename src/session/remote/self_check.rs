@@ -1,4 +1,4 @@
-//! Whether a SITL executable understands its packets: a craft at rest shows it.
+//! Checks with a craft at rest that a SITL executable interprets its packets correctly.
 
 use std::time::{Duration, Instant};
 
@@ -12,20 +12,21 @@ use crate::signals::fdm::Dialect;
 use crate::telemetry::snapshot::{EstimateView, TruthView};
 use crate::vehicle::Vehicle;
 
-/// How far roll and pitch may be off, degrees.
+/// The greatest error of roll and pitch, degrees.
 const LEAN_DEG: f64 = 2.0;
-/// How far the heading may be off, degrees; the magnetic field that an executable computes points 2° east of north.
+/// The greatest error of the heading, degrees. The magnetic field that an executable computes points 2° east
+/// of north.
 const HEADING_DEG: f64 = 5.0;
-/// How near a heading must be to that of another dialect for it to be named, degrees.
+/// The greatest difference from the heading of another dialect at which that dialect is named, degrees.
 const NEAR_DEG: f64 = 15.0;
-/// How far its GPS may show the craft from where it stands, m.
+/// The greatest distance between the true position and that of its GPS, m.
 const PLACE_M: f64 = 50.0;
 
-/// How long it has to answer before what it shows has settled.
+/// The time for which it must answer before its values have settled.
 const SETTLED: Duration = Duration::from_secs(8);
 
 impl RemoteLink {
-    /// Checks once, some time after it has begun to answer, whether it shows the craft at rest as it is.
+    /// Checks once, some time after the first answer, that it shows the craft at rest correctly.
     pub(super) fn check_at_rest(&mut self, vehicle: &Vehicle, now: Instant) -> Option<String> {
         let peer = self.ends.peer.as_ref()?;
         let answers = self.state == RemoteState::Ready && self.motors == FeedState::Answering;
@@ -47,19 +48,19 @@ impl RemoteLink {
     }
 }
 
-/// When the check is due.
+/// The time of the check.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) enum SelfCheck {
     /// It does not answer yet.
     #[default]
     Waiting,
-    /// It answers; at this instant.
+    /// It answers. The check is due at this time.
     At(Instant),
     Done,
 }
 
 impl SelfCheck {
-    /// Whether the check is to be made now, once.
+    /// Returns `true` once, when the check is due.
     pub(super) fn is_due(&mut self, answers: bool, now: Instant) -> bool {
         match *self {
             Self::Waiting if answers => *self = Self::At(now + SETTLED),
@@ -74,22 +75,22 @@ impl SelfCheck {
     }
 }
 
-/// What an executable shows of a craft at rest.
+/// The values that an executable reports for a craft at rest.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct AtRest {
     /// The dialect of the packets.
     pub(super) sent: Dialect,
-    /// The craft as it is.
+    /// The true state of the craft.
     pub(super) truth: TruthView,
-    /// The craft as the executable has it.
+    /// The executable's estimate of the craft.
     pub(super) told: EstimateView,
-    /// Its heading is that of the magnetometer, so that it is known at rest.
+    /// `true` if its heading comes from the magnetometer and is therefore known at rest.
     pub(super) trusts_mag: bool,
-    /// Where its GPS shows the craft.
+    /// The position reported by its GPS.
     pub(super) place: Option<LatLon>,
 }
 
-/// What is wrong, as a sentence; `None` when all is well.
+/// Returns the error as a sentence; `None` if everything is correct.
 pub(super) fn finding(at_rest: &AtRest) -> Option<String> {
     let AtRest { sent, truth, told, trusts_mag, place } = *at_rest;
     let (Some(roll), Some(pitch), Some(heading)) = (told.roll_deg, told.pitch_deg, told.heading_deg) else {
@@ -117,7 +118,7 @@ pub(super) fn finding(at_rest: &AtRest) -> Option<String> {
     })
 }
 
-/// The dialect as which a packet of `sent` shows this heading.
+/// Returns the dialect in which a packet of `sent` shows this heading.
 fn fitting_dialect(sent: Dialect, truth: &TruthView, heading_deg: f64) -> Option<Dialect> {
     let yaw = (90.0 - truth.heading_deg).to_radians();
     let state = State {
@@ -131,7 +132,8 @@ fn fitting_dialect(sent: Dialect, truth: &TruthView, heading_deg: f64) -> Option
         alt_m: 0.0,
         pressure_pa: 101_325.0,
     };
-    // An executable that reads `read` shows this heading; it is shown the true one when it is sent what it reads.
+    // An executable that reads the dialect `read` shows this heading. With packets in that dialect it would
+    // show the true one.
     [Dialect::SitlGz, Dialect::GzPlugin, Dialect::Legacy].into_iter().filter(|read| *read != sent).find(
         |read| {
             let seen = read.decode(&sent.encode(&state), Gravity::Included).attitude * Vector3::x();
@@ -140,7 +142,7 @@ fn fitting_dialect(sent: Dialect, truth: &TruthView, heading_deg: f64) -> Option
     )
 }
 
-/// The angle between two headings, degrees.
+/// Returns the angle between two headings, degrees.
 fn off_by(a_deg: f64, b_deg: f64) -> f64 {
     let off = (a_deg - b_deg).rem_euclid(360.0);
     off.min(360.0 - off)
@@ -171,7 +173,7 @@ mod tests {
 
     #[test]
     fn the_dialect_that_would_fit_is_named() {
-        // Builds without the bridge take the quaternion for that of a world turned by half a turn.
+        // Builds without the bridge take the quaternion for that of a world that is rotated by 180°.
         let sentence = finding(&at_rest(0.0, 0.0, 180.0)).unwrap();
         assert!(sentence.contains("as sitl-gz") && sentence.contains("--fdm-dialect"), "{sentence}");
         let east = finding(&at_rest(90.0, 0.0, 270.0)).unwrap();

@@ -1,19 +1,20 @@
-//! A flight controller that does not answer over a connection that stays open: an adapter that is plugged in while the
-//! board behind it has no power.
+//! Detects a flight controller that does not answer over a connection that stays open, such as an adapter
+//! whose board has no power.
 
 use std::time::Instant;
 
 use super::{FIRST_ANSWER, FeedState, RemoteEnds, RemoteLink, RemoteNotice, RemoteState};
 use crate::link::proto::fc_client::{Answer, Unanswered};
 
-/// So many requests in a row, each of which is awaited for two seconds at least.
+/// The number of unanswered requests in a row after which it counts as silent. Each waits for at least two
+/// seconds.
 const MOST_SILENT: u32 = 2;
 
-/// How many requests were not answered since one was.
+/// The number of requests without an answer since the last answer.
 #[derive(Debug, Default)]
 pub(super) struct Silence {
     requests: u32,
-    /// The flight controller counts as gone.
+    /// `true` once the flight controller counts as gone.
     told: bool,
 }
 
@@ -28,7 +29,8 @@ impl Silence {
 }
 
 impl RemoteLink {
-    /// What a real craft told is old once it has been silent for some seconds; when it answers again it may be another one.
+    /// Forgets the data of a real craft once it has been silent for some seconds. When it answers again, it
+    /// may be another one.
     pub(super) fn follow_silence(&mut self) {
         let is_silent = self.silence.requests >= MOST_SILENT;
         match self.state {
@@ -49,14 +51,15 @@ impl RemoteLink {
         }
     }
 
-    /// Gives up a program that has never answered, and tells of one that does not answer any more.
+    /// Gives up a program that has never answered, and reports one that has stopped answering.
     pub(super) fn tell_silence(&mut self, now: Instant) {
         let is_over = |since: Instant| now.saturating_duration_since(since) >= FIRST_ANSWER;
         let started = self.ends.child.is_some().then_some(self.started);
         if !self.is_fed() || matches!(self.state, RemoteState::Unusable(_)) {
             return;
         }
-        // One that somebody else started and another program is connected to has been told so.
+        // A program that somebody else started, and to which another program is connected, was already
+        // reported.
         let is_taken = self.told_loss.is_some() && self.ends.child.is_none();
         if self.answers == 0 && !is_taken && self.first_connected.or(started).is_some_and(is_over) {
             let RemoteEnds { name, stream, .. } = &self.ends;
@@ -82,8 +85,8 @@ impl RemoteLink {
         }
     }
 
-    /// There is a connection to a flight controller, over which nothing was said yet. Whose craft is real may be another one
-    /// than before; a SITL that is fed from here is the same until it ends.
+    /// Starts with a flight controller on a new connection. A real craft may be another one than before; a
+    /// SITL that this program feeds is the same until it ends.
     pub(super) fn meet(&mut self) {
         self.silence = Silence::default();
         self.refresh = super::Refresh::default();
@@ -93,7 +96,7 @@ impl RemoteLink {
         if !self.is_fed() {
             self.observer.restarted();
         }
-        // Another one may be connected where the one before was of no use.
+        // A usable one may be connected now, although the last one was not.
         if !self.is_fed() || !matches!(self.state, RemoteState::Unusable(_)) {
             self.state = RemoteState::Identifying;
             self.identification = super::Identification::default();

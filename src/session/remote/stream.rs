@@ -1,4 +1,4 @@
-//! Moves the bytes of a flight controller's serial port, and follows its connection.
+//! Moves the bytes of a flight controller's serial port, and tracks its connection.
 
 use std::task::{Context, Poll};
 use std::time::Instant;
@@ -8,13 +8,13 @@ use super::{RemoteLink, RemoteNotice, RemoteState};
 use crate::link::StreamEvent;
 use crate::vehicle::Vehicle;
 
-/// Most pieces, and bytes, that are read between two steps, so that a peer that floods does not hold the craft up: what is
-/// not read yet holds up the peer.
+/// The maximum number of pieces and bytes that are read between two steps, so that a flood from the peer does
+/// not hold up the craft. Unread data holds up the peer.
 const MOST_READ: usize = 64;
 const MOST_BYTES: usize = 8 * 1024;
 
 impl RemoteLink {
-    /// Takes what has come over the serial port.
+    /// Reads the data that has arrived over the serial port.
     pub(super) fn read_stream(
         &mut self,
         vehicle: &mut Vehicle,
@@ -54,7 +54,7 @@ impl RemoteLink {
                 Some(StreamEvent::Lost(reason)) => self.lose(&reason, vehicle),
             }
         }
-        // The queue did not say that it wakes anybody.
+        // The queue was not polled until it was empty, so no wake-up is registered.
         if let Some(context) = context {
             context.waker().wake_by_ref();
         }
@@ -68,13 +68,13 @@ impl RemoteLink {
         self.observer.forget();
         match self.state {
             RemoteState::Unusable(_) => {}
-            // Its own program may still be starting: that is told when it takes too long.
+            // Its own program may still be starting. A delay that is too long is reported elsewhere.
             RemoteState::Connecting if self.ends.child.is_some() => {}
             RemoteState::Connecting => {
                 let notice = format!("No connection to {}: {reason}; it is tried again.", self.ends.name);
                 self.notices.push(RemoteNotice::Lost(notice));
             }
-            // One that somebody else started closes its port when it ends, to be started again.
+            // A program that somebody else started closes its port when it ends to be restarted.
             RemoteState::Identifying | RemoteState::Ready
                 if self.is_fed() && self.ends.child.is_none() && self.heard =>
             {
@@ -86,7 +86,7 @@ impl RemoteLink {
                 self.state = RemoteState::Lost;
             }
             RemoteState::Identifying | RemoteState::Ready | RemoteState::Lost => {
-                // One that is closed as soon as it is made is told once.
+                // A connection that closes at once is reported only once.
                 if self.state != RemoteState::Lost && self.told_loss.as_deref() != Some(reason) {
                     let notice = format!(
                         "The connection to {} is lost: {reason}; it is made again by itself.",
@@ -103,11 +103,11 @@ impl RemoteLink {
         }
     }
 
-    /// Sends what the client wants to send.
+    /// Sends the client's output.
     pub(super) fn write_stream(&mut self) {
         let output = self.client.take_output();
         if !output.is_empty() {
-            // A full queue means a stream that carries nothing any more: the client gives the request up.
+            // A full queue means that the stream carries nothing any more. The client gives the request up.
             drop(self.ends.stream.to.try_send(output));
         }
     }

@@ -1,4 +1,4 @@
-//! A link to boards that say what a test has them say.
+//! Tests a link with boards whose answers the tests choose.
 #![allow(clippy::disallowed_methods, reason = "the clock of a test begins somewhere")]
 
 mod board;
@@ -18,7 +18,7 @@ const TICK: Duration = Duration::from_millis(10);
 const FIELD: Place = Place { lat: 470_000_000, lon: 80_000_000, alt_m: 400 };
 const COAST: Place = Place { lat: 540_000_000, lon: 100_000_000, alt_m: 5 };
 
-/// The link, the board at its other end, and what was told.
+/// The link, the board at its other end, and the notices.
 struct Bench {
     vehicle: Vehicle,
     link: RemoteLink,
@@ -47,7 +47,7 @@ impl Bench {
         self.to_link.try_send(StreamEvent::Connected).unwrap();
     }
 
-    /// The cable goes from this board to another one.
+    /// Moves the cable from this board to another one.
     fn plug_into(&mut self, board: Board) {
         self.to_link.try_send(StreamEvent::Lost("it was pulled".to_owned())).unwrap();
         self.run(0.1);
@@ -189,7 +189,7 @@ fn a_craft_that_its_pilot_disarms_is_disarmed_by_the_switch() {
         bench.run(5.0);
         (bench.board.armed, bench.board.arm_us) = (true, 1900);
         bench.run(2.0);
-        // Whatever was asked last: the switch is told after the disarming.
+        // Regardless of the last poll: the switch is reported after the disarming.
         bench.board.armed = false;
         bench.board.arm_us = if switch_is_on { 1900 } else { 1000 };
         bench.run(1.0);

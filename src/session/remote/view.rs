@@ -1,54 +1,55 @@
-//! What is shown and told of a flight controller outside.
+//! The view of a remote flight controller and the notices about it.
 
 use std::fmt;
 
 use super::Access;
 
-/// How far a flight controller is known.
+/// The state of the link to a flight controller.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum RemoteState {
-    /// Its program starts, or no connection was made yet.
+    /// Its program is starting, or no connection was made yet.
     Connecting,
-    /// It is asked what it is and how it is set.
+    /// Its identity and settings are being read.
     Identifying,
-    /// It answers and tells.
+    /// It answers, and telemetry arrives.
     Ready,
-    /// The connection is gone; another is made by itself.
+    /// The connection is lost. Another one is made automatically.
     Lost,
-    /// It is of no use: why, as a sentence. Nothing follows.
+    /// It cannot be used, with the reason as a sentence. A real flight controller is still asked for its
+    /// API version, and is identified again once it answers.
     Unusable(String),
 }
 
-/// What a screen shows of a remote flight controller.
+/// The state of a remote flight controller for the display.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RemoteView {
-    /// What it is called: a file, or where it is.
+    /// The name: a file, or the address.
     pub name: String,
-    /// How far it is known.
+    /// The state of the link.
     pub state: RemoteState,
-    /// What may be done with it.
+    /// The permitted access.
     pub access: Access,
-    /// It holds and flies plans, as far as it has told.
+    /// `true` if it is known to store and fly plans.
     pub has_plans: bool,
-    /// Its command line has no framing: a line opens it, and it stays open.
+    /// `true` if its command line has no framing: a line opens it, and it stays open.
     pub opens_cli: bool,
-    /// Its command line is open, and telemetry rests.
+    /// `true` while its command line is open, which suspends telemetry.
     pub in_cli: bool,
-    /// The number of the present connection: a permission is for one.
+    /// The number of the current connection. A permission applies to one connection.
     pub connection: u32,
 }
 
-/// What is told of a remote flight controller. `Display` gives a sentence.
+/// A notice about a remote flight controller. `Display` gives a sentence.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum RemoteNotice {
     /// A line that its program printed.
     Output(String),
     Told(String),
-    /// It does not speak any more, or not as it should: a sentence.
+    /// It no longer answers, or does not answer correctly, as a sentence.
     Lost(String),
-    /// It started anew, so that what was set and not stored is gone: a sentence.
+    /// It has restarted and lost unsaved settings, as a sentence.
     Restarted(String),
-    /// It is of no use: a sentence.
+    /// It cannot be used, as a sentence.
     Failed(String),
 }
 

@@ -26,7 +26,8 @@ const EEPROM_WRITE: u16 = 250;
 impl Session {
     pub(super) fn take_commands(&mut self, now: Duration, context: &mut Context<'_>) {
         while let Some(mut command) = self.next_command(context) {
-            // A key that is held asks faster than an instant is found: what follows in one direction is one way.
+            // A held key repeats faster than an instant is found. Consecutive seeks in one direction are
+            // combined.
             while let Command::Seek(Seek::Seconds(way)) = &mut command {
                 match self.next_command(context) {
                     Some(Command::Seek(Seek::Seconds(more))) if more.signum() == way.signum() => *way += more,
@@ -40,7 +41,7 @@ impl Session {
             let seeks = matches!(command, Command::Seek(_));
             self.carry_out(command, now);
             if seeks {
-                // Its picture is shown before the next.
+                // Its view is shown before the next seek.
                 return;
             }
         }
@@ -60,7 +61,7 @@ impl Session {
         }
     }
 
-    /// Whether a command waits that could be carried out now.
+    /// Returns `true` if a command is waiting.
     pub(super) fn has_commands(&self) -> bool {
         self.held_back.is_some() || !self.commands.is_empty()
     }
@@ -92,18 +93,19 @@ impl Session {
                 *self.vehicle.transmitter_mut().sticks_mut() = frame;
             }
             Command::CutRc(cut) => {
-                // Taking the sticks back wins over a script that still sends.
+                // Taking the sticks back overrides a script that still sends.
                 self.vehicle.controller_mut().take_over_sticks(!cut);
                 self.vehicle.transmitter_mut().set_cut(cut);
             }
             Command::Cli { line, reply } => self.run_cli(line, reply),
-            // The lines of two would mix.
+            // The lines of two uploads would mix.
             Command::Upload { reply, .. } if self.upload_under_way().is_some() => {
                 drop(reply.send(Err(UPLOADING.to_owned())));
             }
             Command::Upload { plan, mut settings, reply } => {
                 let reference = self.vehicle.controller().altitude_reference();
-                // They were found for the simulated craft: a real one is never given gains that nobody asked for.
+                // The gains were found for the simulated craft. A real one never gets gains that the user did
+                // not request.
                 let is_simulated = !self.access().is_limited();
                 let landing_gains = match reference {
                     AltitudeReference::SeaLevel { .. } if is_simulated => {
@@ -185,7 +187,8 @@ impl Session {
         }
     }
 
-    /// As a ground station does it by MSP: the craft goes on without a restart. A remote flight controller stores by itself.
+    /// Saves as a ground station does over MSP, without a restart. A remote flight controller stores
+    /// its configuration itself.
     fn save(&mut self, reply: oneshot::Sender<Result<(), String>>) {
         let is_real = self.access().is_limited();
         let controller = self.vehicle.controller_mut();

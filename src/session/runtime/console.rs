@@ -12,7 +12,7 @@ use crate::session::command::CliOutput;
 use crate::vehicle::Answer;
 
 impl Session {
-    /// Runs a line; the answer of a remote flight controller comes later.
+    /// Runs a line. The answer of a remote flight controller arrives later.
     pub(super) fn run_cli(&mut self, line: String, reply: oneshot::Sender<CliOutput>) {
         match self.vehicle.controller_mut().run_cli(&mut self.console, &line) {
             Answer::Now(mut answer) => {
@@ -25,7 +25,7 @@ impl Session {
         }
     }
 
-    /// Does what a line asked the owner of an embedded flight controller to do; says whether that restarted.
+    /// Carries out the actions of a line for an embedded flight controller. Returns `true` if it restarted.
     fn carry_out_actions(&mut self, reply: &mut CliReply) -> bool {
         let controller = self.vehicle.controller_mut();
         let done = self.persistence.carry_out(reply, controller);
@@ -41,7 +41,7 @@ impl Session {
     }
 }
 
-/// What the console shows of an answer.
+/// Returns the console's output for an answer.
 pub(super) fn output(line: &str, answer: CliReply, restarted: bool) -> CliOutput {
     let advice = advice(line, &answer);
     CliOutput { text: answer.text, advice, restarted }

@@ -1,4 +1,4 @@
-//! Passes on what a remote flight controller answers later than it was asked.
+//! Passes on the late answers of a remote flight controller.
 
 use std::time::Instant;
 
@@ -14,7 +14,7 @@ use crate::session::late_answers::{NO_ANSWER, no_answer_line};
 use crate::session::upload::{Upload, UploadProgress, UploadReport, plan_above_home};
 use crate::vehicle::LateAnswer;
 
-/// A part of the user interface that awaits the answer of a remote flight controller.
+/// A part of the user interface that waits for the answer of a remote flight controller.
 #[derive(Debug)]
 pub(super) enum WaitingInterface {
     Line {
@@ -26,25 +26,25 @@ pub(super) enum WaitingInterface {
         reply: oneshot::Sender<Result<Box<FlightPlan>, String>>,
     },
     Save {
-        /// Gets whether it is stored.
+        /// Receives `Ok` once the configuration is stored.
         reply: oneshot::Sender<Result<(), String>>,
     },
-    /// An upload, which goes on with the answer.
+    /// An upload, which continues with the answer.
     Upload {
-        /// What is left of it.
+        /// The rest of the upload.
         upload: Box<Upload>,
         reply: oneshot::Sender<Result<UploadReport, String>>,
     },
 }
 
 impl Session {
-    /// Passes on what has been answered since, and gives up what is overdue.
+    /// Passes on the new answers, and gives up overdue requests.
     pub(super) fn take_late_answers(&mut self, now: Instant) {
         while let Some((ticket, answer)) = self.vehicle.controller_mut().take_answer() {
             self.changed = true;
             match (self.late_answers.take(ticket), answer) {
                 (Some(WaitingInterface::Line { line, reply }), LateAnswer::Cli(said)) => {
-                    // It has stored and restarted by itself.
+                    // It has saved and restarted by itself.
                     let restarted =
                         said.actions.iter().any(|action| matches!(action, CliAction::Restart { .. }));
                     drop(reply.send(output(&line, said, restarted)));
@@ -83,7 +83,7 @@ impl Session {
         }
     }
 
-    /// How far the upload is that is under way.
+    /// Returns the progress of the current upload.
     pub(super) fn upload_under_way(&self) -> Option<UploadView> {
         self.late_answers.recipients().find_map(|recipient| match recipient {
             WaitingInterface::Upload { upload, .. } => Some(upload.lines_sent()),
@@ -93,7 +93,7 @@ impl Session {
         })
     }
 
-    /// Reports the result of an upload, once there is one.
+    /// Reports the result of an upload once it is finished.
     pub(super) fn report_upload(
         &mut self,
         upload: Box<Upload>,

@@ -1,4 +1,4 @@
-//! Keeps off what may not be done with a craft that is real.
+//! Refuses actions that are not allowed on a real craft.
 
 use tokio::sync::oneshot;
 
@@ -9,12 +9,12 @@ use crate::session::command::{CliOutput, Command};
 use crate::session::remote::{Access, Denial, Impact, NOTHING_MOVES, NOTHING_SIMULATED, RemoteLink};
 
 impl Session {
-    /// What may be done with the craft.
+    /// Returns the access to the craft.
     pub(super) fn access(&self) -> Access {
         self.remote.as_ref().map_or(Access::Everything, RemoteLink::access)
     }
 
-    /// The command, unless it may not be carried out: then it is answered.
+    /// Returns the command if it is allowed. Otherwise answers it with the refusal.
     pub(super) fn refuse_to_real_craft(&mut self, command: Command) -> Option<Command> {
         let Err(denial) = self.access().check(impact_of(&command)) else { return Some(command) };
         let sentence = denial.to_string();
@@ -33,7 +33,7 @@ impl Session {
     }
 }
 
-/// What a command does to a craft outside. Time and forecasts have rules of their own.
+/// Returns the impact of a command on a remote craft. Time and forecasts have their own rules.
 fn impact_of(command: &Command) -> Impact {
     match command {
         Command::Cli { line, .. } => Impact::of_line(line),
@@ -58,7 +58,7 @@ fn impact_of(command: &Command) -> Impact {
     }
 }
 
-/// The request of a client, unless it may not be handled: then it is answered, and why comes back.
+/// Returns the request of a client if it is allowed. Otherwise answers it and returns the refusal.
 pub(super) fn refuse_request(request: Request, access: Access) -> Result<Request, Denial> {
     match access.check(impact_of_request(&request)) {
         Ok(()) => Ok(request),
@@ -69,14 +69,14 @@ pub(super) fn refuse_request(request: Request, access: Access) -> Result<Request
     }
 }
 
-/// What a request of a client does to the craft.
+/// Returns the impact of a client's request on the craft.
 pub(super) fn impact_of_request(request: &Request) -> Impact {
     match request {
         Request::Msp { code, payload, .. } => Impact::of_message(*code, payload),
         Request::Cli { line, .. } => Impact::of_line(line),
         Request::Restart { .. } => Impact::Changes,
         Request::Rc { .. } | Request::Fdm { .. } => Impact::Forbidden(NOTHING_MOVES),
-        // The client's own line, in which nothing is typed yet.
+        // The client's own command line, into which nothing is typed yet.
         Request::EnterCli { .. }
         | Request::Complete { .. }
         | Request::LeftCli { .. }
@@ -85,7 +85,7 @@ pub(super) fn impact_of_request(request: &Request) -> Impact {
     }
 }
 
-/// Answers a request that is not carried out with the reason, as far as it has an answer.
+/// Answers a request with the reason for its refusal, if the request has an answer.
 pub(super) fn refuse(request: Request, reason: &str) {
     match request {
         Request::Msp { reply, .. } => answer(reply, None),
@@ -97,7 +97,7 @@ pub(super) fn refuse(request: Request, reason: &str) {
     }
 }
 
-/// A client that went away needs no answer.
+/// Sends an answer. A client that has disconnected needs none.
 fn answer<T>(reply: oneshot::Sender<T>, value: T) {
     drop(reply.send(value));
 }

@@ -1,4 +1,4 @@
-//! Lets the vehicle speak with its remote flight controller.
+//! Exchanges data between the vehicle and its remote flight controller.
 #![allow(clippy::disallowed_methods, reason = "answers are awaited in wall time")]
 
 use std::task::Context;
@@ -9,7 +9,7 @@ use crate::session::event::SessionEvent;
 use crate::session::remote::RemoteNotice;
 
 impl Session {
-    /// Sends what the vehicle has for its flight controller and takes in what came from there.
+    /// Sends the vehicle's data for its flight controller and takes the data from it.
     pub(super) fn exchange_with_remote(&mut self, context: &mut Context<'_>) {
         let Some(remote) = &mut self.remote else { return };
         for notice in remote.exchange(&mut self.vehicle, Some(context), Instant::now()) {

@@ -1,4 +1,4 @@
-//! Handles what comes over the links.
+//! Handles the requests of the links.
 #![allow(clippy::disallowed_methods, reason = "this is where wall time meets simulated time")]
 
 use std::task::{Context, Poll};
@@ -21,13 +21,13 @@ use crate::telemetry::LinkState;
 use crate::timeline::Timeline;
 use crate::vehicle::Vehicle;
 
-/// Most wall time that requests get in one round of the loop; what is left waits for the next.
+/// The maximum wall time for requests in one round of the loop. The remaining requests wait for the next round.
 const REQUEST_TIME: Duration = Duration::from_millis(1);
 
 impl Session {
-    /// Handles the requests that wait; gives the ticks that an external simulator made the craft fly.
+    /// Handles the waiting requests. Returns the ticks that an external simulator made the craft fly.
     pub(super) fn handle_requests(&mut self, context: &mut Context<'_>) -> u64 {
-        // Otherwise the next view is due soon.
+        // While time runs, the next view is due soon anyway.
         let access = self.access();
         let rewound_to = self.timeline.as_ref().and_then(Timeline::shown).map(Vehicle::time);
         self.vehicle.controller_mut().set_rewound(rewound_to.is_some());
@@ -47,7 +47,7 @@ impl Session {
                 self.more_waits = false;
                 break;
             };
-            // A simulator's packets change the view like time does, at its own rhythm.
+            // A simulator's packets change the view like time does, at their own rate.
             self.changed |= time_stands_still && !matches!(request, Request::Fdm { .. });
             let request = match refuse_request(request, access) {
                 Ok(request) => request,
@@ -124,7 +124,8 @@ impl Session {
         flown
     }
 
-    /// Cuts the virtual sticks once RC comes over a link: resting, they would disarm the craft the moment a script stops.
+    /// Cuts the virtual sticks once RC comes over a link. At rest they would disarm the craft as soon as a
+    /// script stops.
     fn yield_sticks(&mut self) {
         let controller = self.vehicle.controller();
         let from_link = matches!(controller.rc_source(), Some(RcSource::Udp | RcSource::Msp));
@@ -138,7 +139,8 @@ impl Session {
         }
     }
 
-    /// A script sends fifty frames of wall time a second; at a higher speed the receiver would miss it.
+    /// Repeats RC from sockets. A script sends fifty frames per second of wall time; at a higher speed the
+    /// receiver would detect a loss.
     pub(super) fn keep_rc_fresh(&mut self) {
         if let Some(endpoints) = &self.endpoints
             && self.wanted_speed() > 1.0
@@ -150,7 +152,7 @@ impl Session {
     }
 }
 
-/// Reports the first RC of a script, and states of a simulator as long as none was accepted.
+/// Reports the first RC of a script, and the states of a simulator until one was accepted.
 fn report_first_packets(
     request: &Request,
     rc_received: &mut bool,

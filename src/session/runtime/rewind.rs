@@ -1,4 +1,4 @@
-//! Shows earlier instants of the flight, and flies on from them.
+//! Shows earlier instants of the flight, and continues the flight from them.
 
 use std::time::Duration;
 
@@ -17,16 +17,17 @@ use crate::telemetry;
 use crate::timeline::{RecordedFlight, Shown, Timeline, TimelineView};
 use crate::vehicle::{Answer, Vehicle};
 
-/// How long the flight goes on at most until something happens, µs.
+/// The longest time that the flight continues until an event, µs.
 const RUN_ON_US: u64 = 600_000_000;
 
-/// Time before the first alarm of a mishap that is shown, µs: a link is cut before its loss is noticed.
+/// The time before the first alarm of a mishap at which the view starts, µs: a link is cut before its loss is
+/// detected.
 const MISHAP_LEAD_US: u64 = 2_000_000;
 
-/// What may come from outside while time stands still before it is recorded, bytes.
+/// The amount of input that may arrive while time is paused before it is recorded, bytes.
 const FLOOD_BYTES: usize = 1 << 20;
 
-/// Until when the flight goes on as fast as it goes.
+/// The condition until which the flight continues as fast as possible.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RunOn {
     states_only: bool,
@@ -34,29 +35,29 @@ pub(super) struct RunOn {
 }
 
 impl Session {
-    /// The vehicle that is shown: at an earlier instant, or the one that flies.
+    /// Returns the vehicle that is shown: that of the earlier instant, or the one that flies.
     pub(super) fn shown_vehicle(&self) -> &Vehicle {
         self.timeline.as_ref().and_then(Timeline::shown).unwrap_or(&self.vehicle)
     }
 
-    /// A copy of the vehicle that is shown, to fly it somewhere else.
+    /// Returns a copy of the vehicle that is shown, for other flights.
     pub(super) fn copy_of_shown(&self) -> Vehicle {
         let mut copy = self.shown_vehicle().clone();
         copy.keep_inputs(false);
         copy
     }
 
-    /// Whether an earlier instant is shown.
+    /// Returns `true` while an earlier instant is shown.
     pub(super) fn is_rewound(&self) -> bool {
         self.timeline.as_ref().is_some_and(|timeline| timeline.shown().is_some())
     }
 
-    /// Whether the flight goes on until something happens.
+    /// Returns `true` while the flight continues until an event.
     pub(super) fn is_running_on(&self) -> bool {
         self.run_on.is_some()
     }
 
-    /// Begins with a flight that was flown before: tells what happened in it, and shows one of its instants.
+    /// Begins with a flight that was flown before: sends its events, and shows one of its instants.
     pub(super) fn begin_with(&mut self, events: Vec<telemetry::Event>, show: SimTime) {
         self.events.send_all(events);
         self.pacer.set_paused(true, Duration::ZERO);
@@ -65,7 +66,7 @@ impl Session {
         }
     }
 
-    /// What was recorded of the flight up to the instant that is shown.
+    /// Returns the recording of the flight to which the shown instant belongs.
     pub(super) fn recorded_flight(&mut self) -> Result<Box<RecordedFlight>, String> {
         let (shown, head) = (self.shown_vehicle().time(), self.vehicle.time());
         let timeline = self.timeline.as_mut().ok_or(NOT_RECORDED)?;
@@ -90,12 +91,12 @@ impl Session {
         })
     }
 
-    /// The speed that time is to have, times real time.
+    /// Returns the wanted multiple of real time.
     pub(super) fn wanted_speed(&self) -> f64 {
         if self.run_on.is_some() { *SPEED_RANGE.end() } else { self.pacer.speed() }
     }
 
-    /// Gives a command back that may be carried out; one that would steer while an earlier instant is shown is refused.
+    /// Returns a command that may be carried out. Refuses control inputs while an earlier instant is shown.
     pub(super) fn refuse_while_rewound(&mut self, command: Command) -> Option<Command> {
         if !self.is_rewound() {
             return Some(command);
@@ -133,7 +134,7 @@ impl Session {
         None
     }
 
-    /// Runs a line that changes nothing on a copy of the vehicle that is shown.
+    /// Runs a read-only line on a copy of the vehicle that is shown.
     fn read_shown(&self, line: &str) -> CliOutput {
         let mut copy = self.copy_of_shown();
         let time_s = copy.time().as_secs_f64();
@@ -145,7 +146,7 @@ impl Session {
                     .get_or_insert_with(|| format!("As it was at the shown instant, {time_s:.1} s."));
                 output
             }
-            // What runs elsewhere is not recorded, so that no earlier instant of it is shown.
+            // A remote flight controller is not recorded, so no earlier instant of it is shown.
             Answer::Later(_) => CliOutput {
                 text: "###ERROR: REWOUND###".to_owned(),
                 advice: Some(REWOUND.to_owned()),
@@ -154,7 +155,7 @@ impl Session {
         }
     }
 
-    /// Time goes on by what is due; gives the ticks.
+    /// Advances time by the due ticks and returns the ticks flown.
     pub(super) fn advance(&mut self, due: u64, now: Duration) -> u64 {
         if let Some(timeline) = &mut self.timeline
             && timeline.shown().is_some()
@@ -174,7 +175,7 @@ impl Session {
         due
     }
 
-    /// One tick of the vehicle that flies, recorded.
+    /// Runs and records one tick of the vehicle that flies.
     fn tick(&mut self) {
         self.keep_rc_fresh();
         if let Some(timeline) = &mut self.timeline {
@@ -183,7 +184,7 @@ impl Session {
         self.vehicle.tick();
     }
 
-    /// Records what comes while time stands still, when it is much.
+    /// Records the input that arrives while time is paused, if there is much of it.
     pub(super) fn record_flood(&mut self) {
         if let Some(timeline) = &mut self.timeline
             && self.vehicle.input_bytes() > FLOOD_BYTES
@@ -192,7 +193,7 @@ impl Session {
         }
     }
 
-    /// Flies on until something happens, for a slice.
+    /// Continues the flight for one slice, or until an event.
     fn run_on(&mut self, run_on: RunOn) -> u64 {
         for flown in 1..=SLICE {
             self.tick();
@@ -211,7 +212,7 @@ impl Session {
         SLICE
     }
 
-    /// Steps forwards, in the recording while an earlier instant is shown.
+    /// Steps forwards. While an earlier instant is shown, steps in the recording.
     pub(super) fn step(&mut self, ticks: u32, now: Duration) {
         match &mut self.timeline {
             Some(timeline) if timeline.shown().is_some() => {
@@ -280,7 +281,7 @@ impl Session {
         }
     }
 
-    /// Back to the vehicle that flies; time goes on if it did before.
+    /// Returns to the vehicle that flies. Time continues if it did before.
     fn show_newest(&mut self, now: Duration) {
         if let Some(timeline) = &mut self.timeline
             && timeline.shown().is_some()
@@ -292,8 +293,8 @@ impl Session {
         }
     }
 
-    /// Flies on from the earlier instant that is shown. The clients of the links are disconnected, as by a restart: what
-    /// they know of the craft has become untrue.
+    /// Continues the flight from the earlier instant that is shown. The clients of the links are
+    /// disconnected, as by a restart, because their data about the craft is no longer true.
     pub(super) fn fly_on(&mut self, now: Duration) {
         self.flush_events();
         let left = self.vehicle.time();
@@ -315,8 +316,8 @@ impl Session {
     }
 }
 
-/// Returns the request of a client, unless it would change the vehicle that waits while an earlier instant is shown: then it
-/// is refused with the reason.
+/// Returns the request of a client, unless it would change the vehicle that waits while an earlier instant is
+/// shown. Such a request is refused with the reason.
 pub(super) fn refuse_changing_request(request: Request) -> Option<Request> {
     // Leaving the command line changes nothing.
     let leaves = matches!(&request, Request::Cli { line, .. } if is_exit_without_reboot(line));
@@ -327,7 +328,7 @@ pub(super) fn refuse_changing_request(request: Request) -> Option<Request> {
     None
 }
 
-/// Whether a line leaves the command line and does nothing else.
+/// Returns `true` if a line only leaves the command line.
 fn is_exit_without_reboot(line: &str) -> bool {
     let mut words = line.split_ascii_whitespace();
     let mut next_is = |word: &str| words.next().is_some_and(|next| next.eq_ignore_ascii_case(word));

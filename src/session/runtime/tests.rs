@@ -12,7 +12,7 @@ use crate::sim::WorldConfig;
 use crate::timeline::MarkKind;
 use crate::vehicle::{LateAnswer, RemoteRequest, RemoteTelemetry, VehicleConfig};
 
-/// A session whose flight controller runs elsewhere: `firmware`, which is asked by hand.
+/// A session with a remote flight controller. The tests themselves pass its requests to `firmware`.
 struct Rig {
     session: Session,
     commands: mpsc::Sender<Command>,
@@ -20,7 +20,7 @@ struct Rig {
     console: Interpreter,
 }
 
-/// A session without doors.
+/// Returns the settings of a session without doors.
 fn config_of(vehicle: Vehicle, is_recorded: bool) -> SessionConfig {
     SessionConfig {
         vehicle,
@@ -52,12 +52,12 @@ impl Rig {
         Self { session, commands, firmware, console: Interpreter::default() }
     }
 
-    /// Asks for the upload of these waypoints; gets the result.
+    /// Requests the upload of this many waypoints. Returns the receiver of the result.
     fn upload(&mut self, waypoints: usize) -> oneshot::Receiver<Result<UploadReport, String>> {
         self.upload_with(waypoints, "ap_max_angle = 33")
     }
 
-    /// The same with this setting.
+    /// Requests the same with this setting.
     fn upload_with(
         &mut self,
         waypoints: usize,
@@ -76,12 +76,12 @@ impl Rig {
         self.commands.try_send(Command::Seek(seek)).unwrap();
     }
 
-    /// What the session does with its commands before it publishes a view.
+    /// Carries out the session's commands up to the next view.
     fn take_commands(&mut self) {
         self.session.take_commands(Duration::ZERO, &mut Context::from_waker(Waker::noop()));
     }
 
-    /// Answers what was asked since, `change` having a look at each line and its output; how many lines these were.
+    /// Answers the new requests. `change` may change the output of each line. Returns the number of lines.
     fn answer(&mut self, change: impl Fn(&str, &mut String)) -> usize {
         let mut answered = 0;
         while let Some((ticket, request)) = self.mailbox().take_request() {
@@ -124,7 +124,7 @@ fn an_upload_to_a_remote_flight_controller_shows_how_far_it_is_until_it_was_read
 fn an_upload_waits_for_a_slow_line_and_fails_in_a_sentence_where_nobody_answers() {
     let mut rig = Rig::new();
     let mut result = rig.upload(2);
-    // As long as the client of the serial port waits for a line with much output.
+    // The client of the serial port may wait that long for a line with much output.
     rig.session.take_late_answers(Instant::now() + Duration::from_secs(90));
     assert!(result.try_recv().is_err(), "it is still awaited");
     while rig.answer(|_, _| {}) > 0 {}
@@ -235,7 +235,7 @@ fn a_held_rewind_key_is_one_way_and_each_other_instant_is_shown_before_the_next(
     drop(sent.1);
 }
 
-/// A session whose craft is embedded and flies on at `speed` times real time.
+/// Returns a session with an embedded flight controller at `speed` times real time.
 fn rig_at(speed: f64) -> Rig {
     let mut configuration = Configuration::default();
     configuration.starter_modes();
@@ -248,7 +248,7 @@ fn rig_at(speed: f64) -> Rig {
 }
 
 impl Rig {
-    /// Flies the built-in landing to its end; gives the speed there.
+    /// Flies the built-in landing to its end. Returns the speed there.
     fn fly_and_land(&mut self) -> f64 {
         let plan = crate::plan::builtin::BuiltinPlan::find("land").unwrap().read().unwrap().plan;
         let (reply, _result) = oneshot::channel();

@@ -1,4 +1,4 @@
-//! Runs a session whose craft an external simulator moves, and prints what the SITL executable prints.
+//! Runs a session whose craft is moved by an external simulator, and prints the lines of the SITL executable.
 
 #![allow(clippy::disallowed_methods, reason = "the drop-in runs in real time, as the executable does")]
 
@@ -23,27 +23,27 @@ use crate::telemetry::{
 };
 use crate::vehicle::{Vehicle, VehicleConfig};
 
-/// Interval at which clients of the serial port are counted.
+/// The interval at which clients of the serial port are counted.
 const CLIENT_INTERVAL: Duration = Duration::from_millis(5);
-/// Interval of the lines about the flight.
+/// The interval of the lines about the flight.
 const FLIGHT_INTERVAL: Duration = Duration::from_secs(1);
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct SitlConfig {
-    /// The doors; their UDP ports are those of `ports`.
+    /// The doors. Their UDP ports are those of `ports`.
     pub doors: ListenConfig,
-    /// Where motors are sent.
+    /// The address to which motors are sent.
     pub motors_ip: IpAddr,
     pub ports: SitlPorts,
-    /// How the firmware is built.
+    /// The build options of the firmware.
     pub firmware: FirmwareOptions,
-    /// What it says about its build.
+    /// The reported build information.
     pub build: BuildInfo,
-    /// How to speak with the simulator.
+    /// The settings of the link to the simulator.
     pub fdm: FdmLinkConfig,
-    /// In which order the simulator's model expects the motors.
+    /// The order in which the simulator's model expects the motors.
     pub motor_order: MotorOrder,
-    /// End instead of starting the firmware anew.
+    /// `true` to exit instead of restarting the firmware.
     pub exit_on_reboot: bool,
 }
 
@@ -57,23 +57,23 @@ pub enum OutputLine {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SitlEnd {
     Stopped,
-    /// The firmware restarted, and was told to end then.
+    /// The firmware restarted and was configured to exit then.
     Rebooted,
 }
 
-/// Why it cannot run.
+/// The reason why the firmware cannot run.
 #[derive(Debug, thiserror::Error)]
 pub enum SitlError {
-    /// Doors that cannot be opened; each was told in a line of its own.
+    /// Doors that cannot be opened. Each was reported in its own line.
     #[error("{0}")]
     Doors(String),
     /// There is no socket for the motors.
     #[error(transparent)]
     Motors(#[from] MotorsError),
-    /// There is no vehicle to run.
+    /// The vehicle cannot be created.
     #[error(transparent)]
     Vehicle(#[from] WorldError),
-    /// The system gives no thread.
+    /// The system cannot start a thread.
     #[error("cannot start a thread: {0}")]
     Thread(#[from] std::io::Error),
 }
@@ -81,18 +81,19 @@ pub enum SitlError {
 pub struct Sitl {
     session: Handle,
     doors: Listeners,
-    /// Where the state of the doors is published to the session.
+    /// Publishes the state of the doors to the session.
     publish: watch::Sender<Vec<EndpointStatus>>,
     exit_on_reboot: bool,
-    /// Clients of the serial port that were told.
+    /// The number of reported clients of the serial port.
     clients: u32,
 }
 
 impl Sitl {
-    /// Opens the doors and boots the firmware. Every link is told in a line with its result.
+    /// Opens the doors and boots the firmware. Prints a line with the result for every link.
     ///
     /// # Errors
-    /// When a door cannot be opened: a simulator that silently receives nothing costs an hour.
+    /// Returns an error if a door cannot be opened: a simulator that silently receives nothing would cost an
+    /// hour of search.
     pub async fn open(
         config: SitlConfig,
         mut store: Store,
@@ -127,13 +128,13 @@ impl Sitl {
         Ok(Self { session, doors, publish, exit_on_reboot: config.exit_on_reboot, clients: 0 })
     }
 
-    /// Where a door listens.
+    /// Returns the address at which a door listens.
     pub fn address(&self, door: EndpointKind) -> Option<SocketAddr> {
         self.doors.address(door)
     }
 
-    /// Runs until `stop`, or until the firmware restarts and was told to end then; gives back the doors, which are still open.
-    /// `each_second` sees the vehicle once a second while a simulator flies it.
+    /// Runs until `stop`, or until the firmware restarts and was configured to exit then. Returns the doors,
+    /// which are still open. `each_second` gets the vehicle once a second while a simulator flies it.
     pub async fn run(
         mut self,
         print: &mut impl FnMut(OutputLine),
@@ -168,7 +169,7 @@ impl Sitl {
         };
         let Handle { commands, thread, view, .. } = self.session;
         drop(commands.send(Command::Quit).await);
-        // The session has nothing left to say.
+        // The session sends nothing more.
         drop(thread.join());
         let senseless = BadPackets::of(&view.borrow().endpoints).senseless;
         let bad = BadPackets { senseless, ..BadPackets::of(&self.doors.status()) };
@@ -186,7 +187,7 @@ impl Sitl {
         }
     }
 
-    /// Clients of the serial port come and go.
+    /// Prints the connections and disconnections of serial clients.
     fn print_clients(&mut self, print: &mut impl FnMut(OutputLine)) {
         let clients = self.doors.clients(EndpointKind::Tcp);
         while self.clients < clients {
@@ -201,7 +202,7 @@ impl Sitl {
     }
 }
 
-/// The firmware on what is stored, with an external simulator and no sticks of its own.
+/// Boots the firmware on the stored configuration, with an external simulator and without own sticks.
 fn boot(
     config: &SitlConfig,
     store: &mut Store,
@@ -225,7 +226,7 @@ fn boot(
     Ok(vehicle)
 }
 
-/// The line about an event, when the executable has one.
+/// Prints the line about an event, if the executable has one.
 fn print_event(event: &Event, print: &mut impl FnMut(OutputLine)) {
     match &event.kind {
         SessionEvent::FirstState { stamp_s, from } => {
@@ -273,7 +274,7 @@ fn print_flight(vehicle: &Snapshot, print: &mut impl FnMut(OutputLine)) {
     print(OutputLine::Out(line.to_string()));
 }
 
-/// Opens the links and tells how that went.
+/// Opens the links and prints the results.
 async fn open_links(
     config: &SitlConfig,
     print: &mut impl FnMut(OutputLine),
@@ -301,7 +302,7 @@ async fn open_links(
     (links, motors)
 }
 
-/// Opens the links, tells how that went, and closes them again: what the executable does before it reads a
+/// Opens the links, prints the results, and closes them again, as the executable does before it reads a
 /// configuration file.
 pub async fn show_links(config: &SitlConfig, print: &mut impl FnMut(OutputLine)) {
     let (links, _motors) = open_links(config, print).await;

@@ -8,7 +8,7 @@ use crate::telemetry::{ArmingFlags, Refusal};
 
 use crate::link::proto::fdm;
 
-/// Result of opening a link, as the executable prints it.
+/// The result of opening a link, as printed by the executable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(i8)]
 pub(super) enum OpenResult {
@@ -34,7 +34,7 @@ impl Default for SitlPorts {
     }
 }
 
-/// The first line, before any link is open; `ip` is where motors are sent.
+/// Returns the first line, printed before any link is open. `ip` is the address to which motors are sent.
 pub(super) fn output_line(ip: &str, ports: SitlPorts) -> String {
     format!(
         "[SITL] The SITL will output to IP {ip}:{} (Gazebo) and {ip}:{} (RealFlightBridge)",
@@ -42,7 +42,7 @@ pub(super) fn output_line(ip: &str, ports: SitlPorts) -> String {
     )
 }
 
-/// The lines about the motor links, then about state and RC, with the results of opening them.
+/// Returns the lines about the motor links, then about state and RC, with the results of opening them.
 pub(super) fn link_lines(
     ip: &str,
     ports: SitlPorts,
@@ -59,28 +59,28 @@ pub(super) fn link_lines(
     ]
 }
 
-/// The first state datagram: the simulator's clock, s, and who sent it.
+/// Returns the line about the first state datagram, with the simulator's clock, s, and the sender.
 pub(super) fn first_fdm_line(stamp_s: f64, from: SocketAddr) -> String {
     format!("[SITL] new fdm {} t:{stamp_s:.6} from {}:{}", fdm::SIZE, from.ip(), from.port())
 }
 
-/// The first RC datagram.
+/// Returns the line about the first RC datagram.
 pub(super) fn first_rc_line(stamp_s: f64, frame: &RcFrame) -> String {
     let [c1, c2, c3, c4, c5, c6, c7, c8, ..] = frame.channels;
     format!("[SITL] new rc 40: t:{stamp_s:.6} AETR: {c1} {c2} {c3} {c4} AUX1-4: {c5} {c6} {c7} {c8}")
 }
 
-/// What the once-a-second line tells.
+/// The contents of the once-a-second line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct FlightLine {
-    /// Firmware time, ms.
+    /// The firmware's time, ms.
     pub t_ms: u64,
     /// Ground speed, m/s.
     pub speed_mps: f64,
     pub position: LatLon,
     /// Altitude, m.
     pub alt_m: f64,
-    /// Roll, pitch, heading, degrees, as the craft's own messages count them.
+    /// Roll, pitch and heading, degrees, with the signs of the craft's own messages.
     pub attitude_deg: [f64; 3],
 }
 
@@ -93,17 +93,17 @@ impl std::fmt::Display for FlightLine {
     }
 }
 
-/// The once-a-second line while arming is blocked.
+/// Returns the once-a-second line while arming is blocked.
 pub(super) fn blocked_line(t_ms: u64, reasons: ArmingFlags) -> String {
     format!("[SITL] t={t_ms}ms Arming disabled: {reasons}")
 }
 
-/// The autopilot does not engage, or goes on waiting, and why.
+/// Returns the line that the autopilot does not engage, or keeps waiting, with the reason.
 pub(super) fn refused_line(t_ms: u64, refusal: Refusal) -> String {
     format!("[SITL] t={t_ms}ms Autopilot refused: {}", refusal.sentence())
 }
 
-/// The restart of the firmware.
+/// The line about a restart of the firmware.
 pub(super) const RESET_LINE: &str = "[system]Reset!";
 
 #[cfg(test)]

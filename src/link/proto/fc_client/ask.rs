@@ -1,40 +1,40 @@
-//! What a flight controller is asked, and what comes of it.
+//! Requests to a flight controller and their answers.
 
-/// Names a request until its answer; chosen by whoever asks.
+/// The name of a request until its answer, chosen by the caller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct AskId(pub u64);
 
-/// What a flight controller is asked.
+/// A request to a flight controller.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Ask {
     Msp {
         code: u16,
         payload: Vec<u8>,
     },
-    /// A line of the command line, in the way of [`CliAccess`]; by MSP message while the command line does not open.
+    /// A command line, sent as [`CliAccess`] says; by MSP message while the command line does not open.
     Line(String),
-    /// A line of the command line by MSP message alone, which works in flight and disturbs nothing.
+    /// A command line by MSP message only, which works in flight and disturbs nothing.
     MessageLine(String),
 }
 
-/// What came of a request.
+/// The result of a request.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Answer {
     /// The payload of the reply; `None` when the message is unknown or refused.
     Msp(Option<Vec<u8>>),
     /// The output of a line.
     Line {
-        /// As it came, without echo and prompt.
+        /// The output as received, without echo and prompt.
         text: String,
-        /// Whether it tells of an error.
+        /// `true` if the output reports an error.
         failed: bool,
-        /// Whether the flight controller restarts, so that what was known of it is old.
+        /// `true` if the flight controller restarts, which makes everything known about it outdated.
         restarted: bool,
     },
     NotAnswered(Unanswered),
 }
 
-/// Why there is no answer. `Display` is a part of a sentence.
+/// The reason for a missing answer. `Display` gives a part of a sentence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::Display)]
 pub enum Unanswered {
     /// There is no connection, or it was lost meanwhile.
@@ -46,22 +46,23 @@ pub enum Unanswered {
     /// The command line does not open: the craft is armed, or the firmware has no framed one.
     #[strum(to_string = "the flight controller does not open its command line")]
     CliClosed,
-    /// The interactive command line is open, and MSP rests.
+    /// The interactive command line is open, which suspends MSP.
     #[strum(
         to_string = "the flight controller's command line is open: leave it by `exit`, which restarts it"
     )]
     InCli,
-    /// Too many requests wait.
+    /// Too many requests are waiting.
     #[strum(to_string = "too many requests wait for the flight controller")]
     TooMany,
 }
 
-/// How lines reach the command line of a disarmed craft.
+/// The way in which lines reach the command line of a disarmed craft.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum CliAccess {
-    /// Each between STX and ETX, MSP before and after it.
+    /// Each line between STX and ETX, with MSP before and after it.
     #[default]
     Framed,
-    /// At the prompt that `#` opens, for releases without framing: MSP rests until a line restarts the flight controller.
+    /// At the prompt that `#` opens, for releases without framing. MSP is suspended until a line restarts the
+    /// flight controller.
     Interactive,
 }

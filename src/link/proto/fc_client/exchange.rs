@@ -1,4 +1,4 @@
-//! What is under way between a request and its answer.
+//! The exchange between a request and its answer.
 
 use std::time::Duration;
 
@@ -9,13 +9,13 @@ use super::message_line::MessageLine;
 use super::prompt_line::PromptLine;
 use super::request::Request;
 
-/// How long a line may take with all of its output, however steadily that comes.
+/// The longest time for a line with all of its output, even if the output comes steadily.
 pub(super) const LONGEST: Duration = Duration::from_secs(60);
 
-/// What is under way; one at a time.
+/// The current exchange; one at a time.
 #[derive(Debug)]
 pub(super) enum Exchange {
-    /// A message that nobody asked for: its answer shows that all earlier ones have come or never will.
+    /// A message of the client itself. Its answer shows that all earlier answers have come or never will.
     Synchronise(Request),
     Msp(Request),
     /// A line by message.
@@ -26,26 +26,26 @@ pub(super) enum Exchange {
     Prompt(PromptLine),
 }
 
-/// How far a line is.
+/// The progress of a line.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum LineProgress {
     /// Its answer is still to come.
     Waiting,
     Answered {
         text: String,
-        /// Whether the prompt stays open.
+        /// `true` if the prompt stays open.
         open: bool,
     },
-    /// Through, and the flight controller says that it restarts.
+    /// The line is done, and the flight controller reports that it restarts.
     Restarting { text: String },
-    /// The output has stopped without its end.
+    /// The output stopped before its end.
     Silent,
     /// The command line did not open; the line was not sent.
     NotOpened,
 }
 
 impl Exchange {
-    /// When it has something to do without bytes.
+    /// Returns the time at which the exchange must run without bytes.
     pub(super) fn due(&self) -> Duration {
         match self {
             Self::Synchronise(request) | Self::Msp(request) => request.due(),
@@ -55,7 +55,7 @@ impl Exchange {
         }
     }
 
-    /// The line that the command line did not open for.
+    /// Returns the line for which the command line did not open.
     pub(super) fn into_line(self) -> Option<String> {
         match self {
             Self::Framed(line) => Some(line.line),
@@ -64,7 +64,7 @@ impl Exchange {
         }
     }
 
-    /// The answer that a closed link is, if it is one: the flight controller restarts.
+    /// Returns the answer that a closed link gives, if it means that the flight controller restarts.
     pub(super) fn when_link_closes(&self) -> Option<Answer> {
         let (line, text) = match self {
             Self::Framed(line) => line.sent()?,

@@ -6,24 +6,25 @@ use super::exchange::{LONGEST, LineProgress};
 use super::line_text;
 
 const ETX: u8 = 0x03;
-/// How long the STX that opens the command line is awaited.
+/// The longest wait for the STX that opens the command line.
 const OPENING: Duration = Duration::from_millis(700);
-/// How long output may pause; a board that stores its settings is silent while it does.
+/// The longest pause in the output. A board is silent while it stores its settings.
 const PAUSE: Duration = Duration::from_secs(4);
-/// How long nothing may follow the announcement of a restart for it to be believed on a link that stays open.
+/// The silence that must follow the announcement of a restart before it is believed on a link that stays
+/// open.
 pub(super) const RESTART_QUIET: Duration = Duration::from_millis(500);
-/// Most output that is kept.
+/// The maximum number of output bytes that are kept.
 pub(super) const MAX_OUTPUT: usize = 256 * 1024;
 
-/// A line and its output. STX was sent; the line follows once it is answered, for a flight controller that does not open
-/// its command line takes single letters for commands.
+/// A line and its output. STX was sent; the line follows once STX is answered, because a flight controller
+/// that does not open its command line takes single letters for commands.
 #[derive(Debug)]
 pub(super) struct FramedLine {
     pub(super) line: String,
     open: bool,
     output: Vec<u8>,
     begun: Duration,
-    /// When something was sent, or came last that was kept.
+    /// The time of the last transmission or of the last byte kept.
     active: Duration,
 }
 
@@ -32,7 +33,7 @@ impl FramedLine {
         Self { line, open: false, output: Vec::new(), begun: now, active: now }
     }
 
-    /// Whether the command line is open, and every byte belongs to it.
+    /// Returns `true` while the command line is open and every byte belongs to it.
     pub(super) fn is_open(&self) -> bool {
         self.open
     }
@@ -80,7 +81,7 @@ impl FramedLine {
         (self.active + patience).min(self.begun + LONGEST)
     }
 
-    /// The line and its output so far, once it was sent.
+    /// Returns the line and its output so far, once it was sent.
     pub(super) fn sent(&self) -> Option<(&str, String)> {
         self.open.then(|| (self.line.as_str(), self.text()))
     }
@@ -94,7 +95,7 @@ impl FramedLine {
     }
 }
 
-/// The last letters of an output.
+/// Returns the end of an output.
 pub(super) fn end_of(output: &[u8]) -> std::borrow::Cow<'_, str> {
     String::from_utf8_lossy(&output[output.len().saturating_sub(80)..])
 }

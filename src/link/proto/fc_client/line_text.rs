@@ -2,26 +2,27 @@
 
 use super::Answer;
 
-/// The last word of a flight controller that restarts.
+/// The last word in the output of a flight controller that restarts.
 const REBOOTING: &str = "Rebooting";
-/// Lines that restart the flight controller or leave it for its boot loader.
+/// Lines that restart the flight controller or start its boot loader.
 const RESTARTING: [&str; 7] = ["save", "exit", "defaults", "reboot", "bl", "dfu", "msc"];
-/// What an error begins with at the prompt, and the answer to an unknown word between STX and ETX.
+/// The start of an error at the prompt, and the answer to an unknown word between STX and ETX.
 const ERRORS: [&str; 2] = ["###ERROR", "ERR_CMD_NA"];
 
-/// A line as it is sent: control characters and what is not ASCII would be dropped or mean something else.
+/// Returns a line as it is sent. Control characters and characters outside ASCII are removed: they would be
+/// dropped or mean something else.
 pub fn printable(line: &str) -> String {
     let printable: String = line.chars().filter(|letter| matches!(letter, ' '..='~')).collect();
     printable.trim().to_owned()
 }
 
-/// Whether a line says nothing, but for a comment.
+/// Returns `true` if a line is empty or only a comment.
 pub(super) fn is_empty(line: &str) -> bool {
     let line = printable(line);
     line.is_empty() || line.starts_with('#')
 }
 
-/// Whether a line is meant to end in a restart.
+/// Returns `true` if a line is meant to end in a restart.
 pub(super) fn restarts(line: &str) -> bool {
     let mut words = line.split_ascii_whitespace();
     let restarting =
@@ -30,17 +31,17 @@ pub(super) fn restarts(line: &str) -> bool {
         && !words.any(|word| word.eq_ignore_ascii_case("noreboot") || word.eq_ignore_ascii_case("nosave"))
 }
 
-/// Whether an output ends in the announcement of a restart.
+/// Returns `true` if an output ends in the announcement of a restart.
 pub(super) fn announces_restart(text: &str) -> bool {
     text.trim_end().ends_with(REBOOTING)
 }
 
-/// Whether an output tells of an error.
+/// Returns `true` if an output reports an error.
 pub(super) fn tells_of_error(text: &str) -> bool {
     ERRORS.iter().any(|error| text.contains(error))
 }
 
-/// The answer that an output is.
+/// Turns an output into an answer.
 pub(super) fn answer(text: String, restarted: bool) -> Answer {
     let failed = tells_of_error(&text);
     Answer::Line { text, failed, restarted }

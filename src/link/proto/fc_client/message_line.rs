@@ -1,4 +1,4 @@
-//! A command line as an MSP message, its output in pages.
+//! A command line as an MSP message, with its output in pages.
 
 use std::time::Duration;
 
@@ -8,11 +8,11 @@ use super::{Answer, line_text};
 use crate::link::proto::command_message::{CLI_COMMAND, CUT, REFUSED};
 use crate::link::proto::msp::{Frame, MAX_REQUEST};
 
-/// Bytes of a request behind the line: a zero and the offset.
+/// The bytes of a request after the line: a zero and the offset.
 const OFFSET_BYTES: usize = 3;
-/// Bytes of a reply before the output: total length and flags.
+/// The bytes of a reply before the output: total length and flags.
 const HEAD: usize = 3;
-/// What is appended to an output of which the flight controller kept the beginning only.
+/// The text appended to an output of which the flight controller kept only the beginning.
 const WAS_CUT: &str = "\r\n###ERROR: THE OUTPUT IS TOO LONG FOR A MESSAGE###\r\n";
 
 /// A line that was sent.
@@ -24,22 +24,22 @@ pub(super) struct MessageLine {
     begun: Duration,
 }
 
-/// What a frame is to the line.
+/// The meaning of a frame for the line.
 #[derive(Debug)]
 pub(super) enum Page {
-    /// The answer to something else.
+    /// The answer to another request.
     NotMine,
-    /// A page; the next was asked for.
+    /// A page. The request for the next one was sent.
     More,
     Last(Answer),
-    /// The flight controller knows no such message.
+    /// The flight controller does not support the message.
     Unknown,
-    /// The rest of the output cannot be had.
+    /// The rest of the output is not available.
     Lost,
 }
 
 impl MessageLine {
-    /// Whether a line has room in a message.
+    /// Returns `true` if a line fits into a message.
     pub(super) fn fits(line: &str) -> bool {
         line.len() + OFFSET_BYTES <= MAX_REQUEST
     }
@@ -49,7 +49,7 @@ impl MessageLine {
         Self { line: line.to_owned(), request, output: Vec::new(), begun: now }
     }
 
-    /// Takes a frame, and asks for the next page when there is one.
+    /// Takes a frame and requests the next page if there is one.
     pub(super) fn answer(&mut self, frame: Frame, now: Duration, output: &mut Vec<u8>) -> Page {
         let first = self.output.is_empty();
         let Some(payload) = self.request.answer(frame) else { return Page::NotMine };
@@ -79,12 +79,12 @@ impl MessageLine {
         Answer::Line { text, failed, restarted: false }
     }
 
-    /// Whether the reply is late; it is not asked for again, for a line may do something.
+    /// Returns `true` if the reply is overdue. The line is not sent again because it may have an effect.
     pub(super) fn is_overdue(&self, now: Duration) -> bool {
         now >= self.due()
     }
 
-    /// When the reply is late.
+    /// Returns the time at which the reply is overdue.
     pub(super) fn due(&self) -> Duration {
         self.request.due().min(self.begun + LONGEST)
     }

@@ -1,34 +1,35 @@
-//! Which message is to be asked next so that a display is up to date and the link has room for everything else.
+//! Chooses the next message to poll so that the display is up to date and the link has room for everything
+//! else.
 //!
-//! The greatest lateness, measured in a message's own period, has its turn. So a slow link slows everything down alike, and
-//! nothing starves.
+//! The message that is latest, measured in its own period, comes next. A slow link therefore slows everything
+//! down alike, and nothing starves.
 
 use std::time::Duration;
 
 use super::telemetry::code;
 use super::{Answer, Ask, Unanswered};
 
-/// Prints the mission's progress.
+/// The line that prints the mission's progress.
 const MISSION_LINE: &str = "waypoint status";
-/// How often the mission is asked for while nothing is flown.
+/// The polling period of the mission while nothing is flown.
 const MISSION_AT_REST: Duration = Duration::from_secs(2);
-/// How often a message is asked that was refused: a setting may bring it to life.
+/// The polling period of a refused message. A setting may enable it later.
 const REFUSED_PERIOD: Duration = Duration::from_secs(30);
-/// The share of the link's bytes that may be used: the user's own requests need some.
+/// The share of the link's bytes for polling. The user's own requests need the rest.
 const SHARE: f64 = 0.6;
-/// Bytes of a frame around its payload, with those of the request.
+/// The bytes of a frame around its payload, including those of the request.
 const FRAME_BYTES: usize = 15;
 
-/// Something that is asked again and again.
+/// A request that is repeated periodically.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Poll {
     Message(u16),
-    /// The progress of the mission, by message.
+    /// The progress of the mission, by MSP message.
     Mission,
 }
 
 impl Poll {
-    /// How it is asked.
+    /// Returns the request.
     pub fn ask(self) -> Ask {
         match self {
             Self::Message(code) => Ask::Msp { code, payload: Vec::new() },
@@ -37,7 +38,7 @@ impl Poll {
     }
 }
 
-/// What is asked, most important first, and how often while the link carries it, ms.
+/// The polls, most important first, and their periods on a link that can carry them, ms.
 const PLAN: [(Poll, u64); 12] = [
     (Poll::Message(code::BOX_IDS), 5000),
     (Poll::Message(code::STATUS_EX), 100),
@@ -53,13 +54,13 @@ const PLAN: [(Poll, u64); 12] = [
     (Poll::Message(code::MODE_RANGES_EXTRA), 5000),
 ];
 
-/// What is asked when.
+/// The schedule of the polls.
 #[derive(Debug, Clone)]
 pub struct Schedule {
     entries: Vec<Entry>,
-    /// Bytes a second that may be used; `None` = more than anybody asks for.
+    /// The bytes per second that polling may use; `None` if the link exceeds every need.
     budget: Option<f64>,
-    /// What was asked last has had its share of the link by then.
+    /// The time at which the last poll has used up its share of the link.
     free_at: Duration,
 }
 
@@ -67,13 +68,13 @@ pub struct Schedule {
 struct Entry {
     poll: Poll,
     period: Duration,
-    /// When it was asked last, of late.
+    /// The time of the last poll; `None` if the value is outdated.
     asked: Option<Duration>,
     refused: bool,
 }
 
 impl Schedule {
-    /// A schedule for a link that carries so many bytes a second; `None` = more than anybody asks for.
+    /// Creates a schedule for a link with this capacity in bytes per second; `None` if it exceeds every need.
     pub fn new(bytes_per_s: Option<u32>) -> Self {
         let entries = PLAN.map(|(poll, ms)| Entry {
             poll,
@@ -88,7 +89,7 @@ impl Schedule {
         }
     }
 
-    /// Everything is old: a new connection, or somebody changed something.
+    /// Marks everything as outdated, after a new connection or a change.
     pub fn refresh(&mut self) {
         for entry in &mut self.entries {
             entry.asked = None;
@@ -97,14 +98,15 @@ impl Schedule {
         self.free_at = Duration::ZERO;
     }
 
-    /// This is old: it is asked next, unless something else was never asked.
+    /// Marks a poll as outdated. It comes next unless another one was never sent.
     pub fn hasten(&mut self, poll: Poll) {
         if let Some(entry) = self.entries.iter_mut().find(|entry| entry.poll == poll) {
             entry.asked = None;
         }
     }
 
-    /// What is to be asked now, if anything; from then on it counts as asked. `in_flight`: armed, or a mission is flown.
+    /// Returns the poll to send now, if any, and counts it as sent. `in_flight` means armed or flying a
+    /// mission.
     pub fn next(&mut self, in_flight: bool, now: Duration) -> Option<Poll> {
         if now < self.free_at {
             return None;
@@ -132,7 +134,7 @@ impl Schedule {
         Some(entry.poll)
     }
 
-    /// Takes note of what came of a request.
+    /// Records the result of a poll.
     pub fn answered(&mut self, poll: Poll, answer: &Answer) {
         let (refused, bytes) = match answer {
             Answer::Msp(payload) => (payload.is_none(), payload.as_ref().map_or(0, Vec::len)),
@@ -154,7 +156,8 @@ mod tests {
 
     use super::*;
 
-    /// How often each was asked in ten seconds, with replies of so many bytes that take so long.
+    /// Returns the number of times each poll was sent in ten seconds, for replies of `reply` bytes that take
+    /// `takes_ms`.
     fn asked(
         mut schedule: Schedule,
         reply: usize,

@@ -6,34 +6,34 @@ use super::exchange::{LONGEST, LineProgress};
 use super::framed_line::{MAX_OUTPUT, RESTART_QUIET, end_of};
 use super::line_text;
 
-/// What opens the command line after a quiet moment.
+/// The character that opens the command line after a quiet moment.
 const ENTRY: u8 = b'#';
-/// How long the greeting is awaited.
+/// The longest wait for the greeting.
 const OPENING: Duration = Duration::from_millis(1500);
-/// How long output may pause.
+/// The longest pause in the output.
 const PAUSE: Duration = Duration::from_secs(4);
-/// How long nothing may follow a prompt: `dump` prints headings that begin like one.
+/// The silence that must follow a prompt: `dump` prints headings that begin like one.
 const PROMPT_QUIET: Duration = Duration::from_millis(60);
 const PROMPT: &[u8] = b"\r\n# ";
-/// The word of the greeting.
+/// The word that identifies the greeting.
 const GREETING: &str = "CLI";
-/// The answer of `exit noreboot`, after which no prompt follows.
+/// The answer to `exit noreboot`, after which no prompt follows.
 const LEFT: &str = "no reboot";
 
 /// A line and its output.
 #[derive(Debug)]
 pub(super) struct PromptLine {
     pub(super) line: String,
-    /// The prompt is open and the line was typed.
+    /// `true` once the prompt is open and the line was typed.
     typed: bool,
     output: Vec<u8>,
     begun: Duration,
-    /// When something was sent, or came last that was kept.
+    /// The time of the last transmission or of the last byte kept.
     active: Duration,
 }
 
 impl PromptLine {
-    /// Types a line at the open prompt, or opens it first.
+    /// Types a line at the open prompt, or opens the prompt first.
     pub(super) fn new(line: String, open: bool, now: Duration, output: &mut Vec<u8>) -> Self {
         let mut new = Self { line, typed: false, output: Vec::new(), begun: now, active: now };
         if open {
@@ -60,7 +60,7 @@ impl PromptLine {
         }
     }
 
-    /// Looks at what came once it has paused.
+    /// Evaluates the output once it has paused.
     pub(super) fn poll(&mut self, now: Duration, output: &mut Vec<u8>) -> LineProgress {
         if now < self.due() {
             return LineProgress::Waiting;
@@ -95,19 +95,19 @@ impl PromptLine {
         (self.active + patience).min(self.begun + LONGEST)
     }
 
-    /// The line and its output so far, once it was typed.
+    /// Returns the line and its output so far, once it was typed.
     pub(super) fn sent(&self) -> Option<(&str, String)> {
         self.typed.then(|| (self.line.as_str(), self.text()))
     }
 
-    /// Whether the answer is that of a line that leaves the command line without a restart.
+    /// Returns `true` for the answer to a line that leaves the command line without a restart.
     fn leaves(&self) -> bool {
         self.typed
             && self.line.to_ascii_lowercase().starts_with("exit")
             && end_of(&self.output).trim_end().ends_with(LEFT)
     }
 
-    /// The output without echo and prompt.
+    /// Returns the output without echo and prompt.
     fn text(&self) -> String {
         let text = String::from_utf8_lossy(&self.output);
         let text = text.strip_suffix("\r\n# ").unwrap_or(&text);

@@ -4,34 +4,35 @@ use std::time::Duration;
 
 use crate::link::proto::msp::{Form, Frame, Kind};
 
-/// How long the reply to a message that only asks is awaited, each time.
+/// The wait for the reply to a read-only message, for each attempt.
 const READ_PATIENCE: Duration = Duration::from_secs(1);
-/// How long the reply to any other message is awaited: a board that stores its settings is silent while it does.
+/// The wait for the reply to any other message: a board is silent while it stores its settings.
 const WRITE_PATIENCE: Duration = Duration::from_secs(4);
 /// The highest code of version 1; 255 marks a tunnelled frame.
 const LAST_V1: u16 = 254;
-/// Messages without payload that do something: restart, disarming, calibrations, reset of settings, storing, binding.
+/// Messages without payload that have an effect: restart, disarming, calibrations, reset of settings,
+/// storing, binding.
 const COMMANDS: [u16; 8] = [68, 99, 205, 206, 208, 219, 250, 0x3000];
 
 /// A message that was sent.
 #[derive(Debug)]
 pub(super) struct Request {
     frame: Frame,
-    /// When it was sent last.
+    /// The time of the last transmission.
     sent: Duration,
     patience: Duration,
-    /// It may be sent once more: it only asks.
+    /// `true` if it is read-only and may be sent once more.
     repeats: bool,
 }
 
-/// What became of a request by some instant.
+/// The state of a request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Waiting {
     /// Its reply may still come.
     Patient,
     /// It was sent again.
     Repeated,
-    /// It is to be given up.
+    /// It must be given up.
     Overdue,
 }
 
@@ -46,14 +47,14 @@ impl Request {
         Self { frame, sent: now, patience, repeats: only_asks }
     }
 
-    /// The same message with another payload.
+    /// Sends the same message with another payload.
     pub(super) fn send_next(&mut self, payload: Vec<u8>, now: Duration, output: &mut Vec<u8>) {
         self.frame.payload = payload;
         self.frame.encode(output);
         self.sent = now;
     }
 
-    /// What a frame answers; `None` when it belongs to another message.
+    /// Returns the reply in a frame; `None` if the frame belongs to another message.
     pub(super) fn answer(&self, frame: Frame) -> Option<Option<Vec<u8>>> {
         if (frame.form, frame.code) != (self.frame.form, self.frame.code) {
             return None;
@@ -61,7 +62,7 @@ impl Request {
         Some((frame.kind == Kind::Reply).then_some(frame.payload))
     }
 
-    /// Sends it once more when the reply is late, if that does no harm.
+    /// Sends the message once more when the reply is overdue, if that does no harm.
     pub(super) fn poll(&mut self, now: Duration, output: &mut Vec<u8>) -> Waiting {
         if now < self.due() {
             Waiting::Patient
@@ -75,7 +76,7 @@ impl Request {
         }
     }
 
-    /// When the reply is late.
+    /// Returns the time at which the reply is overdue.
     pub(super) fn due(&self) -> Duration {
         self.sent + self.patience
     }

@@ -1,7 +1,8 @@
-//! What a flight controller tells of itself, decoded to plain data in SI units.
+//! The messages in which a flight controller reports its state, decoded to plain data in SI units.
 //!
-//! Messages grew over the releases: what an older one does not carry is `None`, what a newer one appends is passed over.
-//! Each type has `decode(payload)`, which is `None` when the payload is no such message.
+//! Messages grew over the releases: a field that an older message lacks is `None`, and fields appended by
+//! newer releases are skipped. Each type has `decode(payload)`, which returns `None` when the payload is no
+//! such message.
 
 mod identity;
 mod mission;
@@ -24,7 +25,7 @@ pub use receiver::{channels, motors};
 pub use setting::{setting, settings};
 pub use status::Status;
 
-/// Codes of the messages that are decoded here.
+/// Codes of the messages that this module decodes.
 pub mod code {
     /// Version of the API.
     pub const API_VERSION: u16 = 1;
@@ -33,12 +34,12 @@ pub mod code {
     /// Version of the firmware.
     pub const FC_VERSION: u16 = 3;
     pub const BOARD_INFO: u16 = 4;
-    /// When and with what it was built.
+    /// The date, time and revision of the build, and its options.
     pub const BUILD_INFO: u16 = 5;
     pub const MODE_RANGES: u16 = 34;
     pub const MOTOR: u16 = 104;
     pub const RC: u16 = 105;
-    /// What the GPS says.
+    /// Fix, position and velocity of the GPS.
     pub const RAW_GPS: u16 = 106;
     pub const COMP_GPS: u16 = 107;
     pub const ATTITUDE: u16 = 108;
@@ -47,8 +48,8 @@ pub mod code {
     /// The order of the mode bits.
     pub const BOX_IDS: u16 = 119;
     pub const BATTERY_STATE: u16 = 130;
-    /// Modes and what blocks arming.
+    /// Active modes and the arming disable flags.
     pub const STATUS_EX: u16 = 150;
-    /// How the mode conditions are linked.
+    /// Links between the mode conditions.
     pub const MODE_RANGES_EXTRA: u16 = 238;
 }

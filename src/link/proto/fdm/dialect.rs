@@ -1,4 +1,4 @@
-//! What the eighteen numbers mean, in three dialects.
+//! The meaning of the eighteen numbers in the three dialects.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
@@ -6,12 +6,12 @@ use super::{FIELDS, Packet, SIZE, pressure_pa};
 use crate::geo::GRAVITY;
 use crate::signals::fdm::Dialect;
 
-/// Whether the acceleration contains the reaction to gravity.
+/// The treatment of gravity in the acceleration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Gravity {
-    /// It does: an accelerometer's reading, 1 g at rest.
+    /// The acceleration contains the reaction to gravity: an accelerometer's reading, 1 g at rest.
     Included,
-    /// It does not: the change of velocity, 0 at rest.
+    /// The acceleration lacks it: the change of velocity, 0 at rest.
     Missing,
 }
 
@@ -28,7 +28,7 @@ pub struct State {
     pub attitude: UnitQuaternion<f64>,
     /// Velocity, ENU, m/s.
     pub vel_enu: Vector3<f64>,
-    /// Longitude, degrees, as on the wire: [`Dialect::mirrors`] says whether it stands for another place.
+    /// Longitude, degrees, as on the wire. It may be mirrored, see [`Dialect::mirrors`].
     pub lon_deg: f64,
     /// Latitude, degrees, as on the wire.
     pub lat_deg: f64,
@@ -38,28 +38,29 @@ pub struct State {
     pub pressure_pa: f64,
 }
 
-/// The other side of `centre`: turns a mirrored coordinate into the true one and back.
+/// Returns the mirror image of a coordinate about `centre`. Turns a mirrored coordinate into the true one and
+/// back.
 pub fn mirrored(centre_deg: f64, value_deg: f64) -> f64 {
     2.0 * centre_deg - value_deg
 }
 
 impl Dialect {
-    /// The dialect that a datagram's size suggests.
+    /// Returns the dialect that the size of a datagram suggests.
     pub fn of_size(size: usize) -> Self {
         if size == super::GZ_PLUGIN_SIZE { Self::GzPlugin } else { Self::SitlGz }
     }
 
-    /// Whether positions on the wire are mirrored about the craft's first one.
+    /// Returns `true` if positions on the wire are mirrored about the craft's first one.
     pub fn mirrors(self) -> bool {
         self != Self::Legacy
     }
 
-    /// Whether accelerations contain gravity, unless the packets show otherwise.
+    /// Returns the usual treatment of gravity in the dialect. The packets may show otherwise.
     pub fn usual_gravity(self) -> Gravity {
         if self == Self::GzPlugin { Gravity::Missing } else { Gravity::Included }
     }
 
-    /// What a packet means.
+    /// Decodes a packet.
     pub fn decode(self, packet: &Packet, gravity: Gravity) -> State {
         let [
             stamp_s,
@@ -108,7 +109,7 @@ impl Dialect {
         }
     }
 
-    /// The packet that says this, with the acceleration that is usual in the dialect.
+    /// Encodes a state, with the acceleration that is usual in the dialect.
     pub fn encode(self, state: &State) -> Packet {
         let rate = state.rate_flu;
         let force = state.specific_force_flu;
@@ -154,7 +155,7 @@ impl Dialect {
     }
 }
 
-/// Turns the world from north-west-up to east-north-up: +90° about the vertical.
+/// Returns the rotation from north-west-up to east-north-up: +90° about the vertical.
 fn nwu_to_enu() -> Quaternion<f64> {
     use std::f64::consts::FRAC_1_SQRT_2;
     Quaternion::new(FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2)

@@ -1,9 +1,9 @@
-//! The firmware's time from the simulator's stamps.
+//! Derives the firmware's time from the simulator's stamps.
 
-/// Largest step of the stamps that is followed, s.
+/// The largest step of the stamps that is accepted, s.
 const MAX_STEP_S: f64 = 0.5;
 
-/// Equal stamps in a row after which the wall clock counts.
+/// The number of equal stamps in a row after which the wall clock is used.
 const STANDING_STILL: u32 = 20;
 
 /// Follows the stamps of a simulator.
@@ -13,7 +13,7 @@ pub(super) struct StampClock {
     stamp_s: f64,
     taken_at_us: u64,
     equal: u32,
-    /// Time that did not fill a tick yet, µs; negative after rounding up.
+    /// The time that has not filled a tick yet, µs; negative after rounding up.
     carry_us: f64,
 }
 
@@ -28,17 +28,17 @@ impl StampClock {
         }
     }
 
-    /// Wall time since the newest packet that was taken, or since the start.
+    /// Returns the wall time since the newest packet, or since the start, µs.
     pub(super) fn gap_us(&self, now_us: u64) -> u64 {
         now_us.saturating_sub(self.taken_at_us)
     }
 
-    /// Whether a stamp lies before the newest.
+    /// Returns `true` if a stamp is older than the newest.
     pub(super) fn is_old(&self, stamp_s: f64) -> bool {
         stamp_s < self.stamp_s
     }
 
-    /// Whether the wall clock counts, because the stamps stand still.
+    /// Returns `true` while the wall clock is used because the stamps do not advance.
     pub(super) fn is_wall_clock(&self) -> bool {
         self.equal >= STANDING_STILL
     }
@@ -49,7 +49,7 @@ impl StampClock {
         self.taken_at_us = now_us;
     }
 
-    /// Takes a stamp: the firmware ticks since the one before.
+    /// Takes a stamp. Returns the number of firmware ticks since the previous one.
     pub(super) fn advance(&mut self, stamp_s: f64, now_us: u64) -> u32 {
         let step_s = stamp_s - self.stamp_s;
         self.equal = if step_s == 0.0 { self.equal.saturating_add(1) } else { 0 };

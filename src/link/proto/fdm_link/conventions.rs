@@ -1,4 +1,4 @@
-//! Two conventions that the packets of a simulator do not state but show: whether gravity is in the acceleration, and
+//! Detects two conventions of a simulator from its packets: whether gravity is in the acceleration, and
 //! whether positions are mirrored.
 
 use nalgebra::{Vector2, Vector3};
@@ -8,16 +8,16 @@ use crate::geo::LocalFrame;
 use crate::link::proto::fdm::{Gravity, Packet, State, mirrored};
 use crate::signals::fdm::Dialect;
 
-/// At rest every rate stays below this, rad/s.
+/// The limit of every body rate at rest, rad/s.
 const REST_RATE: f64 = 0.05;
-/// How long the craft must rest, µs.
+/// The time for which the craft must rest, µs.
 const REST_US: u64 = 200_000;
-/// Mean acceleration at rest below this: gravity is missing, m/s².
+/// The mean acceleration at rest below which gravity is missing, m/s².
 const MISSING_BELOW: f64 = 2.0;
-/// Mean acceleration at rest when gravity is included, m/s².
+/// The mean acceleration at rest when gravity is included, m/s².
 const INCLUDED: std::ops::RangeInclusive<f64> = 9.0..=10.6;
 
-/// Finds out whether the acceleration contains gravity.
+/// Detects whether the acceleration contains gravity.
 #[derive(Debug, Clone, Default)]
 pub(super) struct GravityTest {
     found: Option<Gravity>,
@@ -28,12 +28,12 @@ pub(super) struct GravityTest {
 }
 
 impl GravityTest {
-    /// What is known, else what is usual.
+    /// Returns the detected treatment of gravity, or else the usual one of the dialect.
     pub(super) fn gravity(&self, dialect: Dialect) -> Gravity {
         self.found.unwrap_or(dialect.usual_gravity())
     }
 
-    /// Looks at one packet.
+    /// Evaluates one packet.
     pub(super) fn watch(&mut self, packet: &Packet, dialect: Dialect, elapsed_us: u64) -> Option<FdmNotice> {
         if self.found.is_some() || self.warned {
             return None;
@@ -67,14 +67,14 @@ impl GravityTest {
     }
 }
 
-/// Slowest motion that says something about positions, m/s.
+/// The slowest motion from which positions can be judged, m/s.
 const MOVING: f64 = 1.0;
-/// How long the craft must move, µs.
+/// The time for which the craft must move, µs.
 const MOVING_US: u64 = 2_000_000;
-/// Cosine between displacement and velocity beyond which they agree, or below whose negative they do not.
+/// The cosine between displacement and velocity above which they agree. Below its negative they are opposed.
 const CLEAR: f64 = 0.8;
 
-/// The motion being watched.
+/// The current motion.
 #[derive(Debug, Clone, Copy)]
 struct Leg {
     from: (f64, f64),
@@ -82,7 +82,7 @@ struct Leg {
     by_velocity: Vector2<f64>,
 }
 
-/// Undoes the mirroring of positions, and finds out whether there is any.
+/// Undoes the mirroring of positions, and detects whether there is any.
 #[derive(Debug, Clone, Default)]
 pub(super) struct MirrorTest {
     centre: Option<(f64, f64)>,
@@ -92,12 +92,13 @@ pub(super) struct MirrorTest {
 }
 
 impl MirrorTest {
-    /// Whether the motion showed that positions are not mirrored.
+    /// Returns `true` if the motion showed that positions are not mirrored.
     pub(super) fn is_refuted(&self) -> bool {
         self.refuted
     }
 
-    /// Latitude and longitude (degrees) of a state; `None` when it has none. The first one is the mirror's centre.
+    /// Returns the latitude and longitude (degrees) of a state; `None` if it has none. The first position is
+    /// the centre of the mirror.
     pub(super) fn place(&mut self, state: &State, mirrors: bool) -> Option<(f64, f64)> {
         let wire = (state.lat_deg, state.lon_deg);
         if !is_on_globe(wire) {

@@ -1,70 +1,72 @@
-//! When to send a servo packet unasked, and which replies are withheld for it later.
+//! Decides when to send an unsolicited servo packet (a kick) and which replies to withhold for it later.
 //!
-//! The simulator reads one servo packet a step and waits when there is none. So a lost packet must be replaced, and a
-//! packet too many stays in its socket for ever and makes every command one step older. Whether a silence came from a
-//! lost packet or from a simulator that stood still cannot be seen when it ends. So every packet that was sent unasked
-//! counts as one too many, and for each of them one reply is withheld. A simulator that goes on without the reply has
-//! read one of them; one that starves has nothing left to read, gets the reply late, and nothing is withheld any more.
+//! The simulator reads one servo packet per step and waits when there is none. A lost packet must therefore
+//! be replaced, while a surplus packet stays in its socket for ever and makes every command one step older.
+//! The end of a silence does not show whether a packet was lost or the simulator paused. So every kick counts
+//! as a surplus packet, and one reply is withheld for each. A simulator that continues without the reply has
+//! read a surplus packet. A simulator that starves has nothing left to read; it gets the reply late, and
+//! nothing more is withheld.
 //!
-//! A link that was just shown to lose packets is taken to have lost one again: there the probe, which costs a pause, waits.
-//! A simulator that is only slow can be mistaken for one that starves, so what was given up is looked for once more.
+//! If a link has just lost packets, a silence counts as another loss. The probe costs a pause, so it waits
+//! there. A simulator that is only slow can look like one that starves, so a surplus that was given up is
+//! checked once more.
 
-/// From one kick to the next until the first packet, and while the simulator refuses them, µs.
+/// The interval of the kicks before the first packet, and while the simulator refuses them, µs.
 const WAITING_US: u64 = 500_000;
-/// Silence before the first kick, µs.
+/// The silence before the first kick, µs.
 const FIRST_US: u64 = 100_000;
-/// From one kick to the next, µs: twice more quickly, since a kick can be lost too; after a second of silence; then
-/// every ten.
+/// The intervals of the next kicks, µs. Two follow quickly, since a kick can be lost too; the third follows
+/// after a second of silence.
 const NEXT_US: [u64; 3] = [25_000, 20_000, 855_000];
-/// Between further kicks, µs.
+/// The interval of all further kicks, µs.
 const LATER_US: u64 = 10_000_000;
-/// A packet this soon after a kick may have been caused by it, µs.
+/// The time after a kick within which a packet may be its effect, µs.
 const CAUSED_US: u64 = 50_000;
-/// Silence after a withheld reply that a simulator with packets left to read does not make: this and twice the usual
-/// interval, µs.
+/// The base of the silence after a withheld reply that shows that the simulator starves, µs. Twice the usual
+/// interval is added. A simulator with packets left to read does not pause for that long.
 const STARVED_US: u64 = 30_000;
-/// A simulator that starved answers the late reply within this time, µs …
+/// A starved simulator answers the late reply within this time, µs …
 const STARVING_ANSWERS_US: u64 = 3_000;
-/// … or, when it takes long for a step, so many in a row within [`CAUSED_US`].
+/// … or, if its steps take long, this many times in a row within [`CAUSED_US`].
 const STARVED_OFTEN: u32 = 3;
-/// How long a link that lost a packet is taken to lose more, µs.
+/// The time for which a link that lost a packet is expected to lose more, µs.
 const LOSSY_FOR_US: u64 = 5_000_000;
-/// A simulator goes on by itself after waiting for so long, µs …
+/// The time after which a waiting simulator continues by itself, µs …
 const SIMULATOR_WAITS_US: u64 = 1_000_000;
-/// … so many times.
+/// … at most this many times.
 const SIMULATOR_MISSES: u64 = 10;
-/// Usual interval of packets as long as nothing is known, µs.
+/// The assumed interval of packets as long as nothing is known, µs.
 const INTERVAL_US: f64 = 20_000.0;
 
 /// The kicks of one link.
 #[derive(Debug, Clone)]
 pub(super) struct Kicks {
     heard_at_us: Option<u64>,
-    /// Newest servo packet that was sent unasked, the one at the start included.
+    /// The time of the newest kick, or of the packet at the start.
     kicked_at_us: u64,
-    /// Kicks of this silence that arrived.
+    /// The kicks of this silence that arrived.
     arrived: u32,
-    /// Whether an answer of ours lies in the simulator's socket, from before this silence.
+    /// `true` if a reply from before this silence is in the simulator's socket.
     has_answer: bool,
     unreachable: bool,
-    /// Packets that may lie in the simulator's socket beyond the one it is to read next.
+    /// The packets that may be in the simulator's socket in addition to the one that it reads next.
     surplus: u32,
-    /// More of them that are unlikely to be there, to be looked for later.
+    /// Further surplus packets that are unlikely to exist. They are checked later.
     doubtful: u32,
-    /// The surplus is what was doubtful before.
+    /// `true` if the surplus was doubtful before.
     is_second_look: bool,
-    /// Withheld replies in a row for which the simulator seemed to starve.
+    /// The number of withheld replies in a row for which the simulator seemed to starve.
     starved: u32,
-    /// The newest packet was not replied to because of the surplus.
+    /// `true` if the reply to the newest packet was withheld because of the surplus.
     withheld: bool,
-    /// When it was shown last that a packet was lost.
+    /// The time of the last proven loss of a packet.
     lost_at_us: Option<u64>,
-    /// Usual interval of the packets, µs.
+    /// The usual interval of the packets, µs.
     interval_us: f64,
 }
 
 impl Kicks {
-    /// A link whose first servo packet is sent at `now_us`.
+    /// Creates the state of a link whose first servo packet is sent at `now_us`.
     pub(super) fn new(now_us: u64) -> Self {
         Self {
             heard_at_us: None,
@@ -86,7 +88,7 @@ impl Kicks {
         self.heard_at_us
     }
 
-    /// When the next kick is due.
+    /// Returns the time of the next kick.
     pub(super) fn due_us(&self) -> u64 {
         match (self.heard_at_us, self.arrived) {
             (Some(heard), 0) if !self.unreachable => heard + self.patience_us(),
@@ -97,7 +99,8 @@ impl Kicks {
         }
     }
 
-    /// Silence before the first kick: short after a withheld reply, for which the simulator may wait.
+    /// Returns the silence before the first kick. It is short after a withheld reply, for which the simulator
+    /// may be waiting.
     fn patience_us(&self) -> u64 {
         if self.withheld {
             STARVED_US + (2.0 * self.interval_us).min(SIMULATOR_WAITS_US as f64) as u64
@@ -106,19 +109,19 @@ impl Kicks {
         }
     }
 
-    /// Whether to kick now.
+    /// Returns `true` if a kick is due now.
     pub(super) fn poll(&mut self, now_us: u64) -> bool {
         if now_us < self.due_us() {
             return false;
         }
         self.kicked_at_us = now_us;
         self.arrived += 1;
-        // Until the contrary is reported.
+        // Assume that it arrives until a refusal is reported.
         self.unreachable = false;
         true
     }
 
-    /// The newest servo packet did not arrive: there is no socket, nor anything in it.
+    /// Reports that the newest servo packet did not arrive: there is no socket, so nothing is in it.
     pub(super) fn refused(&mut self) {
         self.unreachable = true;
         self.arrived = 0;
@@ -127,12 +130,12 @@ impl Kicks {
         (self.surplus, self.doubtful) = (0, 0);
     }
 
-    /// A packet came, which was not there yet when the newest kick was sent.
+    /// Reports a packet that had not yet arrived when the newest kick was sent.
     pub(super) fn heard(&mut self, now_us: u64) {
         let withheld = std::mem::take(&mut self.withheld);
         let kicks = std::mem::take(&mut self.arrived);
         let since_kick_us = now_us.saturating_sub(self.kicked_at_us);
-        // The simulator has read one packet: that which was withheld is missing.
+        // The simulator has read one packet, and the withheld reply did not replace it.
         let left = self.surplus.saturating_sub(u32::from(withheld));
         self.starved = if withheld && kicks > 0 && since_kick_us <= CAUSED_US { self.starved + 1 } else { 0 };
         if kicks == 0 {
@@ -153,7 +156,7 @@ impl Kicks {
         self.unreachable = false;
     }
 
-    /// The simulator starved: there is nothing left over.
+    /// Gives up the surplus, because the simulator starved.
     fn give_up_surplus(&mut self, now_us: u64) {
         let given_up = std::mem::take(&mut self.surplus);
         self.doubtful = if self.is_second_look { 0 } else { given_up };
@@ -162,7 +165,8 @@ impl Kicks {
         self.lost_at_us = Some(now_us);
     }
 
-    /// Packets for which the simulator did not wait any longer, while the firmware stood still and did not kick.
+    /// Returns the number of packets for which the simulator stopped waiting while the firmware stood still
+    /// and did not kick.
     fn misses(&self, now_us: u64) -> u32 {
         let silence = self.heard_at_us.map_or(0, |heard| now_us.saturating_sub(heard));
         (silence / SIMULATOR_WAITS_US).min(SIMULATOR_MISSES) as u32
@@ -172,7 +176,7 @@ impl Kicks {
         self.lost_at_us.is_some_and(|lost| now_us.saturating_sub(lost) < LOSSY_FOR_US)
     }
 
-    /// Follows the interval of the packets; a single long one changes little.
+    /// Tracks the interval of the packets. A single long one changes little.
     fn measure_interval(&mut self, now_us: u64) {
         if let Some(heard) = self.heard_at_us {
             let interval = now_us.saturating_sub(heard) as f64;
@@ -181,7 +185,7 @@ impl Kicks {
         }
     }
 
-    /// Whether the answer to the packet of `now_us` is one too many.
+    /// Returns `true` if the reply to the packet at `now_us` is withheld as surplus.
     pub(super) fn withhold(&mut self, now_us: u64) -> bool {
         if self.doubtful > 0 && !self.is_lossy(now_us) {
             self.surplus += std::mem::take(&mut self.doubtful);
@@ -197,12 +201,12 @@ impl Kicks {
 mod tests {
     use super::*;
 
-    /// Times (ms) of the kicks until `end_ms`.
+    /// Returns the times (ms) of the kicks until `end_ms`.
     fn kicks_until(kicks: &mut Kicks, start_ms: u64, end_ms: u64) -> Vec<u64> {
         (start_ms..end_ms).filter(|ms| kicks.poll(ms * 1000)).collect()
     }
 
-    /// How many replies in a row are withheld, to packets from `ms` on, one a millisecond.
+    /// Returns the number of replies withheld in a row, for packets from `ms` on, one per millisecond.
     fn withheld_from(kicks: &mut Kicks, ms: u64) -> usize {
         (ms..)
             .take_while(|ms| {
@@ -212,7 +216,7 @@ mod tests {
             .count()
     }
 
-    /// Whether a reply is withheld, to packets that come ten times a second.
+    /// Returns `true` if any reply is withheld, for packets that arrive ten times a second.
     fn any_withheld(kicks: &mut Kicks, start_ms: u64, end_ms: u64) -> bool {
         (start_ms..end_ms).step_by(100).any(|ms| {
             kicks.heard(ms * 1000);
@@ -289,7 +293,7 @@ mod tests {
         assert_eq!(kicks_until(&mut kicks, 0, 500).len(), 3);
         kicks.heard(500_000);
         assert!(kicks.withhold(500_000));
-        // It was slow, and by chance went on right after the late reply.
+        // The simulator was slow, and continued right after the late reply by chance.
         assert!(kicks.poll(600_000));
         kicks.heard(601_000);
         assert!(!kicks.withhold(601_000));
@@ -305,7 +309,7 @@ mod tests {
         assert_eq!(kicks_until(&mut kicks, 0, 140).len(), 2);
         kicks.heard(140_000);
         assert!(kicks.withhold(140_000));
-        // Two are left over; the simulator stands still again and is sent three more.
+        // Two are left over. The simulator pauses again and gets three more.
         assert_eq!(kicks_until(&mut kicks, 140, 500).len(), 3);
         assert_eq!(withheld_from(&mut kicks, 500), 4, "it has read one of the five");
     }

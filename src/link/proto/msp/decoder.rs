@@ -1,19 +1,19 @@
-//! MSP bytes, in pieces of any size, to frames.
+//! Decodes MSP bytes, in pieces of any size, into frames.
 
 use super::{DVB_S2, Form, Frame, JUMBO, Kind, MAX_REPLY, MAX_REQUEST, TUNNEL, V2_HEADER};
 
-/// Frames that were given up, by cause.
+/// The numbers of dropped frames, by cause.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Dropped {
-    /// XOR or CRC did not match.
+    /// The XOR or CRC did not match.
     pub checksum: u64,
-    /// Size above the limit.
+    /// The size was above the limit.
     pub oversized: u64,
-    /// Something that begins like a frame and is none.
+    /// The bytes began like a frame but were none.
     pub malformed: u64,
 }
 
-/// What the next byte is.
+/// The expected meaning of the next byte.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Expect {
     Dollar,
@@ -29,8 +29,9 @@ enum Expect {
     V1Xor,
 }
 
-/// Turns a byte stream into frames. A damaged frame is dropped and the decoder waits for the next `$`; it holds at
-/// most one payload of at most its limit, grown as bytes arrive, never from a size that was only announced.
+/// Turns a byte stream into frames. A damaged frame is dropped, and the decoder waits for the next `$`. It
+/// holds at most one payload up to its limit. The payload grows as bytes arrive and is never allocated from
+/// an announced size.
 #[derive(Debug, Clone)]
 pub struct Decoder {
     is_server: bool,
@@ -46,18 +47,18 @@ pub struct Decoder {
     payload: Vec<u8>,
     xor: u8,
     dropped: Dropped,
-    /// Bytes that may still come of the frame that was dropped last for its size.
+    /// The bytes that may still arrive of the last frame that was dropped for its size.
     oversized_rest: usize,
 }
 
 impl Decoder {
-    /// A decoder for the flight controller's side: requests up to [`MAX_REQUEST`]; replies that an echoing line
-    /// sends back are consumed silently.
+    /// Creates a decoder for the flight controller's side. It accepts requests up to [`MAX_REQUEST`] and
+    /// silently consumes replies that an echoing line sends back.
     pub fn server() -> Self {
         Self::new(true, MAX_REQUEST)
     }
 
-    /// A decoder for the configurator's side: replies and errors up to [`MAX_REPLY`].
+    /// Creates a decoder for the configurator's side. It accepts replies and errors up to [`MAX_REPLY`].
     pub fn client() -> Self {
         Self::new(false, MAX_REPLY)
     }
@@ -81,22 +82,23 @@ impl Decoder {
         }
     }
 
-    /// Whether the next byte is between frames.
+    /// Returns `true` if the next byte is between frames.
     pub fn is_between_frames(&self) -> bool {
         self.expect == Expect::Dollar
     }
 
-    /// Frames given up so far.
+    /// Returns the numbers of frames dropped so far.
     pub fn dropped(&self) -> Dropped {
         self.dropped
     }
 
-    /// Bytes that may still come of the frame that was dropped last for its size: payload and checksums.
+    /// Returns the bytes that may still arrive of the last frame that was dropped for its size: payload and
+    /// checksums.
     pub fn oversized_rest(&self) -> usize {
         self.oversized_rest
     }
 
-    /// Takes one byte; the frame that it completes, if it does.
+    /// Takes one byte. Returns a frame if the byte completes one.
     pub fn push(&mut self, byte: u8) -> Option<Frame> {
         if !matches!(self.expect, Expect::V1Xor | Expect::Dollar | Expect::Version | Expect::Kind) {
             self.xor ^= byte;
@@ -189,7 +191,7 @@ impl Decoder {
     fn jumbo_high(&mut self, byte: u8) {
         let announced = usize::from(u16::from_le_bytes([self.jumbo_low, byte]));
         if self.form == Form::V2OverV1 {
-            // The inner size is known already; this one counts header and CRC too.
+            // The inner size is known already. This one also counts header and CRC.
             if announced == V2_HEADER + self.size + 1 {
                 self.expect_payload();
             } else {

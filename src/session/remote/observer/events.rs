@@ -1,4 +1,4 @@
-//! What happened in a remote flight controller, seen by comparing what it tells with what it told before.
+//! Events of a remote flight controller, detected by comparing each report with the previous one.
 
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
@@ -8,7 +8,7 @@ use crate::telemetry::{
     TransitionReason,
 };
 
-/// What was told last.
+/// The values of the last report.
 #[derive(Debug, Default)]
 pub(super) struct EventObserver {
     fix: bool,
@@ -17,13 +17,13 @@ pub(super) struct EventObserver {
     rc_link: Option<bool>,
     state: NavState,
     wp: u8,
-    /// The mission was completed by a landing.
+    /// `true` once a landing has completed the mission.
     landed: bool,
     last_disarm: Option<DisarmReason>,
 }
 
 impl EventObserver {
-    /// What happened, now that this is told.
+    /// Returns the events since the previous report.
     pub(super) fn follow(
         &mut self,
         craft: &CraftView,
@@ -66,12 +66,13 @@ impl EventObserver {
         events
     }
 
-    /// Why it was disarmed last, as far as can be told.
+    /// Returns the reason for the last disarming, as far as it is known.
     pub(super) fn last_disarm(&self) -> Option<DisarmReason> {
         self.last_disarm
     }
 
-    /// A disarmed flight controller tells of no mission any more: one that ended by its landing stays complete.
+    /// Keeps a mission that ended by its landing complete. A disarmed flight controller no longer reports a
+    /// mission.
     pub(super) fn completed(&self, nav: NavTelemetry) -> NavTelemetry {
         if self.armed || self.state != NavState::Complete {
             return nav;
@@ -90,7 +91,7 @@ impl EventObserver {
             None
         };
         let reason = match (self.state, by_other) {
-            // Its own touchdown disarms it; that is the end of the mission.
+            // Its own touchdown disarms it. That is the end of the mission.
             (NavState::Landing, None) => {
                 self.enter(NavState::Complete, self.wp, TransitionReason::Touchdown, plan, events);
                 DisarmReason::Landing
@@ -112,7 +113,8 @@ impl EventObserver {
         if (nav.state, nav.wp) == (from, wp) {
             return;
         }
-        // The mission is asked between two questions for the modes: at the touchdown it may be over before they say so.
+        // The mission is polled between two polls of the modes. At the touchdown it may end before the modes
+        // show that.
         let may_have_landed = from == NavState::Landing && self.modes.has(Mode::Autopilot);
         if may_have_landed && nav.state == NavState::Idle && nav.reason.is_none() {
             return;
@@ -175,7 +177,7 @@ mod tests {
     use crate::signals::RC_CHANNELS;
     use crate::telemetry::snapshot::ModeRange;
 
-    /// A flight as its telemetry shows it: armed, state, waypoint; what happened, in words.
+    /// Follows a flight given as telemetry steps (armed, state, waypoint). Returns the events in words.
     fn told(steps: &[(bool, NavState, u8)]) -> (Vec<String>, EventObserver) {
         let plan = BuiltinPlan::find("square").unwrap().read().unwrap().plan;
         let mut observer = EventObserver::default();

@@ -1,10 +1,10 @@
-//! The navigator of a remote flight controller, as its `waypoint status` shows it.
+//! The navigator of a remote flight controller, as shown by its `waypoint status`.
 
 use crate::link::proto::fc_client::telemetry::{Mission, MissionPhase};
 use crate::plan::{FlightPlan, HoldPattern};
 use crate::telemetry::{NavState, NavTelemetry, TransitionReason};
 
-/// What a status shows of the navigator; `engaged` is whether the mode is active.
+/// Returns the navigator's state from a status. `engaged` is `true` while the mode is active.
 pub(super) fn nav(mission: &Mission, engaged: bool, plan: Option<&FlightPlan>) -> NavTelemetry {
     let wp = mission.waypoint.unwrap_or_default();
     let planned = plan.and_then(|plan| plan.waypoints.get(usize::from(wp)));
@@ -18,7 +18,7 @@ pub(super) fn nav(mission: &Mission, engaged: bool, plan: Option<&FlightPlan>) -
         }
         Some(MissionPhase::Inactive { .. }) | None => (NavState::Idle, None),
     };
-    // In a landing they are of something else.
+    // In a landing these values have another meaning.
     let is_under_way = state != NavState::Idle && state != NavState::Landing;
     let count = mission.count.or_else(|| plan.and_then(|plan| u8::try_from(plan.waypoints.len()).ok()));
     NavTelemetry {
@@ -36,7 +36,7 @@ pub(super) fn nav(mission: &Mission, engaged: bool, plan: Option<&FlightPlan>) -
     }
 }
 
-/// Firmware that has one word for all holds: the plan says which.
+/// Returns the kind of hold. Some firmware has one word for all holds; the plan gives the kind.
 fn holding(pattern: Option<HoldPattern>) -> NavState {
     match pattern {
         Some(HoldPattern::Orbit) => NavState::Orbiting,

@@ -6,26 +6,29 @@ use crate::firmware::{Firmware, FirmwareOptions};
 use crate::link::proto::fc_client::telemetry::settings;
 use crate::telemetry::snapshot::SettingsView;
 
-/// A setting of firmware whose waypoints count from home; those of the others count from sea level.
+/// A setting that exists only in firmware with waypoint altitudes above home. Other firmware uses altitudes
+/// above sea level.
 const COUNTS_FROM_HOME: &str = "ap_velocity_p";
-/// What the names of the autopilot's settings begin with.
+/// The prefix of the autopilot's settings.
 const AUTOPILOT: &str = "ap_";
 
-/// The setting that has it believe its magnetometer.
+/// The setting that makes it use its magnetometer.
 const TRUSTS_MAG: &str = "trust_mag";
 
-/// The settings that one flight controller has told. A firmware of this program that is set like it says what follows from them.
+/// The settings that one flight controller has reported. An embedded firmware with the same settings shows
+/// their consequences.
 #[derive(Debug, Default)]
 pub(super) struct Settings {
     twin: Option<Box<Firmware>>,
-    /// Those of the autopilot were among them.
+    /// `true` if the autopilot's settings were among them.
     knows_autopilot: bool,
     waypoints_from_home: bool,
     trusts_mag: bool,
 }
 
 impl Settings {
-    /// Takes in what `get` prints. What this program does not know or allow has no effect on what is shown.
+    /// Takes the output of `get`. Settings that this program does not know or allow have no effect on the
+    /// display.
     pub(super) fn read(&mut self, output: &str) {
         let twin = self.twin.get_or_insert_with(|| {
             Box::new(Firmware::new(Configuration::default(), FirmwareOptions::default()))
@@ -44,12 +47,12 @@ impl Settings {
         self.twin.as_ref().map(|twin| twin.settings_view())
     }
 
-    /// Whether its heading is that of the magnetometer.
+    /// Returns `true` if its heading comes from the magnetometer.
     pub(super) fn trusts_mag(&self) -> bool {
         self.trusts_mag
     }
 
-    /// Whether it is known from where altitudes of waypoints count.
+    /// Returns `true` if the reference of waypoint altitudes is known.
     pub(super) fn tell_altitude_reference(&self) -> bool {
         self.knows_autopilot
     }

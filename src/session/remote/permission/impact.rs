@@ -1,25 +1,25 @@
-//! What lines and messages do to a craft, as far as can be told from them.
+//! The impact of lines and messages on a craft, as far as it can be judged from them.
 
 use super::NOTHING_MOVES;
 use crate::firmware::msp::{Access as MessageAccess, MESSAGES};
 use crate::link::proto::fc_client::sent_line;
 
-/// Why a line or message that takes the port away is not passed on.
+/// Refusal of a line or message that takes the port away.
 const TAKES_PORT: &str =
     "The port would carry something else then, and this connection would end: do it in another program.";
 
-/// What a request does to a craft.
+/// The impact of a request on a craft.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Impact {
-    /// It is only read.
+    /// The craft is only read.
     Reads,
-    /// Its configuration or plan changes, or it restarts.
+    /// The configuration or plan changes, or the craft restarts.
     Changes,
-    /// It moves, or is out of reach, for this reason.
+    /// The craft moves or becomes unreachable, for this reason.
     Forbidden(&'static str),
 }
 
-/// Lines that only print, whatever stands behind the word.
+/// Lines that only print, whatever follows the word.
 const PRINT: [&str; 18] = [
     "get",
     "status",
@@ -41,7 +41,7 @@ const PRINT: [&str; 18] = [
     "displayport_info",
 ];
 
-/// Lines that print when nothing stands behind the word.
+/// Lines that only print if nothing follows the word.
 const PRINT_ALONE: [&str; 31] = [
     "adjrange",
     "aux",
@@ -76,7 +76,7 @@ const PRINT_ALONE: [&str; 31] = [
     "set",
 ];
 
-/// Whole lines that print, too: behind most words `list` is taken for a number or a name.
+/// Whole lines that also only print. After most other words, `list` would be read as a number or a name.
 const PRINT_WITH: [(&str, &str); 14] = [
     ("beacon", "list"),
     ("beeper", "list"),
@@ -97,29 +97,30 @@ const PRINT_WITH: [(&str, &str); 14] = [
 /// Lines that turn motors.
 const MOVE: [&str; 3] = ["motor", "dshotprog", "escprog"];
 
-/// Lines after which the port carries something else.
+/// Lines after which the port carries other data.
 const TAKE_PORT: [&str; 5] = ["serialpassthrough", "gpspassthrough", "bl", "dfu", "msc"];
 
 /// Messages that move a craft: SET_RAW_RC, SET_RAW_GPS, SET_HEADING, SET_MOTOR, SEND_DSHOT_COMMAND.
 const MOVING_MESSAGES: [u16; 5] = [200, 201, 211, 214, 0x3003];
-/// With a first byte other than 0 it disarms an armed craft, which may have armed since that was asked last.
+/// With a first byte other than 0 it disarms an armed craft, which may have armed since the last poll.
 const SET_ARMING_DISABLED: u16 = 99;
-/// Asks several messages, whose payload is whatever the flight controller reads in the place of one.
+/// Requests several messages. The flight controller takes arbitrary data as the payload of each.
 const MULTIPLE: u16 = 230;
-/// Tells the time of day, as configurators do at every connection.
+/// Sets the time of day, as configurators do at every connection.
 const SET_RTC: u16 = 246;
-/// Opens a way through the port to something behind it.
+/// Opens a passthrough of the port to another device.
 const SET_PASSTHROUGH: u16 = 245;
-/// Restarts; with a payload other than 0 into a boot loader or as a disk.
+/// Restarts. With a payload other than 0 it restarts into a boot loader or as a disk.
 const REBOOT: u16 = 68;
 
 impl Impact {
-    /// At least a change, if `changes`.
+    /// Returns at least [`Self::Changes`] if `changes`.
     pub fn or_changes(self, changes: bool) -> Self {
         if changes { self.max(Self::Changes) } else { self }
     }
 
-    /// What a line of the command line does, as it is typed and as it is sent; of several lines the worst.
+    /// Returns the impact of a line of the command line, both as typed and as sent. For several lines it is
+    /// the worst.
     pub fn of_line(line: &str) -> Self {
         let typed = line.split(['\r', '\n']).map(Self::of_single_line);
         typed.fold(Self::of_single_line(&sent_line(line)), Self::max)
@@ -132,7 +133,7 @@ impl Impact {
         let word = word.to_ascii_lowercase();
         let rest = rest.split_whitespace().collect::<Vec<_>>().join(" ").to_ascii_lowercase();
         let is_in = |words: &[&str]| words.contains(&word.as_str());
-        // The firmware takes a name for typed when no letter or digit follows it.
+        // The firmware accepts a name if no letter or digit follows it.
         let may_be = |names: &[&str]| {
             names.iter().any(|name| {
                 word.strip_prefix(name).is_some_and(|more| !more.starts_with(char::is_alphanumeric))
@@ -142,7 +143,7 @@ impl Impact {
         match word.as_str() {
             "" if rest.is_empty() || rest.starts_with('#') => Self::Reads,
             _ if may_be(&TAKE_PORT) => Self::Forbidden(TAKES_PORT),
-            // One that is named, without a value, is printed, too.
+            // A named motor without a value is only printed, too.
             "motor" if !rest.contains(' ') => Self::Reads,
             _ if may_be(&MOVE) => Self::Forbidden(NOTHING_MOVES),
             "set" if !rest.contains('=') => Self::Reads,
@@ -151,7 +152,7 @@ impl Impact {
         }
     }
 
-    /// What an MSP message does. One that is not known here may change the craft.
+    /// Returns the impact of an MSP message. An unknown message may change the craft.
     pub fn of_message(code: u16, payload: &[u8]) -> Self {
         let access = || {
             let at = MESSAGES.binary_search_by_key(&code, |message| message.code).ok()?;

@@ -1,4 +1,4 @@
-//! What a flight controller holds, as far as it was asked, compared with what is wanted.
+//! The settings of a flight controller, as far as they were read, compared with the wanted ones.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -8,7 +8,7 @@ use crate::link::proto::fc_client::telemetry::setting;
 use crate::plan::FlightPlan;
 use crate::plan::format::{self, Format};
 
-/// Words in the output of `diff` that stand there when nothing was changed.
+/// Words in the output of `diff` that appear even without changes.
 const NO_CHANGE: [&str; 10] = [
     "batch",
     "defaults",
@@ -21,16 +21,16 @@ const NO_CHANGE: [&str; 10] = [
     "battery_profile",
     "save",
 ];
-/// A plan without waypoints is shown like this.
+/// The output for a plan without waypoints.
 const NO_PLAN: &str = "waypoint clear";
 
-/// What is asked to look.
+/// A question about the settings.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Question {
     Setting(String),
     Aux,
     Plan,
-    /// What is not as in a fresh configuration.
+    /// The differences from a fresh configuration.
     Changes,
 }
 
@@ -45,7 +45,7 @@ impl Question {
     }
 }
 
-/// The questions that tell whether wishes are fulfilled, each once.
+/// Returns the questions that show if wishes are fulfilled, each once.
 pub(super) fn questions(wishes: &[Wish]) -> VecDeque<Question> {
     let mut questions = VecDeque::new();
     for wish in wishes {
@@ -68,7 +68,7 @@ pub(super) struct Held {
     settings: BTreeMap<String, Option<String>>,
     aux: Vec<Vec<u16>>,
     plan: Option<FlightPlan>,
-    /// Nothing was changed in its configuration.
+    /// `true` if nothing was changed in its configuration.
     is_bare: bool,
 }
 
@@ -84,7 +84,7 @@ impl Held {
                 self.aux = rows.filter_map(wish::aux_row).collect();
             }
             Question::Changes => self.is_bare = !failed && tells_of_no_change(output),
-            // Some releases print nothing when there is no plan.
+            // Some releases print nothing if there is no plan.
             Question::Plan if failed => self.plan = None,
             Question::Plan if output.trim().is_empty() => self.plan = Some(FlightPlan::default()),
             Question::Plan => {
@@ -93,22 +93,22 @@ impl Held {
         }
     }
 
-    /// Whether it told that nothing was changed in its configuration.
+    /// Returns `true` if it has reported that nothing was changed in its configuration.
     pub(super) fn is_bare(&self) -> bool {
         self.is_bare
     }
 
-    /// A line showed that the firmware does not have this setting.
+    /// Records that the firmware does not have this setting, as a line has shown.
     pub(super) fn is_unknown(&mut self, name: &str) {
         self.settings.insert(name.to_owned(), None);
     }
 
-    /// Whether a wish is a setting that the firmware does not have.
+    /// Returns `true` if a wish is a setting that the firmware does not have.
     pub(super) fn has_not(&self, wish: &Wish) -> bool {
         matches!(wish, Wish::Setting { name, .. } if self.settings.get(name) == Some(&None))
     }
 
-    /// The settings among the wishes that the firmware does not have.
+    /// Returns the settings among the wishes that the firmware does not have.
     pub(super) fn unknown(&self, wishes: &[Wish]) -> Vec<String> {
         let names = wishes.iter().filter(|wish| self.has_not(wish)).filter_map(|wish| match wish {
             Wish::Setting { name, .. } => Some(name.clone()),
@@ -117,7 +117,7 @@ impl Held {
         names.collect()
     }
 
-    /// Where what is held is not what is wanted.
+    /// Returns the differences between the settings and the wishes.
     pub(super) fn differences(&self, wishes: &[Wish]) -> Vec<Difference> {
         let mut differences: Vec<Difference> = Vec::new();
         for wish in wishes.iter().filter(|wish| !self.has_not(wish)) {
@@ -150,7 +150,7 @@ impl Held {
     }
 }
 
-/// Whether the output of `diff` has no line that changes anything.
+/// Returns `true` if the output of `diff` has no line that changes anything.
 fn tells_of_no_change(output: &str) -> bool {
     let lines = output.lines().map(|line| line.split_once('#').map_or(line, |(code, _)| code).trim());
     let mut changes = lines.filter(|line| {
@@ -160,7 +160,7 @@ fn tells_of_no_change(output: &str) -> bool {
     !output.trim().is_empty() && changes.next().is_none()
 }
 
-/// Whether two texts are the same value: `on` is `ON`, `05` is `5`.
+/// Returns `true` if two texts are the same value: `on` is `ON`, `05` is `5`.
 fn same_value(one: &str, other: &str) -> bool {
     match (one.parse::<i64>(), other.parse::<i64>()) {
         (Ok(one), Ok(other)) => one == other,

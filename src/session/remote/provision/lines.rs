@@ -1,31 +1,31 @@
-//! The command lines that say how a flight controller is to be set.
+//! The command lines that configure a flight controller.
 
 use crate::session::landing_gains::landing_gain;
 
-/// What a setting's line begins with.
+/// The prefix of a setting's line.
 const SET: &str = "set ";
 
-/// Command lines, by who wants them.
+/// Command lines, by their source.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct ProvisionLines {
-    /// The guide's and the plan's.
+    /// The lines of the guide and of the plan.
     pub usual: Vec<String>,
-    /// The user's, which have the last word.
+    /// The user's lines, which override the others.
     pub of_user: Vec<String>,
 }
 
 impl ProvisionLines {
-    /// Whether there is nothing to be set.
+    /// Returns `true` if there are no lines.
     pub fn is_empty(&self) -> bool {
         self.usual.is_empty() && self.of_user.is_empty()
     }
 
-    /// All of them; of two for the same the last counts.
+    /// Returns all lines in order. Of two lines for the same setting the last one counts.
     pub(super) fn in_order(&self) -> impl Iterator<Item = &str> {
         self.usual.iter().chain(&self.of_user).map(String::as_str)
     }
 
-    /// Replaces the gains of the guide that let some firmware fall in LAND; gives the settings that stand there now.
+    /// Replaces the gains of the guide that make some firmware fall in LAND. Returns the replacements.
     pub(super) fn replace_falling_gains(&mut self) -> Vec<String> {
         let mut replaced = Vec::new();
         for line in &mut self.usual {

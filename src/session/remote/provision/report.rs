@@ -1,30 +1,30 @@
-//! What came of setting a flight controller.
+//! The report on the configuration of a flight controller.
 
 use crate::session::landing_gains::landing_gains_told;
 
-/// What came of it.
+/// The result of the configuration.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) struct ProvisionReport {
-    /// Nothing was ever changed in its configuration, so that it was set as a fresh one is.
+    /// `true` if nothing was ever changed in its configuration, so that it was configured like a fresh one.
     pub(super) was_bare: bool,
-    /// Lines that were written and taken.
+    /// The number of lines that were written and accepted.
     pub(super) written: usize,
     /// Settings that this firmware does not have.
     pub(super) unknown: Vec<String>,
     /// Lines that it refused.
     pub(super) refused: Vec<RefusedLine>,
-    /// Where it holds something else than is wanted.
+    /// The differences from the wanted settings.
     pub(super) differences: Vec<Difference>,
-    /// Settings that it gets instead of the guide's, so that it lands.
+    /// The settings that replace the guide's, so that the craft lands safely.
     pub(super) landing_gains: Vec<String>,
-    /// Something differs and nothing was written, because nobody allowed it.
+    /// `true` if there are differences and writing was not allowed.
     pub(super) may_not_write: bool,
 }
 
-/// What a flight controller was to be set to and is not.
+/// The settings that were not applied as requested.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Unset {
-    /// Nothing was written: why, as a sentence.
+    /// Nothing was written, with the reason as a sentence.
     Everything(String),
     /// These lines are not in force.
     Lines(Vec<UnsetLine>),
@@ -33,9 +33,9 @@ pub enum Unset {
 /// A line that is not in force.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct UnsetLine {
-    /// The line; of a setting that this firmware does not have without its value.
+    /// The line. For a setting that this firmware does not have, the line has no value.
     pub line: String,
-    /// What it says or holds instead, as a part of a sentence.
+    /// The firmware's refusal or current value, as part of a sentence.
     pub why: String,
 }
 
@@ -43,7 +43,7 @@ pub struct UnsetLine {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct RefusedLine {
     pub(super) line: String,
-    /// What the flight controller says.
+    /// The flight controller's reason.
     pub(super) reason: String,
 }
 
@@ -54,21 +54,21 @@ impl RefusedLine {
     }
 }
 
-/// Something that is held and not wanted.
+/// A setting that differs from the wanted one.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Difference {
-    /// The line that says what is wanted.
+    /// The line with the wanted value.
     pub(super) line: String,
     pub(super) held: String,
 }
 
 impl ProvisionReport {
-    /// Whether everything that this firmware knows is as wanted.
+    /// Returns `true` if all wishes that this firmware supports are fulfilled.
     pub(super) fn is_as_wanted(&self) -> bool {
         self.refused.is_empty() && self.differences.is_empty()
     }
 
-    /// What is not as wanted; `None` when all is.
+    /// Returns the wishes that are not fulfilled; `None` if there are none.
     pub(super) fn unset(&self) -> Option<Unset> {
         if self.may_not_write {
             return Some(Unset::Everything(self.sentences().join(" ")));
@@ -91,7 +91,7 @@ impl ProvisionReport {
         (!lines.is_empty()).then_some(Unset::Lines(lines))
     }
 
-    /// What there is to tell, as sentences; none when nothing had to be done.
+    /// Returns the notices as sentences. There are none if nothing had to be done.
     pub(super) fn sentences(&self) -> Vec<String> {
         let mut sentences = Vec::new();
         if self.was_bare {

@@ -7,7 +7,7 @@ const GUIDE: &str = include_str!("../../../../tests/vectors/guide-step5.txt");
 const PLAN: &str = include_str!("../../../../tests/vectors/guide-step7.txt");
 const MODES: [&str; 3] = ["aux 0 0 0 1700 2100 0 0", "aux 1 56 1 1700 2100", "aux 2 1 2 1700 2100 0 0"];
 
-/// A flight controller with these words of its own; lines that begin with one of `lacks` it does not know.
+/// A flight controller with an embedded firmware. It does not know lines that begin with one of `lacks`.
 struct Craft {
     firmware: Firmware,
     console: Interpreter,
@@ -35,7 +35,7 @@ impl Craft {
         Answer::Line { text: reply.text, failed: reply.failed, restarted: line == SAVE && !reply.failed }
     }
 
-    /// Answers until nothing more is asked.
+    /// Answers all requests.
     fn run(&mut self, provision: &mut Provision) {
         while provision.result().is_none() {
             while let Some(Ask::Line(line)) = provision.next() {
@@ -69,14 +69,15 @@ fn set(craft: &mut Craft, lines: &[String], may_write: bool) -> ProvisionReport 
 fn the_guides_settings_modes_and_plan_are_written_saved_and_read_back() {
     let mut craft = Craft::new();
     let report = set(&mut craft, &wanted(), true);
-    // Of the guide's 24 settings some are as usual; all are written, for they belong together.
+    // Some of the guide's 24 settings have their default values; all are written because they belong
+    // together.
     assert_eq!(report, ProvisionReport { written: 24 + 3 + 5, ..ProvisionReport::default() });
     assert_eq!(craft.ran.iter().filter(|line| *line == SAVE).count(), 1);
     assert_eq!(craft.firmware.stored_plan().waypoints.len(), 4);
     assert_eq!(craft.firmware.parameters().nav.max_angle, 25);
     assert_eq!(craft.firmware.mode_ranges().len(), 3);
     assert_eq!(report.sentences(), ["The firmware took 32 lines of settings, read back as written."]);
-    // A second time there is nothing to do, and no restart.
+    // The second time there is nothing to do, and no restart.
     craft.ran.clear();
     let again = set(&mut craft, &wanted(), true);
     assert_eq!(again.unset(), None);
@@ -175,7 +176,7 @@ fn a_firmware_that_falls_in_land_gets_other_gains_than_the_guides_and_the_user_h
     assert!(told.contains("falls in LAND") && told.contains("gets ap_altitude_p = 2 instead"), "{told}");
 }
 
-/// Sets one of which nobody knows whether it was ever set, which it is by a switch for ARM.
+/// Configures a craft with unknown history. The line for a fresh one is a switch for ARM.
 fn set_unsure(craft: &mut Craft) -> ProvisionReport {
     let fresh = ProvisionLines { usual: vec![MODES[0].to_owned()], of_user: Vec::new() };
     let mut provision = Provision::new(ProvisionLines::default(), false).or_when_bare(fresh);
@@ -203,7 +204,7 @@ fn one_with_a_setting_a_switch_or_a_plan_of_its_own_is_left_alone() {
         assert_eq!(set_unsure(&mut craft), ProvisionReport::default(), "{own}");
         assert_eq!((craft.firmware.mode_ranges().len(), &craft.ran[..]), (modes, &["diff".to_owned()][..]));
     }
-    // Nor is one that does not tell.
+    // Nor is a craft that does not answer.
     let fresh = ProvisionLines { usual: vec![MODES[0].to_owned()], of_user: Vec::new() };
     let mut provision = Provision::new(ProvisionLines::default(), false).or_when_bare(fresh);
     assert_eq!(provision.next(), Some(Ask::Line("diff".to_owned())));

@@ -1,14 +1,14 @@
-//! What command lines want a flight controller to hold.
+//! The settings that command lines request of a flight controller.
 
 use crate::plan::FlightPlan;
 use crate::plan::format::{self, Format};
 
-/// Words of lines that say nothing of what is to be held: storing, leaving, batches, looking.
+/// Words of lines that request no setting: saving, leaving, batches, reading.
 const PASSED_OVER: [&str; 6] = ["save", "exit", "batch", "reboot", "get", "diff"];
-/// Words of lines that choose a profile: which one the settings behind them belong to cannot be read back.
+/// Words of lines that select a profile. The profile of the settings that follow cannot be read back.
 const PROFILES: [&str; 3] = ["profile", "rateprofile", "battery_profile"];
 
-/// What a line wants.
+/// The request of a line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Wish {
     /// A setting has a value.
@@ -31,7 +31,7 @@ impl Wish {
         }
     }
 
-    /// Whether it is for the same as an earlier one.
+    /// Returns `true` if it concerns the same item as an earlier one.
     fn replaces(&self, earlier: &Self) -> bool {
         match (self, earlier) {
             (Self::Setting { name, .. }, Self::Setting { name: of, .. }) => name == of,
@@ -40,13 +40,13 @@ impl Wish {
         }
     }
 
-    /// Whether nobody can tell if it is fulfilled.
+    /// Returns `true` if its fulfilment cannot be read back.
     pub(super) fn cannot_be_read(&self) -> bool {
         matches!(self, Self::Other { .. })
     }
 }
 
-/// The wishes of these lines; of two for the same the last counts.
+/// Returns the wishes of these lines. Of two for the same item the last one counts.
 pub(super) fn wishes<L: AsRef<str>>(lines: impl IntoIterator<Item = L>) -> Vec<Wish> {
     let mut in_profile = false;
     let mut wishes = Vec::new();
@@ -81,12 +81,12 @@ pub(super) fn wishes<L: AsRef<str>>(lines: impl IntoIterator<Item = L>) -> Vec<W
     wishes
 }
 
-/// The numbers behind `aux`.
+/// Parses the numbers after `aux`.
 pub(super) fn aux_row(numbers: &str) -> Option<Vec<u16>> {
     numbers.split_ascii_whitespace().map(|number| number.parse().ok()).collect()
 }
 
-/// The plan that the wishes want; `None` when they want none, or it cannot be read.
+/// Returns the wanted plan; `None` if there is none, or if it cannot be parsed.
 pub(super) fn plan(wishes: &[Wish]) -> Option<FlightPlan> {
     let lines: Vec<&str> =
         wishes.iter().filter(|wish| matches!(wish, Wish::Plan { .. })).map(Wish::line).collect();

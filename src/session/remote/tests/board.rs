@@ -2,12 +2,12 @@
 
 use crate::link::proto::msp::{Decoder, Frame};
 
-/// Its boxes: ARM, FAILSAFE, GPS RESCUE, AUTOPILOT.
+/// The boxes: ARM, FAILSAFE, GPS RESCUE, AUTOPILOT.
 const BOXES: [u8; 4] = [0, 27, 46, 56];
-/// ARM on AUX1 and GPS RESCUE on AUX3, each from 1700 µs on.
+/// ARM on AUX1 and GPS RESCUE on AUX3, both above 1700 µs.
 const MODE_RANGES: [u8; 8] = [0, 0, 32, 48, 46, 2, 32, 48];
 
-/// Where it is, degrees × 10⁷ and metres above sea level.
+/// The position, degrees × 10⁷ and metres above sea level.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
     pub(super) lat: i32,
@@ -18,18 +18,18 @@ pub(super) struct Place {
 pub(super) struct Board {
     pub(super) place: Place,
     pub(super) armed: bool,
-    /// Pulse of the channel that arms, µs.
+    /// The pulse of the channel that arms, µs.
     pub(super) arm_us: u16,
     pub(super) silent: bool,
-    /// `None` refuses to say.
+    /// The firmware variant; `None` refuses the request.
     pub(super) variant: Option<&'static [u8]>,
-    /// What it prints of its autopilot.
+    /// The output for its autopilot settings.
     pub(super) settings: &'static str,
-    /// It has a setting of firmware that counts from home.
+    /// `true` if it has a setting of firmware whose altitudes are above home.
     pub(super) from_home: bool,
-    /// Its command line opens while it is armed, too.
+    /// `true` if its command line also opens while armed.
     pub(super) answers_in_flight: bool,
-    /// Lines that it ran.
+    /// The lines that it ran.
     pub(super) lines: Vec<String>,
     pub(super) decoder: Decoder,
     /// The line that is being typed.
@@ -53,7 +53,7 @@ impl Board {
         }
     }
 
-    /// What it answers to these bytes.
+    /// Returns its answer to these bytes.
     pub(super) fn answer(&mut self, bytes: &[u8]) -> Vec<u8> {
         let mut output = Vec::new();
         if self.silent {

@@ -1,20 +1,20 @@
-//! Who the flight controller says it is.
+//! The identity of the flight controller: firmware, version, board and build.
 
 use super::reader::{Reader, text};
 
 /// The build option of waypoint missions.
 pub const FLIGHT_PLAN_OPTION: u16 = 16_427;
-/// From this first byte on a version is a year and carries its text.
+/// From this first byte on, a version is a year and comes with its text.
 const FIRST_YEAR: u8 = 10;
-/// Bytes of date, time and revision.
+/// The bytes of date, time and revision.
 const BUILD_TEXTS: [usize; 3] = [11, 8, 7];
-/// Bytes of the signature of a board.
+/// The bytes of a board's signature.
 const SIGNATURE: usize = 32;
 
 /// `API_VERSION`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ApiVersion {
-    /// Changes when nothing is as before.
+    /// Changes with incompatible releases.
     pub major: u8,
     /// Changes when messages grow.
     pub minor: u8,
@@ -39,7 +39,7 @@ pub fn variant(payload: &[u8]) -> Option<String> {
     Reader::new(payload).text(4)
 }
 
-/// `FC_VERSION`: the version as users write it.
+/// Decodes `FC_VERSION`. Returns the version as users write it.
 pub fn version(payload: &[u8]) -> Option<String> {
     let mut reader = Reader::new(payload);
     let [major, minor, patch] = [reader.u8()?, reader.u8()?, reader.u8()?];
@@ -54,13 +54,13 @@ pub fn version(payload: &[u8]) -> Option<String> {
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct BoardInfo {
     pub identifier: String,
-    /// What the firmware was built for.
+    /// The target that the firmware was built for.
     pub target: Option<String>,
-    /// The board's name, when it was given one.
+    /// The name of the board, if it has one.
     pub name: Option<String>,
-    /// Whether somebody configured the board.
+    /// `true` if the board was configured.
     pub configured: Option<bool>,
-    /// Gyro loop, Hz.
+    /// The rate of the gyro loop, Hz.
     pub gyro_hz: Option<u16>,
 }
 
@@ -83,13 +83,13 @@ impl BoardInfo {
 /// `BUILD_INFO`.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct BuildInfo {
-    /// Day of the build.
+    /// The day of the build.
     pub date: String,
-    /// Time of the build.
+    /// The time of the build.
     pub time: String,
-    /// Revision of the source.
+    /// The revision of the source.
     pub revision: String,
-    /// What was built in; `None` in releases that do not tell.
+    /// The build options; `None` in releases that do not report them.
     pub options: Option<Vec<u16>>,
 }
 
@@ -102,7 +102,7 @@ impl BuildInfo {
         Some(Self { date: date?, time: time?, revision: revision?, options })
     }
 
-    /// Whether waypoint missions are built in; `None` when it does not tell.
+    /// Returns `true` if the build includes waypoint missions; `None` if it does not report its options.
     pub fn has_flight_plan(&self) -> Option<bool> {
         self.options.as_ref().map(|options| options.contains(&FLIGHT_PLAN_OPTION))
     }

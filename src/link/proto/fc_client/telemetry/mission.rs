@@ -4,19 +4,19 @@ use crate::geo::LatLon;
 use crate::plan::WaypointType;
 use crate::telemetry::{AbortReason, NavState};
 
-/// Most waypoints that are taken from a list.
+/// The maximum number of waypoints that are read from a list.
 const MOST_WAYPOINTS: usize = 256;
 
-/// What a flight controller tells of its mission.
+/// The mission that a flight controller reports.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Mission {
     /// The plan that is flown, or the stored one.
     pub waypoints: Vec<PlannedWaypoint>,
-    /// What it does with it; `None` when it does not tell.
+    /// The phase of the mission; `None` if it is not reported.
     pub phase: Option<MissionPhase>,
-    /// Index of the current waypoint.
+    /// The index of the current waypoint.
     pub waypoint: Option<u8>,
-    /// Waypoints in the plan that is flown.
+    /// The number of waypoints in the current plan.
     pub count: Option<u8>,
     /// Distance to the current waypoint, m.
     pub distance_m: Option<f64>,
@@ -26,35 +26,35 @@ pub struct Mission {
     pub eta_s: Option<f64>,
 }
 
-/// What is done with a mission.
+/// The phase of a mission.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum MissionPhase {
-    /// Nothing: the autopilot does not fly, with its reason if it gives one.
+    /// The autopilot does not fly the mission. It may give a reason.
     Inactive {
-        /// Why it refuses to.
+        /// The reason for a refusal.
         refused: Option<String>,
     },
-    /// It flies, in this state of the waypoint machine.
+    /// The mission is flown, in this state of the waypoint machine.
     Flying(NavState),
-    /// It gave the mission up.
+    /// The autopilot aborted the mission.
     Aborted {
-        /// The cause, as the flight controller names it.
+        /// The cause in the flight controller's words.
         cause: String,
     },
 }
 
-/// A waypoint as the status lists it.
+/// A waypoint as listed in the status.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlannedWaypoint {
     pub position: LatLon,
-    /// Altitude, m, from where this firmware counts it.
+    /// The altitude, m, above this firmware's reference.
     pub alt_m: f64,
-    /// What to do there.
+    /// The type of the waypoint.
     pub kind: WaypointType,
 }
 
 impl Mission {
-    /// Reads the output; `None` when it is no status.
+    /// Parses the output. Returns `None` if it is no status.
     pub fn parse(output: &str) -> Option<Self> {
         let mut mission = Self::default();
         let (mut is_status, mut cause, mut state) = (false, None, None);
@@ -84,7 +84,7 @@ impl Mission {
         is_status.then_some(mission)
     }
 
-    /// The cause of an abortion, when it is one that is known here.
+    /// Returns the cause of an abort if it is a known one.
     pub fn abort_reason(&self) -> Option<AbortReason> {
         let Some(MissionPhase::Aborted { cause }) = &self.phase else { return None };
         [AbortReason::Stalled, AbortReason::Flyaway, AbortReason::GpsLost, AbortReason::NoPlan]
@@ -92,14 +92,14 @@ impl Mission {
             .find(|reason| reason.to_string().replace('_', " ") == cause.replace('_', " "))
     }
 
-    /// `2/5`, counted from 1.
+    /// Reads `2/5`, counted from 1.
     fn read_current(&mut self, value: &str) {
         let (number, count) = value.split_once('/').unwrap_or((value, ""));
         self.waypoint = number.trim().parse::<u8>().ok().and_then(|number| number.checked_sub(1));
         self.count = count.trim().parse().ok();
     }
 
-    /// `distance: 210.44m  bearing: 0 deg  eta: 39s`, the last two not always.
+    /// Reads `distance: 210.44m  bearing: 0 deg  eta: 39s`. The last two may be missing.
     fn read_distance(&mut self, line: &str) {
         let number = |label: &str| {
             let (_, rest) = line.split_once(label)?;
@@ -114,7 +114,7 @@ impl Mission {
     }
 }
 
-/// The state that a word names, in the words of either vocabulary.
+/// Returns the state with this name, in either vocabulary.
 fn nav_state(word: &str) -> Option<NavState> {
     use strum::IntoEnumIterator as _;
     match word {
@@ -123,7 +123,7 @@ fn nav_state(word: &str) -> Option<NavState> {
     }
 }
 
-/// `[0] -27.4973051 153.0000000 40.00m FLYOVER`.
+/// Parses `[0] -27.4973051 153.0000000 40.00m FLYOVER`.
 fn planned_waypoint(line: &str) -> Option<PlannedWaypoint> {
     let mut words = line.split_ascii_whitespace().skip(1);
     let mut number = |unit: &str| words.next()?.trim_end_matches(unit).parse::<f64>().ok();

@@ -5,17 +5,17 @@ use crate::signals::RC_CHANNELS;
 use crate::telemetry::ModeBox;
 use crate::telemetry::snapshot::ModeRange;
 
-/// Index of the first AUX channel.
+/// The index of the first AUX channel.
 const AUX1: u8 = 4;
-/// Pulse of step 0 of a range, µs.
+/// The pulse at step 0 of a range, µs.
 const RANGE_START_US: u16 = 900;
-/// Pulse step of a range, µs.
+/// The pulse difference per step of a range, µs.
 const RANGE_STEP_US: u16 = 25;
-/// Highest step of a range.
+/// The highest step of a range.
 const RANGE_STEPS: u8 = 48;
 
-/// `MODE_RANGES` and, when there is one, `MODE_RANGES_EXTRA`: the conditions that look at a channel. Those that follow
-/// another mode and those of unknown boxes are left out.
+/// Decodes `MODE_RANGES` and, if present, `MODE_RANGES_EXTRA`. Returns the conditions that depend on a
+/// channel, without those that are linked to another mode and those of unknown boxes.
 pub fn mode_ranges(ranges: &[u8], extra: Option<&[u8]>) -> Vec<ModeRange> {
     let links = extra.and_then(|extra| extra.get(1..)).unwrap_or_default();
     let linked = |at: usize| links.get(3 * at + 2).is_some_and(|linked| *linked != 0);

@@ -3,7 +3,7 @@
 use super::reader::Reader;
 use crate::geo::LatLon;
 
-/// Dilution, 0.01, up to which a receiver is known to report none.
+/// A dilution up to this value (in 0.01) means that the receiver does not report any.
 const UNREPORTED_DOP: u16 = 10;
 
 /// `ATTITUDE`.
@@ -32,7 +32,8 @@ impl Attitude {
 /// `ALTITUDE`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Altitude {
-    /// Above the arming point, m; a flight controller that was never armed may count from somewhere else.
+    /// The altitude above the arming point, m. A flight controller that was never armed may use another
+    /// reference.
     pub alt_m: f64,
     /// Climb rate, m/s.
     pub climb_mps: Option<f64>,
@@ -52,20 +53,20 @@ pub struct RawGps {
     /// A 3-D fix.
     pub fix: bool,
     pub sats: u8,
-    /// Where; old without a fix.
+    /// The position; outdated without a fix.
     pub position: LatLon,
-    /// Above mean sea level, m, in whole metres, not below 0.
+    /// The altitude above mean sea level, m, in whole metres, not below 0.
     pub alt_amsl_m: f64,
     /// Speed over ground, m/s.
     pub ground_speed_mps: f64,
     /// Course over ground, degrees clockwise from north.
     pub course_deg: f64,
-    /// Dilution of precision, when reported.
+    /// The dilution of precision, if reported.
     pub dop: Option<f64>,
 }
 
 impl RawGps {
-    /// Reads the message; `None` also for a position that is not on the globe.
+    /// Decodes the message. Returns `None` also for a position that is not on the globe.
     pub fn decode(payload: &[u8]) -> Option<Self> {
         let mut reader = Reader::new(payload);
         let gps = Self {

@@ -1,4 +1,4 @@
-//! Everything that a flight controller has told, put together.
+//! Everything that a flight controller has reported, combined.
 
 use super::{
     Altitude, Attitude, BatteryReading, HomeVector, RawGps, Status, channels, code, mode_ranges, motors,
@@ -8,15 +8,15 @@ use crate::signals::RC_CHANNELS;
 use crate::telemetry::snapshot::{CraftView, EstimateView, GpsView, ModeRange};
 use crate::telemetry::{ArmingFlag, ArmingFlags, Mode};
 
-/// The place that displays count from.
+/// The reference point of the display.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Origin {
     pub position: LatLon,
-    /// Its altitude above mean sea level, m.
+    /// The altitude above mean sea level, m.
     pub alt_amsl_m: f64,
 }
 
-/// The newest of every message.
+/// The newest values of every message.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Observation {
     box_ids: Vec<u8>,
@@ -34,7 +34,7 @@ pub struct Observation {
 }
 
 impl Observation {
-    /// Takes a reply. One that cannot be read leaves what was known; says whether it could.
+    /// Takes a reply and returns `true` if it was readable. An unreadable reply changes nothing.
     pub fn take(&mut self, code: u16, payload: &[u8]) -> bool {
         match code {
             code::BOX_IDS => keep(&mut self.box_ids, Some(payload.to_vec())),
@@ -52,7 +52,8 @@ impl Observation {
         }
     }
 
-    /// Home is where the craft is armed; of a craft that flew already it is where the flight controller points to.
+    /// Takes a status. Home is the position at which the craft is armed. For a craft that already flew, it is
+    /// the point that the flight controller's home vector gives.
     fn take_status(&mut self, status: Option<Status>) -> bool {
         let before = self.armed();
         let is_read = keep(&mut self.status, status.map(Some));
@@ -68,37 +69,37 @@ impl Observation {
         is_read
     }
 
-    /// Whether the craft is armed.
+    /// Returns `true` if the craft is armed; `None` if that is unknown.
     pub fn armed(&self) -> Option<bool> {
         self.status.and_then(|status| status.is_armed(&self.box_ids))
     }
 
-    /// Whether a mode is known to be active.
+    /// Returns `true` if a mode is known to be active.
     pub fn is_active(&self, mode: Mode) -> bool {
         self.status.is_some_and(|status| status.modes(&self.box_ids).has(mode))
     }
 
-    /// Whether the channels in use are known.
+    /// Returns `true` once the channels are known.
     pub fn has_channels(&self) -> bool {
         self.channels.is_some()
     }
 
-    /// The newest of the GPS.
+    /// Returns the newest GPS data.
     pub fn gps(&self) -> Option<&RawGps> {
         self.gps.as_ref()
     }
 
-    /// Motor outputs M1…M4, 0…1.
+    /// Returns the motor outputs M1…M4, 0…1.
     pub fn motors(&self) -> Option<[f64; 4]> {
         self.motors
     }
 
-    /// The conditions of the modes.
+    /// Returns the conditions of the modes.
     pub fn mode_ranges(&self) -> Option<Vec<ModeRange>> {
         self.ranges.as_deref().map(|ranges| mode_ranges(ranges, self.range_links.as_deref()))
     }
 
-    /// Modes, arming, receiver and battery, as far as they were told.
+    /// Returns modes, arming, receiver and battery, as far as they were reported.
     pub fn craft_view(&self) -> CraftView {
         let armed = self.armed();
         let flags = self.status.and_then(|status| status.arming_blocked_by);
@@ -130,7 +131,8 @@ impl Observation {
         }
     }
 
-    /// What the flight controller believes of the craft's motion; places count from `origin` and are unknown without one.
+    /// Returns the flight controller's estimate of the craft's motion. Positions are relative to `origin` and
+    /// unknown without it.
     pub fn estimate_view(&self, origin: Option<Origin>) -> EstimateView {
         let fix = self.gps.filter(|gps| gps.fix);
         let offset = fix.zip(origin).map(|(gps, origin)| local_offset(origin.position, gps.position));
@@ -147,8 +149,8 @@ impl Observation {
         }
     }
 
-    /// Before its first arming a flight controller shows the altitude above sea level: whichever is nearer to what the GPS
-    /// says is meant.
+    /// Returns an altitude above the origin. Before its first arming a flight controller reports the altitude
+    /// above sea level; the reference that agrees better with the GPS altitude is used.
     fn above_origin(&self, alt_m: f64, origin: Option<Origin>) -> f64 {
         let (Some(gps), Some(origin)) = (self.gps.filter(|gps| gps.fix), origin) else { return alt_m };
         let from_sea_level = (alt_m - gps.alt_amsl_m).abs();
@@ -158,7 +160,7 @@ impl Observation {
     }
 }
 
-/// Keeps what could be read, and says whether it could.
+/// Stores a value that was read. Returns `false` if there was none.
 fn keep<T>(place: &mut T, read: Option<T>) -> bool {
     read.is_some_and(|read| {
         *place = read;

@@ -2,7 +2,7 @@
 
 use super::reader::Reader;
 
-/// State of a battery; the discriminant is the code on the wire.
+/// The state of a battery. The discriminant is the code on the wire.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::FromRepr)]
 #[repr(u8)]
 pub enum BatteryState {
@@ -18,7 +18,7 @@ pub enum BatteryState {
 /// `BATTERY_STATE`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BatteryReading {
-    /// Cells in series, once counted.
+    /// The number of cells in series, once counted.
     pub cells: Option<u8>,
     /// Voltage, V.
     pub voltage_v: f64,
@@ -26,7 +26,7 @@ pub struct BatteryReading {
     pub drawn_mah: f64,
     /// Current, A.
     pub current_a: f64,
-    /// Its state, when it is a known one.
+    /// The state, if it is a known one.
     pub state: Option<BatteryState>,
 }
 
@@ -43,7 +43,7 @@ impl BatteryReading {
         Some(Self { cells, voltage_v, drawn_mah, current_a, state })
     }
 
-    /// Whether there is a battery: its cells were counted, or it has a voltage.
+    /// Returns `true` if there is a battery: its cells were counted, or it has a voltage.
     pub fn is_present(&self) -> bool {
         self.state != Some(BatteryState::NotPresent) && (self.cells.is_some() || self.voltage_v > 0.0)
     }

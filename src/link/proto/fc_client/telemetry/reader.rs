@@ -1,4 +1,4 @@
-//! Reads a payload from its beginning; what is behind its end is `None`.
+//! Reads a payload from its beginning. Reading past its end gives `None`.
 
 /// The rest of a payload.
 #[derive(Debug, Clone, Copy)]
@@ -35,26 +35,26 @@ impl<'a> Reader<'a> {
         self.take().map(i32::from_le_bytes)
     }
 
-    /// The next bytes, this many.
+    /// Reads the next `count` bytes.
     pub(super) fn bytes(&mut self, count: usize) -> Option<&'a [u8]> {
         let (taken, rest) = self.0.split_at_checked(count)?;
         self.0 = rest;
         Some(taken)
     }
 
-    /// Text of this many bytes.
+    /// Reads a text of `count` bytes.
     pub(super) fn text(&mut self, count: usize) -> Option<String> {
         self.bytes(count).map(text)
     }
 
-    /// Text after its length.
+    /// Reads a text that follows its length.
     pub(super) fn prefixed_text(&mut self) -> Option<String> {
         let count = self.u8()?;
         self.text(usize::from(count))
     }
 }
 
-/// What can be shown of a text, without surrounding blanks.
+/// Returns the printable characters of a text, without surrounding blanks.
 pub(super) fn text(bytes: &[u8]) -> String {
     let letters: String =
         bytes.iter().filter(|byte| matches!(byte, b' '..=b'~')).map(|byte| char::from(*byte)).collect();

@@ -3,13 +3,13 @@
 use super::reader::Reader;
 use crate::signals::RC_CHANNELS;
 
-/// A channel that the flight controller does not have, µs.
+/// The value of a channel that the flight controller does not have, µs.
 const ABSENT_US: u16 = 1500;
-/// A motor at rest and at its greatest, µs.
+/// The pulses of a motor at rest and at full output, µs.
 const MOTOR_RANGE_US: (f64, f64) = (1000.0, 2000.0);
 
-/// `RC`: channels in use, µs, in wire order (roll, pitch, throttle, yaw, AUX1 …); what the flight controller does not have
-/// is in the middle.
+/// Decodes `RC`. Returns the channels, µs, in wire order (roll, pitch, throttle, yaw, AUX1 …). Channels that
+/// the flight controller does not have are centred.
 pub fn channels(payload: &[u8]) -> Option<[u16; RC_CHANNELS]> {
     let mut reader = Reader::new(payload);
     let mut channels = [ABSENT_US; RC_CHANNELS];
@@ -23,7 +23,7 @@ pub fn channels(payload: &[u8]) -> Option<[u16; RC_CHANNELS]> {
     Some(channels)
 }
 
-/// `MOTOR`: outputs M1…M4, 0…1.
+/// Decodes `MOTOR`. Returns the outputs M1…M4, 0…1.
 pub fn motors(payload: &[u8]) -> Option<[f64; 4]> {
     let (rest, full) = MOTOR_RANGE_US;
     let mut reader = Reader::new(payload);

@@ -1,6 +1,6 @@
 //! The output of `get`.
 
-/// The settings that an output of `get` shows, each with its value as text.
+/// Returns the settings in an output of `get`, each with its value as text.
 pub fn settings(output: &str) -> impl Iterator<Item = (&str, &str)> {
     output.lines().filter_map(|line| {
         let (name, value) = line.split_once(" =")?;
@@ -11,8 +11,8 @@ pub fn settings(output: &str) -> impl Iterator<Item = (&str, &str)> {
     })
 }
 
-/// The value of one setting in an output of `get`, which shows all whose names contain the word that was asked for. `None`
-/// when the firmware does not have it.
+/// Returns the value of one setting in an output of `get`, which lists all settings whose names contain the
+/// requested word. Returns `None` if the firmware does not have the setting.
 pub fn setting<'a>(output: &'a str, name: &str) -> Option<&'a str> {
     settings(output).find(|(found, _)| found.eq_ignore_ascii_case(name)).map(|(_, value)| value)
 }

@@ -1,15 +1,15 @@
-//! Modes and what blocks arming.
+//! The active modes and the arming disable flags.
 
 use strum::IntoEnumIterator as _;
 
 use super::reader::Reader;
 use crate::telemetry::{ArmingFlag, ArmingFlags, Mode, ModeBox, ModeFlags};
 
-/// Boxes whose state the fixed part of a status carries.
+/// The number of boxes in the fixed part of a status.
 const FIXED_BOXES: u32 = 32;
-/// Most boxes whose state is kept.
+/// The maximum number of boxes whose state is kept.
 const MOST_BOXES: u32 = 128;
-/// Low bits of the byte that counts further bytes of mode bits.
+/// The low bits of the byte that gives the number of further bytes with mode bits.
 const COUNT_BITS: u8 = 0x0f;
 
 /// `STATUS_EX`.
@@ -19,10 +19,10 @@ pub struct Status {
     pub cycle_time_us: u16,
     /// Processor load, percent.
     pub load_percent: u16,
-    /// Bit i tells of the i-th box of `BOX_IDS`.
+    /// Bit i is the state of the i-th box of `BOX_IDS`.
     mode_bits: u128,
     pub arming_blocked_by: Option<ArmingFlags>,
-    /// Whether a changed setting waits for a restart.
+    /// `true` if a changed setting takes effect only after a restart.
     pub reboot_required: Option<bool>,
 }
 
@@ -50,14 +50,14 @@ impl Status {
         Some(Self { cycle_time_us, load_percent, mode_bits, arming_blocked_by, reboot_required })
     }
 
-    /// Whether a box is on, by the order of `BOX_IDS`: modes while they are active, other boxes while they are switched on.
-    /// `None` when the flight controller has no such box.
+    /// Returns `true` if a box is on. Modes are on while they are active, other boxes while they are switched
+    /// on. `box_ids` gives the order of the bits. Returns `None` if the flight controller has no such box.
     pub fn is_on(&self, wanted: ModeBox, box_ids: &[u8]) -> Option<bool> {
         let at = box_ids.iter().position(|id| *id == wanted as u8)?;
         Some(at < MOST_BOXES as usize && self.mode_bits >> at & 1 == 1)
     }
 
-    /// Whether the craft is armed.
+    /// Returns `true` if the craft is armed; `None` if the flight controller has no ARM box.
     pub fn is_armed(&self, box_ids: &[u8]) -> Option<bool> {
         self.is_on(ModeBox::Arm, box_ids)
     }
@@ -71,7 +71,8 @@ impl Status {
     }
 }
 
-/// The highest flag that a flight controller has is that of the ARM switch, however many there are below it.
+/// Decodes the flags. The highest flag of a flight controller is that of the ARM switch, regardless of how
+/// many there are below it.
 fn arming_flags(count: u8, bits: u32) -> ArmingFlags {
     let is_set = |bit: u32| bit < u32::BITS && bits >> bit & 1 == 1;
     let last = u32::from(count.saturating_sub(1));
