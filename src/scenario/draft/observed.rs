@@ -11,7 +11,7 @@ use crate::scenario::signal::Signal;
 use crate::signals::SimTime;
 use crate::telemetry::{NavState, PlanSource};
 
-/// The tolerance of a time, s. A share of the time applies as well.
+/// The least tolerance of a time, s. The share below applies if it gives more.
 const TIME_S: f64 = 1.5;
 const TIME_SHARE: f64 = 0.05;
 
