@@ -147,7 +147,7 @@ pub struct Compared {
 }
 
 impl Compared {
-    /// Returns the title: `guide-2 · noise real · seed 3: all FLYBY is faster`.
+    /// Returns the title: `guide-2 · noise real · seed 3`.
     pub fn title(&self) -> String {
         let variant = if self.variant.is_empty() { String::new() } else { format!(" · {}", self.variant) };
         format!("{}{variant} · seed {}", self.scenario, self.seed)

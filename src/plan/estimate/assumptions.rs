@@ -60,7 +60,7 @@ pub struct Assumptions {
 /// The source of a setting when the craft and the plan differ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SettingSource {
-    /// There is no difference.
+    /// Messages do not have to name the source.
     #[default]
     Unsaid,
     /// The craft's own value, which nothing changes before the flight.
