@@ -157,7 +157,7 @@ impl Compared {
 /// The counts of the flights of a case.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CaseCount {
-    /// `guide-7 · crosswind`.
+    /// The name: `guide-7 · crosswind`.
     pub name: String,
     pub passed: usize,
     /// The number of flights without a judgement.

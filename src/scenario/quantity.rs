@@ -26,7 +26,7 @@ impl Dimension {
     pub const CURRENT: Self = Self([0, 0, 0, 0, 0, 1]);
     pub const CHARGE: Self = Self([0, 1, 0, 0, 0, 1]);
 
-    /// The dimension of a product, or of a quotient with `sign` −1.
+    /// Returns the dimension of a product, or of a quotient with `sign` −1.
     pub(super) fn combine(self, other: Self, sign: i8) -> Self {
         Self(std::array::from_fn(|i| self.0[i].saturating_add(other.0[i].saturating_mul(sign))))
     }

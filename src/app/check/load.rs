@@ -52,7 +52,7 @@ pub(super) fn load(args: &CheckArgs) -> Result<Loaded, AppError> {
 /// Reads the scenario with a name, as for `open`. A seed replaces those of the file.
 pub(in crate::app) fn load_one(name: &str, seed: Option<u64>) -> Result<Scenario, AppError> {
     let (source, _) = source(name)?;
-    // `open` shows only one flight.
+    // `open` shows only one of the flights, so the user's limit does not apply.
     read(&source, seed.as_ref().map(std::slice::from_ref), MOST_FLIGHTS as usize, &mut Vec::new())
 }
 

@@ -20,8 +20,8 @@ use crate::vehicle::Vehicle;
 const DIRECTORY: &str = "firmware";
 /// The file with the firmware's configuration.
 const STORED: &str = "eeprom.bin";
-/// The file next to it that names the executable with which betadeck set it up. It is needed because a firmware already
-/// writes its configuration at its first start, and a firmware with another layout starts with defaults.
+/// The file next to it. After a setup by betadeck it names the executable that made the configuration. A firmware
+/// already writes its configuration at its first start, and a firmware with another layout starts with defaults.
 const PROVISIONED: &str = "provisioned";
 /// The longest text of that file, bytes.
 const LONGEST_NOTE: u64 = 64 << 10;

@@ -158,7 +158,7 @@ impl RemoteRun {
         Ok(())
     }
 
-    /// Returns the lines that the firmware did not accept.
+    /// Returns the part of the setup that failed, if any.
     pub(in crate::app) fn unset(&self) -> Option<&Unset> {
         self.link.unset()
     }
