@@ -1,4 +1,4 @@
-//! From arguments to the tasks of one mode.
+//! The program: from arguments to the tasks of one mode.
 
 mod check;
 mod compare;
@@ -41,14 +41,14 @@ use crate::args::{self, Cli, Command, PlanCommand};
 use crate::link::launch_firmware;
 use crate::ui::keymap::Keymap;
 
-/// Runs the program with the given command line (program name first) and gives its exit code.
+/// Runs the program with the given command line (program name first) and returns its exit code.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
-    // The panic itself is told by the hook, after the terminal was given back.
+    // The hook reports the panic itself, after the terminal is restored.
     std::panic::catch_unwind(|| outcome(arguments)).unwrap_or(error::INTERNAL)
 }
 
-/// The exit code of the command that was typed.
+/// Runs the typed command and returns its exit code.
 fn outcome(arguments: Vec<OsString>) -> u8 {
     if let Some(code) = launch_firmware(&arguments) {
         return code;
@@ -83,7 +83,7 @@ fn outcome(arguments: Vec<OsString>) -> u8 {
     }
 }
 
-/// Whether the configuration file matters to a command.
+/// Returns `true` if the command uses the configuration file.
 fn reads_layers(command: Option<&Command>) -> bool {
     match command {
         None | Some(Command::Fly(_) | Command::Compare(_) | Command::Serve(_) | Command::Sitl(_)) => true,
@@ -100,7 +100,7 @@ fn reads_layers(command: Option<&Command>) -> bool {
     }
 }
 
-/// Whether a command may start a firmware in a folder of its own.
+/// Returns `true` if the command may start a firmware in a folder of its own.
 fn may_start_firmware(command: Option<&Command>) -> bool {
     match command {
         None | Some(Command::Fly(_) | Command::Check(_) | Command::Compare(_) | Command::Serve(_)) => true,

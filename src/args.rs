@@ -1,7 +1,7 @@
-//! The command line: one definition from which parsing, `--help`, completions and the manual page follow.
+//! The command line: one definition for parsing, `--help`, completions and the manual page.
 //!
-//! A value comes from the first of: the command line, the environment (`BETADECK_…`), the configuration file, the
-//! default. This module only turns texts into values: it reads no file, no environment and no clock.
+//! A value comes from the first of these sources: the command line, the environment (`BETADECK_…`), the configuration
+//! file, the default. This module only turns texts into values: it reads no file, no environment and no clock.
 
 mod betaloop;
 mod check;
@@ -69,7 +69,7 @@ pub use value::{AttitudeChoice, Instant, OnOff, OutputFile, Seeds, Speed};
     max_term_width = 100
 )]
 pub struct Cli {
-    /// What to do; the terminal user interface when absent.
+    /// The command; `None` for the terminal user interface.
     #[command(subcommand)]
     pub command: Option<Command>,
 
@@ -78,15 +78,15 @@ pub struct Cli {
     pub tui: TuiArgs,
 }
 
-/// What the terminal user interface starts with.
+/// The options of the terminal user interface.
 #[derive(Debug, clap::Args)]
 pub struct TuiArgs {
     /// Plan to load: a built-in plan's name or a file (*.toml, *.txt, - for standard input) [default: square]
     pub plan: Option<PlanArg>,
 
-    /// No screen: what happens as sentences, commands of the `:` line on standard input
+    /// No screen: events as sentences on standard output, commands of the `:` line on standard input
     ///
-    /// Needs no terminal. When the input ends the flight goes on, until `quit` or a signal ends it.
+    /// Needs no terminal. After the end of the input the flight goes on, until `quit` or a signal ends it.
     #[arg(long, help_heading = "Screen")]
     pub plain: bool,
 
@@ -98,23 +98,23 @@ pub struct TuiArgs {
     #[command(flatten)]
     pub doors: DoorArgs,
 
-    /// The flight controller outside, when nothing is simulated.
+    /// The remote flight controller, if there is no simulation.
     #[command(flatten)]
     pub connect: ConnectArgs,
 
-    /// Which firmware flies.
+    /// The choice of the firmware.
     #[command(flatten)]
     pub firmware: FirmwareArgs,
 
-    /// Whose physics moves the craft.
+    /// The choice of the physics.
     #[command(flatten)]
     pub physics: PhysicsArgs,
 
-    /// What flies, where and in which air.
+    /// The craft, its position and the air.
     #[command(flatten)]
     pub flight: FlightArgs,
 
-    /// Which waypoints are warned of.
+    /// The limits for warnings about waypoints.
     #[command(flatten)]
     pub review: ReviewArgs,
 }
@@ -122,7 +122,7 @@ pub struct TuiArgs {
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Flies a plan without a screen, reports, and tells by the exit code whether the mission completed
+    /// Flies a plan without a screen and reports; the exit code says whether the mission completed
     #[command(before_help = help::examples(&[
         ("betadeck fly square", "the demo plan, events as sentences"),
         ("betadeck fly plan.toml --wind 5@270 --json - --samples 10", "JSON lines with ten samples a second"),
@@ -146,14 +146,14 @@ pub enum Command {
     ]))]
     Open(Box<OpenArgs>),
 
-    /// Flies a plan on the embedded firmware and on another one, in the same air, and tells the differences
+    /// Flies a plan on the embedded firmware and on another one, in the same air, and shows the differences
     #[command(before_help = help::examples(&[
         ("betadeck compare square --firmware obj/main/betaflight_SITL.elf", "your build beside the embedded firmware"),
         ("betadeck compare square --firmware new.elf --firmware old.elf --svg tracks.svg", "your build beside the release"),
     ]))]
     Compare(Box<CompareArgs>),
 
-    /// Firmware and physics in real time with all doors open, without a screen
+    /// Runs firmware and physics in real time with all doors open, without a screen
     #[command(before_help = help::examples(&[
         ("betadeck serve", "the Betaflight App connects to ws://localhost:6761, scripts send RC to UDP 9004"),
         ("betadeck serve --json - --no-ports", "events as JSON lines, no door"),
@@ -169,11 +169,11 @@ pub enum Command {
     ]))]
     Sitl(Box<SitlArgs>),
 
-    /// Looks at flight plans
+    /// Shows flight plans
     #[command(subcommand, disable_help_subcommand = true)]
     Plan(PlanCommand),
 
-    /// Converts a plan file to another format and says what that format cannot carry
+    /// Converts a plan file to another format and reports what that format cannot hold
     #[command(before_help = help::examples(&[
         ("betadeck convert square.txt square.toml", "formats by the files' endings"),
         ("betadeck convert - plan.toml", "from standard input"),
@@ -182,7 +182,7 @@ pub enum Command {
     ]))]
     Convert(ConvertArgs),
 
-    /// Writes the configuration file, or shows every value and where it comes from
+    /// Writes the configuration file, or shows every value with its source
     #[command(subcommand, disable_help_subcommand = true)]
     Config(ConfigCommand),
 
@@ -204,13 +204,13 @@ pub enum Command {
     Man,
 }
 
-/// What to do with a plan.
+/// Commands for plans.
 #[derive(Debug, Subcommand)]
 pub enum PlanCommand {
-    /// Prints the built-in plans: name, number of waypoints, and how each is flown
+    /// Prints the built-in plans: name, number of waypoints, and a description
     #[command(before_help = help::examples(&[("betadeck plan list", "all of them, the demo first")]))]
     List,
-    /// Prints a plan as a table with distances, times and what is wrong with it
+    /// Prints a plan as a table with distances, times and problems
     #[command(before_help = help::examples(&[
         ("betadeck plan show square", "a built-in plan"),
         ("betadeck plan show plan.txt", "a file"),
@@ -219,7 +219,7 @@ pub enum PlanCommand {
         /// A built-in plan's name or a file (*.toml, *.txt, - for standard input)
         plan: PlanArg,
 
-        /// Which waypoints are warned of.
+        /// The limits for warnings about waypoints.
         #[command(flatten)]
         review: ReviewArgs,
     },
@@ -229,8 +229,8 @@ pub enum PlanCommand {
 ///
 /// # Errors
 ///
-/// Wrong usage with a suggestion; also `--help` and `--version`, as [`clap::Error`] has it: print it and leave with its
-/// exit code.
+/// Returns wrong usage with a suggestion, and also `--help` and `--version`, as a [`clap::Error`]. The caller prints
+/// it and exits with its exit code.
 pub fn parse(arguments: impl IntoIterator<Item = OsString>, layers: &Layers) -> Result<Cli, clap::Error> {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let mut command = Cli::command();
@@ -259,12 +259,12 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>, layers: &Layers) -> 
     layers::apply(layers, arguments, &matches, &mut command)
 }
 
-/// What is wrong with the environment and the configuration file, a sentence for each problem.
+/// Returns the problems in the environment and the configuration file, one sentence each.
 pub fn layer_problems(layers: &Layers) -> Vec<String> {
     let mut command = Cli::command();
     command.build();
     let (known, mut problems) = layers.without_unknown(&command);
-    // One at a time: parsing ends at the first problem.
+    // One at a time, because parsing ends at the first problem.
     for single in known.singles() {
         let lines = [
             &["betadeck"][..],
@@ -282,12 +282,13 @@ pub fn layer_problems(layers: &Layers) -> Vec<String> {
     problems
 }
 
-/// A problem in one sentence: it stands in no option, so no usage line helps.
+/// Returns a problem as one sentence. The problem is not in an option, so a usage line would not help.
 fn usage_error(kind: ErrorKind, problem: &str) -> clap::Error {
     clap::Error::raw(kind, format!("{problem}\n"))
 }
 
-/// A misspelt command is taken for a plan, and what follows for too many arguments: says what was meant.
+/// Suggests the intended command. Otherwise a misspelt command counts as a plan, and the words after it as too many
+/// arguments.
 fn hint_at_command(error: clap::Error, arguments: &[OsString], command: &clap::Command) -> clap::Error {
     let first = arguments.get(1).and_then(|argument| argument.to_str()).unwrap_or_default();
     let names = command.get_subcommands().map(clap::Command::get_name);

@@ -1,6 +1,4 @@
-//! Flight plans: what a pilot writes, uploads, stores and flies.
-//!
-//! Pure data and rules.
+//! Flight plans: pure data and rules, without I/O.
 
 mod altitude_reference;
 pub mod builtin;

@@ -1,6 +1,6 @@
-//! What a flight leaves behind: JSON lines, sentences, a GPX track.
+//! The records of a flight: JSON lines, sentences, a GPX track.
 //!
-//! Everything here turns events and snapshots into text; where the text goes is the caller's affair.
+//! This module turns events and snapshots into text; the caller decides where the text goes.
 
 pub mod check;
 pub mod compare;

@@ -1,4 +1,4 @@
-//! Scenarios: a flight plan as a test. A file says what is flown in which air, what is done to it, and what is expected.
+//! Scenarios: flight plans as tests. A scenario file gives the plan, the air, the inputs and the expectations.
 //!
 //! ```text
 //! text ── file ──▶ Scenario { cases: plan, air, inputs, expectations }
@@ -7,7 +7,7 @@
 //!                  Trace: samples, happenings, guards ── judge ──▶ a Judgement for each expectation
 //! ```
 //!
-//! Nothing here does I/O: whoever reads a scenario says how the files it names are read.
+//! This module does no I/O: the caller passes a reader for the files that a scenario names.
 
 mod allowance;
 mod case;

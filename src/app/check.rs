@@ -23,7 +23,7 @@ pub(super) use load::load_one;
 use output::Output;
 use results::Results;
 
-/// Flies and judges; the exit code says whether every expectation was met.
+/// Flies and judges. The exit code is 0 if every expectation was met.
 pub(super) fn run(args: &CheckArgs) -> Result<u8, AppError> {
     if args.list {
         return list(args);
@@ -51,7 +51,7 @@ pub(super) fn run(args: &CheckArgs) -> Result<u8, AppError> {
     fly(&loaded, args, firmware.as_ref(), &interrupted)
 }
 
-/// Flies what was loaded, once.
+/// Flies the loaded scenarios once.
 fn fly(
     loaded: &Loaded,
     args: &CheckArgs,
@@ -95,7 +95,7 @@ fn fly(
     })
 }
 
-/// Names and cases, without flying.
+/// Prints names and cases, without flying.
 fn list(args: &CheckArgs) -> Result<u8, AppError> {
     let loaded = load::load(&CheckArgs { slow: true, ..args.clone() })?;
     let mut text = String::new();
@@ -118,5 +118,5 @@ fn list(args: &CheckArgs) -> Result<u8, AppError> {
     error::print(&text)
 }
 
-/// What was expected of several flights together.
+/// Judged comparisons of several flights.
 type Comparisons = Vec<Compared>;

@@ -11,18 +11,18 @@ use crate::record::compare::{Comparison, Side};
 use flights::Flights;
 use outputs::Outputs;
 
-/// A firmware that is compared.
+/// A firmware in the comparison.
 #[derive(Debug)]
 struct Compared {
-    /// What it is called.
+    /// The name of the firmware.
     name: String,
-    /// `None` = the embedded one.
+    /// `None` = the embedded firmware.
     firmware: Option<RemoteFirmware>,
-    /// How often it is flown.
+    /// The number of flights.
     times: u32,
 }
 
-/// Flies and compares; the exit code says whether all flights completed.
+/// Flies and compares. The exit code is 0 if all flights completed.
 pub(super) fn run(args: &CompareArgs) -> Result<u8, AppError> {
     let mut notices = Vec::new();
     let compared = compared(args, &mut notices)?;
@@ -55,7 +55,7 @@ pub(super) fn run(args: &CompareArgs) -> Result<u8, AppError> {
     Ok(if all_complete { 0 } else { error::FAILED })
 }
 
-/// Flies each firmware as often as it is to be flown; `false` when that was interrupted. What was flown before stays.
+/// Flies each firmware the requested number of times. Returns `false` after an interrupt; earlier flights are kept.
 fn fly(flights: &Flights, compared: &[Compared; 2], sides: &mut [Side; 2]) -> Result<bool, AppError> {
     for (one, side) in compared.iter().zip(sides) {
         for time in 1..=one.times {
@@ -71,7 +71,7 @@ fn fly(flights: &Flights, compared: &[Compared; 2], sides: &mut [Side; 2]) -> Re
     Ok(true)
 }
 
-/// The two that are compared, checked.
+/// Returns the two firmwares, checked.
 fn compared(args: &CompareArgs, notices: &mut Vec<String>) -> Result<[Compared; 2], AppError> {
     let chosen = choose(args, notices)?;
     let choices = chosen.each_ref().map(|chosen| &chosen.choice);
@@ -95,7 +95,8 @@ fn compared(args: &CompareArgs, notices: &mut Vec<String>) -> Result<[Compared; 
     Ok([one(first, a)?, one(second, b)?])
 }
 
-/// The two that are compared: with one, the first is the embedded one; with none, the second is that of the launcher.
+/// Chooses the two firmwares. With one option, the first is the embedded one; without options, the second is that of
+/// the launcher.
 fn choose(args: &CompareArgs, notices: &mut Vec<String>) -> Result<[Chosen; 2], AppError> {
     let other = match &args.firmware[..] {
         [first, second] => return Ok([first, second].map(|choice| Chosen::by_option(choice.clone()))),
@@ -110,7 +111,7 @@ fn choose(args: &CompareArgs, notices: &mut Vec<String>) -> Result<[Chosen; 2], 
     Ok([Chosen::by_option(FirmwareChoice::Embedded), other])
 }
 
-/// What they are called: by their files, with the path where the files are called alike.
+/// Returns the names: the names of their files, with the path if both files have the same name.
 fn names(choices: [&FirmwareChoice; 2]) -> [String; 2] {
     let short = choices.map(|choice| match choice {
         FirmwareChoice::Embedded => "embedded".to_owned(),
@@ -129,7 +130,7 @@ fn names(choices: [&FirmwareChoice; 2]) -> [String; 2] {
     }
 }
 
-/// The air and the seed, for people.
+/// Returns the air and the seed, for people.
 fn conditions(flight: &FlightArgs) -> String {
     let mut told = vec![flight.wind.map_or_else(|| "calm".to_owned(), |wind| format!("wind {wind}"))];
     told.extend(flight.gust.map(|gust| format!("gusts {gust} m/s")));

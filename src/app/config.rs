@@ -1,4 +1,4 @@
-//! `betadeck config`: the configuration file, written with comments, shown with where each value comes from, its place.
+//! `betadeck config`: writes the configuration file with comments, shows each value with its source, prints its path.
 
 use std::fmt::Write as _;
 use std::fs::{self, OpenOptions};
@@ -9,7 +9,7 @@ use super::layers::{self, Outside};
 use crate::args::{self, ConfigCommand, KeyHelp};
 use crate::ui::action::ACTIONS;
 
-/// Does what the command says.
+/// Runs the command.
 pub(super) fn run(command: ConfigCommand) -> Result<u8, AppError> {
     match command {
         ConfigCommand::Init { force } => init(force),
@@ -21,7 +21,7 @@ pub(super) fn run(command: ConfigCommand) -> Result<u8, AppError> {
     }
 }
 
-/// Writes the file. One that exists is somebody's work: it is replaced only when that was asked for.
+/// Writes the file. An existing file may be the work of the user, so it is replaced only on request.
 fn init(force: bool) -> Result<u8, AppError> {
     let path = layers::directories()?.config_file();
     let problem = |error| AppError::environment(format!("cannot write {}: {error}", path.display()));
@@ -42,7 +42,7 @@ fn init(force: bool) -> Result<u8, AppError> {
     error::print(&format!("{}\n", path.display()))
 }
 
-/// Prints every value and where it comes from, then the keys that are not the default ones.
+/// Prints every value and its source, then the keys that differ from the default.
 fn show() -> Result<u8, AppError> {
     let Outside { layers, keys } = layers::read()?;
     let origins = args::origins(&layers).map_err(AppError::input)?;

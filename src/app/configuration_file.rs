@@ -4,12 +4,12 @@ use super::AppError;
 use super::keys;
 use crate::ui::keymap::KeyLine;
 
-/// What a configuration file says.
+/// The contents of a configuration file.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ConfigurationFile {
     /// The values of options, by their names.
     pub options: toml::Table,
-    /// The keys of the user's own.
+    /// The keys defined by the user.
     pub keys: Vec<KeyLine>,
 }
 
@@ -17,7 +17,7 @@ impl ConfigurationFile {
     /// Reads the text of a configuration file; messages call it `file_name`.
     ///
     /// # Errors
-    /// What is wrong with it, and where.
+    /// Returns the mistake and its place.
     pub fn read(file_name: &str, text: &str) -> Result<Self, AppError> {
         let mut options: toml::Table = text.parse().map_err(|error: toml::de::Error| {
             AppError::input(format!("{file_name}: {error}").trim_end().to_owned())

@@ -1,4 +1,4 @@
-//! `betadeck --connect`: the ground station of a flight controller outside, with nothing simulated.
+//! `betadeck --connect`: the ground station for a remote flight controller, without a simulation.
 #![allow(clippy::disallowed_methods, reason = "answers are awaited in wall time")]
 
 use std::time::Instant;
@@ -15,11 +15,11 @@ use crate::storage::Store;
 use crate::ui::keymap::Keymap;
 use crate::vehicle::Vehicle;
 
-/// Opens the user interface over the flight controller at `place`; returns its exit code when the user has left it.
+/// Opens the user interface for the flight controller at `place`, and returns the exit code after the user leaves it.
 pub(super) fn run(args: &TuiArgs, place: &FcPlace, keymap: Keymap) -> Result<u8, AppError> {
     let plan = match &args.plan {
         Some(plan) => setup::read_plan(plan)?,
-        // What the craft has is downloaded.
+        // The plan of the craft is downloaded.
         None => PlanFile { name: "new".to_owned(), ..PlanFile::default() },
     };
     let mut notices: Vec<String> = plan.notes.iter().map(ToString::to_string).collect();
@@ -28,7 +28,7 @@ pub(super) fn run(args: &TuiArgs, place: &FcPlace, keymap: Keymap) -> Result<u8,
         plan,
         path: args.plan.as_ref().and_then(PlanArg::path),
         vehicle: Vehicle::elsewhere().map_err(AppError::internal)?,
-        // It keeps its configuration itself.
+        // The craft keeps its configuration itself.
         store: Store::in_memory(),
         directory: setup::store_directory(&args.flight)?,
         was_used: true,
@@ -49,7 +49,7 @@ pub(super) fn run(args: &TuiArgs, place: &FcPlace, keymap: Keymap) -> Result<u8,
     tui::show(screen, keymap)
 }
 
-/// The link to the flight controller at `place`, which is connected from now on.
+/// Returns the link to the flight controller at `place` and starts to connect.
 pub(super) fn link(place: &FcPlace) -> RemoteLink {
     let stream = FcStream::open(place.clone());
     RemoteLink::new(RemoteEnds { name: place.to_string(), stream, peer: None, child: None }, Instant::now())

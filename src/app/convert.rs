@@ -1,4 +1,4 @@
-//! `betadeck convert`: one plan format to another.
+//! `betadeck convert`: converts a plan to another format.
 
 use std::fs::{File, OpenOptions};
 use std::io::{ErrorKind, Write as _};
@@ -10,7 +10,7 @@ use super::setup;
 use crate::args::{ConvertArgs, OutputFile, PlanArg};
 use crate::plan::format;
 
-/// Converts, and says what the target format cannot carry.
+/// Converts, and reports the parts that the target format cannot hold.
 pub(super) fn run(args: &ConvertArgs) -> Result<u8, AppError> {
     let source = args.source().map_err(|error| AppError::input(error.to_string()))?;
     let target = args.target().map_err(AppError::input)?;
@@ -41,12 +41,12 @@ pub(super) fn run(args: &ConvertArgs) -> Result<u8, AppError> {
     Ok(0)
 }
 
-/// Writes the file. One that exists is somebody's work: it is replaced only when that was asked for.
+/// Writes the file. An existing file may be the work of the user, so it is replaced only on request.
 fn write(path: &Path, text: &str, force: bool) -> Result<(), AppError> {
     let problem = |error| AppError::environment(format!("cannot write {}: {error}", path.display()));
     let file = match OpenOptions::new().write(true).create_new(true).open(path) {
         Err(error) if error.kind() == ErrorKind::AlreadyExists => {
-            // Pipes and devices hold nothing that could be lost.
+            // Pipes and devices have no contents to lose.
             let holds_data = std::fs::metadata(path).map_err(problem)?.is_file();
             if holds_data && !force {
                 return Err(AppError::environment(format!(

@@ -1,4 +1,4 @@
-//! `betadeck doctor`: is everything here that the program needs?
+//! `betadeck doctor`: checks that the program has all that it needs.
 #![allow(clippy::disallowed_methods, reason = "it looks at the environment")]
 
 use std::fmt::Write as _;
@@ -15,7 +15,7 @@ use crate::ui::Theme;
 use crate::ui::layout::SMALLEST;
 use crate::ui::theme::{Charset, Palette};
 
-/// Prints what was found; exit code 0 when all is well.
+/// Prints the findings; exit code 0 if there is no problem.
 pub(super) fn run() -> Result<u8, AppError> {
     let mut report = Report::default();
     let revision = env!("BETADECK_REVISION");
@@ -26,7 +26,7 @@ pub(super) fn run() -> Result<u8, AppError> {
         Err(error) => report.line(false, "directories", &error.message),
     }
     terminal(&mut report);
-    // What is wrong with the options was said above; the doors are then those of the defaults.
+    // Problems of the options were reported above. In that case the default doors are checked.
     let doors =
         [layers, Layers::default()].iter().find_map(|layers| args::parse(["betadeck".into()], layers).ok());
     doors.iter().for_each(|cli| ports(&mut report, &cli.tui.doors));
@@ -48,7 +48,7 @@ impl Report {
     }
 }
 
-/// The configuration file and the environment, with all their problems.
+/// Checks the configuration file and the environment, with all their problems.
 fn configuration(report: &mut Report) -> Layers {
     const FILE: &str = "configuration file";
     let Outside { layers, keys } = match layers::read() {
@@ -72,7 +72,7 @@ fn configuration(report: &mut Report) -> Layers {
     layers
 }
 
-/// The nearest existing folder above decides whether the directory can be made.
+/// Checks the state directory: the nearest existing folder above it decides if it can be created.
 fn state_directory(report: &mut Report, path: &Path) {
     let existing = path.ancestors().find(|folder| folder.exists());
     let writable = existing.is_some_and(|folder| {
@@ -82,7 +82,7 @@ fn state_directory(report: &mut Report, path: &Path) {
     report.line(writable, "state directory", &format!("{} ({word})", path.display()));
 }
 
-/// A terminal is needed for the user interface only, so none at all is no fault.
+/// Checks the terminal. Only the user interface needs one, so a missing terminal is not a fault.
 fn terminal(report: &mut Report) {
     const TERMINAL: &str = "terminal";
     if !std::io::stdout().is_terminal() {
@@ -111,7 +111,7 @@ fn terminal(report: &mut Report) {
     }
 }
 
-/// Which of the doors' ports are free.
+/// Checks that the ports of the doors are free.
 fn ports(report: &mut Report, doors: &DoorArgs) {
     if doors.no_ports {
         report.line(true, "ports", "none: doors are closed by no-ports");

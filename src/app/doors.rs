@@ -15,41 +15,41 @@ use crate::link::{ExternalSimulator, ListenConfig, Listeners};
 use crate::session::{EndpointAddresses, Endpoints, Links, MotorTargets};
 use crate::telemetry::EndpointKind;
 
-/// Rhythm in which the state of the doors is published.
+/// The interval at which the state of the doors is published.
 const VIEW: Duration = Duration::from_millis(250);
 
-/// Open doors, on the side of the sockets.
+/// The open doors on the side of the sockets.
 #[derive(Debug)]
 pub(super) struct OpenDoors {
     stop: CancellationToken,
     keeper: tokio::task::JoinHandle<()>,
 }
 
-/// What opening the doors gave.
+/// The result of opening the doors.
 #[derive(Debug)]
 pub(super) struct Opened {
     pub doors: OpenDoors,
     /// The session's side.
     pub endpoints: Endpoints,
     pub addresses: EndpointAddresses,
-    /// What is wrong with some of them, as sentences.
+    /// Problems of some doors, as sentences.
     pub notices: Vec<String>,
 }
 
-/// Opens the doors that the options name; with `--no-ports` only those of an external simulator. One that cannot be
-/// opened is told, the others work.
+/// Opens the doors of the options; with `--no-ports` only those for an external simulator. A door that cannot be
+/// opened is reported, and the others work.
 ///
 /// # Errors
-/// When there is no socket for the motors of an external simulator.
+/// Returns an error if there is no socket for the motors of an external simulator.
 pub(super) async fn open(
     LiveArgs { doors: args, connect, firmware, physics, flight, .. }: LiveArgs<'_>,
 ) -> Result<Option<Opened>, AppError> {
     let wanted = |port: u16| (!args.no_ports).then_some(port);
-    // Ports that a firmware outside has are not ours.
+    // Ports of a remote firmware are not ours.
     let own = |port: u16| wanted(port).filter(|_| firmware.is_none());
     let fdm_port = physics.is_external().then_some(args.udp_ports().fdm);
     let (tcp_port, ws_port, rc_port) = match connect {
-        // To a real craft only the doors are open that were asked for, and none for RC.
+        // For a real craft, only the requested doors are open, and no door for RC.
         Some(_) => (args.tcp_port, args.ws_port, None),
         None => (own(args.tcp_port()), wanted(args.ws_port()), own(args.udp_ports().rc)),
     };
@@ -86,7 +86,7 @@ pub(super) async fn open(
     Ok(Some(Opened { doors: OpenDoors { stop, keeper }, endpoints, addresses, notices }))
 }
 
-/// Who can do what at doors that are open to others than this machine.
+/// Returns a sentence about doors that are open to other machines: the actions that they allow.
 fn beyond_loopback(address: IpAddr, is_real_craft: bool) -> String {
     let can = match is_real_craft {
         true => "read this craft, and change it once you permit changes",
@@ -95,7 +95,7 @@ fn beyond_loopback(address: IpAddr, is_real_craft: bool) -> String {
     format!("The doors listen on {address}: everybody on that network can {can}.")
 }
 
-/// The link to the simulator that moves the craft.
+/// Returns the link to the simulator that moves the craft.
 fn simulator(
     args: &DoorArgs,
     physics: &PhysicsArgs,
@@ -121,7 +121,7 @@ fn simulator(
     Ok(ExternalSimulator::start(config, speech.motor_order.unwrap_or_default(), motors, Instant::now()))
 }
 
-/// Publishes the state of the doors when it changes, until it is told to close them.
+/// Publishes the state of the doors when it changes, until the doors are closed.
 async fn keep(
     doors: Listeners,
     views: watch::Sender<Vec<crate::telemetry::EndpointStatus>>,
@@ -144,7 +144,7 @@ async fn keep(
 }
 
 impl OpenDoors {
-    /// Closes the doors and waits until their clients are told.
+    /// Closes the doors and waits until their clients are informed.
     pub(super) async fn close(self) {
         self.stop.cancel();
         // The keeper does not panic.

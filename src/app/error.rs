@@ -1,4 +1,4 @@
-//! Errors at the edge: a sentence for a person and an exit code for a script.
+//! Errors of the program: a sentence for a person and an exit code for a script.
 
 use std::io::Write as _;
 
@@ -16,12 +16,12 @@ pub(super) const INTERNAL: u8 = 4;
 /// Exit code: stopped by the user.
 pub(super) const INTERRUPTED: u8 = 130;
 
-/// Why the program ends early.
+/// The reason why the program ends early.
 #[derive(Debug, thiserror::Error)]
 #[error("{message}")]
 pub struct AppError {
     pub code: u8,
-    /// What is wrong, where, and what to do.
+    /// The problem, its place and a suggestion.
     pub message: String,
 }
 
@@ -30,30 +30,30 @@ impl AppError {
         Self { code: USAGE, message: message.into() }
     }
 
-    /// A file, a port or the terminal.
+    /// Returns an error about a file, a port or the terminal.
     pub fn environment(message: impl Into<String>) -> Self {
         Self { code: ENVIRONMENT, message: message.into() }
     }
 
-    /// A defect of this program.
+    /// Returns an error for a defect of this program.
     pub fn internal(error: impl std::fmt::Display) -> Self {
         Self { code: INTERNAL, message: format!("internal error: {error}; please report it") }
     }
 }
 
-/// Prints lines on standard error. Nobody may be listening any more (`2>&1 | head`), which is no error.
+/// Prints lines on standard error. A missing reader (`2>&1 | head`) is not an error.
 pub(super) fn tell(text: &str) {
-    // In one piece: lines of several threads are not mixed.
+    // One write, so that lines of several threads are not mixed.
     let text = format!("{}\n", printable::lines(text));
     PatientOutput(std::io::stderr()).write_all(text.as_bytes()).ok();
 }
 
-/// Prints text for people on standard output, of which nothing reaches the terminal raw.
+/// Prints text for people on standard output, without control sequences for the terminal.
 pub(super) fn print(text: &str) -> Result<u8, AppError> {
     write_stdout(printable::lines(text).as_bytes())
 }
 
-/// Writes a result as it is to standard output. A reader that went away (`| head`) is no error.
+/// Writes a result unchanged to standard output. A reader that went away (`| head`) is not an error.
 pub(super) fn write_stdout(text: &[u8]) -> Result<u8, AppError> {
     match PatientOutput(std::io::stdout()).write_all(text) {
         Ok(()) => Ok(0),

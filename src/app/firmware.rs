@@ -1,4 +1,4 @@
-//! Which firmware the options and the launcher's file name, checked before anything is started.
+//! The choice of the firmware from the options and the launcher's file, checked before any start.
 
 pub(super) mod configuration;
 mod executable;
@@ -23,24 +23,25 @@ use crate::signals::fdm::{Dialect, MotorOrder, Stamps};
 /// The launcher's file in the working directory.
 const LAUNCHER_FILE: &str = "config.txt";
 
-/// A firmware outside, found and checked.
+/// A remote firmware, found and checked.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct RemoteFirmware {
-    /// The executable's absolute path; `None` = it is running already.
+    /// The absolute path of the executable; `None` = it is already running.
     pub(super) executable: Option<PathBuf>,
     pub(super) arguments: Vec<String>,
-    /// How it is reached.
+    /// The ports and the format of its packets.
     pub(super) ports: FirmwarePorts,
-    /// How the packets to it are stamped.
+    /// The time stamps of the packets to it.
     pub(super) stamps: Stamps,
-    /// Command lines by which it is set: the user's are those of `--settings`, and what a flight adds.
+    /// Command lines to set it up. The user's lines are those of `--settings` and those that a flight adds.
     pub(super) lines: ProvisionLines,
-    /// A configuration that it had before may be changed without asking.
+    /// `true` if an earlier configuration may be changed without a question.
     pub(super) may_write: bool,
 }
 
 impl RemoteFirmware {
-    /// The same, set to a plan's settings before and to those of `--set` after the lines of its own.
+    /// Returns the same firmware with a plan's settings added to the usual lines, and those of `--set` after the
+    /// user's lines.
     pub(super) fn with_settings(&self, plan: &[String], set: &[String]) -> Self {
         let line = |setting: &String| format!("set {setting}");
         let mut firmware = self.clone();
@@ -50,16 +51,16 @@ impl RemoteFirmware {
     }
 }
 
-/// How a firmware outside is reached, and how its packets are read.
+/// The ports of a remote firmware, and the format of its packets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct FirmwarePorts {
-    /// Of its CLI and MSP.
+    /// The port of its CLI and MSP.
     pub(super) tcp: u16,
-    /// Of the simulator link.
+    /// The ports of the simulator link.
     pub(super) udp: UdpPorts,
-    /// What the packets to it mean.
+    /// The meaning of the packets to it.
     pub(super) dialect: Dialect,
-    /// Order of the motors in its packets.
+    /// The order of the motors in its packets.
     pub(super) motor_order: MotorOrder,
 }
 
@@ -78,7 +79,7 @@ impl FirmwarePorts {
         }
     }
 
-    /// No firmware outside listens on a port of the system's choice.
+    /// Refuses port 0, because no remote firmware listens on a port chosen by the system.
     fn check(self) -> Result<Self, AppError> {
         let UdpPorts { raw, motors, fdm, rc } = self.udp;
         if [self.tcp, raw, motors, fdm, rc].contains(&0) {
@@ -91,7 +92,7 @@ impl FirmwarePorts {
 }
 
 impl From<(&DoorArgs, &PhysicsArgs)> for FirmwarePorts {
-    /// Of a command with doors: their options name the firmware's ports.
+    /// Returns the ports of a command with doors, whose options name the ports of the firmware.
     fn from((doors, physics): (&DoorArgs, &PhysicsArgs)) -> Self {
         let speech = &physics.simulator;
         Self::new(doors.tcp_port, doors.udp_ports, speech.fdm_dialect, speech.motor_order)
@@ -104,7 +105,7 @@ impl From<&FirmwarePortArgs> for FirmwarePorts {
     }
 }
 
-/// What else decides about the firmware.
+/// The other options that affect the choice of the firmware.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Beside<'a> {
     pub(super) ports: FirmwarePorts,
@@ -112,7 +113,8 @@ pub(super) struct Beside<'a> {
     pub(super) physics: &'a PhysicsArgs,
 }
 
-/// The firmware that a command flies, the launcher's file in the working directory included; `None` = the embedded one.
+/// Returns the firmware for a command, also from the launcher's file in the working directory; `None` = the embedded
+/// one.
 pub(super) fn choose(
     args: &FirmwareArgs,
     beside: Beside<'_>,
@@ -120,7 +122,7 @@ pub(super) fn choose(
 ) -> Result<Option<RemoteFirmware>, AppError> {
     let chosen = match &args.firmware {
         Some(choice) => Chosen::by_option(choice.clone()),
-        // Who asks for an external simulator asks for the embedded firmware.
+        // An external simulator flies the embedded firmware.
         None if args.link.betaloop.is_none() && beside.physics.is_external() => {
             Chosen::by_option(FirmwareChoice::Embedded)
         }
@@ -130,22 +132,22 @@ pub(super) fn choose(
     chosen.check(&args.link, beside)
 }
 
-/// A firmware that was chosen.
+/// A choice of the firmware.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Chosen {
     pub(super) choice: FirmwareChoice,
-    /// The launcher's file, if that names it.
+    /// The launcher's file, if the choice comes from it.
     file: Option<PathBuf>,
 }
 
 impl Chosen {
-    /// By `--firmware`.
+    /// Returns the choice of `--firmware`.
     pub(super) fn by_option(choice: FirmwareChoice) -> Self {
         Self { choice, file: None }
     }
 
-    /// By a file of the launcher, else by that in the working directory, which may be missing or of another program: then it
-    /// is the embedded one.
+    /// Returns the choice in a launcher's file, or else in the one in the working directory. If that file is missing
+    /// or belongs to another program, the choice is the embedded firmware.
     pub(super) fn by_launcher(file: Option<&Path>, notices: &mut Vec<String>) -> Result<Self, AppError> {
         let choice = match file {
             Some(file) => of_launcher(file, notices)?,
@@ -154,7 +156,7 @@ impl Chosen {
         Ok(Self { choice, file: Some(file.unwrap_or(Path::new(LAUNCHER_FILE)).to_owned()) })
     }
 
-    /// What has to be right before it is started; `None` = the embedded one.
+    /// Checks the conditions for a start; `None` = the embedded firmware.
     pub(super) fn check(
         &self,
         link: &FirmwareLinkArgs,
@@ -201,7 +203,7 @@ fn check(
     }))
 }
 
-/// The executable that a file of the launcher names.
+/// Returns the executable named in a launcher's file.
 fn of_launcher(file: &Path, notices: &mut Vec<String>) -> Result<FirmwareChoice, AppError> {
     let text = input_file::read(&from_home(file))?;
     let betaloop = Betaloop::read(&text)
@@ -209,7 +211,8 @@ fn of_launcher(file: &Path, notices: &mut Vec<String>) -> Result<FirmwareChoice,
     Ok(named(file, &betaloop, notices))
 }
 
-/// The executable of the launcher's file in the working directory, which may be missing or of another program.
+/// Returns the executable named in the launcher's file in the working directory, which may be missing or belong to
+/// another program.
 fn of_launcher_here(notices: &mut Vec<String>) -> Result<FirmwareChoice, AppError> {
     let file = Path::new(LAUNCHER_FILE);
     let Ok(text) = input_file::read(file) else { return Ok(FirmwareChoice::Embedded) };
@@ -222,7 +225,7 @@ fn of_launcher_here(notices: &mut Vec<String>) -> Result<FirmwareChoice, AppErro
     }
 }
 
-/// What the launcher's file names, told to the user.
+/// Returns the executable named in the launcher's file and informs the user.
 fn named(file: &Path, betaloop: &Betaloop, notices: &mut Vec<String>) -> FirmwareChoice {
     let written = from_home(Path::new(&betaloop.executable));
     let executable = file.parent().unwrap_or(Path::new("")).join(written);
@@ -238,7 +241,7 @@ fn named(file: &Path, betaloop: &Betaloop, notices: &mut Vec<String>) -> Firmwar
     FirmwareChoice::Executable(executable)
 }
 
-/// The path with `~` in front as the home directory, which a shell leaves alone in options and in files.
+/// Replaces `~` at the start of a path by the home directory. A shell does not do this in options and in files.
 fn from_home(path: &Path) -> PathBuf {
     match (path.strip_prefix("~"), etcetera::home_dir()) {
         (Ok(rest), Ok(home)) => home.join(rest),

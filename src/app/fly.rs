@@ -1,4 +1,4 @@
-//! `betadeck fly`: a whole flight without a screen.
+//! `betadeck fly`: a complete flight without a screen.
 #![allow(clippy::disallowed_methods, reason = "measures the wall time of the flight and paces it when asked")]
 
 mod output;
@@ -22,10 +22,10 @@ use crate::storage::Store;
 use crate::vehicle::Vehicle;
 use output::Output;
 
-/// Ticks between two looks at the clock and at an interrupt.
+/// The number of ticks between two checks of the clock and of the interrupt.
 const SLICE: u64 = 4096;
 
-/// Flies and reports; the exit code says whether the mission completed.
+/// Flies and reports. The exit code is 0 if the mission completed.
 pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
     output::claim(args)?;
     let plan = setup::read_plan(&args.plan)?;
@@ -68,23 +68,23 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
     }
 }
 
-/// What a flight starts from.
+/// The start of a flight.
 struct Start<'a> {
     args: &'a FlyArgs,
     plan: PlanFile,
     vehicle: Vehicle,
-    /// What is told first.
+    /// The first messages.
     notices: Vec<String>,
     interrupted: Arc<AtomicBool>,
 }
 
-/// A flight that is over.
+/// A finished flight.
 struct Flown {
     end: FlightEnd,
-    /// Wall time from the engagement to the end, or from the start when it did not engage.
+    /// Wall time from the engagement to the end, or from the start if it did not engage.
     wall: Duration,
     output: Output,
-    /// What ended it before its time.
+    /// The error that ended the flight early.
     failure: Option<AppError>,
 }
 
@@ -94,7 +94,7 @@ impl Start<'_> {
     }
 }
 
-/// Opens the outputs and tells what has happened so far.
+/// Opens the outputs and reports the events so far.
 fn open_output(
     args: &FlyArgs,
     plan: &PlanFile,
@@ -106,7 +106,7 @@ fn open_output(
     Ok(output)
 }
 
-/// What has happened to the vehicle so far, and the notices.
+/// Returns the events of the vehicle so far, and the notices.
 fn first_events(vehicle: &mut Vehicle, notices: Vec<String>) -> Vec<Event> {
     let mut events: Vec<Event> = Vec::new();
     vehicle.drain_events(|event| events.push(event.into()));
@@ -129,10 +129,10 @@ fn exit_code(result: FlightResult) -> u8 {
     }
 }
 
-/// `fly` starts fresh unless a directory is named.
+/// Opens the store; `fly` starts fresh unless the user names a directory.
 fn open_store(args: &FlyArgs) -> Result<Store, AppError> {
     match &args.flight.state_dir {
-        // Nothing is saved here: a directory that is not there is a mistyped one.
+        // `fly` saves nothing, so a missing directory is a typing error.
         Some(directory) if !directory.is_dir() => Err(AppError::input(format!(
             "--state-dir {} is not a directory: name the one that serve or the user interface stores in",
             directory.display()
@@ -156,7 +156,7 @@ fn embedded(mut start: Start<'_>) -> Result<Option<Flown>, AppError> {
     Ok(Some(Flown { end, wall, output, failure: None }))
 }
 
-/// Runs the flight to its end; the wall time counts from the engagement, or from boot when there was none.
+/// Runs the flight to its end. The wall time counts from the engagement, or from boot if there was none.
 fn fly(
     mut flight: Flight,
     speed: f64,
@@ -192,7 +192,7 @@ fn fly(
             return Ok((flight.interrupt("stopped by a signal"), engaged.unwrap_or(started).elapsed()));
         }
         if due < SLICE {
-            // Somebody may be watching.
+            // A person may be watching the output.
             output.flush()?;
             std::thread::sleep(Duration::from_millis(2));
         }

@@ -1,7 +1,7 @@
-//! Reads the text files that the options name.
+//! Reads the text files of the options.
 //!
-//! Only regular files are read by name: a FIFO would make the program wait, a device could go on for ever. A pipe that the shell
-//! gives (`-`, `/dev/stdin`, `/dev/fd/N`) is read as far as a plan can go.
+//! Only regular files are read by name, because a FIFO would make the program wait and a device could be endless. A
+//! pipe from the shell (`-`, `/dev/stdin`, `/dev/fd/N`) is read up to the size limit of a plan.
 
 use std::fs::File;
 use std::io::Read;
@@ -12,17 +12,17 @@ use rustix::fs::{Mode, OFlags};
 use super::AppError;
 use crate::args::is_descriptor;
 
-/// Largest plan or settings file that is read, bytes.
+/// The largest plan or settings file, bytes.
 const MAX_FILE: u64 = 4 << 20;
-/// Largest file of which a syntax tree is made, bytes: it takes a hundred times as much.
+/// The largest file for a syntax tree, bytes. The tree takes a hundred times as much memory.
 const MAX_TREE: u64 = 512 << 10;
 
-/// Reads a text file of sensible size.
+/// Reads a text file of reasonable size.
 pub(super) fn read(path: &Path) -> Result<String, AppError> {
     read_at_most(path, MAX_FILE)
 }
 
-/// Reads a file of which a syntax tree is made.
+/// Reads a file for a syntax tree.
 pub(super) fn read_small(path: &Path) -> Result<String, AppError> {
     read_at_most(path, MAX_TREE)
 }
@@ -33,7 +33,7 @@ fn read_at_most(path: &Path, most: u64) -> Result<String, AppError> {
     read_text(file, &name, most)
 }
 
-/// Reads a text file that may be missing.
+/// Reads a text file, which may be missing.
 pub(super) fn read_if_there(path: &Path) -> Result<Option<String>, AppError> {
     match path.symlink_metadata() {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
@@ -50,7 +50,7 @@ fn open(path: &Path, name: &str, most: u64) -> Result<File, AppError> {
     if is_descriptor(path) {
         return File::open(path).map_err(cannot_open);
     }
-    // Without waiting for the writer of a FIFO.
+    // This does not wait for the writer of a FIFO.
     let flags = OFlags::RDONLY | OFlags::NONBLOCK | OFlags::CLOEXEC | OFlags::NOCTTY;
     let file =
         File::from(rustix::fs::open(path, flags, Mode::empty()).map_err(|error| cannot_open(error.into()))?);
@@ -72,7 +72,7 @@ fn open(path: &Path, name: &str, most: u64) -> Result<File, AppError> {
     Ok(file)
 }
 
-/// Whether the system makes up the contents of a file, such as the environment of a process.
+/// Returns `true` if the system generates the contents of a file, such as the environment of a process.
 #[cfg(target_os = "linux")]
 fn is_of_system(file: &File) -> bool {
     // proc, sysfs, debugfs, tracefs, securityfs, configfs, cgroup, cgroup2, efivarfs.

@@ -1,4 +1,4 @@
-//! The lines of standard input, as `--plain` reads them.
+//! The lines of standard input for `--plain`.
 
 use std::io::{self, BufRead};
 
@@ -6,11 +6,11 @@ use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
 
 use super::AppError;
 
-/// Longest line that is read, bytes.
+/// The longest line, bytes.
 const LONGEST: u64 = 1 << 20;
 
-/// Reads the lines as they come, until the input ends. A line that cannot be read is a sentence instead. The thread that
-/// waits for them ends with the program.
+/// Reads the lines as they come, until the input ends. A line that cannot be read gives a sentence instead. The reading
+/// thread ends with the program.
 pub(super) fn read() -> Result<UnboundedReceiver<Result<String, String>>, AppError> {
     let (sender, lines) = unbounded_channel();
     let read = move || {
@@ -55,7 +55,7 @@ fn next(input: &mut impl BufRead, number: u64) -> Option<Result<String, String>>
     Some(String::from_utf8(line).map_err(not_text))
 }
 
-/// Reads up to the end of the line, or a little more than the longest one; says whether the end was reached.
+/// Reads up to the end of the line, or slightly more than the longest line. Returns `true` at the end of the line.
 fn read_part(input: &mut impl BufRead, line: &mut Vec<u8>) -> io::Result<bool> {
     io::Read::take(input, LONGEST + 1).read_until(b'\n', line)?;
     Ok(line.last() == Some(&b'\n'))

@@ -1,12 +1,12 @@
-//! A flag that signals raise, for work that is done without a runtime.
+//! A flag that signals set, for work without a runtime.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::{AppError, error, patient_output, runtime, stop_signal};
 
-/// A flag that SIGINT, SIGTERM and SIGHUP set. The output is not waited for much longer then. A second signal ends the
-/// program at once.
+/// Returns a flag that SIGINT, SIGTERM and SIGHUP set. After that, the program waits only a short time for its
+/// output. A second signal ends the program at once.
 pub(super) fn interrupt_flag() -> Result<Arc<AtomicBool>, AppError> {
     let deaf = |error| AppError::environment(format!("cannot listen for signals: {error}"));
     let flag = Arc::new(AtomicBool::new(false));

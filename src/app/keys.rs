@@ -6,9 +6,9 @@ use toml::de::{DeTable, DeValue};
 use super::AppError;
 use crate::ui::keymap::{KeyLine, Keymap};
 
-/// The lines of the table, `"flight.arm" = "a"`. The name may also be written without quotes.
+/// Reads the lines of the table, `"flight.arm" = "a"`. The name may also be written without quotes.
 pub(super) fn read(file_name: &str, text: &str) -> Result<Vec<KeyLine>, AppError> {
-    // Syntax errors are told by who reads the options.
+    // The reader of the options reports syntax errors.
     let Ok(document) = DeTable::parse(text) else { return Ok(Vec::new()) };
     let keys = document.get_ref().iter().find(|(name, _)| name.get_ref().as_ref() == "keys");
     let Some((name, table)) = keys else { return Ok(Vec::new()) };
@@ -24,7 +24,7 @@ pub(super) fn read(file_name: &str, text: &str) -> Result<Vec<KeyLine>, AppError
     if problems.is_empty() { Ok(lines) } else { Err(input_error(file_name, &problems)) }
 }
 
-/// The keymap that the lines make of the default one.
+/// Returns the default keymap, changed by the lines.
 pub(super) fn keymap(file_name: &str, lines: &[KeyLine]) -> Result<Keymap, AppError> {
     Keymap::remapped(lines).map_err(|problems| input_error(file_name, &problems))
 }

@@ -1,4 +1,4 @@
-//! Reads what stands outside the command line: environment variables and the configuration file.
+//! Reads the options outside the command line: environment variables and the configuration file.
 #![allow(clippy::disallowed_methods, reason = "the composition root reads the environment")]
 
 use std::collections::BTreeMap;
@@ -11,15 +11,15 @@ use super::input_file;
 use crate::args::{ENVIRONMENT_PREFIX, Layers};
 use crate::ui::keymap::KeyLine;
 
-/// Name of the program's folder in the user's directories.
+/// The name of the program's folder in the user's directories.
 const FOLDER: &str = "betadeck";
 
 /// The user's directories for this program.
 #[derive(Debug, Clone)]
 pub(super) struct Directories {
-    /// Holds `config.toml`.
+    /// The folder of `config.toml`.
     pub config: std::path::PathBuf,
-    /// Holds the stored configuration of the craft.
+    /// The folder of the stored configuration of the craft.
     pub state: std::path::PathBuf,
 }
 
@@ -39,12 +39,12 @@ pub(super) fn directories() -> Result<Directories, AppError> {
     })
 }
 
-/// What stands outside the command line.
+/// The options outside the command line.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Outside {
     /// The values of options.
     pub layers: Layers,
-    /// Keys of the user's own.
+    /// The keys defined by the user.
     pub keys: Vec<KeyLine>,
 }
 
@@ -54,7 +54,7 @@ pub(super) fn read() -> Result<Outside, AppError> {
         .filter_map(|(name, value)| Some((name.into_string().ok()?, value.into_string().ok()?)))
         .filter(|(name, _)| name.starts_with(ENVIRONMENT_PREFIX))
         .collect();
-    // Without a home directory there is no configuration file either.
+    // Without a home directory there is no configuration file, either.
     let Ok(directories) = directories() else {
         return Ok(Outside { layers: Layers { environment, ..Layers::default() }, keys: Vec::new() });
     };

@@ -1,5 +1,5 @@
-//! The lines entered in text fields, kept in the state directory as a shell keeps its history: each is appended as it is
-//! entered, so that programs that run at the same time lose none of each other's.
+//! The lines entered in text fields, kept in the state directory like the history of a shell. Each line is appended
+//! when it is entered, so that programs that run at the same time lose no lines.
 #![allow(clippy::disallowed_methods, reason = "the shell of the user interface reads and writes files")]
 
 use std::io::{self, Write as _};
@@ -9,9 +9,9 @@ use super::entered_lines::{RECALLED, is_kept, recalled};
 use crate::storage::state_file::{self, Access};
 use crate::ui::{EnteredLines, LineField};
 
-/// Lines of a file from which the older ones are dropped at the next start.
+/// The number of lines of a file above which the older ones are dropped at the next start.
 const MOST_LINES: usize = 2 * RECALLED;
-/// Largest file that is read, bytes: twice the most lines of the greatest length.
+/// The largest file, bytes: twice the most lines of the greatest length.
 const LARGEST: u64 = 8 << 20;
 /// The fields that have a history.
 const FIELDS: [LineField; 2] = [LineField::Command, LineField::Cli];
@@ -19,7 +19,7 @@ const FIELDS: [LineField; 2] = [LineField::Command, LineField::Cli];
 /// The files of the lines.
 #[derive(Debug, Clone)]
 pub(super) struct LineHistory {
-    /// `None` keeps nothing.
+    /// The state directory; `None` keeps nothing.
     directory: Option<PathBuf>,
 }
 
@@ -29,12 +29,12 @@ impl LineHistory {
         Self { directory: state.map(Path::to_owned) }
     }
 
-    /// What was entered before, the oldest first; what cannot be read counts as nothing.
+    /// Returns the earlier lines, the oldest first. A file that cannot be read counts as empty.
     pub(super) fn read(&self) -> EnteredLines {
         EnteredLines { commands: self.read_field(LineField::Command), cli: self.read_field(LineField::Cli) }
     }
 
-    /// Keeps a line. One that cannot be kept is forgotten with the program, as in a shell.
+    /// Keeps a line. If this fails, the line is lost at the end of the program, as in a shell.
     pub(super) fn append(&self, field: LineField, line: &str) {
         if !is_kept(line) {
             return;
@@ -44,12 +44,13 @@ impl LineHistory {
         if let Ok(mut file) = opened
             && !state_file::has_other_names(&file)
         {
-            // One write of a whole line is not mixed with another program's.
+            // A single write of a whole line is not mixed with the lines of another program.
             file.write_all(format!("{line}\n").as_bytes()).ok();
         }
     }
 
-    /// Why entered lines are not kept, a sentence for each file that is not one of this program.
+    /// Returns the reasons why entered lines are not kept, one sentence for each file that does not belong to this
+    /// program.
     pub(super) fn problems(&self) -> Vec<String> {
         let paths = FIELDS.into_iter().filter_map(|field| self.path(field));
         paths.filter_map(|path| problem(&path)).collect()
@@ -75,7 +76,7 @@ impl LineHistory {
     }
 }
 
-/// Replaces a file that grew by its newest lines; it stays as it is when that does not work.
+/// Replaces a file that is too long by its newest lines. If this fails, the file stays unchanged.
 fn shorten(path: &Path, lines: &[&str]) {
     let text: String = lines.iter().map(|line| format!("{line}\n")).collect();
     state_file::replace(path, text.as_bytes()).ok();

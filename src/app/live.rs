@@ -1,4 +1,4 @@
-//! Starts the session of `betadeck` and `serve`, which flies in real time behind its doors.
+//! Starts the session of `betadeck` and `serve`, which flies in real time and serves its doors.
 
 use super::AppError;
 use super::connect;
@@ -12,33 +12,34 @@ use crate::session::{self, FlownBefore, Handle, SessionConfig, SessionEvent};
 use crate::storage::Store;
 use crate::vehicle::Vehicle;
 
-/// Altitude to which the scripted pilot climbs before it engages, m.
+/// The altitude to which the scripted pilot climbs before it engages, m.
 const TAKEOFF_M: f64 = 10.0;
 
 /// The options of a session.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LiveArgs<'a> {
     pub(super) doors: &'a DoorArgs,
-    /// The flight controller outside, when nothing is simulated.
+    /// The remote flight controller, if there is no simulation.
     pub(super) connect: Option<&'a FcPlace>,
-    /// The firmware outside, if it is not the embedded one that flies.
+    /// The remote firmware, if the embedded one does not fly.
     pub(super) firmware: Option<&'a RemoteFirmware>,
     pub(super) physics: &'a PhysicsArgs,
     pub(super) flight: &'a FlightArgs,
-    /// A screen shows the session, and earlier instants of it.
+    /// `true` if a screen shows the session and its earlier instants.
     pub(super) has_screen: bool,
 }
 
-/// What is said of a session that ended although nobody asked it to.
+/// Returns the error for a session that ended without a request.
 pub(super) fn ended_by_itself() -> AppError {
     AppError::internal("the session ended by itself")
 }
 
-/// Opens the doors and starts the session behind them; `notices` are told first. No doors are open with `--no-ports`. A
-/// directory that comes with it is that of the firmware outside, to be kept until the session has ended.
+/// Opens the doors and starts the session; `notices` are reported first. With `--no-ports` there are no doors. A
+/// returned directory belongs to the remote firmware, and must be kept until the session has ended.
 ///
 /// # Errors
-/// When there is no socket for the motors of an external simulator, no thread, or no link to the firmware outside.
+/// Returns an error if there is no socket for the motors of an external simulator, no thread, or no link to the
+/// remote firmware.
 pub(super) async fn start(
     args: LiveArgs<'_>,
     vehicle: Vehicle,

@@ -1,4 +1,4 @@
-//! `betadeck open`: the screen at an instant of a scenario's flight, which has been flown before.
+//! `betadeck open`: the screen at an instant of a scenario's flight, which is flown first.
 
 use super::check;
 use super::error::AppError;
@@ -14,7 +14,7 @@ use crate::telemetry::Event;
 use crate::timeline::Timeline;
 use crate::ui::keymap::Keymap;
 
-/// Pictures a simulated second of the flight before: tracks and graphs grow from them.
+/// The pictures for each simulated second of the finished flight. Tracks and graphs are made from them.
 const PICTURES_HZ: u64 = 5;
 
 /// Flies the case to its end and opens the screen at the instant.
@@ -72,7 +72,7 @@ pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
     tui::show(screen, keymap)
 }
 
-/// The case and the air that were asked for.
+/// Returns the requested case and air.
 fn choose<'s>(scenario: &'s Scenario, args: &OpenArgs) -> Result<(&'s Case, Air), AppError> {
     let case = match &args.case {
         None => scenario.cases.first(),
@@ -92,7 +92,7 @@ fn choose<'s>(scenario: &'s Scenario, args: &OpenArgs) -> Result<(&'s Case, Air)
     Ok((case, air))
 }
 
-/// The instant as a time since boot.
+/// Returns the instant as a time since boot.
 fn instant(at: Option<Instant>, engaged_at: Option<SimTime>, end: SimTime) -> Result<SimTime, AppError> {
     let seconds = match at {
         None => return Ok(end),

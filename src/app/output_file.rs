@@ -1,4 +1,4 @@
-//! Creates the files that the options name for output, but never over what is read or stored.
+//! Creates the output files of the options, but never over a file that the program reads or stores.
 
 mod stale;
 mod whole;
@@ -14,14 +14,14 @@ use crate::storage;
 pub(super) use stale::{remove_results, remove_results_of};
 pub(super) use whole::{FinalOutput, StreamedOutput, replace};
 
-/// Files of a state directory besides the stored configuration.
+/// Files of a state directory other than the stored configuration.
 const HISTORIES: [&str; 2] = ["commands.history", "cli.history"];
-/// Its folder with the journals of edits, and their ending.
+/// The folder for the journals of edits, and their file ending.
 const JOURNALS: (&str, &str) = ("plans", "journal");
-/// Its folder in which a firmware outside keeps its configuration.
+/// The folder in which a remote firmware keeps its configuration.
 const FIRMWARE: &str = "firmware";
 
-/// The files that no output may replace, under whatever name or link.
+/// The files that no output may replace, under any name or link.
 #[derive(Debug, Default)]
 pub(super) struct KeptFiles {
     files: Vec<(&'static str, PathBuf)>,
@@ -30,26 +30,26 @@ pub(super) struct KeptFiles {
 }
 
 impl KeptFiles {
-    /// Keeps a file, called `what` in messages.
+    /// Protects a file, called `what` in messages.
     pub(super) fn keep(&mut self, what: &'static str, path: &Path) {
         self.files.push((what, path.to_owned()));
     }
 
-    /// Keeps the stored configuration of a directory.
+    /// Protects the stored configuration in a directory.
     pub(super) fn keep_store(&mut self, directory: &Path) {
         self.stores.push(directory.to_owned());
     }
 
-    /// Keeps everything that the program stores in a state directory.
+    /// Protects all that the program stores in a state directory.
     pub(super) fn keep_state(&mut self, directory: &Path) {
         self.keep_store(directory);
         self.states.push(directory.to_owned());
     }
 
-    /// Whether the output of `option` may be written there; it is kept from the next one.
+    /// Checks that the output of `option` may be written to a path, and then protects the path from the next output.
     ///
     /// # Errors
-    /// The sentence that names what it would replace.
+    /// Returns a sentence that names the file that it would replace.
     pub(super) fn claim(&mut self, option: &'static str, path: &Path) -> Result<(), AppError> {
         let stored = self.stores.iter().flat_map(|directory| storage::files_in(directory));
         let stored = stored.map(|file| ("the stored configuration", file));
@@ -69,7 +69,7 @@ impl KeptFiles {
     }
 }
 
-/// The files of a state directory besides the stored configuration, there or not.
+/// Returns the files of a state directory other than the stored configuration, even if they do not exist.
 fn state_files(directory: &Path) -> Vec<(&'static str, PathBuf)> {
     let mut files: Vec<_> =
         HISTORIES.map(|name| ("the history of entered lines", directory.join(name))).into();
@@ -82,7 +82,7 @@ fn state_files(directory: &Path) -> Vec<(&'static str, PathBuf)> {
     files
 }
 
-/// What would be created by this path in a state directory's folder.
+/// Returns the kind of file that this path would create in a folder of a state directory.
 fn state_folder(directory: &Path, path: &Path) -> Option<&'static str> {
     let (place, name) = place(path)?;
     let lies_in = |folder: &str| {
@@ -96,12 +96,13 @@ fn state_folder(directory: &Path, path: &Path) -> Option<&'static str> {
     }
 }
 
-/// Whether a file of this name in this folder is one of the program. A folder of plans may be the user's own.
+/// Returns `true` if a file with this name in this folder belongs to the program. A folder of plans may be the user's
+/// own.
 fn is_stored_in(folder: &str, path: &Path) -> bool {
     folder == FIRMWARE || path.extension().is_some_and(|ending| ending == JOURNALS.1 || ending == "bad")
 }
 
-/// Creates a file that was claimed.
+/// Creates a file after a successful claim.
 pub(super) fn create(path: &Path) -> Result<File, AppError> {
     File::create(path).map_err(|error| cannot_write(path, &error))
 }
@@ -110,22 +111,23 @@ fn cannot_write(path: &Path, error: &io::Error) -> AppError {
     AppError::environment(format!("cannot write {}: {error}", path.display()))
 }
 
-/// The directory that a path's name stands in.
+/// Returns the directory of a path.
 fn directory_of(path: &Path) -> &Path {
     path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Whether two paths lead to one file; links count, and of files that are not there yet the place.
+/// Returns `true` if two paths lead to the same file. Follows links, and compares the places of files that do not
+/// exist yet.
 fn is_same(a: &Path, b: &Path) -> bool {
     match (a.metadata(), b.metadata()) {
-        // Devices and pipes hold nothing that could be lost.
+        // Devices and pipes have no contents to lose.
         (Ok(a), Ok(b)) => a.is_file() && (a.dev(), a.ino()) == (b.dev(), b.ino()),
         (Err(_), Err(_)) => place(a).is_some_and(|a| place(b) == Some(a)),
         _ => false,
     }
 }
 
-/// Where a file would be created: its real directory and name, links followed.
+/// Returns the place where a file would be created: its real directory and its name, after all links.
 fn place(path: &Path) -> Option<(PathBuf, OsString)> {
     let path = storage::link_target(path);
     Some((directory_of(&path).canonicalize().ok()?, path.file_name()?.to_owned()))

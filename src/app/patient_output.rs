@@ -1,5 +1,5 @@
-//! Standard output and standard error of the commands that end in order after a signal. A reader that has stopped reading
-//! makes them wait, but after a signal not for long: then it counts as one that went away.
+//! Standard output and standard error of the commands that end cleanly after a signal. If a reader stops reading,
+//! they wait. After a signal they wait only a short time, and then treat the reader as gone.
 #![allow(clippy::disallowed_methods, reason = "a reader is given a short time")]
 
 use std::io::{self, ErrorKind, Write};
@@ -10,22 +10,22 @@ use std::time::{Duration, Instant};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
 
-/// How long a reader may take after a signal.
+/// The time that a reader has after a signal.
 const PATIENCE: Duration = Duration::from_millis(700);
-/// How often the signal is looked for while nobody reads.
+/// The interval between two checks for the signal while there is no reader.
 const INTERVAL: Timespec = Timespec { tv_sec: 0, tv_nsec: 50_000_000 };
-/// Most bytes that a pipe takes at once when it takes any.
+/// The number of bytes that a pipe accepts at once if it accepts any.
 const AT_ONCE: usize = 4096;
 
-/// When the signal came.
+/// The time of the signal.
 static INTERRUPTED: OnceLock<Instant> = OnceLock::new();
 
-/// Lets writers wait only a short time from now on.
+/// Makes writers wait only a short time from now on.
 pub(super) fn lose_patience() {
     INTERRUPTED.get_or_init(Instant::now);
 }
 
-/// A stream that is written without a buffer.
+/// A stream without a buffer.
 #[derive(Debug)]
 pub(super) struct PatientOutput<S>(pub(super) S);
 

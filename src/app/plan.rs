@@ -1,4 +1,4 @@
-//! `betadeck plan`: the built-in plans by name, and a plan as a table with distances, times and what is wrong with it.
+//! `betadeck plan`: the built-in plans by name, and a plan as a table with distances, times and findings.
 
 use super::error::{self, AppError};
 use super::setup;
@@ -11,7 +11,7 @@ use crate::plan::format;
 use crate::plan::review::{Finding, review};
 use crate::sim::density_ratio;
 
-/// Prints the built-in plans, one a line.
+/// Prints the built-in plans, one on each line.
 pub(super) fn list() -> Result<u8, AppError> {
     let longest = PLANS.iter().map(|plan| plan.name.len()).max().unwrap_or_default();
     let mut text = String::new();

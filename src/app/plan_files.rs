@@ -1,7 +1,7 @@
-//! Reads, writes and watches plan files for the editor, on a thread of its own, in the order of asking.
+//! Reads, writes and watches plan files for the editor. This runs on a thread of its own, in the order of the requests.
 //!
-//! Every edit is appended to a journal in the state directory before the next request is looked at, so that a program
-//! that is killed loses at most the edit of the last key. A journal belongs to the program that has locked it.
+//! Every edit is appended to a journal in the state directory before the next request, so that a killed program loses
+//! at most the edit of the last key. A journal belongs to the program that has locked it.
 #![allow(clippy::disallowed_methods, reason = "the shell of the editor lives on wall-clock time")]
 
 mod journal_file;
@@ -22,24 +22,24 @@ use crate::ui::editor::{FileReply, FileRequest, Opened, PlanId};
 use journal_file::{Found, JournalFile};
 use on_disk::Content;
 
-/// How often files are looked at, whether somebody else changed them.
+/// The interval between two checks for changes by other programs.
 const WATCH: Duration = Duration::from_millis(500);
 
-/// The edit from the whole part of a damaged journal to what was saved behind the damage.
+/// The edit from the readable part of a damaged journal to the plan that was saved after the damage.
 const SAVED_LATER: &str = "saved later";
 
 /// The plan files of a running editor.
 #[derive(Debug)]
 pub(super) struct PlanFiles {
-    /// Where journals are kept; `None` keeps none.
+    /// The directory of the journals; `None` keeps no journals.
     journals: Option<PathBuf>,
     open: BTreeMap<PlanId, OpenFile>,
     next: u32,
-    /// Where plans were opened or saved last.
+    /// The directory in which a plan was last opened or saved.
     directory: PathBuf,
-    /// A journal could not be written, and that was told.
+    /// `true` if it was reported that a journal could not be written.
     told: bool,
-    /// What was lost of journals, as sentences that nobody has heard yet.
+    /// The losses of journals, as sentences that were not reported yet.
     lost: Vec<String>,
     lines: LineHistory,
 }
@@ -47,19 +47,19 @@ pub(super) struct PlanFiles {
 #[derive(Debug)]
 struct OpenFile {
     path: Option<PathBuf>,
-    /// What was on disk when it was read or written last.
+    /// The contents of the file when it was last read or written.
     seen: Content,
-    /// The change was told.
+    /// `true` if the change was reported.
     told: bool,
-    /// The document with its history: what the journal's file holds, or is to hold as soon as there is something to keep.
+    /// The document with its history, as in the journal's file, or as it will be there once there is an edit to keep.
     kept: Journal,
     journal: Option<JournalFile>,
-    /// A line could not be written: the file is written anew before the next one counts.
+    /// `true` if a line could not be written. The file must then be rewritten before the next line counts.
     is_behind: bool,
 }
 
 impl PlanFiles {
-    /// Keeps journals in this directory of the state.
+    /// Keeps journals in this state directory.
     pub(super) fn new(state: Option<&Path>) -> Self {
         let journals = state.map(|state| state.join("plans"));
         let directory = std::env::current_dir().unwrap_or_else(|_| PathBuf::from("/"));
@@ -74,7 +74,7 @@ impl PlanFiles {
         }
     }
 
-    /// Takes in the plan that the program starts with, with the history that its journal has.
+    /// Adds the plan with which the program starts, with the history in its journal.
     pub(super) fn start_with(&mut self, path: Option<&Path>, document: PlanDocument) -> Opened {
         let path = path.and_then(|path| std::path::absolute(path).ok());
         if let Some(parent) = path.as_deref().and_then(Path::parent) {
@@ -83,18 +83,18 @@ impl PlanFiles {
         let mut seen = path.as_deref().map_or(Content::Missing, Content::of);
         let is_other = path.as_deref().is_some_and(|path| !seen.is_document(path, &document));
         if is_other && matches!(seen, Content::Text(_)) {
-            // Another program wrote it since the document was read.
+            // Another program changed the file after the document was read.
             seen = Content::Missing;
         }
         self.take_in(path, seen, document, Vec::new())
     }
 
-    /// What was lost of journals since this was asked last, one sentence each.
+    /// Returns the losses of journals since the last call, one sentence each.
     pub(super) fn take_losses(&mut self) -> Vec<String> {
         std::mem::take(&mut self.lost)
     }
 
-    /// The plans with edits that were never saved, whose program is gone.
+    /// Returns the plans with unsaved edits whose program has ended.
     pub(super) fn recovered(&mut self) -> Vec<Opened> {
         let Some(directory) = &self.journals else { return Vec::new() };
         let left = journal_file::left_behind(directory);
@@ -126,8 +126,8 @@ impl PlanFiles {
         Opened { recovered, ..opened }
     }
 
-    /// The part of a journal that could be read. A damaged file is set aside first; where that is not possible it stays,
-    /// and the journal goes on in another file.
+    /// Returns the readable part of a journal. A damaged file is first set aside. If that is not possible, it stays,
+    /// and the journal continues in another file.
     fn whole_part(&mut self, found: Found) -> (Option<JournalFile>, History) {
         let Found { file, journal, losses } = found;
         let Some(line) = losses.line else { return (Some(file), journal.history) };
@@ -145,7 +145,7 @@ impl PlanFiles {
         (kept.is_ok().then_some(file), journal.history)
     }
 
-    /// Carries requests out until nobody asks any more, and counts in `done` how many.
+    /// Carries out requests until there are no more senders, and counts them in `done`.
     pub(super) fn run(
         mut self,
         requests: &Receiver<FileRequest>,
@@ -223,7 +223,7 @@ impl PlanFiles {
         FileReply::Opened(Box::new(opened))
     }
 
-    /// What another program wrote takes the place of what is open, as an edit.
+    /// Replaces the open plan by the file of another program, as an edit.
     fn read_again(
         &mut self,
         id: PlanId,
@@ -259,7 +259,7 @@ impl PlanFiles {
         Opened { id, file: Some(path), history, notes, recovered: false }
     }
 
-    /// Takes in a document that was read from `path`, with the history that its journal has.
+    /// Adds a document that was read from `path`, with the history in its journal.
     fn take_in(
         &mut self,
         path: Option<PathBuf>,
@@ -280,7 +280,7 @@ impl PlanFiles {
         let has_saved = found.losses.has_saved;
         let (file, mut history) = self.whole_part(found);
         let mut recovered = false;
-        // A format that cannot carry everything reads as another document than was written.
+        // A format that cannot hold everything gives another document when it is read again.
         let is_held = |held: &PlanDocument| {
             *held == document || path.as_deref().is_some_and(|path| seen.is_written(path, held))
         };
@@ -298,7 +298,7 @@ impl PlanFiles {
         } else {
             recovered = true;
             if !is_unchanged {
-                // So that saving asks first.
+                // This makes the next save ask first.
                 seen = Content::Missing;
                 notes.push("Another program changed the file meanwhile, too.".to_owned());
             }
@@ -319,7 +319,7 @@ impl PlanFiles {
         self.next += 1;
         let name = path.as_ref().map(|path| path.display().to_string());
         let kept = Journal { file: name, history: history.clone() };
-        // Written anew without what was cut short.
+        // The journal is rewritten without the part that was cut short.
         let mut journal = journal;
         let is_behind = journal.as_mut().is_some_and(|journal| journal.rewrite(&kept).is_err());
         let file = OpenFile { path: path.clone(), seen, told: false, kept, journal, is_behind };
@@ -339,7 +339,7 @@ impl PlanFiles {
             return vec![FileReply::Failed("This plan is not open any more.".to_owned())];
         };
         let is_own = file.path.as_deref() == Some(path.as_path());
-        // Read again just before it is replaced.
+        // The file is read again just before it is replaced.
         let there = Content::of(&path);
         let is_known = is_own && there.is_known_as(&file.seen);
         if there.is_there() && !is_known && !replace {
@@ -359,7 +359,7 @@ impl PlanFiles {
         [FileReply::Saved { id, path, revision, lost }].into_iter().chain(kept).collect()
     }
 
-    /// Appends a line to the journal of a plan; the first failure is told, and its end.
+    /// Appends a line to the journal of a plan. Reports the first failure, and the end of the failures.
     fn append(&mut self, id: PlanId, line: &JournalLine) -> Option<FileReply> {
         let file = self.open.get_mut(&id)?;
         file.kept.take(line.clone());
@@ -389,7 +389,7 @@ impl PlanFiles {
             .map_or_else(FileReply::Failed, FileReply::Listed)
     }
 
-    /// The plans whose file somebody else changed since this was told last.
+    /// Returns the plans whose file another program changed since the last report.
     fn changed(&mut self) -> Vec<PlanId> {
         let mut changed = Vec::new();
         for (&id, file) in &mut self.open {
@@ -404,7 +404,7 @@ impl PlanFiles {
     }
 }
 
-/// What is worth knowing about a journal of which nothing is lost but the last edit.
+/// Returns notes about a journal that lost at most its last edit.
 fn notes_on(found: &Found) -> Vec<String> {
     let is_cut_short = found.losses.is_cut_short && found.losses.line.is_none();
     let note = "The newest edit was cut short when the program ended, and is lost.";

@@ -6,21 +6,21 @@ use tokio::runtime::{Builder, Runtime};
 
 use super::AppError;
 
-/// Files that a runtime opens, and some to work with. It panics when it gets none for its signals.
+/// The number of files that a runtime opens, and some spare ones. It panics if it gets no file for its signals.
 const FILES: usize = 16;
 
-/// Builds a runtime with so many threads of its own.
+/// Builds a runtime with this number of threads of its own.
 ///
 /// # Errors
-/// When the system does not give what it needs.
+/// Returns an error if the system does not give the needed resources.
 pub(super) fn with_threads(threads: usize) -> Result<Runtime, AppError> {
     build(Builder::new_multi_thread().worker_threads(threads))
 }
 
-/// Builds a runtime that works on the thread that waits for it.
+/// Builds a runtime that works on the waiting thread.
 ///
 /// # Errors
-/// As [`with_threads`].
+/// Returns the errors of [`with_threads`].
 pub(super) fn on_this_thread() -> Result<Runtime, AppError> {
     build(&mut Builder::new_current_thread())
 }

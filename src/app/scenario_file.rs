@@ -1,4 +1,4 @@
-//! Writes a flight of the screen as a scenario.
+//! Writes a flight from the screen as a scenario.
 
 use std::fs::File;
 use std::io::{ErrorKind, Write as _};
@@ -7,11 +7,11 @@ use std::path::{Path, PathBuf};
 use crate::scenario::Draft;
 use crate::timeline::RecordedFlight;
 
-/// Most files with numbers behind the plan's name.
+/// The most files with numbers after the plan's name.
 const MOST: u32 = 999;
 
-/// Makes a scenario of the flight, flies it again, and writes it into `file`, or into a new file called as the plan. Never
-/// over a file that is there. A sentence tells where it was written, or why not.
+/// Makes a scenario of the flight, flies it again, and writes it to `file`, or to a new file named after the plan.
+/// Never replaces an existing file. Returns a sentence with the name of the file, or with the reason for a failure.
 pub(super) fn write(file: Option<PathBuf>, plan: &str, flight: RecordedFlight) -> Result<String, String> {
     let stem = stem(plan);
     let name = file
@@ -27,7 +27,7 @@ pub(super) fn write(file: Option<PathBuf>, plan: &str, flight: RecordedFlight) -
     Ok(format!("The flight is written as {shown}: `betadeck check {shown}` flies and judges it."))
 }
 
-/// The start of the file's name: only what no shell minds.
+/// Returns the start of the file's name, with only those characters that need no quotes in a shell.
 fn stem(plan: &str) -> String {
     let kept: String =
         plan.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).take(40).collect();

@@ -1,4 +1,4 @@
-//! `betadeck serve`: everything but the screen, in real time with all doors open.
+//! `betadeck serve`: all parts except the screen, in real time with all doors open.
 
 use std::io::{BufWriter, Write};
 
@@ -15,7 +15,7 @@ use crate::printable;
 use crate::record::{json, sentence};
 use crate::session::{Command, Event, Handle};
 
-/// Serves until a signal ends it; every event is a line of output.
+/// Serves until a signal. Every event is a line of output.
 pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
     let mut notices = Vec::new();
     let mut store = setup::open_store(&args.flight)?;
@@ -29,7 +29,7 @@ pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
     let mut setup = setup::for_session(&args.flight, &args.physics, &args.doors, no_plan, stored)?;
     setup.remote_controller = firmware.is_some();
     let mut vehicle = setup::build(setup, &mut notices)?;
-    // RC comes through the doors only; resting virtual sticks would hide the loss of a script.
+    // RC comes only through the doors. Virtual sticks at rest would hide the loss of a script.
     vehicle.transmitter_mut().set_cut(true);
     let mut output = open_output(args)?;
     let runtime = runtime::with_threads(1)?;
@@ -53,7 +53,7 @@ pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
     })
 }
 
-/// Writes events until a signal arrives, the output is gone.
+/// Writes events until a signal arrives or the output is gone.
 async fn report(
     mut session: Handle,
     output: &mut Output,
@@ -81,7 +81,7 @@ async fn report(
     }
 }
 
-/// Where the events go.
+/// The output for the events.
 struct Output {
     lines: BufWriter<Box<dyn Write>>,
     json: bool,
@@ -100,7 +100,7 @@ fn open_output(args: &ServeArgs) -> Result<Output, AppError> {
 }
 
 impl Output {
-    /// Writes an event; an error is what the program ends with. A reader that went away ends it quietly.
+    /// Writes an event. Returns the end of the program as an error; if the reader went away, the program ends quietly.
     fn event(&mut self, event: &Event) -> Result<(), Result<u8, AppError>> {
         let line = if self.json { json::event_line(event) } else { sentence::line(event) };
         let Some(line) = line else { return Ok(()) };

@@ -1,4 +1,4 @@
-//! Reads the files that the options name, and makes of both what a flight starts from.
+//! Reads the files of the options, and makes the start of a flight from both.
 
 use std::path::{Path, PathBuf};
 
@@ -22,7 +22,7 @@ use crate::sim::{Airframe, Home, WorldConfig};
 use crate::storage::Store;
 use crate::vehicle::Vehicle;
 
-/// Reads a plan from wherever it is.
+/// Reads a plan from its source.
 pub(super) fn read_plan(plan: &PlanArg) -> Result<PlanFile, AppError> {
     let name = plan.display_name();
     let text = match plan {
@@ -34,7 +34,7 @@ pub(super) fn read_plan(plan: &PlanArg) -> Result<PlanFile, AppError> {
         .map_err(|errors| AppError::input(format::report(&errors).trim_end().to_owned()))
 }
 
-/// What the options that all flying commands share make of a flight with this plan.
+/// Returns the start of a flight with this plan, from the options that all flying commands share.
 pub(super) fn from_args(
     args: &FlightArgs,
     physics: PhysicsSource,
@@ -69,7 +69,7 @@ pub(super) fn from_args(
     })
 }
 
-/// What the options make of a flight that a session flies in real time.
+/// Returns the start of a flight in real time for a session.
 pub(super) fn for_session(
     flight: &FlightArgs,
     physics: &PhysicsArgs,
@@ -92,7 +92,7 @@ pub(super) fn build(setup: FlightSetup, notices: &mut Vec<String>) -> Result<Veh
     Ok(vehicle)
 }
 
-/// How a plan is flown and judged; so many samples a second are reported.
+/// Returns the options for the flight and the judgement of a plan, with this number of reported samples a second.
 pub(super) fn flight_options(args: &MissionArgs, samples_hz: f64) -> FlightOptions {
     FlightOptions {
         takeoff_m: args.takeoff_m(),
@@ -102,8 +102,8 @@ pub(super) fn flight_options(args: &MissionArgs, samples_hz: f64) -> FlightOptio
     }
 }
 
-/// The settings of `--set` that the embedded firmware has, checked, when another one flies beside it; what it does not have is
-/// added to `notices`.
+/// Returns the checked settings of `--set` that the embedded firmware has, when it flies next to another firmware.
+/// Adds the others to `notices`.
 pub(super) fn set_of_embedded(
     settings: &[String],
     notices: &mut Vec<String>,
@@ -121,7 +121,7 @@ pub(super) fn set_of_embedded(
     Ok(known)
 }
 
-/// Whether the embedded firmware takes the settings of `--set`.
+/// Checks that the embedded firmware accepts the settings of `--set`.
 pub(super) fn check_set(settings: &[String]) -> Result<(), AppError> {
     settings.iter().try_for_each(|setting| {
         let (name, value) = setting.split_once(" = ").unwrap_or((setting, ""));
@@ -129,7 +129,7 @@ pub(super) fn check_set(settings: &[String]) -> Result<(), AppError> {
     })
 }
 
-/// The flight of the plan that the craft has stored.
+/// Starts a flight of the plan that is stored in the craft.
 pub(super) fn start_flight(vehicle: Vehicle, options: &FlightOptions) -> Result<Flight, AppError> {
     Flight::new(vehicle, options).map_err(|mode| {
         AppError::input(format!(
@@ -138,7 +138,7 @@ pub(super) fn start_flight(vehicle: Vehicle, options: &FlightOptions) -> Result<
     })
 }
 
-/// No craft flies a plan that is refused whatever its settings are, so there is nothing to wait for.
+/// Refuses a plan that no craft flies with any settings, so that nobody waits for it.
 pub(super) fn refuse_unflyable(plan: &PlanFile) -> Result<(), AppError> {
     check_plan(&plan.plan).map_err(|fault| {
         plan.notes.iter().for_each(|note| error::tell(&note.to_string()));
@@ -146,7 +146,7 @@ pub(super) fn refuse_unflyable(plan: &PlanFile) -> Result<(), AppError> {
     })
 }
 
-/// The embedded world, but for step rate, seed and faults.
+/// Returns the embedded world without step rate, seed and faults.
 fn embedded_world(args: &FlightArgs) -> Result<WorldConfig, AppError> {
     let usual = WorldConfig::default();
     Ok(WorldConfig {
@@ -161,7 +161,7 @@ fn embedded_world(args: &FlightArgs) -> Result<WorldConfig, AppError> {
     })
 }
 
-/// The option as the firmware has it.
+/// Returns the firmware's value for the option.
 pub(super) fn attitude_source(attitude: AttitudeChoice) -> AttitudeSource {
     match attitude {
         AttitudeChoice::Truth => AttitudeSource::Truth,
@@ -169,14 +169,14 @@ pub(super) fn attitude_source(attitude: AttitudeChoice) -> AttitudeSource {
     }
 }
 
-/// What the CLI's `version` and MSP tell about this executable.
+/// Returns the data about this executable for the CLI's `version` and MSP.
 pub(super) fn build_info() -> BuildInfo {
     let epoch = env!("BETADECK_BUILD_EPOCH").parse().unwrap_or_default();
     let (date, time) = UtcSeconds(epoch).build_stamp();
     BuildInfo { date, time, revision: env!("BETADECK_REVISION").to_owned(), ..BuildInfo::default() }
 }
 
-/// The stored configuration. What is wrong with it is added to `notices`.
+/// Returns the stored configuration, and adds its problems to `notices`.
 pub(super) fn stored(store: &mut Store, notices: &mut Vec<String>) -> Configuration {
     stored_before(store, notices).0
 }
@@ -200,13 +200,13 @@ fn airframe(name: Option<&str>) -> Result<Airframe, AppError> {
     }
 }
 
-/// Whether the name is that of a TOML file, or of a pipe with one.
+/// Returns `true` if the name is that of a TOML file, or of a pipe with one.
 fn is_airframe_file(name: &str) -> bool {
     let path = Path::new(name);
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) || is_descriptor(path)
 }
 
-/// The directory of `--state-dir`, the user's, or none with `--fresh`.
+/// Returns the directory of `--state-dir`, or the user's; `None` with `--fresh`.
 pub(super) fn store_directory(args: &FlightArgs) -> Result<Option<PathBuf>, AppError> {
     if args.fresh {
         return Ok(None);
@@ -217,7 +217,7 @@ pub(super) fn store_directory(args: &FlightArgs) -> Result<Option<PathBuf>, AppE
     }
 }
 
-/// The store in that directory.
+/// Opens the store in that directory.
 pub(super) fn open_store(args: &FlightArgs) -> Result<Store, AppError> {
     match store_directory(args)? {
         None => Ok(Store::in_memory()),
@@ -227,7 +227,7 @@ pub(super) fn open_store(args: &FlightArgs) -> Result<Store, AppError> {
     }
 }
 
-/// What a flight is read from and stored in: no output may replace it.
+/// Returns the files that a flight reads and stores. No output may replace them.
 pub(super) fn kept_files(args: &FlightArgs, plan: Option<&PlanArg>) -> KeptFiles {
     let mut kept = KeptFiles::default();
     match plan {
@@ -248,7 +248,7 @@ pub(super) fn kept_files(args: &FlightArgs, plan: Option<&PlanArg>) -> KeptFiles
     kept
 }
 
-/// Keeps the configuration file and what the program stores in the user's state directory.
+/// Protects the configuration file and the files in the user's state directory.
 pub(super) fn keep_own_files(kept: &mut KeptFiles) {
     if let Ok(directories) = super::layers::directories() {
         kept.keep("the configuration file", &directories.config_file());
@@ -256,7 +256,8 @@ pub(super) fn keep_own_files(kept: &mut KeptFiles) {
     }
 }
 
-/// Why `save` cannot work, as a sentence: better known at the start than when it is typed.
+/// Returns the reason why `save` cannot work, as a sentence. The user should know it at the start, not when typing
+/// `save`.
 pub(super) fn storage_notice(store: &Store) -> Option<String> {
     store.refusal().map(|refusal| format!("`save` cannot work: {refusal}."))
 }

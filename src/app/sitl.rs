@@ -28,10 +28,10 @@ use crate::session::sitl::{OutputLine, Sitl, SitlConfig, SitlEnd, SitlError, Sit
 use crate::storage::Store;
 use crate::telemetry::Snapshot;
 
-/// Name of the track.
+/// The name of the track file.
 const TRACK: &str = "sitl_track.gpx";
 
-/// Runs until a signal, or through a configuration file; gives the exit code.
+/// Runs until a signal, or through a configuration file, and returns the exit code.
 pub(super) fn run(args: &SitlArgs) -> Result<u8, AppError> {
     let runtime = runtime::with_threads(2)?;
     let config = config(args);
@@ -107,7 +107,7 @@ fn print(said: &OutputLine) -> io::Result<()> {
     }
 }
 
-/// Prints a line, read or not.
+/// Prints a line, with or without a reader.
 #[expect(clippy::needless_pass_by_value, reason = "what a session prints with")]
 fn say(said: OutputLine) {
     print(&said).ok();
@@ -115,7 +115,7 @@ fn say(said: OutputLine) {
 
 async fn fly(args: &SitlArgs, config: SitlConfig) -> Result<u8, AppError> {
     let unread = Notify::new();
-    // What went wrong with standard output, unless its reader has just gone.
+    // The error of standard output, unless its reader went away.
     let failed = Cell::new(None);
     let mut print = |said: OutputLine| {
         if let Err(error) = print(&said) {
@@ -142,7 +142,7 @@ async fn fly(args: &SitlArgs, config: SitlConfig) -> Result<u8, AppError> {
         }
     };
     let (end, doors) = sitl.run(&mut print, &mut |vehicle| track.record(vehicle), stop).await;
-    // First of all: a client that does not read keeps its door open for a while.
+    // This comes first, because a client that does not read keeps its door open for a while.
     track.finish();
     doors.close().await;
     if let Some(error) = failed.take() {
@@ -191,7 +191,7 @@ fn tell_failures(report: &ApplyReport) {
     )));
 }
 
-/// The track, begun at the first position.
+/// The track, which begins at the first position.
 struct Track {
     wanted: bool,
     writer: Option<(GpxWriter<BufWriter<File>>, f64)>,
@@ -236,7 +236,7 @@ impl Track {
 
 fn begin(vehicle: &Snapshot, home_amsl_m: f64) -> io::Result<GpxWriter<BufWriter<File>>> {
     let now_s = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |elapsed| elapsed.as_secs());
-    // Points count from the firmware's boot.
+    // Points count from the boot of the firmware.
     let boot = UtcSeconds(now_s.saturating_sub(vehicle.time.0 / 1_000_000));
     let file = BufWriter::new(File::create(TRACK)?);
     GpxWriter::new(file, GpxHeader::sitl(home_amsl_m, boot), &vehicle.stored_plan.clone().unwrap_or_default())

@@ -1,4 +1,4 @@
-//! Waiting for the signals that end the program.
+//! The signals that end the program.
 #![allow(clippy::disallowed_methods, reason = "a program that hangs in a write is given a short time")]
 
 use std::future::Future;
@@ -7,18 +7,18 @@ use std::time::Duration;
 
 use super::error;
 
-/// How long the program may take to end in order. It cannot when nobody reads what it writes.
+/// The time for the program to end cleanly. It cannot end if its output has no reader.
 const PATIENCE: Duration = Duration::from_millis(700);
 
-/// Like [`stop`], and ends the program soon after the signal even when it hangs in a write. To be called inside a runtime with
-/// threads of its own.
+/// Works like [`stop`], and also ends the program soon after the signal if a write blocks. Must be called inside a
+/// runtime with threads of its own.
 ///
 /// # Errors
-/// When the system installs no signal handler.
+/// Returns an error if the system installs no signal handler.
 pub(super) fn stop_in_time() -> io::Result<impl Future<Output = ()>> {
     let signal = stop()?;
     let (arrived, heard) = tokio::sync::oneshot::channel();
-    // In a task of its own: the one that waits for the end may be the one that hangs.
+    // This needs a task of its own, because the waiting task may be the one that blocks.
     tokio::spawn(async move {
         signal.await;
         arrived.send(()).ok();
@@ -31,11 +31,11 @@ pub(super) fn stop_in_time() -> io::Result<impl Future<Output = ()>> {
     Ok(async move { drop(heard.await) })
 }
 
-/// Listens for SIGINT, SIGTERM and SIGHUP from this call on; what it gives back ends when one of them arrives. To be
+/// Listens for SIGINT, SIGTERM and SIGHUP from this call on. The returned future ends when one of them arrives. Must be
 /// called inside a runtime.
 ///
 /// # Errors
-/// When the system installs no signal handler.
+/// Returns an error if the system installs no signal handler.
 pub(super) fn stop() -> io::Result<impl Future<Output = ()>> {
     use tokio::signal::unix::{SignalKind, signal};
     let mut interrupt = signal(SignalKind::interrupt())?;

@@ -1,4 +1,4 @@
-//! `betadeck`: the terminal user interface with everything running behind it.
+//! `betadeck`: the terminal user interface with the whole program.
 #![allow(clippy::disallowed_methods, reason = "the composition root reads the environment")]
 
 use std::io::IsTerminal as _;
@@ -31,32 +31,32 @@ use crate::ui::{
 };
 use crate::vehicle::Vehicle;
 
-/// What the user interface starts with.
+/// The start of the user interface.
 pub(super) struct Screen<'a> {
-    /// The plan that is open at first.
+    /// The first open plan.
     pub(super) plan: PlanFile,
     pub(super) path: Option<&'a Path>,
     pub(super) vehicle: Vehicle,
-    /// Where `save` goes.
+    /// The store for `save`.
     pub(super) store: Store,
-    /// Where edits are kept.
+    /// The directory for edits.
     pub(super) directory: Option<PathBuf>,
-    /// The program was used before, so that its first steps are known.
+    /// `true` if the program was used before. The first steps are then known.
     pub(super) was_used: bool,
-    /// A flight that was flown before, and pictures of it.
+    /// A finished flight, and pictures of it.
     pub(super) flown: Option<(FlownBefore, Vec<SessionView>)>,
-    /// What the user is told first.
+    /// The first messages for the user.
     pub(super) notices: Vec<String>,
-    /// Which waypoints are warned of.
+    /// The limits for warnings about waypoints.
     pub(super) review: ReviewArgs,
-    /// Sentences instead of a screen.
+    /// `true` for sentences instead of a screen.
     pub(super) plain: bool,
     pub(super) display: &'a DisplayArgs,
-    /// Doors, physics and flight.
+    /// The doors, the physics and the flight.
     pub(super) live: LiveArgs<'a>,
 }
 
-/// Opens the user interface; returns its exit code when the user has left it.
+/// Opens the user interface, and returns the exit code after the user leaves it.
 pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
     require_terminal(args.plain)?;
     if let Some(place) = &args.connect.connect {
@@ -76,7 +76,7 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
     let firmware = firmware::choose(&args.firmware, beside, &mut notices)?;
     notices.extend(args.physics.idle_options(&args.flight, firmware.is_some()));
     let (stored, was_stored) = setup::stored_before(&mut store, &mut notices);
-    // The plan's settings go to the craft with its upload.
+    // The plan's settings go to the craft with the upload.
     let on_the_ground = PlanFile { settings: Vec::new(), ..plan.clone() };
     let mut setup = setup::for_session(&args.flight, &args.physics, &args.doors, on_the_ground, stored)?;
     setup.remote_controller = firmware.is_some();
@@ -105,7 +105,7 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
     show(screen, keymap)
 }
 
-/// Without a terminal there is no screen.
+/// Refuses the screen without a terminal.
 pub(super) fn require_terminal(plain: bool) -> Result<(), AppError> {
     if plain || std::io::stdout().is_terminal() && std::io::stdin().is_terminal() {
         return Ok(());
@@ -173,7 +173,7 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
             past: past.unwrap_or_default(),
             write_scenario: scenario_file::write,
         };
-        // Before the first frame: whoever sees it may already send one.
+        // This comes before the first frame, because a person who sees the frame may already send a signal.
         let stop = stop_signal::stop_in_time().map_err(problem)?;
         let ending = if screen.plain {
             let input = input_lines::read()?;
@@ -194,17 +194,17 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
         }
     })?;
     runtime.shutdown_background();
-    // The last edits are kept before the program ends.
+    // The last edits are written before the program ends.
     drop(files_thread.join());
     match ending {
         Ending::Quit => Ok(0),
-        // Closing the terminal also sends a signal; which of the two is seen first is chance.
+        // If the terminal closes, there is also a signal. It is chance which of the two is seen first.
         Ending::Signal | Ending::TerminalLost => Ok(error::INTERRUPTED),
         Ending::SessionEnded => Err(live::ended_by_itself()),
     }
 }
 
-/// What the environment says, but for what was asked for; `NO_COLOR` wins.
+/// Returns the theme of the environment, changed by the options; `NO_COLOR` wins.
 fn theme(args: &DisplayArgs) -> Theme {
     let mut theme = Theme::from_environment(|name| std::env::var(name).ok());
     let palette = args.theme.map(|choice| match choice {

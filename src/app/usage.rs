@@ -1,4 +1,4 @@
-//! What is said about a command line: help, and what is wrong with it.
+//! Messages about a command line: help and errors.
 
 use std::ffi::OsString;
 use std::path::Path;
@@ -7,7 +7,7 @@ use super::error;
 use crate::args::{self, Layers};
 use crate::printable;
 
-/// The command line with a name of the program that a terminal may show: it stands in every usage line.
+/// Makes the name of the program printable, because every usage line shows it.
 pub(super) fn with_printable_name(mut arguments: Vec<OsString>) -> Vec<OsString> {
     if let Some(name) = arguments.first_mut() {
         let own = Path::new(&*name).file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -18,8 +18,8 @@ pub(super) fn with_printable_name(mut arguments: Vec<OsString>) -> Vec<OsString>
     arguments
 }
 
-/// Prints help on standard output and errors on standard error, coloured where that is wanted. An error is that of the same
-/// command line without what a terminal would obey: the parser mixes its own colours with the texts.
+/// Prints help on standard output and errors on standard error, with colours if requested. An error is shown for the
+/// same command line without terminal control sequences, because the parser mixes its own colours with the texts.
 pub(super) fn print(error: &clap::Error, arguments: &[OsString], layers: &Layers) {
     let shown: Vec<OsString> =
         arguments.iter().map(|argument| shown(&argument.to_string_lossy()).into()).collect();
@@ -30,12 +30,12 @@ pub(super) fn print(error: &clap::Error, arguments: &[OsString], layers: &Layers
     }
     match args::parse(shown, &shown_layers) {
         Err(error) if error.use_stderr() => drop(error.print()),
-        // Without colours, and without the sequences that a terminal would obey.
+        // Without colours, and without terminal control sequences.
         Ok(_) | Err(_) => error::tell(error.render().to_string().trim_end()),
     }
 }
 
-/// The layers without what a terminal would obey.
+/// Returns the layers without terminal control sequences.
 pub(super) fn printable_layers(layers: &Layers) -> Layers {
     let environment = layers.environment.iter().map(|(name, value)| (shown(name), shown(value)));
     let file = layers.file.iter().map(|(key, value)| (shown(key), printable_value(value)));
@@ -59,7 +59,7 @@ fn is_printable(text: &str) -> bool {
     text.chars().all(printable::is_printable)
 }
 
-/// The text without what a terminal would obey. A long one stays long: the parser may need all of it.
+/// Returns the text without terminal control sequences. A long text stays long: the parser may need all of it.
 fn shown(text: &str) -> String {
     if is_printable(text) { text.to_owned() } else { printable::line(text).into_owned() }
 }

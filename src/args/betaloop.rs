@@ -1,34 +1,34 @@
-//! The file of the betaloop launcher, `config.txt`: which SITL executable its users fly.
+//! The file of the betaloop launcher, `config.txt`, which names the SITL executable of its users.
 
 use configparser::ini::{Ini, IniDefault};
 
 /// The section of the launcher.
 const SECTION: &str = "Betaloop";
-/// The key of the executable; keys are told apart without regard to case.
+/// The key of the executable. Upper and lower case of keys count as equal.
 const EXECUTABLE: &str = "betaflightelf";
 
-/// What the launcher's section says.
+/// The contents of the launcher's section.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Betaloop {
-    /// The executable as it is written, perhaps from `~` on.
+    /// The executable as it is written; it may begin with `~`.
     pub executable: String,
-    /// Keys of the section that mean nothing here.
+    /// Keys of the section that have no effect here.
     pub unused: Vec<String>,
 }
 
-/// Why a file is none of the launcher.
+/// The reason why a file is not one of the launcher.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum BetaloopError {
-    /// Not in the form of such files.
+    /// It does not have the form of such files.
     #[error("it is not a file of sections, names and values: {0}")]
     Form(String),
-    /// Of another program.
+    /// It belongs to another program.
     #[error("it has no section [{SECTION}]")]
     NoSection,
     /// It names no executable.
     #[error("[{SECTION}] has no BetaflightElf: add BetaflightElf=/path/to/betaflight_SITL.elf")]
     NoExecutable,
-    /// It names two executables, by keys that differ in case only.
+    /// It names two executables, with keys that differ only in case.
     #[error("[{SECTION}] has two lines {first} and {second}: keep the one that is meant")]
     TwoExecutables {
         /// One of the keys.
@@ -42,9 +42,9 @@ impl Betaloop {
     /// Reads the text of the launcher's file.
     ///
     /// # Errors
-    /// Why it is none.
+    /// Returns the reason why it is not such a file.
     pub fn read(text: &str) -> Result<Self, BetaloopError> {
-        // As the launcher reads it: sections by their exact name, no comment behind a value.
+        // This follows the launcher: exact names of sections, and no comment after a value.
         let mut form = IniDefault::default();
         form.enable_inline_comments = false;
         form.case_sensitive = true;
@@ -103,7 +103,7 @@ mod tests {
 
     #[test]
     fn a_file_that_names_two_executables_starts_neither() {
-        // The order in which the keys are found differs from run to run.
+        // The order of the keys differs from run to run.
         let text = "[Betaloop]\nBetaflightElf=/a\nBETAFLIGHTELF=/b\n";
         let refusal = Betaloop::read(text).map_err(|error| error.to_string());
         let wanted = "[Betaloop] has two lines BETAFLIGHTELF and BetaflightElf: keep the one that is meant";
@@ -113,7 +113,7 @@ mod tests {
     proptest::proptest! {
         #[test]
         fn no_text_makes_it_panic(text in "(\\[Betaloop\\]\n)?(.{0,12}[=:\n]){0,6}") {
-            // Whatever is read, an executable has a name.
+            // Every file that can be read names an executable.
             if let Ok(file) = Betaloop::read(&text) {
                 proptest::prop_assert!(!file.executable.trim().is_empty());
             }

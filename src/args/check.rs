@@ -6,7 +6,7 @@ use super::value::{self, OutputFile};
 use super::{FirmwareArgs, FirmwarePortArgs, PlanArg, help};
 use crate::scenario::MAX_FLIGHTS;
 
-/// What has a firmware outside flown: nothing where the embedded one flies, or none.
+/// The options for a remote firmware. They conflict with options that fly only the embedded firmware, or do not fly.
 const FIRMWARE_OPTIONS: [&str; 9] = [
     "firmware",
     "firmware_arg",
@@ -19,7 +19,7 @@ const FIRMWARE_OPTIONS: [&str; 9] = [
     "motor_order",
 ];
 
-/// Most flights that `--max-flights` allows.
+/// The greatest value of `--max-flights`.
 pub const MOST_FLIGHTS: i64 = 1_000_000;
 
 /// The options of `check`.
@@ -42,19 +42,19 @@ pub struct CheckArgs {
     #[arg(long, help_heading = "Which")]
     pub slow: bool,
 
-    /// Flies each case with these seeds instead of its own, such as 1..20
+    /// Flies each case with these seeds, such as 1..20, instead of its own
     #[arg(long, value_name = "A..B", value_parser = value::seeds, help_heading = "Which")]
     pub seeds: Option<value::Seeds>,
 
-    /// Flies each flight this often and compares the outcomes to the last bit [default: 1]
+    /// Flies each flight this many times and compares the results to the last bit [default: 1]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000), help_heading = "How")]
     pub repeat: Option<u32>,
 
-    /// Most flights of the run; more are refused before the first [default: 10000]
+    /// The most flights of the run; more are refused before the start [default: 10000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST_FLIGHTS), help_heading = "How")]
     pub max_flights: Option<u32>,
 
-    /// Flights at the same time [default: one a processor]
+    /// Number of flights at the same time [default: one a processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256), help_heading = "How")]
     pub jobs: Option<u32>,
 
@@ -62,15 +62,15 @@ pub struct CheckArgs {
     #[arg(long, help_heading = "How")]
     pub fail_fast: bool,
 
-    /// Flies again whenever one of the files changes, until Ctrl-C
+    /// Flies again after every change of one of the files, until Ctrl-C
     #[arg(long, conflicts_with_all = ["list", "new"], help_heading = "How")]
     pub watch: bool,
 
-    /// Writes a line of JSON a flight; - is standard output
+    /// Writes one line of JSON for each flight; - is standard output
     #[arg(long, value_name = "FILE|-", help_heading = "Output")]
     pub json: Option<OutputFile>,
 
-    /// Writes a JUnit file, one testcase a case and seed
+    /// Writes a JUnit file with one testcase for each case and seed
     #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
     pub junit: Option<PathBuf>,
 
@@ -78,21 +78,21 @@ pub struct CheckArgs {
     #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
     pub markdown: Option<PathBuf>,
 
-    /// Flies this plan and prints a scenario that expects what was seen, with sensible margins
+    /// Flies this plan and prints a scenario that expects the same behaviour, with sensible margins
     #[arg(long, value_name = "PLAN", conflicts_with_all = ["what", "list", "filter", "json", "junit", "markdown"], conflicts_with_all = FIRMWARE_OPTIONS, help_heading = "Output")]
     pub new: Option<PlanArg>,
 
-    /// Which firmware flies.
+    /// The choice of the firmware.
     #[command(flatten)]
     pub firmware: FirmwareArgs,
 
-    /// How it is reached.
+    /// The ports of the firmware.
     #[command(flatten)]
     pub firmware_ports: FirmwarePortArgs,
 }
 
 impl CheckArgs {
-    /// Most flights of the run.
+    /// Returns the most flights of the run.
     pub fn most_flights(&self) -> usize {
         self.max_flights.map_or(MAX_FLIGHTS, |flights| flights as usize)
     }

@@ -7,12 +7,12 @@ use super::plan_arg::PlanArg;
 use super::value::{self, OutputFile};
 use super::{FlightArgs, MissionArgs, help};
 
-/// Longest flight that is compared, s: its whole track is kept.
+/// The longest flight of a comparison, s. Its whole track is kept.
 const LONGEST_S: f64 = 7200.0;
 
 /// The options of `compare`.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
-// Each flight starts from defaults anyway.
+// Each flight starts from defaults in any case.
 #[command(
     after_help = help::COMPARE,
     mut_arg("state_dir", |option| option.hide(true)),
@@ -22,20 +22,20 @@ pub struct CompareArgs {
     /// Plan to fly: a built-in plan's name or a file (*.toml, *.txt, - for standard input)
     pub plan: PlanArg,
 
-    /// What flies beside the embedded firmware, or with two the one beside the other: PATH, attach, embedded
+    /// Firmware to compare with the embedded one; given twice, the two to compare: PATH, attach, embedded
     /// [default: that of --betaloop]
     #[arg(long, value_name = "WHICH", help_heading = "Firmware")]
     pub firmware: Vec<FirmwareChoice>,
 
-    /// How they are started and fed.
+    /// The start of the firmwares and the packets to them.
     #[command(flatten)]
     pub link: FirmwareLinkArgs,
 
-    /// How they are reached.
+    /// The ports of the firmwares.
     #[command(flatten)]
     pub firmware_ports: FirmwarePortArgs,
 
-    /// Flights of each firmware outside, which are never quite the same [default: 3; attach: 1]
+    /// Flights of each remote firmware, which are never quite the same [default: 3; attach: 1]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100), help_heading = "Flight")]
     pub repeat: Option<u32>,
 
@@ -47,21 +47,21 @@ pub struct CompareArgs {
     #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
     pub svg: Option<PathBuf>,
 
-    /// How the plan is flown and judged.
+    /// The flight and the judgement of the plan.
     #[command(flatten)]
     pub mission: MissionArgs,
 
-    /// What flies, where and in which air.
+    /// The craft, its position and the air.
     #[command(flatten)]
     pub flight: FlightArgs,
 }
 
 impl CompareArgs {
-    /// How often a firmware is flown. The embedded one flies the same each time; one that is running already cannot be
-    /// made to forget the flight before.
+    /// Returns the number of flights of a firmware. The embedded one flies the same each time. A firmware that is
+    /// already running cannot be made to forget the previous flight.
     ///
     /// # Errors
-    /// Why it cannot be flown as often as was asked for.
+    /// Returns the reason why it cannot be flown the requested number of times.
     pub fn flights_of(&self, firmware: &FirmwareChoice) -> Result<u32, String> {
         match (firmware, self.repeat) {
             (FirmwareChoice::Embedded, _) | (FirmwareChoice::Attach, None | Some(1)) => Ok(1),
@@ -73,7 +73,7 @@ impl CompareArgs {
         }
     }
 
-    /// What is wrong with the combination of what was typed.
+    /// Checks the combination of the typed options.
     pub(super) fn check(&self) -> Result<(), String> {
         if self.firmware.len() > 2 {
             return Err("--firmware is given once, to compare with the embedded one, or twice".to_owned());

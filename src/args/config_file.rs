@@ -1,51 +1,51 @@
-//! The configuration file that the program writes, and where the value of each option comes from.
+//! The configuration file that the program writes, and the source of the value of each option.
 
 use clap::{Arg, CommandFactory as _};
 
 use super::layers::{FLYING, options};
 use super::{Cli, Layers};
 
-/// Columns of the text of a comment.
+/// The number of columns for the text of a comment.
 const WIDTH: usize = 96;
 
-/// What to do with the configuration file.
+/// Commands for the configuration file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::Subcommand)]
 pub enum ConfigCommand {
-    /// Writes a configuration file in which every option and key stands as a comment
+    /// Writes a configuration file that contains every option and key as a comment
     Init {
-        /// Replaces the file when it exists
+        /// Replaces an existing file
         #[arg(long)]
         force: bool,
     },
-    /// Prints the value of every option and where it comes from
+    /// Prints the value of every option with its source
     Show,
-    /// Prints where the configuration file is
+    /// Prints the path of the configuration file
     Path,
 }
 
-/// An action that has keys, as the file explains it.
+/// An action with keys, for the explanation in the file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct KeyHelp {
     /// Name of the action.
     pub name: &'static str,
     /// Default keys.
     pub keys: &'static [&'static str],
-    /// What it does.
+    /// The effect of the action.
     pub help: &'static str,
 }
 
-/// The value of an option, and where it was found.
+/// The value of an option, and its source.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Origin {
     /// Name of the option.
     pub name: String,
-    /// Its value; of a default what the help says.
+    /// The value; for a default the text of the help.
     pub value: String,
     /// `default`, or the variable or file.
     pub source: String,
 }
 
-/// The options that a layer can give, each once, in the order of the help.
+/// Returns the options that a layer can give, each once, in the order of the help.
 fn all_options(command: &clap::Command) -> Vec<&Arg> {
     let mut found: Vec<&Arg> = Vec::new();
     for name in FLYING {
@@ -58,7 +58,7 @@ fn all_options(command: &clap::Command) -> Vec<&Arg> {
     found
 }
 
-/// The help of an option without its default, and the default.
+/// Returns the help of an option without its default, and the default.
 fn help_and_default(option: &Arg) -> (String, Option<String>) {
     let help = option.get_help().map(ToString::to_string).unwrap_or_default();
     match help.split_once(" [default: ") {
@@ -67,7 +67,7 @@ fn help_and_default(option: &Arg) -> (String, Option<String>) {
     }
 }
 
-/// A configuration file in which every option and every key stands as a comment with its default.
+/// Returns a configuration file that contains every option and every key as a comment with its default.
 pub fn template(keys: &[KeyHelp]) -> String {
     let mut command = Cli::command();
     command.build();
@@ -106,7 +106,7 @@ pub fn template(keys: &[KeyHelp]) -> String {
     text
 }
 
-/// A comment in lines of a readable width.
+/// Adds a comment in lines of a readable width.
 fn comment(text: &mut String, words: &str) {
     let mut line = String::from("#");
     for word in words.split_whitespace() {
@@ -122,10 +122,10 @@ fn comment(text: &mut String, words: &str) {
     text.push('\n');
 }
 
-/// The value of every option that a layer can give, and where it was found.
+/// Returns the value of every option that a layer can give, with its source.
 ///
 /// # Errors
-/// A sentence about a value that no option can have.
+/// Returns a sentence about a value that is not valid for its option.
 pub fn origins(layers: &Layers) -> Result<Vec<Origin>, String> {
     let mut command = Cli::command();
     command.build();

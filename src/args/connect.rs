@@ -1,4 +1,4 @@
-//! A flight controller on the desk, to which this program is the ground station alone.
+//! A flight controller on the desk, for which this program is only the ground station.
 
 use super::physics::without_effect;
 use super::{DoorArgs, FirmwareLinkArgs, FlightArgs, PhysicsArgs};
@@ -7,18 +7,18 @@ use crate::link::FcPlace;
 /// The flight controller to connect to.
 #[derive(Debug, Clone, Default, PartialEq, Eq, clap::Args)]
 pub struct ConnectArgs {
-    /// A flight controller outside: serial:DEVICE[,BAUD], tcp:HOST:PORT or ws:URL; nothing is simulated
+    /// A remote flight controller: serial:DEVICE[,BAUD], tcp:HOST:PORT or ws:URL; nothing is simulated
     ///
     /// serial:/dev/ttyACM0 is a board on a USB cable, tcp:192.168.4.1:5761 or ws://10.0.0.2:6761 one behind a bridge;
-    /// wss:// is encrypted. Telemetry, command line and the plan are read from it; what changes it is asked about once a
-    /// connection; it is never armed from here and no motor turns. A lost connection is made again by itself. The doors
-    /// stay closed but for those whose port is given (--tcp-port, --ws-port).
+    /// wss:// is encrypted. Telemetry, command line and the plan are read from it. Changes need your permission once a
+    /// connection. betadeck never arms it and turns no motor. A lost connection is restored automatically. The doors
+    /// stay closed, except those whose port is given (--tcp-port, --ws-port).
     #[arg(long, value_name = "PLACE", conflicts_with_all = ["firmware", "betaloop", "physics"], help_heading = "Flight controller")]
     pub connect: Option<FcPlace>,
 }
 
 impl ConnectArgs {
-    /// What was given but has no effect on a flight controller outside, as a sentence.
+    /// Returns a sentence about options that were given but have no effect on a remote flight controller.
     pub fn idle_options(
         doors: &DoorArgs,
         firmware: &FirmwareLinkArgs,

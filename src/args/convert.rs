@@ -7,7 +7,7 @@ use crate::plan::format::Format;
 use super::value::{self, OutputFile};
 use super::{PlanArg, PlanArgError};
 
-/// What to convert.
+/// The options of `convert`.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct ConvertArgs {
     /// Plan to read: a built-in plan's name, a file, or - for standard input
@@ -26,17 +26,17 @@ pub struct ConvertArgs {
     #[arg(long, value_name = "FORMAT", value_parser = value::format)]
     to: Option<Format>,
 
-    /// Replaces OUT when it exists
+    /// Replaces an existing OUT
     #[arg(long)]
     pub force: bool,
 }
 
 impl ConvertArgs {
-    /// What to read. `--from` makes every name a file's.
+    /// Returns the source. With `--from`, every name is the name of a file.
     ///
     /// # Errors
     ///
-    /// When the name is no plan's; not after [`super::parse`], which checks it.
+    /// Returns an error if the name is not a plan. This cannot happen after [`super::parse`], which checks it.
     pub fn source(&self) -> Result<PlanArg, PlanArgError> {
         match self.from {
             Some(format) if self.input == "-" => Ok(PlanArg::Stdin(Some(format))),
@@ -45,11 +45,12 @@ impl ConvertArgs {
         }
     }
 
-    /// What to write.
+    /// Returns the format of the output.
     ///
     /// # Errors
     ///
-    /// When neither `--to` nor the ending of OUT says it; not after [`super::parse`], which checks it.
+    /// Returns an error if neither `--to` nor the ending of OUT gives it. This cannot happen after [`super::parse`],
+    /// which checks it.
     pub fn target(&self) -> Result<Format, String> {
         let by_ending = |path: &Path| Format::from_file_name(&path.to_string_lossy());
         let found = self.to.or_else(|| match &self.output {
@@ -68,7 +69,7 @@ impl ConvertArgs {
         })
     }
 
-    /// What is wrong with the combination of what was typed.
+    /// Checks the combination of the typed options.
     pub(super) fn check(&self) -> Result<(), String> {
         self.source().map_err(|error| format!("{}: {error}", self.input))?;
         self.target().map(drop)

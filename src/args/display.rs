@@ -1,11 +1,11 @@
-//! How the user interface shows things.
+//! The display options of the user interface.
 
 use clap::ValueEnum;
 
 /// Colours, characters and units.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, clap::Args)]
 pub struct DisplayArgs {
-    /// Colours: dark, light, high-contrast, 16, mono; NO_COLOR wins [default: what the terminal can show]
+    /// Colours: dark, light, high-contrast, 16, mono; NO_COLOR wins [default: the terminal's capabilities]
     #[arg(long, value_name = "NAME", hide_possible_values = true, help_heading = "Screen")]
     pub theme: Option<ThemeChoice>,
 
@@ -13,7 +13,7 @@ pub struct DisplayArgs {
     #[arg(long, value_name = "SET", hide_possible_values = true, help_heading = "Screen")]
     pub charset: Option<CharsetChoice>,
 
-    /// Units of what is shown, not of what is stored: metric, imperial [default: metric]
+    /// Units on the screen, not in files: metric, imperial [default: metric]
     #[arg(long, value_name = "UNITS", hide_possible_values = true, help_heading = "Screen")]
     pub units: Option<UnitsChoice>,
 }
@@ -27,17 +27,17 @@ pub enum ThemeChoice {
     Light,
     /// Far from each other and from a dark background.
     HighContrast,
-    /// The terminal's own sixteen.
+    /// The terminal's own sixteen colours.
     #[value(name = "16")]
     Sixteen,
-    /// None.
+    /// No colours.
     Mono,
 }
 
 /// Characters that the terminal shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum CharsetChoice {
-    /// As the environment says.
+    /// The choice of the environment.
     Auto,
     /// Box drawing, arrows, Braille.
     Unicode,

@@ -1,4 +1,4 @@
-//! The options of the doors: where other programs connect, and the commands that are nothing without them.
+//! The options of the doors for other programs, and the commands that mainly serve doors.
 
 use std::net::{IpAddr, Ipv4Addr};
 use std::path::PathBuf;
@@ -10,7 +10,7 @@ use super::physics::{PhysicsArgs, SimulatorArgs};
 use super::value::{AttitudeChoice, OnOff, OutputFile};
 use super::{FirmwareArgs, FlightArgs};
 
-/// Where the doors are; port 0 = the system chooses.
+/// The addresses of the doors; port 0 = the system chooses.
 #[derive(Debug, Clone, Default, PartialEq, Eq, clap::Args)]
 pub struct DoorArgs {
     /// Address the doors listen on [default: 127.0.0.1; TCP and websocket also ::1]
@@ -29,36 +29,36 @@ pub struct DoorArgs {
     #[arg(long, value_name = "RAW,MOTORS,FDM,RC", help_heading = "Doors")]
     pub udp_ports: Option<UdpPorts>,
 
-    /// Opens no door but those of an external simulator
+    /// Opens only the doors for an external simulator
     #[arg(long, conflicts_with_all = ["listen", "ws_port", "tcp_port", "udp_ports"], help_heading = "Doors")]
     pub no_ports: bool,
 
     /// Serves web pages of this origin on the websocket, too; repeatable
     ///
-    /// Always served: requests without an origin, loopback hosts, https://app.betaflight.com, and the App's desktop and
-    /// mobile shells. The name by which a client calls this machine (Host) has to be one of the loopback, the address it
-    /// reached, or that of an allowed origin.
+    /// Always served: requests without an origin, loopback hosts, https://app.betaflight.com, and the App's desktop
+    /// and mobile shells. The client must call this machine (Host) by a loopback name, by the address that it
+    /// reached, or by the name of an allowed origin.
     #[arg(long, value_name = "ORIGIN", help_heading = "Doors")]
     pub allow_origin: Vec<String>,
 }
 
 impl DoorArgs {
-    /// Address the doors listen on.
+    /// Returns the address the doors listen on.
     pub fn address(&self) -> IpAddr {
         self.listen.unwrap_or(IpAddr::V4(Ipv4Addr::LOCALHOST))
     }
 
-    /// Port of the websocket.
+    /// Returns the port of the websocket.
     pub fn ws_port(&self) -> u16 {
         self.ws_port.unwrap_or(6761)
     }
 
-    /// Port of the first serial port.
+    /// Returns the port of the first serial port.
     pub fn tcp_port(&self) -> u16 {
         self.tcp_port.unwrap_or(5761)
     }
 
-    /// The UDP ports.
+    /// Returns the UDP ports.
     pub fn udp_ports(&self) -> UdpPorts {
         self.udp_ports.unwrap_or_default()
     }
@@ -109,15 +109,15 @@ pub struct ServeArgs {
     #[command(flatten)]
     pub doors: DoorArgs,
 
-    /// Which firmware flies.
+    /// The choice of the firmware.
     #[command(flatten)]
     pub firmware: FirmwareArgs,
 
-    /// Whose physics moves the craft.
+    /// The choice of the physics.
     #[command(flatten)]
     pub physics: PhysicsArgs,
 
-    /// What flies, where and in which air.
+    /// The craft, its position and the air.
     #[command(flatten)]
     pub flight: FlightArgs,
 }
@@ -125,7 +125,7 @@ pub struct ServeArgs {
 /// The options of `sitl`: the firmware alone, for an external simulator.
 #[derive(Debug, Clone, PartialEq, Eq, clap::Args)]
 pub struct SitlArgs {
-    /// Address that motor packets are sent to [default: 127.0.0.1]
+    /// Address to which motor packets are sent [default: 127.0.0.1]
     #[arg(long, value_name = "ADDR")]
     pub ip: Option<IpAddr>,
 
@@ -145,7 +145,7 @@ pub struct SitlArgs {
     #[arg(long)]
     pub strict: bool,
 
-    /// Unknown settings between batch start and batch end do not keep save from storing
+    /// Unknown settings between batch start and batch end do not prevent save from storing
     #[arg(long)]
     pub lenient: bool,
 
@@ -153,7 +153,7 @@ pub struct SitlArgs {
     #[arg(long)]
     pub overwrite_config: bool,
 
-    /// How to speak with the simulator.
+    /// The packets of the simulator.
     #[command(flatten)]
     pub simulator: SimulatorArgs,
 
@@ -161,11 +161,11 @@ pub struct SitlArgs {
     #[arg(long, value_enum, help_heading = "Firmware")]
     pub arm_assist: Option<OnOff>,
 
-    /// Where the attitude comes from: the simulator's packet (truth), or the firmware's estimator [default: truth]
+    /// Source of the attitude: the simulator's packet (truth), or the firmware's estimator [default: truth]
     #[arg(long, value_enum, help_heading = "Firmware")]
     pub attitude: Option<AttitudeChoice>,
 
-    /// Where eeprom.bin lives [default: the working directory]
+    /// Directory of eeprom.bin [default: the working directory]
     #[arg(long, value_name = "DIR")]
     pub state_dir: Option<PathBuf>,
 
@@ -174,14 +174,14 @@ pub struct SitlArgs {
     pub doors: DoorArgs,
 }
 
-/// What the reference firmware simulator prints for an argument it does not understand, or one without its value; it
-/// leaves with exit code 1 then. `None` for other errors, `--help` included.
+/// Returns the message of the reference firmware simulator for an unknown argument or a missing value; that simulator
+/// then exits with code 1. Returns `None` for other errors and for `--help`.
 pub fn sitl_usage_error(error: &clap::Error) -> Option<String> {
     if !matches!(error.kind(), ErrorKind::UnknownArgument | ErrorKind::InvalidValue) {
         return None;
     }
     let ContextValue::String(argument) = error.get(ContextKind::InvalidArg)? else { return None };
-    // `--config <FILE>` when its value is missing.
+    // `--config <FILE>` if its value is missing.
     let argument = argument.split(" <").next().unwrap_or(argument);
     Some(format!("[SITL] Unknown argument: {argument} (use --help for usage)"))
 }

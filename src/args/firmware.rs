@@ -1,4 +1,4 @@
-//! Which firmware flies: the embedded one, a SITL executable, or one that is running already.
+//! The choice of the firmware: the embedded one, a SITL executable, or one that is already running.
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -7,13 +7,13 @@ use super::physics::{FdmDialect, PhysicsArgs};
 use super::{FlightArgs, Speed, UdpPorts};
 use crate::signals::fdm::{MotorOrder, Stamps};
 
-/// Which firmware flies.
+/// A choice of the firmware.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum FirmwareChoice {
-    /// The one in this program.
+    /// The firmware in this program.
     #[default]
     Embedded,
-    /// A SITL that somebody else started.
+    /// A SITL that another program started.
     Attach,
     /// A SITL executable, started as a child.
     Executable(PathBuf),
@@ -33,15 +33,15 @@ impl FromStr for FirmwareChoice {
 }
 
 impl FirmwareChoice {
-    /// Whether it runs outside this program.
+    /// Returns `true` if it runs outside this program.
     pub fn is_remote(&self) -> bool {
         *self != Self::Embedded
     }
 
-    /// Why these options cannot be used with it, as a sentence that says what to do.
+    /// Checks that these options can be used with it.
     ///
     /// # Errors
-    /// That sentence.
+    /// Returns a sentence with the reason and a suggestion.
     pub fn check(
         &self,
         link: &FirmwareLinkArgs,
@@ -78,52 +78,53 @@ fn speed_text(speed: f64) -> String {
     if speed.is_finite() { speed.to_string() } else { "max".to_owned() }
 }
 
-/// Which firmware flies, and how it is started.
+/// The choice of the firmware, and its start.
 #[derive(Debug, Clone, Default, PartialEq, Eq, clap::Args)]
 pub struct FirmwareArgs {
-    /// What flies: embedded, the path of a SITL executable, or attach: one that is running [default: embedded]
+    /// Firmware: embedded, the path of a SITL executable, or attach: one that is running [default: embedded]
     ///
-    /// An executable is started in a folder of its own below the state directory, is fed by the embedded physics and
-    /// ends with this program. It flies in real time and has the TCP and UDP ports to itself: --tcp-port and --udp-ports
-    /// say which ones it uses, --fdm-dialect and --motor-order how its packets are written. The websocket door stays.
+    /// An executable is started in a folder of its own below the state directory, gets the state of the embedded
+    /// physics and ends with this program. It flies in real time and has the TCP and UDP ports to itself: --tcp-port
+    /// and --udp-ports name its ports, --fdm-dialect and --motor-order the format of its packets. The websocket door
+    /// stays.
     #[arg(long, value_name = "WHICH", help_heading = "Firmware")]
     pub firmware: Option<FirmwareChoice>,
 
-    /// How it is started and fed.
+    /// The start of the firmware and the packets to it.
     #[command(flatten)]
     pub link: FirmwareLinkArgs,
 }
 
-/// How a firmware outside is started and fed.
+/// The start of a remote firmware and the packets to it.
 #[derive(Debug, Clone, Default, PartialEq, Eq, clap::Args)]
 pub struct FirmwareLinkArgs {
     /// An argument for the executable of --firmware; repeatable
     #[arg(long, value_name = "ARG", allow_hyphen_values = true, help_heading = "Firmware")]
     pub firmware_arg: Vec<String>,
 
-    /// Takes the executable from the launcher's file [default: config.txt here, when it has a section Betaloop]
+    /// Takes the executable from the launcher's file [default: config.txt here, if it has a section Betaloop]
     #[arg(long, value_name = "FILE", conflicts_with = "firmware", help_heading = "Firmware")]
     pub betaloop: Option<PathBuf>,
 
-    /// Changes the configuration that a firmware outside has kept without asking
+    /// Changes the stored configuration of a remote firmware without a question
     #[arg(long, help_heading = "Firmware")]
     pub yes: bool,
 
     /// Stamps of the packets to it: constant, or sim: simulated time, for a patched build [default: constant]
     ///
-    /// The clock of a stock SITL leaps when stamps advance unevenly, so it gets the same stamp in every packet and runs
+    /// The clock of a stock SITL jumps when stamps advance unevenly, so it gets the same stamp in every packet and runs
     /// on the wall clock. A build whose clock follows the stamps flies at any --speed.
     #[arg(long, value_name = "STAMPS", help_heading = "Firmware")]
     pub fdm_stamps: Option<Stamps>,
 }
 
 impl FirmwareLinkArgs {
-    /// The stamps of the packets to the firmware.
+    /// Returns the stamps of the packets to the firmware.
     pub fn stamps(&self) -> Stamps {
         self.fdm_stamps.unwrap_or_default()
     }
 
-    /// What was given but has no effect with this firmware, as a sentence.
+    /// Returns a sentence about options that were given but have no effect with this firmware.
     pub fn idle_options(&self, firmware: &FirmwareChoice) -> Option<String> {
         let arguments = ("--firmware-arg", !self.firmware_arg.is_empty());
         let (given, why) = match firmware {
@@ -138,7 +139,7 @@ impl FirmwareLinkArgs {
     }
 }
 
-/// Where a firmware outside is reached, for commands that have no doors of their own.
+/// The ports of a remote firmware, for commands without doors of their own.
 #[derive(Debug, Clone, Default, PartialEq, Eq, clap::Args)]
 pub struct FirmwarePortArgs {
     /// Port of its CLI and MSP over TCP [default: 5761]
@@ -149,7 +150,7 @@ pub struct FirmwarePortArgs {
     #[arg(long, value_name = "RAW,MOTORS,FDM,RC", help_heading = "Firmware")]
     pub udp_ports: Option<UdpPorts>,
 
-    /// What the packets to it mean: auto, sitl-gz, gz-plugin or legacy [default: auto, which is sitl-gz]
+    /// Meaning of the packets to it: auto, sitl-gz, gz-plugin or legacy [default: auto, which is sitl-gz]
     #[arg(long, value_name = "DIALECT", help_heading = "Firmware")]
     pub fdm_dialect: Option<FdmDialect>,
 
@@ -159,7 +160,7 @@ pub struct FirmwarePortArgs {
 }
 
 impl FirmwarePortArgs {
-    /// What was given but has no effect with the embedded firmware, as a sentence.
+    /// Returns a sentence about options that were given but have no effect with the embedded firmware.
     pub fn idle_options(&self, firmware_outside: bool) -> Option<String> {
         let given = [
             ("--tcp-port", self.tcp_port.is_some()),

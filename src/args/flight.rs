@@ -1,4 +1,4 @@
-//! What flies, where and in which air: the options that all flying commands share.
+//! The craft, its position and the air: the options that all flying commands share.
 
 use std::path::PathBuf;
 
@@ -11,11 +11,11 @@ use super::value::{self, AttitudeChoice, OnOff, Speed};
 /// The options that all flying commands share; `None` = the command's default.
 #[derive(Debug, Clone, Default, PartialEq, clap::Args)]
 pub struct FlightArgs {
-    /// Where the craft stands at boot: degrees, degrees, metres above sea level [default: the plan's home, else
+    /// Place of the craft at boot: degrees, degrees, metres above sea level [default: the plan's home, else
     /// 40.4635,-79.5182,300]
     ///
-    /// When neither you nor the plan gives a home and the first waypoint is more than 10 km from the default, the craft
-    /// stands at that waypoint.
+    /// If neither you nor the plan gives a home and the first waypoint is more than 10 km from the default, the craft
+    /// starts at that waypoint.
     #[arg(long, value_name = "LAT,LON[,AMSL]", allow_hyphen_values = true, help_heading = "Craft")]
     pub home: Option<HomePosition>,
 
@@ -29,19 +29,19 @@ pub struct FlightArgs {
 
     /// CLI lines that are applied at boot as if typed: a `diff all`, a `dump`, a hand-written list
     ///
-    /// Later wins: the stored configuration, the plan's settings, this file, --set.
+    /// Later sources win: the stored configuration, the plan's settings, this file, --set.
     #[arg(long, value_name = "FILE", help_heading = "Craft")]
     pub settings: Option<PathBuf>,
 
-    /// Where the craft's configuration and logs live [default: the user's state directory; fly: none, as --fresh]
+    /// Directory of the craft's configuration and logs [default: the user's state directory; fly: none, as --fresh]
     #[arg(long, value_name = "DIR", conflicts_with = "fresh", help_heading = "Craft")]
     pub state_dir: Option<PathBuf>,
 
-    /// Starts from defaults; stores nothing but the files named on the command line
+    /// Starts from defaults; writes only the files named on the command line
     #[arg(long, help_heading = "Craft")]
     pub fresh: bool,
 
-    /// Where the attitude comes from: estimated, truth [default: estimated; external simulator: truth]
+    /// Source of the attitude: estimated, truth [default: estimated; external simulator: truth]
     #[arg(long, value_name = "SOURCE", hide_possible_values = true, help_heading = "Craft")]
     pub attitude: Option<AttitudeChoice>,
 
@@ -77,17 +77,17 @@ pub struct FlightArgs {
     #[arg(long, value_name = "HZ", allow_negative_numbers = true, value_parser = value::rate, help_heading = "Time")]
     pub rate: Option<u32>,
 
-    /// Times real time, or max for as fast as the machine allows [default: 1; fly: max]
+    /// Speed as a multiple of real time, or max for as fast as the machine allows [default: 1; fly: max]
     #[arg(long, value_name = "X|max", allow_negative_numbers = true, help_heading = "Time")]
     pub speed: Option<Speed>,
 }
 
 impl FlightArgs {
-    /// The switches of the world, the later ones winning.
+    /// Returns the switches of the world; later ones win.
     ///
     /// # Errors
     ///
-    /// As [`Switches::set`]; not for values that were parsed from a command line.
+    /// Returns the errors of [`Switches::set`]. Values from a parsed command line have none.
     pub fn switches(&self) -> Result<Switches, sim::ParseError> {
         let mut switches = Switches::default();
         for text in &self.world {
@@ -96,7 +96,7 @@ impl FlightArgs {
         Ok(switches)
     }
 
-    /// Steps of control a second.
+    /// Returns the number of control steps a second.
     pub fn rate_hz(&self) -> u32 {
         self.rate.unwrap_or(1000)
     }

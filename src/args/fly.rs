@@ -27,11 +27,11 @@ pub struct FlyArgs {
     #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
     pub gpx: Option<PathBuf>,
 
-    /// How the plan is flown and judged.
+    /// The flight and the judgement of the plan.
     #[command(flatten)]
     pub mission: MissionArgs,
 
-    /// Which waypoints are warned of.
+    /// The limits for warnings about waypoints.
     #[command(flatten)]
     pub review: ReviewArgs,
 
@@ -51,31 +51,31 @@ pub struct FlyArgs {
     #[arg(long, value_name = "NAME@T[,FOR][,VALUE]", value_parser = value::fault, long_help = help::faults(), help_heading = "Faults")]
     pub fault: Vec<ScheduledFault>,
 
-    /// Which firmware flies.
+    /// The choice of the firmware.
     #[command(flatten)]
     pub firmware: FirmwareArgs,
 
-    /// How it is reached.
+    /// The ports of the firmware.
     #[command(flatten)]
     pub firmware_ports: FirmwarePortArgs,
 
-    /// What flies, where and in which air.
+    /// The craft, its position and the air.
     #[command(flatten)]
     pub flight: FlightArgs,
 }
 
 impl FlyArgs {
-    /// All faults of the flight.
+    /// Returns all faults of the flight.
     pub fn faults(&self) -> impl Iterator<Item = ScheduledFault> + '_ {
         self.rx_loss_at.into_iter().chain(self.gps_loss_at).chain(self.fault.iter().copied())
     }
 
-    /// Times real time; infinite = as fast as the machine allows, the default.
+    /// Returns the speed as a multiple of real time; infinite = as fast as the machine allows, the default.
     pub fn speed(&self) -> f64 {
         self.flight.speed.map_or(f64::INFINITY, |Speed(speed)| speed)
     }
 
-    /// What is wrong with the combination of what was typed.
+    /// Checks the combination of the typed options.
     pub(super) fn check(&self) -> Result<(), String> {
         if self.samples.is_some_and(|hz| hz > 0.0) && self.json.is_none() {
             return Err(

@@ -6,7 +6,7 @@ use clap::CommandFactory as _;
 
 use super::Cli;
 
-/// The completion script of a shell.
+/// Returns the completion script of a shell.
 pub fn completions(shell: clap_complete::Shell) -> Vec<u8> {
     let mut script = Vec::new();
     let mut command = Cli::command();
@@ -15,11 +15,11 @@ pub fn completions(shell: clap_complete::Shell) -> Vec<u8> {
     script
 }
 
-/// The manual page with all commands, in roff.
+/// Returns the manual page with all commands, in roff.
 ///
 /// # Errors
 ///
-/// When the page cannot be rendered.
+/// Returns an error if the page cannot be rendered.
 pub fn man_page() -> io::Result<Vec<u8>> {
     let mut command = Cli::command();
     command.build();
@@ -39,7 +39,7 @@ pub fn man_page() -> io::Result<Vec<u8>> {
     Ok(page)
 }
 
-/// Synopsis, description, options, notes and examples of a command.
+/// Writes synopsis, description, options, notes and examples of a command.
 fn sections(command: &clap::Command, page: &mut Vec<u8>) -> io::Result<()> {
     let man = clap_mangen::Man::new(command.clone());
     man.render_synopsis_section(page)?;
@@ -58,7 +58,7 @@ fn sections(command: &clap::Command, page: &mut Vec<u8>) -> io::Result<()> {
     Ok(())
 }
 
-/// A text for roff: no line is a request, no character an escape.
+/// Returns a text for roff in which no line is a request and no character is an escape.
 fn escaped(text: &str) -> String {
     let text = text.replace('\\', "\\e").replace('-', "\\-");
     let lines = text.lines().map(|line| match line.as_bytes().first() {
@@ -68,7 +68,7 @@ fn escaped(text: &str) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// The commands that do something, without `help`.
+/// Returns the commands that have an effect, without `help`.
 fn leaves(command: &clap::Command) -> Vec<&clap::Command> {
     let own = command.get_subcommands().filter(|sub| !sub.is_hide_set() && sub.get_name() != "help");
     own.flat_map(|sub| if sub.has_subcommands() { leaves(sub) } else { vec![sub] }).collect()

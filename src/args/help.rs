@@ -2,7 +2,7 @@
 
 use crate::sim::{FAULTS, FaultInfo, SWITCHES};
 
-/// How values are found, for the end of the help of commands that fly.
+/// The sources of values, for the end of the help of commands that fly.
 pub(super) const LAYERS: &str = "\
 Each option can also be set in the configuration file (wind = \"5@270\") and in the environment
 (BETADECK_WIND=5@270); the command line wins over the environment, that over the file.";
@@ -39,7 +39,7 @@ Exit codes: 0 every expectation was met, 1 one was not, 2 wrong usage or scenari
 Which firmware flies can also be set in the configuration file (firmware = \"PATH\") and in the environment
 (BETADECK_FIRMWARE=PATH), as can each option below Firmware; what else makes a flight is in the scenario.";
 
-/// The examples of a command, for the top of its help: what to type and what it does.
+/// Returns the examples of a command for the top of its help: the line to type and its effect.
 pub(super) fn examples(examples: &[(&str, &str)]) -> String {
     let mut text = String::from("Examples:");
     for (line, meaning) in examples {
@@ -51,19 +51,19 @@ pub(super) fn examples(examples: &[(&str, &str)]) -> String {
     text
 }
 
-/// All faults, for the long help of `--fault`.
+/// Returns all faults, for the long help of `--fault`.
 pub(super) fn faults() -> String {
     let mut text = String::from(
         "Something goes wrong at T, for FOR seconds or to the end; repeatable\n\n\
          motor@10,,2:0.8 weakens motor 2 to 80 % after 10 s, gps-loss@boot+20,6 takes the GPS away for 6 s.\n\n\
          NAME (VALUE; what it is when left out):\n",
     );
-    // Those of the external link have nothing to act on when everything is embedded.
+    // Without an external simulator, faults of its link have no effect.
     text.extend(FAULTS.iter().filter(|fault| !fault.needs_link()).map(fault_line));
     text.trim_end().to_owned()
 }
 
-/// All faults, for the long help of `--fault` where the simulator may be outside.
+/// Returns all faults, for the long help of `--fault` of commands that allow an external simulator.
 pub(super) fn faults_with_link() -> String {
     let mut text = faults();
     text.push_str("\n\nWith --physics external: rx-loss, gps-loss and\n");
@@ -80,7 +80,7 @@ fn fault_line(fault: &FaultInfo) -> String {
     format!("  {}{value}: {}\n", fault.name(), fault.help)
 }
 
-/// All switches of the world, for the long help of `--world`.
+/// Returns all switches of the world, for the long help of `--world`.
 pub(super) fn world_switches() -> String {
     let mut text =
         String::from("A rare switch of the simulated world, such as battery_sag=on; repeatable\n\n");

@@ -1,8 +1,9 @@
-//! The layers under the command line: environment and configuration file.
+//! The layers below the command line: environment and configuration file.
 //!
-//! Every long option of a command that flies is a key in the file (`wind = "5@270"`) and a variable in the environment
-//! (`BETADECK_WIND`); of `check` those of the firmware and of `plan show` all are. What a layer gives for an option that no higher layer gave is
-//! parsed by the option's own parser, as if it had been typed.
+//! Every long option of a command that flies is a key in the file (`wind = "5@270"`) and a variable in the
+//! environment (`BETADECK_WIND`). For `check` these are the options of the firmware, for `plan show` all options. A
+//! value from a layer for an option that no higher layer gave is parsed by the option's own parser, as if someone
+//! typed it.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -14,13 +15,13 @@ use clap::{Arg, ArgAction, ArgMatches, FromArgMatches as _};
 use super::Cli;
 use crate::did_you_mean;
 
-/// Start of the names of environment variables.
+/// The start of the names of environment variables.
 pub const ENVIRONMENT_PREFIX: &str = "BETADECK_";
 
-/// What the shell found outside the command line.
+/// The options outside the command line.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Layers {
-    /// The environment; variables without [`ENVIRONMENT_PREFIX`] do not matter.
+    /// The environment; variables without [`ENVIRONMENT_PREFIX`] are ignored.
     pub environment: BTreeMap<String, String>,
     /// Name of the configuration file, for messages.
     pub file_name: String,
@@ -28,19 +29,19 @@ pub struct Layers {
     pub file: toml::Table,
 }
 
-/// The name of the place where a value was found, and the values there.
+/// The source of values, and the values.
 type Found = (String, Vec<String>);
 
-/// Commands whose options come from all layers; the empty name is the terminal user interface.
+/// Commands with options from all layers; the empty name is the terminal user interface.
 pub(super) const FLYING: [&str; 5] = ["", "fly", "compare", "serve", "sitl"];
-/// The command of which only the firmware comes from all layers: the rest of a flight is its scenario's.
+/// The command that takes only the firmware from all layers. The scenario gives the rest of a flight.
 const CHECK: &str = "check";
-/// The command and its part that judge a plan which they do not fly.
+/// The command and the subcommand that judge a plan without a flight.
 const PLAN_SHOW: (&str, &str) = ("plan", "show");
-/// The heading of the options that say which firmware flies.
+/// The heading of the options for the choice of the firmware.
 const FIRMWARE: &str = "Firmware";
 
-/// Parses again with what the layers add to the command line.
+/// Parses the command line again with the additions from the layers.
 pub(super) fn apply(
     layers: &Layers,
     mut arguments: Vec<OsString>,
@@ -62,7 +63,7 @@ pub(super) fn apply(
             None => (definition, typed),
         };
         let added = layers.additions(definition, typed, &mut sources).map_err(|text| problem(&text))?;
-        // Behind everything typed, but before a `--` that ends the options.
+        // After all typed words, but before a `--` that ends the options.
         let end = arguments.iter().position(|argument| argument == "--").unwrap_or(arguments.len());
         arguments.splice(end..end, added);
     }
@@ -71,7 +72,7 @@ pub(super) fn apply(
     Cli::from_arg_matches(&matches)
 }
 
-/// The options of a command that the layers can give; a hidden one is not for it.
+/// Returns the options of a command that the layers can give; a hidden option does not belong to the command.
 pub(super) fn options(command: &clap::Command) -> impl Iterator<Item = &Arg> {
     let of_firmware_only = command.get_name() == CHECK;
     command
@@ -85,7 +86,7 @@ fn is_typed(matches: &ArgMatches, option: &Arg) -> bool {
     matches.value_source(option.get_id().as_str()) == Some(ValueSource::CommandLine)
 }
 
-/// `--wind=5@270` for each value; a plain flag for `true`, nothing for `false`.
+/// Returns `--wind=5@270` for each value; a plain flag for `true`, nothing for `false`.
 fn flags(option: &Arg, long: &str, source: &str, values: &[String]) -> Result<Vec<OsString>, String> {
     match option.get_action() {
         ArgAction::SetTrue => match values.first().map(|value| value.to_ascii_lowercase()).as_deref() {
@@ -100,8 +101,8 @@ fn flags(option: &Arg, long: &str, source: &str, values: &[String]) -> Result<Ve
 }
 
 impl Layers {
-    /// What the layers add to what was typed, the environment first. An option that conflicts with one of a higher layer
-    /// is left out. `sources` gets where each added option comes from.
+    /// Returns the additions of the layers to the typed options, the environment first. An option that conflicts with
+    /// one of a higher layer is left out. `sources` gets the source of each added option.
     fn additions(
         &self,
         definition: &clap::Command,
@@ -134,7 +135,7 @@ impl Layers {
         Ok(added)
     }
 
-    /// Where an option was found first, and its values.
+    /// Returns the first source of an option, and its values.
     pub(super) fn find(&self, long: &str) -> Result<Option<Found>, String> {
         match self.in_environment(long)? {
             Some(found) => Ok(Some(found)),
@@ -142,14 +143,14 @@ impl Layers {
         }
     }
 
-    /// Where the environment has the option, and its value.
+    /// Returns the option's source in the environment, and its value.
     fn in_environment(&self, long: &str) -> Result<Option<Found>, String> {
         let variable = format!("{ENVIRONMENT_PREFIX}{}", long.to_ascii_uppercase().replace('-', "_"));
         let value = self.environment.get(&variable).filter(|value| !value.is_empty());
         Ok(value.map(|value| (format!("environment variable {variable}"), vec![value.clone()])))
     }
 
-    /// Where the file has the option, and its values.
+    /// Returns the option's source in the file, and its values.
     fn in_file(&self, long: &str) -> Result<Option<Found>, String> {
         let Some((key, value)) = self.file.iter().find(|(key, _)| option_name(key) == long) else {
             return Ok(None);
@@ -165,7 +166,7 @@ impl Layers {
         }
     }
 
-    /// The layers without what names no option, and a sentence for each of that.
+    /// Returns the layers without names that are not options, and a sentence for each such name.
     pub(super) fn without_unknown(&self, command: &clap::Command) -> (Self, Vec<String>) {
         let names = all_names(command);
         let mut problems = self.unknown_keys(command);
@@ -190,7 +191,7 @@ impl Layers {
         (known, problems)
     }
 
-    /// The layers taken apart: each with one variable or one key.
+    /// Returns one layer for each variable and each key.
     pub(super) fn singles(&self) -> impl Iterator<Item = Self> + '_ {
         let empty = || Self { file_name: self.file_name.clone(), ..Self::default() };
         let variables = self.environment.iter().map(move |(name, value)| Self {
@@ -204,7 +205,7 @@ impl Layers {
         variables.chain(keys)
     }
 
-    /// A sentence for each key of the file that names no option.
+    /// Returns a sentence for each key of the file that is not an option.
     fn unknown_keys(&self, command: &clap::Command) -> Vec<String> {
         let names = all_names(command);
         let unknown = self.file.keys().filter(|key| !names.contains(&option_name(key)));
@@ -218,7 +219,7 @@ impl Layers {
     }
 }
 
-/// The names of all options that a layer can give.
+/// Returns the names of all options that a layer can give.
 fn all_names(command: &clap::Command) -> Vec<String> {
     FLYING
         .iter()
@@ -228,12 +229,12 @@ fn all_names(command: &clap::Command) -> Vec<String> {
         .collect()
 }
 
-/// Keys may be written with `_` as well.
+/// Returns the option for a key. Keys may also be written with `_`.
 fn option_name(key: &str) -> String {
     key.replace('_', "-")
 }
 
-/// A value as it would be typed.
+/// Returns a value in its typed form.
 fn scalar(value: &toml::Value) -> Option<String> {
     match value {
         toml::Value::String(text) => Some(text.clone()),
@@ -249,7 +250,7 @@ fn problem(text: &str) -> clap::Error {
     super::usage_error(ErrorKind::InvalidValue, text)
 }
 
-/// Says where the value came from that an option's parser refused.
+/// Adds the source of a value that an option's parser refused.
 fn name_source(mut error: clap::Error, sources: &BTreeMap<String, String>) -> clap::Error {
     let Some(ContextValue::String(option)) = error.get(ContextKind::InvalidArg) else { return error };
     let long = option.trim_start_matches('-').split([' ', '=']).next().unwrap_or_default();

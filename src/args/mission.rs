@@ -1,8 +1,8 @@
-//! The options of commands that fly one plan by the scripted pilot.
+//! The options of commands in which the scripted pilot flies one plan.
 
 use super::value;
 
-/// How the plan is flown and judged.
+/// The flight and the judgement of a plan.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct MissionArgs {
     /// Altitude of the pilot's climb before the autopilot is engaged, m [default: 10]
@@ -11,9 +11,9 @@ pub struct MissionArgs {
     #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = value::takeoff, help_heading = "Flight")]
     pub takeoff: Option<f64>,
 
-    /// How far beyond its own radius a waypoint may truly be missed, and beside its altitude, m [default: 10]
+    /// Allowed true miss of a waypoint, beyond its own radius and in altitude, m [default: 10]
     ///
-    /// More makes the result `missed`: whatever the firmware believes, the truth decides.
+    /// A larger miss makes the result `missed`: the truth decides, not the estimate of the firmware.
     #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = value::tolerance, help_heading = "Flight")]
     pub tolerance: Option<f64>,
 
@@ -27,17 +27,17 @@ pub struct MissionArgs {
 }
 
 impl MissionArgs {
-    /// Altitude of the pilot's climb, m.
+    /// Returns the altitude of the pilot's climb, m.
     pub fn takeoff_m(&self) -> f64 {
         self.takeoff.unwrap_or(10.0)
     }
 
-    /// How far truth may be off beyond a waypoint's own radius, m.
+    /// Returns the allowed true miss beyond a waypoint's own radius, m.
     pub fn tolerance_m(&self) -> f64 {
         self.tolerance.unwrap_or(10.0)
     }
 
-    /// Simulated seconds after boot at which a flight is given up.
+    /// Returns the simulated seconds after boot at which a flight is given up.
     pub fn timeout_s(&self) -> f64 {
         self.timeout.unwrap_or(1800.0)
     }

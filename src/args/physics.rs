@@ -1,4 +1,4 @@
-//! Whose physics moves the craft, and how to speak with a simulator outside.
+//! The choice of the physics, and the link to an external simulator.
 
 use std::str::FromStr;
 
@@ -8,28 +8,28 @@ use crate::signals::fdm::Mirror;
 use crate::signals::fdm::MotorOrder;
 use crate::sim::ScheduledFault;
 
-/// Whose physics moves the craft.
+/// A choice of the physics.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
 pub enum PhysicsChoice {
-    /// The world inside.
+    /// The world inside this program.
     #[default]
     Embedded,
-    /// A simulator outside, over UDP.
+    /// An external simulator, over UDP.
     External,
 }
 
-/// The choice of the physics, and what goes wrong with it.
+/// The choice of the physics, and its faults.
 #[derive(Debug, Clone, Default, PartialEq, clap::Args)]
 pub struct PhysicsArgs {
-    /// What moves the craft: embedded, or external: a simulator such as Gazebo over UDP [default: embedded]
+    /// Physics: embedded, or external: a simulator such as Gazebo over UDP [default: embedded]
     ///
-    /// An external simulator is served as the SITL executable does: its state comes to UDP 9003, motors go to 9002 and
-    /// 9001 (--udp-ports), and its stamps are the time. What makes the embedded world (--wind, --airframe, --speed …)
-    /// has no effect then.
+    /// For an external simulator betadeck acts like the SITL executable: the simulator's state comes to UDP 9003,
+    /// motors go to 9002 and 9001 (--udp-ports), and its stamps are the time. The options of the embedded world
+    /// (--wind, --airframe, --speed …) then have no effect.
     #[arg(long, value_name = "WHERE", hide_possible_values = true, help_heading = "Simulator")]
     pub physics: Option<PhysicsChoice>,
 
-    /// How to speak with it.
+    /// The packets of the simulator.
     #[command(flatten)]
     pub simulator: SimulatorArgs,
 
@@ -38,14 +38,14 @@ pub struct PhysicsArgs {
     pub fault: Vec<ScheduledFault>,
 }
 
-/// How to speak with a simulator outside.
+/// The packets of an external simulator.
 #[derive(Debug, Clone, Default, PartialEq, Eq, clap::Args)]
 pub struct SimulatorArgs {
-    /// What the simulator's packets mean: auto, sitl-gz, gz-plugin or legacy [default: auto]
+    /// Meaning of the simulator's packets: auto, sitl-gz, gz-plugin or legacy [default: auto]
     #[arg(long, value_name = "DIALECT", help_heading = "Simulator")]
     pub fdm_dialect: Option<FdmDialect>,
 
-    /// Whether the simulator's positions are mirrored: auto, on or off [default: auto]
+    /// Mirrored positions in the simulator's packets: auto, on or off [default: auto]
     #[arg(long, value_name = "auto|on|off", help_heading = "Simulator")]
     pub fdm_mirror: Option<Mirror>,
 
@@ -55,12 +55,12 @@ pub struct SimulatorArgs {
 }
 
 impl PhysicsArgs {
-    /// Whether a simulator outside moves the craft.
+    /// Returns `true` if an external simulator moves the craft.
     pub fn is_external(&self) -> bool {
         self.physics == Some(PhysicsChoice::External)
     }
 
-    /// What was given but has no effect with this physics and firmware, as a sentence.
+    /// Returns a sentence about options that were given but have no effect with this physics and firmware.
     pub fn idle_options(&self, flight: &FlightArgs, firmware_outside: bool) -> Option<String> {
         let mirror = ("--fdm-mirror", self.simulator.fdm_mirror.is_some());
         let (names, why) = if self.is_external() {
@@ -96,7 +96,7 @@ impl PhysicsArgs {
     }
 }
 
-/// A sentence about the options of `names` that were given but have no effect.
+/// Returns a sentence about the options of `names` that were given but have no effect.
 pub(super) fn without_effect(names: &[(&str, bool)], why: &str) -> Option<String> {
     let given: Vec<&str> = names.iter().filter(|(_, given)| *given).map(|(name, _)| *name).collect();
     let has = if given.len() == 1 { "has" } else { "have" };

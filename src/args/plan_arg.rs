@@ -6,18 +6,18 @@ use std::str::FromStr;
 use crate::plan::builtin::{BuiltinPlan, PLANS};
 use crate::plan::format::Format;
 
-/// Where a plan comes from.
+/// The source of a plan.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PlanArg {
     /// A plan of the executable.
     Builtin(BuiltinPlan),
-    /// Standard input in a format; `None` = the one that the text shows.
+    /// Standard input in a format; `None` = the format of the text.
     Stdin(Option<Format>),
-    /// A file or a pipe, in a format; `None` = the one that the text shows.
+    /// A file or a pipe in a format; `None` = the format of the text.
     File(PathBuf, Option<Format>),
 }
 
-/// Whether a path names an open descriptor of this process, as shells write pipes.
+/// Returns `true` if a path names an open descriptor of this process. Shells write pipes in this way.
 pub fn is_descriptor(path: &Path) -> bool {
     let Some(text) = path.to_str() else { return false };
     let number = text.strip_prefix("/dev/fd/").or_else(|| text.strip_prefix("/proc/self/fd/"));
@@ -25,7 +25,7 @@ pub fn is_descriptor(path: &Path) -> bool {
     text == "/dev/stdin" || number.is_some_and(is_number)
 }
 
-/// Why a text names no plan.
+/// The reason why a text is not a plan.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
     "it is neither a built-in plan nor a file ending in {endings}{guess} (built in: {builtin})",
@@ -58,7 +58,7 @@ impl FromStr for PlanArg {
 }
 
 impl PlanArg {
-    /// The format that `text`, read from there, is in.
+    /// Returns the format of `text`, which was read from this source.
     pub fn format(&self, text: &str) -> Format {
         match self {
             Self::Builtin(_) => Format::Toml,
@@ -66,7 +66,7 @@ impl PlanArg {
         }
     }
 
-    /// Its file, when it comes from one.
+    /// Returns the path, if the plan comes from a file.
     pub fn path(&self) -> Option<&Path> {
         match self {
             Self::File(path, _) => Some(path),
@@ -74,7 +74,7 @@ impl PlanArg {
         }
     }
 
-    /// The name to show in messages: the file as given, `-`, or the built-in plan's name.
+    /// Returns the name for messages: the file as given, `-`, or the built-in plan's name.
     pub fn display_name(&self) -> String {
         match self {
             Self::Builtin(plan) => plan.name.to_owned(),

@@ -130,7 +130,7 @@ fn a_firmware_that_runs_already_is_compared_by_one_flight() {
 
 #[test]
 fn a_comparison_starts_from_defaults_wherever_the_craft_is_stored() {
-    // The key is for the other commands.
+    // This key is for the other commands.
     let stored = layers(&[], "state-dir = \"x\"");
     match parse_line("betadeck compare square --firmware ./x.elf", &stored).unwrap().command {
         Some(Command::Compare(compare)) => assert_eq!(compare.flight.state_dir, None),
@@ -250,7 +250,7 @@ fn the_command_line_wins_over_environment_over_file() {
         fly_over("betadeck fly square --set ap_max_angle=13", &layers).mission.set,
         ["ap_max_angle = 13"]
     );
-    // The terminal has no --takeoff: the key is for others.
+    // The terminal user interface has no --takeoff: this key is for other commands.
     let cli = parse_line("betadeck", &layers).unwrap();
     assert_eq!(cli.tui.flight.seed, Some(2));
 }

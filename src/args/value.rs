@@ -1,4 +1,4 @@
-//! Values of options, with the sentences for wrong ones.
+//! Values of options, with the messages for invalid ones.
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -16,13 +16,13 @@ pub enum OnOff {
 }
 
 impl OnOff {
-    /// Whether it is on.
+    /// Returns `true` for on.
     pub fn is_on(self) -> bool {
         self == Self::On
     }
 }
 
-/// Where the firmware's attitude comes from.
+/// The source of the firmware's attitude.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum AttitudeChoice {
     /// Estimated from the sensors.
@@ -31,11 +31,11 @@ pub enum AttitudeChoice {
     Truth,
 }
 
-/// How many times faster than real time to run; infinite = as fast as the machine allows.
+/// The speed as a multiple of real time; infinite = as fast as the machine allows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Speed(pub f64);
 
-/// Slowest and fastest factor that can be asked for.
+/// The slowest and the fastest allowed factor.
 const SPEED_RANGE: std::ops::RangeInclusive<f64> = 0.05..=1000.0;
 
 impl FromStr for Speed {
@@ -76,7 +76,7 @@ impl FromStr for OutputFile {
     }
 }
 
-/// A finite number in a range.
+/// Reads a finite number in a range.
 fn bounded(text: &str, low: f64, high: f64, unit: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if (low..=high).contains(&value) => Ok(value),
@@ -87,89 +87,89 @@ fn bounded(text: &str, low: f64, high: f64, unit: &str) -> Result<f64, String> {
     }
 }
 
-/// Seconds of simulated time until a flight is given up.
+/// Reads the seconds of simulated time until a flight is given up.
 pub(super) fn timeout(text: &str) -> Result<f64, String> {
     bounded(text, 1.0, 1e6, "s")
 }
 
-/// Metres above home above which a waypoint is warned of.
+/// Reads the altitude above home above which a waypoint gets a warning, m.
 pub(super) fn max_altitude(text: &str) -> Result<f64, String> {
     bounded(text, 1.0, 10_000.0, "m")
 }
 
-/// Metres of the pilot's climb.
+/// Reads the height of the pilot's climb, m.
 pub(super) fn takeoff(text: &str) -> Result<f64, String> {
     bounded(text, 0.0, 500.0, "m")
 }
 
-/// Metres that truth may be off.
+/// Reads the allowed error of the true position, m.
 pub(super) fn tolerance(text: &str) -> Result<f64, String> {
     bounded(text, 0.0, 100_000.0, "m")
 }
 
-/// A heading, degrees.
+/// Reads a heading, degrees.
 pub(super) fn heading(text: &str) -> Result<f64, String> {
     bounded(text, -360.0, 360.0, "degrees")
 }
 
-/// Size of random gusts, m/s.
+/// Reads the size of random gusts, m/s.
 pub(super) fn gust(text: &str) -> Result<f64, String> {
     bounded(text, 0.0, Wind::MAX_MPS, "m/s")
 }
 
-/// Samples a second.
+/// Reads the number of samples a second.
 pub(super) fn samples(text: &str) -> Result<f64, String> {
     bounded(text, 0.0, 1000.0, "Hz")
 }
 
-/// Steps a second.
+/// Reads the number of steps a second.
 pub(super) fn rate(text: &str) -> Result<u32, String> {
     let rate = text.parse().map_err(|_| format!("{text} is not a whole number of Hz"))?;
     step_us(rate).map(|_| rate).map_err(|error| error.to_string())
 }
 
-/// Sensor noise.
+/// Reads the sensor noise.
 pub(super) fn noise(text: &str) -> Result<Noise, ParseError> {
     Noise::parse(text)
 }
 
-/// Level of turbulence.
+/// Reads the level of turbulence.
 pub(super) fn turbulence(text: &str) -> Result<Turbulence, ParseError> {
     Turbulence::parse(text)
 }
 
-/// A switch of the world, checked and kept as text: they are put together in their order.
+/// Checks a switch of the world and returns it as text. The switches are joined later, in their order.
 pub(super) fn world_switch(text: &str) -> Result<String, ParseError> {
     Switches::default().set(text).map(|()| text.to_owned())
 }
 
-/// A fault, `NAME@T[,FOR][,VALUE]`.
+/// Reads a fault, `NAME@T[,FOR][,VALUE]`.
 pub(super) fn fault(text: &str) -> Result<ScheduledFault, String> {
     text.parse().map_err(|error: ParseError| error.problem().to_owned())
 }
 
-/// The loss of the RC link at `T[,FOR]`.
+/// Reads the loss of the RC link at `T[,FOR]`.
 pub(super) fn rx_loss(text: &str) -> Result<ScheduledFault, String> {
     fault(&format!("rx-loss@{text}"))
 }
 
-/// The loss of the GPS at `T[,FOR]`.
+/// Reads the loss of the GPS at `T[,FOR]`.
 pub(super) fn gps_loss(text: &str) -> Result<ScheduledFault, String> {
     fault(&format!("gps-loss@{text}"))
 }
 
-/// A setting `NAME=VALUE`, kept as `name = value`. Which there are is the flying firmware's business.
+/// Reads a setting `NAME=VALUE` and returns it as `name = value`. The firmware that flies knows the valid names.
 pub(super) fn setting(text: &str) -> Result<String, String> {
     setting_line(text).ok_or_else(|| "write NAME=VALUE, such as ap_max_angle=25".to_owned())
 }
 
-/// The seed of all randomness.
+/// Reads the seed of all randomness.
 pub(super) fn seed(text: &str) -> Result<u64, String> {
     text.parse()
         .map_err(|_| format!("{text} is not a seed; allowed are whole numbers from 0 to {}", u64::MAX))
 }
 
-/// A file to write that cannot be standard output.
+/// Reads the path of a file to write, which cannot be standard output.
 pub(super) fn output_path(text: &str) -> Result<PathBuf, String> {
     match text {
         "" => Err("write a file name".to_owned()),
@@ -187,7 +187,7 @@ pub enum Instant {
     Boot(f64),
 }
 
-/// An instant, `T` or `boot+T`.
+/// Reads an instant, `T` or `boot+T`.
 pub(super) fn instant(text: &str) -> Result<Instant, String> {
     match text.strip_prefix("boot+") {
         Some(seconds) => bounded(seconds, 0.0, 1e9, "s").map(Instant::Boot),
@@ -199,14 +199,14 @@ pub(super) fn instant(text: &str) -> Result<Instant, String> {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Seeds(pub Vec<u64>);
 
-/// Seeds, `A..B`.
+/// Reads seeds, `A..B`.
 pub(super) fn seeds(text: &str) -> Result<Seeds, String> {
     crate::scenario::seed_range(text)
         .map(|seeds| Seeds(seeds.collect()))
         .map_err(|problem| format!("{problem}; write 1..20, both included"))
 }
 
-/// A plan format.
+/// Reads a plan format.
 pub(super) fn format(text: &str) -> Result<Format, String> {
     text.trim_start_matches('.')
         .parse()

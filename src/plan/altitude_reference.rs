@@ -1,22 +1,22 @@
-//! From where a craft counts the altitudes of its waypoints. Plans here count from home.
+//! The reference of a craft for the altitudes of its waypoints. Plans in betadeck use home.
 
 use super::{FlightPlan, WaypointType};
 
-/// From where a craft counts the altitudes of its waypoints.
+/// The reference of a craft for the altitudes of its waypoints.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum AltitudeReference {
-    /// It has not told yet.
+    /// The craft has not reported it yet.
     #[default]
     Untold,
     Home,
-    /// From mean sea level.
+    /// Altitudes count from mean sea level.
     SeaLevel {
-        /// Home's altitude above it, m; `None` when it is not known yet.
+        /// The altitude of home above sea level, m; `None` while it is unknown.
         home_m: Option<f64>,
     },
 }
 
-/// Why altitudes cannot be converted. `Display` is a sentence.
+/// The reason why altitudes cannot be converted. `Display` is a sentence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum AltitudeError {
     /// The reference is not known.
@@ -24,7 +24,7 @@ pub enum AltitudeError {
         "From where its firmware counts the altitudes of waypoints is not known yet: wait until it has told its settings."
     )]
     Untold,
-    /// They count from sea level, and home's is not known.
+    /// Altitudes count from sea level, and the altitude of home is unknown.
     #[error(
         "Its firmware counts the altitudes of waypoints from sea level, and that of home, where it stands disarmed, is not known yet: wait for a GPS fix."
     )]
@@ -32,10 +32,10 @@ pub enum AltitudeError {
 }
 
 impl AltitudeReference {
-    /// What is added to an altitude above home, m.
+    /// Returns the difference to add to an altitude above home, m.
     ///
     /// # Errors
-    /// When nobody knows.
+    /// Returns an error if the difference is unknown.
     pub fn added_m(self) -> Result<f64, AltitudeError> {
         match self {
             Self::Untold => Err(AltitudeError::Untold),
@@ -44,18 +44,18 @@ impl AltitudeReference {
         }
     }
 
-    /// A plan as the craft counts it.
+    /// Converts a plan to the reference of the craft.
     ///
     /// # Errors
-    /// When that cannot be known.
+    /// Returns an error if the reference is unknown.
     pub fn plan_for_craft(self, plan: &FlightPlan) -> Result<FlightPlan, AltitudeError> {
         Ok(raised(plan, centimetres(self.added_m()?)))
     }
 
-    /// A plan of the craft, counted from home.
+    /// Converts a plan of the craft to altitudes above home.
     ///
     /// # Errors
-    /// When that cannot be known.
+    /// Returns an error if the reference is unknown.
     pub fn plan_of_craft(self, plan: &FlightPlan) -> Result<FlightPlan, AltitudeError> {
         Ok(raised(plan, -centimetres(self.added_m()?)))
     }
@@ -65,7 +65,7 @@ fn centimetres(metres: f64) -> i32 {
     (metres * 100.0).round() as i32
 }
 
-/// The plan with every altitude that means something higher by this much.
+/// Raises every altitude of the plan that has a meaning.
 fn raised(plan: &FlightPlan, by_cm: i32) -> FlightPlan {
     let mut plan = plan.clone();
     for waypoint in &mut plan.waypoints {

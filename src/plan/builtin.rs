@@ -1,17 +1,17 @@
-//! The plans that travel with the executable, by name: the same files as in `plans/`.
+//! The plans in the executable, by name: the same files as in `plans/`.
 
 use super::format::{Format, PlanError, PlanFile, parse};
 use crate::did_you_mean;
 
-/// The plan that is loaded when none is named: the square of the Betaflight SITL autopilot guide.
+/// The plan that is loaded if no other is named: the square of the Betaflight SITL autopilot guide.
 pub const DEMO: &str = "square";
 
 /// A plan that is part of the executable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BuiltinPlan {
-    /// Its name, as given on the command line.
+    /// The name on the command line.
     pub name: &'static str,
-    /// Its text, in [`Format::Toml`].
+    /// The text, in [`Format::Toml`].
     pub text: &'static str,
 }
 
@@ -31,12 +31,12 @@ pub const PLANS: &[BuiltinPlan] = &[
 ];
 
 impl BuiltinPlan {
-    /// The built-in plan of this name.
+    /// Returns the built-in plan with this name.
     pub fn find(name: &str) -> Option<Self> {
         PLANS.iter().copied().find(|plan| plan.name.eq_ignore_ascii_case(name))
     }
 
-    /// The name of a built-in plan that `name` may stand for.
+    /// Returns the built-in name that is closest to `name`.
     pub fn suggest(name: &str) -> Option<&'static str> {
         did_you_mean::closest(name, PLANS.iter().map(|plan| plan.name))
     }
@@ -45,7 +45,7 @@ impl BuiltinPlan {
     ///
     /// # Errors
     ///
-    /// As [`parse`]; never for the plans of this executable, which a test reads.
+    /// Returns the errors of [`parse`]. A test reads the plans of this executable, so they have none.
     pub fn read(self) -> Result<PlanFile, Vec<PlanError>> {
         parse(self.name, self.text, Format::Toml)
     }

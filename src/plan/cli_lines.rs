@@ -1,23 +1,23 @@
-//! A plan as the firmware's command lines: what `waypoint list` and `dump` print, what a plan file in CLI text holds and
-//! what a ground station uploads.
+//! A plan as command lines of the firmware. `waypoint list` and `dump` print them, plan files in CLI text contain them,
+//! and ground stations upload them.
 
 use std::fmt::Display;
 
 use super::{FlightPlan, Waypoint};
 use crate::geo::Degrees7;
 
-/// What empties the stored plan.
+/// The command that empties the stored plan.
 const CLEAR: &str = "waypoint clear";
 
-/// The values of a waypoint in the order of `waypoint insert`, behind the index. The altitude is the caller's text: lines
-/// that can be typed have whole centimetres, the firmware's answers metres.
+/// Returns the values of a waypoint in the order of `waypoint insert`, after the index. The caller gives the altitude
+/// as text: whole centimetres in lines for typing, metres in replies of the firmware.
 pub(crate) fn waypoint_values(waypoint: &Waypoint, altitude: impl Display) -> String {
     let Waypoint { position, alt_cm: _, speed_cms, duration_ds, kind, pattern } = waypoint;
     let (lat, lon) = (Degrees7(position.lat_e7), Degrees7(position.lon_e7));
     format!("{lat} {lon} {altitude} {speed_cms} {kind} {duration_ds} {pattern}")
 }
 
-/// The lines that rebuild a plan: `waypoint clear`, then `waypoint insert …` for each waypoint.
+/// Returns the lines that rebuild a plan: `waypoint clear`, then `waypoint insert …` for each waypoint.
 pub fn plan_lines(plan: &FlightPlan) -> impl Iterator<Item = String> + '_ {
     let inserts = plan.waypoints.iter().enumerate().map(|(index, waypoint)| {
         format!("waypoint insert {index} {}", waypoint_values(waypoint, waypoint.alt_cm))
@@ -25,7 +25,7 @@ pub fn plan_lines(plan: &FlightPlan) -> impl Iterator<Item = String> + '_ {
     std::iter::once(CLEAR.to_owned()).chain(inserts)
 }
 
-/// The lines with which a ground station uploads a plan: `set …` for each setting, then those of [`plan_lines`].
+/// Returns the lines of an upload by a ground station: `set …` for each setting, then those of [`plan_lines`].
 pub fn upload_lines<'a>(plan: &'a FlightPlan, settings: &'a [String]) -> impl Iterator<Item = String> + 'a {
     settings.iter().map(|setting| format!("set {setting}")).chain(plan_lines(plan))
 }

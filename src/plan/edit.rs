@@ -1,7 +1,8 @@
-//! Editing a plan: the document, its history, and the edits that are more than typing a value.
+//! Plan editing: the document, its history, and edits of more than one value.
 //!
-//! `history` is a tree of revisions, each a small `change` that can be taken back; `journal` is the same as lines of
-//! text, for a file that survives the program; `transform` edits many waypoints at once, `fix` takes a finding away.
+//! `history` is a tree of revisions. Each revision is a small `change` that can be undone. `journal` stores the
+//! history as lines of text, for a file that survives the program. `transform` edits many waypoints at once, and
+//! `fix` resolves a finding.
 
 mod change;
 mod document;

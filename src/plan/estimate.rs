@@ -1,5 +1,5 @@
-//! How long a plan is, in metres and seconds: an estimate from leg lengths, speeds and the altitudes that are waited for,
-//! without wind, acceleration over ground and the shortened corners of FLYBY.
+//! An estimate of the length of a plan in metres and seconds. It uses leg lengths, speeds and the altitudes for which
+//! the craft waits. It ignores wind, acceleration over ground and the shorter corners of FLYBY.
 
 mod assumptions;
 
@@ -9,36 +9,37 @@ use super::setpoint::AltitudeSetpoint;
 use super::{FlightPlan, Waypoint, WaypointType};
 pub use assumptions::{Assumptions, MAX_ALTITUDE_M, SettingSource, TouchdownThrottle};
 
-/// A LAND reached this far above its altitude is approached vertically first, m; the approach ends this near to it, m.
+/// A craft that reaches a LAND at least this far above its altitude first approaches it vertically, m. That approach
+/// ends within `NEAR_M` of the altitude.
 const FAR_ABOVE_M: f64 = 2.0;
 const NEAR_M: f64 = 0.5;
-/// The vertical approach ends this far above `ap_landing_altitude_m` at the least, m.
+/// The vertical approach ends at least this far above `ap_landing_altitude_m`, m.
 const CLEARANCE_M: f64 = 5.0;
 
 /// One waypoint of the estimate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LegEstimate {
-    /// Horizontal distance from the place before, m; `None` for modifiers.
+    /// Horizontal distance from the previous place, m; `None` for modifiers.
     pub distance_m: Option<f64>,
-    /// Bearing of the leg, degrees clockwise from north, where there is one.
+    /// Bearing of the leg, degrees clockwise from north, if there is one.
     pub bearing_deg: Option<f64>,
-    /// Altitude flown at, above home, m.
+    /// Altitude of the leg above home, m.
     pub alt_m: f64,
-    /// Speed flown at, m/s; `None` where there is no distance to fly.
+    /// Speed of the leg, m/s; `None` if there is no distance to fly.
     pub speed_mps: Option<f64>,
-    /// When the craft is done with the waypoint, seconds from the start; `None` when it never gets there or holds
-    /// forever.
+    /// The time at which the craft is done with the waypoint, seconds from the start; `None` if it never gets there or
+    /// holds forever.
     pub done_s: Option<f64>,
 }
 
 /// An estimate for a plan.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PlanEstimate {
-    /// One entry a waypoint.
+    /// One entry for each waypoint.
     pub legs: Vec<LegEstimate>,
-    /// Length of the path that is flown, m.
+    /// Length of the flown path, m.
     pub distance_m: f64,
-    /// Time from the start to the end of the mission, s; `None` when a HOLD lasts forever.
+    /// Time from the start to the end of the mission, s; `None` if a HOLD lasts forever.
     pub time_s: Option<f64>,
 }
 
@@ -57,7 +58,7 @@ pub fn estimate(plan: &FlightPlan, home: LatLon, assumptions: &Assumptions) -> P
     PlanEstimate { legs, distance_m: walk.distance_m, time_s: walk.clock_s }
 }
 
-/// Where the craft is after some waypoints.
+/// The state of the craft after some waypoints.
 struct Walk {
     place: LatLon,
     setpoint: AltitudeSetpoint,
@@ -122,7 +123,7 @@ impl Walk {
         LegEstimate { distance_m: Some(distance_m), bearing_deg, alt_m, speed_mps, done_s }
     }
 
-    /// Moves the altitude over a leg and the stay at its end; returns how long the stay takes, s. Of the types only HOLD and
+    /// Moves the altitude over a leg and the stay at its end, and returns the time of the stay, s. Only HOLD and
     /// TAKEOFF wait for their altitude.
     fn stay(
         &mut self,
@@ -161,7 +162,7 @@ impl Walk {
         }
     }
 
-    /// The clock, unless the mission is over already.
+    /// Returns the clock, unless the mission is already over.
     fn done(&self) -> Option<f64> {
         self.clock_s.filter(|_| !self.landed)
     }
@@ -232,7 +233,7 @@ mod tests {
     fn a_takeoff_stays_where_it_is() {
         let estimate = plan(&[waypoint(WaypointType::Takeoff, 9999.0, 60, 0, 20)]);
         assert!(estimate.distance_m.abs() < 1e-9);
-        // 8.75 s to where it slows down, 3 s more, and the stay of 2 s.
+        // 8.75 s until it slows down, 3 s more, and the stay of 2 s.
         assert!((estimate.time_s.unwrap() - 13.75).abs() < 0.2, "{:?}", estimate.time_s);
     }
 
@@ -255,7 +256,7 @@ mod tests {
         says("alt_hold_climb_rate = 50", 9.75);
         says("alt_hold_climb_rate = 20", 19.5);
         says("ALT_HOLD_CLIMB_RATE=1", 380.0);
-        // With 0 the rate stays as it is.
+        // With 0 the rate is unchanged.
         says("alt_hold_climb_rate = 0", 9.75);
     }
 
@@ -269,13 +270,13 @@ mod tests {
         ]);
         let settings = ["ap_max_velocity = 1000".to_owned()];
         let climb = estimate(&steep, HOME, &Assumptions::from_settings(&settings));
-        // It was flown in 58.9 s; the climb to 80 m was never finished.
+        // The real flight took 58.9 s; the craft never finished the climb to 80 m.
         assert!(climb.time_s.is_some_and(|time_s| (45.0..58.9).contains(&time_s)), "{:?}", climb.time_s);
         let held = plan(&[
             waypoint(WaypointType::Hold, 30.0, 80, 1000, 10),
             waypoint(WaypointType::Land, 30.0, 80, 0, 0),
         ]);
-        // The HOLD waits for its altitude, and so the landing begins there.
+        // The HOLD waits for its altitude, so the landing begins there.
         assert!(held.time_s.is_some_and(|time_s| time_s > 14.0 + 1.0 + 156.0), "{:?}", held.time_s);
     }
 }

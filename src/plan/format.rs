@@ -1,9 +1,10 @@
-//! Plan files: one submodule a file format, all of them pure text ↔ [`PlanFile`].
+//! Plan files: one submodule for each file format. Each converts pure text ↔ [`PlanFile`].
 //!
-//! * [`Format::Toml`] is the project's own format: everything a [`PlanFile`] holds, units in the key names.
+//! * [`Format::Toml`] is the project's own format. It holds all of a [`PlanFile`], with units in the key names.
 //! * [`Format::CliText`] is Betaflight CLI text: the `waypoint` lines of a hand-written list or of a whole `diff all`.
 //!
-//! A reader reports every problem of a file with its place, and changes nothing; a writer says what it could not carry.
+//! A reader reports every problem of a file with its place and changes nothing. A writer reports the parts that it
+//! lost.
 
 mod cli_text;
 mod field;
@@ -41,7 +42,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// The format that a file name stands for, by its ending.
+    /// Returns the format for a file name, by its ending.
     pub fn from_file_name(name: &str) -> Option<Self> {
         let (stem, ending) = name.rsplit_once('.')?;
         if stem.is_empty() || ending.contains(['/', '\\']) {
@@ -50,8 +51,8 @@ impl Format {
         ending.parse().ok()
     }
 
-    /// The format that a text without a file name is in: TOML when its first line that is no comment heads a table or
-    /// gives one of the keys of a plan file, else CLI text.
+    /// Returns the format of a text without a file name. The text is TOML if its first line that is not a comment
+    /// begins a table or gives a key of a plan file; otherwise it is CLI text.
     pub fn of_text(text: &str) -> Self {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let first = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#'));
@@ -62,7 +63,7 @@ impl Format {
         if is_toml { Self::Toml } else { Self::CliText }
     }
 
-    /// What the format is, in words.
+    /// Returns the format in words.
     pub fn title(self) -> &'static str {
         match self {
             Self::Toml => "betadeck plan",
@@ -70,57 +71,57 @@ impl Format {
         }
     }
 
-    /// The file endings that are understood, for messages: `.toml, .txt`.
+    /// Returns the known file endings for messages: `.toml, .txt`.
     pub fn endings() -> String {
         Self::iter().map(|format| format!(".{format}")).collect::<Vec<_>>().join(", ")
     }
 }
 
-/// A plan and what a file says about it.
+/// A plan and the other contents of its file.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PlanFile {
-    /// Name of the plan; the file's name without its ending when the file gives none.
+    /// The name of the plan, or the file's name without its ending if the file gives none.
     pub name: String,
-    /// What the plan shows, for people; may be empty.
+    /// A description for people; may be empty.
     pub description: String,
-    /// Where the craft stands at boot, if the plan asks for a place.
+    /// The place of the craft at boot, if the plan gives one.
     pub home: Option<HomePosition>,
-    /// Settings the plan is made for, as `name = value`, in the order in which they are applied.
+    /// The settings for the plan, as `name = value`, in the order in which they are applied.
     pub settings: Vec<String>,
     pub plan: FlightPlan,
-    /// What the reader skipped.
+    /// The lines that the reader skipped.
     pub notes: Vec<Note>,
 }
 
-/// A written file and what it does not carry.
+/// A written file and the parts of the plan that it lost.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Written {
     /// The text of the file.
     pub text: String,
-    /// One sentence for each thing that the format cannot hold.
+    /// One sentence for each part that the format cannot hold.
     pub lost: Vec<String>,
 }
 
-/// Reads a plan file, whatever settings it has: see [`parse_checked`].
+/// Reads a plan file with any settings: see [`parse_checked`].
 ///
 /// # Errors
 ///
-/// All problems of the file, in the order of their places.
+/// Returns all problems of the file, in the order of their places.
 pub fn parse(name: &str, text: &str, format: Format) -> Result<PlanFile, Vec<PlanError>> {
     parse_checked(name, text, format, |_, _| Ok(()))
 }
 
-/// Largest TOML plan, bytes: the syntax tree takes a hundred times as much.
+/// The largest TOML plan, bytes. The syntax tree takes a hundred times as much memory.
 const MAX_TOML: usize = 512 << 10;
 
-/// Reads a plan file whose settings `check` knows.
+/// Reads a plan file and checks its settings with `check`.
 ///
-/// `name` is the file's name as the user gave it: it heads the error messages and names a plan that has no name of
+/// `name` is the file's name as the user gave it. It begins the error messages, and it names a plan that has no name of
 /// its own.
 ///
 /// # Errors
 ///
-/// All problems of the file, in the order of their places.
+/// Returns all problems of the file, in the order of their places.
 pub fn parse_checked(
     name: &str,
     text: &str,
@@ -158,7 +159,7 @@ pub fn parse_checked(
     Ok(file)
 }
 
-/// What a text is that begins as neither a plan nor a command line does.
+/// Returns the format of a text that begins like neither a plan nor a command line.
 fn foreign_format(text: &str) -> Option<&'static str> {
     let text = text.trim_start();
     match text.chars().next()? {
@@ -169,7 +170,7 @@ fn foreign_format(text: &str) -> Option<&'static str> {
     }
 }
 
-/// Writes a plan file in its canonical form: reading it back gives the same plan, and writing that gives the same text.
+/// Writes a plan file in its canonical form. Reading it gives the same plan, and writing that plan gives the same text.
 pub fn write(file: &PlanFile, format: Format) -> Written {
     match format {
         Format::Toml => native_write::write(file),
@@ -177,7 +178,7 @@ pub fn write(file: &PlanFile, format: Format) -> Written {
     }
 }
 
-/// The file's name without folders and ending; `plan` for standard input.
+/// Returns the file's name without folders and ending; `plan` for standard input.
 fn stem(name: &str) -> String {
     let base = name.rsplit(['/', '\\']).next().unwrap_or(name);
     let stem = base.rsplit_once('.').map_or(base, |(stem, _)| stem);

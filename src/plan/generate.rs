@@ -1,4 +1,4 @@
-//! Plans from a few numbers: square, circle, zig-zag, and the lines of a survey over a rectangle.
+//! Plans from a few numbers: square, circle, zig-zag, and survey lines over a rectangle.
 
 use std::f64::consts::TAU;
 
@@ -10,14 +10,14 @@ use crate::geo::{GroundPlane, LatLon};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::Display, strum::EnumIter, strum::EnumString)]
 #[strum(serialize_all = "kebab-case", ascii_case_insensitive)]
 pub enum Shape {
-    /// A rectangle's corners, and back to the first.
+    /// The corners of a rectangle, and back to the first corner.
     #[default]
     Square,
-    /// Points on a circle, and back to the first.
+    /// Points on a circle, and back to the first point.
     Circle,
     /// From side to side along the length.
     ZigZag,
-    /// Parallel lines over a rectangle, flown to and fro.
+    /// Parallel lines over a rectangle, flown back and forth.
     Survey,
 }
 
@@ -25,13 +25,13 @@ pub enum Shape {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pattern {
     pub shape: Shape,
-    /// Extent along the heading, m; of a circle the diameter.
+    /// Extent along the heading, m; the diameter of a circle.
     pub length_m: f64,
     /// Extent across, m.
     pub width_m: f64,
     /// Distance between neighbours, m: points of a circle, turns of a zig-zag, lines of a survey.
     pub spacing_m: f64,
-    /// Where the length points, degrees from north, clockwise.
+    /// Direction of the length, degrees from north, clockwise.
     pub heading_deg: f64,
     /// Altitude above home, cm.
     pub alt_cm: i32,
@@ -55,16 +55,16 @@ impl Default for Pattern {
     }
 }
 
-/// Smallest and largest extent, m.
+/// The smallest and the largest extent, m.
 const EXTENT_M: std::ops::RangeInclusive<f64> = 1.0..=20_000.0;
-/// More places than anybody flies: a spacing that asks for more is a typing error.
+/// A number of places that no real plan has. A spacing that needs more is a typing error.
 const MOST_PLACES: usize = 3000;
 
 impl Pattern {
-    /// The places, metres north and east of the middle, in flight order.
+    /// Returns the places, metres north and east of the middle, in flight order.
     ///
     /// # Errors
-    /// A sentence that says what is wrong with the numbers.
+    /// Returns a sentence with the mistake in the numbers.
     pub fn places(&self) -> Result<Vec<Vector2<f64>>, String> {
         self.check()?;
         let (half, side) = (self.length_m / 2.0, self.width_m / 2.0);
@@ -127,10 +127,10 @@ impl Pattern {
         Ok(())
     }
 
-    /// The waypoints about `middle`; there may be more than a plan holds.
+    /// Returns the waypoints about `middle`; there may be more than a plan holds.
     ///
     /// # Errors
-    /// As [`Self::places`].
+    /// Returns the errors of [`Self::places`].
     pub fn waypoints(&self, middle: LatLon) -> Result<Vec<Waypoint>, String> {
         let plane = GroundPlane::new(middle);
         let waypoint = |place| Waypoint {
@@ -143,7 +143,7 @@ impl Pattern {
         Ok(self.places()?.into_iter().map(waypoint).collect())
     }
 
-    /// The narrowest spacing, in whole metres, with which the shape has at most this many waypoints.
+    /// Returns the narrowest spacing, in whole metres, with which the shape has at most this many waypoints.
     pub fn spacing_that_fits(&self, most: usize) -> Option<f64> {
         let widest = self.length_m.max(self.width_m).ceil() * 4.0;
         let mut spacing_m = self.spacing_m.ceil();
@@ -152,14 +152,15 @@ impl Pattern {
             if places.len() <= most {
                 return Some(spacing_m);
             }
-            // The number of places falls with the inverse of the spacing: no need to try every metre of a wide field.
+            // The number of places falls with the inverse of the spacing, so a wide field does not need a try for
+            // every metre.
             spacing_m = (spacing_m * 1.02).ceil().max(spacing_m + 1.0);
         }
         None
     }
 }
 
-/// The waypoints as plans of at most [`MAX_WAYPOINTS`], each beginning where the one before ends.
+/// Splits the waypoints into plans of at most [`MAX_WAYPOINTS`]. Each plan begins where the previous one ends.
 pub fn split(waypoints: &[Waypoint]) -> Vec<Vec<Waypoint>> {
     let mut rest = waypoints;
     let mut plans = Vec::new();

@@ -1,4 +1,4 @@
-//! How long the craft needs for a leg: it gains speed, and slows down for a stop.
+//! The time of a leg: the craft gains speed, and slows down for a stop.
 
 use nalgebra::Vector2;
 
@@ -7,18 +7,18 @@ use crate::geo::GRAVITY;
 
 /// A step, s.
 const STEP_S: f64 = 0.05;
-/// How fast the speed follows its setpoint, 1/s: fitted to the legs of 2 000 random missions.
+/// The rate at which the speed follows its setpoint, 1/s. It was fitted to the legs of 2 000 random missions.
 const FOLLOW: f64 = 1.5;
-/// Speeds this near count as one, m/s.
+/// Speeds with a smaller difference count as equal, m/s.
 const SAME_MPS: f64 = 0.02;
-/// Share of the gravity along the greatest lean with which a stop is planned.
+/// The share of gravity along the greatest lean that the craft uses to plan a stop.
 const STOP_SHARE: f64 = 0.35;
-/// Steps after which the rest of a leg is taken to be flown at the speed demanded last.
+/// The number of steps after which the rest of a leg is assumed to be flown at the last demanded speed.
 const MOST_STEPS: usize = 10_000;
-/// Slowest speed of a stop that is not over yet, m/s.
+/// The slowest speed before a stop is complete, m/s.
 const CREEP_MPS: f64 = 0.05;
 
-/// How a leg is flown.
+/// The geometry and the speed of a leg.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct LegShape {
     /// Distance to the waypoint, m.
@@ -27,23 +27,23 @@ pub(super) struct LegShape {
     pub(super) reach_m: f64,
     /// Speed of the leg, m/s.
     pub(super) speed_mps: f64,
-    /// The craft stops at the waypoint.
+    /// `true` if the craft stops at the waypoint.
     pub(super) stops: bool,
 }
 
-/// How the craft moves over the ground where two legs meet.
+/// The motion of the craft over the ground between two legs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Motion {
-    /// North and east, m/s.
+    /// The velocity north and east, m/s.
     pub(super) velocity: Vector2<f64>,
-    /// The speed setpoint, m/s; it is not changed by a turn.
+    /// The speed setpoint, m/s. A turn does not change it.
     pub(super) setpoint_mps: f64,
 }
 
 impl Motion {
     pub(super) const REST: Self = Self { velocity: Vector2::new(0.0, 0.0), setpoint_mps: 0.0 };
 
-    /// Flies the leg in the direction of a unit vector; returns the time it takes, s.
+    /// Flies the leg in the direction of a unit vector and returns its time, s.
     pub(super) fn fly(&mut self, leg: &LegShape, along: Vector2<f64>, assumptions: &Assumptions) -> f64 {
         let lean = GRAVITY * assumptions.max_angle_deg.clamp(5.0, 80.0).to_radians().sin();
         let speed_up = match assumptions.buildup_deg {
@@ -81,7 +81,7 @@ impl Motion {
     }
 }
 
-/// How long a steady craft goes on before it slows down or arrives, s.
+/// Returns the time until a craft at steady speed slows down or arrives, s.
 fn steady_s(leg: &LegShape, left_m: f64, lean: f64, gain: f64) -> f64 {
     let until_m = if leg.stops {
         (leg.speed_mps / gain.max(0.01)).max(leg.speed_mps.powi(2) / (2.0 * STOP_SHARE * lean.max(0.1)))

@@ -1,4 +1,4 @@
-//! What is worth knowing about a plan before it flies: why the craft would refuse it, and what it may not do as expected.
+//! The review of a plan before a flight: reasons for which the craft refuses it, and unexpected behaviour in flight.
 
 mod altitude;
 mod steep;
@@ -13,7 +13,7 @@ use super::{FlightPlan, Waypoint, WaypointType};
 pub(crate) use altitude::{LegAltitude, legs as leg_altitudes};
 pub use steep::{Remedy, SteepLeg};
 
-/// Something found in a plan.
+/// A finding in a plan.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Finding {
     /// The craft refuses the plan.
@@ -21,29 +21,29 @@ pub enum Finding {
     /// The craft refuses the plan because of the fence.
     OutsideFence {
         index: usize,
-        /// Its distance from home, m.
+        /// Distance of the waypoint from home, m.
         distance_m: f64,
         /// The fence, m.
         limit_m: f64,
         from: SettingSource,
     },
-    /// The craft has the plan and another value of one of its settings.
+    /// The craft has the plan, but another value for one of its settings.
     CraftDiffers {
         /// The plan's line.
         setting: String,
     },
-    /// Waypoints behind a LAND or an endless HOLD.
+    /// Waypoints after a LAND or an endless HOLD.
     NeverFlown {
         /// The waypoint that ends the mission.
         index: usize,
         kind: WaypointType,
     },
-    /// A modifier with no place behind it.
+    /// A modifier without a place after it.
     NothingToModify { index: usize, kind: WaypointType },
-    /// The leg is flown slower than it asks for.
+    /// The leg is flown slower than its speed field demands.
     SpeedLimited {
         index: usize,
-        /// What it asks for, m/s.
+        /// The demanded speed, m/s.
         speed_mps: f64,
         /// The limit, m/s.
         limit_mps: f64,
@@ -52,48 +52,48 @@ pub enum Finding {
     StaysInTheAir,
     /// The battery is empty before the mission ends.
     OutlastsBattery {
-        /// How long the mission takes at least, s.
+        /// The least time of the mission, s.
         time_s: f64,
-        /// How long the battery lasts in a hover, s.
+        /// The hover time of the battery, s.
         endurance_s: f64,
     },
-    /// The leg is flown below the place where the craft is armed.
+    /// The leg is flown below the place at which the craft is armed.
     BelowGround {
         index: usize,
-        /// Altitude of its leg above home, m.
+        /// Altitude of the leg above home, m.
         alt_m: f64,
     },
     /// The leg is flown above the limit that the user has set.
     AboveLimit {
-        /// The waypoint that says the altitude.
+        /// The waypoint that gives the altitude.
         index: usize,
-        /// Altitude of its leg above home, m.
+        /// Altitude of the leg above home, m.
         alt_m: f64,
         /// The limit, m.
         limit_m: f64,
     },
     /// The leg is flown far above all others.
     FarAboveOthers {
-        /// The waypoint that says the altitude.
+        /// The waypoint that gives the altitude.
         index: usize,
-        /// Altitude of its leg above home, m.
+        /// Altitude of the leg above home, m.
         alt_m: f64,
-        /// The median of the others, m.
+        /// The median altitude of the others, m.
         usual_m: f64,
     },
-    /// The leg is too steep for its speed: the craft passes the waypoint beside its altitude.
+    /// The leg is too steep for its speed: the craft passes the waypoint at a wrong altitude.
     SteepLeg(SteepLeg),
     /// The throttle condition of a touchdown can never be met.
     NoTouchdownThrottle(TouchdownThrottle),
 }
 
 impl Finding {
-    /// Whether the craft refuses the plan because of it.
+    /// Returns `true` if the craft refuses the plan because of the finding.
     pub fn is_refusal(&self) -> bool {
         matches!(self, Self::Fault(_) | Self::OutsideFence { .. })
     }
 
-    /// Returns the reason of a refusal; of any other finding the whole sentence.
+    /// Returns the reason of a refusal. For any other finding returns the whole sentence.
     pub fn reason(&self) -> String {
         match self {
             Self::Fault(fault) => fault.to_string(),
@@ -109,7 +109,7 @@ impl Finding {
         }
     }
 
-    /// Whether the craft may be hurt or fly elsewhere than planned: its pilot is warned before it flies.
+    /// Returns `true` if the craft may be damaged or fly elsewhere than planned. The pilot is warned before the flight.
     pub fn is_hazard(&self) -> bool {
         matches!(
             self,
@@ -161,7 +161,7 @@ impl fmt::Display for Finding {
                 -alt_m
             ),
             Self::AboveLimit { index, alt_m, limit_m } => {
-                // A decimal where both round to the same metre.
+                // One decimal if both round to the same metre.
                 let decimals = usize::from(format!("{alt_m:.0}") == format!("{limit_m:.0}"));
                 write!(
                     f,
@@ -182,7 +182,7 @@ impl fmt::Display for Finding {
     }
 }
 
-/// All findings, refusals first.
+/// Returns all findings, refusals first.
 pub fn review(plan: &FlightPlan, home: LatLon, assumptions: &Assumptions) -> Vec<Finding> {
     let waypoints = &plan.waypoints;
     if let Err(fault) = check_plan(plan) {
@@ -239,7 +239,7 @@ pub fn review(plan: &FlightPlan, home: LatLon, assumptions: &Assumptions) -> Vec
     findings
 }
 
-/// The legs that are flown below home.
+/// Returns the legs that are flown below home.
 fn below_ground(waypoints: &[Waypoint]) -> impl Iterator<Item = Finding> {
     let below = altitude::legs(waypoints).filter(|leg| leg.alt_m < 0.0);
     below.map(|leg| Finding::BelowGround { index: leg.index, alt_m: leg.alt_m })

@@ -1,24 +1,24 @@
-//! How the altitude setpoint moves on a leg: the law of the altitude controller, flown ahead.
+//! The altitude setpoint on a leg: a simulation of the control law of the altitude controller.
 
-/// How fast the setpoint's speed may change, m/s².
+/// The limit for the change of the setpoint's speed, m/s².
 const ACCEL: f64 = 2.0;
-/// Deceleration with which it approaches its target, m/s².
+/// The deceleration before the target, m/s².
 const BRAKE: f64 = 1.0;
 /// A step, s.
 const STEP_S: f64 = 0.05;
-/// This near (m) and this slow (m/s) it is at its target.
+/// The setpoint is at its target if it is this near (m) and this slow (m/s).
 const THERE_M: f64 = 0.05;
 const THERE_MPS: f64 = 0.4;
-/// Targets this near to home's altitude are approached the slower the lower the craft is: share of the height above home in a
-/// second, 1/s, and slowest speed, m/s.
+/// Near a target within this distance of home's altitude, a lower craft descends more slowly. The constants are the
+/// distance, m, the share of the height above home in a second, 1/s, and the slowest speed, m/s.
 const LOW_TARGET_M: f64 = 3.0;
 const FLARE: f64 = 0.25;
 const SLOWEST_FLARE_MPS: f64 = 0.3;
-/// No setpoint goes below this, m, unless the target lies well below home.
+/// No setpoint goes below this, m, unless the target is well below home.
 const LOWEST_M: f64 = 1.0;
 const BELOW_HOME_M: f64 = -2.0;
 
-/// The settings that the law depends on.
+/// The settings that the control law uses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SetpointLimits {
     /// `alt_hold_climb_rate`, m/s.
@@ -33,12 +33,12 @@ pub struct SetpointLimits {
 pub struct AltitudeSetpoint {
     /// Above home, m.
     pub altitude_m: f64,
-    /// Its rate, m/s.
+    /// The rate of change, m/s.
     pub rate_mps: f64,
 }
 
 impl AltitudeSetpoint {
-    /// A setpoint at rest.
+    /// Returns a setpoint at rest.
     pub fn at(altitude_m: f64) -> Self {
         Self { altitude_m, rate_mps: 0.0 }
     }
@@ -48,8 +48,8 @@ impl AltitudeSetpoint {
         let _ = self.run_until(target_m, limits, seconds, None);
     }
 
-    /// Moves until the setpoint is within `within_m` of the target; returns how long it takes, s. Infinite when the law never
-    /// leads there.
+    /// Moves until the setpoint is within `within_m` of the target, and returns the time, s. The time is infinite if
+    /// the law never leads there.
     pub fn reach(&mut self, target_m: f64, limits: &SetpointLimits, within_m: f64) -> f64 {
         self.run_until(target_m, limits, f64::INFINITY, Some(within_m))
     }
@@ -85,7 +85,7 @@ impl AltitudeSetpoint {
         elapsed
     }
 
-    /// The target as the navigator sets it: not into the ground.
+    /// Returns the target that the navigator sets, which is never in the ground.
     fn target_now(&self, target_m: f64, limits: &SetpointLimits) -> f64 {
         if target_m >= BELOW_HOME_M {
             target_m.max(LOWEST_M.min(self.altitude_m))
@@ -103,8 +103,8 @@ impl AltitudeSetpoint {
         limits.climb_mps.min((2.0 * BRAKE * left.abs()).sqrt()).min(flare).copysign(left)
     }
 
-    /// How long the rate stays as it is, s, when it is steady now: until the setpoint brakes, sinks slowly near the ground, or
-    /// has gone `to_go_m`.
+    /// Returns the time for which the current rate continues, s, if it is steady now. It ends when the setpoint
+    /// brakes, sinks slowly near the ground, or has moved by `to_go_m`.
     fn steady_s(&self, target_m: f64, limits: &SetpointLimits, to_go_m: f64) -> Option<f64> {
         let rate = self.wanted_mps(self.target_now(target_m, limits), limits);
         if (rate - self.rate_mps).abs() > 1e-6 || rate == 0.0 {

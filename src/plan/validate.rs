@@ -1,8 +1,8 @@
-//! Whether a stored plan can be flown at all.
+//! The check that a stored plan can be flown.
 
 use super::{FlightPlan, MAX_WAYPOINTS, Waypoint};
 
-/// Why a plan cannot be flown.
+/// The reason why a plan cannot be flown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, thiserror::Error)]
 pub enum PlanFault {
     #[error("the plan has no waypoints: add one")]
@@ -15,15 +15,15 @@ pub enum PlanFault {
     BadWaypoint {
         /// Index of the waypoint.
         index: u8,
-        /// What is wrong with it.
+        /// The fault of the waypoint.
         fault: WaypointFault,
     },
 }
 
-/// What is wrong with one waypoint.
+/// A fault of one waypoint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, thiserror::Error)]
 pub enum WaypointFault {
-    /// Type or pattern has a code nobody knows.
+    /// The type or the pattern has an unknown code.
     #[error("its type or pattern is unknown")]
     Unknown,
     /// The latitude is beyond a pole.
@@ -34,10 +34,10 @@ pub enum WaypointFault {
     Longitude,
 }
 
-/// Checks one waypoint. Modifiers and TAKEOFF have no position of their own, so theirs is not looked at.
+/// Checks one waypoint. Modifiers and TAKEOFF have no position of their own, so their position is ignored.
 ///
 /// # Errors
-/// When its position is off the globe.
+/// Returns the fault if the position is not on the globe.
 pub fn check_waypoint(waypoint: &Waypoint) -> Result<(), WaypointFault> {
     if !waypoint.kind.uses_position() {
         return Ok(());
@@ -51,11 +51,11 @@ pub fn check_waypoint(waypoint: &Waypoint) -> Result<(), WaypointFault> {
     Ok(())
 }
 
-/// Checks stored records: `count` as stored, `records` as far as they could be read, `None` for one whose type or
-/// pattern is unknown. A count above the limit is never used as an index.
+/// Checks stored records. `count` is the stored count; `records` are those that could be read, with `None` for a
+/// record of an unknown type or pattern. A count above the limit is never used as an index.
 ///
 /// # Errors
-/// When the plan cannot be flown; the first fault in flight order.
+/// Returns the first fault in flight order if the plan cannot be flown.
 pub fn check_records(
     count: usize,
     records: impl IntoIterator<Item = Option<Waypoint>>,
@@ -79,7 +79,7 @@ pub fn check_records(
 /// Checks a plan.
 ///
 /// # Errors
-/// When it cannot be flown; the first fault in flight order.
+/// Returns the first fault in flight order if the plan cannot be flown.
 pub fn check_plan(plan: &FlightPlan) -> Result<(), PlanFault> {
     check_records(plan.waypoints.len(), plan.waypoints.iter().copied().map(Some))
 }

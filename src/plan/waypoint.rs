@@ -1,8 +1,8 @@
-//! One waypoint record, in the border units of CLI, MSP and files.
+//! One waypoint record, in the external units of CLI, MSP and files.
 
 use crate::geo::LatLon;
 
-/// What a waypoint asks the autopilot to do. The discriminant is the code on the wire and in files.
+/// The action of the autopilot at a waypoint. The discriminant is the code in MSP messages and in files.
 #[derive(
     Debug,
     Clone,
@@ -27,22 +27,22 @@ pub enum WaypointType {
     Flyover = 0,
     /// Start turning at the turn radius.
     Flyby = 1,
-    /// Keep station, on a pattern if asked.
+    /// Hold position, optionally on a pattern.
     Hold = 2,
     /// Descend, detect the touchdown, disarm.
     Land = 3,
     /// Climb on the spot to the altitude.
     Takeoff = 4,
-    /// The next positional waypoint flies at this record's altitude.
+    /// Fly the next positional waypoint at this record's altitude.
     AltChange = 5,
-    /// The next leg takes this record's duration.
+    /// Fly the next leg in this record's duration.
     Delay = 6,
-    /// Caps the autopilot's yaw rate at this record's speed field, deg/s.
+    /// Limit the autopilot's yaw rate to this record's speed field, deg/s.
     YawRate = 7,
 }
 
 impl WaypointType {
-    /// Whether the record is a place to fly to; modifiers only change how the next one is flown.
+    /// Returns `true` if the record is a place to fly to. Modifiers only change the flight to the next one.
     pub fn is_positional(self) -> bool {
         match self {
             Self::Flyover | Self::Flyby | Self::Hold | Self::Land | Self::Takeoff => true,
@@ -50,13 +50,13 @@ impl WaypointType {
         }
     }
 
-    /// Whether the record's latitude and longitude mean anything: a TAKEOFF climbs where it stands.
+    /// Returns `true` if the record's latitude and longitude have a meaning. A TAKEOFF climbs at the craft's own place.
     pub fn uses_position(self) -> bool {
         self.is_positional() && self != Self::Takeoff
     }
 }
 
-/// The figure flown during a HOLD; ignored on other types. The discriminant is upstream's code on the wire.
+/// The pattern of a HOLD; ignored on other types. The discriminant is the code of Betaflight in MSP messages.
 #[derive(
     Debug,
     Clone,
@@ -96,8 +96,8 @@ pub struct Waypoint {
     pub speed_cms: u16,
     /// Hold or delay time, deciseconds; 0 = endless for HOLD.
     pub duration_ds: u16,
-    /// What to do there.
+    /// The action at the waypoint.
     pub kind: WaypointType,
-    /// How to hold there.
+    /// The pattern of a HOLD.
     pub pattern: HoldPattern,
 }

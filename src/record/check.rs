@@ -13,7 +13,7 @@ pub use junit::junit;
 pub use markdown::markdown;
 pub use sentences::{flight_lines, summary_lines};
 
-/// What stands for the file of a scenario that was read from standard input; the screen cannot read it again.
+/// The file name of a scenario that came from standard input; the screen cannot read it again.
 pub const STANDARD_INPUT: &str = "standard input";
 
 /// A flight that was flown and judged.
@@ -21,65 +21,65 @@ pub const STANDARD_INPUT: &str = "standard input";
 pub struct CheckedFlight {
     /// Name of the scenario.
     pub scenario: String,
-    /// Its file, as its user named it.
+    /// The file name as the user gave it.
     pub file: String,
-    /// Name of the case; empty when there is only one.
+    /// Name of the case; empty if there is only one.
     pub case: String,
     /// The name that the file gives the case.
     pub base: String,
     pub variant: String,
     /// Seed of all randomness.
     pub seed: u64,
-    /// Seeds of the case.
+    /// The number of seeds of the case.
     pub seeds: usize,
-    /// The seed was asked for: it may be none of the file's.
+    /// `true` if the user gave the seed, which may not be in the file.
     pub seed_is_given: bool,
-    /// Which flight of the same, from 0.
+    /// The number of the repetition, from 0.
     pub repetition: u32,
-    /// What keeps the flight from being judged, or from being believed.
+    /// The reason why the flight cannot be judged or trusted.
     pub problem: Option<String>,
-    /// How the flight ended.
+    /// The result of the flight.
     pub result: String,
-    /// Why, as a sentence.
+    /// The reason as a sentence.
     pub reason: String,
-    /// What became of the expectations.
+    /// The judgements of the expectations.
     pub judgements: Vec<Judgement>,
     /// Numbers taken from the flight.
     pub measures: Vec<(String, f64)>,
     pub engaged_at: Option<SimTime>,
-    /// When the flight ended.
+    /// The time at which the flight ended.
     pub ended_at: SimTime,
     pub flown_s: f64,
-    /// Seconds that it took.
+    /// The duration in seconds of wall time.
     pub wall_s: f64,
     /// Equal for flights that are the same to the last bit.
     pub hash: u64,
-    /// What was known of the flight controller.
+    /// The knowledge that the flight controller gave.
     pub told: Insight,
 }
 
 impl CheckedFlight {
-    /// Whether every expectation was met.
+    /// Returns `true` if no expectation failed.
     pub fn passed(&self) -> bool {
         self.problem.is_none() && !self.judgements.iter().any(|judgement| judgement.outcome.is_failure())
     }
 
-    /// Expectations that need what the flight controller does not tell.
+    /// Returns the number of expectations that need more than the flight controller reports.
     pub fn skipped(&self) -> usize {
         self.judgements.iter().filter(|judgement| is_skipped(judgement)).count()
     }
 
-    /// Whether nothing of it was judged, for all that is expected needs what the flight controller does not tell.
+    /// Returns `true` if no expectation was judged, because all of them need more than the flight controller reports.
     pub fn is_skipped(&self) -> bool {
         self.problem.is_none() && !self.judgements.is_empty() && self.judgements.iter().all(is_skipped)
     }
 
-    /// The expectations that were not met.
+    /// Returns the expectations that were not met.
     pub fn failures(&self) -> impl Iterator<Item = &Judgement> {
         self.judgements.iter().filter(|judgement| judgement.outcome.is_failure())
     }
 
-    /// The expectation with the smallest margin, as a share of what it allows.
+    /// Returns the expectation with the smallest margin, as a share of its allowed range.
     pub fn tightest(&self) -> Option<&Judgement> {
         let share = |judgement: &Judgement| judgement.outcome.margin().map(|margin| margin.verdict.share());
         self.judgements
@@ -88,7 +88,7 @@ impl CheckedFlight {
             .min_by(|a, b| share(a).unwrap_or(1.0).total_cmp(&share(b).unwrap_or(1.0)))
     }
 
-    /// `guide-7 · crosswind · seed 3`.
+    /// Returns the title: `guide-7 · crosswind · seed 3`.
     pub fn title(&self) -> String {
         let mut title = self.scenario.clone();
         if !self.case.is_empty() {
@@ -107,12 +107,12 @@ impl CheckedFlight {
         self.seeds > 1 || self.seed_is_given
     }
 
-    /// A time as people read it: seconds after the engagement, or after boot when there was none.
+    /// Returns a time for people: seconds after the engagement, or after boot if there was none.
     pub fn seconds(&self, time: SimTime) -> f64 {
         time.as_secs_f64() - self.engaged_at.map_or(0.0, SimTime::as_secs_f64)
     }
 
-    /// The command that opens an instant of the flight in the screen.
+    /// Returns the command that opens an instant of the flight in the screen.
     pub fn open_command(&self, time: SimTime) -> String {
         let case =
             if self.case.is_empty() { String::new() } else { format!(" --case {}", shell_word(&self.case)) };
@@ -123,7 +123,7 @@ impl CheckedFlight {
     }
 }
 
-/// A word as a shell takes it, whatever is in it.
+/// Returns a text as one shell word, with quotes if needed.
 fn shell_word(text: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "_./,:@%+=-".contains(c);
     if !text.is_empty() && text.chars().all(is_plain) {
@@ -132,41 +132,41 @@ fn shell_word(text: &str) -> String {
     format!("'{}'", text.replace('\'', r"'\''"))
 }
 
-/// What was expected of several flights together.
+/// A judged comparison of several flights.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Compared {
     /// Name of the scenario.
     pub scenario: String,
-    /// Its file, as its user named it.
+    /// The file name as the user gave it.
     pub file: String,
     pub variant: String,
-    /// The seed that all of them had.
+    /// The seed of all the flights.
     pub seed: u64,
-    /// What became of it.
+    /// The judgement of the comparison.
     pub judgement: Judgement,
 }
 
 impl Compared {
-    /// `guide-2 · noise real · seed 3: all FLYBY is faster`.
+    /// Returns the title: `guide-2 · noise real · seed 3`.
     pub fn title(&self) -> String {
         let variant = if self.variant.is_empty() { String::new() } else { format!(" · {}", self.variant) };
         format!("{}{variant} · seed {}", self.scenario, self.seed)
     }
 }
 
-/// The flights of a case, counted.
+/// The counts of the flights of a case.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CaseCount {
-    /// `guide-7 · crosswind`.
+    /// The name: `guide-7 · crosswind`.
     pub name: String,
     pub passed: usize,
-    /// Those of which nothing was judged.
+    /// The number of flights without a judgement.
     pub skipped: usize,
     pub flights: usize,
 }
 
 impl CaseCount {
-    /// Whether one of them failed.
+    /// Returns `true` if a flight failed.
     pub fn has_failures(&self) -> bool {
         self.passed + self.skipped < self.flights
     }
@@ -177,13 +177,13 @@ impl CaseCount {
 pub struct Summary {
     /// The flights, in their order.
     pub flights: Vec<CheckedFlight>,
-    /// What was expected of several together.
+    /// The judged comparisons of several flights.
     pub compared: Vec<Compared>,
-    /// Flights that were asked for.
+    /// The number of requested flights.
     pub wanted: usize,
-    /// Slow scenarios that were left out.
+    /// The number of slow scenarios that were left out.
     pub left_out: usize,
-    /// Seconds that it took.
+    /// The duration in seconds of wall time.
     pub wall_s: f64,
 }
 
@@ -198,38 +198,38 @@ impl Summary {
         Self { flights, compared, wanted, left_out, wall_s }
     }
 
-    /// Whether everything that was asked for was flown and every expectation met.
+    /// Returns `true` if all requested flights were flown and no expectation failed.
     pub fn passed(&self) -> bool {
         self.flights.len() == self.wanted
             && self.flights.iter().all(CheckedFlight::passed)
             && !self.compared.iter().any(|compared| compared.judgement.outcome.is_failure())
     }
 
-    /// Flights that passed, those of which nothing was judged not among them.
+    /// Returns the number of flights that passed, without those that had no judgement.
     pub fn passed_flights(&self) -> usize {
         self.flights.iter().filter(|flight| flight.passed() && !flight.is_skipped()).count()
     }
 
-    /// Flights of which nothing was judged, and skipped expectations of all.
+    /// Returns the number of flights without a judgement, and of skipped expectations in all flights.
     pub fn skipped(&self) -> (usize, usize) {
         let flights = self.flights.iter().filter(|flight| flight.is_skipped()).count();
         let compared = self.compared.iter().filter(|compared| is_skipped(&compared.judgement)).count();
         (flights, compared + self.flights.iter().map(CheckedFlight::skipped).sum::<usize>())
     }
 
-    /// Simulated seconds of all flights.
+    /// Returns the simulated seconds of all flights.
     pub fn flown_s(&self) -> f64 {
         self.flights.iter().map(|flight| flight.flown_s).sum()
     }
 
-    /// Whether flights were flown or passed over and nothing of any was judged.
+    /// Returns `true` if there are flights but no judgement.
     pub fn is_skipped(&self) -> bool {
         !self.flights.is_empty()
             && self.flights.iter().all(CheckedFlight::is_skipped)
             && self.compared.iter().all(|compared| is_skipped(&compared.judgement))
     }
 
-    /// The cases in their order, each with its seeds and repetitions counted.
+    /// Returns the cases in their order, each with the counts of its seeds and repetitions.
     pub fn cases(&self) -> Vec<CaseCount> {
         let mut cases: Vec<CaseCount> = Vec::new();
         let mut file = "";
@@ -259,7 +259,7 @@ fn is_skipped(judgement: &Judgement) -> bool {
     matches!(judgement.outcome, Outcome::Skipped(_))
 }
 
-/// What was seen instead of what was expected, as one sentence.
+/// Returns the observed behaviour against the expected one, as one sentence.
 pub fn complaint(judgement: &Judgement) -> String {
     match &judgement.outcome {
         Outcome::Met(_) => format!("{}: met", judgement.label),

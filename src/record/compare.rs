@@ -1,7 +1,8 @@
-//! Two firmwares on the same plan: what their tracks measure, as a table, JSON and a picture.
+//! Two firmwares on the same plan: the measures of their tracks as a table, JSON and a picture.
 //!
-//! Everything is measured from truth, alike for both: what a firmware says of itself does not count. `route` is the plan in
-//! metres, `passage` finds when a track passed each waypoint, `measure` the rest, `distance` how far two tracks lie apart.
+//! All measures come from truth, in the same way for both firmwares; their own reports do not count. `route` is the
+//! plan in metres, `passage` finds the times at which a track passed the waypoints, `measure` takes the other
+//! measures, and `distance` gives the distance between two tracks.
 
 mod distance;
 mod json;
@@ -26,9 +27,9 @@ use measure::measures;
 /// The flights of one firmware.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Side {
-    /// What it is called.
+    /// The name of the firmware.
     pub name: String,
-    /// Each flight is equal to the last bit, so that one says all.
+    /// `true` if all flights are equal to the last bit, so that one flight is enough.
     pub repeatable: bool,
     pub flights: Vec<Track>,
 }
@@ -44,7 +45,7 @@ pub struct Comparison {
     apart: Apart,
 }
 
-/// A measure of both.
+/// A measure of both firmwares.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Row {
     measure: Measure,
@@ -52,24 +53,24 @@ struct Row {
 }
 
 impl Row {
-    /// The second less the first.
+    /// Returns the second value less the first.
     fn difference(&self) -> Option<Statistics> {
         let [first, second] = self.sides;
         Some(second?.less(first?))
     }
 }
 
-/// Distances between tracks: root mean square of the way to the nearest point of the other, m.
+/// Distances between tracks: root mean square of the distance to the nearest point of the other track, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Apart {
-    /// Each flight of one with each of the other.
+    /// Each flight of one firmware against each flight of the other.
     between: Option<Statistics>,
-    /// The flights of each among themselves.
+    /// The flights of each firmware against each other.
     among: [Option<Statistics>; 2],
 }
 
 impl Comparison {
-    /// Measures the flights. `conditions` says in which air they were flown.
+    /// Measures the flights. `conditions` describes the air in which they were flown.
     pub fn new(plan: &str, conditions: &str, route: Route, sides: [Side; 2]) -> Self {
         let measured = sides.each_ref().map(|side| {
             side.flights.iter().map(|flight| measures(&route, flight)).collect::<Vec<Vec<(Measure, f64)>>>()
@@ -88,7 +89,7 @@ impl Comparison {
         Self { plan: plan.to_owned(), conditions: conditions.to_owned(), route, sides, rows, apart }
     }
 
-    /// The table for people.
+    /// Returns the table for people.
     pub fn text(&self) -> String {
         text::table(self)
     }
@@ -97,7 +98,7 @@ impl Comparison {
         json::object(self)
     }
 
-    /// A picture with both tracks, north up.
+    /// Returns a picture with both tracks, north up.
     pub fn svg(&self) -> String {
         svg::picture(self)
     }

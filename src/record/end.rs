@@ -1,35 +1,35 @@
-//! How a flight ended, for the last event and the last lines of a headless flight.
+//! The end of a flight, for the last event and the last lines of a headless flight.
 
 use crate::telemetry::FlightTruth;
 
 /// The end of a flight.
 #[derive(Debug, Clone, PartialEq)]
 pub struct End {
-    /// What became of it, in a word: `complete`, `missed`, `landed`, `refused`, `aborted`, `disarmed`, `crashed`, `timeout`,
+    /// The result in one word: `complete`, `missed`, `landed`, `refused`, `aborted`, `disarmed`, `crashed`, `timeout`,
     /// `diverged`, `interrupted`.
     pub result: String,
-    /// Why, as a sentence; may be empty.
+    /// The reason as a sentence; may be empty.
     pub reason: String,
     pub truth: FlightTruth,
     /// Simulated seconds from engagement (or boot, if there was none) to the end.
     pub flown_s: f64,
-    /// Seconds of wall time that took.
+    /// Seconds of wall time for that part.
     pub wall_s: f64,
 }
 
 impl End {
-    /// How many times faster than real time the flight was; zero when the clock did not move.
+    /// Returns the speed as a multiple of real time; zero if the clock did not move.
     pub fn speed_ratio(&self) -> f64 {
         if self.wall_s > 0.0 { self.flown_s / self.wall_s } else { 0.0 }
     }
 
-    /// `complete: landed and disarmed`, the last line but one on standard error.
+    /// Returns `complete: landed and disarmed`, the last line but one on standard error.
     pub fn result_line(&self) -> String {
         let Self { result, reason, .. } = self;
         if reason.is_empty() { result.clone() } else { format!("{result}: {reason}") }
     }
 
-    /// `flown 312.4 s in 0.21 s (1488x real time)`, the last line on standard error.
+    /// Returns `flown 312.4 s in 0.21 s (1488x real time)`, the last line on standard error.
     pub fn flown_line(&self) -> String {
         let (flown, wall, ratio) = (self.flown_s, self.wall_s, self.speed_ratio());
         let decimals = if ratio < 10.0 { 1 } else { 0 };

@@ -1,7 +1,7 @@
-//! A GPX 1.1 track of a flight with its waypoints, one point a simulated second.
+//! A GPX 1.1 track of a flight with its waypoints, with one point for each simulated second.
 //!
-//! GPX elevations are above mean sea level: the altitude of home is added to everything that counts from there. Times
-//! are simulated: they count from an instant that the caller chooses, so that equal flights give equal files.
+//! GPX elevations are above mean sea level, so the altitude of home is added to altitudes above home. Times are
+//! simulated: they count from an instant that the caller chooses, so that equal flights give equal files.
 
 mod utc;
 
@@ -14,7 +14,7 @@ use crate::signals::SimTime;
 
 pub use utc::UtcSeconds;
 
-/// What the file says about itself.
+/// The header of the file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GpxHeader {
     /// The program that made the file.
@@ -28,7 +28,7 @@ pub struct GpxHeader {
 }
 
 impl GpxHeader {
-    /// The header that the reference firmware simulator writes.
+    /// Returns the header of the reference firmware simulator.
     pub fn sitl(home_amsl_m: f64, boot: UtcSeconds) -> Self {
         let (creator, track) = ("Betaflight SITL".to_owned(), "SITL Flight Track".to_owned());
         Self { creator, track, home_amsl_m, boot }
@@ -47,8 +47,8 @@ pub struct GpxPoint {
     pub alt_m: f64,
 }
 
-/// Writes a track as it is flown. What was written is complete up to the last point; [`GpxWriter::finish`] closes the
-/// document.
+/// Writes a track during the flight. The written part is complete up to the last point; [`GpxWriter::finish`] closes
+/// the document.
 #[derive(Debug)]
 pub struct GpxWriter<W: Write> {
     out: W,
@@ -62,7 +62,7 @@ impl<W: Write> GpxWriter<W> {
     ///
     /// # Errors
     ///
-    /// When the output fails.
+    /// Returns the error of the output.
     pub fn new(mut out: W, header: GpxHeader, plan: &FlightPlan) -> io::Result<Self> {
         writeln!(out, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>")?;
         writeln!(
@@ -88,12 +88,11 @@ impl<W: Write> GpxWriter<W> {
         Ok(Self { out, header, last: None })
     }
 
-    /// Offers a place; it is written when it is the first of its simulated second. Places that are not on the globe
-    /// are left out.
+    /// Writes a place if it is the first of its simulated second. Leaves out places that are not on the globe.
     ///
     /// # Errors
     ///
-    /// When the output fails.
+    /// Returns the error of the output.
     pub fn offer(&mut self, point: &GpxPoint) -> io::Result<()> {
         let second = point.time.0 / 1_000_000;
         let on_globe = point.lat_deg.abs() <= 90.0 && point.lon_deg.abs() <= 180.0 && point.alt_m.is_finite();
@@ -111,11 +110,11 @@ impl<W: Write> GpxWriter<W> {
         self.out.flush()
     }
 
-    /// Closes the document and gives the output back.
+    /// Closes the document and returns the output.
     ///
     /// # Errors
     ///
-    /// When the output fails.
+    /// Returns the error of the output.
     pub fn finish(mut self) -> io::Result<W> {
         writeln!(self.out, "    </trkseg>")?;
         writeln!(self.out, "  </trk>")?;
@@ -159,7 +158,7 @@ mod tests {
             writer.offer(&point(us, lat)).unwrap();
         }
         let text = String::from_utf8(writer.finish().unwrap()).unwrap();
-        // A DELAY and a TAKEOFF are no places.
+        // A DELAY and a TAKEOFF are not places.
         assert_eq!(
             text,
             r#"<?xml version="1.0" encoding="UTF-8"?>

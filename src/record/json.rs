@@ -1,8 +1,8 @@
-//! One JSON object a line: events, samples and the end of a flight.
+//! One JSON object in each line: events, samples and the end of a flight.
 //!
 //! Every line starts with `t`, simulated seconds since boot, and `event`. Units are SI, angles are degrees, altitudes
-//! are metres above home. New keys may be added, none is removed or renamed. Two equal flights give equal bytes, but for
-//! `wall_s` and `speed_ratio`.
+//! are metres above home. New keys may be added; keys are never removed or renamed. Two equal flights give equal bytes,
+//! except for `wall_s` and `speed_ratio`.
 
 mod event;
 mod sample;
@@ -17,17 +17,17 @@ use crate::telemetry::Snapshot;
 use super::End;
 use super::number::{Decimals, Milli};
 
-/// An event's line, without line end; `None` for the few events that only matter inside the craft.
+/// Returns the line of an event, without line end; `None` for the few events that only matter inside the craft.
 pub fn event_line(event: &Event) -> Option<String> {
     event::Fields::of(&event.kind).map(|(name, fields)| line(event.time, name, &fields))
 }
 
-/// A sample's line, without line end.
+/// Returns the line of a sample, without line end.
 pub fn sample_line(snapshot: &Snapshot) -> String {
     line(snapshot.time, "sample", &sample::Fields::of(snapshot))
 }
 
-/// The last line of a flight, without line end.
+/// Returns the last line of a flight, without line end.
 pub fn end_line(time: SimTime, end: &End) -> String {
     #[derive(Serialize)]
     struct Fields<'a> {
@@ -50,7 +50,7 @@ pub fn end_line(time: SimTime, end: &End) -> String {
     line(time, "end", &fields)
 }
 
-/// Puts time and name in front of the fields.
+/// Returns a line with time and name before the fields.
 fn line(time: SimTime, event: &str, fields: &impl Serialize) -> String {
     #[derive(Serialize)]
     struct Line<'a, T: Serialize> {
@@ -60,7 +60,7 @@ fn line(time: SimTime, event: &str, fields: &impl Serialize) -> String {
         fields: &'a T,
     }
     let line = Line { t: Decimals(time.as_secs_f64()), event, fields };
-    // The maps and numbers of a line always serialise; the fallback keeps the output one object a line.
+    // The maps and numbers of a line always serialise. The fallback still gives one object in each line.
     serde_json::to_string(&line).unwrap_or_else(|error| format!("{{\"error\":\"{error}\"}}"))
 }
 

@@ -1,9 +1,9 @@
-//! Numbers for machine-readable output: rounded to a fixed number of decimals, so that lines stay short and equal
-//! flights give equal bytes.
+//! Numbers for machine-readable output, rounded to a fixed number of decimals. This keeps lines short and makes the
+//! bytes of equal flights equal.
 
 use serde::{Serialize, Serializer};
 
-/// A number that serialises with at most `D` decimals; what is not finite serialises as `null`.
+/// A number that serialises with at most `D` decimals; infinity and NaN serialise as `null`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Decimals<const D: i32>(pub f64);
 
@@ -28,13 +28,13 @@ impl<const D: i32> Serialize for Decimals<D> {
             return serializer.serialize_none();
         }
         let scale = 10_f64.powi(D);
-        // Adding zero turns a negative zero into a plain one; a value too big to scale is kept as it is.
+        // Adding zero turns a negative zero into a plain one. A value too large to scale stays unchanged.
         let rounded = (self.0 * scale).round() / scale + 0.0;
         serializer.serialize_f64(if rounded.is_finite() { rounded } else { self.0 })
     }
 }
 
-/// A direction, degrees clockwise from north: from 0 to just below 360, also after rounding.
+/// Returns a direction, degrees clockwise from north, from 0 to just below 360, also after rounding.
 pub(super) fn compass<const D: i32>(degrees: f64) -> Decimals<D> {
     let turn = degrees.rem_euclid(360.0);
     let scale = 10_f64.powi(D);

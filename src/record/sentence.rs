@@ -1,4 +1,4 @@
-//! The same events as plain sentences, for people: `fly` without `--json`, `serve`, the log.
+//! The same events as sentences for people: `fly` without `--json`, `serve`, the log.
 
 use crate::plan::{FlightPlan, WaypointType};
 use crate::session::{EndpointAddresses, Event, SessionEvent};
@@ -7,12 +7,12 @@ use crate::telemetry::{
     FirmwareEvent, Guard, GuardUnit, HoldLimit, NavEvent, NavState, PlanSource, Refusal, TransitionReason,
 };
 
-/// `  12.4 s  Armed.`; `None` for the few events that only matter inside the craft.
+/// Returns `  12.4 s  Armed.`; `None` for the few events that only matter inside the craft.
 pub fn line(event: &Event) -> Option<String> {
     text(&event.kind).map(|text| format!("{:>7.1} s  {text}", event.time.as_secs_f64()))
 }
 
-/// The sentence without the time.
+/// Returns the sentence without the time.
 pub fn text(kind: &SessionEvent) -> Option<String> {
     match kind {
         SessionEvent::Vehicle(event) => vehicle(event),
@@ -135,14 +135,14 @@ fn nav(event: &NavEvent) -> Option<String> {
     })
 }
 
-/// `23.4 m from the target, 0.2 m above its altitude`.
+/// Returns `23.4 m from the target, 0.2 m above its altitude`.
 fn off(deviation: &CannotHold) -> String {
     let CannotHold { distance_m, vertical_m, .. } = deviation;
     let side = if *vertical_m < 0.0 { "below" } else { "above" };
     format!("{distance_m:.1} m from the target, {:.1} m {side} its altitude", vertical_m.abs())
 }
 
-/// The cause of a transition in plain language.
+/// Returns the cause of a transition in plain language.
 fn cause(reason: TransitionReason, to: NavState) -> &'static str {
     match reason {
         TransitionReason::Reset => "the mission starts",
@@ -185,7 +185,7 @@ fn waypoint(to: NavState, wp: u8, kind: Option<WaypointType>) -> String {
     }
 }
 
-/// `arrival 4.9 m ≤ 5.0 m`; a count without a unit: `fix 0 < 1`.
+/// Returns `arrival 4.9 m ≤ 5.0 m`; a count has no unit: `fix 0 < 1`.
 fn because(guard: &Guard) -> String {
     let Guard { name, value, limit, op } = guard;
     match guard.unit() {

@@ -1,10 +1,11 @@
-//! What truth says about a flight, as sentences.
+//! The true values of a flight, as sentences.
 
 use crate::plan::WaypointType;
 use crate::signals::SimTime;
 use crate::telemetry::{FlightTruth, PlanSource, WaypointTruth};
 
-/// A line for each waypoint that was flown, at the time when it was measured, and the craft at the end.
+/// Returns a line for each flown waypoint, with the time of its measurement, and a line for the parked craft at the
+/// end.
 pub fn lines(end: SimTime, truth: &FlightTruth) -> Vec<String> {
     let mut lines: Vec<String> =
         truth.waypoints.iter().map(|waypoint| line(waypoint.at, &sentence(waypoint))).collect();
@@ -48,7 +49,7 @@ fn sentence(waypoint: &WaypointTruth) -> String {
     format!("waypoint {wp} ({kind}){of} {done}{height}")
 }
 
-/// `0.30 m too low`.
+/// Returns `0.30 m too low`.
 fn too(error_m: f64) -> String {
     format!("{:.2} m too {}", error_m.abs(), if error_m < 0.0 { "low" } else { "high" })
 }

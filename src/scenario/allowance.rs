@@ -6,7 +6,7 @@ use super::quantity::Dimension;
 use super::signal::Signal;
 
 impl Expected {
-    /// The same with wider bounds.
+    /// Returns the same expectation with wider bounds.
     pub(super) fn widened(self, allowance: &Allowance) -> Self {
         let wide = |condition: Condition| condition.widened(allowance);
         match self {
@@ -21,7 +21,7 @@ impl Expected {
             }
             Self::At(instant, condition) => Self::At(instant, wide(condition)),
             Self::That(condition) => Self::That(wide(condition)),
-            // A bound that must not be reached is as it is.
+            // The bound of a `never` condition is not widened.
             Self::Always(_, true) | Self::Result(_) | Self::States(_) | Self::NoEvent(_) => self,
         }
     }
@@ -66,7 +66,7 @@ impl Comparison {
 }
 
 impl Number {
-    /// Whether it is about heights.
+    /// Returns `true` if the number is a height.
     fn is_vertical(&self) -> bool {
         match self {
             Self::Signal(signal) => {

@@ -1,4 +1,4 @@
-//! A scenario that was read: its cases, and what is expected of each.
+//! A scenario read from its file: the cases, and the expectations of each case.
 
 use super::expression::{Comparison, Condition, Instant, Number};
 use super::happening::Pattern;
@@ -8,51 +8,51 @@ use crate::flight::{FlightOptions, FlightSetup};
 use crate::sim::{Noise, Turbulence, Wind};
 use crate::telemetry::{NavState, PlanSource};
 
-/// The sources of command lines that stand in the scenario itself: their keys.
+/// The keys of the command lines that are written in the scenario itself.
 pub(super) const OWN_LINES: [&str; 2] = ["settings", "lines"];
 
 #[derive(Debug, Clone)]
 pub struct Scenario {
     /// The file, as its user named it.
     pub file: String,
-    /// Its name: what the file says, or the file's name.
+    /// The name from the file's text, or else the name of the file.
     pub name: String,
-    /// What it shows, for people.
+    /// A description for people.
     pub description: String,
-    /// Flown only when asked for.
+    /// `true` if the scenario is flown only on request.
     pub slow: bool,
     /// The flights, at least one.
     pub cases: Vec<Case>,
-    /// What is expected of several flights together.
+    /// Expectations that compare several flights.
     pub compares: Vec<Compare>,
 }
 
 /// The flights of one set-up.
 #[derive(Debug, Clone)]
 pub struct Case {
-    /// What tells it from the other cases; empty when there is only one.
+    /// The name that tells this case from the others; empty when there is only one.
     pub name: String,
     /// The name that the file gives.
     pub base: String,
     pub variant: String,
     /// The air of each seed.
     pub airs: Vec<Air>,
-    /// What the flight starts from, but for the air.
+    /// The start of the flight, apart from the air.
     pub setup: FlightSetup,
-    /// How it is flown.
+    /// The options of the flight.
     pub options: FlightOptions,
-    /// The scripted pilot flies; else nobody moves the sticks but the inputs.
+    /// `true` if the scripted pilot flies; otherwise only inputs move the sticks.
     pub pilot: bool,
-    /// When to give up, s after the engagement.
+    /// The time limit of the flight, s after the engagement.
     pub time_limit_s: f64,
-    /// How long to look on after the end, s.
+    /// The time for which the flight is watched after its end, s.
     pub watch_s: f64,
-    /// When the scenario ends the flight.
+    /// The instant at which the scenario ends the flight.
     pub ends: Option<Instant>,
     pub sample_hz: f64,
-    /// Numbers with a name.
+    /// Named numbers.
     pub parameters: Vec<(String, f64)>,
-    /// What is done to the craft.
+    /// The inputs to the craft.
     pub inputs: Vec<TimedInput>,
     /// Numbers taken from the flight.
     pub measures: Vec<Measure>,
@@ -72,13 +72,13 @@ pub struct Air {
 }
 
 impl Case {
-    /// The command lines that the scenario itself gives, without those of settings files.
+    /// Returns the command lines that the scenario itself gives, without those of settings files.
     pub fn own_lines(&self) -> impl Iterator<Item = &str> {
         let own = self.setup.boot_lines.iter().filter(|lines| OWN_LINES.contains(&lines.source.as_str()));
         own.flat_map(|lines| lines.text.lines())
     }
 
-    /// What the flight of an air starts from.
+    /// Returns the start of the flight in the given air.
     pub fn setup_in(&self, air: &Air) -> FlightSetup {
         let mut setup = self.setup.clone();
         setup.world.seed = air.seed;
@@ -90,7 +90,7 @@ impl Case {
     }
 }
 
-/// What is added to the bounds of expectations when sensors err.
+/// The widening of the bounds of expectations when sensors err.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Allowance {
     /// Horizontal distances, m.
@@ -106,9 +106,9 @@ pub struct Allowance {
 /// A part of a flight.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Window {
-    /// Where it begins; `None` = at the first engagement, or at boot when there is none.
+    /// The beginning; `None` = at the first engagement, or at boot if there is no engagement.
     pub from: Option<Instant>,
-    /// Where it ends; `None` = at the end of the record.
+    /// The end; `None` = at the end of the record.
     pub until: Option<Instant>,
 }
 
@@ -117,14 +117,14 @@ pub struct Window {
 pub struct Measure {
     pub name: String,
     pub dimension: Dimension,
-    /// How it is taken.
+    /// The way in which the number is taken.
     pub measured: Measured,
 }
 
-/// How a number is taken from a flight.
+/// A way to take a number from a flight.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Measured {
-    /// Over a part of the flight.
+    /// A statistic over a part of the flight.
     Over(Window, Statistic, Number),
     At(Instant, Number),
     /// The time between two instants, s.
@@ -132,7 +132,7 @@ pub enum Measured {
     Of(Number),
 }
 
-/// One number of many.
+/// A way to make one number of many.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::Display, strum::EnumIter, strum::IntoStaticStr)]
 #[strum(serialize_all = "lowercase")]
 pub enum Statistic {
@@ -145,11 +145,11 @@ pub enum Statistic {
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expectation {
-    /// What it is called: its name, or the text that says it.
+    /// The name of the expectation, or else its text.
     pub label: String,
     /// Line in the file, from 1.
     pub line: usize,
-    /// The part of the flight that it is about.
+    /// The part of the flight in which it is judged.
     pub window: Window,
     pub expected: Expected,
 }
@@ -160,28 +160,28 @@ pub enum Expected {
     Result(Vec<String>),
     /// The states from the engagement on, in this order.
     States(Vec<StateStep>),
-    /// Something happens: as often as `count` says, else at least once.
+    /// Something happens: `count` times if that is given, else at least once.
     Event {
         pattern: Pattern,
         count: Option<usize>,
-        /// The first of them, seconds after an instant.
+        /// The bounds for the time of the first one, seconds after an instant.
         within: Option<(f64, f64, Instant)>,
-        /// What holds then, with the numbers of the happening.
+        /// A condition that holds at that time; it may use the numbers of the happening.
         with: Option<Condition>,
     },
-    /// It does not happen.
+    /// A happening that does not come.
     NoEvent(Pattern),
-    /// It holds at every sample of the window, or (`true`) at none.
+    /// The condition holds at every sample of the window, or (`true`) at none.
     Always(Condition, bool),
-    /// It holds at some sample of the window.
+    /// The condition holds at some sample of the window.
     Eventually(Condition),
-    /// It holds at this share of the samples of the window, 0…1.
+    /// The condition holds at this share of the samples of the window, 0…1.
     Mostly(Condition, f64),
-    /// A number of all samples of the window.
+    /// A statistic of all samples of the window.
     Statistic(Statistic, Comparison),
-    /// It holds at an instant.
+    /// The condition holds at an instant.
     At(Instant, Condition),
-    /// It holds of measures and parameters.
+    /// The condition holds for measures and parameters.
     That(Condition),
 }
 
@@ -191,20 +191,20 @@ pub enum StateStep {
     Enter {
         state: NavState,
         wp: Option<u8>,
-        /// Of a plan of this origin.
+        /// The origin of the plan.
         source: Option<PlanSource>,
     },
     /// Any states, or none.
     Any,
 }
 
-/// What is expected of several flights with the same seed.
+/// An expectation that compares several flights with the same seed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Compare {
-    /// What it is called.
+    /// The name of the comparison.
     pub label: String,
     /// Line in the file, from 1.
     pub line: usize,
-    /// What holds of their measures, `CASE.MEASURE`.
+    /// The condition on their measures, `CASE.MEASURE`.
     pub that: Condition,
 }

@@ -1,4 +1,4 @@
-//! A scenario made from a flight: what was flown, what was done, and what was seen as what is expected.
+//! A scenario made from a flight. It repeats the plan and the inputs, and expects the observed behaviour.
 
 mod observed;
 mod past;
@@ -13,7 +13,7 @@ use crate::plan::FlightPlan;
 use crate::plan::format::{HomePosition, PlanFile};
 use crate::signals::SimTime;
 
-/// A scenario that is being made.
+/// A scenario under construction.
 #[derive(Debug, Clone, Default)]
 pub struct Draft {
     name: String,
@@ -29,7 +29,7 @@ pub struct Draft {
     /// Lines of `[air]`, as key and text in TOML.
     air: Vec<(&'static str, String)>,
     seed: u64,
-    /// When it ends, counted from boot.
+    /// The end of the flight, counted from boot.
     ends: Option<SimTime>,
     inputs: Vec<(String, String)>,
 }
@@ -38,7 +38,7 @@ pub struct Draft {
 type Block = Vec<(&'static str, String)>;
 
 impl Draft {
-    /// A flight of a plan without inputs: the scripted pilot flies it in calm air.
+    /// Returns a draft for a flight of a plan without inputs: the scripted pilot flies it in calm air.
     pub fn of_plan(file: &PlanFile) -> Self {
         Self {
             name: file.name.clone(),
@@ -53,14 +53,14 @@ impl Draft {
         }
     }
 
-    /// The text of the scenario that expects what a flight of it shows, with margins.
+    /// Flies the draft and returns the text of a scenario that expects the same behaviour, with margins.
     ///
     /// # Errors
-    /// A sentence, when it cannot be flown.
+    /// Returns a sentence if the draft cannot be flown.
     pub fn finish(mut self) -> Result<String, String> {
         let flown = self.fly()?;
         if flown.result == "timeout" && self.ends.is_none() {
-            // It goes on for ever, as a hold without an end does.
+            // The flight has no end of its own, as with a hold without an end.
             self.ends = Some(SimTime(flown.trace.end().0 / 1_000_000 * 1_000_000));
             return self.finish();
         }
@@ -80,7 +80,7 @@ impl Draft {
         }
     }
 
-    /// Flies what is there, without expectations.
+    /// Flies the draft without expectations.
     fn fly(&self) -> Result<Flown, String> {
         let scenario = parse(&self.name, &toml_text::text(self, &[]))?;
         let case = scenario.cases.first().ok_or("the scenario has no case")?;
@@ -89,7 +89,7 @@ impl Draft {
     }
 }
 
-/// A scenario that was written here names no files.
+/// A reader that finds no files: a scenario written here names none.
 struct NoFiles;
 
 impl Files for NoFiles {
@@ -102,7 +102,7 @@ impl Files for NoFiles {
     }
 }
 
-/// Reads a scenario that was written here. There is no file that a user could open, so a problem is reported without a place.
+/// Reads a scenario that was written here. The user has no file to open, so a problem is reported without a place.
 fn parse(name: &str, text: &str) -> Result<Scenario, String> {
     read(name, text, None, &mut NoFiles).map_err(|errors| {
         let first = errors.first().map_or("", |problem| problem.message.as_str());
@@ -150,7 +150,8 @@ mod tests {
         }
     }
 
-    /// The first flight of a session: the craft boots without a plan, gets one over the command line, and flies it.
+    /// Returns the first flight of a session: the craft boots without a plan, gets one over the command line, and
+    /// flies it.
     fn first_flight(happen: impl Fn(u64, &mut Vehicle), seconds: u64) -> (RecordedFlight, Vehicle) {
         let mut configuration = crate::firmware::config::Configuration::default();
         configuration.starter_modes();
@@ -179,7 +180,7 @@ mod tests {
         }
     }
 
-    /// Flies what was written, as `check` does.
+    /// Flies a written scenario in the same way as `check`.
     fn checked(text: &str) -> (Flown, Vec<String>) {
         let scenario = parse("flight", text).unwrap_or_else(|problem| panic!("{problem}\n{text}"));
         let (case, air) = (&scenario.cases[0], scenario.cases[0].airs[0]);
@@ -196,7 +197,7 @@ mod tests {
             2000 => upload(&plan, vehicle),
             2001 => vehicle.start_pilot(10.0).unwrap(),
             40_000 => vehicle.change_world(WorldCommand::parse("wind=3@270").unwrap()).unwrap(),
-            // What is stored now is not flown.
+            // This plan is stored now, but it is not flown.
             50_000 => upload(&BuiltinPlan::find("land").unwrap().read().unwrap(), vehicle),
             _ => {}
         };
@@ -204,7 +205,7 @@ mod tests {
         let truth = *flown.world().unwrap().truth();
         let text = Draft::of_recorded("first", flight).unwrap().finish().unwrap();
         assert!(text.contains("wind 3@270") && text.contains("ARRIVED 1 of stored"), "{text}");
-        // The plan as it was flown stands at the top, and is not typed in front of the flight again.
+        // The flown plan is at the top of the text. No input types it again before the flight.
         let (top, inputs) = text.split_once("[[input]]").unwrap();
         assert!(top.contains("0 40.4640000 -79.5175000 5000"), "{text}");
         assert_eq!(inputs.matches("cli waypoint insert").count(), 1, "{text}");

@@ -1,8 +1,8 @@
-//! What a pilot writes about a flight: expressions with units, conditions, places and instants.
+//! Expressions about a flight: numbers with units, conditions, places and instants.
 //!
-//! `cursor` walks over the text, `number`, `place`, `condition` and `instant` read their parts of the grammar and check
-//! dimensions while they read, so that what was read can be judged. `evaluate` gives values of a recorded flight.
-//! `docs/scenarios.md` is the reference.
+//! `cursor` walks over the text. `number`, `place`, `condition` and `instant` read their parts of the grammar. They
+//! check dimensions while they read, so every expression that was read can be judged. `evaluate` gives the values in
+//! a recorded flight. `docs/scenarios.md` is the reference.
 
 mod condition;
 mod cursor;
@@ -26,15 +26,15 @@ pub(super) use instant::mode_of as read_mode;
 pub use instant::{Search, read_instant, read_pattern, read_span_from};
 pub use number::{MAX_NAME, read_number, read_quantity};
 
-/// What names may mean while an expression is read.
+/// The meaning of names while an expression is read.
 #[derive(Debug, Clone, Default)]
 pub struct Scope {
     /// Parameters and measures with their dimension; many expressions share them.
     pub names: Rc<BTreeMap<String, Dimension>>,
     pub inputs: Vec<String>,
-    /// Waypoints of the plan.
+    /// The number of waypoints of the plan.
     pub waypoints: usize,
-    /// Numbers of the happening that is looked at.
+    /// The numbers of the happening that the expression is about.
     pub fields: &'static [Field],
 }
 
@@ -44,7 +44,7 @@ pub enum Number {
     /// A literal, in SI units and degrees, with the unit it was written in.
     Literal(f64, Option<&'static Unit>),
     Signal(Signal),
-    /// A number of the happening that is looked at.
+    /// A number of the happening that the expression is about.
     Field(Field),
     /// A parameter or a measure.
     Name(String),
@@ -58,17 +58,17 @@ pub enum Number {
     Bearing(Place),
     /// Horizontal distance between two places.
     Apart(Place, Place),
-    /// Distance of the craft along a line from its beginning.
+    /// Distance of the craft along a line, from the beginning of the line.
     Along(Place, Place),
-    /// Distance of the craft beside a line, right positive.
+    /// Cross-track distance of the craft from a line, right positive.
     Across(Place, Place),
-    /// Distance of the craft beyond the end of a line, before it negative.
+    /// Distance of the craft beyond the end of a line, negative before the end.
     Past(Place, Place),
     /// Time since an instant.
     Since(Box<Instant>),
-    /// A number as it was at an instant.
+    /// The value of a number at an instant.
     At(Box<Number>, Box<Instant>),
-    /// How fast a number changes, a second.
+    /// The rate of change of a number, per second.
     Rate(Box<Number>),
 }
 
@@ -106,46 +106,46 @@ pub enum Place {
     Waypoint(u8, PlanSource),
     /// The navigator's target.
     Target,
-    /// Where the craft truly was at an instant.
+    /// The true position of the craft at an instant.
     CraftAt(Box<Instant>),
 }
 
-/// A yes or no of a flight.
+/// A yes-or-no statement about a flight.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Condition {
     Compare(Comparison),
     Flag(Flag),
-    /// The state machine is in this state, perhaps with this waypoint.
+    /// The state machine is in this state, optionally with this waypoint.
     State(NavState, Option<u8>),
     /// A mode is active.
     Mode(Mode),
-    /// A plan of this origin is flown.
+    /// The autopilot flies a plan of this origin.
     Flying(PlanSource),
     Not(Box<Condition>),
     All(Vec<Condition>),
-    /// At least one of them.
+    /// At least one of the conditions holds.
     Any(Vec<Condition>),
 }
 
-/// A number and what it may be.
+/// A number and its bound.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
     pub left: Number,
     pub dimension: Dimension,
-    /// What it may be.
+    /// The allowed values.
     pub bound: Bound,
 }
 
-/// What a number may be.
+/// The allowed values of a number.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Bound {
     /// At most, or (`true`) below.
     AtMost(Number, bool),
     /// At least, or (`true`) above.
     AtLeast(Number, bool),
-    /// Between two numbers, these included.
+    /// Between two numbers, both included.
     Between(Number, Number),
-    /// A number with a tolerance to both sides.
+    /// A number with a tolerance on both sides.
     Around(Number, Number),
     Equal(Number),
 }
@@ -155,13 +155,13 @@ pub enum Bound {
 pub struct Instant {
     pub anchor: Anchor,
     pub occurrence: Occurrence,
-    /// Only what happens after this counts.
+    /// An earlier instant; only later happenings count.
     pub after: Option<Box<Instant>>,
-    /// Seconds later, or earlier.
+    /// The offset in seconds; a negative one is earlier.
     pub offset_s: f64,
 }
 
-/// What happens at an instant.
+/// The event that marks an instant.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Anchor {
     Boot,
@@ -172,7 +172,7 @@ pub enum Anchor {
     When(Condition),
 }
 
-/// Which of several happenings.
+/// The choice among several happenings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Occurrence {
     /// The nth, from 1.
@@ -181,7 +181,7 @@ pub enum Occurrence {
 }
 
 impl Condition {
-    /// The parameters and measures in it.
+    /// Returns the names of the parameters and measures in the condition.
     pub fn names(&self) -> Vec<String> {
         let mut names = Vec::new();
         self.each_number(&mut |number| {
@@ -192,7 +192,7 @@ impl Condition {
         names
     }
 
-    /// Calls `visit` for every number in it, those inside other numbers included.
+    /// Calls `visit` for every number in the condition, also for those inside other numbers.
     fn each_number(&self, visit: &mut impl FnMut(&Number)) {
         match self {
             Self::Compare(comparison) => {
@@ -230,12 +230,13 @@ impl Number {
 }
 
 impl Instant {
-    /// Whether it can come several times.
+    /// Returns `true` if the instant can come several times.
     pub(super) fn recurs(&self) -> bool {
         matches!(self.anchor, Anchor::Happening(_) | Anchor::When(_)) && self.occurrence != Occurrence::Last
     }
 
-    /// Why nobody can wait for it during a flight: only a flight that is over shows it. `None` when one can.
+    /// Returns the reason why a flight cannot wait for this instant, if only a finished flight shows it; otherwise
+    /// `None`.
     pub(super) fn unseen_in_flight(&self) -> Option<&'static str> {
         if self.offset_s < 0.0 {
             Some("what is to happen is not known before it does")

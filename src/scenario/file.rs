@@ -1,4 +1,4 @@
-//! Reads a scenario's file: TOML, strict, all problems with their places.
+//! The strict reader of a scenario file in TOML. It reports all problems with their places.
 
 mod air;
 mod bounds;
@@ -31,41 +31,41 @@ pub use keys::TABLES;
 /// The version of the file format.
 pub const FORMAT: i64 = 1;
 
-/// Longest scenario file, bytes.
+/// The largest scenario file, bytes.
 const MAX_BYTES: usize = 512 << 10;
-/// Most flights of a scenario, cases times seeds, unless its user allows more.
+/// The most flights of a scenario, cases times seeds, unless the user allows more.
 pub const MAX_FLIGHTS: usize = 10_000;
-/// How long a scenario flies at most unless it says otherwise, s after the engagement.
+/// The default time limit of a scenario, s after the engagement.
 const TIME_LIMIT_S: f64 = 600.0;
-/// How long the record goes on behind the end unless the scenario says otherwise, s: what the end brings with it, such as the
-/// disarm, belongs to the flight.
+/// The default time for which the record goes on after the end, s. Consequences of the end, such as the disarm,
+/// belong to the flight.
 const WATCH_S: f64 = 0.5;
-/// Most samples of a flight: some 400 MB.
+/// The most samples of a flight: some 400 MB.
 const MAX_SAMPLES: f64 = 2e6;
-/// Most names of cases that a message shows.
+/// The most names of cases in a message.
 const SHOWN_CASES: usize = 20;
-/// Samples a second unless the scenario says otherwise.
+/// The default number of samples a second.
 const SAMPLE_HZ: f64 = 100.0;
 
-/// The files that a scenario names; their names count from the scenario's own place.
+/// A reader for the files that a scenario names; names are relative to the place of the scenario.
 pub trait Files {
     /// Reads a plan file.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// Returns a sentence with the mistake in the file.
     fn plan(&mut self, name: &str) -> Result<PlanFile, String>;
 
-    /// Reads a text: settings or an airframe.
+    /// Reads a text file: settings or an airframe.
     ///
     /// # Errors
-    /// Why it cannot be read.
+    /// Returns a sentence with the reason if the file cannot be read.
     fn text(&mut self, name: &str) -> Result<String, String>;
 }
 
-/// Reads a scenario. `file` is the name that its user gave; `seeds` take the place of its own.
+/// Reads a scenario. `file` is the name given by the user; `seeds` replace the seeds of the file.
 ///
 /// # Errors
-/// All problems, in the order of their places.
+/// Returns all problems, in the order of their places.
 pub fn read(
     file: &str,
     text: &str,
@@ -75,10 +75,10 @@ pub fn read(
     read_at_most(MAX_FLIGHTS, file, text, seeds, files)
 }
 
-/// Reads a scenario that may have up to `max_flights` flights.
+/// Reads a scenario with up to `max_flights` flights.
 ///
 /// # Errors
-/// All problems, in the order of their places.
+/// Returns all problems, in the order of their places.
 pub fn read_at_most(
     max_flights: usize,
     file: &str,
@@ -151,7 +151,7 @@ fn read_text(file: &str, text: &str, seeds: Option<&[u64]>, reader: &mut Reader<
     })
 }
 
-/// `guide-1` of `plans/scenarios/guide-1.toml`.
+/// Returns the name of a file without its folder and `.toml`: `guide-1` for `plans/scenarios/guide-1.toml`.
 fn stem(file: &str) -> &str {
     let name = file.rsplit(['/', '\\']).next().unwrap_or(file);
     name.strip_suffix(".toml").unwrap_or(name)
@@ -236,16 +236,16 @@ fn read_case(base: &str, all: &[String], layers: &Layers<'_, '_>, reader: &mut R
     }
 }
 
-/// Which case is read, to choose what is for it.
+/// The case that is being read, to choose the tables that apply to it.
 struct Belongs<'a> {
     base: &'a str,
     all: &'a [String],
 }
 
 impl Belongs<'_> {
-    /// Whether a table is for this case: without `cases` it is for all.
+    /// Returns `true` if a table applies to this case: without `cases` it applies to all.
     fn includes(&self, table: &TomlTable<'_, '_>, reader: &mut Reader<'_, '_>) -> bool {
-        // The names are the same for all cases: one of them checks them.
+        // All cases have the same list of names, so only the first case checks it.
         if self.all.first().is_none_or(|first| first == self.base) {
             self.check_names(table, reader);
         }
@@ -319,7 +319,7 @@ fn read_allowance(layers: &Layers<'_, '_>, reader: &mut Reader<'_, '_>) -> Allow
     allowance
 }
 
-/// The names of the inputs, before they are read: instants may name them.
+/// Returns the names of the inputs before the inputs are read, because instants may use them.
 fn input_names(layers: &Layers<'_, '_>, belongs: &Belongs<'_>, reader: &mut Reader<'_, '_>) -> Vec<String> {
     let mut names = Vec::new();
     for table in layers.lists("input", reader) {
@@ -332,21 +332,21 @@ fn input_names(layers: &Layers<'_, '_>, belongs: &Belongs<'_>, reader: &mut Read
     names
 }
 
-/// How many waypoints the longest plan has that an input uploads: expressions may name them, too.
+/// Returns the number of waypoints of the longest plan that an input uploads, because expressions may use them, too.
 fn uploaded_waypoints(layers: &Layers<'_, '_>, belongs: &Belongs<'_>, reader: &mut Reader<'_, '_>) -> usize {
     let mut most = 0;
     for table in layers.lists("input", reader) {
         if belongs.includes(&table, reader)
             && let Some(text) = reader.string(&table, "do")
         {
-            // What is wrong with it is found when the inputs are read.
+            // A mistake in it is reported when the inputs are read.
             most = most.max(waypoints_after(&text, &mut |plan| reader.plan(plan)).unwrap_or(0));
         }
     }
     most
 }
 
-/// Reads an instant that is waited for during the flight.
+/// Reads an instant for which the flight waits.
 fn read_awaited(value: &Value<'_>, scope: &Scope, reader: &mut Reader<'_, '_>) -> Option<Instant> {
     let instant = reader.expression(value, |cursor| read_instant(cursor, scope))?;
     if let Some(problem) = instant.unseen_in_flight() {
@@ -428,7 +428,7 @@ fn read_compares(top: &TomlTable<'_, '_>, cases: &[Case], reader: &mut Reader<'_
     compares
 }
 
-/// What is flown of a case, without the air.
+/// The craft of a case, without the air.
 struct Craft {
     setup: FlightSetup,
     options: crate::flight::FlightOptions,

@@ -1,4 +1,4 @@
-//! What happened in a flight, in the words that expectations use.
+//! Happenings of a flight, in the words of expectations.
 
 use strum::IntoEnumIterator as _;
 
@@ -25,9 +25,9 @@ macro_rules! events {
 #[derive(Debug, Clone, Copy)]
 pub struct EventInfo {
     pub event: EventName,
-    /// How it is written; the words behind it choose among its happenings.
+    /// The written name; words after it choose among its happenings.
     pub name: &'static str,
-    /// The numbers that it has.
+    /// The numbers of such a happening.
     pub fields: &'static [Field],
     pub help: &'static str,
 }
@@ -71,7 +71,7 @@ macro_rules! fields {
         }
 
         impl Field {
-            /// Name, dimension and meaning.
+            /// Returns the name, the dimension and the meaning.
             pub fn info(self) -> (&'static str, Dimension, &'static str) {
                 match self {
                     $(Self::$variant => ($name, Dimension::$dimension, $help),)*
@@ -96,12 +96,12 @@ fields! {
 }
 
 impl EventName {
-    /// Name, fields and meaning.
+    /// Returns the name, the fields and the meaning.
     pub fn info(self) -> &'static EventInfo {
         &EVENTS[self as usize]
     }
 
-    /// The words that may stand behind the name.
+    /// Returns the words that may follow the name.
     pub fn words(self) -> Vec<String> {
         let on_off = || ["on", "off"].map(str::to_owned);
         match self {
@@ -132,7 +132,7 @@ impl EventName {
     }
 }
 
-/// The results of a flight; `stopped` is that of a flight that its scenario ends.
+/// The results of a flight; `stopped` is the result of a flight that its scenario ends.
 pub const RESULTS: [&str; 10] = [
     "complete", "missed", "landed", "refused", "aborted", "disarmed", "crashed", "timeout", "diverged",
     "stopped",
@@ -158,7 +158,7 @@ pub(super) const REFUSALS: [&str; 16] = [
     "GPS_LOST",
 ];
 
-/// A mode as one word: `POS_HOLD`.
+/// Returns a mode as one word: `POS_HOLD`.
 pub fn mode_word(mode: Mode) -> String {
     mode.to_string().replace(' ', "_")
 }
@@ -179,7 +179,7 @@ pub enum HappeningKind {
     State(Entered),
     Event {
         name: EventName,
-        /// The words that tell it from others of its kind.
+        /// The words that tell this happening from others of its kind.
         words: Vec<String>,
         /// Its numbers, SI and degrees.
         fields: Vec<(Field, f64)>,
@@ -187,7 +187,7 @@ pub enum HappeningKind {
     },
 }
 
-/// A happening and when.
+/// A happening and its time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Happening {
     /// Simulated time since boot.
@@ -196,13 +196,13 @@ pub struct Happening {
 }
 
 impl Happening {
-    /// A happening that is no state transition.
+    /// Creates a happening that is not a state transition.
     pub fn event(time: SimTime, name: EventName, words: &[&str]) -> Self {
         let words = words.iter().map(|&word| word.to_owned()).collect();
         Self { time, kind: HappeningKind::Event { name, words, fields: Vec::new(), text: String::new() } }
     }
 
-    /// The same with a number.
+    /// Adds a number.
     pub fn with(mut self, field: Field, value: f64) -> Self {
         if let HappeningKind::Event { fields, .. } = &mut self.kind {
             fields.push((field, value));
@@ -210,7 +210,7 @@ impl Happening {
         self
     }
 
-    /// The same with what was said.
+    /// Adds a text.
     pub fn saying(mut self, said: impl Into<String>) -> Self {
         if let HappeningKind::Event { text, .. } = &mut self.kind {
             *text = said.into();
@@ -218,7 +218,7 @@ impl Happening {
         self
     }
 
-    /// A number of it.
+    /// Returns a number of the happening.
     pub fn field(&self, field: Field) -> Option<f64> {
         match &self.kind {
             HappeningKind::State(_) => None,
@@ -229,28 +229,28 @@ impl Happening {
     }
 }
 
-/// What an expectation or an instant looks for.
+/// A pattern of happenings, for an expectation or an instant.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Pattern {
-    /// A state that is entered.
+    /// The entry into a state.
     State {
         state: NavState,
         wp: Option<u8>,
-        /// Of a plan of this origin; `None` = any.
+        /// The origin of the plan; `None` = any.
         source: Option<PlanSource>,
         reason: Option<String>,
     },
-    /// A happening of a kind that has all of these words and says this.
+    /// A happening of a kind that has all of these words and this text.
     Event {
         name: EventName,
         words: Vec<String>,
-        /// A part of what is said, in any case.
+        /// A part of the text; upper and lower case count as equal.
         text: Option<String>,
     },
 }
 
 impl Pattern {
-    /// Whether this is such a happening.
+    /// Returns `true` if the happening matches the pattern.
     pub fn matches(&self, happening: &Happening) -> bool {
         match (self, &happening.kind) {
             (Self::State { state, wp, source, reason }, HappeningKind::State(entered)) => {
@@ -271,7 +271,7 @@ impl Pattern {
         }
     }
 
-    /// The numbers that it can have.
+    /// Returns the numbers that a matching happening can have.
     pub fn fields(&self) -> &'static [Field] {
         match self {
             Self::State { .. } => &[],

@@ -1,4 +1,4 @@
-//! What is done to the craft during a flight, and when.
+//! Inputs to the craft during a flight, and their instants.
 
 use super::expression::{Cursor, Instant, SyntaxError};
 use crate::pilot::{channel_index, pulse_us};
@@ -7,27 +7,27 @@ use crate::signals::{RC_CHANNELS, RcFrame};
 use crate::sim::WorldCommand;
 use crate::telemetry::{InFlightCommand, Mode};
 
-/// Something that is done, and when.
+/// An input and its instant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TimedInput {
-    /// Its name for instants; `inputN` when it has none.
+    /// The name for use in instants; `inputN` if the file gives none.
     pub name: String,
     /// Line in the scenario's file, from 1.
     pub line: usize,
     pub at: Instant,
-    /// Each time that comes, not only once.
+    /// `true` if the input is repeated each time the instant comes.
     pub each: bool,
     pub action: Action,
-    /// As it is written.
+    /// The text in the file.
     pub text: String,
 }
 
-/// Something that is done to the craft.
+/// An action on the craft.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Action {
-    /// Air, noise or a fault.
+    /// A change of the air, the noise or a fault.
     World(WorldCommand),
-    /// A channel is held at a value, for so many seconds or until it is released.
+    /// Holds a channel at a value, for a number of seconds or until its release.
     Stick {
         /// Index from 0.
         channel: u8,
@@ -35,30 +35,30 @@ pub enum Action {
         value_us: u16,
         for_s: Option<f64>,
     },
-    /// A channel goes back to who moves it.
+    /// Gives a channel back to its usual source.
     Release(u8),
-    /// All sixteen virtual channels are set.
+    /// Sets all sixteen virtual channels.
     Sticks(RcFrame),
     /// The switch of a mode.
     Switch(Mode, bool),
-    /// The transmitter is cut off, for so many seconds or until it is restored.
+    /// Cuts off the transmitter, for a number of seconds or until it is restored.
     CutRc(Option<f64>),
-    /// The transmitter is back.
+    /// Restores the transmitter.
     RestoreRc,
     /// A line on the command line.
     Cli(String),
     Upload(Box<FlightPlan>),
-    /// Fly home and land.
+    /// Returns home and lands.
     ReturnHome,
     CancelReturn,
     InFlight(InFlightCommand),
-    /// The scripted pilot takes the sticks, climbs to so many metres and engages.
+    /// Gives the sticks to the scripted pilot, who climbs to this height in metres and engages.
     Pilot(f64),
-    /// The scripted pilot lets go.
+    /// Takes the sticks from the scripted pilot.
     PilotOff,
 }
 
-/// The forms of an input, for messages and the reference: how it is written, and what it does.
+/// The forms of an input, for messages and the reference: the syntax and the effect.
 pub const FORMS: &[(&str, &str)] = &[
     (
         "stick pitch 2000 for 3 s",
@@ -86,10 +86,10 @@ pub const FORMS: &[(&str, &str)] = &[
     ("end gps-loss", "ends a fault; `end all` ends all"),
 ];
 
-/// What a plan that an input names reads as.
+/// A reader for the plans that inputs name.
 pub(super) type PlanReader<'r> = &'r mut dyn FnMut(&str) -> Result<FlightPlan, String>;
 
-/// Reads what an input does.
+/// Reads the action of an input.
 pub(super) fn read_action(text: &str, plans: PlanReader<'_>) -> Result<Action, SyntaxError> {
     let trimmed = text.trim();
     let (word, rest) = trimmed.split_once(char::is_whitespace).unwrap_or((trimmed, ""));
@@ -149,8 +149,8 @@ pub(super) fn read_action(text: &str, plans: PlanReader<'_>) -> Result<Action, S
     })
 }
 
-/// How many waypoints the stored plan has at least after an input that uploads one or inserts a waypoint; `None` for other
-/// inputs.
+/// Returns the least number of waypoints of the stored plan after an input that uploads a plan or inserts a waypoint;
+/// `None` for other inputs.
 pub(super) fn waypoints_after(text: &str, plans: PlanReader<'_>) -> Option<usize> {
     let words: Vec<&str> = text.split_whitespace().collect();
     match words.as_slice() {
@@ -165,7 +165,7 @@ pub(super) fn waypoints_after(text: &str, plans: PlanReader<'_>) -> Option<usize
     }
 }
 
-/// A change of the world; where no word of the world stands, the guess is among all words.
+/// Reads a change of the world. If the first word is unknown, the suggestion comes from the words of all inputs.
 fn world(text: &str) -> Result<Action, String> {
     WorldCommand::parse(text).map(Action::World).map_err(|error| {
         let problem = error.problem().to_owned();
@@ -180,7 +180,7 @@ fn world(text: &str) -> Result<Action, String> {
     })
 }
 
-/// `for 3 s`, or nothing.
+/// Reads `for 3 s`, or nothing.
 fn read_for(words: &[&str]) -> Option<Option<f64>> {
     match words {
         [] => Some(None),

@@ -1,4 +1,5 @@
-//! What must be known of a flight to judge it: truth is always known, of a flight controller outside only what it tells.
+//! The knowledge that is needed to judge a flight. Truth is always known; a remote flight controller reports only a
+//! part.
 
 use super::case::{Case, Expectation, Expected, Measured, Window};
 use super::expression::{Anchor, Bound, Comparison, Condition, Instant, Number, Place};
@@ -8,23 +9,23 @@ use super::signal::{Flag, Signal};
 use crate::sim::{Fault, Switches};
 use crate::telemetry::{DisarmReason, PlanSource};
 
-/// How much of a flight controller must be known, the least first.
+/// The required knowledge of a flight controller, the least first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, strum::Display)]
 #[strum(serialize_all = "lowercase")]
 pub enum Insight {
-    /// Nothing: the simulated world tells it.
+    /// Nothing: the simulated world is enough.
     #[default]
     Truth,
-    /// What every flight controller tells: modes, arming, fix, where it believes to be.
+    /// Reports of every flight controller: modes, arming, fix, estimated position.
     Telemetry,
-    /// What one tells that has a command for the progress of its mission: state and waypoint.
+    /// Reports of a flight controller that has a command for the progress of its mission: state and waypoint.
     Mission,
-    /// What only the embedded one shows: guards, setpoints, estimates, reasons.
+    /// Knowledge that only the embedded flight controller gives: guards, setpoints, estimates, reasons.
     Inner,
 }
 
 impl Insight {
-    /// What is missing, as the end of a sentence.
+    /// Returns the missing knowledge as the end of a sentence.
     pub fn missing(self) -> &'static str {
         match self {
             Self::Truth | Self::Telemetry => "this flight controller tells nothing",
@@ -35,7 +36,7 @@ impl Insight {
 }
 
 impl Signal {
-    /// What must be known for it.
+    /// Returns the knowledge that the signal needs.
     pub fn insight(self) -> Insight {
         match self {
             Self::Time
@@ -82,7 +83,7 @@ impl Signal {
 }
 
 impl Flag {
-    /// What must be known for it.
+    /// Returns the knowledge that the flag needs.
     pub fn insight(self) -> Insight {
         match self {
             Self::OnGround | Self::Crashed => Insight::Truth,
@@ -94,7 +95,7 @@ impl Flag {
 }
 
 impl EventName {
-    /// What must be known to see it.
+    /// Returns the knowledge that is needed to see the event.
     pub fn insight(self) -> Insight {
         match self {
             Self::Fault
@@ -127,10 +128,10 @@ impl EventName {
     }
 }
 
-/// What the parts of a case need.
+/// The knowledge that the parts of a case need.
 #[derive(Debug)]
 pub(super) struct Needs<'a> {
-    /// Of its measures, those first on which others build; parameters need nothing.
+    /// The needs of the measures, in such an order that a measure comes after those it uses; parameters need nothing.
     measures: Vec<(&'a str, Insight)>,
 }
 
@@ -144,8 +145,8 @@ impl<'a> Needs<'a> {
         needs
     }
 
-    /// What must be known to carry out the inputs of a case and to end its flight in time. A flight without them shows
-    /// nothing of what it is to show.
+    /// Returns the knowledge that is needed to carry out the inputs of a case and to end its flight in time. Without
+    /// them a flight does not show the intended behaviour.
     pub(super) fn flight(&self, case: &Case) -> Insight {
         let switches = &case.setup.world.switches;
         let inputs =
@@ -229,7 +230,7 @@ impl<'a> Needs<'a> {
 
     fn number(&self, number: &Number) -> Insight {
         match number {
-            // The happening that it is a number of was told.
+            // The happening with this number was reported.
             Number::Literal(..) | Number::Field(_) => Insight::Truth,
             Number::Signal(signal) => signal.insight(),
             Number::Name(name) => self.measure(name),
@@ -257,9 +258,9 @@ impl<'a> Needs<'a> {
     }
 }
 
-/// What must be known to see such a happening.
+/// Returns the knowledge that is needed to see such a happening.
 fn happening(pattern: &Pattern) -> Insight {
-    /// Reasons that can be told from outside.
+    /// Reasons that a remote flight controller can report.
     const SEEN: [DisarmReason; 3] = [DisarmReason::Landing, DisarmReason::Switch, DisarmReason::Failsafe];
     match pattern {
         Pattern::State { source: None | Some(PlanSource::Stored), reason: None, .. } => Insight::Mission,
@@ -273,8 +274,8 @@ fn happening(pattern: &Pattern) -> Insight {
     }
 }
 
-/// What is needed to do it: the world and the transmitter are here; some faults do nothing to a firmware outside, and orders are
-/// taken by the embedded one only.
+/// Returns the knowledge that an action needs. The world and the transmitter belong to betadeck. Some faults have no
+/// effect on a remote firmware, and only the embedded firmware takes orders.
 fn action(action: &Action, switches: &Switches) -> Insight {
     let is_idle = |fault: &Fault| !fault.acts_on_controller_outside(switches);
     match action {

@@ -1,4 +1,4 @@
-//! Judges a recorded flight by the expectations of its case.
+//! The judgement of a recorded flight by the expectations of its case.
 
 mod inputs;
 mod measures;
@@ -17,8 +17,8 @@ use crate::signals::SimTime;
 pub use outcome::{Judgement, Margin, Outcome};
 use outcome::{failed, met, unjudged};
 
-/// Judges a flight: a judgement for each expectation, in their order, then one for each input that was not carried out, and
-/// the measures that were taken.
+/// Judges a flight. Returns a judgement for each expectation, in their order, then one for each input that was not
+/// carried out, and the measures.
 pub fn judge(case: &Case, flown: &Flown) -> (Vec<Judgement>, Vec<(String, f64)>) {
     let mut names = case.parameters.clone();
     for measure in &case.measures {
@@ -27,14 +27,14 @@ pub fn judge(case: &Case, flown: &Flown) -> (Vec<Judgement>, Vec<(String, f64)>)
     }
     let needs = Needs::of(case);
     let needed_to_fly = needs.flight(case);
-    // What was not told cannot be measured.
+    // A value that was not reported cannot be measured.
     names.retain(|(name, _)| needs.measure(name) <= flown.told);
     let evaluator = Evaluator::new(&flown.trace, &names);
     let mut judgements: Vec<Judgement> = case
         .expectations
         .iter()
         .map(|expectation| {
-            // A flight whose inputs were not carried out, for nobody told when, shows nothing of what is expected.
+            // Without reports the inputs were not carried out. Such a flight cannot be judged.
             let outcome = match needs.expectation(expectation).max(needed_to_fly) {
                 needed if needed > flown.told => Outcome::Skipped(needed),
                 _ => judge_one(expectation, flown, &evaluator),
@@ -48,8 +48,8 @@ pub fn judge(case: &Case, flown: &Flown) -> (Vec<Judgement>, Vec<(String, f64)>)
     (judgements, names)
 }
 
-/// The judgements of a flight that is not flown with a flight controller outside, all skipped, as its inputs or its end need
-/// what none of them tells; `None` when it can be flown.
+/// Returns skipped judgements for a case that a remote flight controller cannot fly, because its inputs or its end need
+/// knowledge that no remote flight controller reports. Returns `None` if the case can be flown.
 pub fn skip(case: &Case) -> Option<Vec<Judgement>> {
     let needed = Needs::of(case).flight(case);
     let skipped =
@@ -61,7 +61,7 @@ fn judgement(expectation: &Expectation, outcome: Outcome) -> Judgement {
     Judgement { label: expectation.label.clone(), line: expectation.line, outcome }
 }
 
-/// A statistic over a part of a flight; `None` when its instants did not come.
+/// Returns a statistic over a part of a flight; `None` if its instants did not come.
 pub(super) fn statistic(
     window: &Window,
     statistic: Statistic,
@@ -71,8 +71,8 @@ pub(super) fn statistic(
     measures::over(window, statistic, number, evaluator)
 }
 
-/// Judges what is expected of several flights together: `names` are their measures as `CASE.MEASURE`, and `told` is what was
-/// known of all of them.
+/// Judges an expectation that compares several flights. `names` are their measures as `CASE.MEASURE`, and `told` is the
+/// knowledge of all flights.
 pub fn compare(compare: &Compare, names: &[(String, f64)], told: Insight) -> Judgement {
     let trace = Trace::of_nothing();
     let is_known = |name: &str| names.iter().any(|(known, _)| known == name);
@@ -85,7 +85,7 @@ pub fn compare(compare: &Compare, names: &[(String, f64)], told: Insight) -> Jud
 }
 
 impl Compare {
-    /// What becomes of it when the cases have no seed in common.
+    /// Returns the judgement for cases that have no seed in common.
     pub fn never_judged(&self) -> Judgement {
         let outcome = unjudged("no seed was flown by all the cases; give them the same seeds");
         Judgement { label: self.label.clone(), line: self.line, outcome }
@@ -224,7 +224,7 @@ struct Range {
 }
 
 impl Range {
-    /// The part that a window names, or why there is none.
+    /// Returns the part that a window names, or the outcome if there is none.
     fn of(window: &Window, evaluator: &Evaluator<'_>) -> Result<Self, Outcome> {
         let trace = evaluator.trace();
         let from_us = match &window.from {
@@ -258,12 +258,12 @@ impl Range {
         SimTime(self.to_us.max(0) as u64)
     }
 
-    /// Whether the record ends before it does.
+    /// Returns `true` if the record ends before this part ends.
     fn is_cut(&self, trace: &Trace) -> bool {
         self.to_us > trace.end().0 as i64
     }
 
-    /// What was met in a part of the time only has not been judged.
+    /// Replaces a met outcome by "not judged" if the record covers only a part of the range.
     fn whole(&self, outcome: Outcome, trace: &Trace) -> Outcome {
         if !outcome.is_met() || !self.is_cut(trace) {
             return outcome;
@@ -284,7 +284,7 @@ impl Range {
             .collect()
     }
 
-    /// Indices of the samples in it.
+    /// Returns the indices of the samples in the range.
     fn samples(&self, trace: &Trace) -> std::ops::Range<usize> {
         let from = trace.samples.partition_point(|sample| (sample.time.0 as i64) < self.from_us);
         let to = trace.samples.partition_point(|sample| sample.time.0 as i64 <= self.to_us);

@@ -1,4 +1,4 @@
-//! The scenarios that travel with the executable: the same files as in `plans/scenarios/`.
+//! The scenarios in the executable: the same files as in `plans/scenarios/`.
 
 use super::Files;
 use crate::did_you_mean;
@@ -6,7 +6,7 @@ use crate::plan::format::PlanFile;
 
 macro_rules! scenarios {
     ($($name:literal)*) => {
-        /// All built-in scenarios, in the order in which they are flown.
+        /// All built-in scenarios, in the order of a flight of all.
         pub const SCENARIOS: &[BuiltinScenario] = &[
             $(BuiltinScenario {
                 name: $name,
@@ -64,24 +64,24 @@ scenarios! {
     "campaign"
 }
 
-/// Settings that several of them share.
+/// Settings that several scenarios share.
 const TEXTS: &[(&str, &str)] = &[("guide.txt", include_str!("../../plans/scenarios/guide.txt"))];
 
 /// A scenario that is part of the executable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BuiltinScenario {
-    /// Its name, as given on the command line.
+    /// The name on the command line.
     pub name: &'static str,
     pub text: &'static str,
 }
 
 impl BuiltinScenario {
-    /// The built-in scenario of this name.
+    /// Returns the built-in scenario with this name.
     pub fn find(name: &str) -> Option<Self> {
         SCENARIOS.iter().copied().find(|scenario| scenario.name == name)
     }
 
-    /// The name of a built-in scenario that `name` may stand for.
+    /// Returns the built-in name that is closest to `name`.
     pub fn suggest(name: &str) -> Option<&'static str> {
         did_you_mean::closest(name, SCENARIOS.iter().map(|scenario| scenario.name))
     }

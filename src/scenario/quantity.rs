@@ -1,12 +1,12 @@
-//! Dimensions and units: what a number in an expectation measures, and how it is written.
+//! Dimensions and units of the numbers in expectations.
 
 use std::fmt;
 
 /// Base units of a [`Dimension`], in the order of its exponents.
 const BASES: usize = 6;
 
-/// What a number measures, as exponents of metre, second, degree, RC microsecond, volt and ampere. Percentages and counts
-/// have none.
+/// A dimension, as exponents of metre, second, degree, RC microsecond, volt and ampere. Percentages and counts have
+/// none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 pub struct Dimension([i8; BASES]);
 
@@ -26,21 +26,21 @@ impl Dimension {
     pub const CURRENT: Self = Self([0, 0, 0, 0, 0, 1]);
     pub const CHARGE: Self = Self([0, 1, 0, 0, 0, 1]);
 
-    /// The dimension of a product, or of a quotient with `sign` −1.
+    /// Returns the dimension of a product, or of a quotient with `sign` −1.
     pub(super) fn combine(self, other: Self, sign: i8) -> Self {
         Self(std::array::from_fn(|i| self.0[i].saturating_add(other.0[i].saturating_mul(sign))))
     }
 }
 
-/// A unit as it is written behind a number.
+/// A unit in its written form after a number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unit {
-    /// How it is written.
+    /// The written form.
     pub name: &'static str,
     pub dimension: Dimension,
     /// Size in SI units and degrees.
     pub scale: f64,
-    /// What it is, in words.
+    /// The name in words.
     pub help: &'static str,
 }
 
@@ -48,7 +48,7 @@ const fn unit(name: &'static str, dimension: Dimension, scale: f64, help: &'stat
     Unit { name, dimension, scale, help }
 }
 
-/// All units; of a dimension the first is the one that results are shown in.
+/// All units. Results are shown in the first unit of their dimension.
 pub const UNITS: &[Unit] = &[
     unit("m", Dimension::LENGTH, 1.0, "metres"),
     unit("cm", Dimension::LENGTH, 0.01, "centimetres"),
@@ -78,12 +78,12 @@ impl Dimension {
         Self(exponents)
     }
 
-    /// The unit that values of this dimension are shown in; `None` for counts and for what has no unit of its own.
+    /// Returns the unit for values of this dimension; `None` for counts and for dimensions without a unit.
     pub fn unit(self) -> Option<&'static Unit> {
         UNITS.iter().find(|unit| unit.dimension == self && unit.name != "%")
     }
 
-    /// What may be written behind a number of this dimension, for messages.
+    /// Returns the units that may follow a number of this dimension, for messages.
     pub(super) fn unit_names(self) -> String {
         let names: Vec<_> =
             UNITS.iter().filter(|unit| unit.dimension == self).map(|unit| unit.name).collect();
@@ -110,14 +110,14 @@ impl fmt::Display for Dimension {
     }
 }
 
-/// A value in its unit, for people: `1.82 m`.
+/// Returns a value in its unit, for people: `1.82 m`.
 pub fn shown(value: f64, dimension: Dimension) -> String {
     let Some(unit) = dimension.unit() else { return number(value) };
     let space = if unit.name == "°" { "" } else { " " };
     format!("{}{space}{}", number(value / unit.scale), unit.name)
 }
 
-/// A number with as many decimals as are worth reading.
+/// Returns a number with as many decimals as are useful.
 fn number(value: f64) -> String {
     let decimals = match value.abs() {
         size if size >= 100.0 => 1,
@@ -125,7 +125,7 @@ fn number(value: f64) -> String {
         _ => 3,
     };
     let text = format!("{value:.decimals$}");
-    // −0.000 is 0.
+    // −0.000 becomes 0.
     if text.trim_start_matches('-').chars().all(|c| c == '0' || c == '.') {
         text.trim_start_matches('-').to_owned()
     } else {

@@ -1,4 +1,4 @@
-//! Flies a case: the headless flight, its inputs at their instants, and the record.
+//! The flight of a case: a headless flight, its inputs at their instants, and the record.
 
 mod inputs;
 mod log;
@@ -15,21 +15,21 @@ use crate::vehicle::Vehicle;
 use inputs::Inputs;
 use log::Log;
 
-/// What a case's flight came to.
+/// A finished flight of a case.
 #[derive(Debug, Clone)]
 pub struct Flown {
     pub trace: Trace,
-    /// How it ended: one of [`RESULTS`](super::happening::RESULTS).
+    /// The result: one of [`RESULTS`](super::happening::RESULTS).
     pub result: String,
-    /// Why, as a sentence.
+    /// The reason as a sentence.
     pub reason: String,
-    /// When the flight ended; the record may go on.
+    /// The time at which the flight ended; the record may go on.
     pub ended_at: SimTime,
-    /// What was known of the flight controller.
+    /// The knowledge that the flight controller gave.
     pub told: Insight,
 }
 
-/// The flight of a case under way.
+/// A flight of a case in progress.
 #[derive(Debug)]
 pub struct CaseFlight<'a> {
     case: &'a Case,
@@ -39,7 +39,7 @@ pub struct CaseFlight<'a> {
     trace: Trace,
     ends: Option<Search<'a>>,
     end: Option<FlightEnd>,
-    /// The scenario ended the flight: its word for the result and the reason.
+    /// The word for the result and the reason, if the scenario ended the flight.
     stopped: Option<(&'static str, String)>,
     told: Insight,
     sample_us: u64,
@@ -48,10 +48,10 @@ pub struct CaseFlight<'a> {
 }
 
 impl<'a> CaseFlight<'a> {
-    /// The flight of a case in an air, at boot.
+    /// Prepares the flight of a case in an air, at boot.
     ///
     /// # Errors
-    /// A sentence, when no vehicle can be made or nobody can switch what the pilot needs.
+    /// Returns a sentence if the vehicle cannot be created or a mode that the pilot needs has no switch.
     pub fn new(case: &'a Case, air: &Air) -> Result<Self, String> {
         let mut setup = case.setup_in(air);
         setup.stored.plan = setup.plan.plan.clone();
@@ -59,15 +59,15 @@ impl<'a> CaseFlight<'a> {
         Self::of_vehicle(case, vehicle)
     }
 
-    /// The same for a vehicle that stands at home with the plan of the case.
+    /// Prepares the flight for a vehicle that is at home with the plan of the case.
     ///
     /// # Errors
-    /// A sentence, when nobody can switch what the pilot needs.
+    /// Returns a sentence if a mode that the pilot needs has no switch.
     pub fn of_vehicle(case: &'a Case, vehicle: Vehicle) -> Result<Self, String> {
         let told = if vehicle.embedded().is_some() { Insight::Inner } else { Insight::Telemetry };
         let standing_m = vehicle.world().map_or(0.0, |world| world.truth().pos_enu.z);
         let trace = Trace::new(case.setup.plan.plan.clone(), vehicle.local_frame().copied());
-        // The limits of the scenario decide when to give up.
+        // The time limit of the scenario applies.
         let options = FlightOptions { timeout: SimTime(u64::MAX), ..case.options };
         let flight = if case.pilot {
             Flight::new(vehicle, &options).map_err(|mode| {
@@ -98,17 +98,17 @@ impl<'a> CaseFlight<'a> {
         self.flight.vehicle()
     }
 
-    /// The vehicle, for those who record it.
+    /// Returns the vehicle, for recorders.
     pub fn vehicle_mut(&mut self) -> &mut Vehicle {
         self.flight.vehicle_mut()
     }
 
-    /// The vehicle as the flight left it.
+    /// Returns the vehicle in its state after the flight.
     pub fn into_vehicle(self) -> Vehicle {
         self.flight.into_vehicle()
     }
 
-    /// What was recorded so far.
+    /// Returns the record so far.
     pub fn trace(&self) -> &Trace {
         &self.trace
     }
@@ -122,7 +122,7 @@ impl<'a> CaseFlight<'a> {
         self.finish()
     }
 
-    /// Whether the flight and what is to be watched after it are over.
+    /// Returns `true` if the flight and the time to watch after it are over.
     pub fn is_over(&self) -> bool {
         self.is_over
     }
@@ -135,7 +135,7 @@ impl<'a> CaseFlight<'a> {
         }
     }
 
-    /// Flies one tick; `report` gets what happens in it.
+    /// Flies one tick and reports its events to `report`.
     pub fn tick(&mut self, mut report: impl FnMut(&crate::telemetry::Event)) {
         let (log, trace) = (&mut self.log, &mut self.trace);
         let before = trace.happenings.len();
@@ -187,7 +187,7 @@ impl<'a> CaseFlight<'a> {
         self.end = Some(end);
     }
 
-    /// Whether it is time to end the record.
+    /// Ends the record if it is time.
     fn check_end(&mut self, now: SimTime) {
         if let Some(end) = &self.end {
             let is_lost = matches!(end.verdict.result, FlightResult::Diverged);
@@ -225,9 +225,9 @@ impl<'a> CaseFlight<'a> {
         }
     }
 
-    /// What it came to.
+    /// Returns the finished flight.
     pub fn finish(mut self) -> Flown {
-        // What happened last can be looked at.
+        // The last happenings need a sample.
         if self.trace.samples.last().is_some_and(|sample| sample.time < self.flight.vehicle().time()) {
             self.sample();
         }

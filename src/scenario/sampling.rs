@@ -8,21 +8,21 @@ use crate::telemetry::snapshot::{CraftView, EstimateView};
 use crate::telemetry::{NavTelemetry, PlanSource};
 use crate::vehicle::Vehicle;
 
-/// Below this ground speed the course means nothing, m/s.
+/// The ground speed below which the course has no meaning, m/s.
 const COURSE_MPS: f64 = 0.3;
 
-/// Hold time left of a hold without an end, ds.
+/// The remaining time of a hold without an end, ds.
 const ENDLESS_DS: u16 = u16::MAX;
 
-/// What a sample needs to know besides the vehicle.
+/// The facts that a sample needs besides the vehicle.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Origin {
-    /// Height of the standing craft's centre of mass, m.
+    /// The height of the centre of mass while the craft is on the ground, m.
     pub(super) standing_m: f64,
     pub(super) engaged_at: Option<SimTime>,
 }
 
-/// The sample of this instant.
+/// Takes a sample now.
 pub(super) fn sample(vehicle: &Vehicle, origin: Origin) -> Sample {
     let mut values = Values([f32::NAN; Signal::COUNT]);
     let time = vehicle.time();

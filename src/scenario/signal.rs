@@ -1,4 +1,4 @@
-//! What an expectation can look at: the signals of a flight and its yes-or-no flags.
+//! The signals of a flight and its yes-or-no flags, for expectations.
 
 use super::quantity::Dimension;
 
@@ -22,7 +22,7 @@ macro_rules! signals {
 #[derive(Debug, Clone, Copy)]
 pub struct SignalInfo {
     pub signal: Signal,
-    /// How it is written.
+    /// The written name.
     pub name: &'static str,
     pub dimension: Dimension,
     pub help: &'static str,
@@ -74,34 +74,34 @@ signals! {
 }
 
 impl Signal {
-    /// How many there are.
+    /// The number of signals.
     pub const COUNT: usize = SIGNALS.len();
 
-    /// Name, dimension and meaning.
+    /// Returns the name, the dimension and the meaning.
     pub fn info(self) -> &'static SignalInfo {
         &SIGNALS[self as usize]
     }
 
-    /// The signal of this name.
+    /// Returns the signal with this name.
     pub fn find(name: &str) -> Option<Self> {
         SIGNALS.iter().find(|info| info.name == name).map(|info| info.signal)
     }
 }
 
-/// A yes or no that is sampled during the flight.
+/// A yes-or-no value that is sampled during the flight.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumIter, strum::EnumString)]
 #[strum(serialize_all = "snake_case")]
 #[repr(u8)]
 pub enum Flag {
     /// The craft is armed.
     Armed,
-    /// A mission is flown.
+    /// The autopilot flies a mission.
     Engaged,
-    /// The climb before the first leg is on.
+    /// The climb before the first leg is active.
     Climbing,
-    /// A 3-D fix is there.
+    /// There is a 3-D fix.
     Fix,
-    /// A leg stands on the ground.
+    /// A leg of the craft touches the ground.
     OnGround,
     /// The craft has crashed.
     Crashed,
@@ -109,7 +109,7 @@ pub enum Flag {
     StickOverride,
     /// The receiver link is up.
     RxLink,
-    /// The navigator says that it cannot stay where it should.
+    /// The navigator reports that it cannot hold its position.
     CannotHold,
 }
 

@@ -1,11 +1,11 @@
-//! Whole scenarios: text in, judgements out.
+//! Tests of whole scenarios: text in, judgements out.
 
 mod bounds;
 
 use super::*;
 use crate::plan::format::{PlanError, PlanFile, report};
 
-/// No file is at hand.
+/// A reader that finds no files.
 struct NoFiles;
 
 impl Files for NoFiles {
@@ -18,7 +18,7 @@ impl Files for NoFiles {
     }
 }
 
-/// A craft that stands for three seconds; what is expected of it follows.
+/// A craft on the ground for three seconds; expectations follow.
 const STANDING: &str = "format = 1
 ends = \"3 s after boot\"
 [plan]
@@ -33,19 +33,19 @@ fn scenario(text: &str) -> Scenario {
     read("test.toml", text, None, &mut NoFiles).unwrap_or_else(|errors| panic!("{}", report(&errors)))
 }
 
-/// What became of the expectations of the first case, the one about the result first.
+/// Returns the judgements of the first case; the one about the result comes first.
 fn judged(text: &str) -> Vec<Judgement> {
     let scenario = scenario(text);
     let case = &scenario.cases[0];
     judge(case, &CaseFlight::new(case, &case.airs[0]).unwrap().fly()).0
 }
 
-/// Standing with this expectation.
+/// Returns the outcome of this expectation for the craft on the ground.
 fn outcome(expectation: &str) -> Outcome {
     judged(&format!("{STANDING}[[expect]]\n{expectation}\n")).pop().unwrap().outcome
 }
 
-/// The problems of a text, each with its place.
+/// Returns the problems of a text, each with its place.
 fn problems(text: &str) -> Vec<String> {
     read("test.toml", text, None, &mut NoFiles).unwrap_err().iter().map(PlanError::headline).collect()
 }
@@ -178,7 +178,7 @@ fn an_input_that_was_not_carried_out_fails_the_flight() {
         matches!(&judgement.outcome, Outcome::Failed { sentence, .. } if sentence.contains("ap_max_angel")),
         "{judgement:?}"
     );
-    // Who expects a refusal has it.
+    // A refusal that is expected is no failure.
     for expectation in
         ["event = 'input_refused'\nfrom = 'boot'", "event = \"input_refused 'ap_max'\"\nfrom = 'boot'"]
     {
@@ -278,7 +278,7 @@ that = 'fast.air - slow.air in -1..1 m/s'
     let names: Vec<&str> = scenario.cases.iter().map(|case| case.name.as_str()).collect();
     assert_eq!(names[..2], ["slow, wind calm", "slow, wind 5@270"]);
     assert_eq!(names.len(), 6);
-    // Without anything random one seed is enough, unless the wind follows the seed.
+    // Without randomness one seed is enough, unless the wind follows the seed.
     let flights: Vec<usize> = scenario.cases.iter().map(|case| case.airs.len()).collect();
     assert_eq!(flights, [1, 1, 3, 1, 1, 1]);
     let winds: Vec<f64> = scenario.cases[2].airs.iter().map(|air| air.wind.speed_mps).collect();
@@ -389,7 +389,7 @@ proptest::proptest! {
     }
 }
 
-/// What becomes of the expectations of one flight when this is told of it.
+/// Returns the outcomes of the expectations of one flight for each level of knowledge.
 fn judged_by<const N: usize>(told: [Insight; N], expectations: &str) -> [Vec<Outcome>; N] {
     let scenario = scenario(&format!("{STANDING}{expectations}"));
     let case = &scenario.cases[0];
@@ -438,7 +438,7 @@ fn a_flight_whose_input_waited_for_what_nobody_told_is_not_judged() {
                 [[expect]]\nalways = 'altitude < 1 m'\nfrom = 'boot'\n";
     let [untold, told] = judged_by([Telemetry, Mission], text);
     assert_eq!(untold.last(), Some(&Outcome::Skipped(Mission)));
-    // Where it was told it did not come, which is a judgement of the input behind those of what is expected.
+    // With its instant known, the input is judged as not carried out. That judgement comes after the expectations.
     assert_eq!(told.len(), untold.len() + 1);
     assert!(
         told[told.len() - 2].is_met() && matches!(told[told.len() - 1], Outcome::NeverJudged(_)),

@@ -1,4 +1,4 @@
-//! What is recorded of a flight: samples, happenings, guards and plans.
+//! The record of a flight: samples, happenings, guards and plans.
 
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
@@ -12,11 +12,11 @@ use crate::telemetry::{Guard, GuardName, ModeFlags, NavState, PlanSource};
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sample {
     pub time: SimTime,
-    /// The signals, SI and degrees; NaN = unknown at the moment.
+    /// The signals, SI and degrees; NaN = unknown at this time.
     pub values: [f32; Signal::COUNT],
-    /// The flags, a bit each.
+    /// The flags, one bit each.
     pub flags: u16,
-    /// State of the machine.
+    /// The state of the state machine.
     pub state: NavState,
     /// Index of the current waypoint.
     pub wp: u8,
@@ -36,36 +36,36 @@ impl Sample {
         self.flags & (1 << flag as u8) != 0
     }
 
-    /// True place north and east of the boot place, m.
+    /// Returns the true position north and east of the boot place, m.
     pub fn place(&self) -> [f64; 2] {
         [self.value(Signal::North), self.value(Signal::East)]
     }
 }
 
-/// How near a guard came to firing while a state lasted.
+/// The closest approach of a guard to firing during a state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NearestGuard {
-    /// The guard at its best.
+    /// The guard at its closest.
     pub guard: Guard,
     pub time: SimTime,
 }
 
-/// A stay in a state, with the guards that were looked at.
+/// A stay in a state, with the guards that were checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stay {
     pub since: SimTime,
     pub state: NavState,
     pub wp: u8,
-    /// The guards at their best.
+    /// The guards at their closest.
     pub guards: Vec<NearestGuard>,
 }
 
 /// A plan of a flight.
 #[derive(Debug, Clone)]
 pub struct KnownPlan {
-    /// From when on it counts.
+    /// The time from which it is active.
     pub since: SimTime,
-    /// Where it comes from.
+    /// Its origin.
     pub source: PlanSource,
     pub plan: FlightPlan,
 }
@@ -81,13 +81,13 @@ pub struct Trace {
     pub stays: Vec<Stay>,
     /// Plans: the scenario's own, then those that became active.
     pub plans: Vec<KnownPlan>,
-    /// Counts north and east from the boot place.
+    /// The local frame, north and east from the boot place.
     pub frame: Option<LocalFrame>,
     pub engaged_at: Option<SimTime>,
 }
 
 impl Trace {
-    /// Nothing recorded yet of a flight of this plan.
+    /// Creates an empty record for a flight of this plan.
     pub fn new(plan: FlightPlan, frame: Option<LocalFrame>) -> Self {
         Self {
             samples: Vec::new(),
@@ -99,7 +99,7 @@ impl Trace {
         }
     }
 
-    /// One sample in which nothing is known: measures of several flights are compared on it.
+    /// Creates a record of one sample with only unknown values. Comparisons of several flights are evaluated on it.
     pub(super) fn of_nothing() -> Self {
         let sample = Sample {
             time: SimTime::ZERO,
@@ -114,26 +114,26 @@ impl Trace {
         Self { samples: vec![sample], ..Self::new(FlightPlan::default(), None) }
     }
 
-    /// The first sample at or after a time, µs since boot.
+    /// Returns the first sample at or after a time, µs since boot.
     pub fn index_at(&self, time_us: i64) -> Option<usize> {
         let index = self.samples.partition_point(|sample| (sample.time.0 as i64) < time_us);
         (index < self.samples.len()).then_some(index)
     }
 
-    /// When the record ends.
+    /// Returns the end of the record.
     pub fn end(&self) -> SimTime {
         let sampled = self.samples.last().map_or(SimTime::ZERO, |sample| sample.time);
         self.happenings.last().map_or(sampled, |happening| happening.time.max(sampled))
     }
 
-    /// The plan of an origin that counts at an instant: the newest that was active until then, else the first.
+    /// Returns the plan of an origin at an instant: the newest one active by then, else the first.
     pub fn plan(&self, source: PlanSource, at: SimTime) -> Option<&FlightPlan> {
         let of_source = || self.plans.iter().filter(|known| known.source == source);
         let known = of_source().rfind(|known| known.since <= at).or_else(|| of_source().next());
         known.map(|known| &known.plan)
     }
 
-    /// Place of a waypoint of the plan of an origin at an instant, m north and east of the boot place.
+    /// Returns the position of a waypoint of the plan of an origin at an instant, m north and east of the boot place.
     pub fn waypoint(&self, index: u8, source: PlanSource, at: SimTime) -> Option<[f64; 2]> {
         let plan = self.plan(source, at)?;
         let position = plan.waypoints.get(usize::from(index))?.position;
@@ -142,18 +142,18 @@ impl Trace {
         Some([enu.y, enu.x])
     }
 
-    /// Seconds since the first engagement, or since boot when there was none.
+    /// Returns the seconds since the first engagement, or since boot if there was none.
     pub fn seconds(&self, time: SimTime) -> f64 {
         time.as_secs_f64() - self.engaged_at.map_or(0.0, SimTime::as_secs_f64)
     }
 
-    /// A time as people read it: `34.2 s`, counted as [`Self::seconds`], with `after boot` when that is so.
+    /// Returns a time for people: `34.2 s`, counted as in [`Self::seconds`], with `after boot` if that applies.
     pub fn shown_time(&self, time: SimTime) -> String {
         let from = if self.engaged_at.is_some() { "" } else { " after boot" };
         format!("{:.2} s{from}", self.seconds(time))
     }
 
-    /// Notes how near the guards of a state came.
+    /// Notes the closest approach of the guards of a state to firing.
     pub fn note_guards(&mut self, time: SimTime, state: NavState, wp: u8, guards: &[Guard]) {
         if self.stays.last().is_none_or(|stay| stay.state != state || stay.wp != wp) {
             self.stays.push(Stay { since: time, state, wp, guards: Vec::new() });
@@ -171,9 +171,9 @@ impl Trace {
         }
     }
 
-    /// Of the guards that did not fire in a stay, the one that would have ended it in the usual way, at its best.
+    /// Returns the guard that did not fire in a stay but came closest, among those that end the state in the usual way.
     pub fn nearest_guard(stay: &Stay) -> Option<&NearestGuard> {
-        /// Guards that end a mission early: that they did not fire is no news.
+        /// Guards that end a mission early. It is normal that they do not fire.
         const PROTECTION: [GuardName; 5] =
             [GuardName::Fix, GuardName::Plan, GuardName::Fence, GuardName::NoProgress, GuardName::Flyaway];
         stay.guards
@@ -182,8 +182,8 @@ impl Trace {
             .max_by(|a, b| share(&a.guard).total_cmp(&share(&b.guard)))
     }
 
-    /// A number that two flights share when all samples and happenings are the same to the last bit. It is compared within
-    /// a run only: processors differ.
+    /// Returns a number that is equal for two flights whose samples and happenings are the same to the last bit. It
+    /// is compared only within one run, because processors differ.
     pub fn hash(&self) -> u64 {
         let mut hasher = DefaultHasher::new();
         for sample in &self.samples {
@@ -199,7 +199,7 @@ impl Trace {
     }
 }
 
-/// How far a guard is from firing, as a share of its limit.
+/// Returns the margin of a guard as a share of its limit.
 fn share(guard: &Guard) -> f64 {
     guard.margin() / guard.limit.abs().max(1e-3)
 }

@@ -1,4 +1,4 @@
-//! Reads the scenarios that were named.
+//! Reads the named scenarios.
 
 use std::path::{Path, PathBuf};
 
@@ -11,24 +11,24 @@ use crate::scenario::{self, BuiltinFiles, BuiltinScenario, Files, SCENARIOS, Sce
 
 #[derive(Debug)]
 pub(super) struct Loaded {
-    /// The scenarios in the order in which they were named.
+    /// The scenarios in the order of the arguments.
     pub(super) scenarios: Vec<Scenario>,
     /// The files that were read.
     pub(super) files: Vec<PathBuf>,
-    /// Slow scenarios that were left out.
+    /// The number of slow scenarios that were left out.
     pub(super) left_out: usize,
-    /// The seeds are those of the command line.
+    /// `true` if the seeds come from the command line.
     pub(super) seeds_are_given: bool,
 }
 
-/// Where a scenario comes from.
+/// The source of a scenario.
 enum Source {
     Builtin(BuiltinScenario),
     File(PathBuf),
     Stdin,
 }
 
-/// Reads what the arguments name; all problems of all files are reported together.
+/// Reads the scenarios in the arguments. All problems of all files are reported together.
 pub(super) fn load(args: &CheckArgs) -> Result<Loaded, AppError> {
     let mut loaded = Loaded {
         scenarios: Vec::new(),
@@ -49,14 +49,14 @@ pub(super) fn load(args: &CheckArgs) -> Result<Loaded, AppError> {
     if problems.is_empty() { Ok(loaded) } else { Err(AppError::input(problems.join("\n"))) }
 }
 
-/// Reads the scenario of a name, as `open` takes it; a seed takes the place of those of the file.
+/// Reads the scenario with a name, as for `open`. A seed replaces those of the file.
 pub(in crate::app) fn load_one(name: &str, seed: Option<u64>) -> Result<Scenario, AppError> {
     let (source, _) = source(name)?;
-    // Only one of them is opened.
+    // `open` shows only one of the flights, so the user's limit does not apply.
     read(&source, seed.as_ref().map(std::slice::from_ref), MOST_FLIGHTS as usize, &mut Vec::new())
 }
 
-/// What the arguments name, and whether a scenario itself was named.
+/// Returns the sources in the arguments, each with `true` if the argument is the scenario itself.
 fn sources(args: &CheckArgs) -> Result<Vec<(Source, bool)>, AppError> {
     if args.what.is_empty() {
         return Ok(SCENARIOS.iter().map(|&scenario| (Source::Builtin(scenario), false)).collect());
@@ -91,7 +91,7 @@ fn source(name: &str) -> Result<(Source, bool), AppError> {
     )))
 }
 
-/// The scenarios of a directory, in the order of their names; plans and other TOML files beside them are passed over.
+/// Returns the scenarios of a directory, in the order of their names. Skips plans and other TOML files.
 fn in_directory(directory: &Path) -> Result<Vec<PathBuf>, AppError> {
     let name = directory.display();
     let cannot = |error: std::io::Error| AppError::environment(format!("cannot read {name}: {error}"));
@@ -113,7 +113,7 @@ fn in_directory(directory: &Path) -> Result<Vec<PathBuf>, AppError> {
     Ok(files)
 }
 
-/// Whether a TOML file says that it is a scenario: it begins with its format, or it expects something.
+/// Returns `true` if a TOML file is a scenario: it begins with its format, or it has an expectation.
 fn is_scenario(text: &str) -> bool {
     if text.lines().any(|line| line.trim_start().starts_with("[[expect]]")) {
         return true;
@@ -151,7 +151,7 @@ fn read(
     scenario.map_err(|errors| AppError::input(format::report(&errors).trim_end().to_owned()))
 }
 
-/// Files that are named from beside a scenario.
+/// Reads files with names relative to the place of a scenario.
 struct Beside<'f> {
     place: PathBuf,
     read: &'f mut Vec<PathBuf>,

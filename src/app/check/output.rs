@@ -1,4 +1,4 @@
-//! Where the results go: sentences on standard output, and the files that were asked for.
+//! The outputs for the results: sentences on standard output, and the requested files.
 
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -15,11 +15,11 @@ use crate::record::check::{
     CheckedFlight, Summary, flight_line, flight_lines, junit, markdown, summary_line, summary_lines,
 };
 
-/// Where the results go.
+/// The outputs for the results.
 pub(super) struct Output {
-    /// Sentences, unless JSON goes to standard output.
+    /// `true` for sentences, unless JSON goes to standard output.
     sentences: bool,
-    /// Somebody still reads standard output.
+    /// `true` while standard output has a reader.
     is_read: bool,
     json: Option<Json>,
     junit: Option<FinalOutput>,
@@ -27,14 +27,14 @@ pub(super) struct Output {
     progress: Progress,
 }
 
-/// Where the JSON lines go.
+/// The output for the JSON lines.
 enum Json {
     Stdout,
-    /// All of them at the end.
+    /// A file that gets all lines at the end.
     File(FinalOutput, String),
 }
 
-/// The files that the options name for output, with their options.
+/// Returns the output files of the options, with their options.
 fn files(args: &CheckArgs) -> impl Iterator<Item = (&'static str, &Path)> {
     let json = match &args.json {
         Some(OutputFile::File(path)) => Some(path),
@@ -45,7 +45,7 @@ fn files(args: &CheckArgs) -> impl Iterator<Item = (&'static str, &Path)> {
         .filter_map(|(option, path)| Some((option, path?.as_path())))
 }
 
-/// Whether the outputs may be written where the options say.
+/// Checks that no output replaces a file that must be kept.
 fn claim(args: &CheckArgs, inputs: &[PathBuf]) -> Result<(), AppError> {
     let mut kept = KeptFiles::default();
     for file in inputs {
@@ -55,7 +55,7 @@ fn claim(args: &CheckArgs, inputs: &[PathBuf]) -> Result<(), AppError> {
     files(args).try_for_each(|(option, path)| kept.claim(option, path))
 }
 
-/// Removes the results of an earlier run: this one may not come to be flown.
+/// Removes the results of an earlier run, because this run may fail before it flies.
 pub(super) fn remove_earlier(args: &CheckArgs) -> Result<(), AppError> {
     let inputs: Vec<PathBuf> = args.what.iter().map(PathBuf::from).collect();
     claim(args, &inputs)?;
@@ -64,10 +64,10 @@ pub(super) fn remove_earlier(args: &CheckArgs) -> Result<(), AppError> {
 }
 
 impl Output {
-    /// Opens what the options name; no scenario may be among it.
+    /// Opens the outputs of the options; an output must not be a scenario.
     pub(super) fn open(args: &CheckArgs, loaded: &Loaded) -> Result<Self, AppError> {
         claim(args, &loaded.files)?;
-        // Known before the flights, not after.
+        // Problems are reported before the flights.
         let begin = |path: &Option<PathBuf>| path.as_deref().map(FinalOutput::begin).transpose();
         let json = match &args.json {
             None => None,
@@ -84,7 +84,7 @@ impl Output {
         })
     }
 
-    /// Tells of a flight.
+    /// Reports a flight.
     pub(super) fn flight(&mut self, flight: &CheckedFlight, done: usize, all: usize) -> Result<(), AppError> {
         self.progress.clear();
         self.lines(&flight_lines(flight))?;
@@ -93,13 +93,13 @@ impl Output {
         Ok(())
     }
 
-    /// Tells on standard error what is to be known meanwhile.
+    /// Prints a sentence on standard error during the run.
     pub(super) fn tell(&mut self, sentence: &str) {
         self.progress.clear();
         error::tell(sentence);
     }
 
-    /// Tells how the run ended, and writes the files.
+    /// Reports the end of the run, and writes the files.
     pub(super) fn finish(&mut self, summary: &Summary) -> Result<(), AppError> {
         self.progress.clear();
         self.lines(&summary_lines(summary))?;
@@ -110,7 +110,7 @@ impl Output {
         };
         let to =
             |file: Option<FinalOutput>, text: String| file.map_or(Ok(()), |file| file.write(text.as_bytes()));
-        // One that cannot be written keeps no other from being written.
+        // Each file is written, even if another one fails.
         let reports =
             [json, to(self.junit.take(), junit(summary)), to(self.markdown.take(), markdown(summary))];
         reports.into_iter().collect()
@@ -141,8 +141,8 @@ impl Output {
     }
 }
 
-/// Prints lines; says whether somebody still reads them. A reader that went away has seen enough; the run and its exit code
-/// go on.
+/// Prints lines. Returns `true` while there is a reader. If the reader went away, the run continues and keeps its exit
+/// code.
 fn print<'a>(lines: impl Iterator<Item = std::borrow::Cow<'a, str>>) -> Result<bool, AppError> {
     let text: String = lines.flat_map(|line| [line, "\n".into()]).collect();
     match PatientOutput(std::io::stdout()).write_all(text.as_bytes()) {

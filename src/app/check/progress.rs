@@ -1,4 +1,4 @@
-//! How far the run is, on a terminal only.
+//! The progress of a run, on a terminal only.
 
 use std::io::{IsTerminal as _, Write as _};
 
@@ -19,7 +19,7 @@ impl Progress {
         Self { is_wanted: std::io::stderr().is_terminal(), is_shown: false }
     }
 
-    /// Takes the bar away, so that lines can be printed.
+    /// Removes the bar, so that lines can be printed.
     pub(super) fn clear(&mut self) {
         if self.is_shown {
             PatientOutput(std::io::stderr()).write_all(b"\r\x1b[K").ok();
@@ -27,7 +27,7 @@ impl Progress {
         }
     }
 
-    /// Shows how many of all flights are flown.
+    /// Shows the number of finished flights.
     pub(super) fn show(&mut self, done: usize, all: usize, scenario: &str) {
         if !self.is_wanted || done >= all {
             return;

@@ -1,4 +1,4 @@
-//! Flies the cases with a firmware outside: one after the other, in real time, each from a start of its own.
+//! Flies the cases with a remote firmware: one after the other, in real time, each with a new start.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -13,13 +13,13 @@ use crate::record::check::CheckedFlight;
 use crate::scenario::{self, Air, Case, CaseFlight};
 use crate::session::{Event, Unset};
 
-/// What is said when flights cannot be prepared again and again.
+/// The message if flights cannot be prepared repeatedly.
 const NO_MORE: &str = "Two flights in a row could not be prepared: the others are not tried.";
 
-/// A firmware that runs already is not started anew for each flight.
+/// Refuses several flights with a firmware that is already running, because it is not restarted for each flight.
 ///
 /// # Errors
-/// When it was asked for more than one.
+/// Returns an error if more than one flight is requested.
 pub(super) fn refuse_many(firmware: &RemoteFirmware, flights: usize, watch: bool) -> Result<(), AppError> {
     if firmware.executable.is_some() || (flights == 1 && !watch) {
         return Ok(());
@@ -31,8 +31,8 @@ pub(super) fn refuse_many(firmware: &RemoteFirmware, flights: usize, watch: bool
     )))
 }
 
-/// Flies all of them. A flight that cannot be prepared is one that failed, and the run goes on; two of them in a row, for
-/// which the surroundings are to blame, end it. Gives the exit code when there was such trouble.
+/// Flies all jobs. A flight that cannot be prepared has failed, and the run goes on. Two such flights in a row, with
+/// a cause in the environment, end the run. Returns the exit code if there was such a problem.
 pub(super) fn all(
     loaded: &Loaded,
     jobs: &[Job],
@@ -53,7 +53,7 @@ pub(super) fn all(
                     is_in_trouble = false;
                     flight
                 }
-                // Interrupted in the air: it says nothing.
+                // Interrupted in the air: there is no result.
                 Err(Stopped::Interrupted) => return trouble,
                 Err(Stopped::Failed(AppError { code, message })) => {
                     is_in_trouble = code >= error::ENVIRONMENT;
@@ -74,7 +74,7 @@ pub(super) fn all(
     trouble
 }
 
-/// Flies and judges one.
+/// Flies and judges one flight.
 fn fly(
     case: &Case,
     air: &Air,
@@ -119,8 +119,8 @@ fn fly(
     Ok(CheckedFlight { problem, ..run::judged(checked, case, flight.finish(), &started) })
 }
 
-/// Why the flight is not that of the case: nothing was set, or not what the case itself wants. Lines of a settings file, of
-/// which another version of the firmware refuses some, are told only.
+/// Returns the reason why the flight does not match the case: no line was set, or not all lines of the case itself.
+/// Refused lines of a settings file are only reported, because other versions of the firmware refuse some of them.
 fn not_as_wanted(case: &Case, unset: &Unset) -> Option<String> {
     match unset {
         Unset::Everything(why) => Some(why.clone()),
@@ -137,7 +137,7 @@ fn not_as_wanted(case: &Case, unset: &Unset) -> Option<String> {
     }
 }
 
-/// What a line sets: that of a setting without its value, another one whole.
+/// Returns the subject of a line: the name for a setting, the whole line otherwise.
 fn subject(line: &str) -> &str {
     line.split('=').next().unwrap_or_default().trim()
 }

@@ -1,4 +1,4 @@
-//! What the flights of a run have come to so far.
+//! The results of a run so far.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -6,27 +6,27 @@ use super::output::Output;
 use crate::app::AppError;
 use crate::record::check::CheckedFlight;
 
-/// The flights that are over, told as they end.
+/// The finished flights, which are reported as they end.
 pub(super) struct Results<'a> {
     output: Output,
     flights: Vec<CheckedFlight>,
-    /// Flights that were asked for.
+    /// The number of requested flights.
     wanted: usize,
-    /// The first that fails is the last.
+    /// `true` if the run stops at the first failure.
     fail_fast: bool,
-    /// Raised when no more are to be flown.
+    /// Set to stop further flights.
     stop: &'a AtomicBool,
-    /// Why they cannot be told any more.
+    /// The reason why flights can no longer be reported.
     problem: Option<AppError>,
 }
 
 impl<'a> Results<'a> {
-    /// Of none yet. `stop` is raised when no more are to be flown.
+    /// Creates empty results. `stop` is set to stop further flights.
     pub(super) fn new(output: Output, wanted: usize, fail_fast: bool, stop: &'a AtomicBool) -> Self {
         Self { output, flights: Vec::new(), wanted, fail_fast, stop, problem: None }
     }
 
-    /// Takes a flight, the `done`th that is over.
+    /// Adds a flight, the `done`th that is over.
     pub(super) fn flight(&mut self, flight: CheckedFlight, done: usize) {
         if let Err(error) = self.output.flight(&flight, done, self.wanted) {
             self.problem.get_or_insert(error);
@@ -38,20 +38,20 @@ impl<'a> Results<'a> {
         self.flights.push(flight);
     }
 
-    /// Tells on standard error what is to be known meanwhile.
+    /// Prints a sentence on standard error during the run.
     pub(super) fn tell(&mut self, sentence: &str) {
         self.output.tell(sentence);
     }
 
-    /// Whether no more are to be flown.
+    /// Returns `true` if there are no further flights.
     pub(super) fn is_stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// The flights, and where their summary goes.
+    /// Returns the flights, and the output for their summary.
     ///
     /// # Errors
-    /// When they could not be told.
+    /// Returns the error with which a flight could not be reported.
     pub(super) fn finish(self) -> Result<(Output, Vec<CheckedFlight>), AppError> {
         match self.problem {
             Some(problem) => Err(problem),

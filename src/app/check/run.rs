@@ -1,4 +1,4 @@
-//! Flies the cases on several threads and hands on the results in their order.
+//! Flies the cases on several threads and passes on the results in their order.
 #![allow(clippy::disallowed_methods, reason = "measures the wall time of flights, on threads of its own")]
 
 use std::collections::BTreeMap;
@@ -13,7 +13,7 @@ use crate::args::{CheckArgs, MOST_FLIGHTS};
 use crate::record::check::{CheckedFlight, Compared};
 use crate::scenario::{self, Air, Case, CaseFlight, Flown, Scenario};
 
-/// A flight to be flown: indices of its scenario, case and air, and which repetition it is.
+/// A flight to be flown: the indices of its scenario, case and air, and the number of the repetition.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Job {
     scenario: usize,
@@ -35,13 +35,13 @@ impl Stopwatch {
     }
 }
 
-/// Most expectations that are judged for each flight that is allowed: what became of them is kept to the end of the run.
+/// The most judged expectations for each allowed flight. Their outcomes are kept to the end of the run.
 const JUDGED_PER_FLIGHT: usize = 100;
 
-/// Refuses a run with more flights than its user allows, or with more results than memory should hold.
+/// Refuses a run with more flights than the user allows, or with too many results for the memory.
 ///
 /// # Errors
-/// How many there are, and what to do.
+/// Returns the number of flights and a suggestion.
 pub(super) fn refuse_too_many(loaded: &Loaded, args: &CheckArgs) -> Result<(), AppError> {
     let most = args.most_flights();
     let repetitions = args.repeat.unwrap_or(1) as usize;
@@ -70,7 +70,7 @@ pub(super) fn refuse_too_many(loaded: &Loaded, args: &CheckArgs) -> Result<(), A
     }))
 }
 
-/// All flights that the arguments ask for, in the order in which they are told.
+/// Returns all requested flights, in the order of their reports.
 pub(super) fn jobs(loaded: &Loaded, args: &CheckArgs) -> Vec<Job> {
     let mut jobs = Vec::new();
     for (scenario, read) in loaded.scenarios.iter().enumerate() {
@@ -87,12 +87,12 @@ pub(super) fn jobs(loaded: &Loaded, args: &CheckArgs) -> Vec<Job> {
     jobs
 }
 
-/// Whether the filter takes a case.
+/// Returns `true` if the case passes the filter.
 pub(super) fn is_wanted(scenario: &Scenario, case: &Case, args: &CheckArgs) -> bool {
     args.filter.as_ref().is_none_or(|text| format!("{} {}", scenario.name, case.name).contains(text.as_str()))
 }
 
-/// Flies all of them; `told` gets each result in the order of the jobs, with how many are flown.
+/// Flies all jobs. `told` gets each result in the order of the jobs, with the number of finished flights.
 pub(super) fn all(
     loaded: &Loaded,
     jobs: &[Job],
@@ -133,7 +133,7 @@ pub(super) fn all(
                 told_up_to += 1;
                 match flown {
                     Err(_) => return Err(AppError::internal("a flight panicked")),
-                    // Interrupted in the air: it says nothing.
+                    // Interrupted in the air: there is no result.
                     Ok(None) => {}
                     Ok(Some(flown)) => told(repetitions.compare(flown), arrived_count),
                 }
@@ -143,9 +143,9 @@ pub(super) fn all(
     })
 }
 
-/// Flies and judges one; `None` when it was interrupted.
+/// Flies and judges one flight; `None` if it was interrupted.
 fn one(loaded: &Loaded, job: Job, is_stopped: &impl Fn() -> bool) -> Option<CheckedFlight> {
-    /// Ticks between two looks at the interrupt.
+    /// The number of ticks between two checks for an interrupt.
     const SLICE: u32 = 4096;
     let (case, air) = job.of(loaded)?;
     let started = Stopwatch::start();
@@ -172,7 +172,7 @@ fn one(loaded: &Loaded, job: Job, is_stopped: &impl Fn() -> bool) -> Option<Chec
     Some(judged(checked, case, flight.finish(), &started))
 }
 
-/// The flight that was flown, judged.
+/// Returns the judged flight.
 pub(super) fn judged(flight: CheckedFlight, case: &Case, flown: Flown, started: &Stopwatch) -> CheckedFlight {
     let (judgements, measures) = scenario::judge(case, &flown);
     CheckedFlight {
@@ -191,13 +191,13 @@ pub(super) fn judged(flight: CheckedFlight, case: &Case, flown: Flown, started: 
 }
 
 impl Job {
-    /// Its case and air.
+    /// Returns the case and the air of the job.
     pub(super) fn of<'l>(&self, loaded: &'l Loaded) -> Option<(&'l Case, &'l Air)> {
         let case = loaded.scenarios.get(self.scenario)?.cases.get(self.case)?;
         Some((case, case.airs.get(self.air)?))
     }
 
-    /// What is known of it before it is flown.
+    /// Returns the facts that are known before the flight.
     pub(super) fn not_flown_yet(&self, loaded: &Loaded) -> Option<CheckedFlight> {
         let scenario = loaded.scenarios.get(self.scenario)?;
         let (case, air) = self.of(loaded)?;
@@ -216,14 +216,14 @@ impl Job {
     }
 }
 
-/// What the first repetition of a flight was like.
+/// The result of the first repetition of a flight.
 #[derive(Debug, Default)]
 struct Repetitions {
     first: Option<(u64, Vec<scenario::Judgement>)>,
 }
 
 impl Repetitions {
-    /// Says of a repetition whether it differs from the first.
+    /// Adds a problem to a repetition that differs from the first.
     fn compare(&mut self, mut flight: CheckedFlight) -> CheckedFlight {
         if flight.repetition == 0 {
             self.first = Some((flight.hash, flight.judgements.clone()));
@@ -239,8 +239,9 @@ impl Repetitions {
     }
 }
 
-/// What is expected of several flights together, for each combination of what is varied and each seed that all its cases
-/// have. Where they have none in common it was never judged, unless a filter has left out some of them.
+/// Judges the comparisons of several flights, for each combination of varied values and each seed that all its cases
+/// have. If the cases have no common seed, the comparison counts as never judged, unless a filter left out some of
+/// them.
 pub(super) fn compared(loaded: &Loaded, flights: &[CheckedFlight], is_filtered: bool) -> Comparisons {
     let mut compared = Vec::new();
     for scenario in loaded.scenarios.iter().filter(|scenario| !scenario.compares.is_empty()) {

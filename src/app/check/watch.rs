@@ -1,4 +1,4 @@
-//! Flies again when one of the files changes.
+//! Flies again after a change of one of the files.
 #![allow(clippy::disallowed_methods, reason = "looks at files from time to time")]
 
 use std::path::PathBuf;
@@ -11,7 +11,7 @@ use crate::app::error::{self, AppError};
 use crate::app::firmware::RemoteFirmware;
 use crate::args::CheckArgs;
 
-/// How often the files are looked at.
+/// The interval between two checks of the files.
 const INTERVAL: Duration = Duration::from_millis(200);
 
 /// Flies, waits for a change, and flies again, until a signal.
@@ -23,7 +23,7 @@ pub(super) fn run(
     if args.what.is_empty() {
         return Err(AppError::input("--watch needs files: built-in scenarios do not change"));
     }
-    // What was read last: a file that cannot be read now is waited for all the same.
+    // The files of the last run. A file that cannot be read now is watched, too.
     let mut files: Vec<PathBuf> = args.what.iter().map(PathBuf::from).collect();
     loop {
         let seen = stamps(&files);
@@ -53,7 +53,7 @@ pub(super) fn run(
     }
 }
 
-/// When the files were written last, and how large they are.
+/// Returns the times of the last change and the sizes of the files.
 fn stamps(files: &[PathBuf]) -> Vec<Option<(SystemTime, u64)>> {
     files
         .iter()

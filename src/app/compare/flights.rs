@@ -18,25 +18,25 @@ use crate::plan::format::PlanFile;
 use crate::record::compare::{Route, Track};
 use crate::session::{Event, SessionEvent, upload};
 
-/// Ticks between two looks at an interrupt.
+/// The number of ticks between two checks for an interrupt.
 const SLICE: u64 = 4096;
 
-/// What all flights start from.
+/// The common start of all flights.
 #[derive(Debug)]
 pub(super) struct Flights {
     plan: PlanFile,
     setup: FlightSetup,
     options: FlightOptions,
     route: Route,
-    /// Settings that come last.
+    /// Settings that are applied last.
     set: Vec<String>,
-    /// Times real time of a firmware outside.
+    /// The speed of a remote firmware, as a multiple of real time.
     speed: f64,
     interrupted: Arc<AtomicBool>,
 }
 
 impl Flights {
-    /// Reads the plan and the settings; what the user should know is added to `notices`.
+    /// Reads the plan and the settings, and adds messages for the user to `notices`.
     pub(super) fn new(
         args: &CompareArgs,
         compared: &[Compared],
@@ -50,11 +50,12 @@ impl Flights {
         notices.extend(plan.notes.iter().map(ToString::to_string));
         let mut setup =
             setup::from_args(&args.flight, PhysicsSource::Embedded, plan.clone(), Configuration::default())?;
-        // An executable starts without a configuration and gets the guide's settings: so does the embedded one beside it.
+        // An executable starts without a configuration and gets the guide's settings, so the embedded one gets them,
+        // too.
         if executable_flies {
             setup.plan.settings = guide_settings()?.into_iter().chain(setup.plan.settings).collect();
         }
-        // Two firmwares outside fly: only the radii of the embedded one are asked for, to draw the plan.
+        // With two remote firmwares, only the radii of the embedded one are needed, to draw the plan.
         let unheard = &mut Vec::new();
         let set =
             setup::set_of_embedded(&args.mission.set, if embedded_flies { &mut *notices } else { unheard });
@@ -74,17 +75,17 @@ impl Flights {
         })
     }
 
-    /// What the plan is called.
+    /// Returns the name of the plan.
     pub(super) fn plan_name(&self) -> &str {
         &self.plan.name
     }
 
-    /// The plan in metres.
+    /// Returns the plan in metres.
     pub(super) fn route(&self) -> Route {
         self.route.clone()
     }
 
-    /// Flies once; `None` when it was interrupted.
+    /// Flies once; `None` after an interrupt.
     pub(super) fn fly(&self, firmware: Option<&RemoteFirmware>) -> Result<Option<Track>, AppError> {
         match firmware {
             None => self.fly_embedded(),
@@ -111,14 +112,15 @@ impl Flights {
         }
     }
 
-    /// Each flight starts an executable anew, in an empty directory, as nothing else makes it forget the one before.
+    /// Flies a remote firmware. An executable is restarted for each flight in an empty directory, because only that
+    /// makes it forget the previous flight.
     fn fly_remote(&self, firmware: &RemoteFirmware) -> Result<Track, Stopped> {
         let setup = FlightSetup { remote_controller: true, ..self.setup.clone() };
         let mut vehicle = setup::build(setup, &mut Vec::new())?;
         let firmware = firmware.with_settings(&self.plan.settings, &self.set);
         let options =
             RunOptions { state: None, speed: self.speed, interrupted: Arc::clone(&self.interrupted) };
-        // That each starts without a configuration goes without saying.
+        // Every flight starts without a configuration, so this is not reported.
         let mut tell = |event: &Event| {
             if matches!(event.kind, SessionEvent::Remote(_)) {
                 told::tell(event);

@@ -1,21 +1,21 @@
-//! Where a comparison goes.
+//! The outputs of a comparison.
 
 use crate::app::output_file::FinalOutput;
 use crate::app::{AppError, error, setup};
 use crate::args::{CompareArgs, OutputFile};
 use crate::record::compare::Comparison;
 
-/// Where a comparison goes.
+/// The outputs of a comparison.
 #[derive(Debug)]
 pub(super) struct Outputs {
-    /// JSON stands on standard output in place of the table.
+    /// `true` if JSON goes to standard output instead of the table.
     json_on_stdout: bool,
     json: Option<FinalOutput>,
     svg: Option<FinalOutput>,
 }
 
 impl Outputs {
-    /// Sees that the files can be written, so that no flight is flown for nothing; they stay as they are.
+    /// Checks that the files can be written, so that no flight is wasted. The files stay unchanged.
     pub(super) fn prepare(args: &CompareArgs) -> Result<Self, AppError> {
         let json = match &args.json {
             Some(OutputFile::File(path)) => Some(path),
@@ -32,7 +32,7 @@ impl Outputs {
         })
     }
 
-    /// Writes it everywhere; what cannot be written keeps nothing else from being written.
+    /// Writes all outputs, even if one of them fails.
     pub(super) fn write(self, comparison: &Comparison) -> Result<(), AppError> {
         let json = format!("{}\n", comparison.json());
         let shown = match self.json_on_stdout {

@@ -1,4 +1,4 @@
-//! Takes down where a craft truly flies.
+//! Records the true positions of a craft.
 
 use nalgebra::Vector2;
 
@@ -8,24 +8,25 @@ use crate::signals::SimTime;
 use crate::telemetry::{Event, EventKind};
 use crate::vehicle::Vehicle;
 
-/// Between two samples, µs.
+/// The interval between two samples, µs.
 const INTERVAL_US: u64 = 50_000;
 
-/// A track that is being flown.
+/// A track during its flight.
 #[derive(Debug)]
 pub(super) struct Recorder {
     track: Track,
-    /// Altitude of the craft that stands at home, m.
+    /// Altitude of the craft on the ground at home, m.
     standing_m: f64,
-    /// When the pilot switched the autopilot on: a firmware outside tells of its engagement later than it engages.
+    /// The time at which the pilot switched the autopilot on. A remote firmware reports its engagement later than it
+    /// engages.
     switched_at: Option<SimTime>,
     was_switching: bool,
-    /// The craft touched the ground since it was looked at last.
+    /// `true` if the craft touched the ground since the last look.
     touched_down: bool,
 }
 
 impl Recorder {
-    /// Of a craft that stands at home.
+    /// Creates a recorder for a craft on the ground at home.
     pub(super) fn new(vehicle: &Vehicle) -> Self {
         let standing_m = place(vehicle).map_or(0.0, |(_, alt_m)| alt_m);
         Self {
@@ -43,7 +44,7 @@ impl Recorder {
         }
     }
 
-    /// Looks at the craft, once a tick.
+    /// Looks at the craft once in each tick.
     pub(super) fn look(&mut self, flight: &Flight) {
         let touched_down = std::mem::take(&mut self.touched_down);
         let vehicle = flight.vehicle();
@@ -53,7 +54,7 @@ impl Recorder {
             && !std::mem::replace(&mut self.was_switching, switching)
             && flight.engaged_at().is_none()
         {
-            // Again, when it was refused before.
+            // Starts again after a refusal.
             self.switched_at = Some(now);
             self.track.samples.clear();
         }
@@ -69,7 +70,7 @@ impl Recorder {
         }
     }
 
-    /// The track of a flight that is over.
+    /// Returns the track of a finished flight.
     pub(super) fn finish(self, flight: &Flight, end: FlightEnd) -> Track {
         let Some(engaged_at) = flight.engaged_at() else {
             let result = end.verdict.result.to_string();
@@ -85,7 +86,7 @@ impl Recorder {
     }
 }
 
-/// North and east of home and above it, m.
+/// Returns the position north and east of home and above it, m.
 fn place(vehicle: &Vehicle) -> Option<(Vector2<f64>, f64)> {
     let position = vehicle.world()?.truth().pos_enu;
     Some((Vector2::new(position.y, position.x), position.z))

@@ -1,4 +1,4 @@
-//! What a firmware outside is set to before it flies.
+//! The configuration of a remote firmware before a flight.
 
 use crate::app::AppError;
 use crate::firmware::cli::Interpreter;
@@ -7,15 +7,15 @@ use crate::firmware::{Firmware, FirmwareOptions};
 use crate::plan::builtin::{BuiltinPlan, DEMO};
 use crate::session::ProvisionLines;
 
-/// A row of `aux` that binds no switch ends like this.
+/// The end of a row of `aux` that binds no switch.
 const UNUSED: &str = "900 900 0 0";
 
-/// Without a trusted compass a craft that has not flown forward yet has no heading, and a SITL computes a magnetic field that
-/// points 2° east.
+/// Without a trusted compass, a craft has no heading until it first flies forward. The SITL computes a magnetic field
+/// that points 2° east.
 const COMPASS: [&str; 2] = ["set trust_mag = ON", "set mag_declination = 20"];
 
-/// The command lines for a firmware: these, and before them, for one without a configuration of its own, the guide's
-/// settings, a compass and, unless the user's lines bind switches, the starter modes.
+/// Returns the command lines for a firmware. For a firmware without a configuration of its own, the guide's settings
+/// and a compass come first, and the starter modes unless the user's lines bind switches.
 pub(super) fn lines(wanted: &ProvisionLines, is_fresh: bool) -> Result<ProvisionLines, AppError> {
     let mut lines = ProvisionLines { usual: Vec::new(), of_user: wanted.of_user.clone() };
     if is_fresh {
@@ -29,14 +29,14 @@ pub(super) fn lines(wanted: &ProvisionLines, is_fresh: bool) -> Result<Provision
     Ok(lines)
 }
 
-/// Those of the plan that the guide flies.
+/// Returns the settings of the plan that the guide flies.
 pub(in crate::app) fn guide_settings() -> Result<Vec<String>, AppError> {
     let missing = || AppError::internal("the demo plan is missing");
     let plan = BuiltinPlan::find(DEMO).and_then(|plan| plan.read().ok()).ok_or_else(missing)?;
     Ok(plan.settings)
 }
 
-/// The rows of `aux` that the embedded firmware gets at its first boot.
+/// Returns the rows of `aux` that the embedded firmware gets at its first boot.
 fn starter_modes() -> Vec<String> {
     let mut configuration = Configuration::default();
     configuration.starter_modes();

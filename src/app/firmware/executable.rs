@@ -1,4 +1,4 @@
-//! Whether a file is an executable that this machine can start, told before it is tried.
+//! The check that this machine can start a file, before the attempt.
 
 use std::fs::File;
 use std::io::Read as _;
@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 
 use crate::app::AppError;
 
-/// Bytes of an ELF header up to the machine.
+/// The bytes of an ELF header up to the machine.
 const HEADER: usize = 20;
-/// What each ELF file begins with.
+/// The first bytes of each ELF file.
 const MAGIC: [u8; 4] = [0x7f, b'E', b'L', b'F'];
-/// Machines by their number in an ELF header, as this program's own are called and as people call them.
+/// Machines with their number in an ELF header, their name in Rust and their usual name.
 const MACHINES: [(u16, &str, &str); 6] = [
     (3, "x86", "x86 (32 bits)"),
     (40, "arm", "ARM (32 bits)"),
@@ -20,10 +20,10 @@ const MACHINES: [(u16, &str, &str); 6] = [
     (243, "riscv64", "RISC-V"),
 ];
 
-/// The executable's absolute path, when it can be started here.
+/// Returns the absolute path of the executable, if this machine can start it.
 ///
 /// # Errors
-/// Why not, for exit code 3.
+/// Returns the reason why not, with exit code 3.
 pub(super) fn find(path: &Path) -> Result<PathBuf, AppError> {
     let name = path.display();
     let problem = |why: String| AppError::environment(format!("--firmware {name}: {why}"));
@@ -41,7 +41,7 @@ pub(super) fn find(path: &Path) -> Result<PathBuf, AppError> {
         return Err(problem(format!("it is not executable: chmod +x {name}, if it is a SITL build")));
     }
     let mut header = Vec::with_capacity(HEADER);
-    // What may be executed but not read is told by the attempt.
+    // For a file that may be executed but not read, the start shows the result.
     if let Ok(file) = File::open(&found)
         && file.take(HEADER as u64).read_to_end(&mut header).is_ok()
         && let Some(why) = other_machine(&header, std::env::consts::ARCH)
@@ -51,7 +51,7 @@ pub(super) fn find(path: &Path) -> Result<PathBuf, AppError> {
     Ok(found)
 }
 
-/// What was meant by a word that names no file.
+/// Returns a suggestion for a word that is not a file.
 fn guess(path: &Path) -> String {
     let word = path.to_str().unwrap_or_default();
     match crate::did_you_mean::closest(word, ["embedded", "attach"]) {
@@ -60,10 +60,11 @@ fn guess(path: &Path) -> String {
     }
 }
 
-/// Why an ELF file with this header cannot run on `here`, as half a sentence; other files are left to the system.
+/// Returns the reason why an ELF file with this header cannot run on `here`, as half a sentence. Other files are left
+/// to the system.
 fn other_machine(header: &[u8], here: &str) -> Option<String> {
     let (magic, rest) = header.split_at_checked(MAGIC.len())?;
-    // Byte order in the sixth byte, machine in the nineteenth and twentieth.
+    // The byte order is in the sixth byte, the machine in the nineteenth and twentieth.
     let (order, machine) = (*rest.get(1)?, [*rest.get(14)?, *rest.get(15)?]);
     if magic != MAGIC {
         return None;

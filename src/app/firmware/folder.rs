@@ -1,5 +1,5 @@
-//! The folder in which a firmware runs that keeps nothing: it is removed with the program, or at the next start when the
-//! program was killed.
+//! The folder of a firmware that keeps nothing. It is removed at the end of the program, or at the next start after a
+//! kill.
 
 use std::fs::{File, TryLockError};
 use std::io;
@@ -9,20 +9,20 @@ use std::path::{Path, PathBuf};
 use rustix::fs::{Mode, OFlags};
 use tempfile::TempDir;
 
-/// Start of the names of these folders.
+/// The start of the names of these folders.
 const PREFIX: &str = "betadeck-firmware-";
-/// The folder in it in which the firmware runs: a drop-in locks the one in which it runs itself.
+/// The subfolder in which the firmware runs. A drop-in locks its own working folder.
 const WORK: &str = "work";
-/// Folders that are tried when another program removes them as fast as they are made.
+/// The number of attempts while another program removes the folders as fast as they are created.
 const ATTEMPTS: usize = 10;
 
-/// A folder that is removed when it is dropped.
+/// A folder that is removed on drop.
 #[derive(Debug)]
 pub(in crate::app) struct FirmwareFolder {
-    /// Removed when it is dropped.
+    /// Removed on drop.
     _directory: TempDir,
     work: PathBuf,
-    /// Locked as long as it is open: the system unlocks it when the program ends in whatever way.
+    /// Locked while it is open. The system unlocks it when the program ends in any way.
     _lock: File,
 }
 
@@ -30,7 +30,7 @@ impl FirmwareFolder {
     pub(super) fn make() -> io::Result<Self> {
         for _ in 0..ATTEMPTS {
             let directory = TempDir::with_prefix(PREFIX)?;
-            // Another program that starts now may take it for a folder that was left, until it is locked.
+            // Until it is locked, another program that starts now may treat the folder as abandoned.
             let Ok(lock) = open(directory.path()) else { continue };
             let work = directory.path().join(WORK);
             if is_locked_here(&lock) && std::fs::create_dir(&work).is_ok() {
@@ -40,13 +40,13 @@ impl FirmwareFolder {
         Err(io::Error::other("other programs remove it"))
     }
 
-    /// The path of the folder in which the firmware runs.
+    /// Returns the path of the folder in which the firmware runs.
     pub(super) fn path(&self) -> &Path {
         &self.work
     }
 }
 
-/// Removes the folders of this user that a killed program left among the temporary files.
+/// Removes the temporary folders of this user that a killed program left.
 pub(in crate::app) fn sweep() {
     let Ok(entries) = std::fs::read_dir(std::env::temp_dir()) else { return };
     let user = rustix::process::geteuid().as_raw();
@@ -56,19 +56,19 @@ pub(in crate::app) fn sweep() {
         }
         let Ok(folder) = open(&entry.path()) else { continue };
         if folder.metadata().is_ok_and(|there| there.uid() == user) && is_locked_here(&folder) {
-            // Follows no link, neither in the place of the folder nor in it.
+            // This follows no link, neither instead of the folder nor inside it.
             std::fs::remove_dir_all(entry.path()).ok();
         }
     }
 }
 
-/// Opens a directory that no link leads to.
+/// Opens a directory, but not through a link.
 fn open(path: &Path) -> io::Result<File> {
     let flags = OFlags::RDONLY | OFlags::DIRECTORY | OFlags::NOFOLLOW | OFlags::CLOEXEC;
     Ok(File::from(rustix::fs::open(path, flags, Mode::empty())?))
 }
 
-/// Locks a folder; says whether no other program has. Some file systems know no locks.
+/// Locks a folder. Returns `false` if another program has locked it. Some file systems have no locks.
 fn is_locked_here(folder: &File) -> bool {
     !matches!(folder.try_lock(), Err(TryLockError::WouldBlock))
 }

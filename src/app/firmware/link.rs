@@ -1,4 +1,4 @@
-//! Opens the link to a firmware outside, and starts its program.
+//! Opens the link to a remote firmware, and starts its program.
 #![allow(clippy::disallowed_methods, reason = "a program is started and spoken with in wall time")]
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener, UdpSocket};
@@ -15,30 +15,31 @@ use crate::session::{Provision, RemoteEnds, RemoteLink};
 use crate::storage::state_file;
 use crate::vehicle::Vehicle;
 
-/// Where a firmware keeps its configuration below the state directory: not where ours is, which it would overwrite.
+/// The subfolder of the state directory for the firmware's configuration. It is not our own folder, because the
+/// firmware would overwrite our configuration.
 const DIRECTORY: &str = "firmware";
-/// The file in which it keeps it.
+/// The file with the firmware's configuration.
 const STORED: &str = "eeprom.bin";
-/// The file beside it that says by which executable it was made when it was set from here. A firmware writes its configuration at
-/// its first start already, and one of another layout begins anew.
+/// The file next to it. After a setup by betadeck it names the executable that made the configuration. A firmware
+/// already writes its configuration at its first start, and a firmware with another layout starts with defaults.
 const PROVISIONED: &str = "provisioned";
-/// Longest text of that file, bytes.
+/// The longest text of that file, bytes.
 const LONGEST_NOTE: u64 = 64 << 10;
 
 #[derive(Debug)]
 pub(in crate::app) struct OpenLink {
     /// The link, for the session or the flight.
     pub(in crate::app) link: RemoteLink,
-    /// It starts without a configuration of its own.
+    /// `true` if it starts without a configuration of its own.
     pub(in crate::app) is_fresh: bool,
-    /// Where it keeps its configuration, when it was started here.
+    /// The place of its configuration, if betadeck started it.
     pub(in crate::app) stored_in: Option<PathBuf>,
-    /// Its directory, when it lasts as long as this program.
+    /// Its directory, if that exists only as long as this program.
     pub(in crate::app) directory: Option<FirmwareFolder>,
 }
 
 impl OpenLink {
-    /// Where the firmware keeps its configuration, as a sentence.
+    /// Returns the place of the firmware's configuration, as a sentence.
     pub(in crate::app) fn notice(&self) -> Option<String> {
         let place = self.stored_in.as_ref()?.display();
         Some(match (&self.directory, self.is_fresh) {
@@ -49,13 +50,13 @@ impl OpenLink {
     }
 }
 
-/// Starts the program, or finds the one that runs, for `vehicle`, which its motors fly. Without a state directory it runs
-/// in one that ends with this program.
+/// Starts the program for `vehicle`, which its motors fly, or finds the running one. Without a state directory it
+/// runs in a folder that ends with this program.
 ///
-/// To be called on a tokio runtime.
+/// Must be called on a tokio runtime.
 ///
 /// # Errors
-/// When a port is not free, or the system starts nothing.
+/// Returns an error if a port is not free, or if the system cannot start the program.
 pub(in crate::app) fn open(
     firmware: &RemoteFirmware,
     vehicle: &Vehicle,
@@ -115,7 +116,7 @@ pub(in crate::app) fn open(
     Ok(OpenLink { link, is_fresh, stored_in, directory })
 }
 
-/// What tells an executable from others and from earlier builds of it.
+/// Returns a text that differs between executables and between builds of the same one.
 fn identity(program: &Path) -> String {
     let modified = std::fs::metadata(program).and_then(|file| file.modified()).ok();
     let since = modified.and_then(|modified| modified.duration_since(SystemTime::UNIX_EPOCH).ok());
@@ -129,7 +130,8 @@ fn start(program: PathBuf, arguments: Vec<String>, directory: PathBuf) -> Result
         .map_err(|error| AppError::environment(format!("cannot start a thread: {error}")))
 }
 
-/// The executable carries on without a port that is not free, and nobody would know why it hears nothing.
+/// Checks that the ports are free. The executable continues without a port that is taken, and would then receive
+/// nothing without a visible reason.
 fn check_free(tcp: SocketAddr, udp: &[u16]) -> Result<(), AppError> {
     let taken = |port: String, option: &str, error: std::io::Error| {
         AppError::environment(format!(

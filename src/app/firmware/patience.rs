@@ -1,39 +1,39 @@
-//! How long a firmware outside is waited for until it is ready.
+//! The time limit until a remote firmware is ready.
 
 use std::fmt;
 use std::time::{Duration, Instant};
 
-/// How long it may take from one answer to the next: a program that starts slowly, a `save` and its restart.
+/// The longest time between two answers, for a program that starts slowly, or a `save` and its restart.
 const SILENCE: Duration = Duration::from_secs(15);
-/// Most connections that it may take: one, and another for each restart.
+/// The most connections: one, and one more for each restart.
 const MOST_CONNECTIONS: u32 = 5;
 
 /// The wait for a firmware.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Patience {
     answers: u64,
-    /// When it answered last.
+    /// The time of the last answer.
     since: Instant,
 }
 
-/// Why it is waited for no longer.
+/// The reason for giving up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum NotReady {
     /// It has never answered.
     NeverAnswered,
-    /// It has answered, and does not any more.
+    /// It has answered before, but not any more.
     Silent,
-    /// Its connections end as soon as they are made.
+    /// Its connections end immediately.
     EndsConnections,
 }
 
 impl Patience {
-    /// The wait from now on.
+    /// Starts the wait now.
     pub(super) fn new(now: Instant) -> Self {
         Self { answers: 0, since: now }
     }
 
-    /// Whether it is over, with so many answers over so many connections until now.
+    /// Returns the reason to give up, if any, for this number of answers and connections so far.
     pub(super) fn look(&mut self, answers: u64, connections: u32, now: Instant) -> Option<NotReady> {
         if answers > self.answers {
             *self = Self { answers, since: now };
@@ -48,14 +48,14 @@ impl Patience {
     }
 }
 
-/// Why a firmware is not ready. `Display` gives a sentence that says what to do.
+/// The reason why a firmware is not ready. `Display` gives a sentence with a suggestion.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Unready<'a> {
-    /// What it is called.
+    /// The name of the firmware.
     pub(super) name: &'a str,
     /// The port of its command line and MSP.
     pub(super) tcp: u16,
-    /// Somebody else started it.
+    /// `true` if betadeck did not start it.
     pub(super) is_attached: bool,
     pub(super) why: NotReady,
 }

@@ -1,4 +1,4 @@
-//! Flies with a firmware outside in real time, without a session.
+//! Flies with a remote firmware in real time, without a session.
 #![allow(
     clippy::disallowed_methods,
     reason = "the firmware's clock is the wall clock, which paces the flight"
@@ -25,10 +25,10 @@ use crate::session::{
 };
 use crate::vehicle::{LateAnswer, Ticket, Vehicle};
 
-/// Most ticks between two exchanges.
+/// The most ticks between two exchanges.
 const SLICE: u64 = 50;
 
-/// A firmware outside under way. It ends with this.
+/// A remote firmware in operation. It ends on drop.
 #[derive(Debug)]
 pub(in crate::app) struct RemoteRun {
     link: RemoteLink,
@@ -38,14 +38,14 @@ pub(in crate::app) struct RemoteRun {
     interrupted: Arc<AtomicBool>,
     /// The port of its command line and MSP.
     tcp: u16,
-    /// Somebody else started it.
+    /// `true` if betadeck did not start it.
     is_attached: bool,
-    /// Behind the link, whose program runs in it.
+    /// Declared after the link, because the program of the link runs in this folder.
     _directory: Option<FirmwareFolder>,
     _runtime: Runtime,
 }
 
-/// Why a run came to no end of its own.
+/// The reason why a run did not finish.
 #[derive(Debug)]
 pub(in crate::app) enum Stopped {
     Interrupted,
@@ -58,10 +58,10 @@ impl From<AppError> for Stopped {
     }
 }
 
-/// What came of it, or nothing when it was interrupted.
+/// Returns the result, or `None` after an interrupt.
 ///
 /// # Errors
-/// The error by which it was stopped.
+/// Returns the error that stopped the run.
 pub(in crate::app) fn unless_interrupted<T>(result: Result<T, Stopped>) -> Result<Option<T>, AppError> {
     match result {
         Ok(done) => Ok(Some(done)),
@@ -70,28 +70,28 @@ pub(in crate::app) fn unless_interrupted<T>(result: Result<T, Stopped>) -> Resul
     }
 }
 
-/// How a run is flown.
+/// The options of a run.
 #[derive(Debug)]
 pub(in crate::app) struct RunOptions<'a> {
-    /// Where the firmware keeps its configuration; `None` = nowhere for long.
+    /// The place of the firmware's configuration; `None` = it is not kept.
     pub(in crate::app) state: Option<&'a Path>,
     pub(in crate::app) speed: f64,
     pub(in crate::app) interrupted: Arc<AtomicBool>,
 }
 
-/// What is seen of a flight.
+/// An observation of a flight.
 #[derive(Debug)]
 pub(in crate::app) enum Seen<'a> {
-    /// What the flight reports.
+    /// A report of the flight.
     Report(Report<'a>),
-    /// What is told of the firmware.
+    /// A report about the firmware.
     Told(Event),
     /// The flight after a tick.
     Ticked(&'a Flight),
 }
 
 impl RemoteRun {
-    /// Starts the firmware for `vehicle`, waits until it answers and is set, and gives it the plan.
+    /// Starts the firmware for `vehicle`, waits until it answers and is set up, and uploads the plan.
     pub(in crate::app) fn prepare(
         firmware: &RemoteFirmware,
         vehicle: &mut Vehicle,
@@ -110,7 +110,7 @@ impl RemoteRun {
         Ok(run)
     }
 
-    /// Starts the firmware for `vehicle`; what is to be known of it is added to `notices`.
+    /// Starts the firmware for `vehicle`, and adds messages for the user to `notices`.
     fn start(
         firmware: &RemoteFirmware,
         vehicle: &Vehicle,
@@ -139,7 +139,7 @@ impl RemoteRun {
         })
     }
 
-    /// Waits until the firmware answers and has told how it is set.
+    /// Waits until the firmware answers and its setup is reported.
     fn wait_until_ready(
         &mut self,
         vehicle: &mut Vehicle,
@@ -158,12 +158,12 @@ impl RemoteRun {
         Ok(())
     }
 
-    /// What the firmware was to be set to and is not.
+    /// Returns the part of the setup that failed, if any.
     pub(in crate::app) fn unset(&self) -> Option<&Unset> {
         self.link.unset()
     }
 
-    /// Gives the plan to the craft.
+    /// Uploads the plan to the craft.
     fn upload(
         &mut self,
         vehicle: &mut Vehicle,
@@ -204,7 +204,7 @@ impl RemoteRun {
         }
     }
 
-    /// A plan that was not taken: by the craft, or because the craft is not there any more.
+    /// Returns the error for a refused plan: the craft refused it, or the craft is gone.
     fn refused(&self, refusal: String) -> AppError {
         match self.link.state() {
             RemoteState::Ready => AppError::input(refusal),
@@ -212,7 +212,7 @@ impl RemoteRun {
         }
     }
 
-    /// The answer to a line; a line that is never answered is answered so by the link.
+    /// Returns the answer to a line. If no answer comes, the link gives one.
     fn answer(
         &mut self,
         vehicle: &mut Vehicle,
@@ -254,7 +254,7 @@ impl RemoteRun {
         }
     }
 
-    /// Lets time pass for a craft that stands.
+    /// Lets time pass for a craft on the ground.
     fn wait(
         &mut self,
         vehicle: &mut Vehicle,
@@ -277,13 +277,13 @@ impl RemoteRun {
         Ok(())
     }
 
-    /// Ticks that are due now.
+    /// Returns the number of ticks that are due now.
     pub(in crate::app) fn due(&mut self) -> u64 {
         let most = self.link.most_steps(self.step_us, self.pacer.speed(), Instant::now());
         self.pacer.due(self.started.elapsed(), SLICE.min(most))
     }
 
-    /// Exchanges with the firmware what came of the ticks, and gives what is told of it.
+    /// Exchanges the results of the ticks with the firmware, and returns the reports about it.
     pub(in crate::app) fn exchange(&mut self, vehicle: &mut Vehicle) -> Result<Vec<Event>, Stopped> {
         if self.interrupted.load(Ordering::Relaxed) {
             return Err(Stopped::Interrupted);

@@ -1,7 +1,7 @@
 use super::*;
 use crate::args::{PhysicsChoice, Speed};
 
-/// The choice of a command with these options.
+/// Returns the choice of a command with these options.
 fn choice(
     args: &FirmwareArgs,
     flight: &FlightArgs,

@@ -1,9 +1,9 @@
-//! What is told of a firmware outside on standard error.
+//! Messages about a remote firmware on standard error.
 
 use crate::app::error;
 use crate::session::{Event, RemoteNotice, SessionEvent};
 
-/// The sentence for the user; `None` for what its program prints, and for what is no notice.
+/// Returns the sentence for the user; `None` for the output of its program, and for events that are not notices.
 pub(in crate::app) fn sentence(event: &Event) -> Option<String> {
     match &event.kind {
         SessionEvent::Remote(RemoteNotice::Output(_)) => None,
@@ -13,7 +13,7 @@ pub(in crate::app) fn sentence(event: &Event) -> Option<String> {
     }
 }
 
-/// Tells it on standard error.
+/// Prints the sentence on standard error.
 pub(in crate::app) fn tell(event: &Event) {
     if let Some(sentence) = sentence(event) {
         error::tell(&sentence);

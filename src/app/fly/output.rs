@@ -1,4 +1,4 @@
-//! Where the reports of a headless flight go: lines, a track, and the last words on standard error.
+//! The outputs of a headless flight: lines, a track, and the last lines on standard error.
 
 use std::io::{BufWriter, Write};
 use std::path::Path;
@@ -17,21 +17,21 @@ use crate::session::Event;
 use crate::signals::SimTime;
 use crate::vehicle::Vehicle;
 
-/// What is told before a flight with a firmware outside. The files begin when it begins.
+/// The messages before a flight with a remote firmware. The files begin with the flight.
 #[derive(Debug)]
 pub(super) struct Prelude<'a> {
     args: &'a FlyArgs,
-    /// What the lines of JSON begin with.
+    /// The first events of the JSON lines.
     held: Vec<Event>,
 }
 
 impl<'a> Prelude<'a> {
-    /// Before the flight of these options.
+    /// Creates the messages before the flight of these options.
     pub(super) fn new(args: &'a FlyArgs) -> Self {
         Self { args, held: Vec::new() }
     }
 
-    /// Tells an event: as a sentence on standard output, or with JSON on standard error until the lines begin.
+    /// Reports an event: as a sentence on standard output, or, with JSON, on standard error until the lines begin.
     pub(super) fn event(&mut self, event: &Event) -> Result<(), AppError> {
         if self.args.json.is_some() {
             told::tell(event);
@@ -42,7 +42,7 @@ impl<'a> Prelude<'a> {
         Ok(())
     }
 
-    /// Opens the outputs: the flight begins.
+    /// Opens the outputs at the beginning of the flight.
     pub(super) fn open(self, vehicle: &Vehicle, plan: &PlanFile) -> Result<Output, AppError> {
         let mut output = Output::open(self.args, vehicle, plan)?;
         self.held.iter().try_for_each(|event| output.event(event))?;
@@ -51,8 +51,8 @@ impl<'a> Prelude<'a> {
     }
 }
 
-/// Whether the outputs may be written where the options say. The results of an earlier flight are removed when they all may:
-/// this one may not come to be flown.
+/// Checks that no output replaces a file that must be kept. If all outputs are allowed, removes the results of an
+/// earlier flight, because this flight may fail before it begins.
 pub(super) fn claim(args: &FlyArgs) -> Result<(), AppError> {
     let mut kept = setup::kept_files(&args.flight, Some(&args.plan));
     if let Some(OutputFile::File(path)) = &args.json {
@@ -65,7 +65,7 @@ pub(super) fn claim(args: &FlyArgs) -> Result<(), AppError> {
     Ok(())
 }
 
-/// The files that the options name for output.
+/// Returns the output files of the options.
 fn files(args: &FlyArgs) -> impl Iterator<Item = &Path> {
     let json = match &args.json {
         Some(OutputFile::File(path)) => Some(path.as_path()),
@@ -74,15 +74,15 @@ fn files(args: &FlyArgs) -> impl Iterator<Item = &Path> {
     json.into_iter().chain(args.gpx.as_deref())
 }
 
-/// Where the reports go.
+/// The outputs of the flight.
 pub(super) struct Output {
     lines: Option<Lines>,
-    /// JSON lines, or sentences.
+    /// `true` for JSON lines, `false` for sentences.
     json: bool,
     gpx: Option<GpxWriter<StreamedOutput>>,
 }
 
-/// Where the lines go.
+/// The output for the lines.
 enum Lines {
     Stdout(BufWriter<PatientOutput<std::io::Stdout>>),
     File(StreamedOutput),
@@ -98,7 +98,7 @@ impl Lines {
 }
 
 impl Output {
-    /// Opens what the options name.
+    /// Opens the outputs of the options.
     pub(super) fn open(args: &FlyArgs, vehicle: &Vehicle, plan: &PlanFile) -> Result<Self, AppError> {
         let lines = match &args.json {
             None | Some(OutputFile::Stdout) => {
@@ -144,14 +144,14 @@ impl Output {
         self.after(written)
     }
 
-    /// Lets a reader see what was written.
+    /// Flushes the lines to the reader.
     pub(super) fn flush(&mut self) -> Result<(), AppError> {
         let Some(lines) = &mut self.lines else { return Ok(()) };
         let written = lines.writer().flush();
         self.after(written)
     }
 
-    /// A reader that went away has seen enough; the flight and its exit code go on.
+    /// Handles the result of a write. If the reader went away, the flight continues and keeps its exit code.
     fn after(&mut self, written: std::io::Result<()>) -> Result<(), AppError> {
         match written {
             Ok(()) => Ok(()),
@@ -163,7 +163,7 @@ impl Output {
         }
     }
 
-    /// Writes a point of the track when a second is full.
+    /// Writes a point of the track at each full second.
     pub(super) fn track(&mut self, vehicle: &Vehicle) -> Result<(), AppError> {
         let Some(gpx) = &mut self.gpx else { return Ok(()) };
         if !vehicle.time().0.is_multiple_of(1_000_000) {
@@ -177,7 +177,7 @@ impl Output {
         gpx.offer(&GpxPoint { time: vehicle.time(), lat_deg, lon_deg, alt_m }).map_err(write_failed)
     }
 
-    /// Ends the files and says how the flight ended.
+    /// Ends the files and reports the end of the flight.
     pub(super) fn finish(mut self, time: SimTime, end: &End) -> Result<(), AppError> {
         if self.json {
             self.line(&json::end_line(time, end))?;

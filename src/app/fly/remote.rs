@@ -1,4 +1,4 @@
-//! A flight with a firmware outside, in real time.
+//! A flight with a remote firmware, in real time.
 #![allow(clippy::disallowed_methods, reason = "measures the wall time of the flight")]
 
 use std::time::Instant;
@@ -11,7 +11,7 @@ use crate::app::{AppError, setup};
 use crate::args::Speed;
 use crate::session::{Event, hazards};
 
-/// Prepares the firmware and flies; `None` when a signal came before the flight began.
+/// Prepares the firmware and flies; `None` if a signal came before the flight began.
 pub(super) fn fly(start: Start<'_>, firmware: &RemoteFirmware) -> Result<Option<Flown>, AppError> {
     let options = start.options();
     let Start { args, plan, mut vehicle, notices, interrupted } = start;
@@ -47,7 +47,7 @@ pub(super) fn fly(start: Start<'_>, firmware: &RemoteFirmware) -> Result<Option<
     let (end, failure) = match flown {
         Ok(end) => (end, None),
         Err(Stopped::Interrupted) => (flight.interrupt("stopped by a signal"), None),
-        // What was written until then ends as files of a flight do.
+        // The files end like those of a finished flight.
         Err(Stopped::Failed(error)) => (flight.interrupt(&error.message), Some(error)),
     };
     Ok(Some(Flown { end, wall: engaged.unwrap_or(started).elapsed(), output, failure }))

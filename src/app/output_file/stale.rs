@@ -1,4 +1,4 @@
-//! Results of an earlier run, which must not be taken for those of a run that cannot start.
+//! Results of an earlier run. They must not look like those of a run that cannot start.
 
 use std::ffi::OsString;
 use std::fs::File;
@@ -7,14 +7,14 @@ use std::path::{Path, PathBuf};
 
 use crate::storage;
 
-/// Most bytes of a file that are looked at.
+/// The most bytes of a file that are read.
 const LOOKED_AT: u64 = 1 << 20;
-/// The options that name files of results.
+/// The options for files of results.
 const OPTIONS: [&str; 4] = ["--json", "--junit", "--markdown", "--gpx"];
-/// The commands whose results these are.
+/// The commands that write these results.
 const COMMANDS: [&str; 2] = ["fly", "check"];
 
-/// Removes a file when an earlier run of this program has written its results into it; any other stays.
+/// Removes a file if it has the results of an earlier run of this program. All other files stay.
 pub(in crate::app) fn remove_results(path: &Path) {
     let target = storage::link_target(path);
     if holds_results(&target) {
@@ -22,7 +22,7 @@ pub(in crate::app) fn remove_results(path: &Path) {
     }
 }
 
-/// Does so with the files that a command line names which could not be understood.
+/// Does the same for the files in a command line that could not be parsed.
 pub(in crate::app) fn remove_results_of(arguments: &[OsString]) {
     let words: Vec<&str> = arguments.iter().map(|word| word.to_str().unwrap_or_default()).collect();
     if !words.get(1).is_some_and(|command| COMMANDS.contains(command)) {
@@ -40,7 +40,7 @@ pub(in crate::app) fn remove_results_of(arguments: &[OsString]) {
     }
 }
 
-/// Whether a regular file begins as the results of this program do.
+/// Returns `true` if a regular file begins like the results of this program.
 fn holds_results(path: &Path) -> bool {
     if !path.symlink_metadata().is_ok_and(|there| there.is_file()) {
         return false;

@@ -1,4 +1,4 @@
-//! Files that are written at the end, as a whole.
+//! Files that are written as a whole at the end.
 
 use std::fs::{File, OpenOptions, Permissions};
 use std::io::{self, BufWriter, ErrorKind, Write};
@@ -11,41 +11,41 @@ use super::{cannot_write, directory_of};
 use crate::app::AppError;
 use crate::storage::{self, state_file};
 
-/// An output that is written as a whole at the end. Until then a file that is there stays as it is.
+/// An output that is written as a whole at the end. Until then an existing file stays unchanged.
 #[derive(Debug)]
 pub(in crate::app) struct FinalOutput {
     path: PathBuf,
     place: Place,
-    /// Those of the file that was there.
+    /// The permissions of the existing file.
     permissions: Option<Permissions>,
 }
 
-/// Permissions of a new file, as far as the user's mask allows.
+/// The permissions of a new file, before the user's mask.
 const USUAL_MODE: u32 = 0o666;
 
-/// Where an output goes.
+/// The place of an output.
 #[derive(Debug)]
 enum Place {
-    /// A regular file, there or not yet, links followed.
+    /// A regular file, existing or not, after all links.
     Regular(PathBuf),
     /// A device, a pipe or an open descriptor.
     Stream(File),
 }
 
 impl FinalOutput {
-    /// The output to a path that was claimed; nothing is written yet.
+    /// Prepares the output to a claimed path; writes nothing yet.
     ///
     /// # Errors
-    /// Why it cannot be written.
+    /// Returns the reason why it cannot be written.
     pub(in crate::app) fn prepare(path: &Path) -> Result<Self, AppError> {
         let place = Place::of(path).map_err(|error| cannot_write(path, &error))?;
         Ok(Self { path: path.to_owned(), place, permissions: None })
     }
 
-    /// The same, without the file that is there: it holds the results of an earlier run.
+    /// Does the same and removes an existing file, which has the results of an earlier run.
     ///
     /// # Errors
-    /// Why it cannot be written.
+    /// Returns the reason why it cannot be written.
     pub(in crate::app) fn begin(path: &Path) -> Result<Self, AppError> {
         let mut output = Self::prepare(path)?;
         if let Place::Regular(target) = &output.place {
@@ -66,16 +66,16 @@ impl FinalOutput {
     }
 }
 
-/// An output that is written little by little under another name, and gets its own at the end.
+/// An output that is written step by step under another name, and gets its own name at the end.
 #[derive(Debug)]
 pub(in crate::app) struct StreamedOutput {
     path: PathBuf,
     writer: BufWriter<Stream>,
-    /// Where the temporary file goes.
+    /// The final place of the temporary file.
     target: Option<Target>,
 }
 
-/// A file that will be there, with the permissions of the one that was.
+/// A file to be created, with the permissions of the previous one.
 type Target = (PathBuf, Option<Permissions>);
 
 #[derive(Debug)]
@@ -85,10 +85,10 @@ enum Stream {
 }
 
 impl StreamedOutput {
-    /// Begins the output to a path that was claimed. A file that is there is removed: it holds the results of an earlier run.
+    /// Begins the output to a claimed path. Removes an existing file, which has the results of an earlier run.
     ///
     /// # Errors
-    /// Why it cannot be written.
+    /// Returns the reason why it cannot be written.
     pub(in crate::app) fn begin(path: &Path) -> Result<Self, AppError> {
         let begun = match Place::of(path) {
             Ok(Place::Stream(file)) => Ok((Stream::Direct(file), None)),
@@ -99,10 +99,10 @@ impl StreamedOutput {
         Ok(Self { path: path.to_owned(), writer: BufWriter::new(stream), target })
     }
 
-    /// Gives the file its name. Until then nothing is there.
+    /// Gives the file its name. Until then there is no file with that name.
     ///
     /// # Errors
-    /// Why it cannot be written.
+    /// Returns the reason why it cannot be written.
     pub(in crate::app) fn finish(self) -> Result<(), AppError> {
         let Self { path, writer, target } = self;
         let stream = writer.into_inner().map_err(io::IntoInnerError::into_error);
@@ -150,7 +150,7 @@ fn begin_at(target: PathBuf) -> io::Result<(Stream, Option<Target>)> {
     }
 }
 
-/// Removes the file that is there, or empties it where that cannot be; returns its permissions.
+/// Removes the existing file, or empties it if it cannot be removed. Returns its permissions.
 fn clear(target: &Path) -> io::Result<Option<Permissions>> {
     let Ok(there) = target.metadata() else { return Ok(None) };
     match std::fs::remove_file(target) {
@@ -160,7 +160,7 @@ fn clear(target: &Path) -> io::Result<Option<Permissions>> {
     Ok(Some(there.permissions()))
 }
 
-/// Whether the file may be written, but not its directory.
+/// Returns `true` if the error may come from the directory while the file itself can be written.
 fn is_of_directory(error: &io::Error) -> bool {
     matches!(
         error.kind(),
@@ -176,7 +176,7 @@ impl Place {
                 access(&target, Access::WRITE_OK)?;
                 Ok(Self::Regular(target))
             }
-            // What a descriptor has got already stays before it.
+            // Earlier output to a descriptor stays before this one.
             Ok(_) => Ok(Self::Stream(OpenOptions::new().append(true).open(path)?)),
             Err(error) if error.kind() == ErrorKind::NotFound => {
                 if target.as_os_str().as_encoded_bytes().ends_with(b"/") {
@@ -190,19 +190,19 @@ impl Place {
     }
 }
 
-/// Replaces a file as a whole, or creates it: it is never there in part.
+/// Replaces or creates a file as a whole. It never exists in part.
 pub(in crate::app) fn replace(path: &Path, contents: &[u8]) -> io::Result<()> {
     replace_with(path, contents, None)
 }
 
-/// The same; a new file gets these permissions.
+/// Does the same, with these permissions for a new file.
 fn replace_with(path: &Path, contents: &[u8], permissions: Option<Permissions>) -> io::Result<()> {
     let mut file = state_file::temporary_in(directory_of(path), USUAL_MODE)?;
     file.write_all(contents)?;
     name(file, path, permissions)
 }
 
-/// Gives a temporary file its name, with the permissions of the file that is there.
+/// Gives a temporary file its name, with the permissions of an existing file.
 fn name(file: NamedTempFile, path: &Path, permissions: Option<Permissions>) -> io::Result<()> {
     let there = path.metadata().ok().map(|there| there.permissions());
     if let Some(permissions) = there.or(permissions) {
@@ -213,7 +213,7 @@ fn name(file: NamedTempFile, path: &Path, permissions: Option<Permissions>) -> i
     File::open(directory_of(path))?.sync_all()
 }
 
-/// Whether a path leads through a directory in which the names are devices and open descriptors.
+/// Returns `true` if a path goes through a directory of devices and open descriptors.
 fn is_of_system(path: &Path) -> bool {
     const MOST_LINKS: usize = 40;
     let next = |path: &PathBuf| {
@@ -266,7 +266,7 @@ mod tests {
         std::fs::write(at("kept"), "before").expect("written");
         let protected = std::fs::Permissions::from_mode(0o400);
         std::fs::set_permissions(at("kept"), protected).expect("permitted");
-        // Nothing is protected from root.
+        // Root ignores the protection.
         if OpenOptions::new().write(true).open(at("kept")).is_err() {
             assert_eq!(FinalOutput::prepare(&at("kept")).expect_err("refused").code, 3);
         }
@@ -291,7 +291,7 @@ mod tests {
         let inode = file.metadata().expect("there").ino();
         (&file).write_all(b"first ").expect("written");
         let descriptor = format!("/dev/fd/{}", std::os::fd::AsRawFd::as_raw_fd(&file));
-        // Through a link of the user's, as /dev/stdout is one of the system's.
+        // This link belongs to the user; /dev/stdout is one of the system.
         let link = directory.path().join("stdout");
         std::os::unix::fs::symlink(&descriptor, &link).expect("a link");
         for path in [Path::new(&descriptor), &link] {

@@ -1,4 +1,4 @@
-//! A journal as a file that one program has locked.
+//! A journal file that is locked by one program.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, Write as _};
@@ -9,26 +9,26 @@ use crate::plan::edit::{Journal, JournalLine, Losses};
 use crate::storage::state_file::{self, Access};
 
 const ENDING: &str = "journal";
-/// Largest journal that is read, bytes: some hundred thousand edits.
+/// The largest journal that is read, bytes: some hundred thousand edits.
 const LARGEST: u64 = 64 << 20;
-/// Length from which a journal is compacted, bytes: its older edits become one.
+/// The length above which a journal is compacted, bytes: its older edits become one.
 const LONGEST: usize = 16 << 20;
-/// More journals of one plan than programs have it open.
+/// A number of journals that is larger than the number of programs with the same plan.
 const MOST: u32 = 1000;
 
-/// A journal that is being written.
+/// A journal in use.
 #[derive(Debug)]
 pub(super) struct JournalFile {
     path: PathBuf,
-    /// Locked as long as it is open.
+    /// Locked while it is open.
     file: File,
-    /// Length from which it is compacted, bytes.
+    /// The length above which it is compacted, bytes.
     longest: usize,
-    /// In a compacted file: the number there of every revision, and how many there are.
+    /// The new number of every revision in a compacted file, and the number of revisions there.
     numbers: Option<(Vec<Option<usize>>, usize)>,
 }
 
-/// A journal that nobody has locked, as it was read.
+/// An unlocked journal that was read.
 #[derive(Debug)]
 pub(super) struct Found {
     pub(super) file: JournalFile,
@@ -36,12 +36,12 @@ pub(super) struct Found {
     pub(super) losses: Losses,
 }
 
-/// What is in a directory of journals.
+/// The contents of a directory of journals.
 #[derive(Debug, Default)]
 pub(super) struct Journals {
-    /// Those that could be read, at least their beginning.
+    /// The journals that could be read, at least their beginning.
     pub(super) found: Vec<Found>,
-    /// Those of which nothing could be read.
+    /// The journals that could not be read at all.
     pub(super) set_aside: Vec<SetAside>,
 }
 
@@ -73,7 +73,7 @@ impl JournalFile {
         Self { path, file, longest: LONGEST, numbers: None }
     }
 
-    /// Opens a journal; `None` when another program has locked it, or it cannot be read now.
+    /// Opens a journal; `None` if another program has locked it, or if it cannot be read now.
     fn open(path: PathBuf) -> Option<Result<Found, SetAside>> {
         let file = state_file::open(&path, Access::Append).ok()?;
         lock(&file).ok()?;
@@ -97,16 +97,16 @@ impl JournalFile {
         &self.path
     }
 
-    /// Keeps a copy of the file as it is under another name.
+    /// Keeps a copy of the file under another name.
     ///
     /// # Errors
-    /// Why there is no copy: the file must stay as it is.
+    /// Returns the reason why there is no copy. The file must then stay unchanged.
     pub(super) fn set_copy_aside(&self) -> io::Result<PathBuf> {
         set_aside::copy(&self.path)
     }
 
-    /// Writes the whole journal anew, its older edits as one when it is too long; what is there stays until the new one
-    /// is complete.
+    /// Rewrites the whole journal. If it is too long, its older edits become one. The old file stays until the new
+    /// one is complete.
     pub(super) fn rewrite(&mut self, journal: &Journal) -> io::Result<()> {
         let text_of =
             |journal: &Journal| journal.lines().iter().map(JournalLine::to_text).collect::<String>();
@@ -119,7 +119,7 @@ impl JournalFile {
         }
         self.numbers = numbers;
         let there = state_file::read(&self.path, LARGEST);
-        // A hard link would let later lines appear in another file.
+        // With a hard link, later lines would appear in another file.
         if there.is_ok_and(|there| there.as_deref() == Some(text.as_bytes()))
             && !state_file::has_other_names(&self.file)
         {
@@ -129,7 +129,7 @@ impl JournalFile {
         Ok(())
     }
 
-    /// Appends a line that `journal` has taken; a part of one does not stay.
+    /// Appends a line that was applied to `journal`. A partly written line is removed.
     pub(super) fn append(&mut self, line: &JournalLine, journal: &Journal) -> io::Result<()> {
         let length = self.file.metadata()?.len();
         let Some(text) = self.numbered(line, journal).map(|line| line.to_text()) else {
@@ -143,7 +143,7 @@ impl JournalFile {
         })
     }
 
-    /// A line with the number that a revision has in the file; `None` when the file does not have it.
+    /// Returns a line with the number of the revision in the file; `None` if the file does not have that revision.
     fn numbered(&mut self, line: &JournalLine, journal: &Journal) -> Option<JournalLine> {
         let Some((numbers, count)) = &mut self.numbers else { return Some(line.clone()) };
         match line {
@@ -164,8 +164,8 @@ impl JournalFile {
 }
 
 impl Drop for JournalFile {
-    /// Frees the journal at once. Closing it is not enough: a child that is being started has its descriptor, too, and
-    /// would keep the lock until it runs.
+    /// Unlocks the journal at once. To close it is not enough, because a starting child process also has its
+    /// descriptor and would keep the lock until it runs.
     fn drop(&mut self) {
         self.file.unlock().ok();
     }
@@ -179,9 +179,9 @@ fn lock(file: &File) -> io::Result<()> {
     }
 }
 
-/// The journal of a plan that nobody has locked.
+/// Returns the unlocked journal of a plan.
 pub(super) fn find(directory: &Path, name: &str) -> Journals {
-    // All of them are looked at: a plan that was saved under another name kept its journal.
+    // All journals are read, because a plan that was saved under another name kept its journal.
     let mut journals = Journals::default();
     for opened in paths(directory).into_iter().filter_map(JournalFile::open) {
         match opened {
@@ -196,7 +196,7 @@ pub(super) fn find(directory: &Path, name: &str) -> Journals {
     journals
 }
 
-/// The journals with edits that were never saved, or that are damaged, which nobody has locked.
+/// Returns the unlocked journals that are damaged or have unsaved edits.
 pub(super) fn left_behind(directory: &Path) -> Journals {
     state_file::sweep(directory);
     let mut journals = Journals::default();
@@ -217,7 +217,7 @@ pub(super) fn left_behind(directory: &Path) -> Journals {
 fn paths(directory: &Path) -> Vec<PathBuf> {
     let Ok(entries) = std::fs::read_dir(directory) else { return Vec::new() };
     let is_journal = |path: &PathBuf| {
-        // Only what this program wrote: a FIFO would make it wait.
+        // Only files written by this program are opened: a FIFO would make it wait.
         let is_sound = path.symlink_metadata().is_ok_and(|there| there.is_file());
         is_sound && path.extension().is_some_and(|ending| ending == ENDING)
     };
@@ -227,7 +227,7 @@ fn paths(directory: &Path) -> Vec<PathBuf> {
     paths
 }
 
-/// The name of a plan's journals: the file's own name, and a checksum of its whole path (FNV-1a).
+/// Returns the name of a plan's journals: the file's own name, and a checksum of its whole path (FNV-1a).
 fn stem(name: &str) -> String {
     let sum = name.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |sum, byte| {
         (sum ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
@@ -249,7 +249,7 @@ mod tests {
             Journal { file: Some("a.toml".to_owned()), history: History::new(PlanDocument::default(), true) };
         let file = JournalFile::create(directory.path(), &journal).unwrap();
         assert!(find(directory.path(), "a.toml").found.is_empty(), "it is locked");
-        // A child has the descriptors of the program until it becomes another program.
+        // A child process has the descriptors of the program until it becomes another program.
         let inherited = file.file.try_clone().unwrap();
         drop(file);
         assert_eq!(find(directory.path(), "a.toml").found.len(), 1);
@@ -289,7 +289,7 @@ mod tests {
                 take(&mut journal, JournalLine::Moved(edit));
             }
         }
-        // Undo further back than the file goes, and edit from there.
+        // Undoes further back than the file goes, and edits from there.
         take(&mut journal, JournalLine::Moved(40));
         let mut history = journal.history.clone();
         let revision = history.commit("edit", named(1000)).unwrap();

@@ -1,4 +1,4 @@
-//! Plan files and directories as they are on disk.
+//! Plan files and directories on disk.
 
 use std::io::ErrorKind;
 use std::path::Path;
@@ -10,23 +10,23 @@ use crate::plan::format::{self, Format, PlanFile};
 use crate::storage::link_target;
 use crate::ui::editor::{Entry, Listing};
 
-/// What a file holds, to find out whether another program changed it: its time stamp and length do not show every change.
+/// The contents of a file. They show a change by another program; time stamp and length do not show every change.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Content {
-    /// Nothing is there, or nothing of it was seen.
+    /// There is no file, or it was not read.
     Missing,
     Text(String),
-    /// Something that is not read as a plan: why.
+    /// A file that cannot be read as a plan, with the reason.
     Unreadable(String),
 }
 
 impl Content {
-    /// Reads what is there now.
+    /// Reads the current contents.
     pub(super) fn of(path: &Path) -> Self {
         match path.metadata() {
             Err(error) if error.kind() == ErrorKind::NotFound => Self::Missing,
             Err(error) => Self::Unreadable(error.to_string()),
-            // A pipe would give what it has to whoever reads first.
+            // A pipe gives its contents only to the first reader.
             Ok(there) if !there.is_file() => Self::Unreadable("not a file".to_owned()),
             Ok(_) => match input_file::read(path) {
                 Ok(text) => Self::Text(text),
@@ -35,31 +35,31 @@ impl Content {
         }
     }
 
-    /// Whether something is there.
+    /// Returns `true` if the file exists.
     pub(super) fn is_there(&self) -> bool {
         *self != Self::Missing
     }
 
-    /// Whether this is the text that was seen before.
+    /// Returns `true` if this is the same text as before.
     pub(super) fn is_known_as(&self, seen: &Self) -> bool {
         matches!(self, Self::Text(_)) && self == seen
     }
 
-    /// Whether it is exactly what [`write`] makes of a document.
+    /// Returns `true` if it is exactly the output of [`write`] for a document.
     pub(super) fn is_written(&self, path: &Path, document: &PlanDocument) -> bool {
         let Self::Text(text) = self else { return false };
         Format::from_file_name(&path.display().to_string())
             .is_some_and(|format| *text == format::write(&PlanFile::from(document.clone()), format).text)
     }
 
-    /// Whether it is this document, as written here or by another program.
+    /// Returns `true` if it is this document, written here or by another program.
     pub(super) fn is_document(&self, path: &Path, document: &PlanDocument) -> bool {
         let Self::Text(text) = self else { return false };
         self.is_written(path, document) || parse(path, text).is_ok_and(|(there, _)| there == *document)
     }
 }
 
-/// Reads a plan; what the reader skipped, as sentences; the content it was read from.
+/// Reads a plan. Returns also sentences about the skipped parts, and the contents.
 pub(super) fn read(path: &Path) -> Result<(PlanDocument, Vec<String>, Content), String> {
     let text = input_file::read(path).map_err(|error| format!("{error}."))?;
     let (document, notes) = parse(path, &text)?;
@@ -80,8 +80,8 @@ fn parse(path: &Path, text: &str) -> Result<(PlanDocument, Vec<String>), String>
     Ok((file.into(), notes))
 }
 
-/// Writes a plan; what its format cannot carry, as sentences, and the content that was written. The file is replaced as
-/// a whole.
+/// Writes a plan and replaces the file as a whole. Returns sentences about the parts that the format cannot hold, and
+/// the written contents.
 pub(super) fn write(path: &Path, document: PlanDocument) -> Result<(Vec<String>, Content), String> {
     let name = path.display().to_string();
     let Some(format) = Format::from_file_name(&name) else {
@@ -89,7 +89,7 @@ pub(super) fn write(path: &Path, document: PlanDocument) -> Result<(Vec<String>,
     };
     let written = format::write(&PlanFile::from(document), format);
     let target = link_target(path);
-    // The directory would let it be replaced.
+    // The permissions of the directory would allow a replacement.
     if target.metadata().is_ok_and(|there| there.permissions().readonly()) {
         return Err(format!(
             "{name} is write-protected: save under another name, or allow it with chmod u+w."
@@ -100,7 +100,7 @@ pub(super) fn write(path: &Path, document: PlanDocument) -> Result<(Vec<String>,
     Ok((written.lost, Content::Text(written.text)))
 }
 
-/// The directories and plan files of a directory.
+/// Returns the directories and plan files of a directory.
 pub(super) fn list(directory: &Path) -> Result<Listing, String> {
     let cannot = |error: std::io::Error| format!("Cannot list {}: {error}.", directory.display());
     let directory = directory.canonicalize().map_err(cannot)?;

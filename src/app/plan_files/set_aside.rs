@@ -1,25 +1,25 @@
-//! Journals that cannot be read, or not as a whole, kept under another name that nothing replaces.
+//! Journals that cannot be read, or only in part, kept under another name that is never replaced.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-/// Ending of what is set aside.
+/// The ending of these files.
 const ENDING: &str = "bad";
-/// Most files of one name.
+/// The most files with the same name.
 const MOST: u32 = 1000;
 
-/// A journal of which nothing could be read.
+/// A journal that could not be read at all.
 #[derive(Debug)]
 pub(super) struct SetAside {
     journal: PathBuf,
-    /// Where it is now.
+    /// The current place of the journal.
     kept: io::Result<PathBuf>,
     why: String,
 }
 
 impl SetAside {
-    /// What happened, as a sentence.
+    /// Returns the event as a sentence.
     pub(super) fn sentence(&self) -> String {
         let Self { journal, kept, why } = self;
         let now = place(kept, journal);
@@ -27,7 +27,7 @@ impl SetAside {
     }
 }
 
-/// Where a journal is kept now, as the second half of a message.
+/// Returns the current place of a journal as the second half of a message.
 pub(super) fn place(kept: &io::Result<PathBuf>, journal: &Path) -> String {
     match kept {
         Ok(kept) => format!("It is kept as {}", kept.display()),
@@ -35,18 +35,18 @@ pub(super) fn place(kept: &io::Result<PathBuf>, journal: &Path) -> String {
     }
 }
 
-/// Gives a journal of which nothing can be read another name.
+/// Renames a journal that cannot be read at all.
 pub(super) fn away(journal: &Path, why: String) -> SetAside {
     let kept = copy(journal).and_then(|kept| std::fs::remove_file(journal).map(|()| kept));
     SetAside { journal: journal.to_owned(), kept, why }
 }
 
-/// Keeps what a journal holds now under a name that is free; gives the name.
+/// Copies a journal to a free name and returns that name.
 pub(super) fn copy(journal: &Path) -> io::Result<PathBuf> {
     for number in 1..=MOST {
         let ending = if number == 1 { ENDING.to_owned() } else { format!("{number}.{ENDING}") };
         let kept = journal.with_extension(ending);
-        // A second name takes no room on a full disk. Some file systems have only one name for a file.
+        // A second name takes no space on a full disk. Some file systems allow only one name for a file.
         let copied = match std::fs::hard_link(journal, &kept) {
             Err(error) if error.kind() != ErrorKind::AlreadyExists => copy_bytes(journal, &kept),
             linked => linked,

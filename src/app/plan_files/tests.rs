@@ -9,7 +9,7 @@ fn document(alt_cm: i32) -> PlanDocument {
     document
 }
 
-/// Edits a plan as the editor does.
+/// Edits a plan in the same way as the editor.
 fn edit(files: &mut PlanFiles, opened: &mut Opened, after: PlanDocument) {
     let change = opened.history.commit("edit", after).expect("a change").change().clone();
     let change = Box::new(change);
@@ -146,7 +146,7 @@ fn edits_that_a_full_disk_refused_are_kept_as_soon_as_there_is_room() {
     let mut files = PlanFiles::new(Some(directory.path()));
     let mut opened = files.start_with(None, document(1));
     edit(&mut files, &mut opened, document(2));
-    // As after a write that failed half way.
+    // Simulates a write that failed half way.
     let file = files.open.get_mut(&opened.id).unwrap();
     file.is_behind = true;
     let path = std::fs::read_dir(directory.path().join("plans")).unwrap().next().unwrap().unwrap().path();
@@ -173,7 +173,7 @@ fn a_journal_that_is_a_pipe_or_nonsense_does_not_hold_the_program_up() {
     assert!(PlanFiles::new(Some(directory.path())).recovered().is_empty());
 }
 
-/// Writes a plan as another program does.
+/// Writes a plan like another program.
 fn write_theirs(path: &Path, alt_cm: i32) {
     let theirs = crate::plan::format::write(&document(alt_cm).into(), crate::plan::format::Format::Toml).text;
     std::fs::write(path, theirs).unwrap();
@@ -198,7 +198,7 @@ fn read_it_again_shows_what_the_other_program_wrote_and_undo_what_i_had() {
         assert!(again.history.is_saved() && !again.recovered, "{:?}", again.notes);
         again.history.undo();
         assert_eq!(again.history.document(), &document(2), "my edit is not lost");
-        // The journal goes on behind it.
+        // The journal continues after it.
         let mut opened = open(&mut files, &path);
         edit(&mut files, &mut opened, document(10));
         assert!(matches!(save(&mut files, &mut opened, &path, false), FileReply::Saved { .. }));
@@ -270,7 +270,7 @@ fn a_write_protected_file_is_not_replaced() {
     assert_eq!(std::fs::read_to_string(&path).unwrap(), written);
 }
 
-/// Writes a plan over the bytes of the file, in a way that leaves its length, inode and time stamp.
+/// Writes a plan over the bytes of the file, and keeps its length, inode and time stamp.
 fn write_theirs_unseen(path: &Path, alt_cm: i32) {
     let before = path.metadata().unwrap();
     write_theirs(path, alt_cm);

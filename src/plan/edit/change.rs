@@ -1,4 +1,4 @@
-//! What an edit changes in a document, both ways.
+//! The change of a document by an edit, in both directions.
 
 use serde::{Deserialize, Serialize};
 
@@ -22,14 +22,14 @@ pub struct Change {
     waypoints: Option<Splice<Waypoint>>,
 }
 
-/// A value and what takes its place.
+/// A value and its replacement.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Replaced<T> {
     before: T,
     after: T,
 }
 
-/// A part of a list and what takes its place.
+/// A part of a list and its replacement.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Splice<T> {
     at: usize,
@@ -38,7 +38,7 @@ struct Splice<T> {
 }
 
 impl Change {
-    /// What makes `after` of `before`; `None` when they are equal.
+    /// Returns the change from `before` to `after`; `None` if they are equal.
     pub fn between(before: &PlanDocument, after: &PlanDocument) -> Option<Self> {
         (before != after).then(|| Self {
             name: Replaced::between(&before.name, &after.name),
@@ -49,7 +49,7 @@ impl Change {
         })
     }
 
-    /// The change that takes this one back.
+    /// Returns the change that undoes this one.
     pub fn inverse(&self) -> Self {
         Self {
             name: self.name.as_ref().map(Replaced::inverse),
@@ -60,7 +60,7 @@ impl Change {
         }
     }
 
-    /// The document after the change; `None` when the change is not one of this document.
+    /// Returns the document after the change; `None` if the change does not fit the document.
     pub fn apply(&self, document: &PlanDocument) -> Option<PlanDocument> {
         let waypoints = apply_splice(self.waypoints.as_ref(), &document.plan.waypoints)?;
         Some(PlanDocument {

@@ -1,18 +1,18 @@
-//! Everything of a plan that can be edited and saved.
+//! The parts of a plan that can be edited and saved.
 
 use crate::plan::FlightPlan;
 use crate::plan::format::{HomePosition, PlanFile};
 
-/// A plan as it is edited.
+/// A plan during editing.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PlanDocument {
     /// Name of the plan.
     pub name: String,
-    /// What the plan shows, for people; may be empty.
+    /// A description for people; may be empty.
     pub description: String,
-    /// Where the craft stands at boot, if the plan asks for a place.
+    /// The place of the craft at boot, if the plan gives one.
     pub home: Option<HomePosition>,
-    /// Settings the plan is made for, as `name = value`.
+    /// The settings for the plan, as `name = value`.
     pub settings: Vec<String>,
     pub plan: FlightPlan,
 }

@@ -1,4 +1,4 @@
-//! What takes a finding of the review away.
+//! Edits that resolve findings of the review.
 
 use nalgebra::Vector2;
 
@@ -8,26 +8,26 @@ use crate::plan::review::{Finding, Remedy, SteepLeg};
 use crate::plan::validate::{PlanFault, WaypointFault};
 use crate::plan::{HoldPattern, Waypoint, WaypointType};
 
-/// How far inside the fence a waypoint is moved, as a share of the fence: room for the turn.
+/// The distance from home to which a waypoint is moved, as a share of the fence. It leaves room for the turn.
 const INSIDE_FENCE: f64 = 0.95;
-/// Altitude to which a waypoint below the ground is raised, cm.
+/// The new altitude of a waypoint that was below the ground, cm.
 const RAISED_CM: i32 = 1000;
 
-/// Time of a HOLD that only waits for its altitude, ds; 0 would hold forever.
+/// The time of a HOLD that only waits for its altitude, ds; 0 would hold forever.
 const SHORTEST_HOLD_DS: u16 = 1;
-/// Time offered to a HOLD that lasts forever, ds.
+/// The time suggested for a HOLD that lasts forever, ds.
 const OFFERED_HOLD_DS: u16 = 100;
 
-/// An edit that is offered.
+/// An edit that the editor suggests.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fix {
-    /// What it does, a few words.
+    /// The effect in a few words.
     pub title: String,
-    /// The document after it.
+    /// The document after the edit.
     pub document: PlanDocument,
 }
 
-/// The first waypoint that a finding is about.
+/// Returns the first waypoint of a finding.
 pub fn waypoint_of(finding: &Finding) -> Option<usize> {
     match finding {
         Finding::Fault(PlanFault::BadWaypoint { index, .. }) => Some(usize::from(*index)),
@@ -47,7 +47,7 @@ pub fn waypoint_of(finding: &Finding) -> Option<usize> {
     }
 }
 
-/// What takes the finding away, when an edit of the plan can.
+/// Returns an edit of the plan that resolves the finding, if there is one.
 pub fn fix(document: &PlanDocument, finding: &Finding, home: LatLon) -> Option<Fix> {
     let mut fixed = document.clone();
     let waypoints = &mut fixed.plan.waypoints;
@@ -133,7 +133,7 @@ pub fn fix(document: &PlanDocument, finding: &Finding, home: LatLon) -> Option<F
             fixed.settings.push("ap_landing_throttle_threshold = 100".to_owned());
             "set the threshold to 100".to_owned()
         }
-        // An upload takes it away, no edit.
+        // An upload resolves it, not an edit.
         Finding::CraftDiffers { .. }
         | Finding::Fault(PlanFault::Empty | PlanFault::Corrupt(_))
         | Finding::OutlastsBattery { .. } => return None,
@@ -141,7 +141,7 @@ pub fn fix(document: &PlanDocument, finding: &Finding, home: LatLon) -> Option<F
     Some(Fix { title, document: fixed })
 }
 
-/// A longitude by whole turns brought to ±180°.
+/// Returns a longitude wrapped to ±180° by whole turns.
 fn wrapped(lon_e7: i32) -> i32 {
     let turn = 3_600_000_000_i64;
     let wrapped = (i64::from(lon_e7) + turn / 2).rem_euclid(turn) - turn / 2;

@@ -1,8 +1,8 @@
-//! The history of a document: a tree of revisions, so that nothing that was ever edited is lost.
+//! The history of a document: a tree of revisions, so that no edit is ever lost.
 
 use super::{Change, PlanDocument};
 
-/// A revision: what changed against its parent.
+/// A revision: the change from its parent.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Revision {
     parent: usize,
@@ -11,12 +11,12 @@ pub struct Revision {
 }
 
 impl Revision {
-    /// The revision before it.
+    /// Returns the previous revision.
     pub(super) fn parent(&self) -> usize {
         self.parent
     }
 
-    /// What was done, a few words.
+    /// Returns the description of the edit, a few words.
     pub fn label(&self) -> &str {
         &self.label
     }
@@ -26,22 +26,22 @@ impl Revision {
     }
 }
 
-/// A document with its revisions. Revision 0 is the document as it was opened.
+/// A document with its revisions. Revision 0 is the document when it was opened.
 #[derive(Debug, Clone, PartialEq)]
 pub struct History {
     base: PlanDocument,
     document: PlanDocument,
-    /// Revision 1 and up.
+    /// Revisions 1 and up.
     revisions: Vec<Revision>,
     at: usize,
-    /// The revision that redo goes to from each revision.
+    /// For each revision, the target of a redo.
     next: Vec<Option<usize>>,
-    /// The revision that the file holds.
+    /// The revision in the file.
     saved: Option<usize>,
 }
 
 impl History {
-    /// A document without a history; `is_saved` = a file holds it.
+    /// Creates a history without edits; `is_saved` = the document is in a file.
     pub fn new(document: PlanDocument, is_saved: bool) -> Self {
         Self {
             base: document.clone(),
@@ -53,12 +53,12 @@ impl History {
         }
     }
 
-    /// The document as it is now.
+    /// Returns the current document.
     pub fn document(&self) -> &PlanDocument {
         &self.document
     }
 
-    /// The document as it was opened.
+    /// Returns the document when it was opened.
     pub(super) fn base(&self) -> &PlanDocument {
         &self.base
     }
@@ -71,43 +71,43 @@ impl History {
         self.saved
     }
 
-    /// The document that the file holds, as far as the history knows.
+    /// Returns the document in the file, as far as the history can tell.
     pub fn saved_document(&self) -> Option<PlanDocument> {
         let mut history = self.clone();
         if history.go_to(self.saved?) { Some(history.document) } else { None }
     }
 
-    /// The revision that the document is at.
+    /// Returns the current revision.
     pub fn at(&self) -> usize {
         self.at
     }
 
-    /// How many revisions there are.
+    /// Returns the number of revisions.
     pub fn len(&self) -> usize {
         self.revisions.len()
     }
 
-    /// Whether nothing was ever edited.
+    /// Returns `true` if there was never an edit.
     pub fn is_empty(&self) -> bool {
         self.revisions.is_empty()
     }
 
-    /// Whether the file holds the document as it is now.
+    /// Returns `true` if the file has the current document.
     pub fn is_saved(&self) -> bool {
         self.saved == Some(self.at)
     }
 
-    /// The file holds the document as it is now.
+    /// Notes that the file has the current document.
     pub fn mark_saved(&mut self) {
         self.saved = Some(self.at);
     }
 
-    /// The file is gone, or holds something else.
+    /// Notes that the file is gone or has other contents.
     pub fn mark_unsaved(&mut self) {
         self.saved = None;
     }
 
-    /// Makes the document `after`, as one revision; `None` when that changes nothing.
+    /// Makes `after` the document, as one revision; `None` if that changes nothing.
     pub fn commit(&mut self, label: impl Into<String>, after: PlanDocument) -> Option<&Revision> {
         let change = Change::between(&self.document, &after)?;
         self.document = after;
@@ -118,13 +118,13 @@ impl History {
         self.revisions.last()
     }
 
-    /// Applies a change that was made before; `None`, and nothing happens, when it does not fit.
+    /// Applies an earlier change. If it does not fit, nothing happens and the result is `None`.
     pub(super) fn commit_change(&mut self, label: impl Into<String>, change: &Change) -> Option<&Revision> {
         let after = change.apply(&self.document)?;
         self.commit(label, after)
     }
 
-    /// Takes the last edit back; gives its label.
+    /// Undoes the last edit and returns its label.
     pub fn undo(&mut self) -> Option<&str> {
         let revision = self.revisions.get(self.at.checked_sub(1)?)?;
         self.document = revision.change.inverse().apply(&self.document)?;
@@ -133,7 +133,7 @@ impl History {
         Some(&revision.label)
     }
 
-    /// Makes the edit again that was taken back last; gives its label.
+    /// Repeats the edit that was undone last and returns its label.
     pub fn redo(&mut self) -> Option<&str> {
         let index = (*self.next.get(self.at)?)?;
         let revision = self.revisions.get(index - 1)?;
@@ -142,7 +142,7 @@ impl History {
         Some(&revision.label)
     }
 
-    /// The revisions from this one back to the document as it was opened.
+    /// Returns the revisions from this one back to the opened document.
     fn path(&self, mut at: usize) -> Vec<usize> {
         let mut path = vec![at];
         while let Some(parent) = at.checked_sub(1).map(|index| self.revisions[index].parent) {
@@ -152,8 +152,8 @@ impl History {
         path
     }
 
-    /// This history with the newest revisions alone, as many as have room, and for every revision its number there.
-    /// The edits before them become one, so that the document that the file holds stays known.
+    /// Returns a history with only the newest revisions for which there is room, and the new number of every
+    /// revision. The edits before them become one, so that the document in the file stays known.
     pub(super) fn newest(
         &self,
         room: usize,
@@ -164,7 +164,7 @@ impl History {
         if behind <= room {
             return (self.clone(), (0..=self.len()).map(Some).collect());
         }
-        // The first revision on the way to the present one behind which all have room.
+        // The first revision on the path to the current one after which all revisions have room.
         let way = self.path(self.at);
         let mut counted = 0;
         let first = way.iter().rev().copied().find(|&revision| {
@@ -205,7 +205,7 @@ impl History {
         (newest, numbers)
     }
 
-    /// Goes to a revision, wherever in the tree it is; `false` when there is none of that number.
+    /// Goes to a revision anywhere in the tree. Returns `false` if there is no such revision.
     pub fn go_to(&mut self, revision: usize) -> bool {
         if revision > self.revisions.len() {
             return false;

@@ -1,4 +1,4 @@
-//! A history as lines of JSON, one an action: what is appended to a file survives the program.
+//! A history as lines of JSON, one for each action. Lines that are appended to a file survive the program.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,65 +10,65 @@ use crate::plan::format::{self, Format, PlanFile};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum JournalLine {
-    /// The document as it was opened: the first line.
+    /// The opened document: the first line.
     Opened {
-        /// Its file, if it has one.
+        /// The file of the document, if there is one.
         file: Option<String>,
         /// The document as TOML.
         text: String,
-        /// The file holds it.
+        /// `true` if the file has the document.
         saved: bool,
     },
     Edited {
         label: String,
         change: Box<Change>,
     },
-    /// Undo, redo or a jump, to this revision.
+    /// An undo, a redo or a jump to this revision.
     Moved(usize),
-    /// The document of now was written to this file.
+    /// The current document was written to this file.
     Saved(String),
-    /// The file of the document no longer holds it.
+    /// The file no longer has the document.
     Unsaved,
 }
 
 impl JournalLine {
-    /// The first line of a document.
+    /// Returns the first line for a document.
     pub fn opened(document: &PlanDocument, file: Option<String>, saved: bool) -> Self {
         let text = format::write(&PlanFile::from(document.clone()), Format::Toml).text;
         Self::Opened { file, text, saved }
     }
 
-    /// The line, with its line end.
+    /// Returns the line with its line end.
     pub fn to_text(&self) -> String {
         // Plain data with text keys always has a JSON form.
         serde_json::to_string(self).map(|line| line + "\n").unwrap_or_default()
     }
 }
 
-/// What could not be read of a journal.
+/// The unreadable part of a journal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Losses {
-    /// The first line that makes no sense, or does not fit the lines before it, counted from 1.
+    /// The first line that is invalid, or does not fit the lines before it, counted from 1.
     pub line: Option<usize>,
-    /// The edits from there on; a line that makes no sense counts as one.
+    /// The number of edits from that line on; an invalid line counts as one.
     pub edits: usize,
-    /// The plan was saved behind that line: its file is newer than the part that was read.
+    /// `true` if the plan was saved after that line. Its file is then newer than the part that was read.
     pub has_saved: bool,
-    /// The last line was cut short, as by a kill while it was written.
+    /// `true` if the last line was cut short, for example by a kill during the write.
     pub is_cut_short: bool,
 }
 
-/// What a journal holds.
+/// The contents of a journal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Journal {
-    /// The file of the document, if it has one.
+    /// The file of the document, if there is one.
     pub file: Option<String>,
     /// The document and its history.
     pub history: History,
 }
 
 impl Journal {
-    /// The lines that read as this journal.
+    /// Returns the lines of this journal.
     pub fn lines(&self) -> Vec<JournalLine> {
         let Self { file, history } = self;
         let mut lines = vec![JournalLine::opened(history.base(), file.clone(), history.saved() == Some(0))];
@@ -93,14 +93,14 @@ impl Journal {
         lines
     }
 
-    /// Reads a journal. A line that was cut short, and whatever follows, is left out; `None` when not even the first
-    /// line makes sense.
+    /// Reads a journal. Leaves out a line that was cut short, and all lines after it. Returns `None` if even the
+    /// first line is invalid.
     pub fn read(text: &str) -> Option<Self> {
         Self::read_whole_part(text).map(|(journal, _)| journal)
     }
 
-    /// Reads a journal up to the first line that does not make sense, and says what is lost with that line and those
-    /// behind it; `None` when not even the first line makes sense.
+    /// Reads a journal up to the first invalid line, and reports the losses from that line on. Returns `None` if even
+    /// the first line is invalid.
     pub fn read_whole_part(text: &str) -> Option<(Self, Losses)> {
         let parse = |line: &str| serde_json::from_str::<JournalLine>(line).ok();
         let mut lines = (1..).zip(text.split_inclusive('\n'));
@@ -111,7 +111,7 @@ impl Journal {
         let mut losses = Losses::default();
         for (number, line) in lines {
             let parsed = parse(line);
-            // The rest counts from a document that is not this one.
+            // The other lines are based on a document that was not read.
             if losses.line.is_none() {
                 match parsed {
                     Some(parsed) if journal.take(parsed.clone()) => continue,
@@ -131,8 +131,8 @@ impl Journal {
         Some((journal, losses))
     }
 
-    /// This journal with the newest edits alone, whose lines take at most `room` bytes, and for every revision of this
-    /// one its number there. The edits before them become one.
+    /// Returns a journal with only the newest edits, whose lines take at most `room` bytes, and the new number of every
+    /// revision. The edits before them become one.
     pub fn newest(&self, room: usize) -> (Self, Vec<Option<usize>>) {
         let size = |revision: &Revision| {
             let (label, change) = (revision.label().to_owned(), Box::new(revision.change().clone()));
@@ -142,7 +142,7 @@ impl Journal {
         (Self { file: self.file.clone(), history }, numbers)
     }
 
-    /// Takes a line in; whether it fits.
+    /// Applies a line. Returns `true` if it fits.
     pub fn take(&mut self, line: JournalLine) -> bool {
         match line {
             JournalLine::Opened { .. } => return false,
@@ -243,11 +243,11 @@ mod tests {
             damaged[3] = noise.to_owned();
             let (journal, losses) = read(&damaged);
             assert_eq!(journal.history.document(), &document(&[3]));
-            // What was read as a jump is no edit.
+            // A line that was read as a jump is not an edit.
             let edits = if noise.contains("moved") { 1 } else { 2 };
             assert_eq!(losses, Losses { line: Some(4), edits, has_saved: true, is_cut_short: false });
         }
-        // An edit is missing: the next one does not fit.
+        // With one edit missing, the next one does not fit.
         lines.remove(2);
         assert_eq!(read(&lines).1, Losses { line: Some(3), edits: 2, has_saved: true, is_cut_short: false });
         lines.truncate(2);

@@ -1,33 +1,33 @@
-//! Edits of many waypoints at once. Places move on the ground in metres, the same everywhere on the globe; waypoints
-//! without a place keep what they have.
+//! Edits of many waypoints at once. Positions move on the ground in metres, the same everywhere on the globe. Waypoints
+//! without a position stay unchanged.
 
 use nalgebra::Vector2;
 
 use crate::geo::{GroundPlane, LatLon};
 use crate::plan::{FlightPlan, Waypoint, WaypointType};
 
-/// What is done to each of the selected waypoints that has such a value.
+/// An edit of each selected waypoint that has such a value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Transform {
     /// Altitude above home, cm.
     Altitude(i32),
-    /// Altitude by so much, cm.
+    /// A change of altitude, cm.
     AltitudeBy(i32),
     /// Leg speed, cm/s; 0 = `ap_max_velocity`.
     Speed(u16),
-    /// Metres north and east.
+    /// A move, metres north and east.
     Move(Vector2<f64>),
-    /// Radians clockwise about the middle of the selection.
+    /// A turn about the middle of the selection, radians clockwise.
     Rotate(f64),
-    /// North and south swapped, about the middle.
+    /// Swaps north and south about the middle.
     MirrorNorthSouth,
-    /// East and west swapped, about the middle.
+    /// Swaps east and west about the middle.
     MirrorEastWest,
-    /// Flown in the opposite order.
+    /// Reverses the flight order.
     Reverse,
 }
 
-/// Does it to the waypoints of `selected` that are there.
+/// Applies the edit to those waypoints of `selected` that exist.
 pub fn transform(plan: &mut FlightPlan, selected: std::ops::RangeInclusive<usize>, what: Transform) {
     let end = plan.waypoints.len().min(selected.end().saturating_add(1));
     let Some(waypoints) = plan.waypoints.get_mut(*selected.start()..end) else { return };
@@ -36,7 +36,7 @@ pub fn transform(plan: &mut FlightPlan, selected: std::ops::RangeInclusive<usize
         Transform::AltitudeBy(by) => {
             with_altitude(waypoints).for_each(|wp| wp.alt_cm = wp.alt_cm.saturating_add(by));
         }
-        // The rate of a YAW_RATE stands in the same place.
+        // The rate of a YAW_RATE uses the same field.
         Transform::Speed(speed_cms) => {
             waypoints.iter_mut().filter(|wp| wp.kind.is_positional()).for_each(|wp| wp.speed_cms = speed_cms);
         }
@@ -67,7 +67,7 @@ fn about_middle(waypoints: &mut [Waypoint], place: impl Fn(Vector2<f64>) -> Vect
     }
 }
 
-/// The middle of the places of some waypoints: of the box around them, as north-up maps show it.
+/// Returns the middle of the positions of some waypoints: the middle of the box around them, as on north-up maps.
 pub fn middle(waypoints: &[Waypoint]) -> Option<LatLon> {
     let mut places = waypoints.iter().filter(|wp| wp.kind.uses_position()).map(|wp| wp.position);
     let plane = GroundPlane::new(places.next()?);

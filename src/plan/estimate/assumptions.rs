@@ -1,22 +1,22 @@
-//! What estimates and reviews know about the craft that flies a plan.
+//! The facts about the craft that estimates and reviews use.
 
 use crate::plan::Waypoint;
 use crate::plan::setpoint::{AltitudeSetpoint, SetpointLimits};
 
-/// Altitude above home above which a waypoint is told unless the user says otherwise, m.
+/// The default altitude above home above which a waypoint is reported, m.
 pub const MAX_ALTITUDE_M: f64 = 120.0;
-/// Slowest leg speed that a waypoint can ask for, m/s.
+/// The slowest leg speed of a waypoint, m/s.
 const SLOWEST_MPS: f64 = 1.0;
-/// Slowest leg speed that a DELAY can make, m/s.
+/// The slowest leg speed with a DELAY, m/s.
 const SLOWEST_DELAYED_MPS: f64 = 0.1;
-/// Least altitude error at which a HOLD begins, m.
+/// The altitude error at which a HOLD begins, m. A larger hold radius replaces it.
 const HOLD_ALTITUDE_M: f64 = 2.0;
-/// How much nearer to it a craft may measure itself, m.
+/// The altitude that a craft measures may be nearer to the HOLD than the craft is, by up to this, m.
 const MEASURED_M: f64 = 1.0;
-/// How long a HOLD waits for an altitude that cannot be reached, s.
+/// The time for which a HOLD waits for an altitude that cannot be reached, s.
 const HELD_OFF_S: f64 = 10.0;
 
-/// What estimates and reviews need to know about the craft, most of it from its settings.
+/// The facts about the craft for estimates and reviews, most of them from its settings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Assumptions {
     /// `ap_max_velocity`, m/s.
@@ -27,19 +27,19 @@ pub struct Assumptions {
     pub landing_mps: f64,
     /// `ap_max_distance_from_home`, m; `None` = no fence.
     pub fence_m: Option<f64>,
-    /// Whose the fence is, where that is to be said.
+    /// The source of the fence, for messages that name it.
     pub fence_from: SettingSource,
-    /// Altitude above home above which a waypoint is told, m; `None` = any is right.
+    /// The altitude above home above which a waypoint is reported, m; `None` = no limit.
     pub max_alt_m: Option<f64>,
     /// Height above home at which the mission begins, m.
     pub start_alt_m: f64,
-    /// How long a full battery keeps the craft hovering, s; `None` = unknown.
+    /// The hover time of a full battery, s; `None` = unknown.
     pub endurance_s: Option<f64>,
-    /// What a touchdown asks of the throttle.
+    /// The throttle condition of a touchdown.
     pub touchdown_throttle: TouchdownThrottle,
     /// `ap_landing_altitude_m`.
     pub landing_alt_m: f64,
-    /// `ap_min_nav_altitude_m`: below it the craft climbs on the spot first.
+    /// `ap_min_nav_altitude_m`: below it the craft first climbs on the spot.
     pub min_nav_alt_m: f64,
     /// `ap_waypoint_arrival_radius`, m.
     pub arrival_radius_m: f64,
@@ -57,15 +57,15 @@ pub struct Assumptions {
     pub position_p: f64,
 }
 
-/// Whose a setting is, where a craft and a plan differ.
+/// The source of a setting when the craft and the plan differ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SettingSource {
-    /// There is nothing to tell apart.
+    /// Messages do not have to name the source.
     #[default]
     Unsaid,
-    /// The craft has it; nothing changes it before the plan is flown.
+    /// The craft's own value, which nothing changes before the flight.
     Craft,
-    /// The plan sets it at its upload.
+    /// The value that the plan sets during its upload.
     Plan,
 }
 
@@ -76,12 +76,12 @@ pub struct TouchdownThrottle {
     pub hover_us: f64,
     /// `ap_landing_throttle_threshold`.
     pub threshold_us: f64,
-    /// `ap_throttle_min`: the autopilot commands no less.
+    /// `ap_throttle_min`: the least throttle that the autopilot commands.
     pub min_us: f64,
 }
 
 impl TouchdownThrottle {
-    /// Whether the autopilot never commands so little.
+    /// Returns `true` if the autopilot never commands a throttle that low.
     pub fn is_never_met(&self) -> bool {
         self.hover_us > 0.0 && self.hover_us - self.threshold_us <= self.min_us
     }
@@ -94,7 +94,7 @@ impl Default for TouchdownThrottle {
 }
 
 impl Default for Assumptions {
-    /// The firmware's defaults, after the scripted pilot's climb.
+    /// Returns the defaults of the firmware, after the climb of the scripted pilot.
     fn default() -> Self {
         Self {
             max_velocity_mps: 5.0,
@@ -120,7 +120,7 @@ impl Default for Assumptions {
 }
 
 impl Assumptions {
-    /// The settings that change them.
+    /// The settings that change the assumptions.
     pub const SETTINGS: [&str; 16] = [
         "ap_max_velocity",
         "alt_hold_climb_rate",
@@ -140,12 +140,12 @@ impl Assumptions {
         "ap_position_p",
     ];
 
-    /// The defaults, changed by the lines `name = value` of a plan file.
+    /// Returns the defaults, changed by the lines `name = value` of a plan file.
     pub fn from_settings(lines: &[String]) -> Self {
         Self::default().with_settings(lines)
     }
 
-    /// The same, changed by the lines `name = value` of a plan file.
+    /// Changes the assumptions by the lines `name = value` of a plan file.
     pub fn with_settings<L: AsRef<str>>(self, lines: &[L]) -> Self {
         let mut assumptions = self;
         for (name, value) in lines.iter().filter_map(|line| line.as_ref().split_once('=')) {
@@ -175,7 +175,7 @@ impl Assumptions {
         assumptions
     }
 
-    /// Speed of the leg to a waypoint, m/s.
+    /// Returns the speed of the leg to a waypoint, m/s.
     pub(in crate::plan) fn leg_speed_mps(&self, waypoint: &Waypoint) -> f64 {
         match waypoint.speed_cms {
             0 => self.max_velocity_mps,
@@ -183,12 +183,12 @@ impl Assumptions {
         }
     }
 
-    /// Slowest speed of a leg after a DELAY, m/s, when the leg is so long.
+    /// Returns the slowest speed of a leg of this length after a DELAY, m/s.
     pub(in crate::plan) fn delayed_mps(&self, length_m: f64, delay_s: f64) -> f64 {
         (length_m / delay_s).max(SLOWEST_DELAYED_MPS)
     }
 
-    /// What limits the altitude setpoint.
+    /// Returns the limits of the altitude setpoint.
     pub fn setpoint_limits(&self) -> SetpointLimits {
         SetpointLimits {
             climb_mps: self.climb_mps,
@@ -197,7 +197,7 @@ impl Assumptions {
         }
     }
 
-    /// Moves the setpoint until a HOLD at this altitude begins; returns how long that takes, s.
+    /// Moves the setpoint until a HOLD at this altitude begins, and returns the time that this takes, s.
     pub(in crate::plan) fn wait_for_hold(&self, setpoint: &mut AltitudeSetpoint, alt_m: f64) -> f64 {
         let within_m = self.hold_radius_m.max(HOLD_ALTITUDE_M) + MEASURED_M;
         let waited = setpoint.reach(alt_m, &self.setpoint_limits(), within_m);

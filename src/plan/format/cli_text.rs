@@ -1,6 +1,7 @@
-//! Betaflight CLI text: `waypoint insert …`, `update`, `remove` and `clear` are carried out in the order of the lines,
-//! starting from an empty plan, as typing them would. Everything else is skipped and counted, so a whole `diff all`
-//! is a plan file too. Its `set` lines are not part of the plan: as a configuration they belong to `--settings`.
+//! Betaflight CLI text. `waypoint insert …`, `update`, `remove` and `clear` are carried out in the order of the
+//! lines, from an empty plan, as if someone typed them. All other lines are skipped and counted, so a whole `diff
+//! all` is a plan file, too. Its `set` lines are not part of the plan: as a configuration they belong to
+//! `--settings`.
 
 use std::ops::Range;
 
@@ -17,33 +18,33 @@ const VALUES: [&str; 8] =
 /// The sub-commands of `waypoint`.
 const OPERATIONS: [&str; 6] = ["insert", "update", "remove", "clear", "list", "status"];
 
-/// Most values of a line that are looked at: one more than any operation takes, and the two words before them.
+/// The most values of a line that are read: one more than any operation takes, and the two words before them.
 const MOST_WORDS: usize = VALUES.len() + 3;
 
-/// Most waypoints that are remembered while lines may still remove some.
+/// The most waypoints that are kept while later lines may still remove some.
 const MOST_INSERTED: usize = 1000;
 
-/// Most different commands that are counted one by one.
+/// The most different commands with a count of their own.
 const MOST_NOTES: usize = 30;
 
-/// Longest name of a command that is noted.
+/// The longest command name in a note.
 const LONGEST_NAME: usize = 40;
 
-/// What the reader knows after some lines.
+/// The state of the reader after some lines.
 struct Reader<'p, 'a> {
     problems: &'p mut Problems<'a>,
     waypoints: Vec<Waypoint>,
     notes: Vec<Note>,
-    /// Where the first waypoint that does not fit is.
+    /// The place of the first waypoint for which there is no room.
     overflow: Option<Range<usize>>,
-    /// There were more waypoints than are remembered: what follows cannot be carried out.
+    /// `true` once there are too many waypoints to keep: the following lines cannot be carried out.
     gave_up: bool,
 }
 
 /// A word of a line and its byte range in the text.
 type Word<'a> = (&'a str, Range<usize>);
 
-/// Reads the text; problems are added to `problems`.
+/// Reads the text and adds problems to `problems`.
 pub(super) fn read(text: &str, problems: &mut Problems<'_>) -> PlanFile {
     let mut reader =
         Reader { problems, waypoints: Vec::new(), notes: Vec::new(), overflow: None, gave_up: false };
@@ -155,7 +156,7 @@ impl Reader<'_, '_> {
         if insert && self.waypoints.len() == MOST_INSERTED {
             self.gave_up = true;
         } else if insert {
-            // A faulty waypoint still takes its place, so that the lines after it are not blamed for it.
+            // A faulty waypoint still takes its index, so that the lines after it give no false problems.
             let index = index.unwrap_or(self.waypoints.len());
             self.waypoints.insert(index, waypoint);
             if self.waypoints.len() > MAX_WAYPOINTS && self.overflow.is_none() {
@@ -181,7 +182,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// An index into the waypoints so far; inserting may also name the place behind the last.
+    /// Reads an index into the waypoints so far. An insert may also use the index after the last.
     fn index(&mut self, (text, span): &Word<'_>, insert: bool) -> Option<usize> {
         let count = self.waypoints.len();
         let places = if insert { count + 1 } else { count };
@@ -206,7 +207,7 @@ impl Reader<'_, '_> {
         None
     }
 
-    /// Reads one value; a missing one was already reported.
+    /// Reads one value. A missing value was already reported.
     fn value<T: Default>(&mut self, word: Option<&Word<'_>>, read: fn(&str) -> Result<T, FieldError>) -> T {
         let Some((text, span)) = word else { return T::default() };
         read(text).unwrap_or_else(|error| {
@@ -222,7 +223,7 @@ impl Reader<'_, '_> {
     }
 }
 
-/// The words of a line that starts at byte `start` of the text, no more than are looked at.
+/// Returns the words of a line that starts at byte `start` of the text, up to the limit.
 fn words(line: &str, start: usize) -> Vec<Word<'_>> {
     line.split_ascii_whitespace()
         .take(MOST_WORDS)
@@ -233,7 +234,7 @@ fn words(line: &str, start: usize) -> Vec<Word<'_>> {
         .collect()
 }
 
-/// Writes what `waypoint list` prints: text that can be pasted into the CLI.
+/// Writes the output of `waypoint list`: text that can be pasted into the CLI.
 pub(super) fn write(file: &PlanFile) -> Written {
     let text = plan_lines(&file.plan).map(|line| line + "\n").collect();
     let mut lost = Vec::new();

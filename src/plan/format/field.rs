@@ -1,11 +1,11 @@
-//! The values of a waypoint as text: one reader a value, shared by the formats.
+//! The values of a waypoint as text: one reader for each value, shared by the formats.
 
 use strum::IntoEnumIterator as _;
 
 use crate::did_you_mean;
 use crate::plan::{HoldPattern, WaypointType};
 
-/// What is wrong with a value and what is allowed.
+/// A mistake in a value, and the allowed values.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct FieldError {
     /// `latitude 4O.4 is not a number`.
@@ -20,8 +20,8 @@ impl FieldError {
     }
 }
 
-/// Decimal degrees as degrees × 10⁷: optional sign, at least one digit, optionally a point and digits, of which more
-/// than seven are cut, not rounded. `None` when the text is something else or does not fit (beyond ±214.7483647).
+/// Reads decimal degrees as degrees × 10⁷: an optional sign, at least one digit, optionally a point and more digits.
+/// Digits after the seventh are cut, not rounded. Returns `None` for any other text and beyond ±214.7483647.
 pub fn degrees_e7(text: &str) -> Option<i32> {
     let (negative, digits) = match text.as_bytes().first()? {
         b'-' => (true, &text[1..]),
@@ -39,7 +39,7 @@ pub fn degrees_e7(text: &str) -> Option<i32> {
     i32::try_from(if negative { -size } else { size }).ok()
 }
 
-/// Whether the text reads as a decimal number at all, however large.
+/// Returns `true` if the text is a decimal number of any size.
 fn is_decimal(text: &str) -> bool {
     let digits = text.strip_prefix(['-', '+']).unwrap_or(text);
     let (whole, fraction) = digits.split_once('.').unwrap_or((digits, ""));
@@ -55,17 +55,17 @@ fn degrees(what: &str, text: &str, limit_e7: u32, hint: &str) -> Result<i32, Fie
     }
 }
 
-/// A latitude, degrees × 10⁷.
+/// Reads a latitude, degrees × 10⁷.
 pub(super) fn latitude(text: &str) -> Result<i32, FieldError> {
     degrees("latitude", text, 900_000_000, "allowed: -90.0000000 to 90.0000000")
 }
 
-/// A longitude, degrees × 10⁷.
+/// Reads a longitude, degrees × 10⁷.
 pub(super) fn longitude(text: &str) -> Result<i32, FieldError> {
     degrees("longitude", text, 1_800_000_000, "allowed: -180.0000000 to 180.0000000")
 }
 
-/// An altitude, cm.
+/// Reads an altitude, cm.
 pub(super) fn altitude_cm(text: &str) -> Result<i32, FieldError> {
     let hint = "allowed: whole centimetres above home, such as 5000 for 50 m";
     if let Ok(value) = text.parse() {
@@ -75,7 +75,7 @@ pub(super) fn altitude_cm(text: &str) -> Result<i32, FieldError> {
         let hint = format!("allowed: {} to {} cm", i32::MIN, i32::MAX);
         return Err(FieldError::new(format!("altitude {text} is out of range"), hint));
     }
-    // The firmware answers `waypoint insert` with the altitude in metres: people paste that back.
+    // The firmware answers `waypoint insert` with the altitude in metres, and people paste that back.
     let echoed = text.strip_suffix('m').and_then(|metres| metres.parse::<f64>().ok()).map(|m| m * 100.0);
     if let Some(cm) = echoed.filter(|cm| cm.abs() < f64::from(i32::MAX)) {
         return Err(FieldError::new(
@@ -86,7 +86,7 @@ pub(super) fn altitude_cm(text: &str) -> Result<i32, FieldError> {
     Err(FieldError::new(format!("altitude {text} is not a whole number"), hint))
 }
 
-/// A value of 0…65535.
+/// Reads a value of 0…65535.
 fn unsigned(what: &str, text: &str, unit: &str) -> Result<u16, FieldError> {
     let hint = format!("allowed: 0 to 65535 {unit}");
     match text.parse() {
@@ -98,12 +98,12 @@ fn unsigned(what: &str, text: &str, unit: &str) -> Result<u16, FieldError> {
     }
 }
 
-/// A speed, cm/s.
+/// Reads a speed, cm/s.
 pub(super) fn speed_cms(text: &str) -> Result<u16, FieldError> {
     unsigned("speed", text, "cm/s (0 = default)")
 }
 
-/// A duration, deciseconds.
+/// Reads a duration, deciseconds.
 pub(super) fn duration_ds(text: &str) -> Result<u16, FieldError> {
     unsigned("duration", text, "deciseconds (0 = endless)")
 }

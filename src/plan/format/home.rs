@@ -1,4 +1,4 @@
-//! Where the craft stands at boot.
+//! The place of the craft at boot.
 
 use std::fmt;
 use std::str::FromStr;
@@ -6,16 +6,16 @@ use std::str::FromStr;
 use super::field;
 use crate::geo::LatLon;
 
-/// A place to start from: `LAT,LON` or `LAT,LON,AMSL`.
+/// A start position: `LAT,LON` or `LAT,LON,AMSL`.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub struct HomePosition {
     pub position: LatLon,
-    /// Altitude above mean sea level, m, when given.
+    /// Altitude above mean sea level, m, if given.
     pub amsl_m: Option<f64>,
 }
 
-/// Why a text is not a home position.
+/// The reason why a text is not a home position.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum HomeError {
     /// Not two or three values.
@@ -26,7 +26,7 @@ pub enum HomeError {
     Value { message: String, hint: String },
 }
 
-/// Lowest and highest home above mean sea level, m: the range of the atmosphere model's troposphere.
+/// The lowest and the highest home above mean sea level, m: the troposphere range of the atmosphere model.
 const AMSL_RANGE_M: std::ops::RangeInclusive<f64> = -500.0..=9000.0;
 
 /// Reads an altitude above mean sea level.
@@ -38,7 +38,7 @@ pub(super) fn amsl_m(text: &str) -> Result<f64, String> {
     }
 }
 
-/// What [`amsl_m`] accepts.
+/// The values that [`amsl_m`] accepts.
 pub(super) const AMSL_HINT: &str = "allowed: -500 to 9000 m above mean sea level";
 
 impl FromStr for HomePosition {

@@ -1,5 +1,5 @@
-//! Reading the project's own format: TOML whose key names carry the units. Unknown keys are refused, and all problems
-//! are found in one pass.
+//! The reader of the project's own format: TOML with units in the key names. It refuses unknown keys and finds all
+//! problems in one pass.
 
 use std::ops::Range;
 
@@ -23,7 +23,7 @@ const HOME_KEYS: &[&str] = &["lat_deg", "lon_deg", "alt_amsl_m"];
 const WAYPOINT_KEYS: &[&str] =
     &["type", "lat_deg", "lon_deg", "alt_m", "speed_mps", "yaw_rate_dps", "duration_s", "pattern"];
 
-/// Reads the text; problems are added to `problems`.
+/// Reads the text and adds problems to `problems`.
 pub(super) fn read(text: &str, check: SettingCheck, problems: &mut Problems<'_>) -> PlanFile {
     let (document, syntax) = DeTable::parse_recoverable(text);
     for error in &syntax {
@@ -31,7 +31,7 @@ pub(super) fn read(text: &str, check: SettingCheck, problems: &mut Problems<'_>)
         problems.add(error.span().unwrap_or(0..0), message, "this is not valid TOML");
     }
     if !syntax.is_empty() {
-        // What the parser salvaged would only yield follow-up problems.
+        // The rest that the parser recovered would only give follow-up problems.
         return PlanFile::default();
     }
     let span = document.span();
@@ -93,7 +93,7 @@ fn read_settings(
     settings
 }
 
-/// Where a part of a text stands in its quotes; all of it when an escape hides the part.
+/// Returns the place of a part of a text inside its quotes; the place of the whole text if an escape hides the part.
 fn place_of(part: &str, text: &str, quoted: Range<usize>) -> Range<usize> {
     let found = text.get(quoted.clone()).and_then(|inside| inside.rfind(part));
     found.map_or(quoted.clone(), |at| quoted.start + at..quoted.start + at + part.len())
@@ -119,7 +119,7 @@ fn read_waypoints(value: &Value<'_>, problems: &mut Problems<'_>) -> FlightPlan 
         }
         if let Some(table) = TomlTable::new(format!("waypoint {index}"), value, problems) {
             let waypoint = read_waypoint(&table, problems);
-            // Full: the problem above stands for all that follow.
+            // If the plan is full, the problem above covers all following waypoints.
             let _ = plan.waypoints.try_push(waypoint);
         }
     }
@@ -130,7 +130,7 @@ fn read_waypoint(table: &TomlTable<'_, '_>, problems: &mut Problems<'_>) -> Wayp
     table.refuse_unknown(WAYPOINT_KEYS, problems);
     let kind = table.required("type", problems).and_then(|value| word(value, field::waypoint_type, problems));
     let is_yaw_rate = kind == Some(WaypointType::YawRate);
-    // What a record without a known type needs cannot be said.
+    // Without a known type, the keys that a record needs are unknown.
     let needs_place = kind.is_some_and(WaypointType::uses_position);
     let needs_altitude = kind.is_some_and(|kind| kind.is_positional() || kind == WaypointType::AltChange);
     let speed_key = if is_yaw_rate { "yaw_rate_dps" } else { "speed_mps" };
@@ -182,7 +182,7 @@ fn duration_ds(text: &str) -> Result<u16, FieldError> {
     Ok(scaled("duration_s", text, 10.0, 0.0, f64::from(u16::MAX), "s")? as u16)
 }
 
-/// A number times `factor`, rounded to the whole number that the craft stores.
+/// Returns a number times `factor`, rounded to the whole number that the craft stores.
 fn scaled(key: &str, text: &str, factor: f64, low: f64, high: f64, unit: &str) -> Result<f64, FieldError> {
     let value = text.parse::<f64>().unwrap_or(f64::NAN);
     let stored = (value * factor).round();
@@ -196,7 +196,7 @@ fn scaled(key: &str, text: &str, factor: f64, low: f64, high: f64, unit: &str) -
     })
 }
 
-/// A number, read from its decimal text.
+/// Reads a number from its decimal text.
 fn number<T>(
     value: &Value<'_>,
     read: impl FnOnce(&str) -> Result<T, FieldError>,
@@ -215,7 +215,7 @@ fn number<T>(
             return None;
         }
     };
-    // Powers of ten are TOML but not decimal degrees.
+    // TOML allows exponents, decimal degrees do not.
     let plain;
     let text = match text.parse::<f64>() {
         Ok(parsed) if text.contains(['e', 'E']) && parsed.is_finite() => {

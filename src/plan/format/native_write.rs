@@ -1,4 +1,4 @@
-//! Writing the project's own format, in its canonical form.
+//! The writer of the project's own format, in its canonical form.
 
 use crate::geo::Degrees7;
 use crate::plan::{HoldPattern, Waypoint, WaypointType};
@@ -6,7 +6,7 @@ use crate::printable::is_printable;
 
 use super::{PlanFile, Written};
 
-/// Writes a plan as TOML. Values that are the default of their type's record are left out.
+/// Writes a plan as TOML. Leaves out values that are the default for the type of their record.
 pub(super) fn write(file: &PlanFile) -> Written {
     let mut text = format!("name = {}\n", quoted(&file.name));
     if !file.description.is_empty() {
@@ -58,7 +58,7 @@ fn write_waypoint(waypoint: &Waypoint, text: &mut String) {
     }
 }
 
-/// `value` × 10^−`decimals` without trailing zeros: 5000 at 2 → `50`, −150 at 2 → `-1.5`.
+/// Returns `value` × 10^−`decimals` without trailing zeros: 5000 at 2 → `50`, −150 at 2 → `-1.5`.
 fn scaled(value: i64, decimals: u32) -> String {
     let unit = 10_u64.pow(decimals);
     let size = value.unsigned_abs();
@@ -69,7 +69,7 @@ fn scaled(value: i64, decimals: u32) -> String {
     format!("{sign}{}{point}{fraction}", size / unit)
 }
 
-/// A TOML basic string.
+/// Returns a TOML basic string.
 fn quoted(text: &str) -> String {
     let mut out = String::from("\"");
     for c in text.chars() {

@@ -1,15 +1,15 @@
-//! What a reader skipped, for the report.
+//! The lines that a reader skipped, for the report.
 
 use std::fmt;
 
-/// Lines of one kind that were read past.
+/// Skipped lines of one kind.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Note {
-    /// What the lines are.
+    /// The kind of the lines.
     pub kind: NoteKind,
-    /// How many there are.
+    /// The number of lines.
     pub count: usize,
-    /// The first of them, from 1.
+    /// The number of the first line, from 1.
     pub first_line: usize,
 }
 
@@ -21,7 +21,7 @@ pub enum NoteKind {
     Setting,
     /// Other CLI commands, by name.
     Command(String),
-    /// Lines with still other words, when there are many.
+    /// Lines with further commands, if there are many different ones.
     Others,
     /// The file has no waypoint line at all.
     NoWaypoints,

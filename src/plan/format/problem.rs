@@ -1,36 +1,36 @@
-//! What is wrong with a file, and where: collected, so that all problems are reported at once.
+//! Problems of a file with their places, collected so that all of them are reported at once.
 
 use std::fmt;
 use std::ops::Range;
 
 use crate::source_snippet::{SourceSnippet, shortened, source_snippet};
 
-/// Most problems of a file that are listed; the others are counted.
+/// The most problems of a file that are listed; the others are counted.
 const MOST_LISTED: usize = 100;
 
-/// One problem of a file. `Display` is the whole report: `FILE:LINE:COLUMN: MESSAGE`, the line, and carets under the
-/// place with what is allowed.
+/// A problem of a file. `Display` is the whole report: `FILE:LINE:COLUMN: MESSAGE`, the line, and carets under the
+/// place with the allowed values.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PlanError {
-    /// The file as the user named it.
+    /// The file name as the user gave it.
     pub file: String,
     /// Line, from 1.
     pub line: usize,
     /// Column in characters, from 1.
     pub column: usize,
-    /// Characters that are wrong, as far as `source` shows them, at least 1.
+    /// The number of wrong characters that `source` shows, at least 1.
     pub width: usize,
     pub message: String,
-    /// What is allowed or what to do; may be empty.
+    /// The allowed values or a suggestion; may be empty.
     pub hint: String,
     /// The line, or the part of it around the place.
     pub source: SourceSnippet,
-    /// Problems behind this one that are not listed.
+    /// The number of problems after this one that are not listed.
     pub unlisted: usize,
 }
 
 impl PlanError {
-    /// The message with its place in one line, without the source line.
+    /// Returns the message with its place in one line, without the source line.
     pub fn headline(&self) -> String {
         format!("{}:{}:{}: {}", self.file, self.line, self.column, self.message)
     }
@@ -52,7 +52,7 @@ impl fmt::Display for PlanError {
 
 impl std::error::Error for PlanError {}
 
-/// All problems as one text, with their number at the end when there are several.
+/// Returns all problems as one text, with their number at the end if there are several.
 pub fn report(errors: &[PlanError]) -> String {
     let mut text = errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
     if errors.len() > 1 {
@@ -70,20 +70,20 @@ pub fn report(errors: &[PlanError]) -> String {
 pub struct Problems<'a> {
     file: &'a str,
     text: &'a str,
-    /// Where each line begins.
+    /// The beginning of each line.
     lines: Vec<usize>,
     errors: Vec<(usize, PlanError)>,
     unlisted: usize,
 }
 
 impl<'a> Problems<'a> {
-    /// No problems yet; `text` is what all spans refer to.
+    /// Creates a collection without problems; all spans refer to `text`.
     pub fn new(file: &'a str, text: &'a str) -> Self {
         let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
         Self { file, text, lines, errors: Vec::new(), unlisted: 0 }
     }
 
-    /// Records a problem at a byte range of the text; ranges that are not on character boundaries are widened.
+    /// Adds a problem at a byte range of the text. A range that is not on character boundaries is widened.
     pub fn add(&mut self, span: Range<usize>, message: impl Into<String>, hint: impl Into<String>) {
         if self.errors.len() == MOST_LISTED {
             self.unlisted += 1;
@@ -110,8 +110,8 @@ impl<'a> Problems<'a> {
         self.errors.push((start, error));
     }
 
-    /// Records a problem of a part of a line, counted from 1: the last place where `part` stands in front of a `#`
-    /// comment, else the whole line.
+    /// Adds a problem at a part of a line, counted from 1: the last occurrence of `part` before a `#` comment, or
+    /// else the whole line.
     pub fn add_line_part(
         &mut self,
         line: usize,
@@ -130,22 +130,22 @@ impl<'a> Problems<'a> {
         self.add(start + span.start..start + span.end, message, hint);
     }
 
-    /// How many problems there are so far.
+    /// Returns the number of problems so far.
     pub fn len(&self) -> usize {
         self.errors.len() + self.unlisted
     }
 
-    /// Whether further problems are only counted.
+    /// Returns `true` if further problems are only counted.
     pub fn is_full(&self) -> bool {
         self.errors.len() == MOST_LISTED
     }
 
-    /// Whether no problem was found so far.
+    /// Returns `true` if there is no problem so far.
     pub fn is_empty(&self) -> bool {
         self.errors.is_empty()
     }
 
-    /// The problems in the order of their places.
+    /// Returns the problems in the order of their places.
     pub fn into_errors(mut self) -> Vec<PlanError> {
         self.errors.sort_by_key(|&(start, _)| start);
         if let Some((_, last)) = self.errors.last_mut() {

@@ -1,4 +1,4 @@
-//! A setting as one line of text, and what may be wrong with it.
+//! A setting as one line of text, and its problems.
 
 /// A part of a setting's line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -7,22 +7,22 @@ pub enum SettingPart {
     Value,
 }
 
-/// What is wrong with a setting, in sentences for people.
+/// A problem of a setting, in sentences for people.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{message}{}{hint}", if hint.is_empty() { "" } else { "; " })]
 pub struct SettingFault {
-    /// What of it is wrong.
+    /// The part with the problem.
     pub part: SettingPart,
     pub message: String,
-    /// What is allowed; may be empty.
+    /// The allowed values; may be empty.
     pub hint: String,
 }
 
-/// Who knows which settings there are: judges a name and a value.
+/// A check of the name and the value of a setting.
 pub type SettingCheck = fn(&str, &str) -> Result<(), SettingFault>;
 
-/// A line `name = value`, `set name = value` or `name=value` in its canonical form `name = value`; `None` when it is
-/// none of them, or would not survive the CLI it goes through.
+/// Returns a line `name = value`, `set name = value` or `name=value` in its canonical form `name = value`. Returns
+/// `None` for any other line, and for a line that the CLI would not pass on unchanged.
 pub fn setting_line(line: &str) -> Option<String> {
     let line = line.trim();
     let line = match line.get(..4) {

@@ -14,7 +14,7 @@ const TITLES: [&str; 10] = ["#", "type", "lat", "lon", "alt", "speed", "leg", "b
 /// Columns that hold text.
 const LEFT: [usize; 1] = [1];
 
-/// The plan with distances, times and findings, for a flight that starts above `home`.
+/// Returns the plan with distances, times and findings, for a flight that starts above `home`.
 pub fn table(file: &PlanFile, home: LatLon, assumptions: &Assumptions) -> String {
     let estimate = estimate(&file.plan, home, assumptions);
     let mut text = printable::name(&file.name);
@@ -108,7 +108,7 @@ fn total(estimate: &PlanEstimate) -> String {
     format!("{count} {waypoints}, {:.0} m, {time}", estimate.distance_m)
 }
 
-/// Minutes and seconds: `4:05`.
+/// Returns minutes and seconds: `4:05`.
 fn clock(seconds: f64) -> String {
     let seconds = seconds.round() as u64;
     format!("{}:{:02}", seconds / 60, seconds % 60)

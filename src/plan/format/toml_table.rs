@@ -1,4 +1,4 @@
-//! TOML tables with the places of their keys and values, read strictly: what is not known is a problem.
+//! Strict access to TOML tables with the places of keys and values. An unknown key is a problem.
 
 use std::ops::Range;
 
@@ -11,22 +11,22 @@ use crate::did_you_mean;
 /// A value with its place.
 pub type Value<'i> = Spanned<DeValue<'i>>;
 
-/// A table being read: which keys it may have, and where it is.
+/// A table with its place.
 #[derive(Debug)]
 pub struct TomlTable<'t, 'i> {
-    /// What it is, for messages: `waypoint 3`.
+    /// The name for messages: `waypoint 3`.
     what: String,
     entries: &'t DeTable<'i>,
     span: Range<usize>,
 }
 
 impl<'t, 'i> TomlTable<'t, 'i> {
-    /// The table of a whole file.
+    /// Returns the table of a whole file.
     pub fn of_document(what: &str, entries: &'t DeTable<'i>, span: Range<usize>) -> Self {
         Self { what: what.to_owned(), entries, span }
     }
 
-    /// What it is, for messages.
+    /// Returns the name for messages.
     pub fn what(&self) -> &str {
         &self.what
     }
@@ -35,12 +35,12 @@ impl<'t, 'i> TomlTable<'t, 'i> {
         self.span.clone()
     }
 
-    /// The keys with their places, in the order of the alphabet.
+    /// Returns the keys with their places, in alphabetical order.
     pub fn keys(&self) -> impl Iterator<Item = (&'t str, Range<usize>, &'t Value<'i>)> {
         self.entries.iter().map(|(key, value)| (key.get_ref().as_ref(), key.span(), value))
     }
 
-    /// A value that should be a table.
+    /// Returns the value as a table, or adds a problem.
     pub fn new(what: String, value: &'t Value<'i>, problems: &mut Problems<'_>) -> Option<Self> {
         match value.get_ref() {
             DeValue::Table(entries) => Some(Self { what, entries, span: value.span() }),
@@ -51,17 +51,17 @@ impl<'t, 'i> TomlTable<'t, 'i> {
         }
     }
 
-    /// A key and its value.
+    /// Returns a key and its value.
     fn entry(&self, key: &str) -> Option<(&'t Spanned<DeString<'i>>, &'t Value<'i>)> {
         self.entries.iter().find(|(name, _)| name.get_ref() == key)
     }
 
-    /// The value of a key.
+    /// Returns the value of a key.
     pub fn get(&self, key: &str) -> Option<&'t Value<'i>> {
         self.entry(key).map(|(_, value)| value)
     }
 
-    /// The value of a key that must be there.
+    /// Returns the value of a required key.
     pub fn required(&self, key: &str, problems: &mut Problems<'_>) -> Option<&'t Value<'i>> {
         let value = self.get(key);
         if value.is_none() {
@@ -74,7 +74,7 @@ impl<'t, 'i> TomlTable<'t, 'i> {
         value
     }
 
-    /// The text of a key.
+    /// Returns the text of a key.
     pub fn string(&self, key: &str, problems: &mut Problems<'_>) -> Option<String> {
         let value = self.get(key)?;
         let text = value.get_ref().as_str();
@@ -84,7 +84,7 @@ impl<'t, 'i> TomlTable<'t, 'i> {
         text.map(str::to_owned)
     }
 
-    /// Finds keys that are none of these.
+    /// Adds a problem for each key that is not in `known`.
     pub fn refuse_unknown(&self, known: &'static [&'static str], problems: &mut Problems<'_>) {
         for (key, _) in self.entries.iter() {
             let name = key.get_ref();

@@ -1,13 +1,13 @@
-//! Altitudes that are probably not meant: above a limit of the user, or far above all others of the plan.
+//! Altitudes that are probably a mistake: above a limit of the user, or far above all others of the plan.
 
 use super::Finding;
 use crate::plan::{Waypoint, WaypointType};
 
-/// An altitude this many times the median of the others …
+/// An altitude is far above the others if it is this many times their median …
 const TIMES_THE_OTHERS: f64 = 5.0;
-/// … and this far above the highest of them is far above the others, m.
+/// … and this far above the highest of them, m.
 const ABOVE_THE_OTHERS_M: f64 = 50.0;
-/// With fewer others there is nothing usual.
+/// The least number of others; fewer than that have no usual altitude.
 const FEWEST_OTHERS: usize = 2;
 
 /// The altitude of the leg to a waypoint.
@@ -15,9 +15,9 @@ const FEWEST_OTHERS: usize = 2;
 pub(crate) struct LegAltitude {
     /// The positional waypoint.
     pub(crate) index: usize,
-    /// The waypoint that says the altitude: itself, or the ALT_CHANGE before it.
+    /// The waypoint that gives the altitude: the same one, or the ALT_CHANGE before it.
     pub(crate) said_by: usize,
-    /// Above home, m.
+    /// The altitude above home, m.
     pub(crate) alt_m: f64,
 }
 
@@ -59,7 +59,7 @@ fn far_above_the_others(altitudes: &[(usize, f64)], at: usize) -> Option<Finding
     others.sort_by(f64::total_cmp);
     let highest_m = *others.last().filter(|_| others.len() >= FEWEST_OTHERS)?;
     let usual_m = others[others.len() / 2];
-    // Beside altitudes at or below home there is nothing usual, and nothing to lower it to.
+    // If the others are at or below home, there is no usual altitude and no value to lower it to.
     let is_far =
         usual_m > 0.0 && alt_m > TIMES_THE_OTHERS * usual_m && alt_m > highest_m + ABOVE_THE_OTHERS_M;
     is_far.then_some(Finding::FarAboveOthers { index, alt_m, usual_m })

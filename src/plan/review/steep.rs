@@ -1,4 +1,4 @@
-//! Legs that are too steep for their speed: the altitude setpoint is flown ahead over the time of each leg.
+//! Legs that are too steep for their speed. The review simulates the altitude setpoint over the time of each leg.
 
 use std::fmt;
 
@@ -11,24 +11,24 @@ use crate::plan::leg_time::{LegShape, Motion};
 use crate::plan::setpoint::AltitudeSetpoint;
 use crate::plan::{HoldPattern, Waypoint, WaypointType};
 
-/// Error of the altitude at a waypoint from which on a leg is too steep, m.
+/// The altitude error at a waypoint that makes a leg too steep, m.
 const STEEP_M: f64 = 7.0;
-/// Error that a slower leg may leave, m.
+/// The altitude error that a slower leg may leave, m.
 const LEVEL_M: f64 = 1.0;
-/// Distance below which two waypoints count as one, m.
+/// The distance below which two waypoints count as one, m.
 const CO_LOCATED_M: f64 = 0.1;
-/// Slowest speed that a waypoint can ask for, 0.1 m/s.
+/// The slowest speed of a waypoint, 0.1 m/s.
 const SLOWEST_DMPS: u16 = 10;
 
-/// What makes the craft reach the altitude.
+/// A change with which the craft reaches the altitude.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Remedy {
-    /// Fly the leg no faster than this.
+    /// Fly the leg no faster than this speed.
     Slow {
         /// Speed of the waypoint, cm/s.
         speed_cms: u16,
     },
-    /// Wait for the altitude in a HOLD at the place before.
+    /// Wait for the altitude in a HOLD at the previous place.
     HoldFirst,
 }
 
@@ -36,15 +36,15 @@ pub enum Remedy {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SteepLeg {
     pub index: usize,
-    /// Altitude of its leg above home, m.
+    /// Altitude of the leg above home, m.
     pub alt_m: f64,
-    /// Altitude at which the craft passes it, above that, m; negative = too low.
+    /// Altitude error of the craft at the waypoint, m; negative = too low.
     pub error_m: f64,
-    /// How long the leg takes, s.
+    /// The time of the leg, s.
     pub leg_s: f64,
-    /// How long the climb or descent takes, s.
+    /// The time of the climb or descent, s.
     pub needed_s: f64,
-    /// What makes the craft reach the altitude.
+    /// A change with which the craft reaches the altitude.
     pub remedy: Remedy,
 }
 
@@ -69,7 +69,7 @@ impl fmt::Display for SteepLeg {
     }
 }
 
-/// The legs of a flight from above `home` that are too steep.
+/// Returns the legs of a flight from above `home` that are too steep.
 pub(super) fn steep_legs(waypoints: &[Waypoint], home: LatLon, assumptions: &Assumptions) -> Vec<SteepLeg> {
     let mut walk = Walk {
         assumptions,
@@ -86,16 +86,16 @@ pub(super) fn steep_legs(waypoints: &[Waypoint], home: LatLon, assumptions: &Ass
     (0..end).filter_map(|index| walk.take(index, waypoints)).collect()
 }
 
-/// Where the craft is after some waypoints, and how it moves.
+/// The position and the motion of the craft after some waypoints.
 struct Walk<'a> {
     assumptions: &'a Assumptions,
-    /// The place of the waypoint before.
+    /// The place of the previous waypoint.
     place: LatLon,
-    /// The craft's offset from it, north and east, m.
+    /// The offset of the craft from that place, north and east, m.
     beside: Vector2<f64>,
     motion: Motion,
     setpoint: AltitudeSetpoint,
-    /// It climbs on the spot before the first leg.
+    /// `true` if the craft climbs on the spot before the first leg.
     climbs_first: bool,
     alt_change_m: Option<f64>,
     delay_s: Option<f64>,
@@ -109,12 +109,12 @@ struct Leg {
     alt_m: f64,
     kind: WaypointType,
     stops: bool,
-    /// Most speed because of a DELAY, m/s.
+    /// The speed limit from a DELAY, m/s.
     cap_mps: f64,
 }
 
 impl Walk<'_> {
-    /// Flies to a waypoint; gives it when its height is missed.
+    /// Flies to a waypoint. Returns the leg if the craft misses the altitude.
     fn take(&mut self, index: usize, waypoints: &[Waypoint]) -> Option<SteepLeg> {
         let waypoint = &waypoints[index];
         let own_alt_m = f64::from(waypoint.alt_cm) / 100.0;
@@ -174,7 +174,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Distance from the waypoint at which it counts as reached by a craft of this speed, m.
+    /// Returns the distance from the waypoint at which it counts as reached by a craft of this speed, m.
     fn reach_m(&self, leg: &Leg, speed_mps: f64) -> f64 {
         match leg.kind {
             WaypointType::Flyover | WaypointType::Flyby if leg.stops => self.assumptions.arrival_radius_m,
@@ -187,7 +187,7 @@ impl Walk<'_> {
         }
     }
 
-    /// The motion and the altitude at the end of a leg that is flown at this speed, and how long it takes, s.
+    /// Returns the motion and the altitude at the end of a leg at this speed, and its time, s.
     fn flown(&self, leg: &Leg, speed_mps: f64) -> (Motion, AltitudeSetpoint, f64) {
         let speed_mps = speed_mps.min(leg.cap_mps);
         let (mut motion, mut setpoint) = (self.motion, self.setpoint);
@@ -218,7 +218,7 @@ impl Walk<'_> {
             (alone.reach(leg.alt_m, &limits, LEVEL_M), self.remedy(waypoint, leg))
         });
         let leg_s = self.fly(waypoint, leg);
-        // A target in the ground is never reached, however long the leg is.
+        // A target in the ground is never reached, even on a long leg.
         let (needed_s, remedy) = steep.filter(|(needed_s, _)| needed_s.is_finite())?;
         Some(SteepLeg { index, alt_m: leg.alt_m, error_m, leg_s, needed_s, remedy })
     }
@@ -241,7 +241,7 @@ impl Walk<'_> {
         Remedy::Slow { speed_cms: slow * 10 }
     }
 
-    /// The stay of a HOLD at its end; a LAND ends the mission.
+    /// Adds the stay of a HOLD after a leg; a LAND ends the mission.
     fn stay(&mut self, waypoint: &Waypoint, alt_m: f64) {
         let duration_s = f64::from(waypoint.duration_ds) / 10.0;
         if waypoint.kind == WaypointType::Hold {
@@ -254,7 +254,7 @@ impl Walk<'_> {
         };
     }
 
-    /// The place on the circle, from its middle, after so many seconds, m.
+    /// Returns the place on the circle after so many seconds, m from the middle.
     fn on_the_orbit(&self, waypoint: &Waypoint, seconds: f64) -> Vector2<f64> {
         let Assumptions { orbit_radius_m, turn_rate_dps, max_angle_deg, .. } = *self.assumptions;
         let lean = max_angle_deg.clamp(5.0, 80.0).to_radians();

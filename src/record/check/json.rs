@@ -1,4 +1,4 @@
-//! Checked flights as JSON lines: one object a flight, one for each comparison, and one at the end.
+//! Checked flights as JSON lines: one object for each flight, one for each comparison, and one at the end.
 
 use serde_json::{Map, Value, json};
 
@@ -6,7 +6,7 @@ use super::{CaseCount, CheckedFlight, Compared, Summary};
 use crate::scenario::{Judgement, Outcome};
 use crate::signals::SimTime;
 
-/// The line of a flight.
+/// Returns the line of a flight.
 pub fn flight_line(flight: &CheckedFlight) -> String {
     let expectations: Vec<Value> =
         flight.judgements.iter().map(|judgement| expectation(judgement, Some(flight))).collect();
@@ -36,7 +36,7 @@ pub fn flight_line(flight: &CheckedFlight) -> String {
     .to_string()
 }
 
-/// The lines of the comparisons, and the last line of a run.
+/// Returns the lines of the comparisons, and the last line of a run.
 pub fn summary_line(summary: &Summary) -> Vec<String> {
     let mut lines: Vec<String> = summary.compared.iter().map(compared_line).collect();
     let cases: Vec<Value> = summary

@@ -1,11 +1,11 @@
-//! Checked flights as a JUnit file: a testsuite a scenario, a testcase a case and seed.
+//! Checked flights as a JUnit file: one testsuite for each scenario, one testcase for each case and seed.
 
 use super::{CheckedFlight, Compared, Summary, complaint, is_skipped};
 use crate::record::xml::escaped;
 use crate::scenario::Outcome;
 
 pub fn junit(summary: &Summary) -> String {
-    // Two files may give their scenarios the same name.
+    // The scenarios of two files may have the same name.
     let mut scenarios: Vec<(&str, &str)> = Vec::new();
     for flight in &summary.flights {
         let scenario = (flight.scenario.as_str(), flight.file.as_str());

@@ -1,4 +1,4 @@
-//! Checked flights as a summary that reads well in a pull request.
+//! Checked flights as a Markdown summary for a pull request.
 
 use super::{Summary, complaint};
 use crate::scenario::Outcome;
@@ -10,7 +10,7 @@ pub fn markdown(summary: &Summary) -> String {
         false => "❌ Some flights failed",
     };
     let (skipped_flights, skipped) = summary.skipped();
-    // Only a flight controller outside makes any.
+    // Only a remote flight controller causes skipped expectations.
     let with_skipped = skipped > 0;
     let told = if with_skipped {
         format!(", {skipped_flights} skipped whole, {skipped} expectations skipped")
@@ -83,12 +83,12 @@ pub fn markdown(summary: &Summary) -> String {
     text
 }
 
-/// Text in a cell of a table.
+/// Returns text for a cell of a table.
 fn cell(text: &str) -> String {
     line(text).replace('|', "\\|")
 }
 
-/// Text that Markdown takes for text.
+/// Returns text with Markdown's special characters escaped.
 fn line(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in text.chars() {
@@ -102,7 +102,7 @@ fn line(text: &str) -> String {
     escaped
 }
 
-/// A command, also one with a back quote in it.
+/// Returns a command as Markdown code, even if it has a back quote.
 fn code(command: &str) -> String {
     let command = command.replace('\n', " ");
     if command.contains('`') { format!("`` {command} ``") } else { format!("`{command}`") }

@@ -4,10 +4,11 @@ use super::{CheckedFlight, Summary, complaint};
 use crate::scenario::quantity::shown;
 use crate::scenario::{Margin, Outcome};
 
-/// From so many flights of a case on it is told how far their numbers spread.
+/// The least number of flights of a case for which the spread of their numbers is reported.
 const MANY: usize = 20;
 
-/// The lines of a flight: one when it passed; else what was seen, and how to open the worst moment.
+/// Returns the lines of a flight. A flight that passed has one line. Otherwise the lines give the observed behaviour
+/// and the command that opens the worst moment.
 pub fn flight_lines(flight: &CheckedFlight) -> Vec<String> {
     let mark = match flight.passed() {
         true if flight.is_skipped() => "–",
@@ -44,7 +45,7 @@ pub fn flight_lines(flight: &CheckedFlight) -> Vec<String> {
     lines
 }
 
-/// How many expectations were skipped and why, as the end of a line.
+/// Returns the number of skipped expectations and the reason, as the end of a line.
 fn skipped(flight: &CheckedFlight) -> String {
     let needed = flight.judgements.iter().filter_map(|judgement| match judgement.outcome {
         Outcome::Skipped(needed) => Some(needed),
@@ -60,7 +61,7 @@ fn counted(expectations: usize) -> String {
     if expectations == 1 { "1 expectation".to_owned() } else { format!("{expectations} expectations") }
 }
 
-/// Of cases with many flights: how far the numbers of each expectation spread.
+/// Returns the spread of the numbers of each expectation, for cases with many flights.
 fn spreads(summary: &Summary) -> Vec<String> {
     let mut lines = Vec::new();
     let mut first = 0;
@@ -80,7 +81,7 @@ fn spreads(summary: &Summary) -> Vec<String> {
                 .filter_map(|judgement| judgement.outcome.margin().copied())
                 .collect();
             margins.sort_by(|a, b| a.verdict.share().total_cmp(&b.verdict.share()));
-            // The tightest twentieth lies beyond the 95th percentile.
+            // The tightest twentieth is beyond the 95th percentile.
             if let (Some(worst), Some(tight)) = (margins.first(), margins.get(margins.len() / 20)) {
                 let tight = shown(tight.verdict.value, tight.verdict.dimension);
                 lines.push(format!("    {label}: worst {}, 95th percentile {tight}", worst.shown()));
@@ -90,7 +91,7 @@ fn spreads(summary: &Summary) -> Vec<String> {
     lines
 }
 
-/// The last lines of a run.
+/// Returns the last lines of a run.
 pub fn summary_lines(summary: &Summary) -> Vec<String> {
     let mut lines = Vec::new();
     for case in summary.cases().iter().filter(|case| case.flights > 1 && case.has_failures()) {

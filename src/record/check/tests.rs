@@ -1,11 +1,11 @@
-//! The forms of a checked run.
+//! The output forms of a checked run.
 
 use super::*;
 use crate::scenario::expression::Verdict;
 use crate::scenario::quantity::Dimension;
 use crate::scenario::{Margin, Outcome};
 
-/// A flight of a case with many seeds, whose greatest distance was this.
+/// Returns a flight of a case with many seeds and with this greatest distance.
 fn flight(seed: u64, distance_m: f64) -> CheckedFlight {
     let verdict = Verdict {
         value: distance_m,
@@ -182,7 +182,7 @@ fn skipped_expectations_are_counted_in_every_form() {
     assert!(!markdown(&self::summary([1.0].into_iter())).contains("skipped"));
 }
 
-/// A flight of which nothing was judged.
+/// Returns a flight without a judgement.
 fn unjudged(seed: u64) -> CheckedFlight {
     let outcome = Outcome::Skipped(Insight::Inner);
     let judgements = vec![Judgement { label: "throttle < 1900 µs".to_owned(), line: 9, outcome }];

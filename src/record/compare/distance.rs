@@ -1,14 +1,14 @@
-//! How far two tracks lie apart.
+//! The distance between two tracks.
 
 use nalgebra::Vector3;
 
 use super::track::{Track, distance_to_segment};
 
-/// Most places of a track that are compared: the work grows with the square.
+/// The most places of a track for a comparison. The work grows with the square of that number.
 const MOST: usize = 2000;
 
-/// Root mean square of the way from each place of one track to the nearest of the other, in space and in both directions, m.
-/// When the craft was there does not count. `None` when one of them has no place.
+/// Returns the root mean square of the distance from each place of one track to the nearest place of the other, in
+/// space and in both directions, m. Time does not count. Returns `None` if one of the tracks has no place.
 pub(super) fn rms_m(one: &Track, other: &Track) -> Option<f64> {
     let (one, other) = (places(one), places(other));
     let squares: Vec<f64> = squares_to(&one, &other).chain(squares_to(&other, &one)).collect();
@@ -18,7 +18,7 @@ pub(super) fn rms_m(one: &Track, other: &Track) -> Option<f64> {
     Some((squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
 }
 
-/// The track with as many places as can be compared.
+/// Returns the places of a track, with as many as can be compared.
 fn places(track: &Track) -> Vec<Vector3<f64>> {
     let every = track.samples.len().div_ceil(MOST).max(1);
     let last = track.samples.len().saturating_sub(1);
@@ -26,14 +26,14 @@ fn places(track: &Track) -> Vec<Vector3<f64>> {
     kept.map(|(_, sample)| sample.position()).collect()
 }
 
-/// Squares of the distances from the places to the line through those of the other track.
+/// Returns the squares of the distances from the places to the line through the places of the other track.
 fn squares_to<'a>(places: &'a [Vector3<f64>], line: &'a [Vector3<f64>]) -> impl Iterator<Item = f64> + 'a {
     places.iter().map(|place| {
         let to_sections = line.windows(2).map(|ends| match ends {
             [from, to] => distance_to_segment(*place, *from, *to),
             _ => f64::INFINITY,
         });
-        // A track of a single place has no section.
+        // A track with a single place has no section.
         let to_first = line.first().map(|first| (place - first).norm());
         to_sections.chain(to_first).fold(f64::INFINITY, f64::min).powi(2)
     })

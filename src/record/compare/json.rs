@@ -12,7 +12,7 @@ struct Object<'a> {
     conditions: &'a str,
     firmware: [Firmware<'a>; 2],
     measures: Vec<Line>,
-    /// The way to the nearest place of the other track, root mean square.
+    /// The distance to the nearest place of the other track, root mean square.
     tracks_apart_rms_m: Apart,
 }
 
@@ -54,7 +54,7 @@ struct Apart {
     b: Option<Value>,
 }
 
-/// The object, in one line.
+/// Returns the object in one line.
 pub(super) fn object(comparison: &Comparison) -> String {
     let [a, b] = comparison.apart.among.map(|side| side.map(Value::from));
     let object = Object {

@@ -1,4 +1,4 @@
-//! What is measured of a flight.
+//! The measures of a flight.
 
 use nalgebra::Vector2;
 
@@ -7,10 +7,10 @@ use super::route::Route;
 use super::track::{Track, TrackSample, distance_to_segment};
 use crate::plan::WaypointType;
 
-/// The sine of the smallest turn that is a corner, of about 10°.
+/// The sine of the smallest turn that counts as a corner, about 10°.
 const CORNER: f64 = 0.17;
 
-/// What is measured of a flight; waypoints by their index in the plan.
+/// A measure of a flight; waypoints are given by their index in the plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Measure {
     /// Seconds from the engagement until a waypoint was reached.
@@ -19,20 +19,20 @@ pub enum Measure {
     TouchdownTime,
     /// Seconds from the engagement to the end.
     Flown,
-    /// Greatest distance from the straight leg to a waypoint, m.
+    /// Greatest cross-track error on the straight leg to a waypoint, m.
     CrossTrackMax(u8),
-    /// Root mean square of that distance, m.
+    /// Root mean square of that cross-track error, m.
     CrossTrackRms(u8),
-    /// How far the craft came beyond the new leg when it turned at a waypoint, m.
+    /// Distance by which the craft went beyond the new leg in its turn at a waypoint, m.
     Overshoot(u8),
-    /// Altitude less that of the plan where a waypoint was reached, m.
+    /// Altitude at the instant of reaching a waypoint, less the altitude in the plan, m.
     AltitudeError(u8),
     /// Distance of the touchdown from the LAND point, m.
     TouchdownDistance,
 }
 
 impl Measure {
-    /// All that a route can give, in the order in which they are shown.
+    /// Returns all measures of a route, in the order of the output.
     pub(super) fn all(route: &Route) -> impl Iterator<Item = Self> + '_ {
         let of_each = |measure: fn(u8) -> Self| route.points.iter().map(move |point| measure(point.wp));
         of_each(Self::TimeTo)
@@ -44,7 +44,7 @@ impl Measure {
             .chain([Self::TouchdownDistance])
     }
 
-    /// What it is, for people.
+    /// Returns the title for people.
     pub(super) fn title(self) -> String {
         match self {
             Self::TimeTo(wp) => format!("time to WP{wp}"),
@@ -58,7 +58,7 @@ impl Measure {
         }
     }
 
-    /// Its name in JSON, and the waypoint.
+    /// Returns the name in JSON, and the waypoint.
     pub(super) fn key(self) -> (&'static str, Option<u8>) {
         match self {
             Self::TimeTo(wp) => ("time_to_wp_s", Some(wp)),
@@ -84,7 +84,7 @@ impl Measure {
     }
 }
 
-/// What a flight measures; what it did not come to is left out.
+/// Returns the measures of a flight, without those of places that it did not reach.
 pub(super) fn measures(route: &Route, track: &Track) -> Vec<(Measure, f64)> {
     let mut found = Vec::new();
     found.extend(track.flown_s.map(|flown_s| (Measure::Flown, flown_s)));
@@ -113,18 +113,18 @@ pub(super) fn measures(route: &Route, track: &Track) -> Vec<(Measure, f64)> {
     found
 }
 
-/// The straight way to a waypoint.
+/// The straight line to a waypoint.
 #[derive(Debug, Clone, Copy)]
 struct Leg {
     from: Vector2<f64>,
     to: Vector2<f64>,
-    /// The first sample that flies it.
+    /// The first sample on the leg.
     first: usize,
 }
 
 impl Leg {
-    /// The leg to `passage` from the waypoint before it, or from where the autopilot engaged. `None` when it has no straight
-    /// way: to a TAKEOFF, or from a waypoint that was left out.
+    /// Returns the leg to `passage` from the previous waypoint, or from the place of the engagement. Returns `None`
+    /// if there is no straight line: to a TAKEOFF, or from a waypoint that was left out.
     fn new(before: Option<&Passage>, passage: &Passage, track: &Track) -> Option<Self> {
         let to = passage.point.ne?;
         let Some(before) = before else {
@@ -134,13 +134,13 @@ impl Leg {
         if before.index + 1 != passage.index {
             return None;
         }
-        // From a pattern the craft leaves where it is.
+        // The leg after a pattern begins at the position of the craft.
         let place = before.point.ne.filter(|_| before.point.pattern_m == 0.0);
         let left = track.samples.get(before.left)?;
         Some(Self { from: place.unwrap_or(left.ne), to, first: before.left })
     }
 
-    /// Greatest and root mean square distance from the leg, m.
+    /// Returns the greatest and the root mean square cross-track error, m.
     fn cross_track_m(&self, flown: &[TrackSample]) -> Option<(f64, f64)> {
         let distances = flown.iter().map(|sample| distance_to_segment(sample.ne, self.from, self.to));
         let most_m = distances.clone().reduce(f64::max)?;
@@ -150,8 +150,8 @@ impl Leg {
         ))
     }
 
-    /// How far the craft came beyond the next leg, to the outside of the corner; at a place that is held, or the last one,
-    /// beyond the place itself.
+    /// Returns the distance by which the craft went beyond the next leg, to the outside of the corner. At a place
+    /// with a hold, and at the last place, it is the distance beyond the place itself.
     fn overshoot_m(&self, at: &Passage, next: Option<&Passage>, samples: &[TrackSample]) -> Option<f64> {
         if at.point.pattern_m > 0.0 || at.point.kind == WaypointType::Land {
             return None;
@@ -172,8 +172,8 @@ impl Leg {
     }
 }
 
-/// The direction across the way out that points to the outside of the corner; of a turn back, the way in. `None` when there
-/// is no corner.
+/// Returns the direction across the way out that points to the outside of the corner. For a turn back it is the way in.
+/// Returns `None` if there is no corner.
 fn outside_of_corner(way_in: Vector2<f64>, way_out: Vector2<f64>) -> Option<Vector2<f64>> {
     let across = way_in - way_out * way_in.dot(&way_out);
     match across.try_normalize(CORNER) {

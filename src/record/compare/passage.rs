@@ -1,28 +1,28 @@
-//! When a track passed each waypoint of a route, found from the track alone.
+//! The times at which a track passed each waypoint of a route, found from the track alone.
 //!
-//! Nothing behind a waypoint that was not reached counts. The passages are the instants, in the order of the route, for which
-//! the sum of the squared distances is least: so a waypoint that is flown over twice, or a route that crosses itself, is
-//! told apart.
+//! Waypoints after one that was not reached do not count. The passages are the instants, in the order of the route,
+//! with the least sum of the squared distances. This also works for a waypoint that the plan flies over twice, and
+//! for a route that crosses itself.
 
 use super::route::{Route, RoutePoint};
 use super::track::{Track, TrackSample};
 
-/// What is nearer than this to the closest approach counts as there, m.
+/// The distance from the closest approach within which the craft counts as at the waypoint, m.
 const NEAR_M: f64 = 1.0;
 
-/// A waypoint that was passed; indices are of the samples of the track.
+/// A passed waypoint; indices are of the samples of the track.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Passage {
-    /// Its place in the route.
+    /// The index in the route.
     pub(super) index: usize,
     pub(super) point: RoutePoint,
     /// The first sample within a metre of the closest approach.
     pub(super) reached: usize,
-    /// The sample from which the next leg is flown: the closest approach, or the last one at a place that is held.
+    /// The sample at which the next leg begins: the closest approach, or the last sample at a place with a hold.
     pub(super) left: usize,
 }
 
-/// The waypoints that the track passed, in their order.
+/// Returns the waypoints that the track passed, in their order.
 pub(super) fn passages(route: &Route, track: &Track) -> Vec<Passage> {
     let samples = &track.samples;
     let points = reached(&route.points, samples);
@@ -45,7 +45,7 @@ pub(super) fn passages(route: &Route, track: &Track) -> Vec<Passage> {
     passed
 }
 
-/// The waypoints up to the first that was not reached after the one before it.
+/// Returns the waypoints before the first that was not reached in order.
 fn reached<'r>(points: &'r [RoutePoint], samples: &[TrackSample]) -> &'r [RoutePoint] {
     let mut ahead = samples.iter().peekable();
     let mut came_to = |point: &RoutePoint| {
@@ -61,10 +61,10 @@ fn reached<'r>(points: &'r [RoutePoint], samples: &[TrackSample]) -> &'r [RouteP
     points.get(..count).unwrap_or_default()
 }
 
-/// For each point the sample at which it is passed.
+/// Returns for each point the sample at which the track passes it.
 fn closest_in_order(points: &[RoutePoint], samples: &[TrackSample]) -> Vec<usize> {
-    // `cost[i]`: the least sum for the points so far, the last of them passed at or before sample `i`; `choices` has, for
-    // each point, the sample of that passage.
+    // `cost[i]` is the least sum for the points so far, with the last of them passed at or before sample `i`.
+    // `choices` has the sample of that passage for each point.
     let mut cost = vec![0.0; samples.len()];
     let mut choices: Vec<Vec<usize>> = Vec::with_capacity(points.len());
     for point in points {

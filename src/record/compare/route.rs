@@ -1,4 +1,4 @@
-//! A flight plan in metres: where each waypoint is, and how high.
+//! A flight plan in metres: the position and the altitude of each waypoint.
 
 use nalgebra::Vector2;
 
@@ -7,12 +7,12 @@ use crate::geo::LocalFrame;
 use crate::plan::{FlightPlan, HoldPattern, WaypointType};
 use crate::telemetry::snapshot::SettingsView;
 
-/// How far a waypoint may be passed and still count as flown, beyond its own radius, m.
+/// The greatest distance, beyond the waypoint's own radius, at which a waypoint counts as flown, m.
 const REACH_M: f64 = 20.0;
-/// The same of a FLYBY, whose corner is cut, m.
+/// The same for a FLYBY, where the craft cuts the corner, m.
 const CUT_M: f64 = 40.0;
 
-/// The places of a plan that are flown, in their order.
+/// The places of a plan to fly to, in their order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Route {
     pub(super) points: Vec<RoutePoint>,
@@ -24,20 +24,20 @@ pub(super) struct RoutePoint {
     /// Index in the plan.
     pub(super) wp: u8,
     pub(super) kind: WaypointType,
-    /// North and east of home, m; `None` of a TAKEOFF, which climbs where it stands.
+    /// North and east of home, m; `None` for a TAKEOFF, which climbs at its own place.
     pub(super) ne: Option<Vector2<f64>>,
-    /// Altitude above home at which it is flown, m.
+    /// Altitude of the waypoint above home, m.
     pub(super) alt_m: f64,
-    /// Radius of the pattern that is flown around it, m; 0 = none.
+    /// Radius of the pattern around the waypoint, m; 0 = none.
     pub(super) pattern_m: f64,
-    /// The craft stays there for a while.
+    /// `true` if the craft stays there for a while.
     pub(super) holds: bool,
-    /// From which distance it counts as flown, m.
+    /// The distance at which it counts as flown, m.
     pub(super) reach_m: f64,
 }
 
 impl Route {
-    /// The route of a plan; `frame` places it in the world.
+    /// Returns the route of a plan; `frame` places it in the world.
     pub fn new(plan: &FlightPlan, frame: &LocalFrame, settings: &SettingsView) -> Self {
         let mut points = Vec::new();
         let mut alt_change_m = None;
@@ -84,7 +84,8 @@ impl Route {
 }
 
 impl RoutePoint {
-    /// How far the craft is from having passed it, m: of a pattern from its ring, of a TAKEOFF below its altitude.
+    /// Returns the distance of the craft from the waypoint, m: from the ring of a pattern, or below the altitude of a
+    /// TAKEOFF.
     pub(super) fn distance_m(&self, sample: &TrackSample) -> f64 {
         match self.ne {
             Some(ne) => ((sample.ne - ne).norm() - self.pattern_m).max(0.0),

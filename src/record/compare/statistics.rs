@@ -4,14 +4,14 @@
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Statistics {
     pub mean: f64,
-    /// The standard deviation; `None` of a single value.
+    /// The standard deviation; `None` for a single value.
     pub spread: Option<f64>,
-    /// How many values there are.
+    /// The number of values.
     pub count: usize,
 }
 
 impl Statistics {
-    /// Of these values; `None` when there are none.
+    /// Returns the statistics of these values; `None` if there are no values.
     pub(super) fn of(values: impl Iterator<Item = f64>) -> Option<Self> {
         let values: Vec<f64> = values.collect();
         let count = values.len();
@@ -24,7 +24,7 @@ impl Statistics {
         Some(Self { mean, spread, count })
     }
 
-    /// This less `other`; the spreads of the two are independent.
+    /// Returns these statistics less `other`. The spreads of the two are independent.
     pub(super) fn less(self, other: Self) -> Self {
         let spread = match (self.spread, other.spread) {
             (Some(one), Some(two)) => Some(one.hypot(two)),

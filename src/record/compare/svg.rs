@@ -11,9 +11,9 @@ use crate::plan::WaypointType;
 use crate::record::xml::escaped;
 use canvas::Canvas;
 
-/// Colours of the two, told apart by people who see no red or no green, too.
+/// The colours of the two firmwares. People who cannot see red or green can tell them apart, too.
 const COLOURS: [&str; 2] = ["#0072b2", "#d55e00"];
-/// Widths of their first flights, so that both are seen where they coincide, px.
+/// The widths of their first flights, so that both are visible where they coincide, px.
 const WIDTHS: [f64; 2] = [1.5, 3.5];
 /// Width of the other flights, px.
 const THIN: f64 = 0.8;
@@ -26,12 +26,12 @@ pub(super) fn picture(comparison: &Comparison) -> String {
     let route = comparison.route.points.iter().filter_map(|point| point.ne);
     let flown = comparison.sides.iter().flat_map(|side| &side.flights).flat_map(|flight| &flight.samples);
     let places = route.chain(flown.map(|sample| sample.ne)).chain([Vector2::zeros()]);
-    // Title, two names and the scale stand above the map.
+    // The title, the two names and the scale are above the map.
     let canvas = Canvas::around(places, 4.5 * LINE);
     let mut text = canvas.head(&format!("{}: two tracks", comparison.plan));
     heading(&mut text, comparison);
     legs(&mut text, comparison, &canvas);
-    // The first one lies on top.
+    // The first firmware is on top.
     for ((side, colour), width) in comparison.sides.iter().zip(COLOURS).zip(WIDTHS).rev() {
         tracks(&mut text, side, colour, width, &canvas);
     }
@@ -41,7 +41,7 @@ pub(super) fn picture(comparison: &Comparison) -> String {
     text
 }
 
-/// What is shown, and which colour is whose.
+/// Draws the title and the legend of the colours.
 fn heading(text: &mut String, comparison: &Comparison) {
     let title = format!("{}, {}", comparison.plan, comparison.conditions);
     let _ = writeln!(
@@ -64,7 +64,7 @@ fn heading(text: &mut String, comparison: &Comparison) {
     }
 }
 
-/// The straight legs, dashed.
+/// Draws the straight legs, dashed.
 fn legs(text: &mut String, comparison: &Comparison, canvas: &Canvas) {
     let first = comparison.sides.iter().find_map(|side| side.flights.first()?.samples.first());
     let places = first.map(|sample| sample.ne).into_iter();
@@ -88,7 +88,7 @@ fn legs(text: &mut String, comparison: &Comparison, canvas: &Canvas) {
     }
 }
 
-/// The flights of one, the first one bold.
+/// Draws the flights of one firmware, the first one bold.
 fn tracks(text: &mut String, side: &Side, colour: &str, bold: f64, canvas: &Canvas) {
     for (index, flight) in side.flights.iter().enumerate().rev() {
         let width = if index == 0 { bold } else { THIN };
@@ -109,7 +109,7 @@ fn tracks(text: &mut String, side: &Side, colour: &str, bold: f64, canvas: &Canv
     }
 }
 
-/// Home and the waypoints with their numbers.
+/// Draws home and the waypoints with their numbers.
 fn waypoints(text: &mut String, comparison: &Comparison, canvas: &Canvas) {
     let (x, y) = canvas.place(Vector2::zeros());
     let _ = writeln!(

@@ -21,7 +21,7 @@ fn settings() -> SettingsView {
     }
 }
 
-/// A plan of these places, m north and east of home, all 10 m high.
+/// Returns a plan of these places, m north and east of home, all at 10 m.
 fn plan(places: &[(f64, f64, WaypointType)]) -> FlightPlan {
     let mut plan = FlightPlan::default();
     for (north, east, kind) in places {
@@ -40,7 +40,7 @@ fn route(places: &[(f64, f64, WaypointType)]) -> Route {
     Route::new(&plan(places), &frame(), &settings())
 }
 
-/// A track along straight lines between these places at 10 m/s, ten samples a second, 10 m high.
+/// Returns a track along straight lines between these places at 10 m/s, with ten samples a second, at 10 m.
 fn track(places: &[(f64, f64)]) -> Track {
     let mut samples: Vec<TrackSample> = Vec::new();
     for ends in places.windows(2) {
@@ -98,7 +98,7 @@ fn a_place_that_is_flown_twice_is_passed_in_the_order_of_the_plan() {
     for (wp, time) in [(0, 4.9), (1, 9.9), (2, 14.9), (3, 22.9)] {
         assert_near(value(&found, Measure::TimeTo(wp)), time, 0.11);
     }
-    // It turns back on the spot, and flies on beyond the last one.
+    // The craft turns back on the spot at one waypoint, and flies on beyond the last one.
     assert_near(value(&found, Measure::Overshoot(1)), 0.0, 0.01);
     assert_near(value(&found, Measure::Overshoot(3)), 9.0, 1.01);
 }
@@ -179,7 +179,7 @@ fn names_are_escaped_in_the_picture() {
         "the second flight is thin"
     );
     assert!(svg.contains(">WP0</text>") && svg.contains(">WP2 LAND</text>") && svg.contains(" m</text>"));
-    // Every element is closed: as many ends as beginnings.
+    // Every element is closed: there are as many ends as beginnings.
     assert_eq!(svg.matches('<').count(), svg.matches('>').count());
     assert!(svg.trim_end().ends_with("</svg>"));
     assert!(!svg.contains("NaN") && !svg.contains("inf"));

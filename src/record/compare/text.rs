@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use super::{Comparison, Side, Statistics};
 
-/// What stands for a value that is not known.
+/// The text for an unknown value.
 const UNKNOWN: &str = "—";
 
 pub(super) fn table(comparison: &Comparison) -> String {
@@ -45,7 +45,7 @@ pub(super) fn table(comparison: &Comparison) -> String {
     text
 }
 
-/// How often it was flown.
+/// Returns the number of flights in words.
 fn flights(side: &Side) -> String {
     match side.flights.len() {
         0 => "not flown".to_owned(),
@@ -55,7 +55,7 @@ fn flights(side: &Side) -> String {
     }
 }
 
-/// The results, the same ones counted.
+/// Returns the results; equal results are counted.
 fn results(side: &Side) -> String {
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     for flight in &side.flights {
@@ -72,12 +72,12 @@ fn results(side: &Side) -> String {
     told.collect::<Vec<_>>().join(", ")
 }
 
-/// `12.34 ± 0.05`.
+/// Returns a value with its spread: `12.34 ± 0.05`.
 fn plain(value: Statistics) -> String {
     format!("{}{}", rounded(value.mean), spread(value))
 }
 
-/// `+0.12 ± 0.05`.
+/// Returns a value with its sign and its spread: `+0.12 ± 0.05`.
 fn signed(value: Statistics) -> String {
     let sign = if rounded(value.mean).starts_with('-') { "" } else { "+" };
     format!("{sign}{}{}", rounded(value.mean), spread(value))
@@ -87,12 +87,12 @@ fn spread(value: Statistics) -> String {
     value.spread.map_or_else(String::new, |spread| format!(" ± {}", rounded(spread)))
 }
 
-/// To the hundredth, never `-0.00`.
+/// Rounds to the hundredth, without `-0.00`.
 fn rounded(value: f64) -> String {
     format!("{:.2}", (value * 100.0).round() / 100.0 + 0.0)
 }
 
-/// Columns as wide as their widest cell: names to the left, values to the right.
+/// Aligns columns to their widest cell: names left, values right.
 fn aligned(lines: &[[String; 5]]) -> String {
     let width = |column: usize| {
         let cells = lines.iter().filter_map(|line| line.get(column));

@@ -1,41 +1,41 @@
-//! Where a craft truly flew.
+//! The true track of a craft.
 
 use nalgebra::{Vector2, Vector3};
 
-/// A flight of the plan from its engagement on, which is when the pilot switched the autopilot on.
+/// A flight of the plan from its engagement on, the instant at which the pilot switched the autopilot on.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Track {
-    /// Where the craft was, at a steady rhythm.
+    /// The positions of the craft, at equal intervals.
     pub samples: Vec<TrackSample>,
-    /// The last touchdown: seconds after the engagement, and where, m north and east of home.
+    /// The last touchdown: seconds after the engagement, and the place, m north and east of home.
     pub touchdown: Option<(f64, Vector2<f64>)>,
-    /// Result of the flight in a word.
+    /// Result of the flight in one word.
     pub result: String,
-    /// Why, as a sentence; may be empty.
+    /// The reason as a sentence; may be empty.
     pub reason: String,
-    /// Seconds from the engagement to the end; `None` when it did not engage.
+    /// Seconds from the engagement to the end; `None` if the autopilot did not engage.
     pub flown_s: Option<f64>,
 }
 
-/// The craft at an instant.
+/// The position of the craft at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrackSample {
     /// Seconds after the engagement.
     pub time_s: f64,
     /// North and east of home, m.
     pub ne: Vector2<f64>,
-    /// Above where the craft stood at home, m.
+    /// Height above the craft's position on the ground at home, m.
     pub alt_m: f64,
 }
 
 impl TrackSample {
-    /// North, east, up of home, m.
+    /// Returns north, east and up from home, m.
     pub(super) fn position(&self) -> Vector3<f64> {
         Vector3::new(self.ne.x, self.ne.y, self.alt_m)
     }
 }
 
-/// Distance from a point to the line between two others, to its ends beyond them.
+/// Returns the distance from a point to the segment between two others.
 pub(super) fn distance_to_segment<const D: usize>(
     point: nalgebra::SVector<f64, D>,
     from: nalgebra::SVector<f64, D>,

@@ -10,7 +10,7 @@ impl UtcSeconds {
     /// The instant of boot in simulated flights, 2026-01-01T00:00:00Z.
     pub const SIMULATED_BOOT: Self = Self(1_767_225_600);
 
-    /// Date and time as a version line shows them: `Jan 01 2026`, `00:00:00`.
+    /// Returns the date and the time in the form of a version line: `Jan 01 2026`, `00:00:00`.
     pub fn build_stamp(self) -> (String, String) {
         const MONTHS: [&str; 12] =
             ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
@@ -21,7 +21,7 @@ impl UtcSeconds {
         (format!("{month} {day:02} {year}"), format!("{hour:02}:{minute:02}:{:02}", second % 60))
     }
 
-    /// The instant `seconds` later.
+    /// Returns the instant `seconds` later.
     pub fn plus(self, seconds: u64) -> Self {
         Self(self.0.saturating_add(seconds))
     }
@@ -36,8 +36,8 @@ impl fmt::Display for UtcSeconds {
     }
 }
 
-/// The Gregorian year, month and day of a count of days since 1970-01-01. Years are counted from March, so that the leap
-/// day is a year's last.
+/// Returns the Gregorian year, month and day for a count of days since 1970-01-01. Its years begin in March, so that
+/// the leap day is the last day of a year.
 fn civil(days: u64) -> (u64, u64, u64) {
     const DAYS_PER_ERA: u64 = 146_097;
     // 1970-01-01 is day 719 468 after 0000-03-01.

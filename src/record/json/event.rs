@@ -12,10 +12,10 @@ use crate::telemetry::{
     BatteryAlarm, EventKind, FaultValue, FirmwareEvent, Guard, NavEvent, PlanSource, Refusal,
 };
 
-/// A number of degrees with the resolution of plans: 1e-7.
+/// A number of degrees with the resolution of plans, 1e-7.
 type Degrees = Decimals<7>;
 
-/// The fields after `t` and `event`, in the order in which they are printed.
+/// The fields after `t` and `event`, in the order of the output.
 #[derive(Debug, Serialize)]
 #[serde(untagged)]
 pub(super) enum Fields<'a> {
@@ -77,7 +77,7 @@ pub(super) struct PlanWaypoint {
 }
 
 impl<'a> Fields<'a> {
-    /// Name and fields of an event; `None` when it has no line.
+    /// Returns the name and the fields of an event; `None` if it has no line.
     pub(super) fn of(kind: &'a SessionEvent) -> Option<(&'static str, Self)> {
         Some(match kind {
             SessionEvent::Vehicle(event) => return Self::of_vehicle(event),
@@ -184,7 +184,7 @@ impl<'a> Fields<'a> {
                 ("cannot_hold", Self::CannotHold { on: *on, distance_m, vertical_m, limit })
             }
             NavEvent::Refused(refusal) => ("engage_refused", Self::of_refusal(*refusal)),
-            // The disarm that follows is the event.
+            // The following disarm is the event.
             NavEvent::Disarm => return None,
         })
     }

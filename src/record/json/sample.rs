@@ -1,6 +1,6 @@
 //! The fields of a sample: truth and estimate side by side.
 //!
-//! All `n`, `e` and `alt` count from the place where the craft stood at boot, as in the snapshot.
+//! All `n`, `e` and `alt` count from the place of the craft at boot, as in the snapshot.
 
 use serde::Serialize;
 
@@ -8,7 +8,7 @@ use super::super::number::{Centi, Decimals, Milli, Place, compass};
 use crate::telemetry::Snapshot;
 use crate::telemetry::snapshot::TruthView;
 
-/// The fields after `t` and `event`, in the order in which they are printed; what does not exist is `null`.
+/// The fields after `t` and `event`, in the order of the output; a value that does not exist is `null`.
 #[derive(Debug, Serialize)]
 pub(super) struct Fields {
     lat: Option<Place>,

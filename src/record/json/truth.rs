@@ -1,4 +1,4 @@
-//! What truth says about a flight, as fields of its last line.
+//! The true values of a flight, as fields of its last line.
 
 use serde::Serialize;
 

@@ -1,4 +1,4 @@
-//! What was seen in a flight as what is expected of it, with margins that the next flight may use.
+//! Expectations made from an observed flight, with margins for the next flight.
 
 use super::Block;
 use super::toml_text::quoted;
@@ -11,11 +11,11 @@ use crate::scenario::signal::Signal;
 use crate::signals::SimTime;
 use crate::telemetry::{NavState, PlanSource};
 
-/// A time may be off by this, or by a share of it, s.
+/// The least tolerance of a time, s. The share below applies if it gives more.
 const TIME_S: f64 = 1.5;
 const TIME_SHARE: f64 = 0.05;
 
-/// Expectations that the flight meets.
+/// Returns expectations that the flight meets.
 pub(super) fn expectations(flown: &Flown) -> Vec<Block> {
     let mut blocks = vec![vec![("result", quoted(&flown.result))]];
     if let Some(states) = states(flown) {
@@ -28,7 +28,7 @@ pub(super) fn expectations(flown: &Flown) -> Vec<Block> {
     blocks
 }
 
-/// All states since the first engagement.
+/// Returns all states since the first engagement.
 fn states(flown: &Flown) -> Option<String> {
     let engaged = flown.trace.engaged_at?;
     let entered = |happening: &&Happening| {
@@ -38,7 +38,7 @@ fn states(flown: &Flown) -> Option<String> {
     Some(names.join(", "))
 }
 
-/// When waypoints were reached and landings began.
+/// Returns expectations for the times at which waypoints were reached and landings began.
 fn times(flown: &Flown) -> Vec<Block> {
     let Some(engaged) = flown.trace.engaged_at else { return Vec::new() };
     let mut told: Vec<String> = Vec::new();
@@ -59,7 +59,7 @@ fn times(flown: &Flown) -> Vec<Block> {
     blocks
 }
 
-/// What else happened, how often; and what did not.
+/// Returns expectations for the other events: how often each one happened, and which ones did not happen.
 fn events(flown: &Flown) -> Vec<Block> {
     const TOLD: [EventName; 9] = [
         EventName::Disarmed,
@@ -93,14 +93,14 @@ fn events(flown: &Flown) -> Vec<Block> {
     happened.chain(missed.map(|name| vec![("no_event", quoted(name.info().name))])).collect()
 }
 
-/// The happenings that an expectation without a window sees.
+/// Returns the happenings that count for an expectation without a window.
 fn since_engagement(flown: &Flown) -> impl Iterator<Item = &Happening> {
     let from = flown.trace.engaged_at.unwrap_or(SimTime::ZERO);
     let to = flown.trace.end();
     flown.trace.happenings.iter().filter(move |happening| happening.time >= from && happening.time <= to)
 }
 
-/// Where and how softly the craft came down.
+/// Returns expectations for the place and the softness of the landing.
 fn landing(flown: &Flown) -> Vec<Block> {
     let trace = &flown.trace;
     let find = |name: EventName| {
@@ -139,7 +139,7 @@ fn landing(flown: &Flown) -> Vec<Block> {
     blocks
 }
 
-/// How far and how fast.
+/// Returns bounds for distance and speed.
 fn bounds(flown: &Flown) -> Vec<Block> {
     let trace = &flown.trace;
     if trace.engaged_at.is_none() {
@@ -164,10 +164,10 @@ fn bounds(flown: &Flown) -> Vec<Block> {
     blocks
 }
 
-/// How far beside its legs the craft flew, where one straight leg follows another.
+/// Returns bounds for the cross-track error on a straight leg that follows another straight leg.
 fn legs(flown: &Flown) -> Vec<Block> {
     let trace = &flown.trace;
-    // Of several stored plans a number means another waypoint each time.
+    // With several stored plans, the same index means a different waypoint in each plan.
     let mut stored =
         trace.plans.iter().filter(|known| known.source == PlanSource::Stored).map(|known| &known.plan);
     let Some(plan) = stored.next().filter(|first| stored.all(|other| other.waypoints == first.waypoints))
@@ -195,7 +195,7 @@ fn legs(flown: &Flown) -> Vec<Block> {
     blocks
 }
 
-/// The greatest size of a number between two instants; `None` when they did not come.
+/// Returns the greatest size of a number between two instants; `None` if one of them did not come.
 fn greatest_between(number: &str, from: &str, until: &str, flown: &Flown) -> Option<f64> {
     use crate::scenario::expression::{Cursor, Scope, read_instant, read_number};
     let waypoints = flown.trace.plans.first().map_or(0, |known| known.plan.waypoints.len());
@@ -208,7 +208,7 @@ fn greatest_between(number: &str, from: &str, until: &str, flown: &Flown) -> Opt
     value.filter(|value| value.is_finite())
 }
 
-/// A bound above what was seen: a fifth more and at least `least`, rounded up to a tenth.
+/// Returns a bound above an observed value: a fifth more and at least `least` more, rounded up to a tenth.
 fn above(seen: f64, least: f64) -> f64 {
     let bound = (1.2 * seen).max(seen + least);
     (bound * 10.0).ceil() / 10.0

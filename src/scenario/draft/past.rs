@@ -1,4 +1,4 @@
-//! Flies a recorded flight again to see which plan it began with and when it was over.
+//! A second flight of a recorded flight. It finds the plan at the beginning and the end of all activity.
 
 use crate::plan::FlightPlan;
 use crate::plan::validate::check_plan;
@@ -7,17 +7,17 @@ use crate::telemetry::{EventKind, FirmwareEvent};
 use crate::timeline::RecordedFlight;
 use crate::vehicle::{Input, Vehicle};
 
-/// How long the craft is watched after the last thing that happened, µs.
+/// The time for which the craft is watched after the last activity, µs.
 const WATCH_US: u64 = 10_000_000;
 
-/// What a draft has to know of a recorded flight.
+/// The facts about a recorded flight that a draft needs.
 #[derive(Debug)]
 pub(super) struct Past {
     /// The plan that was stored when the navigator first used one.
     pub(super) plan: FlightPlan,
-    /// How many inputs came before that. Those that uploaded the plan are left out.
+    /// The number of inputs before that. The draft leaves out those that uploaded the plan.
     pub(super) inputs_before: usize,
-    /// When nothing happened any more.
+    /// The time at which all activity was over.
     pub(super) until: SimTime,
 }
 
@@ -57,7 +57,7 @@ impl Past {
         }
         let until = vehicle.time().min(flight.until);
         let (plan, inputs_before) = begun.unwrap_or_else(|| (stored_plan(&vehicle), next));
-        // A later `defaults` would empty a plan that is stored at boot, and a scenario cannot begin with a plan that is refused.
+        // A later `defaults` would empty a plan stored at boot, and a scenario cannot begin with a refused plan.
         let is_reset =
             |(_, input): &(SimTime, Input)| matches!(input, Input::Line(line) if is_defaults(&line.1));
         let is_refused = !plan.waypoints.is_empty() && check_plan(&plan).is_err();
@@ -67,7 +67,7 @@ impl Past {
         Self { plan, inputs_before, until }
     }
 
-    /// Whether the input of this number is part of the plan already.
+    /// Returns `true` if the input with this number is already part of the plan.
     pub(super) fn is_in_plan(&self, number: usize, input: &Input) -> bool {
         let makes_plan = |line: &str| line.split_whitespace().next() == Some("waypoint");
         number < self.inputs_before && matches!(input, Input::Line(line) if makes_plan(&line.1))
@@ -78,7 +78,7 @@ fn stored_plan(vehicle: &Vehicle) -> FlightPlan {
     vehicle.controller().stored_plan().cloned().unwrap_or_default()
 }
 
-/// Whether what an input does depends on the stored plan.
+/// Returns `true` if the effect of an input depends on the stored plan.
 fn needs_plan(input: &Input) -> bool {
     matches!(input, Input::InFlight(_) | Input::ReturnHome)
 }

@@ -1,4 +1,4 @@
-//! A recorded flight as a draft: what the craft had at the start, and the inputs since as sentences.
+//! A recorded flight as a draft: the configuration at the start, and the later inputs as sentences.
 
 use super::Draft;
 use super::past::Past;
@@ -13,7 +13,7 @@ use crate::telemetry::InFlightCommand;
 use crate::timeline::RecordedFlight;
 use crate::vehicle::{Answer, Input, Vehicle};
 
-/// Lines of `diff all` that set nothing of the craft, or what the scenario says elsewhere.
+/// Lines of `diff all` that set nothing on the craft, or that the scenario gives in another place.
 const PASSED_OVER: [&str; 11] = [
     "#",
     "batch",
@@ -27,7 +27,7 @@ const PASSED_OVER: [&str; 11] = [
     "profile",
     "rateprofile",
 ];
-/// Lines on the command line that change nothing.
+/// Command lines that change nothing.
 const READING: [&str; 14] = [
     "get",
     "dump",
@@ -46,10 +46,10 @@ const READING: [&str; 14] = [
 ];
 
 impl Draft {
-    /// The flight that was recorded, as a scenario that flies it again.
+    /// Returns a scenario that repeats the recorded flight.
     ///
     /// # Errors
-    /// Why it cannot be flown again, as a sentence.
+    /// Returns a sentence with the reason if the flight cannot be repeated.
     pub fn of_recorded(name: &str, flight: RecordedFlight) -> Result<Self, String> {
         let past = Past::of(&flight);
         let RecordedFlight { mut start, inputs, .. } = flight;
@@ -89,7 +89,7 @@ impl Draft {
             seed: start.seed(),
             ..Self::default()
         };
-        // What was wrong with the craft already goes on being wrong.
+        // Faults that were already active at the start stay active.
         for (fault, left_s) in &status.faults {
             let fault = WorldCommand::FaultOn(*fault, *left_s).to_string();
             draft.inputs.push((after_boot(SimTime::ZERO), fault));
@@ -115,12 +115,12 @@ impl Draft {
     }
 }
 
-/// An instant of the flight, which begins at `start_at`, counted from boot.
+/// Converts a time of the flight, which begins at `start_at`, to a time since boot.
 fn since(at: SimTime, start_at: SimTime) -> SimTime {
     SimTime(at.0.saturating_sub(start_at.0))
 }
 
-/// The craft's settings and its other lines, as the command line tells them.
+/// Returns the settings and the other lines of the craft, as the command line reports them.
 fn configuration(vehicle: &mut Vehicle) -> Result<(Vec<String>, Vec<String>), String> {
     let reply = match vehicle.controller_mut().run_cli(&mut Interpreter::default(), "diff all") {
         Answer::Now(reply) => reply.text,
@@ -142,7 +142,7 @@ fn configuration(vehicle: &mut Vehicle) -> Result<(Vec<String>, Vec<String>), St
     Ok((settings, lines))
 }
 
-/// What an input does, as a scenario says it.
+/// Returns the sentences of a scenario for an input.
 fn sentences(input: &Input, transmitter: &mut RcTransmitter) -> Result<Vec<String>, String> {
     let one = |text: &str| Ok(vec![text.to_owned()]);
     match input {
@@ -178,7 +178,7 @@ fn sentences(input: &Input, transmitter: &mut RcTransmitter) -> Result<Vec<Strin
     }
 }
 
-/// How the transmitter was changed by hand.
+/// Returns the sentences for the changes that were made to the transmitter by hand.
 fn changes(before: &RcTransmitter, now: &RcTransmitter) -> Vec<String> {
     let mut told = Vec::new();
     match (before.pilot(), now.pilot()) {
@@ -186,7 +186,7 @@ fn changes(before: &RcTransmitter, now: &RcTransmitter) -> Vec<String> {
         (Some(_), None) => told.push("pilot off".to_owned()),
         (None, None) | (Some(_), Some(_)) => {}
     }
-    // What the pilot holds follows from the flight.
+    // The stick positions of the scripted pilot follow from the flight.
     if now.pilot().is_none() && (before.sticks() != now.sticks() || before.pilot().is_some()) {
         let values: Vec<String> = now.sticks().channels.iter().map(ToString::to_string).collect();
         told.push(format!("sticks {}", values.join(" ")));

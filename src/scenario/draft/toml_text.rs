@@ -1,4 +1,4 @@
-//! A draft as the text of a scenario file.
+//! The text of a scenario file for a draft.
 
 use super::{Block, Draft};
 use crate::geo::Degrees7;
@@ -6,7 +6,7 @@ use crate::plan::waypoint_values;
 use crate::scenario::file::FORMAT;
 use crate::signals::SimTime;
 
-/// A text as TOML writes it.
+/// Returns a text in TOML notation.
 pub(super) fn quoted(text: &str) -> String {
     toml::Value::String(text.to_owned()).to_string()
 }
@@ -75,7 +75,7 @@ pub(super) fn text(draft: &Draft, expectations: &[Block]) -> String {
     out
 }
 
-/// A list of texts, each on its line.
+/// Returns a list of texts, with one text on each line.
 pub(super) fn list(texts: &[String]) -> String {
     let lines: String = texts.iter().map(|text| format!("  {},\n", quoted(text))).collect();
     format!("[\n{lines}]")

@@ -14,7 +14,7 @@ use crate::scenario::signal::Flag;
 /// Reads a condition.
 ///
 /// # Errors
-/// What is wrong with it.
+/// Returns the mistake in the text.
 pub fn read_condition(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<Condition, SyntaxError> {
     cursor.nested(|cursor| {
         let mut any = vec![read_all(cursor, scope)?];
@@ -55,7 +55,7 @@ fn read_one(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<Condition, SyntaxE
     read_comparison(cursor, scope).map(Condition::Compare)
 }
 
-/// A flag, a state, a mode or what is flown, if one stands here.
+/// Reads a flag, a state, a mode or `flying`, if there is one at this place.
 fn read_word(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<Option<Condition>, SyntaxError> {
     let Some(word) = cursor.peek_word() else { return Ok(None) };
     if let Ok(flag) = Flag::from_str(word) {
@@ -89,10 +89,10 @@ fn read_word(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<Option<Condition>
     }
 }
 
-/// Reads a number and what it may be.
+/// Reads a number and its bound.
 ///
 /// # Errors
-/// What is wrong with it.
+/// Returns the mistake in the text.
 pub(super) fn read_comparison(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<Comparison, SyntaxError> {
     let start = cursor.at();
     let left = read_number(cursor, scope).map_err(|mut error| {
@@ -147,7 +147,7 @@ pub(super) fn read_comparison(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<
     }
 }
 
-/// What is wrong with a bound of literals: a range that holds nothing, or a number without an end.
+/// Returns the mistake in a bound of literals: an empty range, or a number that is not finite.
 fn wrong_bound(bound: &Bound) -> Option<(&'static str, &'static str)> {
     let literal = |number: &super::Number| number.constant(&|_| None);
     let numbers = match bound {
@@ -167,7 +167,7 @@ fn wrong_bound(bound: &Bound) -> Option<(&'static str, &'static str)> {
     }
 }
 
-/// Reads a number of the same dimension.
+/// Reads a number with the given dimension.
 fn same(cursor: &mut Cursor<'_>, scope: &Scope, dimension: Dimension) -> Result<super::Number, SyntaxError> {
     let start = cursor.at();
     let number = read_number(cursor, scope)?;

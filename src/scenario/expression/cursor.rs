@@ -1,13 +1,13 @@
-//! The place in a text where an expression is being read, and what is wrong there.
+//! The current place in the text of an expression, and the error type of the grammar.
 
 use std::ops::Range;
 
 use crate::did_you_mean;
 
-/// What is wrong with an expression, and where in its text.
+/// A mistake in an expression, and its place in the text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SyntaxError {
-    /// Bytes of the text.
+    /// The range in bytes of the text.
     pub span: Range<usize>,
     pub message: String,
     pub hint: String,
@@ -20,30 +20,30 @@ pub struct Cursor<'a> {
     at: usize,
     depth: usize,
     terms: usize,
-    /// Terms that were read so far, those of attempts that failed included.
+    /// The number of terms read so far, including those of failed attempts.
     reads: usize,
 }
 
-/// Deepest nesting of an expression.
+/// The deepest nesting of an expression.
 const MAX_DEPTH: usize = 40;
-/// Most terms of an expression: numbers, flags, states, modes, events with their words, and places. Each sample of a flight
-/// costs that many steps, and evaluation goes as deep.
+/// The most terms of an expression: numbers, flags, states, modes, events with their words, and places. Each sample
+/// of a flight costs that many steps, and evaluation goes that deep.
 pub const MAX_TERMS: usize = 1000;
-/// Most terms that are read for an expression. A parenthesis that turns out to hold a number is read again.
+/// The most terms that are read for an expression. A parenthesis that turns out to hold a number is read again.
 const MAX_READS: usize = MAX_DEPTH * MAX_TERMS;
 
 const TOO_DEEP: &str = "this is nested too deeply";
 const TOO_DEEP_HINT: &str = "use a measure for a part of it";
 
 impl<'a> Cursor<'a> {
-    /// At the beginning of a text.
+    /// Creates a cursor at the beginning of a text.
     pub fn new(text: &'a str) -> Self {
         let mut cursor = Self { text, at: 0, depth: 0, terms: 0, reads: 0 };
         cursor.skip_space();
         cursor
     }
 
-    /// Bytes read so far, the space behind them included.
+    /// Returns the number of bytes read so far, including the space after them.
     pub fn at(&self) -> usize {
         self.at
     }
@@ -52,7 +52,7 @@ impl<'a> Cursor<'a> {
         &self.text[self.at..]
     }
 
-    /// Whether nothing is left.
+    /// Returns `true` at the end of the text.
     pub fn is_done(&self) -> bool {
         self.rest().is_empty()
     }
@@ -67,7 +67,7 @@ impl<'a> Cursor<'a> {
         self.skip_space();
     }
 
-    /// Takes these characters if they stand here.
+    /// Takes these characters if they come next.
     pub(super) fn take(&mut self, symbol: &str) -> bool {
         let found = self.rest().starts_with(symbol);
         if found {
@@ -80,13 +80,13 @@ impl<'a> Cursor<'a> {
         if self.take(symbol) { Ok(()) } else { Err(self.error(format!("{symbol} is expected here"), "")) }
     }
 
-    /// The word that stands here: letters, digits and `_`, a letter first.
+    /// Returns the next word: letters, digits and `_`, beginning with a letter.
     pub fn peek_word(&self) -> Option<&'a str> {
         self.word_of(|c| c.is_alphanumeric() || c == '_')
             .filter(|word| !word.starts_with(|c: char| c.is_ascii_digit()))
     }
 
-    /// The word of an argument: also with digits first, and with `-` inside.
+    /// Returns the next word of an argument. It may also begin with a digit, and may have `-` inside.
     pub(super) fn peek_argument(&self) -> Option<&'a str> {
         self.word_of(|c| c.is_alphanumeric() || c == '_' || c == '-').filter(|word| !word.starts_with('-'))
     }
@@ -97,12 +97,12 @@ impl<'a> Cursor<'a> {
         (length > 0).then(|| &rest[..length])
     }
 
-    /// Takes the word that was peeked.
+    /// Takes a word that was peeked.
     pub(super) fn take_word(&mut self, word: &str) {
         self.advance(word.len());
     }
 
-    /// Takes this word if it stands here.
+    /// Takes this word if it comes next.
     pub(super) fn take_keyword(&mut self, keyword: &str) -> bool {
         let found = self.peek_word() == Some(keyword);
         if found {
@@ -129,7 +129,7 @@ impl<'a> Cursor<'a> {
         Some(value)
     }
 
-    /// Takes a whole number that is an index.
+    /// Takes a whole number as an index.
     pub(super) fn take_index(&mut self) -> Option<u8> {
         let rest = self.rest();
         let length = rest.bytes().take_while(u8::is_ascii_digit).count();
@@ -152,25 +152,25 @@ impl<'a> Cursor<'a> {
         Ok(Some(&rest[1..=length]))
     }
 
-    /// Takes a comma if one stands here.
+    /// Takes a comma if it comes next.
     pub fn comma(&mut self) -> bool {
         self.take(",")
     }
 
-    /// Takes `...` if it stands here.
+    /// Takes `...` if it comes next.
     pub fn ellipsis(&mut self) -> bool {
         self.take("...") || self.take("…")
     }
 
-    /// Demands an arrow.
+    /// Takes an arrow.
     ///
     /// # Errors
-    /// When there is none.
+    /// Returns an error with `hint` if there is no arrow.
     pub fn arrow(&mut self, hint: &str) -> Result<(), SyntaxError> {
         if self.take("->") { Ok(()) } else { Err(self.error("-> is expected here", hint)) }
     }
 
-    /// Something is wrong with what stands here.
+    /// Returns an error about the next word.
     pub fn error(&self, message: impl Into<String>, hint: impl Into<String>) -> SyntaxError {
         let rest = self.rest();
         let word =
@@ -178,7 +178,7 @@ impl<'a> Cursor<'a> {
         SyntaxError { span: self.at..self.at + word, message: message.into(), hint: hint.into() }
     }
 
-    /// Something is wrong with what was read since `start`.
+    /// Returns an error about the text read since `start`.
     pub fn error_since(
         &self,
         start: usize,
@@ -189,7 +189,7 @@ impl<'a> Cursor<'a> {
         SyntaxError { span: start..end, message: message.into(), hint: hint.into() }
     }
 
-    /// The word that stands here is none of these.
+    /// Returns an error that the next word is not one of `words`.
     pub(super) fn unknown<'w>(&self, what: &str, words: impl Iterator<Item = &'w str>) -> SyntaxError {
         let rest = self.rest();
         let symbol = &rest[..rest.chars().next().map_or(0, char::len_utf8)];
@@ -198,10 +198,10 @@ impl<'a> Cursor<'a> {
         self.error(format!("{shown} is not {what}"), did_you_mean::hint(found, words))
     }
 
-    /// Demands the end of the text.
+    /// Checks that the text is read to its end.
     ///
     /// # Errors
-    /// When something is left.
+    /// Returns an error about the unread rest.
     pub fn finish(&self) -> Result<(), SyntaxError> {
         if self.is_done() {
             Ok(())
@@ -213,7 +213,7 @@ impl<'a> Cursor<'a> {
     /// Counts a term that begins here.
     ///
     /// # Errors
-    /// When the expression has too many.
+    /// Returns an error if the expression has too many terms.
     pub fn term(&mut self) -> Result<(), SyntaxError> {
         self.count(1)
     }
@@ -222,17 +222,17 @@ impl<'a> Cursor<'a> {
         self.terms
     }
 
-    /// Terms that were read so far.
+    /// Returns the number of terms read so far, including those of failed attempts.
     pub fn reads(&self) -> usize {
         self.reads
     }
 
-    /// Counts the terms since `before` a second time: their values are worked out twice.
+    /// Counts the terms since `before` a second time, because their values are computed twice.
     pub(super) fn count_twice(&mut self, before: usize) -> Result<(), SyntaxError> {
         self.count(self.terms - before)
     }
 
-    /// Goes on from here after an attempt to read in another way.
+    /// Copies the count of terms from a failed attempt, so that reading can continue here in another way.
     pub(super) fn note_attempt(&mut self, attempt: &Self) {
         self.reads = attempt.reads;
     }

@@ -11,35 +11,35 @@ use crate::scenario::signal::{Flag, Signal};
 use crate::scenario::trace::{Sample, Trace};
 use crate::signals::SimTime;
 
-/// Interval over which a rate is taken, µs.
+/// The interval for a rate of change, µs.
 const RATE_US: u64 = 100_000;
 
-/// A value, what it may be, and how far inside it is.
+/// A value, its bounds, and its distance from them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Verdict {
     pub value: f64,
-    /// The smallest that is allowed.
+    /// The smallest allowed value.
     pub low: f64,
-    /// The greatest that is allowed.
+    /// The greatest allowed value.
     pub high: f64,
     pub dimension: Dimension,
-    /// The bounds themselves are not allowed.
+    /// `true` if the bounds themselves are not allowed.
     pub strict: bool,
 }
 
 impl Verdict {
-    /// Distance to the nearer bound, negative outside.
+    /// Returns the distance to the nearer bound, negative outside.
     pub fn margin(&self) -> f64 {
         (self.value - self.low).min(self.high - self.value)
     }
 
-    /// Whether the value is allowed.
+    /// Returns `true` if the value is allowed.
     pub fn holds(&self) -> bool {
         if self.strict { self.margin() > 0.0 } else { self.margin() >= 0.0 }
     }
 
-    /// The margin as a share of the allowed range: of its half width, or of the limit. Of a number that must be exact all of
-    /// it is left, or nothing.
+    /// Returns the margin as a share of the half width of the range, or of the limit if there is only one. For a
+    /// number that must be exact, the share is 1 or −1.
     pub fn share(&self) -> f64 {
         if self.low >= self.high {
             return if self.holds() { 1.0 } else { -1.0 };
@@ -59,12 +59,12 @@ impl Verdict {
 pub struct Evaluator<'a> {
     trace: &'a Trace,
     names: &'a [(String, f64)],
-    /// Instants that were looked up.
+    /// The instants looked up so far.
     found: RefCell<BTreeMap<*const Instant, Option<i64>>>,
 }
 
 impl<'a> Evaluator<'a> {
-    /// Over this flight, with these parameters and measures.
+    /// Creates an evaluator for a flight with these parameters and measures.
     pub fn new(trace: &'a Trace, names: &'a [(String, f64)]) -> Self {
         Self { trace, names, found: RefCell::default() }
     }
@@ -73,7 +73,7 @@ impl<'a> Evaluator<'a> {
         self.trace
     }
 
-    /// When an instant is, µs since boot; `None` when it did not come.
+    /// Returns the time of an instant, µs since boot; `None` if it did not come.
     pub fn instant(&self, instant: &Instant) -> Option<i64> {
         let key = std::ptr::from_ref(instant);
         if let Some(&found) = self.found.borrow().get(&key) {
@@ -84,17 +84,17 @@ impl<'a> Evaluator<'a> {
         found
     }
 
-    /// When an instant is, as a time; not before boot.
+    /// Returns the time of an instant, at the earliest the time of boot.
     pub fn time(&self, instant: &Instant) -> Option<SimTime> {
         self.instant(instant).map(|us| SimTime(us.max(0) as u64))
     }
 
-    /// A number at a sample; NaN = unknown.
+    /// Returns a number at a sample; NaN = unknown.
     pub fn number(&self, number: &Number, index: usize) -> f64 {
         self.number_of(number, index, None)
     }
 
-    /// A number at a sample, with those of a happening.
+    /// Returns a number at a sample; it may use the numbers of a happening.
     pub fn number_of(&self, number: &Number, index: usize, happening: Option<&Happening>) -> f64 {
         let Some(sample) = self.trace.samples.get(index) else { return f64::NAN };
         let at = |number| self.number_of(number, index, happening);
@@ -148,13 +148,13 @@ impl<'a> Evaluator<'a> {
         let seconds = (now - samples[before].time.0) as f64 * 1e-6;
         let value = |index| self.number_of(inner, index, happening);
         let difference = value(index) - value(before);
-        // A direction that passes north has not turned by a whole circle.
+        // A bearing that passes north has not turned by a full circle.
         let is_direction = matches!(inner, Number::Bearing(_))
             || matches!(inner, Number::Signal(Signal::Heading | Signal::Course));
         if is_direction { wrap(difference) / seconds } else { difference / seconds }
     }
 
-    /// A place at a sample, m north and east of the boot place.
+    /// Returns a place at a sample, m north and east of the boot place.
     fn place(&self, place: &Place, sample: &Sample) -> Option<[f64; 2]> {
         match place {
             Place::Home => Some([0.0, 0.0]),
@@ -171,7 +171,7 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// The craft from a place, m north and east.
+    /// Returns the offset of the craft from a place, m north and east.
     fn offset(&self, place: &Place, sample: &Sample) -> Option<[f64; 2]> {
         let [north, east] = self.place(place, sample)?;
         let craft = sample.place();
@@ -189,13 +189,13 @@ impl<'a> Evaluator<'a> {
         let (n, e) = (craft[0] - from[0], craft[1] - from[1]);
         Some(OnLine {
             along: (n * north + e * east) / length,
-            // Right of the line is clockwise of its direction.
+            // Right of the line is clockwise from its direction.
             across: (e * north - n * east) / length,
             length,
         })
     }
 
-    /// The measures of a condition that were not taken, because what they wait for did not happen.
+    /// Returns the measures in a condition that have no value, because an instant that they wait for did not come.
     pub fn unknown_names(&self, condition: &Condition) -> Vec<&'a str> {
         let mut used = Vec::new();
         condition.each_number(&mut |number| {
@@ -207,12 +207,12 @@ impl<'a> Evaluator<'a> {
         self.names.iter().filter(is_unknown).map(|(name, _)| name.as_str()).collect()
     }
 
-    /// Whether a condition holds at a sample; `None` when that is unknown.
+    /// Returns `true` if a condition holds at a sample; `None` if that is unknown.
     pub fn holds(&self, condition: &Condition, index: usize) -> Option<bool> {
         self.holds_of(condition, index, None)
     }
 
-    /// Whether a condition holds at a sample, with the numbers of a happening.
+    /// Returns `true` if a condition holds at a sample; the condition may use the numbers of a happening.
     pub fn holds_of(
         &self,
         condition: &Condition,
@@ -252,8 +252,8 @@ impl<'a> Evaluator<'a> {
         })
     }
 
-    /// The comparison of a condition that decides at a sample: of several that must hold the tightest, of alternatives the
-    /// widest. `None` when none is known.
+    /// Returns the comparison that decides a condition at a sample: the tightest one if all must hold, the widest one
+    /// of alternatives. Returns `None` if no comparison is known.
     pub fn deciding(
         &self,
         condition: &Condition,
@@ -277,7 +277,7 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// A comparison at a sample; `None` when a number is unknown.
+    /// Evaluates a comparison at a sample; `None` if a number is unknown.
     pub fn compare(
         &self,
         comparison: &Comparison,
@@ -288,7 +288,7 @@ impl<'a> Evaluator<'a> {
         self.bound(comparison, value, index, happening)
     }
 
-    /// A value against the bound of a comparison.
+    /// Compares a value with the bound of a comparison.
     pub fn bound(
         &self,
         comparison: &Comparison,
@@ -312,14 +312,14 @@ impl<'a> Evaluator<'a> {
     }
 }
 
-/// The craft seen from a line, m.
+/// The position of the craft relative to a line, m.
 struct OnLine {
     along: f64,
     across: f64,
     length: f64,
 }
 
-/// An angle as −180…180.
+/// Returns an angle in −180…180.
 fn wrap(degrees: f64) -> f64 {
     (degrees + 180.0).rem_euclid(360.0) - 180.0
 }
@@ -328,7 +328,7 @@ impl Function {
     fn apply(self, first: f64, second: f64) -> f64 {
         match self {
             Self::Abs => first.abs(),
-            // Of an unknown number the smaller is unknown, too.
+            // The smaller or greater of two numbers is unknown if one of them is unknown.
             Self::Min if second < first => second,
             Self::Max if second > first => second,
             Self::Min | Self::Max if second.is_nan() => second,

@@ -1,4 +1,4 @@
-//! Instants: what happens then, which of several, and how long before or after.
+//! Instants: an event, the choice among several such events, and an offset in time.
 
 use strum::IntoEnumIterator as _;
 
@@ -12,7 +12,7 @@ use crate::scenario::happening::{EVENTS, EventName, Pattern, REFUSALS, mode_word
 use crate::scenario::quantity::Dimension;
 use crate::telemetry::{Mode, NavState, PlanSource, TransitionReason};
 
-/// Origins of a plan by their words.
+/// The origins of a plan with their words.
 pub(super) const SOURCES: [(&str, PlanSource); 3] =
     [("stored", PlanSource::Stored), ("rth", PlanSource::Rth), ("emergency", PlanSource::Emergency)];
 
@@ -25,13 +25,13 @@ const ORDINALS: [(&str, Occurrence); 6] = [
     ("last", Occurrence::Last),
 ];
 
-/// Longest time before or after what happens, s.
+/// The longest offset before or after an event, s.
 const MAX_OFFSET_S: f64 = 1e6;
 
 /// Reads an instant: `5 s after ORBITING 2`, `contact`, `when north > 70 m`.
 ///
 /// # Errors
-/// What is wrong with it.
+/// Returns the mistake in the text.
 pub fn read_instant(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<Instant, SyntaxError> {
     cursor.nested(|cursor| {
         let offset_s = if cursor.rest().starts_with(|c: char| c.is_ascii_digit()) {
@@ -50,7 +50,7 @@ pub fn read_instant(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<Instant, S
 /// Reads a span of time counted from an instant: `12.5..18 s after engaged`.
 ///
 /// # Errors
-/// What is wrong with it.
+/// Returns the mistake in the text.
 pub fn read_span_from(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<(f64, f64, Instant), SyntaxError> {
     let start = cursor.at();
     let low = read_number(cursor, scope)?;
@@ -130,10 +130,10 @@ fn read_anchor(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<Instant, Syntax
     Ok(Instant { anchor, occurrence, after, offset_s: 0.0 })
 }
 
-/// Reads what may happen: `ARRIVED 2`, `LANDING of emergency`, `disarmed LANDING`, `notice "text"`.
+/// Reads the pattern of a happening: `ARRIVED 2`, `LANDING of emergency`, `disarmed LANDING`, `notice "text"`.
 ///
 /// # Errors
-/// What is wrong with it.
+/// Returns the mistake in the text.
 pub fn read_pattern(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<Pattern, SyntaxError> {
     let Some(word) = cursor.peek_word() else {
         return Err(cursor.unknown("an event or a state", event_words()));
@@ -156,7 +156,7 @@ pub fn read_pattern(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<Pattern, S
     let mut words = Vec::new();
     while let Some(word) = cursor.peek_argument() {
         let Some(known) = allowed.iter().find(|known| known.eq_ignore_ascii_case(word)) else {
-            // What belongs to the sentence around it is no word of the event.
+            // Words of the surrounding sentence do not belong to the event.
             if ["after", "before", "and", "or", "by", "of"].contains(&word) {
                 break;
             }
@@ -176,7 +176,7 @@ fn event_words() -> impl Iterator<Item = &'static str> + Clone {
     EVENTS.iter().map(|info| info.name).chain(states)
 }
 
-/// Reads the words of a transition's cause.
+/// Reads the words for the cause of a transition.
 fn read_reason(cursor: &mut Cursor<'_>) -> Result<String, SyntaxError> {
     let start = cursor.clone();
     let Some(reason) =
@@ -203,7 +203,7 @@ pub(super) fn read_state_word(cursor: &mut Cursor<'_>) -> Result<NavState, Synta
     Ok(state)
 }
 
-/// Reads the index of a waypoint, if one stands here.
+/// Reads the index of a waypoint, if it comes next.
 pub(super) fn read_waypoint(
     cursor: &mut Cursor<'_>,
     scope: &Scope,
@@ -215,7 +215,7 @@ pub(super) fn read_waypoint(
     Ok(index)
 }
 
-/// Whether the plan has a waypoint. A plan of the firmware's own has at most two.
+/// Checks that the plan has a waypoint. A plan made by the firmware itself has at most two.
 fn check_waypoint(
     cursor: &Cursor<'_>,
     scope: &Scope,
@@ -235,7 +235,7 @@ fn check_waypoint(
     Err(cursor.error_since(start, format!("the plan has no waypoint {index}"), allowed))
 }
 
-/// Reads `of rth`, if it stands here.
+/// Reads `of rth`, if it comes next.
 pub(super) fn read_source(cursor: &mut Cursor<'_>) -> Result<Option<PlanSource>, SyntaxError> {
     if !cursor.take_keyword("of") {
         return Ok(None);
@@ -259,25 +259,25 @@ pub(in crate::scenario) fn mode_of(cursor: &mut Cursor<'_>) -> Result<Mode, Synt
     Ok(mode)
 }
 
-/// Looks for an instant in a flight, also while it is flown: what was looked at is not looked at again.
+/// A search for an instant in a flight, also during the flight. It looks at each sample or happening only once.
 #[derive(Debug)]
 pub struct Search<'a> {
     instant: &'a Instant,
     after: Option<Box<Search<'a>>>,
-    /// Samples or happenings that were looked at.
+    /// The number of samples or happenings looked at.
     looked_at: usize,
-    /// Such happenings so far.
+    /// The number of matches so far.
     seen: usize,
-    /// Which of them it is.
+    /// The wanted match.
     wanted: Occurrence,
-    /// The condition held at the sample before.
+    /// `true` if the condition held at the previous sample.
     held: bool,
-    /// When it was, without the offset, µs since boot.
+    /// The time of the match without the offset, µs since boot.
     found_us: Option<i64>,
 }
 
 impl<'a> Search<'a> {
-    /// Nothing looked at yet.
+    /// Creates a search that has looked at nothing yet.
     pub fn new(instant: &'a Instant) -> Self {
         let after = instant.after.as_deref().map(|after| Box::new(Search::new(after)));
         Self {
@@ -291,19 +291,19 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// When the instant is in a flight that is over, µs since boot.
+    /// Returns the time of the instant in a finished flight, µs since boot.
     pub(super) fn finish(&mut self, evaluator: &Evaluator<'_>) -> Option<i64> {
         self.look(evaluator);
         self.result()
     }
 
-    /// Looks for the next such instant behind the one that was found.
+    /// Looks for the next match after the one that was found.
     pub(in crate::scenario) fn go_on(&mut self) {
         self.found_us = None;
         self.wanted = Occurrence::Nth(self.seen + 1);
     }
 
-    /// When the instant is, as far as the flight has come, µs since boot.
+    /// Looks at the new part of the flight. Returns the time of the instant if it is known, µs since boot.
     pub fn advance(&mut self, evaluator: &Evaluator<'_>) -> Option<i64> {
         if self.found_us.is_none() {
             self.look(evaluator);
@@ -354,7 +354,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Notes one of them; says whether the search is over.
+    /// Counts a match. Returns `true` if the search is over.
     fn is_it(&mut self, time_us: i64) -> bool {
         self.seen += 1;
         match self.wanted {

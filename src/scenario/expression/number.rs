@@ -11,19 +11,19 @@ use super::{Function, Number, Operator, Scope};
 use crate::scenario::quantity::{Dimension, UNITS, Unit};
 use crate::scenario::signal::{SIGNALS, Signal};
 
-/// A number and what it measures.
+/// A number and its dimension.
 pub(super) type Typed = (Number, Dimension);
 
-/// Longest name of a case, a measure or an input, characters.
+/// The longest name of a case, a measure or an input, characters.
 pub const MAX_NAME: usize = 100;
-/// Functions whose arguments are places or instants.
+/// The functions whose arguments are places or instants.
 const OTHER_FUNCTIONS: [&str; 9] =
     ["distance", "bearing", "apart", "along", "across", "past", "since", "at", "rate"];
 
 /// Reads a number.
 ///
 /// # Errors
-/// What is wrong with it, also when units do not fit.
+/// Returns the mistake in the text, such as units that do not match.
 pub fn read_number(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<(Number, Dimension), SyntaxError> {
     cursor.nested(|cursor| {
         let start = cursor.at();
@@ -45,7 +45,7 @@ pub fn read_number(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<(Number, Di
     })
 }
 
-/// A sum or difference: both sides measure the same.
+/// Joins two numbers in a sum or a difference: both must have the same dimension.
 fn join_same(
     cursor: &Cursor<'_>,
     start: usize,
@@ -64,7 +64,7 @@ fn join_same(
     Ok((Number::Join(operator, Box::new(left.0), Box::new(right.0)), left.1))
 }
 
-/// Of two literals one of which has no unit, both get the other's: `12..18 s`.
+/// Gives two literals the same unit if only one of them has a unit: `12..18 s`.
 pub(super) fn share_unit(left: Typed, right: Typed) -> (Typed, Typed) {
     match (bare(&left.0), unit_of(&left.0), bare(&right.0), unit_of(&right.0)) {
         (true, _, _, Some(unit)) => (with_unit(left.0, unit), right),
@@ -146,14 +146,14 @@ fn read_factor(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<Typed, SyntaxEr
     named(cursor, scope, word)
 }
 
-/// The unit behind a number: the longest that stands here.
+/// Takes the unit after a number: the longest one that matches.
 fn take_unit(cursor: &mut Cursor<'_>) -> Option<&'static Unit> {
     let rest = cursor.rest();
     let unit = UNITS
         .iter()
         .filter(|unit| rest.starts_with(unit.name))
         .filter(|unit| {
-            // `5 min` is not `5 m in`, `60 N` not a unit.
+            // `5 min` is not `5 m in`, and `60 N` has no unit.
             let next = rest[unit.name.len()..].chars().next();
             !(unit.name.ends_with(char::is_alphanumeric)
                 && next.is_some_and(|c| c.is_alphanumeric() || c == '_'))
@@ -184,7 +184,7 @@ fn named(cursor: &mut Cursor<'_>, scope: &Scope, word: &str) -> Result<Typed, Sy
     Ok(number)
 }
 
-/// The longest name with a dot that stands at the beginning: a measure of a case, in whose name anything may stand.
+/// Returns the longest known name with a dot at the beginning: a measure of a case, whose name may have any characters.
 fn of_case<'s>(rest: &str, scope: &'s Scope) -> Option<(&'s String, &'s Dimension)> {
     let is_part = |c: char| c.is_alphanumeric() || c == '_' || c == '.';
     let ends = rest.char_indices().map(|(at, _)| at).chain([rest.len()]).take(2 * MAX_NAME + 2);
@@ -268,10 +268,10 @@ fn read_other(cursor: &mut Cursor<'_>, scope: &Scope, word: &str) -> Result<Type
     })
 }
 
-/// Reads a number with its unit that is known before the flight: a parameter.
+/// Reads a number with its unit whose value is known before the flight: a parameter.
 ///
 /// # Errors
-/// What is wrong with it.
+/// Returns the mistake in the text.
 pub fn read_quantity(cursor: &mut Cursor<'_>) -> Result<(f64, Dimension), SyntaxError> {
     let (number, dimension) = read_number(cursor, &Scope::default())?;
     cursor.finish()?;
@@ -282,7 +282,7 @@ pub fn read_quantity(cursor: &mut Cursor<'_>) -> Result<(f64, Dimension), Syntax
 }
 
 impl Number {
-    /// The value of a number of literals and of names that are known; `None` when something else is in it.
+    /// Returns the value of a number of literals and known names; `None` if it has other parts.
     pub fn constant(&self, names: &impl Fn(&str) -> Option<f64>) -> Option<f64> {
         match self {
             Self::Literal(value, _) => Some(*value),

@@ -5,7 +5,7 @@ use super::instant::{read_instant, read_source};
 use super::{Place, Scope};
 use crate::telemetry::PlanSource;
 
-/// What a place may be, for messages.
+/// The forms of a place, for messages.
 const PLACES: &str = "write home, wp 2, 60 N 0 E, target, or place at ARRIVED 1";
 
 pub(super) fn read_place(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<Place, SyntaxError> {
@@ -46,7 +46,7 @@ pub(super) fn read_place(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<Place
     Ok(Place::Offset(north, east))
 }
 
-/// What indices a plan has, for messages.
+/// Returns the allowed indices of the plan, for messages.
 pub(super) fn waypoints(scope: &Scope) -> String {
     match scope.waypoints {
         0 => "it is empty".to_owned(),
@@ -74,7 +74,7 @@ fn read_offset(cursor: &mut Cursor<'_>, positive: &str, negative: &str) -> Resul
     }
 }
 
-/// Reads a line from a place to another.
+/// Reads a line from one place to another.
 pub(super) fn read_line(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<(Place, Place), SyntaxError> {
     let from = read_place(cursor, scope)?;
     if !cursor.take("->") {

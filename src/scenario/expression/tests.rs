@@ -1,4 +1,4 @@
-//! What pilots write, and what is wrong with it.
+//! Valid expressions and mistakes in expressions.
 
 use super::*;
 use crate::geo::LatLon;
@@ -8,7 +8,7 @@ use crate::scenario::trace::{Sample, Trace};
 use crate::signals::SimTime;
 use crate::telemetry::ModeFlags;
 
-/// A craft that flies north at 5 m/s and climbs at 1 m/s for ten seconds, a hundred samples a second; armed from 2 s on.
+/// A craft that flies north at 5 m/s and climbs at 1 m/s for ten seconds, with 100 samples a second; armed from 2 s on.
 fn climb_to_the_north() -> Trace {
     let mut plan = FlightPlan::default();
     plan.waypoints.push(Waypoint { position: LatLon::new(404_640_403, -795_182_000), ..Waypoint::default() });
@@ -46,7 +46,7 @@ fn scope() -> Scope {
     }
 }
 
-/// The value of a number at a time, s.
+/// Returns the value of a number at a time, s.
 fn value(text: &str, seconds: f64) -> f64 {
     let trace = climb_to_the_north();
     let names = [("bound".to_owned(), 4.0)];
@@ -57,7 +57,7 @@ fn value(text: &str, seconds: f64) -> f64 {
     evaluator.number(&number, trace.index_at((seconds * 1e6) as i64).unwrap())
 }
 
-/// Whether a condition holds at a time, s.
+/// Returns `true` if a condition holds at a time, s.
 fn holds(text: &str, seconds: f64) -> Option<bool> {
     let trace = climb_to_the_north();
     let names = [("bound".to_owned(), 4.0)];
@@ -68,7 +68,7 @@ fn holds(text: &str, seconds: f64) -> Option<bool> {
     evaluator.holds(&condition, trace.index_at((seconds * 1e6) as i64).unwrap())
 }
 
-/// When an instant is, s.
+/// Returns the time of an instant, s.
 fn when(text: &str) -> Option<f64> {
     let trace = climb_to_the_north();
     let evaluator = Evaluator::new(&trace, &[]);
@@ -78,7 +78,7 @@ fn when(text: &str) -> Option<f64> {
     evaluator.instant(&instant).map(|us| us as f64 * 1e-6)
 }
 
-/// What is wrong with a condition: the part, the message and what is allowed.
+/// Returns the mistake in a condition: the part of the text, the message and the hint.
 fn complaint(text: &str) -> String {
     let mut cursor = Cursor::new(text);
     let result = read_condition(&mut cursor, &scope()).and_then(|_| cursor.finish());

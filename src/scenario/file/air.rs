@@ -12,12 +12,12 @@ use crate::scenario::quantity::Dimension;
 use crate::sim::{Noise, Turbulence, Wind, WorldConfig};
 use toml::de::DeValue;
 
-/// Most seeds that can be asked for.
+/// The most seeds of a case.
 const MAX_SEEDS: u64 = 1_000_000;
-/// Longest wind with its `{…}`, characters: it is read once a seed.
+/// The longest wind with its `{…}`, characters. The wind is read once for each seed.
 const MAX_WIND: usize = 200;
 
-/// The air of each seed.
+/// Returns the air of each seed.
 pub(super) fn read(layers: &Layers<'_, '_>, reader: &mut Reader<'_, '_>) -> Vec<Air> {
     let section = layers.tables("air", reader);
     for table in &section {
@@ -35,19 +35,19 @@ pub(super) fn read(layers: &Layers<'_, '_>, reader: &mut Reader<'_, '_>) -> Vec<
     let of_file = seeds_value.map_or_else(
         || Seeds::One(usual.seed),
         |value| {
-            // Seeds that others replace are not flown, so any number of them is allowed.
+            // Replaced seeds are not flown, so any number of them is allowed.
             let most = if layers.seeds.is_some() { usize::MAX } else { reader.max_flights };
             read_seeds(value, most, reader)
         },
     );
     let seeds = layers.seeds.map_or(of_file, Seeds::Given);
-    // Without anything random one flight is as good as many.
+    // Without randomness one flight is enough.
     let has_template =
         get("wind").and_then(|value| value.get_ref().as_str()).is_some_and(|text| text.contains('{'));
     let is_random = noise != Noise::None || gust_mps > 0.0 || turbulence != Turbulence::None || has_template;
     let wanted = if is_random { seeds.count() } else { 1 };
     let place = seeds_value.map(toml::Spanned::span).or(layers.case.map(TomlTable::span)).unwrap_or(0..0);
-    // What is too much is reported once all cases are counted, and not made.
+    // Too many flights are reported after all cases are counted. They are not created.
     let made = if reader.take_flights(wanted, place) { wanted } else { 1 };
     seeds
         .iter()
@@ -69,7 +69,7 @@ fn word<T>(
     parse(&text).map_err(|problem| reader.problem(value.span(), problem, "")).ok()
 }
 
-/// A wind, with the seed put in for `{…}`.
+/// Reads a wind and puts the seed in the place of `{…}`.
 fn read_wind(value: &Value<'_>, seed: u64, reader: &mut Reader<'_, '_>) -> Option<Wind> {
     let text = reader.text(value)?;
     let length = text.chars().count();
@@ -91,7 +91,7 @@ fn read_wind(value: &Value<'_>, seed: u64, reader: &mut Reader<'_, '_>) -> Optio
         .ok()
 }
 
-/// Puts numbers in the place of `{…}`, in which `seed` is known.
+/// Puts numbers in the place of `{…}`, which may use `seed`.
 fn fill(text: &str, seed: u64) -> Result<String, String> {
     let mut filled = String::new();
     let mut rest = text;
@@ -116,8 +116,8 @@ fn number_of_seed(number: &Number, seed: f64) -> Option<f64> {
     number.constant(&|name| (name == "seed").then_some(seed))
 }
 
-/// `seeds = 3`, `[1, 2]` or `"1..5"`.
-/// At most `most` of them.
+/// Reads `seeds = 3`, `[1, 2]` or `"1..5"`.
+/// At most `most` seeds are allowed.
 fn read_seeds<'s>(value: &Value<'_>, most: usize, reader: &mut Reader<'_, '_>) -> Seeds<'s> {
     let hint = "write seeds = 3, [1, 2, 3] or \"1..5\"";
     match value.get_ref() {
@@ -153,7 +153,7 @@ fn read_seeds<'s>(value: &Value<'_>, most: usize, reader: &mut Reader<'_, '_>) -
     Seeds::One(1)
 }
 
-/// Whether one case can have so many seeds.
+/// Returns `true` if the count is at most `max`; otherwise notes a problem.
 fn is_few(count: usize, max: usize, value: &Value<'_>, reader: &mut Reader<'_, '_>) -> bool {
     if count > max {
         let hint = format!("allowed: {max}; take fewer, or add --max-flights {count}");
@@ -162,7 +162,7 @@ fn is_few(count: usize, max: usize, value: &Value<'_>, reader: &mut Reader<'_, '
     count <= max
 }
 
-/// The seeds of a case, not yet unfolded.
+/// The seeds of a case, not yet expanded.
 enum Seeds<'s> {
     One(u64),
     Range(RangeInclusive<u64>),
@@ -194,10 +194,10 @@ fn read_seed(value: &Value<'_>, reader: &mut Reader<'_, '_>) -> Option<u64> {
     seed
 }
 
-/// `1..5`, both included.
+/// Reads a range of seeds: `1..5`, both included.
 ///
 /// # Errors
-/// What is wrong with it.
+/// Returns the mistake in the text.
 pub fn seed_range(text: &str) -> Result<RangeInclusive<u64>, String> {
     let (from, to) = text.split_once("..").unwrap_or((text, text));
     let number = |text: &str| text.trim().parse::<u64>().map_err(|_| format!("{text} is not a seed"));

@@ -1,5 +1,5 @@
-//! How much a scenario may unfold to. A short file can name many cases, each with all expectations and seeds, so products
-//! are bounded before anything is made of them.
+//! Limits for the expanded size of a scenario. A short file can name many cases, each with all expectations and
+//! seeds, so the products are checked before anything is created.
 
 use std::ops::Range;
 
@@ -9,18 +9,18 @@ use super::reader::Reader;
 use crate::plan::format::TomlTable;
 use crate::scenario::expression::MAX_NAME;
 
-/// Most cases, with all combinations of what is varied.
+/// The most cases, with all combinations of varied values.
 pub(super) const MAX_CASES: usize = 1000;
-/// Most entries of one list of tables, such as the `[[expect]]` of the file or of a case.
+/// The most entries of one list of tables, such as the `[[expect]]` of the file or of a case.
 const MAX_LIST: usize = 1000;
-/// Most inputs, measures, expectations or parameters of all cases together.
+/// The most inputs, measures, expectations or parameters of all cases together.
 const MAX_ENTRIES: usize = 50_000;
-/// Most terms of the expressions of all cases together: some 100 MB.
+/// The most terms of the expressions of all cases together: some 100 MB.
 const MAX_TERMS: usize = 1_000_000;
-/// Most bytes of settings and lines of all cases together, those of settings files included.
+/// The most bytes of settings and lines of all cases together, including those of settings files.
 const MAX_LINES: usize = 64 << 20;
 
-/// Bounds as the reference names them.
+/// The limits with their names in the reference.
 #[cfg(test)]
 pub(in crate::scenario) const BOUNDS: [(&str, usize); 5] = [
     ("cases, with every combination", MAX_CASES),
@@ -30,21 +30,22 @@ pub(in crate::scenario) const BOUNDS: [(&str, usize); 5] = [
     ("the settings and lines of all cases", MAX_LINES >> 20),
 ];
 
-/// Lists of which every case has its own entries and those of the file, with the word for messages.
+/// The lists whose entries come from both the case and the file, with the word for messages.
 const LISTS: [(&str, &str); 4] =
     [("parameters", "parameters"), ("input", "inputs"), ("measure", "measures"), ("expect", "expectations")];
 
-/// What the cases that were read have taken.
+/// The amounts used by the cases read so far.
 #[derive(Debug, Default)]
 pub(super) struct Spent {
     flights: usize,
-    /// Where the flights became too many.
+    /// The place at which there were too many flights.
     too_many_at: Option<Range<usize>>,
     terms: usize,
     line_bytes: usize,
 }
 
-/// Whether the cases can be read: reports lists that are too long, too many cases, and too many entries of all cases.
+/// Returns `true` if the cases can be read. Reports lists that are too long, too many cases, and too many entries of
+/// all cases.
 pub(super) fn check(
     top: &TomlTable<'_, '_>,
     cases: &[TomlTable<'_, '_>],
@@ -64,7 +65,7 @@ pub(super) fn check(
     }
     for (key, word) in LISTS {
         let mut is_each_short = true;
-        // All of them are checked, so that all are reported.
+        // This checks all of them, so that all problems are reported.
         for table in std::iter::once(top).chain(cases) {
             is_each_short &= is_short(table, key, word, reader);
         }
@@ -86,7 +87,7 @@ pub(super) fn check(
     is_small
 }
 
-/// Entries of all cases of one variant.
+/// Returns the number of entries of all cases of one variant.
 fn entries(
     top: &TomlTable<'_, '_>,
     cases: &[TomlTable<'_, '_>],
@@ -129,7 +130,7 @@ fn is_short(table: &TomlTable<'_, '_>, key: &str, word: &str, reader: &mut Reade
     length <= MAX_LIST
 }
 
-/// Where a table or the first table of a list is.
+/// Returns the place of a table, or of the first table of a list.
 fn first_place(table: &TomlTable<'_, '_>, key: &str) -> Option<Range<usize>> {
     let value = table.get(key)?;
     match value.get_ref() {
@@ -139,7 +140,7 @@ fn first_place(table: &TomlTable<'_, '_>, key: &str) -> Option<Range<usize>> {
 }
 
 impl Reader<'_, '_> {
-    /// Counts the flights of a case, which `place` asks for. Returns whether there is room for them.
+    /// Counts the flights of a case, which come from `place`. Returns `true` if there is room for them.
     pub(super) fn take_flights(&mut self, flights: usize, place: Range<usize>) -> bool {
         self.spent.flights = self.spent.flights.saturating_add(flights);
         let has_room = self.spent.flights <= self.max_flights;
@@ -149,7 +150,7 @@ impl Reader<'_, '_> {
         has_room
     }
 
-    /// Reports flights for which there was no room.
+    /// Reports the flights for which there was no room.
     pub(super) fn check_flights(&mut self) {
         if let Some(place) = self.spent.too_many_at.take() {
             let (flights, max) = (self.spent.flights, self.max_flights);
@@ -161,7 +162,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Whether expressions can still be read.
+    /// Returns `true` if there is room for more expressions.
     pub(super) fn has_terms(&self) -> bool {
         self.spent.terms <= MAX_TERMS
     }
@@ -178,7 +179,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Counts settings and lines that a case keeps. Returns whether there is room for them.
+    /// Counts the settings and lines that a case keeps. Returns `true` if there is room for them.
     pub(super) fn take_lines(&mut self, bytes: usize, place: Range<usize>) -> bool {
         self.spent.line_bytes = self.spent.line_bytes.saturating_add(bytes);
         let has_room = self.spent.line_bytes <= MAX_LINES;
@@ -195,12 +196,12 @@ impl Reader<'_, '_> {
         has_room
     }
 
-    /// Whether another case is worth reading: nothing is used up and there is room for more problems.
+    /// Returns `true` if another case should be read: no limit is reached and there is room for more problems.
     pub(super) fn can_go_on(&self) -> bool {
         self.has_terms() && self.spent.line_bytes <= MAX_LINES && !self.is_full()
     }
 
-    /// The name of a case, an input or a measure.
+    /// Reads the name of a case, an input or a measure.
     pub(super) fn name(&mut self, value: &crate::plan::format::Value<'_>) -> Option<String> {
         let name = self.text(value)?;
         let length = name.chars().count();

@@ -1,4 +1,4 @@
-//! `[craft]`: what flies, from where, and with which settings.
+//! `[craft]`: the craft, its start position and its settings.
 
 use super::Craft;
 use super::keys::CRAFT_KEYS;
@@ -106,7 +106,7 @@ fn switches(layers: &Layers<'_, '_>, section: &[TomlTable<'_, '_>], reader: &mut
     switches
 }
 
-/// Settings and command lines in the order in which they are applied.
+/// Returns the settings and command lines in the order in which they are applied.
 fn boot_lines(
     layers: &Layers<'_, '_>,
     section: &[TomlTable<'_, '_>],

@@ -1,4 +1,4 @@
-//! `[[expect]]`: what is expected of a flight.
+//! `[[expect]]`: the expectations of a flight.
 
 use strum::IntoEnumIterator as _;
 
@@ -14,7 +14,7 @@ use crate::scenario::expression::{
 };
 use crate::scenario::happening::{Pattern, RESULTS};
 
-/// Keys of which an expectation has one.
+/// The kinds of expectation; each table has one of these keys.
 const KINDS: [&str; 13] = [
     "result",
     "states",
@@ -52,7 +52,7 @@ pub(super) fn read(
     expectations
 }
 
-/// What is expected of a flight whose scenario does not say how it ends.
+/// Returns the default expectation for the result, for a scenario that gives none.
 pub(super) fn usual_result(ends: bool) -> Expectation {
     let words: &[&str] = if ends { &["stopped", "complete", "landed"] } else { &["complete"] };
     Expectation {
@@ -87,7 +87,7 @@ fn read_one(
     Some(Expectation { label, line: reader.line(value.span()), window, expected })
 }
 
-/// `always altitude in 19..21 m, from ARRIVED 0`.
+/// Returns the label of an expectation: `always altitude in 19..21 m, from ARRIVED 0`.
 fn label(kind: &str, value: &Value<'_>, table: &TomlTable<'_, '_>, reader: &mut Reader<'_, '_>) -> String {
     let text = match value.get_ref().as_str() {
         Some(text) => text.to_owned(),
@@ -108,7 +108,7 @@ fn label(kind: &str, value: &Value<'_>, table: &TomlTable<'_, '_>, reader: &mut 
     label
 }
 
-/// Keys that mean nothing beside the kind.
+/// Refuses keys that have no meaning for this kind.
 fn refuse_idle(kind: &str, table: &TomlTable<'_, '_>, reader: &mut Reader<'_, '_>) {
     let of_events = ["count", "within", "with"];
     let of_windows = ["from", "until"];
@@ -222,7 +222,7 @@ fn read_event(
     Some(Expected::Event { pattern, count, within, with })
 }
 
-/// `APPROACHING 0, ARRIVED 0, ..., COMPLETE`.
+/// Reads an order of states: `APPROACHING 0, ARRIVED 0, ..., COMPLETE`.
 fn read_states(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<Vec<StateStep>, SyntaxError> {
     let mut steps = Vec::new();
     loop {

@@ -1,4 +1,4 @@
-//! `[[measure]]`: numbers taken from the flight, to be compared with each other.
+//! `[[measure]]`: numbers taken from the flight for comparisons.
 
 use std::rc::Rc;
 
@@ -13,7 +13,7 @@ use crate::scenario::expression::{Scope, read_instant, read_number};
 use crate::scenario::quantity::Dimension;
 use crate::scenario::signal::Signal;
 
-/// Keys of which a measure has one.
+/// The kinds of measure; each table has one of these keys.
 const KINDS: [&str; 6] = ["mean", "rms", "max", "min", "time", "value"];
 
 /// Reads the measures of a case; later ones may use earlier ones.
@@ -55,12 +55,12 @@ pub(super) fn read(
     measures
 }
 
-/// What is wrong with a name that a parameter or a measure cannot have: it would never be meant.
+/// Returns a problem if a parameter or a measure has the name of a signal, because expressions would never find it.
 pub(super) fn taken(name: &str) -> Option<String> {
     Signal::find(name).map(|_| format!("{name} is a signal"))
 }
 
-/// The window of a table.
+/// Reads the window of a table.
 pub(super) fn window(table: &TomlTable<'_, '_>, scope: &Scope, reader: &mut Reader<'_, '_>) -> Window {
     let mut instant =
         |key| table.get(key).and_then(|value| reader.expression(value, |cursor| read_instant(cursor, scope)));

@@ -7,10 +7,10 @@ use crate::plan::format::{self, Format, PlanFile};
 use crate::plan::review::Finding;
 use crate::plan::validate::check_plan;
 
-/// Words of a waypoint line without its index.
+/// The number of words of a waypoint line without its index.
 const WORDS: usize = 7;
 
-/// The plan of a case.
+/// Reads the plan of a case.
 pub(super) fn read(layers: &Layers<'_, '_>, reader: &mut Reader<'_, '_>) -> PlanFile {
     let tables = layers.tables("plan", reader);
     let Some(table) = tables.last() else {
@@ -59,7 +59,7 @@ pub(super) fn read(layers: &Layers<'_, '_>, reader: &mut Reader<'_, '_>) -> Plan
     plan
 }
 
-/// Waypoints as the arguments of `waypoint insert`, with or without the index.
+/// Reads waypoints in the form of the arguments of `waypoint insert`, with or without the index.
 fn read_lines(lines: &[(String, std::ops::Range<usize>)], reader: &mut Reader<'_, '_>) -> PlanFile {
     let mut plan = PlanFile::default();
     for (index, (line, span)) in lines.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Values of a scenario's tables with their places, and what is wrong with them.
+//! Values of a scenario's tables with their places, and the problems in them.
 
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
@@ -13,46 +13,46 @@ use crate::plan::builtin::BuiltinPlan;
 use crate::plan::format::{PlanFile, Problems, TomlTable, Value};
 use crate::scenario::expression::{Cursor, SyntaxError};
 
-/// Reads values; what is wrong is noted once, however many cases read it.
+/// A reader of values. It notes a problem only once, even if many cases read the same value.
 pub(super) struct Reader<'r, 'p> {
     text: &'r str,
-    /// Where each line begins.
+    /// The beginning of each line.
     lines: Vec<usize>,
     files: &'r mut dyn Files,
-    /// Plans and texts of files that were read: many cases name the same.
+    /// The plans and texts of files read so far, because many cases name the same file.
     plans: BTreeMap<String, Result<PlanFile, String>>,
     texts: BTreeMap<String, Result<String, String>>,
     problems: &'r mut Problems<'p>,
     noted: BTreeSet<(usize, usize, String)>,
-    /// The cases that tables are for, by where the tables begin; `None` = all.
+    /// The cases that each table applies to, by the beginning of the table; `None` = all.
     chosen: BTreeMap<usize, Option<BTreeSet<String>>>,
-    /// Most flights of all cases together.
+    /// The most flights of all cases together.
     pub(super) max_flights: usize,
     pub(super) spent: Spent,
 }
 
-/// Where the values of a case come from: what is varied, the case, the file.
+/// The sources of the values of a case: the varied values, the case, the file.
 pub(super) struct Layers<'l, 't> {
     pub(super) top: &'l TomlTable<'l, 't>,
     pub(super) case: Option<&'l TomlTable<'l, 't>>,
     pub(super) variant: &'l Variant<'l, 't>,
-    /// Seeds that take the place of those of the file.
+    /// The seeds that replace those of the file.
     pub(super) seeds: Option<&'l [u64]>,
 }
 
 impl<'l, 't> Layers<'l, 't> {
-    /// A value of the case, or of the file.
+    /// Returns a value of the case, or else of the file.
     pub(super) fn value(&self, key: &str) -> Option<&'l Value<'t>> {
         self.case.and_then(|case| case.get(key)).or_else(|| self.top.get(key))
     }
 
-    /// A table of the file and that of the case, as far as they are there, the file's first.
+    /// Returns the tables of the file and of the case that exist, the one of the file first.
     pub(super) fn tables(&self, key: &str, reader: &mut Reader<'_, '_>) -> Vec<TomlTable<'l, 't>> {
         let both = [self.top.get(key), self.case.and_then(|case| case.get(key))];
         both.into_iter().flatten().filter_map(|value| reader.table(key, value)).collect()
     }
 
-    /// The tables of a list of the file, then those of the case.
+    /// Returns the tables of a list of the file, then those of the case.
     pub(super) fn lists(&self, key: &str, reader: &mut Reader<'_, '_>) -> Vec<TomlTable<'l, 't>> {
         let mut tables = reader.tables(self.top, key, key);
         if let Some(case) = self.case {
@@ -61,12 +61,12 @@ impl<'l, 't> Layers<'l, 't> {
         tables
     }
 
-    /// A value of a section: what is varied, else the case's, else the file's.
+    /// Returns a value of a section: the varied value, else the one of the case, else the one of the file.
     pub(super) fn of_section(&self, section: &[TomlTable<'l, 't>], key: &str) -> Option<&'l Value<'t>> {
         self.variant.get(key).or_else(|| section.iter().rev().find_map(|table| table.get(key)))
     }
 
-    /// The texts of a list of a section: those of the file, of the case and of what is varied.
+    /// Returns the texts of a list of a section: those of the file, of the case and of the varied values.
     pub(super) fn lines(
         &self,
         section: &[TomlTable<'l, 't>],
@@ -107,17 +107,17 @@ impl<'r, 'p> Reader<'r, 'p> {
         }
     }
 
-    /// Whether more problems would only be counted.
+    /// Returns `true` if more problems would only be counted.
     pub(super) fn is_full(&self) -> bool {
         self.problems.is_full()
     }
 
-    /// Whether a table is for a case: without `cases` it is for all.
+    /// Returns `true` if a table applies to a case: without `cases` it applies to all.
     pub(super) fn is_for(&mut self, case: &str, table: &TomlTable<'_, '_>) -> bool {
         self.cases_of(table).is_none_or(|names| names.contains(case))
     }
 
-    /// The cases that a table names in `cases`; `None` without it.
+    /// Returns the cases that a table names in `cases`; `None` without that key.
     pub(super) fn cases_of(&mut self, table: &TomlTable<'_, '_>) -> Option<&BTreeSet<String>> {
         let key = table.span().start;
         if !self.chosen.contains_key(&key) {
@@ -147,7 +147,8 @@ impl<'r, 'p> Reader<'r, 'p> {
         self.problem(span, error.message, error.hint);
     }
 
-    /// A part of a value's text in the file; all of the value when escapes hide the part.
+    /// Returns the place in the file of a part of a value's text; the place of the whole value if escapes hide the
+    /// part.
     fn place_inside(&self, value: &Value<'_>, part: &Range<usize>) -> Range<usize> {
         let (whole, Some(text)) = (value.span(), value.get_ref().as_str()) else { return value.span() };
         let raw = self.text.get(whole.clone()).unwrap_or_default();
@@ -178,7 +179,7 @@ impl<'r, 'p> Reader<'r, 'p> {
         value
     }
 
-    /// A value that should be a table.
+    /// Returns the value as a table, or notes a problem.
     pub(super) fn table<'t, 'i>(&mut self, what: &str, value: &'t Value<'i>) -> Option<TomlTable<'t, 'i>> {
         if value.get_ref().is_table() {
             return TomlTable::new(what.to_owned(), value, self.problems);
@@ -187,7 +188,7 @@ impl<'r, 'p> Reader<'r, 'p> {
         None
     }
 
-    /// The tables of a list `[[key]]`.
+    /// Returns the tables of a list `[[key]]`.
     pub(super) fn tables<'t, 'i>(
         &mut self,
         table: &TomlTable<'t, 'i>,
@@ -218,7 +219,7 @@ impl<'r, 'p> Reader<'r, 'p> {
         self.text(table.get(key)?)
     }
 
-    /// The texts of a list, or one text, with their places.
+    /// Returns the texts of a list, or one single text, with their places.
     pub(super) fn texts(
         &mut self,
         table: &TomlTable<'_, '_>,
@@ -253,7 +254,7 @@ impl<'r, 'p> Reader<'r, 'p> {
         number
     }
 
-    /// A number, whole or not.
+    /// Reads a number, whole or not.
     pub(super) fn number(&mut self, value: &Value<'_>) -> Option<f64> {
         let number = match value.get_ref() {
             DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str().parse().ok(),
@@ -287,7 +288,7 @@ impl<'r, 'p> Reader<'r, 'p> {
         None
     }
 
-    /// Reads the text of a value by a grammar, to its end.
+    /// Reads the text of a value to its end with a grammar.
     pub(super) fn expression<T>(
         &mut self,
         value: &Value<'_>,
@@ -309,7 +310,7 @@ impl<'r, 'p> Reader<'r, 'p> {
         }
     }
 
-    /// The plan that a name stands for: a built-in one, or a file.
+    /// Returns the plan for a name: a built-in plan or a file.
     pub(super) fn plan(&mut self, name: &str) -> Result<FlightPlan, String> {
         self.plan_file(name).map(|file| file.plan)
     }
@@ -321,7 +322,7 @@ impl<'r, 'p> Reader<'r, 'p> {
         }
     }
 
-    /// The plan in a file.
+    /// Returns the plan in a file.
     pub(super) fn plan_from_file(&mut self, name: &str) -> Result<PlanFile, String> {
         if let Some(known) = self.plans.get(name) {
             return known.clone();
@@ -331,7 +332,7 @@ impl<'r, 'p> Reader<'r, 'p> {
         plan
     }
 
-    /// The text of a file.
+    /// Returns the text of a file.
     pub(super) fn file(&mut self, name: &str) -> Result<&str, String> {
         let known = match self.texts.entry(name.to_owned()) {
             Entry::Occupied(known) => known.into_mut(),
@@ -340,7 +341,7 @@ impl<'r, 'p> Reader<'r, 'p> {
         known.as_deref().map_err(Clone::clone)
     }
 
-    /// Line of a place, from 1.
+    /// Returns the line of a place, from 1.
     pub(super) fn line(&self, span: Range<usize>) -> usize {
         self.lines.partition_point(|&begin| begin <= span.start) + 1
     }

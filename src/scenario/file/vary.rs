@@ -1,4 +1,4 @@
-//! What is varied: every combination of the listed values is a case of its own.
+//! `[vary]`: every combination of the listed values becomes a case of its own.
 
 use toml::de::DeValue;
 
@@ -14,12 +14,12 @@ pub(super) struct Variant<'l, 't> {
 }
 
 impl<'l, 't> Variant<'l, 't> {
-    /// What is varied of this key.
+    /// Returns the varied value of this key.
     pub(super) fn get(&self, key: &str) -> Option<&'l Value<'t>> {
         self.values.iter().find(|(name, _)| *name == key).map(|&(_, value)| value)
     }
 
-    /// The name of a case with this combination.
+    /// Returns the name of a case with this combination.
     pub(super) fn name_of(&self, base: &str) -> String {
         let parts = self.values.iter().map(|(key, value)| {
             let shown = match value.get_ref() {
@@ -38,7 +38,7 @@ impl<'l, 't> Variant<'l, 't> {
     }
 }
 
-/// All combinations; one without anything when nothing is varied.
+/// Returns all combinations; one empty combination if nothing is varied.
 pub(super) fn read<'l, 't>(top: &TomlTable<'l, 't>, reader: &mut Reader<'_, '_>) -> Vec<Variant<'l, 't>> {
     let mut variants = vec![Variant::default()];
     let Some(table) = top.get("vary").and_then(|value| reader.table("vary", value)) else { return variants };

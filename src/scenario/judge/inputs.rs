@@ -1,4 +1,4 @@
-//! Inputs that were not carried out: a flight without them shows nothing of what it was to show.
+//! Judgements of inputs that were not carried out. A flight without them does not show the intended behaviour.
 
 use super::outcome::{failed, unjudged};
 use super::{Judgement, Outcome};
@@ -8,8 +8,8 @@ use crate::scenario::input::TimedInput;
 use crate::scenario::trace::Trace;
 use crate::signals::SimTime;
 
-/// A judgement for each input whose instant did not come, and for each that was refused, unless an expectation is about
-/// refusals.
+/// Returns a judgement for each input whose instant did not come, and for each refused input unless an expectation is
+/// about refusals.
 pub(super) fn judge(case: &Case, trace: &Trace) -> Vec<Judgement> {
     let refusals_are_expected = case.expectations.iter().any(|expectation| {
         matches!(
@@ -35,12 +35,13 @@ pub(super) fn judge(case: &Case, trace: &Trace) -> Vec<Judgement> {
     judgements
 }
 
-/// Whether this tells that the input was carried out.
+/// Returns `true` if the happening reports that the input was carried out.
 fn is_of(happening: &Happening, input: &TimedInput) -> bool {
     matches!(&happening.kind, HappeningKind::Event { name: EventName::Input, words, .. } if words.contains(&input.name))
 }
 
-/// Why and when an input was refused, from what came behind it: it is said at once, before anything else is done.
+/// Returns the reason and the time of a refusal, from the happenings after an input. A refusal comes at once, before
+/// any other action.
 fn refusal(behind: &[Happening]) -> Option<(&str, SimTime)> {
     for happening in behind {
         match &happening.kind {

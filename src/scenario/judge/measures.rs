@@ -4,7 +4,7 @@ use super::{Range, samples};
 use crate::scenario::case::{Measured, Statistic, Window};
 use crate::scenario::expression::{Evaluator, Number};
 
-/// A measure; NaN when what it waits for did not happen.
+/// Takes a measure; NaN if an instant that it needs did not come.
 pub(super) fn take(measured: &Measured, evaluator: &Evaluator<'_>) -> f64 {
     let trace = evaluator.trace();
     let number = match measured {
@@ -22,7 +22,7 @@ pub(super) fn take(measured: &Measured, evaluator: &Evaluator<'_>) -> f64 {
     number.unwrap_or(f64::NAN)
 }
 
-/// A statistic over a part of the flight; `None` when its instants did not come or nothing of it was known.
+/// Takes a statistic over a part of the flight; `None` if its instants did not come or no value is known.
 pub(super) fn over(
     window: &Window,
     statistic: Statistic,

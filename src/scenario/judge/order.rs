@@ -19,7 +19,7 @@ pub(super) fn judge(steps: &[StateStep], evaluator: &Evaluator<'_>) -> Outcome {
             HappeningKind::Event { .. } => None,
         })
         .collect();
-    // After how many steps the first `place` states may be explained.
+    // The numbers of steps that can explain the first `place` states.
     let mut reached = vec![closure(steps, 0)];
     for (place, (_, entered)) in seen.iter().enumerate() {
         let mut next: Vec<usize> = Vec::new();
@@ -48,7 +48,7 @@ pub(super) fn judge(steps: &[StateStep], evaluator: &Evaluator<'_>) -> Outcome {
     failed(sentence, Some(end)).with_guard(trace, end)
 }
 
-/// A step and those behind it that need no state.
+/// Returns a step and the steps after it that need no state.
 fn closure(steps: &[StateStep], step: usize) -> Vec<usize> {
     let mut open = vec![step];
     let mut at = step;
@@ -78,12 +78,12 @@ fn unexpected(
         trace.shown_time(happening.time),
         wanted(steps, open)
     );
-    // The guards of the state that was left.
+    // The guards of the previous state.
     let before = crate::signals::SimTime(happening.time.0.saturating_sub(20_000));
     failed(sentence, Some(happening.time)).with_guard(trace, before)
 }
 
-/// What would have been right.
+/// Returns the expected steps in words.
 fn wanted(steps: &[StateStep], open: &[usize]) -> String {
     let words: Vec<String> = open
         .iter()

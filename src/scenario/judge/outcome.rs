@@ -1,4 +1,4 @@
-//! What became of an expectation.
+//! The outcome of an expectation.
 
 use crate::scenario::Insight;
 use crate::scenario::expression::Verdict;
@@ -11,28 +11,28 @@ pub struct Judgement {
     pub label: String,
     /// Line in the scenario's file, from 1.
     pub line: usize,
-    /// What became of it.
+    /// The outcome of the expectation.
     pub outcome: Outcome,
 }
 
-/// What became of an expectation.
+/// The outcome of an expectation.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
-    /// It was met, with the tightest number if it has one.
+    /// Met; with the tightest number if there is one.
     Met(Option<Margin>),
     Failed {
         sentence: String,
         at: Option<SimTime>,
-        /// Of the guards that did not fire then, the one that came closest.
+        /// The guard that came closest to firing at that time.
         guard: Option<String>,
     },
-    /// What it waits for did not happen.
+    /// Not judged, because an instant that it needs did not come.
     NeverJudged(String),
-    /// It was not judged, for it needs what this flight controller does not tell.
+    /// Not judged, because it needs knowledge that this flight controller does not report.
     Skipped(Insight),
 }
 
-/// How far a number was from its bound.
+/// The distance of a number from its bound.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Margin {
     /// The number and its bounds.
@@ -41,17 +41,17 @@ pub struct Margin {
 }
 
 impl Outcome {
-    /// Whether it was met.
+    /// Returns `true` if the expectation was met.
     pub fn is_met(&self) -> bool {
         matches!(self, Self::Met(_))
     }
 
-    /// Whether it was judged and not met, or could have been judged and was not.
+    /// Returns `true` if the expectation was not met, or was not judged although this flight controller reports enough.
     pub fn is_failure(&self) -> bool {
         !matches!(self, Self::Met(_) | Self::Skipped(_))
     }
 
-    /// The tightest number, if it was met and has one.
+    /// Returns the tightest number of a met expectation, if it has one.
     pub fn margin(&self) -> Option<&Margin> {
         match self {
             Self::Met(margin) => margin.as_ref(),
@@ -59,7 +59,7 @@ impl Outcome {
         }
     }
 
-    /// Both: the first that failed, or the tighter of two that were met.
+    /// Joins two outcomes: the first failure, or the tighter one if both were met.
     pub(super) fn and(self, other: Self) -> Self {
         match (&self, &other) {
             (Self::Met(Some(a)), Self::Met(Some(b))) if b.verdict.share() < a.verdict.share() => other,
@@ -95,13 +95,13 @@ impl Outcome {
 }
 
 impl Margin {
-    /// `1.82 m, at most 2.00 m`.
+    /// Returns the text `1.82 m, at most 2.00 m`.
     pub fn shown(&self) -> String {
         describe(&self.verdict)
     }
 }
 
-/// A number and what it may be: `2.13 m, at most 2.00 m`.
+/// Returns the text of a number and its bounds: `2.13 m, at most 2.00 m`.
 pub(super) fn describe(verdict: &Verdict) -> String {
     let Verdict { value, low, high, dimension, strict } = *verdict;
     let show = |number| shown(number, dimension);
@@ -128,13 +128,13 @@ pub(super) fn unjudged(why: &str) -> Outcome {
     Outcome::NeverJudged(why.to_owned())
 }
 
-/// A time that must lie between two. Nothing that comes after all is sooner than at once.
+/// Compares a time with two bounds. No time from zero on can be below a lower bound of zero, so that bound is dropped.
 pub(super) fn time_verdict(seconds: f64, low: f64, high: f64) -> Verdict {
     let low = if low == 0.0 && seconds >= 0.0 { f64::NEG_INFINITY } else { low };
     Verdict { value: seconds, low, high, dimension: Dimension::TIME, strict: false }
 }
 
-/// The outcome of one number.
+/// Returns the outcome of one number.
 pub(super) fn of_verdict(verdict: &Verdict, time: SimTime, trace: &Trace) -> Outcome {
     if verdict.holds() {
         return met(Some(Margin { verdict: *verdict, time }));

@@ -27,7 +27,7 @@ pub(super) fn judge(expected: &Expected, range: Range, evaluator: &Evaluator<'_>
     }
 }
 
-/// The condition at one sample, perhaps with the numbers of a happening.
+/// Judges the condition at one sample, optionally with the numbers of a happening.
 pub(super) fn instant(
     condition: &Condition,
     index: usize,
@@ -55,7 +55,7 @@ pub(super) fn instant(
     }
 }
 
-/// What decides at a sample for an expectation that wants the condition to hold, or (`never`) not to.
+/// Returns the deciding comparison at a sample for a condition that must hold, or (`never`) must not hold.
 fn wanted(
     condition: &Condition,
     never: bool,
@@ -70,7 +70,7 @@ fn wanted(
     Some((!holds, deciding.and_then(|verdict| opposite(&verdict))))
 }
 
-/// A number that must not be where its bounds allow it; `None` when two sides are left.
+/// Returns the verdict for a number that must be outside its bounds; `None` if two sides remain.
 fn opposite(verdict: &Verdict) -> Option<Verdict> {
     let Verdict { value, low, high, dimension, strict } = *verdict;
     match (low.is_finite(), high.is_finite()) {
@@ -179,7 +179,7 @@ fn mostly(
     }
     let time = first.unwrap_or_else(|| trace.end());
     let value = held as f64 / known as f64;
-    // What is allowed is a share of samples at which it does not hold: of that the margin is told.
+    // The margin is about the share of samples at which the condition does not hold.
     let verdict = Verdict {
         value: 1.0 - value,
         low: f64::NEG_INFINITY,
@@ -222,7 +222,7 @@ fn judge_statistic(
     }
 }
 
-/// A statistic of the known values of samples, and the sample that it is of; `None` when none is known.
+/// Takes a statistic of the known values of samples, and the sample it comes from; `None` if no value is known.
 pub(super) fn take(
     statistic: Statistic,
     samples: std::ops::Range<usize>,

@@ -1,4 +1,4 @@
-//! Carries out the inputs of a case at their instants.
+//! The inputs of a case, carried out at their instants.
 
 use crate::firmware::cli::Interpreter;
 use crate::pilot::StickInput;
@@ -12,11 +12,11 @@ use crate::telemetry::Mode;
 use crate::telemetry::switch::Switch;
 use crate::vehicle::{Answer, Vehicle};
 
-/// The inputs that are still to come.
+/// The remaining inputs.
 #[derive(Debug)]
 pub(super) struct Inputs<'a> {
     waiting: Vec<Waiting<'a>>,
-    /// When the transmitter is restored.
+    /// The time at which the transmitter is restored.
     restore_at: Option<SimTime>,
     command_line: Interpreter,
 }
@@ -38,22 +38,22 @@ impl<'a> Inputs<'a> {
         Self { waiting, restore_at: None, command_line: Interpreter::default() }
     }
 
-    /// Looks whether instants have come.
+    /// Checks which instants have come.
     pub(super) fn look(&mut self, evaluator: &Evaluator<'_>) {
         for waiting in self.waiting.iter_mut().filter(|waiting| waiting.due_us.is_none()) {
             waiting.due_us = waiting.search.advance(evaluator);
         }
     }
 
-    /// Whether something is to be done before the tick at this time.
+    /// Returns `true` if an action is due before the tick at this time.
     pub(super) fn is_due(&self, now: SimTime) -> bool {
         self.restore_at.is_some_and(|at| now >= at)
             || self.waiting.iter().any(|waiting| waiting.is_due(now))
-            // Instants that do not wait for anything are looked at before the first tick.
+            // Instants that wait for nothing are checked before the first tick.
             || now == SimTime::ZERO
     }
 
-    /// Does what is due, in the order of the file.
+    /// Carries out the due actions, in the order of the file.
     pub(super) fn carry_out(&mut self, vehicle: &mut Vehicle, trace: &mut Trace, names: &[(String, f64)]) {
         let now = vehicle.time();
         if now == SimTime::ZERO {
@@ -85,7 +85,7 @@ impl<'a> Inputs<'a> {
         }
     }
 
-    /// Does it; what was answered is returned.
+    /// Carries out an action and returns the replies.
     fn act(&mut self, action: &Action, vehicle: &mut Vehicle) -> Vec<(EventName, String)> {
         let refused = |text: String| vec![(EventName::Refusal, text)];
         match action {
@@ -176,7 +176,7 @@ fn hold_channel(vehicle: &mut Vehicle, channel: u8, value_us: u16, for_s: Option
     vehicle.transmitter_mut().inputs_mut().push(input);
 }
 
-/// The channel that switches a mode, and its value for on or off.
+/// Returns the channel that switches a mode, and its value for on or off.
 fn switch_value(vehicle: &Vehicle, mode: Mode, on: bool) -> Option<(u8, u16)> {
     let switch = Switch::of(mode, &vehicle.controller().mode_ranges())?;
     let value = if on { switch.on_us } else { switch.off_us };

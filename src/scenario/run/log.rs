@@ -5,7 +5,7 @@ use crate::scenario::trace::{KnownPlan, Trace};
 use crate::signals::SimTime;
 use crate::telemetry::{Event, EventKind, FirmwareEvent, ModeFlags, NavEvent, NavState, PlanSource, Refusal};
 
-/// What is needed of earlier events to understand later ones.
+/// The facts from earlier events that later events need.
 #[derive(Debug, Default)]
 pub(super) struct Log {
     modes: ModeFlags,
@@ -130,7 +130,7 @@ fn refused(time: SimTime, refusal: &Refusal) -> Happening {
     happening
 }
 
-/// `FLYOVER, LAND`.
+/// Returns the types of the waypoints: `FLYOVER, LAND`.
 fn types(plan: &crate::plan::FlightPlan) -> String {
     let names: Vec<String> = plan.waypoints.iter().map(|waypoint| waypoint.kind.to_string()).collect();
     names.join(", ")

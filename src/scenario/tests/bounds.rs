@@ -1,4 +1,4 @@
-//! Scenarios of any size: refused with a sentence before they take time or memory out of proportion.
+//! Scenarios that are too large: refused with a sentence before they use too much time or memory.
 
 use super::{NoFiles, STANDING, hints, problems};
 use crate::plan::Waypoint;
@@ -7,7 +7,7 @@ use crate::scenario::expression::{MAX_NAME, MAX_TERMS};
 use crate::scenario::file::BOUNDS;
 use crate::scenario::{Files, MAX_FLIGHTS, read, read_at_most};
 
-/// A sum of this many altitudes that is compared.
+/// Returns a comparison with a sum of this many altitudes.
 fn sum(terms: usize) -> String {
     format!("{} <= 9 m", vec!["altitude"; terms].join(" + "))
 }
@@ -90,7 +90,7 @@ fn a_rate_of_a_rate_counts_twice_for_it_is_worked_out_twice() {
 
 #[test]
 fn parentheses_that_are_read_as_a_condition_first_do_not_double_the_work_at_each_level() {
-    // Each of them could hold a condition until its end is seen.
+    // Each parenthesis could hold a condition until its end is read.
     let mut inner = vec!["altitude"; 900].join(" + ");
     for _ in 0..7 {
         inner = format!("(since(when {inner} <= 9 m)) / 1 s * 1 m");

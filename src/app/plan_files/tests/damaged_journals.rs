@@ -1,8 +1,8 @@
-//! Journals that are damaged, of a later version, or too large: nothing of them goes without a word.
+//! Journals that are damaged, from a later version, or too large: every loss is reported.
 
 use super::*;
 
-/// The journals, and the files set aside, in the order of their names.
+/// Returns the journals, or the files set aside, in the order of their names.
 fn kept(directory: &Path, ending: &str) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(directory.join("plans")).unwrap();
     let mut paths: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
@@ -11,7 +11,7 @@ fn kept(directory: &Path, ending: &str) -> Vec<PathBuf> {
     paths
 }
 
-/// A plan file of 50 m and a journal with edits to 51, 52, 53, 54 and 55 m, of a program that is gone.
+/// Writes a plan file of 50 m and a journal with edits to 51, 52, 53, 54 and 55 m, from a program that has ended.
 fn edited_five_times(directory: &Path) -> PathBuf {
     let path = directory.join("plan.toml");
     let mut files = PlanFiles::new(Some(directory));
@@ -23,7 +23,7 @@ fn edited_five_times(directory: &Path) -> PathBuf {
     path
 }
 
-/// Writes the journal again with another line in the place of the edit to 53 m; its bytes.
+/// Rewrites the journal with another line in the place of the edit to 53 m, and returns its bytes.
 fn damage(directory: &Path, line: &str) -> Vec<u8> {
     let [journal] = kept(directory, "journal").try_into().unwrap();
     let text = std::fs::read_to_string(&journal).unwrap();
@@ -52,7 +52,7 @@ fn a_journal_that_is_damaged_in_the_middle_or_of_a_later_version_is_set_aside_as
         assert!(sentence.starts_with(&expected), "{sentence}");
         assert!(sentence.ends_with(&format!("It is kept as {}.", bad.display())), "{sentence}");
         assert_eq!(std::fs::read(&bad).unwrap(), damaged);
-        // What follows is kept, and the next start has nothing to say.
+        // The following edits are kept, and the next start has no losses to report.
         edit(&mut files, &mut back, document(6000));
         drop(files);
         let mut files = PlanFiles::new(Some(directory.path()));

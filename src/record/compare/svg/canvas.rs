@@ -6,23 +6,23 @@ use nalgebra::Vector2;
 
 use crate::record::xml::escaped;
 
-/// Longer side of the map, px.
+/// The longer side of the map, px.
 const SIDE: f64 = 800.0;
-/// Around the map, px; the names of waypoints stand there, too.
+/// The margin around the map, px. The names of waypoints use it, too.
 const MARGIN: f64 = 60.0;
-/// Least extent of the ground that is shown, m.
+/// The least extent of the ground in the picture, m.
 const LEAST_M: f64 = 20.0;
-/// Places of a line that are nearer to each other are not drawn, px.
+/// The least distance between two points of a line, px. Closer points are not drawn.
 const STEP: f64 = 1.2;
-/// Widest scale bar, as a share of the map.
+/// The widest scale bar, as a share of the map.
 const BAR: f64 = 0.3;
 
-/// Where things are in the picture.
+/// The mapping from the ground to the picture.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Canvas {
-    /// Of the south-west corner of the map, m north and east.
+    /// The south-west corner of the map, m north and east.
     low: Vector2<f64>,
-    /// Of the north-east corner.
+    /// The north-east corner of the map.
     high: Vector2<f64>,
     px_per_m: f64,
     /// Height above the map, px.
@@ -30,7 +30,7 @@ pub(super) struct Canvas {
 }
 
 impl Canvas {
-    /// A picture in which all the places are, below `top` px for texts.
+    /// Returns a picture that contains all the places, below `top` px for texts.
     pub(super) fn around(places: impl Iterator<Item = Vector2<f64>>, top: f64) -> Self {
         let (mut low, mut high) = (Vector2::zeros(), Vector2::zeros());
         for place in places.filter(|place| place.iter().all(|value| value.is_finite())) {
@@ -41,31 +41,31 @@ impl Canvas {
         Self { low, high, px_per_m: SIDE / extent, top }
     }
 
-    /// Width and height of the picture, px.
+    /// Returns the width and the height of the picture, px.
     fn size(&self) -> (f64, f64) {
         let (north, east) = ((self.high - self.low).x, (self.high - self.low).y);
         let width = (self.length(east) + 2.0 * MARGIN).max(SIDE / 2.0);
         (width, self.top + self.length(north) + 2.0 * MARGIN)
     }
 
-    /// A length, px.
+    /// Converts a length to px.
     pub(super) fn length(&self, metres: f64) -> f64 {
         metres * self.px_per_m
     }
 
-    /// A place, px to the right and down.
+    /// Converts a place to px to the right and down.
     pub(super) fn place(&self, ne: Vector2<f64>) -> (f64, f64) {
         let (right, down) = (ne.y - self.low.y, self.high.x - ne.x);
         (MARGIN + self.length(right), self.top + MARGIN + self.length(down))
     }
 
-    /// A place as a line has it.
+    /// Returns a place in the form of a point of a line.
     pub(super) fn point(&self, ne: Vector2<f64>) -> String {
         let (x, y) = self.place(ne);
         format!("{x:.1},{y:.1}")
     }
 
-    /// The points of a line, of those that are too near to each other only one.
+    /// Returns the points of a line, with only one of points that are too close to each other.
     pub(super) fn line(&self, places: impl Iterator<Item = Vector2<f64>>) -> String {
         let mut drawn: Vec<String> = Vec::new();
         let mut last: Option<Vector2<f64>> = None;
@@ -78,7 +78,7 @@ impl Canvas {
         drawn.join(" ")
     }
 
-    /// The beginning of the document.
+    /// Returns the beginning of the document.
     pub(super) fn head(&self, title: &str) -> String {
         let (width, height) = self.size();
         format!(
@@ -89,7 +89,7 @@ impl Canvas {
         )
     }
 
-    /// A bar of a round length, and which way north is.
+    /// Draws a bar of a round length, and the direction of north.
     pub(super) fn scale_bar(&self, text: &mut String) {
         let metres = round_length(BAR * SIDE / self.px_per_m);
         let (_, height) = self.size();
@@ -110,7 +110,7 @@ impl Canvas {
     }
 }
 
-/// The longest of 1, 2, 5, 10, 20, 50 … that is not longer.
+/// Returns the longest length of 1, 2, 5, 10, 20, 50 … that is at most `most`.
 fn round_length(most: f64) -> f64 {
     let power = 10_f64.powf(most.max(1.0).log10().floor());
     [5.0, 2.0].into_iter().map(|factor| factor * power).find(|length| *length <= most).unwrap_or(power)
