@@ -25,13 +25,24 @@ pub(super) fn pages() -> Vec<String> {
     pages
 }
 
-/// The commands of a page, in their order.
+/// Returns the commands of a page for a shell and for the screen, in their order.
 pub(super) fn commands(page: &str) -> Vec<Shown> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(page);
-    let text = std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{page}: {error}"));
-    read(page, &text)
+    let all = read(page, &text_of(page));
+    all.into_iter().filter(|shown| shown.in_block || is_command(&shown.text)).collect()
 }
 
+/// Returns the inline code of all pages.
+pub(super) fn spans() -> Vec<Shown> {
+    let all = pages().into_iter().flat_map(|page| read(&page, &text_of(&page)));
+    all.filter(|shown| !shown.in_block).collect()
+}
+
+fn text_of(page: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(page);
+    std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{page}: {error}"))
+}
+
+/// Returns the commands in the blocks of a page, and all of its inline code.
 fn read(page: &str, text: &str) -> Vec<Shown> {
     let mut found = Vec::new();
     let mut language: Option<&str> = None;
@@ -58,9 +69,7 @@ fn read(page: &str, text: &str) -> Vec<Shown> {
                     span = match span.take() {
                         None => Some((number, String::new())),
                         Some((began, code)) => {
-                            if is_command(&code) {
-                                push(began, &code, false);
-                            }
+                            push(began, &code, false);
                             None
                         }
                     };
@@ -104,7 +113,8 @@ pub(super) fn is_screen(code: &str) -> bool {
 fn commands_are_found_in_blocks_in_spans_and_across_lines() {
     let page = "`:wind 5@270` and `betadeck\nopen x` or `q`: `betadeck`\n\n```sh\ncargo x\n```\n\
                 ```yaml\n  - run: betadeck check\n```\n```console\n$ betadeck a\n  betadeck b\nsays\n```\n`:`\n";
-    let found: Vec<String> = read("p", page).into_iter().map(|shown| shown.place).collect();
+    let found = read("p", page).into_iter().filter(|shown| shown.in_block || is_command(&shown.text));
+    let found: Vec<String> = found.map(|shown| shown.place).collect();
     assert_eq!(
         found,
         [
