@@ -1,8 +1,8 @@
-//! The launcher's file, `--betaloop`.
+//! The target of the launcher's file, `--betaloop`.
 
 use betadeck::args::{Betaloop, BetaloopError};
 
-/// Reads the text. An executable that is named can be named again, and nothing else of the file matters to it.
+/// Reads the text. A named executable can be named again, and nothing else in the file affects it.
 pub fn run(data: &[u8]) {
     let text = String::from_utf8_lossy(data);
     match Betaloop::read(&text) {
