@@ -65,7 +65,6 @@ impl Line {
         self.text("event")
     }
 
-    /// Returns a number.
     #[track_caller]
     pub(crate) fn number(&self, key: &str) -> f64 {
         self.value(key).as_f64().unwrap_or_else(|| panic!("{key} is no number in {self:?}"))

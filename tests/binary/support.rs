@@ -110,14 +110,11 @@ impl Ran {
     }
 }
 
-/// A flight.
 #[derive(Debug)]
 pub(crate) struct Flown {
-    /// The exit code.
     pub(crate) code: Option<i32>,
     /// Standard error.
     pub(crate) err: String,
-    /// The JSON lines.
     pub(crate) lines: Vec<Line>,
 }
 

@@ -19,7 +19,6 @@ use nalgebra::{Vector2, Vector3};
 /// The interval of the RC frames, µs.
 const FRAME_US: u64 = 20_000;
 
-/// The craft.
 pub(crate) struct Rig {
     pub(crate) world: World,
     pub(crate) estimator: Estimator,

@@ -104,7 +104,6 @@ impl Sockets {
     }
 }
 
-/// A running simulator.
 pub(crate) struct Simulator {
     seen: Arc<Mutex<Seen>>,
     stop: Arc<AtomicBool>,

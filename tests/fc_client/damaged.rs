@@ -100,7 +100,7 @@ fn an_output_without_end_is_given_up() {
         let (slow, answer) = endless(access, Duration::from_secs(3));
         assert_eq!(answer, silent);
         assert!(slow <= Duration::from_secs(63), "a byte now and then: {slow:?}");
-        // More than is kept within seconds: then it has to end.
+        // More bytes than are kept arrive within seconds, so the client must give up.
         let (fast, answer) = endless(access, Duration::from_micros(10));
         assert_eq!(answer, silent);
         assert!(fast < Duration::from_secs(10), "without a pause: {fast:?}");

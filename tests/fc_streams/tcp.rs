@@ -1,4 +1,4 @@
-//! Over TCP.
+//! Streams over TCP.
 
 use betadeck::link::StreamEvent;
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};

@@ -1,4 +1,4 @@
-//! Over websockets.
+//! Streams over websockets.
 
 use futures_util::{SinkExt as _, StreamExt as _};
 use tokio::net::{TcpListener, TcpStream};

@@ -75,7 +75,7 @@ fn without_compass(seed: u64, heading_deg: f64, wind: &str) -> Option<String> {
         matches!(kind, EventKind::Firmware(FirmwareEvent::Nav(NavEvent::Refused(Refusal::NoHeading))))
     };
     let mut checks = Checks::default();
-    // A wind carries a craft that is only levelled straight enough to show the heading.
+    // In wind, a craft that is only levelled drifts straight enough to show its heading.
     if wind == "calm" {
         rig.until(60.0, "a refusal", |rig| rig.event_at(is_refusal).is_some());
         checks.holds("unknown", !rig.vehicle.embedded().unwrap().estimate().heading_valid);

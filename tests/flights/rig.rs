@@ -59,7 +59,6 @@ impl Sample {
     }
 }
 
-/// A state transition.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Transition {
     /// Seconds since engagement.

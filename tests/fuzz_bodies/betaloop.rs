@@ -12,7 +12,7 @@ pub fn run(data: &[u8]) {
             assert_eq!(Betaloop::read(&text), Ok(file.clone()), "reading is repeatable");
             let alone = format!("[Betaloop]\nBetaflightElf = {}\n", file.executable);
             let again = Betaloop::read(&alone).map(|file| file.executable);
-            // A value of several lines is no file name that can be written like this.
+            // A value with several lines cannot be written as a file name like this.
             assert!(file.executable.contains(['\n', '\r']) || again == Ok(file.executable), "{alone}");
         }
         Err(error) => {
