@@ -1,9 +1,9 @@
-//! The help texts as a user sees them, at 100 columns.
+//! The help texts as a user sees them, 100 columns wide.
 
 use betadeck::args::Cli;
 use clap::CommandFactory as _;
 
-/// The help of a command, short (`-h`) or long (`--help`).
+/// Returns the help of a command, short (`-h`) or long (`--help`).
 fn help(path: &[&str], long: bool) -> String {
     let mut root = Cli::command().term_width(100);
     root.build();

@@ -1,4 +1,4 @@
-//! `docs/autopilot.md` against the code: the transition table, and a line for each parameter.
+//! Compares `docs/autopilot.md` with the code: the transition table, and one row for each parameter.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,

@@ -1,5 +1,5 @@
-//! The flight bounds of the autopilot, on a point-mass craft: default gains and the guide's, slow and quick attitude,
-//! calm and wind.
+//! The flight bounds of the autopilot on a point-mass craft: with default gains and with the guide's, with
+//! slow and quick attitude, in calm air and in wind.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
@@ -23,7 +23,7 @@ fn tunes() -> [(&'static str, Params); 2] {
 
 const BANDWIDTHS: [f64; 3] = [3.0, 5.0, 8.0];
 
-/// Every tune with every bandwidth.
+/// Calls `fly` for every tune with every bandwidth.
 fn each(mut fly: impl FnMut(&str, Params, f64)) {
     for (name, params) in tunes() {
         for bandwidth in BANDWIDTHS {

@@ -1,5 +1,5 @@
-//! A wrong hover throttle, wrong by up to 250 µs: the craft keeps its altitude, and no touchdown is declared in the
-//! air.
+//! Flights with a hover throttle that is wrong by up to 250 µs. The craft keeps its altitude, and no
+//! touchdown is declared in the air.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
@@ -15,12 +15,12 @@ use betadeck::plan::WaypointType::{Hold, Land};
 use betadeck::telemetry::NavState;
 use flight::{Flight, guide, waypoint, worst};
 
-/// How the craft flies when the autopilot takes over.
+/// The state of the craft at the moment the autopilot takes over.
 #[derive(Debug, Clone, Copy)]
 enum Before {
-    /// Held still for a while.
+    /// Held still for some seconds.
     Steady,
-    /// Held still, but these controllers have not seen it.
+    /// Held still, but the autopilot's controllers start without a history of it.
     Unseen,
     /// Climbing at 2 m/s.
     Climbing,
@@ -60,7 +60,7 @@ fn wrong_hovers() -> impl Iterator<Item = (&'static str, Params, f64, u16)> {
             (1450.0, 1700),
             (1250.0, 1500),
             (1600.0, 1350),
-            // Captured at engaging.
+            // A configured 0 captures the hover throttle when the autopilot engages.
             (1500.0, 0),
         ]
         .into_iter()

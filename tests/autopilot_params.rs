@@ -1,5 +1,5 @@
-//! Every parameter of the autopilot: it has the effect it promises, more of it has more of the effect, and changing
-//! it in flight steps nothing.
+//! Every parameter of the autopilot: it has the promised effect, a larger value has more of the effect, and a
+//! change in flight causes no step.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
@@ -23,7 +23,7 @@ use betadeck::telemetry::{L1Mode, NavState, PlanSource};
 use flight::{DT, Flight, guide, inputs, set, vertical, waypoint, worst};
 use nalgebra::Vector2;
 
-/// Parameters that are stored for other firmware versions and change nothing here.
+/// Parameters that are stored for other firmware versions and have no effect here.
 const UNUSED: [&str; 9] = [
     "ap_position_f",
     "ap_stop_threshold",
@@ -56,7 +56,7 @@ fn fly(params: Params, waypoints: &[Waypoint], seconds: f64) -> Flight {
     flight
 }
 
-/// A hold over home that a wind of 6 m/s hits after 5 s.
+/// Flies a hold over home. A wind of 6 m/s hits the craft after 5 s.
 fn hit_by_wind(params: Params, seconds: f64) -> Flight {
     let mut flight = fly(params, &[hold(0.0, 20.0)], 5.0);
     flight.plant.wind = Vector2::new(6.0, 0.0);
@@ -64,7 +64,7 @@ fn hit_by_wind(params: Params, seconds: f64) -> Flight {
     flight
 }
 
-/// A hold that loses 40 µs of thrust after 10 s.
+/// Flies a hold that loses 40 µs of thrust after 10 s.
 fn loaded(params: Params, seconds: f64) -> Flight {
     let mut flight = fly(params, &[hold(0.0, 20.0)], 10.0);
     flight.plant.hover_us += 40.0;
@@ -76,7 +76,7 @@ fn direct(name: &str, value: i64) -> Params {
     Params { velocity_control_enable: false, ..with(name, value) }
 }
 
-/// A hold under the direct law that starts 1.9 m beside its point.
+/// Flies a hold under the direct law. The craft is moved 1.9 m away from its point.
 fn beside(params: Params) -> Flight {
     let mut flight = fly(params, &[hold(0.0, 20.0)], 2.0);
     flight.plant.pos.x = 1.9;
@@ -92,7 +92,8 @@ fn leg(speed: f64) -> [Waypoint; 2] {
     [waypoint(Flyover, 300.0, 0.0, 20.0, speed), waypoint(Flyover, 450.0, 0.0, 20.0, speed)]
 }
 
-/// East leg that is flown from 8 m beside, and how far beside the craft still is after some seconds.
+/// Flies a leg north with the craft moved 8 m to the east, and returns the remaining offset in metres after
+/// some seconds.
 fn rejoin(params: Params, seconds: f64) -> f64 {
     let mut flight = fly(params, &leg(5.0), 10.0);
     flight.plant.pos.y = 8.0;
@@ -110,19 +111,20 @@ fn contact(flight: &Flight) -> f64 {
     flight.log.iter().find(|s| s.alt <= 0.0).unwrap().t
 }
 
-/// An effect as a number, for a value of the parameter.
+/// The name of a parameter, three rising values, `true` if the effect must rise with them, and the function
+/// that measures the effect as a number.
 type Effect = (&'static str, [i64; 3], bool, fn(&str, i64) -> f64);
 
-/// Parameter, three rising values, whether the number must rise, and the number.
+/// Returns the measured effect of every parameter that has one.
 fn effects() -> Vec<Effect> {
     vec![
         ("ap_landing_altitude_m", [2, 4, 8], true, |name, value| {
-            // Height at which the spiral is closed.
+            // The height at which the spiral closes.
             let flight = landing(with(name, value));
             flight.log.iter().find(|s| s.t > 5.0 && s.target.norm() < 1e-6).unwrap().alt
         }),
         ("ap_hover_throttle", [1300, 1500, 1700], true, |name, value| {
-            // A craft that nobody has seen hover, and that does not hover now.
+            // The controllers have not seen this craft hover, and it climbs at engagement.
             let mut flight = Flight::new(with(name, value), &[hold(0.0, 20.0)], 20.0);
             flight.hover(5.0);
             flight.controllers = FlightControllers::default();
@@ -153,7 +155,7 @@ fn effects() -> Vec<Effect> {
             flight.plant.alt
         }),
         ("ap_position_p", [15, 30, 60], true, |name, value| {
-            // What is left of the way to a hold.
+            // The rest of the way to a hold.
             let flight = fly(with(name, value), &[hold(8.0, 20.0)], 4.0);
             -(flight.log.last().unwrap().target - flight.plant.pos).norm()
         }),
@@ -183,7 +185,7 @@ fn effects() -> Vec<Effect> {
             worst(flight.log.iter().map(|s| s.demand_deg))
         }),
         ("ap_velocity_control_enable", [0, 1, 1], true, |name, value| {
-            // The speed law goes back faster.
+            // The speed law returns to the point faster.
             speeds(&beside(with(name, value)), 2.0)
         }),
         ("ap_velocity_p", [25, 50, 100], false, |name, value| {
@@ -216,12 +218,13 @@ fn effects() -> Vec<Effect> {
             flight.plant.lean.y
         }),
         ("ap_yaw_mode", [0, 1, 3], false, |name, value| {
-            // Off to the east slowly: bearing turns, course does not yet, fixed never.
+            // The craft starts east slowly: BEARING has turned the nose, VELOCITY not yet, FIXED never turns
+            // it.
             let mut flight =
                 Flight::new(with(name, value), &[waypoint(Hold, 0.0, 60.0, 20.0, 5.0)], 20.0).launch();
             flight.run(6.0);
             let turned = flight.plant.heading.to_degrees();
-            // Ordered by how far it has turned: BEARING, VELOCITY, FIXED.
+            // Ordered by the angle turned: BEARING, VELOCITY, FIXED.
             match value {
                 0 => turned.min(80.0),
                 _ => turned / 2.0,
@@ -279,7 +282,7 @@ fn effects() -> Vec<Effect> {
             speeds(&flight, 8.0)
         }),
         ("ap_landing_velocity_threshold", [10, 50, 200], true, |name, value| {
-            // Highest ground speed that still counts as down.
+            // The highest ground speed that still counts as landed.
             (0..300)
                 .map(f64::from)
                 .filter(|speed| {
@@ -315,7 +318,7 @@ fn effects() -> Vec<Effect> {
                 .fold(0.0, f64::max)
         }),
         ("ap_l1_turn_rate", [8, 20, 60], false, |name, value| {
-            // A wider arc takes longer to the new leg.
+            // A wider arc takes longer to reach the new leg.
             let corner = [waypoint(Flyover, 40.0, 0.0, 20.0, 5.0), waypoint(Flyover, 40.0, 200.0, 20.0, 5.0)];
             let flight = fly(with(name, value), &corner, 26.0);
             worst(flight.log.iter().map(|s| s.pos.x))
@@ -362,7 +365,7 @@ fn effects() -> Vec<Effect> {
 #[test]
 fn more_of_it_has_more_of_the_effect() {
     let mut tested: Vec<&str> = UNUSED.to_vec();
-    // It counts after a mission, in the firmware's holds, and has its test there.
+    // The parameter has its effect after a mission, in the holds of the firmware, and is tested there.
     tested.push("ap_throttle_deadband");
     let mut wrong = Vec::new();
     for (name, values, rises, effect) in effects() {

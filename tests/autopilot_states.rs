@@ -1,5 +1,5 @@
-//! The space of states: random plans, parameters and events, flown for about a million updates in all
-//! (`PROPTEST_CASES` scales it: a case is 4000 updates).
+//! The state space of the navigator: random plans, parameters and events, flown for about a million updates
+//! in all. `PROPTEST_CASES` scales the number; a case is 4000 updates.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
@@ -22,9 +22,9 @@ use proptest::test_runner::TestRunner;
 use strum::IntoEnumIterator;
 
 const UPDATES: u32 = 4000;
-/// How long a disturbance lasts, updates.
+/// The number of updates that a disturbance lasts.
 const HEALS: u32 = 300;
-/// How long a changed limit may take to be in force, updates.
+/// The number of updates within which a changed limit must be in force.
 const SETTLE: u32 = 300;
 
 /// Something that happens between two updates.
@@ -52,7 +52,7 @@ enum Happening {
 fn any_waypoint() -> impl Strategy<Value = Waypoint> {
     let kinds: Vec<WaypointType> = WaypointType::iter().collect();
     let patterns: Vec<HoldPattern> = HoldPattern::iter().collect();
-    // A coarse grid, so that places coincide now and then; short holds, so that missions go on.
+    // A coarse grid makes places coincide now and then. Short holds let missions continue.
     let place = (-4..=4_i8, -4..=4_i8);
     let flags = (prop::sample::select(kinds), prop::sample::select(patterns));
     (place, flags, prop::sample::select(vec![0, 1, 10, 30]), 0..900_u16, 0..2500_i32).prop_map(
@@ -104,11 +104,11 @@ fn set_share(params: &mut Params, field: usize, share: f64) {
     (field.set)(params, field.min + (span * share).round() as i64);
 }
 
-/// Transitions that may be seen, by rule or by command; anything else is illegal.
+/// Returns `true` for the transitions that a rule or a command may cause. Every other transition is illegal.
 fn legal(from: NavState, to: NavState) -> bool {
     use NavState::{Approaching, Arrived, Complete, Figure8, Holding, Idle, Landing, Orbiting};
     match (from, to) {
-        // Leaving, an emergency landing, a return home or a jump are possible from anywhere.
+        // Disengaging, an emergency landing, a return home and a jump are possible from any state.
         (_, Idle | Landing | Approaching) => true,
         (Idle, Complete) | (Approaching, Arrived) | (Arrived, Holding | Complete) => true,
         (Holding, Orbiting | Figure8 | Complete) => true,
@@ -120,7 +120,7 @@ fn legal(from: NavState, to: NavState) -> bool {
     }
 }
 
-/// Limits of throttle (µs) and lean (degrees), the widest of those that are being changed.
+/// The limits of throttle (µs) and lean (degrees). After a change, the widest of the old and the new ones.
 #[derive(Debug, Clone, Copy)]
 struct Limits {
     low_us: f64,
@@ -146,9 +146,9 @@ impl Limits {
 
 struct Run {
     flight: Flight,
-    /// The plan that comes back after it was cleared.
+    /// The plan that is stored again after it was cleared.
     first: FlightPlan,
-    /// Update at which what is disturbed heals.
+    /// The update at which the disturbance ends.
     heals_at: u32,
     switch: bool,
     last: NavState,
@@ -165,7 +165,7 @@ impl Run {
         let rescue =
             Rescue { altitude_m: 40.0, climb_mps: 5.0, speed_mps: 8.0, descend_mps: 2.0, is_watched: true };
         self.heals_at = update + HEALS;
-        // Refusals are part of the game.
+        // A refused command is allowed here.
         match what {
             Happening::Switch(on) => {
                 self.switch = *on;
@@ -216,7 +216,7 @@ impl Run {
         }
     }
 
-    /// Gives missions a chance to go on.
+    /// Ends every disturbance, so that missions can continue.
     fn heal(&mut self) {
         let inputs = &mut self.flight.inputs;
         self.switch = true;
@@ -240,7 +240,7 @@ impl Run {
         let flight = &mut self.flight;
         flight.disarmed = !flight.inputs.armed;
         if flight.plant.alt <= 0.0 && flight.disarmed {
-            // Picked up and thrown again.
+            // The craft is picked up and thrown again.
             flight.plant.alt = 15.0;
             flight.plant.climb = 0.0;
         }
@@ -258,9 +258,9 @@ impl Run {
         for (_, event) in &flight.events[first_event..] {
             if let NavEvent::State { from, to, guard, target_alt_m, reason, .. } = event {
                 prop_assert_eq!(*from, self.last, "a state changed without an event");
-                // A plan of modifiers alone is complete as soon as it is reset.
+                // A plan that has only modifiers is complete as soon as it is reset.
                 let at_once = *to == NavState::Complete && *reason == TransitionReason::Reset;
-                // A command holds the craft wherever it is on its way.
+                // A command holds the craft at any point of its way.
                 let held = *reason == TransitionReason::HoldHere
                     && *to == NavState::Holding
                     && !matches!(from, NavState::Idle | NavState::Complete);
@@ -287,7 +287,7 @@ impl Run {
             prop_assert!(usize::from(telemetry.wp) < flight.nav.active_plan().waypoints.len());
             let waits = !telemetry.guards.is_empty();
             let at_rest = matches!(telemetry.state, NavState::Arrived | NavState::Complete);
-            // Before a pattern HOLDING lasts one update and waits for nothing.
+            // Before a pattern, HOLDING lasts one update and waits for nothing.
             let passing = telemetry.state == NavState::Holding;
             prop_assert!(waits || at_rest || passing, "{} waits for nothing", telemetry.state);
             let params = &flight.params;

@@ -1,5 +1,6 @@
-//! The flight bounds of the autopilot on the whole vehicle: `iris`, estimator, attitude control and world, with exact
-//! and with real sensors, default gains and the guide's. Truth against the waypoint.
+//! The flight bounds of the autopilot on the complete vehicle: `iris`, estimator, attitude control and world,
+//! with exact and with real sensors, with default gains and with the guide's. The true position is compared
+//! with the waypoint.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
@@ -25,15 +26,15 @@ set ap_altitude_d = 20
 set ap_altitude_f = 10
 set ap_max_yaw_rate = 90
 ";
-/// Lean limit of the bounds.
+/// The lean limit of the bounds.
 const COMMON: &str = "
 set ap_max_angle = 25
 ";
-/// Configured hover throttles: up to 50 µs below and above the true one, 1507 µs.
+/// The configured hover throttles: up to 50 µs below and above the true one, 1507 µs.
 const HOVERS: [u16; 3] = [1460, 1500, 1555];
 const SEEDS: std::ops::RangeInclusive<u64> = 1..=10;
 
-/// Settings and sensors of a flight, and what the sensors excuse.
+/// The settings and sensors of a flight. The methods return the tolerance that real sensors add to a bound.
 #[derive(Debug, Clone, Copy)]
 struct Case {
     name: &'static str,
@@ -70,7 +71,7 @@ impl Case {
         self.excuse(3.0)
     }
 
-    /// The seeds that make a difference: with exact sensors only gusts are random.
+    /// Repeats the case for the seeds that make a difference. With exact sensors only gusts are random.
     fn gust_seeds(self, gust_mps: f64) -> impl Iterator<Item = Self> {
         let exact = self.noise == Noise::None && gust_mps > 0.0;
         let seeds = if exact { SEEDS } else { self.seed..=self.seed };
@@ -82,7 +83,8 @@ impl Case {
     }
 }
 
-/// Both sets of gains, with exact sensors and with real ones over ten seeds, with every hover throttle.
+/// Calls `fly` for both sets of gains and every hover throttle, with exact sensors and with real ones over
+/// ten seeds.
 fn each(mut fly: impl FnMut(Case)) {
     let plain = Case {
         name: "default gains",
@@ -119,7 +121,7 @@ fn point(kind: &'static str, north: f64, east: f64, alt_m: f64, speed_mps: f64) 
 
 #[derive(Debug, Clone, Copy)]
 struct Sample {
-    /// Seconds since engaging.
+    /// Seconds since engagement.
     t: f64,
     state: NavState,
     wp: u8,
@@ -131,7 +133,8 @@ struct Sample {
     on_ground: bool,
 }
 
-/// Climbs to `takeoff_m`, engages and flies until `done` or for `limit_s` from engaging; 100 samples a second.
+/// Climbs to `takeoff_m`, engages and flies until `done` or for `limit_s` seconds after engagement. Logs 100
+/// samples per second.
 fn fly(case: Case, points: &[Point], takeoff_m: f64, limit_s: f64, done: fn(&Sample) -> bool) -> Vec<Sample> {
     let world = WorldConfig {
         noise: case.noise,
@@ -234,7 +237,8 @@ fn cruise_and_cross_track() {
     });
 }
 
-/// As far as the lean reaches: 25° carries an `iris` to 12.4 m/s through the air, nine tenths of it are asked for.
+/// Cruises near the limit of the lean: 25° carries an `iris` to 12.4 m/s through the air, and nine tenths of
+/// that is requested.
 #[test]
 fn cruise_near_the_limit_of_the_lean() {
     each(|case| {
@@ -363,7 +367,7 @@ fn altitude() {
     });
 }
 
-/// The default hover throttle is far from this craft's: a quick descent swings far below its setpoint.
+/// The default hover throttle is far from this craft's, so a quick descent swings far below its setpoint.
 #[test]
 fn low_waypoints_are_flown_without_touching_the_ground() {
     let case = Case {

@@ -1,4 +1,4 @@
-//! `docs/settings.md` is printed from the table of settings and must not drift from it.
+//! `docs/settings.md` is printed from the table of settings and must match it.
 
 use std::fmt::Write as _;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! Whole files and pastes: the guide's blocks, a real quad's configuration, round trips, provisioning.
+//! Complete files and pastes: the guide's blocks, a real quad's configuration, round trips, provisioning.
 
 use betadeck::firmware::cli::{
     ApplyReport, CliAction, CliContext, CliFacts, CliMode, CliReply, Interpreter, apply_lines, provision,
@@ -68,7 +68,8 @@ fn a_real_quads_configuration_loads_and_is_complete_when_dumped() {
     let (craft, _) = decode(&encode(&craft)).expect("a good image");
     let dump = text(&craft, "diff all");
     let commands = QUAD.lines().filter(|line| !line.starts_with('#') && !line.is_empty());
-    // What this vehicle has not: features, the identity of a real board, and the clipping of a boot.
+    // Lines that this vehicle does not have: features, the identity of a real board, and the clipping of a
+    // boot.
     let dropped = ["feature", "mcu_id", "signature"];
     for line in commands.filter(|line| !dropped.iter().any(|word| line.starts_with(word))) {
         assert!(
@@ -82,7 +83,7 @@ fn a_real_quads_configuration_loads_and_is_complete_when_dumped() {
 
 #[test]
 fn a_five_inch_quads_refused_line_is_named_and_blocks_saving_until_it_is_gone() {
-    // A debug mode of that release that this one has under another name.
+    // A debug mode that has another name in this release.
     let refused = "set debug_mode = GYRO_SCALED";
     let mut craft = Configuration::default();
     let replies = typed(&mut craft, FIVE_INCH);
@@ -100,7 +101,7 @@ fn a_five_inch_quads_refused_line_is_named_and_blocks_saving_until_it_is_gone() 
     for (line, reply) in &replies {
         assert!(!reply.failed, "{line}: {}", reply.text);
     }
-    // What a craft like this has no use for says so, line by line.
+    // Settings without a use on this craft say so, line by line.
     let kept = |line: &str| {
         let (_, reply) = replies.iter().find(|(typed, _)| typed == line).expect("a line of the file");
         reply.text.starts_with("# ") && reply.text.ends_with(": not used by this vehicle, kept\r\n")
@@ -116,7 +117,8 @@ fn a_five_inch_quads_refused_line_is_named_and_blocks_saving_until_it_is_gone() 
     let (craft, findings) = decode(&encode(&craft)).expect("a good image");
     assert_eq!(findings, Vec::<String>::new());
     let dump = text(&craft, "diff all");
-    // Not shown again: what this vehicle has not, what equals its defaults, and D max below the new D.
+    // Not shown again: parts that this vehicle does not have, values that equal its defaults, and D max below
+    // the new D.
     let same = ["feature", "mcu_id", "signature", "serial", "rxfail 5 h", "set d_max"];
     let fresh = text(&Configuration::default(), "dump all");
     let commands = good.lines().filter(|line| !line.starts_with('#') && !line.is_empty() && *line != "save");
@@ -132,7 +134,7 @@ fn a_five_inch_quads_refused_line_is_named_and_blocks_saving_until_it_is_gone() 
     assert_round_trip(&craft, "diff all");
 }
 
-/// Feeds a dump to a fresh craft and expects the same configuration without an error.
+/// Feeds a dump to a fresh craft. Expects the same configuration and no error.
 fn assert_round_trip(craft: &Configuration, command: &str) {
     let dump = text(craft, command);
     let mut copy = Configuration::default();
@@ -158,7 +160,7 @@ fn dumps_rebuild_the_craft() {
     }
 }
 
-/// Commands that change the craft, with arguments that are allowed.
+/// Generates commands that change the craft, with allowed arguments.
 fn change() -> impl Strategy<Value = String> {
     let setting = (0..SETTINGS.len(), any::<u64>(), 0..4_u8).prop_map(|(at, seed, instance)| {
         use betadeck::firmware::settings::{Kind, PORT_NAMES};
@@ -213,7 +215,7 @@ proptest! {
     fn any_craft_survives_dump_and_storage(changes in prop::collection::vec(change(), 0..60)) {
         let mut craft = Configuration::default();
         apply(&mut craft, &changes.join("\n"));
-        // The `save` of a dump corrects what it stores.
+        // The `save` of a dump corrects the stored values.
         correct(&mut craft);
         assert_round_trip(&craft, "diff all");
         assert_round_trip(&craft, "dump all");

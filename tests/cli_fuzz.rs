@@ -1,5 +1,5 @@
-//! Random input to the command line, the line editor and the stored image: no panic, no endless loop, no reply and no
-//! memory out of proportion.
+//! Random input to the command line, the line editor and the stored image. It causes no panic, no endless
+//! loop, and no reply or memory use out of proportion.
 
 #![allow(unsafe_code, reason = "an allocator that measures cannot be written without it")]
 
@@ -17,7 +17,7 @@ use betadeck::link::proto::line_editor::LineEditor;
 use meter::measured;
 use proptest::prelude::*;
 
-/// No reply may be longer, and no line may take more memory.
+/// The longest allowed reply and the most memory that a line may take.
 const MIB: usize = 1 << 20;
 
 /// Runs lines in every mode, with completion and hints for each.
@@ -42,7 +42,7 @@ fn run_lines(lines: &[&str]) {
     }
 }
 
-/// Feeds bytes to a link with a craft behind it.
+/// Feeds bytes to a link that is connected to a craft.
 fn feed_editor(bytes: &[u8]) {
     let mut configuration = Configuration::default();
     let mut interpreter = Interpreter::default();
@@ -67,7 +67,7 @@ fn feed_editor(bytes: &[u8]) {
     }
 }
 
-/// A word that some command may understand.
+/// Generates a word that some command may understand.
 fn word() -> impl Strategy<Value = String> {
     prop_oneof![
         3 => prop::sample::select(COMMANDS.iter().map(|command| command.name).collect::<Vec<_>>()).prop_map(str::to_owned),

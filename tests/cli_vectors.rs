@@ -63,7 +63,7 @@ fn all() -> BTreeMap<usize, Exchange> {
         .collect()
 }
 
-/// The product's answers where the reference's are deliberately not copied.
+/// Returns the product's answer where it deliberately differs from the reference.
 fn product_answer(number: usize) -> Option<&'static str> {
     Some(match number {
         62 => "craft_name set to test craft",
@@ -78,21 +78,21 @@ fn product_answer(number: usize) -> Option<&'static str> {
 
 /// The recorded sessions, run in one go.
 const SESSIONS: RangeInclusive<usize> = 1..=217;
-/// Of these, what a session on one craft cannot hold: a line whose setting is kept here and would show in the dumps
-/// that follow, and a byte that only a link understands. Each has its own test.
+/// The exchanges of these that a session on one craft cannot hold: a line whose setting is kept here and
+/// would show in the later dumps, and a byte that only a link understands. Each has its own test.
 const NOT_IN_A_SESSION: [usize; 2] = [64, 216];
-/// What the firmware says in flight.
+/// The firmware's messages in flight.
 const IN_FLIGHT: RangeInclusive<usize> = 218..=221;
-/// Single lines, each on the craft that the one before left.
+/// Single lines, each run on the craft that the one before left.
 const SINGLE_LINES: [usize; 21] =
     [222, 223, 224, 225, 226, 227, 228, 229, 230, 244, 245, 246, 247, 248, 249, 250, 251, 237, 239, 240, 241];
 const BATCHES: RangeInclusive<usize> = 231..=236;
-/// What needs a link.
+/// The exchanges that need a link.
 const ON_A_LINK: [usize; 3] = [216, 242, 243];
-/// What needs a craft of its own.
+/// The exchanges that need their own craft.
 const ON_THEIR_OWN: [usize; 5] = [64, 238, 252, 253, 254];
 
-/// Every exchange of the document belongs to a test.
+/// Checks that every exchange of the document belongs to a test.
 #[test]
 fn no_exchange_is_left_out() {
     let mut tested: Vec<usize> = SESSIONS.filter(|number| !NOT_IN_A_SESSION.contains(number)).collect();
@@ -102,13 +102,13 @@ fn no_exchange_is_left_out() {
     assert_eq!(tested, all().into_keys().collect::<Vec<_>>());
 }
 
-/// Exchanges whose answer here is this program's own, with the reason.
+/// Checks the exchanges whose answer is this program's own, with the reason.
 #[test]
 fn the_products_own_answers_stand() {
     let all = all();
-    // Settings of other builds are kept, not refused.
+    // Settings of other builds are kept and not refused.
     assert_eq!(Bench::new().text(&all[&64].input), "# pilot_name: not used by this vehicle, kept\r\n");
-    // Groups have numbers inside the reference's storage only; storage here goes by names.
+    // Groups have numbers only in the reference's storage. Storage here uses names.
     let refusal = "###ERROR IN defaults: GROUPS HAVE NO NUMBERS HERE, USE 'defaults nosave'###\r\n";
     assert_eq!(Bench::new().text(&all[&238].input), refusal);
     let mut fresh = Bench::new();
@@ -150,7 +150,7 @@ fn what_only_a_link_knows_is_reproduced() {
     assert_matches(&all[&243], reply.expect("a reply between STX and ETX"));
 }
 
-/// Parts of dumps that the reference prints by its quirks.
+/// Removes parts of dumps that the reference prints because of its quirks.
 fn without_quirks(exchange: &Exchange) -> Exchange {
     let mut exchange = exchange.clone();
     for quirk in [
@@ -170,7 +170,7 @@ fn without_quirks(exchange: &Exchange) -> Exchange {
     exchange
 }
 
-/// The sessions A to E, run from the first line to the last on one craft.
+/// Runs the sessions A to E from the first line to the last on one craft.
 #[test]
 fn recorded_sessions_are_reproduced() {
     let all = all();
@@ -191,7 +191,7 @@ fn recorded_sessions_are_reproduced() {
         }
         let mut reply = bench.run(&exchange.input);
         if *number == 1 {
-            // A command of this product only.
+            // This command exists only in this product.
             reply.text = reply.text.replace("reboot - restart without saving\r\n", "");
         }
         match product_answer(*number) {
@@ -213,7 +213,7 @@ fn recorded_sessions_are_reproduced() {
     }
 }
 
-/// Figures of the recorded task table, so that the columns can be compared.
+/// Returns the figures of the recorded task table, so that the columns can be compared.
 fn task_facts(table: &Exchange) -> Vec<TaskFacts> {
     const NAMES: [&str; 19] = [
         "SYSTEM",
@@ -254,7 +254,7 @@ fn task_facts(table: &Exchange) -> Vec<TaskFacts> {
         .collect()
 }
 
-/// Exchanges that were read in the reference source and make sense here, and the product's own.
+/// Runs exchanges that come from the reference source and apply here, and the product's own.
 #[test]
 fn other_exchanges_are_reproduced() {
     let all = all();
@@ -298,7 +298,7 @@ fn armed_craft_refuses_to_save() {
     assert_eq!(reply.actions, []);
 }
 
-/// Session F: what the firmware says in flight.
+/// Session F: the firmware's messages in flight.
 #[test]
 fn flying_craft_is_reported() {
     let all = all();
@@ -337,7 +337,7 @@ fn flying_craft_is_reported() {
     assert_matches(&all[&221], &bench.text("env"));
 }
 
-/// Feeds bytes to a link and returns what it sends, running the lines on the craft.
+/// Feeds bytes to a link and runs the lines on the craft. Returns the bytes that the link sends.
 fn link(bench: &mut Bench, editor: &mut LineEditor, bytes: &[u8]) -> String {
     let mut sent = Vec::new();
     for byte in bytes {

@@ -1,4 +1,5 @@
-//! How well the craft knows its own motion, with the errors of ordinary sensors and when some of them fail.
+//! The accuracy of the craft's own motion estimate, with the errors of ordinary sensors and with sensor
+//! failures.
 
 #[path = "control_support/rig.rs"]
 mod control_support;
@@ -8,14 +9,14 @@ use betadeck::sim::{Airframe, Fault, Noise, Turbulence, Wind, WorldCommand, Worl
 use control_support::{Rig, world};
 use nalgebra::{Vector2, Vector3};
 
-/// Greatest errors of a flight.
+/// The greatest errors of a flight.
 #[derive(Debug, Default)]
 struct Errors {
     /// Tilt, degrees.
     tilt: f64,
     /// Heading, degrees.
     heading: f64,
-    /// Position, m, against a home that was measured by the GPS.
+    /// Position, m, relative to a home that the GPS measured.
     position: f64,
     /// Ground velocity, m/s.
     velocity: f64,
@@ -52,7 +53,8 @@ impl Errors {
     }
 }
 
-/// The guide's hover throttle and lean limit: bounds are stated for a craft whose hover is known.
+/// Returns the guide's hover throttle and lean limit. The bounds are stated for a craft with a known hover
+/// throttle.
 fn settings() -> Settings {
     let mut settings = Settings::default();
     settings.set_number("ap_hover_throttle", 1500).expect("in range");
@@ -69,7 +71,7 @@ fn rough(seed: u64) -> WorldConfig {
     config
 }
 
-/// Sticks of somebody who throws the craft about, by the second.
+/// Sets the sticks of a pilot who flies hard, by the second.
 fn throw_about(rig: &mut Rig, second: u32) {
     let phase = second % 12;
     rig.sticks.stick_pitch = [400.0, -200.0, 0.0][(phase / 4) as usize];
@@ -166,7 +168,7 @@ fn accelerometer_bias_tilts_by_no_more_than_it_must() {
     let mut rig = with_fault(Fault::AccBias(0.3), None);
     let errors = Errors::of(&mut rig, 60.0);
     println!("acc-bias: {errors:?}");
-    // asin(0.3/g) is 1.75°; the sensor's own turn-on bias comes on top.
+    // asin(0.3/g) is 1.75°. The turn-on bias of the sensor comes on top.
     assert!(errors.tilt < 2.8, "{errors:?}");
     assert!(errors.velocity < 0.5, "{errors:?}");
 }

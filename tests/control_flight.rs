@@ -1,4 +1,4 @@
-//! The craft in the hands of a pilot: what the sticks feel like.
+//! Manual flight: the response of the craft to the sticks.
 
 #[path = "control_support/rig.rs"]
 mod control_support;
@@ -12,7 +12,7 @@ fn airframes() -> [(&'static str, Airframe); 2] {
     [("iris", Airframe::iris()), ("five-inch", Airframe::five_inch())]
 }
 
-/// Stick deflection (RC units) that demands this angle with the default curve and limit.
+/// Returns the stick deflection (RC units) that demands this angle with the default curve and limit.
 fn stick_for(angle_deg: f64, settings: &Settings) -> f64 {
     let tuning = betadeck::firmware::control::Tuning::from_settings(
         settings,
@@ -52,7 +52,7 @@ fn angle_steps_settle_quickly_without_overshoot() {
     }
 }
 
-/// Rate response to a stick in acro, from hover.
+/// Returns the rate response to a stick in acro, from hover.
 fn rate_step(airframe: &Airframe, noise: Noise, axis: usize, rate_dps: f64) -> StepResponse {
     let settings = Settings::default();
     let mut rig = Rig::airborne(world(noise, airframe.clone()), &settings);

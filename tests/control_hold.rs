@@ -35,7 +35,8 @@ fn windy(noise: Noise, speed_mps: f64) -> WorldConfig {
 
 #[test]
 fn the_place_is_held_in_wind() {
-    // Bounds: rms of the autopilot's hold, plus 1 m and 0.5 m for the GPS and the barometer of ordinary sensors.
+    // The bounds are the rms of the autopilot's hold, plus 1 m and 0.5 m for the GPS and the barometer of
+    // ordinary sensors.
     for (noise, wind, horizontal, vertical) in [
         (Noise::None, 0.0, 0.3, 0.3),
         (Noise::None, 5.0, 0.8, 0.5),
@@ -135,7 +136,7 @@ fn without_a_fix_the_position_is_left_to_the_pilot() {
 
 #[test]
 fn the_hover_throttle_of_any_airframe_is_found() {
-    // The default hover throttle fits neither.
+    // The default hover throttle fits neither airframe.
     for airframe in [Airframe::iris(), Airframe::five_inch()] {
         let mut rig = Rig::airborne(world(Noise::Real, airframe), &Settings::default());
         rig.run(25.0);
@@ -158,7 +159,8 @@ fn hard_flying_is_never_taken_for_standing() {
         let mut rig = Rig::airborne(config, &settings());
         for second in 0..90 {
             let part = second % 15;
-            // Full speed ahead, about turn, and a pause of four seconds to hover in the wind.
+            // Full speed ahead, then back, and seconds of hover in the wind with a roll to the side between
+            // them.
             rig.sticks.stick_pitch =
                 [500.0, 500.0, 500.0, -500.0, -500.0].get(part % 11).copied().unwrap_or(0.0);
             rig.sticks.stick_roll = if part == 7 { 500.0 } else { 0.0 };

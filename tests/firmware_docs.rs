@@ -1,4 +1,4 @@
-//! `docs/modes.md` against the code: the boxes, the arming flags, the failsafe responses.
+//! Compares `docs/modes.md` with the code: the boxes, the arming flags, the failsafe responses.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test may stop and say what it expects")]
 
 use std::path::Path;

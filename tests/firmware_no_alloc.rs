@@ -1,4 +1,5 @@
-//! A step of the firmware allocates nothing between transitions, whoever flies.
+//! A step of the firmware allocates nothing between transitions, under manual control and under the
+//! autopilot.
 
 #![allow(unsafe_code, reason = "an allocator that counts cannot be written without it")]
 
@@ -67,7 +68,7 @@ fn a_step_without_an_event_allocates_nothing() {
     while world.time().as_secs_f64() < 90.0 {
         let now = world.time();
         let seconds = now.as_secs_f64();
-        // Arm, climb by hand, engage; later lose the link.
+        // Arms, climbs by hand, engages, and later loses the link.
         sticks.channels[4] = if seconds > 5.5 { 2000 } else { 1000 };
         sticks.channels[2] = if seconds > 8.0 {
             1500

@@ -1,5 +1,5 @@
-//! The fuzz targets as ordinary tests: every stored case, every beginning of a short one, and mutations of all, the same
-//! ones in every run.
+//! The fuzz targets as ordinary tests. They run on every stored case, on every beginning of a short case, and
+//! on mutations of all cases. The mutations are the same in every run.
 
 #![allow(clippy::print_stderr, reason = "a case that fails is shown")]
 
@@ -13,12 +13,12 @@ use fuzz_bodies::{
     plan_file, rc, scenario, servo, settings_file,
 };
 
-/// Bytes up to which every beginning of a stored case is a case too.
+/// The longest stored case, in bytes, whose beginnings are all tested too.
 const SHORT: usize = 64;
-/// Most bytes of a mutant: long ones take long and find little.
+/// The most bytes of a mutant. Long ones take long and find little.
 const LONGEST_MUTANT: usize = 4096;
 
-/// Pieces that mean something to some target.
+/// Pieces that have a meaning for some target.
 const WORDS: [&[u8]; 40] = [
     b"\n",
     b"\r\n",
@@ -62,7 +62,7 @@ const WORDS: [&[u8]; 40] = [
     b"kept\tmaster\t0\t\t",
 ];
 
-/// Numbers from a seed (splitmix64).
+/// A generator of numbers from a seed (splitmix64).
 struct Dice(u64);
 
 impl Dice {
@@ -77,14 +77,14 @@ impl Dice {
         of[self.roll(of.len())]
     }
 
-    /// A part of `bytes`, rather a short one.
+    /// Returns a range of `bytes`, usually a short one.
     fn range(&mut self, bytes: &[u8]) -> std::ops::Range<usize> {
         let start = self.roll(bytes.len() + 1);
         let most = (bytes.len() - start).min(if self.roll(4) == 0 { usize::MAX } else { 16 });
         start..start + self.roll(most + 1)
     }
 
-    /// One to eight changes.
+    /// Makes one to eight changes.
     fn mutate(&mut self, stored: &[u8], others: &[(PathBuf, Vec<u8>)]) -> Vec<u8> {
         let mut bytes = stored.to_vec();
         for _ in 0..=self.roll(8) {
@@ -120,7 +120,7 @@ impl Dice {
     }
 }
 
-/// The case being run; keeps it when it fails.
+/// The running case. It is kept when it fails.
 struct Case<'a> {
     of: &'a Path,
     bytes: &'a [u8],
@@ -149,14 +149,14 @@ fn corpus(folder: &str) -> Vec<(PathBuf, Vec<u8>)> {
     files
 }
 
-/// What fuzzing found for a target; it may have found nothing yet.
+/// Returns the cases that fuzzing found for a target. There may be none yet.
 fn found(target: &str) -> Vec<(PathBuf, Vec<u8>)> {
     let folder = format!("found/{target}");
     let is_there = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/corpus").join(&folder).is_dir();
     if is_there { corpus(&folder) } else { Vec::new() }
 }
 
-/// Runs a target on what fuzzing found for it and on its stored cases.
+/// Runs a target on the cases that fuzzing found for it and on its stored cases.
 fn check(target: &str, run: fn(&[u8]), mutants: usize) {
     for (path, found) in found(target) {
         let _kept_if_it_fails = Case { of: &path, bytes: &found };
@@ -269,7 +269,7 @@ fn settings_files() {
     check("settings_file", settings_file::run, 16);
 }
 
-/// The names in a folder.
+/// Returns the names in a folder.
 fn names(folder: &str) -> Vec<String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
     let mut names: Vec<String> = std::fs::read_dir(folder)

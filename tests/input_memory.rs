@@ -1,4 +1,5 @@
-//! Memory and work that hostile input can cause: bounded for a line, a file, a stream, whatever is in it.
+//! The memory and work that hostile input can cause. Both are bounded for a line, a file and a stream,
+//! whatever is in it.
 
 #![allow(unsafe_code, reason = "an allocator that measures cannot be written without it")]
 
@@ -26,11 +27,11 @@ use meter::{Taken, measured};
 
 const KIB: usize = 1 << 10;
 const MIB: usize = 1 << 20;
-/// What one line may take.
+/// The most that one line may take.
 const LINE: Taken = Taken { peak: MIB, total: MIB };
-/// A long input, bytes.
+/// The length of a long input, bytes.
 const LONG: usize = 10_000_000;
-/// Bytes that a door takes at once, at most.
+/// The most bytes that a door takes at once.
 const CHUNK: usize = 64 * KIB;
 
 fn assert_within(taken: Taken, bound: Taken, what: &str) {
@@ -38,7 +39,7 @@ fn assert_within(taken: Taken, bound: Taken, what: &str) {
     assert!(taken.peak <= bound.peak && taken.total <= bound.total, "{what}: {taken:?}");
 }
 
-/// Every file of a corpus, as text.
+/// Returns every file of a corpus as text.
 fn texts(corpus: &str) -> Vec<String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/corpus").join(corpus);
     let files = std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
@@ -79,7 +80,7 @@ fn stored_lines() {
     }
 }
 
-/// A craft on which everything is as long as can be.
+/// Returns a craft on which everything is as long as possible.
 fn fullest() -> Configuration {
     let mut configuration = Configuration::default();
     let mut interpreter = Interpreter::new(CliMode::File);
@@ -100,7 +101,7 @@ fn fullest() -> Configuration {
         stored += 1;
     }
     assert!(stored > 200, "{stored}");
-    // Short lines cost more beside themselves.
+    // Short lines need more memory beyond their text.
     while interpreter.run(&format!("vtx {stored}"), &mut context).text.contains("kept") {
         stored += 1;
     }
@@ -160,7 +161,7 @@ fn ten_megabytes_without_a_line_end_through_the_editor() {
     }
 }
 
-/// Bytes from a seed (xorshift).
+/// Returns bytes from a seed (xorshift).
 fn noise(count: usize) -> Vec<u8> {
     let mut state = 0x2545_f491_4f6c_dd1d_u64;
     let mut next = || {
@@ -190,7 +191,8 @@ fn ten_megabytes_of_garbage_through_the_decoders() {
     }
 }
 
-/// What a stream takes beyond the bytes read at once when every line is answered with `reply`.
+/// Measures the memory that a stream takes beyond the bytes read at once, when every line is answered with
+/// `reply`.
 fn stream(bytes: &[u8], reply: &LineReply) -> Taken {
     let mut session = SerialSession::default();
     let mut now = Duration::ZERO;
@@ -245,7 +247,7 @@ fn a_stream_takes_no_more_than_it_reads_at_once_and_an_answer() {
     }
 }
 
-/// An image of these records.
+/// Returns an image of these records.
 fn sealed(records: &str) -> Vec<u8> {
     let mut image = b"BDCF\x01\x00\x00\x00".to_vec();
     image.extend((records.len() as u32).to_le_bytes());
@@ -293,9 +295,10 @@ fn the_largest_images_of_one_kind_of_record() {
 #[test]
 fn files_with_as_many_problems_as_fit() {
     const SIZE: usize = 1 << 17;
-    /// Bytes of a syntax tree for each byte of TOML, a little more than the parser needs for a list of digits.
+    /// Bytes of a syntax tree for each byte of TOML, a little more than the parser needs for a list of
+    /// digits.
     const TREE: usize = 128;
-    /// The same for text, of which nothing is kept but waypoints, counts and some problems.
+    /// The same for text. Only waypoints, counts and some problems are kept.
     const TEXT: usize = 8;
     let list =
         |open: &str, item: &str, close: &str| format!("{open}{}{close}", item.repeat(SIZE / item.len()));
@@ -389,7 +392,7 @@ fn scenarios_that_unfold_to_more_than_is_allowed() {
         let (problems, taken) = measured(|| read("s.toml", &text, None, &mut BuiltinFiles).err());
         assert!(problems.is_some(), "{what} is read");
         assert!(taken.peak <= most, "{what}: {taken:?}");
-        // Work: what is refused is not made and dropped again and again.
+        // Refused data is not created and dropped again and again.
         assert!(taken.total <= 32 * most, "{what}: {taken:?}");
     }
 }

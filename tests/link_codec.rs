@@ -1,4 +1,4 @@
-//! The wire formats against captured and computed bytes, any splitting, and hostile input.
+//! The wire formats, tested with captured and computed bytes, any splitting, and hostile input.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -20,7 +20,7 @@ fn unhex(text: &str) -> Vec<u8> {
     (0..text.len() / 2).map(|i| u8::from_str_radix(&text[2 * i..2 * i + 2], 16).unwrap()).collect()
 }
 
-/// Number, request and reply of every captured exchange.
+/// Returns the number, request and reply of every captured exchange.
 fn exchanges() -> Vec<(u32, Vec<u8>, Vec<u8>)> {
     include_str!("vectors/msp.tsv")
         .lines()
@@ -120,7 +120,7 @@ proptest! {
     ) {
         let mut stream = Vec::new();
         for (frame, garbage) in frames.iter().zip(&garbage) {
-            // What begins like a frame may be one.
+            // Garbage that begins like a frame could be one, so `$` is removed.
             stream.extend(garbage.iter().filter(|byte| **byte != b'$'));
             frame.encode(&mut stream);
         }
@@ -136,7 +136,7 @@ proptest! {
     ) {
         let mut stream = frame.to_bytes();
         stream.truncate(stream.len().saturating_sub(cut).max(1));
-        // Zeros complete what was announced, and are no frame themselves.
+        // Zeros complete the announced frame, and are no frame themselves.
         stream.extend(vec![0_u8; 200]);
         let good = Frame::request(Form::V1, 1, &[]);
         good.encode(&mut stream);
@@ -169,7 +169,7 @@ proptest! {
     ) {
         let mut session = SerialSession::default();
         for (k, (byte, count)) in (1..).zip(pieces) {
-            // These ask for the list of what could follow.
+            // These bytes request the list of possible completions.
             let byte = if matches!(byte, b'\t' | b'?') { b'x' } else { byte };
             session.push(&vec![byte; count]);
             let now = Duration::from_secs(k);
@@ -190,7 +190,7 @@ proptest! {
                     | SerialRequest::Foreign => {}
                 }
             }
-            // Echo and error frames of what has come, no more.
+            // The session sends only echo and error frames for the received bytes.
             sent += session.take_output().len();
             prop_assert!(sent <= 40 * count + 2000, "{} bytes for {} times {}", sent, count, byte);
         }
@@ -200,7 +200,7 @@ proptest! {
     fn a_damaged_frame_does_not_cost_the_next_but_one(
         bytes in prop::collection::vec(any::<u8>(), 0..64),
     ) {
-        // At worst the damage announces a frame of 192 bytes that swallows what follows.
+        // At worst the damage announces a frame of 192 bytes that swallows the next bytes.
         let mut stream = bytes;
         stream.extend(vec![0_u8; 260]);
         let good = Frame::request(Form::V2, 101, &[]);
@@ -223,7 +223,8 @@ proptest! {
     }
 }
 
-/// Everything that a client's stream asks for when nobody is armed and every line is answered with "ok".
+/// Returns every request in a client's stream and the output, when nothing is armed and every line is
+/// answered with "ok".
 fn found_in(pieces: &[&[u8]]) -> (Vec<SerialRequest>, Vec<u8>) {
     let mut session = SerialSession::default();
     let mut all = Vec::new();
@@ -257,7 +258,7 @@ fn assert_sane(state: &State) {
     assert!(state.pressure_pa.is_finite());
 }
 
-/// Files of `tests/corpus/NAME`, sorted.
+/// Returns the files of `tests/corpus/NAME`, sorted.
 fn corpus(name: &str) -> Vec<(String, Vec<u8>)> {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/corpus").join(name);
     let mut files: Vec<_> = std::fs::read_dir(folder)
@@ -312,7 +313,7 @@ fn bytes_of(value: &Value) -> Vec<u8> {
     unhex(value["hex"].as_str().unwrap())
 }
 
-/// The true state of a worked packet, with the position as the dialect puts it on the wire.
+/// Returns the true state of a worked packet, with the position as the dialect puts it on the wire.
 fn true_state(case: &Value, home: &[f64], dialect: Dialect) -> State {
     let truth = &case["true"];
     let vector = |name: &str| Vector3::from_column_slice(&numbers(&truth[name]));
@@ -365,7 +366,7 @@ fn worked_state_packets_in_three_dialects_both_ways() {
             let bytes = bytes_of(expected);
             let parsed = Packet::parse(&bytes).unwrap();
             for (field, value) in parsed.fields.iter().zip(numbers(&expected["values"])) {
-                // The reader of the JSON text is exact to the last bit but one only.
+                // The reader of the JSON text is exact to the second-last bit.
                 assert!((field - value).abs() <= 1e-15 * value.abs(), "{id}");
             }
             assert_eq!(parsed.to_bytes().to_vec(), bytes, "{id}");

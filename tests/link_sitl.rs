@@ -1,4 +1,4 @@
-//! The drop-in as an external simulator, an RC script and a client of its serial port see it.
+//! The drop-in as seen by an external simulator, an RC script and a client of its serial port.
 
 #![allow(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests may panic and wait")]
 
@@ -25,10 +25,10 @@ use tokio::net::{TcpStream, UdpSocket};
 use tokio::sync::{mpsc, oneshot};
 use tokio::task::JoinHandle;
 
-/// Nothing in these tests takes this long unless it hangs.
+/// The time limit of every wait. Nothing in these tests takes this long unless it hangs.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// A drop-in with a simulator and a script around it.
+/// A drop-in, with a simulator and a script connected to it.
 struct Rig {
     fdm_door: SocketAddr,
     rc_door: SocketAddr,
@@ -96,7 +96,7 @@ impl Rig {
         Self { fdm_door, rc_door, tcp_door, motors, raw, sender, said, stop: Some(stop), task, stamp_ms: 0 }
     }
 
-    /// One step of a simulator that waits for each answer: the motors of the answer.
+    /// Runs one step of a simulator that waits for each answer. Returns the motors of the answer.
     async fn step(&mut self) -> [f32; 4] {
         self.stamp_ms += 1;
         let state = at_rest(self.stamp_ms as f64 * 1e-3);
@@ -210,7 +210,7 @@ async fn bad_packets_are_shown_by_status_and_at_the_end() {
     rig.step().await;
     rig.sender.send_to(&[0; 40], rig.fdm_door).await.unwrap();
     rig.sender.send_to(&[0; 7], rig.rc_door).await.unwrap();
-    // Its quaternion is no rotation.
+    // The quaternion of this packet is no rotation.
     rig.sender.send_to(&[0; 144], rig.fdm_door).await.unwrap();
     let mut person = rig.client().await;
     let mut answer = String::new();

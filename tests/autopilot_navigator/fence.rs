@@ -1,4 +1,4 @@
-//! The fence, before the flight and in it.
+//! The fence, before and during the flight.
 
 use betadeck::autopilot::control::FlightControllers;
 use betadeck::autopilot::fence::pre_flight;
@@ -82,7 +82,8 @@ fn exactly_on_the_fence_is_inside() {
     }
 }
 
-/// A mission that was given up because the craft was carried away, and the craft then beyond the fence.
+/// Returns a flight whose mission was given up because the craft was carried away. The craft is then beyond
+/// the fence.
 fn carried_away(params: Params) -> Flight {
     let mut flight = Flight::new(params, &[waypoint(Hold, 60.0, 0.0, 30.0, 5.0)], 30.0).launch();
     flight.run(1.0);

@@ -1,4 +1,4 @@
-//! Commands in flight: to a waypoint, hold here, go on, on to a new plan.
+//! Commands in flight: fly to a waypoint, hold here, resume, continue on a new plan.
 
 use betadeck::plan::WaypointType::{AltChange, Flyover, Hold};
 use betadeck::telemetry::InFlightCommand::{GoTo, HoldHere, Resume};
@@ -49,7 +49,7 @@ fn a_waypoint_that_was_flown_and_a_parked_craft_can_be_gone_back_from() {
     command(&mut flight, GoTo(0)).unwrap();
     flight.run(1.0);
     assert_eq!((flight.nav.state(), flight.nav.index()), (NavState::Approaching, 0));
-    // The mission goes on from there, also after the switch was cycled.
+    // The mission continues from there, even after the switch was cycled.
     flight.nav.disengage();
     flight.engage();
     assert_eq!(flight.nav.telemetry().reason, Some(TransitionReason::Resume));

@@ -5,7 +5,7 @@ use betadeck::telemetry::NavState;
 
 use crate::flight::{Flight, guide, waypoint, worst};
 
-/// A landing in wind, half a metre above the landing altitude.
+/// Returns a landing in wind, half a metre above the landing altitude.
 fn coming_down() -> Flight {
     let mut flight =
         Flight::new(guide(), &[waypoint(Land, 0.0, 0.0, 8.0, 0.0)], 8.0).wind(4.0, 0.0, 0.0).launch();
@@ -44,7 +44,7 @@ fn a_landing_that_was_pushed_below_its_path_goes_on_from_there() {
 fn rising_air_does_not_pass_for_the_ground() {
     let mut flight = coming_down();
     assert!(flight.until(60.0, |f| f.plant.alt < 3.0));
-    // Two seconds of an updraught that carries the craft whatever its throttle.
+    // An updraught that lifts the craft for two seconds, whatever its throttle.
     let start = flight.t();
     while flight.t() < start + 2.0 {
         flight.plant.climb = 0.2;

@@ -1,4 +1,4 @@
-//! Legs: the climb before them, corners that were missed, modifiers, lines, the nose.
+//! Legs: the climb before them, missed corners, modifiers, offset legs, and the heading along them.
 
 use betadeck::autopilot::control::FlightControllers;
 use betadeck::autopilot::io::NavInputs;
@@ -61,7 +61,7 @@ fn a_missed_flyover_is_come_back_to() {
     let waypoints = [waypoint(Flyover, 60.0, 0.0, 20.0, 5.0), waypoint(Flyover, 60.0, 60.0, 20.0, 5.0)];
     let mut flight = Flight::new(params, &waypoints, 20.0).launch();
     flight.run(8.0);
-    // Blown 10 m beside, it passes the plane far from the point.
+    // The wind moves the craft 10 m sideways, so it crosses the waypoint's plane far from the waypoint.
     for _ in 0..1000 {
         if flight.plant.pos.x > 60.1 {
             break;
@@ -155,7 +155,7 @@ fn legs_cross_the_antimeridian() {
 fn a_delay_counts_the_height_of_its_leg() {
     let mut slow = waypoint(Delay, 0.0, 0.0, 0.0, 0.0);
     slow.duration_ds = 500;
-    // 60 m along and 80 m up are 100 m in 50 s.
+    // 60 m along the leg and 80 m up make a path of 100 m, flown in 50 s.
     let mut flight = Flight::new(guide(), &[slow, waypoint(Hold, 60.0, 0.0, 100.0, 5.0)], 20.0).launch();
     let mut fastest: f64 = 0.0;
     while flight.t() < 25.0 {

@@ -1,4 +1,4 @@
-//! What goes wrong: fix, progress, broken inputs.
+//! Losses and failures in flight: a lost fix, a craft without progress, broken inputs.
 
 use betadeck::autopilot::control::FlightControllers;
 use betadeck::autopilot::{Navigator, Params};
@@ -129,7 +129,7 @@ fn the_controllers_are_not_touched_by_a_navigator_that_flies_nothing() {
     let before = controllers.clone();
     nav.update(&at, &params, &stored, &mut controllers);
     assert_eq!(controllers, before);
-    // A command taken back before the next update took nothing over.
+    // A command that is taken back before the next update has not touched the controllers.
     nav.emergency_land(&at).unwrap();
     nav.disengage();
     nav.update(&at, &params, &stored, &mut controllers);

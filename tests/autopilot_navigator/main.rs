@@ -1,4 +1,4 @@
-//! The navigator as a whole, on a point mass.
+//! The complete navigator, on a point mass.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
@@ -27,12 +27,12 @@ use betadeck::plan::WaypointType::Flyover;
 use betadeck::signals::SimTime;
 use flight::{inputs, plan, waypoint};
 
-/// Three FLYOVERs on a line north.
+/// Returns a plan of three FLYOVERs on a line north.
 fn three() -> FlightPlan {
     plan(&[60.0, 120.0, 180.0].map(|north| waypoint(Flyover, north, 0.0, 20.0, 5.0)))
 }
 
-/// A navigator that flies `three` and stands before waypoint `index`, its inputs and its controllers.
+/// Returns a navigator that flies `stored` and approaches waypoint `index`, with its inputs and controllers.
 fn flying(index: u8, stored: &FlightPlan, params: &Params) -> (Navigator, NavInputs, FlightControllers) {
     let (mut nav, mut controllers) = (Navigator::new(), FlightControllers::default());
     let mut at = inputs();

@@ -1,4 +1,5 @@
-//! The progress monitors: no false alarm in calm air, whatever the plan and the gains, and none missed in a storm.
+//! The progress monitors. They raise no false alarm in calm air, whatever the plan and the gains, and miss no
+//! failure in a storm.
 
 use betadeck::autopilot::Params;
 use betadeck::plan::WaypointType::{Flyby, Flyover, Hold, Land, Takeoff};
@@ -10,7 +11,7 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::flight::{Flight, guide, set, waypoint};
 
-/// Simulated seconds after which a flight is judged as it is.
+/// The simulated seconds after which a flight ends and is judged as it is.
 const LIMIT_S: f64 = 600.0;
 
 fn given_up(flight: &Flight) -> Option<(f64, AbortReason)> {
@@ -20,7 +21,7 @@ fn given_up(flight: &Flight) -> Option<(f64, AbortReason)> {
     })
 }
 
-/// Settings that a craft can be flown with, between timid and wild.
+/// Returns random settings that a craft can fly with, from timid to wild.
 fn settings(rng: &mut ChaCha8Rng) -> Params {
     let mut params = if rng.random() { guide() } else { Params::default() };
     params.max_distance_from_home = 0;
@@ -69,7 +70,7 @@ fn random_plan(rng: &mut ChaCha8Rng) -> Vec<Waypoint> {
     list
 }
 
-/// A random mission in calm air; what went wrong, if anything did.
+/// Flies a random mission in calm air. Returns a message if the navigator gave it up.
 fn calm_mission(seed: u64) -> Option<String> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let params = settings(&mut rng);
@@ -83,7 +84,7 @@ fn calm_mission(seed: u64) -> Option<String> {
     Some(format!("seed {seed}: {why} at {t:.1} s before waypoint {index}"))
 }
 
-/// All alarms of a range of missions.
+/// Flies a range of missions and returns all their alarms.
 fn alarms(seeds: std::ops::Range<u64>) -> Vec<String> {
     seeds.filter_map(calm_mission).collect()
 }
@@ -108,7 +109,7 @@ fn calm_air_never_ends_a_mission_in_ten_thousand() {
     assert!(alarms.is_empty(), "{} alarms: {:#?}", alarms.len(), &alarms[..alarms.len().min(30)]);
 }
 
-/// Steady speed of the point mass at a lean: the drag equals the push.
+/// Returns the steady speed of the point mass at a lean, at which the drag equals the push.
 fn steady_speed_mps(lean_rad: f64) -> f64 {
     let push = betadeck::geo::GRAVITY * lean_rad.tan();
     let (linear, square) = (0.19, 0.0145);

@@ -1,4 +1,4 @@
-//! Return home and emergency landing by command.
+//! The commands to return home and to land in an emergency.
 
 use betadeck::autopilot::io::NavInputs;
 use betadeck::autopilot::{Navigator, Params, Rescue};

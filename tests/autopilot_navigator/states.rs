@@ -1,4 +1,4 @@
-//! What a state announces, how long it lasts, and what survives it.
+//! The states: the events they send, their duration, and the values that survive them.
 
 use betadeck::autopilot::io::NavInputs;
 use betadeck::autopilot::{Navigator, Params};

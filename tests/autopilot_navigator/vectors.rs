@@ -1,4 +1,4 @@
-//! Commands and whole sequences of states, from the test vectors.
+//! Commands and complete sequences of states, from the test vectors.
 
 use std::path::Path;
 
@@ -44,7 +44,8 @@ fn check_expectation(nav: &Navigator, expect: &Value, case: &Value) {
     }
 }
 
-/// Moves the craft onto its waypoint and over its plane, update by update, until it leaves APPROACHING for the next.
+/// Moves the craft onto its waypoint and over its plane in three updates, so that the navigator leaves
+/// APPROACHING.
 fn pass(
     nav: &mut Navigator,
     at: &mut NavInputs,
@@ -71,7 +72,8 @@ fn commands_of_the_vectors() {
             "reset" => {
                 let count = case["plan_count"].as_u64().unwrap();
                 if count > 30 {
-                    // A plan cannot hold more than 30; a damaged count is caught where it is read.
+                    // A plan cannot hold more than 30 waypoints. A damaged count is caught where the plan is
+                    // read.
                     let fault = betadeck::plan::validate::check_records(count as usize, []);
                     assert!(matches!(fault, Err(betadeck::plan::validate::PlanFault::Corrupt(255))));
                     continue;
@@ -165,7 +167,7 @@ fn commands_of_the_vectors() {
     }
 }
 
-/// A waypoint from the words of the `sequences` group, `index` giving its place.
+/// Builds a waypoint from the words of the `sequences` group. `index` gives its place.
 fn from_words(words: &str, index: usize) -> Waypoint {
     let mut parts = words.split_whitespace();
     let kind: WaypointType = parts.next().unwrap().parse().unwrap();

@@ -1,4 +1,4 @@
-//! Integrals of the position controller.
+//! The integrals of the position controller.
 
 use betadeck::autopilot::Params;
 use betadeck::autopilot::control::{PositionController, PositionMeasurement, PositionTarget};

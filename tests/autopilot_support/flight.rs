@@ -1,5 +1,5 @@
-//! A point mass with a lagging lean, drag, wind and ground, flown by the navigator: enough physics to test guidance
-//! and control, and thousands of times faster than real time.
+//! A point mass with a lagging lean, drag, wind and ground, flown by the navigator. Its physics are
+//! sufficient to test guidance and control, and run thousands of times faster than real time.
 
 #![allow(dead_code, reason = "each test file uses its own part")]
 
@@ -19,7 +19,7 @@ use nalgebra::{Vector2, Vector3};
 pub(crate) const HOME: LatLon = LatLon::new(404_635_000, -795_182_000);
 pub(crate) const DT: f64 = 0.01;
 
-/// The craft and the air it flies in; north, east, up.
+/// The craft and the air around it; north, east, up.
 #[derive(Debug, Clone)]
 pub(crate) struct Plant {
     pub(crate) pos: Vector2<f64>,
@@ -28,18 +28,18 @@ pub(crate) struct Plant {
     pub(crate) climb: f64,
     pub(crate) heading: f64,
     pub(crate) yaw_rate: f64,
-    /// Lean (forward, right), rad.
+    /// The lean (forward, right), rad.
     pub(crate) lean: Vector2<f64>,
     pub(crate) accel: Vector2<f64>,
-    /// Thrust over weight.
+    /// The ratio of thrust to weight.
     pub(crate) thrust: f64,
-    /// Throttle that really hovers, µs.
+    /// The throttle at which the craft hovers, µs.
     pub(crate) hover_us: f64,
-    /// Bandwidth of the lean, rad/s.
+    /// The bandwidth of the lean, rad/s.
     pub(crate) lean_bandwidth: f64,
-    /// Mean wind, towards (north, east), m/s.
+    /// The mean wind, towards (north, east), m/s.
     pub(crate) wind: Vector2<f64>,
-    /// Standard deviation of the gusts, m/s.
+    /// The standard deviation of the gusts, m/s.
     pub(crate) gust_sd: f64,
     gust: Vector2<f64>,
     seed: u64,
@@ -78,7 +78,7 @@ impl Plant {
         sum
     }
 
-    /// `throttle` is the mixer's share, 0…1.
+    /// Advances the craft by one step of `DT`. `throttle` is the mixer's share, 0…1.
     pub(crate) fn step(&mut self, roll: f64, pitch: f64, yaw_rate: f64, throttle: f64) {
         let share = throttle / ((self.hover_us - 1050.0) / 950.0);
         self.thrust += (share * share - self.thrust) * DT / 0.05;
@@ -137,7 +137,7 @@ pub(crate) struct Sample {
     pub(crate) stands: bool,
 }
 
-/// A flight: craft, navigator, plan and log. Time counts from engaging.
+/// A flight: craft, navigator, plan and log. Time counts from engagement.
 #[derive(Debug, Clone)]
 pub(crate) struct Flight {
     pub(crate) plant: Plant,
@@ -177,7 +177,7 @@ pub(crate) fn set(params: &mut Params, name: &str, value: i64) {
     (field.set)(params, value);
 }
 
-/// The parameters of the guide's configuration block.
+/// Returns the parameters of the guide's configuration block.
 pub(crate) fn guide() -> Params {
     let mut params = Params::default();
     for (name, value) in [
@@ -208,7 +208,7 @@ pub(crate) fn guide() -> Params {
     params
 }
 
-/// A waypoint at metres north and east of home.
+/// Returns a waypoint at metres north and east of home.
 pub(crate) fn waypoint(kind: WaypointType, north: f64, east: f64, alt_m: f64, speed_mps: f64) -> Waypoint {
     Waypoint {
         position: offset_to_latlon(HOME, Vector2::new(north, east)),
@@ -247,7 +247,7 @@ impl Flight {
         self
     }
 
-    /// Seconds since engaging.
+    /// Returns the seconds since engagement.
     pub(crate) fn t(&self) -> f64 {
         (self.ticks - self.engaged_at) as f64 * DT
     }
@@ -273,10 +273,10 @@ impl Flight {
         self.controllers.land.observe(&ground, true, DT);
     }
 
-    /// The pilot's altitude and position hold for some seconds, with the shared controllers.
+    /// Flies the pilot's altitude and position hold for some seconds, with the shared controllers.
     pub(crate) fn hover(&mut self, seconds: f64) {
         let (mut altitude, mut position) = (AltitudeController::default(), PositionController::default());
-        // Held well: the pilot's own tune, whatever the flight under test uses.
+        // The pilot has a good tune, whatever parameters the flight under test uses.
         let params = Params { hover_throttle: self.plant.hover_us as u16, ..guide() };
         self.inputs.throttle_us = self.plant.hover_us;
         let (point, height) = (self.plant.pos, self.plant.alt);
@@ -305,7 +305,7 @@ impl Flight {
         self.nav.engage(&self.inputs, &self.params, &self.plan).unwrap();
     }
 
-    /// Hovers 5 s and engages.
+    /// Hovers for 5 s and engages.
     pub(crate) fn launch(mut self) -> Self {
         self.hover(5.0);
         self.engage();
@@ -315,7 +315,7 @@ impl Flight {
     pub(crate) fn tick(&mut self) {
         self.sense();
         let mut out = self.nav.update(&self.inputs, &self.params, &self.plan, &mut self.controllers);
-        // As the firmware does: a craft that stands is not tilted on its legs.
+        // As in the firmware, a landed craft is not tilted on its legs.
         let share = self.controllers.land.lean_share();
         (out.roll_rad, out.pitch_rad) = (share * out.roll_rad, share * out.pitch_rad);
         let t = self.t();
@@ -355,7 +355,7 @@ impl Flight {
         }
     }
 
-    /// Runs until `done` or `limit` seconds; returns whether it was done.
+    /// Runs until `done` or for `limit` seconds. Returns `true` if `done` was reached.
     pub(crate) fn until(&mut self, limit: f64, done: impl Fn(&Self) -> bool) -> bool {
         let end = self.t() + limit;
         while self.t() < end {
@@ -371,7 +371,7 @@ impl Flight {
         self.log.iter().filter(move |sample| sample.t >= t)
     }
 
-    /// Distinct (state, waypoint) in order.
+    /// Returns the (state, waypoint) of every state event, in order.
     pub(crate) fn sequence(&self) -> Vec<(NavState, u8)> {
         let mut list: Vec<(NavState, u8)> = Vec::new();
         for (_, event) in &self.events {
@@ -382,7 +382,7 @@ impl Flight {
         list
     }
 
-    /// When `state` was entered at waypoint `wp`.
+    /// Returns the time at which `state` was entered at waypoint `wp`.
     pub(crate) fn entered(&self, state: NavState, wp: u8) -> Option<f64> {
         self.events.iter().find_map(|(t, event)| match event {
             NavEvent::State { to, wp: at, .. } if *to == state && *at == wp => Some(*t),
@@ -414,13 +414,13 @@ pub(crate) fn horizontal(inputs: &NavInputs) -> PositionMeasurement {
     }
 }
 
-/// Root mean square.
+/// Returns the root mean square.
 pub(crate) fn rms(values: impl Iterator<Item = f64>) -> f64 {
     let (sum, count) = values.fold((0.0, 0), |(sum, count), value| (sum + value * value, count + 1));
     (sum / f64::from(count.max(1))).sqrt()
 }
 
-/// Greatest of finite values.
+/// Returns the greatest of finite values.
 pub(crate) fn worst(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(f64::NEG_INFINITY, f64::max)
 }

@@ -1,4 +1,4 @@
-//! Throttle and yaw.
+//! The vectors of throttle and yaw.
 
 use betadeck::autopilot::control::{ThrottleTerms, YawFacts, desired_heading, throttle_share, yaw_rate_dps};
 use betadeck::autopilot::params::{Params, YawMode};

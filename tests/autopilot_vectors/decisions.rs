@@ -1,4 +1,4 @@
-//! What may be flown, and what ends it: plan, engaging, fence, receiver loss.
+//! Decisions that allow or end a flight: plan, engagement, fence, receiver loss.
 
 use std::str::FromStr;
 

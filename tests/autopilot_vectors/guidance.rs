@@ -1,4 +1,4 @@
-//! Geometry of legs, corners and patterns, and the speed along them.
+//! The geometry of legs, corners and patterns, and the speed along them.
 
 use betadeck::autopilot::guidance::{
     CornerArc, L1Limits, PlaneCrossing, figure8, l1, leg_speed_mps, orbit, pattern_rate_rps, plane_crossing,
@@ -20,7 +20,7 @@ fn turn_radius() {
     }
 }
 
-/// Facts of a FLYOVER between others.
+/// Returns the facts of a FLYOVER that is not the last waypoint.
 fn flyover() -> Facts {
     let mut facts = Facts { count: 3, ..Facts::default() };
     facts.waypoint.last = false;

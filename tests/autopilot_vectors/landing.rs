@@ -1,4 +1,4 @@
-//! The way down, and the touchdown.
+//! The descent and the touchdown.
 
 use betadeck::autopilot::guidance::{Spiral, landing_setpoint_m, spiral_offset};
 use betadeck::autopilot::land_detector::{GroundFacts, TouchdownFacts, TouchdownGuards, TouchdownTimer};

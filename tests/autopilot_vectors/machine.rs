@@ -27,7 +27,7 @@ fn hold_timers() {
     }
 }
 
-/// Facts of a `state_transitions` case.
+/// Returns the facts of a `state_transitions` case.
 fn transition_facts(case: &Value) -> Facts {
     let input = &case["input"];
     let cm = |key: &str| input[key].as_f64().map(|value| value / 100.0);

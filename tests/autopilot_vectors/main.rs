@@ -1,4 +1,4 @@
-//! Every group of the autopilot's test vectors, against the functions the navigator uses.
+//! Every group of the autopilot's test vectors, checked against the functions that the navigator uses.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
@@ -49,7 +49,7 @@ fn point(value: &Value) -> LatLon {
     LatLon::new(value[0].as_i64().unwrap() as i32, value[1].as_i64().unwrap() as i32)
 }
 
-/// A pair of centimetres as metres.
+/// Converts a pair of centimetres to metres.
 fn metres(value: &Value) -> Vector2<f64> {
     Vector2::new(value[0].as_f64().unwrap(), value[1].as_f64().unwrap()) / 100.0
 }
@@ -84,7 +84,7 @@ fn fence_action(case: &Value, key: &str) -> FenceAction {
     FenceAction::iter().find(|action| action.to_string() == text(case, key)).unwrap()
 }
 
-/// Every list of cases of every group is read by a test above.
+/// Checks that every list of cases of every group is read by a test here or in the tests of the navigator.
 #[test]
 fn no_group_is_left_out() {
     let here = [

@@ -1,4 +1,4 @@
-//! Scenarios by the executable: what `check` prints, writes and exits with, and `open`.
+//! Scenarios in the executable: the output, files and exit codes of `check`, and `open`.
 #![allow(clippy::disallowed_methods, reason = "a program that waits for changes is waited for")]
 
 use std::io::{BufRead as _, BufReader, Read as _};
@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use crate::support::Sandbox;
 
-/// A craft that stands for two seconds.
+/// A scenario whose craft stays on the ground for two seconds.
 const STANDING: &str = "format = 1
 description = \"Stands\"
 ends = \"2 s after boot\"
@@ -23,12 +23,12 @@ from = \"boot\"
 always = \"altitude in -1..1 m\"
 ";
 
-/// The same with another bound.
+/// Returns the same scenario with another bound.
 fn standing(bound: &str) -> String {
     STANDING.replace("-1..1 m", bound)
 }
 
-/// A process that does not outlive its test.
+/// A process that is killed when its test ends.
 struct Guard(Child);
 
 impl Drop for Guard {
@@ -182,7 +182,7 @@ fn a_comparison_of_cases_without_a_common_seed_fails() {
     assert!(ran.out.contains("never judged, no seed was flown by all the cases"), "{}", ran.out);
     let report = std::fs::read_to_string(sandbox.path("report.xml")).expect("a report");
     assert!(report.contains("tests=\"3\" failures=\"1\""), "{report}");
-    // Who asks for one of them only, or gives all of them the same seed, is not told so.
+    // There is no such message for a single one of them or for one seed shared by all.
     sandbox.run(&["check", "seeds.toml", "--filter", "calm"]).exits(0);
     let ran = sandbox.run(&["check", "seeds.toml", "--seeds", "4"]).exits(0);
     assert!(ran.out.contains("✓ seeds · seed 4: pilot's wind.far"), "{}", ran.out);
@@ -231,7 +231,7 @@ fn more_than_ten_thousand_flights_are_flown_only_when_they_were_asked_for() {
     {
         assert!(outcome.err.contains(part), "{part}\n{}", outcome.err);
     }
-    // Each alone is small enough.
+    // The scenario alone is small enough.
     let outcome = sandbox.run(&["check", "six-thousand.toml", "--repeat", "2"]).exits(2);
     let sentence = "the run has 12000 flights, and 10000 are allowed: choose fewer with --filter TEXT, --seeds A..B or a \
                     smaller --repeat, or add --max-flights 12000";
@@ -317,7 +317,7 @@ fn a_scenario_made_of_a_plan_passes() {
     let made = sandbox.run(&["check", "--new", "land"]).exits(0);
     sandbox.write("land-test.toml", &made.out);
     sandbox.run(&["check", "land-test.toml"]).exits(0);
-    // Of another plan it is no test.
+    // The scenario fails for another plan.
     sandbox.write("other.toml", &made.out.replace("LAND 30", "HOLD 30"));
     sandbox.run(&["check", "other.toml"]).exits(1);
 }
@@ -336,7 +336,7 @@ fn the_worst_moment_is_opened_on_the_screen_and_a_flight_on_the_screen_becomes_a
     terminal.until_shown("fly on");
     terminal.send("e");
     terminal.until_shown("COMPLETE");
-    // The flight was flown before: it can be written down as it is.
+    // The flight was flown before, so it can be written as it is.
     let written = sandbox.path("written.toml").display().to_string();
     terminal.send(&format!(":scenario {written}\r"));
     terminal.until_shown("betadeck check");

@@ -1,4 +1,4 @@
-//! The command line: bad input, help, the small commands, and readers that go away.
+//! The command line: bad input, help, the small commands, and readers that close the pipe.
 
 use std::io::{BufRead as _, BufReader};
 use std::process::Stdio;
@@ -38,7 +38,7 @@ fn every_error_of_a_plan_has_its_place_and_the_allowed_range() {
         ] {
             assert!(ran.err.contains(help), "no {help:?} in\n{}", ran.err);
         }
-        // The caret stands under the place.
+        // The caret is under the place.
         let lines: Vec<&str> = ran.err.lines().collect();
         let shown = lines.iter().position(|line| line.contains("insert 0 4O.46")).expect("the line");
         assert_eq!(lines[shown].find("4O"), lines[shown + 1].find('^'), "{}", ran.err);
@@ -169,7 +169,7 @@ fn a_flight_writes_over_none_of_its_own_files() {
     }
     assert_eq!(sandbox.read("land.toml"), text);
     assert_eq!(sandbox.names().len(), 2);
-    // What holds no data may be named twice.
+    // A target that holds no data may be named twice.
     sandbox.run(&["fly", "land.toml", "--json", "/dev/null", "--gpx", "/dev/null"]).exits(0);
 }
 
@@ -323,7 +323,7 @@ fn help_version_completions_and_man() {
     assert_eq!(sandbox.names(), Vec::<String>::new(), "none of them writes a file");
 }
 
-/// A configuration file with these lines.
+/// Writes a configuration file with these lines.
 fn configured(sandbox: &Sandbox, lines: &str) {
     std::fs::create_dir_all(sandbox.path(".config/betadeck")).expect("a directory");
     sandbox.write(".config/betadeck/config.toml", lines);
@@ -370,7 +370,7 @@ fn options_come_from_the_environment_and_the_configuration_file_too() {
     assert_eq!(boot(&[("BETADECK_SEED", "8")], &[]), (8, 500));
     assert_eq!(boot(&[("BETADECK_SEED", "8")], &["--seed", "9"]), (9, 500));
     configured(&sandbox, "sede = 7\n");
-    // What needs no option does not mind.
+    // Commands that need no option ignore the mistake.
     sandbox.run(&["plan", "list"]).exits(0);
     sandbox.run(&["completions", "bash"]).exits(0);
     let ran = sandbox.run(&["fly", "land"]).exits(2);

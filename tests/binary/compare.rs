@@ -1,13 +1,13 @@
-//! `compare`: what is told before anything flies, and what becomes of files that are there.
+//! `compare`: the reports before anything flies, and the treatment of existing files.
 
 use std::net::{TcpListener, UdpSocket};
 
 use crate::support::{PROGRAM, Ran, Sandbox};
 
-/// What an earlier comparison left.
+/// The content of the files that an earlier comparison left.
 const EARLIER: &str = "of an earlier comparison";
 
-/// Flies a little way north and lands there, low and near.
+/// A plan that flies a short way north and lands there, low and near.
 const HOP: &str = "\
 [home]
 lat_deg = 40.4635
@@ -18,10 +18,10 @@ lat_deg = 40.4635900
 lon_deg = -79.5182
 alt_m = 4
 ";
-/// How it is flown in little time.
+/// Options that make the flight short.
 const QUICKLY: [&str; 3] = ["--takeoff=4", "--rate=400", "--noise=none"];
 
-/// A home with the files of an earlier comparison.
+/// Returns a home with the files of an earlier comparison.
 fn with_earlier_files() -> Sandbox {
     let sandbox = Sandbox::new();
     sandbox.write("tracks.svg", EARLIER);
@@ -30,7 +30,7 @@ fn with_earlier_files() -> Sandbox {
     sandbox
 }
 
-/// Compares the embedded firmware with an executable that finds its port taken when its turn comes.
+/// Compares the embedded firmware with an executable that finds its port in use when its turn comes.
 fn compare_in_vain(sandbox: &Sandbox, plan: &str) -> Ran {
     let taken = TcpListener::bind("127.0.0.1:0").expect("a port");
     let tcp = format!("--tcp-port={}", taken.local_addr().expect("bound").port());

@@ -1,4 +1,4 @@
-//! `--connect`: the user interface over a serial cable and over TCP, with the embedded firmware at the other end.
+//! `--connect`: the user interface over a serial cable and over TCP, connected to the embedded firmware.
 
 #[path = "../serial_support/bridge.rs"]
 mod bridge;
@@ -16,10 +16,10 @@ use crate::plain::Dialogue;
 use crate::pty::Terminal;
 use crate::support::Sandbox;
 
-/// When an answer counts as never coming.
+/// The time after which an answer counts as missing.
 const NEVER: Duration = Duration::from_secs(60);
 
-/// The embedded firmware behind a TCP door; killed when dropped.
+/// The embedded firmware at a TCP door. It is killed when dropped.
 struct Craft {
     child: Child,
     address: SocketAddr,
@@ -36,12 +36,13 @@ impl Craft {
         let opened = lines.find_map(|line| line.ok()?.split_once("tcp ").map(|(_, rest)| rest.to_owned()));
         let opened = opened.expect("a door");
         let address = opened.split(',').next().and_then(|text| text.parse().ok()).expect("an address");
-        // It writes on, and must not be held up.
+        // The process keeps writing and must not block.
         std::thread::spawn(move || lines.for_each(drop));
         Self { child, address, _home: home }
     }
 
-    /// What a line prints, asked past the program that is tested.
+    /// Returns the output of a command line, requested directly from the craft and not through the program
+    /// under test.
     fn line(&self, line: &str) -> String {
         framed_line(self.address, line)
     }
@@ -60,7 +61,7 @@ fn connect(address: SocketAddr) -> TcpStream {
     stream
 }
 
-/// What a line prints between the marks of the framed command line.
+/// Returns the output of a line between the marks of the framed command line.
 fn framed_line(address: SocketAddr, line: &str) -> String {
     let mut stream = connect(address);
     stream.write_all(format!("\x02{line}\n\x03").as_bytes()).expect("sent");
@@ -73,7 +74,7 @@ fn framed_line(address: SocketAddr, line: &str) -> String {
     String::from_utf8_lossy(&text[1..text.len() - 1]).into_owned()
 }
 
-/// The reply to an MSP message without or with a payload: whether it is an error, and the payload.
+/// Sends an MSP message and returns its reply: `true` for an error, and the payload.
 fn msp(stream: &mut TcpStream, code: u8, payload: &[u8]) -> (bool, Vec<u8>) {
     let body = [&[payload.len() as u8, code], payload].concat();
     let sum = body.iter().fold(0, |sum, byte| sum ^ byte);
@@ -206,7 +207,7 @@ fn programs_at_a_door_read_but_change_only_what_is_permitted() {
     for moving in [200, 211, 214] {
         assert!(msp(&mut client, moving, &channels).0, "{moving}");
     }
-    // The App sends this when it connects, and goes on when it is refused.
+    // The App sends this when it connects, and continues when it is refused.
     assert!(msp(&mut client, 99, &[1, 0]).0, "SET_ARMING_DISABLED");
     for (line, told) in
         [("mo\u{200b}tor 1 1500", "###ERROR: This craft is real"), ("bl\u{e9} rom", "in another program")]
@@ -239,7 +240,7 @@ fn what_is_no_betaflight_is_told_in_a_sentence() {
     }
 }
 
-/// A flight controller of another kind, or something that says nothing.
+/// Answers as a flight controller of another kind, or stays silent if `variant` is `None`.
 fn answer_as(mut stream: TcpStream, variant: Option<&[u8; 4]>) {
     let mut request = [0; 6];
     while stream.read_exact(&mut request).is_ok() {

@@ -1,4 +1,4 @@
-//! The plan editor in a pseudo-terminal: a plan from nothing to the ground, and edits that survive a kill.
+//! The plan editor in a pseudo-terminal: a new plan flown to its landing, and edits that survive a kill.
 
 use betadeck::plan::edit::Journal;
 use rand::{RngExt as _, SeedableRng as _};
@@ -7,13 +7,13 @@ use rand_chacha::ChaCha8Rng;
 use crate::pty::Terminal;
 use crate::support::Sandbox;
 
-/// Times the program is killed.
+/// The number of times the program is killed.
 const KILLS: u64 = 100;
 
-/// A plan of one waypoint, 10 m high.
+/// A plan of two waypoints, 10 m high.
 const PLAN: &str = "waypoint insert 0 40.4640000 -79.5175000 1000 0 FLYOVER 0 NONE\nwaypoint insert 1 40.4636 -79.5182 1000 0 LAND 0 NONE\n";
 
-/// The altitude of the first waypoint that the screen shows, m.
+/// Returns the altitude of the first waypoint on the screen, m.
 fn shown_altitude(terminal: &Terminal) -> Option<i64> {
     let screen = terminal.screen();
     let row = screen.lines().find(|line| line.contains(" 0  FLYOVER"))?;
@@ -22,7 +22,7 @@ fn shown_altitude(terminal: &Terminal) -> Option<i64> {
     value.strip_suffix(".0")?.parse().ok()
 }
 
-/// The altitude of the first waypoint that the journals of a state directory keep, m.
+/// Returns the altitude of the first waypoint in the journals of a state directory, m.
 fn kept_altitude(sandbox: &Sandbox) -> Option<i64> {
     let entries = std::fs::read_dir(sandbox.path("state/plans")).ok()?;
     let mut journals = entries.filter_map(|entry| {
@@ -45,12 +45,12 @@ fn a_kill_at_any_instant_of_editing_loses_at_most_the_last_keys_edit() {
     let mut kept = 10;
     for round in 0..KILLS {
         let mut terminal = Terminal::betadeck(80, 24, &arguments);
-        // The cursor on the altitude.
+        // Moves the cursor to the altitude.
         terminal.send("2\x1b[C\x1b[C\x1b[C");
         terminal.until("the altitude", |terminal| shown_altitude(terminal).is_some());
         assert_eq!(shown_altitude(&terminal), Some(kept), "round {round}: what was kept is back");
         let edits = rng.random_range(1..12);
-        // A part of the keys is waited for, so that the kill meets the program in all that it does.
+        // Waits for only some of the keys, so that the kill meets the program at any stage of its work.
         let waited = rng.random_range(0..=edits);
         terminal.send(&"+".repeat(edits));
         terminal.until("some edits", |terminal| shown_altitude(terminal) >= Some(kept + waited as i64));
@@ -65,7 +65,7 @@ fn a_kill_at_any_instant_of_editing_loses_at_most_the_last_keys_edit() {
     assert!(kept > 10 + KILLS as i64, "{kept}");
     assert_eq!(sandbox.read("plan.txt"), PLAN, "nobody saved");
 
-    // Undo reaches back before the kills.
+    // Undo reaches back to edits before the kills.
     let mut terminal = Terminal::betadeck(80, 24, &arguments);
     terminal.send("2\x1b[C\x1b[C\x1b[Cu");
     terminal.until("undone", |terminal| shown_altitude(terminal) == Some(kept - 1));
@@ -76,7 +76,7 @@ fn a_kill_at_any_instant_of_editing_loses_at_most_the_last_keys_edit() {
     assert!(sandbox.read("plan.txt").contains(&format!(" {} 0 FLYOVER", (kept - 1) * 100)));
 }
 
-/// A plan from nothing: made, saved, uploaded, flown, and changed in flight, by keys alone.
+/// Makes, saves, uploads and flies a new plan and changes it in flight, with keys only.
 fn from_nothing_to_the_ground(columns: u16, rows: u16) {
     let sandbox = Sandbox::new();
     let state = sandbox.path("state").display().to_string();
@@ -90,14 +90,14 @@ fn from_nothing_to_the_ground(columns: u16, rows: u16) {
     terminal.until_shown("LAND");
     terminal.send("s");
     terminal.until_shown("Save as");
-    // The name that is offered goes.
+    // Control-U deletes the offered name.
     terminal.send(&format!("\x15{file}\r"));
     terminal.until_shown("Saved made.toml.");
     terminal.send("U");
     terminal.until_shown("Uploaded made.toml: 3 waypoints");
     terminal.send("F]]]]]");
     terminal.until("in the air", |terminal| terminal.row(1).contains("APPROACHING WP1"));
-    // In flight: the last waypoint higher, and back to the craft.
+    // In flight, the last waypoint is raised and the plan is uploaded again.
     terminal.send("2\x1b[F\x1b[C\x1b[C\x1b[C+++++");
     terminal.until_shown("[25.0]");
     terminal.send("U");

@@ -1,16 +1,17 @@
-//! The first half hour of a new user, by keys: the tutorial, a plan from nothing, its flight, back in time, a scenario of it.
+//! The first half hour of a new user, by keys: the tutorial, a new plan, its flight, a rewind, a scenario of
+//! it.
 
 use crate::pty::Terminal;
 use crate::terminal::state;
 
-/// The speed of the flight: four times twice real time.
+/// The keys for a faster flight: four steps up, from 1× to 16×.
 const FASTER: &str = "]]]]";
 
 fn has_landed(terminal: &Terminal) -> bool {
     state(terminal) == "COMPLETE" && terminal.row(0).contains("DISARMED")
 }
 
-/// Minutes of the clock in the second row.
+/// Returns the minutes of the clock in the second row.
 fn minutes(terminal: &Terminal) -> Option<u32> {
     let row = terminal.row(1);
     let clock = row.split_whitespace().rev().find_map(|word| word.split_once(':'))?;
@@ -41,7 +42,7 @@ fn tutorial(terminal: &mut Terminal) {
     terminal.until("a landing", has_landed);
 }
 
-/// Two legs and a landing, one of its altitudes mistyped and mended.
+/// Makes a plan of two legs and a landing. One altitude is mistyped and then corrected.
 fn plan_from_nothing(terminal: &mut Terminal) {
     terminal.send("2n");
     terminal.until_shown("A new plan");
@@ -60,7 +61,7 @@ fn plan_from_nothing(terminal: &mut Terminal) {
     terminal.until_shown("✓ on the craft");
 }
 
-/// Presses a key that goes back in time until the screen is as wanted.
+/// Presses a key that goes back in time until `is_there` accepts the screen.
 fn back(terminal: &mut Terminal, key: &str, is_there: impl Fn(&Terminal) -> bool) {
     while !is_there(terminal) {
         let before = terminal.row(1);
@@ -98,7 +99,7 @@ fn a_new_user_flies_a_plan_from_nothing_and_makes_a_scenario_of_it() {
         terminal.send("T");
         terminal.until_shown(written);
         terminal.send("q");
-        // The craft has landed, whatever the instant that is shown.
+        // The craft has landed, whatever instant is shown.
         terminal.until_shown("square has edits that no file holds");
         terminal.send("y");
         assert_eq!(terminal.end(), 0, "{}", terminal.screen());
@@ -106,7 +107,7 @@ fn a_new_user_flies_a_plan_from_nothing_and_makes_a_scenario_of_it() {
         let judged = seen.split("1 of 1 flight passed; ").nth(1).unwrap_or_else(|| panic!("{seen}"));
         let flown_s: f64 =
             judged.split(" s flown").next().and_then(|text| text.trim().parse().ok()).expect("a time");
-        // The whole flight and the wait after it, not only the climb that was shown.
+        // The scenario has the complete flight and the wait after it, not only the climb that was shown.
         assert!(flown_s > 60.0 * f64::from(landed), "{seen}");
         terminal.assert_given_back();
     }

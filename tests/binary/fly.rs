@@ -3,13 +3,13 @@
 use crate::lines::Line;
 use crate::support::{Flown, Sandbox, plan};
 
-/// Metres for which `--noise real` may move the truth away from what the craft believes: the simulated receiver alone
-/// wanders by 0.35 m rms.
+/// The metres by which `--noise real` may move the true position away from the estimated one. The simulated
+/// receiver alone wanders by 0.35 m rms.
 const GPS_M: f64 = 1.0;
-/// The same for a speed, m/s.
+/// The same tolerance for a speed, m/s.
 const GPS_MPS: f64 = 0.15;
 
-/// What the state machine does with FLYOVER, FLYBY, HOLD on an orbit, LAND.
+/// The states of a plan with a FLYOVER, a FLYBY, a HOLD on an orbit and a LAND.
 const SQUARE: [&str; 12] = [
     "APPROACHING 0",
     "ARRIVED 0",
@@ -30,7 +30,8 @@ fn square(arguments: &[&str]) -> Flown {
     Sandbox::new().fly(&[&[file.as_str()], arguments].concat()).ends(0, "complete")
 }
 
-/// Metres north and east of `line` from a point in degrees, on the sphere through the poles; good to centimetres here.
+/// Returns the metres north and east of a point in degrees at which `line` is, on a sphere. The error here is
+/// centimetres.
 fn offset(line: &Line, lat: f64, lon: f64) -> (f64, f64) {
     const METRES_PER_DEGREE: f64 = 111_319.49;
     let north = (line.number("lat") - lat) * METRES_PER_DEGREE;
@@ -41,7 +42,7 @@ fn samples(flown: &Flown, from: f64, to: f64) -> Vec<&Line> {
     flown.all("sample").filter(|line| (from..to).contains(&line.time())).collect()
 }
 
-/// When a state was entered for the first time.
+/// Returns the time at which a state was entered first.
 fn entered(flown: &Flown, state: &str) -> f64 {
     flown.all("state").find(|line| line.text("to") == state).unwrap_or_else(|| panic!("never {state}")).time()
 }
@@ -77,7 +78,7 @@ fn the_flight_waits_for_the_fix_and_climbs_before_it_engages() {
 
 #[test]
 fn the_orbit_has_its_radius() {
-    // The default orbit takes two minutes a lap and 20 s to settle, so it is flown for a whole lap.
+    // The default orbit takes two minutes for a lap and 20 s to settle, so the test flies a complete lap.
     let text = std::fs::read_to_string(plan("square.toml")).expect("the square");
     let long = text.replace("duration_s = 30", "duration_s = 140");
     assert_ne!(long, text);
@@ -101,8 +102,8 @@ fn legs_are_flown_at_their_speed() {
     let sandbox = Sandbox::new();
     let text = std::fs::read_to_string(plan("square.toml")).expect("the square");
     sandbox.write("slow.toml", &text.replace("alt_m = 50", "alt_m = 50\nspeed_mps = 5"));
-    // Ten seconds after the start of a leg, until the craft brakes for its end. At 10 m/s only the leg
-    // to the FLYBY, which is not braked for, is long enough.
+    // Samples start ten seconds after the start of a leg and end where the craft brakes for its end. At 10
+    // m/s only the leg to the FLYBY is long enough, because the craft does not brake for it.
     for (file, mps, legs, until_m) in
         [("slow.toml", 5.0, [1.0, 2.0, 3.0].as_slice(), 20.0), ("square", 10.0, &[1.0], 0.0)]
     {

@@ -1,12 +1,14 @@
-//! Text of others in messages, on a terminal: nothing of it is obeyed.
+//! Hostile text in messages on a terminal. The terminal must not obey any of it.
 
 use crate::pty::Terminal;
 use crate::support::{PROGRAM, Sandbox};
 
-/// Sets the title of the window, the colour magenta and the direction of writing, clears the screen in two ways, and rings.
+/// Text that sets the window title, the colour magenta and the direction of writing, clears the screen in two
+/// ways, and rings the bell.
 const HOSTILE: &str = "\u{1b}]0;owned\u{7}\u{1b}[35m\u{9b}2J\u{1b}[2J\u{202e}";
 
-/// Asserts that a terminal obeys nothing of the hostile text, which was shown in some form.
+/// Asserts that the terminal received no control sequence of the hostile text, and that the text was shown in
+/// some form.
 #[track_caller]
 fn assert_harmless(raw: &str, what: &str) {
     for sequence in ["\u{1b}]", "\u{7}", "\u{1b}[35m", "\u{9b}", "\u{1b}[2J", "\u{202e}"] {
@@ -15,7 +17,7 @@ fn assert_harmless(raw: &str, what: &str) {
     assert!(raw.contains("owned"), "{what}: the text is not in the message: {raw:?}");
 }
 
-/// What a run in this home writes to its terminal.
+/// Returns the bytes that a run in this home writes to its terminal.
 fn written(home: Sandbox, program: &str, arguments: &[&str]) -> String {
     let mut terminal = Terminal::start_in(home, 200, 40, program, arguments);
     terminal.end();

@@ -1,4 +1,4 @@
-//! The options of `fly`: what goes wrong, what the sticks do, the air, the rates, and the files that are written.
+//! The options of `fly`: failures, sticks, air, rates, and the files that are written.
 
 use crate::support::{Flown, Sandbox};
 
@@ -6,7 +6,7 @@ fn fly(arguments: &[&str]) -> Flown {
     Sandbox::new().fly(arguments)
 }
 
-/// Time of the first transition into a state, from the engagement.
+/// Returns the time of the first transition into a state, counted from engagement.
 fn entered(flown: &Flown, state: &str) -> Option<f64> {
     let line = flown.all("state").find(|line| line.text("to") == state)?;
     Some(line.time() - flown.engaged_at())
@@ -144,7 +144,7 @@ fn the_craft_stands_where_and_as_it_is_told() {
 fn settings_come_from_plan_file_and_command_line_and_the_later_wins() {
     let sandbox = Sandbox::new();
     sandbox.write("diff.txt", "# diff all\nset ap_max_distance_from_home = 40\nsave\n");
-    // The plan itself says 500 m: the file says 40 m, and the farthest waypoint is farther.
+    // The plan allows 500 m and the file allows 40 m. The farthest waypoint is farther than 40 m.
     sandbox.fly(&["square", "--settings", "diff.txt"]).ends(1, "refused");
     sandbox
         .fly(&["square", "--settings", "diff.txt", "--set", "ap_max_distance_from_home=300"])
@@ -164,11 +164,11 @@ fn the_pilot_uses_the_switches_of_the_craft() {
 #[test]
 fn a_craft_that_is_given_a_mode_gets_no_starter_modes_beside_it() {
     let sandbox = Sandbox::new();
-    // ARM on AUX4 and nothing else: the autopilot has no switch.
+    // Only ARM has a switch, on AUX4. AUTOPILOT has none.
     sandbox.write("modes.txt", "aux 0 0 3 1700 2100 0 0\n");
     let ran = sandbox.run(&["fly", "hold-none", "--settings", "modes.txt"]).exits(2);
     assert!(ran.err.contains("no channel switches AUTOPILOT"), "{}", ran.err);
-    // Settings alone are no modes.
+    // A file with settings alone defines no modes.
     sandbox.write("settings.txt", "set ap_max_angle = 25\n");
     sandbox.fly(&["hold-none", "--settings", "settings.txt"]).ends(0, "complete");
 }

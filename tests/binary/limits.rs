@@ -1,4 +1,4 @@
-//! What the system does not give: open files, a reader, text.
+//! Limits of the system: too few open files, a reader that stops reading, input that is not text.
 
 use std::io::Write as _;
 use std::process::{Child, Stdio};
@@ -6,7 +6,7 @@ use std::process::{Child, Stdio};
 use crate::plain::Dialogue;
 use crate::support::{PROGRAM, Sandbox};
 
-/// A process that does not outlive its test.
+/// A process that is killed when its test ends.
 struct Guard(Child);
 
 impl Drop for Guard {
@@ -50,7 +50,7 @@ fn too_few_open_files_are_one_sentence_and_exit_code_3() {
     }
 }
 
-/// A pipe that takes nothing more.
+/// Returns a pipe that accepts no more bytes.
 fn full_pipe() -> (std::io::PipeReader, std::io::PipeWriter) {
     let (reader, mut writer) = std::io::pipe().expect("a pipe");
     rustix::io::ioctl_fionbio(&writer, true).expect("a pipe that does not wait");
@@ -69,7 +69,7 @@ fn the_first_signal_ends_a_flight_whose_reader_stopped_reading() {
             ("check", &["check", "guide-1"]),
         ] {
             let sandbox = Sandbox::new();
-            // Nobody reads either of them.
+            // The test reads neither pipe.
             let (_out, out) = full_pipe();
             let (_err, err) = full_pipe();
             let mut command = sandbox.command(arguments);

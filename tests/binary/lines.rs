@@ -1,9 +1,9 @@
-//! JSON lines, checked strictly: which keys an event has, in which order, and of which kind each is.
+//! JSON lines, checked strictly: the keys of an event, their order, and the kind of each value.
 
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use serde_json::Value;
 
-/// One line; its keys in the order in which they were printed.
+/// One line, with its keys in printed order.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Line(Vec<(String, Value)>);
 
@@ -48,30 +48,29 @@ impl Line {
         line
     }
 
-    /// The value of a key that must be there.
+    /// Returns the value of a key that must exist.
     #[track_caller]
     pub(crate) fn value(&self, key: &str) -> &Value {
         let found = self.0.iter().find(|(name, _)| name == key);
         found.map_or_else(|| panic!("no {key} in {self:?}"), |(_, value)| value)
     }
 
-    /// Simulated seconds since boot.
+    /// Returns the simulated seconds since boot.
     pub(crate) fn time(&self) -> f64 {
         self.number("t")
     }
 
-    /// The event's name.
+    /// Returns the name of the event.
     pub(crate) fn event(&self) -> &str {
         self.text("event")
     }
 
-    /// A number.
     #[track_caller]
     pub(crate) fn number(&self, key: &str) -> f64 {
         self.value(key).as_f64().unwrap_or_else(|| panic!("{key} is no number in {self:?}"))
     }
 
-    /// A text; `null` is the empty one.
+    /// Returns a text. `null` reads as the empty text.
     #[track_caller]
     pub(crate) fn text(&self, key: &str) -> &str {
         match self.value(key) {
@@ -81,7 +80,8 @@ impl Line {
     }
 }
 
-/// The documented fields of an event with their kinds; `?` = may be `null`. Unknown events are an error.
+/// Returns the documented fields of an event with their kinds; `?` marks a field that may be `null`. An
+/// unknown event is an error.
 fn fields(event: &str) -> &'static str {
     match event {
         "boot" => "version:text seed:num rate:num airframe:text live:flag",
@@ -119,7 +119,7 @@ fn fields(event: &str) -> &'static str {
     }
 }
 
-/// Checks keys, their order and the kind of each value.
+/// Checks the keys, their order and the kind of each value.
 #[track_caller]
 fn check(pairs: &[(String, Value)], fields: &str, text: &str) {
     let names: Vec<&str> = pairs.iter().map(|(name, _)| name.as_str()).collect();

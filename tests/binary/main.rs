@@ -1,4 +1,4 @@
-//! The built executable, used from outside: flights, plans, the command line, and the user interface in a
+//! The built executable, run as a user runs it: flights, plans, the command line, and the user interface in a
 //! pseudo-terminal.
 
 mod check;

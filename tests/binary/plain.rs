@@ -9,10 +9,10 @@ use std::time::Duration;
 use crate::support::Sandbox;
 
 const PLAIN: [&str; 4] = ["--plain", "--fresh", "--no-ports", "--speed=max"];
-/// When a line that is waited for counts as never coming.
+/// The time after which a line counts as missing.
 const NEVER: Duration = Duration::from_secs(60);
 
-/// A running program that is spoken with; killed when dropped.
+/// A running program that reads lines and answers them. It is killed when dropped.
 pub(crate) struct Dialogue {
     child: Child,
     input: ChildStdin,
@@ -43,7 +43,7 @@ impl Dialogue {
         self.input.write_all(bytes).expect("it listens");
     }
 
-    /// Waits for a line with this text; gives what was written up to it.
+    /// Waits for a line that contains this text. Returns the lines up to it.
     #[track_caller]
     pub(crate) fn hear(&mut self, text: &str) -> Vec<String> {
         let mut heard = Vec::new();
@@ -65,7 +65,7 @@ impl Dialogue {
 
 impl Drop for Dialogue {
     fn drop(&mut self) {
-        // It may have ended already.
+        // The process may have ended already.
         drop(self.child.kill());
         drop(self.child.wait());
     }
@@ -152,7 +152,7 @@ fn plans_are_generated_saved_replaced_and_opened_line_by_line() {
     }
     assert_eq!(sandbox.names(), ["mine.toml"]);
 
-    // Another plan, in the place of that file when it is asked for, and not kept at the end.
+    // The answer `n` keeps that file. The edits of another plan are discarded at the end.
     let input = "plan.generate\ntake\nsave mine.toml\nn\nopen\n1\nplan.generate\nshape = survey\ntake\nquit\nwhat\nd\nd\nd\n";
     let before = sandbox.read("mine.toml");
     let ran = sandbox.run_with(&PLAIN, input).exits(0);

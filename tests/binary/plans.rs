@@ -1,4 +1,4 @@
-//! Every shipped plan is executed, and other ways to hand a plan over.
+//! Every shipped plan is flown. The other ways to pass a plan are tested too.
 
 use betadeck::plan::builtin::PLANS;
 use betadeck::plan::format::{Format, parse};
@@ -8,7 +8,7 @@ use crate::support::{Flown, Sandbox, plan, plans};
 /// The guide's upload block.
 const GUIDE: &str = include_str!("../vectors/guide-step7.txt");
 
-/// The positional waypoint types that were reached, in order.
+/// Returns the types of the positional waypoints that were reached, in order.
 fn reached(flown: &Flown) -> Vec<&str> {
     flown.all("state").filter(|line| line.text("to") == "ARRIVED").map(|line| line.text("type")).collect()
 }
@@ -100,7 +100,7 @@ fn a_plan_without_a_landing_ends_parked() {
 #[test]
 fn the_guides_block_is_a_plan_as_it_stands_and_on_standard_input() {
     let sandbox = Sandbox::new();
-    // As copied from a web page: no last line end, and Windows ends in between.
+    // As copied from a web page: no line end on the last line, and Windows line ends.
     sandbox.write("guide.txt", GUIDE.trim_end());
     sandbox.write("dos.txt", &GUIDE.replace('\n', "\r\n"));
     let from_file = sandbox.fly(&["guide.txt"]).ends(0, "complete");
@@ -114,7 +114,7 @@ fn the_guides_block_is_a_plan_as_it_stands_and_on_standard_input() {
         };
         assert_eq!(states(other), states(&from_file.lines));
     }
-    // What was skipped is said.
+    // A notice names the skipped lines.
     let notices: Vec<&str> = from_file.all("notice").map(|line| line.text("text")).collect();
     assert!(notices.iter().any(|text| text.contains("save")), "{notices:?}");
 }
@@ -132,10 +132,10 @@ fn a_far_plan_flies_where_it_lies_or_where_home_says() {
     let near =
         sandbox.fly(&["sydney.txt", "--home", "-33.8568,151.2150,40", "--samples", "1"]).ends(0, "complete");
     assert!((near.first("sample").number("lon") - 151.2150).abs() < 1e-6);
-    // A home that was chosen stays, and how far it is is said.
+    // A chosen home stays, and a notice gives its distance.
     let far = sandbox.fly(&["hold-none", "--home", "10,10", "--timeout", "5"]).ends(1, "timeout");
     assert!(far.all("notice").any(|line| line.text("text").contains(" km from home")), "{far:?}");
-    // A home on the other side of the world, and the date line in the middle of the plan.
+    // A home on the other side of the world, and a plan that crosses the date line.
     sandbox.write(
         "date-line.txt",
         "waypoint insert 0 -16.8000000 179.9998000 1500 500 FLYOVER 0 ORBIT\n\

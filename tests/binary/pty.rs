@@ -1,4 +1,4 @@
-//! A program in a pseudo-terminal, seen on an emulated screen.
+//! A program in a pseudo-terminal, shown on an emulated screen.
 #![allow(clippy::disallowed_methods, reason = "a deadline for a program that hangs needs the clock")]
 
 use std::io::{Read as _, Write as _};
@@ -11,10 +11,10 @@ use vt100::{MouseProtocolMode, Parser};
 
 use crate::support::Sandbox;
 
-/// When something that is waited for counts as never coming.
+/// The time after which an expected event counts as missing.
 const NEVER: Duration = Duration::from_secs(60);
 
-/// A running program and its screen; killed when dropped.
+/// A running program and its screen. It is killed when dropped.
 pub(crate) struct Terminal {
     child: Box<dyn Child + Send + Sync>,
     master: Box<dyn MasterPty + Send>,
@@ -31,7 +31,7 @@ impl Terminal {
         Self::start(columns, rows, crate::support::PROGRAM, arguments)
     }
 
-    /// Starts any program, with a home directory of its own.
+    /// Starts any program, with its own home directory.
     pub(crate) fn start(columns: u16, rows: u16, program: &str, arguments: &[&str]) -> Self {
         Self::start_in(Sandbox::new(), columns, rows, program, arguments)
     }
@@ -52,7 +52,7 @@ impl Terminal {
         let (sender, output) = channel();
         std::thread::spawn(move || {
             let mut bytes = [0; 8192];
-            // Ends with the program: then the pseudo-terminal gives an error or nothing.
+            // The loop ends with the program: the pseudo-terminal then returns an error or no bytes.
             while let Ok(count @ 1..) = reader.read(&mut bytes) {
                 if sender.send(bytes[..count].to_vec()).is_err() {
                     return;
@@ -70,7 +70,7 @@ impl Terminal {
         }
     }
 
-    /// Starts the executable and closes its terminal when it shows a text; gives the exit code.
+    /// Starts the executable and closes its terminal when it shows a text. Returns the exit code.
     pub(crate) fn closed_when_shown(text: &str) -> u32 {
         let home = Sandbox::new();
         let pty = native_pty_system().openpty(size(80, 24)).expect("a pseudo-terminal");
@@ -90,12 +90,12 @@ impl Terminal {
         child.wait().expect("an exit status").exit_code()
     }
 
-    /// The home directory of the program.
+    /// Returns the home directory of the program.
     pub(crate) fn home(&self) -> &Sandbox {
         &self.home
     }
 
-    /// Lets the program write nothing more, as a terminal does after Ctrl-S.
+    /// Blocks the output of the program, as a terminal does after Ctrl-S.
     pub(crate) fn hold_output(&self) {
         let name = self.master.tty_name().expect("a name");
         let flags = rustix::fs::OFlags::RDWR | rustix::fs::OFlags::NOCTTY;
@@ -103,24 +103,24 @@ impl Terminal {
         rustix::termios::tcflow(terminal, rustix::termios::Action::OOff).expect("output held");
     }
 
-    /// The number of the process.
+    /// Returns the process id.
     pub(crate) fn id(&self) -> u32 {
         self.child.process_id().expect("a process")
     }
 
-    /// Whether the program is stopped, as by Ctrl-Z.
+    /// Returns `true` if the program is stopped, as by Ctrl-Z.
     pub(crate) fn is_stopped(&self) -> bool {
         let id = self.id();
         let stat = std::fs::read_to_string(format!("/proc/{id}/stat")).expect("a process");
         stat.rsplit(") ").next().is_some_and(|rest| rest.starts_with('T'))
     }
 
-    /// Whether the program shows its own screen.
+    /// Returns `true` if the program shows its own screen.
     pub(crate) fn is_alternate(&self) -> bool {
         self.parser.screen().alternate_screen()
     }
 
-    /// Types.
+    /// Types keys.
     pub(crate) fn send(&mut self, keys: &str) {
         self.keys.write_all(keys.as_bytes()).expect("the program listens");
         self.keys.flush().expect("the program listens");
@@ -139,22 +139,22 @@ impl Terminal {
         assert!(sent.success());
     }
 
-    /// The screen as text.
+    /// Returns the screen as text.
     pub(crate) fn screen(&self) -> String {
         self.parser.screen().contents()
     }
 
-    /// A row of the screen, from 0.
+    /// Returns a row of the screen, counted from 0.
     pub(crate) fn row(&self, row: usize) -> String {
         self.screen().lines().nth(row).unwrap_or("").to_owned()
     }
 
-    /// All bytes so far.
+    /// Returns all bytes so far.
     pub(crate) fn raw(&self) -> String {
         String::from_utf8_lossy(&self.raw).into_owned()
     }
 
-    /// Waits until the screen is as wanted.
+    /// Waits until `is` accepts the screen.
     #[track_caller]
     pub(crate) fn until(&mut self, wanted: &str, is: impl Fn(&Self) -> bool) {
         self.watch(wanted, |terminal| is(terminal));
@@ -166,7 +166,7 @@ impl Terminal {
         self.watch(text, |terminal| terminal.screen().contains(text));
     }
 
-    /// Looks at every change of the screen until `done`.
+    /// Checks every change of the screen until `done`.
     #[track_caller]
     pub(crate) fn watch(&mut self, wanted: &str, mut done: impl FnMut(&Self) -> bool) {
         let deadline = Instant::now() + NEVER;
@@ -183,7 +183,7 @@ impl Terminal {
         }
     }
 
-    /// Waits for the end of the program; gives its exit code. All output has been read then.
+    /// Waits for the end of the program and reads all its output. Returns the exit code.
     #[track_caller]
     pub(crate) fn end(&mut self) -> u32 {
         let deadline = Instant::now() + NEVER;
@@ -201,8 +201,8 @@ impl Terminal {
         self.child.wait().expect("an exit status").exit_code()
     }
 
-    /// Asserts that the terminal is as a shell wants it: the ordinary screen, a cursor, no mouse, no bracketed paste,
-    /// default colours, and the line discipline `before`.
+    /// Asserts that the terminal is in the state that a shell expects: the ordinary screen, a visible cursor,
+    /// no mouse, no bracketed paste and default colours.
     #[track_caller]
     pub(crate) fn assert_given_back(&self) {
         let screen = self.parser.screen();
@@ -214,7 +214,7 @@ impl Terminal {
         assert!(!screen.bold() && !screen.inverse());
     }
 
-    /// The line discipline as text.
+    /// Returns the line discipline as text.
     pub(crate) fn discipline(&self) -> String {
         format!("{:?}", self.master.get_termios().expect("a terminal"))
     }
@@ -228,13 +228,13 @@ impl Terminal {
 
 impl Drop for Terminal {
     fn drop(&mut self) {
-        // It may have ended already.
+        // The process may have ended already.
         drop(self.child.kill());
         drop(self.child.wait());
     }
 }
 
-/// A program with a home directory of its own.
+/// Returns a command that runs the program with its own home directory.
 fn command(home: &Sandbox, program: &str, arguments: &[&str]) -> CommandBuilder {
     let mut command = CommandBuilder::new(program);
     command.args(arguments);

@@ -1,4 +1,4 @@
-//! Files of results: whole or not there, and never those of an earlier run.
+//! Files of results. Each is complete or absent, and never one of an earlier run.
 #![allow(clippy::disallowed_methods, reason = "a state of another process is waited for")]
 
 use std::io::{BufRead as _, BufReader};
@@ -8,7 +8,7 @@ use crate::lines::Line;
 use crate::streams::{end_of, handles_signals, until};
 use crate::support::Sandbox;
 
-/// A craft that stands for two seconds.
+/// A scenario whose craft stays on the ground for two seconds.
 const STANDING: &str = "format = 1
 ends = \"2 s after boot\"
 [plan]
@@ -25,7 +25,7 @@ always = \"altitude in -1..1 m\"
 const OPTIONS: [&str; 6] = ["--json", "run.json", "--junit", "run.xml", "--markdown", "run.md"];
 const FILES: [&str; 3] = ["run.json", "run.xml", "run.md"];
 
-/// A process that does not outlive its test.
+/// A process that is killed when its test ends.
 struct Guard(Child);
 
 impl Drop for Guard {
@@ -46,7 +46,7 @@ fn signal(child: &Guard, name: &str) {
     assert!(std::process::Command::new("kill").args(["-s", name, &id]).status().expect("kill").success());
 }
 
-/// A folder with the reports of a run that passed.
+/// Returns a folder with the reports of a run that passed.
 fn after_a_run() -> Sandbox {
     let sandbox = Sandbox::new();
     sandbox.write("stand.toml", STANDING);
@@ -97,7 +97,8 @@ fn a_check_that_cannot_start_removes_nothing_but_reports() {
         );
         assert_eq!(sandbox.read("broken.toml"), broken);
     }
-    // Nor does one that is refused: the plan is in a format of its own, and looks like a report.
+    // A check whose report is refused removes nothing either. The file is of another program and looks like a
+    // report.
     sandbox.write("report.txt", "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"other\">\n");
     sandbox.run(&["check", "broken.toml", "--junit", "report.txt"]).exits(2);
     assert!(sandbox.path("report.txt").exists(), "it is a report of another program");
@@ -107,7 +108,7 @@ fn a_check_that_cannot_start_removes_nothing_but_reports() {
 fn reports_of_a_check_are_whole_or_not_there() {
     for name in ["INT", "KILL"] {
         let sandbox = after_a_run();
-        // Long enough to be ended by the signal.
+        // The run is long enough for the signal to end it.
         sandbox.write("stand.toml", &STANDING.replace("2 s after", "60 s after"));
         let mut child =
             start(&sandbox, &[&["check", "stand.toml", "--repeat=1000", "--jobs=1"][..], &OPTIONS].concat());
@@ -136,7 +137,7 @@ fn the_files_of_a_flight_are_there_when_it_is_over() {
     for name in ["INT", "KILL"] {
         let sandbox = Sandbox::new();
         let files = ["--json", "flight.json", "--gpx", "track.gpx"];
-        // Two simulated seconds are enough to have files.
+        // Two simulated seconds are enough to write the files.
         sandbox.run(&[&["fly", "land", "--timeout=2"][..], &files].concat()).exits(1);
         let mut child = start(&sandbox, &[&["fly", "land", "--speed=1"][..], &files].concat());
         handles_signals(child.0.id());
@@ -169,7 +170,7 @@ fn a_flight_that_cannot_start_leaves_no_files_of_an_earlier_one() {
         let sandbox = Sandbox::new();
         sandbox.write("empty.txt", "# nothing\n");
         let files = ["--json=flight.json", "--gpx=track.gpx"];
-        // Two simulated seconds are enough to have files.
+        // Two simulated seconds are enough to write the files.
         sandbox.run(&[&["fly", "land", "--timeout=2"][..], &files].concat()).exits(1);
         let ran = sandbox.run(&[line, &files].concat());
         assert!(matches!(ran.code, Some(2 | 3)), "{line:?}: {ran:?}");

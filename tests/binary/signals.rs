@@ -7,7 +7,7 @@ use std::process::{Child, Stdio};
 use crate::lines::Line;
 use crate::support::Sandbox;
 
-/// A process that does not outlive its test.
+/// A process that is killed when its test ends.
 struct Guard(Child);
 
 impl Drop for Guard {
@@ -17,7 +17,8 @@ impl Drop for Guard {
     }
 }
 
-/// Flies in real time, interrupts after the first line, and gives the exit code, the lines and standard error.
+/// Flies in real time and sends a signal after the first line. Returns the exit code, the lines and standard
+/// error.
 fn interrupted(signal: &str) -> (Option<i32>, Vec<Line>, String) {
     let sandbox = Sandbox::new();
     let mut command =

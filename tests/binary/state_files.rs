@@ -1,4 +1,5 @@
-//! What others put into the state directory and among the temporary files, and files that are no settings and no plans.
+//! Foreign files in the state directory and among the temporary files, and files that are neither settings
+//! nor plans.
 
 use std::os::unix::fs::symlink;
 use std::process::Stdio;
@@ -15,14 +16,15 @@ fn make_fifo(path: &std::path::Path) {
     assert!(made.success());
 }
 
-/// The journals in the state directory.
+/// Returns the names of the journals in the state directory.
 fn journals(sandbox: &Sandbox) -> Vec<String> {
     let entries = std::fs::read_dir(sandbox.path("state/plans")).into_iter().flatten().flatten();
     let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
     names.filter(|name| name.ends_with(".journal")).collect()
 }
 
-/// Edits a plan without saving it, and kills the program when the edit is on disk; returns the name of the journal.
+/// Edits a plan without saving it, and kills the program when the edit is on disk. Returns the name of the
+/// journal.
 fn edit_and_be_killed(sandbox: &Sandbox) -> String {
     let mut editor = Dialogue::start(sandbox, &PLAIN);
     editor.say("plan.generate");
@@ -97,7 +99,7 @@ fn no_output_is_written_over_a_journal_or_a_history() {
         }
         assert_eq!(sandbox.read(&own), edits);
     }
-    // Those of the usual directory, whatever directory is named.
+    // The files of the default state directory are protected too, whatever directory is named.
     std::fs::create_dir_all(sandbox.path(".state/betadeck/plans")).expect("a directory");
     for output in
         [".state/betadeck/cli.history", ".state/betadeck/plans/x-0.journal", ".state/betadeck/eeprom.bin"]
@@ -116,7 +118,7 @@ fn no_output_is_written_over_a_journal_or_a_history() {
     assert_eq!(sandbox.read("state/commands.history"), "speed 2\n");
 }
 
-/// A scenario with these keys of the craft and this plan.
+/// Returns a scenario with these keys of the craft and this plan.
 fn scenario(plan: &str, craft: &str) -> String {
     format!(
         "format = 1\nends = \"2 s after boot\"\n[plan]\n{plan}\n[craft]\npilot = \"none\"\n{craft}\n[air]\nnoise = \"none\"\n\
@@ -162,7 +164,7 @@ fn a_plan_file_without_a_waypoint_is_a_usage_error_of_a_scenario() {
     }
 }
 
-/// The names among the temporary files.
+/// Returns the names of the temporary files.
 fn temporary(sandbox: &Sandbox) -> Vec<String> {
     let entries = std::fs::read_dir(sandbox.path("tmp")).expect("a directory").flatten();
     let mut names: Vec<String> =
@@ -181,7 +183,7 @@ fn with_temporary_files(sandbox: &Sandbox, arguments: &[&str]) -> std::process::
     command
 }
 
-/// Options with ports that the system has just chosen.
+/// Returns options with ports that the system has just chosen.
 fn free_ports() -> [String; 2] {
     let tcp = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
     let udp = [(); 4].map(|()| std::net::UdpSocket::bind("127.0.0.1:0").expect("a port"));

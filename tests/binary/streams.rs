@@ -1,4 +1,4 @@
-//! Output that nobody reads, terminals that are closed, and a program that is stopped from outside.
+//! Output that nobody reads, terminals that are closed, and a program that another process stops.
 #![allow(clippy::disallowed_methods, reason = "a state of another process is waited for")]
 
 use std::io::Write as _;
@@ -9,10 +9,10 @@ use std::time::{Duration, Instant};
 use crate::pty::Terminal;
 use crate::support::Sandbox;
 
-/// When something that is waited for counts as never coming.
+/// The time after which an expected event counts as missing.
 const NEVER: Duration = Duration::from_secs(60);
 
-/// A process that does not outlive its test.
+/// A process that is killed when its test ends.
 struct Guard(Child);
 
 impl Guard {
@@ -26,7 +26,7 @@ impl Guard {
         handles_signals(self.0.id());
     }
 
-    /// Waits for the end; gives the exit code.
+    /// Waits for the end of the process. Returns its exit code.
     fn end(&mut self) -> Option<i32> {
         end_of(&mut self.0)
     }
@@ -44,7 +44,7 @@ pub(crate) fn handles_signals(id: u32) {
     });
 }
 
-/// Waits for the end of a process; returns its exit code.
+/// Waits for the end of a process. Returns its exit code.
 pub(crate) fn end_of(child: &mut Child) -> Option<i32> {
     let mut code = None;
     until("the end of the program", || {
@@ -98,7 +98,7 @@ fn serve_ends_on_a_signal_while_nobody_reads_it() {
     for signal in ["INT", "TERM", "HUP"] {
         let sandbox = Sandbox::new();
         let (_reader, mut writer) = std::io::pipe().expect("a pipe");
-        // Full: the first line that the program writes has to wait for ever.
+        // The pipe is full, so the first line that the program writes blocks forever.
         rustix::io::ioctl_fionbio(&writer, true).expect("a pipe that does not wait");
         while writer.write(&[b' '; 512]).is_ok() {}
         while writer.write(b" ").is_ok() {}
@@ -144,7 +144,8 @@ fn a_program_that_is_stopped_from_outside_gives_the_terminal_back_and_takes_it_a
 
 #[test]
 fn ctrl_z_without_a_shell_says_why_the_program_does_not_stop() {
-    // The program leads its session, as under `xterm -e`; then a shell without jobs does, which nobody continues either.
+    // The program leads its session, as under `xterm -e`. Then a shell without job control leads it, and
+    // nobody continues that program either.
     let script = format!("{} --no-ports; exit 7", crate::support::PROGRAM);
     let alone: (&str, &[&str]) = (crate::support::PROGRAM, &["--no-ports"]);
     for (program, arguments) in [alone, ("/bin/sh", &["-c", script.as_str()])] {

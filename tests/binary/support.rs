@@ -1,4 +1,4 @@
-//! Runs the executable in a home directory of its own.
+//! Runs the executable in its own home directory.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -10,18 +10,18 @@ use crate::lines::Line;
 /// The executable.
 pub(crate) const PROGRAM: &str = env!("CARGO_BIN_EXE_betadeck");
 
-/// When a run that does not end by itself counts as hung; far above what any of them needs.
+/// The time after which a run that does not end by itself counts as hung. Normal runs take far less.
 const HUNG: Duration = Duration::from_secs(60);
 
-/// An empty home directory, and the working directory of what is run in it.
+/// An empty home directory, which is also the working directory of the programs that run in it.
 pub(crate) struct Sandbox {
     directory: TempDir,
 }
 
-/// What a run left behind.
+/// The result of a run.
 #[derive(Debug)]
 pub(crate) struct Ran {
-    /// Exit code; `None` after a signal.
+    /// The exit code; `None` after a signal.
     pub(crate) code: Option<i32>,
     /// Standard output.
     pub(crate) out: String,
@@ -30,33 +30,33 @@ pub(crate) struct Ran {
 }
 
 impl Sandbox {
-    /// A new one.
+    /// Creates an empty home directory.
     pub(crate) fn new() -> Self {
         Self { directory: tempfile::tempdir().expect("a directory") }
     }
 
-    /// The path of a file in it.
+    /// Returns the path of a file in the directory.
     pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.directory.path().join(name)
     }
 
-    /// Writes a file into it.
+    /// Writes a file into the directory.
     pub(crate) fn write(&self, name: &str, text: &str) {
         std::fs::write(self.path(name), text).expect("a writable directory");
     }
 
-    /// Reads a file of it.
+    /// Reads a file in the directory.
     pub(crate) fn read(&self, name: &str) -> String {
         std::fs::read_to_string(self.path(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
     }
 
-    /// The names of the files in it.
+    /// Returns the names of the files in the directory.
     pub(crate) fn names(&self) -> Vec<String> {
         let entries = std::fs::read_dir(self.directory.path()).expect("a readable directory");
         entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect()
     }
 
-    /// The environment of a run: this home, and nothing of the real one.
+    /// Returns the environment of a run: this home, and nothing of the real one.
     pub(crate) fn environment(&self) -> Vec<(&'static str, PathBuf)> {
         let home = self.directory.path();
         vec![
@@ -67,19 +67,19 @@ impl Sandbox {
         ]
     }
 
-    /// A command of the executable.
+    /// Returns a command that runs the executable.
     pub(crate) fn command(&self, arguments: &[&str]) -> std::process::Command {
         let mut command = std::process::Command::new(PROGRAM);
         command.env_clear().envs(self.environment()).current_dir(self.directory.path()).args(arguments);
         command
     }
 
-    /// Runs it to its end.
+    /// Runs the executable to its end.
     pub(crate) fn run(&self, arguments: &[&str]) -> Ran {
         self.run_with(arguments, "")
     }
 
-    /// Runs it with this on standard input.
+    /// Runs the executable with this text on standard input.
     pub(crate) fn run_with(&self, arguments: &[&str], input: &str) -> Ran {
         let output = assert_cmd::Command::from_std(self.command(arguments))
             .timeout(HUNG)
@@ -93,7 +93,7 @@ impl Sandbox {
         }
     }
 
-    /// Flies with JSON lines on standard output, every one of them checked.
+    /// Flies with JSON lines on standard output and checks every line.
     pub(crate) fn fly(&self, arguments: &[&str]) -> Flown {
         let ran = self.run(&[&["fly", "--json", "-"], arguments].concat());
         let lines = Line::read_all(&ran.out);
@@ -102,7 +102,7 @@ impl Sandbox {
 }
 
 impl Ran {
-    /// Asserts the exit code, showing what was said when it is another.
+    /// Asserts the exit code, and shows the output when it differs.
     #[track_caller]
     pub(crate) fn exits(self, code: i32) -> Self {
         assert_eq!(self.code, Some(code), "\n{}\n{}", self.out, self.err);
@@ -110,14 +110,11 @@ impl Ran {
     }
 }
 
-/// A flight.
 #[derive(Debug)]
 pub(crate) struct Flown {
-    /// Exit code.
     pub(crate) code: Option<i32>,
     /// Standard error.
     pub(crate) err: String,
-    /// The JSON lines.
     pub(crate) lines: Vec<Line>,
 }
 
@@ -138,35 +135,35 @@ impl Flown {
         self
     }
 
-    /// The lines of this event.
+    /// Returns the lines of this event.
     pub(crate) fn all<'a>(&'a self, event: &'a str) -> impl DoubleEndedIterator<Item = &'a Line> + 'a {
         self.lines.iter().filter(move |line| line.event() == event)
     }
 
-    /// The first line of this event.
+    /// Returns the first line of this event.
     #[track_caller]
     pub(crate) fn first(&self, event: &str) -> &Line {
         let found = self.lines.iter().find(|line| line.event() == event);
         found.unwrap_or_else(|| panic!("no {event} in {:#?}", self.lines))
     }
 
-    /// Simulated time of the first engagement.
+    /// Returns the simulated time of the first engagement.
     pub(crate) fn engaged_at(&self) -> f64 {
         self.all("state").find(|line| line.text("from") == "IDLE").expect("an engagement").time()
     }
 
-    /// The states entered, with the waypoint: `APPROACHING 0`.
+    /// Returns the states entered, with the waypoint: `APPROACHING 0`.
     pub(crate) fn states(&self) -> Vec<String> {
         self.all("state").map(|line| format!("{} {}", line.text("to"), line.number("wp"))).collect()
     }
 }
 
-/// The folder of the shipped plans.
+/// Returns the folder of the shipped plans.
 pub(crate) fn plans() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("plans")
 }
 
-/// A shipped plan's path as an argument.
+/// Returns the path of a shipped plan as an argument.
 pub(crate) fn plan(name: &str) -> String {
     plans().join(name).to_str().expect("a plain path").to_owned()
 }

@@ -1,4 +1,5 @@
-//! The user interface in a pseudo-terminal: a whole flight, sizes, keys, and giving the terminal back.
+//! The user interface in a pseudo-terminal: a complete flight, window sizes, keys, and restoring the
+//! terminal.
 
 use betadeck::storage::Store;
 
@@ -22,16 +23,16 @@ const FLIGHT: [&str; 13] = [
     "COMPLETE",
 ];
 
-/// Row of the status line with the state of the autopilot.
+/// The row of the status line with the state of the autopilot.
 const MISSION: usize = 1;
 
-/// The state in the status line.
+/// Returns the state in the status line.
 pub(crate) fn state(terminal: &Terminal) -> String {
     let row = terminal.row(MISSION);
     row.split_whitespace().nth(1).unwrap_or("").to_owned()
 }
 
-/// The transitions that the log panel shows, the oldest first.
+/// Returns the transitions in the log panel, the oldest first.
 fn transitions(terminal: &Terminal) -> Vec<(String, String)> {
     let screen = terminal.screen();
     let found = screen.lines().filter_map(|line| {
@@ -57,14 +58,14 @@ fn the_whole_flight_by_keys() {
     let before = Terminal::start(120, 50, "cat", &[]).discipline();
     let mut terminal = started(120, 50, &[]);
     assert_ne!(terminal.discipline(), before, "raw mode");
-    // The log, alone on the screen.
+    // Shows the log alone on the screen.
     terminal.send("8z");
     terminal.until("the zoomed log", |terminal| {
         terminal.row(2).contains("Log") && !terminal.screen().contains("1 Map─")
     });
     terminal.send("F");
     terminal.until_shown("GPS fix");
-    // 32 times real time: a second of orbit is some frames, the landing takes seconds.
+    // At 32 times real time a second of orbit is some frames, and the landing takes seconds.
     terminal.send("]]]]]");
     let mut seen = vec![state(&terminal)];
     terminal.watch("DISARMED after COMPLETE", |terminal| {
@@ -81,7 +82,7 @@ fn the_whole_flight_by_keys() {
     for state in ["IDLE", "APPROACHING", "ORBITING", "LANDING", "COMPLETE"] {
         assert!(seen.iter().any(|name| name == state), "no {state} in {seen:?}");
     }
-    // And all of them, with those of one step, are in the log; a frame may be on its way.
+    // The log has all states, with those that last one step. A frame may still be on its way.
     let expected: Vec<_> = FLIGHT.windows(2).map(|pair| (pair[0].to_owned(), pair[1].to_owned())).collect();
     terminal.until(&format!("{expected:?}"), |terminal| transitions(terminal) == expected);
     terminal.send("q");
@@ -194,7 +195,7 @@ fn every_size_is_survived_in_flight() {
         }
     }
     terminal.until("the map in full", |terminal| terminal.row(39).contains("help"));
-    // Quitting works in a window that is too small, too.
+    // Quitting also works in a window that is too small.
     terminal.resize(10, 3);
     terminal.send("\x03\x03");
     assert_eq!(terminal.end(), 0);
@@ -211,7 +212,8 @@ fn a_storm_of_sizes_is_survived_in_flight_and_the_terminal_is_given_back_on_a_si
         at = at.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         1 + (at >> 8) % most
     };
-    // Faster than frames are drawn, each storm over another panel, popup, prompt or text field.
+    // The sizes change faster than frames are drawn. Each storm hits another panel, popup, prompt or text
+    // field.
     let keys = [
         "1", "2", "3", "6z", "7", "8", "?", "\x1b\x1b", "2z", "\x10", "\x10wi", ":w", "5set", "2S", "2Sname",
         "2o", "2P", "2E", "8/wind", "G", "w", "q",
@@ -219,11 +221,11 @@ fn a_storm_of_sizes_is_survived_in_flight_and_the_terminal_is_given_back_on_a_si
     for keys in keys {
         terminal.send(keys);
         for round in 0..60 {
-            // Every other window is smaller than anything in it.
+            // Every other window is smaller than any panel.
             let (columns, rows) = if round % 2 == 0 { (250, 80) } else { (90, 4) };
             terminal.resize(next(columns) as u16, next(rows) as u16);
         }
-        // What was drawn for other sizes than the emulator's goes by.
+        // Frames for sizes other than the emulator's pass by here.
         terminal.resize(80, 24);
         terminal.send("\x1b\x1b\x1b\x1b\x1b[19~");
         terminal.until("a whole screen", |terminal| {
@@ -256,7 +258,7 @@ fn look_ahead_and_what_if_are_flown_by_keys_in_flight() {
         terminal.until("its end", |terminal| terminal.screen().contains("% left"));
         terminal.send("\x1b");
         terminal.until("none on the map", |terminal| !terminal.row(3).contains("GPS lost here"));
-        // The flight itself goes on as it was.
+        // The flight itself continues unchanged.
         assert!(terminal.row(0).contains("3D"), "{}", terminal.screen());
         terminal.send("qy");
         assert_eq!(terminal.end(), 0);
@@ -287,7 +289,7 @@ fn the_shell_finds_its_line_discipline_unchanged() {
     assert!(terminal.screen().contains("exit 0"), "{}", terminal.screen());
     let screen = terminal.screen();
     let lines: Vec<&str> = screen.lines().filter(|line| line.matches(':').count() > 20).collect();
-    // A long line may be wrapped: the emulator joins it again.
+    // The emulator joins a long line that was wrapped.
     assert_eq!(lines.len(), 2, "{screen}");
     assert_eq!(lines[0], lines[1]);
 }
@@ -308,7 +310,7 @@ fn a_panic_gives_the_terminal_back_before_it_is_told() {
     assert!(taken < left && left < told, "{raw:?}");
 }
 
-/// Run by the test above, in a terminal of its own.
+/// Runs in its own terminal, started by the test above.
 #[test]
 #[ignore = "takes the terminal it is run in; run by another test"]
 #[should_panic(expected = "everything is wrong")]
@@ -372,7 +374,7 @@ fn a_paste_of_a_thousand_lines_runs_them_all_in_their_order() {
 
 #[test]
 fn any_keys_and_clicks_leave_a_program_that_can_be_left() {
-    // Every key of the help, arrows, function keys, clicks, drags and wheels, in an order that is always the same.
+    // Every key of the help, arrows, function keys, clicks, drags and wheels, always in the same order.
     let named = [
         "\x1b[A",
         "\x1b[B",
@@ -388,7 +390,7 @@ fn any_keys_and_clicks_leave_a_program_that_can_be_left() {
         "\x1b[1;2D",
         "\r",
         "\t",
-        // Escape alone is the beginning of any of the others; twice it is itself.
+        // A single Escape begins any of the other sequences. Two are the key itself.
         "\x1b\x1b",
         " ",
         "\x7f",
@@ -409,7 +411,8 @@ fn any_keys_and_clicks_leave_a_program_that_can_be_left() {
                 at = at.wrapping_mul(1_664_525).wrapping_add(1_013_904_223) % (1 << 31);
                 terminal.send(&keys[(at >> 8) % keys.len()]);
             }
-            // Out of whatever is open, then a panel: all keys before have been heard when it has the focus.
+            // Leaves any open popup and focuses a panel. When the panel has the focus, all earlier keys have
+            // been handled.
             let (key, title) = if round % 2 == 0 { ("\x1b[19~", "▸8 Log") } else { ("\x1bOS", "▸4 RC") };
             terminal.send(&format!("\x1b\x1b\x1b\x1b{key}"));
             terminal.until_shown(title);

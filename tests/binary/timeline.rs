@@ -1,4 +1,4 @@
-//! The flight that was recorded, in a pseudo-terminal: rewind, a scenario of it, and the timeline after a long wait.
+//! The recorded flight in a pseudo-terminal: rewind, a scenario of it, and the timeline after a long wait.
 
 use crate::pty::Terminal;
 use crate::terminal::{started, state};
@@ -11,7 +11,7 @@ fn the_flight_is_rewound_and_flown_on_by_keys() {
         terminal.until("the mission", |terminal| state(terminal) == "APPROACHING");
         terminal.send(",");
         terminal.until_shown("REWOUND −");
-        // Before the engagement, which is a state and an event.
+        // Goes back before the engagement, which is a state and an event.
         terminal.send(",");
         terminal.until("before the mission", |terminal| state(terminal) == "IDLE");
         let timeline = terminal.row(usize::from(rows) - 2);
@@ -19,7 +19,7 @@ fn the_flight_is_rewound_and_flown_on_by_keys() {
         terminal.send("a");
         terminal.until_shown("An earlier instant is shown");
         terminal.send("eq");
-        // The craft at the end is armed.
+        // At the end of the recording the craft is armed.
         terminal.until_shown("Quit?");
         terminal.send("n,b");
         terminal.until_shown("Flown on from here");
@@ -33,7 +33,7 @@ fn the_flight_is_rewound_and_flown_on_by_keys() {
 #[test]
 fn the_first_flight_of_a_session_becomes_a_scenario_that_passes() {
     for (columns, rows) in [(80, 24), (200, 60)] {
-        // The screen, then the check of what `T` wrote, in one directory.
+        // Runs the screen, then the check of the file that `T` wrote, in one directory.
         let program = crate::support::PROGRAM;
         let written = "square-flight-1.toml";
         let script = format!(
@@ -43,7 +43,7 @@ fn the_first_flight_of_a_session_becomes_a_scenario_that_passes() {
         terminal.until_shown("DISARMED");
         terminal.send("F]]]]]]");
         terminal.until_shown("GPS fix");
-        // A wind that rises during the flight is part of it.
+        // A wind that rises during the flight is part of the scenario.
         terminal.until("the mission", |terminal| state(terminal) == "APPROACHING");
         terminal.send(":wind 3@270\r");
         terminal.until("a landing", |terminal| {
@@ -86,7 +86,7 @@ fn the_speed_falls_back_after_the_landing_and_a_long_wait_leaves_the_flight_on_t
     terminal.send("{{");
     terminal.until("the landing again", |terminal| state(terminal) == "LANDING");
     terminal.until_shown("REWOUND −");
-    // Now the craft is disarmed: nothing is asked.
+    // The craft is now disarmed, so quitting asks no question.
     terminal.send("q");
     assert_eq!(terminal.end(), 0);
     terminal.assert_given_back();

@@ -1,14 +1,15 @@
-//! `complete` is only what is true: craft that drift, fall or miss are told as `missed`, with the worst and by how much.
+//! `complete` is reported only if it is true. A craft that drifts, falls or misses is reported as `missed`,
+//! with the worst value and its excess.
 
 use betadeck::plan::builtin::{BuiltinPlan, PLANS};
 
 use crate::support::{Flown, Sandbox};
 
-/// Sixty seconds 20 m above home.
+/// A plan that holds sixty seconds 20 m above home.
 const HOLD: &str = "waypoint insert 0 40.4635000 -79.5182000 2000 0 HOLD 600 NONE\n";
-/// A landing at home.
+/// A plan that lands at home.
 const LAND: &str = "waypoint insert 0 40.4635000 -79.5182000 5000 0 LAND 0 NONE\n";
-/// Past a place a kilometre up, then home.
+/// A plan that flies past a point one kilometre up and then lands at home.
 const HIGH: &str = "waypoint insert 0 40.4644000 -79.5182000 100000 0 FLYOVER 0 NONE\n\
                     waypoint insert 1 40.4635000 -79.5182000 2000 0 LAND 0 NONE\n";
 
@@ -18,7 +19,7 @@ fn fly(plan: &str, arguments: &[&str]) -> Flown {
     sandbox.fly(&[&["plan.txt"], arguments].concat())
 }
 
-/// The reason of a flight that the truth contradicts.
+/// Returns the flight and the reason why the true flight path contradicts its completion.
 #[track_caller]
 fn missed(flown: Flown) -> (Flown, String) {
     let flown = flown.ends(1, "missed");
@@ -26,7 +27,7 @@ fn missed(flown: Flown) -> (Flown, String) {
     (flown, reason)
 }
 
-/// A number of a waypoint in the last line.
+/// Returns a number of a waypoint in the last line.
 #[track_caller]
 fn of_waypoint(flown: &Flown, index: usize, key: &str) -> f64 {
     let number = flown.first("end").value("waypoints")[index][key].as_f64();
@@ -100,10 +101,11 @@ fn every_shipped_plan_is_truly_flown_in_calm_and_rough_air() {
 
 #[test]
 fn what_the_pilot_flies_and_what_is_resumed_does_not_count() {
-    // Pushed 40 m away in the middle of the hold, let go, and back in time.
+    // The craft is pushed 40 m away in the middle of the hold, released, and is back in time.
     let pushed = fly(HOLD, &["--stick", "pitch=1900@10,6"]).ends(0, "complete");
     assert!(of_waypoint(&pushed, 0, "hold_max_m") < 12.0);
-    // Switched off, carried away by hand, switched on: the hold is flown again.
+    // The autopilot is switched off, the craft is flown away by hand, and the autopilot is switched on again.
+    // It flies the hold again.
     let again = fly(HOLD, &["--stick", "aux2=1000@10,10", "--stick", "pitch=1900@11,6"]).ends(0, "complete");
     assert!(of_waypoint(&again, 0, "hold_max_m") < 12.0);
 }

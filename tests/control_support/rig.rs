@@ -1,5 +1,5 @@
-//! A craft made of plant, estimator, controller and holds, without arming rules and receiver: what the control tests
-//! fly.
+//! A craft made of plant, estimator, controller and holds, without arming rules and receiver. The control
+//! tests fly it.
 
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
@@ -16,10 +16,9 @@ use betadeck::signals::SimTime;
 use betadeck::sim::{Airframe, Noise, Truth, World, WorldConfig};
 use nalgebra::{Vector2, Vector3};
 
-/// Interval of the RC frames, µs.
+/// The interval of the RC frames, µs.
 const FRAME_US: u64 = 20_000;
 
-/// The craft.
 pub(crate) struct Rig {
     pub(crate) world: World,
     pub(crate) estimator: Estimator,
@@ -30,14 +29,14 @@ pub(crate) struct Rig {
     pub(crate) params: Params,
     pub(crate) modes: HoldModes,
     pub(crate) hold: HoldOutput,
-    /// Sticks and mode as the pilot has them; they reach the controller with the next frame.
+    /// The sticks and mode of the pilot. They reach the controller with the next frame.
     pub(crate) sticks: ControlInput,
     received: ControlInput,
     dt: f64,
     slow_time: SimTime,
 }
 
-/// A world with these sensors and this airframe in flat wind.
+/// Returns a world with these sensors and this airframe in flat wind.
 pub(crate) fn world(noise: Noise, airframe: Airframe) -> WorldConfig {
     let mut config = WorldConfig { noise, airframe, ..WorldConfig::default() };
     config.switches.wind_profile = betadeck::sim::WindProfile::Flat;
@@ -68,7 +67,7 @@ impl Rig {
         }
     }
 
-    /// An armed craft 20 m above home, hovering in ALTHOLD and POS HOLD for 10 s.
+    /// Returns an armed craft 20 m above home, after 10 s of hover in ALTHOLD and POS HOLD.
     pub(crate) fn airborne(config: WorldConfig, settings: &Settings) -> Self {
         let mut rig = Self::new(config, settings);
         rig.run(6.0);
@@ -92,7 +91,7 @@ impl Rig {
         self.sticks.airmode = true;
     }
 
-    /// Gives the craft into the hands of the pilot, levelled, at the throttle that hovers.
+    /// Passes control to the pilot, at the throttle that hovers. Clears the holds.
     pub(crate) fn manual(&mut self, mode: StickMode) {
         self.sticks.throttle_us = self.controller.state().throttle_us;
         self.sticks.mode = mode;
@@ -107,25 +106,25 @@ impl Rig {
         self.world.truth()
     }
 
-    /// True roll (right positive) and pitch (nose down positive), degrees.
+    /// Returns the true roll (right positive) and pitch (nose down positive), degrees.
     pub(crate) fn lean_deg(&self) -> [f64; 2] {
         let m = self.truth().attitude.to_rotation_matrix();
         let m = m.matrix();
         [m[(2, 1)].atan2(m[(2, 2)]).to_degrees(), (-m[(2, 0)]).asin().to_degrees()]
     }
 
-    /// True body rates, roll right, pitch nose down, yaw clockwise, °/s.
+    /// Returns the true body rates, roll right, pitch nose down, yaw clockwise, °/s.
     pub(crate) fn rates_dps(&self) -> [f64; 3] {
         let rate = self.truth().rate_flu;
         [rate.x.to_degrees(), rate.y.to_degrees(), -rate.z.to_degrees()]
     }
 
-    /// True position north and east of home, m.
+    /// Returns the true position north and east of home, m.
     pub(crate) fn position_ne(&self) -> Vector2<f64> {
         Vector2::new(self.truth().pos_enu.y, self.truth().pos_enu.x)
     }
 
-    /// True altitude above where it stood, m.
+    /// Returns the true altitude above the standing height, m.
     pub(crate) fn altitude_m(&self) -> f64 {
         self.truth().pos_enu.z - self.world.airframe().standing_height_m()
     }
@@ -134,7 +133,7 @@ impl Rig {
         self.watch(seconds, |_| ());
     }
 
-    /// Runs and looks at the craft after each step.
+    /// Runs, and calls `look` with the craft after each step.
     pub(crate) fn watch(&mut self, seconds: f64, mut look: impl FnMut(&Self)) {
         for _ in 0..(seconds / self.dt).round() as usize {
             self.step();
@@ -226,14 +225,14 @@ impl Rig {
     }
 }
 
-/// How a signal answered a step from 0 to `target`, sampled every `dt` seconds.
+/// The response of a signal to a step from 0 to `target`, sampled every `dt` seconds.
 #[derive(Debug)]
 pub(crate) struct StepResponse {
-    /// Share of the step that it went beyond.
+    /// The overshoot as a share of the step.
     pub(crate) overshoot: f64,
-    /// Seconds until it stayed within 5 % of the step.
+    /// Seconds until the signal stayed within 5 % of the step.
     pub(crate) settled_s: f64,
-    /// Seconds until it reached 90 %.
+    /// Seconds until the signal reached 90 %.
     pub(crate) rise_s: f64,
 }
 

@@ -1,4 +1,4 @@
-//! The App over its websocket: how it connects, polls, and speaks to the command line.
+//! The App over its websocket: its connection, its polling, and its use of the command line.
 
 use std::net::{SocketAddr, TcpStream};
 
@@ -35,7 +35,7 @@ impl App {
         self.socket.send(Message::Binary(bytes.into())).unwrap();
     }
 
-    /// Sends what may be refused.
+    /// Sends bytes that may be refused.
     pub(crate) fn try_send(&mut self, bytes: Vec<u8>) -> Result<(), Error> {
         self.socket.send(Message::Binary(bytes.into()))
     }
@@ -47,7 +47,7 @@ impl App {
         }
     }
 
-    /// The next answer: the code and, unless it is an error, the payload.
+    /// Returns the next answer: the code and, unless it is an error, the payload.
     pub(crate) fn answer(&mut self) -> (u16, Option<Vec<u8>>) {
         loop {
             if let Some(answer) = msp::take_answer(&mut self.bytes) {
@@ -71,7 +71,7 @@ impl App {
         self.ask(code, &[]).unwrap_or_else(|| panic!("{code} is refused"))
     }
 
-    /// What the App does before its first tab opens.
+    /// Does the same as the App before its first tab opens.
     pub(crate) fn connect(address: SocketAddr) -> Self {
         let mut app = Self::open(address);
         assert_eq!(app.expect(1), [0, 1, 49]);
@@ -96,7 +96,7 @@ impl App {
         app
     }
 
-    /// One round of the poll behind every tab; says whether there is a GPS.
+    /// Runs one round of the poll that every tab makes. Returns `true` if there is a GPS.
     pub(crate) fn poll(&mut self) -> bool {
         for code in [110, 130, 116] {
             assert!(!self.expect(code).is_empty(), "{code}");
@@ -108,7 +108,7 @@ impl App {
         has_gps
     }
 
-    /// A line as the Flight Plan tab sends it: the lines of the answer.
+    /// Sends a line as the Flight Plan tab does. Returns the lines of the answer.
     pub(crate) fn line(&mut self, line: &str) -> Vec<String> {
         self.send([&[2], line.as_bytes(), b"\n\x03"].concat());
         while self.bytes.last() != Some(&3) {
@@ -126,7 +126,7 @@ impl App {
         lines
     }
 
-    /// Reads until the other side has closed in the ordinary way.
+    /// Reads until the other side has closed the connection in the ordinary way.
     pub(crate) fn wait_for_close(mut self) {
         loop {
             match self.socket.read() {
@@ -137,7 +137,7 @@ impl App {
         }
     }
 
-    /// Says goodbye and hears the answer.
+    /// Closes the connection and waits for the answer.
     pub(crate) fn close(mut self) {
         self.socket.close(None).unwrap();
         self.wait_for_close();

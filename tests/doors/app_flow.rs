@@ -1,4 +1,5 @@
-//! What people do with the App: connect, look around, save a plan, reboot, come back; and many clients in flight.
+//! Tasks that people do with the App: connect, look around, save a plan, reboot, reconnect. Also many clients
+//! in flight.
 
 use std::thread;
 use std::time::{Duration, Instant};
@@ -16,7 +17,7 @@ const PLAN: [&str; 4] = [
     "waypoint insert 3 40.4640000 -79.5190000 5000 0 LAND 0 ORBIT",
 ];
 
-/// The clients of a busy ground, each with its questions a second.
+/// The number of clients that poll at the same time. Each sends `REQUESTS` requests, one every `PERIOD`.
 const CLIENTS: usize = 8;
 const REQUESTS: u32 = 150;
 const PERIOD: Duration = Duration::from_millis(20);
@@ -36,7 +37,7 @@ fn the_app_connects_saves_a_plan_and_comes_back() {
     assert_eq!(app.plan(), PLAN, "the link is kept");
     app.poll();
 
-    // A tab's button: save, then reboot.
+    // The button of a tab saves and then reboots.
     assert_eq!(app.ask(250, &[]), Some(Vec::new()));
     assert_eq!(app.ask(68, &[]), Some(vec![0]));
     app.wait_for_close();
@@ -89,7 +90,7 @@ fn the_app_and_eight_clients_get_every_answer_in_flight() {
     let (middle, late) = (delays[delays.len() / 2], delays[delays.len() * 99 / 100]);
     println!("{} answers: median {middle:?}, 99 of 100 within {late:?}", delays.len());
 
-    // No command line in flight, neither framed nor for people, and nothing that would end the flight.
+    // No command line opens in flight, neither framed nor for people, and nothing ends the flight.
     app.send(b"\x02waypoint clear\n\x03#".to_vec());
     assert_eq!(app.ask(250, &[]), None, "nothing is saved in flight");
     assert_eq!(app.ask(68, &[]), None, "no reboot in flight");

@@ -1,4 +1,4 @@
-//! Clients that break the protocols, while a craft flies.
+//! Clients that break the protocols while a craft flies.
 
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream, UdpSocket};
@@ -10,10 +10,10 @@ use super::app::App;
 use super::scripts::{PATIENT_FAILSAFE, SWITCHES, THERE_AND_DOWN, prepared, sees_the_flight};
 use super::transmitter::Script;
 
-/// How long a client that does not listen waits before it is content.
+/// The pause between attempts to connect.
 const SOON: Duration = Duration::from_millis(50);
 
-/// Numbers that look like noise.
+/// A generator of pseudo-random bytes.
 struct Noise(u64);
 
 impl Noise {
@@ -34,7 +34,7 @@ fn connect(door: SocketAddr) -> TcpStream {
     stream
 }
 
-/// A handshake from a stranger's page; what came back.
+/// Sends a handshake from a stranger's web page and returns the answer.
 fn strangers_handshake(door: SocketAddr) -> String {
     let mut stream = TcpStream::connect(door).unwrap();
     stream.set_read_timeout(Some(super::program::PATIENCE)).unwrap();
@@ -48,24 +48,25 @@ fn strangers_handshake(door: SocketAddr) -> String {
     answer
 }
 
-/// The door says 403 to a stranger's page, as soon as it has room for one more client.
+/// Returns `true` if the door answers 403 to a stranger's web page. It does so once it has room for one more
+/// client.
 fn refuses_strangers(door: SocketAddr) -> bool {
     let answers = std::iter::repeat_with(|| strangers_handshake(door)).take(1000);
     answers.inspect(|_| thread::sleep(SOON)).any(|answer| answer.starts_with("HTTP/1.1 403 "))
 }
 
-/// One round of bad manners; whether the other side puts up with it is its own business, so errors are none.
+/// Misbehaves for one round. The other side may or may not accept it, so errors are ignored.
 fn misbehave(round: u64, tcp: SocketAddr, websocket: SocketAddr, rc: SocketAddr) {
     let mut noise = Noise(round);
     let door = if round.is_multiple_of(2) { tcp } else { websocket };
     let mut stream = connect(door);
     match round % 8 {
-        // Noise, and gone with the answers unread.
+        // Sends noise and disconnects with unread answers.
         0 | 1 => drop(stream.write_all(&noise.bytes(20_000))),
-        // A frame that is never finished; half a handshake.
+        // Sends a frame that never ends, or half a handshake.
         2 => drop(stream.write_all(b"$X<\x00\x01\x00\xff\x00half")),
         3 => drop(stream.write_all(b"GET / HTTP/1.1\r\nHost: x\r\nUpgrade: webso")),
-        // Megabytes without a line end.
+        // Sends megabytes without a line end.
         4 => {
             let chunk = vec![b'x'; 1 << 16];
             for _ in 0..160 {
@@ -74,14 +75,14 @@ fn misbehave(round: u64, tcp: SocketAddr, websocket: SocketAddr, rc: SocketAddr)
                 }
             }
         }
-        // Web pages of strangers.
+        // Sends handshakes from strangers' web pages.
         5 => assert!(refuses_strangers(websocket)),
-        // Many questions, no interest in the answers.
+        // Sends many requests and reads no answer.
         6 => {
             let questions = super::msp::request(116, &[]).repeat(4000);
             drop(stream.write_all(&questions));
         }
-        // A websocket that sends what no client sends.
+        // Sends over a websocket data that no real client sends.
         _ => {
             let mut app = App::open(websocket);
             drop(app.try_send(noise.bytes(5000)));
@@ -121,7 +122,7 @@ fn rude_clients_do_not_disturb_a_flight() {
     assert_eq!(told, 1, "a stranger's page is told once");
 }
 
-/// Ends the rude ones, also when the flight failed.
+/// Stops the hostile clients when dropped, even if the flight failed.
 struct Content<'a>(&'a AtomicBool);
 
 impl Drop for Content<'_> {

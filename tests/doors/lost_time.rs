@@ -1,4 +1,4 @@
-//! A program that was held up says how much time that cost.
+//! A program that was stopped reports how much time that cost.
 
 use std::io::{Read, Write};
 use std::net::TcpStream;
@@ -11,7 +11,7 @@ fn signal(name: &str, process: u32) {
     assert!(Command::new("kill").args([name, &process.to_string()]).status().unwrap().success());
 }
 
-/// What the command line says to `status`.
+/// Returns the answer of the command line to `status`.
 fn status(serve: &Serve) -> String {
     let mut client = TcpStream::connect(serve.tcp).unwrap();
     client.set_read_timeout(Some(PATIENCE)).unwrap();
@@ -29,7 +29,7 @@ fn status(serve: &Serve) -> String {
 #[test]
 fn a_stopped_program_tells_the_time_that_it_lost() {
     let mut serve = Serve::start("1");
-    // Its clock runs: time before it began would not be lost.
+    // The clock runs now. Time before its start would not be lost.
     serve.wait("fix", |event| event["event"] == "gps_fix");
     signal("-STOP", serve.id());
     std::thread::sleep(Duration::from_secs(2));

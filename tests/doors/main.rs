@@ -1,4 +1,5 @@
-//! The executable as the programs around it see it: scripts, the App, simulators. Ports come from the system.
+//! The executable as seen by the programs around it: scripts, the App, simulators. The system chooses the
+//! ports.
 
 #![allow(
     clippy::unwrap_used,

@@ -1,5 +1,5 @@
-//! What the whole program holds while clients of every door send without end and never read: the promise of
-//! `docs/links.md`, measured.
+//! The memory of the complete program while clients of every door send without end and never read. It must
+//! keep the promise of `docs/links.md`.
 #![cfg(target_os = "linux")]
 
 use std::io::{Read, Write};
@@ -9,14 +9,15 @@ use std::time::Duration;
 use super::msp;
 use super::program::{PATIENCE, Serve, Sitl};
 
-/// What a client sends, unless it is stopped before.
+/// The most bytes that a client sends.
 const FLOOD: usize = 16 << 20;
-/// Clients of each kind.
+/// The number of clients of each kind.
 const CLIENTS: usize = 4;
-/// What all of them together may cost, KiB: a fraction of what one of them sends.
+/// The limit of the memory for all clients together, KiB. It is a fraction of the bytes that one of them
+/// sends.
 const BOUND_KIB: u64 = 16 * 1024;
 
-/// The most memory that a process has held, KiB.
+/// Returns the peak memory of a process, KiB.
 fn peak_kib(process: u32) -> u64 {
     let status = std::fs::read_to_string(format!("/proc/{process}/status")).unwrap();
     let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).unwrap();
@@ -52,7 +53,7 @@ fn websocket(door: SocketAddr) -> TcpStream {
     stream
 }
 
-/// A client's frame, masked with zeros.
+/// Returns a client's frame, masked with zeros.
 fn frame(first: u8, payload: &[u8]) -> Vec<u8> {
     let length: Vec<u8> = match payload.len() {
         short @ 0..126 => vec![0x80 | short as u8],
@@ -61,7 +62,7 @@ fn frame(first: u8, payload: &[u8]) -> Vec<u8> {
     [&[first], length.as_slice(), &[0; 4], payload].concat()
 }
 
-/// Clients that have sent all that their door takes, and have read nothing.
+/// Returns clients that have sent all that their door takes and have read nothing.
 fn deaf_clients(to_websocket: SocketAddr, to_tcp: SocketAddr, questions: &[u8]) -> Vec<TcpStream> {
     let mut deaf = Vec::new();
     for piece in [
@@ -73,7 +74,7 @@ fn deaf_clients(to_websocket: SocketAddr, to_tcp: SocketAddr, questions: &[u8]) 
     ] {
         let mut stream = websocket(to_websocket);
         if piece[0] == 0 {
-            // Its beginning.
+            // The beginning of that message.
             stream.write_all(&frame(0x02, b"x")).unwrap();
         }
         flood(&mut stream, &piece);
@@ -111,7 +112,7 @@ fn clients_that_send_without_end_and_never_read_cost_little_memory_and_are_close
             .collect();
         flooding.into_iter().flat_map(|clients| clients.join().unwrap()).collect()
     });
-    // More than are served.
+    // More clients than the door serves.
     deaf.extend((0..100).map(|_| connect(serve.tcp)));
     let rc = UdpSocket::bind("127.0.0.1:0").unwrap();
     for datagram in [[0; 40].as_slice(), &[0; 1400]] {
@@ -119,7 +120,7 @@ fn clients_that_send_without_end_and_never_read_cost_little_memory_and_are_close
     }
     let cost = peak_kib(serve.id()) - before;
     assert!(cost < BOUND_KIB, "{cost} KiB");
-    // In any order.
+    // The notices come in any order.
     for _ in 0..2 {
         serve.wait("notice of a deaf client", |event| {
             event["text"].as_str().is_some_and(|text| text.contains("did not take its answers for 10 s"))

@@ -1,4 +1,4 @@
-//! MSP as a client has it: the answers are read by code of its own.
+//! MSP from a client's point of view. The answers are read by separate code.
 
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream};
@@ -8,22 +8,23 @@ use betadeck::link::proto::msp::{Form, Frame};
 
 use super::program::PATIENCE;
 
-/// The flag that keeps a craft without RC from arming.
+/// The arming disable flag of a craft without RC.
 const RX_LOSS: u32 = 1 << 2;
 
-/// The bytes of a request.
+/// Returns the bytes of a request.
 pub(crate) fn request(code: u8, payload: &[u8]) -> Vec<u8> {
     let size = u8::try_from(payload.len()).unwrap();
     let sum = payload.iter().fold(size ^ code, |sum, byte| sum ^ byte);
     [b"$M<", &[size, code][..], payload, &[sum]].concat()
 }
 
-/// The bytes of a version 2 request, for the codes that a byte cannot hold.
+/// Returns the bytes of a version 2 request, for codes that do not fit in a byte.
 pub(crate) fn request_v2(code: u16, payload: &[u8]) -> Vec<u8> {
     Frame::request(Form::V2, code, payload).to_bytes()
 }
 
-/// Takes a whole answer from the front of `bytes`: its code, and its payload unless it is an error.
+/// Takes a complete answer from the front of `bytes`. Returns its code, and its payload unless it is an
+/// error.
 pub(crate) fn take_answer(bytes: &mut Vec<u8>) -> Option<(u16, Option<Vec<u8>>)> {
     if bytes.starts_with(b"$X") {
         let &[_, _, kind, _, code_low, code_high, size_low, size_high, ..] = &bytes[..] else { return None };
@@ -46,7 +47,7 @@ pub(crate) fn take_answer(bytes: &mut Vec<u8>) -> Option<(u16, Option<Vec<u8>>)>
     Some((u16::from(code), payload))
 }
 
-/// Asks over a byte stream and reads the answer.
+/// Sends a request over a byte stream and reads the answer.
 pub(crate) fn ask(stream: &mut (impl Read + Write), code: u8, payload: &[u8]) -> Option<Vec<u8>> {
     stream.write_all(&request(code, payload)).unwrap();
     let (answered, payload) = read_answer(stream);
@@ -54,7 +55,7 @@ pub(crate) fn ask(stream: &mut (impl Read + Write), code: u8, payload: &[u8]) ->
     payload
 }
 
-/// Asks in version 2 over a byte stream and reads the answer.
+/// Sends a version 2 request over a byte stream and reads the answer.
 pub(crate) fn ask_v2(stream: &mut (impl Read + Write), code: u16, payload: &[u8]) -> Option<Vec<u8>> {
     stream.write_all(&request_v2(code, payload)).unwrap();
     let (answered, payload) = read_answer(stream);
@@ -74,7 +75,7 @@ fn read_answer(stream: &mut impl Read) -> (u16, Option<Vec<u8>>) {
     }
 }
 
-/// Waits until nothing but the missing RC keeps the craft from arming: the start is over, there is a fix.
+/// Waits until only the missing RC blocks arming. The start is then over and there is a fix.
 pub(crate) fn wait_until_ready(door: SocketAddr) {
     let mut stream = TcpStream::connect(door).unwrap();
     stream.set_read_timeout(Some(PATIENCE)).unwrap();

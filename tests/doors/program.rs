@@ -1,4 +1,4 @@
-//! A running `betadeck`, ended when dropped.
+//! A running `betadeck`, which is ended when dropped.
 
 use std::io::{BufRead, BufReader, Read};
 use std::net::SocketAddr;
@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-/// Nothing in these tests takes this long unless it hangs.
+/// The time limit of every wait. Nothing in these tests takes this long unless it hangs.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(120);
 
 /// A process whose output is read line by line.
@@ -16,7 +16,7 @@ pub(crate) struct Program {
     child: Child,
     lines: mpsc::Receiver<String>,
     seen: Vec<String>,
-    /// Its home, so that it sees nothing of the user's configuration.
+    /// A separate home directory, so that the process sees nothing of the user's configuration.
     _home: tempfile::TempDir,
 }
 
@@ -39,12 +39,13 @@ impl Program {
         Self { child, lines, seen: Vec::new(), _home: home }
     }
 
-    /// The number of its process.
+    /// Returns the process id.
     pub(crate) fn id(&self) -> u32 {
         self.child.id()
     }
 
-    /// The next line for which `wanted` gives something; panics with everything said when none comes.
+    /// Returns the first result of `wanted` among the next lines. Panics with all lines seen if there is
+    /// none.
     pub(crate) fn wait<T>(&mut self, what: &str, wanted: impl Fn(&str) -> Option<T>) -> T {
         let end = Instant::now() + PATIENCE;
         loop {
@@ -60,13 +61,13 @@ impl Program {
         }
     }
 
-    /// Waits for its end and gives the exit code.
+    /// Waits for the end of the process. Returns the exit code.
     #[allow(dead_code, reason = "only some of those that share this file wait for an end")]
     pub(crate) fn end(&mut self) -> i32 {
         let end = Instant::now() + PATIENCE;
         while Instant::now() < end {
             if let Some(status) = self.child.try_wait().unwrap() {
-                // What it said last is still on its way.
+                // The last lines may still be on their way.
                 while let Ok(line) = self.lines.recv_timeout(Duration::from_secs(1)) {
                     self.seen.push(line);
                 }
@@ -77,7 +78,7 @@ impl Program {
         panic!("no end after:\n{}", self.seen.join("\n"))
     }
 
-    /// All lines so far.
+    /// Returns all lines so far.
     pub(crate) fn seen(&mut self) -> &[String] {
         self.seen.extend(self.lines.try_iter());
         &self.seen
@@ -86,7 +87,7 @@ impl Program {
 
 impl Drop for Program {
     fn drop(&mut self) {
-        // One that is gone already has nothing to be ended.
+        // The process may have ended already.
         drop(self.child.kill());
         drop(self.child.wait());
     }
@@ -102,7 +103,7 @@ fn pass_on(output: impl Read + Send + 'static, lines: mpsc::Sender<String>) {
     });
 }
 
-/// `betadeck serve` with all its doors on ports of the system's choice.
+/// `betadeck serve` with all its doors on ports that the system chooses.
 pub(crate) struct Serve {
     program: Program,
     pub(crate) websocket: SocketAddr,
@@ -125,12 +126,12 @@ impl Serve {
         Self { websocket: address("ws"), tcp: address("tcp"), rc: address("rc"), program }
     }
 
-    /// The number of its process.
+    /// Returns the process id.
     pub(crate) fn id(&self) -> u32 {
         self.program.id()
     }
 
-    /// The next event for which `wanted` is true.
+    /// Returns the next event that `wanted` accepts.
     pub(crate) fn wait(&mut self, what: &str, wanted: impl Fn(&Value) -> bool) -> Value {
         self.program.wait(what, |line| {
             let event: Value = serde_json::from_str(line).ok()?;
@@ -138,25 +139,25 @@ impl Serve {
         })
     }
 
-    /// The next event of that name.
+    /// Returns the next event of that name.
     pub(crate) fn event(&mut self, name: &str) -> Value {
         self.wait(name, |event| event["event"] == name)
     }
 
-    /// Whether an event of that name has come so far.
+    /// Returns `true` if an event of that name has come so far.
     pub(crate) fn has_seen(&mut self, name: &str) -> bool {
         let key = format!("\"event\":\"{name}\"");
         self.program.seen().iter().any(|line| line.contains(&key))
     }
 
-    /// How many notices so far hold this text.
+    /// Returns the number of notices so far that contain this text.
     pub(crate) fn notices(&mut self, text: &str) -> usize {
         let holds = |line: &&String| line.contains("\"event\":\"notice\"") && line.contains(text);
         self.program.seen().iter().filter(holds).count()
     }
 }
 
-/// `betadeck sitl` with its doors on ports of the system's choice.
+/// `betadeck sitl` with its doors on ports that the system chooses.
 pub(crate) struct Sitl {
     pub(crate) program: Program,
     pub(crate) fdm: SocketAddr,
@@ -165,13 +166,13 @@ pub(crate) struct Sitl {
 }
 
 impl Sitl {
-    /// Sends motors to these ports.
+    /// Starts `betadeck sitl`, which sends its motors to these ports.
     pub(crate) fn start(raw: u16, motors: u16) -> Self {
         let ports = format!("{raw},{motors},0,0");
-        // `eeprom.bin` lies in its directory.
+        // The program keeps `eeprom.bin` in its directory.
         let mut program =
             Program::start(&["sitl", "--ws-port", "0", "--tcp-port", "0", "--udp-ports", &ports]);
-        // Two streams, so in any order.
+        // The lines come from two streams, so their order may vary.
         let (mut udp, mut tcp) = (Vec::new(), None);
         while udp.len() < 2 || tcp.is_none() {
             let (is_udp, place) = program.wait("line of a door", |line| {
@@ -189,7 +190,7 @@ impl Sitl {
         Self { program, fdm: udp[0], rc: udp[1], tcp: tcp.unwrap() }
     }
 
-    /// The number of its process.
+    /// Returns the process id.
     pub(crate) fn id(&self) -> u32 {
         self.program.id()
     }

@@ -1,4 +1,4 @@
-//! Flights by scripts: RC over UDP as the usual Python script sends it, and over MSP.
+//! Flights by scripts, with RC over UDP as the usual Python script sends it, and over MSP.
 
 use std::io::Write;
 use std::net::{SocketAddr, TcpStream};
@@ -10,7 +10,7 @@ use super::serial::Terminal;
 use super::simulator::Sockets;
 use super::transmitter::Script;
 
-/// The settings of the usual walk-through, and its plan.
+/// The settings of the usual guide, and its plan.
 const GUIDE_SETTINGS: &str = include_str!("../vectors/guide-step5.txt");
 const GUIDE_PLAN: &str = include_str!("../../plans/guide-square.txt");
 
@@ -19,30 +19,30 @@ pub(crate) const SWITCHES: &str = "
     aux 0 0 0 1700 2100 0 0
     aux 1 56 1 1700 2100 0 0";
 
-/// Lets a machine that is busy with other things hold a script up without a failsafe.
+/// A failsafe delay that lets a busy machine delay a script without a failsafe.
 pub(crate) const PATIENT_FAILSAFE: &str = "set failsafe_delay = 200";
 
-/// Over one point and down beside home.
+/// A plan that flies over one point and lands beside home.
 pub(crate) const THERE_AND_DOWN: &str = "
     set ap_landing_descent_rate = 200
     waypoint clear
     waypoint insert 0 40.4637000 -79.5182000 2000 500 FLYOVER 0 ORBIT
     waypoint insert 1 40.4636000 -79.5182000 1500 500 LAND 0 ORBIT";
 
-/// Round and round until somebody ends it.
+/// A plan that orbits until it is ended.
 pub(crate) const FOR_EVER: &str = "
     waypoint clear
     waypoint insert 0 40.4637000 -79.5182000 2000 500 HOLD 0 ORBIT";
 
-/// Types settings and plan over TCP, saves, sees the plan again in the craft that has booted with it, and waits
-/// until that could arm.
+/// Types settings and plan over TCP and saves them. Checks that the rebooted craft has the plan, and waits
+/// until the craft could arm.
 fn prepare(tcp: SocketAddr, texts: &[&str]) {
     let mut terminal = Terminal::open(tcp);
     for text in texts {
         terminal.type_lines(text);
     }
     terminal.save();
-    // It is the same craft after the reboot; a command line forbids arming until the next one.
+    // The craft is the same after the reboot. A command line blocks arming until the next reboot.
     let mut again = Terminal::open(tcp);
     let list = again.type_lines("waypoint list");
     let lines = texts.iter().flat_map(|text| text.lines()).map(str::trim);
@@ -53,14 +53,14 @@ fn prepare(tcp: SocketAddr, texts: &[&str]) {
     msp::wait_until_ready(tcp);
 }
 
-/// A served craft that has been prepared and could arm.
+/// Returns a served craft that is prepared and could arm.
 pub(crate) fn prepared(speed: &str, texts: &[&str]) -> Serve {
     let serve = Serve::start(speed);
     prepare(serve.tcp, texts);
     serve
 }
 
-/// Sees the craft arm, fly the plan to its end and come down.
+/// Checks that the craft arms, flies the plan to its end and lands.
 pub(crate) fn sees_the_flight(serve: &mut Serve) {
     serve.event("armed");
     serve.wait("end of the plan", |event| event["event"] == "state" && event["to"] == "COMPLETE");
@@ -71,7 +71,8 @@ pub(crate) fn sees_the_flight(serve: &mut Serve) {
 
 #[test]
 fn the_usual_script_flies_the_usual_plan() {
-    // Sixteen times as fast as the script thinks; its fifty packets a second are a radio all the same.
+    // The craft flies sixteen times as fast as the script assumes. Its fifty packets a second still count as
+    // a radio.
     let mut serve = prepared("16", &[SWITCHES, PATIENT_FAILSAFE, GUIDE_SETTINGS, GUIDE_PLAN]);
     let script = Script::udp(serve.rc);
     sees_the_flight(&mut serve);
@@ -131,7 +132,7 @@ fn a_script_that_speaks_msp_uploads_and_flies_a_plan() {
 #[test]
 fn a_script_that_cannot_arm_is_told_why() {
     let mut serve = Serve::start("4");
-    // Looked around and went away; a reboot would be due.
+    // A client opened a command line and left. The craft needs a reboot to arm.
     drop(Terminal::open(serve.tcp));
     let script = Script::udp(serve.rc);
     let notice = serve.wait("reason", |event| {
@@ -154,7 +155,7 @@ fn a_craft_whose_script_ends_lands() {
     assert!(!serve.has_seen("crash"));
 }
 
-/// What people paste: the `#` of the first line is not taken while the craft is armed.
+/// Text that people paste. The `#` of the first line is ignored while the craft is armed.
 const PASTED: &str = "#
 waypoint reset
 waypoint insert 0 40.4637000 -79.5182000 2000 500 FLYOVER 0 ORBIT
@@ -173,7 +174,7 @@ fn waypoints_pasted_over_tcp_while_armed_get_no_answer_and_the_log_says_why() {
     };
     client.write_all(PASTED.as_bytes()).unwrap();
     serve.wait("reason of the silence", ignored);
-    // Nothing came back before the answer to this.
+    // There was no answer before the reply to this request.
     assert_eq!(msp::ask(&mut client, 2, &[]).as_deref(), Some(b"BTFL".as_slice()));
     assert_eq!(serve.notices("`waypoint`"), 1, "one notice for one paste");
     script.end();

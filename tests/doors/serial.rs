@@ -1,4 +1,4 @@
-//! A person at the command line over TCP.
+//! A person who types at the command line over TCP.
 
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream};
@@ -30,8 +30,8 @@ impl Terminal {
         String::from_utf8(all).unwrap()
     }
 
-    /// Types lines, each after the prompt of the one before; none may be refused. The answer to the last. A bare `save` is
-    /// left to [`Terminal::save`].
+    /// Types lines, each after the prompt of the one before. No line may be refused. Returns the answer to
+    /// the last. [`Terminal::save`] types a bare `save`.
     pub(crate) fn type_lines(&mut self, text: &str) -> String {
         let mut answer = String::new();
         for line in text.lines().map(str::trim).filter(|line| !line.is_empty() && *line != "save") {
@@ -42,7 +42,7 @@ impl Terminal {
         answer
     }
 
-    /// Types `save`; the craft reboots and closes the link.
+    /// Types `save`. The craft reboots and closes the link.
     pub(crate) fn save(mut self) {
         self.0.write_all(b"save\n").unwrap();
         let mut rest = Vec::new();

@@ -1,4 +1,4 @@
-//! A simulator as a process of its own has it: it sends states over UDP and waits for motors.
+//! A simulator as its own process would be: it sends states over UDP and waits for motors.
 
 use std::net::{SocketAddr, UdpSocket};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -14,10 +14,10 @@ use betadeck::sim::{Noise, World, WorldConfig};
 
 use super::program::PATIENCE;
 
-/// How long a simulator waits for motors before it goes on without.
+/// The time that a simulator waits for motors before it continues without them.
 const MOTORS_LATE: Duration = Duration::from_secs(1);
 
-/// Where the craft is and was.
+/// The current and past position of the craft.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Seen {
     pub(crate) east_m: f64,
@@ -29,7 +29,7 @@ pub(crate) struct Seen {
     pub(crate) crashed: bool,
 }
 
-/// A simulator before it knows where to send to.
+/// The sockets of a simulator that does not know its destination yet.
 pub(crate) struct Sockets {
     motors: UdpSocket,
     raw: UdpSocket,
@@ -49,7 +49,7 @@ impl Sockets {
         self.raw.local_addr().unwrap().port()
     }
 
-    /// Runs the world at most `speed` times as fast as time passes, until dropped.
+    /// Runs the world at most `speed` times as fast as real time, until dropped.
     pub(crate) fn fly(self, fdm: SocketAddr, speed: f64) -> Simulator {
         let (seen, stop) = (Arc::new(Mutex::new(Seen::default())), Arc::new(AtomicBool::new(false)));
         let (shown, stopped) = (Arc::clone(&seen), Arc::clone(&stop));
@@ -67,7 +67,7 @@ impl Sockets {
         while !stop.load(Ordering::Relaxed) {
             let ahead =
                 Duration::from_secs_f64(world.time().as_secs_f64() / speed).saturating_sub(start.elapsed());
-            // A millisecond is not worth a sleep.
+            // A millisecond is too short for a sleep.
             if ahead > Duration::from_millis(2) {
                 std::thread::sleep(ahead);
             }
@@ -80,7 +80,7 @@ impl Sockets {
                 specific_force_flu: truth.specific_force_flu,
                 attitude: truth.attitude,
                 vel_enu: truth.vel_enu,
-                // As the public plugin does it.
+                // Mirrored as in the public plugin.
                 lon_deg: mirrored(frame.lon_deg, lon_deg),
                 lat_deg: mirrored(frame.lat_deg, lat_deg),
                 alt_m,
@@ -104,7 +104,6 @@ impl Sockets {
     }
 }
 
-/// A running simulator.
 pub(crate) struct Simulator {
     seen: Arc<Mutex<Seen>>,
     stop: Arc<AtomicBool>,
@@ -116,7 +115,7 @@ impl Simulator {
         *self.seen.lock().unwrap()
     }
 
-    /// Looks until `wanted`.
+    /// Checks the craft until `wanted` accepts it.
     pub(crate) fn wait(&self, what: &str, wanted: impl Fn(&Seen) -> bool) {
         let start = Instant::now();
         while !wanted(&self.seen()) {
@@ -129,7 +128,7 @@ impl Simulator {
 impl Drop for Simulator {
     fn drop(&mut self) {
         self.stop.store(true, Ordering::Relaxed);
-        // A panic of its own was printed already.
+        // A panic of the thread was printed already.
         drop(self.thread.take().map(JoinHandle::join));
     }
 }

@@ -1,4 +1,4 @@
-//! Programs that send RC: the usual script over UDP, and one that speaks MSP.
+//! Programs that send RC: the usual script over UDP, and a program that uses MSP.
 
 use std::net::{SocketAddr, TcpStream, UdpSocket};
 use std::sync::Arc;
@@ -16,8 +16,9 @@ pub(crate) struct Script {
 }
 
 impl Script {
-    /// Arms for 2 s, raises the throttle for 4 s, switches the autopilot on and keeps sending, 50 times a second. With
-    /// the throttle `low_us` while arming; a `patient` one shows its switch off for 1 s before.
+    /// Arms for 2 s, raises the throttle for 4 s, switches the autopilot on and keeps sending, 50 times a
+    /// second. The throttle is `low_us` while arming. A `patient` script sends its arm switch as off for 1 s
+    /// before.
     fn run(patient: bool, low_us: u16, mut send: impl FnMut(&[u16; 16]) + Send + 'static) -> Self {
         let stop = Arc::new(AtomicBool::new(false));
         let stopped = Arc::clone(&stop);
@@ -48,7 +49,7 @@ impl Script {
         Self { stop, thread: Some(thread) }
     }
 
-    /// The usual script: packets of a time stamp and sixteen channels.
+    /// Starts the usual script: packets of a time stamp and sixteen channels.
     pub(crate) fn udp(door: SocketAddr) -> Self {
         let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
         Self::run(false, 1100, move |channels| {
@@ -60,7 +61,8 @@ impl Script {
         })
     }
 
-    /// SET_RAW_RC over TCP. Arming by MSP has the strict rules: switch off and throttle low before.
+    /// Sends SET_RAW_RC over TCP. Arming by MSP has strict rules: the switch must be off and the throttle low
+    /// before.
     pub(crate) fn msp(door: SocketAddr) -> Self {
         let mut stream = TcpStream::connect(door).unwrap();
         stream.set_nodelay(true).unwrap();
@@ -71,7 +73,7 @@ impl Script {
         })
     }
 
-    /// Sends nothing any more.
+    /// Stops sending.
     pub(crate) fn end(mut self) {
         self.stop.store(true, Ordering::Relaxed);
         self.thread.take().unwrap().join().unwrap();

@@ -1,4 +1,4 @@
-//! Two programs at once, which want the same things.
+//! Two programs at once that need the same directory and port.
 
 use serde_json::Value;
 

@@ -1,4 +1,4 @@
-//! A flight controller behind a serial line, and the client at the line's other end, in one simulated time.
+//! A flight controller at one end of a serial line and the client at the other, in one simulated time.
 
 use std::time::Duration;
 
@@ -11,19 +11,19 @@ use betadeck::link::proto::serial_session::{SerialRequest, SerialSession};
 
 /// A tick of the simulated time.
 const TICK: Duration = Duration::from_millis(10);
-/// No answer may take longer.
+/// The longest time that an answer may take.
 const LONGEST: Duration = Duration::from_secs(60);
 
-/// What is different about the flight controller.
+/// The differences of the flight controller from a normal one.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Manners {
     /// STX and `#` are dropped, as while armed.
     pub(crate) cli_is_shut: bool,
-    /// STX alone is dropped, as by old releases.
+    /// Only STX is dropped, as by old releases.
     pub(crate) no_framing: bool,
     /// `save` restarts and closes the link without ETX, as the real one does.
     pub(crate) save_restarts: bool,
-    /// It does not know lines by message.
+    /// Lines by message are unknown.
     pub(crate) no_message_lines: bool,
 }
 
@@ -31,9 +31,9 @@ pub(crate) struct Manners {
 pub(crate) struct Board {
     pub(crate) firmware: Firmware,
     pub(crate) manners: Manners,
-    /// Codes of the messages that it answered.
+    /// The codes of the messages that it answered.
     pub(crate) asked: Vec<u16>,
-    /// Lines that it ran.
+    /// The lines that it ran.
     pub(crate) ran: Vec<String>,
     session: SerialSession,
     interpreter: Interpreter,
@@ -53,7 +53,7 @@ impl Board {
         }
     }
 
-    /// What it answers to these bytes.
+    /// Returns the answer to these bytes.
     fn answer(&mut self, bytes: &[u8], now: Duration) -> Vec<u8> {
         let bytes: Vec<u8> =
             bytes.iter().copied().filter(|byte| !(self.manners.no_framing && *byte == 0x02)).collect();
@@ -106,12 +106,12 @@ impl Board {
     }
 }
 
-/// Client, line and board.
+/// The client, the line and the board.
 pub(crate) struct Bench {
     pub(crate) client: FcClient,
     pub(crate) board: Board,
     pub(crate) now: Duration,
-    /// What the line does to the bytes that go to the client.
+    /// The damage of the line to the bytes that go to the client.
     pub(crate) damage: Box<dyn FnMut(Vec<u8>) -> Vec<u8>>,
     /// Every byte that was sent to the board.
     pub(crate) sent: Vec<u8>,
@@ -132,7 +132,7 @@ impl Bench {
         bench
     }
 
-    /// One tick; a closed link is closed for one.
+    /// Runs one tick. A closed link is opened again in the same tick.
     pub(crate) fn tick(&mut self) {
         self.now += TICK;
         self.client.poll(self.now);
@@ -149,7 +149,7 @@ impl Bench {
         }
     }
 
-    /// Asks and waits for the answer.
+    /// Sends a request and waits for the answer.
     pub(crate) fn ask(&mut self, ask: Ask) -> Answer {
         self.next_id += 1;
         let id = AskId(self.next_id);
@@ -172,7 +172,7 @@ impl Bench {
         }
     }
 
-    /// Runs a line that is taken: its output.
+    /// Runs a line that must succeed. Returns its output.
     pub(crate) fn line(&mut self, line: &str) -> String {
         match self.ask(Ask::Line(line.to_owned())) {
             Answer::Line { text, failed: false, restarted: false } => text,

@@ -1,4 +1,5 @@
-//! Exchanges captured from a real flight controller, asked again: the same bytes go out, and the answer is what came.
+//! Exchanges captured from a real flight controller, repeated. The client sends the same bytes and reads the
+//! captured answer.
 
 use std::time::Duration;
 
@@ -22,13 +23,13 @@ fn exchanges() -> Vec<(u32, Vec<u8>, Vec<u8>)> {
         .collect()
 }
 
-/// The payload of a captured reply.
+/// Returns the payload of a captured reply.
 pub(crate) fn payload_of(number: u32) -> Vec<u8> {
     let (_, _, reply) = exchanges().into_iter().find(|(of, ..)| *of == number).unwrap();
     frames(Decoder::client(), &reply).remove(0).payload
 }
 
-/// A client that has heard its first answer.
+/// Returns a client that has received its first answer.
 fn in_step() -> FcClient {
     let mut client = FcClient::default();
     client.connected();
@@ -53,7 +54,7 @@ fn messages_go_out_as_captured_and_their_replies_are_the_answers() {
         let asked = frames(Decoder::server(), &request);
         let replies = frames(Decoder::client(), &reply);
         let ([asked], [reply_frame]) = (&asked[..], &replies[..]) else { continue };
-        // The client asks codes of version 1 in version 1, the others in version 2 without flags.
+        // The client sends codes of version 1 in version 1, and the others in version 2 without flags.
         let natural = if asked.code < 255 { Form::V1 } else { Form::V2 };
         if asked.form != natural || number == 41 {
             continue;
@@ -137,7 +138,7 @@ fn an_armed_craft_drops_both_ways_into_its_command_line() {
     client.poll(NOW);
     assert_eq!(client.take_output(), [0x02]);
     client.poll(NOW + Duration::from_millis(800));
-    // Then it is tried by message, of which captured firmware knows nothing.
+    // The client then tries the line by message, which the captured firmware does not support.
     assert_eq!(frames(Decoder::server(), &client.take_output())[0].code, 0x3012);
     client.push(
         &Frame { form: Form::V2, kind: Kind::Error, code: 0x3012, payload: Vec::new() }.to_bytes(),

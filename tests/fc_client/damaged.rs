@@ -14,7 +14,7 @@ fn read(code: u16) -> Ask {
     Ask::Msp { code, payload: Vec::new() }
 }
 
-/// Drops whole answers where `lost` is true, and passes the rest.
+/// Drops complete answers where `lost` is true, and passes the rest.
 fn losing(lost: Vec<bool>) -> Box<dyn FnMut(Vec<u8>) -> Vec<u8>> {
     let mut lost = lost.into_iter();
     Box::new(move |bytes| if !bytes.is_empty() && lost.next().unwrap_or(false) { Vec::new() } else { bytes })
@@ -36,7 +36,7 @@ fn a_message_that_changes_something_is_sent_once() {
     assert_eq!(bench.ask(set), Answer::NotAnswered(Unanswered::Silent));
     assert_eq!(bench.board.asked, [1, 11]);
     assert_eq!(bench.msp(10).unwrap(), b"QUAD");
-    // After the one that was given up it makes sure that answers are new.
+    // After the message that was given up, the client makes sure that answers are new.
     assert_eq!(bench.board.asked, [1, 11, 1, 10]);
 }
 
@@ -62,7 +62,8 @@ fn a_line_by_message_that_was_given_up_does_not_answer_the_next() {
     assert!(text.starts_with("ap_max_velocity = "), "{text}");
 }
 
-/// How long a line is waited for whose output never ends, a byte of it coming after each of these pauses.
+/// Returns the time after which the client gives up a line whose output never ends, and its answer. A byte
+/// comes after each `pause`.
 fn endless(access: CliAccess, pause: Duration) -> (Duration, Answer) {
     let mut client = FcClient::default();
     client.connected();
@@ -99,7 +100,7 @@ fn an_output_without_end_is_given_up() {
         let (slow, answer) = endless(access, Duration::from_secs(3));
         assert_eq!(answer, silent);
         assert!(slow <= Duration::from_secs(63), "a byte now and then: {slow:?}");
-        // More than is kept within seconds: then it has to end.
+        // More bytes than are kept arrive within seconds, so the client must give up.
         let (fast, answer) = endless(access, Duration::from_micros(10));
         assert_eq!(answer, silent);
         assert!(fast < Duration::from_secs(10), "without a pause: {fast:?}");
@@ -120,7 +121,7 @@ fn pages_without_end_are_given_up() {
     let mut now = Duration::ZERO;
     let answer = loop {
         now += Duration::from_secs(3);
-        // Of 65535 bytes one at a time.
+        // A page of 65535 bytes, one byte at a time.
         client.push(&reply(0x3012, &[0xff, 0xff, 0, b'x']), now);
         if let Some((_, answer)) = client.next_answer() {
             break answer;
@@ -148,7 +149,7 @@ fn a_dead_line_costs_each_request_its_patience_and_no_more() {
 #[test]
 fn a_prompt_that_an_earlier_client_left_open_is_left() {
     let mut bench = Bench::new(Manners::default());
-    // As upstream keeps it over connections.
+    // Upstream keeps an open prompt over connections.
     bench.client.set_cli(betadeck::link::proto::fc_client::CliAccess::Interactive);
     bench.line("version");
     bench.client.connected();
@@ -229,7 +230,7 @@ proptest! {
                 _ => prop_assert!(false, "{ask:?}: {answer:?}"),
             }
         }
-        // On a line that is good again everything works.
+        // On a good line everything works again.
         bench.damage = Box::new(|bytes| bytes);
         bench.ask(read(ATTITUDE));
         let last = bench.ask(read(2));

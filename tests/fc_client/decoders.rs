@@ -1,4 +1,4 @@
-//! Payloads and outputs of real flight controllers, of older releases, and of nobody.
+//! Payloads and outputs of real flight controllers, of older releases, and of random bytes.
 
 use betadeck::geo::LatLon;
 use betadeck::link::proto::fc_client::telemetry::{
@@ -13,7 +13,7 @@ use proptest::prelude::*;
 
 use crate::captured::payload_of;
 
-/// The boxes of the captured craft.
+/// Returns the boxes of the captured craft.
 fn boxes() -> Vec<u8> {
     payload_of(23)
 }
@@ -70,7 +70,7 @@ fn the_captured_state() {
         range(ModeBox::GpsRescue, 7),
     ];
     assert_eq!(mode_ranges(&payload_of(26), None), wanted);
-    // The second follows another mode.
+    // The second range is linked to another mode.
     let mut extra = vec![0; 61];
     extra[6] = 1;
     assert_eq!(mode_ranges(&payload_of(26), Some(&extra)).len(), 3);
@@ -94,7 +94,7 @@ fn arming_flags_of_a_release_with_fewer_end_in_the_arm_switch() {
         let told = Status::decode(&payload(count, bits)).unwrap().arming_blocked_by.unwrap();
         assert_eq!(told.iter().collect::<Vec<_>>(), flags, "{count} {bits:#x}");
     }
-    // Before the flags had a count there were none at this place.
+    // Before the flags had a count, no flags were at this place.
     assert_eq!(Status::decode(&[0; 15]).unwrap().arming_blocked_by, None);
 }
 
@@ -106,7 +106,7 @@ fn a_battery_with_and_without_its_fine_voltage() {
     assert_eq!((reading.drawn_mah, reading.state), (100.0, Some(BatteryState::Warning)));
     assert!((BatteryReading::decode(&fine[..9]).unwrap().voltage_v - 16.8).abs() < 1e-9);
     assert!(!BatteryReading::decode(&[0, 0, 0, 0, 0, 0, 0, 0, 3]).unwrap().is_present());
-    // Being measured: nothing is known of it yet.
+    // The battery is being measured and nothing is known of it yet.
     assert!(!BatteryReading::decode(&[0, 0, 0, 0, 0, 0, 0, 0, 4, 0, 0]).unwrap().is_present());
     assert!(BatteryReading::decode(&[0, 0, 0, 0, 0, 0, 0, 0, 4, 0x18, 1]).unwrap().is_present());
 }

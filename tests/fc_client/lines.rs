@@ -96,7 +96,7 @@ fn msp_rests_at_the_prompt_until_the_flight_controller_restarts() {
     assert!(matches!(left, Answer::Line { restarted: true, .. }), "{left:?}");
     assert!(!bench.client.is_in_cli());
     assert!(matches!(bench.ask(message.clone()), Answer::Msp(Some(_))));
-    // Without a restart.
+    // Leaves the prompt without a restart.
     bench.line("version");
     bench.line("exit noreboot");
     assert!(matches!(bench.ask(message), Answer::Msp(Some(_))));

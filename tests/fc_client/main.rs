@@ -1,5 +1,5 @@
-//! The client of a flight controller's serial port against captured exchanges, this program's own server with the
-//! embedded firmware behind it, and lines that lose and damage bytes.
+//! The client of a flight controller's serial port, tested with captured exchanges, with this program's own
+//! server and embedded firmware, and with lines that lose and damage bytes.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 mod board;

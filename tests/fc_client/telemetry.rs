@@ -1,4 +1,4 @@
-//! What is decoded of a flight against what the firmware itself shows of it.
+//! Compares the decoded telemetry of a flight with the state of the firmware itself.
 
 use betadeck::firmware::Firmware;
 use betadeck::firmware::config::Configuration;
@@ -53,7 +53,8 @@ fn observe(bench: &mut Bench, firmware: &Firmware, observation: &mut Observation
     Mission::parse(&text).unwrap_or_else(|| panic!("{text}"))
 }
 
-/// The two within half a step of the wire's resolution, with room for what is cut and not rounded.
+/// Asserts that the two values differ by at most `step`. It allows half a step of the wire's resolution and
+/// values that are cut and not rounded.
 fn assert_near(told: Option<f64>, own: Option<f64>, step: f64, what: &str) {
     assert_eq!(told.is_some(), own.is_some(), "{what}: {told:?}, {own:?}");
     if let (Some(told), Some(own)) = (told, own) {
@@ -85,7 +86,7 @@ fn assert_estimate(told: &EstimateView, own: &EstimateView) {
     assert_near(told.pitch_deg, own.pitch_deg, 0.051, "pitch");
     let turn = told.heading_deg.unwrap() - own.heading_deg.unwrap();
     assert!(((turn + 180.0).rem_euclid(360.0) - 180.0).abs() <= 0.51, "heading {told:?}, {own:?}");
-    // What is shown is smoothed, and places are the GPS's, not the filter's.
+    // The shown values are smoothed. Places are those of the GPS and not of the filter.
     assert_near(told.alt, own.alt, 1.0, "altitude");
     assert_near(told.climb_mps, own.climb_mps, 0.6, "climb");
     assert_near(told.n, own.n, 3.0, "north");

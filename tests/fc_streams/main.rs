@@ -1,5 +1,5 @@
-//! Streams to a flight controller over real sockets and a pseudo-terminal pair: they connect, move bytes, say why not, and
-//! come back by themselves.
+//! Streams to a flight controller over real sockets and a pseudo-terminal pair. They connect, move bytes,
+//! report errors, and reconnect by themselves.
 
 #![allow(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests may panic and wait")]
 
@@ -14,19 +14,19 @@ use std::time::Duration;
 
 use betadeck::link::{FcStream, StreamEvent};
 
-/// Nothing in these tests takes this long unless it hangs.
+/// The time limit of every wait. Nothing in these tests takes this long unless it hangs.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 fn open(place: &str) -> FcStream {
     FcStream::open(place.parse().unwrap())
 }
 
-/// The next event.
+/// Returns the next event.
 async fn next(stream: &mut FcStream) -> StreamEvent {
     tokio::time::timeout(PATIENCE, stream.from.recv()).await.expect("an event").expect("a task")
 }
 
-/// The reason of the loss that comes next.
+/// Returns the reason of the next loss.
 async fn lost(stream: &mut FcStream) -> String {
     match next(stream).await {
         StreamEvent::Lost(reason) => reason,
@@ -38,7 +38,7 @@ async fn connected(stream: &mut FcStream) {
     assert_eq!(next(stream).await, StreamEvent::Connected);
 }
 
-/// The next bytes, until there are as many as expected.
+/// Returns the next bytes, at least as many as expected.
 async fn bytes(stream: &mut FcStream, count: usize) -> Vec<u8> {
     let mut all = Vec::new();
     while all.len() < count {

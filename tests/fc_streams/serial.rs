@@ -1,9 +1,9 @@
-//! Over a pseudo-terminal pair in place of a serial cable.
+//! A serial stream over a pseudo-terminal pair in place of a serial cable.
 
 use crate::cable::Cable;
 use crate::{PATIENCE, bytes, connected, lost, open, send};
 
-/// What comes out of the cable, until there is as much as expected.
+/// Returns the bytes that come out of the cable, at least as many as expected.
 async fn received(cable: &mut Cable, count: usize) -> Vec<u8> {
     let mut all = Vec::new();
     let wait = async {
@@ -16,7 +16,7 @@ async fn received(cable: &mut Cable, count: usize) -> Vec<u8> {
     all
 }
 
-/// What a terminal would change, were it not raw: line ends, control characters, bytes above 127.
+/// The bytes that a terminal would change if it were not raw: line ends, control characters, bytes above 127.
 const ANY: &[u8] = b"\r\n\x03\x04\x11\x13\x1a\x7f\x00\xff$M<";
 
 #[tokio::test]

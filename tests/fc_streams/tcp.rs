@@ -1,4 +1,4 @@
-//! Over TCP.
+//! Streams over TCP.
 
 use betadeck::link::StreamEvent;
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
@@ -23,7 +23,7 @@ async fn bytes_go_both_ways_and_a_closed_connection_comes_back() {
         assert_eq!(bytes(&mut stream, 4).await, b"pong");
         drop(peer);
         assert_eq!(lost(&mut stream).await, "the other end closed the connection");
-        // Nobody hears this: it is not kept for the next connection.
+        // Nobody receives this, and it is not kept for the next connection.
         send(&stream, b"late").await;
     }
 }

@@ -1,4 +1,4 @@
-//! Over websockets.
+//! Streams over websockets.
 
 use futures_util::{SinkExt as _, StreamExt as _};
 use tokio::net::{TcpListener, TcpStream};
@@ -10,7 +10,8 @@ use betadeck::link::StreamEvent;
 
 use crate::{bytes, connected, lost, next, open, send};
 
-/// A server that chooses the sub-protocol `binary`, or none.
+/// Accepts a connection as a server that chooses the sub-protocol `binary`, or none. Returns the offered
+/// sub-protocol too.
 async fn serve(listener: &TcpListener, chooses: bool) -> (WebSocketStream<TcpStream>, Option<String>) {
     loop {
         let (stream, _) = listener.accept().await.unwrap();
@@ -26,7 +27,7 @@ async fn serve(listener: &TcpListener, chooses: bool) -> (WebSocketStream<TcpStr
             Ok(response)
         };
         let socket = tokio_tungstenite::accept_hdr_async(stream, callback).await.unwrap();
-        // Who insists on the sub-protocol comes again without it.
+        // A client that insists on the sub-protocol connects again without it.
         if chooses || offered.is_none() {
             return (socket, offered);
         }

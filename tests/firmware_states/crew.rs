@@ -1,4 +1,4 @@
-//! The people who put a craft that came down back into the air.
+//! The ground crew, who put a craft that came down back into the air.
 
 use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;
@@ -8,14 +8,15 @@ use betadeck::sim::WorldCommand;
 
 use super::{ARM, AUTOPILOT, HOLDS, Run, THROTTLE};
 
-/// Longest wait for a craft that can be armed, updates: a cold GPS is part of it.
+/// The longest wait for a craft that can be armed, updates. It includes a cold start of the GPS.
 const PATIENCE: u32 = 6000;
-/// How long a craft lies disarmed before somebody comes, updates.
+/// The number of updates that a craft lies disarmed before the crew comes.
 const LEFT_ALONE: u32 = 200;
 const CLIMB: u32 = 500;
-/// Greatest lean a craft is armed with, cosine.
+/// The greatest lean at which a craft is armed, as a cosine.
 const UPRIGHT: f64 = 0.95;
-/// At rest is slower than this, m/s and rad/s, for so many updates; a craft that takes longer is put back home.
+/// A craft is at rest if it is slower than this (m/s and rad/s) for `REST` updates. A craft that takes longer
+/// than `SETTLE` updates is put back home.
 const STILL_MPS: f64 = 0.05;
 const STILL_RPS: f64 = 0.05;
 const REST: u32 = 50;
@@ -32,7 +33,7 @@ enum Work {
     Done,
 }
 
-/// Where the work stands.
+/// The progress of the work.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Crew {
     work: Work,
@@ -42,7 +43,7 @@ pub(crate) struct Crew {
 }
 
 impl Crew {
-    /// Nothing to do.
+    /// Returns a crew with nothing to do.
     pub(crate) fn done() -> Self {
         Self { work: Work::Done, ..Self::default() }
     }
@@ -51,7 +52,7 @@ impl Crew {
         self.work == Work::Done
     }
 
-    /// Comes when the craft has been lying for a while; now and then it is left to itself longer.
+    /// Starts the work once the craft has been lying for a while. A random delay sometimes leaves it longer.
     pub(crate) fn watch(&mut self, run: &Run, rng: &mut ChaCha8Rng) {
         self.lying = if run.vehicle.embedded().unwrap().is_armed() { 0 } else { self.lying + 1 };
         if self.is_done() && self.lying > LEFT_ALONE && rng.random_bool(0.02) {
@@ -64,7 +65,7 @@ impl Crew {
         self.since = 0;
     }
 
-    /// One update of work.
+    /// Works for one update.
     pub(crate) fn work(&mut self, run: &mut Run) {
         self.since += 1;
         match self.work {
@@ -76,7 +77,8 @@ impl Crew {
                 self.next(Work::Settle);
             }
             Work::Settle => {
-                // A craft that rocks or tumbles may be level for a moment: only at rest its attitude counts.
+                // A craft that rocks or tumbles may be level for a moment, so its attitude counts only at
+                // rest.
                 let truth = run.vehicle.world().unwrap().truth();
                 let still = truth.vel_enu.norm() < STILL_MPS && truth.rate_flu.norm() < STILL_RPS;
                 self.resting = if still { self.resting + 1 } else { 0 };

@@ -1,4 +1,4 @@
-//! What happens to a craft between two updates.
+//! Random events that change a craft between two updates.
 
 use betadeck::autopilot::Params;
 use betadeck::plan::{FlightPlan, HoldPattern, MAX_WAYPOINTS, WaypointType};
@@ -24,7 +24,7 @@ fn pick<T: Copy>(rng: &mut ChaCha8Rng, list: &[T]) -> T {
     list[rng.random_range(0..list.len())]
 }
 
-/// The plan, air and settings a flight begins with.
+/// Sets the plan, air and settings at the start of a flight.
 pub(crate) fn prepare(run: &mut Run, rng: &mut ChaCha8Rng) {
     replace_plan(run, rng);
     for _ in 0..rng.random_range(0..8) {
@@ -37,7 +37,7 @@ pub(crate) fn prepare(run: &mut Run, rng: &mut ChaCha8Rng) {
     set_wind(run, rng);
 }
 
-/// Lets something happen, and says what.
+/// Runs a random event and returns its description.
 pub(crate) fn happen(run: &mut Run, rng: &mut ChaCha8Rng) -> String {
     match rng.random_range(0..100) {
         0..8 => {
@@ -79,7 +79,7 @@ pub(crate) fn happen(run: &mut Run, rng: &mut ChaCha8Rng) -> String {
         }
         89..92 => set_wind(run, rng),
         92 => {
-            // Questions of a configurator; whether they are known does not matter.
+            // Requests of a configurator. They may be unknown to the firmware.
             let code = rng.random_range(1..200);
             let _answer = run.vehicle.embedded_mut().unwrap().run_msp(code, &[], None);
             format!("msp {code}")
@@ -111,7 +111,7 @@ fn sticks(run: &mut Run, rng: &mut ChaCha8Rng) -> String {
     format!("sticks {:?}", &run.frame.channels[..4])
 }
 
-/// Gives missions a chance to go on.
+/// Ends disturbances, so that missions can continue.
 fn calm(run: &mut Run) -> String {
     run.link = true;
     for channel in [ROLL, PITCH, THROTTLE, YAW] {
@@ -154,7 +154,7 @@ fn set_parameter(run: &mut Run, rng: &mut ChaCha8Rng) -> String {
     line
 }
 
-/// The words of a waypoint after its index; a coarse grid, so that places coincide now and then.
+/// Returns the words of a waypoint after its index. A coarse grid makes places coincide now and then.
 fn waypoint(run: &Run, rng: &mut ChaCha8Rng) -> String {
     let mut metres = || f64::from(rng.random_range(-5..=5)) * 6.0;
     let place = Vector3::new(metres(), metres(), 0.0);
@@ -197,7 +197,7 @@ fn edit_plan(run: &mut Run, rng: &mut ChaCha8Rng) -> String {
     line
 }
 
-/// The memory after an edit is what flying must not change.
+/// Takes the stored plan as the one that flying must not change.
 fn edited(run: &mut Run) -> &FlightPlan {
     run.plan = run.vehicle.embedded().unwrap().stored_plan().clone();
     &run.plan

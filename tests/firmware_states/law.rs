@@ -1,4 +1,4 @@
-//! What must hold in every step, whatever happens.
+//! The rules that must hold in every step, whatever happens.
 
 use std::collections::BTreeSet;
 
@@ -8,14 +8,14 @@ use betadeck::firmware::failsafe::Procedure;
 use betadeck::firmware::modes::boxes;
 use betadeck::telemetry::{FirmwareEvent, Mode, NavEvent, NavState, TransitionReason};
 
-/// Updates that a changed limit may take to be in force.
+/// The number of updates that a changed limit may take to be in force.
 const SETTLE: u32 = 300;
-/// Updates that a switch may take to have its effect or its refusal.
+/// The number of updates that a switch may take to have its effect or its refusal.
 const REACTION: u32 = 30;
-/// Slack of the longest AUTO-LAND, updates.
+/// The slack of the longest AUTO-LAND, updates.
 const LANDING_SLACK: u32 = 10;
 
-/// What a search worth its name has seen.
+/// The transitions and responses that a useful search must have seen.
 pub(crate) const NEEDED: &[&str] = &[
     "IDLE -> APPROACHING",
     "APPROACHING -> ARRIVED",
@@ -43,7 +43,7 @@ pub(crate) const NEEDED: &[&str] = &[
     "disarmed SYSTEM",
 ];
 
-/// Limits of throttle (µs) and lean (degrees), the widest of those that are being changed.
+/// The limits of throttle (µs) and lean (degrees). After a change, the widest of the old and the new ones.
 #[derive(Debug, Clone, Copy)]
 struct Limits {
     low_us: f64,
@@ -67,7 +67,7 @@ impl Limits {
     }
 }
 
-/// The judge, and what it remembers of the updates before.
+/// The judge, with its memory of the earlier updates.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Law {
     state: NavState,
@@ -86,7 +86,7 @@ pub(crate) struct Law {
 }
 
 impl Law {
-    /// A new flight begins from the same craft.
+    /// Forgets the records of a flight. The next flight begins from the same craft.
     pub(crate) fn forget(&mut self) {
         self.seen.clear();
         self.armings = 0;
@@ -96,7 +96,7 @@ impl Law {
         self.seen.insert(what);
     }
 
-    /// The firmware was restarted: it remembers nothing, and says so once.
+    /// Forgets the state of the firmware, as a restart does. The limits and the records remain.
     pub(crate) fn restarted(&mut self) {
         *self = Self {
             armings: self.armings,
@@ -109,14 +109,14 @@ impl Law {
         };
     }
 
-    /// To be called before and after a change of settings.
+    /// Widens the limits. Must be called before and after a change of settings.
     pub(crate) fn settings_changed(&mut self, firmware: &Firmware, update: u32) {
         let now = Limits::of(&firmware.parameters().nav);
         self.limits = Some(self.limits.map_or(now, |limits| limits.widest(now)));
         self.limits_changed_at = update;
     }
 
-    /// After every step.
+    /// Checks the motors after every step.
     pub(crate) fn judge_motors(&mut self, firmware: &Firmware) {
         let control = firmware.control();
         let motors = control.motors.0;
@@ -128,7 +128,7 @@ impl Law {
         self.was_armed = firmware.is_armed();
     }
 
-    /// Each event, after the step that made it.
+    /// Checks each event after the step that made it.
     pub(crate) fn judge_event(&mut self, event: &FirmwareEvent, firmware: &Firmware) {
         match event {
             FirmwareEvent::Nav(NavEvent::State { from, to, guard, target_alt_m, reason, .. }) => {
@@ -173,7 +173,7 @@ impl Law {
         }
     }
 
-    /// The table of the failsafe: what may begin, and what may follow what.
+    /// Checks the table of the failsafe: the allowed first responses and the allowed sequence.
     fn judge_response(&mut self, policy: &str, procedure: &'static str, firmware: &Firmware) {
         let configured = firmware.parameters().failsafe.procedure;
         match (self.response, procedure) {
@@ -200,7 +200,7 @@ impl Law {
         self.response = Some(procedure);
     }
 
-    /// After every update of the navigator.
+    /// Checks the firmware after every update of the navigator.
     pub(crate) fn judge_update(&mut self, firmware: &Firmware, update: u32, link: bool) {
         self.judge_failsafe(firmware);
         self.judge_navigator(firmware, update);
@@ -247,11 +247,11 @@ impl Law {
         self.arrived_for = if nav.state == NavState::Arrived { self.arrived_for + 1 } else { 0 };
         assert!(self.arrived_for <= 1, "ARRIVED lasts one update");
         if !armed {
-            // Disarmed in this update, after the navigator's.
+            // The craft was disarmed in this update, after the navigator ran.
             return;
         }
         assert!(usize::from(nav.wp) < active.waypoints.len());
-        // Before a pattern HOLDING lasts one update and waits for nothing.
+        // Before a pattern, HOLDING lasts one update and waits for nothing.
         let at_rest = matches!(nav.state, NavState::Arrived | NavState::Complete | NavState::Holding);
         assert!(at_rest || !nav.guards.is_empty(), "{} waits for nothing", nav.state);
         let out = nav.output;
@@ -267,7 +267,7 @@ impl Law {
         assert!(out.yaw_rate_rps.is_none_or(f64::is_finite));
     }
 
-    /// Nobody is left without a reason: a switch has its effect, or says why it has none.
+    /// Checks that a switch has its effect or that the firmware reports a reason.
     fn judge_refusals(&mut self, firmware: &Firmware, link: bool) {
         let switches = firmware.boxes();
         let armed = firmware.is_armed();
@@ -285,11 +285,11 @@ impl Law {
     }
 }
 
-/// Transitions that may be seen, by rule or by command; anything else is illegal.
+/// Returns `true` for the transitions that a rule or a command may cause. Every other transition is illegal.
 fn legal(from: NavState, to: NavState) -> bool {
     use NavState::{Approaching, Arrived, Complete, Figure8, Holding, Idle, Landing, Orbiting};
     match (from, to) {
-        // Leaving, an emergency landing, a return home or a new start are possible from anywhere.
+        // Disengaging, an emergency landing, a return home and a new start are possible from any state.
         (_, Idle | Landing | Approaching) => true,
         (Idle, Complete) | (Approaching, Arrived) | (Arrived, Holding | Complete) => true,
         (Holding, Orbiting | Figure8 | Complete) => true,

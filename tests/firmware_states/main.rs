@@ -1,7 +1,8 @@
-//! The space of states of the whole flight controller: random plans, settings, switches, radio silence, GPS, edits
-//! and commands, flown by the real firmware on ideal sensors for about a million updates of the navigator.
+//! The state space of the complete flight controller: random plans, settings, switches, radio silence, GPS,
+//! edits and commands. The real firmware flies them on ideal sensors for about a million updates of the
+//! navigator.
 //!
-//! Each flight follows from its seed alone; a failure says seed and update.
+//! Each flight follows from its seed alone. A failure reports the seed and the update.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
@@ -29,41 +30,41 @@ use crew::Crew;
 use law::Law;
 
 const FLIGHTS: u64 = 250;
-/// Seeds that once showed something: a craft that was level for a moment while it tipped over.
+/// Seeds that once found a fault: a craft that was level for a moment while it tipped over.
 const FOUND: [u64; 1] = [1990];
-/// Updates of the navigator in a flight.
+/// The number of navigator updates in a flight.
 const UPDATES: u32 = 4000;
 const TICKS_PER_UPDATE: u32 = 10;
 
-/// Channels by wire order.
+/// The channels in wire order.
 const ROLL: usize = 0;
 const PITCH: usize = 1;
 const THROTTLE: usize = 2;
 const YAW: usize = 3;
 const ARM: usize = 4;
 const AUTOPILOT: usize = 5;
-/// ANGLE, ALTHOLD and POS HOLD together.
+/// The switch of ANGLE, ALTHOLD and POS HOLD together.
 const HOLDS: usize = 6;
 const RESCUE: usize = 7;
 const FAILSAFE: usize = 8;
 
-/// What a pilot, a ground station and nature do to a vehicle.
+/// A vehicle with all that a pilot, a ground station and nature do to it.
 #[derive(Clone)]
 struct Run {
     vehicle: Vehicle,
     console: Interpreter,
     frame: RcFrame,
     source: RcSource,
-    /// Frames come.
+    /// `true` while RC frames arrive.
     link: bool,
-    /// What the craft's memory should hold.
+    /// The plan that the memory of the craft should hold.
     plan: FlightPlan,
     update: u32,
     law: Law,
 }
 
 impl Run {
-    /// On the ground, sensors warm, with a switch for everything that is tested.
+    /// Returns a craft on the ground with warm sensors and a switch for every tested mode.
     fn ready() -> Self {
         let mut configuration = Configuration::default();
         configuration.starter_modes();
@@ -98,7 +99,7 @@ impl Run {
         self.law.settings_changed(self.vehicle.embedded().unwrap(), self.update);
     }
 
-    /// Restarts the firmware where the craft is, or puts the whole craft back home.
+    /// Restarts the firmware in place, or puts the complete craft back home.
     fn restart(&mut self, whole: bool) {
         match whole {
             true => self.vehicle.reset_craft(),
@@ -111,7 +112,7 @@ impl Run {
         self.frame.channels[channel] = if on { 2000 } else { 1000 };
     }
 
-    /// One update of the navigator.
+    /// Flies for one update of the navigator.
     fn fly(&mut self) {
         for _ in 0..TICKS_PER_UPDATE {
             if self.link && self.vehicle.time().0.is_multiple_of(20_000) {
@@ -143,7 +144,7 @@ impl Run {
     }
 }
 
-/// Says where a flight failed.
+/// Prints the place of a failure in a flight.
 struct Place {
     seed: u64,
     update: u32,

@@ -1,4 +1,4 @@
-//! Wind, gusts, weak motors, heavy loads: what the craft does with air and parts that are not kind.
+//! Flights in wind and gusts, with weak motors, heavy loads and a weak battery.
 
 use crate::checks::{Checks, assert_met, greatest, mean};
 use crate::rig::{Rig, Sample, world};
@@ -11,7 +11,7 @@ fn fault(name: &str, value: &str) -> WorldCommand {
     WorldCommand::FaultOn(Fault::parse(name, Some(value)).unwrap(), None)
 }
 
-/// A craft that has held its place for ten seconds.
+/// Returns a craft that has held its place for ten seconds.
 fn holding(seed: u64, wind: &str, gust_mps: f64) -> Rig {
     let mut world = world(seed).0;
     world.wind = wind.parse::<Wind>().unwrap();
@@ -129,7 +129,8 @@ fn at_the_fence(rig: &Rig) -> bool {
 
 #[test]
 fn craft_that_cannot_come_back_is_landed_at_the_fence() {
-    // Carried off before it engages, the craft gives up and holds as well as it can.
+    // The wind carries the craft away before it can fly its leg. It gives up and holds its place as well as
+    // it can.
     let (mut world, _) = world(0);
     world.wind = "14@0".parse().unwrap();
     let lines = "set ap_max_distance_from_home = 100

@@ -1,4 +1,4 @@
-//! Flying by hand with the hold modes: coming down by the throttle stick, and a return home that is taken back.
+//! Manual flight with the hold modes: a descent by the throttle stick, and a return home that is cancelled.
 
 use crate::checks::greatest;
 use crate::rig::{Rig, world};
@@ -7,7 +7,8 @@ use betadeck::signals::RcFrame;
 use betadeck::sim::{Fault, Truth, WorldCommand};
 use betadeck::telemetry::{DisarmReason, EventKind, Mode, NavState};
 
-/// A craft that hovers ten metres up, held by the switches of the scripted pilot, who has let go.
+/// Returns a craft that hovers ten metres up by the switches of the scripted pilot, who no longer acts, and
+/// the sticks.
 fn hovering() -> (Rig, RcFrame) {
     let mut rig = Rig::new(world(1).0, "", 10.0);
     rig.until(60.0, "hover", |rig| rig.vehicle.transmitter().pilot_doing() == Some("hovering"));
@@ -60,8 +61,8 @@ fn a_return_home_that_is_taken_back_leaves_the_craft_held() {
     assert!(fallen < 1.5, "{fallen}");
 }
 
-/// A craft on the ground whose hover throttle is set far too low, with the hold modes on and this throttle stick: the truth
-/// after ten seconds.
+/// Puts a craft on the ground with a hover throttle that is set far too low, hold modes on and this throttle
+/// stick. Returns the true state after ten seconds.
 fn after_stick(throttle_us: u16) -> Truth {
     let mut rig = Rig::new(world(1).0, "set ap_hover_throttle = 1275\nset alt_hold_deadband = 20", 10.0);
     rig.until(60.0, "the hold modes", |rig| rig.vehicle.embedded().unwrap().modes().has(Mode::AltHold));

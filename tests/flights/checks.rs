@@ -1,8 +1,8 @@
-//! Bounds, all of them tried before a test fails.
+//! Checks of bounds. All of them run before a test fails.
 
 use std::fmt::Write as _;
 
-/// Collects bounds that were not met.
+/// A collection of the bounds that were not met.
 #[derive(Debug, Default)]
 pub(crate) struct Checks {
     broken: String,
@@ -17,7 +17,7 @@ impl Checks {
         }
     }
 
-    /// The greatest of no values is minus infinity, which breaks the bound, too.
+    /// The greatest of no values is minus infinity. It breaks the bound.
     pub(crate) fn at_most(&mut self, what: &str, value: f64, high: f64) {
         self.within(what, value, f64::MIN, high);
     }
@@ -34,7 +34,7 @@ impl Checks {
         }
     }
 
-    /// What was broken; fails the test at the end of all flights.
+    /// Returns the broken bounds. [`assert_met`] fails the test with them after all flights.
     pub(crate) fn verdict(self, flight: &str, story: &str) -> Option<String> {
         if std::env::var_os("SHOW_FLIGHTS").is_some() {
             println!("{flight}\n{}", self.measured);
@@ -43,19 +43,19 @@ impl Checks {
     }
 }
 
-/// Fails with all that was broken.
+/// Fails with all broken bounds.
 #[track_caller]
 pub(crate) fn assert_met(verdicts: impl IntoIterator<Item = Option<String>>) {
     let broken: Vec<String> = verdicts.into_iter().flatten().collect();
     assert!(broken.is_empty(), "\n{}", broken.join("\n"));
 }
 
-/// Greatest of some numbers; NaN counts as greatest, so that it breaks a bound.
+/// Returns the greatest of some numbers. A NaN counts as greatest, so that it breaks a bound.
 pub(crate) fn greatest(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(f64::NEG_INFINITY, |a, b| if b.is_nan() || b > a { b } else { a })
 }
 
-/// Mean of some numbers.
+/// Returns the mean of some numbers.
 pub(crate) fn mean(values: impl Iterator<Item = f64>) -> f64 {
     let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
     sum / count

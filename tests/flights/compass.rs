@@ -1,4 +1,4 @@
-//! What the craft does with a compass that is wrong, or without one.
+//! Flights with a wrong compass and without a compass.
 
 use crate::checks::{Checks, assert_met};
 use crate::rig::{Rig, world};
@@ -11,7 +11,7 @@ waypoint insert 0 40.4640403 -79.5182000 2000 500 FLYOVER 0 ORBIT
 waypoint insert 1 40.4640403 -79.5174926 2000 500 FLYOVER 0 ORBIT
 waypoint insert 2 40.4635000 -79.5174926 2000 500 LAND 0 ORBIT";
 
-/// How far the heading that the craft believes is from the true one, degrees.
+/// Returns the error of the estimated heading, degrees.
 fn heading_error_deg(rig: &Rig) -> f64 {
     let believed = rig.vehicle.embedded().unwrap().estimate().heading_rad.to_degrees();
     let truth = rig.vehicle.world().unwrap().truth().heading_deg();
@@ -64,7 +64,7 @@ fn sound_compass_is_not_doubted() {
     }
 }
 
-/// A flight whose heading is not known before it has flown straight.
+/// Flies a craft that does not know its heading until it has flown straight.
 fn without_compass(seed: u64, heading_deg: f64, wind: &str) -> Option<String> {
     let mut world = world(seed).0;
     world.home.heading_deg = heading_deg;
@@ -75,7 +75,7 @@ fn without_compass(seed: u64, heading_deg: f64, wind: &str) -> Option<String> {
         matches!(kind, EventKind::Firmware(FirmwareEvent::Nav(NavEvent::Refused(Refusal::NoHeading))))
     };
     let mut checks = Checks::default();
-    // A wind carries a craft that is only levelled straight enough to show the heading.
+    // In wind, a craft that is only levelled drifts straight enough to show its heading.
     if wind == "calm" {
         rig.until(60.0, "a refusal", |rig| rig.event_at(is_refusal).is_some());
         checks.holds("unknown", !rig.vehicle.embedded().unwrap().estimate().heading_valid);

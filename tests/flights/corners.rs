@@ -24,7 +24,7 @@ fn zigzag(kinds: [&str; 6]) -> String {
 
 const MIXED: [&str; 6] = ["FLYBY", "FLYOVER", "FLYBY", "FLYOVER", "FLYBY", "FLYOVER"];
 
-/// Distance of a sample along and right of the line from `a` to `b`.
+/// Returns the distances of a sample along and right of the line from `a` to `b`.
 fn along_right(sample: &Sample, a: [f64; 2], b: [f64; 2]) -> (f64, f64) {
     let (dn, de) = (b[0] - a[0], b[1] - a[1]);
     let length = dn.hypot(de);
@@ -66,7 +66,7 @@ fn corner_checks(seed: u64) -> Option<String> {
             checks.within(&name("overshoot"), overshoot, 2.0 - extra.h, 6.0 + extra.h);
         }
         overshoots[usize::from(!flyby)] += overshoot.max(0.0);
-        // The last time it is off the new leg by more than 1.5 m lies before this distance along it.
+        // The last point more than 1.5 m off the new leg must be before this distance along it.
         let limit = if flyby { 30.0 } else { 40.0 };
         let leg_end = rig.entered(NavState::Arrived, corner as u8 + 1);
         let last_off = rig

@@ -1,4 +1,4 @@
-//! The fence: refuses plans beyond it, lands or returns when the craft leaves it.
+//! The fence. It refuses plans beyond it, and lands or returns a craft that leaves it.
 
 use crate::checks::{Checks, assert_met, greatest};
 use crate::rig::{Rig, SEEDS, world};

@@ -1,4 +1,4 @@
-//! What the craft does when its GPS leaves it, jumps, or hangs.
+//! Flights with a GPS that fails, jumps or hangs.
 
 use crate::checks::{Checks, assert_met, greatest};
 use crate::rig::{Rig, SEEDS, Sample, world};

@@ -1,11 +1,11 @@
-//! A hover throttle that is configured up to 250 µs wrong.
+//! Flights with a hover throttle that is configured up to 250 µs wrong.
 
 use crate::checks::{Checks, assert_met, greatest};
 use crate::rig::{Rig, Sample, world};
 use betadeck::sim::Airframe;
 use betadeck::telemetry::{DisarmReason, EventKind, FirmwareEvent, NavEvent, NavState, Refusal};
 
-/// The firmware's own altitude gains instead of the guide's.
+/// The firmware's default altitude gains, in place of the guide's.
 const DEFAULT_GAINS: &str = "
 set ap_altitude_p = 15
 set ap_altitude_i = 20
@@ -13,7 +13,8 @@ set ap_altitude_d = 30
 set ap_altitude_f = 30
 ";
 
-/// The true one is 1507 µs: 250 below, the firmware's default, the highest that can be set; 0 is captured.
+/// The configured hover throttles, for a true one of 1507 µs: 250 µs below it, the firmware's default, the
+/// highest value, and 0, which is captured.
 const HOVERS: [u16; 4] = [1257, 1275, 1700, 0];
 
 fn hold_and_land(seed: u64, gains: &str, hover: u16) -> Option<String> {
@@ -45,7 +46,7 @@ fn wrong_hover_throttle_keeps_its_altitude_and_lands() {
     assert_met(flights.map(|(seed, gains, hover)| hold_and_land(seed, gains, hover)));
 }
 
-/// Engaging on the ground, where nothing has been learned yet.
+/// Engages on the ground, before anything has been learned.
 #[test]
 fn wrong_hover_throttle_takes_off() {
     let take_off = |hover: u16, seed: u64| {
@@ -69,7 +70,7 @@ waypoint insert 1 40.4635901 -79.5182000 1200 300 LAND 0 NONE"
     assert_met([1257, 1507, 1700].into_iter().flat_map(|hover| [0, 1].map(|seed| take_off(hover, seed))));
 }
 
-/// A craft that loses three times as much thrust to a climb, and has three times the drag in it.
+/// Returns a craft that loses three times as much thrust in a climb and has three times the drag.
 fn draggy(airframe: Airframe) -> Airframe {
     let mut airframe = airframe;
     airframe.inflow_coeff *= 3.0;
@@ -101,8 +102,8 @@ fn a_climb_against_drag_is_not_taken_for_hover() {
     }));
 }
 
-/// A floor of the throttle that lifts the craft: seen in the air it is refused with the numbers, engaged on the ground the
-/// craft still stays where it is sent.
+/// Flies with a throttle minimum that lifts the craft. In the air it is refused with the numbers. A craft
+/// that engages on the ground still stays where it is sent.
 #[test]
 fn a_throttle_floor_above_the_hover_does_not_carry_the_craft_away() {
     let (mut world, _) = world(0);

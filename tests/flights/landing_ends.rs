@@ -1,4 +1,5 @@
-//! Every landing ends: on the ground, disarmed, upright, whatever barometer, thresholds and receiver do.
+//! Every landing ends on the ground, disarmed and upright, whatever the barometer, thresholds and receiver
+//! do.
 
 use crate::checks::{Checks, assert_met, greatest};
 use crate::rig::{Rig, Sample, world};
@@ -12,14 +13,14 @@ fn fault(rig: &mut Rig, name: &str, value: &str, for_s: Option<f64>) {
     rig.vehicle.change_world(command).unwrap();
 }
 
-/// A craft that lands from 20 m, its landing begun.
+/// Returns a craft that has begun its landing from 20 m.
 fn landing(seed: u64, lines: &str) -> Rig {
     let mut rig = Rig::new(world(seed).0, &format!("{lines}\n{LAND}"), 20.0);
     rig.engaged().until_state(30.0, NavState::Landing);
     rig
 }
 
-/// The craft came to rest where it should, and the flight ended by the landing.
+/// Checks that the craft came to rest at the right place and that the landing ended the flight.
 fn is_down(checks: &mut Checks, rig: &Rig, radius_m: f64) {
     let (disarm, reason) = rig.disarmed().unwrap();
     checks.same("reason", reason, DisarmReason::Landing);
@@ -31,7 +32,7 @@ fn is_down(checks: &mut Checks, rig: &Rig, radius_m: f64) {
     checks.at_most("lean afterwards", tilt, 3.0);
 }
 
-/// Sink rate at the first contact with the ground after `from`, m/s.
+/// Returns the sink rate at the first contact with the ground after `from`, m/s.
 fn impact_mps(rig: &Rig, from: f64) -> f64 {
     let mut span = rig.span(from, 1e9).skip_while(|s| s.alt < 0.3);
     let mut before = 0.0;
@@ -149,7 +150,7 @@ fn a_fix_lost_while_landing_does_not_leave_the_craft_half_a_metre_up() {
         checks.same("state", rig.samples.last().unwrap().state, NavState::Idle);
         checks.holds("level, altitude held", rig.samples.last().unwrap().modes.has(Mode::AltHold));
         rig.until(40.0, "disarm", |rig| rig.disarmed().is_some()).fly(2.0);
-        // Without a position the wind carries it.
+        // Without a position the wind carries the craft.
         is_down(&mut checks, &rig, 50.0);
         checks.at_most("impact", impact_mps(&rig, lost), 0.8);
         checks.at_most("time", rig.disarmed().unwrap().0 - lost, 18.0);

@@ -1,4 +1,4 @@
-//! Ways out of a mission: what stays on, and what brings it back.
+//! The ends of a mission before its time: the modes that stay on, and the ways to resume.
 
 use crate::rig::{Rig, world};
 use betadeck::sim::{Fault, WorldCommand};
@@ -10,11 +10,12 @@ const MISSION: &str = "
 waypoint insert 0 40.4640403 -79.5182000 2000 500 FLYOVER 0 ORBIT
 waypoint insert 1 40.4640403 -79.5174926 2000 500 HOLD 0 NONE";
 
-/// AUX channels of the starter modes.
+/// The AUX channels of the starter modes.
 const AUTOPILOT: usize = 5;
 const HOLDS: usize = 6;
 
-/// A craft eight seconds into its mission whose pilot lets go of the sticks, with only the AUTOPILOT switch on.
+/// Returns a craft eight seconds into its mission whose pilot no longer acts. Only the AUTOPILOT switch is
+/// on.
 fn on_its_way() -> Rig {
     let mut rig = Rig::new(world(0).0, MISSION, 20.0);
     rig.engaged().fly(8.0);

@@ -1,4 +1,4 @@
-//! Whole flights: firmware and world in lockstep, flown by the scripted pilot.
+//! Complete flights. The scripted pilot flies the firmware and the world in lockstep.
 
 #![allow(
     clippy::unwrap_used,

@@ -1,10 +1,10 @@
-//! What ends a mission because it gets nowhere, on the whole craft.
+//! The progress monitors on the complete craft. They must not end these missions.
 
 use betadeck::telemetry::NavState;
 
 use crate::rig::{Rig, world};
 
-/// North and back home, 60 m.
+/// A flight 60 m north and back home.
 const OUT_AND_BACK: &str = "
 waypoint insert 0 40.4640390 -79.5182000 2000 0 FLYOVER 0 NONE
 waypoint insert 1 40.4635000 -79.5182000 2000 0 FLYOVER 0 NONE";

@@ -93,7 +93,8 @@ fn orbit_ends_after_its_time() {
     assert_met([timed(0), timed(1)]);
 }
 
-/// An orbit whose rate is limited by the speed or by the lean: radius, m; rate, °/s; `ap_max_velocity`, cm/s.
+/// Flies an orbit whose rate is limited by the speed or by the lean: radius, m; rate, °/s; `ap_max_velocity`,
+/// cm/s.
 fn fast(radius_m: f64, rate_dps: u32, speed_cms: u32, holds: &str) -> Option<String> {
     let (world, _) = world(0);
     let lines = format!(

@@ -12,9 +12,9 @@ waypoint insert 1 40.4653911 -79.5182000 2000 500 FLYOVER 0 ORBIT";
 struct Air {
     wind: &'static str,
     rough: bool,
-    /// Greatest and mean cross-track error.
+    /// The greatest and the mean cross-track error.
     xte: (f64, f64),
-    /// Roll and pitch (nose up) in the steady part and their tolerance.
+    /// Roll and pitch (nose up) in the steady part, and their tolerance.
     lean: Option<(f64, f64, f64)>,
 }
 

@@ -1,4 +1,4 @@
-//! Every RX-loss policy with every failsafe procedure, flying a mission and hovering by hand.
+//! Every RX-loss policy with every failsafe procedure, in a mission and in manual hover.
 
 use crate::rig::{Rig, world};
 use betadeck::telemetry::{DisarmReason, EventKind, FirmwareEvent, Mode};
@@ -6,7 +6,7 @@ use betadeck::telemetry::{DisarmReason, EventKind, FirmwareEvent, Mode};
 const MISSION: &str = "\nwaypoint insert 0 40.4648508 -79.5182000 2000 500 FLYOVER 0 ORBIT
 waypoint insert 1 40.4648508 -79.5174926 2000 500 LAND 0 ORBIT";
 
-/// Cuts the link in flight; what stage 2 did, and the modes half a second later.
+/// Cuts the link in flight. Returns the response of stage 2 and the modes about half a second later.
 fn stage_2(policy: &str, procedure: &str, engaged: bool) -> (String, String) {
     let lines = format!("set ap_rx_loss_policy = {policy}\nset failsafe_procedure = {procedure}{MISSION}");
     let mut rig = Rig::new(world(0).0, &lines, 10.0);
@@ -57,7 +57,8 @@ fn response_by_policy_procedure_and_flight() {
     }
 }
 
-/// Cuts the link in a mission, 12 to 20 m from home: how much higher than the craft the rescue returns.
+/// Cuts the link in a mission, 12 to 28 m from home. Returns the height of the rescue's return above the
+/// craft, m.
 fn rescue_climb(min_start_dist_m: u32) -> f64 {
     let lines = format!(
         "set gps_rescue_min_start_dist = {min_start_dist_m}\nset failsafe_procedure = GPS-RESCUE{MISSION}"

@@ -1,4 +1,4 @@
-//! The same flight at other step rates, twice, and from a frozen copy.
+//! The same flight at other step rates, repeated, and continued from a frozen copy.
 
 use crate::checks::{Checks, assert_met, greatest};
 use crate::rig::{Rig, world};

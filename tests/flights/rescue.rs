@@ -1,11 +1,12 @@
-//! A rescue by switch, with its GPS and without, on the airframes of the simulator and on some of other drag, thrust and lag.
+//! Rescues by switch, with and without GPS, on the simulator's airframes and on some with other drag, thrust
+//! and lag.
 
 use crate::checks::{Checks, assert_met};
 use crate::rig::{Rig, world};
 use betadeck::sim::{Airframe, Fault, WorldCommand};
 use betadeck::telemetry::{DisarmReason, EventKind, Mode};
 
-/// One FLYOVER 333 m north at 40 m, and the rescue of the public harness.
+/// A plan with one FLYOVER 333 m north at 40 m, and the rescue of the public harness.
 const PLAN: &str = "\
 waypoint insert 0 40.4665000 -79.5182000 4000 500 FLYOVER 0 NONE
 aux 5 46 4 1700 2100 0 0

@@ -1,4 +1,4 @@
-//! Returning home by command.
+//! The return home by command.
 
 use crate::checks::{Checks, assert_met, greatest};
 use crate::rig::{Rig, SEEDS, world};

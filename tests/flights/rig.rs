@@ -1,4 +1,4 @@
-//! A vehicle, its pilot, and a record of what happened.
+//! A vehicle, its pilot, and a record of the flight.
 
 use betadeck::firmware::cli::Interpreter;
 use betadeck::flight::FlightSetup;
@@ -10,25 +10,25 @@ use betadeck::telemetry::{
 };
 use betadeck::vehicle::Vehicle;
 
-/// The guide's configuration, Step 5, without its `save`: nothing restarts here.
+/// Returns the guide's configuration, Step 5, without its `save`: nothing restarts here.
 pub(crate) fn guide_settings() -> impl Iterator<Item = &'static str> {
     include_str!("../vectors/guide-step5.txt").lines().filter(|line| line.starts_with("set "))
 }
 
-/// What a flight looks like from outside, a hundred times a second.
+/// The true state and the visible output of a flight, sampled a hundred times a second.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sample {
     /// Seconds since engagement (before it: negative).
     pub(crate) t: f64,
-    /// True place from the boot place, m: north, east, up.
+    /// The true position from the boot place, m: north, east, up.
     pub(crate) n: f64,
     pub(crate) e: f64,
     pub(crate) alt: f64,
-    /// True velocity, m/s: north, east, up.
+    /// The true velocity, m/s: north, east, up.
     pub(crate) vn: f64,
     pub(crate) ve: f64,
     pub(crate) vu: f64,
-    /// True attitude, degrees: roll right, pitch nose up, heading.
+    /// The true attitude, degrees: roll right, pitch nose up, heading.
     pub(crate) roll: f64,
     pub(crate) pitch: f64,
     pub(crate) heading: f64,
@@ -38,7 +38,7 @@ pub(crate) struct Sample {
     pub(crate) modes: ModeFlags,
     pub(crate) state: NavState,
     pub(crate) wp: u8,
-    /// Distance to the waypoint as the navigator says, m.
+    /// The navigator's distance to the waypoint, m.
     pub(crate) distance: f64,
     pub(crate) hold_remaining_ds: u16,
 }
@@ -48,18 +48,17 @@ impl Sample {
         self.vn.hypot(self.ve)
     }
 
-    /// Tilt from level, degrees.
+    /// Returns the tilt from level, degrees.
     pub(crate) fn lean(&self) -> f64 {
         (self.roll.to_radians().cos() * self.pitch.to_radians().cos()).acos().to_degrees()
     }
 
-    /// Horizontal distance from a point (north, east), m.
+    /// Returns the horizontal distance from a point (north, east), m.
     pub(crate) fn from(&self, point: [f64; 2]) -> f64 {
         (self.n - point[0]).hypot(self.e - point[1])
     }
 }
 
-/// A state transition.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Transition {
     /// Seconds since engagement.
@@ -68,7 +67,7 @@ pub(crate) struct Transition {
     pub(crate) wp: u8,
 }
 
-/// A flight under observation.
+/// A recorded flight.
 pub(crate) struct Rig {
     pub(crate) vehicle: Vehicle,
     pub(crate) events: Vec<Event>,
@@ -77,8 +76,8 @@ pub(crate) struct Rig {
 }
 
 impl Rig {
-    /// A vehicle with the guide's settings and the starter modes in this world, with these further CLI lines, and the
-    /// scripted pilot who climbs to `takeoff_m` and engages.
+    /// Creates a vehicle with the guide's settings and the starter modes in this world, with these additional
+    /// CLI lines. The scripted pilot climbs to `takeoff_m` and engages.
     pub(crate) fn new(world: WorldConfig, lines: &str, takeoff_m: f64) -> Self {
         let (vehicle, _) = FlightSetup { world, ..FlightSetup::default() }.build().unwrap();
         let standing_m = vehicle.world().unwrap().truth().pos_enu.z;
@@ -90,7 +89,7 @@ impl Rig {
         rig
     }
 
-    /// Types CLI lines; none may fail.
+    /// Types CLI lines. No line may fail.
     pub(crate) fn cli(&mut self, lines: &str) {
         let mut session = Interpreter::default();
         for line in lines.lines() {
@@ -99,7 +98,7 @@ impl Rig {
         }
     }
 
-    /// One step.
+    /// Runs one step.
     pub(crate) fn tick(&mut self) {
         self.vehicle.tick();
         self.vehicle.drain_events(|event| self.events.push(event));
@@ -108,7 +107,7 @@ impl Rig {
         }
     }
 
-    /// Flies on for so many simulated seconds.
+    /// Continues the flight for some simulated seconds.
     pub(crate) fn fly(&mut self, seconds: f64) -> &mut Self {
         let end = self.boot_s() + seconds;
         while self.boot_s() < end {
@@ -117,7 +116,8 @@ impl Rig {
         self
     }
 
-    /// Flies until the condition holds; fails the test when it does not within so many simulated seconds.
+    /// Flies until the condition holds. Fails the test if it does not hold within `limit_s` simulated
+    /// seconds.
     #[track_caller]
     pub(crate) fn until(
         &mut self,
@@ -148,7 +148,7 @@ impl Rig {
         })
     }
 
-    /// Seconds since boot.
+    /// Returns the seconds since boot.
     pub(crate) fn boot_s(&self) -> f64 {
         self.vehicle.time().as_secs_f64()
     }
@@ -157,7 +157,7 @@ impl Rig {
         boot_s - self.vehicle.engaged_at().map_or(1e6, SimTime::as_secs_f64)
     }
 
-    /// Seconds since engagement.
+    /// Returns the seconds since engagement.
     pub(crate) fn t(&self) -> f64 {
         self.since_engagement(self.boot_s())
     }
@@ -189,7 +189,7 @@ impl Rig {
         }
     }
 
-    /// All state transitions so far.
+    /// Returns all state transitions so far.
     pub(crate) fn transitions(&self) -> Vec<Transition> {
         self.events
             .iter()
@@ -202,38 +202,38 @@ impl Rig {
             .collect()
     }
 
-    /// The transitions as words: `APPROACHING 0, ARRIVED 0, …`.
+    /// Returns the transitions as words: `APPROACHING 0, ARRIVED 0, …`.
     pub(crate) fn path(&self) -> String {
         let words: Vec<_> =
             self.transitions().iter().map(|entry| format!("{} {}", entry.to, entry.wp)).collect();
         words.join(", ")
     }
 
-    /// When a state was entered with this waypoint, the first time, s since engagement.
+    /// Returns the time at which a state was first entered with this waypoint, s since engagement.
     #[track_caller]
     pub(crate) fn entered(&self, state: NavState, wp: u8) -> f64 {
         let found = self.transitions().into_iter().find(|entry| entry.to == state && entry.wp == wp);
         found.unwrap_or_else(|| panic!("{state} {wp} never came\n{}", self.story())).t
     }
 
-    /// The samples of a span of time since engagement.
+    /// Returns the samples of a span of time since engagement.
     pub(crate) fn span(&self, from: f64, to: f64) -> impl Iterator<Item = &Sample> {
         self.samples.iter().filter(move |sample| from <= sample.t && sample.t < to)
     }
 
-    /// The first sample at or after a time since engagement.
+    /// Returns the first sample at or after a time since engagement.
     #[track_caller]
     pub(crate) fn at(&self, t: f64) -> &Sample {
         self.samples.iter().find(|sample| sample.t >= t - 1e-9).unwrap()
     }
 
-    /// Time of the first event that the pick accepts, s since engagement.
+    /// Returns the time of the first event that `pick` accepts, s since engagement.
     pub(crate) fn event_at(&self, pick: impl Fn(&EventKind) -> bool) -> Option<f64> {
         let event = self.events.iter().find(|event| pick(&event.kind))?;
         Some(self.since_engagement(event.time.as_secs_f64()))
     }
 
-    /// When and why the craft was disarmed.
+    /// Returns the time and the reason of the disarm.
     pub(crate) fn disarmed(&self) -> Option<(f64, DisarmReason)> {
         self.events.iter().find_map(|event| match event.kind {
             EventKind::Firmware(FirmwareEvent::Disarmed(reason)) => {
@@ -243,7 +243,7 @@ impl Rig {
         })
     }
 
-    /// The plans that became active, with their sources.
+    /// Returns the plans that became active, with their sources.
     pub(crate) fn plans(&self) -> Vec<(PlanSource, FlightPlan)> {
         self.events
             .iter()
@@ -256,19 +256,19 @@ impl Rig {
             .collect()
     }
 
-    /// A place of a plan from the boot place in the world's projection (north, east), m.
+    /// Returns the position of a plan's point from the boot place in the world's projection (north, east), m.
     pub(crate) fn place(&self, position: betadeck::geo::LatLon) -> [f64; 2] {
         let enu =
             self.vehicle.world().unwrap().local_frame().to_enu(position.lat_deg(), position.lon_deg(), 0.0);
         [enu.y, enu.x]
     }
 
-    /// Place of a waypoint of the stored plan.
+    /// Returns the position of a waypoint of the stored plan.
     pub(crate) fn waypoint(&self, index: usize) -> [f64; 2] {
         self.place(self.vehicle.embedded().unwrap().stored_plan().waypoints[index].position)
     }
 
-    /// One line an event, for failure messages.
+    /// Returns one line per event, for failure messages.
     pub(crate) fn story(&self) -> String {
         self.events
             .iter()
@@ -279,20 +279,20 @@ impl Rig {
     }
 }
 
-/// What is allowed on top of the plain bounds, because sensors err.
+/// The tolerance on top of the plain bounds, because sensors have errors.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Allowance {
-    /// Horizontally, m.
+    /// The horizontal tolerance, m.
     pub(crate) h: f64,
-    /// Vertically, m.
+    /// The vertical tolerance, m.
     pub(crate) v: f64,
-    /// On speeds, m/s.
+    /// The tolerance of speeds, m/s.
     pub(crate) speed: f64,
-    /// On angles, degrees.
+    /// The tolerance of angles, degrees.
     pub(crate) angle: f64,
 }
 
-/// A world: calm or windy, with exact sensors (seed 0) or real ones of this seed.
+/// Returns a calm world and its tolerances, with exact sensors (seed 0) or real ones of this seed.
 pub(crate) fn world(seed: u64) -> (WorldConfig, Allowance) {
     let switches = Switches { wind_profile: WindProfile::Flat, ..Switches::default() };
     let plain = WorldConfig { switches, noise: Noise::None, ..WorldConfig::default() };
@@ -305,5 +305,5 @@ pub(crate) fn world(seed: u64) -> (WorldConfig, Allowance) {
     }
 }
 
-/// Seeds of a check: 0 = exact sensors.
+/// The seeds of a check: 0 = exact sensors.
 pub(crate) const SEEDS: [u64; 6] = [0, 1, 2, 3, 4, 5];

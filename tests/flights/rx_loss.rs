@@ -1,4 +1,4 @@
-//! Losing the receiver in a mission, under each policy and procedure.
+//! Receiver loss in a mission, under each policy and procedure.
 
 use crate::checks::{Checks, assert_met, greatest};
 use crate::rig::{Rig, SEEDS, world};
@@ -9,7 +9,7 @@ const MISSION: &str = "
 waypoint insert 0 40.4648508 -79.5182000 2000 500 FLYOVER 0 ORBIT
 waypoint insert 1 40.4648508 -79.5174926 2000 500 LAND 0 ORBIT";
 
-/// Engages, and cuts the link 14 s later; gives the time of the cut.
+/// Engages, and cuts the link 14 s later. Returns the time of the cut.
 fn cut(seed: u64, policy: &str) -> (Rig, f64) {
     let mut rig = Rig::new(world(seed).0, &format!("set ap_rx_loss_policy = {policy}{MISSION}"), 20.0);
     rig.engaged().fly(14.0);

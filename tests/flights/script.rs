@@ -1,4 +1,4 @@
-//! The guide's RC script, which holds the ARM switch on and the throttle at 1100 from its first packet.
+//! The guide's RC script. It holds the ARM switch on and the throttle at 1100 from its first packet.
 
 use crate::rig::{guide_settings, world};
 use betadeck::firmware::cli::Interpreter;
@@ -16,7 +16,7 @@ waypoint insert 1 40.4630000 -79.5175000 5000 0 FLYBY 0 ORBIT
 waypoint insert 2 40.4630000 -79.5190000 5000 0 HOLD 300 ORBIT
 waypoint insert 3 40.4640000 -79.5190000 5000 0 LAND 0 ORBIT";
 
-/// The script's packet `n`, 20 ms after the one before.
+/// Returns the script's packet `n`, 20 ms after the one before.
 fn packet(n: u64) -> RcFrame {
     let mut channels = [1500; 16];
     channels[4] = 2000;
@@ -43,7 +43,7 @@ impl Bench {
         Self { firmware, world: World::new(world(1).0).unwrap() }
     }
 
-    /// Runs until `end`; the script starts at `start`.
+    /// Runs until `end`. The script starts at `start`.
     fn run(&mut self, start: f64, end: f64, mut look: impl FnMut(&Firmware)) {
         let start = SimTime::from_secs_f64(start);
         while self.world.time() < SimTime::from_secs_f64(end) {

@@ -1,4 +1,4 @@
-//! Ground that slopes: landings below and above home.
+//! Landings on sloping ground, below and above home.
 
 use crate::checks::{Checks, assert_met};
 use crate::rig::{Rig, world};
@@ -8,7 +8,7 @@ use betadeck::telemetry::{DisarmReason, EventKind, NavState};
 /// A LAND 100 m east of home, 20 m above it.
 const LAND_EAST: &str = "waypoint insert 0 40.4635000 -79.5170205 2000 500 LAND 0 NONE";
 
-/// Sink rate at the last touchdown, m/s, and whether something broke.
+/// Returns the sink rate at the last touchdown, m/s, and `true` if the craft crashed.
 fn impact(rig: &Rig) -> (f64, bool) {
     let mut impact_mps = f64::NAN;
     let mut crashed = false;

@@ -1,4 +1,4 @@
-//! A craft that cannot stay where it should says so, and says when it can again.
+//! A craft that cannot stay in its place reports it, and reports when it can again.
 
 use betadeck::sim::{BatteryFault, Fault, WorldCommand};
 use betadeck::telemetry::{CannotHold, EventKind, FirmwareEvent, HoldLimit, NavEvent, NavState};
@@ -13,7 +13,7 @@ fn holding(seed: u64, lines: &str) -> Rig {
     rig
 }
 
-/// What was told, in order, with the time since engagement.
+/// Returns the reports in order, with the time since engagement.
 fn told(rig: &Rig) -> Vec<(bool, CannotHold)> {
     rig.events
         .iter()

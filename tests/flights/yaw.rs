@@ -1,4 +1,4 @@
-//! Where the nose points.
+//! The heading of the craft in flight.
 
 use betadeck::pilot::StickInput;
 use betadeck::sim::{Airframe, Turbulence};
@@ -7,10 +7,10 @@ use betadeck::telemetry::NavState;
 use crate::checks::{Checks, assert_met, greatest};
 use crate::rig::{Rig, world};
 
-/// Channel of the yaw stick.
+/// The channel of the yaw stick.
 const YAW: u8 = 3;
 
-/// Seven rounds of a 60 m square of FLYOVERs.
+/// Returns seven rounds of a 60 m square of FLYOVERs.
 fn seven_squares(speed_cms: u32) -> String {
     const CORNERS: [&str; 4] = [
         "40.4640390 -79.5182000",
@@ -27,7 +27,7 @@ fn seven_squares(speed_cms: u32) -> String {
         .collect()
 }
 
-/// Degrees from `to` to `from`, the short way round.
+/// Returns the degrees from `to` to `from`, the short way round.
 fn turned(from: f64, to: f64) -> f64 {
     (from - to + 180.0).rem_euclid(360.0) - 180.0
 }
@@ -75,7 +75,7 @@ fn the_yaw_stick_chooses_the_heading_that_is_kept() {
     assert!(off < 10.0, "{off}");
 }
 
-/// The greatest true yaw rate over a round of the square may be the limit, and 1 °/s + 5 % more.
+/// Checks the greatest true yaw rate over a round of the square. It may exceed the limit by 1 °/s + 5 %.
 fn yaw_rate(airframe: Airframe, mode: &str, limit_dps: u32, cap_dps: Option<u32>) -> Option<String> {
     let (mut world, _) = world(0);
     let flight = format!("{}, {mode}, {limit_dps} deg/s, cap {cap_dps:?}", airframe.name);
@@ -90,7 +90,7 @@ fn yaw_rate(airframe: Airframe, mode: &str, limit_dps: u32, cap_dps: Option<u32>
     }
     rig.engaged().until_state(200.0, NavState::Complete);
     let most = f64::from(cap_dps.unwrap_or(limit_dps));
-    // The mean over a tenth of a second, so that the shaking of a corner is not taken for a turn.
+    // The mean over a tenth of a second, so that the shaking of a corner does not count as a turn.
     let flown: Vec<f64> = rig.span(0.0, 1e9).map(|sample| sample.heading).collect();
     let fastest = greatest(flown.windows(11).map(|span| turned(span[10], span[0]).abs() / 0.1));
     let mut checks = Checks::default();

@@ -1,9 +1,9 @@
-//! Airframe files.
+//! The target of airframe files.
 
 use betadeck::signals::MotorCommand;
 use betadeck::sim::{Airframe, World, WorldConfig};
 
-/// Reads the text; a craft that is accepted can stand and climb.
+/// Reads the text. A craft that is accepted can be on the ground and climb.
 pub fn run(data: &[u8]) {
     let Ok(text) = std::str::from_utf8(data) else { return };
     match Airframe::from_toml(text) {

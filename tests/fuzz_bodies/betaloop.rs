@@ -1,8 +1,8 @@
-//! The launcher's file, `--betaloop`.
+//! The target of the launcher's file, `--betaloop`.
 
 use betadeck::args::{Betaloop, BetaloopError};
 
-/// Reads the text. An executable that is named can be named again, and nothing else of the file matters to it.
+/// Reads the text. A named executable can be named again, and nothing else in the file affects it.
 pub fn run(data: &[u8]) {
     let text = String::from_utf8_lossy(data);
     match Betaloop::read(&text) {
@@ -12,7 +12,7 @@ pub fn run(data: &[u8]) {
             assert_eq!(Betaloop::read(&text), Ok(file.clone()), "reading is repeatable");
             let alone = format!("[Betaloop]\nBetaflightElf = {}\n", file.executable);
             let again = Betaloop::read(&alone).map(|file| file.executable);
-            // A value of several lines is no file name that can be written like this.
+            // A value with several lines cannot be written as a file name like this.
             assert!(file.executable.contains(['\n', '\r']) || again == Ok(file.executable), "{alone}");
         }
         Err(error) => {

@@ -9,7 +9,7 @@ use betadeck::link::proto::line_editor::LineEditor;
 
 use super::craft;
 
-/// What a session may be.
+/// The kinds of session.
 const MODES: [CliMode; 4] = [CliMode::Interactive, CliMode::Framed, CliMode::Message, CliMode::File];
 
 /// Types the lines in every kind of session, on the ground and in the air, and the bytes at a serial link.
@@ -25,7 +25,7 @@ pub fn run(data: &[u8]) {
     link(data);
 }
 
-/// One session: what became of the craft.
+/// Runs one session and returns the resulting configuration of the craft.
 fn session(text: &str, mode: CliMode, facts: &CliFacts) -> Configuration {
     let mut configuration = Configuration::default();
     let mut interpreter = Interpreter::new(mode);
@@ -43,7 +43,7 @@ fn session(text: &str, mode: CliMode, facts: &CliFacts) -> Configuration {
     configuration
 }
 
-/// The bytes as they come over a serial link, 60 ms apart.
+/// Feeds the bytes as they come over a serial link, 60 ms apart.
 fn link(data: &[u8]) {
     let mut configuration = Configuration::default();
     let mut interpreter = Interpreter::default();
@@ -64,7 +64,7 @@ fn link(data: &[u8]) {
             let mut context = CliContext { configuration: &mut configuration, facts: &facts };
             editor.answer(&interpreter.run(&line, &mut context).into());
         }
-        // Quiet every now and then, so that a `#` opens the command line.
+        // A pause now and then lets a `#` open the command line.
         editor.poll(false, now + Duration::from_millis(if at % 4 == 0 { 100 } else { 50 }));
     }
 }

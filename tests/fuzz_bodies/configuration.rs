@@ -7,7 +7,7 @@ use betadeck::app::configuration_file::ConfigurationFile;
 use betadeck::args::{self, Layers};
 use betadeck::ui::keymap::Keymap;
 
-/// Command lines that the file is read for.
+/// The command lines for which the file is read.
 const COMMANDS: [&[&str]; 4] = [&[], &["fly", "square"], &["serve"], &["check"]];
 
 /// Reads the text, its keys, and its options for every kind of command.
@@ -49,7 +49,7 @@ fn assert_options(file: ConfigurationFile) {
     for command in COMMANDS {
         let line = std::iter::once("betadeck").chain(command.iter().copied()).map(OsString::from);
         let parsed = args::parse(line, &layers);
-        // Without a file every one of them is understood.
+        // Without a file every command is understood.
         assert!(keys > 0 || parsed.is_ok(), "{command:?}");
         if let Err(error) = parsed {
             assert!(!error.to_string().is_empty());

@@ -1,4 +1,4 @@
-//! What must hold for a craft, whatever was typed, sent or stored.
+//! Rules that must hold for a craft, whatever was typed, sent or stored.
 
 use betadeck::firmware::cli::{CliContext, CliFacts, CliMode, Interpreter, apply_lines};
 use betadeck::firmware::config::{Configuration, correct};
@@ -7,9 +7,9 @@ use betadeck::firmware::storage::{MAX_IMAGE, decode, encode};
 use betadeck::firmware::{Firmware, FirmwareOptions};
 use betadeck::signals::{RcFrame, RcSource, SensorFrame};
 
-/// No reply of the command line may be longer.
+/// The greatest length of a command line reply.
 pub const LONGEST_REPLY: usize = 1 << 20;
-/// No reply to a message may be longer: the next buffer of a configurator.
+/// The greatest length of a reply to a message, which is the next buffer size of a configurator.
 const LONGEST_MESSAGE: usize = 4096;
 
 /// Runs one line on a configuration, at rest on the ground.
@@ -20,7 +20,7 @@ pub fn run_line(configuration: &mut Configuration, interpreter: &mut Interpreter
     reply.text
 }
 
-/// Configurations that were looked at, so that each is looked at once; a fresh craft's counts as one.
+/// The configurations that were checked, so that each is checked once. A fresh craft's counts as checked.
 pub struct Checked(Vec<Configuration>);
 
 impl Default for Checked {
@@ -32,7 +32,7 @@ impl Default for Checked {
 }
 
 impl Checked {
-    /// A configuration can be corrected, stored, typed again and flown.
+    /// Asserts that a configuration can be corrected, stored, typed again and flown.
     pub fn assert_sound(&mut self, configuration: Configuration) {
         if !self.0.contains(&configuration) {
             assert_retyped(&assert_flyable(&configuration));
@@ -41,7 +41,7 @@ impl Checked {
     }
 }
 
-/// A configuration can be corrected, stored and flown. Gives the corrected one.
+/// Asserts that a configuration can be corrected, stored and flown. Returns the corrected one.
 pub fn assert_flyable(configuration: &Configuration) -> Configuration {
     let mut corrected = configuration.clone();
     correct(&mut corrected);
@@ -63,7 +63,7 @@ fn assert_stored(configuration: &Configuration) {
     assert_eq!(encode(&stored), image);
 }
 
-/// `diff all` typed into a fresh craft gives the same craft.
+/// Asserts that `diff all` typed into a fresh craft gives the same craft.
 fn assert_retyped(configuration: &Configuration) {
     let diff = run_line(&mut configuration.clone(), &mut Interpreter::default(), "diff all");
     let mut copy = Configuration::default();
@@ -74,7 +74,7 @@ fn assert_retyped(configuration: &Configuration) {
     assert_eq!(copied, diff);
 }
 
-/// The command line and every message that only asks are answered.
+/// Asserts that the command line and every message that only reads are answered.
 pub fn assert_answers(firmware: &mut Firmware) {
     let reply = firmware.run_cli(&mut Interpreter::default(), "version");
     assert!(!reply.failed && reply.text.contains("Betaflight"), "{}", reply.text);
@@ -85,7 +85,7 @@ pub fn assert_answers(firmware: &mut Firmware) {
     }
 }
 
-/// The motors get numbers that they understand.
+/// Asserts that the motors get valid numbers.
 pub fn assert_flies(firmware: &mut Firmware) {
     for _ in 0..4 {
         firmware.receive_rc(&RcFrame::SAFE, RcSource::Sticks);
@@ -93,7 +93,7 @@ pub fn assert_flies(firmware: &mut Firmware) {
     }
 }
 
-/// One step of the firmware on these sensors.
+/// Runs one step of the firmware on these sensors and checks the motors.
 pub fn assert_step(firmware: &mut Firmware, sensors: &SensorFrame) {
     let motors = firmware.step(sensors).0;
     assert!(motors.iter().all(|motor| (0.0..=1.0).contains(motor)), "{motors:?}");

@@ -1,5 +1,5 @@
-//! A whole connection as a door sees it: its first line, then MSP, text and rubbish in any order. [`PAUSE`] among the bytes
-//! stands for a quiet moment.
+//! A complete connection as a door sees it: its first line, then MSP, text and garbage in any order.
+//! [`PAUSE`] in the bytes marks a quiet moment.
 
 use std::time::Duration;
 
@@ -8,12 +8,12 @@ use betadeck::link::proto::first_line::{FirstLine, ForeignProtocol};
 use betadeck::link::proto::msp::{Kind, MAX_REQUEST};
 use betadeck::link::proto::serial_session::{SerialRequest, SerialSession};
 
-/// A quiet moment, long enough for a `#` before it to open the command line.
+/// The mark of a quiet moment. It is long enough for a `#` before it to open the command line.
 const PAUSE: &[u8] = &[0x1e, 0x1e];
-/// How long it lasts.
+/// The length of the quiet moment.
 const QUIET: Duration = Duration::from_millis(150);
 
-/// What became of a connection.
+/// The result of a connection.
 #[derive(Debug, PartialEq, Default)]
 struct Outcome {
     asks: Vec<SerialRequest>,
@@ -21,7 +21,8 @@ struct Outcome {
     refused: Option<ForeignProtocol>,
 }
 
-/// Sends the bytes whole, byte by byte and in pieces: the outcome is the same, and no stranger is served.
+/// Sends the bytes in one piece, byte by byte and in pieces. The outcome is the same, and no stranger is
+/// served.
 pub fn run(data: &[u8]) {
     first_line(data);
     binary_data_is_never_interpreted(data);
@@ -30,7 +31,7 @@ pub fn run(data: &[u8]) {
         for piece in [1, 2, 7] {
             let in_pieces = connect(data, piece, admits);
             if whole.refused.is_some() {
-                // Of a request line what comes before the version may have come alone.
+                // The part of a request line before the version may have arrived alone.
                 let ended = [Some(&SerialRequest::Foreign), Some(&SerialRequest::Restart)];
                 assert!(in_pieces.refused.is_some() || ended.contains(&in_pieces.asks.last()));
             } else {
@@ -40,7 +41,7 @@ pub fn run(data: &[u8]) {
     }
 }
 
-/// The first byte that is no blank decides, and a request line of HTTP is never passed on.
+/// Checks that the first byte that is no blank decides, and that a request line of HTTP is never passed on.
 fn first_line(data: &[u8]) {
     let first = data.iter().find(|byte| !b"\r\n ".contains(byte));
     let begins_serial = first.is_none_or(|first| matches!(first, b'$' | b'#' | 0x02));
@@ -57,7 +58,7 @@ fn first_line(data: &[u8]) {
     assert!(FirstLine::default().take(&request).is_err(), "a request is taken for a serial client");
 }
 
-/// Nothing is served behind a byte that is neither MSP nor text, whatever follows it.
+/// Checks that nothing is served after a byte that is neither MSP nor text, whatever follows it.
 fn binary_data_is_never_interpreted(data: &[u8]) {
     let stun = [b"\x00\x64\x00\x01", data].concat();
     assert_eq!(
@@ -92,7 +93,7 @@ fn connect(data: &[u8], piece: usize, admits: bool) -> Outcome {
     outcome
 }
 
-/// Answers everything that is asked; false when the connection is to be closed.
+/// Answers every request. Returns `false` if the connection must be closed.
 fn answer(session: &mut SerialSession, outcome: &mut Outcome, now: Duration, admits: bool) -> bool {
     while let Some(ask) = session.next(now) {
         let mut goes_on = true;
@@ -131,7 +132,7 @@ fn answer(session: &mut SerialSession, outcome: &mut Outcome, now: Duration, adm
     true
 }
 
-/// The bytes between pauses.
+/// Returns the bytes between pauses.
 fn bursts(data: &[u8]) -> Vec<&[u8]> {
     let mut bursts = Vec::new();
     let mut rest = data;

@@ -1,11 +1,12 @@
-//! The stored image: the bytes once as a whole file and once as the records of an image with a good checksum.
+//! The stored image. The bytes are read as a complete file and as the records of an image with a good
+//! checksum.
 
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::storage::{ImageError, MAX_IMAGE, decode, encode};
 
 use super::craft;
 
-/// Bytes before and after the records.
+/// The number of bytes before and after the records.
 const FRAME: usize = 16;
 
 /// Reads the bytes as an image, and as the records of one.
@@ -29,7 +30,7 @@ pub fn run(data: &[u8]) {
     }
 }
 
-/// An image of these records.
+/// Returns an image of these records.
 pub fn seal(records: &[u8]) -> Vec<u8> {
     let mut image = Vec::with_capacity(records.len() + FRAME);
     image.extend(b"BDCF\x01\x00\x00\x00");
@@ -42,11 +43,13 @@ pub fn seal(records: &[u8]) -> Vec<u8> {
 fn assert_good(configuration: &Configuration) {
     let (again, findings) = decode(&encode(configuration)).expect("what was read can be stored");
     assert_eq!((&again, findings), (configuration, Vec::new()));
-    // It need not be what could be typed: a stored image may keep lines that this version would carry out.
+    // The configuration may differ from any that can be typed: a stored image may keep lines that this
+    // version would run.
     craft::assert_flyable(configuration);
 }
 
-/// A changed byte anywhere, a lost end and a longer end are noticed; of a long image some places are tried.
+/// Asserts that a changed byte anywhere, a lost end and a longer end are noticed. A long image is changed at
+/// some places only.
 fn assert_damage_is_seen(image: &[u8]) {
     let mut damaged = image.to_vec();
     for at in (0..image.len()).step_by(image.len() / 16 + 1) {
@@ -59,7 +62,7 @@ fn assert_damage_is_seen(image: &[u8]) {
     assert!(decode(&damaged).is_err());
 }
 
-/// CRC-32 as in zip and Ethernet, written down a second time.
+/// Computes the CRC-32 of zip and Ethernet. It is a second implementation.
 fn checksum_of(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(u32::MAX, |sum, byte| {
         (0..8).fold(sum ^ u32::from(*byte), |sum, _| (sum >> 1) ^ (0xedb8_8320 & (sum & 1).wrapping_neg()))

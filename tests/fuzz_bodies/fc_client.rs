@@ -1,19 +1,20 @@
-//! What a flight controller answers, with the client of its serial port that asked. [`PAUSE`] among the bytes stands for
-//! time that passes; before each piece between pauses something is asked.
+//! The answers of a flight controller, and the client of its serial port. [`PAUSE`] in the bytes marks
+//! passing time. The client sends a request before each piece between pauses.
 
 use std::time::Duration;
 
 use betadeck::link::proto::fc_client::telemetry::{Mission, Observation, code, settings};
 use betadeck::link::proto::fc_client::{Answer, Ask, AskId, CliAccess, FcClient};
 
-/// Time that passes.
+/// The mark of passing time.
 const PAUSE: &[u8] = &[0x1e, 0x1e];
-/// How much: longer than a repetition takes, shorter than the patience with a line.
+/// The time that passes: longer than a repetition takes, shorter than the patience with a line.
 const PASSES: Duration = Duration::from_millis(1100);
-/// No answer may be longer.
+/// The greatest length of an answer.
 const LONGEST_ANSWER: usize = 1 << 19;
 
-/// Takes the bytes whole, byte by byte and in pieces: the same is asked and understood. Each request gets one answer.
+/// Feeds the bytes in one piece, byte by byte and in pieces. The requests and results are the same, and each
+/// request gets one answer.
 pub fn run(data: &[u8]) {
     for access in [CliAccess::Framed, CliAccess::Interactive] {
         let whole = talk(data, usize::MAX, access);
@@ -23,7 +24,7 @@ pub fn run(data: &[u8]) {
     }
 }
 
-/// Everything that went out, and every answer.
+/// Everything that the client sent, and every answer.
 #[derive(Debug, PartialEq, Default)]
 struct Talk {
     output: Vec<u8>,

@@ -1,4 +1,4 @@
-//! Datagrams of a simulator: the bytes once as one datagram, and once cut into an exchange.
+//! Datagrams of a simulator. The bytes are one datagram, and are also cut into an exchange.
 
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{Firmware, FirmwareOptions};
@@ -10,11 +10,11 @@ use betadeck::telemetry::LinkState;
 
 use super::craft;
 
-/// Most ticks that one datagram may ask for: half a second of them and a rounded one.
+/// The most ticks that one datagram may request: half a second of them and a rounded one.
 const MOST_TICKS: u32 = 501;
-/// Ticks that are really run after each datagram.
+/// The ticks that are actually run after each datagram.
 const TICKS: u32 = 2;
-/// Microseconds for each unit of the byte that says how long the simulator waited.
+/// Microseconds for each unit of the byte that sets the simulator's wait.
 const PAUSE_UNIT_US: u64 = 4_096;
 
 const DIALECTS: [Dialect; 3] = [Dialect::SitlGz, Dialect::GzPlugin, Dialect::Legacy];
@@ -46,7 +46,7 @@ fn assert_sane(state: &State) {
     assert!((state.attitude.norm() - 1.0).abs() < 1e-9 && state.pressure_pa.is_finite());
 }
 
-/// A state survives the wire, as far as the dialect carries it.
+/// Asserts that a state survives the wire, as far as the dialect carries it.
 fn assert_encodes(dialect: Dialect, state: &State) {
     let packet = Packet::parse(&dialect.encode(state).to_bytes()).expect("our own datagram");
     let back = dialect.decode(&packet, dialect.usual_gravity());
@@ -56,7 +56,8 @@ fn assert_encodes(dialect: Dialect, state: &State) {
     assert_eq!((back.lat_deg, back.lon_deg, back.alt_m), (state.lat_deg, state.lon_deg, state.alt_m));
 }
 
-/// Each datagram's first byte, which hardly changes its stamp, says how long the simulator waited before it.
+/// Exchanges datagrams. The first byte of each, which hardly changes its stamp, sets the simulator's wait
+/// before it.
 fn exchange(data: &[u8]) {
     let mut link = FdmLink::new(FdmLinkConfig::default(), 0);
     let mut firmware = Firmware::new(Configuration::default(), FirmwareOptions::default());

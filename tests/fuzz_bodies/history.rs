@@ -12,10 +12,10 @@ pub fn run(data: &[u8]) {
     }
     let kept: Vec<&str> = text.lines().filter(|line| is_kept(line)).collect();
     assert!(kept.ends_with(&lines) && lines.len() == kept.len().min(RECALLED));
-    // The file that replaces a long one holds the same.
+    // The file that replaces a long one holds the same lines.
     let rewritten: String = lines.iter().map(|line| format!("{line}\n")).collect();
     assert_eq!(recalled(&rewritten), lines);
-    // A line that is appended is the newest, whatever the file ends with.
+    // An appended line is the newest, whatever the file ends with.
     let appended = format!("{text}\nspeed 2\n");
     assert_eq!(recalled(&appended).last(), Some(&"speed 2"));
 }

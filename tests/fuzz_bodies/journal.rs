@@ -1,8 +1,9 @@
-//! Journals of plans that are edited.
+//! The journals of edited plans.
 
 use betadeck::plan::edit::{Journal, JournalLine};
 
-/// Reads the text as a journal. One that is read can be written and read again, and every edit in it undone and redone.
+/// Reads the text as a journal. A valid one can be written and read again, and every edit in it undone and
+/// redone.
 pub fn run(data: &[u8]) {
     let text = String::from_utf8_lossy(data);
     let Some(journal) = Journal::read(&text) else { return };

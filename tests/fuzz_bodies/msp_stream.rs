@@ -1,5 +1,5 @@
-//! A client's stream: MSP of every version, the command line opened by `#` and between STX and ETX, and garbage, with a
-//! firmware behind. [`PAUSE`] among the bytes stands for a quiet moment.
+//! A client's stream to a firmware: MSP of every version, the command line opened by `#` and between STX and
+//! ETX, and garbage. [`PAUSE`] in the bytes marks a quiet moment.
 
 use std::time::Duration;
 
@@ -12,14 +12,15 @@ use betadeck::link::proto::serial_session::{SerialRequest, SerialSession};
 
 use super::craft;
 
-/// A quiet moment, long enough for a `#` before it to mean the command line.
+/// The mark of a quiet moment. It is long enough for a `#` before it to mean the command line.
 const PAUSE: &[u8] = &[0x1e, 0x1e];
-/// How long it is.
+/// The length of the quiet moment.
 const QUIET: Duration = Duration::from_millis(150);
-/// More bytes than any frame that garbage can announce still takes.
+/// More bytes than garbage can still announce for a frame.
 const LONGEST_REQUEST: usize = MAX_REQUEST + 16;
 
-/// Sends the bytes whole, byte by byte and in pieces: the answers are the same; then asks something sensible.
+/// Sends the bytes in one piece, byte by byte and in pieces. The answers are the same. Then sends a sensible
+/// request.
 pub fn run(data: &[u8]) {
     decoders(data);
     let whole = talk(data, usize::MAX);
@@ -29,7 +30,7 @@ pub fn run(data: &[u8]) {
     craft::Checked::default().assert_sound(whole.configuration);
 }
 
-/// Everything that was asked and answered.
+/// Everything that was requested and answered.
 #[derive(Debug, PartialEq, Default)]
 struct Talk {
     asks: Vec<SerialRequest>,
@@ -38,7 +39,7 @@ struct Talk {
     configuration: Configuration,
 }
 
-/// One client and the craft that it talks to.
+/// A client and the craft that it is connected to.
 struct Client {
     session: SerialSession,
     firmware: Firmware,
@@ -73,7 +74,7 @@ fn talk(data: &[u8], piece: usize) -> Talk {
     client.talk
 }
 
-/// The bytes between pauses.
+/// Returns the bytes between pauses.
 fn bursts(data: &[u8]) -> Vec<&[u8]> {
     let mut bursts = Vec::new();
     let mut rest = data;
@@ -93,7 +94,7 @@ impl Client {
         self.session.push(bytes);
         while let Some(ask) = self.session.next(self.now) {
             self.answer(&ask);
-            // When to send is the only thing that depends on the pieces.
+            // Only the time to send depends on the pieces.
             if ask != SerialRequest::Flush {
                 self.talk.asks.push(ask);
             }
@@ -147,13 +148,14 @@ impl Client {
         }
     }
 
-    /// After enough silence and filling, whatever came before, a request is answered.
+    /// Asserts that after enough silence and filler bytes a request is answered, whatever came before.
     fn assert_still_answers(&mut self) {
         self.now += Duration::from_secs(3);
-        // Ends a frame that garbage began, a batch of framed lines, and an interactive session that it opened.
+        // Ends a frame that garbage began, a batch of framed lines, and an interactive session that it
+        // opened.
         self.send(&[b' '; LONGEST_REQUEST]);
         if self.closed {
-            // A character that is not complete is no text.
+            // An incomplete character is no text.
             return;
         }
         self.send(b"\x03");
@@ -161,7 +163,7 @@ impl Client {
             self.send(b"\rexit noreboot\r");
         }
         if self.closed {
-            // What was left in the buffer was an `exit`.
+            // The buffer still held an `exit`.
             return;
         }
         assert!(!self.session.is_in_cli());
@@ -175,7 +177,8 @@ impl Client {
     }
 }
 
-/// Both sides' decoders on the bare bytes: bounded payloads, and what is found is found again in its own bytes.
+/// Runs both sides' decoders on the bare bytes. Payloads are bounded, and each frame found is found again in
+/// its own bytes.
 fn decoders(data: &[u8]) {
     for (make, limit) in [(Decoder::server as fn() -> Decoder, MAX_REQUEST), (Decoder::client, MAX_REPLY)] {
         let mut decoder = make();

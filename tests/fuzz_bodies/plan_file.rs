@@ -5,7 +5,7 @@ use betadeck::plan::format::{Format, PlanError, PlanFile, parse, report, table, 
 use betadeck::plan::review::review;
 use strum::IntoEnumIterator as _;
 
-/// Reads the text in every format, and writes what was read in every format.
+/// Reads the text in every format, and writes each result in every format.
 pub fn run(data: &[u8]) {
     let Ok(text) = std::str::from_utf8(data) else { return };
     for format in Format::iter() {

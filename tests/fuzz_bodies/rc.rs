@@ -1,4 +1,4 @@
-//! RC datagrams of scripts, one behind the other.
+//! RC datagrams of scripts, one after the other.
 
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{Firmware, FirmwareOptions};

@@ -4,12 +4,12 @@ use betadeck::plan::builtin::BuiltinPlan;
 use betadeck::plan::format::{PlanFile, report};
 use betadeck::scenario::{Case, CaseFlight, Files, MAX_FLIGHTS, Scenario, judge, read, skip};
 
-/// Most cases that a scenario may have.
+/// The most cases that a scenario may have.
 const MOST_CASES: usize = 1000;
-/// Ticks that an accepted scenario is flown.
+/// The number of ticks that an accepted scenario flies.
 const TICKS: u32 = 40;
 
-/// Every file is there: the square, and a setting.
+/// A set of files that has every file: the square, and a setting.
 struct AnyFiles;
 
 impl Files for AnyFiles {
@@ -23,7 +23,7 @@ impl Files for AnyFiles {
     }
 }
 
-/// Reads the text; a scenario that is accepted can be flown and judged.
+/// Reads the text. A scenario that is accepted can be flown and judged.
 pub fn run(data: &[u8]) {
     let Ok(text) = std::str::from_utf8(data) else { return };
     let lines = text.lines().count().max(1);
@@ -47,11 +47,11 @@ fn assert_sound(scenario: &Scenario, lines: usize) {
         assert!(case.expectations.iter().all(|expected| (1..=lines).contains(&expected.line)));
         assert!(case.inputs.iter().all(|input| (1..=lines).contains(&input.line)));
     }
-    // A scenario of many cases has the first one many times.
+    // A scenario of many cases repeats the first one.
     assert_judged(&scenario.cases[0]);
 }
 
-/// The beginning of its first flight has a judgement for each expectation.
+/// Asserts that the beginning of the first flight has a judgement for each expectation.
 fn assert_judged(case: &Case) {
     if let Some(skipped) = skip(case) {
         assert_eq!(skipped.len(), case.expectations.len());

@@ -7,7 +7,7 @@ use betadeck::firmware::config::{Configuration, correct};
 
 use super::craft;
 
-/// Applies the file in every way there is.
+/// Applies the file in every available way.
 pub fn run(data: &[u8]) {
     let text = String::from_utf8_lossy(data);
     let facts = CliFacts::default();

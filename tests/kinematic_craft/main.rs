@@ -1,4 +1,5 @@
-//! Missions, rescues and descents without a fix on craft of other drag, thrust and lag than the simulator's airframes.
+//! Missions, rescues and descents without a fix, on craft with other drag, thrust and lag than the
+//! simulator's airframes.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
@@ -15,7 +16,7 @@ use betadeck::telemetry::DisarmReason;
 use plant::Kind;
 use rig::Rig;
 
-/// Craft that climb and sink in other ways than the airframes of the simulator.
+/// Returns craft that climb and sink in other ways than the airframes of the simulator.
 fn kinds() -> Vec<Kind> {
     let mut kinds = vec![Kind::HARNESS];
     for bumps in [true, false] {
@@ -34,17 +35,17 @@ fn kinds() -> Vec<Kind> {
     kinds
 }
 
-/// Throttle stick that climbs, µs.
+/// Returns the throttle stick that climbs, µs.
 fn climbing_us(kind: Kind) -> u16 {
     (1000.0 + 1000.0 * (kind.hover + 0.2) + 60.0) as u16
 }
 
-/// Returns the faults of the end of a flight; `None` without any.
+/// Returns the faults at the end of a flight; `None` without any.
 fn fault_of(rig: &Rig, impact_mps: f64, stood_s: f64) -> Option<String> {
     let Some((reason, height_m)) = rig.disarmed else {
         return Some(format!("still armed at {:.2} m", rig.plant.height_m()));
     };
-    // A bump of 60 m/s² that lasts 80 ms throws the estimate of the climb rate off for some seconds.
+    // A bump of 60 m/s² that lasts 80 ms disturbs the estimate of the climb rate for some seconds.
     let longest_s = if rig.plant.bumps() { 30.0 } else { 18.0 };
     let faults = [
         (height_m > 0.02, format!("motors stopped at {height_m:.2} m")),
@@ -56,7 +57,7 @@ fn fault_of(rig: &Rig, impact_mps: f64, stood_s: f64) -> Option<String> {
     (!faults.is_empty()).then(|| faults.join(", "))
 }
 
-/// Flies to the end. Returns how long the craft stood with its motors on, s.
+/// Flies to the end. Returns how long the craft was on the ground with its motors on, s.
 fn come_down(rig: &mut Rig) -> f64 {
     let mut stood_s: f64 = 0.0;
     for _ in 0..180 * 50 {

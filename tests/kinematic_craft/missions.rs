@@ -40,7 +40,8 @@ fn a_craft_that_is_engaged_in_a_climb_holds_the_altitude_of_its_plan() {
 fn a_landing_whose_bump_may_stop_the_motors_does_not_stop_them_in_the_air() {
     let mut faults = Vec::new();
     for kind in kinds() {
-        // A bump of this plant is made for the detector of bumps: without it, it only confuses the estimate of the altitude.
+        // The bump of this plant is meant for the bump detector. Without the detector it only disturbs the
+        // altitude estimate.
         let thresholds: &[u8] = if kind.bumps { &[10] } else { &[10, 0] };
         for threshold in thresholds {
             let mut rig = engaged(kind, &format!("{LAND}\nset landing_disarm_threshold = {threshold}"));

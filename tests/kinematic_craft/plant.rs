@@ -1,7 +1,8 @@
-//! A kinematic quadcopter: thrust sets the climb rate and lean the horizontal acceleration, each with a lag.
+//! A kinematic quadcopter. Thrust sets the climb rate and lean sets the horizontal acceleration, each with a
+//! lag.
 //!
-//! Its default numbers are those of the public SITL harness. A craft of this kind reaches a steady sink rate at any
-//! throttle, so that little throttle alone does not show the ground.
+//! Its default numbers are those of the public SITL harness. Such a craft reaches a steady sink rate at any
+//! throttle, so low throttle alone does not show the ground.
 
 use betadeck::geo::{GRAVITY, LatLon, offset_to_latlon};
 use betadeck::link::proto::fdm::pressure_pa;
@@ -9,33 +10,33 @@ use betadeck::signals::{GpsSample, MotorCommand, SensorFrame};
 use betadeck::sim::attitude;
 use nalgebra::{Vector2, Vector3};
 
-/// Steps in which the accelerometer feels a touchdown, and how hard, m/s².
+/// The number of steps in which the accelerometer feels a touchdown, and the acceleration, m/s².
 const BUMP_STEPS: u32 = 4;
 const BUMP_MPS2: f64 = 60.0;
-/// Body rate per unit of differential thrust, rad/s, and its time constant, s.
+/// The body rate per unit of differential thrust, rad/s, and its time constant, s.
 const RATE_GAIN: f64 = 12.0;
 const RATE_TAU_S: f64 = 0.08;
-/// Greatest lean, rad.
+/// The greatest lean, rad.
 const MAX_LEAN_RAD: f64 = 1.2;
-/// A craft on the ground stays there below this share of its hover thrust.
+/// The share of the hover thrust below which a craft stays on the ground.
 const LIFTING_SHARE: f64 = 0.8;
-/// Where it starts.
+/// The place where the craft starts.
 const HOME: LatLon = LatLon::new(-275_000_000, 1_530_000_000);
-/// Magnetic field, ENU; only its direction counts.
+/// The magnetic field, ENU. Only its direction counts.
 const FIELD_ENU: Vector3<f64> = Vector3::new(71.5, 2046.8, -3547.2);
 
-/// What distinguishes one craft from another.
+/// The properties that distinguish one craft from another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Kind {
-    /// Mean motor command that hovers, 0…1.
+    /// The mean motor command that hovers, 0…1.
     pub(crate) hover: f64,
-    /// Horizontal drag, 1/s.
+    /// The horizontal drag, 1/s.
     pub(crate) drag: f64,
-    /// Steady climb rate per unit of thrust above hover, m/s.
+    /// The steady climb rate per unit of thrust above hover, m/s.
     pub(crate) climb_gain: f64,
-    /// Time constant of the climb rate, s.
+    /// The time constant of the climb rate, s.
     pub(crate) climb_tau_s: f64,
-    /// The accelerometer feels a bump at the touchdown.
+    /// `true` if the accelerometer feels a bump at the touchdown.
     pub(crate) bumps: bool,
 }
 
@@ -57,7 +58,7 @@ pub(crate) struct Plant {
     rates: Vector3<f64>,
     bump_steps: u32,
     steps: u64,
-    /// The receiver tells where it is.
+    /// `true` while the receiver reports the position.
     pub(crate) has_gps: bool,
 }
 
@@ -76,22 +77,22 @@ impl Plant {
         }
     }
 
-    /// Whether the accelerometer feels a bump at the touchdown.
+    /// Returns `true` if the accelerometer feels a bump at the touchdown.
     pub(crate) fn bumps(&self) -> bool {
         self.kind.bumps
     }
 
-    /// Height above the ground, m.
+    /// Returns the height above the ground, m.
     pub(crate) fn height_m(&self) -> f64 {
         self.pos.z
     }
 
-    /// Climb rate, m/s.
+    /// Returns the climb rate, m/s.
     pub(crate) fn climb_mps(&self) -> f64 {
         self.vel.z
     }
 
-    /// Horizontal distance from home, m.
+    /// Returns the horizontal distance from home, m.
     pub(crate) fn distance_m(&self) -> f64 {
         self.pos.xy().norm()
     }
@@ -101,7 +102,7 @@ impl Plant {
         (self.pos.z, self.vel.z) = (height_m, climb_mps);
     }
 
-    /// One step of `dt` seconds.
+    /// Runs one step of `dt` seconds.
     pub(crate) fn step(&mut self, dt: f64, motors: &MotorCommand) {
         self.steps += 1;
         let [rear_right, front_right, rear_left, front_left] = motors.0;
@@ -149,7 +150,7 @@ impl Plant {
         self.bump_steps = self.bump_steps.saturating_sub(1);
     }
 
-    /// What the sensors measure in the present step; `dt` is the length of a step, s.
+    /// Returns the sensor measurements of the present step. `dt` is the length of a step, s.
     pub(crate) fn sensors(&self, dt: f64) -> SensorFrame {
         let every = |seconds: f64| self.steps.is_multiple_of((seconds / dt).round() as u64);
         let q = attitude(self.angles.z.to_degrees(), -self.angles.y.to_degrees(), self.angles.x.to_degrees());

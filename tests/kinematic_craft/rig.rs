@@ -10,10 +10,10 @@ use betadeck::vehicle::{Vehicle, VehicleConfig};
 
 use crate::plant::{Kind, Plant};
 
-/// Packets of the simulator come so often, µs.
+/// The interval of the simulator's packets, µs.
 const PACKET_US: u64 = 20_000;
 const PACKET_S: f64 = PACKET_US as f64 * 1e-6;
-/// Channels by wire order.
+/// The channels in wire order.
 const THROTTLE: usize = 2;
 const ARM: usize = 4;
 const AUTOPILOT: usize = 5;
@@ -53,18 +53,18 @@ pub(crate) struct Rig {
     pub(crate) plant: Plant,
     frame: RcFrame,
     link: bool,
-    /// Why and at what height the motors stopped first.
+    /// The reason and the height at which the motors first stopped.
     pub(crate) disarmed: Option<(DisarmReason, f64)>,
-    /// Speed into the ground at the last touchdown, m/s.
+    /// The speed into the ground at the last touchdown, m/s.
     pub(crate) impact_mps: f64,
     /// Seconds on the ground with the motors on, since the last touchdown.
     pub(crate) stood_s: f64,
-    /// The heights and sink rates of the flight, one a packet.
+    /// The heights and sink rates of the flight, one per packet.
     pub(crate) path: Vec<(f64, f64)>,
 }
 
 impl Rig {
-    /// A craft at home with the settings of the harness and these, sensors warm.
+    /// Creates a craft at home with the settings of the harness and these lines, with warm sensors.
     pub(crate) fn new(kind: Kind, lines: &str) -> Self {
         let world = WorldConfig { noise: Noise::None, ..WorldConfig::default() };
         let firmware = FirmwareOptions {
@@ -157,7 +157,7 @@ impl Rig {
         self.frame.channels[THROTTLE] = us;
     }
 
-    /// Armed and climbed for so long with this throttle, in ANGLE.
+    /// Arms and climbs in ANGLE for some seconds with this throttle.
     pub(crate) fn take_off(&mut self, us: u16, seconds: f64) -> &mut Self {
         self.until(40.0, "no arming flag", |rig| {
             rig.vehicle.embedded().unwrap().arming_flags() == ArmingFlags::NONE
@@ -169,7 +169,7 @@ impl Rig {
         self.fly(seconds)
     }
 
-    /// Engaged in the climb after the take-off.
+    /// Takes off and engages in the climb.
     pub(crate) fn engaged(&mut self, us: u16) -> &mut Self {
         self.take_off(us, 3.0);
         self.switch(AUTOPILOT, true);
@@ -178,7 +178,7 @@ impl Rig {
         self
     }
 
-    /// Flown out by the mission, then parked by the pilot.
+    /// Flies out on the mission until `distance_m`, then holds by the pilot's switches.
     pub(crate) fn parked(&mut self, us: u16, distance_m: f64) -> &mut Self {
         self.engaged(us);
         self.until(90.0, "way out", |rig| rig.plant.distance_m() > distance_m);
@@ -187,20 +187,20 @@ impl Rig {
         self.fly(2.0)
     }
 
-    /// ALTHOLD and POS HOLD.
+    /// Switches ALTHOLD and POS HOLD on.
     pub(crate) fn hold(&mut self) -> &mut Self {
         self.switch(HOLDS, true);
         self
     }
 
-    /// The rescue switch in place of the holds.
+    /// Switches from the holds to the rescue and waits for it.
     pub(crate) fn rescue(&mut self) -> &mut Self {
         self.switch(HOLDS, false);
         self.switch(RESCUE, true);
         self.until(20.0, "rescue", |rig| rig.has(Mode::Autopilot))
     }
 
-    /// Only levelled, by the pilot.
+    /// Switches to manual flight, which only levels the craft.
     pub(crate) fn by_hand(&mut self) -> &mut Self {
         self.switch(HOLDS, false);
         self.switch(AUTOPILOT, false);
@@ -217,7 +217,7 @@ impl Rig {
         self
     }
 
-    /// Median of the sink rates between two heights since this packet of the flight, m/s.
+    /// Returns the median of the sink rates between two heights since this packet of the flight, m/s.
     pub(crate) fn sink_mps(&self, since: usize, heights: std::ops::Range<f64>) -> f64 {
         let mut rates: Vec<f64> =
             self.path[since..].iter().filter(|(height, _)| heights.contains(height)).map(|s| s.1).collect();

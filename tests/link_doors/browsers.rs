@@ -1,5 +1,5 @@
-//! Web pages that would like to fly the craft: over TCP, where any page can send a request with bytes of its choice, and
-//! over the websocket.
+//! Web pages that try to command the craft: over TCP, where any page can send a request with bytes of its
+//! choice, and over the websocket.
 
 use betadeck::link::{ListenConfig, Request};
 use betadeck::telemetry::EndpointKind;
@@ -10,7 +10,7 @@ use tokio_tungstenite::tungstenite::http::HeaderValue;
 
 use super::harness::{API_VERSION, Client, House, unhex};
 
-/// What a page would have the craft do: name it anew, save, reboot.
+/// Returns the commands of a hostile page: rename the craft, save, reboot.
 fn commands() -> Vec<Vec<u8>> {
     let mut frames = unhex(API_VERSION);
     // SET_NAME "evil", EEPROM_WRITE, REBOOT.
@@ -31,7 +31,8 @@ fn request(line: &str, kind: &str, body: &[u8]) -> Vec<u8> {
     [head.as_bytes(), body].concat()
 }
 
-/// The requests that a page can cause: with a raw body, with forms of all three encodings, without any.
+/// Returns the requests that a page can cause: with a raw body, with forms of all three encodings, without
+/// any body.
 fn requests() -> Vec<Vec<u8>> {
     let mut all = vec![request("GET /?%23 HTTP/1.1", "text/plain", b"")];
     for body in commands() {
@@ -56,7 +57,7 @@ fn requests() -> Vec<Vec<u8>> {
     all
 }
 
-/// Sends everything and says what came back until the door closed.
+/// Sends everything and returns the answers until the door closed.
 async fn answers_to(house: &House, bytes: &[u8], pieces: usize) -> Vec<u8> {
     let mut stream = TcpStream::connect(house.address(EndpointKind::Tcp)).await.unwrap();
     stream.set_nodelay(true).unwrap();
@@ -96,7 +97,7 @@ async fn a_web_page_cannot_command_the_craft_over_tcp() {
         assert_eq!((craft.saves, craft.entered.len()), (0, 0));
         assert_eq!(craft.configuration, before);
     }
-    // Whoever speaks MSP or types is served as before.
+    // Clients that send MSP or type are served as before.
     house.tcp().await.assert_speaks_msp().await;
     house.tcp().await.enter_cli().await;
     // One notice for each kind, in the order in which the kinds came.
@@ -110,7 +111,7 @@ async fn a_web_page_cannot_command_the_craft_over_tcp() {
 #[tokio::test]
 async fn a_notice_of_both_loopback_addresses_is_told_once() {
     let mut house = House::usual().await;
-    // A machine without IPv6 has nothing to test here.
+    // The test needs IPv6.
     if std::net::TcpListener::bind("[::1]:0").is_err() {
         return;
     }
@@ -127,7 +128,7 @@ async fn a_notice_of_both_loopback_addresses_is_told_once() {
     assert_eq!(notices(&mut house), ["The TCP door serves 32 clients at once: another one was turned away."]);
 }
 
-/// Whether a handshake with these headers is served.
+/// Returns `true` if a handshake with these headers is served.
 async fn is_served(house: &House, headers: &[(&'static str, &str)]) -> bool {
     let address = house.address(EndpointKind::WebSocket);
     let mut request = format!("ws://{address}/").into_client_request().unwrap();

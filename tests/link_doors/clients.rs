@@ -34,20 +34,20 @@ async fn captured_exchanges(house: &House, client: &mut Client) {
                 facts.home = Some(HomeReading { distance_m: 0.2, bearing_deg: 89.3 });
             }
         }
-        // This one closes the link: see `a_reboot_answers_closes_and_lets_in_again`.
+        // This exchange closes the link: see `a_reboot_answers_closes_and_lets_in_again`.
         if number == 42 {
             continue;
         }
         if number == 49 {
             client.send(&unhex(cells[2])).await;
             while house.craft.lock().unwrap().entered.last() != Some(&true) {
-                // The question whether it opens comes when the line has been quiet for long enough.
+                // The request to open the command line comes after the line has been quiet for long enough.
                 tokio::time::sleep(Duration::from_millis(5)).await;
             }
             client.assert_speaks_msp().await;
             continue;
         }
-        // Silence is seen by what comes next.
+        // The next answer shows that this one was silent.
         let expected = cells[3].trim_start_matches('-').to_owned() + API_REPLY;
         client.send(&unhex(cells[2])).await;
         client.send(&unhex(API_VERSION)).await;
@@ -269,8 +269,8 @@ async fn sub_protocols_are_answered_as_offered() {
 #[tokio::test]
 async fn one_client_of_bad_manners_does_not_hold_up_the_others() {
     let house = House::usual().await;
-    // One that connects and says nothing, one that never finishes its handshake, one that never reads its answers,
-    // one that sends more than a message may hold.
+    // One client connects and sends nothing, one never finishes its handshake, one never reads its answers,
+    // and one sends more than a message may hold.
     let _silent = house.tcp().await;
     let mut half = TcpStream::connect(house.address(EndpointKind::WebSocket)).await.unwrap();
     half.write_all(b"GET / HTTP/1.1\r\nHost: x\r\n").await.unwrap();
@@ -347,7 +347,7 @@ async fn doors_show_who_is_there() {
 async fn the_websocket_listens_on_both_loopback_addresses() {
     let house = House::usual().await;
     let port = house.address(EndpointKind::WebSocket).port();
-    // A machine without IPv6 has nothing to test here.
+    // The test needs IPv6.
     if std::net::TcpListener::bind("[::1]:0").is_ok() {
         assert!(TcpStream::connect(("::1", port)).await.is_ok());
     }

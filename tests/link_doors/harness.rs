@@ -1,4 +1,4 @@
-//! Open doors, a craft behind them that answers as the session does, and programs that come in.
+//! Open doors, a craft that answers as the session does, and programs that connect to them.
 
 use std::net::SocketAddr;
 use std::sync::{Arc, Mutex};
@@ -21,7 +21,7 @@ use tokio_tungstenite::tungstenite::client::IntoClientRequest;
 use tokio_tungstenite::tungstenite::http::HeaderValue;
 use tokio_tungstenite::tungstenite::{Error, Message};
 
-/// Nothing in these tests takes this long unless it hangs.
+/// The time limit of every wait. Nothing in these tests takes this long unless it hangs.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(120);
 
 pub(crate) const API_VERSION: &str = "244d3c000101";
@@ -36,7 +36,7 @@ pub(crate) fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// The craft behind the doors.
+/// The craft that the doors serve.
 #[derive(Debug, Default)]
 pub(crate) struct Craft {
     pub(crate) configuration: Configuration,
@@ -49,7 +49,7 @@ pub(crate) struct Craft {
 
 pub(crate) type Shared = Arc<Mutex<Craft>>;
 
-/// The craft of the captured exchanges.
+/// Returns the craft of the captured exchanges.
 pub(crate) fn captured_craft() -> Craft {
     let mut craft = Craft::default();
     let settings = &mut craft.configuration.settings;
@@ -95,7 +95,7 @@ pub(crate) fn captured_craft() -> Craft {
     craft
 }
 
-/// Answers requests until the doors are gone.
+/// Answers requests until the doors are closed.
 pub(crate) async fn answer_requests(
     craft: Shared,
     mut requests: mpsc::Receiver<Request>,
@@ -148,7 +148,7 @@ pub(crate) async fn answer_requests(
     }
 }
 
-/// Open doors with a craft behind them.
+/// Open doors that serve a craft.
 pub(crate) struct House {
     pub(crate) doors: Listeners,
     pub(crate) craft: Shared,
@@ -193,7 +193,7 @@ impl House {
         Client::WebSocket(Box::new(socket))
     }
 
-    /// A websocket and the sub-protocol that was chosen.
+    /// Connects a websocket. Returns it with the chosen sub-protocol.
     pub(crate) async fn handshake(
         &self,
         origin: Option<&str>,
@@ -214,7 +214,7 @@ impl House {
     }
 }
 
-/// A program that speaks with the craft.
+/// A program that is connected to the craft.
 pub(crate) enum Client {
     Tcp(TcpStream),
     WebSocket(Box<WebSocketStream<TcpStream>>),
@@ -228,7 +228,7 @@ impl Client {
         }
     }
 
-    /// The next bytes; none when the link was closed.
+    /// Returns the next bytes, or an empty vector if the link was closed.
     pub(crate) async fn receive(&mut self) -> Vec<u8> {
         let receive = async {
             match self {
@@ -247,7 +247,7 @@ impl Client {
         tokio::time::timeout(PATIENCE, receive).await.unwrap()
     }
 
-    /// Exactly this many bytes.
+    /// Returns exactly this many bytes.
     pub(crate) async fn receive_exactly(&mut self, count: usize) -> Vec<u8> {
         let mut all = Vec::new();
         while all.len() < count {
@@ -259,7 +259,7 @@ impl Client {
         all
     }
 
-    /// Text up to and including `end`.
+    /// Returns the text up to and including `end`.
     pub(crate) async fn receive_until(&mut self, end: &str) -> String {
         let mut all = Vec::new();
         while !all.ends_with(end.as_bytes()) {
@@ -270,7 +270,7 @@ impl Client {
         String::from_utf8(all).unwrap()
     }
 
-    /// Whether the server closes the link and sends nothing more.
+    /// Returns `true` if the server closes the link and sends nothing more.
     pub(crate) async fn is_closed(&mut self) -> bool {
         self.receive().await.is_empty()
     }

@@ -1,4 +1,4 @@
-//! The doors over real sockets, with a craft behind them that answers as the session does. Ports come from the system.
+//! The doors over real sockets, with a craft that answers as the session does. The system chooses the ports.
 
 #![allow(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests may panic and wait")]
 

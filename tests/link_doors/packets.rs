@@ -80,13 +80,13 @@ async fn every_size_of_the_table_is_judged_at_its_door() {
         let (kind, case) = match rule["port"].as_u64().unwrap() {
             9003 => (EndpointKind::Fdm, &wire["fdm"][0]["sitl_gz"]),
             9004 => (EndpointKind::Rc, &wire["rc"][0]),
-            // Motors: nothing comes in there.
+            // The motor ports receive nothing.
             _ => continue,
         };
         let good = bytes_of(case);
         let mut datagram = good.clone();
         datagram.resize(rule["bytes"].as_u64().unwrap() as usize, 0);
-        // When the one behind it is there, the first has been judged.
+        // The first datagram has been judged once the second one arrives.
         let mut behind = good;
         behind[..8].copy_from_slice(&BEHIND.to_le_bytes());
         for bytes in [&datagram, &behind] {
@@ -130,7 +130,7 @@ async fn worked_motor_packets_leave_as_they_should() {
     for case in wire["servo_raw"].as_array().unwrap() {
         port.send_raw(numbers(case)[..4].try_into().unwrap());
         assert_eq!(raw_socket.recv(&mut packet).unwrap(), 68);
-        // This craft has no servos behind its motors.
+        // This craft has no servos after its motors.
         let motors = 4 + 4 * 4;
         assert_eq!(packet[..motors], bytes_of(case)[..motors], "{}", case["id"]);
         assert_eq!(packet[motors..68], [0; 48], "{}", case["id"]);
@@ -168,7 +168,7 @@ async fn a_simulator_is_answered_packet_by_packet() {
         assert_eq!(size, 16);
         assert_eq!(raw_socket.recv(&mut buffer).unwrap(), 68);
         state[..8].copy_from_slice(&(10.0 + f64::from(step) * 1e-3).to_le_bytes());
-        // Time as the link sees it, whatever this machine is doing.
+        // The time of the link, independent of the speed of this machine.
         let at = start + Duration::from_millis(u64::from(step));
         simulator.receive(&state, at, |sensors, due| {
             assert!(sensors.truth_attitude.is_some());

@@ -1,5 +1,5 @@
-//! Connections of web pages over WebRTC and of other programs that speak neither MSP nor the command line, and
-//! connections that say nothing.
+//! Connections of web pages over WebRTC, of other programs that use neither MSP nor the command line, and of
+//! clients that send nothing.
 
 use betadeck::link::Request;
 use betadeck::telemetry::EndpointKind;
@@ -8,11 +8,11 @@ use tokio::net::TcpStream;
 
 use super::harness::{API_REPLY, API_VERSION, Client, House, hex, unhex};
 
-/// Most clients of a door.
+/// The most clients of a door.
 const CLIENTS_MAX: usize = 32;
 
-/// A STUN request of ICE over TCP up to a `#` in its HMAC: the length of the message, its header, attributes, and as much
-/// of the HMAC as one packet carries.
+/// Returns a STUN request of ICE over TCP up to a `#` in its HMAC: the length of the message, its header,
+/// attributes, and as much of the HMAC as one packet carries.
 fn stun_up_to_hash() -> Vec<u8> {
     let mut bytes = unhex("0064000100502112a44200112233445566778899aabb");
     bytes.extend(unhex("00060009613a62636465666700000000"));
@@ -42,8 +42,8 @@ async fn a_web_page_with_webrtc_neither_opens_the_command_line_nor_reboots_the_c
     let house = House::usual().await;
     for door in [EndpointKind::Tcp, EndpointKind::WebSocket] {
         let mut page = say(&house, door, &stun_up_to_hash()).await;
-        // The door closes at once. One that waited would greet after the quiet time, and the length of the next message
-        // would be Ctrl-D.
+        // The door closes at once. An open door would greet after the quiet time, and then take the length of
+        // the next message as Ctrl-D.
         let answer = page.receive().await;
         assert_eq!(answer.escape_ascii().to_string(), "", "{door:?}");
     }
@@ -144,7 +144,7 @@ async fn a_flood_of_strangers_gives_one_notice_with_their_number() {
     for _ in 0..80 {
         assert!(say(&house, EndpointKind::Tcp, &stun_up_to_hash()).await.is_closed().await);
     }
-    // The next notice is of something else.
+    // The next notice reports a different event.
     assert!(say(&house, EndpointKind::Tcp, b"GET / HTTP/1.1\r\n").await.is_closed().await);
     let notice = next_notice(&mut house).await;
     assert!(notice.contains("HTTP"), "{notice}");

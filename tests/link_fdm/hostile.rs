@@ -15,7 +15,7 @@ fn a_hundred_thousand_datagrams_of_noise_leave_no_trace() {
         chance.happens(0.5);
         let size = (chance.0 >> 40) as usize % 1500;
         let mut datagram: Vec<u8> = (0..size).map(|at| (chance.0 >> (at % 57)) as u8 ^ at as u8).collect();
-        // Half of them are nearly good.
+        // Half of the datagrams are nearly valid.
         if chance.happens(0.5) && size >= 144 {
             datagram[..144].copy_from_slice(&good);
             datagram[size % 144] ^= 1 << (size % 8);

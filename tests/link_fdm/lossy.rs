@@ -1,5 +1,5 @@
-//! A simulator that keeps the public plugin's rules, over a link that loses packets: neither side waits for the other for
-//! long.
+//! A simulator that keeps the public plugin's rules, over a link that loses packets. Neither side waits for
+//! the other for long.
 
 use betadeck::link::proto::fdm_link::{FdmLink, FdmLinkConfig, Received, Reply};
 use betadeck::telemetry::LinkState;
@@ -7,7 +7,7 @@ use betadeck::telemetry::LinkState;
 use super::plugin::Plugin;
 use super::{MS, SeededChance};
 
-/// Both sides and the link between them, which loses packets.
+/// Both sides, with a link between them that loses packets.
 struct LossyLink {
     link: FdmLink,
     plugin: Plugin,
@@ -82,7 +82,7 @@ impl LossyLink {
         self.last_state = self.now;
     }
 
-    /// Runs on for a second: the time until packets flow.
+    /// Runs until packets flow, for a second at most. Returns the time that it took, µs.
     fn time_to_flow(&mut self) -> u64 {
         self.restart_measuring();
         let start = self.now;
@@ -99,7 +99,7 @@ fn either_side_may_start_first() {
     for (firmware_waits, simulator_waits) in [(0, 0), (0, 3456), (3456, 0), (1, 777)] {
         let mut sides = LossyLink::new(0.0);
         if firmware_waits == 0 && simulator_waits > 0 {
-            // Nobody was there for the first packet.
+            // Nobody received the first packet.
             sides.link.refused();
             sides.run_until(simulator_waits * MS);
             sides.plugin.bound = true;

@@ -30,7 +30,7 @@ fn packet(stamp_s: f64) -> Vec<u8> {
     bytes(Dialect::SitlGz, &at_rest(stamp_s))
 }
 
-/// A link with `count` packets behind it, one a millisecond, and the time after them.
+/// Returns a link after `count` packets, one per millisecond, and the time after them.
 fn flowing(config: FdmLinkConfig, dialect: Dialect, count: u64) -> (FdmLink, u64) {
     let mut link = FdmLink::new(config, 0);
     for ms in 0..count {

@@ -4,23 +4,23 @@ use std::collections::VecDeque;
 
 use super::{MS, packet};
 
-/// One servo packet a step, one state a step, a wait when there is none.
+/// A plugin that takes one servo packet and sends one state per step. It waits if there is no packet.
 pub(crate) struct Plugin {
-    /// Whether its socket is bound.
+    /// `true` once its socket is bound.
     pub(crate) bound: bool,
     pub(crate) paused: bool,
-    /// Servo packets that it has not read yet.
+    /// The servo packets that it has not read yet.
     pub(crate) socket: VecDeque<()>,
     online: bool,
     misses: u32,
     pub(crate) steps: u64,
     step_us: u64,
-    /// When it began to wait for a packet, µs.
+    /// The time at which it began to wait for a packet, µs.
     pub(crate) waiting_since: u64,
 }
 
 impl Plugin {
-    /// A simulator with steps of a millisecond.
+    /// Creates a simulator with steps of a millisecond.
     pub(crate) fn new() -> Self {
         Self::with_steps(MS)
     }
@@ -38,7 +38,7 @@ impl Plugin {
         }
     }
 
-    /// The state it sends at `now`, if it completes a step.
+    /// Returns the state that it sends at `now`, if it completes a step.
     pub(crate) fn run(&mut self, now: u64) -> Option<Vec<u8>> {
         if !self.bound || self.paused || now < self.waiting_since {
             return None;

@@ -1,4 +1,5 @@
-//! What the firmware senses of the simulator's packets: position, acceleration, sample rates, dialect.
+//! The sensor values that the firmware gets from the simulator's packets: position, acceleration, sample
+//! rates, dialect.
 
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{AttitudeSource, Firmware, FirmwareOptions};
@@ -70,7 +71,7 @@ fn a_firmware_loses_the_fix_2500_ms_after_the_last_position_and_nothing_else() {
             assert!(facts.roll_deg.abs() < 0.1 && facts.pitch_deg.abs() < 0.1, "level at {ms} ms");
         }
     }
-    // A position comes every 100 ms, the last good one up to that long before the bad ones.
+    // A position comes every 100 ms, so the last good one may be that much older than the first bad one.
     let (lost_ms, back_ms) = (lost_ms.unwrap(), back_ms.unwrap());
     assert!((GONE_MS + 2400..=GONE_MS + 2700).contains(&lost_ms), "{lost_ms}");
     assert!((HERE_MS..=HERE_MS + 200).contains(&back_ms), "{back_ms}");
@@ -91,7 +92,7 @@ fn sensors_sample_at_their_own_rates() {
     assert_eq!((gps, baro, mag), (10, 50, 100));
 }
 
-/// Flies north at 5 m/s for three seconds; positions are mirrored on the wire when `mirrored`.
+/// Flies north at 5 m/s for three seconds. Positions are mirrored on the wire if `mirrored`.
 fn fly_north(config: FdmLinkConfig, dialect: Dialect, mirrored: bool) -> (Vec<FdmNotice>, f64) {
     let (mut link, start) = flowing(config, dialect, 300);
     let mut notices = Vec::new();

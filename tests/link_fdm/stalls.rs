@@ -1,15 +1,15 @@
-//! Either side is held up by a busy machine, again and again: no command of the motors may be left waiting for it.
+//! A busy machine stops either side again and again. No motor command may be left waiting afterwards.
 
 use betadeck::link::proto::fdm_link::{FdmLink, FdmLinkConfig, Reply};
 
 use super::MS;
 use super::plugin::Plugin;
 
-/// Stalls in a row.
+/// The number of stalls in a row.
 const STALLS: u64 = 100;
-/// Undisturbed flight between two of them, µs.
+/// The time of undisturbed flight between two stalls, µs.
 const BETWEEN: u64 = 400 * MS;
-/// Resolution of time, µs.
+/// The resolution of time, µs.
 const TICK: u64 = 100;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,11 +18,11 @@ enum Side {
     Simulator,
 }
 
-/// Both sides over a link that loses nothing.
+/// Both sides, with a link that loses nothing.
 struct Flight {
     link: FdmLink,
     plugin: Plugin,
-    /// States that the firmware has not read yet.
+    /// The states that the firmware has not read yet.
     states: Vec<Vec<u8>>,
     now: u64,
     steps: u64,
@@ -37,7 +37,7 @@ impl Flight {
         Self { link, plugin, states: Vec::new(), now: 0, steps: 0 }
     }
 
-    /// Lets `us` pass, while one side stands still.
+    /// Runs both sides for `us`. A stalled side does nothing.
     fn run(&mut self, us: u64, stalled: Option<Side>) {
         for _ in 0..us / TICK {
             self.now += TICK;
@@ -53,7 +53,7 @@ impl Flight {
         }
     }
 
-    /// What the firmware does when it runs: it reads all that is there before it sends anything unasked.
+    /// Runs the firmware. It reads all waiting states before it sends anything unasked.
     fn run_firmware(&mut self) {
         for state in std::mem::take(&mut self.states) {
             if self.link.receive(&state, self.now).reply != Reply::Nothing {
@@ -65,7 +65,8 @@ impl Flight {
         }
     }
 
-    /// Commands that the simulator has not read when it is about to read the newest one: 1 without any lag.
+    /// Returns the most commands that the simulator has not read when it is about to read the newest one: 1
+    /// without any lag.
     fn most_waiting(&mut self, us: u64) -> usize {
         let until = self.now + us;
         let mut most = 0;
@@ -77,7 +78,7 @@ impl Flight {
     }
 }
 
-/// Lengths of stalls, 50…1000 ms, many of them ending at about the time at which the firmware sends unasked.
+/// Returns the length of a stall, 50…1000 ms. Many end at about the time at which the firmware sends unasked.
 fn stall(number: u64) -> u64 {
     match number % 4 {
         0 => 50 * MS + number * 9_500,
@@ -93,7 +94,7 @@ fn fly(rate_hz: u64, side: Side) {
     flight.run(1000 * MS, None);
     for number in 0..STALLS {
         flight.run(stall(number), Some(side));
-        // The steps in which what is too much is made up for.
+        // The steps in which the excess is made up for.
         flight.run(20 * step_us, None);
         let waiting = flight.most_waiting(BETWEEN);
         let context = format!("{rate_hz} Hz, stall {number} of {side:?}: {} ms", stall(number) / MS);

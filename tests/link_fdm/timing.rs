@@ -1,4 +1,5 @@
-//! Which packets are answered, which only set the time base, and when the link sends unasked.
+//! The rules of timing: the packets that are answered, those that only set the time base, and the packets
+//! sent unasked.
 
 use betadeck::link::proto::fdm_link::{FdmLink, FdmLinkConfig, FdmNotice, PacketKind, Reply};
 use betadeck::signals::fdm::Dialect;
