@@ -32,7 +32,7 @@ fn every_line_of_the_pages_for_the_firmware_is_taken() {
     for shown in spans() {
         match line(&shown) {
             Some(Ok(line)) if lines.iter().all(|(_, known)| *known != line) => {
-                lines.push((shown.place, line))
+                lines.push((shown.place, line));
             }
             Some(Err(problem)) => panic!("{problem}"),
             _ => {}
