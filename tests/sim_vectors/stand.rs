@@ -89,7 +89,7 @@ pub(crate) fn symmetric(mut airframe: Airframe, flat: bool) -> Airframe {
     airframe
 }
 
-/// The density at which the coefficients hold is the one of the vectors.
+/// The coefficients hold at the density of sea level, as the vectors assume.
 #[test]
 fn the_reference_density_is_that_of_sea_level() {
     assert!((betadeck::sim::density(0.0) / REFERENCE_DENSITY - 1.0).abs() < 1e-7);
