@@ -1,4 +1,4 @@
-//! Notes when and from what the program was built, for the CLI's `version` and MSP.
+//! Records the build time and the commit of the program, for the CLI's `version` and MSP.
 #![allow(clippy::disallowed_methods, clippy::print_stdout, reason = "a build script looks around and prints")]
 
 use std::process::Command;
@@ -14,7 +14,7 @@ fn main() {
     println!("cargo:rustc-env=BETADECK_REVISION={}", revision().unwrap_or_else(|| "norevision".to_owned()));
 }
 
-/// The commit that was built; none outside a checkout.
+/// Returns the commit that is built, or `None` if there is no checkout.
 fn revision() -> Option<String> {
     let output = Command::new("git").args(["rev-parse", "--short=9", "HEAD"]).output().ok()?;
     let text = String::from_utf8(output.stdout).ok()?;

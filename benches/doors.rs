@@ -1,9 +1,9 @@
-//! How long the doors take to answer while a craft flies at real time: eight websocket clients with fifty questions a
+//! The response time of the doors while a craft flies at real time: eight websocket clients with fifty questions a
 //! second each, on a machine with little else to do.
 //!
-//! `cargo bench --bench doors -- [--seconds N] [--p99-ms LIMIT]`; with a limit, a later 99th percentile makes the exit
-//! code 1. Beside the answers it prints how late a bare sleep of the same length ends, which is what the machine adds, and what
-//! the program holds in memory at the start and at the end.
+//! `cargo bench --bench doors -- [--seconds N] [--p99-ms LIMIT]`. With a limit, a later 99th percentile makes the exit
+//! code 1. For comparison it also prints the lateness of a bare sleep of the same length, which is the machine's part,
+//! and the program's memory at the start and at the end.
 
 #![allow(
     dead_code,
@@ -35,18 +35,18 @@ use transmitter::Script;
 
 const CLIENTS: usize = 8;
 const PERIOD: Duration = Duration::from_millis(20);
-/// What clients ask in flight: attitude, channels, position, and the state with its list of modes.
+/// The clients' questions in flight: attitude, channels, position, and the state with its list of modes.
 const QUESTIONS: [(u16, &str); 4] = [(108, "ATTITUDE"), (105, "RC"), (106, "RAW_GPS"), (150, "STATUS_EX")];
-/// Round and round until the end.
+/// A plan that circles until the end.
 const PLAN: &str = "waypoint insert 0 40.4637000 -79.5182000 2000 500 HOLD 0 ORBIT";
 
-/// The number behind an option.
+/// Returns the number after an option.
 fn option(name: &str) -> Option<f64> {
     let mut arguments = std::env::args().skip_while(|argument| argument != name);
     arguments.nth(1).map(|number| number.parse().unwrap_or_else(|_| panic!("{name} {number} is no number")))
 }
 
-/// The delays of one client's answers, with the index of the question.
+/// Returns the delays of one client's answers, each with the index of the question.
 fn client(door: SocketAddr, number: usize, requests: u32) -> Vec<(usize, Duration)> {
     let mut app = App::open(door);
     let start = Instant::now() + PERIOD / CLIENTS as u32 * number as u32;
@@ -60,7 +60,7 @@ fn client(door: SocketAddr, number: usize, requests: u32) -> Vec<(usize, Duratio
     (0..requests).map(ask).collect()
 }
 
-/// How late sleeps of one period end until `done`.
+/// Sleeps for one period at a time until `done`, and returns the lateness of each sleep.
 fn sleep_lateness(done: &AtomicBool) -> Vec<Duration> {
     let sleep = || {
         let slept = Instant::now();
@@ -70,7 +70,7 @@ fn sleep_lateness(done: &AtomicBool) -> Vec<Duration> {
     std::iter::from_fn(|| (!done.load(Ordering::Relaxed)).then(sleep)).collect()
 }
 
-/// What a process holds in memory, KiB; `None` where the system does not say.
+/// Returns the resident memory of a process, KiB, or `None` if the system does not report it.
 fn memory_kib(process: u32) -> Option<u64> {
     let status = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
     let held = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
@@ -94,7 +94,7 @@ fn tell(name: &str, unit: &str, delays: &mut [Duration]) -> Duration {
 }
 
 fn main() -> ExitCode {
-    // `cargo test` only looks whether it runs.
+    // `cargo test` only checks that it runs.
     let usual = if std::env::args().any(|argument| argument == "--bench") { 20.0 } else { 1.0 };
     let seconds = option("--seconds").unwrap_or(usual);
     let limit_ms = option("--p99-ms");

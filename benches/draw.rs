@@ -1,4 +1,4 @@
-//! Time of a frame, and from a key or the mouse to the frame that shows what it did.
+//! The time of a frame, and the time from a key or the mouse to the frame that shows the effect.
 //!
 //! `cargo bench --bench draw`. Goals: a frame at 200x60 with a track of 20 000 points below 2 ms, input to frame below
 //! 33 ms.
@@ -13,9 +13,9 @@ use ratatui::backend::TestBackend;
 #[path = "../tests/ui/fixture.rs"]
 mod fixture;
 
-/// Points of the long track.
+/// The number of points of the long track.
 const POINTS: u32 = 20_000;
-/// Metres and seconds from one to the next.
+/// Metres and seconds from one point to the next.
 const STEP: (f64, f64) = (0.5, 0.1);
 
 fn main() {
@@ -32,7 +32,7 @@ fn orbiting(size: (u16, u16)) -> AppState {
     state
 }
 
-/// A craft that has flown ten kilometres on a widening spiral, with all that is remembered of them.
+/// Returns a craft that has flown ten kilometres on a widening spiral, with the whole track recorded.
 fn with_long_track(size: (u16, u16)) -> AppState {
     let mut state = orbiting(size);
     let started_s = state.view.vehicle.time.as_secs_f64();
@@ -74,7 +74,7 @@ fn frame(bencher: Bencher<'_, '_>, size: (u16, u16)) {
     bencher.bench_local(|| terminal.draw(|frame| draw(&state, frame)).map(|_| ()));
 }
 
-/// Every cell written anew, after half an hour of flight.
+/// Every cell drawn again, after half an hour of flight.
 #[divan::bench(args = [(80, 24), (120, 40), (200, 60)])]
 fn full_redraw_with_a_long_track(bencher: Bencher<'_, '_>, size: (u16, u16)) {
     let state = with_long_track(size);
@@ -112,7 +112,7 @@ fn key_to_frame(bencher: Bencher<'_, '_>, size: (u16, u16)) {
     });
 }
 
-/// A value of the plan is nudged, which judges and estimates the plan anew.
+/// A waypoint is inserted or removed again, and the plan is reviewed and estimated again.
 #[divan::bench(args = [(80, 24), (200, 60)])]
 fn plan_edit_to_frame(bencher: Bencher<'_, '_>, size: (u16, u16)) {
     let mut state = with_long_track(size);
@@ -125,7 +125,7 @@ fn plan_edit_to_frame(bencher: Bencher<'_, '_>, size: (u16, u16)) {
     });
 }
 
-/// The map is dragged by a cell, to and fro.
+/// The map is dragged by a cell, back and forth.
 #[divan::bench(args = [(80, 24), (200, 60)])]
 fn map_drag_to_frame(bencher: Bencher<'_, '_>, size: (u16, u16)) {
     let mut state = with_long_track(size);

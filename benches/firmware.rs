@@ -1,4 +1,4 @@
-//! How long a tick of the firmware takes at 1 kHz, the 100 Hz work included, and its estimation and control alone.
+//! The time of a firmware tick at 1 kHz, the 100 Hz work included, and of its estimation and control alone.
 //!
 //! One iteration is a second of flight (1000 ticks), so a reading of 250 µs means 0.25 µs a tick.
 #![allow(clippy::unwrap_used, reason = "a bench may stop")]
@@ -19,7 +19,7 @@ fn main() {
     divan::main();
 }
 
-/// A second of sensor frames of a craft that hovers and sways.
+/// Returns a second of sensor frames of a craft that hovers and sways.
 fn frames(start_us: u64) -> Vec<SensorFrame> {
     (0..1000_u64)
         .map(|tick| {
@@ -100,7 +100,7 @@ fn estimate_and_control_1000_ticks(bencher: divan::Bencher, mode: &str) {
     );
 }
 
-/// The whole firmware on a leg of a mission, and the sensor frames of the second that follows.
+/// Returns the whole firmware on a leg of a mission, and the sensor frames of the next second.
 fn on_a_leg() -> (Firmware, Vec<SensorFrame>) {
     let mut configuration = Configuration::default();
     configuration.starter_modes();

@@ -1,10 +1,11 @@
-//! How evenly a firmware outside is fed: the intervals of the packets to it against the steps of a millisecond, and its
-//! time, which is in the stamps here, against the wall clock. `betadeck sitl` flies; the packets pass through this program.
+//! The regularity of the feed to a remote firmware: the intervals of its packets against the steps of a millisecond,
+//! and the simulated time in its stamps against the wall clock. `betadeck sitl` flies; the packets pass through this
+//! program.
 //!
-//! Beside it, in the same time, a thread that only sleeps to every millisecond: what the machine itself makes of one.
+//! At the same time, a thread only sleeps until every millisecond. It shows the irregularity of the machine itself.
 //!
-//! `cargo bench --bench pacing -- [--seconds N] [--p99-ms LIMIT]`; with a limit, a 99th percentile beyond it makes the exit
-//! code 1.
+//! `cargo bench --bench pacing -- [--seconds N] [--p99-ms LIMIT]`. With a limit, a 99th percentile beyond it makes the
+//! exit code 1.
 
 #![allow(
     dead_code,
@@ -27,32 +28,33 @@ use std::time::{Duration, Instant};
 
 use program::{PATIENCE, Program, Sitl};
 
-/// Between two packets, s.
+/// The interval between two packets, s.
 const STEP_S: f64 = 1e-3;
-/// Both programs settle, s.
+/// The time in which both programs settle, s.
 const SETTLED_S: f64 = 2.0;
-/// The drift is told by the earliest of so many packets at either end: it was held up least.
+/// The number of packets at either end from which the drift is taken. The earliest of them counts: it was held up
+/// least.
 const ENDS: usize = 1000;
 
-/// A packet: when it came, and its stamp, s.
+/// The arrival of a packet and its stamp, s.
 #[derive(Debug, Clone, Copy)]
 struct Packet {
     at_s: f64,
     stamp_s: f64,
 }
 
-/// The number behind an option.
+/// Returns the number after an option.
 fn option(name: &str) -> Option<f64> {
     let mut arguments = std::env::args().skip_while(|argument| argument != name);
     arguments.nth(1).map(|number| number.parse().unwrap_or_else(|_| panic!("{name} {number} is no number")))
 }
 
-/// A port that was free a moment ago.
+/// Returns a port that was free a moment ago.
 fn free_port() -> u16 {
     UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
 }
 
-/// Lets the packets pass for `seconds` of wall time.
+/// Passes the packets on for `seconds` of wall time, and records them.
 fn record(seconds: f64) -> Vec<Packet> {
     let passage = UdpSocket::bind("127.0.0.1:0").unwrap();
     passage.set_read_timeout(Some(PATIENCE)).unwrap();
@@ -70,7 +72,7 @@ fn record(seconds: f64) -> Vec<Packet> {
     loop {
         let size = passage.recv(&mut datagram).expect("a packet");
         let now = Instant::now();
-        // Its answers go from the firmware to the other program by themselves.
+        // The firmware's answers go to the other program directly.
         passage.send_to(&datagram[..size], firmware.fdm).unwrap();
         let at_s = (now - *start.get_or_insert(now)).as_secs_f64();
         if at_s > SETTLED_S + seconds {
@@ -82,12 +84,12 @@ fn record(seconds: f64) -> Vec<Packet> {
     }
 }
 
-/// How far the stamps are ahead of the wall clock, but for a constant, s.
+/// Returns the lead of the stamps over the wall clock, up to a constant, s.
 fn ahead_s(packets: &[Packet]) -> f64 {
     packets.iter().map(|packet| packet.stamp_s - packet.at_s).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// Sleeps to every millisecond until it is stopped; gives how far each wake-up was off the one before, less the step, s.
+/// Sleeps until every millisecond until `stop` is set. Returns the errors of the intervals between wake-ups, s, sorted.
 fn sleep_beside(stop: &Arc<AtomicBool>) -> JoinHandle<Vec<f64>> {
     let stop = Arc::clone(stop);
     std::thread::spawn(move || {
@@ -101,20 +103,20 @@ fn sleep_beside(stop: &Arc<AtomicBool>) -> JoinHandle<Vec<f64>> {
     })
 }
 
-/// How far the intervals between these instants are off the step, s, sorted.
+/// Returns the errors of the intervals between these instants against the step, s, sorted.
 fn off_the_step(at_s: &[f64]) -> Vec<f64> {
     let mut off_s: Vec<f64> = at_s.windows(2).map(|pair| (pair[1] - pair[0] - STEP_S).abs()).collect();
     off_s.sort_unstable_by(f64::total_cmp);
     off_s
 }
 
-/// The value (ms) below which so many thousandths are.
+/// Returns the value (ms) below which this many thousandths of the values are.
 fn at_ms(sorted_s: &[f64], thousandths: usize) -> f64 {
     1e3 * sorted_s[(sorted_s.len() * thousandths / 1000).min(sorted_s.len() - 1)]
 }
 
 fn main() -> ExitCode {
-    // `cargo test` only looks whether it runs.
+    // `cargo test` only checks that it runs.
     let usual = if std::env::args().any(|argument| argument == "--bench") { 20.0 } else { 1.0 };
     let seconds = option("--seconds").unwrap_or(usual);
     let stop = Arc::new(AtomicBool::new(false));

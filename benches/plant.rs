@@ -1,7 +1,7 @@
-//! Speed of the plant: nanoseconds per tick at 1 kHz, and the ratio to a bare rigid-body loop.
+//! The speed of the plant: nanoseconds per tick at 1 kHz, and the ratio to a bare rigid-body loop.
 //!
-//! `cargo bench --bench plant`. Each figure is the median of several runs on one core. The bare loop is what nobody can
-//! leave out: four evaluations of thrust, Newton, Euler and the quaternion equation per step, and nothing else.
+//! `cargo bench --bench plant`. Each figure is the median of several runs on one core. The bare loop is the minimum of
+//! any plant: four evaluations of thrust, Newton, Euler and the quaternion equation per step, and nothing else.
 
 #![allow(
     clippy::disallowed_methods,
@@ -57,7 +57,7 @@ fn world(noise: Noise, turbulence: Turbulence, wind: &str) -> WorldConfig {
     }
 }
 
-/// A craft held level at 2 km by a rate and attitude damper that is much cheaper than the plant.
+/// Flies a craft that is held level at 2 km by a rate and attitude damper, which is much cheaper than the plant.
 fn fly(config: &WorldConfig) -> f64 {
     let Ok(mut world) = World::new(config.clone()) else { return f64::NAN };
     let high = betadeck::sim::Fault::Teleport([0.0, 0.0, 2000.0]);
@@ -92,7 +92,7 @@ fn stand(config: &WorldConfig) -> f64 {
     time
 }
 
-/// State of the bare loop: position, velocity, attitude, body rates.
+/// The state of the bare loop: position, velocity, attitude, body rates.
 #[derive(Clone, Copy)]
 struct Bare {
     p: Vector3<f64>,

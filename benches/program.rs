@@ -1,5 +1,5 @@
-//! The built program in a pseudo-terminal: how soon its first frame stands and a key is answered, and what it takes of a
-//! core; and how soon a flown estimate follows an edit.
+//! The built program in a pseudo-terminal: the time to its first frame, the response time to a key and its share of a
+//! core. Also the time from an edit to the flown estimate.
 //!
 //! `cargo bench --bench program`. Goals: first frame within 50 ms of process start, key to frame below 33 ms, below 6 %
 //! of a core at real time, the estimate of the guide's square within 0.3 s of the last edit.
@@ -33,9 +33,9 @@ use tokio::sync::{mpsc, oneshot};
 
 const RUNS: usize = 30;
 const PROGRAM: [&str; 2] = ["--no-ports", "--fresh"];
-/// How long the use of the core is watched.
+/// The time for which the use of the core is measured.
 const WATCHED: Duration = Duration::from_secs(10);
-/// Ticks of the kernel's accounting in a second.
+/// Ticks of the kernel's accounting per second.
 const ACCOUNTED_HZ: f64 = 100.0;
 
 fn main() {
@@ -65,7 +65,7 @@ fn tell(what: &str, mut times: Vec<Duration>) {
     );
 }
 
-/// From the start of the process to the last cell of the first frame.
+/// Returns the time from the start of the process to the last cell of the first frame.
 fn first_frame(columns: u16, rows: u16) -> Duration {
     let started = Instant::now();
     let mut terminal = Terminal::betadeck(columns, rows, &PROGRAM);
@@ -73,7 +73,7 @@ fn first_frame(columns: u16, rows: u16) -> Duration {
     started.elapsed()
 }
 
-/// From a key written to the terminal to the help that it opens.
+/// Returns the time from a key written to the terminal to the help that it opens.
 fn key_to_frame(terminal: &mut Terminal) -> Duration {
     let is_open = |terminal: &Terminal| terminal.screen().contains("Keys");
     let asked = Instant::now();
@@ -85,14 +85,14 @@ fn key_to_frame(terminal: &mut Terminal) -> Duration {
     took
 }
 
-/// The part of one core that the program takes while its terminal is read.
+/// Returns the share of one core that the program takes while its terminal is read.
 fn core_share(terminal: &mut Terminal) -> f64 {
     let (began, before) = (Instant::now(), core_seconds(terminal.id()));
     terminal.watch("the end", |_| began.elapsed() >= WATCHED);
     (core_seconds(terminal.id()) - before) / began.elapsed().as_secs_f64()
 }
 
-/// What a process has used of all cores, s.
+/// Returns the time that a process has used on all cores, s.
 fn core_seconds(process: u32) -> f64 {
     let stat = std::fs::read_to_string(format!("/proc/{process}/stat")).unwrap();
     let (_, fields) = stat.rsplit_once(") ").unwrap();
@@ -100,7 +100,8 @@ fn core_seconds(process: u32) -> f64 {
     ticks.sum::<f64>() / ACCOUNTED_HZ
 }
 
-/// Edits of the guide's square in a session at real time: from the key to the estimate in the user interface.
+/// Edits the guide's square in a session at real time. Returns the times from the key to the estimate in the user
+/// interface.
 async fn estimates() -> Vec<Duration> {
     let mut session = session();
     let (answers, mut answered) = mpsc::unbounded_channel();
@@ -115,7 +116,7 @@ async fn estimates() -> Vec<Duration> {
     let mut times = Vec::new();
     for run in 0..RUNS {
         let asked = Instant::now();
-        // A waypoint more, and again without it.
+        // Inserts a waypoint, then removes it again.
         let effects = press(&mut state, if run % 2 == 0 { 'i' } else { 'u' });
         fly(effects, &mut state, &session, &forecaster, &mut answered).await;
         times.push(asked.elapsed());
@@ -128,7 +129,7 @@ fn press(state: &mut AppState, key: char) -> Vec<Effect> {
     update(state, Msg::Key(KeyEvent::new(KeyCode::Char(key), KeyModifiers::NONE)))
 }
 
-/// Has the estimate flown that is asked for, as the user interface's loop does.
+/// Flies the requested estimate, as the user interface's loop does.
 async fn fly(
     effects: Vec<Effect>,
     state: &mut AppState,

@@ -1,8 +1,8 @@
-//! The recording of a flight: how long it takes to show an earlier instant, and what it takes in memory.
+//! The recording of a flight: the time that it takes to show an earlier instant, and its use of memory.
 //!
-//! `cargo bench --bench timeline`. A craft circles with real noise in a turbulent wind. Seeks go to random instants of the last half
-//! hour, from command to picture through a session; goal: below 0.3 s. The process then flies on to ten hours; goal: below
-//! 60 MB.
+//! `cargo bench --bench timeline`. A craft circles with real noise in a turbulent wind. Seeks go to random instants of
+//! the last half hour, from command to picture through a session; goal: below 0.3 s. The process then flies on to ten
+//! hours; goal: below 60 MB.
 
 #![allow(
     clippy::unwrap_used,
@@ -21,9 +21,9 @@ use betadeck::signals::SimTime;
 use betadeck::sim::{Turbulence, WorldConfig};
 use betadeck::storage::Store;
 
-/// Instants that are sought.
+/// The number of seeks.
 const SEEKS: u64 = 200;
-/// When they are, and the end, simulated s.
+/// The time of the seeks, and the end, simulated s.
 const SOUGHT_AT_S: f64 = 1900.0;
 const END_S: f64 = 36_000.0;
 
@@ -52,7 +52,7 @@ fn session() -> Handle {
     let setup = FlightSetup { world, ..FlightSetup::default() };
     let (mut vehicle, _) = setup.build().expect("the default world is sound");
     let mut plan = BuiltinPlan::find(DEMO).unwrap().read().unwrap();
-    // The hold, without end.
+    // The hold has no end.
     plan.plan.waypoints.truncate(3);
     plan.plan.waypoints[2].duration_ds = 0;
     upload(vehicle.controller_mut(), &plan.plan, &plan.settings).unwrap();
@@ -95,7 +95,7 @@ async fn seek(session: &mut Handle) {
     println!("seek: median {:.1} ms, worst of {SEEKS} {:.1} ms", ms(times.len() / 2), ms(times.len()));
 }
 
-/// Memory of this process, MB.
+/// Returns the memory of this process, MB.
 fn resident_mb() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find(|line| line.starts_with("VmRSS:"));

@@ -1,9 +1,9 @@
-//! Speed of the whole vehicle: nanoseconds per tick of world, firmware and both, how many times faster than real time a
-//! whole mission is flown, and how long the flown estimate of a plan takes.
+//! The speed of the whole vehicle: nanoseconds per tick of world, firmware and both, the speed of a whole mission as a
+//! multiple of real time, and the time of the flown estimate of a plan.
 //!
 //! `cargo bench --bench vehicle`. The mission is the demo square from engagement to disarm, with real noise and light
-//! turbulence, no samples; each figure is the median of several runs on one core. World and firmware alone replay what
-//! the other one said in a recorded part of that mission.
+//! turbulence, no samples; each figure is the median of several runs on one core. World and firmware alone replay the
+//! other's recorded output in a part of that mission.
 
 #![allow(
     clippy::unwrap_used,
@@ -26,7 +26,7 @@ use betadeck::sim::{Turbulence, World, WorldConfig};
 use betadeck::vehicle::Vehicle;
 
 const RUNS: usize = 5;
-/// Ticks of the replayed part of the mission.
+/// The number of ticks in the replayed part of the mission.
 const REPLAY: usize = 100_000;
 
 fn main() {
@@ -63,7 +63,7 @@ fn vehicle(rate_hz: u32) -> Vehicle {
     vehicle
 }
 
-/// Simulated and wall seconds from the engagement to the end of the demo mission.
+/// Flies the demo mission and returns the simulated and wall seconds from the engagement to the end.
 fn mission(rate_hz: u32) -> (f64, f64) {
     let options = FlightOptions::default();
     let mut flight = Flight::new(vehicle(rate_hz), &options).expect("the starter modes have the switches");
@@ -81,7 +81,7 @@ fn mission(rate_hz: u32) -> (f64, f64) {
     }
 }
 
-/// Wall seconds from the copy of a vehicle to the flown estimate of the demo plan.
+/// Returns the wall seconds from the copy of a vehicle to the flown estimate of the demo plan.
 fn estimate() -> f64 {
     let file = BuiltinPlan::find(DEMO).expect("the demo is built in").read().expect("the demo reads");
     let craft = vehicle(1000);
@@ -162,7 +162,7 @@ impl Recording {
     }
 }
 
-/// Nanoseconds a tick.
+/// Returns the nanoseconds per tick.
 fn time_per_tick(mut tick: impl FnMut(usize)) -> f64 {
     let started = Instant::now();
     for index in 0..REPLAY {

@@ -1,12 +1,12 @@
-//! A small external simulator: the project's quadcopter behind the UDP packets of Gazebo's plugin, in real time.
+//! A small external simulator: the project's quadcopter with the UDP packets of Gazebo's plugin, in real time.
 //!
 //! ```sh
 //! cargo run --release --example simulator      # and, in another terminal:
 //! betadeck --physics external                  # or `betadeck sitl`
 //! ```
 //!
-//! It is what a bridge from a simulator of your own has to do: read one packet of motors for each step and wait for it,
-//! move the craft, tell its state. Ports other than 9002 and 9003: `simulator MOTORS STATES`.
+//! It does the same as a bridge from your own simulator: for each step it waits for one packet of motors, moves the
+//! craft and sends its state. Start it with `simulator MOTORS STATES` for ports other than 9002 and 9003.
 #![allow(
     clippy::disallowed_methods,
     clippy::print_stdout,
@@ -24,13 +24,13 @@ use betadeck::signals::MotorCommand;
 use betadeck::signals::fdm::Dialect;
 use betadeck::sim::{World, WorldConfig};
 
-/// Steps of the plant in one step of the simulator, which then lasts 4 ms.
+/// The number of plant steps in one step of the simulator, which lasts 4 ms.
 const STEPS: u32 = 4;
-/// Length of a step.
+/// The length of a step.
 const STEP: Duration = Duration::from_millis(4);
-/// How long to wait for motors before the craft is moved without them.
+/// The time to wait for motors before the craft moves without them.
 const PATIENCE: Duration = Duration::from_secs(1);
-/// Misses in a row after which nobody is there: motors off, and nothing is told.
+/// The number of misses in a row after which the firmware is gone: motors off, and no state is sent.
 const MOST_MISSES: u32 = 5;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -68,13 +68,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         if misses < MOST_MISSES {
             socket.send_to(&state(&world), (Ipv4Addr::LOCALHOST, states_port))?;
         }
-        // In real time; what is late is not caught up with.
+        // Keeps real time, but does not make up for delays.
         next = (next + STEP).max(Instant::now());
         std::thread::sleep(next.saturating_duration_since(Instant::now()));
     }
 }
 
-/// The next packet of motors. Being stopped and continued ends the wait early: that is no miss.
+/// Returns the next packet of motors. An interrupted wait, as when the process is stopped and continued, is not a miss.
 fn receive(socket: &UdpSocket) -> Option<[f32; 4]> {
     let mut bytes = [0; 64];
     loop {
@@ -86,7 +86,7 @@ fn receive(socket: &UdpSocket) -> Option<[f32; 4]> {
     }
 }
 
-/// The state of the craft as Gazebo's plugin tells it: positions are mirrored about the start.
+/// Encodes the state of the craft as Gazebo's plugin does: positions are mirrored about the start.
 fn state(world: &World) -> Vec<u8> {
     let (truth, frame) = (world.truth(), world.local_frame());
     let (lat_deg, lon_deg, alt_m) = frame.to_geodetic(truth.pos_enu);

@@ -1,4 +1,4 @@
-//! Messages to a running firmware.
+//! MSP messages to a running firmware.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -11,20 +11,20 @@ use betadeck::signals::{BatterySample, GpsSample, MotorCommand, SensorFrame, Sim
 use betadeck::telemetry::{DisarmReason, FirmwareEvent};
 use nalgebra::{UnitQuaternion, Vector3};
 
-/// A firmware on a bench under an open sky.
+/// A firmware on a bench, with a GPS fix.
 struct Bench {
     firmware: Firmware,
     now_ms: u64,
     motors: MotorCommand,
-    /// Errors of the sensors.
+    /// Errors added to the readings of the sensors.
     rate_error: Vector3<f64>,
     force_error: Vector3<f64>,
     mag_error: Vector3<f64>,
-    /// The craft is turned about all axes by hand.
+    /// `true` while the craft is turned about all axes by hand.
     tumbling: bool,
 }
 
-/// Bits of arming flags.
+/// Bits of the arming disable flags.
 const CALIB: u32 = 1 << 12;
 const CRASH: u32 = 1 << 6;
 const ARM_SWITCH: u32 = 1 << 29;
@@ -46,7 +46,7 @@ impl Bench {
         }
     }
 
-    /// Lets time pass; a stick position goes out every 20 ms.
+    /// Runs the firmware for `ms` milliseconds and sends the stick position, if there is one, every 20 ms.
     fn run(&mut self, ms: u64, sticks: Option<&[u16]>) {
         for _ in 0..ms {
             if let Some(sticks) = sticks.filter(|_| self.now_ms.is_multiple_of(20)) {
@@ -78,7 +78,7 @@ impl Bench {
         }
     }
 
-    /// The arming flags as a client reads them.
+    /// Returns the arming disable flags as a client reads them.
     fn blocked(&mut self) -> u32 {
         u32::from_le_bytes(self.ask(101, &[]).unwrap()[17..21].try_into().unwrap())
     }
@@ -88,7 +88,7 @@ impl Bench {
     }
 }
 
-/// The field of a craft that stands level.
+/// The magnetic field on the body axes of a level craft.
 const FIELD: Vector3<f64> = Vector3::new(0.0, -2046.8, -3547.2);
 const IDLE: [u16; 5] = [1500, 1500, 1000, 1500, 1000];
 const ARM: [u16; 5] = [1500, 1500, 1000, 1500, 1800];
@@ -158,7 +158,7 @@ fn a_written_setting_is_in_force_at_once() {
 fn an_accelerometer_calibration_levels_the_craft_and_is_kept() {
     let mut bench = Bench::new();
     bench.run(6000, Some(&IDLE));
-    // The sensor errs: it feels a level craft as tilted.
+    // The accelerometer has an error: it measures a level craft as tilted.
     bench.force_error = Vector3::new(0.0, -0.5, 0.0);
     bench.run(3000, Some(&IDLE));
     assert!(bench.firmware.estimate().roll_rad.abs() > 0.04, "{}", bench.firmware.estimate().roll_rad);
@@ -202,7 +202,7 @@ fn a_magnetometer_calibration_takes_the_offset_out() {
     assert!((right - wrong).sin().abs() > 0.2, "{wrong} {right}");
     let imu = bench.ask(102, &[]).unwrap();
     assert!(i16::from_le_bytes([imu[12], imu[13]]).abs() <= 3, "clients see the calibrated field");
-    // A craft that stands keeps its offsets.
+    // A craft that does not move keeps its offsets.
     assert!(bench.ask(206, &[]).is_some());
     bench.run(31_000, Some(&IDLE));
     assert_eq!(bench.firmware.configuration().settings.array("mag_calibration"), found);
@@ -272,8 +272,8 @@ fn the_first_arming_calibrates_the_gyro_when_asked_to() {
 
 const FULL_ROLL: [u16; 5] = [1700, 1500, 1500, 1500, 1800];
 
-/// A craft in acro with these settings, full roll asked for, a tenth of a second after it has hit a branch: it was thrown
-/// about all axes at once and goes on turning (forward-left-up, rad/s).
+/// Returns a craft in acro with these settings and full roll stick, a tenth of a second after it hit a branch. The
+/// branch threw it about all axes at once, and it goes on turning (forward-left-up, rad/s).
 fn crashed(settings: &[&str], turning: Vector3<f64>) -> Bench {
     let mut bench = Bench::new();
     for setting in settings.iter().chain(&["runaway_takeoff_prevention = OFF"]) {
@@ -302,7 +302,7 @@ fn a_crash_disarms_or_levels_where_asked_for() {
             bench.run(60, Some(&IDLE));
             assert_eq!(bench.blocked() & (CRASH | ARM_SWITCH), 0, "switched off");
         } else {
-            // In acro the stick asks for a rate to the right; levelling turns the other way.
+            // In acro the stick commands a rate to the right; levelling turns the other way.
             assert_eq!(bench.firmware.control().setpoint_dps[0] < 0.0, levels, "{action}");
         }
     }

@@ -1,4 +1,4 @@
-//! The plans that are shipped: all are read, canonical, listed in `plans/README.md` and part of the executable.
+//! The shipped plans: all can be read, are canonical, are listed in `plans/README.md` and are part of the executable.
 
 use std::path::{Path, PathBuf};
 
@@ -13,7 +13,7 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("plans")
 }
 
-/// File name, text and contents of every plan in the folder.
+/// Returns the file name, text, format and contents of every plan in the folder.
 fn plans() -> Vec<(String, String, Format, PlanFile)> {
     let mut plans = Vec::new();
     for entry in std::fs::read_dir(folder()).expect("the plans folder") {

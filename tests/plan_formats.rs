@@ -1,4 +1,4 @@
-//! Laws of the plan formats: what is written reads back, canonical text prints as it was, no text panics.
+//! Laws of the plan formats: a written plan reads back, canonical text prints unchanged, and no text causes a panic.
 
 use betadeck::geo::LatLon;
 use betadeck::plan::format::{Format, HomePosition, PlanFile, degrees_e7, parse, report, write};
@@ -44,7 +44,7 @@ fn read(text: &str, format: Format) -> PlanFile {
     parse("law", text, format).unwrap_or_else(|errors| panic!("{}\n{text}", report(&errors)))
 }
 
-/// A line that is nearly a waypoint line.
+/// Generates lines that are nearly waypoint lines.
 fn nearly_a_line() -> impl Strategy<Value = String> {
     let word = prop_oneof![
         Just("waypoint".to_owned()),
@@ -109,7 +109,7 @@ proptest! {
     #[test]
     fn degrees_read_what_they_print(value in any::<i32>(), cut in "[0-9]{0,5}") {
         let text = format!("{}{cut}", betadeck::geo::Degrees7(value));
-        // The lowest i32 has no positive counterpart, but it is a value all the same.
+        // The lowest i32 has no positive counterpart, but it is a valid value.
         prop_assert_eq!(degrees_e7(&text), Some(value));
     }
 }

@@ -15,7 +15,7 @@ use betadeck::telemetry::{
     VehicleNotice, WaypointTruth,
 };
 
-/// One event of each kind.
+/// Returns one event of each kind.
 fn one_of_each() -> Vec<SessionEvent> {
     let mut plan = Box::<FlightPlan>::default();
     plan.waypoints.push(Waypoint::default());
@@ -74,7 +74,7 @@ fn one_of_each() -> Vec<SessionEvent> {
     firmware.chain(vehicle).map(SessionEvent::Vehicle).chain(session).collect()
 }
 
-/// The end of a flight with one waypoint.
+/// Returns the end of a flight with one waypoint.
 fn an_end() -> End {
     let waypoint = WaypointTruth {
         source: PlanSource::Stored,
@@ -95,7 +95,7 @@ fn an_end() -> End {
     }
 }
 
-/// The name on the page. A new kind of event stops the build here: it needs a row there and one above.
+/// Returns the name on the page. A new kind of event fails to compile here: it needs a row there and an event above.
 fn name(kind: &SessionEvent) -> Option<&'static str> {
     match kind {
         SessionEvent::Vehicle(kind) => vehicle_name(kind),
@@ -144,7 +144,7 @@ fn vehicle_name(kind: &EventKind) -> Option<&'static str> {
     })
 }
 
-/// The rows of a table of the page, as the names in backticks of each cell.
+/// Returns the rows of a table of the page. Each cell is the list of its names in backticks.
 fn rows(table: &str) -> Vec<Vec<Vec<String>>> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/headless.md");
     let page = std::fs::read_to_string(path).expect("docs/headless.md");
@@ -155,7 +155,7 @@ fn rows(table: &str) -> Vec<Vec<Vec<String>>> {
     rows.map(|row| row.trim_matches('|').split(" | ").map(names).collect()).collect()
 }
 
-/// The keys of a line after `t` and `event`, in their order; and the object under `nested`, if there is one.
+/// Panics unless the keys of a line are `t`, `event` and these fields, in this order.
 #[track_caller]
 fn check(line: &str, event: &str, fields: &[String]) {
     let value: serde_json::Value =

@@ -13,7 +13,7 @@ use betadeck::scenario::signal::{Flag, SIGNALS};
 use betadeck::scenario::{FORMS, TABLES};
 use strum::IntoEnumIterator as _;
 
-/// The tables of the reference with the marks between which they stand.
+/// Returns the tables of the reference, each with the name of the marks around it.
 fn tables() -> Vec<(&'static str, String)> {
     vec![
         ("INPUTS", inputs()),

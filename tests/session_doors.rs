@@ -1,4 +1,4 @@
-//! A session with clients at its doors: what they can and cannot do to the flight and to each other.
+//! A session with clients at its doors: their effects on the flight and on each other.
 
 #![allow(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests may panic and wait")]
 
@@ -64,7 +64,7 @@ async fn rig() -> Rig {
 }
 
 impl Rig {
-    /// The first picture that shows this.
+    /// Waits for the first picture that matches.
     async fn picture(&mut self, what: &str, wanted: impl Fn(&SessionView) -> bool) {
         let waiting = self.session.view.wait_for(wanted);
         let found = tokio::time::timeout(PATIENCE, waiting).await;
@@ -77,7 +77,7 @@ impl Rig {
         answer.await.unwrap();
     }
 
-    /// A person at the command line over TCP.
+    /// Opens the command line over TCP, as a person does.
     async fn person(&self) -> TcpStream {
         let mut stream = TcpStream::connect(self.doors.address(EndpointKind::Tcp).unwrap()).await.unwrap();
         stream.write_all(b"#").await.unwrap();
@@ -93,7 +93,7 @@ fn is_blocked_by_cli(view: &SessionView) -> bool {
     view.vehicle.craft.arming_flags().has(ArmingFlag::Cli)
 }
 
-/// A question whose answer takes the firmware long.
+/// Returns a request that the firmware takes long to answer.
 fn long_question(client: u64) -> Request {
     let (reply, _nobody_listens) = oneshot::channel();
     Request::Cli { client: ClientId(client), line: "dump all".to_owned(), source: LineSource::Framed, reply }
@@ -114,7 +114,7 @@ async fn clients_that_never_stop_asking_do_not_stop_time() {
         tokio::task::block_in_place(|| {
             tokio::runtime::Handle::current().block_on(async {
                 rig.picture("two seconds of flight", |view| view.vehicle.time.as_secs_f64() > 2.0).await;
-                // Commands of the user interface are heard, too.
+                // Commands of the user interface are handled, too.
                 rig.session.commands.send(Command::Pause(true)).await.unwrap();
                 rig.picture("the pause", |view| view.paused).await;
             });
@@ -146,7 +146,7 @@ async fn a_craft_put_back_home_does_not_arm_while_somebody_is_at_the_command_lin
     while !said.ends_with(b"\r\n# ") {
         said.push(person.read_u8().await.unwrap());
     }
-    // A picture of the time after.
+    // Waits for a picture of a later time.
     let now = rig.session.view.borrow().vehicle.time;
     rig.picture("the time after", |view| view.vehicle.time > now).await;
     assert!(is_blocked_by_cli(&rig.session.view.borrow()));
@@ -167,12 +167,12 @@ async fn what_a_client_changes_is_seen_while_time_stands_still() {
     rig.picture("the waypoint", |view| view.vehicle.stored_plan.as_ref().unwrap().waypoints.len() == 1).await;
 }
 
-/// The switch that a script turns on, a channel.
+/// The channel of the switch that a script turns on.
 const SCRIPT: usize = 8;
-/// The switch that the user turns on.
+/// The channel of the switch that the user turns on.
 const STICKS: usize = 9;
 
-/// A frame with one switch on.
+/// Returns a frame with one switch on.
 fn frame_with(channel: usize) -> RcFrame {
     let mut frame = RcFrame::SAFE;
     frame.channels[channel] = 2000;
@@ -203,7 +203,7 @@ async fn sticks_are_cut_while_a_script_flies_and_after_it_until_they_are_taken_b
     let running = tokio::spawn(script(rig.requests.clone()));
     rig.picture("the script", |view| is_on(view, SCRIPT) && !is_on(view, STICKS)).await;
     running.abort();
-    // The script is gone for longer than a source stays fresh and than the link takes to count as lost.
+    // The script is silent for longer than a source stays fresh and than the link needs to count as lost.
     let then = rig.session.view.borrow().vehicle.time.as_secs_f64() + 1.5;
     rig.picture("the silence", |view| view.vehicle.time.as_secs_f64() > then).await;
     {
@@ -215,7 +215,7 @@ async fn sticks_are_cut_while_a_script_flies_and_after_it_until_they_are_taken_b
         |event: &Event| matches!(&event.kind, SessionEvent::Notice(text) if text.contains("`x` takes"));
     let events = std::iter::from_fn(|| rig.session.events.try_recv().ok());
     assert_eq!(events.filter(told).count(), 1);
-    // Whoever takes them back flies, whatever the script sends.
+    // A user who takes the sticks back flies, regardless of the script.
     let running = tokio::spawn(script(rig.requests.clone()));
     rig.session.commands.send(Command::CutRc(false)).await.unwrap();
     rig.picture("the sticks again", |view| is_on(view, STICKS) && !view.rc_cut).await;
@@ -234,7 +234,7 @@ async fn flying_on_from_an_earlier_instant_closes_the_links_and_is_told() {
     rig.session.commands.send(Command::Seek(Seek::Seconds(-1000.0))).await.unwrap();
     rig.picture("the beginning", |view| view.is_rewound() && view.vehicle.time < blocked).await;
     assert!(!is_blocked_by_cli(&rig.session.view.borrow()), "as it was then");
-    // While an earlier instant is shown clients talk to the vehicle that waits.
+    // While an earlier instant is shown, clients talk to the waiting vehicle.
     person.write_all(b"version\n").await.unwrap();
     let mut said = Vec::new();
     while !said.ends_with(b"\r\n# ") {
@@ -292,7 +292,7 @@ async fn what_a_script_flew_is_shown_again_as_it_was() {
     }
 }
 
-/// The answer to a line that a client sends in a framed session.
+/// Sends a line in a framed session of a client and returns the answer.
 async fn framed_line(rig: &Rig, line: &str) -> LineReply {
     let (reply, answer) = oneshot::channel();
     let line = line.to_owned();
@@ -301,7 +301,7 @@ async fn framed_line(rig: &Rig, line: &str) -> LineReply {
     answer.await.unwrap()
 }
 
-/// The answer to a message that a client sends.
+/// Sends a message of a client and returns the answer.
 async fn message(rig: &Rig, code: u16, payload: &[u8]) -> Option<Vec<u8>> {
     let (reply, answer) = oneshot::channel();
     let payload = payload.to_vec();

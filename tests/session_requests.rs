@@ -1,5 +1,5 @@
-//! The request handler between the links and a firmware, told the time: RC that comes in wall time, and what clients can do to
-//! each other.
+//! The request handler between the links and a firmware, with a given time: RC that arrives in wall time, and the
+//! effects of clients on each other.
 
 #![allow(
     clippy::unwrap_used,
@@ -23,31 +23,31 @@ use betadeck::vehicle::FlightController;
 use tokio::sync::{mpsc, oneshot};
 
 const TICK: Duration = Duration::from_millis(1);
-/// How often the handler looks after RC, ticks.
+/// The interval at which the handler checks RC, ticks.
 const LOOK: u64 = 20;
 
-/// A firmware on a bench behind a request handler, with a wall clock of its own.
+/// A firmware on a bench, with a request handler and a wall clock of its own.
 struct Bench {
     controller: FlightController,
     persistence: Persistence,
     handler: RequestHandler,
     ticks: u64,
     wall: Instant,
-    /// Ticks that the wall clock is worth but that were not run.
+    /// The ticks that are due by the wall clock and have not been run.
     owed: f64,
     motors: MotorCommand,
     lost: bool,
 }
 
 impl Bench {
-    /// On starter modes that nobody has stored.
+    /// Returns a bench with the starter modes, which are not stored.
     async fn new() -> Self {
         let mut configuration = Configuration::default();
         configuration.starter_modes();
         Self::with(configuration).await
     }
 
-    /// On this configuration, which nobody has stored.
+    /// Returns a bench with this configuration, which is not stored.
     async fn with(configuration: Configuration) -> Self {
         let closed = ListenConfig { tcp_port: None, ws_port: None, rc_port: None, ..ListenConfig::default() };
         let (doors, _) = Listeners::open(&closed, mpsc::channel(1).0).await;
@@ -65,7 +65,7 @@ impl Bench {
         }
     }
 
-    /// On starter modes, with a store whose directory has become a file.
+    /// Returns a bench with the starter modes, and with a store whose directory has become a file.
     async fn without_room(directory: &tempfile::TempDir) -> Self {
         let folder = directory.path().join("state");
         let mut bench = Self::new().await;
@@ -100,7 +100,7 @@ impl Bench {
         }
     }
 
-    /// A millisecond of the wall clock, at `speed` times real time.
+    /// Lets a millisecond of the wall clock pass, at `speed` times real time.
     fn pass(&mut self, speed: f64) {
         self.wall += TICK;
         self.owed += speed;
@@ -151,7 +151,7 @@ impl Bench {
     }
 }
 
-/// Half a second of a script, then silence: after how much wall time the link is lost.
+/// Sends half a second of a script, then nothing. Returns the wall time from the last packet to the loss of the link.
 async fn wall_time_to_loss(speed: f64) -> Duration {
     let mut bench = Bench::new().await;
     for ms in 0..500_u32 {
@@ -177,7 +177,7 @@ async fn a_script_is_lost_after_the_same_wall_time_at_any_speed() {
         let lost = wall_time_to_loss(speed).await.as_millis();
         assert!((145..=210).contains(&lost), "{lost} ms at speed {speed}");
     }
-    // Slower than the wall: the firmware's own 150 ms.
+    // Slower than real time, the firmware's own 150 ms count.
     let lost = wall_time_to_loss(0.5).await.as_millis();
     assert!((290..=420).contains(&lost), "{lost} ms at half speed");
 }
@@ -191,7 +191,7 @@ async fn a_script_is_not_lost_while_time_stands_still() {
         }
         bench.pass(1.0);
     }
-    // Paused for a minute: no tick, no look.
+    // A pause of a minute: no tick, no check.
     bench.wall += Duration::from_secs(60);
     assert!(!bench.lost && bench.firmware().receiver().signal());
 }
@@ -250,7 +250,7 @@ async fn a_command_line_blocks_arming_until_the_restart_that_ends_it() {
     bench.leave(1);
     assert!(bench.arming_is_blocked_by_cli(), "also when it was left");
 
-    // Somebody else saves a flight plan: that restarts the craft, and keeps the links.
+    // Another client saves a flight plan: that restarts the craft and keeps the links.
     bench.enter(2, true);
     assert!(bench.enter(3, false));
     bench.line(3, LineSource::Framed, "feature TELEMETRY");
@@ -267,7 +267,7 @@ async fn an_armed_craft_is_not_restarted() {
     let mut bench = Bench::new().await;
     let mut frame = RcFrame::SAFE;
     bench.enter(1, true);
-    // The craft put back home: the command line is open, but blocks nothing.
+    // The craft is put back home: the command line is open but blocks nothing.
     bench.firmware_mut().restart_in_place();
     for ms in 0..7000_u32 {
         frame.channels[4] = if ms > 6500 { 2000 } else { 1000 };
@@ -343,7 +343,7 @@ async fn a_batch_lasts_over_the_lines_of_one_client_and_of_no_other() {
     let other = bench.line(2, LineSource::Prompt, "batch end");
     let end = bench.line(1, LineSource::Prompt, "batch end");
     assert_ne!(end.text, other.text);
-    // Who comes back begins anew.
+    // A client that returns starts again.
     bench.line(1, LineSource::Prompt, "batch start");
     bench.line(1, LineSource::Prompt, "set nonsense = 1");
     bench.leave(1);
@@ -351,12 +351,13 @@ async fn a_batch_lasts_over_the_lines_of_one_client_and_of_no_other() {
     assert_eq!(bench.line(1, LineSource::Prompt, "batch end").text, other.text);
 }
 
-/// The modes that channels switch, in their order.
+/// Returns the modes that channels switch, in their order.
 fn modes(bench: &Bench) -> Vec<&'static str> {
     bench.firmware().mode_ranges().iter().map(|range| range.mode_box.into()).collect()
 }
 
-/// A bench whose craft was given ARM on AUX4 and a lean angle, as `--settings` does, and a client at its command line.
+/// Returns a bench whose craft has ARM on AUX4 and a lean angle set, as `--settings` does, and a client at its command
+/// line.
 async fn bench_with_given_settings() -> Bench {
     let mut firmware = Firmware::new(Configuration::default(), FirmwareOptions::default());
     for line in ["aux 0 0 3 1700 2100 0 0", "set ap_max_angle = 33"] {

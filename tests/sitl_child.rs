@@ -1,4 +1,4 @@
-//! A firmware executable as a child: what it says and how it ends is told, and it is started again.
+//! A firmware executable as a child: its output and its end are reported, and it is started again.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test may stop")]
 #![allow(clippy::disallowed_methods, reason = "a process is waited for")]
@@ -79,7 +79,7 @@ fn a_firmware_that_does_not_want_to_end_is_ended() {
     assert!(rustix::process::test_kill_process(pid).is_err());
 }
 
-/// Waits for a file of the firmware's directory, and reads it.
+/// Waits for a file in the firmware's directory, and reads it.
 fn written(directory: &TempDir, name: &str) -> String {
     loop {
         match std::fs::read_to_string(directory.path().join("firmware").join(name)) {
@@ -93,7 +93,7 @@ fn written(directory: &TempDir, name: &str) -> String {
 fn a_firmware_that_prints_without_end_is_shown_in_part_and_its_end_is_told() {
     let script = "yes | head -n 300000; echo through > done; exit 3";
     let (mut child, directory) = start("/bin/sh", &["-c", script]);
-    // Nobody takes anything meanwhile.
+    // The events are not taken meanwhile.
     written(&directory, "done");
     let (mut lines, mut not_shown) = (0, 0);
     loop {
@@ -117,7 +117,7 @@ fn a_script_that_started_the_firmware_ends_together_with_it() {
     let pid: i32 = written(&directory, "pid").trim().parse().unwrap();
     drop(child);
     let pid = rustix::process::Pid::from_raw(pid).unwrap();
-    // Whose child it became takes its end in at some time.
+    // Its new parent reaps it at some time.
     while rustix::process::test_kill_process(pid).is_ok() {
         std::thread::sleep(Duration::from_millis(5));
     }
@@ -131,7 +131,7 @@ fn one_that_went_its_own_way_with_the_output_does_not_hold_up_the_end() {
     assert_eq!(next(&mut child), ChildEvent::Started);
     assert_eq!(next(&mut child), ChildEvent::Ended(ChildEnd::Code(5)));
     drop(child);
-    // It has left what is ended here, as it may.
+    // The process has left the group that is ended here, which is allowed.
     let pid = rustix::process::Pid::from_raw(pid).unwrap();
     rustix::process::kill_process(pid, rustix::process::Signal::KILL).unwrap();
 }

@@ -1,6 +1,6 @@
 //! The configuration on disk when its process is killed in the middle of a save.
 //!
-//! Alone in its program: a child that is being started holds the locks of the tests beside it for a moment.
+//! It is alone in its program, because a child that is being started holds the locks of other tests for a moment.
 
 use std::io::{BufRead as _, BufReader};
 use std::path::Path;
@@ -9,7 +9,7 @@ use std::process::{Command, Stdio};
 use betadeck::firmware::config::Configuration;
 use betadeck::storage::Store;
 
-/// Name of the variable that tells a child process which directory to save in.
+/// The name of the variable that gives a child process the directory to save in.
 const CHILD_DIRECTORY: &str = "BETADECK_TEST_SAVE_DIRECTORY";
 
 fn named(name: &str) -> Configuration {

@@ -1,4 +1,4 @@
-//! Altitudes that are probably not meant: what is told of them, and what an upload in flight asks.
+//! Altitudes that are probably mistakes: the findings about them, and the questions of an upload in flight.
 
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ fn set_altitude(state: &mut AppState, wp: usize, alt_m: i32) {
     open(state, &plan);
 }
 
-/// Replaces the waypoints by those of a paste.
+/// Replaces the waypoints of the open plan with pasted ones.
 fn open(state: &mut AppState, plan: &FlightPlan) {
     keys(state, "2 ctrl-a d");
     let lines: Vec<String> = betadeck::plan::plan_lines(plan).skip(1).collect();
@@ -30,7 +30,7 @@ fn open(state: &mut AppState, plan: &FlightPlan) {
     keys(state, "esc");
 }
 
-/// On the way to WP1 of the stored square.
+/// Shows a craft on its way to WP1 of the stored square.
 fn fly(state: &mut AppState) {
     let flight = SimpleFlight {
         time_s: 60.0,
@@ -113,7 +113,7 @@ fn a_place_far_away_or_no_place_is_asked_about_in_flight_only() {
     open(&mut state, &plan);
     assert!(!uploads(&keys(&mut state, "U")));
     assert!(screen(&state).contains("WP1, which this plan does not have"), "{}", screen(&state));
-    // Armed on the ground before an engagement there is no leg yet.
+    // While the craft is armed on the ground, before an engagement, there is no leg yet.
     let mut view = state.view.clone();
     let vehicle = Arc::make_mut(&mut view.vehicle);
     vehicle.active_plan = None;

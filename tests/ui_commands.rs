@@ -1,4 +1,4 @@
-//! Commands by name: keys, palette and the `:` line reach the same actions; what is typed is text.
+//! Commands by name: keys, palette and the `:` line reach the same actions, and typed characters are text.
 
 use betadeck::session::Command;
 use betadeck::ui::action::{ACTIONS, Action, enabled};
@@ -16,7 +16,7 @@ use fixture::SimpleFlight;
 
 fn key(state: &mut AppState, code: KeyCode) -> Vec<Effect> {
     let mut effects = update(state, Msg::Key(KeyEvent::new(code, KeyModifiers::NONE)));
-    // Lines that are kept for the next start have their own test.
+    // Lines stored for the next start have their own test.
     effects.retain(|effect| !matches!(effect, Effect::Files(FileRequest::KeepLine(..))));
     effects
 }
@@ -56,7 +56,7 @@ fn notice(state: &AppState) -> String {
     state.notice.as_ref().map(|notice| notice.text.clone()).unwrap_or_default()
 }
 
-/// What an action leaves behind, as far as it can be compared.
+/// Returns the effects of an action as text, as far as they can be compared.
 fn outcome(state: &AppState, effects: &[Effect]) -> String {
     let popups: Vec<_> = state.popups.iter().filter(|popup| !matches!(popup, Popup::Palette(_))).collect();
     format!("{effects:?} {:?} {} {popups:?} {}", state.focus, state.zoomed, notice(state))
@@ -140,7 +140,7 @@ fn the_palette_moves_and_closes() {
     assert!(key(&mut state, KeyCode::Enter).is_empty());
     key(&mut state, KeyCode::Esc);
     assert!(state.popups.is_empty());
-    // In the firmware's command line letters are text; the palette opens there all the same.
+    // In the firmware's command line letters are text, but the palette still opens there.
     key(&mut state, KeyCode::Char('5'));
     ctrl(&mut state, 'p');
     assert!(matches!(state.popups[..], [Popup::Palette(_)]));
@@ -222,7 +222,7 @@ fn a_setting_goes_through_the_command_line_of_the_craft_and_its_answer_is_a_noti
     let text = "###ERROR IN set: INVALID VALUE###\r\n".to_owned();
     update(&mut state, Msg::CliReply(Some(CliOutput { text, ..CliOutput::default() })));
     assert!(notice(&state).contains("INVALID VALUE"));
-    // What the panel itself runs is told there only.
+    // The reply to a line from the panel itself is shown only there.
     state.notice = None;
     let effects = enter(&mut state, "cli status");
     assert!(matches!(&effects[..], [Effect::Cli(line)] if line == "status") && state.focus == Panel::Cli);

@@ -1,5 +1,5 @@
-//! The screen over a flight controller outside whose craft is real: what it offers, and what it asks before it changes
-//! anything.
+//! The screen of a remote flight controller with a real craft: the actions that it offers, and its questions before a
+//! change.
 
 use betadeck::session::command::CliOutput;
 use betadeck::session::{Access, Command, NOTHING_MOVES, NOTHING_SIMULATED, RemoteState, RemoteView};
@@ -25,14 +25,14 @@ fn remote() -> RemoteView {
     }
 }
 
-/// A screen over a craft that stands disarmed, with this of its flight controller.
+/// Returns the screen of a disarmed craft. `change` sets up its remote flight controller.
 fn connected(change: impl FnOnce(&mut RemoteView)) -> AppState {
     let mut state = fixture::state((80, 24), fixture::colour());
     show(&mut state, change);
     state
 }
 
-/// The next picture.
+/// Shows the next picture, after `change` to its remote flight controller.
 fn show(state: &mut AppState, change: impl FnOnce(&mut RemoteView)) {
     let mut view = state.view.clone();
     let mut outside = view.remote.take().unwrap_or_else(remote);
@@ -52,7 +52,7 @@ fn press(state: &mut AppState, code: KeyCode) -> Vec<Effect> {
     update(state, Msg::Key(KeyEvent::new(code, KeyModifiers::NONE)))
 }
 
-/// Enters a line in the CLI panel; the effects but for what is kept in files.
+/// Enters a line in the CLI panel and returns the effects, except for requests to files.
 fn enter(state: &mut AppState, line: &str) -> Vec<Effect> {
     state.focus = Panel::Cli;
     state.slots.visit(Panel::Cli);

@@ -12,7 +12,7 @@ mod hands;
 
 use hands::{journal_lines, keys, mouse, mouse_button, place_of, press, screen, state_with_fix as state};
 
-/// The request to write a plan among the effects.
+/// Returns the request to write a plan, from the effects.
 fn save_of(effects: Vec<Effect>) -> FileRequest {
     let requests = effects.into_iter().filter_map(|effect| match effect {
         Effect::Files(request @ FileRequest::Save { .. }) => Some(request),
@@ -254,7 +254,7 @@ fn the_plan_of_the_craft_is_compared_downloaded_and_watched() {
     stored.as_mut().unwrap().waypoints[2].alt_cm = 7000;
     update(&mut state, Msg::View(view.clone()));
     assert!(screen(&state).contains("The plan in the craft was changed: WP2."), "{}", screen(&state));
-    // What this screen uploads is no news.
+    // An upload from this screen is not reported as a change.
     keys(&mut state, "+ U");
     std::sync::Arc::make_mut(&mut view.vehicle).stored_plan = Some(state.plan().clone());
     update(&mut state, Msg::View(view));
@@ -379,7 +379,7 @@ fn a_waypoint_dropped_beside_the_map_is_put_down() {
     let mark = place_of(&state, "◇");
     mouse(&mut state, MouseEventKind::Down, mark);
     mouse(&mut state, MouseEventKind::Drag, (mark.0 - 4, mark.1));
-    // On the hint bar there is no panel.
+    // There is no panel at the hint bar.
     let effects = mouse(&mut state, MouseEventKind::Up, (mark.0 - 4, 39));
     assert_eq!(journal_lines(&effects), 1);
     assert!(mouse(&mut state, MouseEventKind::Up, mark).is_empty());

@@ -1,4 +1,4 @@
-//! The first half hour of a new user, by keys: what is shown is true, stays readable and says how to go on.
+//! The first half hour of a new user, by keys: the screen is true, stays readable and says how to go on.
 
 use betadeck::plan::WaypointType;
 use betadeck::session::{Event, ForecastJob, ForecastKind, ForecastReply, SessionEvent, SessionView};
@@ -20,7 +20,7 @@ mod hands;
 use fixture::SimpleFlight;
 use hands::{keys, screen, state_with_fix as state};
 
-/// A craft on its way to the first waypoint.
+/// Returns a craft on its way to the first waypoint.
 fn flight() -> SimpleFlight {
     SimpleFlight {
         time_s: 40.0,
@@ -137,7 +137,7 @@ fn every_question_before_the_end_takes_the_same_keys() {
         assert!(!is_quit(&keys(state, "enter")), "Enter ends no flight by mistake");
         assert!(is_quit(&keys(state, "y")));
     }
-    // Of edits that are written nowhere, `y` makes sure first.
+    // If edits are not stored anywhere, `y` asks again first.
     update(&mut unsaved, Msg::Files(FileReply::NotKept("No room for the journal.".to_owned())));
     keys(&mut unsaved, "q");
     assert!(!is_quit(&keys(&mut unsaved, "y")) && screen(&unsaved).contains(" d discard"));

@@ -37,7 +37,7 @@ fn press(state: &mut AppState, c: char) -> Vec<Effect> {
     key(state, KeyCode::Char(c))
 }
 
-/// The only forecast that is asked for.
+/// Returns the only forecast request among the effects, if there is one.
 fn job(effects: &[Effect]) -> Option<&ForecastJob> {
     let mut jobs = effects.iter().filter_map(|effect| match effect {
         Effect::Forecast(job) => Some(job),
@@ -48,7 +48,7 @@ fn job(effects: &[Effect]) -> Option<&ForecastJob> {
     job
 }
 
-/// A picture changed by `change`, at another instant.
+/// Shows a picture changed by `change`, at another instant.
 fn picture(state: &mut AppState, change: impl FnOnce(&mut Snapshot)) -> Vec<Effect> {
     let mut view = state.view.clone();
     let vehicle = Arc::make_mut(&mut view.vehicle);
@@ -57,7 +57,7 @@ fn picture(state: &mut AppState, change: impl FnOnce(&mut Snapshot)) -> Vec<Effe
     update(state, Msg::View(view))
 }
 
-/// On the ground with a fix, and the job of the first estimate.
+/// Returns a craft on the ground with a fix, and the job of the first estimate.
 fn ready(size: (u16, u16)) -> (AppState, ForecastJob) {
     let mut state = fixture::state(size, fixture::colour());
     let standing = SimpleFlight { time_s: 8.0, fix: true, ..SimpleFlight::default() };
@@ -66,14 +66,14 @@ fn ready(size: (u16, u16)) -> (AppState, ForecastJob) {
     (state, first)
 }
 
-/// In flight on the leg to WP1.
+/// Returns a craft in flight on the leg to WP1.
 fn flying(size: (u16, u16)) -> AppState {
     let mut state = fixture::state(size, fixture::colour());
     fixture::approach(&mut state);
     state
 }
 
-/// A flight around the square that cuts the corners.
+/// Returns a forecast of a flight around the square that cuts the corners.
 fn square(kind: ForecastKind) -> Forecast {
     let corners = [(0.0, 0.0), (50.0, 58.0), (-52.0, 62.0), (-56.0, -66.0), (54.0, -68.0)];
     let path = corners.windows(2).flat_map(|pair| {
@@ -276,7 +276,7 @@ fn an_upload_in_flight_takes_effect_at_the_next_engagement_or_by_going_there() {
     press(&mut state, 'd');
     press(&mut state, '1');
     press(&mut state, 'U');
-    // The waypoint that is flown to is gone from its place.
+    // The active waypoint is no longer in its place.
     assert!(text(&state).contains("at the next engagement, or with `G`"), "{}", text(&state));
     press(&mut state, 'y');
     assert!(state.popups.is_empty());

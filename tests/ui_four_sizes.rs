@@ -17,7 +17,7 @@ use hands::{keys, press, screen, state_with_fix};
 
 const SIZES: [(u16, u16); 4] = [(60, 20), (80, 24), (120, 40), (200, 60)];
 
-/// The screens at the four sizes, one below the other.
+/// Returns the screens at the four sizes, one below the other.
 fn at_four_sizes(draw: impl Fn((u16, u16)) -> AppState) -> String {
     SIZES.map(|size| screen(&draw(size))).join("\n")
 }
@@ -134,24 +134,24 @@ fn lost_edits_are_named_until_esc_takes_the_notice_away() {
     }
 }
 
-/// A state with something open, and what is open.
+/// The name of an open element, and a state in which it is open.
 type Open = (String, AppState);
 
-/// Opens something with keys in a craft that waits at home.
+/// Opens something with keys while the craft waits at home.
 fn waiting(opened: &str) -> Open {
     let mut state = state_with_fix((120, 40));
     keys(&mut state, opened);
     (format!("waiting, {opened}"), state)
 }
 
-/// Opens something with keys in a craft that flies.
+/// Opens something with keys while the craft flies.
 fn flying(opened: &str) -> Open {
     let mut state = approaching((120, 40));
     keys(&mut state, opened);
     (format!("flying, {opened}"), state)
 }
 
-/// Every popup, prompt and text field, open.
+/// Returns a state for every popup, prompt and text field, with it open.
 fn everything_open() -> Vec<Open> {
     let mut open: Vec<Open> = [
         "ctrl-p",
@@ -225,7 +225,7 @@ fn everything_open() -> Vec<Open> {
     open
 }
 
-/// Draws in a window of this size, whatever size the state knows of; the place of the cursor is in the window.
+/// Draws in a window of this size, regardless of the size in the state. The cursor must be in the window.
 fn drawn_in(state: &AppState, size: (u16, u16), what: &str) {
     let mut terminal = Terminal::new(TestBackend::new(size.0, size.1)).unwrap();
     let drawn = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
@@ -246,7 +246,7 @@ fn every_popup_prompt_and_editor_is_drawn_in_every_window_down_to_one_cell() {
         for (at, &size) in sizes.iter().enumerate() {
             update(&mut state, Msg::Resize(size.0, size.1));
             drawn_in(&state, size, &what);
-            // A window that changes its size again before the program hears of it.
+            // The window changes its size again before the program notices.
             drawn_in(&state, sizes[(at * 7 + 3) % sizes.len()], &what);
         }
     }

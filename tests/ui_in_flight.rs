@@ -1,4 +1,4 @@
-//! Keys in, screen out, with a session behind them: losses in flight, and an upload read back.
+//! Keys in, screen out, with a session: losses in flight, and an upload read back.
 
 #![allow(clippy::unwrap_used, reason = "tests may panic")]
 
@@ -31,7 +31,7 @@ async fn a_cut_rc_link_shows_failsafe_and_the_landing_that_was_chosen() {
     rig.assert_shown(&["DISARMED", "The RC link is cut.", "x restores it", "◆ COMPLETE"]);
 }
 
-/// Steps through the flight until the screen shows this.
+/// Steps through the flight until the screen matches.
 async fn step_until(rig: &mut Rig, wanted: impl Fn(&AppState) -> bool) {
     for _ in 0..400 {
         if wanted(&rig.state) {

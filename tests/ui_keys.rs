@@ -1,4 +1,4 @@
-//! What keys, mouse and paste do: messages in, effects out, no terminal.
+//! The effects of keys, mouse and paste: messages in, effects out, no terminal.
 
 use std::time::Duration;
 
@@ -16,7 +16,7 @@ use fixture::SimpleFlight;
 
 fn key(state: &mut AppState, code: KeyCode) -> Vec<Effect> {
     let mut effects = update(state, Msg::Key(KeyEvent::new(code, KeyModifiers::NONE)));
-    // Lines that are kept for the next start have their own test.
+    // Lines stored for the next start have their own test.
     effects.retain(|effect| !matches!(effect, Effect::Files(FileRequest::KeepLine(..))));
     effects
 }
@@ -38,7 +38,7 @@ fn ready() -> AppState {
     state
 }
 
-/// The channels of the sticks that the effects send, if they do.
+/// Returns the channels of the sticks that the effects send, if there are any.
 fn sticks(effects: &[Effect]) -> Option<[u16; 16]> {
     effects.iter().find_map(|effect| match effect {
         Effect::Send(Command::Sticks(frame)) => Some(frame.channels),

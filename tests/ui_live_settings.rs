@@ -1,4 +1,4 @@
-//! Settings of the craft that are changed while a plan is open: estimates and findings follow what would be flown.
+//! Settings of the craft that change while a plan is open: estimates and findings use the settings of the flight.
 
 #![allow(clippy::unwrap_used, reason = "tests may panic")]
 
@@ -20,7 +20,7 @@ mod hands;
 
 use hands::{keys, screen, state_with_fix};
 
-/// The text of the Plan panel, its lines joined.
+/// Returns the text of the Plan panel, with its lines joined.
 fn said(state: &AppState) -> String {
     let screen = screen(state);
     let lines: Vec<Vec<char>> = screen.lines().map(|line| line.chars().collect()).collect();
@@ -35,7 +35,7 @@ fn said(state: &AppState) -> String {
     words.collect::<Vec<_>>().join(" ")
 }
 
-/// A square that asks for a fence of 500 m, on a craft that has another plan.
+/// Opens a square that asks for a fence of 500 m, on a craft that has another plan.
 fn open(size: (u16, u16)) -> AppState {
     let mut state = state_with_fix(size);
     let document = PlanDocument {
@@ -56,7 +56,7 @@ fn open(size: (u16, u16)) -> AppState {
     state
 }
 
-/// The craft's fence is this from now on; the settings lines that the next estimate is asked for with, if it is.
+/// Sets the craft's fence. Returns the settings lines of the next estimate request, if there is one.
 fn set_fence(state: &mut AppState, fence_m: f64) -> Option<Vec<String>> {
     estimate_of(&change(state, |settings| settings.fence_m = Some(fence_m)))
 }
@@ -166,7 +166,7 @@ fn a_plan_that_is_to_be_uploaded_sets_its_fence() {
     let settings = set_fence(&mut state, 82.0).unwrap();
     assert_eq!(settings, state.editor.document().settings);
     assert!(!said(&state).contains("refused"), "{}", said(&state));
-    // One without a fence of its own leaves the craft's.
+    // A plan without a fence of its own keeps the craft's fence.
     keys(&mut state, "n");
     let lines = "waypoint insert 0 40.4645000 -79.5182000 2000 0 LAND 0 NONE";
     update(&mut state, Msg::Paste(lines.to_owned()));

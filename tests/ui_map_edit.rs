@@ -11,7 +11,7 @@ mod hands;
 
 use hands::{journal_lines, keys, mouse, mouse_button, place_of, screen};
 
-/// The map alone, and a craft that was carried away from home.
+/// Returns a state with a craft that was carried away from home.
 fn away_from_home() -> AppState {
     let mut state = fixture::state((120, 40), fixture::colour());
     let flight = fixture::SimpleFlight { n: 150.0, fix: true, ..fixture::SimpleFlight::default() };
@@ -19,7 +19,7 @@ fn away_from_home() -> AppState {
     state
 }
 
-/// The map alone with its cursor, wide enough for the fence of 500 m.
+/// Returns the map on the whole screen with its cursor, wide enough for the fence of 500 m.
 fn editing() -> AppState {
     let mut state = away_from_home();
     keys(&mut state, "z p - - - - -");
@@ -37,7 +37,7 @@ fn move_cursor_to(state: &mut AppState, (column, row): (u16, u16)) {
     keys(state, &step(from_row, row, "up", "down"));
 }
 
-/// The distance from home that the title tells of the cursor, m.
+/// Returns the cursor's distance from home that the title shows, m.
 fn metres_from_home(state: &AppState) -> f64 {
     let seen = screen(state);
     let title = seen.lines().find(|line| line.contains("edit ·")).expect("the title of the map");
@@ -45,7 +45,7 @@ fn metres_from_home(state: &AppState) -> f64 {
     told.rsplit(' ').next().and_then(|text| text.parse().ok()).expect("a number")
 }
 
-/// Moves the cursor eastwards from home until it is on the ring of the fence; its cell.
+/// Moves the cursor east from home until it is on the ring of the fence, and returns its cell.
 fn find_the_fence(state: &mut AppState, fence_m: f64) -> (u16, u16) {
     let home = place_of(state, "⌂");
     move_cursor_to(state, home);
@@ -108,7 +108,7 @@ fn the_fence_is_made_wider_by_the_cursor_and_follows_home() {
     let wider = fence(&state).expect("a fence");
     assert!((wider - metres_from_home(&state)).abs() < 1.0 && wider > 520.0, "{wider}");
     assert!(screen(&state).contains(&format!("Fence of the plan: {wider:.0} m around home.")));
-    // Another home takes its fence along: the ring is grasped as far from it as before.
+    // A new home takes the fence along: the ring is found at the same distance from it as before.
     let home = place_of(&state, "⌂");
     move_cursor_to(&mut state, home);
     keys(&mut state, "enter left left left left left left left left enter");
@@ -161,7 +161,7 @@ fn the_right_button_opens_a_menu_that_keys_and_clicks_choose_from() {
     let row = place_of(&state, "fence through here");
     assert_eq!(journal_lines(&mouse(&mut state, MouseEventKind::Down, row)), 1);
     assert!(fence(&state).is_some());
-    // At a waypoint it is about that; a click elsewhere or Esc closes it.
+    // At a waypoint the menu is about that waypoint. A click elsewhere or Esc closes it.
     let place = place_of(&state, "▼");
     mouse_button(&mut state, right, place);
     assert!(screen(&state).contains("delete WP"), "{}", screen(&state));

@@ -1,4 +1,4 @@
-//! What a mistyped value does: messages in, screen and effects out.
+//! The effects of mistyped values: messages in, screen and effects out.
 
 use betadeck::plan::FlightPlan;
 use betadeck::ui::editor::FileRequest;

@@ -1,4 +1,4 @@
-//! What helps a new user to find the way: the bar of panels, laps of a ring, words for the guards, zoom around the craft.
+//! Help for a new user to find the way: the bar of panels, laps of a ring, words for the guards, zoom around the craft.
 
 use betadeck::telemetry::{Guard, GuardName, GuardOp, NavState};
 use betadeck::ui::{AppState, Msg, Panel, update};
@@ -36,7 +36,7 @@ fn a_bar_names_the_panels_and_the_mouse_clicks_them() {
     }
 }
 
-/// A craft that circles for 11.6 of 30 s.
+/// Returns a craft that has circled for 11.6 of 30 s.
 fn orbits(size: (u16, u16)) -> AppState {
     let mut state = fixture::state(size, fixture::colour());
     fixture::orbit(&mut state);

@@ -1,4 +1,4 @@
-//! The panels World and Log: what their keys do, and what they look like at four sizes.
+//! The panels World, Log, Graphs and RC: their keys, and their looks at several sizes.
 
 use betadeck::session::SessionView;
 use betadeck::telemetry::snapshot::{FaultView, WindView};
@@ -35,9 +35,9 @@ fn screen(state: &AppState) -> String {
     terminal.backend().to_string()
 }
 
-/// What the effects ask of the world.
+/// Returns the requests to the world among the effects.
 fn asked(effects: &[Effect]) -> Vec<&str> {
-    // The plan is flown ahead again in the air that is asked for.
+    // The plan is flown ahead again in the requested air.
     let others = effects.iter().filter(|effect| !matches!(effect, Effect::World(_) | Effect::Forecast(_)));
     assert_eq!(others.count(), 0, "{effects:?}");
     effects
@@ -90,7 +90,7 @@ fn numbers_are_typed_in_the_units_that_are_shown() {
     key(&mut state, KeyCode::Enter);
     type_text(&mut state, "10");
     assert_eq!(asked(&key(&mut state, KeyCode::Enter)), ["wind=4.47@270"]);
-    // What is no number goes to who can say why not.
+    // A text that is not a number is passed on, because the world reports the reason for a refusal.
     key(&mut state, KeyCode::Enter);
     type_text(&mut state, "calm");
     assert_eq!(asked(&key(&mut state, KeyCode::Enter)), ["wind=calm"]);
@@ -100,7 +100,7 @@ fn numbers_are_typed_in_the_units_that_are_shown() {
     assert!(state.knobs.field.is_none() && state.focus == Panel::World);
 }
 
-/// Moves to the fault of this name.
+/// Moves the selection to the fault of this name.
 fn select(state: &mut AppState, name: &str) {
     for _ in 0..40 {
         if screen(state).contains(&format!("▸  {name}")) || screen(state).contains(&format!("▸▲ {name}"))
@@ -301,7 +301,7 @@ fn recorded_sticks_are_played_again_in_their_time() {
     assert_eq!(at(&mut state, 105.1, 1100), Vec::<u16>::new());
     assert!(!screen(&state).contains("PLAY"));
 
-    // The hand wins.
+    // A stick moved by hand ends the playback.
     press(&mut state, 'p');
     key(&mut state, KeyCode::Right);
     assert_eq!(at(&mut state, 108.0, 1010), Vec::<u16>::new());

@@ -1,4 +1,4 @@
-//! The Plan panel: units, and the altitude profile with what was flown.
+//! The Plan panel: units, and the altitude profile with the flown altitudes.
 
 use std::sync::Arc;
 
@@ -34,7 +34,7 @@ fn with_imperial_units_the_table_shows_takes_and_nudges_feet_and_miles_an_hour()
     assert_eq!(state.plan().waypoints[0].alt_cm, 6126, "201 ft");
     keys(&mut state, "right enter backspace '10 enter");
     assert_eq!(state.plan().waypoints[0].speed_cms, 447);
-    // The craft has the plan as it was.
+    // The craft still has the unchanged plan.
     let seen = screen(&state);
     assert!(seen.contains("On the craft WP0 is: altitude 164.0, speed —."), "{seen}");
 }
@@ -99,7 +99,7 @@ fn the_flown_altitude_stands_beside_the_plan_and_the_legend_names_it() {
     assert!(line.matches('•').count() > 20 && line.contains('·'), "{seen}");
     let (flown, one) = (line.rfind('•').unwrap(), line.find('1').unwrap());
     assert!(flown < one, "it is not at WP1 yet: {line}");
-    // An edit of altitudes leaves what was flown; one of places makes it meaningless.
+    // An edit of altitudes keeps the flown profile; an edit of positions makes it meaningless.
     keys(&mut state, "right right right shift-up");
     assert!(screen(&state).contains("• flown"), "{}", screen(&state));
     keys(&mut state, "left +");

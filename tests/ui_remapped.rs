@@ -1,4 +1,4 @@
-//! Keys of the user's own: every sentence names the key in force, never the one that it replaced.
+//! Keys of the user's own: every sentence names the current key, never the one that it replaced.
 
 use std::sync::Arc;
 
@@ -19,14 +19,14 @@ mod hands;
 
 use hands::{keys, screen};
 
-/// Alt before every key that is a character.
+/// Returns a keymap with Alt before every key that is a character.
 fn with_alt() -> Keymap {
     let is_character = |key: &str| key.chars().count() == 1 || key == "space";
     let own = |key: &&str| if is_character(key) { format!("alt-{key}") } else { (*key).to_owned() };
     let lines = ACTIONS.iter().filter(|spec| spec.keys.iter().any(|key| is_character(key))).map(|spec| {
         KeyLine { line: 1, action: spec.name.to_owned(), keys: spec.keys.iter().map(own).collect() }
     });
-    // What has Alt already goes out of the way.
+    // Actions that already use Alt get other keys.
     let moved = [("plan.move-up", "ctrl-up"), ("plan.move-down", "ctrl-down"), ("sim.tick", "ctrl-t")];
     let moved =
         moved.map(|(action, key)| KeyLine { line: 1, action: action.to_owned(), keys: vec![key.to_owned()] });
@@ -104,7 +104,7 @@ fn in_situation(keymap: &Keymap, change: fn(&mut SessionView)) -> AppState {
     state
 }
 
-/// Single characters in backquotes, or standing alone where a sentence tells what a key does.
+/// Returns the single characters in backquotes or before a verb, as in a sentence that names a key.
 fn old_keys(text: &str) -> Vec<String> {
     let quoted = text.split('`').skip(1).step_by(2).filter(|part| part.chars().count() == 1);
     let before_verb = |pair: &[&str]| {

@@ -1,4 +1,4 @@
-//! Keys in, screen out, with a session behind them: rewind, and flying on from an earlier instant.
+//! Keys in, screen out, with a session: rewind, and flying on from an earlier instant.
 
 #![allow(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests may panic and wait")]
 
@@ -71,7 +71,7 @@ async fn keys_go_back_and_forth_by_events_states_and_seconds() {
     rig.until("the event before", before).await;
     rig.keys(";").await;
     rig.until("the event after", |state| state.view.vehicle.time == engaged).await;
-    // One tick, and to where the recording ends: there the flight is again.
+    // One tick, then to the end of the recording, where the flight is no longer rewound.
     let tick = KeyEvent::new(KeyCode::Char('.'), KeyModifiers::ALT);
     let effects = update(&mut rig.state, Msg::Key(tick));
     rig.carry_out(effects).await;
@@ -167,10 +167,10 @@ async fn the_flight_goes_on_from_an_earlier_instant_and_the_old_one_is_left_behi
     rig.assert_shown(&["Flown on from here", "╎"]);
     let behind: Vec<bool> = rig.state.log.newest_first().map(|line| line.left_behind).collect();
     assert!(behind.contains(&true) && behind.contains(&false));
-    // With nothing else done, it is the same flight again.
+    // Without any other action, it is the same flight again.
     rig.fly_to(NavState::Arrived).await;
     assert_eq!(rig.picture(), left);
-    // And with another hand on the sticks, another one.
+    // With other sticks, it is another flight.
     rig.keys("<").await;
     rig.until("the rewind", rewound).await;
     assert_eq!(rig.time(), fork);

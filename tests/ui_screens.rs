@@ -1,4 +1,4 @@
-//! What the user interface shows: whole screens, and that no size and no picture breaks it.
+//! Whole screens of the user interface, and a check that no size and no picture breaks it.
 
 use betadeck::plan::FlightPlan;
 use betadeck::session::command::CliOutput;
@@ -218,7 +218,7 @@ fn a_notice_leaves_the_hints_alone_and_loses_no_word() {
         let hints = |screen: &str| screen.lines().last().map(str::to_owned);
         let before = hints(&text(&state));
         state.notify(Severity::Warn, long);
-        // Where the log would show it, too.
+        // Zooms a panel, because the log would show the notice, too.
         state.focus = Panel::Rc;
         state.slots.visit(Panel::Rc);
         state.zoomed = true;
@@ -258,7 +258,7 @@ fn a_long_plan_scrolls_to_its_last_waypoint_whatever_stands_below() {
         let corner = fixture::square().waypoints[0];
         let mut plan = FlightPlan { waypoints: std::iter::repeat_n(corner, 30).collect() };
         let waypoints = &mut plan.waypoints;
-        // Outside the geofence: what is wrong stands below the waypoints.
+        // These waypoints are outside the geofence: the findings are drawn below the list.
         waypoints.iter_mut().take(far_ones).for_each(|waypoint| waypoint.position.lat_e7 += 10_000_000);
         let mut state = fixture::state_with((80, 24), fixture::colour(), plan);
         press(&mut state, '2');

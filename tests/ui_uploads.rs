@@ -1,4 +1,4 @@
-//! Uploads and downloads that take their time, and notices that must be read: messages in, screen out.
+//! Slow uploads and downloads, and notices that must be read: messages in, screen out.
 
 use std::time::Duration;
 
@@ -14,14 +14,14 @@ mod hands;
 
 use hands::{keys, screen, state_with_fix as state};
 
-/// Shows how far an upload is.
+/// Shows the progress of an upload.
 fn progress(state: &mut AppState, upload: Option<(usize, usize)>) {
     let mut view = state.view.clone();
     view.upload = upload.map(|(sent, total)| UploadView { sent, total });
     update(state, Msg::View(view));
 }
 
-/// Presses the upload key; the plan that is uploaded.
+/// Presses the upload key and returns the ID of the uploaded plan.
 fn upload(state: &mut AppState) -> PlanId {
     let effects = keys(state, "U");
     let mut ids = effects.iter().filter_map(|effect| match effect {
@@ -41,7 +41,7 @@ fn the_plan_panel_shows_how_far_the_upload_is_until_the_craft_was_read_back() {
         assert!(screen(&state).contains("↑ uploading 3/12"), "{}", screen(&state));
         assert!(keys(&mut state, "U").is_empty(), "one after the other");
         assert!(screen(&state).contains("line 3 of 12: wait for its end"), "{}", screen(&state));
-        // Another plan is not being uploaded.
+        // The other plan is not being uploaded.
         keys(&mut state, "n i");
         assert!(!screen(&state).contains("uploading"), "{}", screen(&state));
         keys(&mut state, "(");
@@ -139,7 +139,7 @@ fn what_went_wrong_stays_while_keys_are_pressed_until_esc_or_its_time_is_over() 
     );
     update(&mut state, Msg::Files(FileReply::KeptAgain));
     assert!(!screen(&state).contains("edits not kept"), "{}", screen(&state));
-    // The others go with the next key.
+    // Other notices end with the next key.
     state.notify(Severity::Warn, "Only a word.");
     keys(&mut state, "j");
     assert!(!screen(&state).contains("Only a word."), "{}", screen(&state));

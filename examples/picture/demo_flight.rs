@@ -20,11 +20,11 @@ use betadeck::ui::{AppState, CliHelp, Effect, EnteredLines, Msg, OpenPlan, Theme
 use betadeck::vehicle::Vehicle;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
-/// Altitude to which the pilot climbs before it engages, m.
+/// The altitude to which the pilot climbs before the engagement, m.
 const TAKEOFF_M: f64 = 10.0;
-/// Ticks between two pictures that the track is made of.
+/// Ticks between two pictures of the track.
 const TICKS_A_VIEW: u32 = 50;
-/// When the craft on the ground has its fix, simulated s.
+/// The time at which the craft on the ground has its fix, simulated s.
 const READY_S: f64 = 12.0;
 
 /// A craft with the demo plan, and the user interface that shows it.
@@ -37,7 +37,7 @@ pub(crate) struct DemoFlight {
 }
 
 impl DemoFlight {
-    /// A craft that stands ready, its plan estimated.
+    /// Returns a craft that is ready on the ground, with its plan estimated.
     pub(crate) fn on_the_ground(size: (u16, u16)) -> Result<Self, Box<dyn Error>> {
         let file = BuiltinPlan::find(DEMO)
             .ok_or("no demo plan")?
@@ -68,7 +68,7 @@ impl DemoFlight {
         Ok(flight)
     }
 
-    /// The pilot takes off and engages; until this simulated time, s.
+    /// Takes off, engages the autopilot and flies until this simulated time, s.
     pub(crate) fn fly_to(&mut self, time_s: f64) -> Result<(), Box<dyn Error>> {
         self.vehicle.start_pilot(TAKEOFF_M).map_err(|mode| format!("no switch for {mode}"))?;
         self.advance_to(time_s)
@@ -101,7 +101,7 @@ impl DemoFlight {
         self.tell(Msg::View(SessionView { paused: true, timeline: Some(recording), ..view(shown) }))
     }
 
-    /// Types; a line end is the Enter key, and there is a backspace.
+    /// Types keys. A line end is the Enter key, and U+0008 is the backspace key.
     pub(crate) fn press(&mut self, keys: &str) -> Result<(), Box<dyn Error>> {
         for key in keys.chars() {
             let code = match key {
@@ -114,7 +114,7 @@ impl DemoFlight {
         Ok(())
     }
 
-    /// Passes a message on, and flies the estimates that are asked for.
+    /// Passes a message on, and flies the requested estimates.
     fn tell(&mut self, msg: Msg) -> Result<(), Box<dyn Error>> {
         for effect in update(&mut self.state, msg) {
             let Effect::Forecast(job) = effect else { continue };

@@ -17,16 +17,16 @@ use demo_flight::DemoFlight;
 mod demo_flight;
 mod svg;
 
-/// Size of the terminal.
+/// The size of the terminal.
 const SIZE: (u16, u16) = (120, 40);
-/// Simulated seconds after boot: on the ring around the third waypoint.
+/// The time of the picture `screen`, simulated seconds after boot: on the ring around the third waypoint.
 const MOMENT_S: f64 = 110.0;
-/// Where the rewound picture goes back to, simulated seconds: on the leg before.
+/// The time of the rewound picture, simulated seconds: on the leg before.
 const REWOUND_TO_S: f64 = 75.0;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut editing = DemoFlight::on_the_ground(SIZE)?;
-    // The altitudes of the second and the third waypoint, on the whole screen.
+    // Edits the altitudes of the second and the third waypoint, on the whole screen.
     editing.press("2zjlll\n\u{8}\u{8}65\nj\n\u{8}\u{8}40\n")?;
     write("plan", &editing.state)?;
 

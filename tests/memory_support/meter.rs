@@ -1,14 +1,14 @@
-//! An allocator that measures what a piece of work on this thread takes.
+//! An allocator that measures the memory that a piece of work takes on its thread.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
-/// Bytes that a piece of work took.
+/// The memory that a piece of work took, in bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Taken {
-    /// The most that it held at once, beyond what was held before.
+    /// The peak above the memory held at the start.
     pub(crate) peak: usize,
-    /// All that it asked for, given back or not; what grows counts again at every size.
+    /// The sum of all allocations, freed or not. A reallocation counts with its whole new size.
     pub(crate) total: usize,
 }
 
@@ -35,27 +35,27 @@ fn give_back(bytes: usize) {
 unsafe impl GlobalAlloc for Meter {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         take(layout.size());
-        // SAFETY: the caller's promises are passed on.
+        // SAFETY: the caller upholds the contract.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
         take(layout.size());
-        // SAFETY: the caller's promises are passed on.
+        // SAFETY: the caller upholds the contract.
         unsafe { System.alloc_zeroed(layout) }
     }
 
     unsafe fn realloc(&self, memory: *mut u8, layout: Layout, new_size: usize) -> *mut u8 {
-        // Both are held while the contents move.
+        // Both blocks are held while the contents move.
         take(new_size);
         give_back(layout.size());
-        // SAFETY: the caller's promises are passed on.
+        // SAFETY: the caller upholds the contract.
         unsafe { System.realloc(memory, layout, new_size) }
     }
 
     unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
         give_back(layout.size());
-        // SAFETY: the caller's promises are passed on.
+        // SAFETY: the caller upholds the contract.
         unsafe { System.dealloc(memory, layout) }
     }
 }
@@ -63,7 +63,7 @@ unsafe impl GlobalAlloc for Meter {
 #[global_allocator]
 static ALLOCATOR: Meter = Meter;
 
-/// Does a piece of work; its result and what it took.
+/// Runs `work` and returns its result and the memory that it took.
 pub(crate) fn measured<R>(work: impl FnOnce() -> R) -> (R, Taken) {
     let (held, total) = (HELD.get(), TOTAL.get());
     MOST_HELD.set(held);

@@ -1,6 +1,6 @@
-//! Random numbers with a seed, and flights on all cores.
+//! Random numbers from a seed, and flights on all cores.
 
-/// Numbers from a seed (SplitMix64).
+/// A random number generator with a seed (SplitMix64).
 pub(crate) struct Dice(pub(crate) u64);
 
 impl Dice {
@@ -29,7 +29,7 @@ impl Dice {
     }
 }
 
-/// What a function gives for each seed; every thread takes its share of them.
+/// Calls `of` for each seed and returns the results. One thread per core takes an equal share of the seeds.
 pub(crate) fn in_parallel<T: Send>(seeds: std::ops::Range<u64>, of: impl Fn(u64) -> T + Sync) -> Vec<T> {
     let threads = std::thread::available_parallelism().map_or(1, usize::from) as u64;
     let of = &of;

@@ -1,4 +1,4 @@
-//! Whole missions by the scripted pilot, judged by the truth.
+//! Whole missions flown by the scripted pilot and judged by the true path.
 
 #![allow(
     clippy::unwrap_used,

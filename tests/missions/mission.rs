@@ -1,4 +1,4 @@
-//! A mission: plan, craft, air, and how it ended.
+//! A mission (plan, craft, air) and its outcome.
 
 use betadeck::firmware::config::Configuration;
 use betadeck::flight::setup::BootLines;
@@ -11,7 +11,7 @@ use betadeck::sim::WorldConfig;
 use betadeck::telemetry::{DisarmReason, EventKind, FirmwareEvent, NavEvent, NavState};
 use nalgebra::Vector2;
 
-/// What is flown.
+/// A plan with the world, the settings and the takeoff to fly it with.
 #[derive(Debug, Clone)]
 pub(crate) struct Mission {
     pub(crate) world: WorldConfig,
@@ -22,31 +22,31 @@ pub(crate) struct Mission {
     pub(crate) timeout_s: f64,
 }
 
-/// What came of it.
+/// The result of a flown mission, with its true path.
 #[derive(Debug)]
 pub(crate) struct Outcome {
     pub(crate) end: FlightEnd,
-    /// Greatest true altitude before the engagement, m.
+    /// The greatest true altitude before the engagement, m.
     pub(crate) climbed_m: f64,
-    /// The thrust limited the lean.
+    /// `true` if the thrust limited the lean.
     pub(crate) limited: bool,
-    /// Reasons of the disarms, with the true altitude, m.
+    /// The reason of each disarm, with the true altitude, m.
     pub(crate) disarms: Vec<(DisarmReason, f64)>,
     pub(crate) is_finite: bool,
-    /// Where the craft truly was, every 20 ms from the engagement on.
+    /// The true positions of the craft, every 20 ms from the engagement on.
     pub(crate) path: Vec<Instant>,
-    /// The states that were entered, with the time since the engagement, s.
+    /// The states entered, each with the time since the engagement, s.
     pub(crate) states: Vec<(f64, NavState)>,
     /// The frame of the path.
     pub(crate) frame: LocalFrame,
 }
 
-/// A true place of the craft.
+/// A true position of the craft.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Instant {
-    /// North and east of the boot place, m.
+    /// North and east of the boot position, m.
     pub(crate) ne: Vector2<f64>,
-    /// Above the boot place, m.
+    /// The altitude above the boot position, m.
     pub(crate) alt_m: f64,
 }
 
@@ -59,7 +59,7 @@ impl Outcome {
     }
 }
 
-/// A plan of CLI lines.
+/// Parses a plan of CLI lines.
 pub(crate) fn plan(lines: &str) -> FlightPlan {
     parse("test", lines, Format::CliText).unwrap().plan
 }
@@ -131,7 +131,7 @@ impl Mission {
     }
 }
 
-/// Fails with all complaints.
+/// Panics with all complaints if there are any.
 #[track_caller]
 pub(crate) fn assert_none(complaints: impl IntoIterator<Item = Option<String>>) {
     let complaints: Vec<String> = complaints.into_iter().flatten().collect();

@@ -1,4 +1,4 @@
-//! Whether the true path of a craft was a flight of its plan, found without the judge of the program.
+//! An independent check of a craft's true path against its plan, without the program's own judge.
 
 use betadeck::geo::LatLon;
 use betadeck::plan::estimate::Assumptions;
@@ -7,14 +7,14 @@ use nalgebra::Vector2;
 
 use crate::mission::{Instant, Outcome};
 
-/// What is allowed beyond a waypoint's own radius, m.
+/// The tolerance beyond a waypoint's own radius, m.
 const TOLERANCE_M: f64 = 10.0;
-/// What the two ways of measuring may differ by, m.
+/// The allowed difference between the two ways of measuring, m.
 const MEASURE_M: f64 = 0.5;
-/// Instants of the path in a second.
+/// Instants of the path per second.
 const INSTANTS_PER_S: f64 = 50.0;
 
-/// Why the path of a flight that is called complete is no flight of the plan.
+/// Returns the reason why the true path is not a flight of the plan, or `None` if it is. Used for `complete` flights.
 pub(crate) fn denies(plan: &FlightPlan, settings: &[String], outcome: &Outcome) -> Option<String> {
     let assumptions = Assumptions::from_settings(settings);
     let last = outcome.path.last()?;
@@ -58,17 +58,17 @@ pub(crate) fn denies(plan: &FlightPlan, settings: &[String], outcome: &Outcome) 
     None
 }
 
-/// How far a pattern leads from its waypoint, m.
+/// Returns the greatest distance of a hold pattern from its waypoint, m.
 fn pattern_m(waypoint: &Waypoint, assumptions: &Assumptions) -> f64 {
     match waypoint.pattern {
         HoldPattern::None => 0.0,
         HoldPattern::Orbit => assumptions.orbit_radius_m,
-        // Its width is left at the default: 20 m to either side.
+        // The missions keep the default width: 20 m to either side.
         HoldPattern::Figure8 => 20.0,
     }
 }
 
-/// The longest time without interruption in which a condition holds, s.
+/// Returns the longest uninterrupted time for which a condition holds, s.
 fn longest(path: &[Instant], holds: impl Fn(&Instant) -> bool) -> f64 {
     let runs = path.split(|instant| !holds(instant)).map(<[Instant]>::len);
     runs.max().unwrap_or(0) as f64 / INSTANTS_PER_S

@@ -1,4 +1,4 @@
-//! Outages of the fix in each phase of a mission: never `complete` where the true path denies it.
+//! Loss of the fix in each phase of a mission: a flight is never `complete` if its true path contradicts it.
 //!
 //! `cargo test --release --test missions -- --ignored --nocapture outages` flies all of them.
 
@@ -19,13 +19,13 @@ const ALL_PHASES: &str = "waypoint insert 0 40.4637702 -79.5182000 2000 600 FLYO
                           waypoint insert 3 40.4636500 -79.5176000 1800 600 FLYBY 0 NONE\n\
                           waypoint insert 4 40.4634500 -79.5178000 2200 600 HOLD 150 FIGURE8\n\
                           waypoint insert 5 40.4637702 -79.5182000 2000 600 LAND 50 NONE";
-/// A landing far from home, which an outage leaves to the wind.
+/// A landing far from home, during which the craft drifts with the wind in an outage.
 const LAND: &str = "waypoint insert 0 40.4637702 -79.5182000 2000 0 LAND 0 NONE";
 /// A mission that ends parked in the air.
 const PARK: &str = "waypoint insert 0 40.4637702 -79.5182000 2000 600 FLYOVER 0 NONE\n\
                     waypoint insert 1 40.4639500 -79.5179000 2500 600 HOLD 60 NONE";
 
-/// The state in which the fix is lost; the first APPROACHING begins with a climb on the spot.
+/// The plans, each with the state in which the fix is lost. The first APPROACHING begins with a climb on the spot.
 const PHASES: [(&str, NavState); 10] = [
     (ALL_PHASES, NavState::Approaching),
     (ALL_PHASES, NavState::Holding),
@@ -39,12 +39,12 @@ const PHASES: [(&str, NavState); 10] = [
     (PARK, NavState::Complete),
 ];
 
-/// What came of a flight.
+/// The result of a flight with an outage.
 #[derive(Debug, Clone, PartialEq)]
 struct Flown {
     phase: NavState,
     result: FlightResult,
-    /// What is wrong with the result.
+    /// The problem with the result, if there is one.
     problem: Option<String>,
 }
 
@@ -60,7 +60,7 @@ fn mission(lines: &str, dice: &mut Dice, seed: u64) -> (Mission, FlightPlan) {
     (mission, plan)
 }
 
-/// Flies the mission of a seed without an outage to see when the phase is on, then with one in it.
+/// Flies the mission of a seed twice: without an outage to find the time of the phase, then with an outage in it.
 fn fly(seed: u64) -> Flown {
     let (lines, phase) = PHASES[(seed % PHASES.len() as u64) as usize];
     let (calm, _) = mission(lines, &mut Dice(seed), seed);
@@ -89,7 +89,7 @@ fn fly(seed: u64) -> Flown {
     let problem = match result {
         FlightResult::Complete => oracle::denies(&plan, &settings, &outcome),
         FlightResult::Diverged | FlightResult::Timeout => Some(outcome.end.verdict.reason.clone()),
-        // Without a fix the craft comes down as fast over ground as the wind.
+        // Without a fix the craft comes down with the wind's speed over ground.
         FlightResult::Crashed if wind.speed_mps < 3.0 => Some(outcome.end.verdict.reason.clone()),
         _ => None,
     };
@@ -130,7 +130,7 @@ fn two_hundred_outages_in_every_phase_are_complete_only_where_the_truth_agrees()
     check(in_parallel(0..400, fly));
 }
 
-/// The landing of the plan above, its fix lost at this time for 12 s in a wind of 7 m/s.
+/// Returns the plan and the mission of [`LAND`], with the fix lost at `at_s` for 12 s in a wind of 7 m/s.
 fn blown_landing(at_s: f64) -> (FlightPlan, Mission) {
     let plan = plan(LAND);
     let mut mission = Mission { takeoff_m: 20.0, ..Mission::new(plan.clone()) };

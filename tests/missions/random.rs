@@ -12,18 +12,18 @@ use betadeck::sim::{Airframe, ScheduledFault, Turbulence, Wind};
 use betadeck::telemetry::DisarmReason;
 use nalgebra::Vector2;
 
-/// Missions of the quick search.
+/// The number of missions of the quick search.
 const QUICK: u64 = 60;
-/// A craft this high has not landed, m.
+/// The altitude above which a craft has not landed, m.
 const AIRBORNE_M: f64 = 0.3;
-/// Drift at which a touchdown may turn the craft over, m/s.
+/// The ground speed above which a touchdown may turn the craft over, m/s.
 const DRIFT_MPS: f64 = 3.0;
 const HOME: LatLon = LatLon::new(404_635_000, -795_182_000);
 
 fn random_plan(dice: &mut Dice) -> FlightPlan {
     let count = 1 + dice.below(5);
     let ends_in_land = !dice.one_in(3);
-    // Short legs between great heights are steep.
+    // Short legs between very different altitudes are steep.
     let (reach_m, top_m) = if dice.one_in(4) { (30.0, 12_000.0) } else { (120.0, 5000.0) };
     let waypoints = (0..count).map(|index| {
         let kinds = [WaypointType::Flyover, WaypointType::Flyby, WaypointType::Hold, WaypointType::Flyover];
@@ -43,7 +43,7 @@ fn random_plan(dice: &mut Dice) -> FlightPlan {
     FlightPlan { waypoints: waypoints.collect() }
 }
 
-/// Settings within their ranges, each as a pilot might choose it.
+/// Returns random settings, each within a range that a pilot might choose.
 fn random_settings(dice: &mut Dice) -> Vec<String> {
     let ranges = [
         ("ap_max_angle", 15.0, 55.0),
@@ -81,7 +81,7 @@ fn random_settings(dice: &mut Dice) -> Vec<String> {
         .collect()
 }
 
-/// A fault, and whether it may bring the craft down.
+/// Returns a random fault, and `true` if it may bring the craft down.
 fn random_fault(dice: &mut Dice) -> (String, bool) {
     let at = dice.between(0.0, 60.0).round();
     let for_s = dice.between(1.0, 20.0).round();
@@ -101,7 +101,7 @@ fn random_fault(dice: &mut Dice) -> (String, bool) {
     dice.pick(&faults)
 }
 
-/// An outage or a jump of the GPS, and whether it may bring the craft down.
+/// Returns an outage or a jump of the GPS, and `false`: neither may bring the craft down by itself.
 fn random_gps_fault(dice: &mut Dice) -> (String, bool) {
     let at = dice.between(0.0, 90.0).round();
     let for_s = dice.between(1.0, 25.0).round();
@@ -113,7 +113,7 @@ fn random_gps_fault(dice: &mut Dice) -> (String, bool) {
     }
 }
 
-/// Flies the mission of a seed; what is wrong with it, if anything is.
+/// Flies the mission of a seed and returns its problem, if there is one.
 fn complaint(seed: u64) -> Option<String> {
     let dice = &mut Dice(seed);
     let mut mission =
@@ -135,7 +135,7 @@ fn complaint(seed: u64) -> Option<String> {
     }
     let parsed = faults.iter().map(|(text, _)| text.parse::<ScheduledFault>().unwrap());
     mission.world.faults.extend(parsed);
-    // With the failsafe's default procedure a lost link stops the motors in the air.
+    // With the default failsafe procedure a lost link stops the motors in the air.
     mission.settings.push("failsafe_procedure = AUTO-LAND".to_owned());
     let lines: Vec<String> = plan_lines(&mission.plan).collect();
     let Mission { takeoff_m, settings, world, .. } = &mission;
@@ -148,9 +148,9 @@ fn complaint(seed: u64) -> Option<String> {
     );
     let (plan, settings) = (mission.plan.clone(), mission.settings.clone());
     let outcome = mission.fly();
-    // Without a fix the craft comes down as fast over ground as the wind.
+    // Without a fix the craft comes down with the wind's speed over ground.
     let drifts = |fault: &str| fault.starts_with("gps-loss") && wind_mps > DRIFT_MPS;
-    // A jump of the position or of the wind in the last metre moves it over the ground while it touches down.
+    // A jump of the position or of the wind in the last metre moves the craft over the ground during the touchdown.
     let jumps = |fault: &str| fault.starts_with("gps-glitch") || fault.starts_with("gust");
     let is_fatal = faults.iter().any(|(_, fatal)| *fatal) || wind_mps > 10.0;
     let may_crash = is_fatal || faults.iter().any(|(text, _)| drifts(text) || jumps(text));
@@ -173,7 +173,7 @@ fn complaint(seed: u64) -> Option<String> {
     problem.map(|problem| format!("{told}: {problem}"))
 }
 
-/// What is wrong with the missions of these seeds.
+/// Flies the missions of these seeds and returns their problems.
 fn complaints(seeds: std::ops::Range<u64>) -> Vec<Option<String>> {
     in_parallel(seeds, complaint)
 }

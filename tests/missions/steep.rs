@@ -1,4 +1,4 @@
-//! Steep legs: the review says before the flight which heights will be missed, and a HOLD waits for its altitude.
+//! Steep legs: the review reports before the flight which altitudes will be missed, and a HOLD waits for its altitude.
 //!
 //! `cargo test --release --test missions -- --ignored --nocapture heights` flies the whole search.
 
@@ -20,11 +20,11 @@ use crate::dice::{Dice, in_parallel};
 use crate::mission::{Mission, plan};
 
 const HOME: LatLon = LatLon::new(404_635_000, -795_182_000);
-/// An error of the height that makes a flight `missed`, m.
+/// The altitude error above which a flight is `missed`, m.
 const TOLERANCE_M: f64 = 10.0;
-/// A leg that is passed so near to its height is warned of in vain, m.
+/// The altitude error below which a warning about a leg is in vain, m.
 const LEVEL_M: f64 = 4.0;
-/// The plan of which 58 m were missed and nothing was said.
+/// A plan that once missed an altitude by 58 m without a warning from the review.
 const STEEP: &str = "waypoint insert 0 40.4640000 -79.5182000 1500 1000 FLYOVER 0 NONE\n\
                      waypoint insert 1 40.4642700 -79.5182000 8000 1000 FLYOVER 0 NONE\n\
                      waypoint insert 2 40.4635000 -79.5182000 1500 0 LAND 0 NONE";
@@ -40,7 +40,7 @@ fn steep_legs(plan: &FlightPlan, settings: &[String], takeoff_m: f64) -> Vec<Ste
         .collect()
 }
 
-/// Legs of all lengths and slopes.
+/// Returns a mission with legs of all lengths and slopes.
 fn random_mission(seed: u64) -> Mission {
     let dice = &mut Dice(seed ^ 0x57EE);
     let mut place = Vector2::zeros();
@@ -82,19 +82,19 @@ fn random_mission(seed: u64) -> Mission {
     mission
 }
 
-/// What the review said of the legs of a flight, and what became of them.
+/// The review's findings about the legs of a flight, compared with the flight.
 #[derive(Debug, Default)]
 struct Heights {
     legs: usize,
-    /// Missed, and found before the flight.
+    /// Legs that missed their altitude and that the review had found.
     found: usize,
-    /// Missed, and not found.
+    /// Legs that missed their altitude and that the review had not found.
     overlooked: Vec<String>,
-    /// Found, and passed within the tolerance.
+    /// Legs that the review had found and that passed between [`LEVEL_M`] and [`TOLERANCE_M`] off.
     within_tolerance: usize,
-    /// Found, and passed level.
+    /// Legs that the review had found and that passed less than [`LEVEL_M`] off.
     in_vain: Vec<String>,
-    /// Found and missed: how far the error said before is from that flown, m.
+    /// The greatest difference between the predicted and the flown error of a found leg, m.
     worst_m: f64,
     crashes: Vec<String>,
 }
@@ -231,7 +231,7 @@ fn a_craft_that_cannot_climb_to_a_hold_does_not_hang_there() {
          waypoint insert 1 40.4636500 -79.5182000 2000 0 LAND 0 NONE",
         ))
     }
-    // The autopilot may use little more than what holds it in the air.
+    // The autopilot may use little more than the hover throttle.
     .set("ap_throttle_max", 1510);
     mission.world.airframe = Airframe::iris();
     let outcome = mission.fly();

@@ -1,4 +1,4 @@
-//! Any plan on any airframe takes off, from any hover throttle, to any height.
+//! Every plan takes off on every airframe, with any hover throttle and to any height.
 
 use crate::mission::{Mission, assert_none};
 use betadeck::flight::FlightResult;
@@ -8,7 +8,7 @@ use betadeck::sim::Airframe;
 
 const HEIGHTS_M: [f64; 6] = [0.5, 1.0, 2.0, 4.0, 10.0, 30.0];
 
-/// What is wrong with a flight of a built-in plan from a climb to `takeoff_m`, if anything is.
+/// Flies a built-in plan after a climb to `takeoff_m` and returns its problem, if there is one.
 fn complaint(name: &str, airframe: Airframe, takeoff_m: f64, seed: u64) -> Option<String> {
     let builtin = PLANS.iter().find(|plan| plan.name == name).unwrap();
     let file = parse(name, builtin.text, Format::Toml).unwrap();

@@ -1,4 +1,4 @@
-//! Craft with little thrust: weak motors, thin air, payload, great leans.
+//! Craft with little thrust: weak motors, thin air, payload, large lean angles.
 
 use crate::mission::{Mission, Outcome, assert_none, plan};
 use betadeck::flight::FlightResult;
@@ -9,7 +9,7 @@ const FAR: &str = "waypoint insert 0 40.4905000 -79.5182000 3000 0 FLYOVER 0 NON
                    waypoint insert 1 40.4635000 -79.5182000 3000 0 FLYOVER 0 NONE";
 const HOLD: &str = "waypoint insert 0 40.4635000 -79.5182000 2000 0 HOLD 300 NONE";
 
-/// The first minutes of a long leg.
+/// Flies the first minutes of a long leg.
 fn far(amsl_m: f64, speed_mps: f64, lean_deg: u8, payload_kg: f64, airframe: Airframe) -> Outcome {
     let mut mission = Mission { takeoff_m: 30.0, timeout_s: 130.0, ..Mission::new(plan(FAR)) }
         .set("ap_max_velocity", (100.0 * speed_mps).round())
@@ -74,7 +74,7 @@ fn altitude_comes_before_lean_in_the_whole_grid() {
     assert_none(grid(|_| true));
 }
 
-/// An `iris` with this thrust-to-weight ratio.
+/// Returns an `iris` with this thrust-to-weight ratio.
 fn iris_with(thrust_to_weight: f64) -> Airframe {
     let iris = Airframe::iris();
     let share = (thrust_to_weight / iris.thrust_to_weight()).sqrt();

@@ -1,4 +1,4 @@
-//! Replies byte for byte as the real executable gives them.
+//! Replies that equal those of the real executable byte for byte.
 
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::msp::{HomeReading, MspFacts, handle};
@@ -7,7 +7,7 @@ use betadeck::telemetry::Mode;
 
 use super::{ask, craft, facts, hex, unhex};
 
-/// Bytes in, bytes out, as a link does it.
+/// Decodes request bytes and returns the reply bytes, as a link does.
 fn exchange(request: &[u8], configuration: &mut Configuration, facts: &MspFacts) -> Vec<u8> {
     let mut decoder = Decoder::server();
     let mut answer = Vec::new();
@@ -49,7 +49,7 @@ fn every_captured_exchange_gets_the_same_bytes() {
     assert_eq!(checked, 43);
 }
 
-/// The replies of the executable with that craft, by code.
+/// The executable's replies for the craft of [`craft`], by message code.
 const DEFAULTS: &[(u16, &str)] = &[
     (36, "82004010"),
     (32, "212b23000000024a01ae015e01"),

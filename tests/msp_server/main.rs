@@ -1,4 +1,4 @@
-//! The MSP server against exchanges captured from the real executable, and what the messages do.
+//! The MSP server against exchanges captured from the real executable, and the effects of its messages.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -21,7 +21,7 @@ fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// The craft of the captured exchanges.
+/// Returns the configuration of the craft in the captured exchanges.
 fn craft() -> Configuration {
     let mut configuration = Configuration::default();
     configuration.settings.set_text("craft_name", "SITLQUAD").unwrap();
@@ -38,7 +38,7 @@ fn craft() -> Configuration {
     configuration
 }
 
-/// What that craft sensed.
+/// Returns the state of the craft in the captured exchanges.
 fn facts() -> MspFacts {
     let mut channels = [1500; 16];
     channels[3..10].fill(1000);

@@ -18,7 +18,7 @@ fn the_table_is_sorted_and_every_reading_message_answers() {
     }
 }
 
-/// The rows of the manual's table of messages.
+/// Returns the rows of the manual's table of messages.
 fn manual_rows() -> String {
     use std::fmt::Write;
     let mut rows = "| code | message | |\n| --- | --- | --- |\n".to_owned();
@@ -52,7 +52,7 @@ proptest! {
             let frame = Frame::request(betadeck::link::proto::msp::Form::V2, message.code, &[]).answer(Some(reply));
             prop_assert!(frame.payload.len() <= 4096);
         }
-        // Whatever came, the craft can still be described.
+        // After any message, the craft still answers every reading message.
         for message in MESSAGES.iter().filter(|message| message.access == Access::Read) {
             prop_assert!(handle(message.code, &[], &mut configuration, &facts()).reply.is_some());
         }

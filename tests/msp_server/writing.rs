@@ -1,10 +1,10 @@
-//! Messages that change the configuration, and what they refuse.
+//! Messages that change the configuration, and the values that they refuse.
 
 use betadeck::firmware::config::{Feature, RxFailMode};
 
 use super::{ask, craft, hex};
 
-/// Messages whose setter has the layout of the getter.
+/// Pairs of a getter and a setter with the same layout.
 const PAIRS: &[(u16, u16)] = &[
     (32, 33),
     (36, 37),
@@ -44,7 +44,7 @@ fn writing_back_what_was_read_changes_nothing() {
 
 #[test]
 fn what_is_written_is_read_back() {
-    // Every byte that belongs to a setting of the default craft moves by one where its range allows.
+    // Flips the lowest bit of every byte. A setter may refuse the result.
     for (read, write) in PAIRS.iter().filter(|(read, _)| ![32, 36, 42, 64, 140, 0x300e].contains(read)) {
         let mut configuration = craft();
         let before = ask(&mut configuration, *read, &[]).unwrap();

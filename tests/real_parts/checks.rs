@@ -1,4 +1,4 @@
-//! The page on tests names tests that there are.
+//! The page on tests names only tests that exist.
 
 use std::fs;
 use std::path::Path;
@@ -28,7 +28,7 @@ fn every_test_that_the_page_names_for_a_link_check_is_there() {
     assert!(named > 20, "{named}");
 }
 
-/// All source of a test target.
+/// Returns the whole source of a test target.
 fn text_of(tests: &Path, target: &str) -> String {
     let file = tests.join(format!("{target}.rs"));
     if file.is_file() {

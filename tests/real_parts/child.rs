@@ -1,4 +1,4 @@
-//! The stand-in as a child process: kept by this program as the public executable is.
+//! The stand-in as a child process, which the program starts and ends like the public executable.
 
 use std::time::Duration;
 
@@ -9,7 +9,7 @@ use super::stand_in::free_ports;
 use super::stand_in::process::{self, Trouble, VARIABLE};
 use super::stand_in::program::Ports;
 
-/// Starts it by way of `env`, as the executable's own environment is not this test's to change.
+/// Starts the stand-in through `env`, because this test cannot set the environment of the child itself.
 fn start(ports: Ports, trouble: Trouble) -> (SitlChild, TempDir) {
     let directory = tempfile::tempdir().unwrap();
     let (program, arguments) = process::command();
@@ -25,7 +25,7 @@ fn start(ports: Ports, trouble: Trouble) -> (SitlChild, TempDir) {
     (SitlChild::start(config).unwrap(), directory)
 }
 
-/// How it ended first; lines on the way are not looked at.
+/// Waits until the child ends and returns the first end. Output lines are ignored.
 fn end(child: &mut SitlChild) -> ChildEnd {
     loop {
         match child.take_event() {

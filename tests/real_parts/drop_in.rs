@@ -1,4 +1,4 @@
-//! The drop-in as a process, asked as the public executable was when it was measured (L-4, L-5, L-7).
+//! The drop-in as a process, under the same measurements as the public executable (L-4, L-5, L-7).
 
 use std::io::ErrorKind;
 use std::net::{TcpStream, UdpSocket};
@@ -27,7 +27,7 @@ impl Link {
         Self { motors, raw, sitl, steps: 0 }
     }
 
-    /// The worked packet of a craft at rest, a millisecond after the one before.
+    /// Returns the reference packet of a craft at rest, stamped a millisecond after the one before.
     fn state(&mut self) -> Vec<u8> {
         self.steps += 1;
         let mut bytes = wire::bytes("W1", "sitl_gz");
@@ -46,17 +46,17 @@ impl Link {
         assert_eq!(self.motors.recv(&mut [0; 100]).expect("motors"), 16);
     }
 
-    /// How many packets of pulses have come.
+    /// Takes the pulse packets that have arrived and returns their number.
     fn pulses(&self) -> usize {
         std::iter::from_fn(|| self.raw.recv(&mut [0; 100]).ok()).count()
     }
 
-    /// Whether a motor packet comes before `end`.
+    /// Returns `true` if a motor packet arrives before `end`.
     fn motors_until(&self, end: Instant) -> bool {
         let left = end.saturating_duration_since(Instant::now()).max(Duration::from_millis(1));
         self.motors.set_read_timeout(Some(left)).unwrap();
         let came = match self.motors.recv(&mut [0; 100]) {
-            // When this test itself was held up, it may be one that was sent later.
+            // If this test itself was held up, the packet may have been sent after `end`.
             Ok(_) => Instant::now() < end,
             Err(error) => {
                 assert!(matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut), "{error}");
@@ -67,7 +67,7 @@ impl Link {
         came
     }
 
-    /// Reads all that has come, and gets into step.
+    /// Reads all packets that have arrived, and gets into step with the drop-in.
     fn settle(&mut self) {
         self.motors.set_nonblocking(true).unwrap();
         for _ in 0..50 {
@@ -79,7 +79,7 @@ impl Link {
         self.motors.set_nonblocking(false).unwrap();
     }
 
-    /// What its own attitude is: roll and pitch, a tenth of a degree, and heading, degrees.
+    /// Returns the drop-in's own attitude: roll and pitch in tenths of a degree, heading in degrees.
     fn attitude(&self) -> [i16; 3] {
         let mut client = TcpStream::connect(self.sitl.tcp).unwrap();
         client.set_read_timeout(Some(PATIENCE)).unwrap();
@@ -116,7 +116,7 @@ fn the_first_state_after_a_pause_is_not_looked_at() {
     }
     link.motors.send_to(&rolled, link.sitl.fdm).unwrap();
     assert_eq!(link.attitude(), level);
-    // The same once more is looked at.
+    // A second packet with the same attitude is used.
     rolled[..8].copy_from_slice(&(f64::from(link.steps) * 1e-3 + 1e-3).to_le_bytes());
     link.motors.send_to(&rolled, link.sitl.fdm).unwrap();
     let end = Instant::now() + PATIENCE;

@@ -1,4 +1,4 @@
-//! The feed of an executable, in simulated wall time, against the rules of the public one (L-9).
+//! The feed of an executable, in simulated wall time, against the rules of the public executable (L-9).
 
 use betadeck::geo::LatLon;
 use betadeck::link::proto::fdm::pressure_pa;
@@ -14,11 +14,11 @@ const MS: u64 = 1000;
 const SECOND: u64 = 1000 * MS;
 const HOME: (f64, f64, f64) = (40.4635, -79.5182, 300.0);
 
-/// A small generator, so that every run is held up alike.
+/// A small random number generator, so that every run has the same delays.
 struct Delays(u64);
 
 impl Delays {
-    /// How late the sender wakes, µs: mostly a little, now and then much.
+    /// Returns the delay of the sender's next wake-up, µs: usually short, sometimes long.
     fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         let number = self.0 >> 33;
@@ -35,7 +35,7 @@ fn feed(stamps: Stamps) -> SitlFeed {
     })
 }
 
-/// What the sensors of a craft measure that drifts north at 1 m/s from the beginning.
+/// Returns the sensor frame of a craft that drifts north at 1 m/s from the beginning.
 fn drifting(now_us: u64) -> SensorFrame {
     let north_deg = now_us as f64 * 1e-6 / 111_000.0;
     let gps = GpsSample {
@@ -53,7 +53,8 @@ fn drifting(now_us: u64) -> SensorFrame {
     }
 }
 
-/// Feeds the stand-in from its boot packet on for `seconds` by a sender that wakes late, and tells the end of it.
+/// Feeds the stand-in for `seconds` after its boot packet, with a sender that wakes late. Returns the stand-in and the
+/// end time, µs.
 fn feed_for(seconds: u64, stamps: Stamps) -> (Receiver, u64) {
     let (mut feed, mut receiver, mut delays) = (feed(stamps), Receiver::new(), Delays(7));
     let answer = servo::encode([1000.0; 4]);
@@ -66,7 +67,7 @@ fn feed_for(seconds: u64, stamps: Stamps) -> (Receiver, u64) {
             if receiver.receive(&feed.packet(wall).to_bytes(), wall) == Taken::Resync {
                 assert!(feed.answered(&answer, wall).is_some());
             }
-            // The next step of the grid that is not over yet, and late for it.
+            // The next step of the grid, and the delay of the wake-up for it.
             wakes = wall / MS * MS + MS + delays.next();
         } else {
             if receiver.mixer_sends() {
@@ -100,7 +101,8 @@ fn a_minute_of_packets_keeps_the_executables_clock_and_nearly_all_are_answered()
 
 #[test]
 fn stamps_of_simulated_time_are_no_clock_for_it() {
-    // What the constant stamp is for: the same feed with advancing ones leaves the executable's clock seconds off.
+    // The reason for the constant stamp: the same feed with advancing stamps puts the executable's clock off by
+    // seconds.
     let (mut receiver, end) = feed_for(60, Stamps::Sim);
     assert!(receiver.seen.other_stamps > 50_000);
     assert!((receiver.clock_us(end) - end as f64).abs() > SECOND as f64);

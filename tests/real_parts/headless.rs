@@ -1,4 +1,4 @@
-//! `check`, `fly` and `compare` with a firmware outside: the drop-in as the child, in real time.
+//! `check`, `fly` and `compare` with a remote firmware: the drop-in as the child, in real time.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use super::stand_in::free_ports;
 use super::stand_in::process::{self, Trouble, VARIABLE};
 use super::stand_in::program::Ports;
 
-/// Flies a little way north and lands there, low and near, for time is real.
+/// A plan that flies a short way north and lands there. It is low and near because the flight runs in real time.
 const PLAN: &str = "\
 name = \"hop\"
 settings = [\"ap_hover_throttle = 1500\", \"ap_max_angle = 25\"]
@@ -24,7 +24,7 @@ lon_deg = -79.5182
 alt_m = 4
 ";
 
-/// A craft that stands, so that all expectations are met that can be judged.
+/// A scenario with a craft that stays on the ground, so that every expectation that can be judged is met.
 const STANDING: &str = "\
 format = 1
 ends = \"4 s after boot\"
@@ -40,7 +40,7 @@ never = \"throttle > 1200 us\"
 from = \"boot\"
 ";
 
-/// A run with the drop-in as the firmware.
+/// Starts a run with the drop-in as the firmware.
 fn start(command: &[&str]) -> Program {
     let [udp, tcp] = port_options(free_ports());
     let mut arguments = command.to_vec();
@@ -51,13 +51,13 @@ fn start(command: &[&str]) -> Program {
     Program::start(&arguments)
 }
 
-/// The options that name a firmware's ports.
+/// Returns the options that name a firmware's ports.
 fn port_options(ports: Ports) -> [String; 2] {
     let Ports { raw, motors, fdm, rc, tcp } = ports;
     [format!("--udp-ports={raw},{motors},{fdm},{rc}"), format!("--tcp-port={tcp}")]
 }
 
-/// A run with the stand-in as the firmware, which uses other ports than `named` if they differ.
+/// Starts a run with the stand-in as the firmware. The run uses the ports `named`, the stand-in uses `ports`.
 fn start_stand_in(command: &[&str], ports: Ports, named: Ports, trouble: Trouble) -> Program {
     let [udp, tcp] = port_options(named);
     let (program, arguments) = process::command();
@@ -71,13 +71,13 @@ fn start_stand_in(command: &[&str], ports: Ports, named: Ports, trouble: Trouble
     Program::start(&all)
 }
 
-/// The exit code and everything said.
+/// Waits for the end and returns the exit code and the whole output.
 fn end_said(mut program: Program) -> (i32, String) {
     let code = program.end();
     (code, program.seen().join("\n"))
 }
 
-/// The exit code and the last line of JSON.
+/// Waits for the end and returns the exit code and the last line of JSON.
 fn end(mut program: Program) -> (i32, Value) {
     let code = program.end();
     let lines = program.seen();
@@ -215,7 +215,7 @@ fn a_firmware_at_another_tcp_port_is_told_with_the_option() {
     assert!(said.contains(&sentence) && said.contains("--tcp-port"), "{said}");
 }
 
-/// A stand-in that somebody else has started and nobody starts again.
+/// A stand-in that the program has not started and cannot start again.
 struct Started(std::process::Child);
 
 impl Drop for Started {
@@ -292,7 +292,7 @@ fn a_case_whose_settings_were_refused_says_so() {
 #[test]
 fn a_check_tells_a_crash_with_its_signal() {
     let directory = tempfile::tempdir().unwrap();
-    // Its crash comes some seconds after the restart by which it is set.
+    // The stand-in crashes some seconds after the restart that applies its settings.
     let longer = STANDING.replace("4 s after boot", "20 s after boot");
     let scenario = write(directory.path(), "standing.toml", &longer);
     let ports = free_ports();

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU16, AtomicU64, Ordering};
 use std::time::Duration;
 
-/// Carries states to the executable and motors back, until dropped.
+/// Carries states to the executable and motors back, until it is dropped.
 pub(crate) struct LossyLink {
     fdm: u16,
     motors: u16,
@@ -20,7 +20,7 @@ struct State {
 }
 
 impl LossyLink {
-    /// Motors go on to this port.
+    /// Opens a link that forwards motors to this port.
     pub(crate) fn new(to: u16) -> Self {
         let socket = || {
             let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
@@ -38,22 +38,22 @@ impl LossyLink {
         link
     }
 
-    /// States go on to this port.
+    /// Forwards states to this port from now on.
     pub(crate) fn leads_to(&self, fdm: u16) {
         self.state.to.store(fdm, Ordering::Relaxed);
     }
 
-    /// The port of states at this end.
+    /// Returns the port to which the program sends states.
     pub(crate) fn fdm_port(&self) -> u16 {
         self.fdm
     }
 
-    /// The port of motors at the executable's end.
+    /// Returns the port to which the executable sends motors.
     pub(crate) fn motors_port(&self) -> u16 {
         self.motors
     }
 
-    /// How many packets were lost.
+    /// Returns the number of lost packets.
     pub(crate) fn lost(&self) -> u64 {
         self.state.lost.load(Ordering::Relaxed)
     }
@@ -73,7 +73,7 @@ fn carry(socket: &UdpSocket, state: &State, seed: u64, to: impl Fn(&State) -> u1
         if (number >> 33).is_multiple_of(10) {
             state.lost.fetch_add(1, Ordering::Relaxed);
         } else {
-            // Nobody may be there.
+            // The receiver may not be running.
             drop(socket.send_to(&buffer[..size], SocketAddr::from(([127, 0, 0, 1], to(state)))));
         }
     }

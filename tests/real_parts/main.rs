@@ -1,5 +1,5 @@
-//! A real firmware in place of the embedded one: its link judged by a stand-in that keeps the rules which were measured on
-//! the public executable, and by that executable itself when `BETADECK_TEST_SITL` names one.
+//! A real firmware in place of the embedded one. A stand-in that follows the rules measured on the public executable
+//! judges its link, and so does that executable itself if `BETADECK_TEST_SITL` names it.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 #![allow(

@@ -1,5 +1,5 @@
-//! The public executable itself, when `BETADECK_TEST_SITL` names it (L-9, L-11). It has fixed ports, so that nothing else
-//! may use them, and it needs a machine that keeps up with real time.
+//! The public executable itself, if `BETADECK_TEST_SITL` names it (L-9, L-11). Its ports are fixed, so nothing else may
+//! use them, and the machine must keep up with real time.
 
 use std::io::{Read as _, Write as _};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpStream, UdpSocket};
@@ -17,11 +17,11 @@ use tempfile::TempDir;
 use super::program::PATIENCE;
 use super::{msp, wire};
 
-/// Names the executable.
+/// The variable that names the executable.
 const VARIABLE: &str = "BETADECK_TEST_SITL";
 const FDM: u16 = 9003;
 const STEP: Duration = Duration::from_millis(1);
-/// How it is set: ARM on AUX1, and ANGLE, ALTHOLD and POS HOLD on AUX3; the virtual compass is to be believed.
+/// The configuration of the executable: ARM on AUX1; ANGLE, ALTHOLD and POS HOLD on AUX3; a trusted virtual compass.
 const LINES: [&str; 7] = [
     "aux 0 0 0 1700 2100 0 0",
     "aux 1 1 2 1700 2100 0 0",
@@ -65,7 +65,7 @@ impl Executable {
         executable
     }
 
-    /// Waits for its first motor packet, and connects.
+    /// Waits for the first motor packet, and connects.
     fn boot(&mut self) {
         let end = Instant::now() + PATIENCE;
         while self.peer.take_motors(Instant::now()).is_none() {
@@ -83,10 +83,10 @@ impl Executable {
         self.peer.came_up();
     }
 
-    /// It is about to end: waits for the next boot.
+    /// Waits for the end of the executable and for its next boot.
     fn boot_again(&mut self) {
         let tcp = self.tcp.as_mut().unwrap();
-        // Until the link is closed.
+        // Reads until the link is closed.
         drop(tcp.read_to_end(&mut Vec::new()));
         self.peer.went_down();
         self.boot();
@@ -96,7 +96,7 @@ impl Executable {
         msp::ask(self.tcp.as_mut().unwrap(), code, payload).unwrap_or_else(|| panic!("{code} is refused"))
     }
 
-    /// One command line in the framing of the App.
+    /// Sends one command line in the App's framing and returns the answer.
     fn line(&mut self, line: &str) -> String {
         let tcp = self.tcp.as_mut().unwrap();
         tcp.write_all(&[&b"\x02"[..], line.as_bytes(), b"\n\x03"].concat()).unwrap();
@@ -117,7 +117,7 @@ impl Executable {
         self.boot_again();
     }
 
-    /// Roll and pitch (nose down) and heading, degrees.
+    /// Returns roll, pitch (positive nose down) and heading, degrees.
     fn attitude(&mut self) -> [f64; 3] {
         let answer = self.ask(108, &[]);
         let number = |at: usize| f64::from(i16::from_le_bytes([answer[at], answer[at + 1]]));
@@ -128,7 +128,7 @@ impl Executable {
         u32::from_le_bytes(self.ask(101, &[])[17..21].try_into().unwrap())
     }
 
-    /// Sends it the same worked packet for a while.
+    /// Sends the executable the same reference packet for `seconds`.
     fn show(&mut self, case: &str, seconds: u64) {
         let (socket, packet) = (UdpSocket::bind("127.0.0.1:0").unwrap(), wire::bytes(case, "sitl_gz"));
         let end = Instant::now() + Duration::from_secs(seconds);
@@ -140,7 +140,7 @@ impl Executable {
     }
 }
 
-/// The craft whose motors it commands, in step with the wall clock.
+/// The simulated craft whose motors the executable commands, in step with the wall clock.
 struct Flight {
     world: World,
     start: Instant,
@@ -156,7 +156,7 @@ impl Flight {
         Self { world, start: Instant::now(), motors: MotorCommand::default(), rc }
     }
 
-    /// Flies on for a while and tells where the craft was farthest from where it was first.
+    /// Flies on for `seconds` and returns the greatest distance from the first position on each axis (ENU, m).
     fn fly(&mut self, executable: &mut Executable, seconds: f64) -> Vector3<f64> {
         let end_s = self.world.time().as_secs_f64() + seconds;
         let (from, mut farthest) = (self.world.truth().pos_enu, Vector3::zeros());
@@ -210,7 +210,7 @@ fn the_public_executable_sees_the_worked_attitudes_keeps_time_and_holds_a_hover(
     let mut flight = Flight::new();
     flight.fly(&mut executable, 8.0);
     assert_eq!(executable.arming_blocks(), 0);
-    // 2023-11-14 22:13:20: its clock against the wall's, to the millisecond.
+    // Sets the executable's clock to 2023-11-14 22:13:20, to compare it with the wall clock to the millisecond.
     executable.ask(246, &[0x00, 0xf1, 0x53, 0x65, 0, 0]);
     let set = Instant::now();
     flight.rc.channels[4] = 2000;

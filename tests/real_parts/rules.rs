@@ -1,4 +1,4 @@
-//! The stand-in keeps the rules that were measured on the public executable: else it would be no judge.
+//! The stand-in follows the rules measured on the public executable. Otherwise it could not judge.
 
 use super::stand_in::packet::{Gps, Packet};
 use super::stand_in::receiver::{Receiver, Taken};

@@ -1,5 +1,5 @@
-//! `betadeck serve` with a firmware outside, a process of its own behind real sockets: `betadeck sitl`, and the stand-in with
-//! each of its troubles.
+//! `betadeck serve` with a remote firmware, which runs in its own process and uses real sockets: `betadeck sitl`, and
+//! the stand-in with each of its faults.
 
 use std::time::{Duration, Instant};
 
@@ -11,13 +11,13 @@ use super::stand_in::process::{self, Trouble, VARIABLE};
 use super::stand_in::program::{End, Ports};
 use super::stand_in::{StandIn, free_ports};
 
-/// A served firmware.
+/// A running `betadeck serve` with its firmware.
 struct Served {
     program: Program,
 }
 
 impl Served {
-    /// With the firmware on these ports; `firmware` names it.
+    /// Starts it for a firmware on these ports. `firmware` holds the options that name the firmware.
     fn start(ports: Ports, firmware: &[&str]) -> Self {
         let Ports { raw, motors, fdm, rc, tcp } = ports;
         let (udp, tcp) = (format!("{raw},{motors},{fdm},{rc}"), tcp.to_string());
@@ -25,7 +25,7 @@ impl Served {
         Self { program: Program::start(&[&doors[..], firmware].concat()) }
     }
 
-    /// With the drop-in as the child.
+    /// Starts it with the drop-in as the child.
     fn drop_in(ports: Ports, more: &[&str]) -> Self {
         let Ports { raw, motors, fdm, rc, tcp } = ports;
         let (udp, tcp) = (format!("--udp-ports={raw},{motors},{fdm},{rc}"), format!("--tcp-port={tcp}"));
@@ -37,12 +37,12 @@ impl Served {
         Self::start(ports, &firmware)
     }
 
-    /// With the stand-in as the child, which keeps nothing.
+    /// Starts it with the stand-in as the child, which starts fresh and stores nothing.
     fn stand_in(ports: Ports, trouble: Trouble) -> Self {
         Self::stand_in_kept(ports, trouble, &["--fresh"])
     }
 
-    /// With the stand-in as the child, which keeps its configuration as these options say.
+    /// Starts it with the stand-in as the child. The options `kept` decide about its stored configuration.
     fn stand_in_kept(ports: Ports, trouble: Trouble, kept: &[&str]) -> Self {
         let (program, arguments) = process::command();
         let variable = format!("{VARIABLE}={}", process::variable(ports, trouble));
@@ -54,7 +54,7 @@ impl Served {
         Self::start(ports, &firmware)
     }
 
-    /// The text of the next notice that holds these words.
+    /// Waits for the next notice that contains these words and returns its text.
     fn notice(&mut self, words: &str) -> String {
         self.program.wait(words, |line| {
             let event: Value = serde_json::from_str(line).ok()?;
@@ -63,7 +63,7 @@ impl Served {
         })
     }
 
-    /// The exit code, and the last lines before it.
+    /// Waits for the end and returns the exit code and the last lines before it.
     fn end(&mut self) -> (i32, String) {
         let code = self.program.end();
         (code, self.program.seen().join("\n"))
@@ -136,7 +136,7 @@ fn a_program_that_is_no_sitl_is_told_and_ends_the_program() {
 #[test]
 fn a_firmware_does_not_outlive_a_program_that_is_killed() {
     let mut served = Served::stand_in(free_ports(), Trouble::None);
-    // It has been set by now, and restarted for that: its last process counts.
+    // The firmware has been configured and restarted by now. Its last process counts.
     served.notice(" answers: Betaflight ");
     let pid_of = |line: &String| -> Option<i32> {
         let event: Value = serde_json::from_str(line).ok()?;
@@ -144,7 +144,7 @@ fn a_firmware_does_not_outlive_a_program_that_is_killed() {
     };
     let pid = served.program.seen().iter().rev().find_map(pid_of).unwrap();
     assert!(is_running(pid));
-    // Killed, not asked to end.
+    // Kills the program instead of asking it to end.
     drop(served);
     let end = Instant::now() + PATIENCE;
     while is_running(pid) {
@@ -187,7 +187,7 @@ fn one_that_runs_already_and_hangs_is_told() {
 fn one_that_stands_at_a_breakpoint_is_waited_for() {
     let Ports { raw, motors, .. } = free_ports();
     let stand_in = StandIn::start(raw, motors);
-    // The system takes the connection for it meanwhile.
+    // The system accepts the connection for the stand-in meanwhile.
     stand_in.hang(true);
     let mut served = Served::start(stand_in.ports, &["--fresh", "--firmware", "attach"]);
     std::thread::sleep(Duration::from_secs(5));
@@ -214,7 +214,7 @@ fn one_that_serves_another_client_says_why_it_is_lost_and_says_it_once() {
     let mut served = Served::start(stand_in.ports, &["--fresh", "--firmware", "attach"]);
     let told = served.notice("closed the connection at once");
     assert!(told.contains("close the other program"), "{told}");
-    // Several more attempts.
+    // Time for several more attempts.
     std::thread::sleep(Duration::from_secs(7));
     let said = served.program.seen();
     let lost = |line: &&String| line.contains("closed the connection") || line.contains("ended or restarts");
@@ -233,7 +233,8 @@ fn a_firmware_that_prints_without_end_does_not_stop_the_program() {
     assert!((1..10_000).contains(&lines), "{lines} of them");
 }
 
-/// What is told of a firmware that keeps this, and the lines that it keeps after that; `set_by` was written when it was set.
+/// Starts a firmware with the stored configuration `kept`, and returns the program's output and the configuration
+/// stored afterwards. `set_by` is the mark that the program leaves when it has configured a firmware.
 fn started_with(kept: &str, set_by: Option<&str>) -> (String, String) {
     let state = tempfile::tempdir().unwrap();
     let directory = state.path().join("firmware");
@@ -252,7 +253,8 @@ fn started_with(kept: &str, set_by: Option<&str>) -> (String, String) {
 
 #[test]
 fn a_firmware_that_was_ended_before_it_was_set_is_set_at_its_next_start() {
-    // As it is written at the first boot, or by another build for which the old one is of no use.
+    // The configuration as the first boot writes it. The mark is missing, or another build left it, which does not
+    // count.
     for set_by in [None, Some("/elsewhere/betaflight_SITL.elf\n1\n")] {
         let (said, kept) = started_with("# Betaflight / SITL\nwaypoint clear\n", set_by);
         assert!(said.contains("Nothing was ever changed in the firmware's configuration"), "{said}");

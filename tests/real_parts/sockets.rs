@@ -29,7 +29,7 @@ fn open(ports: Ports, is_up: bool) -> SitlPeer {
     peer
 }
 
-/// Feeds for a while, a thousand packets a second as far as the machine keeps up, and fifty of RC.
+/// Feeds for `seconds`, at most a thousand states and fifty RC packets a second. Returns the number of states sent.
 fn feed(peer: &mut SitlPeer, seconds: f64) -> u64 {
     let start = Instant::now();
     let mut sent = 0_u64;
@@ -47,7 +47,7 @@ fn feed(peer: &mut SitlPeer, seconds: f64) -> u64 {
     sent
 }
 
-/// Longest that a busy machine may need until a second comes in which it keeps up.
+/// The number of attempts, each of a second or less, within which even a busy machine keeps up once.
 const ROUNDS: u32 = 60;
 
 #[test]
@@ -106,13 +106,13 @@ fn an_executable_that_is_down_gets_no_state_before_it_is_up_again() {
     peer.came_up();
     feed(&mut peer, 0.1);
     assert!(count(&fdm) > 1);
-    // The last words of the old one are not the new one's boot.
+    // A late packet of the old executable does not count as the boot of the new one.
     fdm.send_to(&[0; 16], ("127.0.0.1", ports.motors)).unwrap();
     peer.went_down();
     feed(&mut peer, 0.1);
     assert_eq!(count(&fdm), 0);
     fdm.send_to(&[0; 16], ("127.0.0.1", ports.motors)).unwrap();
-    // Its first motor packet is a sign that it will be ready soon.
+    // The first motor packet means that the executable will be ready soon.
     peer.take_motors(Instant::now());
     assert!((0..ROUNDS).any(|_| {
         feed(&mut peer, 0.1);
@@ -131,7 +131,7 @@ fn an_executable_that_is_held_up_still_hears_the_transmitter_unless_that_was_cut
         let start = Instant::now();
         let at = |ms| start + Duration::from_millis(ms);
         peer.send_rc(&RcFrame::default(), at(0));
-        // It answers once.
+        // The executable answers once.
         rc.send_to(&[0; 16], ("127.0.0.1", ports.motors)).unwrap();
         while peer.take_motors(at(1)).is_none() {}
         let held_from = if is_cut { 200 } else { 10 };

@@ -1,6 +1,6 @@
-//! A stand-in for the public executable: what was measured of it, and its faults. One TCP client, a command line that is
-//! left open to the next, a clock that follows the stamps, a start that a state too early does not survive, and a `save`
-//! that ends the program. It flies nothing: its motors stand still.
+//! A stand-in for the public executable, with its measured behaviour and its faults: one TCP client, a command line
+//! that stays open for the next client, a clock that follows the stamps, a crash if a state arrives before it has
+//! booted, and a `save` that ends the program. It flies nothing: its motors never turn.
 
 pub(crate) mod cli;
 pub(crate) mod msp;
@@ -19,10 +19,10 @@ use cli::Memory;
 use program::{End, Ports, Shared, Sockets, live};
 use receiver::Seen;
 
-/// How long it takes to be started again.
+/// The time until it is started again.
 const RESTART: Duration = Duration::from_millis(300);
 
-/// One that runs in this process, as if somebody else had started it, and is started again when it reboots.
+/// A stand-in that runs in this process, as if another program had started it. It is started again when it reboots.
 pub(crate) struct StandIn {
     pub(crate) ports: Ports,
     shared: Arc<Shared>,
@@ -30,7 +30,7 @@ pub(crate) struct StandIn {
 }
 
 impl StandIn {
-    /// Starts it; its motors go to these ports of the other side.
+    /// Starts it. It sends its motors to these ports.
     pub(crate) fn start(raw: u16, motors: u16) -> Self {
         let mut sockets = Sockets::bind(Ports { raw, motors, fdm: 0, rc: 0, tcp: 0 }).unwrap();
         sockets.listen().unwrap();
@@ -40,11 +40,11 @@ impl StandIn {
             let (mut memory, mut ends) = (Memory::new(), Vec::new());
             while ends.last() != Some(&End::Stopped) {
                 if !ends.is_empty() {
-                    // Somebody starts it again, and what came meanwhile went nowhere.
+                    // It is started again. The packets that arrived meanwhile are lost.
                     std::thread::sleep(RESTART);
                     sockets.forget();
                 }
-                // The first one has booted long ago.
+                // The first run has booted long ago.
                 ends.push(live(&mut sockets, &mut memory, !ends.is_empty(), &seen));
             }
             ends
@@ -52,22 +52,22 @@ impl StandIn {
         Self { ports, shared, thread: Some(thread) }
     }
 
-    /// What it has seen of the other side since it booted.
+    /// Returns the statistics of the packets received since it booted.
     pub(crate) fn seen(&self) -> Seen {
         *self.shared.seen.lock().unwrap()
     }
 
-    /// How far its clock is from the wall's, µs.
+    /// Returns the error of its clock against the wall clock, µs.
     pub(crate) fn clock_error_us(&self) -> f64 {
         *self.shared.clock_error_us.lock().unwrap()
     }
 
-    /// Stands still, or goes on.
+    /// Makes it hang, or lets it go on.
     pub(crate) fn hang(&self, hangs: bool) {
         self.shared.hangs.store(hangs, Ordering::Relaxed);
     }
 
-    /// Ends it and tells how its lives ended.
+    /// Stops it and returns the end of each of its runs.
     pub(crate) fn stop(mut self) -> Vec<End> {
         self.shared.stop.store(true, Ordering::Relaxed);
         self.thread.take().unwrap().join().unwrap()
@@ -78,13 +78,13 @@ impl Drop for StandIn {
     fn drop(&mut self) {
         self.shared.stop.store(true, Ordering::Relaxed);
         if let Some(thread) = self.thread.take() {
-            // A test that failed has told why.
+            // A failed test has already reported the reason.
             drop(thread.join());
         }
     }
 }
 
-/// Ports that were free a moment ago.
+/// Returns ports that were free a moment ago.
 pub(crate) fn free_ports() -> Ports {
     let udp: [std::net::UdpSocket; 4] =
         std::array::from_fn(|_| std::net::UdpSocket::bind("127.0.0.1:0").unwrap());

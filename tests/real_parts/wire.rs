@@ -1,4 +1,4 @@
-//! The link's packets against worked ones, each side by code that knows nothing of the other (L-1, L-2).
+//! The link's packets against reference packets. Encoder and decoder are written independently (L-1, L-2).
 
 use betadeck::link::proto::fdm::{Packet, State, mirrored};
 use betadeck::link::proto::{rc, servo};
@@ -30,7 +30,7 @@ fn numbers(value: &Value) -> Vec<f64> {
     value.as_array().unwrap().iter().map(|number| number.as_f64().unwrap()).collect()
 }
 
-/// The bytes of a worked packet.
+/// Returns the bytes of a reference packet.
 pub(crate) fn bytes(id: &str, dialect: &str) -> Vec<u8> {
     unhex(case(id)[dialect]["hex"].as_str().unwrap())
 }

@@ -1,4 +1,4 @@
-//! The rooms of `docs/architecture.md` against the code: who may use whom, and how large things are.
+//! The rooms of `docs/architecture.md` against the code: the allowed uses between them, and their sizes.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test may stop and say what it expects")]
 
 mod page;
@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use page::Room;
 use source::SourceFile;
 
-/// An arrow from a room to one that it uses, with the file in which it was found.
+/// A room, a room that it uses, and the file in which the use was found.
 type Use = (String, String, String);
 
 fn uses(files: &[SourceFile]) -> BTreeSet<Use> {

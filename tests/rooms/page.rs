@@ -5,9 +5,9 @@ const PAGE: &str = include_str!("../../docs/architecture.md");
 /// A row of the table.
 #[derive(Debug)]
 pub(crate) struct Room {
-    /// Name of the module.
+    /// The name of the module.
     pub(crate) name: String,
-    /// The rooms it may use; `None` = all of them.
+    /// The rooms it may use; `None` for all of them.
     uses: Option<Vec<String>>,
 }
 
@@ -16,13 +16,13 @@ impl Room {
         self.uses.as_ref().is_none_or(|uses| uses.iter().any(|used| used == other))
     }
 
-    /// The arrows that the page draws one by one.
+    /// Returns the arrows that the page lists one by one.
     pub(crate) fn arrows(&self) -> Vec<(String, String)> {
         self.uses.iter().flatten().map(|used| (self.name.clone(), used.clone())).collect()
     }
 }
 
-/// The rooms in the order of the table; a row may name several that have the same arrows.
+/// Returns the rooms in the order of the table. A row may name several rooms with the same arrows.
 pub(crate) fn rooms() -> Vec<Room> {
     let table = PAGE.split("| room | is | may use |").nth(1).expect("the table of rooms");
     let mut rooms = Vec::new();
@@ -38,7 +38,7 @@ pub(crate) fn rooms() -> Vec<Room> {
     rooms
 }
 
-/// The words in backticks.
+/// Returns the words in backticks.
 fn words(cell: &str) -> Vec<String> {
     cell.split('`').skip(1).step_by(2).map(str::to_owned).collect()
 }

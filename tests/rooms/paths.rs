@@ -4,12 +4,12 @@ use std::collections::BTreeSet;
 
 use crate::source::SourceFile;
 
-/// The rooms that a file names, its own included when it names it.
+/// Returns the rooms that a file names, including its own if it names it.
 pub(crate) fn rooms_used(file: &SourceFile) -> BTreeSet<String> {
     let tokens = tokens(&file.text);
     let module = file.module();
     let mut rooms = BTreeSet::new();
-    // Modules written inside the file, as the brace depths at which they close.
+    // Inline modules, as the brace depths at which they close.
     let mut inner: Vec<usize> = Vec::new();
     let mut depth = 0;
     for (index, token) in tokens.iter().enumerate() {
@@ -35,7 +35,7 @@ pub(crate) fn rooms_used(file: &SourceFile) -> BTreeSet<String> {
                     levels += 1;
                     at += 2;
                 }
-                // Beyond the room itself the next word names another room.
+                // Above the room itself the next word names another room.
                 if levels >= module.len() + inner.len() {
                     heads(&tokens[at..], &mut rooms);
                 }
@@ -46,7 +46,7 @@ pub(crate) fn rooms_used(file: &SourceFile) -> BTreeSet<String> {
     rooms
 }
 
-/// The first words of a path, or of each path of a group in braces.
+/// Adds the first word of a path, or of each path of a group in braces, if it is a room.
 fn heads(tokens: &[String], rooms: &mut BTreeSet<String>) {
     if tokens.first().is_none_or(|token| token != "{") {
         rooms.extend(tokens.first().filter(|token| is_room(token)).cloned());
@@ -77,7 +77,7 @@ fn is_room(word: &str) -> bool {
     word.starts_with(|first: char| first.is_ascii_lowercase())
 }
 
-/// Words, `::` and single characters, without comments, strings and character literals.
+/// Splits text into words, `::` and single characters, without comments, strings and character literals.
 fn tokens(text: &str) -> Vec<String> {
     let mut tokens = Vec::new();
     let mut rest = text;
@@ -110,7 +110,7 @@ fn tokens(text: &str) -> Vec<String> {
     tokens
 }
 
-/// Length of a raw string that begins here.
+/// Returns the length of a raw string that begins here.
 fn raw_string(rest: &str) -> Option<usize> {
     let hashes = rest.strip_prefix("br").or_else(|| rest.strip_prefix('r'))?;
     let count = hashes.len() - hashes.trim_start_matches('#').len();
@@ -120,7 +120,7 @@ fn raw_string(rest: &str) -> Option<usize> {
     Some(rest.len() - body.len() + length)
 }
 
-/// Length of a string that begins here.
+/// Returns the length of a string that begins here.
 fn string(rest: &str) -> usize {
     let mut escaped = false;
     for (index, c) in rest.char_indices().skip(1) {
@@ -134,7 +134,7 @@ fn string(rest: &str) -> usize {
     rest.len()
 }
 
-/// Length of a character literal or of the mark of a lifetime.
+/// Returns the length of a character literal, or of the mark of a lifetime.
 fn character(rest: &str) -> usize {
     let mut inside = rest.chars().skip(1);
     match (inside.next(), inside.next()) {

@@ -1,18 +1,18 @@
-//! How large files and rooms are.
+//! The sizes of files and rooms.
 
 use crate::source::{self, SourceFile};
 
-/// Longest file, lines.
+/// The greatest length of a file, lines.
 const LONGEST: usize = 500;
-/// Most lines of the file in the middle.
+/// The greatest median length of the files, lines.
 const MEDIAN: usize = 150;
-/// Lines of the core for each line of the shell.
+/// The smallest number of lines of the core for each line of the shell.
 const CORE_TO_SHELL: f64 = 2.5;
-/// Files of a room beyond which its first page explains the layers inside.
+/// The number of files above which the first page of a room explains the layers inside.
 const MANY_FILES: usize = 60;
 
-/// What talks to people, sockets, files and the clock; all the rest is the core, the state of the screen included:
-/// messages in, picture out.
+/// Returns `true` for a file that talks to people, sockets, files or the clock. All other files are the core, including
+/// the state of the screen: messages in, picture out.
 fn is_shell(file: &SourceFile) -> bool {
     match file.room().as_str() {
         "link" => !file.name.starts_with("link/proto"),

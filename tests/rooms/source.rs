@@ -2,28 +2,27 @@
 
 use std::path::Path;
 
-/// A file of the crate.
+/// A source file of the crate.
 #[derive(Debug)]
 pub(crate) struct SourceFile {
-    /// Path below `src/`, with `/`.
+    /// The path below `src/`, with `/`.
     pub(crate) name: String,
-    /// Its text.
     pub(crate) text: String,
 }
 
 impl SourceFile {
-    /// The top-level module it belongs to.
+    /// Returns the top-level module of the file.
     pub(crate) fn room(&self) -> String {
         self.module().into_iter().next().unwrap_or_else(|| "lib".to_owned())
     }
 
-    /// The module that the file is, from the crate's root.
+    /// Returns the path of the file's module from the crate's root.
     pub(crate) fn module(&self) -> Vec<String> {
         let path = self.name.trim_end_matches(".rs");
         if path == "lib" { Vec::new() } else { path.split('/').map(str::to_owned).collect() }
     }
 
-    /// The text up to the unit tests.
+    /// Returns the number of lines up to the unit tests, or 0 for a file of tests.
     pub(crate) fn product_lines(&self) -> usize {
         if self.name.ends_with("tests.rs") || self.name.contains("/tests/") {
             return 0;
@@ -32,7 +31,7 @@ impl SourceFile {
     }
 }
 
-/// All files, in the order of their names; `main.rs` is a crate of its own, in the same room as `app`.
+/// Returns all files, sorted by name, except `main.rs`, which is a crate of its own in the same room as `app`.
 pub(crate) fn files() -> Vec<SourceFile> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut files = Vec::new();

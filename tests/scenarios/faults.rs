@@ -1,4 +1,4 @@
-//! Something is wrong with the craft or its settings: the scenario says what, with the number that was seen.
+//! Faults of the craft or its settings: the scenario reports each of them with the measured number.
 
 use crate::rig::{assert_fails, assert_met, builtin, case_of, case_with, fly, judged, with_settings};
 use betadeck::plan::WaypointType;
@@ -43,7 +43,7 @@ fn guide_2_sees_that_cutting_corners_gains_nothing() {
         measures.into_iter().map(|(name, value)| (format!("{base}.{name}"), value)).collect::<Vec<_>>()
     };
     let mut both = names("flyover", &flyover);
-    // The FLYBY are flown as FLYOVER.
+    // The FLYBY waypoints are flown as FLYOVER.
     flyover.name = "flyby".to_owned();
     both.extend(names("flyby", &flyover));
     let judgement = compare(&scenario.compares[0], &both, Insight::Inner);
@@ -63,7 +63,7 @@ fn guide_3_sees_a_wrong_radius_and_a_wrong_rate() {
 
 #[test]
 fn guide_4_sees_a_landing_that_never_disarms() {
-    // The throttle never falls below the threshold, and the craft shakes too much to be told at rest.
+    // The throttle never falls below the threshold, and the craft shakes too much to be recognised as at rest.
     let shake = "[[input]]\nat = \"contact after LANDING 0\"\ndo = \"fault vibration,,50\"\n";
     let case = case_with("guide-4", "calm, noise none", shake);
     let judgements = judged(&with_settings(case, &["ap_landing_throttle_threshold = 500"]));

@@ -1,4 +1,4 @@
-//! What the language promises, on a craft that stands on the ground for some seconds.
+//! The guarantees of the scenario language, with a craft that stays on the ground for some seconds.
 
 use crate::rig::{assert_met, fly, judged};
 use betadeck::plan::format::report;
@@ -25,7 +25,7 @@ fn on_the_ground(more: &str) -> Case {
     scenario.cases.remove(0)
 }
 
-/// What is wrong with a scenario.
+/// Returns the report of the errors in a scenario.
 #[track_caller]
 fn problems(more: &str) -> String {
     let text = format!("{GROUND}{more}");
@@ -33,7 +33,7 @@ fn problems(more: &str) -> String {
     report(&errors)
 }
 
-/// Share of the margin that is left of the last expectation.
+/// Returns the share of the margin that is left in the last expectation.
 #[track_caller]
 fn share_left(case: &Case) -> f64 {
     let judgements = judged(case);
@@ -83,7 +83,7 @@ fn margins_say_how_much_is_left() {
             "[[expect]]\nfrom = \"boot\"\nmostly = \"boot_time <= 4 s\"\nshare = {share}\n"
         ))
     };
-    // Of 5.1 s a fifth is outside.
+    // A fifth of 5.1 s is outside.
     assert!((share_left(&mostly("60")) - 0.46).abs() < 0.02);
     let failed = &judged(&mostly("90"))[1].outcome;
     assert!(

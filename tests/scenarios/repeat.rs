@@ -1,4 +1,4 @@
-//! A flight is the same to the last bit each time.
+//! A repeated flight is the same to the last bit.
 
 use crate::rig::{case_of, fly};
 use betadeck::scenario::judge;

@@ -6,13 +6,13 @@ use betadeck::scenario::{
     BuiltinFiles, BuiltinScenario, Case, CaseFlight, Flown, Judgement, Outcome, Scenario, judge, read,
 };
 
-/// A built-in scenario with one seed.
+/// Reads a built-in scenario with one seed.
 #[track_caller]
 pub(crate) fn builtin(name: &str) -> Scenario {
     with_more(name, "")
 }
 
-/// A built-in scenario with one seed, and with these lines behind its own.
+/// Reads a built-in scenario with one seed, and with these lines after its own.
 #[track_caller]
 fn with_more(name: &str, lines: &str) -> Scenario {
     let found = BuiltinScenario::find(name).unwrap_or_else(|| panic!("there is no {name}"));
@@ -20,13 +20,13 @@ fn with_more(name: &str, lines: &str) -> Scenario {
     read(name, &text, Some(&[1]), &mut BuiltinFiles).unwrap_or_else(|errors| panic!("{}", report(&errors)))
 }
 
-/// A case of a built-in scenario, by its whole name.
+/// Returns a case of a built-in scenario by its whole name.
 #[track_caller]
 pub(crate) fn case_of(scenario: &str, case: &str) -> Case {
     case_with(scenario, case, "")
 }
 
-/// A case of a built-in scenario that has these lines behind its own.
+/// Returns a case of a built-in scenario that has these lines after its own.
 #[track_caller]
 pub(crate) fn case_with(scenario: &str, case: &str, lines: &str) -> Case {
     let all = with_more(scenario, lines).cases;
@@ -36,26 +36,26 @@ pub(crate) fn case_with(scenario: &str, case: &str, lines: &str) -> Case {
         .unwrap_or_else(|| panic!("{scenario} has no case {case}: {names:?}"))
 }
 
-/// The flight of a case in its first air.
+/// Flies a case in its first air.
 #[track_caller]
 pub(crate) fn fly(case: &Case) -> Flown {
     CaseFlight::new(case, &case.airs[0]).unwrap().fly()
 }
 
-/// What became of the expectations of a case.
+/// Flies a case and judges its expectations.
 #[track_caller]
 pub(crate) fn judged(case: &Case) -> Vec<Judgement> {
     judge(case, &fly(case)).0
 }
 
-/// A case whose craft is set up in another way than the scenario says.
+/// Adds settings to the setup of a case, so that its craft differs from the scenario.
 pub(crate) fn with_settings(mut case: Case, settings: &[&str]) -> Case {
     let settings: Vec<String> = settings.iter().map(|&setting| setting.to_owned()).collect();
     case.setup.boot_lines.push(BootLines::settings("fault", &settings));
     case
 }
 
-/// Fails unless the expectation of this name was not met, with this in its sentence.
+/// Panics unless the expectation of this name has failed with this text in its sentence.
 #[track_caller]
 pub(crate) fn assert_fails(judgements: &[Judgement], name: &str, told: &str) {
     let judgement = judgements
@@ -70,7 +70,7 @@ pub(crate) fn assert_fails(judgements: &[Judgement], name: &str, told: &str) {
     }
 }
 
-/// Fails unless all expectations were met.
+/// Panics unless all expectations were met.
 #[track_caller]
 pub(crate) fn assert_met(judgements: &[Judgement]) {
     let broken: Vec<&Judgement> = judgements.iter().filter(|judgement| !judgement.outcome.is_met()).collect();

@@ -1,4 +1,4 @@
-//! A board on a cable: what goes through it is what a TCP door says.
+//! A board on a cable, which carries the bytes of a TCP door.
 #![allow(clippy::disallowed_methods, reason = "bytes are looked for in wall time")]
 
 use std::io::{ErrorKind, Read as _, Write as _};
@@ -11,10 +11,10 @@ use std::time::Duration;
 
 use super::cable::Cable;
 
-/// Between two looks for bytes.
+/// The interval between two checks for bytes.
 const LOOK: Duration = Duration::from_millis(1);
 
-/// A cable from a device file to a TCP door; unplugged at first.
+/// A cable from a device file to a TCP door, unplugged at first.
 pub(crate) struct Bridge {
     door: SocketAddr,
     device: PathBuf,
@@ -28,12 +28,12 @@ impl Bridge {
         Self { door, device: cable.device(), cable: Some(cable), carrying: None }
     }
 
-    /// The device file.
+    /// Returns the path of the device file.
     pub(crate) fn device(&self) -> PathBuf {
         self.device.clone()
     }
 
-    /// Plugs the cable in: the board has power, and nobody has spoken with it yet.
+    /// Plugs the cable in. The board has power, and no program has talked to it yet.
     pub(crate) fn plug_in(&mut self) {
         let Some(mut cable) = self.cable.take() else { return };
         let board = TcpStream::connect(self.door).expect("a door");
@@ -48,7 +48,7 @@ impl Bridge {
         self.carrying = Some((stop, carry));
     }
 
-    /// Pulls the cable.
+    /// Pulls the cable out, if it is plugged in.
     pub(crate) fn pull(&mut self) {
         let Some((stop, carry)) = self.carrying.take() else { return };
         stop.store(true, Ordering::Relaxed);
@@ -67,7 +67,7 @@ impl Drop for Bridge {
     }
 }
 
-/// Carries bytes both ways until it is told to stop.
+/// Carries bytes both ways until `stop` is set.
 fn carry(cable: &mut Cable, mut board: &TcpStream, stop: &AtomicBool) {
     let mut to_cable: Vec<u8> = Vec::new();
     while !stop.load(Ordering::Relaxed) {

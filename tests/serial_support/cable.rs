@@ -1,5 +1,5 @@
-//! A pseudo-terminal pair as a USB cable: what the program opens is a device file that keeps its name while the cable is
-//! pulled and plugged in again.
+//! A pseudo-terminal pair as a USB cable. The program opens a device file, which keeps its name while the cable is
+//! pulled out and plugged in again.
 
 use std::fs::File;
 use std::io::{ErrorKind, Read as _, Write as _};
@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use rustix::fs::{OFlags, fcntl_setfl};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 
-/// A cable; its far end is held by the test.
+/// A cable whose far end is held by the test.
 #[derive(Debug)]
 pub(crate) struct Cable {
     directory: tempfile::TempDir,
@@ -16,17 +16,17 @@ pub(crate) struct Cable {
 }
 
 impl Cable {
-    /// A cable that is not plugged in.
+    /// Returns a cable that is not plugged in.
     pub(crate) fn unplugged() -> Self {
         Self { directory: tempfile::tempdir().expect("a directory"), far_end: None }
     }
 
-    /// The device file.
+    /// Returns the path of the device file.
     pub(crate) fn device(&self) -> PathBuf {
         self.directory.path().join("ttyACM0")
     }
 
-    /// Plugs the cable in: the device is there.
+    /// Plugs the cable in, which creates the device file.
     pub(crate) fn plug_in(&mut self) {
         let far_end = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)
             .expect("a pseudo-terminal");
@@ -41,24 +41,24 @@ impl Cable {
         self.far_end = Some(far_end.into());
     }
 
-    /// Pulls the cable: the device is gone, and whoever has it open notices.
+    /// Pulls the cable out: the device file is gone, and a program that has it open notices.
     pub(crate) fn pull(&mut self) {
         std::fs::remove_file(self.device()).expect("a pseudo-terminal");
         self.far_end = None;
     }
 
-    /// What has come through since; nothing while nobody has the device open.
+    /// Returns the bytes that have arrived since the last call. There are none while no program has the device open.
     pub(crate) fn received(&mut self) -> Vec<u8> {
         let Some(far_end) = &mut self.far_end else { return Vec::new() };
         let mut bytes = [0; 4096];
         match far_end.read(&mut bytes) {
             Ok(count) => bytes[..count].to_vec(),
-            // The system says "input/output error" while the device is closed.
+            // The system reports "input/output error" while the device is closed.
             Err(_) => Vec::new(),
         }
     }
 
-    /// Sends bytes; gives those that the line does not take now.
+    /// Sends bytes and returns those that the line does not take now.
     pub(crate) fn send<'a>(&mut self, bytes: &'a [u8]) -> &'a [u8] {
         let Some(far_end) = &mut self.far_end else { return &[] };
         match far_end.write(bytes) {

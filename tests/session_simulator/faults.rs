@@ -1,4 +1,4 @@
-//! Faults of the link to the simulator and of the receiver: when they begin and end, and what they lose.
+//! Faults of the link to the simulator and of the receiver: their beginning, their end and their losses.
 
 use std::net::SocketAddr;
 use std::time::Instant;
@@ -38,7 +38,7 @@ async fn without_a_word_from_the_simulator_a_stall_ends_by_the_clock() {
     let (mut rig, _) = speaking(&[]).await;
     rig.at = Instant::now();
     rig.state(10, 0.0, 0.0).await;
-    // It has come through before the stall begins.
+    // The state must arrive before the stall begins.
     rig.flown_ms().await;
     rig.world("fault=stall,0.3").await.unwrap();
     rig.hear_fault("stall", true).await;
@@ -51,7 +51,7 @@ async fn without_a_word_from_the_simulator_a_stall_ends_by_the_clock() {
     rig.hear_fault("stall", false).await;
 }
 
-/// Which of forty packets came through with half of them lost.
+/// Sends forty packets with a loss of one half. Returns for each packet `true` if it came through.
 async fn losses(faults: &[&str]) -> Vec<bool> {
     let (mut rig, mut now) = speaking(faults).await;
     rig.world("fault=fdm-loss,,0.5").await.unwrap();
@@ -72,7 +72,7 @@ async fn the_same_packets_are_lost_in_every_session() {
     let first = losses(&[]).await;
     let count = first.iter().filter(|through| **through).count();
     assert!((8..=32).contains(&count), "{first:?}");
-    // A fault that never begins draws nothing.
+    // A fault that never begins draws no random numbers.
     assert_eq!(losses(&["fdm-jitter@0"]).await, first);
 }
 

@@ -1,4 +1,4 @@
-//! A session whose craft an external simulator moves: whose time it is, what the picture shows, what keys do.
+//! A session with a craft that an external simulator moves: its time, its pictures and its keys.
 
 #![allow(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests may panic and wait")]
 

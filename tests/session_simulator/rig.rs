@@ -22,30 +22,31 @@ use tokio::sync::{mpsc, oneshot, watch};
 /// Nothing in these tests takes this long unless it hangs.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(60);
 
-/// How far ahead of the clock states arrive.
+/// The time by which states arrive ahead of the clock.
 pub(crate) const AHEAD: Duration = Duration::from_secs(600);
 
-/// Where the craft starts: latitude, longitude, degrees, altitude, m.
+/// The start of the craft: latitude and longitude, degrees, and altitude, m.
 pub(crate) const START: (f64, f64, f64) = (40.4635, -79.5182, 250.0);
 
-/// A session and the other ends of its cables.
+/// A session and the far ends of its links.
 pub(crate) struct Rig {
     pub(crate) session: Handle,
     pub(crate) requests: mpsc::Sender<Request>,
     pub(crate) motors: UdpSocket,
     notices: Vec<String>,
-    /// Faults that were told: name, whether it began, when, ms.
+    /// The reported faults: name, `true` for the beginning and `false` for the end, time in ms.
     pub(crate) faults: Vec<(&'static str, bool, u64)>,
     pub(crate) stamp_ms: u64,
-    /// When the newest state arrived. Usually far ahead of the clock, so that a slow machine is no silence.
+    /// The arrival of the newest state. It is usually far ahead of the clock, so that a slow machine is not taken for
+    /// silence.
     pub(crate) at: Instant,
-    /// North of the start and above it, m, in the newest state.
+    /// The position in the newest state: north of the start and above it, m.
     place: (f64, f64),
     _doors: Listeners,
     _views: watch::Sender<Vec<EndpointStatus>>,
 }
 
-/// What the link to the simulator has seen.
+/// Returns the statistics of the link to the simulator.
 pub(crate) fn stats(view: &SessionView) -> SimulatorStats {
     let motors = view.endpoints.iter().find(|endpoint| endpoint.kind == EndpointKind::Motors).unwrap();
     let EndpointState::Simulator(stats) = motors.state else { panic!("{motors:?}") };
@@ -56,7 +57,7 @@ pub(crate) async fn rig() -> Rig {
     rig_with(&[]).await
 }
 
-/// A session with these faults to come.
+/// Starts a session with these scheduled faults.
 pub(crate) async fn rig_with(faults: &[&str]) -> Rig {
     let motors = UdpSocket::bind("127.0.0.1:0").unwrap();
     motors.set_read_timeout(Some(PATIENCE)).unwrap();
@@ -113,7 +114,7 @@ pub(crate) async fn rig_with(faults: &[&str]) -> Rig {
     }
 }
 
-/// A craft this far north of the start and above it, m.
+/// Encodes the state of a craft this far north of the start and above it, m.
 fn datagram(stamp_ms: u64, (north_m, up_m): (f64, f64), vel_enu: Vector3<f64>) -> Vec<u8> {
     let state = State {
         stamp_s: stamp_ms as f64 * 1e-3,
@@ -129,7 +130,7 @@ fn datagram(stamp_ms: u64, (north_m, up_m): (f64, f64), vel_enu: Vector3<f64>) -
     Dialect::SitlGz.encode(&state).to_bytes().to_vec()
 }
 
-/// A craft that does not move.
+/// Encodes the state of a craft that does not move.
 pub(crate) fn at_rest(stamp_ms: u64) -> Vec<u8> {
     datagram(stamp_ms, (0.0, 0.0), Vector3::zeros())
 }
@@ -148,7 +149,7 @@ impl Rig {
         self.requests.send(Request::Fdm { datagram, from, at: self.at }).await.unwrap();
     }
 
-    /// Waits for a picture.
+    /// Waits for a picture that matches, and returns it.
     #[track_caller]
     pub(crate) fn picture(
         &mut self,
@@ -164,7 +165,7 @@ impl Rig {
         }
     }
 
-    /// Waits for a notice.
+    /// Waits for a notice that contains these words.
     pub(crate) async fn hear(&mut self, words: &str) {
         while !self.notices.iter().any(|notice| notice.contains(words)) {
             let event = tokio::time::timeout(PATIENCE, self.session.events.recv()).await;
@@ -174,7 +175,7 @@ impl Rig {
         self.notices.retain(|notice| !notice.contains(words));
     }
 
-    /// Waits for the beginning or the end of a fault; gives when it was, ms.
+    /// Waits for the beginning or the end of a fault, and returns its time, ms.
     pub(crate) async fn hear_fault(&mut self, name: &str, on: bool) -> u64 {
         loop {
             if let Some(&(_, _, at_ms)) = self.faults.iter().find(|told| (told.0, told.1) == (name, on)) {
@@ -198,14 +199,14 @@ impl Rig {
         }
     }
 
-    /// The firmware's time when everything that was sent has been attended to, ms.
+    /// Waits until everything that was sent is handled, and returns the firmware's time, ms.
     pub(crate) async fn flown_ms(&mut self) -> u64 {
-        // Answers come in the order of the questions, and the states were asked first.
+        // Requests are answered in their order, and the states were sent before this one.
         let (reply, answer) = oneshot::channel();
         let request = Request::EnterCli { client: ClientId(1), interactive: false, reply };
         self.requests.send(request).await.unwrap();
         tokio::time::timeout(PATIENCE, answer).await.unwrap().unwrap();
-        // A picture of after that, which only a change brings.
+        // Waits for a later picture, which only a change brings.
         let mut sticks = self.session.view.borrow().sticks;
         sticks.channels[11] += 1;
         self.command(Command::Sticks(sticks)).await;
@@ -223,7 +224,7 @@ impl Rig {
     }
 }
 
-/// A session whose simulator speaks, and the firmware's time, ms.
+/// Starts a session whose simulator sends states. Returns it with the firmware's time, ms.
 pub(crate) async fn speaking(faults: &[&str]) -> (Rig, u64) {
     let mut rig = rig_with(faults).await;
     for _ in 0..3 {

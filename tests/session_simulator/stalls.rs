@@ -1,4 +1,4 @@
-//! The firmware was held up: what the simulator sent meanwhile waits in the socket when the session wakes.
+//! A firmware that was held up: the simulator's packets wait in the socket when the session wakes.
 
 use std::net::{Ipv4Addr, UdpSocket};
 use std::time::{Duration, Instant};
@@ -16,7 +16,7 @@ use betadeck::vehicle::{Vehicle, VehicleConfig};
 
 use crate::rig::at_rest;
 
-/// Silence after which the firmware sends unasked.
+/// The silence after which the firmware sends without a state.
 const SILENCE: Duration = Duration::from_millis(100);
 
 /// The simulator's sockets.
@@ -40,8 +40,8 @@ impl Simulator {
         self.states.send(&at_rest(self.stamp_ms)).unwrap();
     }
 
-    /// Sends states until one is answered, which only a raw packet tells; gives how many motor packets the newest one
-    /// brought, and whether that was too soon for anything to be sent unasked.
+    /// Sends states until one is answered, which only a raw packet shows. Returns the number of motor packets since the
+    /// newest state, and `true` if that was too soon for a packet without a state.
     fn step(&mut self) -> (usize, bool) {
         for _ in 0..10 {
             let sent = Instant::now();
@@ -56,8 +56,8 @@ impl Simulator {
     }
 }
 
-/// The firmware's links, on a runtime that only turns when it is told to: in between nobody is woken for a packet, as
-/// after a stall of the whole program.
+/// Starts a session on a runtime that runs only inside `block_on`. In between no task wakes for a packet, as in a stall
+/// of the whole program.
 fn session(simulator: &Simulator, runtime: &tokio::runtime::Runtime) -> (Handle, impl Sized + use<>) {
     let config = ListenConfig {
         tcp_port: None,
@@ -103,7 +103,7 @@ fn a_state_that_waited_while_the_firmware_was_held_up_is_answered_once_and_nothi
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
     let mut simulator = Simulator::new();
     let (_session, _links) = session(&simulator, &runtime);
-    // Until a state was answered the firmware is not held up.
+    // The firmware is not held up until it has answered a state.
     simulator.raw.recv(&mut [0; 256]).expect("the packet of the start");
     runtime.block_on(async {
         simulator.raw.set_nonblocking(true).unwrap();
@@ -116,7 +116,7 @@ fn a_state_that_waited_while_the_firmware_was_held_up_is_answered_once_and_nothi
     let mut in_time = 0;
     for round in 0.. {
         let (motors, soon) = simulator.step();
-        // A machine that is busy itself proves nothing, nor do the states that were sent in a row.
+        // A busy machine proves nothing, nor do the states that were sent in a row.
         if round > 0 && soon {
             assert_eq!(motors, 1, "sent for state {round}");
             in_time += 1;

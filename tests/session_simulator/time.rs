@@ -1,4 +1,4 @@
-//! Time and truth are the simulator's: its stamps, its silence, its restart.
+//! Time and truth come from the simulator: its stamps, its silence, its restart.
 
 use std::time::{Duration, Instant};
 
@@ -34,7 +34,7 @@ async fn the_simulators_stamps_are_the_time_and_its_state_the_truth() {
     let mut rig = rig().await;
     rig.state(0, 0.0, 0.0).await;
     rig.hear("The simulator speaks").await;
-    // The first packet only sets the time base, the second tells where the craft starts.
+    // The first packet only sets the time base; the second sets the start of the craft.
     rig.state(0, 0.0, 0.0).await;
     let begun = rig.picture(|view| view.simulator == Some(LinkState::Flowing)).await.vehicle.time;
     for step in 1..=400 {
@@ -86,7 +86,7 @@ async fn silence_stops_time_and_is_shown_until_the_simulator_returns() {
     let view = rig.picture(|view| view.simulator == Some(LinkState::Silent)).await;
     assert_eq!(stats(&view).link, LinkState::Silent);
 
-    // Keys still act: the firmware can be started anew, and the way out is told.
+    // Keys still act: the firmware can be restarted, and a notice names the way out.
     rig.command(Command::ResetCraft).await;
     rig.hear("The firmware started anew, disarmed").await;
     let still = rig.picture(|view| view.vehicle.truth.is_none()).await;
@@ -118,7 +118,7 @@ async fn a_restarted_simulator_finds_a_disarmed_craft_and_resting_sticks() {
     }
     rig.picture(|view| view.vehicle.craft.is_armed()).await;
 
-    // Its time falls; for half a second that is taken for a late packet.
+    // Its time jumps back, which counts as a late packet for half a second.
     rig.stamp_ms = 0;
     for _ in 0..60 {
         rig.state(10, 0.0, 0.0).await;
@@ -131,7 +131,7 @@ async fn a_restarted_simulator_finds_a_disarmed_craft_and_resting_sticks() {
 #[tokio::test]
 async fn a_simulator_that_is_slower_than_the_clock_is_told_with_its_speed_and_what_was_lost() {
     let (mut rig, _) = speaking(&[]).await;
-    // What a busy machine lost before the simulator spoke.
+    // The time that a busy machine lost before the simulator started.
     let before = rig.session.view.borrow().lost_time.sum;
     for _ in 0..100 {
         // Ten milliseconds of flight take twenty-five.
@@ -141,7 +141,7 @@ async fn a_simulator_that_is_slower_than_the_clock_is_told_with_its_speed_and_wh
     rig.hear("1 was wanted").await;
     let lost = before + Duration::from_millis(1500);
     assert_eq!(rig.picture(|view| view.lost_time.sum >= lost).await.lost_time.sum, lost);
-    // A pause is none of the machine's business.
+    // A pause does not count as time lost by the machine.
     rig.at += Duration::from_secs(30);
     rig.state(10, 0.0, 0.0).await;
     rig.flown_ms().await;

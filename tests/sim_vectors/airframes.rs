@@ -1,4 +1,4 @@
-//! The built-in airframes are the ones of the vectors.
+//! The built-in airframes equal those of the vectors.
 
 use betadeck::sim::{Airframe, BUILTIN_NAMES};
 use nalgebra::Vector3;

@@ -18,13 +18,13 @@ fn standard_atmosphere() {
         near(temperature_k(h), num(&row["T_K"]), 1e-12);
         near(pressure_pa(h), num(&row["p_Pa"]), 1e-9);
         near(density(h), num(&row["rho"]), 1e-9);
-        // What Betaflight's SITL computes from the altitude is the same to its resolution of 1 Pa.
+        // Betaflight's SITL computes the same from the altitude, to its resolution of 1 Pa.
         close(pressure_pa(h), num(&row["sitl_formula_Pa"]), 0.01);
         assert_eq!(pressure_pa(h).trunc(), num(&row["sitl_int_Pa"]));
     }
 }
 
-/// The pressure that we write to a simulator's peer, as a stock SITL takes it and shows it.
+/// The pressure in the packets to a SITL, as a stock executable reads and shows it.
 #[test]
 fn pressure_of_the_doors_as_an_executable_shows_it() {
     for row in rows(&section("environment")["isa"]) {
@@ -38,7 +38,7 @@ fn pressure_of_the_doors_as_an_executable_shows_it() {
     }
 }
 
-/// gz-math 7 turns the plane by 180°: taken at the other side of home, its positions are the true ones.
+/// gz-math 7 turns the plane by 180°. Mirrored about home, its positions are the true ones.
 #[test]
 fn mirrored_positions_of_gz_math_are_the_true_ones() {
     for row in rows(&section("environment")["geodesy"]) {
@@ -53,7 +53,8 @@ fn mirrored_positions_of_gz_math_are_the_true_ones() {
     }
 }
 
-/// Latitude, longitude, altitude of a point of the tangent plane, exactly on the ellipsoid (Bowring's iteration).
+/// Returns latitude, longitude and altitude of a point of the tangent plane, exactly on the ellipsoid (Bowring's
+/// iteration).
 fn exact_geodetic(home: Vector3<f64>, enu: Vector3<f64>) -> Vector3<f64> {
     const A: f64 = 6_378_137.0;
     const F: f64 = 1.0 / 298.257_223_563;

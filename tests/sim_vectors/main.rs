@@ -8,14 +8,14 @@ mod stand;
 use nalgebra::Vector3;
 use serde_json::Value;
 
-/// One section of the vectors.
+/// Returns one section of the vectors.
 fn section(name: &str) -> Value {
     let vectors: Value =
         serde_json::from_str(include_str!("../vectors/sim.json")).expect("the vectors are JSON");
     vectors[name].clone()
 }
 
-/// One check of the section `physics`.
+/// Returns one check of the section `physics`.
 fn physics(id: &str) -> Value {
     let checks = section("physics");
     let check = checks.as_array().and_then(|checks| checks.iter().find(|check| check["id"] == id));
@@ -44,7 +44,7 @@ fn close3(got: Vector3<f64>, want: Vector3<f64>, tolerance: f64) {
     assert!((got - want).amax() <= tolerance, "{got:?} instead of {want:?}");
 }
 
-/// Relative closeness.
+/// Panics unless `got` is as close to `want` as `relative` allows.
 #[track_caller]
 fn near(got: f64, want: f64, relative: f64) {
     close(got, want, relative * want.abs());

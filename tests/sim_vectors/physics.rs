@@ -254,7 +254,7 @@ fn phy_12_left_mirrors_right() {
     assert!(a.rate_flu.norm() > 0.1, "something moved");
 }
 
-/// The start of PHY-13 with a step of `h`.
+/// Returns the start of PHY-13 with a step of `h`.
 fn reference_flight(h: f64) -> Stand {
     let mut stand = Stand::new(Airframe::iris(), 50.0, h);
     stand.body.vel_enu = Vector3::new(1.0, 2.0, -0.5);

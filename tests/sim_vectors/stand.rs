@@ -18,7 +18,7 @@ pub(crate) struct Stand {
 }
 
 impl Stand {
-    /// A level craft facing north at a height, at rest, rotors stopped, in still air of reference density.
+    /// Returns a level craft facing north at a height, at rest, rotors stopped, in still air of reference density.
     pub(crate) fn new(airframe: Airframe, height_m: f64, h: f64) -> Self {
         Self {
             plant: Plant::new(&airframe, h),
@@ -37,13 +37,13 @@ impl Stand {
         }
     }
 
-    /// Rotors turn at these speeds and stay there.
+    /// Sets the rotors to these speeds and keeps them there.
     pub(crate) fn hold_rotors(&mut self, speeds: [f64; ROTORS]) {
         self.rotors = speeds;
         self.target = speeds;
     }
 
-    /// Motor commands 0…1.
+    /// Sets the motor commands, 0…1.
     pub(crate) fn command(&mut self, u: [f64; ROTORS]) {
         self.target = u.map(|u| u * self.airframe.rotor_speed_max);
     }
@@ -68,7 +68,7 @@ impl Stand {
     }
 }
 
-/// An airframe without any aerodynamic force but thrust.
+/// Returns the airframe with thrust as its only aerodynamic force.
 pub(crate) fn without_drag(mut airframe: Airframe) -> Airframe {
     airframe.inflow_coeff = 0.0;
     airframe.rotor_drag_coeff = 0.0;
@@ -77,7 +77,8 @@ pub(crate) fn without_drag(mut airframe: Airframe) -> Airframe {
     airframe
 }
 
-/// The airframe with its rotors at the same distance from the long axis, in the plane of the centre of mass if `flat`.
+/// Returns the airframe with its rotors at the same distance from the long axis, in the plane of the centre of mass if
+/// `flat`.
 pub(crate) fn symmetric(mut airframe: Airframe, flat: bool) -> Airframe {
     for rotor in &mut airframe.rotor_positions_m {
         rotor.y = 0.21 * rotor.y.signum();
@@ -88,7 +89,7 @@ pub(crate) fn symmetric(mut airframe: Airframe, flat: bool) -> Airframe {
     airframe
 }
 
-/// The density at which the coefficients hold is the one of the vectors.
+/// The coefficients hold at the density of sea level, as the vectors assume.
 #[test]
 fn the_reference_density_is_that_of_sea_level() {
     assert!((betadeck::sim::density(0.0) / REFERENCE_DENSITY - 1.0).abs() < 1e-7);

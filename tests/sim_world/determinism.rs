@@ -1,4 +1,4 @@
-//! Same build, seed and inputs: the same bits, however the steps are grouped and wherever they run.
+//! The same build, seed and inputs give the same bits, for any grouping of the steps and on any thread.
 
 use std::hash::{DefaultHasher, Hasher};
 
@@ -9,7 +9,7 @@ use crate::{ideal, put_on, stand, world};
 
 const STEPS: u64 = 12_000;
 
-/// Rough air, real sensors, faults on the way.
+/// Returns a configuration with rough air, real sensors and faults on the way.
 fn stormy(seed: u64) -> WorldConfig {
     let fault = |text: &str| text.parse::<ScheduledFault>().unwrap_or_else(|error| panic!("{error}"));
     WorldConfig {
@@ -28,7 +28,7 @@ fn stormy(seed: u64) -> WorldConfig {
     }
 }
 
-/// A stand-in for a flight controller: damps what the gyro shows.
+/// Stands in for a flight controller: damps the rates of the gyro.
 fn command(frame: &SensorFrame) -> MotorCommand {
     let rate = 0.02 * frame.rate_flu;
     let base = 0.53;
@@ -109,7 +109,7 @@ fn the_seed_shows_in_the_gps_but_not_in_an_ideal_world() {
     assert_eq!(trace(WorldConfig { seed: 1, ..ideal() }, 10), trace(WorldConfig { seed: 2, ..ideal() }, 10));
 }
 
-/// All samples of one sensor while standing.
+/// Returns all samples of one sensor of a craft on the ground.
 fn samples<T>(config: WorldConfig, faults: &[&str], pick: impl Fn(&SensorFrame) -> Option<T>) -> Vec<T> {
     let mut world = world(config);
     for fault in faults {

@@ -1,4 +1,4 @@
-//! `docs/physics.md` says what the code does.
+//! `docs/physics.md` against the code.
 
 use betadeck::sim::{Airframe, FAULTS, SWITCHES};
 

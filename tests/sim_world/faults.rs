@@ -1,11 +1,11 @@
-//! What each fault does to what the flight controller sees or to the craft.
+//! The effect of each fault on the sensor data or on the craft.
 
 use betadeck::signals::GpsSample;
 use betadeck::sim::{World, WorldCommand, WorldConfig, WorldEventKind};
 
 use crate::{events, fault, ideal, put_on, run, stand, statistics, world};
 
-/// GPS messages while standing for a time, with their times.
+/// Returns the GPS messages while the craft is on the ground for a time, each with its time, s.
 fn messages(world: &mut World, seconds: f64) -> Vec<(f64, GpsSample)> {
     let mut seen = Vec::new();
     stand(world, seconds, |world| {
@@ -14,14 +14,14 @@ fn messages(world: &mut World, seconds: f64) -> Vec<(f64, GpsSample)> {
     seen
 }
 
-/// A world with a GPS fix.
+/// Returns a world with a GPS fix.
 fn fixed(config: WorldConfig) -> World {
     let mut world = world(config);
     stand(&mut world, 6.0, |_| {});
     world
 }
 
-/// A craft hovering by constant command, 20 m up.
+/// Returns a craft that hovers 20 m up by constant command, and that command.
 fn hovering() -> (World, f64) {
     let mut config = ideal();
     config.switches.set("air_density=reference").expect("a switch");

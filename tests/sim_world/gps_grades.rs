@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use crate::{ideal, stand, statistics, world};
 
-/// Position errors (ENU, m) and solutions of a craft at rest, ten a second, after the acquisition.
+/// Returns the position errors (ENU, m) and solutions of a craft at rest, ten a second, after the acquisition.
 fn at_rest(gps: GpsGrade, seconds: f64) -> Vec<(Vector3<f64>, GpsSample)> {
     let switches = Switches { gps, ..Switches::default() };
     let mut world = world(WorldConfig { seed: 4, rate_hz: 400, switches, ..WorldConfig::default() });
@@ -22,8 +22,8 @@ fn at_rest(gps: GpsGrade, seconds: f64) -> Vec<(Vector3<f64>, GpsSample)> {
     solutions
 }
 
-/// What the errors of a grade shall be: white and wandering position error, m, its time constant, s, white velocity
-/// error, m/s, horizontally; variance of the multipath steps an axis, m².
+/// The stated errors of a grade: white and wandering position error, m, horizontally; time constant of the wandering,
+/// s; white velocity error, m/s, horizontally; variance of the multipath steps per axis, m².
 struct Stated {
     white: f64,
     sigma: f64,
@@ -43,7 +43,7 @@ fn errors_are_as_stated(gps: GpsGrade, stated: &Stated) {
         let want = (stated.sigma.powi(2) + stated.white.powi(2) + multipath).sqrt();
         assert!((sigma / want - 1.0).abs() < 0.2, "{gps} axis {axis}: σ {sigma} instead of {want}");
         assert!(mean.abs() < 0.4 * want, "{gps} axis {axis}: mean {mean}");
-        // What is left of the wandering error after one time constant.
+        // The part of the wandering error that is left after one time constant.
         let lag = (stated.tau * 10.0) as usize;
         let product = errors.iter().zip(&errors[lag..]).map(|(a, b)| (a - mean) * (b - mean)).sum::<f64>();
         kept[axis] = product / (errors.len() - lag) as f64 / stated.sigma.powi(2);
@@ -53,7 +53,7 @@ fn errors_are_as_stated(gps: GpsGrade, stated: &Stated) {
         if multipath == 0.0 {
             let steps: Vec<f64> = errors.windows(2).map(|pair| pair[1] - pair[0]).collect();
             let wander = stated.sigma.powi(2) * (1.0 - (-0.1 / stated.tau).exp());
-            // And steps of 1e-7° and of a centimetre.
+            // Plus steps of 1e-7° and of a centimetre.
             let grid = 0.01_f64.powi(2) / 12.0;
             let want = (2.0 * (stated.white.powi(2) + wander + grid)).sqrt();
             let (_, sigma) = statistics(&steps);
@@ -78,7 +78,7 @@ fn a_consumer_receiver_wanders_by_a_metre() {
 
 #[test]
 fn among_buildings_the_position_wanders_by_metres_and_jumps() {
-    // A step stands a fifth of the time; the mean square of its size is 28 m².
+    // A step is there for a fifth of the time; the mean square of its size is 28 m².
     let stated = Stated { white: 0.3, sigma: 3.0, tau: 30.0, velocity: 0.3, multipath: 2.8 };
     errors_are_as_stated(GpsGrade::Urban, &stated);
     let solutions = at_rest(GpsGrade::Urban, 600.0);

@@ -1,4 +1,4 @@
-//! The world from outside: repeatability, sensor statistics, and what each fault does.
+//! The world through its public interface: repeatability, sensor statistics, and the effect of each fault.
 
 mod determinism;
 mod docs;
@@ -14,7 +14,7 @@ fn world(config: WorldConfig) -> World {
     World::new(config).expect("a world")
 }
 
-/// Exact sensors, no wind, no profile.
+/// Returns a configuration with exact sensors, no wind and no profile.
 fn ideal() -> WorldConfig {
     WorldConfig { noise: Noise::None, ..WorldConfig::default() }
 }
@@ -39,7 +39,7 @@ fn fault(text: &str) -> Fault {
     Fault::parse(name, value).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Puts a fault on for a time, or to the end.
+/// Starts a fault, for a time or until the end.
 fn put_on(world: &mut World, text: &str, for_s: Option<f64>) {
     world.apply(WorldCommand::FaultOn(fault(text), for_s)).unwrap_or_else(|error| panic!("{error}"));
 }
@@ -48,7 +48,7 @@ fn events(world: &mut World) -> Vec<WorldEventKind> {
     std::iter::from_fn(|| world.take_event()).map(|event| event.kind).collect()
 }
 
-/// Mean and standard deviation.
+/// Returns the mean and the standard deviation.
 fn statistics(values: &[f64]) -> (f64, f64) {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 
 use crate::{ideal, put_on, run, stand, statistics, world};
 
-/// Real noise without turn-on bias and drift.
+/// Returns a configuration with real noise, without turn-on bias and drift.
 fn without_bias() -> WorldConfig {
     WorldConfig { switches: Switches { sensor_bias: false, ..Switches::default() }, ..WorldConfig::default() }
 }
@@ -105,7 +105,7 @@ fn gps_errors_are_white_plus_wandering() {
     }
 }
 
-/// The age of GPS velocities while falling, in hundredths of a second: where they fit the truth best.
+/// Returns the age at which the GPS velocities of a falling craft fit the truth best, in hundredths of a second.
 fn gps_age(noise: Noise) -> usize {
     let mut world = world(WorldConfig { noise, ..ideal() });
     stand(&mut world, 6.0, |_| {});

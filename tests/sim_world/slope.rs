@@ -1,4 +1,4 @@
-//! Ground that slopes: standing, touching, sliding and flying above it.
+//! Sloping ground: a craft that is at rest, touches down, slides and flies above it.
 
 use betadeck::sim::{
     Airframe, Direction, Fault, Surface, Switches, World, WorldCommand, WorldConfig, WorldEventKind,
@@ -22,7 +22,7 @@ fn teleport(world: &mut World, north_east_up: [f64; 3]) {
     world.apply(WorldCommand::FaultOn(Fault::Teleport(north_east_up), None)).expect("a teleport");
 }
 
-/// Angle between the craft's up and that of the ground, degrees.
+/// Returns the angle between the craft's up axis and that of the ground, degrees.
 fn tilt_on(world: &World, ground: &Surface) -> f64 {
     let truth = world.truth();
     let plane = ground.tangent_at(&truth.pos_enu);
@@ -129,7 +129,7 @@ fn the_ground_may_change_under_a_craft() {
     stand(&mut world, 2.0, |_| ());
     assert!(tilt_on(&world, &ground) < 0.5 && world.truth().on_ground && !world.truth().crashed);
     assert_eq!(events(&mut world), []);
-    // In the air it stays where it is, unless the ground has risen above it.
+    // In the air the craft stays in its place, unless the ground has risen above it.
     teleport(&mut world, [0.0, 50.0, 30.0]);
     run(&mut world, 0.001, 0.0);
     let before = world.truth().pos_enu;

@@ -1,9 +1,9 @@
-//! What an external simulator says of a craft that stands on the ground.
+//! The state that an external simulator sends for a craft on the ground.
 
 use betadeck::link::proto::fdm::{State, pressure_pa};
 use nalgebra::{UnitQuaternion, Vector3};
 
-/// A craft at rest, level, facing north.
+/// Returns the state of a craft at rest, level, facing north.
 pub(crate) fn at_rest(stamp_s: f64) -> State {
     State {
         stamp_s,

@@ -1,4 +1,4 @@
-//! The executable, its lines, and its end with the test.
+//! The executable as a child: its output lines, and its end together with the test.
 
 use std::io::{BufRead as _, BufReader, Read};
 use std::process::{Command, Stdio};
@@ -9,7 +9,7 @@ use tempfile::TempDir;
 
 use crate::square;
 
-/// When something that is waited for counts as never coming.
+/// The time after which something that is waited for counts as missing.
 pub(crate) const NEVER: Duration = Duration::from_secs(120);
 
 /// A running executable in a directory of its own; killed when dropped.
@@ -20,7 +20,7 @@ pub(crate) struct Child {
     _directory: TempDir,
 }
 
-/// A command of the executable that sees nothing of the real environment.
+/// Returns a command of the executable that sees nothing of the real environment.
 fn command(directory: &TempDir, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_betadeck"));
     command.env_clear().env("HOME", directory.path()).current_dir(directory.path()).args(arguments);
@@ -28,7 +28,7 @@ fn command(directory: &TempDir, arguments: &[&str]) -> Command {
 }
 
 impl Child {
-    /// The drop-in, with the square in its memory, sending motors to this port.
+    /// Starts the drop-in with the square in its memory. It sends its motors to this port.
     pub(crate) fn sitl(motors: u16, raw: u16, more: &[&str]) -> Self {
         let directory = tempfile::tempdir().expect("a directory");
         std::fs::write(directory.path().join("square.txt"), square::lines()).expect("a file");
@@ -42,7 +42,8 @@ impl Child {
         Self::start(directory, &arguments)
     }
 
-    /// Everything but the screen, with the square in its memory, sending motors to this port.
+    /// Starts `serve`, which is everything but the screen, with the square in its memory. It sends its motors to this
+    /// port.
     pub(crate) fn serve(motors: u16, raw: u16, more: &[&str]) -> Self {
         let directory = tempfile::tempdir().expect("a directory");
         std::fs::write(directory.path().join("square.txt"), square::lines()).expect("a file");
@@ -65,7 +66,7 @@ impl Child {
         Self { process, lines, seen: Vec::new(), _directory: directory }
     }
 
-    /// The first line with these words, from those that were said already or from those to come.
+    /// Returns the first line with these words, from the lines so far or from those to come.
     #[track_caller]
     pub(crate) fn line(&mut self, words: &str) -> String {
         let mut looked_at = 0;
@@ -81,18 +82,18 @@ impl Child {
         }
     }
 
-    /// Everything that was said until now.
+    /// Returns all lines so far.
     pub(crate) fn lines(&mut self) -> &[String] {
         self.seen.extend(self.lines.try_iter());
         &self.seen
     }
 
-    /// Whether it still runs.
+    /// Returns `true` while the child runs.
     pub(crate) fn is_alive(&mut self) -> bool {
         self.process.try_wait().expect("its state").is_none()
     }
 
-    /// The ports of states and RC, told in the lines about the links, in this order.
+    /// Returns the ports of states and RC, which the lines about the links report in this order.
     #[track_caller]
     pub(crate) fn sitl_ports(&mut self) -> (u16, u16) {
         const SERVER: &str = "[SITL] start UDP server @";
@@ -106,7 +107,7 @@ impl Child {
         }
     }
 
-    /// The ports of states and RC in the line about the open doors.
+    /// Returns the ports of states and RC from the line about the open doors.
     #[track_caller]
     pub(crate) fn serve_ports(&mut self) -> (u16, u16) {
         let line = self.line("Doors open: ");
@@ -134,7 +135,7 @@ impl Drop for Child {
 
 fn listen(stream: impl Read + Send + 'static, says: Sender<String>) {
     std::thread::spawn(move || {
-        // Ends with the program.
+        // The loop ends with the program.
         for line in BufReader::new(stream).lines().map_while(Result::ok) {
             if says.send(line).is_err() {
                 return;

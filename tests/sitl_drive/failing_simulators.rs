@@ -1,4 +1,4 @@
-//! Simulators that hang, die, start anew, keep no rhythm, lose what is waited for, or talk nonsense.
+//! Simulators that hang, end, restart, send without a rhythm, lose packets that are waited for, or send nonsense.
 
 use betadeck::link::proto::fdm::{GZ_PLUGIN_SIZE, SIZE};
 use betadeck::signals::fdm::Dialect;
@@ -8,14 +8,15 @@ use crate::rates::sitl;
 use crate::simulator::{Hand, Simulator};
 use crate::square::{Bounds, Flown};
 
-/// Errors of a flight that went on after a failure.
+/// The allowed errors of a flight that goes on after a failure.
 pub(crate) const BOUNDS: Bounds =
     Bounds { flyover_m: 2.0, hold_m: 2.0, land_m: 1.0, height_m: 3.0, impact_mps: 1.5 };
 
-/// Packets that the firmware sends unasked until a simulator counts as silent: the last of them after a second.
+/// The packets that the firmware sends without a state until a simulator counts as silent. The last one comes after a
+/// second.
 const SENT_IN_A_SECOND: u32 = 4;
 
-/// The simulator says nothing for more than a second; its world stands still.
+/// Keeps the simulator silent for more than a second, while its world does not move.
 pub(crate) fn hang(simulator: &mut Simulator) {
     for _ in 0..SENT_IN_A_SECOND {
         simulator.read_motors();
@@ -48,7 +49,7 @@ fn a_simulator_that_dies_and_comes_back_begins_a_new_flight() {
 fn a_world_that_is_reset_begins_a_new_flight() {
     let (mut child, mut simulator) = sitl(Dialect::SitlGz);
     simulator.fly_up_to(10, 12.0);
-    // The same simulator: its time falls to zero and the craft stands at home.
+    // The same simulator: its time falls to zero and the craft is at home.
     simulator.plant = Plant::new(Dialect::SitlGz);
     simulator.flown = Flown::new(simulator.plant.world.local_frame());
     simulator.hand = Hand::Waits;
@@ -59,7 +60,7 @@ fn a_world_that_is_reset_begins_a_new_flight() {
     simulator.flown.is_the_square(&BOUNDS);
 }
 
-/// The craft of a new world is disarmed and stays at home until it is armed again.
+/// Checks that the craft of a new world is disarmed and stays at home until it is armed again.
 #[track_caller]
 fn begins_anew(simulator: &mut Simulator) {
     while simulator.plant.time_ms() < 5000 {
@@ -89,7 +90,7 @@ fn an_answer_that_is_waited_for_in_vain_comes_again() {
     while simulator.hand != Hand::Done {
         if simulator.plant.time_ms() >= next_ms {
             next_ms += 10_000;
-            // The state never arrives, and the simulator waits for its motors: nobody else will end this silence.
+            // The state never arrives, and the simulator waits for its motors. Only the firmware can end this silence.
             simulator.read_motors();
         }
         simulator.step(10);
@@ -112,7 +113,7 @@ fn nonsense_between_the_states_changes_nothing() {
     simulator.flown.is_the_square(&BOUNDS);
 }
 
-/// A datagram that is not to be believed, made from one that is.
+/// Returns an invalid datagram, made from a valid one.
 fn nonsense(good: &[u8], turn: usize) -> Vec<u8> {
     let with = |field: usize, value: f64| {
         let mut bytes = good.to_vec();

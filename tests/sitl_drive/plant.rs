@@ -1,4 +1,4 @@
-//! The project's plant, and the packets in which a simulator speaks of it.
+//! The project's plant, and the packets that a simulator sends about it.
 
 use betadeck::link::proto::fdm::{GZ_PLUGIN_SIZE, State, mirrored, pressure_pa};
 use betadeck::signals::MotorCommand;
@@ -7,7 +7,6 @@ use betadeck::sim::{Noise, World, WorldConfig, WorldEventKind};
 
 /// A craft at home, or in flight.
 pub(crate) struct Plant {
-    /// The world.
     pub(crate) world: World,
     dialect: Dialect,
     crash: Option<String>,
@@ -15,14 +14,14 @@ pub(crate) struct Plant {
 }
 
 impl Plant {
-    /// A craft at home.
+    /// Returns a craft at home.
     pub(crate) fn new(dialect: Dialect) -> Self {
         let world =
             World::new(WorldConfig { noise: Noise::None, ..WorldConfig::default() }).expect("a world");
         Self { world, dialect, crash: None, impact_mps: 0.0 }
     }
 
-    /// Simulated time, ms.
+    /// Returns the simulated time, ms.
     pub(crate) fn time_ms(&self) -> u64 {
         self.world.time().0 / 1000
     }
@@ -45,22 +44,22 @@ impl Plant {
         }
     }
 
-    /// What went wrong, if something did.
+    /// Returns the cause of a crash, if there was one.
     pub(crate) fn crash(&self) -> Option<&str> {
         self.crash.as_deref()
     }
 
-    /// Speed of the last touch of the ground, m/s.
+    /// Returns the speed of the last contact with the ground, m/s.
     pub(crate) fn impact_mps(&self) -> f64 {
         self.impact_mps
     }
 
-    /// Height above home, m.
+    /// Returns the height above home, m.
     pub(crate) fn height_m(&self) -> f64 {
         self.world.truth().pos_enu.z - self.world.airframe().standing_height_m()
     }
 
-    /// The state of the craft as the dialect says it, positions mirrored about home where it does so.
+    /// Encodes the state of the craft in the dialect, with positions mirrored about home if the dialect does so.
     pub(crate) fn packet(&self) -> Vec<u8> {
         let (truth, frame) = (self.world.truth(), self.world.local_frame());
         let (lat_deg, lon_deg, alt_m) = frame.to_geodetic(truth.pos_enu);
@@ -78,7 +77,7 @@ impl Plant {
         };
         let mut bytes = self.dialect.encode(&state).to_bytes().to_vec();
         if self.dialect == Dialect::GzPlugin {
-            // What the plugin leaves uninitialised.
+            // The plugin leaves these bytes uninitialised.
             bytes.resize(GZ_PLUGIN_SIZE, 0xff);
         }
         bytes

@@ -10,15 +10,15 @@ use crate::square::Bounds;
 
 /// A pause of the simulator or of the link, ms.
 const PAUSE_MS: u64 = 300;
-/// From one pause to the next, ms of flight.
+/// The flight time from one pause to the next, ms.
 const BETWEEN_MS: u64 = 8000;
 
-/// The drop-in and a simulator that it has greeted.
+/// Starts the drop-in and a simulator that is connected to it.
 pub(crate) fn sitl(dialect: Dialect) -> (Child, Simulator) {
     let mut simulator = Simulator::new(dialect);
     let (motors, raw) = simulator.ports();
     let told = format!("--fdm-dialect={dialect}");
-    // The legacy dialect has the size of another and must be told.
+    // The legacy dialect has the size of another one, so it must be named.
     let more: &[&str] = if dialect == Dialect::Legacy { &[&told] } else { &[] };
     let mut child = Child::sitl(motors, raw, more);
     simulator.connect(child.sitl_ports());
@@ -44,7 +44,8 @@ fn flies_the_square(dialect: Dialect, every_ms: u64) {
     simulator.flown.is_the_square(&rough);
 }
 
-/// In turn, the world stands still, which takes time on the wall only; or it goes on and nothing passes the link.
+/// Flies with two kinds of pause in turn: the world stops, which takes wall time only, or it goes on without any
+/// packets.
 fn fly_with_pauses(simulator: &mut Simulator, every_ms: u64) {
     let mut next_ms = BETWEEN_MS;
     let mut world_stands = true;

@@ -1,5 +1,5 @@
-//! A simulator that keeps the rules of Gazebo's plugin: in each step it reads one packet of motors, waits for it if there
-//! is none, moves the craft and sends its state. And the hand on the transmitter, which works by simulated time.
+//! A simulator that follows the rules of Gazebo's plugin: each step reads one packet of motors, waits for it if there
+//! is none, moves the craft and sends its state. The hand on the transmitter works by simulated time.
 
 use std::net::{Ipv4Addr, UdpSocket};
 
@@ -13,14 +13,14 @@ use crate::square::Flown;
 
 /// Interval of RC packets, ms.
 const RC_MS: u64 = 20;
-/// When the transmitter switches ARM on, ms: the firmware is up and has a fix.
+/// The time at which the transmitter switches ARM on, ms. By then the firmware has booted and has a fix.
 const ARM_MS: u64 = 6000;
-/// A motor above this turns because the craft is armed.
+/// A motor value above this means that the craft is armed.
 const IDLE: f32 = 0.03;
-/// A flight that takes longer has gone wrong, ms.
+/// The longest time of a flight, ms. A flight that takes longer has gone wrong.
 const LONGEST_MS: u64 = 400_000;
 
-/// What the hand on the transmitter does.
+/// The state of the hand on the transmitter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Hand {
     /// Waits until the craft is ready.
@@ -35,13 +35,13 @@ pub(crate) enum Hand {
 
 /// The simulator, its sockets and the transmitter.
 pub(crate) struct Simulator {
-    /// What it simulates.
+    /// The simulated craft.
     pub(crate) plant: Plant,
-    /// What was flown.
+    /// The record of the flight.
     pub(crate) flown: Flown,
-    /// The transmitter.
+    /// The hand on the transmitter.
     pub(crate) hand: Hand,
-    /// Part of the packets of both sides that is lost, 0…1.
+    /// The share of the packets in both directions that is lost, 0…1.
     pub(crate) loss: f64,
     dice: u64,
     motors_in: UdpSocket,
@@ -54,7 +54,7 @@ pub(crate) struct Simulator {
 }
 
 impl Simulator {
-    /// A simulator with open sockets whose firmware is not known yet.
+    /// Returns a simulator with open sockets whose firmware is not known yet.
     pub(crate) fn new(dialect: Dialect) -> Self {
         let socket = || {
             let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).expect("a socket");
@@ -78,20 +78,20 @@ impl Simulator {
         }
     }
 
-    /// Where it reads motors: normalised and raw.
+    /// Returns the ports where it reads motors: normalised and raw.
     pub(crate) fn ports(&self) -> (u16, u16) {
         let port = |socket: &UdpSocket| socket.local_addr().expect("an address").port();
         (port(&self.motors_in), port(&self.raw_in))
     }
 
-    /// Speaks to the firmware behind these doors from now on; its first packet of motors is read.
+    /// Connects to the firmware at these doors, and reads its first packet of motors.
     pub(crate) fn connect(&mut self, (fdm_port, rc_port): (u16, u16)) {
         (self.fdm_port, self.rc_port) = (fdm_port, rc_port);
         self.read_motors();
     }
 
-    /// Moves on by `ms` with the newest motors, tells the state, and waits for the answer. A packet that is lost on its
-    /// way is not waited for: the craft flies on with the motors it has.
+    /// Moves on by `ms` with the newest motors, sends the state, and waits for the answer. It does not wait for a lost
+    /// packet: the craft flies on with the last motors.
     pub(crate) fn step(&mut self, ms: u64) {
         self.advance(ms);
         if self.is_lost() {
@@ -105,7 +105,7 @@ impl Simulator {
         }
     }
 
-    /// The world goes on, and nobody hears of it.
+    /// Moves the world on without sending its state.
     pub(crate) fn advance(&mut self, ms: u64) {
         self.plant.advance(ms, self.motors);
         assert_eq!(self.plant.crash(), None, "at {} ms: {:?}", self.plant.time_ms(), self.flown);
@@ -122,19 +122,19 @@ impl Simulator {
         self.flown.impact_mps = self.plant.impact_mps();
     }
 
-    /// Flies on in steps of `ms` until the craft is on its way and this high.
+    /// Flies on in steps of `ms` until the craft has reached this height.
     pub(crate) fn fly_up_to(&mut self, ms: u64, height_m: f64) {
         while self.plant.height_m() < height_m {
             self.step(ms);
         }
     }
 
-    /// Sends a datagram to the door of states.
+    /// Sends a datagram to the door for states.
     pub(crate) fn send(&self, datagram: &[u8]) {
         self.out.send_to(datagram, (Ipv4Addr::LOCALHOST, self.fdm_port)).expect("it is sent");
     }
 
-    /// Tells the state of the craft.
+    /// Sends the state of the craft.
     pub(crate) fn send_state(&self) {
         self.send(&self.plant.packet());
     }
@@ -147,23 +147,23 @@ impl Simulator {
         self.motors = servo::decode(&bytes[..size]).expect("motors");
     }
 
-    /// The newest motors.
+    /// Returns the newest motors.
     pub(crate) fn motors(&self) -> [f32; 4] {
         self.motors
     }
 
-    /// The transmitter works by the time of a new world.
+    /// Restarts the transmitter's clock for a new world.
     pub(crate) fn begin_rc_anew(&mut self) {
         self.next_rc_ms = 0;
     }
 
-    /// The simulator ends: its sockets are closed and its world is gone. What is left is the way to start it again.
+    /// Ends the simulator: closes its sockets and drops its world. Returns the ports to start it again.
     pub(crate) fn end(self) -> Ended {
         let (motors, raw) = self.ports();
         Ended { motors, raw, doors: (self.fdm_port, self.rc_port) }
     }
 
-    /// Whether a packet gets lost; the same ones in every run.
+    /// Returns `true` if a packet gets lost. The same packets get lost in every run.
     fn is_lost(&mut self) -> bool {
         self.dice = self.dice.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         ((self.dice >> 33) as f64 / f64::from(1_u32 << 31)) < self.loss
@@ -202,7 +202,7 @@ impl Simulator {
     }
 }
 
-/// What is left of a simulator that ended.
+/// The ports of a simulator that has ended.
 pub(crate) struct Ended {
     motors: u16,
     raw: u16,
@@ -210,10 +210,11 @@ pub(crate) struct Ended {
 }
 
 impl Ended {
-    /// Starts it anew: the craft stands at home, time begins at zero. It reads motors as soon as they come.
+    /// Starts the simulator again: the craft is at home and time begins at zero. It reads motors as soon as they
+    /// arrive.
     pub(crate) fn start(self, dialect: Dialect) -> Simulator {
         let again = |port| {
-            // A child that another test starts in this moment holds the closed socket until it runs.
+            // A child that another test starts at this moment holds the closed socket until it runs.
             let bind =
                 || UdpSocket::bind((Ipv4Addr::LOCALHOST, port)).map_err(|_| std::thread::yield_now()).ok();
             let socket = (0..100_000).find_map(|_| bind()).expect("the port of before");

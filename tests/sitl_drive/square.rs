@@ -1,5 +1,5 @@
-//! The square: the guide's corners and settings, lower and with a shorter stay so that a flight takes a minute and a half, and what
-//! flying it means.
+//! The square: the guide's corners and settings, lower and with a shorter hold, so that a flight takes a minute and a
+//! half; and the check of a flight.
 
 use betadeck::geo::LocalFrame;
 use nalgebra::Vector2;
@@ -11,7 +11,7 @@ pub(crate) const HEIGHT_M: f64 = 20.0;
 const CORNERS: [(f64, f64); 4] =
     [(40.4640, -79.5175), (40.4630, -79.5175), (40.4630, -79.5190), (40.4640, -79.5190)];
 
-/// What is typed into the craft.
+/// Returns the lines that are typed into the craft.
 pub(crate) fn lines() -> String {
     let mut text = String::from(
         "aux 0 0 0 1700 2100 0 0\n\
@@ -43,29 +43,29 @@ pub(crate) fn lines() -> String {
     text + "save\n"
 }
 
-/// How near the craft really came to the corners, and how far it left its height on the way between them.
+/// The true distances of the craft from the corners, and its height error on the way between them.
 #[derive(Debug, Clone)]
 pub(crate) struct Flown {
     corners: [Vector2<f64>; 4],
-    /// Least distance to each corner, m.
+    /// The least distance to each corner, m.
     pub(crate) nearest_m: [f64; 4],
-    /// Corners in the order in which the craft came near them.
+    /// The corners in the order in which the craft came near them.
     pub(crate) order: Vec<usize>,
-    /// Greatest distance from the height of the plan between the second and the last corner, m.
+    /// The greatest distance from the height of the plan between the second and the last corner, m.
     pub(crate) height_error_m: f64,
-    /// Greatest distance from home, m.
+    /// The greatest distance from home, m.
     pub(crate) farthest_m: f64,
-    /// Where it stands at last: distance to the last corner, m.
+    /// The distance from the final position to the last corner, m.
     pub(crate) landed_m: f64,
-    /// Speed at the touchdown, m/s.
+    /// The speed at the touchdown, m/s.
     pub(crate) impact_mps: f64,
 }
 
-/// Closer than this counts as a visit, m: the turn of the FLYBY is cut.
+/// The distance below which a corner counts as visited, m. It is large because the turn of the FLYBY is cut.
 const VISIT_M: f64 = 25.0;
 
 impl Flown {
-    /// Nothing flown yet, in a world with this frame.
+    /// Returns an empty record, in a world with this frame.
     pub(crate) fn new(frame: &LocalFrame) -> Self {
         let corners = CORNERS.map(|(lat, lon)| frame.to_enu(lat, lon, frame.alt_amsl_m).xy());
         Self {
@@ -79,7 +79,7 @@ impl Flown {
         }
     }
 
-    /// Looks at the craft: east and north of home, height above it, m.
+    /// Records a position of the craft: east and north of home, and height above it, m.
     pub(crate) fn look(&mut self, place: Vector2<f64>, height_m: f64) {
         for (index, corner) in self.corners.iter().enumerate() {
             let distance = (place - corner).norm();
@@ -96,7 +96,7 @@ impl Flown {
         self.landed_m = (place - self.corners[3]).norm();
     }
 
-    /// Asserts that this was the square, within these errors.
+    /// Asserts that the square was flown within these errors.
     #[track_caller]
     pub(crate) fn is_the_square(&self, bounds: &Bounds) {
         let [flyover, flyby, hold, _] = self.nearest_m;
@@ -111,17 +111,17 @@ impl Flown {
     }
 }
 
-/// Errors that a flight may have.
+/// The allowed errors of a flight.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Bounds {
-    /// Distance at the FLYOVER, m.
+    /// The distance at the FLYOVER, m.
     pub(crate) flyover_m: f64,
-    /// Least distance to the HOLD, which is entered, m.
+    /// The least distance to the HOLD, which is entered, m.
     pub(crate) hold_m: f64,
-    /// Distance of the touchdown from the LAND, m.
+    /// The distance of the touchdown from the LAND, m.
     pub(crate) land_m: f64,
-    /// Height on the legs, m.
+    /// The height on the legs, m.
     pub(crate) height_m: f64,
-    /// Speed of the touchdown, m/s.
+    /// The speed of the touchdown, m/s.
     pub(crate) impact_mps: f64,
 }

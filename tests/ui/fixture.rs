@@ -22,10 +22,10 @@ use betadeck::ui::theme::{Charset, Palette};
 use betadeck::ui::{AppState, CliHelp, EnteredLines, Msg, OpenPlan, Theme, UiConfig, Units, update};
 use nalgebra::{Vector2, Vector3};
 
-/// Where the craft stands at boot.
+/// The position of the craft at boot.
 pub(crate) const HOME: LatLon = LatLon::new(404_635_000, -795_182_000);
 
-/// The guide's square.
+/// Returns the guide's square.
 pub(crate) fn square() -> FlightPlan {
     let corner = |lat_e7, lon_e7, kind, duration_ds| Waypoint {
         position: LatLon::new(lat_e7, lon_e7),
@@ -45,13 +45,13 @@ pub(crate) fn square() -> FlightPlan {
     plan
 }
 
-/// A plan that is open and that a file holds.
+/// Returns an open plan that is stored in a file.
 fn open(plan: FlightPlan) -> OpenPlan {
     let document = PlanDocument { name: "square".to_owned(), plan, ..PlanDocument::default() };
     OpenPlan::new(PlanId(1), Some("plans/square.toml".into()), History::new(document, true))
 }
 
-/// An event as a short sentence.
+/// Returns an event as a short sentence.
 fn sentence(event: &Event) -> String {
     let SessionEvent::Vehicle(kind) = &event.kind else { return format!("{:?}", event.kind) };
     match kind {
@@ -64,17 +64,17 @@ fn sentence(event: &Event) -> String {
     }
 }
 
-/// A user interface at this size, before the first picture.
+/// Returns a user interface of this size, before the first picture.
 pub(crate) fn state(size: (u16, u16), theme: Theme) -> AppState {
     state_with(size, theme, square())
 }
 
-/// The same with another plan open.
+/// Returns the same with another plan open.
 pub(crate) fn state_with(size: (u16, u16), theme: Theme, plan: FlightPlan) -> AppState {
     state_after(size, theme, plan, EnteredLines::default())
 }
 
-/// The same after earlier runs in which these lines were entered.
+/// Returns the same after earlier runs in which these lines were entered.
 pub(crate) fn state_after(
     size: (u16, u16),
     theme: Theme,
@@ -106,17 +106,17 @@ pub(crate) fn state_after(
     AppState::new(config, size, view(&SimpleFlight::default()))
 }
 
-/// The full theme.
+/// Returns the full theme.
 pub(crate) fn colour() -> Theme {
     Theme::default()
 }
 
-/// The seven-bit theme.
+/// Returns the seven-bit theme.
 pub(crate) fn plain() -> Theme {
     Theme { palette: Palette::Mono, charset: Charset::Ascii, ..Theme::default() }
 }
 
-/// What differs between the pictures of the flight.
+/// The values that differ between the pictures of the flight.
 #[derive(Debug, Clone)]
 pub(crate) struct SimpleFlight {
     pub(crate) time_s: f64,
@@ -152,7 +152,7 @@ impl Default for SimpleFlight {
     }
 }
 
-/// The picture of a moment.
+/// Returns the picture of a moment.
 pub(crate) fn view(flight: &SimpleFlight) -> SessionView {
     let engaged = !matches!(flight.state, NavState::Idle);
     let plan = square();
@@ -281,7 +281,7 @@ pub(crate) fn view(flight: &SimpleFlight) -> SessionView {
     }
 }
 
-/// Sends an event of this time.
+/// Sends an event with this time.
 pub(crate) fn hear(state: &mut AppState, time_s: f64, kind: EventKind) {
     let event = Event { time: SimTime::from_secs_f64(time_s), kind: SessionEvent::Vehicle(kind) };
     update(state, Msg::Event(event));
@@ -378,7 +378,7 @@ pub(crate) fn orbit(state: &mut AppState) {
     update(state, Msg::View(view(&flight)));
 }
 
-/// Circles at WP2, and looks back at the way to WP0.
+/// Circles at WP2, then rewinds to the leg to WP0.
 pub(crate) fn rewind(state: &mut AppState) {
     orbit(state);
     let mark = |time_s, kind| Mark { time: SimTime::from_secs_f64(time_s), kind };
@@ -414,7 +414,7 @@ pub(crate) fn rewind(state: &mut AppState) {
     update(state, Msg::View(SessionView { paused: true, timeline: Some(timeline), ..view(&flight) }));
 }
 
-/// Flies on from there, somewhere else.
+/// Flies on from the earlier instant, to another place.
 pub(crate) fn branch(state: &mut AppState) {
     rewind(state);
     let rewound = state.view.timeline.clone().expect("a timeline");
@@ -474,7 +474,7 @@ pub(crate) fn land(state: &mut AppState) {
     update(state, Msg::View(view(&flight)));
 }
 
-/// Has landed at WP3.
+/// Lands at WP3 and completes the mission.
 pub(crate) fn complete(state: &mut AppState) {
     orbit(state);
     transition(state, 260.0, NavState::Landing, NavState::Complete, 3, TransitionReason::Touchdown);

@@ -1,4 +1,4 @@
-//! Keys and the mouse on a user interface without a terminal, and what is then on its screen.
+//! Keys and the mouse for a user interface without a terminal, and the text of its screen.
 
 #![allow(dead_code, reason = "tests share this file and use different parts")]
 
@@ -11,7 +11,7 @@ use ratatui::backend::TestBackend;
 
 use super::fixture;
 
-/// A craft with a fix that waits at home.
+/// Returns a user interface with a craft that has a fix and waits at home.
 pub(crate) fn state_with_fix(size: (u16, u16)) -> AppState {
     let mut state = fixture::state(size, fixture::colour());
     let flight = fixture::SimpleFlight { time_s: 8.0, fix: true, ..fixture::SimpleFlight::default() };
@@ -19,7 +19,7 @@ pub(crate) fn state_with_fix(size: (u16, u16)) -> AppState {
     state
 }
 
-/// Presses keys by their names in the keymap, apart by blanks; `'text` is typed.
+/// Presses keys by their names in the keymap, separated by blanks. A name that begins with `'` is typed as text.
 pub(crate) fn keys(state: &mut AppState, keys: &str) -> Vec<Effect> {
     let mut effects = Vec::new();
     for name in keys.split_whitespace() {
@@ -69,7 +69,7 @@ pub(crate) fn journal_lines(effects: &[Effect]) -> usize {
     effects.iter().filter(|effect| matches!(effect, Effect::Files(FileRequest::Journal(..)))).count()
 }
 
-/// The mouse at a cell, with the left button.
+/// Sends a mouse event with the left button at a cell.
 pub(crate) fn mouse(
     state: &mut AppState,
     kind: fn(MouseButton) -> MouseEventKind,
@@ -78,7 +78,7 @@ pub(crate) fn mouse(
     mouse_button(state, kind(MouseButton::Left), (column, row))
 }
 
-/// Any event of the mouse at a cell.
+/// Sends any mouse event at a cell.
 pub(crate) fn mouse_button(
     state: &mut AppState,
     kind: MouseEventKind,
@@ -87,12 +87,12 @@ pub(crate) fn mouse_button(
     update(state, Msg::Mouse(MouseEvent { kind, column, row, modifiers: KeyModifiers::NONE }))
 }
 
-/// The cell where a text begins on the screen, the last place of several.
+/// Returns the cell where a text begins on the screen, or the last one of several.
 pub(crate) fn place_of(state: &AppState, text: &str) -> (u16, u16) {
     let seen = screen(state);
     let found =
         seen.lines().enumerate().filter_map(|(row, line)| Some((row, line, line.rfind(text)?))).last();
     let (row, line, at) = found.unwrap_or_else(|| panic!("no {text} in\n{seen}"));
-    // Each line of the picture stands in quotes.
+    // Each line of the screen is in quotes.
     (line[..at].chars().count() as u16 - 1, row as u16)
 }

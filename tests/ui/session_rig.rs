@@ -1,4 +1,4 @@
-//! A user interface with a session behind it, which flies only when it is told to.
+//! A user interface with a session that flies only on request.
 
 #![allow(dead_code, reason = "tests share this file and use different parts")]
 #![allow(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests may panic and wait")]
@@ -31,7 +31,7 @@ use tokio::sync::oneshot;
 /// Nothing in these tests takes this long unless it hangs.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// A user interface with a session that flies only when it is told to.
+/// A user interface with a session that flies only on request.
 pub(crate) struct Rig {
     pub(crate) session: Handle,
     pub(crate) state: AppState,
@@ -89,7 +89,7 @@ impl Rig {
         }
     }
 
-    /// The answer of the craft to a line.
+    /// Sends a line to the craft and returns its answer.
     pub(crate) async fn cli(&self, line: &str) -> CliOutput {
         let (reply, answer) = oneshot::channel();
         self.session.commands.send(Command::Cli { line: line.to_owned(), reply }).await.unwrap();
@@ -122,14 +122,14 @@ impl Rig {
                     let next = update(&mut self.state, Msg::CliReply(answer.await.ok()));
                     Box::pin(self.carry_out(next)).await;
                 }
-                // What is kept on disk and what is flown ahead have their own tests.
+                // Files and forecasts have their own tests.
                 Effect::Files(_) | Effect::Forecast(_) => {}
                 other => panic!("not expected here: {other:?}"),
             }
         }
     }
 
-    /// Takes pictures and events in until the screen shows this.
+    /// Takes pictures and events until the screen matches.
     pub(crate) async fn until(&mut self, what: &str, wanted: impl Fn(&AppState) -> bool) {
         let seen = async {
             loop {

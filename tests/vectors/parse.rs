@@ -3,27 +3,26 @@
 /// One line of an expected reply.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Line {
-    /// Its text, in which `{word}` stands for anything.
+    /// The text, in which `{word}` matches anything.
     pub(crate) text: String,
-    /// What ends it.
+    /// The line end.
     pub(crate) end: &'static str,
 }
 
-/// One exchange.
+/// A typed line and its reply.
 #[derive(Debug, Clone)]
 pub(crate) struct Exchange {
-    /// Its number.
     pub(crate) number: usize,
     /// The line that is typed.
     pub(crate) input: String,
-    /// The reply.
+    /// The lines of the reply.
     pub(crate) lines: Vec<Line>,
 }
 
-/// Text that stands for lines left out.
+/// The text in place of lines that are left out.
 const GAP: &str = "<…>";
 
-/// All exchanges in order.
+/// Returns all exchanges in order.
 pub(crate) fn exchanges(document: &str) -> Vec<Exchange> {
     let mut found = Vec::new();
     let mut lines = document.lines();
@@ -51,7 +50,7 @@ fn parse_line(line: &str) -> Line {
     Line { text, end }
 }
 
-/// Panics unless a reply is the expected one.
+/// Panics unless a reply matches the expected one.
 #[track_caller]
 pub(crate) fn assert_matches(expected: &Exchange, reply: &str) {
     let actual = split(reply);
@@ -95,7 +94,7 @@ fn line_matches(wanted: &Line, actual: &Line) -> bool {
     if wanted.end != actual.end {
         return false;
     }
-    // Measured figures of the scheduler: their columns count.
+    // Measured figures of the scheduler: only their columns must match.
     if ["Check Functions", "Total  "].iter().any(|head| wanted.text.starts_with(head)) {
         let mask =
             |text: &str| text.chars().map(|c| if c.is_ascii_digit() { '0' } else { c }).collect::<String>();

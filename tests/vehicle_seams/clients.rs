@@ -1,4 +1,4 @@
-//! Clients of the links speak with a remote flight controller: what they ask reaches it, and its answers reach them.
+//! Clients of the links with a remote flight controller: their requests reach it, and its answers reach them.
 
 #![allow(clippy::disallowed_methods, reason = "the request handler is given its time")]
 
@@ -16,10 +16,10 @@ use tokio::sync::{mpsc, oneshot};
 use super::*;
 
 const CLIENT: ClientId = ClientId(1);
-/// MSP_API_VERSION.
+/// The code of MSP_API_VERSION.
 const API_VERSION: u16 = 1;
 
-/// The rig with a request handler of the links beside it.
+/// The rig and a request handler of the links.
 struct Links {
     rig: Rig,
     handler: RequestHandler,
@@ -58,7 +58,7 @@ impl Links {
         answer
     }
 
-    /// Lets the stand-in answer, and hands its answers on.
+    /// Lets the stand-in answer, and passes its answers on.
     fn exchange(&mut self) {
         self.rig.run(0.001 * (DELAY + 2) as f64);
         while let Some((ticket, answer)) = self.rig.vehicle.controller_mut().take_answer() {
@@ -112,7 +112,7 @@ async fn a_client_of_a_silent_flight_controller_is_told_so() {
     let said = line.try_recv().unwrap();
     assert_eq!(said.text, "###ERROR: THE FLIGHT CONTROLLER DOES NOT ANSWER###");
     assert!(said.refused);
-    // What comes after all is for nobody.
+    // A late answer has no recipient.
     links.exchange();
 }
 

@@ -1,5 +1,5 @@
-//! The seams of a vehicle: a flight controller behind a mailbox flies the simulated world, and what it does not tell is
-//! unknown.
+//! The seams of a vehicle: a flight controller connected by a mailbox flies the simulated world, and values that it
+//! does not report are unknown.
 #![allow(clippy::unwrap_used, reason = "a test may stop")]
 
 use betadeck::firmware::FirmwareOptions;
@@ -51,7 +51,7 @@ impl Rig {
 
     /// Arms and climbs in ALTHOLD, then hovers.
     fn hover(&mut self) {
-        // The boot grace, the calibration and the first fix.
+        // Waits for the boot grace, the calibration and the first fix.
         self.run(10.0);
         self.set(ARM, 2000);
         self.run(0.5);

@@ -1,4 +1,4 @@
-//! A stand-in for a remote flight controller, which answers after a while.
+//! A stand-in for a remote flight controller, which answers after a delay.
 
 use std::collections::VecDeque;
 
@@ -13,11 +13,11 @@ use betadeck::vehicle::{FrameOut, LateAnswer, RemoteController, RemoteRequest, R
 /// Ticks until a motor command or an answer of the stand-in arrives.
 pub(super) const DELAY: usize = 4;
 
-/// A flight controller at the far end of a slow wire, which tells only its attitude.
+/// A flight controller at the far end of a slow link, which reports only its attitude.
 #[derive(Debug, Clone)]
 pub(super) struct StandIn {
     pub(super) firmware: Firmware,
-    /// How often it was asked to restart.
+    /// The number of requests to restart.
     pub(super) restarts: usize,
     console: Interpreter,
     motors: VecDeque<MotorCommand>,
@@ -39,7 +39,7 @@ impl StandIn {
         }
     }
 
-    /// Takes out what waits in the mailbox and delivers what is due.
+    /// Handles the frames and requests in the mailbox, and delivers the motors and answers that are due.
     pub(super) fn exchange(&mut self, mailbox: &mut RemoteController) {
         self.ticks += 1;
         while let Some(frame) = mailbox.take_frame() {

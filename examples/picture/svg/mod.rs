@@ -15,7 +15,7 @@ const CELL: (f64, f64) = (8.4, 17.0);
 const MARGIN: f64 = 12.0;
 /// Height of the baseline above the bottom of a cell, px.
 const DESCENT: f64 = 4.2;
-/// Colour of the screen and of text without one.
+/// The colour of the screen, and of text without a colour.
 const GROUND: &str = "#16181d";
 const INK: &str = "#d6dae1";
 /// The sixteen colours of a terminal.
@@ -24,7 +24,7 @@ const ANSI: [&str; 16] = [
     "#ef8a7a", "#7fd6aa", "#f0c674", "#86b9ea", "#dba6de", "#7fd1db", "#ffffff",
 ];
 
-/// The screen as a complete SVG document with a dark ground.
+/// Returns the screen as a complete SVG document with a dark ground.
 #[must_use]
 pub(crate) fn svg(buffer: &Buffer) -> String {
     let area = buffer.area;
@@ -47,7 +47,7 @@ pub(crate) fn svg(buffer: &Buffer) -> String {
     out
 }
 
-/// Runs of equal background that is not the ground.
+/// Draws runs of equal background other than the ground.
 fn backgrounds(out: &mut String, row: &[&Cell], top: f64) {
     for (from, run) in runs(row, |cell| colours(cell).1) {
         let fill = colours(run[0]).1;
@@ -63,12 +63,12 @@ fn backgrounds(out: &mut String, row: &[&Cell], top: f64) {
     }
 }
 
-/// Runs of equal style and kind of character. Text is forced to its width, so that fonts of another width keep the
-/// columns.
+/// Draws runs of equal style and kind of character. Text is forced to its width, so that fonts of another width keep
+/// the columns.
 fn texts(out: &mut String, row: &[&Cell], top: f64) {
     let style = |cell: &Cell| (colours(cell).0, cell.modifier & (Modifier::BOLD | Modifier::UNDERLINED));
     let kind = |cell: &Cell| match character(cell) {
-        // Letters and signs often come from two fonts.
+        // Letters and symbols often come from two fonts.
         c if shape(c) == Shape::Text => (None, c.is_ascii()),
         c => (Some(std::mem::discriminant(&shape(c))), false),
     };
@@ -99,7 +99,7 @@ fn texts(out: &mut String, row: &[&Cell], top: f64) {
     }
 }
 
-/// A run of text.
+/// Writes a run of text.
 fn text(out: &mut String, run: &[&Cell], (x, top): (f64, f64), fill: &str, style: Modifier) {
     if run.iter().all(|cell| cell.symbol().trim().is_empty()) {
         return;
@@ -113,18 +113,17 @@ fn text(out: &mut String, run: &[&Cell], (x, top): (f64, f64), fill: &str, style
         r#"<text x="{x:.1}" y="{y:.1}" textLength="{length:.1}" lengthAdjust="spacingAndGlyphs" xml:space="preserve" fill="{fill}"{bold}{line}>"#
     );
     for cell in run {
-        // Few fonts have the position mark.
         escape(out, cell.symbol());
     }
     out.push_str("</text>\n");
 }
 
-/// The character of a cell.
+/// Returns the character of a cell.
 fn character(cell: &Cell) -> char {
     cell.symbol().chars().next().unwrap_or(' ')
 }
 
-/// Groups of neighbours with an equal key: where each starts and its cells.
+/// Groups neighbours with an equal key. Yields the start and the cells of each group.
 fn runs<'r, 'c, K: PartialEq>(
     row: &'r [&'c Cell],
     key: impl Fn(&Cell) -> K,
@@ -137,7 +136,7 @@ fn runs<'r, 'c, K: PartialEq>(
     })
 }
 
-/// Text and background colour of a cell.
+/// Returns the text and background colours of a cell.
 fn colours(cell: &Cell) -> (String, String) {
     let fg = colour(cell.fg, INK);
     let bg = colour(cell.bg, GROUND);

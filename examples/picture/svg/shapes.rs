@@ -1,5 +1,5 @@
-//! Characters that are drawings: box lines, blocks and Braille as paths, so that a picture does not depend on what
-//! the viewer's font makes of them.
+//! Characters that are drawings: box lines, blocks and Braille as paths, so that a picture does not depend on the
+//! viewer's font.
 
 use std::fmt::Write as _;
 
@@ -9,20 +9,20 @@ use super::CELL;
 const DOT: f64 = 2.1;
 const STROKE: f64 = 1.1;
 
-/// How a character is drawn.
+/// The way to draw a character.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Shape {
     /// By the font.
     Text,
     /// Strokes from the middle to these sides: up, right, down, left.
     Lines([bool; 4]),
-    /// Dots, bit by bit as Unicode numbers them.
+    /// Dots, one for each bit in Unicode's order.
     Dots(u8),
-    /// A block from one to another eighth of the width, in percent of opacity.
+    /// A block: the first and the last eighth of the width, and the opacity in percent.
     Block(u8, u8, u8),
 }
 
-/// The way to draw a character.
+/// Returns the way to draw a character.
 pub(super) fn shape(c: char) -> Shape {
     match c {
         '─' => Shape::Lines([false, true, false, true]),

@@ -1,8 +1,8 @@
-//! The command line of the stand-in: as much of the public executable's as a ground station uses.
+//! The command line of the stand-in: the part of the public executable's that a ground station uses.
 
 use std::collections::BTreeMap;
 
-/// Settings that it knows, with what they are at first.
+/// The known settings with their initial values.
 const SETTINGS: [(&str, &str); 12] = [
     ("alt_hold_deadband", "20"),
     ("ap_hover_throttle", "1275"),
@@ -19,25 +19,25 @@ const SETTINGS: [(&str, &str); 12] = [
 ];
 const AUX_SLOTS: usize = 20;
 
-/// What a line did.
+/// The effect of a line.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Done {
-    /// It answered.
+    /// The line was answered with this text.
     Answered(String),
-    /// It ends the program, which is started again by somebody else.
+    /// The line printed this text and ends the program, which must be started again from the outside.
     Reboots(String),
 }
 
-/// What it keeps.
+/// The stored configuration.
 #[derive(Debug, Clone)]
 pub(crate) struct Memory {
     settings: BTreeMap<&'static str, String>,
     /// Mode conditions: box, channel, start and end in µs.
     pub(crate) modes: [[u16; 4]; AUX_SLOTS],
     waypoints: Vec<String>,
-    /// Refuses every value, as one does that has it locked.
+    /// `true` if every value is refused, as by a firmware with locked settings.
     pub(crate) refuses_settings: bool,
-    /// Was built with flight plans.
+    /// `true` if it was built with flight plans.
     pub(crate) has_plans: bool,
 }
 

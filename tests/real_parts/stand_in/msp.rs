@@ -1,6 +1,6 @@
-//! MSP as the stand-in speaks it: frames of both versions in, one answer each out.
+//! The MSP of the stand-in: takes frames of both versions and answers each once.
 
-/// A request, and the version of its frame.
+/// A request with the version of its frame.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Request {
     pub(crate) version: u8,
@@ -8,18 +8,18 @@ pub(crate) struct Request {
     pub(crate) payload: Vec<u8>,
 }
 
-/// What stands at the front of the bytes that came.
+/// The first item in the received bytes.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Front {
-    /// A whole request, and how many bytes it takes.
+    /// A whole request, and its size in bytes.
     Request(Request, usize),
-    /// A request that is not whole yet.
+    /// A request that is not complete yet.
     Partial,
-    /// A frame that is damaged: so many bytes are dropped.
+    /// A damaged frame, and the number of bytes to drop.
     Damaged(usize),
 }
 
-/// Looks at bytes that begin with `$`.
+/// Reads the first item of bytes that begin with `$`.
 pub(crate) fn front(bytes: &[u8]) -> Front {
     let (head, size, code) = match *bytes {
         [_, b'M', b'<', size, code, ..] => (5, usize::from(size), u16::from(code)),
@@ -38,7 +38,7 @@ pub(crate) fn front(bytes: &[u8]) -> Front {
     Front::Request(Request { version, code, payload }, frame.len())
 }
 
-/// The bytes of an answer; `None` is a refusal.
+/// Encodes an answer. A payload of `None` is a refusal.
 pub(crate) fn answer(request: &Request, payload: Option<&[u8]>) -> Vec<u8> {
     let (kind, payload) = payload.map_or((b'!', &[][..]), |payload| (b'>', payload));
     let size = payload.len() as u16;

@@ -1,9 +1,9 @@
-//! What the public executable makes of a state packet. Written from the description of its receiver alone, without the
-//! encoder that it judges.
+//! The public executable's reading of a state packet. It is written from the description of the receiver alone, without
+//! the encoder that it judges.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-/// Bytes of a state packet; longer ones are cut.
+/// The size of a state packet in bytes. Longer datagrams are cut.
 pub(crate) const SIZE: usize = 144;
 /// Counts of the accelerometer for 1 g.
 const COUNTS_PER_G: f64 = 256.0;
@@ -11,16 +11,16 @@ const STANDARD_GRAVITY: f64 = 9.80665;
 /// Counts of the gyro for 1 °/s.
 const COUNTS_PER_DPS: f64 = 16.4;
 const DEG_PER_RAD: f64 = 57.29578;
-/// The field of the earth as the virtual compass has it, north-west-up, counts.
+/// The earth's magnetic field of the virtual compass, north-west-up, counts.
 const FIELD_NWU: [f64; 3] = [2046.8, -71.5, -3547.2];
 
-/// The numbers of a packet, in the order in which they stand in it.
+/// The numbers of a packet, in their order on the wire.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Packet {
     fields: [f64; 18],
 }
 
-/// What the virtual sensors read.
+/// The readings of the virtual sensors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Sensors {
     /// Forward-left-up, 256 for 1 g.
@@ -33,7 +33,7 @@ pub(crate) struct Sensors {
     pub(crate) baro_pa: i32,
     /// Body → north-west-up.
     pub(crate) attitude: UnitQuaternion<f64>,
-    /// `None` when the position is off the globe.
+    /// `None` if the position is off the globe.
     pub(crate) gps: Option<Gps>,
 }
 
@@ -49,7 +49,7 @@ pub(crate) struct Gps {
 }
 
 impl Packet {
-    /// `None` for a datagram that is too short.
+    /// Reads a datagram. Returns `None` if it is too short.
     pub(crate) fn read(datagram: &[u8]) -> Option<Self> {
         let bytes = datagram.get(..SIZE)?;
         let mut fields = [0.0; 18];
@@ -63,12 +63,12 @@ impl Packet {
         self.fields[0]
     }
 
-    /// Latitude and longitude as they stand on the wire, degrees.
+    /// Returns the latitude and longitude as they are on the wire, degrees.
     pub(crate) fn position(&self) -> (f64, f64) {
         (self.fields[15], self.fields[14])
     }
 
-    /// What the sensors read, with positions mirrored about `centre`.
+    /// Returns the readings of the sensors, with the position mirrored about `centre`.
     pub(crate) fn sensors(&self, centre: (f64, f64)) -> Sensors {
         let p = &self.fields;
         let acc = [p[4], p[5], p[6]].map(|value| {

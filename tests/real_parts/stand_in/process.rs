@@ -1,4 +1,4 @@
-//! The stand-in as a process of its own: this test program starts itself, with a variable that says how it misbehaves.
+//! The stand-in as a separate process: this test program starts itself, with a variable that selects the fault.
 
 use std::process::ExitCode;
 use std::sync::atomic::Ordering;
@@ -7,25 +7,26 @@ use std::time::Duration;
 use super::cli::{Done, Memory};
 use super::program::{End, Ports, Shared, Sockets, live};
 
-/// Ports, and what goes wrong, in the environment of the child. (Names of the program's own are not passed on to it.)
+/// The variable that passes the ports and the fault to the child. (The program's own variables are not passed on to
+/// it.)
 pub(crate) const VARIABLE: &str = "STAND_IN";
-/// The test that is the child's program.
+/// The test that the child runs.
 const PROGRAM: &str = "stand_in::process::the_program";
 const IMAGE: &str = "eeprom.bin";
 
-/// What goes wrong with it.
+/// The fault of a stand-in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Trouble {
     None,
     /// Ends by a signal two seconds after it has booted.
     Crashes,
-    /// Stands still two seconds after it has booted.
+    /// Stops answering two seconds after it has booted.
     Hangs,
     /// Binds nothing for three seconds.
     StartsSlowly,
-    /// Takes no value.
+    /// Refuses every value.
     RefusesSettings,
-    /// Prints a line, and runs.
+    /// Prints a line and keeps running, but opens no ports.
     IsNoSitl,
     /// Was built without flight plans.
     HasNoPlans,
@@ -41,14 +42,14 @@ const TROUBLES: [(Trouble, &str); 7] = [
     (Trouble::HasNoPlans, "has-no-plans"),
 ];
 
-/// The value of [`VARIABLE`].
+/// Returns the value of [`VARIABLE`].
 pub(crate) fn variable(ports: Ports, trouble: Trouble) -> String {
     let Ports { raw, motors, fdm, rc, tcp } = ports;
     let name = TROUBLES.iter().find(|(other, _)| *other == trouble).unwrap().1;
     format!("{raw},{motors},{fdm},{rc},{tcp},{name}")
 }
 
-/// The executable, and the arguments that make it the stand-in.
+/// Returns the executable, and the arguments that make it the stand-in.
 pub(crate) fn command() -> (std::path::PathBuf, [&'static str; 4]) {
     (std::env::current_exe().unwrap(), [PROGRAM, "--exact", "--ignored", "--nocapture"])
 }
@@ -110,7 +111,7 @@ fn run(variable: &str) -> ExitCode {
     })
 }
 
-/// What it kept in its directory.
+/// Reads the configuration stored in the working directory.
 fn stored() -> Memory {
     let mut memory = Memory::new();
     for line in std::fs::read_to_string(IMAGE).unwrap_or_default().lines() {

@@ -1,4 +1,4 @@
-//! The stand-in's sockets and its life, from boot to reboot.
+//! The stand-in's sockets and one run of it, from boot to reboot.
 
 use std::io::{ErrorKind, Read as _, Write as _};
 use std::net::{SocketAddr, TcpListener, TcpStream, UdpSocket};
@@ -10,9 +10,9 @@ use super::cli::Memory;
 use super::receiver::{BOOT_US, Receiver, Seen, Taken};
 use super::serial::Serial;
 
-/// Its first motor packet goes out shortly before it is ready, µs.
+/// The time of the first motor packet, shortly before it is ready, µs.
 const BOOT_PACKET_US: u64 = BOOT_US - 10_000;
-/// The mixer's period and the serial port's, µs.
+/// The periods of the mixer and of the serial port, µs.
 const MIXER_US: u64 = 1000;
 const SERIAL_US: u64 = 10_000;
 /// The longest wait for a state.
@@ -23,15 +23,15 @@ const WAIT: Duration = Duration::from_micros(300);
 pub(crate) struct Sockets {
     fdm: UdpSocket,
     rc: UdpSocket,
-    /// Bound when it has booted, not before.
+    /// Bound once it has booted.
     tcp: Option<TcpListener>,
     tcp_port: u16,
-    /// Where its motors go: values, pulses.
+    /// The destinations of its motor packets: values, and pulses in `raw`.
     motors: SocketAddr,
     raw: SocketAddr,
 }
 
-/// Its four ports in, out and beside: raw, motors, states, RC; and TCP.
+/// Its UDP ports (raw and motors out, states and RC in) and its TCP port.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Ports {
     pub(crate) raw: u16,
@@ -42,7 +42,7 @@ pub(crate) struct Ports {
 }
 
 impl Sockets {
-    /// Binds the sockets of packets; ports 0 are the system's choice.
+    /// Binds the UDP sockets. For port 0 the system chooses one.
     pub(crate) fn bind(ports: Ports) -> std::io::Result<Self> {
         let (fdm, rc) = (UdpSocket::bind(here(ports.fdm))?, UdpSocket::bind(here(ports.rc))?);
         fdm.set_nonblocking(true)?;
@@ -51,7 +51,7 @@ impl Sockets {
         Ok(Self { fdm, rc, tcp: None, tcp_port: ports.tcp, motors, raw })
     }
 
-    /// Takes clients from now on.
+    /// Accepts TCP clients from now on.
     pub(crate) fn listen(&mut self) -> std::io::Result<()> {
         let tcp = TcpListener::bind(here(self.tcp_port))?;
         tcp.set_nonblocking(true)?;
@@ -60,14 +60,14 @@ impl Sockets {
         Ok(())
     }
 
-    /// Drops what waits, and the clients' port.
+    /// Drops the waiting packets, and closes the TCP port.
     pub(crate) fn forget(&mut self) {
         self.tcp = None;
         let mut buffer = [0; 512];
         while self.fdm.recv(&mut buffer).is_ok() || self.rc.recv(&mut buffer).is_ok() {}
     }
 
-    /// The ports that were bound.
+    /// Returns the ports in use.
     pub(crate) fn ports(&self) -> Ports {
         Ports {
             raw: self.raw.port(),
@@ -78,9 +78,9 @@ impl Sockets {
         }
     }
 
-    /// One motor packet of a craft at rest, and its pulses when both go out.
+    /// Sends one motor packet of a craft at rest, and its pulses if `pulses_too`.
     fn send_motors(&self, pulses_too: bool) {
-        // Nobody may be there.
+        // There may be no receiver.
         drop(self.fdm.send_to(&[0; 16], self.motors));
         if pulses_too {
             let mut pulses = [0; 68];
@@ -97,27 +97,27 @@ fn here(port: u16) -> SocketAddr {
     SocketAddr::from(([127, 0, 0, 1], port))
 }
 
-/// Why a life ended.
+/// The reason for the end of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum End {
     Reboot,
-    /// A state came before it had booted, which it does not survive.
+    /// A state arrived before it had booted, which it does not survive.
     EarlyState,
     Stopped,
 }
 
-/// What the other side sees of a life while it lasts.
+/// The data that a run shares with its test.
 #[derive(Debug, Default)]
 pub(crate) struct Shared {
     pub(crate) stop: AtomicBool,
-    /// Stands still, and does not answer.
+    /// `true` while it hangs and does not answer.
     pub(crate) hangs: AtomicBool,
     pub(crate) seen: Mutex<Seen>,
-    /// How far its clock is from the wall's, µs.
+    /// The error of its clock against the wall clock, µs.
     pub(crate) clock_error_us: Mutex<f64>,
 }
 
-/// Lives once: boots, answers, until it is stopped or reboots. The memory is what it keeps.
+/// Runs once: boots, and answers until it is stopped or reboots. `memory` is its stored configuration.
 pub(crate) fn live(sockets: &mut Sockets, memory: &mut Memory, boots: bool, shared: &Shared) -> End {
     let start = Instant::now();
     let boot = Duration::from_micros(BOOT_US);
@@ -200,7 +200,7 @@ impl Life<'_> {
         End::Stopped
     }
 
-    /// Takes what waits; whether there was anything.
+    /// Takes the waiting states. Returns `true` if there were any.
     fn take_states(&mut self) -> bool {
         let mut buffer = [0; 512];
         let mut any = false;
@@ -224,7 +224,7 @@ impl Life<'_> {
         }
     }
 
-    /// One turn of the serial port: one client, every other one is accepted and closed.
+    /// Runs one turn of the serial port. It serves one client; any other is accepted and closed.
     fn serve(&mut self, now: u64) {
         while let Some(Ok((client, _))) = self.sockets.tcp.as_ref().map(TcpListener::accept) {
             if self.client.is_none() && client.set_nonblocking(true).is_ok() {

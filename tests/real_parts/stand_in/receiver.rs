@@ -1,28 +1,28 @@
-//! Which state packets the public executable takes, which it answers, and what they do to its clock.
+//! The public executable's rules for state packets: which it takes, which it answers, and their effect on its clock.
 
 use super::packet::{Packet, Sensors};
 
-/// After so long without a packet the next one only sets the time base, µs.
+/// The silence after which the next packet only sets the time base, µs.
 const RESYNC_US: u64 = 500_000;
-/// Stamps that are further apart than this say nothing of the clock's rate, s.
+/// The gap between two stamps from which on they do not set the clock's rate, s.
 const STAMP_GAP_S: f64 = 0.02;
-/// Before it has booted it listens and is not ready for what it hears, µs.
+/// The boot time, µs. Before it, the executable listens but is not ready for packets.
 pub(crate) const BOOT_US: u64 = 500_000;
 
-/// What became of a packet.
+/// The handling of a packet.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Taken {
     /// Too short.
     Refused,
-    /// It set the time base: one motor packet goes out at once, its data are not looked at.
+    /// Sets the time base: one motor packet goes out at once, and the data are ignored.
     Resync,
-    /// Its stamp is older than the last: not answered.
+    /// Has an older stamp than the last: not answered.
     Old,
-    /// Its data are the sensors now; the next turn of the mixer answers.
+    /// Provides the sensor data from now on; the next turn of the mixer answers it.
     State,
 }
 
-/// The receiver, in wall time since the executable was started, µs.
+/// The receiver. Times are wall time since the start of the executable, µs.
 #[derive(Debug)]
 pub(crate) struct Receiver {
     last: (f64, u64),
@@ -35,20 +35,20 @@ pub(crate) struct Receiver {
     pub(crate) seen: Seen,
 }
 
-/// What it has seen of the other side.
+/// The statistics of the received packets.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Seen {
-    /// State packets of a size that counts.
+    /// State packets of sufficient size.
     pub(crate) packets: u64,
-    /// Those that came before it had booted, which the real one often does not survive.
+    /// State packets before the boot, which the real executable often does not survive.
     pub(crate) before_boot: u64,
     /// Packets that were answered: by the time base's packet or by the mixer.
     pub(crate) answered: u64,
-    /// Stamps that were not the same as the one before.
+    /// Stamps that differ from the one before.
     pub(crate) other_stamps: u64,
-    /// The largest leap of the clock between two packets against the wall, µs.
+    /// The largest leap of the clock between two packets, against the wall clock, µs.
     pub(crate) worst_leap_us: f64,
-    /// Positions that were not the first one's, before the first answer had gone out.
+    /// Positions other than the first one, received before the first answer was sent.
     pub(crate) moved_before_answer: u64,
 }
 
@@ -66,7 +66,7 @@ impl Receiver {
         }
     }
 
-    /// A datagram came.
+    /// Takes a datagram that arrived at `wall_us`.
     pub(crate) fn receive(&mut self, datagram: &[u8], wall_us: u64) -> Taken {
         let Some(packet) = Packet::read(datagram) else { return Taken::Refused };
         self.note(&packet, wall_us);
@@ -112,7 +112,7 @@ impl Receiver {
         }
     }
 
-    /// The mixer's turn, a thousand times a second: whether it may send what it made, which is one packet to each port.
+    /// Runs the mixer's turn, a thousand times a second. Returns `true` if it sends, which is one packet to each port.
     pub(crate) fn mixer_sends(&mut self) -> bool {
         let sends = std::mem::take(&mut self.gate);
         if sends {
@@ -121,7 +121,7 @@ impl Receiver {
         sends
     }
 
-    /// The executable's own clock, µs.
+    /// Returns the executable's own clock, µs.
     pub(crate) fn clock_us(&mut self, wall_us: u64) -> f64 {
         let (clock, at) = self.clock;
         self.clock = (clock + wall_us.saturating_sub(at) as f64 * self.rate, wall_us.max(at));
@@ -132,7 +132,7 @@ impl Receiver {
         self.sensors
     }
 
-    /// Whether it has a fix: 2.5 s after the last solution it is lost.
+    /// Returns `true` while it has a fix. The fix is lost 2.5 s after the last solution.
     pub(crate) fn has_fix(&self, wall_us: u64) -> bool {
         self.gps_at.is_some_and(|at| wall_us.saturating_sub(at) <= 2_500_000)
     }

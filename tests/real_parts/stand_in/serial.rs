@@ -1,16 +1,16 @@
-//! The serial port of the stand-in: MSP, and the command line in both ways. Its state outlives a client: one that leaves a
-//! command line open leaves it to the next.
+//! The serial port of the stand-in: MSP, and the command line with both framings. Its state outlives a client: a
+//! command line that one client leaves open is open for the next.
 
 use super::cli::{Done, Memory};
 use super::msp::{self, Front, Request};
 use super::receiver::Receiver;
 
-/// After `#` so long without a `$` the prompt opens, µs.
+/// The time after `#` without a `$` at which the prompt opens, µs.
 const PROMPT_US: u64 = 100_000;
 const GREETING: &str = "\r\nEntering CLI Mode, type 'exit' to reboot, or 'help'\r\n\r\n# ";
 /// Boxes in the order of the mode bits: ARM, ANGLE, ALTHOLD, FAILSAFE, POS HOLD, GPS RESCUE, AUTOPILOT.
 const BOXES: [u8; 7] = [0, 1, 3, 27, 11, 46, 56];
-/// BOOTGRACE, for the first 5 s.
+/// The arming disable flag BOOTGRACE, set for the first 5 s.
 const BOOT_GRACE: u32 = 1 << 9;
 const RX_LOSS: u32 = 1 << 2;
 const CLI: u32 = 1 << 13;
@@ -18,23 +18,22 @@ const CLI: u32 = 1 << 13;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Mode {
     Msp,
-    /// `#` came then, and nothing since.
+    /// `#` arrived at this time, µs, and no `$` since.
     Asked(u64),
     Framed,
     Prompt,
 }
 
-/// The port.
 #[derive(Debug)]
 pub(crate) struct Serial {
     mode: Mode,
     input: Vec<u8>,
     line: String,
     output: Vec<u8>,
-    /// A command line was open since the start: no arming until the next one.
+    /// `true` once a command line was open: no arming until the next start.
     was_in_cli: bool,
     pub(crate) memory: Memory,
-    /// RC as it came last, and when.
+    /// The last RC channels, and their time, µs.
     pub(crate) rc: Option<([u16; 16], u64)>,
     reboots: bool,
 }
@@ -53,7 +52,8 @@ impl Serial {
         }
     }
 
-    /// Bytes of the client came; answers at most one message, as the real one does in its 10 ms.
+    /// Takes bytes of the client and returns the output. Answers at most one message, as the real executable does in
+    /// its 10 ms.
     pub(crate) fn turn(&mut self, came: &[u8], receiver: &Receiver, wall_us: u64) -> Vec<u8> {
         self.input.extend(came);
         if let Mode::Asked(since) = self.mode {
@@ -82,12 +82,12 @@ impl Serial {
         std::mem::take(&mut self.output)
     }
 
-    /// Whether a line or a message ended the program.
+    /// Returns `true` if a line or a message has ended the program.
     pub(crate) fn reboots(&self) -> bool {
         self.reboots
     }
 
-    /// Takes what stands first; false when more has to come or it is enough for this turn.
+    /// Takes the first item of the input. Returns `false` if more bytes are needed or the turn is over.
     fn read_msp(&mut self, receiver: &Receiver, wall_us: u64) -> bool {
         match self.input[0] {
             0x02 => {
@@ -169,7 +169,7 @@ impl Serial {
         self.is_on(0, wall_us) && self.blocks(wall_us) == 0
     }
 
-    /// Whether a switch has a box on.
+    /// Returns `true` if a switch has turned on this box.
     fn is_on(&self, id: u16, wall_us: u64) -> bool {
         let Some((channels, _)) = self.rc.filter(|_| self.hears_rc(wall_us)) else { return false };
         let on = |[with, channel, start, end]: &[u16; 4]| {
@@ -232,7 +232,7 @@ impl Serial {
                 let Done::Answered(text) =
                     self.memory.run(std::str::from_utf8(&request.payload).ok()?.trim())
                 else {
-                    // By message it stores without a reboot.
+                    // As a message, `save` stores without a reboot.
                     return Some(b"\x0c\0\0\r\n# saving\r\n".to_vec());
                 };
                 let size = (text.len().min(2048) as u16).to_le_bytes();
