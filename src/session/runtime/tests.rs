@@ -195,7 +195,7 @@ fn a_craft_that_holds_another_waypoint_than_was_sent_is_found_by_reading_back() 
     };
     while rig.answer(spoilt) > 0 {}
     let sentence = result.try_recv().unwrap().unwrap_err();
-    assert_eq!(sentence, "the craft holds another waypoint 1 than was sent: upload again");
+    assert_eq!(sentence, "waypoint 1 on the craft differs from the one sent: upload again");
 }
 
 #[test]
