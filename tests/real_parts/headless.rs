@@ -186,7 +186,7 @@ fn a_firmware_that_does_not_run_is_not_waited_for_for_ever_and_old_files_stay() 
     assert_eq!(code, 3, "{said}");
     let sentence =
         format!("nothing has answered at TCP port {} for 15 s: start the firmware first", ports.tcp);
-    for part in [&sentence, "--tcp-port", "--attitude has no effect: the firmware outside decides that"] {
+    for part in [&sentence, "--tcp-port", "--attitude has no effect: the remote firmware decides that"] {
         assert!(said.contains(part), "{part}: {said}");
     }
     assert!([json, gpx].iter().all(|file| std::fs::read_to_string(file).unwrap() == "old"));
