@@ -135,21 +135,21 @@ pub enum Command {
     #[command(before_help = help::examples(&[
         ("betadeck check", "the guide's scenarios and all others that are built in"),
         ("betadeck check tests/ --junit report.xml", "your own, for CI"),
-        ("betadeck check guide-7 --seeds 1..20", "one of them in twenty kinds of luck"),
+        ("betadeck check guide-7 --seeds 1..20", "one of them with twenty seeds"),
         ("betadeck check --new plan.toml > plan-test.toml", "a scenario from a flight of your plan"),
     ]))]
     Check(Box<CheckArgs>),
 
     /// Flies a scenario and opens the screen at one of its instants, paused, to look around in the flight
     #[command(before_help = help::examples(&[
-        ("betadeck open guide-7 --case 'wind-5, noise real' --seed 3 --at 21.4", "a moment that `check` has named"),
+        ("betadeck open guide-7 --case 'wind-5, noise real' --seed 3 --at 21.4", "a moment that `check` named"),
     ]))]
     Open(Box<OpenArgs>),
 
     /// Flies a plan on the embedded firmware and on another one, in the same air, and shows the differences
     #[command(before_help = help::examples(&[
-        ("betadeck compare square --firmware obj/main/betaflight_SITL.elf", "your build beside the embedded firmware"),
-        ("betadeck compare square --firmware new.elf --firmware old.elf --svg tracks.svg", "your build beside the release"),
+        ("betadeck compare square --firmware obj/main/betaflight_SITL.elf", "your build against the embedded firmware"),
+        ("betadeck compare square --firmware new.elf --firmware old.elf --svg tracks.svg", "your build against a release"),
     ]))]
     Compare(Box<CompareArgs>),
 
@@ -157,7 +157,7 @@ pub enum Command {
     #[command(before_help = help::examples(&[
         ("betadeck serve", "the Betaflight App connects to ws://localhost:6761, scripts send RC to UDP 9004"),
         ("betadeck serve --json - --no-ports", "events as JSON lines, no door"),
-        ("betadeck serve --physics external", "the craft is moved by Gazebo, which is started beside it"),
+        ("betadeck serve --physics external", "Gazebo, started separately, moves the craft"),
     ]))]
     Serve(Box<ServeArgs>),
 
@@ -178,7 +178,7 @@ pub enum Command {
         ("betadeck convert square.txt square.toml", "formats by the files' endings"),
         ("betadeck convert - plan.toml", "from standard input"),
         ("betadeck convert plan.toml - --to txt", "to standard output"),
-        ("betadeck convert new.txt plan.toml --force", "in place of the plan.toml that is there"),
+        ("betadeck convert new.txt plan.toml --force", "replaces the existing plan.toml"),
     ]))]
     Convert(ConvertArgs),
 

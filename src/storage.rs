@@ -228,7 +228,7 @@ impl Directory {
                     return (None, findings);
                 }
                 Err(ImageError::Damaged) if self.files.is_linked => {
-                    let reason = "a link leads to it, and it is no configuration";
+                    let reason = "a link leads to it, and it is not a configuration";
                     findings.push(format!("{name} is not used: {reason}"));
                     self.protected = Some(Protection::Unusable(reason.to_owned()));
                     return (None, findings);
@@ -244,7 +244,7 @@ impl Directory {
         }
         match read_image(&self.files.backup) {
             Ok(Some(image)) if decode(&image).is_ok() => {
-                findings.push("The previous copy was loaded: what was saved last is lost.".to_owned());
+                findings.push("The previous copy was loaded: the last save is lost.".to_owned());
                 (Some(image), findings)
             }
             _ => {

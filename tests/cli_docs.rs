@@ -7,16 +7,17 @@ use betadeck::firmware::settings::{Kind, Role, SETTINGS, Scope, Setting, group_o
 
 const INTRODUCTION: &str = "# Settings
 
-Every setting of the vehicle, in the order of `dump`. `get NAME` shows one with its range, `set NAME = VALUE` changes it,
-`save` keeps it.
+Every setting of the vehicle, in the order of `dump`. `get NAME` shows a setting with its range, `set NAME = VALUE`
+changes it, `save` keeps it.
 
-*Live* settings change how the vehicle behaves or what it tells. *Carried* ones are checked, stored and printed, so that
-the configuration of a real craft stays complete, and have no effect here; of those of the autopilot `get` says so. A change works from the next control step on;
-settings marked ↻ need `save`, which restarts the firmware. Until then arming is blocked (REBOOT_REQD).
+*Live* settings change the behaviour of the vehicle or the values it reports. *Carried* settings are checked, stored and
+printed, so that the configuration of a real craft stays complete, but they have no effect here. `get` says so for those
+of the autopilot. A change takes effect at the next control step. Settings marked ↻ need `save`, which restarts the
+firmware. Until then arming is blocked (REBOOT_REQD).
 
-Names of other builds and releases are accepted too: such a line is kept as it is and printed again by `dump` and `diff`.
-A value that current Betaflight refuses (`ap_position_cutoff` beyond 10…50, `ap_velocity_drag_coeff` beyond 0…100) is taken, and a
-notice says so.
+Names from other builds and releases are accepted too. Such a line is kept unchanged, and `dump` and `diff` print it
+again. A value that current Betaflight refuses (`ap_position_cutoff` outside 10…50, `ap_velocity_drag_coeff` outside
+0…100) is accepted with a notice.
 ";
 
 fn values(setting: &Setting) -> String {

@@ -64,7 +64,7 @@ fn a_file_that_is_not_there_or_no_program_is_told_in_words() {
     assert_eq!(next(&mut child), ChildEvent::Started);
     assert!(matches!(next(&mut child), ChildEvent::Line(_)));
     let ChildEvent::Failed(reason) = next(&mut child) else { panic!("it is a text") };
-    assert!(reason.contains("is no executable for this machine"), "{reason}");
+    assert!(reason.contains("is not an executable for this machine"), "{reason}");
 }
 
 #[test]

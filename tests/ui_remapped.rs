@@ -171,7 +171,7 @@ fn notices_of_the_session_name_the_keys_in_force_too() {
         SessionEvent::Notice(text) => text.clone(),
         other => format!("{other:?}"),
     };
-    let kind = SessionEvent::Notice("RC comes from outside: `x` takes it back.".to_owned());
+    let kind = SessionEvent::Notice("RC now comes from another program: `x` takes it back.".to_owned());
     update(&mut state, Msg::Event(Event { time: SimTime(0), kind }));
     keys(&mut state, "f8");
     assert!(screen(&state).contains("`Alt-x` takes it back"), "{}", screen(&state));

@@ -164,7 +164,7 @@ async fn the_flight_goes_on_from_an_earlier_instant_and_the_old_one_is_left_behi
     assert!(!rig.state.view.paused, "it flies");
     rig.keys(" ").await;
     rig.until("the pause", |state| state.view.paused).await;
-    rig.assert_shown(&["Flown on from here", "╎"]);
+    rig.assert_shown(&["Flying on from here", "╎"]);
     let behind: Vec<bool> = rig.state.log.newest_first().map(|line| line.left_behind).collect();
     assert!(behind.contains(&true) && behind.contains(&false));
     // Without any other action, it is the same flight again.

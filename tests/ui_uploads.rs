@@ -80,10 +80,10 @@ fn a_conversion_of_altitudes_is_said() {
 fn what_reading_back_finds_is_said() {
     let mut state = state((80, 24));
     let id = upload(&mut state);
-    let result = Err("the craft holds another waypoint 1 than was sent: upload again".to_owned());
+    let result = Err("waypoint 1 on the craft differs from the one sent: upload again".to_owned());
     update(&mut state, Msg::UploadReply { id, count: 4, result });
     let seen = screen(&state);
-    assert!(seen.contains("✗ Uploading square.toml failed: the craft holds another waypoint 1"), "{seen}");
+    assert!(seen.contains("✗ Uploading square.toml failed: waypoint 1 on the craft differs"), "{seen}");
     assert!(seen.contains("upload again"), "{seen}");
 }
 

@@ -41,7 +41,7 @@ pub(super) fn run(args: &CheckArgs) -> Result<u8, AppError> {
     notices.extend(args.firmware_ports.idle_options(firmware.is_some()));
     notices.iter().for_each(|notice| error::tell(notice));
     if firmware.is_some() && args.jobs.is_some_and(|jobs| jobs > 1) {
-        error::tell("--jobs has no effect: a firmware outside flies one flight after the other.");
+        error::tell("--jobs has no effect: a remote firmware flies one flight at a time.");
     }
     let interrupted = interrupt_flag()?;
     if args.watch {

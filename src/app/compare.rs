@@ -46,7 +46,7 @@ pub(super) fn run(args: &CompareArgs) -> Result<u8, AppError> {
     let all_complete = sides.iter().flat_map(|side| &side.flights).all(|flight| flight.result == "complete");
     let comparison = Comparison::new(flights.plan_name(), &conditions(&args.flight), flights.route(), sides);
     if !matches!(flown, Ok(true)) && has_flown {
-        error::tell(&format!("Not all was flown. So far:\n\n{}", comparison.text()));
+        error::tell(&format!("Not everything was flown. So far:\n\n{}", comparison.text()));
     }
     if !flown? {
         return Ok(error::INTERRUPTED);
@@ -77,8 +77,8 @@ fn compared(args: &CompareArgs, notices: &mut Vec<String>) -> Result<[Compared; 
     let choices = chosen.each_ref().map(|chosen| &chosen.choice);
     if choices.iter().all(|choice| choice.is_remote()) && choices.contains(&&FirmwareChoice::Attach) {
         return Err(AppError::input(
-            "--firmware attach is compared with the embedded firmware only: a second one outside would need the same \
-             ports; name the executables of both",
+            "--firmware attach is compared only with the embedded firmware: a second remote one would need the same \
+             ports; name both executables",
         ));
     }
     let started = choices.iter().find(|choice| matches!(choice, FirmwareChoice::Executable(_)));
@@ -105,7 +105,7 @@ fn choose(args: &CompareArgs, notices: &mut Vec<String>) -> Result<[Chosen; 2], 
     };
     if !other.choice.is_remote() {
         return Err(AppError::input(
-            "name the firmware to compare with: --firmware PATH, or --betaloop FILE for that of the launcher",
+            "name the firmware to compare with: --firmware PATH, or --betaloop FILE for the one of the launcher",
         ));
     }
     Ok([Chosen::by_option(FirmwareChoice::Embedded), other])

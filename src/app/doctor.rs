@@ -134,7 +134,7 @@ fn ports(report: &mut Report, doors: &DoorArgs) {
             Err(error) if error.kind() == ErrorKind::AddrInUse => report.line(
                 false,
                 &what,
-                &format!("{port} is in use: end the program that has it, or choose another with {option}"),
+                &format!("{port} is in use: stop the program that uses it, or choose another with {option}"),
             ),
             Err(error) => report.line(
                 false,

@@ -64,7 +64,7 @@ pub(super) async fn open(
     if let Some(firmware) = firmware {
         let (tcp, rc) = (firmware.ports.tcp, firmware.ports.udp.rc);
         notices.push(format!(
-            "TCP {tcp} and UDP {rc} are the firmware's: the doors of this program for TCP and RC are closed."
+            "TCP {tcp} and UDP {rc} belong to the firmware: this program keeps its TCP and RC doors closed."
         ));
     }
     if let Some(address) = args.listen.filter(|address| !address.is_loopback()) {
@@ -92,7 +92,7 @@ fn beyond_loopback(address: IpAddr, is_real_craft: bool) -> String {
         true => "read this craft, and change it once you permit changes",
         false => "fly this craft",
     };
-    format!("The doors listen on {address}: everybody on that network can {can}.")
+    format!("The doors listen on {address}: anyone on that network can {can}.")
 }
 
 /// Returns the link to the simulator that moves the craft.
@@ -108,7 +108,7 @@ fn simulator(
     let motors = targets.open().map_err(|error| AppError::environment(error.to_string()))?;
     if let Some(address) = hears_at {
         notices.push(format!(
-            "A simulator moves the craft: its states come to UDP {address}, motors go to {}. Waiting for it.",
+            "A simulator moves the craft: it sends states to UDP {address} and receives motors at {}. Waiting for it.",
             targets.motors()
         ));
     }

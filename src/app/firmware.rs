@@ -84,7 +84,7 @@ impl FirmwarePorts {
         let UdpPorts { raw, motors, fdm, rc } = self.udp;
         if [self.tcp, raw, motors, fdm, rc].contains(&0) {
             return Err(AppError::input(
-                "with --firmware, --tcp-port and --udp-ports name the ports that it uses: 0 is none",
+                "with --firmware, --tcp-port and --udp-ports name the ports that it uses: 0 is not a port",
             ));
         }
         Ok(self)
@@ -166,7 +166,7 @@ impl Chosen {
             None => error,
             Some(file) => {
                 let message = format!(
-                    "{} (the firmware is that of {}; --firmware embedded flies the embedded one)",
+                    "{} (the firmware comes from {}; --firmware embedded flies the embedded one)",
                     error.message,
                     file.display()
                 );
@@ -231,10 +231,10 @@ fn named(file: &Path, betaloop: &Betaloop, notices: &mut Vec<String>) -> Firmwar
     let executable = file.parent().unwrap_or(Path::new("")).join(written);
     let unused = match betaloop.unused.join(", ") {
         none if none.is_empty() => String::new(),
-        keys => format!(" Not used of it: {keys}; the embedded physics flies instead of Gazebo."),
+        keys => format!(" Keys not used: {keys}; the embedded physics flies instead of Gazebo."),
     };
     notices.push(format!(
-        "The firmware is that of {}: {} (--firmware embedded flies the embedded one).{unused}",
+        "The firmware comes from {}: {} (--firmware embedded flies the embedded one).{unused}",
         file.display(),
         executable.display()
     ));

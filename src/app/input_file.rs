@@ -63,7 +63,7 @@ fn open(path: &Path, name: &str, most: u64) -> Result<File, AppError> {
     }
     if is_of_system(&file) {
         return Err(AppError::input(format!(
-            "{name} is a file of the system, which tells about this machine: name a file of your own, or - for standard input"
+            "{name} is a system file, which describes this machine: name a file of your own, or - for standard input"
         )));
     }
     if metadata.len() > most {
@@ -109,7 +109,7 @@ fn read_text(source: impl Read, name: &str, most: u64) -> Result<String, AppErro
 
 fn too_large(name: &str, most: u64) -> AppError {
     let most = if most < 1 << 20 { format!("{} KiB", most >> 10) } else { format!("{} MiB", most >> 20) };
-    AppError::input(format!("{name} is larger than {most}: that is no plan and no settings"))
+    AppError::input(format!("{name} is larger than {most}: that is neither a plan nor settings"))
 }
 
 #[cfg(test)]

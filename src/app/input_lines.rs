@@ -43,15 +43,13 @@ fn next(input: &mut impl BufRead, number: u64) -> Option<Result<String, String>>
             rest.clear();
         }
         let most = LONGEST >> 20;
-        return Some(Err(format!(
-            "line {number} of the input is longer than {most} MiB: it is passed over."
-        )));
+        return Some(Err(format!("line {number} of the input is longer than {most} MiB: it is skipped.")));
     }
     if ended {
         line.pop();
         line.pop_if(|last| *last == b'\r');
     }
-    let not_text = |_| format!("line {number} of the input is not UTF-8 text: it is passed over.");
+    let not_text = |_| format!("line {number} of the input is not UTF-8 text: it is skipped.");
     Some(String::from_utf8(line).map_err(not_text))
 }
 

@@ -52,7 +52,7 @@ fn collect(
             Some(keys) => lines.push(KeyLine { line, action, keys }),
             None => problems.push((
                 line,
-                format!("{action} wants a key such as \"a\", or a list such as [\"a\", \"f2\"]"),
+                format!("{action} needs a key such as \"a\", or a list such as [\"a\", \"f2\"]"),
             )),
         }
     }

@@ -89,7 +89,7 @@ fn problem(path: &Path) -> Option<String> {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return None,
         Err(error) => error.to_string(),
     };
-    Some(format!("Entered lines are not kept in {}: {why}. Delete it to have them kept.", path.display()))
+    Some(format!("Entered lines are not kept in {}: {why}. Delete it to keep them.", path.display()))
 }
 
 #[cfg(test)]

@@ -86,7 +86,7 @@ fn choose<'s>(scenario: &'s Scenario, args: &OpenArgs) -> Result<(&'s Case, Air)
         let name = args.case.as_deref().unwrap_or_default();
         let guess = did_you_mean::suffix(name, names());
         let all = names().collect::<Vec<_>>().join("; ");
-        AppError::input(format!("{} has no case {name}{guess}; there are: {all}", scenario.name))
+        AppError::input(format!("{} has no case {name}{guess}; its cases are: {all}", scenario.name))
     })?;
     let air = case.airs.first().copied().ok_or_else(|| AppError::internal("a case without a flight"))?;
     Ok((case, air))

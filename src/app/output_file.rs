@@ -62,7 +62,7 @@ impl KeptFiles {
                 Ok(())
             }
             Some(kept) => Err(AppError::input(format!(
-                "{option} {} would write over {kept}: name another file",
+                "{option} {} would overwrite {kept}: name another file",
                 path.display()
             ))),
         }
@@ -153,7 +153,7 @@ mod tests {
                 at(name)
             };
             let error = kept.claim("--json", &path).expect_err("refused");
-            assert!(error.to_string().contains("would write over the plan: name another file"), "{error}");
+            assert!(error.to_string().contains("would overwrite the plan: name another file"), "{error}");
         }
         assert!(kept.claim("--json", &at("other.txt")).is_ok());
         assert!(kept.claim("--json", Path::new("/dev/null")).is_ok());
@@ -174,6 +174,6 @@ mod tests {
         std::os::unix::fs::symlink(at("lines"), at("dangling")).expect("a link");
         assert!(kept.claim("--gpx", &at("dangling")).is_err());
         let error = kept.claim("--gpx", &at("lines")).expect_err("refused");
-        assert!(error.to_string().contains("would write over --json"), "{error}");
+        assert!(error.to_string().contains("would overwrite --json"), "{error}");
     }
 }

@@ -300,7 +300,7 @@ impl PlanFiles {
             if !is_unchanged {
                 // This makes the next save ask first.
                 seen = Content::Missing;
-                notes.push("Another program changed the file meanwhile, too.".to_owned());
+                notes.push("Another program has changed the file, too.".to_owned());
             }
         }
         let opened = self.keep(path, seen, history, file, notes);
@@ -336,7 +336,7 @@ impl PlanFiles {
         replace: bool,
     ) -> Vec<FileReply> {
         let Some(file) = self.open.get_mut(&id) else {
-            return vec![FileReply::Failed("This plan is not open any more.".to_owned())];
+            return vec![FileReply::Failed("This plan is no longer open.".to_owned())];
         };
         let is_own = file.path.as_deref() == Some(path.as_path());
         // The file is read again just before it is replaced.
@@ -407,7 +407,7 @@ impl PlanFiles {
 /// Returns notes about a journal that lost at most its last edit.
 fn notes_on(found: &Found) -> Vec<String> {
     let is_cut_short = found.losses.is_cut_short && found.losses.line.is_none();
-    let note = "The newest edit was cut short when the program ended, and is lost.";
+    let note = "The newest edit was cut off when the program ended, and is lost.";
     is_cut_short.then(|| note.to_owned()).into_iter().collect()
 }
 

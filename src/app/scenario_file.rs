@@ -43,7 +43,7 @@ fn create_numbered(stem: &str, text: &str) -> Result<PathBuf, String> {
         }
     }
     Err(format!(
-        "{stem}-flight-1.toml to {stem}-flight-{MOST}.toml are there already: name a file, `:scenario FILE`."
+        "{stem}-flight-1.toml to {stem}-flight-{MOST}.toml exist already: name a file, `:scenario FILE`."
     ))
 }
 
@@ -51,7 +51,7 @@ fn create(path: &Path, text: &str) -> Result<(), String> {
     let written = File::create_new(path).and_then(|mut file| file.write_all(text.as_bytes()));
     written.map_err(|error| match error.kind() {
         ErrorKind::AlreadyExists => {
-            format!("{} is there already: name another file, `:scenario FILE`.", path.display())
+            format!("{} exists already: name another file, `:scenario FILE`.", path.display())
         }
         _ => format!("{} cannot be written: {error}.", path.display()),
     })
@@ -73,7 +73,7 @@ mod tests {
         let directory = tempfile::tempdir().expect("a directory");
         let path = directory.path().join("mine.toml");
         assert_eq!(create(&path, "one"), Ok(()));
-        assert!(create(&path, "two").expect_err("there already").contains("is there already"));
+        assert!(create(&path, "two").expect_err("there already").contains("exists already"));
         assert_eq!(std::fs::read_to_string(&path).expect("readable"), "one");
     }
 }

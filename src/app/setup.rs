@@ -114,7 +114,7 @@ pub(super) fn set_of_embedded(
     };
     let (unknown, known): (Vec<&String>, Vec<&String>) = settings.iter().partition(is_unknown);
     notices.extend(unknown.iter().map(|setting| {
-        format!("The embedded firmware does not have `{setting}`: only the other one is set so.")
+        format!("The embedded firmware does not have `{setting}`: only the other one gets it.")
     }));
     let known: Vec<String> = known.into_iter().cloned().collect();
     check_set(&known)?;

@@ -123,7 +123,7 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
     let opened = files.start_with(screen.path, screen.plan.into());
     notices.extend(opened.notes);
     if opened.recovered {
-        notices.push("Edits of this plan that were never saved are back: `u` undoes them.".to_owned());
+        notices.push("Unsaved edits of this plan were restored: `u` undoes them.".to_owned());
     }
     let recovered = files.recovered();
     let history = LineHistory::new(screen.directory.as_deref());

@@ -29,7 +29,7 @@ pub enum BetaloopError {
     #[error("[{SECTION}] has no BetaflightElf: add BetaflightElf=/path/to/betaflight_SITL.elf")]
     NoExecutable,
     /// It names two executables, with keys that differ only in case.
-    #[error("[{SECTION}] has two lines {first} and {second}: keep the one that is meant")]
+    #[error("[{SECTION}] has two lines {first} and {second}: keep the right one")]
     TwoExecutables {
         /// One of the keys.
         first: String,
@@ -106,7 +106,7 @@ mod tests {
         // The order of the keys differs from run to run.
         let text = "[Betaloop]\nBetaflightElf=/a\nBETAFLIGHTELF=/b\n";
         let refusal = Betaloop::read(text).map_err(|error| error.to_string());
-        let wanted = "[Betaloop] has two lines BETAFLIGHTELF and BetaflightElf: keep the one that is meant";
+        let wanted = "[Betaloop] has two lines BETAFLIGHTELF and BetaflightElf: keep the right one";
         assert_eq!(refusal, Err(wanted.to_owned()));
     }
 

@@ -67,7 +67,7 @@ impl CompareArgs {
             (FirmwareChoice::Embedded, _) | (FirmwareChoice::Attach, None | Some(1)) => Ok(1),
             (FirmwareChoice::Executable(_), times) => Ok(times.unwrap_or(3)),
             (FirmwareChoice::Attach, Some(times)) => Err(format!(
-                "--repeat {times}: a firmware that is running already (--firmware attach) is not started anew for each \
+                "--repeat {times}: a firmware that is running already (--firmware attach) is not restarted for each \
                  flight, so it flies once; write --repeat 1, or name its executable"
             )),
         }
@@ -79,12 +79,14 @@ impl CompareArgs {
             return Err("--firmware is given once, to compare with the embedded one, or twice".to_owned());
         }
         if self.flight.state_dir.is_some() {
-            return Err("--state-dir: in compare each flight starts from defaults, so that all start alike; give what \
-                        differs from them with --settings FILE"
+            return Err("--state-dir: in compare each flight starts from defaults, so that all start alike; give the \
+                        differences with --settings FILE"
                 .to_owned());
         }
         if self.mission.timeout.is_some_and(|seconds| seconds > LONGEST_S) {
-            return Err(format!("--timeout: allowed are 1 to {LONGEST_S} s here, for whole tracks are kept"));
+            return Err(format!(
+                "--timeout: allowed are 1 to {LONGEST_S} s here, because whole tracks are kept"
+            ));
         }
         Ok(())
     }

@@ -73,7 +73,7 @@ pub fn template(keys: &[KeyHelp]) -> String {
     command.build();
     let mut text = String::from(
         "# Configuration of betadeck. Each line that begins with a name is an option: take the # away and change it.\n\
-         # The command line wins over the environment (BETADECK_WIND), that over this file.\n",
+         # The command line overrides the environment (BETADECK_WIND), which overrides this file.\n",
     );
     for option in all_options(&command) {
         let Some(long) = option.get_long() else { continue };
@@ -93,8 +93,8 @@ pub fn template(keys: &[KeyHelp]) -> String {
         text.push_str(&format!("#{long} = {value}\n"));
     }
     text.push_str(
-        "\n# Keys: instead of the default ones. Several in a list, none with \"\". Names: a letter, space, tab, enter,\n\
-         # esc, up, home, pageup, f1, delete, with ctrl-, alt- or shift- in front.\n[keys]\n",
+        "\n# Keys that replace the default ones. Several in a list, none with \"\". Names: a letter, space, tab,\n\
+         # enter, esc, up, home, pageup, f1, delete, with ctrl-, alt- or shift- in front.\n[keys]\n",
     );
     for key in keys {
         text.push('\n');

@@ -59,7 +59,7 @@ impl ConvertArgs {
         });
         found.ok_or_else(|| match &self.output {
             OutputFile::Stdout => {
-                "the format of standard output is open: add --to toml or --to txt".to_owned()
+                "the format of standard output is not given: add --to toml or --to txt".to_owned()
             }
             OutputFile::File(path) => format!(
                 "{} has none of the endings {}: add --to toml or --to txt",

@@ -53,8 +53,8 @@ impl FirmwareChoice {
         }
         if physics.is_external() {
             return Err(
-                "with --physics external the firmware is the embedded one: an executable and a simulator \
-                        outside fly without betadeck between them; leave out one of the two"
+                "--physics external needs the embedded firmware: an executable and an external simulator fly without \
+                        betadeck between them; leave out one of the two"
                     .to_owned(),
             );
         }
@@ -62,12 +62,12 @@ impl FirmwareChoice {
             None | Some(Speed(1.0)) => Ok(()),
             Some(Speed(speed)) if link.stamps() == Stamps::Sim && speed.is_finite() => Ok(()),
             Some(Speed(speed)) if link.stamps() == Stamps::Sim => Err(format!(
-                "--speed {} needs the embedded firmware, for nothing paces the one outside then: write a factor",
+                "--speed {} needs the embedded firmware, because nothing paces a remote one then: write a factor",
                 speed_text(speed)
             )),
             Some(Speed(speed)) => Err(format!(
-                "--speed {} needs the embedded firmware: the clock of a SITL is the wall clock, so that it flies at 1 \
-                 only; leave --speed out, or add --fdm-stamps sim for a build whose clock follows the packets",
+                "--speed {} needs the embedded firmware: the clock of a SITL is the wall clock, so it flies only at 1; \
+                 leave --speed out, or add --fdm-stamps sim for a build whose clock follows the packets",
                 speed_text(speed)
             )),
         }

@@ -5,7 +5,7 @@ use crate::sim::{FAULTS, FaultInfo, SWITCHES};
 /// The sources of values, for the end of the help of commands that fly.
 pub(super) const LAYERS: &str = "\
 Each option can also be set in the configuration file (wind = \"5@270\") and in the environment
-(BETADECK_WIND=5@270); the command line wins over the environment, that over the file.";
+(BETADECK_WIND=5@270); the command line overrides the environment, which overrides the file.";
 
 /// The end of the help of `fly`.
 pub(super) const FLY: &str = "\
@@ -15,29 +15,29 @@ Exit codes: 0 the mission truly completed, 1 it did not, 2 wrong usage or input,
 4 internal error, 130 interrupted.
 
 Each option can also be set in the configuration file (wind = \"5@270\") and in the environment
-(BETADECK_WIND=5@270); the command line wins over the environment, that over the file.";
+(BETADECK_WIND=5@270); the command line overrides the environment, which overrides the file.";
 
 /// The end of the help of `compare`.
 pub(super) const COMPARE: &str = "\
-Everything is measured from truth, alike for both; the embedded firmware flies as fast as the machine allows and once,
-for each of its flights is the same; one outside flies in real time. Each flight starts from defaults, an executable
-anew in an empty folder; attach takes one as it runs, and once.
+Everything is measured from truth, in the same way for both. The embedded firmware flies as fast as the machine allows
+and once, because each of its flights is the same. A remote firmware flies in real time. Each flight starts from
+defaults, an executable in an empty folder each time. attach uses a running firmware as it is, and once.
 
 Exit codes: 0 every flight completed, 1 one did not, 2 wrong usage or input, 3 file or port trouble,
 4 internal error, 130 interrupted.
 
 Each option can also be set in the configuration file (wind = \"5@270\") and in the environment
-(BETADECK_WIND=5@270); the command line wins over the environment, that over the file.";
+(BETADECK_WIND=5@270); the command line overrides the environment, which overrides the file.";
 
 /// The end of the help of `check`.
 pub(super) const CHECK: &str = "\
-docs/scenarios.md says how a scenario is written.
+docs/scenarios.md explains how to write a scenario.
 
 Exit codes: 0 every expectation was met, 1 one was not, 2 wrong usage or scenario, 3 file trouble,
 4 internal error, 130 interrupted.
 
-Which firmware flies can also be set in the configuration file (firmware = \"PATH\") and in the environment
-(BETADECK_FIRMWARE=PATH), as can each option below Firmware; what else makes a flight is in the scenario.";
+The firmware can also be set in the configuration file (firmware = \"PATH\") and in the environment
+(BETADECK_FIRMWARE=PATH), as can each option below Firmware; the scenario contains everything else of a flight.";
 
 /// Returns the examples of a command for the top of its help: the line to type and its effect.
 pub(super) fn examples(examples: &[(&str, &str)]) -> String {
@@ -56,7 +56,7 @@ pub(super) fn faults() -> String {
     let mut text = String::from(
         "Something goes wrong at T, for FOR seconds or to the end; repeatable\n\n\
          motor@10,,2:0.8 weakens motor 2 to 80 % after 10 s, gps-loss@boot+20,6 takes the GPS away for 6 s.\n\n\
-         NAME (VALUE; what it is when left out):\n",
+         NAME (VALUE; default when left out):\n",
     );
     // Without an external simulator, faults of its link have no effect.
     text.extend(FAULTS.iter().filter(|fault| !fault.needs_link()).map(fault_line));

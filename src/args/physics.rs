@@ -82,7 +82,7 @@ impl PhysicsArgs {
                 ("--attitude", flight.attitude.is_some()),
                 ("--arm-assist", flight.arm_assist.is_some()),
             ];
-            (given.to_vec(), "the firmware outside decides that")
+            (given.to_vec(), "the remote firmware decides that")
         } else {
             let simulator = &self.simulator;
             let given = [
@@ -114,7 +114,7 @@ impl FromStr for FdmDialect {
         if text == "auto" {
             return Ok(Self(None));
         }
-        let known = || format!("{text} is no dialect; use auto, sitl-gz, gz-plugin or legacy");
+        let known = || format!("{text} is not a dialect; use auto, sitl-gz, gz-plugin or legacy");
         text.parse().map(|dialect| Self(Some(dialect))).map_err(|_| known())
     }
 }
@@ -144,7 +144,7 @@ mod tests {
         let attitude = FlightArgs { attitude: Some(AttitudeChoice::Truth), ..flight };
         assert_eq!(
             ordered.idle_options(&attitude, true).unwrap(),
-            "--attitude has no effect: the firmware outside decides that."
+            "--attitude has no effect: the remote firmware decides that."
         );
     }
 }

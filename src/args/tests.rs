@@ -125,7 +125,7 @@ fn a_firmware_that_runs_already_is_compared_by_one_flight() {
     assert_eq!(times("betadeck compare square --firmware attach"), Ok(1));
     assert_eq!(times("betadeck compare square --firmware attach --repeat 1"), Ok(1));
     let sentence = times("betadeck compare square --firmware attach --repeat 3").unwrap_err();
-    assert!(sentence.contains("is not started anew") && sentence.contains("--repeat 1"), "{sentence}");
+    assert!(sentence.contains("is not restarted") && sentence.contains("--repeat 1"), "{sentence}");
 }
 
 #[test]

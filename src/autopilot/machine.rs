@@ -205,7 +205,7 @@ impl Outcome {
             Self::Missed => "the waypoint becomes a stop",
             Self::Hold => "the hold clock starts",
             Self::Orbit | Self::Figure8 => "phase 0, centre = waypoint",
-            Self::Land => "descent from the altitude now",
+            Self::Land => "descent from the current altitude",
             Self::Next => "advance to the next positional waypoint",
             Self::Complete => "target and altitude held",
             Self::Touchdown => "disarm, reason LANDING",

@@ -91,40 +91,40 @@ parameters! {
         "Height below which a touchdown may be declared, m.";
     /// Throttle at hover, µs; 0 = the throttle that held the craft when the autopilot engaged.
     "ap_hover_throttle" hover_throttle: u16 = 1275, 0..=1700, Live,
-        "Throttle at hover, µs; 0 takes it over when the autopilot engages.";
+        "Throttle at hover, µs; 0 uses the throttle at which the autopilot engages.";
     /// Throttle floor in flight, µs.
     "ap_throttle_min" throttle_min: u16 = 1100, 1050..=1400, Live,
-        "Least throttle in flight, µs.";
+        "Minimum throttle in flight, µs.";
     /// Throttle ceiling, µs.
     "ap_throttle_max" throttle_max: u16 = 1900, 1400..=2000, Live,
-        "Most throttle in flight, µs.";
+        "Maximum throttle in flight, µs.";
     /// Altitude error gain, 0.01 µs per cm.
     "ap_altitude_p" altitude_p: u8 = 15, 0..=200, Live,
-        "Throttle for altitude error.";
+        "Throttle response to altitude error.";
     /// Altitude integral gain, 0.003 µs per cm·s.
     "ap_altitude_i" altitude_i: u8 = 20, 0..=200, Live,
-        "Throttle for lasting altitude error.";
+        "Throttle response to lasting altitude error.";
     /// Climb rate gain, 0.01 µs per cm/s.
     "ap_altitude_d" altitude_d: u8 = 30, 0..=200, Live,
-        "Throttle for climb rate error.";
+        "Throttle response to climb rate error.";
     /// Climb rate feed-forward, 0.0033 µs per cm/s.
     "ap_altitude_f" altitude_f: u8 = 30, 0..=200, Live,
-        "Throttle for the climb rate asked for.";
+        "Throttle response to the commanded climb rate.";
     /// Position gain: 0.025 per s of the speed law, 0.12 deg per m of the direct law.
     "ap_position_p" position_p: u8 = 30, 0..=200, Live,
-        "Lean for position error.";
+        "Lean response to position error.";
     /// Position integral of the direct law, 0.01 deg per m·s.
     "ap_position_i" position_i: u8 = 30, 0..=200, Live,
-        "Lean for lasting position error.";
+        "Lean response to lasting position error.";
     /// Position damping of the direct law, 0.15 deg per m/s.
     "ap_position_d" position_d: u8 = 30, 0..=200, Live,
-        "Lean for speed.";
+        "Lean response to speed.";
     /// Acceleration feedback of the direct law, 0.08 deg per m/s².
     "ap_position_a" position_a: u8 = 30, 0..=200, Live,
-        "Lean for acceleration, and trust in the accelerometer.";
+        "Lean response to acceleration, and weight of the accelerometer.";
     /// Stored, without effect.
     "ap_position_f" position_f: u8 = 30, 0..=200, Stored,
-        "Lean for the speed asked for.";
+        "Lean response to the commanded speed.";
     /// Low-pass of the measured acceleration, 0.1 Hz.
     "ap_position_cutoff" position_cutoff: u8 = 30, 1..=250, Live,
         "Smoothing of the lean angle, 0.1 Hz.";
@@ -133,25 +133,25 @@ parameters! {
         "Speed below which a hold counts as stopped, cm/s.";
     /// Maximum lean, deg.
     "ap_max_angle" max_angle: u8 = 50, 10..=70, Live,
-        "Greatest lean of the autopilot, deg; also sets the turn radius.";
+        "Maximum lean of the autopilot, deg; also sets the turn radius.";
     /// `true` if holds use the speed law too, else the direct law.
     "ap_velocity_control_enable" velocity_control_enable: bool = true, 0..=1, Live,
         "Control the speed over ground, not only the position.";
     /// Speed error gain, 0.1 deg per m/s.
     "ap_velocity_p" velocity_p: u8 = 50, 0..=200, Live,
-        "Lean for speed error, 0.1 deg per m/s.";
+        "Lean response to speed error, 0.1 deg per m/s.";
     /// Speed error integral gain, 0.1 deg per m.
     "ap_velocity_i" velocity_i: u8 = 10, 0..=200, Live,
-        "Lean for lasting speed error, 0.1 deg per m.";
+        "Lean response to lasting speed error, 0.1 deg per m.";
     /// Acceleration damping, 0.1 deg per m/s².
     "ap_velocity_d" velocity_d: u8 = 5, 0..=100, Live,
-        "Lean for acceleration, 0.1 deg per m/s².";
+        "Lean response to acceleration, 0.1 deg per m/s².";
     /// Drag feed-forward, 1e-4 deg per (m/s)².
     "ap_velocity_drag_coeff" velocity_drag_coeff: u16 = 50, 0..=1000, Live,
-        "Lean that makes up for air drag, 0.0001 deg per (m/s)2.";
+        "Lean that compensates for air drag, 0.0001 deg per (m/s)2.";
     /// Default and maximum leg speed, cm/s.
     "ap_max_velocity" max_velocity: u16 = 500, 100..=5000, Live,
-        "Greatest speed, and that of legs without their own, cm/s.";
+        "Maximum speed, and the speed of legs that set none, cm/s.";
     /// Arrival radius of FLYOVER and FLYBY, cm.
     "ap_waypoint_arrival_radius" waypoint_arrival_radius: u16 = 500, 100..=5000, Live,
         "Distance at which FLYOVER and FLYBY waypoints count as reached, cm.";
@@ -163,19 +163,19 @@ parameters! {
         "Stick movement beyond which the pilot steers, µs.";
     /// Throttle stick movement that takes over a hold after a mission was given up, µs.
     "ap_throttle_deadband" throttle_deadband: u16 = 50, 0..=500, Live,
-        "Throttle movement that takes over after a mission was given up, µs.";
+        "Throttle movement that takes over after a mission was aborted, µs.";
     /// Direction of the nose.
     "ap_yaw_mode" yaw_mode: YawMode = YawMode::Velocity, 0..=4, Live,
-        "Where the nose points: along the path, at the waypoint, both, or as at engagement (FIXED, DAMPENER).";
+        "Direction of the nose: along the path, to the waypoint, both, or as at engagement (FIXED, DAMPENER).";
     /// Heading error gain, 0.01 per s.
     "ap_yaw_p" yaw_p: u16 = 50, 0..=500, Live,
-        "Yaw rate for heading error, 0.01 per s.";
+        "Yaw rate response to heading error, 0.01 per s.";
     /// Yaw rate damping, 0.01.
     "ap_yaw_d" yaw_d: u16 = 10, 0..=200, Live,
         "Damping of the yaw rate, 0.01.";
     /// Maximum yaw rate, deg/s.
     "ap_max_yaw_rate" max_yaw_rate: u16 = 30, 10..=360, Live,
-        "Greatest yaw rate of the autopilot, deg/s.";
+        "Maximum yaw rate of the autopilot, deg/s.";
     /// Ground speed from which the course is trusted, cm/s.
     "ap_min_forward_velocity" min_forward_velocity: u16 = 300, 10..=500, Live,
         "Speed above which the course is trusted, cm/s.";
@@ -193,10 +193,10 @@ parameters! {
         "Acceleration after corners, cm/s².";
     /// Stored, without effect, ds.
     "ap_nav_carrot_lead_time" nav_carrot_lead_time: u8 = 12, 2..=40, Stored,
-        "How far ahead of the craft the aim point runs, 0.1 s.";
+        "Time by which the aim point leads the craft, 0.1 s.";
     /// Stored, without effect, cm.
     "ap_nav_carrot_lead_max" nav_carrot_lead_max: u16 = 2500, 600..=6000, Stored,
-        "Greatest distance of the aim point, cm.";
+        "Maximum distance of the aim point, cm.";
     /// Stored, without effect, cm.
     "ap_nav_preturn_dist" nav_preturn_dist: u16 = 1500, 500..=5000, Stored,
         "Distance before a corner at which the turn begins, cm.";
@@ -217,7 +217,7 @@ parameters! {
         "Descent rate of a landing, cm/s.";
     /// Time the touchdown conditions must hold, ds.
     "ap_landing_detection_time" landing_detection_time: u8 = 10, 5..=50, Live,
-        "How long the signs of a touchdown must last, 0.1 s.";
+        "Time for which the signs of a touchdown must last, 0.1 s.";
     /// `true` if a landing descends on a spiral.
     "ap_landing_spiral_enable" landing_spiral_enable: bool = true, 0..=1, Live,
         "Descend in a spiral.";
@@ -241,28 +241,28 @@ parameters! {
         "Period of the path following; shorter is sharper, 0.1 s.";
     /// Minimum lookahead, cm.
     "ap_l1_min_lookahead" l1_min_lookahead: u16 = 1000, 100..=5000, Live,
-        "Least distance of the aim point on the path, cm.";
+        "Minimum distance of the aim point on the path, cm.";
     /// Maximum lookahead, cm; takes precedence over the minimum.
     "ap_l1_max_lookahead" l1_max_lookahead: u16 = 10000, 1000..=50000, Live,
-        "Greatest distance of the aim point on the path, cm.";
+        "Maximum distance of the aim point on the path, cm.";
     /// Cross-track error beyond which the leg starts again at the craft, cm.
     "ap_l1_max_cross_track_error" l1_max_cross_track_error: u16 = 10000, 1000..=50000, Live,
-        "Farther from the path than this the craft flies straight back to it, cm.";
+        "Cross-track error above which the craft flies straight back to the path, cm.";
     /// Turn rate of arcs at the start of a leg, deg/s; 0 = no arcs.
     "ap_l1_turn_rate" l1_turn_rate: u8 = 0, 0..=90, Live,
-        "Rounds corners with arcs of this angular speed, deg/s; 0 does not.";
+        "Angular speed of the arcs that round corners, deg/s; 0 for no arcs.";
     /// Altitude (m) to climb to on the spot before the first leg; 0 = none.
     "ap_min_nav_altitude_m" min_nav_altitude_m: u8 = 5, 0..=50, Live,
-        "Below this height the craft climbs before it flies off, m.";
+        "Height below which the craft climbs before the first leg, m.";
     /// Reaction to a lost receiver.
     "ap_rx_loss_policy" rx_loss_policy: RxLossPolicy = RxLossPolicy::Disable, 0..=2, Live,
-        "What a mission does when the link is lost.";
+        "Reaction of a mission to a lost link.";
     /// The fence: maximum distance from home, m; 0 = no fence.
     "ap_max_distance_from_home" max_distance_from_home: u16 = 0, 0..=10000, Live,
         "Radius of the fence around home, m; 0 for no fence.";
     /// Reaction to leaving the fence.
     "ap_geofence_action" geofence_action: FenceAction = FenceAction::Land, 0..=1, Live,
-        "What happens outside the fence.";
+        "Reaction to leaving the fence.";
     /// Maximum climb and sink rate, 10 cm/s; 0 counts as 50.
     "alt_hold_climb_rate" alt_hold_climb_rate: u8 = 50, 0..=200, Live,
         "Climb rate at full stick in altitude hold, 0.1 m/s.";

@@ -71,7 +71,7 @@ impl ForecastRun {
         vehicle.transmitter_mut().set_cut(false);
         vehicle.reset_craft();
         vehicle.start_pilot(takeoff_m).map_err(|mode| {
-            format!("The scripted pilot needs a switch for {mode}: give it one with the CLI command aux.")
+            format!("The scripted pilot needs a switch for {mode}: assign one with the CLI command aux.")
         })?;
         Self::begin(ForecastKind::PlanEstimate, vehicle, takeoff_m)
     }

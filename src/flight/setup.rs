@@ -290,7 +290,7 @@ mod tests {
         let notices = told("battery_sag=off", true);
         assert_eq!(
             notices[0],
-            "The fault mag-off has no effect: a firmware outside is not told what the magnetometer measures."
+            "The fault mag-off has no effect: a remote firmware gets no magnetometer data."
         );
         let named = |name: &str| notices.iter().filter(|notice| notice.contains(name)).count();
         assert_eq!((notices.len(), named("mag-bias"), named("battery_sag=on")), (3, 1, 1), "{notices:?}");

@@ -100,7 +100,7 @@ impl Client {
             Stop::Deaf => {
                 self.stats.error();
                 self.notices.tell(format!(
-                    "A client of the {door} door did not take its answers for {} s and was closed.",
+                    "A client of the {door} door did not read its answers for {} s and was closed.",
                     WRITE_TIMEOUT.as_secs()
                 ));
             }

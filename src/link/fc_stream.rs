@@ -29,8 +29,8 @@ const PAUSE_LONGEST: Duration = Duration::from_secs(2);
 /// The most common reason for the end of a connection.
 const CLOSED: &str = "the other end closed the connection";
 /// The most likely reason for the end of a connection that has just been made.
-const CLOSED_AT_ONCE: &str = "the other end closed the connection at once, as one does that serves a single client: close the \
-                              other program that is connected to it";
+const CLOSED_AT_ONCE: &str = "the other end closed the connection at once, as a server for a single client does: close \
+                              the other program that is connected to it";
 
 /// An event of the stream.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -200,7 +200,7 @@ async fn pump(
 /// Returns the system's error as part of a sentence.
 fn reason(error: &io::Error) -> String {
     match error.kind() {
-        ErrorKind::ConnectionRefused => "nobody listens there (connection refused)".to_owned(),
+        ErrorKind::ConnectionRefused => "nothing listens there (connection refused)".to_owned(),
         ErrorKind::ConnectionReset
         | ErrorKind::BrokenPipe
         | ErrorKind::ConnectionAborted

@@ -80,7 +80,7 @@ pub(super) async fn listen(
         let Some(seat) = seats.take(ClientId(NEXT_CLIENT.fetch_add(1, Relaxed))) else {
             stats.error();
             notices.tell(format!(
-                "The {} door serves {CLIENTS_MAX} clients at once: another one was turned away.",
+                "The {} door serves {CLIENTS_MAX} clients at once: another one was refused.",
                 kind.name()
             ));
             continue;

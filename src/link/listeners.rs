@@ -69,7 +69,7 @@ fn option(kind: EndpointKind) -> &'static str {
 pub enum ListenError {
     /// Another program has the port.
     #[error(
-        "{} port {port} is in use: stop the program that has it, or choose another with {} (0 = any free one)",
+        "{} port {port} is in use: stop the program that uses it, or choose another with {} (0 = any free one)",
         .kind.transport(), option(*.kind)
     )]
     Busy {

@@ -17,7 +17,7 @@ const SHOWN_MAX: usize = 100;
 pub(super) enum Refusal {
     /// A web page whose origin can be allowed.
     #[error(
-        "A web page of {0} tried to reach the craft through the websocket and was refused: start with \
+        "A web page from {0} tried to reach the craft through the websocket and was refused: start with \
          --allow-origin {0} to serve it."
     )]
     Origin(String),
@@ -29,7 +29,7 @@ pub(super) enum Refusal {
     NoOrigin,
     /// A name that does not belong to this machine. A page may have made it point here.
     #[error(
-        "A client that took this machine for {0:?} tried to reach the craft through the websocket and was refused: \
+        "A client that addressed this machine as {0:?} tried to reach the craft through the websocket and was refused: \
          connect to its address, or start with --allow-origin http://NAME."
     )]
     Host(String),

@@ -39,8 +39,8 @@ pub struct SitlPorts {
 /// A port for its motor packets is not free.
 #[derive(Debug, thiserror::Error)]
 #[error(
-    "cannot take the motors of the firmware at UDP {address}: {error}; end what holds the port (a simulator such as Gazebo, \
-     another betadeck), or name others with --udp-ports"
+    "cannot receive the motors of the firmware at UDP {address}: {error}; stop the program that holds the port (a \
+     simulator such as Gazebo, another betadeck), or name others with --udp-ports"
 )]
 pub struct MotorsInError {
     address: SocketAddr,

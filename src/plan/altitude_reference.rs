@@ -21,12 +21,13 @@ pub enum AltitudeReference {
 pub enum AltitudeError {
     /// The reference is not known.
     #[error(
-        "From where its firmware counts the altitudes of waypoints is not known yet: wait until it has told its settings."
+        "The altitude reference of its firmware is not known yet: wait until it has reported its settings."
     )]
     Untold,
     /// Altitudes count from sea level, and the altitude of home is unknown.
     #[error(
-        "Its firmware counts the altitudes of waypoints from sea level, and that of home, where it stands disarmed, is not known yet: wait for a GPS fix."
+        "Its firmware counts waypoint altitudes from sea level, and the altitude of home, where it is disarmed, is not \
+         known yet: wait for a GPS fix."
     )]
     HomeUnknown,
 }

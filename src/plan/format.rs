@@ -143,7 +143,7 @@ pub fn parse_checked(
         Format::Toml if text.len() > MAX_TOML => {
             let message =
                 format!("the file has {} KiB, a TOML plan at most {} KiB", text.len() >> 10, MAX_TOML >> 10);
-            problems.add(0..0, message, "a plan has at most 30 waypoints: is this another file?");
+            problems.add(0..0, message, "a plan has at most 30 waypoints: is this the right file?");
             PlanFile::default()
         }
         Format::Toml => native_read::read(text, check, &mut problems),

@@ -11,7 +11,7 @@ const STEP_S: f64 = 0.05;
 const FOLLOW: f64 = 1.5;
 /// Speeds with a smaller difference count as equal, m/s.
 const SAME_MPS: f64 = 0.02;
-/// The share of gravity along the greatest lean that the craft uses to plan a stop.
+/// The share of gravity along the maximum lean that the craft uses to plan a stop.
 const STOP_SHARE: f64 = 0.35;
 /// The number of steps after which the rest of a leg is assumed to be flown at the last demanded speed.
 const MOST_STEPS: usize = 10_000;

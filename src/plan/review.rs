@@ -128,15 +128,15 @@ impl fmt::Display for Finding {
             Self::Fault(_) | Self::OutsideFence { .. } => write!(f, "refused: {}", self.reason()),
             Self::CraftDiffers { setting } => write!(
                 f,
-                "the plan sets {setting}, the craft has another value: it counts until the next upload"
+                "the plan sets {setting}, the craft has another value, which applies until the next upload"
             ),
             Self::NeverFlown { index, kind: WaypointType::Land } => {
-                write!(f, "waypoint {index} lands: the waypoints behind it are never flown")
+                write!(f, "waypoint {index} lands: the waypoints after it are never flown")
             }
             Self::NeverFlown { index, .. } => {
                 write!(
                     f,
-                    "waypoint {index} holds forever (duration 0): the waypoints behind it are never flown"
+                    "waypoint {index} holds forever (duration 0): the waypoints after it are never flown"
                 )
             }
             Self::NothingToModify { index, kind } => {
@@ -175,8 +175,9 @@ impl fmt::Display for Finding {
             Self::SteepLeg(leg) => leg.fmt(f),
             Self::NoTouchdownThrottle(TouchdownThrottle { hover_us, threshold_us, min_us }) => write!(
                 f,
-                "ap_landing_throttle_threshold = {threshold_us} can never be met, for ap_hover_throttle ({hover_us}) less \
-                 it is not above ap_throttle_min ({min_us}): a touchdown is found late or not at all"
+                "ap_landing_throttle_threshold = {threshold_us} can never be met, because ap_hover_throttle \
+                 ({hover_us}) minus this is not above ap_throttle_min ({min_us}): a touchdown is detected late or not \
+                 at all"
             ),
         }
     }
@@ -349,8 +350,8 @@ mod tests {
         assert_eq!(
             say(&["ap_landing_throttle_threshold = 175"]),
             [
-                "ap_landing_throttle_threshold = 175 can never be met, for ap_hover_throttle (1275) less it is not above \
-                 ap_throttle_min (1100): a touchdown is found late or not at all"
+                "ap_landing_throttle_threshold = 175 can never be met, because ap_hover_throttle (1275) minus this is not \
+                 above ap_throttle_min (1100): a touchdown is detected late or not at all"
             ]
         );
         assert!(say(&["ap_landing_throttle_threshold = 174"]).is_empty());
@@ -374,7 +375,7 @@ mod tests {
         assert_eq!(
             all,
             [
-                "waypoint 0 holds forever (duration 0): the waypoints behind it are never flown",
+                "waypoint 0 holds forever (duration 0): the waypoints after it are never flown",
                 "waypoint 0 asks for 50 m/s; ap_max_velocity limits it to 5 m/s",
                 "waypoint 3 (DELAY) has no effect: no place follows it",
                 "the plan does not end in LAND: the craft stays in the air at its end",

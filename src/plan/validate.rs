@@ -8,7 +8,10 @@ pub enum PlanFault {
     #[error("the plan has no waypoints: add one")]
     Empty,
     /// The stored count is impossible.
-    #[error("the stored plan is damaged (it claims {0} waypoints, {max} is the most): upload it again", max = MAX_WAYPOINTS)]
+    #[error(
+        "the stored plan is damaged (it claims {0} waypoints, at most {max} fit): upload it again",
+        max = MAX_WAYPOINTS
+    )]
     Corrupt(usize),
     /// A record is invalid.
     #[error("waypoint {index}: {fault}")]

@@ -21,7 +21,7 @@ pub fn text(kind: &SessionEvent) -> Option<String> {
         SessionEvent::Remote(notice) => Some(notice.to_string()),
         SessionEvent::Simulator(remark) => Some(sentence_end(&remark.to_string())),
         SessionEvent::Branch { left, .. } => Some(format!(
-            "Flown on from here: the flight that had come to {:.1} s is left behind; what was saved stays saved.",
+            "Flying on from here: the flight that had reached {:.1} s is left; everything saved is kept.",
             left.as_secs_f64()
         )),
         SessionEvent::FirstState { .. } | SessionEvent::FirstRc { .. } | SessionEvent::Restarted => None,
@@ -31,8 +31,8 @@ pub fn text(kind: &SessionEvent) -> Option<String> {
 fn vehicle(kind: &EventKind) -> Option<String> {
     Some(match kind {
         EventKind::Boot { seed, rate_hz, airframe, live } => {
-            let live = if *live { ", open to outside influence" } else { "" };
-            format!("Booted: airframe {airframe}, {rate_hz} steps a second, seed {seed}{live}.")
+            let live = if *live { ", open to external influence" } else { "" };
+            format!("Booted: airframe {airframe}, {rate_hz} steps per second, seed {seed}{live}.")
         }
         EventKind::Firmware(event) => return firmware(event),
         EventKind::Fault { kind, on, value } => {
@@ -51,9 +51,9 @@ fn vehicle(kind: &EventKind) -> Option<String> {
 
 fn battery(state: BatteryAlarm, cell_v: f64) -> String {
     match state {
-        BatteryAlarm::Warning => format!("Battery low, {cell_v:.2} V a cell: land soon."),
-        BatteryAlarm::Critical => format!("Battery critical, {cell_v:.2} V a cell: land now."),
-        BatteryAlarm::Empty => format!("Battery empty, {cell_v:.2} V a cell: all of its charge is drawn."),
+        BatteryAlarm::Warning => format!("Battery low, {cell_v:.2} V per cell: land soon."),
+        BatteryAlarm::Critical => format!("Battery critical, {cell_v:.2} V per cell: land now."),
+        BatteryAlarm::Empty => format!("Battery empty, {cell_v:.2} V per cell: all of its charge is used."),
     }
 }
 
@@ -87,10 +87,7 @@ fn firmware(event: &FirmwareEvent) -> Option<String> {
         }
         FirmwareEvent::Nav(event) => return nav(event),
         FirmwareEvent::HeadingDoubt { on: true, error_deg } => {
-            format!(
-                "The compass is {:.0}° off the GPS course: doubted, the course is taken.",
-                error_deg.abs()
-            )
+            format!("The compass is {:.0}° off the GPS course: the course is used instead.", error_deg.abs())
         }
         FirmwareEvent::HeadingDoubt { on: false, .. } => "The compass agrees with the GPS course.".to_owned(),
         FirmwareEvent::Battery { state, cell_v } => battery(*state, *cell_v),
@@ -110,7 +107,7 @@ fn nav(event: &NavEvent) -> Option<String> {
         NavEvent::Climbing(true) => "Climbing to the minimum altitude first.".to_owned(),
         NavEvent::Climbing(false) => "Climb done.".to_owned(),
         NavEvent::Limited { lean_rad } => format!(
-            "The throttle does not suffice: leaning {:.0}° at most to keep the altitude, flying slower.",
+            "Not enough throttle: lean limited to {:.0}° to keep the altitude, flying slower.",
             lean_rad.to_degrees()
         ),
         NavEvent::Geofence { distance_m, limit_m, action } => {
@@ -148,9 +145,9 @@ fn cause(reason: TransitionReason, to: NavState) -> &'static str {
         TransitionReason::Reset => "the mission starts",
         TransitionReason::Resume => "the mission goes on",
         TransitionReason::SetCurrent => "sent there",
-        TransitionReason::HoldHere => "told to hold here",
+        TransitionReason::HoldHere => "commanded to hold here",
         TransitionReason::Arrival => "reached",
-        TransitionReason::HeldOffAltitude => "reached, but the craft gets no nearer to its altitude",
+        TransitionReason::HeldOffAltitude => "reached, but the craft gets no closer to its altitude",
         TransitionReason::Plane => "passed",
         TransitionReason::TurnRadius => "the turn begins",
         TransitionReason::Advance if to == NavState::Complete => "the mission is done",
@@ -158,7 +155,7 @@ fn cause(reason: TransitionReason, to: NavState) -> &'static str {
         TransitionReason::Hold => "holding there",
         TransitionReason::Loiter => "waiting there",
         TransitionReason::Pattern => "the pattern begins",
-        TransitionReason::HoldTime => "the time is over",
+        TransitionReason::HoldTime => "the time is up",
         TransitionReason::Land => "the descent begins",
         TransitionReason::Touchdown => "landed",
         TransitionReason::Fence => "outside the fence",
@@ -217,7 +214,7 @@ fn disarm(reason: DisarmReason) -> &'static str {
         DisarmReason::SerialCommand => "serial command",
         DisarmReason::Landing => "landed",
         DisarmReason::Crashflip => "crash flip",
-        DisarmReason::Unknown => "the firmware does not say why",
+        DisarmReason::Unknown => "the firmware gives no reason",
         DisarmReason::System => "restart",
     }
 }

@@ -76,7 +76,7 @@ impl Draft {
         if unmet.is_empty() {
             Ok(text)
         } else {
-            Err(format!("what was seen cannot be expected again: {}", unmet.join("; ")))
+            Err(format!("the observations cannot become expectations: {}", unmet.join("; ")))
         }
     }
 
@@ -94,11 +94,11 @@ struct NoFiles;
 
 impl Files for NoFiles {
     fn plan(&mut self, name: &str) -> Result<PlanFile, String> {
-        Err(format!("{name} is not at hand"))
+        Err(format!("{name} is not available"))
     }
 
     fn text(&mut self, name: &str) -> Result<String, String> {
-        Err(format!("{name} is not at hand"))
+        Err(format!("{name} is not available"))
     }
 }
 

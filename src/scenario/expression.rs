@@ -239,11 +239,11 @@ impl Instant {
     /// `None`.
     pub(super) fn unseen_in_flight(&self) -> Option<&'static str> {
         if self.offset_s < 0.0 {
-            Some("what is to happen is not known before it does")
+            Some("a happening is not known before it happens")
         } else if self.anchor == Anchor::Last {
             Some("the end of the record is not known during the flight")
         } else if self.occurrence == Occurrence::Last {
-            Some("which one is the last is not known during the flight")
+            Some("the last one is not known during the flight")
         } else {
             self.after.as_deref().and_then(Self::unseen_in_flight)
         }

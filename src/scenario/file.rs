@@ -91,7 +91,7 @@ pub fn read_at_most(
     let scenario = if text.len() > MAX_BYTES {
         let message =
             format!("the file has {} KiB, a scenario at most {} KiB", text.len() >> 10, MAX_BYTES >> 10);
-        problems.add(0..0, message, "is this another file?");
+        problems.add(0..0, message, "is this the right file?");
         None
     } else {
         let mut reader = Reader::new(max_flights, text, files, &mut problems);
@@ -255,7 +255,7 @@ impl Belongs<'_> {
     fn check_names(&self, table: &TomlTable<'_, '_>, reader: &mut Reader<'_, '_>) {
         let Some(names) = reader.texts(table, "cases") else { return };
         if names.is_empty() {
-            reader.problem(table.span(), "this is for no case", "leave cases out, or name one");
+            reader.problem(table.span(), "this applies to no case", "leave cases out, or name one");
         }
         for (name, span) in &names {
             if !self.all.contains(name) {

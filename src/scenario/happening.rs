@@ -39,7 +39,7 @@ events! {
     Mode "mode" [] "a mode went on or off";
     Plan "plan" [Count] "another plan became the active one, with its source";
     Refused "engage_refused" [Wp, Distance, Limit] "the autopilot did not engage, with the reason";
-    Geofence "geofence" [Distance, Limit] "the craft left the fence, with what is done about it";
+    Geofence "geofence" [Distance, Limit] "the craft left the fence, with the reaction";
     RxLoss "rx_loss" [] "the receiver link was lost";
     RxRecovered "rx_recovered" [] "the receiver link came back";
     Failsafe "failsafe" [] "a failsafe stage began, with its number";
@@ -49,15 +49,15 @@ events! {
     Contact "contact" [Impact] "a leg touched the ground";
     Touchdown "touchdown" [Impact, Peak] "the craft came to rest on the ground";
     Crash "crash" [] "the craft crashed";
-    Battery "battery_low" [CellVoltage] "the firmware warned of the battery, with how low it is";
-    BatteryEmpty "battery_empty" [CellVoltage] "all of the battery's charge was drawn";
-    CannotHold "cannot_hold" [Distance, Vertical] "the navigator cannot stay where it should, or can again, with what limits it";
+    Battery "battery_low" [CellVoltage] "the firmware warned of the battery, with its level";
+    BatteryEmpty "battery_empty" [CellVoltage] "all of the battery's charge was used";
+    CannotHold "cannot_hold" [Distance, Vertical] "the navigator cannot hold its target, or can again, with the limit";
     HeadingDoubt "heading_doubt" [Error] "the magnetometer disagrees with the course, or agrees again";
-    Limited "limited" [LeanLimit] "the thrust did not suffice for the lean that was asked for";
+    Limited "limited" [LeanLimit] "the thrust was not enough for the commanded lean";
     Climbing "climbing" [] "the climb before the first leg began or ended";
-    Notice "notice" [] "the flight controller or the world had something to say";
+    Notice "notice" [] "the flight controller or the world reported something";
     Reply "reply" [] "the command line answered an input";
-    Refusal "input_refused" [] "an input of the scenario was not taken";
+    Refusal "input_refused" [] "an input of the scenario was refused";
     Input "input" [] "an input of the scenario was carried out, by its name";
     End "end" [] "the flight ended, with its result";
 }
@@ -83,16 +83,16 @@ macro_rules! fields {
 
 fields! {
     Impact "impact" SPEED "sink rate at the contact";
-    Peak "peak" ACCELERATION "greatest specific force since the contact";
+    Peak "peak" ACCELERATION "maximum specific force since the contact";
     Distance "distance" LENGTH "horizontal distance";
     Vertical "vertical" LENGTH "vertical distance";
     Limit "limit" LENGTH "the fence";
     CellVoltage "cell_voltage" VOLTAGE "voltage of a cell";
     Error "error" ANGLE "heading error";
-    LeanLimit "lean_limit" ANGLE "greatest lean";
+    LeanLimit "lean_limit" ANGLE "maximum lean";
     Sats "sats" NONE "satellites in use";
     Count "count" NONE "waypoints in the plan";
-    Wp "wp" NONE "index of the waypoint to blame";
+    Wp "wp" NONE "index of the waypoint at fault";
 }
 
 impl EventName {

@@ -102,7 +102,7 @@ pub(super) fn read_action(text: &str, plans: PlanReader<'_>) -> Result<Action, S
             channel: channel_index(channel).map_err(|problem| whole(problem, ""))?,
             value_us: pulse_us(value).map_err(|problem| whole(problem, ""))?,
             for_s: read_for(span)
-                .ok_or_else(|| whole("how long is not understood".to_owned(), "write for 3 s"))?,
+                .ok_or_else(|| whole("the duration is not understood".to_owned(), "write for 3 s"))?,
         },
         ("release", [channel]) => {
             Action::Release(channel_index(channel).map_err(|problem| whole(problem, ""))?)
@@ -116,7 +116,8 @@ pub(super) fn read_action(text: &str, plans: PlanReader<'_>) -> Result<Action, S
             Action::Switch(mode, *position == "on")
         }
         ("rc", ["cut", span @ ..]) => Action::CutRc(
-            read_for(span).ok_or_else(|| whole("how long is not understood".to_owned(), "write for 3 s"))?,
+            read_for(span)
+                .ok_or_else(|| whole("the duration is not understood".to_owned(), "write for 3 s"))?,
         ),
         ("rc", ["restore"]) => Action::RestoreRc,
         ("cli", [_, ..]) => Action::Cli(rest.to_owned()),
@@ -143,8 +144,7 @@ pub(super) fn read_action(text: &str, plans: PlanReader<'_>) -> Result<Action, S
             return Err(whole(format!("{trimmed} is not understood"), &format!("write {form}")));
         }
         _ => {
-            return world(trimmed)
-                .map_err(|problem| whole(problem, "docs/scenarios.md lists what can be done"));
+            return world(trimmed).map_err(|problem| whole(problem, "docs/scenarios.md lists the inputs"));
         }
     })
 }

@@ -28,8 +28,8 @@ impl Insight {
     /// Returns the missing knowledge as the end of a sentence.
     pub fn missing(self) -> &'static str {
         match self {
-            Self::Truth | Self::Telemetry => "this flight controller tells nothing",
-            Self::Mission => "this firmware does not tell how far its mission is",
+            Self::Truth | Self::Telemetry => "this flight controller reports nothing",
+            Self::Mission => "this firmware does not report the progress of its mission",
             Self::Inner => "only the embedded firmware shows it",
         }
     }

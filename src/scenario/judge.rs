@@ -98,7 +98,7 @@ fn judge_one(expectation: &Expectation, flown: &Flown, evaluator: &Evaluator<'_>
         Expected::Result(allowed) if allowed.contains(&flown.result) => met(None),
         Expected::Result(allowed) => {
             let sentence = format!(
-                "the flight was to end {}, it ended {}: {}",
+                "the flight should end {}, it ended {}: {}",
                 allowed.join(" or "),
                 flown.result,
                 flown.reason
@@ -117,7 +117,7 @@ fn judge_one(expectation: &Expectation, flown: &Flown, evaluator: &Evaluator<'_>
                 && let Some(outside) = trace.happenings.iter().find(|happening| pattern.matches(happening))
             {
                 let sentence = format!(
-                    "it did not happen from {} to {}, but at {}: from and until say when it counts",
+                    "it did not happen from {} to {}, but at {}: from and until set when it counts",
                     trace.shown_time(range.from()),
                     trace.shown_time(range.to()),
                     trace.shown_time(outside.time)
@@ -177,7 +177,7 @@ fn judge_event(
     let mut outcome = met(None);
     if let Some((from_s, to_s, instant)) = within {
         let Some(origin) = evaluator.instant(instant) else {
-            return unjudged("what its time counts from did not happen");
+            return unjudged("the start of its time did not happen");
         };
         let seconds = (first.time.0 as i64 - origin) as f64 * 1e-6;
         let verdict = outcome::time_verdict(seconds, *from_s, *to_s);
@@ -203,7 +203,7 @@ fn at(instant: &Instant, condition: &Condition, evaluator: &Evaluator<'_>) -> Ou
     }
     let trace = evaluator.trace();
     let Some(index) = trace.index_at(us) else {
-        return unjudged("its instant lies behind the end of the record; let the flight be watched longer");
+        return unjudged("its instant lies after the end of the record; watch the flight for longer");
     };
     samples::instant(condition, index, None, trace.samples[index].time, evaluator)
 }

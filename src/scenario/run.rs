@@ -206,7 +206,7 @@ impl<'a> CaseFlight<'a> {
             self.is_over = true;
             let limit = self.case.time_limit_s;
             let doing = match (self.end.is_some(), self.ends.is_some()) {
-                (_, true) => "what ends it did not come",
+                (_, true) => "its end did not come",
                 (true, false) => "still watched",
                 (false, false) => "not over",
             };

@@ -33,7 +33,7 @@ signals! {
     BootTime "boot_time" TIME "time since boot";
     North "north" LENGTH "true place north of the boot place";
     East "east" LENGTH "true place east of the boot place";
-    Altitude "altitude" LENGTH "true height above the place where the craft stood at boot";
+    Altitude "altitude" LENGTH "true height above the boot place";
     Speed "speed" SPEED "true ground speed";
     SpeedNorth "speed_north" SPEED "true speed to the north";
     SpeedEast "speed_east" SPEED "true speed to the east";
@@ -47,7 +47,7 @@ signals! {
     EstNorth "est_north" LENGTH "the estimator's place north of the boot place";
     EstEast "est_east" LENGTH "the estimator's place east of the boot place";
     EstAltitude "est_altitude" LENGTH "the estimator's altitude";
-    Waypoint "waypoint" NONE "index of the current waypoint in the plan that is flown";
+    Waypoint "waypoint" NONE "index of the current waypoint in the active plan";
     WpDistance "wp_distance" LENGTH "the navigator's distance to the current waypoint";
     CrossTrack "cross_track" LENGTH "the navigator's cross-track error, right of the leg positive";
     TargetAltitude "target_altitude" LENGTH "the navigator's altitude setpoint";
@@ -69,7 +69,7 @@ signals! {
     Current "current" CURRENT "true current of the battery";
     Charge "charge" CHARGE "charge drawn since boot";
     BatteryUsed "battery_used" NONE "charge drawn as a share of the capacity";
-    Wind "wind" SPEED "speed of the wind at the craft, gusts and turbulence in it";
+    Wind "wind" SPEED "wind speed at the craft, with gusts and turbulence";
     Satellites "satellites" NONE "satellites in use";
 }
 
@@ -118,13 +118,13 @@ impl Flag {
         match self {
             Self::Armed => "the craft is armed",
             Self::Engaged => "a mission is flown",
-            Self::Climbing => "the climb before the first leg is on",
+            Self::Climbing => "the climb before the first leg is active",
             Self::Fix => "the GPS has a fix",
-            Self::OnGround => "a leg of the craft stands on the ground",
+            Self::OnGround => "a leg of the craft touches the ground",
             Self::Crashed => "the craft has crashed",
             Self::StickOverride => "the pilot's sticks fly roll and pitch",
             Self::RxLink => "the receiver link is up",
-            Self::CannotHold => "the navigator says that it cannot stay where it should",
+            Self::CannotHold => "the navigator reports that it cannot hold its target",
         }
     }
 }

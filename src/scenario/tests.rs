@@ -94,8 +94,8 @@ fn what_was_never_judged_is_not_met() {
         ("always = 'altitude < 5 m'\nfrom = 'ARRIVED 0'", "from which it holds did not come"),
         ("always = 'altitude < 5 m'\nuntil = 'ARRIVED 0'", "until which it holds did not come"),
         ("always = 'altitude < 5 m'\nfrom = '2 s after boot'\nuntil = '1 s after boot'", "before it begins"),
-        ("always = 'cross_track < 5 m'\nfrom = 'boot'", "nothing of it was known"),
-        ("that = 'altitude < 5 m'\nat = '9 s after boot'", "behind the end of the record"),
+        ("always = 'cross_track < 5 m'\nfrom = 'boot'", "it was not known at any moment"),
+        ("that = 'altitude < 5 m'\nat = '9 s after boot'", "after the end of the record"),
         ("that = 'altitude < 5 m'\nat = '9 s before input_refused'", "did not come"),
         ("that = 'altitude < 5 m'\nat = '9 s before when boot_time > 1 s'", "before boot"),
         ("always = 'altitude < 5 m'\nfrom = 'boot'\nuntil = '9 s after boot'", "the record at 3.00 s"),
@@ -204,10 +204,10 @@ fn an_event_outside_its_window_is_said_to_have_come_there() {
 #[test]
 fn nobody_can_wait_for_what_only_the_end_of_a_flight_shows() {
     for (instant, part) in [
-        ("1 s before ARRIVED 0", "not known before it does"),
-        ("last ARRIVED 0", "which one is the last"),
+        ("1 s before ARRIVED 0", "not known before it happens"),
+        ("last ARRIVED 0", "the last one is not known"),
         ("last_sample", "the end of the record"),
-        ("contact after 1 s before disarmed", "not known before it does"),
+        ("contact after 1 s before disarmed", "not known before it happens"),
     ] {
         let input = format!("{STANDING}[[input]]\nat = '{instant}'\ndo = 'hold here'");
         let ends = STANDING.replace("3 s after boot", instant);
@@ -227,12 +227,12 @@ fn numbers_and_names_that_cannot_be_meant_are_told() {
         (format!("[[expect]]\nalways = 'altitude <= {long} m'"), "infinite"),
         ("[[expect]]\nalways = 'altitude <= 1 m / 0'".to_owned(), "infinite"),
         ("[parameters]\nbound = '1 m / 0'".to_owned(), "not known before the flight"),
-        ("[[expect]]\nevent = 'armed'\ncount = -1".to_owned(), "-1 is no count"),
-        ("[[expect]]\nalways = 'armed'\ncases = []".to_owned(), "for no case"),
+        ("[[expect]]\nevent = 'armed'\ncount = -1".to_owned(), "-1 is not a count"),
+        ("[[expect]]\nalways = 'armed'\ncases = []".to_owned(), "to no case"),
         ("[[measure]]\nname = 'a'\nmax = 'speed'\n[[measure]]\nname = 'a'\nmin = 'speed'".to_owned(), "measure or a parameter a already"),
         ("[parameters]\na = '1 m'\n[[measure]]\nname = 'a'\nmin = 'speed'".to_owned(), "measure or a parameter a already"),
         ("[[measure]]\nname = 'a'\nmax = 'speed'\nmin = 'speed'".to_owned(), "both max and min"),
-        ("[[measure]]\nname = 'a'\nvalue = 'speed'\nfrom = 'boot'".to_owned(), "from means nothing for value"),
+        ("[[measure]]\nname = 'a'\nvalue = 'speed'\nfrom = 'boot'".to_owned(), "from has no meaning for value"),
         ("[[input]]\nname = 'a'\nat = 'boot'\ndo = 'rc cut'\n[[input]]\nname = 'a'\nat = 'boot'\ndo = 'rc restore'".to_owned(), "two inputs a"),
     ] {
         let problems = problems(&format!("{STANDING}{text}"));
@@ -241,7 +241,7 @@ fn numbers_and_names_that_cannot_be_meant_are_told() {
     for (seeds, problem) in [
         ("[-1, 2]", "-1 is not a seed"),
         ("-3", "-3 is not a seed"),
-        ("[2, 2]", "seed 2 is there twice"),
+        ("[2, 2]", "seed 2 is listed twice"),
         ("[]", "there is no seed"),
     ] {
         let problems = problems(&format!("seeds = {seeds}\n{STANDING}"));
@@ -339,8 +339,8 @@ within = '5..2 s after engaged'
             "test.toml:10:25: the plan has no waypoint 9",
             "test.toml:11:7: pich is not a channel; did you mean pitch? (roll, pitch, throttle, yaw, aux1 to aux12, or 1 to 16)",
             "test.toml:13:23: seconds do not fit: metres are compared",
-            "test.toml:14:1: within means nothing for always",
-            "test.toml:15:1: the expectation says nothing",
+            "test.toml:14:1: within has no meaning for always",
+            "test.toml:15:1: the expectation is empty",
             "test.toml:18:11: this time ends before it begins",
         ]
     );
@@ -365,7 +365,7 @@ fn a_missing_plan_and_an_unknown_case_are_told() {
     let text = "format = 1\n[plan]\nbuiltin = 'square'\n[[case]]\nname = 'calm'\n[[expect]]\ncases = ['clam']\nresult = 'complet'";
     let told = told(text);
     assert!(told.contains("test.toml:7:10: there is no case clam; did you mean calm?"), "{told}");
-    assert!(!told.contains("complet is not"), "what is for no case is not read: {told}");
+    assert!(!told.contains("complet is not"), "what is to no case is not read: {told}");
     assert!(problems("format = 1\nx = [").len() == 1);
 }
 

@@ -41,7 +41,7 @@ impl ArmingWatch {
             return None;
         }
         request.done = true;
-        Some(format!("ARM is switched on from outside, but arming is blocked: {}.", causes.join(", ")))
+        Some(format!("ARM is switched on by another program, but arming is blocked: {}.", causes.join(", ")))
     }
 }
 

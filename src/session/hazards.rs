@@ -28,7 +28,7 @@ fn hazards_from(
     let hazards = found.iter().filter(|finding| Finding::is_hazard(finding));
     // The steepness of a leg depends on the position of home.
     let known = hazards.filter(|finding| home.is_some() || !matches!(finding, Finding::SteepLeg(_)));
-    known.map(|finding| format!("Beware: {finding}.")).collect()
+    known.map(|finding| format!("Caution: {finding}.")).collect()
 }
 
 #[cfg(test)]
@@ -52,7 +52,7 @@ mod tests {
         }
         upload(&mut controller, &plan, &[]).unwrap();
         let told = hazards_from(&controller, Some(home), 10.0, None);
-        assert!(told.len() == 1 && told[0].starts_with("Beware: waypoint 0 is passed about"), "{told:?}");
+        assert!(told.len() == 1 && told[0].starts_with("Caution: waypoint 0 is passed about"), "{told:?}");
         assert!(hazards_from(&controller, Some(home), 75.0, None).is_empty(), "it is level there");
         assert!(hazards_from(&controller, None, 10.0, None).is_empty(), "without a home no leg is known");
     }
@@ -71,9 +71,9 @@ mod tests {
         });
         upload(&mut controller, &plan, &["ap_landing_throttle_threshold = 300".to_owned()]).unwrap();
         let told = hazards_from(&controller, Some(home), 10.0, None);
-        assert!(told[0].starts_with("Beware: waypoint 0 is 3.0 m below home"), "{told:?}");
+        assert!(told[0].starts_with("Caution: waypoint 0 is 3.0 m below home"), "{told:?}");
         assert!(
-            told[1].starts_with("Beware: ap_landing_throttle_threshold = 300 can never be met"),
+            told[1].starts_with("Caution: ap_landing_throttle_threshold = 300 can never be met"),
             "{told:?}"
         );
     }

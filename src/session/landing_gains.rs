@@ -42,8 +42,8 @@ pub(super) fn replace_falling_gains(settings: &mut [String]) -> Vec<String> {
 pub(super) fn landing_gains_told(settings: &[String]) -> Option<String> {
     (!settings.is_empty()).then(|| {
         format!(
-            "This firmware falls in LAND with the guide's altitude gains, so it gets {} instead; gains of your own choice are \
-             left alone.",
+            "This firmware falls in LAND with the guide's altitude gains, so it gets {} instead; your own gains are \
+             left unchanged.",
             settings.join(" and ")
         )
     })

@@ -24,7 +24,8 @@ impl fmt::Display for LostTimeNotice {
         let LostTime { sum, achieved } = self.lost;
         write!(
             f,
-            "Real time was lost: {:.1} s so far; the flight ran at {achieved:.2} times real time lately, {} was wanted.",
+            "Real time was lost: {:.1} s so far; the flight recently ran at {achieved:.2} times real time, \
+             {} was requested.",
             sum.as_secs_f64(),
             self.wanted
         )
@@ -93,7 +94,7 @@ mod tests {
         assert_eq!(told.iter().map(|(second, _)| *second).collect::<Vec<_>>(), [2, 62, 122]);
         assert_eq!(
             told[1].1,
-            "Real time was lost: 24.8 s so far; the flight ran at 0.60 times real time lately, 1 was wanted."
+            "Real time was lost: 24.8 s so far; the flight recently ran at 0.60 times real time, 1 was requested."
         );
         assert_eq!(time.lost(0.6).to_string(), "60.0 s, at 0.60 times real time");
     }

@@ -281,9 +281,9 @@ impl RemoteLink {
                 )),
                 ChildEvent::Ended(end) => {
                     let notice = if end.is_reboot() {
-                        "The firmware restarts; the craft stands at home again.".to_owned()
+                        "The firmware restarts; the craft is back at home.".to_owned()
                     } else {
-                        format!("The firmware ended {end}: it is started again, and the craft stands at home again.")
+                        format!("The firmware ended {end}: it is restarted, and the craft is back at home.")
                     };
                     self.begin_anew(vehicle, notice);
                 }
@@ -338,7 +338,7 @@ impl RemoteLink {
         let motors = peer.state(now);
         if motors == FeedState::Silent && self.motors == FeedState::Answering {
             mailbox.deliver_motors(MotorCommand::default());
-            let sentence = "The firmware has sent no motors for a second: they stand still until it does.";
+            let sentence = "The firmware has sent no motors for a second: they are stopped until it does.";
             self.notices.push(RemoteNotice::Lost(sentence.to_owned()));
         } else if motors == FeedState::Answering && self.motors == FeedState::Silent {
             self.notices.push(RemoteNotice::Told("The firmware sends motors again.".to_owned()));

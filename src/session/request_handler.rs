@@ -254,7 +254,7 @@ impl RequestHandler {
             match *action {
                 CliAction::PlanChanged if !self.told_altitude_units => {
                     self.told_altitude_units = true;
-                    handled.notices.push("Waypoint altitudes count from home, in centimetres.".to_owned());
+                    handled.notices.push("Waypoint altitudes are above home, in centimetres.".to_owned());
                 }
                 CliAction::MotorTest { .. } => self.bench = Some(client),
                 CliAction::Save | CliAction::Restart { .. } | CliAction::PlanChanged | CliAction::Leave => {}
@@ -342,9 +342,9 @@ fn ignored_in_flight(word: &str, controller: &FlightController) -> Option<String
     let command = COMMANDS.iter().find(|command| command.name.eq_ignore_ascii_case(word))?;
     controller.is_armed().then(|| {
         format!(
-            "A program at a door sent command lines (`{}` first) while the craft is armed: they were ignored, and it got no \
-             answer, since the command line does not open in flight. Send them again after the landing, or type them in \
-             the CLI panel of the screen.",
+            "A program at a door sent command lines (`{}` first) while the craft is armed: they were ignored without \
+             an answer, because the command line does not open in flight. Send them again after the landing, or \
+             type them in the CLI panel of the screen.",
             command.name
         )
     })

@@ -44,11 +44,11 @@ pub enum SimulatorNotice {
 impl fmt::Display for SimulatorNotice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Connected => f.write_str("The simulator speaks: the craft's time is its time now."),
+            Self::Connected => f.write_str("The simulator sends: the craft now follows its time."),
             Self::Resumed { silence_s } => {
-                write!(f, "The simulator speaks again after {silence_s:.1} s of silence.")
+                write!(f, "The simulator sends again after {silence_s:.1} s of silence.")
             }
-            Self::Silent => f.write_str("The simulator is silent: time stands still until it speaks again."),
+            Self::Silent => f.write_str("The simulator is silent: time is stopped until it sends again."),
             Self::Refused(refusal) => write!(f, "Packets of the simulator are refused: {refusal}."),
             Self::Adapted(notice) => f.write_str(&sentence(&notice.to_string())),
         }

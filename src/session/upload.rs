@@ -18,7 +18,7 @@ pub fn upload(
     plan: &FlightPlan,
     settings: &[String],
 ) -> Result<UploadReport, String> {
-    const IN_A_SESSION_ONLY: &str = "a remote flight controller takes a plan in a session only";
+    const IN_A_SESSION_ONLY: &str = "a remote flight controller accepts a plan only in a session";
     if controller.embedded().is_none() {
         return Err(IN_A_SESSION_ONLY.to_owned());
     }
@@ -54,7 +54,7 @@ impl UploadReport {
     pub fn remark(&self) -> Option<String> {
         let refused = (!self.refused.is_empty()).then(|| {
             format!(
-                "Its firmware did not take {} of the settings: {}.",
+                "Its firmware refused {} of the settings: {}.",
                 self.refused.len(),
                 self.refused.join("; ")
             )
@@ -196,7 +196,7 @@ impl Upload {
             let differs = std::iter::zip(sent, held).position(|(sent, held)| sent != held);
             Err(match differs {
                 Some(index) => {
-                    format!("the craft holds another waypoint {index} than was sent: upload again")
+                    format!("waypoint {index} on the craft differs from the one sent: upload again")
                 }
                 None => format!(
                     "the craft holds {} waypoints, {} were sent: upload again",
@@ -258,7 +258,7 @@ mod tests {
         let UploadProgress::Done(Ok(report)) = progress else { panic!("{progress:?}") };
         assert_eq!(
             report.remark().unwrap(),
-            "Its firmware did not take 1 of the settings: ap_position_cutoff = 5 (invalid value)."
+            "Its firmware refused 1 of the settings: ap_position_cutoff = 5 (invalid value)."
         );
     }
 

@@ -135,7 +135,7 @@ pub enum NavEvent {
     /// The thrust does not suffice for the requested lean, so the lean is limited and the speed is lower.
     /// Sent once per leg.
     Limited {
-        /// The current greatest lean, rad.
+        /// The current maximum lean, rad.
         lean_rad: f64,
     },
     /// The craft left the fence.

@@ -284,7 +284,7 @@ impl SettingsView {
         }
     }
 
-    /// Returns the radius of a coordinated turn at this speed, m: R = V² / (g·tan θ) with the greatest lean.
+    /// Returns the radius of a coordinated turn at this speed, m: R = V² / (g·tan θ) with the maximum lean.
     pub fn turn_radius_m(&self, speed_mps: f64) -> f64 {
         speed_mps * speed_mps / (GRAVITY * self.max_angle_deg.to_radians().tan()).max(0.1)
     }
@@ -299,7 +299,7 @@ impl SettingsView {
             cms => f64::from(cms) / 100.0,
         };
         let radius_m = self.orbit_radius_m.max(0.1);
-        // The autopilot has the same limits: the setting, the speed of the leg and half of the greatest lean.
+        // The autopilot has the same limits: the setting, the speed of the leg and half of the maximum lean.
         let by_lean = (0.5 * GRAVITY * self.max_angle_deg.to_radians().tan() / radius_m).sqrt();
         let rate_rps = self.max_turn_rate_dps.to_radians().min(speed_mps / radius_m).min(by_lean);
         Some(rate_rps * f64::from(wp.duration_ds) / 10.0 / std::f64::consts::TAU)

@@ -165,7 +165,7 @@ fn a_flight_writes_over_none_of_its_own_files() {
         &["--json", "same", "--gpx", "same"],
     ] {
         let ran = sandbox.run(&[&["fly", "land.toml"], arguments].concat()).exits(2);
-        assert!(ran.err.contains("would write over"), "{}", ran.err);
+        assert!(ran.err.contains("would overwrite"), "{}", ran.err);
     }
     assert_eq!(sandbox.read("land.toml"), text);
     assert_eq!(sandbox.names().len(), 2);

@@ -58,7 +58,9 @@ fn a_plan_that_cannot_be_flown_leaves_the_files_of_an_earlier_comparison_alone()
 fn what_was_flown_before_an_error_is_told_and_no_file_is_touched() {
     let sandbox = with_earlier_files();
     let ran = compare_in_vain(&sandbox, "hop.toml").exits(3);
-    for part in ["Not all was flown", "A: embedded, one flight", "B: betadeck, not flown", "--tcp-port"] {
+    for part in
+        ["Not everything was flown", "A: embedded, one flight", "B: betadeck, not flown", "--tcp-port"]
+    {
         assert!(ran.err.contains(part), "{part} in\n{}", ran.err);
     }
     assert_eq!((ran.out.as_str(), sandbox.read("tracks.svg").as_str()), ("", EARLIER));

@@ -116,7 +116,7 @@ fn a_board_on_a_cable_is_read_asked_about_once_and_comes_back_after_the_cable_wa
         terminal.screen().contains("ap_max_angle set to 34")
     });
     terminal.send("motor 1 1500\r");
-    terminal.until_shown("This craft is real: it is armed");
+    terminal.until_shown("This craft is real: its own transmitter");
 
     bridge.pull();
     terminal.until_shown("is lost");
@@ -222,7 +222,7 @@ fn programs_at_a_door_read_but_change_only_what_is_permitted() {
 #[test]
 fn what_is_no_betaflight_is_told_in_a_sentence() {
     for (variant, told) in [
-        (Some(b"INAV"), "says INAV, not BTFL: only Betaflight is spoken with"),
+        (Some(b"INAV"), "says INAV, not BTFL: only Betaflight is supported"),
         (None, "nothing there answers MSP"),
     ] {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a port");

@@ -267,7 +267,7 @@ fn no_output_is_written_over_an_input_by_any_link() {
     for arguments in refused {
         let ran = sandbox.run(arguments);
         assert_eq!(ran.code, Some(2), "{arguments:?}: {ran:?}");
-        assert!(ran.err.contains("would write over"), "{ran:?}");
+        assert!(ran.err.contains("would overwrite"), "{ran:?}");
         assert_eq!(sandbox.read("plan.txt"), text);
     }
 }

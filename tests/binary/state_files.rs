@@ -92,7 +92,7 @@ fn no_output_is_written_over_a_journal_or_a_history() {
         for option in ["--json", "--gpx"] {
             let ran = sandbox.run(&["fly", "land", "--state-dir", "state", option, output]).exits(2);
             assert!(
-                ran.err.contains("would write over") && ran.err.contains("name another file"),
+                ran.err.contains("would overwrite") && ran.err.contains("name another file"),
                 "{}",
                 ran.err
             );
@@ -111,7 +111,7 @@ fn no_output_is_written_over_a_journal_or_a_history() {
             &["convert", "land", output, "--to", "txt", "--force"],
         ] {
             let ran = sandbox.run(line).exits(2);
-            assert!(ran.err.contains("would write over"), "{line:?}: {}", ran.err);
+            assert!(ran.err.contains("would overwrite"), "{line:?}: {}", ran.err);
             assert!(!sandbox.path(output).exists());
         }
     }
@@ -142,7 +142,7 @@ fn settings_that_are_a_file_of_the_system_or_no_settings_are_not_shown_in_the_er
             assert_eq!(output.status.code(), Some(2), "{line:?} {name}: {said}");
             assert!(!said.contains("hunter2") && !said.contains("Linux version"), "{line:?} {name}: {said}");
             if name != "keys.env" {
-                assert!(said.contains("file of the system"), "{line:?} {name}: {said}");
+                assert!(said.contains("system file"), "{line:?} {name}: {said}");
             }
         }
     }

@@ -22,7 +22,7 @@ fn the_flight_is_rewound_and_flown_on_by_keys() {
         // At the end of the recording the craft is armed.
         terminal.until_shown("Quit?");
         terminal.send("n,b");
-        terminal.until_shown("Flown on from here");
+        terminal.until_shown("Flying on from here");
         terminal.until("the flight", |terminal| !terminal.screen().contains("REWOUND"));
         terminal.send("qy");
         assert_eq!(terminal.end(), 0);

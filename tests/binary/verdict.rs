@@ -172,7 +172,7 @@ fn a_waypoint_below_the_ground_and_an_impossible_touchdown_are_warned_of() {
     let set = "ap_landing_throttle_threshold=450";
     let flown = fly(LAND, &["--set", set, "--takeoff", "5", "--timeout", "30"]);
     let warned = flown.all("notice").any(|line| {
-        line.text("text").starts_with("Beware: ap_landing_throttle_threshold = 450 can never be met")
+        line.text("text").starts_with("Caution: ap_landing_throttle_threshold = 450 can never be met")
     });
     assert!(warned, "{:?}", flown.all("notice").collect::<Vec<_>>());
 }

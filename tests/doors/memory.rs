@@ -123,7 +123,7 @@ fn clients_that_send_without_end_and_never_read_cost_little_memory_and_are_close
     // The notices come in any order.
     for _ in 0..2 {
         serve.wait("notice of a deaf client", |event| {
-            event["text"].as_str().is_some_and(|text| text.contains("did not take its answers for 10 s"))
+            event["text"].as_str().is_some_and(|text| text.contains("did not read its answers for 10 s"))
         });
     }
     let cost = peak_kib(serve.id()) - before;

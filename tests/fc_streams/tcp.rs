@@ -34,7 +34,7 @@ async fn a_refusal_is_told_once_until_somebody_answers() {
     let address = listener.local_addr().unwrap();
     drop(listener);
     let mut stream = open(&format!("tcp:{address}"));
-    assert_eq!(lost(&mut stream).await, "nobody listens there (connection refused)");
+    assert_eq!(lost(&mut stream).await, "nothing listens there (connection refused)");
     let listener = TcpListener::bind(address).await.unwrap();
     connected(&mut stream).await;
     let (mut peer, _) = listener.accept().await.unwrap();
@@ -42,7 +42,7 @@ async fn a_refusal_is_told_once_until_somebody_answers() {
     assert_eq!(bytes(&mut stream, 4).await, b"here");
     drop((peer, listener));
     assert_eq!(lost(&mut stream).await, "the other end closed the connection");
-    assert_eq!(lost(&mut stream).await, "nobody listens there (connection refused)");
+    assert_eq!(lost(&mut stream).await, "nothing listens there (connection refused)");
 }
 
 #[tokio::test]
@@ -54,7 +54,7 @@ async fn one_that_serves_another_client_is_told_to_do_so() {
         connected(&mut stream).await;
         let reason = lost(&mut stream).await;
         assert!(reason.contains("closed the connection at once"), "{reason}");
-        assert!(reason.contains("serves a single client: close the other program"), "{reason}");
+        assert!(reason.contains("a server for a single client does: close the other program"), "{reason}");
     }
 }
 

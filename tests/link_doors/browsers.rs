@@ -125,7 +125,7 @@ async fn a_notice_of_both_loopback_addresses_is_told_once() {
         let stream = TcpStream::connect((host, port)).await.unwrap();
         assert!(Client::Tcp(stream).is_closed().await);
     }
-    assert_eq!(notices(&mut house), ["The TCP door serves 32 clients at once: another one was turned away."]);
+    assert_eq!(notices(&mut house), ["The TCP door serves 32 clients at once: another one was refused."]);
 }
 
 /// Returns `true` if a handshake with these headers is served.
@@ -158,7 +158,7 @@ async fn a_name_that_was_made_to_point_to_this_machine_is_refused() {
     assert!(!is_served(&house, &[("Host", &evil), ("Origin", &format!("http://{evil}"))]).await);
     assert!(!is_served(&house, &[("Host", &evil), ("Origin", "http://localhost")]).await);
     let notices = notices(&mut house);
-    assert!(notices[0].contains(&format!("took this machine for \"{evil}\"")), "{notices:?}");
+    assert!(notices[0].contains(&format!("addressed this machine as \"{evil}\"")), "{notices:?}");
     assert_eq!(notices.len(), 2, "{notices:?}");
 }
 

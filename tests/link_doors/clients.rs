@@ -248,7 +248,7 @@ async fn a_door_that_is_full_turns_the_next_away_with_a_notice() {
         assert!(house.tcp().await.is_closed().await);
     }
     let Some(Request::Notice(notice)) = house.others.recv().await else { panic!("no notice") };
-    assert_eq!(notice, "The TCP door serves 32 clients at once: another one was turned away.");
+    assert_eq!(notice, "The TCP door serves 32 clients at once: another one was refused.");
     assert!(house.others.try_recv().is_err(), "told once");
     house.websocket().await.assert_speaks_msp().await;
     drop(clients.pop());
@@ -306,7 +306,7 @@ async fn a_busy_port_is_named_with_the_way_out() {
     assert_eq!(
         problems[0],
         format!(
-            "TCP port {port} is in use: stop the program that has it, or choose another with --tcp-port (0 = any \
+            "TCP port {port} is in use: stop the program that uses it, or choose another with --tcp-port (0 = any \
              free one)"
         )
     );

@@ -186,7 +186,7 @@ fn a_firmware_that_does_not_run_is_not_waited_for_for_ever_and_old_files_stay() 
     assert_eq!(code, 3, "{said}");
     let sentence =
         format!("nothing has answered at TCP port {} for 15 s: start the firmware first", ports.tcp);
-    for part in [&sentence, "--tcp-port", "--attitude has no effect: the firmware outside decides that"] {
+    for part in [&sentence, "--tcp-port", "--attitude has no effect: the remote firmware decides that"] {
         assert!(said.contains(part), "{part}: {said}");
     }
     assert!([json, gpx].iter().all(|file| std::fs::read_to_string(file).unwrap() == "old"));
@@ -266,7 +266,7 @@ fn flights_that_cannot_be_prepared_have_failed_and_the_reports_are_written() {
     let (code, summary) = end(start_stand_in(&command, ports, ports, Trouble::None));
     assert_eq!((code, &summary["event"]), (3, &"summary".into()), "{summary}");
     assert_eq!((&summary["flights"], &summary["flights_wanted"]), (&2.into(), &3.into()), "{summary}");
-    let why = format!("the firmware cannot have UDP port {}", ports.fdm);
+    let why = format!("the firmware cannot use UDP port {}", ports.fdm);
     let (xml, md) = (std::fs::read_to_string(junit).unwrap(), std::fs::read_to_string(markdown).unwrap());
     assert!(xml.contains("tests=\"2\" failures=\"2\"") && xml.contains(&why), "{xml}");
     assert!(md.contains("Some flights failed") && md.contains(&why), "{md}");
@@ -283,7 +283,7 @@ fn a_case_whose_settings_were_refused_says_so() {
     assert_eq!(code, 1, "{said}");
     for part in [
         "The firmware refused `set ap_max_angle = 33`: ERROR IN set: INVALID VALUE.",
-        "the firmware is not set as the case says: `set ap_max_angle = 33`: the firmware refused it",
+        "the firmware is not configured as the case requires: `set ap_max_angle = 33`: the firmware refused it",
     ] {
         assert!(said.contains(part), "{part}: {said}");
     }

@@ -111,7 +111,7 @@ fn a_port_in_use_is_told_and_ends_the_program() {
     let _taken = std::net::UdpSocket::bind(("127.0.0.1", ports.fdm)).unwrap();
     let (code, said) = Served::stand_in(ports, Trouble::None).end();
     assert_eq!(code, 3, "{said}");
-    assert!(said.contains(&format!("the firmware cannot have UDP port {}", ports.fdm)), "{said}");
+    assert!(said.contains(&format!("the firmware cannot use UDP port {}", ports.fdm)), "{said}");
 }
 
 #[test]
@@ -121,7 +121,7 @@ fn our_own_motor_port_in_use_is_told_and_ends_the_program() {
     let (code, said) = Served::stand_in(ports, Trouble::None).end();
     assert_eq!(code, 3, "{said}");
     assert!(
-        said.contains("cannot take the motors of the firmware") && said.contains("--udp-ports"),
+        said.contains("cannot receive the motors of the firmware") && said.contains("--udp-ports"),
         "{said}"
     );
 }
@@ -163,8 +163,8 @@ fn one_that_runs_already_is_taken_and_its_reboot_survived() {
     let settings = lines.to_str().unwrap();
     let firmware = ["--fresh", "--firmware", "attach", "--yes", "--settings", settings];
     let mut served = Served::start(stand_in.ports, &firmware);
-    served.notice("ended or restarts");
-    served.notice("took 1 lines of settings, read back as written");
+    served.notice("ended or is restarting");
+    served.notice("accepted 1 lines of settings, and they read back as written");
     served.notice(" answers: Betaflight ");
     let seen = stand_in.seen();
     assert_eq!(seen.before_boot, 0, "no state disturbed its boot: {seen:?}");
@@ -217,7 +217,8 @@ fn one_that_serves_another_client_says_why_it_is_lost_and_says_it_once() {
     // Time for several more attempts.
     std::thread::sleep(Duration::from_secs(7));
     let said = served.program.seen();
-    let lost = |line: &&String| line.contains("closed the connection") || line.contains("ended or restarts");
+    let lost =
+        |line: &&String| line.contains("closed the connection") || line.contains("ended or is restarting");
     assert_eq!(said.iter().filter(lost).count(), 1, "{said:#?}");
     drop(other);
     served.notice(" answers: Betaflight ");
@@ -257,7 +258,7 @@ fn a_firmware_that_was_ended_before_it_was_set_is_set_at_its_next_start() {
     // count.
     for set_by in [None, Some("/elsewhere/betaflight_SITL.elf\n1\n")] {
         let (said, kept) = started_with("# Betaflight / SITL\nwaypoint clear\n", set_by);
-        assert!(said.contains("Nothing was ever changed in the firmware's configuration"), "{said}");
+        assert!(said.contains("The firmware's configuration was never changed"), "{said}");
         assert!(kept.contains("aux 0 0 0 1700 2100") && kept.contains("set trust_mag = ON"), "{kept}");
     }
 }
@@ -266,7 +267,7 @@ fn a_firmware_that_was_ended_before_it_was_set_is_set_at_its_next_start() {
 fn a_configuration_of_the_users_own_is_left_alone() {
     for own in ["set ap_max_angle = 33\n", "aux 3 0 4 1700 2100 0 0\n"] {
         let (said, kept) = started_with(own, None);
-        assert!(!said.contains("Nothing was ever changed") && !said.contains("took"), "{said}");
+        assert!(!said.contains("was never changed") && !said.contains("The firmware accepted"), "{said}");
         assert_eq!(kept, own);
     }
 }

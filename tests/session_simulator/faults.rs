@@ -44,7 +44,7 @@ async fn without_a_word_from_the_simulator_a_stall_ends_by_the_clock() {
     rig.hear_fault("stall", true).await;
     rig.hear_fault("stall", false).await;
     rig.world("fault=stall").await.unwrap();
-    rig.hear("The simulator is silent: time stands still").await;
+    rig.hear("The simulator is silent: time is stopped").await;
     rig.faults.clear();
     rig.world("end=stall").await.unwrap();
     rig.state(10, 0.0, 0.0).await;

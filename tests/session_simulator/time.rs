@@ -33,7 +33,7 @@ async fn until_a_simulator_speaks_the_firmware_lives_and_nothing_is_made_up() {
 async fn the_simulators_stamps_are_the_time_and_its_state_the_truth() {
     let mut rig = rig().await;
     rig.state(0, 0.0, 0.0).await;
-    rig.hear("The simulator speaks").await;
+    rig.hear("The simulator sends").await;
     // The first packet only sets the time base; the second sets the start of the craft.
     rig.state(0, 0.0, 0.0).await;
     let begun = rig.picture(|view| view.simulator == Some(LinkState::Flowing)).await.vehicle.time;
@@ -58,7 +58,7 @@ async fn the_simulators_stamps_are_the_time_and_its_state_the_truth() {
 async fn what_is_the_simulators_business_is_refused_with_the_way_out() {
     let mut rig = rig().await;
     rig.state(0, 0.0, 0.0).await;
-    rig.hear("The simulator speaks").await;
+    rig.hear("The simulator sends").await;
     for command in [Command::Pause(true), Command::Step(100), Command::Speed(8.0)] {
         rig.command(command).await;
         rig.hear(TIME_IS_EXTERNAL).await;
@@ -82,20 +82,20 @@ async fn silence_stops_time_and_is_shown_until_the_simulator_returns() {
     for _ in 0..50 {
         rig.state(10, 0.0, 0.0).await;
     }
-    rig.hear("The simulator is silent: time stands still").await;
+    rig.hear("The simulator is silent: time is stopped").await;
     let view = rig.picture(|view| view.simulator == Some(LinkState::Silent)).await;
     assert_eq!(stats(&view).link, LinkState::Silent);
 
     // Keys still act: the firmware can be restarted, and a notice names the way out.
     rig.command(Command::ResetCraft).await;
-    rig.hear("The firmware started anew, disarmed").await;
+    rig.hear("The firmware restarted, disarmed").await;
     let still = rig.picture(|view| view.vehicle.truth.is_none()).await;
     assert_eq!(still.vehicle.time, view.vehicle.time);
 
     // The first packet only sets the time base.
     rig.at = Instant::now() + AHEAD;
     rig.state(10, 7.0, 0.0).await;
-    rig.hear("The simulator speaks again after ").await;
+    rig.hear("The simulator sends again after ").await;
     rig.state(10, 7.0, 0.0).await;
     let view = rig.picture(|view| view.vehicle.time.0 == still.vehicle.time.0 + 10_000).await;
     assert_eq!(view.simulator, Some(LinkState::Flowing));

@@ -17,7 +17,7 @@ fn serve(dialect: Dialect, more: &[&str]) -> (Child, Simulator) {
 #[test]
 fn a_mission_flies_in_an_external_simulator() {
     let (mut child, mut simulator) = serve(Dialect::GzPlugin, &[]);
-    child.line("A simulator moves the craft: its states come to UDP 127.0.0.1:");
+    child.line("A simulator moves the craft: it sends states to UDP 127.0.0.1:");
     simulator.fly(4);
     simulator.flown.is_the_square(&BOUNDS);
     let said = |child: &mut Child, words: &str| {
@@ -25,7 +25,7 @@ fn a_mission_flies_in_an_external_simulator() {
         child.lines().iter().position(|said| *said == line)
     };
     let story = [
-        "The simulator speaks",
+        "The simulator sends",
         "Armed.",
         "IDLE → APPROACHING",
         "ARRIVED → LANDING",
@@ -41,11 +41,11 @@ fn silence_return_and_restart_are_told_and_survived() {
     let (mut child, mut simulator) = serve(Dialect::GzPlugin, &[]);
     simulator.fly_up_to(10, 12.0);
     hang(&mut simulator);
-    child.line("The simulator is silent: time stands still until it speaks again.");
+    child.line("The simulator is silent: time is stopped until it sends again.");
     while simulator.flown.order.is_empty() {
         simulator.step(10);
     }
-    child.line("The simulator speaks again after ");
+    child.line("The simulator sends again after ");
 
     let mut simulator = simulator.end().start(Dialect::GzPlugin);
     while simulator.plant.time_ms() < 5000 {

@@ -149,5 +149,5 @@ fn plan() -> FlightPlan {
 fn a_flight_without_a_session_cannot_upload_to_a_remote_flight_controller() {
     let mut rig = Rig::new();
     let refused = upload(rig.vehicle.controller_mut(), &plan(), &[]).unwrap_err();
-    assert_eq!(refused, "a remote flight controller takes a plan in a session only");
+    assert_eq!(refused, "a remote flight controller accepts a plan only in a session");
 }

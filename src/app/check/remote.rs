@@ -24,10 +24,11 @@ pub(super) fn refuse_many(firmware: &RemoteFirmware, flights: usize, watch: bool
     if firmware.executable.is_some() || (flights == 1 && !watch) {
         return Ok(());
     }
-    let asked = if watch { "--watch flies again".to_owned() } else { format!("these are {flights}") };
+    let asked = if watch { "--watch flies again".to_owned() } else { format!("there are {flights}") };
     Err(AppError::input(format!(
-        "--firmware attach flies one flight, for a firmware that runs on keeps what it has estimated in the one before, and \
-         {asked}: choose one (--filter TEXT, --seeds 1..1), or have it started anew for each (--firmware PATH)"
+        "--firmware attach flies one flight, because a running firmware keeps its estimates from the flight before, \
+         and {asked}: choose one (--filter TEXT, --seeds 1..1), or let betadeck start the firmware for each \
+         (--firmware PATH)"
     )))
 }
 
@@ -131,8 +132,9 @@ fn not_as_wanted(case: &Case, unset: &Unset) -> Option<String> {
                 .filter(|unset| own.iter().any(|own| own.eq_ignore_ascii_case(subject(&unset.line))))
                 .map(|unset| format!("`{}`: {}", unset.line, unset.why))
                 .collect();
-            (!not_set.is_empty())
-                .then(|| format!("the firmware is not set as the case says: {}", not_set.join("; ")))
+            (!not_set.is_empty()).then(|| {
+                format!("the firmware is not configured as the case requires: {}", not_set.join("; "))
+            })
         }
     }
 }

@@ -231,7 +231,7 @@ impl Repetitions {
             && (*hash != flight.hash || *judgements != flight.judgements)
         {
             flight.problem = Some(format!(
-                "repetition {} differs from the first flight: the same flight must be the same to the last bit",
+                "repetition {} differs from the first flight: a repeated flight must be identical to the last bit",
                 flight.repetition + 1
             ));
         }

@@ -40,7 +40,7 @@ pub(super) fn run(
             Err(error) => error::tell(&error.message),
         }
         let seen = if seen.len() == files.len() { seen } else { stamps(&files) };
-        error::tell("Waiting for a change of the files; Ctrl-C ends.");
+        error::tell("Waiting for the files to change; Ctrl-C ends.");
         while stamps(&files) == seen {
             if interrupted.load(Ordering::Relaxed) {
                 return Ok(error::INTERRUPTED);

@@ -62,7 +62,7 @@ impl Flights {
         let set = if embedded_flies { set? } else { set.unwrap_or_default() };
         setup.boot_lines.push(BootLines::settings("--set", &set));
         let vehicle = setup::build(setup.clone(), notices)?;
-        let frame = vehicle.local_frame().ok_or_else(|| AppError::internal("the craft is nowhere"))?;
+        let frame = vehicle.local_frame().ok_or_else(|| AppError::internal("the craft has no position"))?;
         let settings = vehicle.controller().settings_view().unwrap_or_default();
         Ok(Self {
             route: Route::new(&plan.plan, frame, &settings),

@@ -43,9 +43,15 @@ impl OpenLink {
     pub(in crate::app) fn notice(&self) -> Option<String> {
         let place = self.stored_in.as_ref()?.display();
         Some(match (&self.directory, self.is_fresh) {
-            (Some(_), _) => "The firmware starts without a configuration, and what it saves lasts as long as this program.".to_owned(),
-            (None, true) => format!("The firmware starts without a configuration; it keeps the one that it saves in {place}."),
-            (None, false) => format!("The firmware starts with the configuration that it keeps in {place}."),
+            (Some(_), _) => {
+                "The firmware starts without a configuration, and its saved configuration is lost when \
+                 this program ends."
+                    .to_owned()
+            }
+            (None, true) => {
+                format!("The firmware starts without a configuration; it saves its configuration in {place}.")
+            }
+            (None, false) => format!("The firmware starts with its saved configuration in {place}."),
         })
     }
 }
@@ -70,7 +76,7 @@ pub(in crate::app) fn open(
         dialect: ports.dialect,
         stamps: firmware.stamps,
         motor_order: ports.motor_order,
-        home: home.ok_or_else(|| AppError::internal("a firmware outside needs the embedded physics"))?,
+        home: home.ok_or_else(|| AppError::internal("a remote firmware needs the embedded physics"))?,
     };
     let now = Instant::now();
     let peer = SitlPeer::open(feed, SitlPorts { ip, raw, motors, fdm, rc }, now)
@@ -135,8 +141,8 @@ fn start(program: PathBuf, arguments: Vec<String>, directory: PathBuf) -> Result
 fn check_free(tcp: SocketAddr, udp: &[u16]) -> Result<(), AppError> {
     let taken = |port: String, option: &str, error: std::io::Error| {
         AppError::environment(format!(
-            "the firmware cannot have {port}: {error}; end what holds it (another SITL, another betadeck), or start the \
-             firmware on other ports and name them with {option}"
+            "the firmware cannot use {port}: {error}; stop the program that holds it (another SITL, another betadeck), \
+             or start the firmware on other ports and name them with {option}"
         ))
     };
     TcpListener::bind(tcp).map_err(|error| taken(format!("TCP port {}", tcp.port()), "--tcp-port", error))?;

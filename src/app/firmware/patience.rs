@@ -77,20 +77,20 @@ impl fmt::Display for Unready<'_> {
             ),
             (NotReady::Silent, true) => write!(
                 f,
-                "{name} has answered, and has not for {seconds} s: a SITL ends when it saves; start it again and repeat the \
-                 command, for what was saved stays saved"
+                "{name} answered, but not in the last {seconds} s: a SITL ends when it saves; start it again and \
+                 repeat the command, because the saved configuration is kept"
             ),
             (NotReady::Silent, false) => {
-                write!(f, "{name} has answered, and has not for {seconds} s: what it printed may say why")
+                write!(f, "{name} answered, but not in the last {seconds} s: its output may give the reason")
             }
             (NotReady::EndsConnections, true) => write!(
                 f,
-                "{name} ends every connection to TCP port {tcp}: it serves one program at a time, so end the one that is \
-                 connected to it (the Betaflight App, another betadeck)"
+                "{name} closes every connection to TCP port {tcp}: it serves one program at a time, so close the one \
+                 that is connected to it (the Betaflight App, another betadeck)"
             ),
             (NotReady::EndsConnections, false) => write!(
                 f,
-                "{name} ends every connection to TCP port {tcp} before it is ready: what it printed may say why"
+                "{name} closes every connection to TCP port {tcp} before it is ready: its output may give the reason"
             ),
         }
     }
@@ -134,6 +134,6 @@ mod tests {
         let saved = say(NotReady::Silent, true);
         assert!(saved.contains("start it again and repeat the command"), "{saved}");
         let taken = say(NotReady::EndsConnections, true);
-        assert!(taken.contains("end the one that is connected to it"), "{taken}");
+        assert!(taken.contains("close the one that is connected to it"), "{taken}");
     }
 }

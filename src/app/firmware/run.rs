@@ -181,8 +181,8 @@ impl RemoteRun {
         let mut upload = Upload::new(plan, &[], reference).map_err(|unknown| {
             AppError::environment(match unknown {
                 AltitudeError::Untold => format!(
-                    "{name} has told no settings of its autopilot (`get ap_`), so that nobody knows from where it counts \
-                     altitudes: fly a build with waypoints"
+                    "{name} has reported no settings of its autopilot (`get ap_`), so the reference of its altitudes \
+                     is unknown: fly a build with waypoints"
                 ),
                 AltitudeError::HomeUnknown => unknown.to_string(),
             })

@@ -33,7 +33,7 @@ fn the_launchers_file_names_the_executable_and_what_is_not_used_is_told() {
     assert_eq!(found.executable, Some(own.canonicalize().expect("a path")));
     assert_eq!((found.ports.tcp, found.ports.udp.fdm, found.ports.dialect), (5761, 9003, Dialect::SitlGz));
     assert_eq!(notices.len(), 1);
-    assert!(notices[0].contains("Not used of it: World; the embedded physics flies"), "{notices:?}");
+    assert!(notices[0].contains("Keys not used: World; the embedded physics flies"), "{notices:?}");
 
     let fast = FlightArgs { speed: Some(Speed(4.0)), ..FlightArgs::default() };
     let error = choice(&betaloop(file), &fast, &FirmwarePortArgs::default()).0.expect_err("too fast");
@@ -61,7 +61,7 @@ fn ports_of_a_firmware_outside_are_known_ones() {
     let attach = FirmwareArgs { firmware: Some(FirmwareChoice::Attach), ..FirmwareArgs::default() };
     let any = FirmwarePortArgs { tcp_port: Some(0), ..FirmwarePortArgs::default() };
     let error = choice(&attach, &FlightArgs::default(), &any).0.expect_err("refused");
-    assert!(error.code == 2 && error.message.contains("0 is none"), "{error}");
+    assert!(error.code == 2 && error.message.contains("0 is not a port"), "{error}");
     let ports = FirmwarePortArgs {
         tcp_port: Some(6000),
         udp_ports: "1,2,3,4".parse().ok(),

@@ -74,7 +74,7 @@ fn parse(path: &Path, text: &str) -> Result<(PlanDocument, Vec<String>), String>
             0 => String::new(),
             more => format!(" ({more} more problems: `betadeck plan show` lists them)"),
         };
-        errors.first().map_or_else(|| format!("{name} is no plan."), |error| format!("{error}{more}"))
+        errors.first().map_or_else(|| format!("{name} is not a plan."), |error| format!("{error}{more}"))
     })?;
     let notes = std::mem::take(&mut file.notes).iter().map(ToString::to_string).collect();
     Ok((file.into(), notes))
@@ -85,7 +85,7 @@ fn parse(path: &Path, text: &str) -> Result<(PlanDocument, Vec<String>), String>
 pub(super) fn write(path: &Path, document: PlanDocument) -> Result<(Vec<String>, Content), String> {
     let name = path.display().to_string();
     let Some(format) = Format::from_file_name(&name) else {
-        return Err(format!("{name} has no ending that tells the format: name it {}.", Format::endings()));
+        return Err(format!("The ending of {name} does not give the format: name it {}.", Format::endings()));
     };
     let written = format::write(&PlanFile::from(document), format);
     let target = link_target(path);

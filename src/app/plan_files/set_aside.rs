@@ -31,7 +31,7 @@ impl SetAside {
 pub(super) fn place(kept: &io::Result<PathBuf>, journal: &Path) -> String {
     match kept {
         Ok(kept) => format!("It is kept as {}", kept.display()),
-        Err(error) => format!("It stays as {}, for it cannot be copied: {error}", journal.display()),
+        Err(error) => format!("It stays as {}, because it cannot be copied: {error}", journal.display()),
     }
 }
 

@@ -43,7 +43,7 @@ pub(super) fn configuration(payload: &str) -> (Configuration, Vec<String>) {
         }
     }
     if unnamed > 0 {
-        findings.push(format!("More stored values are not allowed ({unnamed}): their defaults are used."));
+        findings.push(format!("Further stored values are not allowed ({unnamed}): their defaults are used."));
     }
     if dropped > 0 {
         findings.push(format!("Records of another version do not fit ({dropped}): they are lost."));

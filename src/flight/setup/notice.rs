@@ -48,12 +48,12 @@ impl fmt::Display for SetupNotice {
             }
             Self::Firmware(notice) => notice.fmt(f),
             Self::IdleFault(FaultKind::Battery) => f.write_str(
-                "The fault battery has no effect: a firmware outside is not told of the battery (with --world \
-                 battery_sag=on a weak one slows the motors).",
+                "The fault battery has no effect: a remote firmware gets no battery data (with --world battery_sag=on \
+                 a weak one slows the motors).",
             ),
             Self::IdleFault(kind) => write!(
                 f,
-                "The fault {kind} has no effect: a firmware outside is not told what the magnetometer measures."
+                "The fault {kind} has no effect: a remote firmware gets no magnetometer data."
             ),
         }
     }

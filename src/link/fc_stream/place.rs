@@ -70,7 +70,7 @@ impl FromStr for FcPlace {
                 format!("serial:{text}"),
             )),
             _ => Err(FcPlaceError::new(
-                format!("\"{text}\" is no place of a flight controller"),
+                format!("\"{text}\" is not a place of a flight controller"),
                 "serial:/dev/ttyACM0",
             )),
         }
@@ -88,7 +88,7 @@ fn serial(text: &str) -> Result<FcPlace, FcPlaceError> {
             Ok(baud @ 300..=20_000_000) => baud,
             _ => {
                 return Err(FcPlaceError::new(
-                    format!("\"{digits}\" is no speed of a serial port (300 to 20000000 bit/s)"),
+                    format!("\"{digits}\" is not a speed of a serial port (300 to 20000000 bit/s)"),
                     format!("serial:{device},{DEFAULT_BAUD}"),
                 ));
             }
@@ -118,7 +118,7 @@ fn tcp(text: &str) -> Result<FcPlace, FcPlaceError> {
     }
     match port.parse() {
         Ok(port @ 1..) => Ok(FcPlace::Tcp { host: host.to_owned(), port }),
-        _ => Err(FcPlaceError::new(format!("\"{port}\" is no port (1 to 65535)"), EXAMPLE)),
+        _ => Err(FcPlaceError::new(format!("\"{port}\" is not a port (1 to 65535)"), EXAMPLE)),
     }
 }
 
@@ -126,9 +126,10 @@ fn websocket(url: &str) -> Result<FcPlace, FcPlaceError> {
     const EXAMPLE: &str = "ws://127.0.0.1:6761";
     let with_scheme = if url.contains("://") { url.to_owned() } else { format!("ws://{url}") };
     let problem = |what: String| FcPlaceError::new(what, EXAMPLE);
-    let uri: Uri = with_scheme.parse().map_err(|error| problem(format!("\"{url}\" is no URL ({error})")))?;
+    let uri: Uri =
+        with_scheme.parse().map_err(|error| problem(format!("\"{url}\" is not a URL ({error})")))?;
     if !matches!(uri.scheme_str(), Some("ws" | "wss")) {
-        return Err(problem(format!("\"{url}\" is no URL of a websocket (ws:// or wss://)")));
+        return Err(problem(format!("\"{url}\" is not a websocket URL (ws:// or wss://)")));
     }
     if uri.host().is_none_or(str::is_empty) {
         return Err(problem(format!("\"{url}\" names no host")));
@@ -184,10 +185,10 @@ mod tests {
     fn a_refusal_says_what_is_allowed() {
         for (text, part) in [
             ("/dev/ttyUSB1", "such as serial:/dev/ttyUSB1"),
-            ("COM3", "\"COM3\" is no place"),
-            ("", "\"\" is no place"),
+            ("COM3", "\"COM3\" is not a place"),
+            ("", "\"\" is not a place"),
             ("serial:", "the serial port is missing"),
-            ("serial:/dev/ttyACM0,", "\"\" is no speed"),
+            ("serial:/dev/ttyACM0,", "\"\" is not a speed"),
             ("serial:/dev/ttyACM0,fast", "such as serial:/dev/ttyACM0,115200"),
             ("serial:/dev/ttyACM0,0", "300 to 20000000"),
             ("tcp:localhost", "such as tcp:localhost:5761"),

@@ -32,7 +32,7 @@ fn refusal(device: &Path, baud: u32, error: &io::Error) -> String {
             "{name} may not be opened by this user: join its group (`sudo usermod -aG dialout $USER`) and log in again"
         ),
         ErrorKind::ResourceBusy => format!("{name} is open in another program: close it there"),
-        ErrorKind::InvalidInput => format!("{name} knows no speed of {baud} bit/s: try 115200"),
+        ErrorKind::InvalidInput => format!("{name} does not support {baud} bit/s: try 115200"),
         ErrorKind::IsADirectory => format!("{name} is a directory, not a serial port"),
         _ if is(Errno::NOTTY) => format!("{name} is not a serial port"),
         _ if is(Errno::NXIO) || is(Errno::NODEV) || is(Errno::IO) => {

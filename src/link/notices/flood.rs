@@ -55,12 +55,12 @@ pub(super) fn sentence(door: &str, stranger: Stranger, number: u64) -> String {
         }
         Stranger::Began(ForeignProtocol::Text) => ("began with text", "`#` opens the command line"),
         Stranger::WentOn => {
-            ("sent bytes that are neither MSP nor text", "a web page or a broken program sends such")
+            ("sent bytes that are neither MSP nor text", "a web page or a broken program sends such bytes")
         }
     };
     format!(
-        "{connections} {said} and {were} closed, and nothing of this was interpreted: {advice}. Further ones are only \
-         counted, as errors of the door."
+        "{connections} {said} and {were} closed without being interpreted: {advice}. Further ones are only counted as \
+         errors of the door."
     )
 }
 
@@ -86,8 +86,8 @@ mod tests {
         let stranger = Stranger::Began(ForeignProtocol::Text);
         assert_eq!(
             sentence("TCP", stranger, 1),
-            "A connection to the TCP door began with text and was closed, and nothing of this was interpreted: `#` opens \
-             the command line. Further ones are only counted, as errors of the door."
+            "A connection to the TCP door began with text and was closed without being interpreted: `#` opens \
+             the command line. Further ones are only counted as errors of the door."
         );
         assert!(
             sentence("TCP", stranger, 7)

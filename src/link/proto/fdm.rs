@@ -48,7 +48,7 @@ pub enum PacketError {
     #[strum(to_string = "a value is not a number")]
     NotFinite,
     /// A quaternion that is far from a rotation.
-    #[strum(to_string = "the quaternion is no rotation")]
+    #[strum(to_string = "the quaternion is not a rotation")]
     Quaternion,
     /// A body rate above 200 rad/s.
     #[strum(to_string = "a body rate above 200 rad/s")]

@@ -93,11 +93,12 @@ pub enum FdmNotice {
     GravityUnclear,
     /// Positions move against the velocity.
     #[strum(
-        to_string = "the simulator's positions are not mirrored: taken as they are from now on (--fdm-mirror off does so from the start)"
+        to_string = "the simulator's positions are not mirrored: used unchanged from now on (--fdm-mirror off does so \
+                     from the start)"
     )]
     NotMirrored,
     /// The stamps do not advance.
-    #[strum(to_string = "the simulator's clock stands still: the firmware follows the wall clock")]
+    #[strum(to_string = "the simulator's clock does not advance: the firmware follows the wall clock")]
     WallClock,
     /// The simulator was restarted.
     #[strum(to_string = "the simulator was restarted: disarmed")]

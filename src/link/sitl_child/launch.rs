@@ -102,7 +102,8 @@ pub(super) fn error_of_code(code: i32, config: &ChildConfig) -> Option<String> {
     match code {
         NOT_FOUND => Some(format!("there is no executable {program}")),
         NOT_EXECUTABLE => Some(format!(
-            "the system does not run {program}: it is no executable for this machine, or may not be executed (chmod +x)"
+            "the system cannot run {program}: it is not an executable for this machine, or not marked \
+             executable (chmod +x)"
         )),
         _ => None,
     }

@@ -66,7 +66,7 @@ pub fn fix(document: &PlanDocument, finding: &Finding, home: LatLon) -> Option<F
         Finding::NeverFlown { index, .. } => {
             let behind = waypoints.len().checked_sub(index + 1)?;
             waypoints.truncate(index + 1);
-            format!("delete the {behind} behind WP{index}")
+            format!("delete the {behind} after WP{index}")
         }
         Finding::NothingToModify { index, kind } => {
             waypoints.pop_at(index)?;

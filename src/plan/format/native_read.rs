@@ -105,7 +105,7 @@ fn read_waypoints(value: &Value<'_>, problems: &mut Problems<'_>) -> FlightPlan 
         problems.add(
             value.span(),
             "waypoint is not a list of tables",
-            "head each waypoint with [[waypoint]]",
+            "start each waypoint with [[waypoint]]",
         );
         return plan;
     };

@@ -167,7 +167,7 @@ mod tests {
         2  TAKEOFF                             3.00 m             0.0 m                    never
 
         3 waypoints, 40 m, holding without end
-        waypoint 1 holds forever (duration 0): the waypoints behind it are never flown
+        waypoint 1 holds forever (duration 0): the waypoints after it are never flown
         waypoint 1 asks for 30 m/s; ap_max_velocity limits it to 5 m/s
         the plan does not end in LAND: the craft stays in the air at its end
         ");

@@ -59,7 +59,7 @@ pub fn markdown(summary: &Summary) -> String {
     }
     let failed: Vec<_> = summary.flights.iter().filter(|flight| !flight.passed()).collect();
     if !failed.is_empty() {
-        text.push_str("\n#### What was seen\n\n");
+        text.push_str("\n#### Observed\n\n");
     }
     for flight in failed {
         text.push_str(&format!("- **{}**\n", line(&flight.title())));

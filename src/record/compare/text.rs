@@ -35,11 +35,11 @@ pub(super) fn table(comparison: &Comparison) -> String {
         }
     }
     text.push_str(
-        "\nMeasured from truth. Tracks apart: from each place of one track to the nearest of the other, both ways; below A and \
-         B\namong the flights of that firmware.",
+        "\nMeasured from truth. Tracks apart: from each point of one track to the nearest of the other, both ways; \
+         below\nA and B among the flights of that firmware.",
     );
     if comparison.sides.iter().any(|side| side.flights.len() > 1) {
-        text.push_str(" Behind ±: the standard deviation.");
+        text.push_str(" After ±: the standard deviation.");
     }
     text.push('\n');
     text
@@ -49,7 +49,7 @@ pub(super) fn table(comparison: &Comparison) -> String {
 fn flights(side: &Side) -> String {
     match side.flights.len() {
         0 => "not flown".to_owned(),
-        1 if side.repeatable => "one flight, which is the same each time".to_owned(),
+        1 if side.repeatable => "one flight, identical each time".to_owned(),
         1 => "one flight".to_owned(),
         count => format!("{count} flights"),
     }

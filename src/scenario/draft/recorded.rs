@@ -56,7 +56,7 @@ impl Draft {
         let start_at = start.time();
         let (settings, lines) = configuration(&mut start)?;
         let world =
-            start.world().ok_or("an external simulator moved the craft: nobody can move it so again")?;
+            start.world().ok_or("an external simulator moved the craft: its motion cannot be repeated")?;
         let status = world.status();
         let frame = world.local_frame();
         let truth = world.truth();
@@ -147,10 +147,10 @@ fn sentences(input: &Input, transmitter: &mut RcTransmitter) -> Result<Vec<Strin
     let one = |text: &str| Ok(vec![text.to_owned()]);
     match input {
         Input::Rc(..) => {
-            Err("RC came from outside: what a script sent cannot be repeated by a scenario".to_owned())
+            Err("RC came from another program: a scenario cannot repeat what it sent".to_owned())
         }
         Input::Message(_) => {
-            Err("a client changed the craft over MSP: that cannot be repeated by a scenario".to_owned())
+            Err("a client changed the craft over MSP: a scenario cannot repeat that".to_owned())
         }
         Input::SticksFirst(_) | Input::CliOpened | Input::CliClosed => Ok(Vec::new()),
         Input::Line(line) => {
@@ -163,7 +163,7 @@ fn sentences(input: &Input, transmitter: &mut RcTransmitter) -> Result<Vec<Strin
                 });
             Ok(if reads { Vec::new() } else { vec![format!("cli {text}")] })
         }
-        Input::Restart(_) | Input::ResetCraft => Err("the flight begins anew within itself".to_owned()),
+        Input::Restart(_) | Input::ResetCraft => Err("the flight was restarted within itself".to_owned()),
         Input::ReturnHome => one("return home"),
         Input::CancelReturn => one("cancel return"),
         Input::InFlight(InFlightCommand::GoTo(wp)) => Ok(vec![format!("go to {wp}")]),

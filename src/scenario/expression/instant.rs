@@ -65,7 +65,7 @@ pub fn read_span_from(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<(f64, f6
         ));
     };
     if low.1 != Dimension::TIME || high.1 != Dimension::TIME {
-        return Err(cursor.error_since(start, "these are no times", "write 12.5..18 s after engaged"));
+        return Err(cursor.error_since(start, "these are not times", "write 12.5..18 s after engaged"));
     }
     if from > to {
         return Err(cursor.error_since(

@@ -104,7 +104,7 @@ fn fill(text: &str, seed: u64) -> Result<String, String> {
         let mut cursor = Cursor::new(inside);
         let (number, _) = read_number(&mut cursor, &scope).map_err(|error| error.message)?;
         cursor.finish().map_err(|error| error.message)?;
-        let value = number_of_seed(&number, seed as f64).ok_or("only seed and numbers are known here")?;
+        let value = number_of_seed(&number, seed as f64).ok_or("only seed and numbers are allowed here")?;
         filled.push_str(before);
         filled.push_str(&value.to_string());
         rest = after;
@@ -130,7 +130,7 @@ fn read_seeds<'s>(value: &Value<'_>, most: usize, reader: &mut Reader<'_, '_>) -
             for value in values {
                 let Some(seed) = read_seed(value, reader) else { continue };
                 if !seen.insert(seed) {
-                    reader.problem(value.span(), format!("seed {seed} is there twice"), "leave one out");
+                    reader.problem(value.span(), format!("seed {seed} is listed twice"), "leave one out");
                 }
                 seeds.push(seed);
             }
@@ -203,7 +203,7 @@ pub fn seed_range(text: &str) -> Result<RangeInclusive<u64>, String> {
     let number = |text: &str| text.trim().parse::<u64>().map_err(|_| format!("{text} is not a seed"));
     let (from, to) = (number(from)?, number(to)?);
     if from > to || to - from >= MAX_SEEDS {
-        return Err(format!("{text} is no range of 1 to {MAX_SEEDS} seeds"));
+        return Err(format!("{text} is not a range of 1 to {MAX_SEEDS} seeds"));
     }
     Ok(from..=to)
 }

@@ -77,7 +77,7 @@ pub(super) fn check(
                 owner.unwrap_or(0..0),
                 format!("the {count} cases have {entries} {word} together"),
                 format!(
-                    "allowed: {MAX_ENTRIES}; say with cases = [\"NAME\"] which case each is for, or make several \
+                    "allowed: {MAX_ENTRIES}; assign each to its cases with cases = [\"NAME\"], or make several \
                      scenarios of it"
                 ),
             );

@@ -27,7 +27,7 @@ pub(super) fn read(layers: &Layers<'_, '_>, plan: PlanFile, reader: &mut Reader<
         Some((_, word)) if word == "scripted" => true,
         Some((_, word)) if word == "none" => false,
         Some((value, word)) => {
-            reader.problem(value.span(), format!("{word} is no pilot"), "allowed: scripted, none");
+            reader.problem(value.span(), format!("{word} is not a pilot"), "allowed: scripted, none");
             true
         }
     };
@@ -52,7 +52,7 @@ pub(super) fn read(layers: &Layers<'_, '_>, plan: PlanFile, reader: &mut Reader<
         "estimated" => Some(AttitudeSource::Estimated),
         "truth" => Some(AttitudeSource::Truth),
         word => {
-            reader.problem(value.span(), format!("{word} is no attitude"), "allowed: estimated, truth");
+            reader.problem(value.span(), format!("{word} is not an attitude"), "allowed: estimated, truth");
             None
         }
     });
@@ -89,7 +89,11 @@ fn rate(layers: &Layers<'_, '_>, section: &[TomlTable<'_, '_>], reader: &mut Rea
         Some(rate) if STEP_RATES_HZ.contains(&rate) => rate,
         Some(rate) => {
             let allowed = STEP_RATES_HZ.map(|rate| rate.to_string()).join(", ");
-            reader.problem(value.span(), format!("{rate} Hz is no step rate"), format!("allowed: {allowed}"));
+            reader.problem(
+                value.span(),
+                format!("{rate} Hz is not a step rate"),
+                format!("allowed: {allowed}"),
+            );
             usual
         }
         None => usual,

@@ -72,11 +72,11 @@ fn read_one(
     let kinds: Vec<&str> = KINDS.into_iter().filter(|key| table.get(key).is_some()).collect();
     let [kind] = kinds.as_slice() else {
         let message = match kinds.as_slice() {
-            [] => "the expectation says nothing".to_owned(),
-            [first, second, ..] => format!("the expectation says both {first} and {second}"),
+            [] => "the expectation is empty".to_owned(),
+            [first, second, ..] => format!("the expectation has both {first} and {second}"),
             [_] => String::new(),
         };
-        reader.problem(table.span(), message, format!("it has one of {}", KINDS.join(", ")));
+        reader.problem(table.span(), message, format!("it needs one of {}", KINDS.join(", ")));
         return None;
     };
     let value = table.get(kind)?;
@@ -120,7 +120,7 @@ fn refuse_idle(kind: &str, table: &TomlTable<'_, '_>, reader: &mut Reader<'_, '_
         _ => false,
     };
     for (key, span, _) in table.keys().filter(|(key, ..)| is_idle(key)) {
-        reader.problem(span, format!("{key} means nothing for {kind}"), "leave it out");
+        reader.problem(span, format!("{key} has no meaning for {kind}"), "leave it out");
     }
 }
 
@@ -202,7 +202,7 @@ fn read_event(
         Some(value) => {
             let count = reader.integer(value)?;
             let Ok(count) = usize::try_from(count) else {
-                reader.problem(value.span(), format!("{count} is no count"), "write 0, 1, 2 and so on");
+                reader.problem(value.span(), format!("{count} is not a count"), "write 0, 1, 2 and so on");
                 return None;
             };
             Some(count)

@@ -34,14 +34,15 @@ pub(super) fn read(
         let is_name = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
             && name.starts_with(|c: char| c.is_ascii_alphabetic());
         if !is_name {
-            reader.problem(value.span(), format!("{name} is no name of a measure"), "letters, digits and _");
+            reader.problem(
+                value.span(),
+                format!("{name} is not a name for a measure"),
+                "letters, digits and _",
+            );
             continue;
         }
         let problem = taken(&name).or_else(|| {
-            scope
-                .names
-                .contains_key(&name)
-                .then(|| format!("there is a measure or a parameter {name} already"))
+            scope.names.contains_key(&name).then(|| format!("a measure or a parameter {name} exists already"))
         });
         if let Some(problem) = problem {
             reader.problem(value.span(), problem, "choose another name");
@@ -75,10 +76,10 @@ fn read_measured(
     let given: Vec<&str> = KINDS.into_iter().filter(|key| table.get(key).is_some()).collect();
     let [kind] = given.as_slice() else {
         let message = match given.as_slice() {
-            [first, second, ..] => format!("the measure says both {first} and {second}"),
-            _ => "the measure says nothing".to_owned(),
+            [first, second, ..] => format!("the measure has both {first} and {second}"),
+            _ => "the measure is empty".to_owned(),
         };
-        reader.problem(table.span(), message, format!("it has one of {}", KINDS.join(", ")));
+        reader.problem(table.span(), message, format!("it needs one of {}", KINDS.join(", ")));
         return None;
     };
     let is_idle = |key: &str| match key {
@@ -87,7 +88,7 @@ fn read_measured(
         _ => false,
     };
     for (key, span, _) in table.keys().filter(|(key, ..)| is_idle(key)) {
-        reader.problem(span, format!("{key} means nothing for {kind}"), "leave it out");
+        reader.problem(span, format!("{key} has no meaning for {kind}"), "leave it out");
     }
     for statistic in Statistic::iter() {
         if let Some(value) = table.get(statistic.into()) {

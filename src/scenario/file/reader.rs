@@ -184,7 +184,7 @@ impl<'r, 'p> Reader<'r, 'p> {
         if value.get_ref().is_table() {
             return TomlTable::new(what.to_owned(), value, self.problems);
         }
-        self.problem(value.span(), format!("{what} is not a table"), format!("head it with [{what}]"));
+        self.problem(value.span(), format!("{what} is not a table"), format!("start it with [{what}]"));
         None
     }
 
@@ -200,7 +200,7 @@ impl<'r, 'p> Reader<'r, 'p> {
             self.problem(
                 value.span(),
                 format!("{key} is not a list of tables"),
-                format!("head each with [[{key}]]"),
+                format!("start each with [[{key}]]"),
             );
             return Vec::new();
         };

@@ -44,7 +44,7 @@ pub(super) fn judge(steps: &[StateStep], evaluator: &Evaluator<'_>) -> Outcome {
     }
     let end = trace.end();
     let last = seen.last().map_or_else(|| "nothing".to_owned(), |(happening, _)| happening.to_string());
-    let sentence = format!("after {last} {} was expected and did not come", wanted(steps, open));
+    let sentence = format!("after {last} {} was expected but did not come", wanted(steps, open));
     failed(sentence, Some(end)).with_guard(trace, end)
 }
 

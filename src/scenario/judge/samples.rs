@@ -8,7 +8,7 @@ use crate::scenario::happening::Happening;
 use crate::scenario::quantity::Dimension;
 use crate::signals::SimTime;
 
-const NOTHING_KNOWN: &str = "nothing of it was known in its time";
+const NOTHING_KNOWN: &str = "it was not known at any moment of its time";
 
 /// Judges an expectation about the samples of a range.
 pub(super) fn judge(expected: &Expected, range: Range, evaluator: &Evaluator<'_>) -> Outcome {
@@ -46,7 +46,7 @@ pub(super) fn instant(
         None => {
             let unknown = evaluator.unknown_names(condition);
             let what = if unknown.is_empty() {
-                "nothing of it".to_owned()
+                "none of its values".to_owned()
             } else {
                 format!("no {}", unknown.join(", no "))
             };

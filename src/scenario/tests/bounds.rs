@@ -105,7 +105,7 @@ fn six_hundred_cases_with_six_hundred_expectations_are_refused() {
     assert_refused(
         &text,
         "test.toml:9:1: the 600 cases have 360000 expectations together",
-        "allowed: 50000; say with cases = [\"NAME\"] which case each is for, or make several scenarios of it",
+        "allowed: 50000; assign each to its cases with cases = [\"NAME\"], or make several scenarios of it",
     );
     let values: Vec<String> = (0..30).map(|wind| format!("'{wind}@0'")).collect();
     let vary = format!("[vary]\nwind = [{}]\ntakeoff_m = [{}]\n", values.join(","), vec!["5"; 30].join(","));

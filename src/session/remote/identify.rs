@@ -112,7 +112,7 @@ impl Identification {
             }
             (Question::ApiVersion, Answer::NotAnswered(_)) => {
                 return Err(
-                    "nothing there answers MSP: is it a flight controller, and the right port and speed?"
+                    "nothing there answers MSP: is it a flight controller, and are port and speed right?"
                         .to_owned(),
                 );
             }
@@ -120,12 +120,12 @@ impl Identification {
             (Question::Variant, Answer::Msp(Some(variant))) => {
                 let variant = String::from_utf8_lossy(variant).escape_debug().to_string();
                 return Err(format!(
-                    "the flight controller there says {variant}, not BTFL: only Betaflight is spoken with"
+                    "the flight controller there reports {variant}, not BTFL: only Betaflight is supported"
                 ));
             }
             (Question::Variant, _) => {
                 return Err(
-                    "the flight controller there does not say what it is: only Betaflight is spoken with"
+                    "the flight controller there does not identify itself: only Betaflight is supported"
                         .to_owned(),
                 );
             }

@@ -136,8 +136,8 @@ impl Observer {
             Some(MissionPhase::Aborted { cause })
                 if !matches!(before, Some(MissionPhase::Aborted { .. })) =>
             {
-                let cause = if cause.is_empty() { "it does not say why" } else { cause };
-                Some(format!("The firmware gave its mission up: {cause}."))
+                let cause = if cause.is_empty() { "it gives no reason" } else { cause };
+                Some(format!("The firmware aborted its mission: {cause}."))
             }
             _ => None,
         }
@@ -258,7 +258,7 @@ impl Observer {
     /// Returns the reference of its waypoint altitudes as part of a sentence.
     pub(super) fn about_altitudes(&self) -> &'static str {
         match (self.knows_settings(), self.counts_from_home()) {
-            (false, _) => "from where its waypoints' altitudes count is not known yet",
+            (false, _) => "the reference of its waypoints' altitudes is not known yet",
             (true, true) => "its waypoints' altitudes count from home",
             (true, false) => "its waypoints' altitudes count from sea level and are converted",
         }
@@ -280,7 +280,7 @@ mod tests {
         let status = |state: &str| format!("Waypoint count: 2\r\n\nRuntime status:\r\n  state: {state}\r\n");
         assert_eq!(observer.take_mission(&status("TARGETING")), None);
         let aborted = status("ABORTED") + "  abort reason: MAG FAULT\r\n";
-        let told = "The firmware gave its mission up: MAG FAULT.".to_owned();
+        let told = "The firmware aborted its mission: MAG FAULT.".to_owned();
         assert_eq!(observer.take_mission(&aborted), Some(told));
         assert_eq!(observer.take_mission(&aborted), None);
     }

@@ -10,11 +10,11 @@ pub use impact::Impact;
 
 /// Refusal of an order that would move a remote craft.
 pub const NOTHING_MOVES: &str =
-    "This craft is real: it is armed, flown and its motors are turned by its own transmitter, not from here.";
+    "This craft is real: its own transmitter arms it, flies it and runs its motors, not this program.";
 
 /// Refusal to change the world of a remote craft.
 pub const NOTHING_SIMULATED: &str =
-    "Nothing is simulated here: this craft is real, and so are its place and its air.";
+    "Nothing is simulated here: this craft is real, and so are its position and the air.";
 
 /// Refusal of a change that the user has not permitted.
 pub const NOT_PERMITTED: &str =

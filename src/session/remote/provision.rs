@@ -168,7 +168,7 @@ impl Provision {
             }
             let why = match answer {
                 Answer::NotAnswered(why) => why.to_string(),
-                _ => "the flight controller gave another answer than that to a line".to_owned(),
+                _ => "the flight controller's answer does not belong to this line".to_owned(),
             };
             self.phase = Phase::Done(Err(format!("`{}` was not answered: {why}", self.line_of(&asked))));
             return;
@@ -316,7 +316,7 @@ impl RemoteLink {
                 self.notices.extend(report.sentences().into_iter().map(notice));
             }
             Some(Err(why)) => {
-                let sentence = format!("The firmware could not be set: {why}.");
+                let sentence = format!("The firmware could not be configured: {why}.");
                 self.unset = Some(Unset::Everything(sentence.clone()));
                 self.notices.push(RemoteNotice::Lost(sentence));
             }

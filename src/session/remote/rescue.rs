@@ -14,7 +14,8 @@ impl RemoteLink {
                 self.observer.deliver_again();
             }
             None => self.notices.push(RemoteNotice::Told(
-                "This firmware flies home by a switch alone, and GPS RESCUE has none: give it one with the CLI command aux."
+                "This firmware flies home only by a switch, and GPS RESCUE has none: assign one with the CLI command \
+                 aux."
                     .to_owned(),
             )),
         }

@@ -104,16 +104,16 @@ pub(super) fn finding(at_rest: &AtRest) -> Option<String> {
             None => "another --fdm-dialect may fit".to_owned(),
         };
         return Some(format!(
-            "The firmware does not understand the packets as {sent}: the craft stands at roll {:.0}, pitch {:.0}, heading \
-             {:.0} degrees, and it shows {roll:.0}, {pitch:.0}, {heading:.0}; {way_out}.",
+            "The firmware does not understand packets sent as {sent}: the craft is at roll {:.0}, pitch {:.0}, heading \
+             {:.0} degrees, and the firmware shows {roll:.0}, {pitch:.0}, {heading:.0}; {way_out}.",
             truth.roll_deg, truth.pitch_deg, truth.heading_deg
         ));
     }
     let (distance_m, _) = distance_bearing(LatLon::from_degrees(truth.lat_deg, truth.lon_deg), place?);
     (distance_m > PLACE_M).then(|| {
         format!(
-            "The firmware shows the craft {distance_m:.0} m from where it stands: something else fed it before, and it \
-             mirrors positions about the first that it got; start it anew."
+            "The firmware shows the craft {distance_m:.0} m from its place: another program fed it before, and it \
+             mirrors positions about the first that it received; restart it."
         )
     })
 }
@@ -192,6 +192,6 @@ mod tests {
     fn a_firmware_that_something_else_fed_before_is_found_by_its_place() {
         let place = Some(LatLon::from_degrees(40.01, -80.0));
         let sentence = finding(&AtRest { place, ..at_rest(0.0, 0.0, 0.0) }).unwrap();
-        assert!(sentence.contains("1113 m") && sentence.contains("start it anew"), "{sentence}");
+        assert!(sentence.contains("1113 m") && sentence.contains("restart it"), "{sentence}");
     }
 }

@@ -41,8 +41,8 @@ impl RemoteLink {
                 self.tell_client();
                 self.observer.forget();
                 self.notices.push(RemoteNotice::Lost(format!(
-                    "{} does not answer any more, though the connection stands: is it without power? It is asked until it \
-                     answers.",
+                    "{} no longer answers, although the connection is open: is it without power? Requests go on until \
+                     it answers.",
                     self.ends.name
                 )));
             }
@@ -78,7 +78,7 @@ impl RemoteLink {
         } else if !self.heard && self.connected.is_some_and(is_over) {
             self.connected = None;
             self.notices.push(RemoteNotice::Lost(format!(
-                "{} takes the connection and has said nothing for {} s: it is asked until it does.",
+                "{} accepts the connection but has not answered for {} s: requests go on until it does.",
                 self.ends.name,
                 FIRST_ANSWER.as_secs()
             )));

@@ -71,7 +71,7 @@ impl RemoteLink {
             // Its own program may still be starting. A delay that is too long is reported elsewhere.
             RemoteState::Connecting if self.ends.child.is_some() => {}
             RemoteState::Connecting => {
-                let notice = format!("No connection to {}: {reason}; it is tried again.", self.ends.name);
+                let notice = format!("No connection to {}: {reason}; trying again.", self.ends.name);
                 self.notices.push(RemoteNotice::Lost(notice));
             }
             // A program that somebody else started closes its port when it ends to be restarted.
@@ -79,7 +79,7 @@ impl RemoteLink {
                 if self.is_fed() && self.ends.child.is_none() && self.heard =>
             {
                 let notice = format!(
-                    "{} ended or restarts: when it is there again, the craft stands at home.",
+                    "{} ended or is restarting: when it is back, the craft is at home.",
                     self.ends.name
                 );
                 self.begin_anew(vehicle, notice);
@@ -88,10 +88,8 @@ impl RemoteLink {
             RemoteState::Identifying | RemoteState::Ready | RemoteState::Lost => {
                 // A connection that closes at once is reported only once.
                 if self.state != RemoteState::Lost && self.told_loss.as_deref() != Some(reason) {
-                    let notice = format!(
-                        "The connection to {} is lost: {reason}; it is made again by itself.",
-                        self.ends.name
-                    );
+                    let notice =
+                        format!("The connection to {} is lost: {reason}; reconnecting.", self.ends.name);
                     self.notices.push(RemoteNotice::Lost(notice));
                     self.told_loss = Some(reason.to_owned());
                 }

@@ -132,7 +132,7 @@ fn a_board_that_says_nothing_any_more_is_lost_and_another_one_when_it_speaks_aga
     bench.board.silent = true;
     bench.run(6.0);
     assert_eq!(*bench.link.state(), RemoteState::Lost);
-    assert!(bench.was_told("serial:test does not answer any more"), "{:?}", bench.told);
+    assert!(bench.was_told("serial:test no longer answers"), "{:?}", bench.told);
     assert_eq!(bench.vehicle.snapshot().craft.armed, None, "what was told is old");
     assert_eq!(bench.link.access(), Access::Reading);
     bench.run(20.0);
@@ -151,7 +151,7 @@ fn what_could_not_be_told_in_flight_is_asked_after_it() {
     let mut bench = Bench::new(Board { armed: true, ..Board::at(FIELD) });
     bench.run(10.0);
     assert_eq!((bench.link.state(), bench.reference()), (&RemoteState::Ready, AltitudeReference::Untold));
-    assert!(bench.was_told("from where its waypoints' altitudes count is not known yet"), "{:?}", bench.told);
+    assert!(bench.was_told("the reference of its waypoints' altitudes is not known yet"), "{:?}", bench.told);
     bench.board.armed = false;
     bench.run(5.0);
     assert_eq!(bench.reference(), AltitudeReference::SeaLevel { home_m: Some(400.0) });
@@ -222,7 +222,7 @@ fn what_does_not_say_that_it_is_betaflight_is_of_no_use() {
     let mut bench = Bench::new(Board { variant: None, ..Board::at(FIELD) });
     bench.run(5.0);
     assert!(matches!(bench.link.state(), RemoteState::Unusable(_)), "{:?}", bench.link.state());
-    assert!(bench.was_told("does not say what it is"), "{:?}", bench.told);
+    assert!(bench.was_told("does not identify itself"), "{:?}", bench.told);
 }
 
 #[test]

@@ -178,7 +178,7 @@ impl Session {
             }
             Some(_) => {
                 self.vehicle.reset_craft();
-                self.notice("The firmware started anew, disarmed; the simulator places the craft.");
+                self.notice("The firmware restarted, disarmed; the simulator places the craft.");
             }
             None => self.vehicle.reset_craft(),
         }
@@ -212,7 +212,7 @@ impl Session {
             self.vehicle.transmitter_mut().stop_pilot();
         } else if let Err(mode) = self.vehicle.start_pilot(self.takeoff_m) {
             self.notice(format!(
-                "The scripted pilot needs a switch for {mode}: give it one with the CLI command aux."
+                "The scripted pilot needs a switch for {mode}: assign one with the CLI command aux."
             ));
         }
     }

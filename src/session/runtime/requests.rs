@@ -134,7 +134,7 @@ impl Session {
             self.vehicle.transmitter_mut().stop_pilot();
             self.events.notice(
                 &mut self.vehicle,
-                "RC comes from outside now: the virtual sticks are cut, `x` takes them back.",
+                "RC now comes from another program: the virtual sticks are cut, `x` takes them back.",
             );
         }
     }

@@ -170,7 +170,7 @@ fn a_craft_that_counts_from_sea_level_gets_and_gives_altitudes_from_there() {
     assert!(refused.contains("sea level") && refused.ends_with("wait for a GPS fix."), "{refused}");
     rig.mailbox().deliver_telemetry(RemoteTelemetry::default());
     let refused = rig.upload(2).try_recv().unwrap().unwrap_err();
-    assert!(refused.ends_with("wait until it has told its settings."), "{refused}");
+    assert!(refused.ends_with("wait until it has reported its settings."), "{refused}");
     tell(&mut rig, Some(300.0));
     let mut result = rig.upload(2);
     while rig.answer(|_, _| {}) > 0 {}
@@ -195,7 +195,7 @@ fn a_craft_that_holds_another_waypoint_than_was_sent_is_found_by_reading_back() 
     };
     while rig.answer(spoilt) > 0 {}
     let sentence = result.try_recv().unwrap().unwrap_err();
-    assert_eq!(sentence, "the craft holds another waypoint 1 than was sent: upload again");
+    assert_eq!(sentence, "waypoint 1 on the craft differs from the one sent: upload again");
 }
 
 #[test]

@@ -34,7 +34,7 @@ pub const COMMAND_WORDS: [CommandWord; 9] = [
         help: "a fault",
     },
     CommandWord { name: "end", value: "NAME, NAME:MOTOR or all", help: "ends faults" },
-    CommandWord { name: "reset", value: "", help: "the craft stands at home again, whole and charged" },
+    CommandWord { name: "reset", value: "", help: "the craft is back at home, undamaged and charged" },
 ];
 
 impl WorldCommand {

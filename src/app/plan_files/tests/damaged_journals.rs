@@ -132,6 +132,6 @@ fn a_line_that_was_cut_short_by_a_kill_is_no_damage() {
     let mut files = PlanFiles::new(Some(directory.path()));
     let back = open(&mut files, &path);
     assert_eq!(back.history.document(), &document(5400));
-    assert!(back.notes[0].contains("cut short"), "{:?}", back.notes);
+    assert!(back.notes[0].contains("cut off"), "{:?}", back.notes);
     assert!(files.take_losses().is_empty() && kept(directory.path(), "bad").is_empty());
 }

@@ -10,7 +10,7 @@ use crate::firmware::control::LeanDemand;
 
 /// The full stick deflection, RC command units.
 const FULL_STICK: f64 = 500.0;
-/// The share of the greatest lean that is used to plan the stop when the sticks are released.
+/// The share of the maximum lean that is used to plan the stop when the sticks are released.
 const STOP_SHARE: f64 = 0.4;
 
 #[derive(Debug, Clone, PartialEq, Default)]

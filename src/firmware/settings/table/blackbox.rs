@@ -10,8 +10,8 @@ pub(super) const BLACKBOX: Group = Group {
     title: "Blackbox",
     scope: Scope::Master,
     settings: &[
-        choice("blackbox_sample_rate", U8, &["1/1", "1/2", "1/4", "1/8", "1/16"], 2, Carry, "Share of control loops that are recorded."),
-        choice("blackbox_device", U8, &["NONE", "SPIFLASH", "SDCARD", "SERIAL", "VIRTUAL"], 0, Carry, "Where flights are recorded.").hardware(),
+        choice("blackbox_sample_rate", U8, &["1/1", "1/2", "1/4", "1/8", "1/16"], 2, Carry, "Fraction of control loops that is recorded."),
+        choice("blackbox_device", U8, &["NONE", "SPIFLASH", "SDCARD", "SERIAL", "VIRTUAL"], 0, Carry, "Storage device for flight recordings.").hardware(),
         switch("blackbox_disable_pids", U32, false, Carry, "Leave the PID terms out of recordings."),
         switch("blackbox_disable_rc", U32, false, Carry, "Leave the sticks out of recordings."),
         switch("blackbox_disable_setpoint", U32, false, Carry, "Leave the setpoints out of recordings."),
@@ -26,9 +26,9 @@ pub(super) const BLACKBOX: Group = Group {
         switch("blackbox_disable_debug", U32, false, Carry, "Leave the debug values out of recordings."),
         switch("blackbox_disable_motors", U32, false, Carry, "Leave the motors out of recordings."),
         switch("blackbox_disable_gps", U32, false, Carry, "Leave the GPS out of recordings."),
-        choice("blackbox_mode", U8, &["NORMAL", "MOTOR_TEST", "ALWAYS"], 0, Carry, "When flights are recorded."),
-        switch("blackbox_high_resolution", U8, false, Carry, "Record with ten times finer values."),
+        choice("blackbox_mode", U8, &["NORMAL", "MOTOR_TEST", "ALWAYS"], 0, Carry, "Condition for recording a flight."),
+        switch("blackbox_high_resolution", U8, false, Carry, "Record values at ten times the resolution."),
         port("blackbox_uart", 0, Carry, "Serial port of the recorder."),
-        choice("blackbox_baud", U8, BAUD, 5, Carry, "Speed of the recorder's port."),
+        choice("blackbox_baud", U8, BAUD, 5, Carry, "Baud rate of the recorder's port."),
     ],
 };

@@ -10,9 +10,9 @@ pub(super) const CONTROL_LOOP: Group = Group {
     title: "Control loop",
     scope: Scope::Master,
     settings: &[
-        number("pid_process_denom", U8, 1, 16, 1, Live, "Control loops per gyro sample: one in this many."),
-        switch("runaway_takeoff_prevention", U8, true, Live, "Stop the motors when a take-off gets out of hand."),
-        number("runaway_takeoff_deactivate_delay", U16, 100, 1000, 500, Live, "Good flight for this long ends the watch, ms."),
+        number("pid_process_denom", U8, 1, 16, 1, Live, "Number of gyro samples per control loop."),
+        switch("runaway_takeoff_prevention", U8, true, Live, "Stop the motors when a take-off gets out of control."),
+        number("runaway_takeoff_deactivate_delay", U16, 100, 1000, 500, Live, "Duration of normal flight that ends this check, ms."),
         number("runaway_takeoff_deactivate_throttle_percent", U8, 0, 100, 20, Live, "Throttle that counts as flight, percent."),
     ],
 };

@@ -11,7 +11,7 @@ pub(super) const SYSTEM: Group = Group {
     scope: Scope::Master,
     settings: &[
         number("reboot_character", U8, 48, 126, 82, Carry, "Byte that starts the boot loader of a real board over a serial port."),
-        number("serial_update_rate_hz", U16, 100, 2000, 100, Carry, "How often serial ports are served, Hz; here after every step."),
+        number("serial_update_rate_hz", U16, 100, 2000, 100, Carry, "Rate at which serial ports are served, Hz; here after every step."),
     ],
 };
 
@@ -20,9 +20,9 @@ pub(super) const ARMING: Group = Group {
     title: "Arming",
     scope: Scope::Master,
     settings: &[
-        number("auto_disarm_delay", U8, 0, 60, 5, Live, "Time at low throttle until a craft armed by sticks disarms, s; 0 never."),
-        switch("gyro_cal_on_first_arm", U8, false, Live, "Calibrate the gyro at the first arming after boot, and arm when that is done."),
-        switch("prearm_allow_rearm", U8, false, Live, "One PREARM serves for several armings."),
+        number("auto_disarm_delay", U8, 0, 60, 5, Live, "Time at low throttle until a craft armed with the sticks disarms, s; 0 for never."),
+        switch("gyro_cal_on_first_arm", U8, false, Live, "Calibrate the gyro at the first arming after boot; the craft arms when that is done."),
+        switch("prearm_allow_rearm", U8, false, Live, "Allow several armings with one PREARM."),
     ],
 };
 
@@ -32,10 +32,10 @@ pub(super) const MAINTENANCE: Group = Group {
     scope: Scope::Master,
     settings: &[
         switch("task_statistics", I8, true, Live, "Measure the run time of tasks."),
-        choice("debug_mode", U8, DEBUG_MODE, 0, Carry, "What the four debug values show."),
-        switch("rate_6pos_switch", U8, false, Carry, "Select rate profiles by a six-position switch."),
+        choice("debug_mode", U8, DEBUG_MODE, 0, Carry, "Source of the four debug values."),
+        switch("rate_6pos_switch", U8, false, Carry, "Select rate profiles with a six-position switch."),
         number("pwr_on_arm_grace", U8, 0, 30, 5, Live, "Time after boot before arming is allowed, s."),
-        switch("enable_stick_arming", U8, false, Live, "Arm by sticks when no ARM switch is set up."),
+        switch("enable_stick_arming", U8, false, Live, "Allow arming with the sticks when no ARM switch is set up."),
     ],
 };
 
@@ -44,7 +44,7 @@ pub(super) const STATISTICS: Group = Group {
     title: "Clock and statistics",
     scope: Scope::Master,
     settings: &[
-        number("timezone_offset_minutes", I16, -780, 780, 0, Carry, "Local time ahead of UTC, minutes."),
+        number("timezone_offset_minutes", I16, -780, 780, 0, Carry, "Offset of local time from UTC, minutes."),
         number("stats_min_armed_time_s", I8, -1, 127, -1, Carry, "Flights shorter than this do not count, s; -1 counts none."),
         number("stats_total_flights", U32, 0, 4294967295, 0, Carry, "Flights so far."),
         number("stats_total_time_s", U32, 0, 4294967295, 0, Carry, "Time flown so far, s."),

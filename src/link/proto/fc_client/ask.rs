@@ -48,7 +48,7 @@ pub enum Unanswered {
     CliClosed,
     /// The interactive command line is open, which suspends MSP.
     #[strum(
-        to_string = "the flight controller's command line is open: leave it by `exit`, which restarts it"
+        to_string = "the flight controller's command line is open: leave it with `exit`, which restarts it"
     )]
     InCli,
     /// Too many requests are waiting.

@@ -6,7 +6,7 @@ use crate::link::proto::fc_client::sent_line;
 
 /// Refusal of a line or message that takes the port away.
 const TAKES_PORT: &str =
-    "The port would carry something else then, and this connection would end: do it in another program.";
+    "The port would then carry something else, and this connection would end: do it in another program.";
 
 /// The impact of a request on a craft.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

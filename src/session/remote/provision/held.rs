@@ -142,7 +142,7 @@ impl Held {
             let held = match &self.plan {
                 None => "none that can be read".to_owned(),
                 Some(held) if held.waypoints.is_empty() => "no plan".to_owned(),
-                Some(held) => format!("another one of {} waypoints", held.waypoints.len()),
+                Some(held) => format!("another plan of {} waypoints", held.waypoints.len()),
             };
             differences.push(Difference { line: "waypoint list".to_owned(), held });
         }

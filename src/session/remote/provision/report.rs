@@ -96,16 +96,17 @@ impl ProvisionReport {
         let mut sentences = Vec::new();
         if self.was_bare {
             sentences.push(
-                "Nothing was ever changed in the firmware's configuration: it is set as a fresh one is."
-                    .to_owned(),
+                "The firmware's configuration was never changed: it is set up like a fresh one.".to_owned(),
             );
         }
         sentences.extend(landing_gains_told(&self.landing_gains).filter(|_| !self.may_not_write));
         if self.written > 0 && self.is_as_wanted() {
-            sentences
-                .push(format!("The firmware took {} lines of settings, read back as written.", self.written));
+            sentences.push(format!(
+                "The firmware accepted {} lines of settings, and they read back as written.",
+                self.written
+            ));
         } else if self.written > 0 {
-            sentences.push(format!("The firmware took {} lines of settings.", self.written));
+            sentences.push(format!("The firmware accepted {} lines of settings.", self.written));
         }
         if !self.unknown.is_empty() {
             sentences
@@ -116,16 +117,16 @@ impl ProvisionReport {
         }
         let differ = self.differences.iter().map(|difference| {
             let Difference { line, held } = difference;
-            format!("`{line}` is wanted, it holds {}", held_text(held))
+            format!("`{line}` is required, it holds {}", held_text(held))
         });
         let differ: Vec<String> = differ.collect();
         if self.may_not_write {
             sentences.push(format!(
-                "The firmware has a configuration, which is not changed unasked (--yes permits it): {}.",
+                "The firmware has a configuration, which is not changed without permission (--yes gives it): {}.",
                 if differ.is_empty() { "its settings may differ".to_owned() } else { differ.join("; ") }
             ));
         } else if !differ.is_empty() {
-            sentences.push(format!("Read back it differs: {}.", differ.join("; ")));
+            sentences.push(format!("It differs when read back: {}.", differ.join("; ")));
         }
         sentences
     }

@@ -76,7 +76,10 @@ fn the_guides_settings_modes_and_plan_are_written_saved_and_read_back() {
     assert_eq!(craft.firmware.stored_plan().waypoints.len(), 4);
     assert_eq!(craft.firmware.parameters().nav.max_angle, 25);
     assert_eq!(craft.firmware.mode_ranges().len(), 3);
-    assert_eq!(report.sentences(), ["The firmware took 32 lines of settings, read back as written."]);
+    assert_eq!(
+        report.sentences(),
+        ["The firmware accepted 32 lines of settings, and they read back as written."]
+    );
     // The second time there is nothing to do, and no restart.
     craft.ran.clear();
     let again = set(&mut craft, &wanted(), true);
@@ -92,8 +95,8 @@ fn without_permission_it_is_only_looked() {
     let looks = ["get ", "aux", "waypoint list"];
     assert!(craft.ran.iter().all(|line| looks.iter().any(|look| line.starts_with(look))), "{:?}", craft.ran);
     let sentences = report.sentences().join(" ");
-    assert!(sentences.contains("`set ap_max_angle = 25` is wanted, it holds 50"), "{sentences}");
-    assert!(sentences.contains("not changed unasked"), "{sentences}");
+    assert!(sentences.contains("`set ap_max_angle = 25` is required, it holds 50"), "{sentences}");
+    assert!(sentences.contains("not changed without permission"), "{sentences}");
     assert_eq!(report.unset(), Some(Unset::Everything(sentences)));
 }
 
@@ -122,7 +125,7 @@ fn a_refused_line_is_told_and_the_others_are_kept() {
     assert_eq!(report.refused[0].reason, "ERROR IN set: INVALID VALUE");
     let [difference] = &report.differences[..] else { panic!("{report:?}") };
     assert_eq!((&*difference.line, &*difference.held), ("set ap_max_angle = 999", "50"));
-    assert!(report.sentences().iter().any(|sentence| sentence.starts_with("Read back it differs")));
+    assert!(report.sentences().iter().any(|sentence| sentence.starts_with("It differs when read back")));
     let unset = |line: &str, why: &str| UnsetLine { line: line.to_owned(), why: why.to_owned() };
     let Some(Unset::Lines(lines)) = report.unset() else { panic!("{report:?}") };
     let refused = "the firmware refused it: ERROR IN set: INVALID VALUE";
@@ -190,7 +193,7 @@ fn one_that_was_never_set_is_set_as_a_fresh_one_is() {
     let report = set_unsure(&mut craft);
     assert_eq!((report.was_bare, report.written), (true, 1));
     assert_eq!(craft.firmware.mode_ranges().len(), 1);
-    assert!(report.sentences()[0].contains("set as a fresh one is"), "{:?}", report.sentences());
+    assert!(report.sentences()[0].contains("set up like a fresh one"), "{:?}", report.sentences());
 }
 
 #[test]
