@@ -149,7 +149,10 @@ pub enum Command {
     /// Flies a plan on the embedded firmware and on another one, in the same air, and shows the differences
     #[command(before_help = help::examples(&[
         ("betadeck compare square --firmware obj/main/betaflight_SITL.elf", "your build against the embedded firmware"),
-        ("betadeck compare square --firmware new.elf --firmware old.elf --svg tracks.svg", "your build against a release"),
+        (
+            "betadeck compare square --firmware new.elf --firmware old.elf --svg tracks.svg",
+            "your build against a release",
+        ),
     ]))]
     Compare(Box<CompareArgs>),
 

@@ -136,7 +136,7 @@ fn the_palette_moves_and_closes() {
     assert!(palette.selected >= ACTIONS.len());
     key(&mut state, KeyCode::PageUp);
     type_text(&mut state, "zzzz");
-    assert!(screen(&state).contains("Nothing is called so"));
+    assert!(screen(&state).contains("Nothing found"));
     assert!(key(&mut state, KeyCode::Enter).is_empty());
     key(&mut state, KeyCode::Esc);
     assert!(state.popups.is_empty());

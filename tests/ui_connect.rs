@@ -170,7 +170,7 @@ fn a_command_line_without_framing_is_opened_with_permission_and_a_warning() {
     assert!(press(&mut state, KeyCode::Char('D')).is_empty() && is_asked(&state));
     press(&mut state, KeyCode::Char('n'));
     show(&mut state, |remote| (remote.opens_cli, remote.in_cli) = (false, true));
-    assert!(text(&state).contains("open: telemetry rests."), "{}", text(&state));
+    assert!(text(&state).contains("open: telemetry stops."), "{}", text(&state));
 }
 
 #[test]
@@ -217,8 +217,8 @@ fn nothing_moves_a_real_craft() {
 fn the_screen_says_how_the_connection_is() {
     for (now, parts) in [
         (RemoteState::Connecting, &["No connection to", "serial:/dev/ttyACM0 yet", "plug it in"][..]),
-        (RemoteState::Identifying, &["is asked what it is"]),
-        (RemoteState::Lost, &["is lost", "made again"]),
+        (RemoteState::Identifying, &["is being identified"]),
+        (RemoteState::Lost, &["is lost", "reconnecting"]),
         (RemoteState::Unusable("It says INAV.".to_owned()), &["It says INAV.", "--connect"]),
         (RemoteState::Ready, &["Arming is blocked", "RXLOSS"]),
     ] {

@@ -121,7 +121,7 @@ fn a_plan_that_is_closed_takes_nothing_in_and_neither_does_the_next() {
     let effects = update(&mut state, Msg::DownloadReply { id, result: Ok(Box::new(fixture::square())) });
     assert_eq!(hands::journal_lines(&effects), 0);
     assert!(state.plan().waypoints.is_empty());
-    assert!(screen(&state).contains("the plan that was to take it in is closed"), "{}", screen(&state));
+    assert!(screen(&state).contains("the plan that was to receive it is closed"), "{}", screen(&state));
 }
 
 #[test]

@@ -119,7 +119,7 @@ impl Knob {
             Self::WindFrom => "the direction it blows from, degrees".to_owned(),
             Self::Gust => format!("strength of random gusts, 0 to {}", units.speed_text(MOST_MPS, 0)),
             Self::Turbulence => "none, light, moderate, severe".to_owned(),
-            Self::Noise => "whether sensors err: real, none".to_owned(),
+            Self::Noise => "sensor errors: real, none".to_owned(),
             Self::Fault(fault) if fault.value.is_empty() => format!("{}; = types SECONDS", fault.help),
             Self::Fault(fault) => format!("{}; = types [SECONDS],VALUE: {}", fault.help, fault.value),
         }

@@ -95,7 +95,7 @@ pub(super) fn end_search(state: &mut AppState) {
 /// Scrolls to the next older or newer line with a match, and reports if there is none.
 pub(super) fn next_match(state: &mut AppState, newer: bool) -> Vec<Effect> {
     if state.log_view.search.is_empty() {
-        let text = format!("Nothing is searched: `{}` in the log begins.", state.key(Action::Search));
+        let text = format!("No search yet: `{}` in the log begins.", state.key(Action::Search));
         state.notify(Severity::Info, text);
     } else if !show_match(state, newer) {
         let end = if newer { "newer" } else { "older" };

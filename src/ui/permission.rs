@@ -108,7 +108,7 @@ pub(super) fn question(state: &AppState) -> String {
              command line (exit) restarts it. Go on?"
         )
     } else {
-        format!("This changes the flight controller at {name}. Go on? It is asked once a connection.")
+        format!("This changes the flight controller at {name}. Go on? Asked once per connection.")
     }
 }
 

@@ -122,7 +122,7 @@ fn list(title: String, choices: impl Iterator<Item = String>) -> Vec<String> {
 fn decision(state: &AppState, question: &Question) -> Vec<String> {
     let text = match question {
         Question::Replace { path, changed: true, .. } => {
-            format!("{} was changed by somebody else since it was read.", path.display())
+            format!("{} was changed elsewhere since it was read.", path.display())
         }
         Question::Replace { path, changed: false, .. } => format!("{} exists.", path.display()),
         Question::MovesTarget { change, .. } => change.clone(),

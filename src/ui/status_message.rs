@@ -81,12 +81,12 @@ pub fn current(state: &AppState) -> Option<StatusMessage> {
         Some(LinkState::Silent) => {
             return message(
                 Severity::Fault,
-                "The simulator is silent: time stands still.",
+                "The simulator is silent: time is stopped.",
                 "let it go on, or start it again",
             );
         }
         Some(LinkState::Waiting) => {
-            let action = "start it; its states come to the door udp fdm";
+            let action = "start it; it sends to the door udp fdm";
             return message(Severity::Warn, "No simulator yet.", action);
         }
         Some(LinkState::Flowing) | None => {}
@@ -99,7 +99,7 @@ pub fn current(state: &AppState) -> Option<StatusMessage> {
         if truth.diverged {
             return message(
                 Severity::Fault,
-                "The simulation left the range where it means something.",
+                "The simulation left its valid range.",
                 format!("{} resets", key(Action::ResetCraft)),
             );
         }
@@ -124,8 +124,8 @@ pub fn current(state: &AppState) -> Option<StatusMessage> {
     let Some(armed) = craft.armed else {
         return message(
             Severity::Warn,
-            "The flight controller does not tell whether it is armed.",
-            "wait for it to speak",
+            "The flight controller does not report arming.",
+            "wait for an answer",
         );
     };
     if armed {
@@ -321,7 +321,7 @@ fn action_after(state: &AppState, refusal: Refusal) -> String {
         Refusal::NoHeading => "fly straight ahead by hand for a few seconds".to_owned(),
         Refusal::NoAltitude => "wait for the barometer or GPS".to_owned(),
         Refusal::NoPlan => format!("{} uploads the plan", key(Action::Upload)),
-        Refusal::PlanCorrupt => format!("{} uploads the plan anew", key(Action::Upload)),
+        Refusal::PlanCorrupt => format!("{} uploads it again", key(Action::Upload)),
         Refusal::BadWaypoint(_) => format!("{} Plan shows why", key(Action::Show(Panel::Plan))),
         Refusal::NoHome => "disarm, wait for the fix, arm again".to_owned(),
         Refusal::Geofence { .. } => {

@@ -52,7 +52,7 @@ const STEPS: [Step; 5] = [
     },
     Step {
         first: Text {
-            text: "The State panel says what ends the leg. Press {} some times: time goes faster; {} is real time.",
+            text: "The State panel says what ends the leg. Press {} repeatedly: time goes faster; {} is real time.",
             actions: &[Action::Faster, Action::RealTime],
         },
         is_begun: |state| state.view.speed_wanted > 1.0,

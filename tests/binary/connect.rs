@@ -156,7 +156,7 @@ fn a_plan_goes_to_the_craft_and_back_over_tcp() {
     dialogue.hear("Uploaded square: 4 waypoints.");
     assert!(craft.line("waypoint list").contains("insert 3"), "{}", craft.line("waypoint list"));
     dialogue.say("download");
-    dialogue.hear("The craft has this very plan.");
+    dialogue.hear("The craft has the same plan.");
     dialogue.say("flash");
     dialogue.hear("Saved in the craft's flash");
 

@@ -128,7 +128,7 @@ fn what_the_flight_controller_does_not_tell_is_shown_as_unknown() {
     }
     let screen = screen(snapshot);
     assert!(screen.contains("◆ — "), "the state of the machine:\n{screen}");
-    assert!(screen.contains("— m/s") && screen.contains("does not tell its state"), "{screen}");
+    assert!(screen.contains("— m/s") && screen.contains("reports no state"), "{screen}");
 }
 
 #[test]
@@ -136,7 +136,7 @@ fn a_silent_flight_controller_is_shown_as_unknown_and_not_as_disarmed() {
     let vehicle = Vehicle::with_remote_controller(WorldConfig::default()).unwrap();
     let screen = screen(vehicle.snapshot());
     for unknown in
-        [" ○ — ", "⊕ —   — sats", " — V ", "The flight controller does not tell", "— on the craft?"]
+        [" ○ — ", "⊕ —   — sats", " — V ", "The flight controller does not report", "— on the craft?"]
     {
         assert!(screen.contains(unknown), "{unknown}:\n{screen}");
     }

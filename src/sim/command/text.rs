@@ -26,7 +26,7 @@ pub const COMMAND_WORDS: [CommandWord; 9] = [
     CommandWord { name: "gust", value: "SPEED", help: "random gusts of this strength; 0 for none" },
     CommandWord { name: "gust-now", value: "SPEED@FROM", help: "one gust now" },
     CommandWord { name: "turbulence", value: "none, light, moderate, severe", help: "level of turbulence" },
-    CommandWord { name: "noise", value: "real, none", help: "whether sensors err" },
+    CommandWord { name: "noise", value: "real, none", help: "sensor errors" },
     CommandWord { name: "gps-rate", value: "1 to 20", help: "GPS solutions a second" },
     CommandWord {
         name: "fault",

@@ -123,7 +123,7 @@ fn can_command(state: &AppState, action: Action) -> Result<(), String> {
         _ if !state.flies_stored_plan() => {
             let back = state.key(Action::ReturnHome);
             Err(format!(
-                "The autopilot flies home or lands by a plan of its own: `{back}` takes a return home back."
+                "The autopilot flies home or lands by a plan of its own: `{back}` cancels a return home."
             ))
         }
         Action::GoTo if stored.is_none_or(|plan| plan.waypoints.is_empty()) => {

@@ -9,11 +9,11 @@ const NO_PLANS: &str = "This flight controller has no waypoints: build its firmw
                         EXTRA_FLAGS=\"-DENABLE_FLIGHT_PLANNING=1\" (board or SITL).";
 
 /// The refusal for orders to the navigator of another program.
-const NO_ORDERS: &str = "A firmware outside takes no such order in flight: switch the autopilot off and fly there, or upload another plan.";
+const NO_ORDERS: &str = "A remote firmware takes no such order in flight: switch the autopilot off and fly there, or upload another plan.";
 
 /// The refusal for a firmware that has not yet reported its settings.
 pub(super) const NOT_KNOWN_YET: &str =
-    "The firmware outside has not told what it is and which switches it has: wait until it answers.";
+    "The remote firmware has not reported its identity and switches: wait until it answers.";
 
 /// Returns the reason to refuse an action with this remote flight controller.
 pub(super) fn refusal(remote: &RemoteView, action: Action) -> Option<&'static str> {

@@ -23,7 +23,7 @@ const COMMANDS: &[Command] = &[
     Command {
         name: "set",
         argument: "NAME=VALUE",
-        help: "A setting of the craft; without a value: what it is",
+        help: "A setting of the craft; without a value: shows it",
         run: vehicle::set,
         complete: vehicle::complete_set,
     },
@@ -51,7 +51,7 @@ const COMMANDS: &[Command] = &[
     Command {
         name: "scenario",
         argument: "FILE",
-        help: "Write the flight just flown as a scenario in this file; without a name: in one called as the plan",
+        help: "Write the flight just flown as a scenario in this file; without a name: in one named as the plan",
         run: plan::scenario,
         complete: plan::complete,
     },

@@ -58,7 +58,7 @@ impl Editor {
                 forms::take_properties(form, &mut after, check)?;
                 Ok((
                     self.replace_document("properties", after),
-                    "Name, home and settings are taken.".to_owned(),
+                    "Name, home and settings are set.".to_owned(),
                 ))
             }
             FormKind::Generate => {

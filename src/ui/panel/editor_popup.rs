@@ -119,7 +119,7 @@ fn question(state: &AppState, question: &Question, area: Rect, buffer: &mut Buff
     let title_of = |id| state.editor.plan_of(id).map_or_else(String::new, OpenPlan::title);
     let (title, text) = match question {
         Question::Replace { path, changed: true, .. } => {
-            ("Changed on disk", format!("{} was changed by somebody else since it was read.", path.display()))
+            ("Changed on disk", format!("{} was changed elsewhere since it was read.", path.display()))
         }
         Question::Replace { path, changed: false, .. } => ("Replace?", format!("{} exists.", path.display())),
         Question::MovesTarget { change, .. } => ("Upload in flight?", change.clone()),

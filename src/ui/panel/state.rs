@@ -92,7 +92,7 @@ fn draw_status_message(state: &AppState, area: Rect, diagram: &Diagram, buffer: 
 /// Draws the state machine. Returns the number of rows used.
 fn draw_machine(state: &AppState, area: Rect, diagram: &Diagram, buffer: &mut Buffer) -> u16 {
     let Some(nav) = &state.view.vehicle.nav else {
-        row(buffer, area, 0, &state.theme, Role::Dim, " — the firmware does not tell its state");
+        row(buffer, area, 0, &state.theme, Role::Dim, " — the firmware reports no state");
         return 1.min(area.height);
     };
     let last = state.transitions_shown().next_back().filter(|last| is_lit(state, last));

@@ -20,10 +20,10 @@ const ROWS: u16 = 3;
 const ABBREVIATIONS: [(&str, &str); 6] = [
     ("xte", "Cross-track error: how far the craft is beside its leg, positive to the right."),
     ("fence", "Distance from home at which the mission ends: ap_max_distance_from_home."),
-    ("1×", "Speed of the simulated time: the one in force, and the one asked for where that is more."),
+    ("1×", "Speed of the simulated time: the current one, and the requested one where that is more."),
     ("sats", "Satellites in view of the receiver; 3D is a fix with altitude."),
     ("WP", "Waypoint, counted from 0."),
-    ("ws tcp rc", "Doors for other programs: ● somebody is connected, ○ nobody is, ✗ closed or busy."),
+    ("ws tcp rc", "Doors for other programs: ● connected, ○ not connected, ✗ closed or busy."),
 ];
 
 /// A name and its explanation.
@@ -59,7 +59,7 @@ pub(crate) fn draw(state: &AppState, selected: usize, area: Rect, buffer: &mut B
     let entries = entries(state);
     let selected = limit(state, selected);
     let height = entries.len() as u16 + ROWS + 1;
-    let title = "What it means — ↑ ↓ choose, Esc closes";
+    let title = "Meaning — ↑ ↓ choose, Esc closes";
     let inside = popup(state, area, (WIDTH, height.min(area.height.saturating_sub(4))), title, buffer);
     let rows = usize::from(inside.height.saturating_sub(ROWS + 1));
     let first = (selected + 1).saturating_sub(rows);

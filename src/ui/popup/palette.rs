@@ -166,7 +166,7 @@ pub(in crate::ui) fn draw(
             Some(reason) => (Role::Warn, format!("✗ {reason}")),
             None => (Role::Dim, entry.help().to_owned()),
         },
-        None => (Role::Dim, "Nothing is called so: fewer letters find more.".to_owned()),
+        None => (Role::Dim, "Nothing found: fewer letters find more.".to_owned()),
     };
     row(buffer, inside, inside.height.saturating_sub(1), theme, role, &text);
     row(buffer, inside, 0, theme, Role::Key, "> ");

@@ -20,15 +20,15 @@ pub(super) fn current(state: &AppState, remote: &RemoteView) -> Option<StatusMes
             message(Severity::Fault, sentence, format!("{} ends the program", state.key(Action::Quit)))
         }
         RemoteState::Connecting => {
-            let action = if is_real { "plug it in; it is tried again" } else { "wait until it has started" };
+            let action = if is_real { "plug it in; trying again" } else { "wait until it has started" };
             message(Severity::Warn, format!("No connection to {name} yet."), action)
         }
         RemoteState::Lost => {
             let condition = format!("The connection to {name} is lost.");
-            message(Severity::Fault, condition, "it is made again by itself; what is shown is old")
+            message(Severity::Fault, condition, "reconnecting; the values shown are old")
         }
         RemoteState::Identifying => {
-            message(Severity::Info, format!("{name} is asked what it is."), "wait a moment")
+            message(Severity::Info, format!("{name} is being identified."), "wait a moment")
         }
         RemoteState::Ready if is_real => ready(state, remote),
         RemoteState::Ready => None,
@@ -44,7 +44,7 @@ fn ready(state: &AppState, remote: &RemoteView) -> Option<StatusMessage> {
             .map(|action| state.key(action));
     if remote.in_cli {
         let action = format!("{cli} CLI: `exit` leaves it, which restarts the craft");
-        return message(Severity::Warn, "The command line is open: telemetry rests.", action);
+        return message(Severity::Warn, "The command line is open: telemetry stops.", action);
     }
     if craft.is_armed() {
         if craft.failsafe_stage.is_some_and(|stage| stage > 0) {
@@ -53,8 +53,8 @@ fn ready(state: &AppState, remote: &RemoteView) -> Option<StatusMessage> {
         return message(Severity::Warn, "Armed.", "its own transmitter flies and disarms it");
     }
     if craft.armed.is_none() {
-        let condition = "The flight controller does not tell whether it is armed.";
-        return message(Severity::Warn, condition, "wait for it to speak");
+        let condition = "The flight controller does not report arming.";
+        return message(Severity::Warn, condition, "wait for an answer");
     }
     if craft.gps_fix == Some(false) {
         return message(Severity::Warn, "No GPS fix yet.", "wait for satellites");

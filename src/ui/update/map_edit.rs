@@ -112,10 +112,7 @@ pub(super) fn put_down(state: &mut AppState) -> Vec<Effect> {
     match moving.item {
         MapItem::Waypoint(index) => plan::place_waypoint(state, index, position),
         MapItem::Home => {
-            state.notify(
-                Severity::Info,
-                "Home of the plan: the craft stands there at the next start with it.",
-            );
+            state.notify(Severity::Info, "Home of the plan: the craft is there at the next start with it.");
             state.editor.edit("move home", |document| {
                 let amsl_m = document.home.and_then(|home| home.amsl_m);
                 document.home = Some(HomePosition { position, amsl_m });

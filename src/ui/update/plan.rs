@@ -152,7 +152,7 @@ pub(super) fn paste_text(state: &mut AppState, text: &str) -> Vec<Effect> {
     match state.editor.paste_text(text) {
         Ok((count, effects)) => {
             let undo = state.key(Action::Edit(EditAction::Undo));
-            state.notify(Severity::Good, format!("Pasted {count} waypoints; `{undo}` takes them out again."));
+            state.notify(Severity::Good, format!("Pasted {count} waypoints; `{undo}` removes them again."));
             effects
         }
         Err(sentence) => {
@@ -190,7 +190,7 @@ pub(super) fn take_fix(state: &mut AppState) -> Vec<Effect> {
             Vec::new()
         }
         Some((finding, None)) => {
-            state.notify(Severity::Warn, format!("No edit takes this away: {finding}."));
+            state.notify(Severity::Warn, format!("No edit fixes this: {finding}."));
             Vec::new()
         }
         Some((_, Some(fix))) => state.editor.replace_document(&fix.title, fix.document),
@@ -283,7 +283,7 @@ pub(super) fn downloaded(
     result: Result<Box<FlightPlan>, String>,
 ) -> Vec<Effect> {
     let Some(open) = state.editor.plan_of(id) else {
-        state.notify(Severity::Warn, "Not downloaded: the plan that was to take it in is closed.");
+        state.notify(Severity::Warn, "Not downloaded: the plan that was to receive it is closed.");
         return Vec::new();
     };
     let elsewhere = Some(open.title()).filter(|_| id != state.editor.plan().id());
@@ -293,7 +293,7 @@ pub(super) fn downloaded(
             Vec::new()
         }
         Ok(held) if *held == open.document().plan => {
-            state.notify(Severity::Info, "The craft has this very plan.");
+            state.notify(Severity::Info, "The craft has the same plan.");
             Vec::new()
         }
         Ok(held) => {
@@ -324,7 +324,7 @@ pub(super) fn craft_plan_changed(state: &mut AppState, before: &FlightPlan, now:
         fewer => differs.push(format!("{} fewer", -fewer)),
     }
     let text = format!(
-        "The plan in the craft was changed: {}. `{}` takes it into the editor.",
+        "The plan in the craft was changed: {}. `{}` loads it into the editor.",
         differs.join(", "),
         state.key(Action::Edit(EditAction::Download))
     );
@@ -355,7 +355,7 @@ pub(super) fn saved_to_flash(state: &mut AppState, result: Result<(), String>) -
 
 /// Writes the flight just flown as a scenario.
 pub(in crate::ui) fn write_scenario(state: &mut AppState, file: Option<std::path::PathBuf>) -> Vec<Effect> {
-    state.notify(Severity::Info, "The flight is flown again to see what can be expected of it.");
+    state.notify(Severity::Info, "The flight is flown again to derive its expectations.");
     let plan = state.editor.plan().document().name.clone();
     vec![Effect::WriteScenario { file, plan }]
 }

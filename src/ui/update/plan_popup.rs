@@ -135,7 +135,7 @@ pub(super) fn answered(state: &mut AppState, reply: FileReply) -> Vec<Effect> {
                 let [undo, save] =
                     [EditAction::Undo, EditAction::Save].map(|action| state.key(Action::Edit(action)));
                 Some(format!(
-                    "Edits of {name} that were never saved are back: `{undo}` undoes them, `{save}` saves them."
+                    "Unsaved edits of {name} were restored: `{undo}` undoes them, `{save}` saves them."
                 ))
             } else {
                 Some(format!("Opened {name}.")).filter(|_| opened.notes.is_empty())

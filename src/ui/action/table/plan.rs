@@ -52,7 +52,7 @@ pub(super) const ROWS: &[Spec] = &[
         EditAction::Insert,
         "plan.insert",
         "insert",
-        "Insert a waypoint behind this one",
+        "Insert a waypoint after this one",
         &["i"],
         In(Panel::Plan),
     ),
@@ -112,7 +112,7 @@ pub(super) const ROWS: &[Spec] = &[
         &["y"],
         In(Panel::Plan),
     ),
-    edit(EditAction::Paste, "plan.paste", "paste", "Insert what was copied", &["p"], In(Panel::Plan)),
+    edit(EditAction::Paste, "plan.paste", "paste", "Insert the copies", &["p"], In(Panel::Plan)),
     edit(
         EditAction::Bulk,
         "plan.change",
@@ -137,7 +137,7 @@ pub(super) const ROWS: &[Spec] = &[
         &["E"],
         In(Panel::Plan),
     ),
-    edit(EditAction::Fix, "plan.fix", "fix", "Take the edit that is offered", &["f"], In(Panel::Plan)),
+    edit(EditAction::Fix, "plan.fix", "fix", "Apply the suggested edit", &["f"], In(Panel::Plan)),
     edit(
         EditAction::SaveAs,
         "plan.save-as",
