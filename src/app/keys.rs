@@ -95,7 +95,7 @@ mod tests {
     fn problems_name_their_lines() {
         for (text, wanted) in [
             ("keys = 3", "config.toml:1: keys is a table"),
-            ("\n[keys]\nflight.arm = 3", "config.toml:3: flight.arm wants a key"),
+            ("\n[keys]\nflight.arm = 3", "config.toml:3: flight.arm needs a key"),
             (
                 "[keys]\nflight.amr = \"a\"",
                 "config.toml:2: there is no action flight.amr; did you mean flight.arm?",

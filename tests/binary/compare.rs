@@ -102,7 +102,7 @@ fn in_the_folder_of_the_launcher_no_option_names_the_firmware() {
     for arguments in [&["compare", "square"][..], &["fly", "square"], &["check", "guide-1"]] {
         let ran = sandbox.run(arguments).exits(3);
         let told =
-            ran.err.contains("./none.elf: there is no such file") && ran.err.contains("that of config.txt");
+            ran.err.contains("./none.elf: there is no such file") && ran.err.contains("comes from config.txt");
         assert!(told, "{arguments:?}: {}", ran.err);
     }
 }

@@ -222,7 +222,7 @@ fn programs_at_a_door_read_but_change_only_what_is_permitted() {
 #[test]
 fn what_is_no_betaflight_is_told_in_a_sentence() {
     for (variant, told) in [
-        (Some(b"INAV"), "says INAV, not BTFL: only Betaflight is supported"),
+        (Some(b"INAV"), "reports INAV, not BTFL: only Betaflight is supported"),
         (None, "nothing there answers MSP"),
     ] {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a port");

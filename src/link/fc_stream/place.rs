@@ -196,7 +196,7 @@ mod tests {
             ("tcp:::1:5761", "such as tcp:[::1]:5761"),
             ("tcp:localhost:0", "1 to 65535"),
             ("tcp:localhost:70000", "1 to 65535"),
-            ("ws:", "no URL"),
+            ("ws:", "not a URL"),
             ("ws:http://craft.example", "ws:// or wss://"),
             ("ws://", "\"ws://\""),
         ] {

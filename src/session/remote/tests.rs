@@ -136,7 +136,7 @@ fn a_board_that_says_nothing_any_more_is_lost_and_another_one_when_it_speaks_aga
     assert_eq!(bench.vehicle.snapshot().craft.armed, None, "what was told is old");
     assert_eq!(bench.link.access(), Access::Reading);
     bench.run(20.0);
-    assert_eq!(bench.told.iter().filter(|told| told.contains("does not answer")).count(), 1);
+    assert_eq!(bench.told.iter().filter(|told| told.contains("no longer answers")).count(), 1);
 
     bench.board = Board { from_home: true, ..Board::at(COAST) };
     bench.run(8.0);
