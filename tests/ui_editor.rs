@@ -317,7 +317,7 @@ fn the_tutorial_waits_for_what_the_user_does() {
     let mut view = fixture::view(&flight);
     std::sync::Arc::make_mut(&mut view.vehicle).nav.as_mut().unwrap().engaged = true;
     update(&mut state, Msg::View(view.clone()));
-    assert!(screen(&state).contains("2/5") && screen(&state).contains("Press ] some times"));
+    assert!(screen(&state).contains("2/5") && screen(&state).contains("Press ] repeatedly"));
     view.speed_wanted = 4.0;
     update(&mut state, Msg::View(view.clone()));
     keys(&mut state, "2 +");

@@ -174,7 +174,7 @@ fn notices_of_the_session_name_the_keys_in_force_too() {
     let kind = SessionEvent::Notice("RC now comes from another program: `x` takes it back.".to_owned());
     update(&mut state, Msg::Event(Event { time: SimTime(0), kind }));
     keys(&mut state, "f8");
-    assert!(screen(&state).contains("`Alt-x` takes it back"), "{}", screen(&state));
+    assert!(screen(&state).contains("another program: `Alt-x`"), "{}", screen(&state));
     let kind = SessionEvent::Notice("Edits are back: `u` undoes them.".to_owned());
     update(&mut state, Msg::Event(Event { time: SimTime(0), kind }));
     assert!(screen(&state).contains("back: `Alt-u` undoes them"), "{}", screen(&state));

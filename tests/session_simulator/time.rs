@@ -138,7 +138,7 @@ async fn a_simulator_that_is_slower_than_the_clock_is_told_with_its_speed_and_wh
         rig.at += Duration::from_millis(15);
         rig.state(10, 0.0, 0.0).await;
     }
-    rig.hear("1 was wanted").await;
+    rig.hear("1 was requested").await;
     let lost = before + Duration::from_millis(1500);
     assert_eq!(rig.picture(|view| view.lost_time.sum >= lost).await.lost_time.sum, lost);
     // A pause does not count as time lost by the machine.
