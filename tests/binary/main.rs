@@ -18,6 +18,7 @@ mod inputs;
 #[cfg(unix)]
 mod limits;
 mod lines;
+mod options;
 mod plain;
 mod plans;
 #[cfg(unix)]

@@ -2,7 +2,9 @@
 //! Each of the guide's scenarios must fail if something is wrong with the craft.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may stop and say what it expects")]
 
+mod docs;
 mod faults;
 mod language;
+mod record_docs;
 mod repeat;
 mod rig;

@@ -5,6 +5,8 @@
 
 mod child;
 mod failing_simulators;
+#[cfg(unix)]
+mod launch;
 mod plant;
 mod rates;
 mod serve;

@@ -1,0 +1,6 @@
+//! Plan files and the store.
+
+mod formats;
+mod killed;
+mod plans;
+mod storage;

@@ -1,0 +1,67 @@
+//! One step of the world allocates nothing, whatever happens in it.
+
+use betadeck::signals::MotorCommand;
+use betadeck::sim::{Fault, Noise, Turbulence, World, WorldCommand, WorldConfig};
+
+use crate::allocations;
+
+#[test]
+fn a_flight_with_faults_wind_and_a_crash_allocates_nothing() {
+    let faults = [
+        "gps-loss@boot+1,1",
+        "gps-glitch@boot+2,1",
+        "gyro-bias@boot+2,1",
+        "wind@boot+1,2,9@0",
+        "gust@boot+1",
+        "push@boot+3",
+        "teleport@boot+1,,1,2,30",
+        "payload@boot+2,1,0.1",
+        "motor@boot+5,,2:0",
+        "vibration@boot+2",
+        "prop-imbalance@boot+2",
+        "battery@boot+2",
+        "baro-spike@boot+2",
+        "imu-freeze@boot+4,0.5",
+        "rx-loss@2,1",
+    ];
+    let mut world = World::new(WorldConfig {
+        noise: Noise::Real,
+        turbulence: Turbulence::Severe,
+        wind: "7@200".parse().expect("a wind"),
+        gust_mps: 4.0,
+        faults: faults.iter().map(|text| text.parse().expect(text)).collect(),
+        ..WorldConfig::default()
+    })
+    .expect("a world");
+    let hover = world.airframe().hover_rotor_speed() / world.airframe().rotor_speed_max;
+    let mut events = 0;
+    let before = allocations();
+    for step in 0..20_000_u32 {
+        if step == 100 {
+            world.set_engaged(world.time());
+        }
+        let command = if step % 1000 == 7 { f64::NAN } else { hover };
+        world.step(&MotorCommand([command; 4]));
+        while world.take_event().is_some() {
+            events += 1;
+        }
+    }
+    assert_eq!(allocations(), before, "steps allocate");
+    assert!(world.truth().crashed && events > 20, "{events} events");
+}
+
+#[test]
+fn commands_that_carry_no_text_allocate_nothing() {
+    let mut world = World::new(WorldConfig::default()).expect("a world");
+    let before = allocations();
+    for command in [
+        WorldCommand::SetWind("3@20".parse().expect("a wind")),
+        WorldCommand::SetTurbulence(Turbulence::Light),
+        WorldCommand::SetGust(3.0),
+        WorldCommand::FaultOff(Fault::GpsLoss.key()),
+        WorldCommand::ResetToHome,
+    ] {
+        assert!(world.apply(command).is_ok());
+    }
+    assert_eq!(allocations(), before);
+}

@@ -1,0 +1,4 @@
+//! The simulated world against the vectors, and its own rules.
+
+mod vectors;
+mod world;

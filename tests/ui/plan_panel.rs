@@ -1,0 +1,119 @@
+//! The Plan panel: units, and the altitude profile with the flown altitudes.
+
+use std::sync::Arc;
+
+use betadeck::session::SessionView;
+use betadeck::ui::{AppState, Msg, Units, update};
+use crossterm::event::MouseEventKind;
+
+use crate::fixture;
+use crate::hands::{keys, mouse, place_of, screen, state_with_fix};
+
+fn imperial(size: (u16, u16)) -> AppState {
+    let mut state = state_with_fix(size);
+    state.units = Units::Imperial;
+    state
+}
+
+#[test]
+fn with_imperial_units_the_table_shows_takes_and_nudges_feet_and_miles_an_hour() {
+    let mut state = imperial((120, 40));
+    keys(&mut state, "2 z");
+    let seen = screen(&state);
+    assert!(seen.contains("alt ft") && seen.contains("mph") && seen.contains("164.0"), "{seen}");
+    assert!(seen.contains("altitude ft") && seen.contains(" 164 ┤"), "{seen}");
+    keys(&mut state, "right right right enter");
+    assert!(screen(&state).contains("feet above home"), "{}", screen(&state));
+    keys(&mut state, "backspace backspace backspace backspace backspace backspace '200 enter");
+    assert_eq!(state.plan().waypoints[0].alt_cm, 6096, "what is kept and sent is metric");
+    keys(&mut state, "+ + -");
+    assert_eq!(state.plan().waypoints[0].alt_cm, 6126, "201 ft");
+    keys(&mut state, "right enter backspace '10 enter");
+    assert_eq!(state.plan().waypoints[0].speed_cms, 447);
+    // The craft still has the unchanged plan.
+    let seen = screen(&state);
+    assert!(seen.contains("On the craft WP0 is: altitude 164.0, speed —."), "{seen}");
+}
+
+#[test]
+fn with_imperial_units_forms_and_the_map_are_in_feet() {
+    let mut state = imperial((120, 40));
+    keys(&mut state, "2 ctrl-a m");
+    assert!(screen(&state).contains("ft above home") && screen(&state).contains("mph, 0 = default"));
+    keys(&mut state, "'100 down down '10 enter");
+    assert!(state.plan().waypoints.iter().all(|wp| (wp.alt_cm, wp.speed_cms) == (3048, 447)));
+    keys(&mut state, "P");
+    let seen = screen(&state);
+    assert!(seen.contains("262 ") && seen.contains("ft above home"), "80 m\n{seen}");
+    keys(&mut state, "esc 1 p");
+    let seen = screen(&state);
+    assert!(seen.contains(" ft 0") || seen.contains(" ft 1") || seen.contains(" ft 2"), "{seen}");
+    assert!(!seen.contains(" m 0") && seen.contains("from home"), "{seen}");
+}
+
+#[test]
+fn an_altitude_dragged_far_up_follows_the_mouse_however_often_that_tells() {
+    let mut dragged = [1, 30].map(|events| {
+        let mut state = fixture::state((120, 40), fixture::colour());
+        keys(&mut state, "2 z");
+        let number = place_of(&state, "···3");
+        let number = (number.0 + 3, number.1);
+        mouse(&mut state, MouseEventKind::Down, number);
+        for _ in 0..events {
+            mouse(&mut state, MouseEventKind::Drag, (number.0, number.1 - 15));
+        }
+        mouse(&mut state, MouseEventKind::Up, (number.0, number.1 - 15));
+        state.plan().waypoints[3].alt_cm
+    });
+    dragged.sort_unstable();
+    assert!(dragged[0] > 5000 && dragged[0] == dragged[1], "{dragged:?}");
+}
+
+#[test]
+fn altitudes_are_dragged_by_whole_feet() {
+    let mut state = imperial((120, 40));
+    keys(&mut state, "2 z");
+    let number = place_of(&state, "···3");
+    let number = (number.0 + 3, number.1);
+    mouse(&mut state, MouseEventKind::Down, number);
+    mouse(&mut state, MouseEventKind::Drag, (number.0, number.1 + 2));
+    mouse(&mut state, MouseEventKind::Up, (number.0, number.1 + 2));
+    let feet = f64::from(state.plan().waypoints[3].alt_cm) / 30.48;
+    assert!((feet - feet.round()).abs() < 0.02 && feet < 150.0, "{feet} ft");
+}
+
+#[test]
+fn the_flown_altitude_stands_beside_the_plan_and_the_legend_names_it() {
+    let mut state = fixture::state((120, 40), fixture::colour());
+    keys(&mut state, "2 z");
+    assert!(!screen(&state).contains("• flown"), "nothing was flown");
+    fixture::approach(&mut state);
+    let seen = screen(&state);
+    assert!(seen.contains("altitude m · plan • flown "), "{seen}");
+    // It follows the line of the plan at 50 m, as far as the middle of the leg to WP1.
+    let line = seen.lines().find(|line| line.contains("50 ┤")).expect("50 m");
+    assert!(line.matches('•').count() > 20 && line.contains('·'), "{seen}");
+    let (flown, one) = (line.rfind('•').unwrap(), line.find('1').unwrap());
+    assert!(flown < one, "it is not at WP1 yet: {line}");
+    // An edit of altitudes keeps the flown profile; an edit of positions makes it meaningless.
+    keys(&mut state, "right right right shift-up");
+    assert!(screen(&state).contains("• flown"), "{}", screen(&state));
+    keys(&mut state, "left +");
+    assert!(!screen(&state).contains("• flown"), "{}", screen(&state));
+}
+
+#[test]
+fn a_climb_above_the_plan_is_seen_in_the_profile() {
+    let mut state = fixture::state((120, 40), fixture::plain());
+    keys(&mut state, "2 z");
+    fixture::approach(&mut state);
+    let mut view: SessionView = state.view.clone();
+    for step in 1..40 {
+        let vehicle = Arc::make_mut(&mut view.vehicle);
+        vehicle.time.0 += 500_000;
+        vehicle.truth.as_mut().expect("truth").alt = 50.0 + f64::from(step);
+        update(&mut state, Msg::View(view.clone()));
+    }
+    let seen = screen(&state);
+    assert!(seen.contains("o flown") && seen.contains("  89 "), "{seen}");
+}

@@ -1,0 +1,148 @@
+//! Slow uploads and downloads, and notices that must be read: messages in, screen out.
+
+use std::time::Duration;
+
+use betadeck::session::UploadReport;
+use betadeck::session::command::UploadView;
+use betadeck::ui::editor::{FileReply, PlanId};
+use betadeck::ui::{AppState, Effect, Msg, Severity, update};
+
+use crate::fixture;
+use crate::hands;
+use crate::hands::{keys, screen, state_with_fix as state};
+
+/// Shows the progress of an upload.
+fn progress(state: &mut AppState, upload: Option<(usize, usize)>) {
+    let mut view = state.view.clone();
+    view.upload = upload.map(|(sent, total)| UploadView { sent, total });
+    update(state, Msg::View(view));
+}
+
+/// Presses the upload key and returns the ID of the uploaded plan.
+fn upload(state: &mut AppState) -> PlanId {
+    let effects = keys(state, "U");
+    let mut ids = effects.iter().filter_map(|effect| match effect {
+        Effect::Upload { id, .. } => Some(*id),
+        _ => None,
+    });
+    ids.next_back().unwrap_or_else(|| panic!("{effects:?}"))
+}
+
+#[test]
+fn the_plan_panel_shows_how_far_the_upload_is_until_the_craft_was_read_back() {
+    for size in [(80, 24), (120, 40)] {
+        let mut state = state(size);
+        keys(&mut state, "2 +");
+        let id = upload(&mut state);
+        progress(&mut state, Some((3, 12)));
+        assert!(screen(&state).contains("↑ uploading 3/12"), "{}", screen(&state));
+        assert!(keys(&mut state, "U").is_empty(), "one after the other");
+        assert!(screen(&state).contains("line 3 of 12: wait for its end"), "{}", screen(&state));
+        // The other plan is not being uploaded.
+        keys(&mut state, "n i");
+        assert!(!screen(&state).contains("uploading"), "{}", screen(&state));
+        keys(&mut state, "(");
+        assert!(screen(&state).contains("uploading 3/12"), "{}", screen(&state));
+        progress(&mut state, None);
+        update(&mut state, Msg::UploadReply { id, count: 4, result: Ok(UploadReport::default()) });
+        let seen = screen(&state);
+        assert!(
+            seen.contains("✓ Uploaded square.toml: 4 waypoints.") && !seen.contains("uploading"),
+            "{seen}"
+        );
+    }
+}
+
+#[test]
+fn a_conversion_of_altitudes_is_said() {
+    let mut state = state((120, 40));
+    let id = upload(&mut state);
+    update(
+        &mut state,
+        Msg::UploadReply {
+            id,
+            count: 4,
+            result: Ok(UploadReport { added_m: 300.5, ..UploadReport::default() }),
+        },
+    );
+    let seen = screen(&state);
+    assert!(
+        seen.contains("✓ Uploaded square.toml: 4 waypoints. Its firmware counts altitudes from sea level"),
+        "{seen}"
+    );
+    assert!(seen.contains("300.5 m were added"), "{seen}");
+}
+
+#[test]
+fn what_reading_back_finds_is_said() {
+    let mut state = state((80, 24));
+    let id = upload(&mut state);
+    let result = Err("waypoint 1 on the craft differs from the one sent: upload again".to_owned());
+    update(&mut state, Msg::UploadReply { id, count: 4, result });
+    let seen = screen(&state);
+    assert!(seen.contains("✗ Uploading square.toml failed: waypoint 1 on the craft differs"), "{seen}");
+    assert!(seen.contains("upload again"), "{seen}");
+}
+
+#[test]
+fn an_answer_goes_to_the_plan_that_asked_wherever_it_is_by_then() {
+    let mut state = state((120, 40));
+    keys(&mut state, "2 +");
+    let edited = state.plan().clone();
+    let [Effect::Download(id)] = keys(&mut state, "D")[..] else { panic!("a download") };
+    keys(&mut state, "n");
+    let effects = update(&mut state, Msg::DownloadReply { id, result: Ok(Box::new(fixture::square())) });
+    assert_eq!(hands::journal_lines(&effects), 1);
+    assert!(state.plan().waypoints.is_empty(), "the new plan did not ask");
+    assert!(screen(&state).contains("Downloaded 4 waypoints into square.toml."), "{}", screen(&state));
+    keys(&mut state, "(");
+    assert_eq!(*state.plan(), fixture::square());
+    keys(&mut state, "u");
+    assert_eq!(*state.plan(), edited);
+
+    let id = upload(&mut state);
+    keys(&mut state, ")");
+    update(&mut state, Msg::UploadReply { id, count: 4, result: Ok(UploadReport::default()) });
+    assert!(screen(&state).contains("Uploaded square.toml: 4 waypoints."), "{}", screen(&state));
+}
+
+#[test]
+fn a_plan_that_is_closed_takes_nothing_in_and_neither_does_the_next() {
+    let mut state = state((120, 40));
+    keys(&mut state, "2 n");
+    let closed = state.editor.plan().id();
+    let [Effect::Download(id)] = keys(&mut state, "D")[..] else { panic!("a download") };
+    assert_eq!(id, closed);
+    keys(&mut state, "ctrl-w n");
+    assert_ne!(state.editor.plan().id(), closed, "no plan had this identifier before");
+    let effects = update(&mut state, Msg::DownloadReply { id, result: Ok(Box::new(fixture::square())) });
+    assert_eq!(hands::journal_lines(&effects), 0);
+    assert!(state.plan().waypoints.is_empty());
+    assert!(screen(&state).contains("the plan that was to receive it is closed"), "{}", screen(&state));
+}
+
+#[test]
+fn what_went_wrong_stays_while_keys_are_pressed_until_esc_or_its_time_is_over() {
+    let mut state = state((80, 24));
+    let told = "Edits cannot be kept in /state: no space. Save often.";
+    update(&mut state, Msg::Files(FileReply::NotKept(told.to_owned())));
+    keys(&mut state, "2 + + j");
+    assert!(screen(&state).contains("Save often."), "{}", screen(&state));
+    keys(&mut state, "esc");
+    let seen = screen(&state);
+    assert!(
+        !seen.contains("Save often.") && seen.contains("✗ edits not kept"),
+        "as long as it holds: {seen}"
+    );
+    update(&mut state, Msg::Files(FileReply::KeptAgain));
+    assert!(!screen(&state).contains("edits not kept"), "{}", screen(&state));
+    // Other notices end with the next key.
+    state.notify(Severity::Warn, "Only a word.");
+    keys(&mut state, "j");
+    assert!(!screen(&state).contains("Only a word."), "{}", screen(&state));
+    state.notify(Severity::Fault, "It failed.");
+    let later = state.now + Duration::from_secs(60);
+    update(&mut state, Msg::Clock(later));
+    keys(&mut state, "j");
+    assert!(!screen(&state).contains("It failed."), "{}", screen(&state));
+}
