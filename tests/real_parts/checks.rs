@@ -11,15 +11,16 @@ fn every_test_that_the_page_names_for_a_link_check_is_there() {
     assert_eq!(rows.len(), 12);
     let mut named = 0;
     for row in rows {
-        let mut target = "";
+        let mut target = String::new();
         for word in row.split('`').skip(1).step_by(2) {
-            let (file, folder) = (root.join(format!("tests/{word}.rs")), root.join("tests").join(word));
+            let module = word.replace("::", "/");
+            let (file, folder) = (root.join(format!("tests/{module}.rs")), root.join("tests").join(&module));
             if file.is_file() || folder.is_dir() {
-                target = word;
+                target = module;
                 continue;
             }
             assert!(
-                text_of(&root.join("tests"), target).contains(&format!("fn {word}(")),
+                text_of(&root.join("tests"), &target).contains(&format!("fn {word}(")),
                 "{target}: {word}"
             );
             named += 1;
@@ -28,12 +29,14 @@ fn every_test_that_the_page_names_for_a_link_check_is_there() {
     assert!(named > 20, "{named}");
 }
 
-/// Returns the whole source of a test target.
-fn text_of(tests: &Path, target: &str) -> String {
-    let file = tests.join(format!("{target}.rs"));
-    if file.is_file() {
-        return fs::read_to_string(file).unwrap();
+/// Returns the whole source of a module of the tests.
+fn text_of(tests: &Path, module: &str) -> String {
+    let mut text = fs::read_to_string(tests.join(format!("{module}.rs"))).unwrap_or_default();
+    for entry in fs::read_dir(tests.join(module)).into_iter().flatten() {
+        let path = entry.unwrap().path();
+        if path.is_file() {
+            text.push_str(&fs::read_to_string(path).unwrap());
+        }
     }
-    let files = fs::read_dir(tests.join(target)).unwrap().map(|entry| entry.unwrap().path());
-    files.filter(|path| path.is_file()).map(|path| fs::read_to_string(path).unwrap()).collect()
+    text
 }
