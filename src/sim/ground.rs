@@ -207,3 +207,53 @@ impl Ground {
         pull * self.stiffness - plane.along(&point.vel) * self.damping
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::body::AirSample;
+    use crate::sim::plant::Plant;
+    use nalgebra::UnitQuaternion;
+    use std::f64::consts::PI;
+
+    /// Returns a craft at rest with its centre of mass at this height, m, rolled by this angle, rad.
+    fn at(height_m: f64, roll_rad: f64) -> BodyState {
+        BodyState {
+            pos_enu: Vector3::new(0.0, 0.0, height_m),
+            vel_enu: Vector3::zeros(),
+            attitude: UnitQuaternion::from_axis_angle(&Vector3::x_axis(), roll_rad),
+            rate_flu: Vector3::zeros(),
+        }
+    }
+
+    #[test]
+    fn a_craft_on_its_back_is_on_its_hull_and_one_on_its_legs_is_not() {
+        for airframe in [Airframe::iris(), Airframe::five_inch()] {
+            let ground = Ground::new(&airframe);
+            let standing = ground.contact(&at(airframe.standing_height_m(), 0.0));
+            assert!(standing.all_legs && !standing.hull, "{}", airframe.name);
+            // The rotors and the battery keep the centre of mass off the ground.
+            let on_its_back = ground.contact(&at(0.03, PI));
+            assert!(on_its_back.hull && !on_its_back.any_leg, "{}", airframe.name);
+            let above = ground.contact(&at(0.1, PI));
+            assert!(!above.hull && !above.any_leg, "{}", airframe.name);
+        }
+    }
+
+    #[test]
+    fn a_craft_dropped_on_its_back_comes_to_rest_on_its_rotors() {
+        let airframe = Airframe::iris();
+        let plant = Plant::new(&airframe, 0.001);
+        let air = AirSample { wind_enu: Vector3::zeros(), density_ratio: 1.0 };
+        let (mut state, mut anchors, mut rotors) = (at(0.1, PI), NO_ANCHORS, [0.0; ROTORS]);
+        for _ in 0..2000 {
+            let loads = plant.loads(&state, &rotors, &air, &anchors);
+            plant.step(&mut state, &mut rotors, &mut anchors, &[0.0; ROTORS], &air, &loads);
+        }
+        let height_m = state.pos_enu.z;
+        assert!((0.01..0.02).contains(&height_m), "{height_m} m");
+        assert!(state.vel_enu.norm() < 0.01 && state.rate_flu.norm() < 0.01, "{state:?}");
+        assert!((state.attitude * Vector3::z()).z < -0.99);
+        assert!(plant.ground().contact(&state).hull);
+    }
+}

@@ -259,3 +259,82 @@ pub fn ground_effect_factor(rotor_radius_m: f64, height_m: f64) -> f64 {
     let ratio = rotor_radius_m / (4.0 * height_m.max(0.5 * rotor_radius_m));
     1.0 / (1.0 - ratio * ratio)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::ground::NO_ANCHORS;
+
+    /// The step of the integrator, s.
+    const H: f64 = 0.002;
+
+    /// Returns a level craft at rest far above the ground.
+    fn aloft() -> BodyState {
+        BodyState {
+            pos_enu: Vector3::new(0.0, 0.0, 1000.0),
+            vel_enu: Vector3::zeros(),
+            attitude: UnitQuaternion::identity(),
+            rate_flu: Vector3::zeros(),
+        }
+    }
+
+    /// Steps a craft whose rotors speed up or slow down to `target`, rad/s.
+    fn run(
+        plant: &Plant,
+        state: &mut BodyState,
+        rotors: &mut [f64; ROTORS],
+        target: [f64; ROTORS],
+        air: &AirSample,
+        seconds: f64,
+    ) {
+        let mut anchors = NO_ANCHORS;
+        for _ in 0..(seconds / H).round() as usize {
+            let loads = plant.loads(state, rotors, air, &anchors);
+            plant.step(state, rotors, &mut anchors, &target, air, &loads);
+        }
+    }
+
+    #[test]
+    fn a_tumbling_craft_with_turning_rotors_keeps_its_angular_momentum() {
+        // Without thrust and drag nothing turns the craft from outside.
+        let airframe = Airframe {
+            thrust_coeff: 0.0,
+            inflow_coeff: 0.0,
+            rotor_drag_coeff: 0.0,
+            body_drag: Vector3::zeros(),
+            angular_damping: Vector3::zeros(),
+            spin_sign: [1.0; ROTORS],
+            ..Airframe::iris()
+        };
+        let plant = Plant::new(&airframe, H);
+        let air = AirSample { wind_enu: Vector3::zeros(), density_ratio: 1.0 };
+        let momentum = |state: &BodyState, rotors: &[f64; ROTORS]| {
+            let spin = airframe.rotor_inertia_kgm2 * rotors.iter().sum::<f64>();
+            let body = airframe.inertia_kgm2.component_mul(&state.rate_flu);
+            state.attitude * (body + Vector3::new(0.0, 0.0, spin))
+        };
+        let mut state = BodyState { rate_flu: Vector3::new(2.0, -1.0, 0.5), ..aloft() };
+        let mut rotors = [300.0; ROTORS];
+        let before = momentum(&state, &rotors);
+        run(&plant, &mut state, &mut rotors, [400.0; ROTORS], &air, 1.0);
+        let change = (momentum(&state, &rotors) - before).norm() / before.norm();
+        assert!(change < 1e-5, "the angular momentum changed by {change}");
+    }
+
+    #[test]
+    fn thin_air_lets_a_craft_fall_faster_and_carries_it_along_less() {
+        let plant = Plant::new(&Airframe::iris(), H);
+        let velocity = |density_ratio: f64, seconds: f64| {
+            let air = AirSample { wind_enu: Vector3::new(10.0, 0.0, 0.0), density_ratio };
+            let mut state = aloft();
+            run(&plant, &mut state, &mut [0.0; ROTORS], [0.0; ROTORS], &air, seconds);
+            state.vel_enu
+        };
+        let (dense, thin) = (velocity(1.0, 10.0), velocity(0.5, 10.0));
+        // The drag carries the weight at the final speed, and it grows with the square of the speed.
+        let ratio = thin.z / dense.z;
+        assert!((1.3..1.5).contains(&ratio), "{} and {} m/s", thin.z, dense.z);
+        let ratio = velocity(0.5, 0.5).x / velocity(1.0, 0.5).x;
+        assert!((0.45..0.6).contains(&ratio), "{ratio} of the drift");
+    }
+}

@@ -467,24 +467,4 @@ fn hover_measurement(now: &AltitudeMeasurement, params: &Params) -> HoverMeasure
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn only_a_descent_to_a_low_target_is_slowed() {
-        let rows = [
-            // setpoint, target, maximum speed
-            (20.0, 1.0, 5.0),
-            (4.0, 1.0, 1.0),
-            (1.0, 0.5, 0.3),
-            (0.0, -1.0, 0.3),
-            (-0.1, -1.0, f64::INFINITY),
-            (4.0, -60.0, f64::INFINITY),
-            (4.0, 3.0, f64::INFINITY),
-            (1.0, 2.0, f64::INFINITY),
-        ];
-        for (setpoint_m, target_m, speed_mps) in rows {
-            assert_eq!(flare_mps(setpoint_m, target_m), speed_mps, "{setpoint_m} m to {target_m} m");
-        }
-    }
-}
+mod tests;

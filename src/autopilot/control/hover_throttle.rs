@@ -233,3 +233,56 @@ impl HoverThrottleEstimator {
         self.hover_us = (before + (estimate - before) * share).clamp(HOVER_MIN_US, HOVER_MAX_US);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DT: f64 = 0.01;
+
+    /// Returns a craft at rest on level ground at this throttle, µs.
+    fn on_ground(throttle_us: f64) -> HoverMeasurement {
+        HoverMeasurement { throttle_us, zero_us: 1050.0, climb_mps: 0.0, altitude_m: 0.0, cos_tilt: 1.0 }
+    }
+
+    /// Returns the estimator of a craft that was expected to hover at 1500 µs and did this for ten seconds.
+    fn after_10_s(now: &HoverMeasurement) -> HoverThrottleEstimator {
+        let mut estimator = HoverThrottleEstimator::default();
+        estimator.engage(1500.0);
+        for _ in 0..1000 {
+            estimator.update(now, DT);
+            estimator.learn(0.0, 0.0, DT);
+        }
+        estimator
+    }
+
+    #[test]
+    fn the_throttle_of_a_hover_is_learned() {
+        let estimator = after_10_s(&HoverMeasurement { altitude_m: 5.0, ..on_ground(1350.0) });
+        assert!(estimator.learned_us().is_some_and(|us| (us - 1350.0).abs() < 1.0));
+        assert!((estimator.hover_us() - 1350.0).abs() < 20.0, "{}", estimator.hover_us());
+    }
+
+    #[test]
+    fn the_throttle_of_a_craft_on_the_ground_is_not_learned() {
+        let mut estimator = after_10_s(&on_ground(1150.0));
+        assert_eq!(estimator.learned_us(), None);
+        assert!((estimator.hover_us() - 1500.0).abs() < 1.0, "{}", estimator.hover_us());
+        // A craft that climbs away without a hover has not shown its hover throttle either.
+        for step in 0..300 {
+            let altitude_m = 1.1 + 0.02 * f64::from(step);
+            estimator.update(&HoverMeasurement { altitude_m, climb_mps: 2.0, ..on_ground(1600.0) }, DT);
+        }
+        assert_eq!(estimator.learned_us(), None);
+        estimator.engage(1500.0);
+        assert!((estimator.hover_us() - 1500.0).abs() < 1.0, "{}", estimator.hover_us());
+    }
+
+    #[test]
+    fn a_throttle_that_does_not_lift_a_craft_off_a_slope_is_less_than_its_hover_throttle() {
+        let cos_tilt = 20_f64.to_radians().cos();
+        let estimator = after_10_s(&HoverMeasurement { cos_tilt, ..on_ground(1200.0) });
+        assert_eq!(estimator.learned_us(), None);
+        assert!(estimator.hover_us() > 1499.0, "{}", estimator.hover_us());
+    }
+}

@@ -56,3 +56,53 @@ impl LeanLimiter {
         self.is_reduced
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::autopilot::control::AltitudeTarget;
+
+    /// Flies for `seconds` towards an altitude. Returns the lean limit at the end, degrees.
+    fn limit_deg(
+        limiter: &mut LeanLimiter,
+        altitude: &mut AltitudeController,
+        now: &NavInputs,
+        target_m: f64,
+        seconds: f64,
+    ) -> f64 {
+        let params = Params::default();
+        let mut limit_rad = 0.0;
+        for _ in 0..(seconds / now.dt).round() as usize {
+            altitude.update(&now.into(), AltitudeTarget::Altitude(target_m), &params, now.dt);
+            limit_rad = limiter.update(now, altitude, &params);
+        }
+        limit_rad.to_degrees()
+    }
+
+    #[test]
+    fn a_craft_that_sinks_at_full_throttle_leans_less_until_it_has_throttle_to_spare() {
+        let params = Params::default();
+        let whole_deg = f64::from(params.max_angle);
+        let hovering = NavInputs::hovering();
+        let mut altitude = AltitudeController::default();
+        altitude.engage(&(&hovering).into(), &params);
+        let mut limiter = LeanLimiter::default();
+        assert_eq!(limit_deg(&mut limiter, &mut altitude, &hovering, 20.0, 5.0), whole_deg);
+
+        // Full throttle that makes the craft climb is enough.
+        let cos_tilt = 30_f64.to_radians().cos();
+        let climbing = NavInputs { throttle_us: 1900.0, climb_mps: 0.5, cos_tilt, ..hovering.clone() };
+        assert_eq!(limit_deg(&mut limiter, &mut altitude, &climbing, 100.0, 15.0), whole_deg);
+        assert!(altitude.is_at_full_throttle());
+
+        let sinking = NavInputs { climb_mps: -0.5, ..climbing };
+        let after_2_s = limit_deg(&mut limiter, &mut altitude, &sinking, 100.0, 2.0);
+        assert!((5.0..20.0).contains(&after_2_s), "{after_2_s}° of a tilt of 30°");
+        assert!(limiter.is_reduced());
+        let after_12_s = limit_deg(&mut limiter, &mut altitude, &sinking, 100.0, 10.0);
+        assert!(after_12_s > 4.9, "{after_12_s}° must be left to steer with");
+
+        assert_eq!(limit_deg(&mut limiter, &mut altitude, &hovering, 20.0, 30.0), whole_deg);
+        assert!(!limiter.is_reduced());
+    }
+}

@@ -378,6 +378,71 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    const DT: f64 = 0.01;
+    const LAWS: [PositionLaw; 2] = [PositionLaw::Speed, PositionLaw::Direct];
+
+    /// Returns a level craft at the origin that moves to the north with this velocity, m/s, and acceleration, m/s².
+    fn level_craft(velocity: f64, accel: f64) -> PositionMeasurement {
+        PositionMeasurement {
+            position: Vector2::zeros(),
+            velocity: Vector2::new(velocity, 0.0),
+            accel: Vector2::new(accel, 0.0),
+            lean_body: Vector2::zeros(),
+            heading_rad: 0.0,
+        }
+    }
+
+    /// Returns the lean to the north, degrees, of a level craft `seconds` after it was sent to a place `north_m` ahead.
+    fn lean_deg(
+        controller: &mut PositionController,
+        now: &PositionMeasurement,
+        north_m: f64,
+        law: PositionLaw,
+        seconds: f64,
+    ) -> f64 {
+        let params = Params::default();
+        let target = PositionTarget { law, ..PositionTarget::stay(Vector2::new(north_m, 0.0), &params) };
+        let steps = (seconds / DT).round() as usize;
+        let leans = (0..steps).map(|_| controller.update(now, &target, &params, DT));
+        leans.last().unwrap_or_default().x.to_degrees()
+    }
+
+    #[test]
+    fn a_craft_leans_against_the_speed_and_the_acceleration_that_carry_it_away() {
+        for law in LAWS {
+            for (velocity, accel) in [(1.0, 0.0), (0.0, 2.0)] {
+                let mut controller = PositionController::default();
+                let carried = level_craft(velocity, accel);
+                controller.engage(&carried);
+                let lean = lean_deg(&mut controller, &carried, 0.0, law, 2.0);
+                assert!(lean < -0.5, "{law:?}, {velocity} m/s, {accel} m/s²: {lean}°");
+            }
+        }
+    }
+
+    #[test]
+    fn the_lean_learned_against_a_lasting_error_fades_while_the_pilot_flies() {
+        let still = level_craft(0.0, 0.0);
+        for law in LAWS {
+            let mut held_back = PositionController::default();
+            held_back.engage(&still);
+            lean_deg(&mut held_back, &still, 1.0, law, 10.0);
+            let lean_after = |pilot_s: f64| {
+                let mut controller = held_back.clone();
+                for _ in 0..(pilot_s / DT).round() as usize {
+                    controller.track(&still, DT);
+                }
+                lean_deg(&mut controller, &still, 0.0, law, 1.5)
+            };
+            let (learned, left) = (lean_after(0.05), lean_after(10.0));
+            assert!(learned > 2.0, "{law:?}: {learned}°");
+            assert!((0.0..0.2 * learned).contains(&left), "{law:?}: {left}° of {learned}°");
+            held_back.engage(&still);
+            let engaged = lean_deg(&mut held_back, &still, 0.0, law, 1.5);
+            assert!(engaged.abs() < 0.1, "{law:?}: {engaged}° after the craft was taken over");
+        }
+    }
+
     proptest! {
         #[test]
         fn body_and_earth_are_inverse(n in -50.0..50.0, e in -50.0..50.0, heading in -7.0..7.0) {

@@ -229,3 +229,22 @@ fn landing(facts: &Facts, list: &mut Rules) {
     let still = Guard::new(GuardName::Stationary, facts.stationary_s, GuardOp::AtLeast, STATIONARY_S);
     list.push(rule([still], Outcome::Touchdown, TransitionReason::Touchdown));
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::autopilot::machine::transition;
+
+    #[test]
+    fn a_takeoff_or_hold_far_above_its_altitude_is_not_reached_yet() {
+        for kind in [WaypointType::Takeoff, WaypointType::Hold] {
+            for (above_m, arrives) in [(-5.0, false), (-1.0, true), (0.0, true), (1.0, true), (5.0, false)] {
+                let mut facts = Facts::default();
+                facts.waypoint.kind = kind;
+                facts.approach.altitude_error_m = -above_m;
+                let outcome = transition(NavState::Approaching, &facts).map(|transition| transition.outcome);
+                assert_eq!(outcome, arrives.then_some(Outcome::Arrive), "{kind} {above_m} m above");
+            }
+        }
+    }
+}

@@ -164,3 +164,42 @@ impl Navigator {
         Some(self.yaw.update(&facts, self.yaw_cap_dps, params, now.dt))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::{FlightPlan, Waypoint};
+    use crate::signals::SimTime;
+
+    #[test]
+    fn what_the_autopilot_has_learned_fades_while_the_pilot_overrides_it() {
+        let params = Params::default();
+        let mut at_point = NavInputs::hovering();
+        let hold = Waypoint {
+            position: at_point.origin,
+            alt_cm: 2000,
+            kind: WaypointType::Hold,
+            ..Waypoint::default()
+        };
+        let plan = FlightPlan { waypoints: [hold].into_iter().collect() };
+        let (mut navigator, mut controllers) = (Navigator::new(), FlightControllers::default());
+        navigator.engage(&at_point, &params, &plan).unwrap();
+        let mut pitch_deg = |north_m: f64, stick_pitch: f64, seconds: f64| {
+            let mut pitch_rad = 0.0;
+            for _ in 0..(seconds / at_point.dt).round() as usize {
+                at_point.time = SimTime(at_point.time.0 + 10_000);
+                let now = NavInputs { pos_ne: Vector2::new(north_m, 0.0), stick_pitch, ..at_point.clone() };
+                pitch_rad = navigator.update(&now, &params, &plan, &mut controllers).pitch_rad;
+            }
+            assert_eq!(navigator.state(), NavState::Holding);
+            pitch_rad.to_degrees()
+        };
+        pitch_deg(0.0, 0.0, 1.0);
+        pitch_deg(-1.0, 0.0, 10.0);
+        let learned = pitch_deg(0.0, 0.0, 1.5);
+        assert!(learned > 3.0, "{learned}°");
+        assert!(pitch_deg(0.0, FULL_STICK, 10.0) > 45.0);
+        let left = pitch_deg(0.0, 0.0, 1.5);
+        assert!(left.abs() < 0.2 * learned, "{left}° of {learned}°");
+    }
+}

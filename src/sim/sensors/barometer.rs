@@ -76,3 +76,40 @@ impl Barometer {
         if self.since_spike == 0 { size } else { 0.0 }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Returns the samples of a barometer without drift while the pressure rises by 200 Pa, Pa.
+    fn samples(noise: Noise) -> [f64; 3] {
+        let switches = Switches { sensor_bias: false, ..Switches::default() };
+        let mut barometer = Barometer::new(1);
+        [100_000.0, 100_200.0, 100_200.0]
+            .map(|pressure| barometer.read(pressure, &switches, &Effects::NONE, noise))
+    }
+
+    #[test]
+    fn a_sample_is_one_period_old_unless_the_sensors_are_ideal() {
+        // The margin is several times the noise of a sample.
+        let expected = [100_000.0, 100_000.0, 100_200.0];
+        let late = samples(Noise::Real);
+        for (sample, pressure) in late.iter().zip(expected) {
+            assert!((sample - pressure).abs() < 10.0, "{late:?}");
+        }
+        assert_eq!(samples(Noise::None), [100_000.0, 100_200.0, 100_200.0]);
+    }
+
+    #[test]
+    fn a_craft_put_elsewhere_does_not_report_the_pressure_of_its_old_place() {
+        let switches = Switches { sensor_bias: false, ..Switches::default() };
+        let mut barometer = Barometer::new(1);
+        let read = |barometer: &mut Barometer, pressure| {
+            barometer.read(pressure, &switches, &Effects::NONE, Noise::Real)
+        };
+        read(&mut barometer, 100_000.0);
+        barometer.settle();
+        let first = read(&mut barometer, 100_200.0);
+        assert!((first - 100_200.0).abs() < 10.0, "{first} Pa");
+    }
+}

@@ -78,6 +78,27 @@ mod tests {
     use super::*;
 
     #[test]
+    fn what_the_hold_has_learned_fades_while_the_pilot_flies_by_the_sticks() {
+        let (params, tuning) = (Params::default(), HoldTuning::default());
+        let (mut hold, mut controller) = (PositionHold::default(), PositionController::default());
+        let mut pitch_deg = |now: &NavInputs, seconds: f64| {
+            let steps = (seconds / now.dt).round() as usize;
+            let demands = (0..steps).map(|_| hold.update(now, &params, &tuning, &mut controller).pitch_rad);
+            demands.last().unwrap_or_default().to_degrees()
+        };
+        let at_point = NavInputs::hovering();
+        let pushed_off = NavInputs { pos_ne: Vector2::new(-1.0, 0.0), ..at_point.clone() };
+        let by_stick = NavInputs { stick_pitch: FULL_STICK, ..at_point.clone() };
+        pitch_deg(&at_point, 1.0);
+        pitch_deg(&pushed_off, 10.0);
+        let learned = pitch_deg(&at_point, 1.5);
+        assert!(learned > 3.0, "{learned}°");
+        assert!(pitch_deg(&by_stick, 10.0) > 45.0);
+        let left = pitch_deg(&at_point, 1.5);
+        assert!(left.abs() < 0.2 * learned, "{left}° of {learned}°");
+    }
+
+    #[test]
     fn sticks_count_beyond_the_deadband() {
         assert_eq!(share(25.0, 0.05), 0.0);
         assert!((share(-500.0, 0.05) + 1.0).abs() < 1e-12);

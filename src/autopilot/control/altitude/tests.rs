@@ -1,0 +1,72 @@
+//! Tests of the altitude controller.
+
+use super::*;
+
+#[test]
+fn only_a_descent_to_a_low_target_is_slowed() {
+    let rows = [
+        // setpoint, target, maximum speed
+        (20.0, 1.0, 5.0),
+        (4.0, 1.0, 1.0),
+        (1.0, 0.5, 0.3),
+        (0.0, -1.0, 0.3),
+        (-0.1, -1.0, f64::INFINITY),
+        (4.0, -60.0, f64::INFINITY),
+        (4.0, 3.0, f64::INFINITY),
+        (1.0, 2.0, f64::INFINITY),
+    ];
+    for (setpoint_m, target_m, speed_mps) in rows {
+        assert_eq!(flare_mps(setpoint_m, target_m), speed_mps, "{setpoint_m} m to {target_m} m");
+    }
+}
+
+const DT: f64 = 0.01;
+
+/// Returns a level craft that neither climbs nor sinks at this altitude, m, and throttle, µs.
+fn level_craft(altitude_m: f64, throttle_us: f64) -> AltitudeMeasurement {
+    AltitudeMeasurement { altitude_m, climb_mps: 0.0, cos_tilt: 1.0, throttle_us }
+}
+
+/// Returns the throttle, µs, after `seconds` with this target.
+fn throttle_us(
+    controller: &mut AltitudeController,
+    now: &AltitudeMeasurement,
+    target: AltitudeTarget,
+    params: &Params,
+    seconds: f64,
+) -> f64 {
+    let steps = (seconds / DT).round() as usize;
+    (0..steps).map(|_| controller.update(now, target, params, DT)).last().unwrap_or_default()
+}
+
+#[test]
+fn a_hold_after_a_flight_by_the_sticks_begins_without_the_old_integral() {
+    let params = Params { altitude_i: 100, ..Params::default() };
+    let hovering = level_craft(20.0, 1500.0);
+    let mut controller = AltitudeController::default();
+    controller.engage(&hovering, &params);
+    let held_down = throttle_us(&mut controller, &hovering, AltitudeTarget::Altitude(21.0), &params, 10.0);
+    assert!(held_down > 1600.0, "{held_down} µs pull at a craft that is held down");
+    for _ in 0..300 {
+        controller.track(&hovering, &params, DT);
+    }
+    controller.engage(&hovering, &params);
+    let held = throttle_us(&mut controller, &hovering, AltitudeTarget::Altitude(20.0), &params, 1.5);
+    assert!((held - 1500.0).abs() < 15.0, "{held} µs");
+}
+
+#[test]
+fn a_landing_that_waits_on_the_ground_does_not_forget_the_hover_throttle() {
+    let params = Params::default();
+    let hovering = level_craft(20.0, 1500.0);
+    let mut controller = AltitudeController::default();
+    controller.engage(&hovering, &params);
+    throttle_us(&mut controller, &hovering, AltitudeTarget::Altitude(20.0), &params, 8.0);
+    assert!((controller.hover_us() - 1500.0).abs() < 5.0);
+    controller.set_relief_us(50.0);
+    let landing = AltitudeTarget::Landing { setpoint_m: -1.5, rate_mps: -0.5 };
+    let landed = level_craft(0.0, 1300.0);
+    let throttle = throttle_us(&mut controller, &landed, landing, &params, 8.0);
+    assert!(throttle < 1400.0, "{throttle} µs");
+    assert!((controller.hover_us() - 1500.0).abs() < 5.0, "{} µs", controller.hover_us());
+}
