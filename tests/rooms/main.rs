@@ -3,6 +3,7 @@
 
 mod page;
 mod paths;
+mod rules;
 mod size;
 mod source;
 

@@ -1,76 +1,167 @@
-//! The `crate::` and `super::` paths of a file.
+//! The paths of a file: what it takes from which room, and how.
 
 use std::collections::BTreeSet;
 
 use crate::source::SourceFile;
 
-/// Returns the rooms that a file names, including its own if it names it.
-pub(crate) fn rooms_used(file: &SourceFile) -> BTreeSet<String> {
+/// A path that a file names, or a leaf of the group of a `use`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Named {
+    /// The segments from the root of the crate, or from an external crate.
+    pub(crate) path: Vec<String>,
+    /// The name under which a `use` makes it known.
+    pub(crate) name: String,
+    /// `true` if it begins at this crate.
+    pub(crate) is_ours: bool,
+    /// `true` if a `pub use`, a `pub(crate) use` or a public type alias passes it on.
+    pub(crate) is_passed_on: bool,
+}
+
+impl Named {
+    fn segment(&self, at: usize) -> &str {
+        self.path.get(at).map_or("", String::as_str)
+    }
+
+    /// Returns the room, and the first segment below it; empty if there is none.
+    pub(crate) fn room(&self) -> (&str, &str) {
+        (self.segment(0), self.segment(1))
+    }
+}
+
+/// Returns the rooms that a file names, with the first segments below them.
+pub(crate) fn rooms_used(file: &SourceFile) -> BTreeSet<(String, String)> {
+    let ours = named(file).into_iter().filter(|named| named.is_ours);
+    ours.filter(|named| is_room(named.room().0))
+        .map(|named| (named.room().0.to_owned(), named.room().1.to_owned()))
+        .collect()
+}
+
+/// Returns the paths of a file that begin with `crate`, `super` or `std`, and all leaves of its `use` declarations.
+pub(crate) fn named(file: &SourceFile) -> Vec<Named> {
     let tokens = tokens(&file.text);
     let module = file.module();
-    let mut rooms = BTreeSet::new();
-    // Inline modules, as the brace depths at which they close.
-    let mut inner: Vec<usize> = Vec::new();
+    let mut found = Vec::new();
+    // Inline modules, with the brace depths at which they close.
+    let mut inner: Vec<(String, usize)> = Vec::new();
     let mut depth = 0;
-    for (index, token) in tokens.iter().enumerate() {
+    let mut index = 0;
+    while index < tokens.len() {
         let is_path = |at: usize| tokens.get(at).is_some_and(|token| token == "::");
-        match token.as_str() {
+        let token = tokens[index].as_str();
+        match token {
             "{" => {
                 if index >= 2 && tokens[index - 2] == "mod" {
-                    inner.push(depth);
+                    inner.push((tokens[index - 1].clone(), depth));
                 }
                 depth += 1;
             }
             "}" => {
                 depth -= 1;
-                if inner.last() == Some(&depth) {
-                    inner.pop();
-                }
+                inner.pop_if(|(_, at)| *at == depth);
             }
-            "crate" if is_path(index + 1) => heads(&tokens[index + 2..], &mut rooms),
-            "super" if is_path(index + 1) && (index == 0 || tokens[index - 1] != "::") => {
-                let mut at = index;
-                let mut levels = 0;
-                while tokens.get(at).is_some_and(|token| token == "super") && is_path(at + 1) {
-                    levels += 1;
-                    at += 2;
-                }
-                // Above the room itself the next word names another room.
-                if levels >= module.len() + inner.len() {
-                    heads(&tokens[at..], &mut rooms);
-                }
+            "use" => {
+                let mut leaves = Vec::new();
+                let end = leaves_of(&tokens, index + 1, &[], &mut leaves);
+                let is_passed_on = is_public(&tokens[..index]);
+                let modules: Vec<&str> =
+                    module.iter().map(String::as_str).chain(inner.iter().map(|(name, _)| name.as_str())).collect();
+                found.extend(leaves.into_iter().map(|leaf| leaf.resolved(&modules, is_passed_on)));
+                index = end;
+                continue;
+            }
+            "crate" | "super" | "std" if is_path(index + 1) && (index == 0 || tokens[index - 1] != "::") => {
+                let mut leaves = Vec::new();
+                let end = leaves_of(&tokens, index, &[], &mut leaves);
+                let modules: Vec<&str> =
+                    module.iter().map(String::as_str).chain(inner.iter().map(|(name, _)| name.as_str())).collect();
+                let is_alias = index >= 3
+                    && tokens[index - 1] == "="
+                    && tokens[index - 3] == "type"
+                    && is_public(&tokens[..index - 3]);
+                found.extend(leaves.into_iter().map(|leaf| leaf.resolved(&modules, is_alias)));
+                index = end;
+                continue;
             }
             _ => {}
         }
+        index += 1;
     }
-    rooms
+    found
 }
 
-/// Adds the first word of a path, or of each path of a group in braces, if it is a room.
-fn heads(tokens: &[String], rooms: &mut BTreeSet<String>) {
-    if tokens.first().is_none_or(|token| token != "{") {
-        rooms.extend(tokens.first().filter(|token| is_room(token)).cloned());
-        return;
-    }
-    let mut depth = 0;
-    let mut starts = true;
-    for token in tokens {
-        match token.as_str() {
-            "{" => depth += 1,
-            "}" => depth -= 1,
-            "," if depth == 1 => starts = true,
-            word if depth == 1 && starts => {
-                starts = false;
-                if is_room(word) {
-                    rooms.insert(word.to_owned());
-                }
+/// Returns `true` if the tokens end with `pub` or `pub(crate)`.
+fn is_public(before: &[String]) -> bool {
+    let last: Vec<&str> = before.iter().rev().take(4).map(String::as_str).collect();
+    last.first() == Some(&"pub") || last == [")", "crate", "(", "pub"]
+}
+
+/// A path as it is written, and its name.
+struct Leaf {
+    path: Vec<String>,
+    name: String,
+}
+
+impl Leaf {
+    /// Returns the path from the root of the crate, for a path in this module.
+    fn resolved(self, module: &[&str], is_passed_on: bool) -> Named {
+        let Self { path, name } = self;
+        let up = path.iter().take_while(|segment| *segment == "super").count();
+        let (mut whole, skip, is_ours): (Vec<String>, _, _) = match path.first().map(String::as_str) {
+            Some("crate") => (Vec::new(), 1, true),
+            Some("super") => {
+                let base = &module[..module.len().saturating_sub(up)];
+                (base.iter().map(|segment| (*segment).to_owned()).collect(), up, true)
             }
-            _ => {}
-        }
-        if depth == 0 {
-            return;
-        }
+            Some("self") => (module.iter().map(|segment| (*segment).to_owned()).collect(), 1, true),
+            _ => (Vec::new(), 0, false),
+        };
+        whole.extend(path.into_iter().skip(skip));
+        Named { path: whole, name, is_ours, is_passed_on }
     }
+}
+
+/// Adds the leaves of the path or group that begins at a token; returns the index after it.
+fn leaves_of(tokens: &[String], at: usize, prefix: &[String], leaves: &mut Vec<Leaf>) -> usize {
+    let token = |at: usize| tokens.get(at).map_or("", String::as_str);
+    let (mut at, mut path) = (at, prefix.to_vec());
+    loop {
+        match token(at) {
+            "{" => {
+                at += 1;
+                while at < tokens.len() && token(at) != "}" {
+                    let before = at;
+                    at = leaves_of(tokens, at, &path, leaves);
+                    if token(at) == "," || at == before {
+                        at += 1;
+                    }
+                }
+                return at + 1;
+            }
+            word if word == "*" || is_word(word) => {
+                path.push(word.to_owned());
+                at += 1;
+            }
+            // A turbofish or the end of a generic argument.
+            _ => break,
+        }
+        if token(at) != "::" {
+            break;
+        }
+        at += 1;
+    }
+    let mut name = path.last().cloned().unwrap_or_default();
+    if token(at) == "as" {
+        name = token(at + 1).to_owned();
+        at += 2;
+    }
+    if path.len() > prefix.len() {
+        leaves.push(Leaf { path, name });
+    }
+    at
+}
+
+fn is_word(token: &str) -> bool {
+    token.starts_with(|first: char| first.is_alphabetic() || first == '_')
 }
 
 fn is_room(word: &str) -> bool {
@@ -78,7 +169,7 @@ fn is_room(word: &str) -> bool {
 }
 
 /// Splits text into words, `::` and single characters, without comments, strings and character literals.
-fn tokens(text: &str) -> Vec<String> {
+pub(crate) fn tokens(text: &str) -> Vec<String> {
     let mut tokens = Vec::new();
     let mut rest = text;
     while let Some(first) = rest.chars().next() {
@@ -150,16 +241,18 @@ mod tests {
 
     fn used(name: &str, text: &str) -> Vec<String> {
         let file = SourceFile { name: name.to_owned(), text: text.to_owned() };
-        rooms_used(&file).into_iter().collect()
+        let rooms: BTreeSet<String> = rooms_used(&file).into_iter().map(|(room, _)| room).collect();
+        rooms.into_iter().collect()
     }
 
     #[test]
     fn paths_in_groups_in_code_and_by_super_are_found() {
         assert_eq!(used("a/b.rs", "use crate::{geo::{LatLon, x}, sim, plan::Plan};"), ["geo", "plan", "sim"]);
         assert_eq!(used("a.rs", "fn f() -> crate::geo::LatLon { super::link::open() }"), ["geo", "link"]);
-        assert_eq!(used("a/b.rs", "use super::x; use super::super::link::Y;"), ["link"]);
-        assert_eq!(used("a.rs", "mod tests { use super::*; use super::super::link; }"), ["link"]);
+        assert_eq!(used("a/b.rs", "use super::x; use super::super::link::Y;"), ["a", "link"]);
+        assert_eq!(used("a.rs", "mod tests { use super::*; use super::super::link; }"), ["a", "link"]);
         assert_eq!(used("a/b.rs", "pub(crate) fn f() {} pub(super) struct S;"), [""; 0]);
+        assert_eq!(used("a.rs", "let x = crate::sim::f::<crate::plan::P>();"), ["plan", "sim"]);
     }
 
     #[test]

@@ -1,0 +1,147 @@
+//! Ways around the table of rooms, and ways from the core to the world outside it.
+
+use crate::paths::{Named, named, tokens};
+use crate::source::{SourceFile, files};
+
+/// Rooms that are pure: no file, no socket, no thread, no clock, no global state.
+const PURE: [&str; 15] = [
+    "autopilot", "did_you_mean", "firmware", "flight", "geo", "pilot", "plan", "printable", "scenario", "signals", "sim",
+    "source_snippet", "telemetry", "timeline", "vehicle",
+];
+
+/// Modules of `std` that reach the world outside the program.
+const OUTSIDE: [&str; 5] = ["env", "fs", "net", "process", "thread"];
+
+/// Types that make a `static` a variable.
+const VARIABLES: [&str; 8] =
+    ["Cell", "LazyLock", "Mutex", "OnceCell", "OnceLock", "RefCell", "RwLock", "UnsafeCell"];
+
+fn is_pure(file: &SourceFile) -> bool {
+    PURE.contains(&file.room().as_str()) || file.name.starts_with("link/proto")
+}
+
+/// Returns the file without its unit tests, which may read files.
+fn product(file: &SourceFile) -> SourceFile {
+    let is_test = file.name.ends_with("tests.rs") || file.name.contains("/tests/");
+    let text = file.text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
+    SourceFile { name: file.name.clone(), text: if is_test { String::new() } else { text.to_owned() } }
+}
+
+/// Returns what a file does to get around the table of rooms.
+fn detours(file: &SourceFile) -> Vec<String> {
+    let room = file.room();
+    let file = product(file);
+    let all = named(&file);
+    let is_foreign = |named: &Named| named.is_ours && named.room().0 != room;
+    let mut found = Vec::new();
+    for named in &all {
+        let path = named.path.join("::");
+        match named.path.last().map(String::as_str) {
+            Some("*") if is_foreign(named) && named.path.len() <= 2 => {
+                found.push(format!("{}: imports all of {path}", file.name));
+            }
+            _ if named.is_passed_on && is_foreign(named) => {
+                found.push(format!("{}: passes {path} on", file.name));
+            }
+            // `use crate::sim::World; pub use World;`
+            _ if named.is_passed_on && !named.is_ours => {
+                let first = named.path.first();
+                let source = all.iter().find(|other| is_foreign(other) && Some(&other.name) == first);
+                found.extend(source.map(|source| format!("{}: passes {} on", file.name, source.path.join("::"))));
+            }
+            _ => {}
+        }
+    }
+    found
+}
+
+/// Returns the ways from a file to files, sockets, threads, the clock and global state.
+fn ways_out(file: &SourceFile) -> Vec<String> {
+    let file = product(file);
+    let mut found = Vec::new();
+    for named in named(&file).iter().filter(|named| !named.is_ours) {
+        let path: Vec<&str> = named.path.iter().map(String::as_str).collect();
+        let is_out = match path[..] {
+            ["std", module, ..] if OUTSIDE.contains(&module) => true,
+            ["std", "time", "Instant" | "SystemTime", ..] | ["std"] | ["std", "*"] | ["std", "time", "*"] => true,
+            ["tokio" | "rustix" | "tempfile", ..] => true,
+            _ => false,
+        };
+        if is_out {
+            found.push(format!("{}: uses {}", file.name, path.join("::")));
+        }
+    }
+    let tokens = tokens(&file.text);
+    for (index, token) in tokens.iter().enumerate() {
+        let is_lifetime = index > 0 && tokens[index - 1] == "&";
+        let declared: Vec<&str> =
+            tokens[index..].iter().take_while(|token| *token != "=").map(String::as_str).take(40).collect();
+        let is_variable = declared.iter().any(|word| VARIABLES.contains(word) || word.starts_with("Atomic"));
+        if token == "thread_local" || token == "static" && !is_lifetime && (is_variable || declared.contains(&"mut")) {
+            found.push(format!("{}: has global state: {}", file.name, declared.join(" ")));
+        }
+    }
+    found
+}
+
+#[test]
+fn no_file_gets_around_the_table_of_rooms() {
+    let found: Vec<String> = files().iter().flat_map(detours).collect();
+    assert!(found.is_empty(), "{found:#?}");
+}
+
+#[test]
+fn the_core_reaches_nothing_outside_the_program() {
+    let found: Vec<String> = files().iter().filter(|file| is_pure(file)).flat_map(ways_out).collect();
+    assert!(found.is_empty(), "{found:#?}");
+}
+
+fn file(text: &str) -> SourceFile {
+    SourceFile { name: "sim/x.rs".to_owned(), text: text.to_owned() }
+}
+
+#[test]
+fn every_known_detour_is_found() {
+    for text in [
+        "use crate::*;",
+        "use crate::ui::*;",
+        "use super::super::ui::*;",
+        "use crate::{geo, ui::*};",
+        "pub use crate::firmware::Firmware;",
+        "pub(crate) use super::super::firmware::{Firmware as Fc};",
+        "use crate::firmware::Firmware; pub use Firmware;",
+        "use crate::firmware::Firmware as Fc; pub use Fc as Other;",
+        "pub type Fc = crate::firmware::Firmware;",
+    ] {
+        assert_eq!(detours(&file(text)).len(), 1, "{text}");
+    }
+    for text in ["use super::*;", "pub use crate::sim::World;", "use crate::ui::State;", "pub use world::World;"] {
+        assert_eq!(detours(&file(text)), [""; 0], "{text}");
+    }
+}
+
+#[test]
+fn every_known_way_out_is_found() {
+    for text in [
+        "use std::fs;",
+        "use std::{collections::BTreeMap, net::UdpSocket};",
+        "fn f() { std::thread::spawn(g); }",
+        "let now = std::time::Instant::now();",
+        "use std::time::*;",
+        "use tokio::net;",
+        "static mut COUNT: u32 = 0;",
+        "static COUNT: std::sync::atomic::AtomicU32 = AtomicU32::new(0);",
+        "static ALL: Mutex<Vec<u32>> = Mutex::new(Vec::new());",
+        "thread_local! { static A: u32 = 0; }",
+    ] {
+        assert!(!ways_out(&file(text)).is_empty(), "{text}");
+    }
+    for text in [
+        "use std::time::Duration;",
+        "static TABLE: [u16; 3] = [1, 2, 3];",
+        "fn f() -> &'static str { \"std::fs\" }",
+        "#[cfg(test)]\nmod tests { use std::fs; }",
+    ] {
+        assert_eq!(ways_out(&file(text)), [""; 0], "{text}");
+    }
+}
