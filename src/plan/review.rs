@@ -382,4 +382,21 @@ mod tests {
             ]
         );
     }
+
+    #[test]
+    fn an_altitude_change_counts_for_the_next_place_only() {
+        let at = |kind, alt_cm| Waypoint { position: HOME, kind, alt_cm, ..Waypoint::default() };
+        let below = |altitude_change_cm, first_cm, second_cm| -> Vec<Finding> {
+            let waypoints = [
+                at(WaypointType::AltChange, altitude_change_cm),
+                at(WaypointType::Flyover, first_cm),
+                at(WaypointType::Flyover, second_cm),
+            ];
+            below_ground(&waypoints).collect()
+        };
+        let found = |index, alt_m| [Finding::BelowGround { index, alt_m }];
+        assert_eq!(below(2000, -100, -700), found(2, -7.0), "the second place has its own altitude again");
+        assert_eq!(below(-500, 2000, 3000), found(1, -5.0), "the first place has the changed altitude");
+        assert!(below(2000, -100, 3000).is_empty());
+    }
 }

@@ -1,5 +1,6 @@
 //! Tests of whole scenarios: text in, judgements out.
 
+mod allowance;
 mod bounds;
 
 use super::*;

@@ -226,6 +226,46 @@ mod tests {
         }
     }
 
+    /// One step of the simulation, s.
+    const STEP_S: f64 = 0.000_5;
+    const CALM: AirSample = AirSample { wind_enu: Vector3::new(0.0, 0.0, 0.0), density_ratio: 1.0 };
+
+    /// An Iris with stopped rotors that rests on its legs.
+    struct Resting {
+        plant: Plant,
+        state: BodyState,
+        rotors: [f64; ROTORS],
+        anchors: ContactAnchors,
+    }
+
+    impl Resting {
+        fn new() -> Self {
+            let airframe = Airframe::iris();
+            let state = BodyState {
+                pos_enu: Vector3::new(0.0, 0.0, 0.1985),
+                vel_enu: Vector3::zeros(),
+                attitude: UnitQuaternion::identity(),
+                rate_flu: Vector3::zeros(),
+            };
+            let plant = Plant::new(&airframe, STEP_S);
+            let mut resting = Self { plant, state, rotors: [0.0; ROTORS], anchors: NO_ANCHORS };
+            resting.run(1.0);
+            resting
+        }
+
+        /// Simulates some seconds. Returns the largest turn from the heading at rest, rad.
+        fn run(&mut self, seconds: f64) -> f64 {
+            let mut largest_turn_rad = 0.0_f64;
+            for _ in 0..(seconds / STEP_S).round() as usize {
+                let Self { plant, state, rotors, anchors } = self;
+                let first = plant.loads(state, rotors, &CALM, anchors);
+                plant.step(state, rotors, anchors, &[0.0; ROTORS], &CALM, &first);
+                largest_turn_rad = largest_turn_rad.max(state.attitude.euler_angles().2.abs());
+            }
+            largest_turn_rad
+        }
+    }
+
     #[test]
     fn a_craft_on_its_back_is_on_its_hull_and_one_on_its_legs_is_not() {
         for airframe in [Airframe::iris(), Airframe::five_inch()] {
@@ -255,5 +295,18 @@ mod tests {
         assert!(state.vel_enu.norm() < 0.01 && state.rate_flu.norm() < 0.01, "{state:?}");
         assert!((state.attitude * Vector3::z()).z < -0.99);
         assert!(plant.ground().contact(&state).hull);
+    }
+
+    #[test]
+    fn a_craft_twisted_on_its_legs_comes_to_rest() {
+        let mut craft = Resting::new();
+        assert_eq!(craft.anchors.iter().flatten().count(), 4, "friction holds every leg");
+        // A third of a millimetre at each leg, which friction can hold.
+        let twist_rad = 0.001;
+        craft.state.attitude = UnitQuaternion::from_euler_angles(0.0, 0.0, twist_rad) * craft.state.attitude;
+        craft.run(0.1);
+        assert_eq!(craft.anchors.iter().flatten().count(), 4, "no leg has slid");
+        let rocking_rad = craft.run(0.1);
+        assert!(rocking_rad < 0.1 * twist_rad, "the legs damp it: {rocking_rad}");
     }
 }

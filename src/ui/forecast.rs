@@ -243,3 +243,46 @@ pub(super) fn take_answer(state: &mut AppState, reply: ForecastReply) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::{Waypoint, WaypointType};
+    use crate::session::SessionView;
+    use crate::session::command::CliOutput;
+    use crate::ui::message::Msg;
+    use crate::ui::panel::Panel;
+    use crate::ui::update::update;
+
+    /// Shows the same picture of the session again. Returns the number of estimates that are requested.
+    fn estimates(state: &mut AppState) -> usize {
+        let view = state.view.clone();
+        estimates_among(&update(state, Msg::View(view)))
+    }
+
+    fn estimates_among(effects: &[Effect]) -> usize {
+        let is_estimate = |effect: &&Effect| match effect {
+            Effect::Forecast(job) => matches!(job.request, ForecastRequest::PlanEstimate { .. }),
+            _ => false,
+        };
+        effects.iter().filter(is_estimate).count()
+    }
+
+    #[test]
+    fn a_line_entered_in_the_cli_asks_for_the_estimate_again() {
+        let mut state = AppState::bare((80, 24), SessionView::default());
+        let land = Waypoint { kind: WaypointType::Land, ..Waypoint::default() };
+        state.editor.insert("a plan", &[land]).expect("a place for a waypoint");
+        assert_eq!(estimates(&mut state), 1);
+        assert_eq!(estimates(&mut state), 0, "nothing has changed");
+        state.focus = Panel::Cli;
+        let effects = update(&mut state, Msg::Paste("set p_roll = 60\n".to_owned()));
+        let is_run = |effect: &Effect| matches!(effect, Effect::Cli(line) if line == "set p_roll = 60");
+        assert!(effects.iter().any(is_run), "{effects:?}");
+        assert_eq!(estimates(&mut state), 0, "the craft has not answered");
+        let output = CliOutput { text: "p_roll set to 60\r\n".to_owned(), ..CliOutput::default() };
+        let answered = update(&mut state, Msg::CliReply(Some(output)));
+        assert_eq!(estimates_among(&answered) + estimates(&mut state), 1, "the craft flies with other gains");
+        assert_eq!(estimates(&mut state), 0, "once is enough");
+    }
+}

@@ -101,8 +101,8 @@ fn in_the_folder_of_the_launcher_no_option_names_the_firmware() {
     sandbox.write("config.txt", "[Betaloop]\nBetaflightElf=./none.elf\n");
     for arguments in [&["compare", "square"][..], &["fly", "square"], &["check", "guide-1"]] {
         let ran = sandbox.run(arguments).exits(3);
-        let told =
-            ran.err.contains("./none.elf: there is no such file") && ran.err.contains("comes from config.txt");
+        let told = ran.err.contains("./none.elf: there is no such file")
+            && ran.err.contains("comes from config.txt");
         assert!(told, "{arguments:?}: {}", ran.err);
     }
 }

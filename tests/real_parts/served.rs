@@ -79,7 +79,10 @@ fn the_drop_in_is_a_remote_firmware_that_saves_its_settings() {
     let mut served = Served::drop_in(free_ports(), &["--fresh"]);
     served.notice(" answers: Betaflight ");
     let before = served.program.seen().join("\n");
-    assert!(before.contains("lines of settings, and they read back as written") && !before.contains("refused"), "{before}");
+    assert!(
+        before.contains("lines of settings, and they read back as written") && !before.contains("refused"),
+        "{before}"
+    );
     served.program.wait("fix", |line| line.contains("\"gps_fix\"").then_some(()));
 }
 

@@ -12,14 +12,20 @@ pub(crate) struct Room {
 }
 
 impl Room {
-    pub(crate) fn may_use(&self, other: &str) -> bool {
-        self.uses.as_ref().is_none_or(|uses| uses.iter().any(|used| used == other))
+    /// Returns `true` if the room may use this part of another one.
+    pub(crate) fn may_use(&self, other: &str, part: &str) -> bool {
+        self.uses.as_ref().is_none_or(|uses| uses.iter().any(|used| covers(used, other, part)))
     }
 
     /// Returns the arrows that the page lists one by one.
     pub(crate) fn arrows(&self) -> Vec<(String, String)> {
         self.uses.iter().flatten().map(|used| (self.name.clone(), used.clone())).collect()
     }
+}
+
+/// Returns `true` if an entry of the table, `room` or `room::part`, is for this part of a room.
+pub(crate) fn covers(entry: &str, room: &str, part: &str) -> bool {
+    entry == room || entry.split_once("::") == Some((room, part))
 }
 
 /// Returns the rooms in the order of the table. A row may name several rooms with the same arrows.

@@ -63,8 +63,11 @@ pub(crate) fn named(file: &SourceFile) -> Vec<Named> {
                 let mut leaves = Vec::new();
                 let end = leaves_of(&tokens, index + 1, &[], &mut leaves);
                 let is_passed_on = is_public(&tokens[..index]);
-                let modules: Vec<&str> =
-                    module.iter().map(String::as_str).chain(inner.iter().map(|(name, _)| name.as_str())).collect();
+                let modules: Vec<&str> = module
+                    .iter()
+                    .map(String::as_str)
+                    .chain(inner.iter().map(|(name, _)| name.as_str()))
+                    .collect();
                 found.extend(leaves.into_iter().map(|leaf| leaf.resolved(&modules, is_passed_on)));
                 index = end;
                 continue;
@@ -72,8 +75,11 @@ pub(crate) fn named(file: &SourceFile) -> Vec<Named> {
             "crate" | "super" | "std" if is_path(index + 1) && (index == 0 || tokens[index - 1] != "::") => {
                 let mut leaves = Vec::new();
                 let end = leaves_of(&tokens, index, &[], &mut leaves);
-                let modules: Vec<&str> =
-                    module.iter().map(String::as_str).chain(inner.iter().map(|(name, _)| name.as_str())).collect();
+                let modules: Vec<&str> = module
+                    .iter()
+                    .map(String::as_str)
+                    .chain(inner.iter().map(|(name, _)| name.as_str()))
+                    .collect();
                 let is_alias = index >= 3
                     && tokens[index - 1] == "="
                     && tokens[index - 3] == "type"

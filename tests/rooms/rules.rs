@@ -5,8 +5,21 @@ use crate::source::{SourceFile, files};
 
 /// Rooms that are pure: no file, no socket, no thread, no clock, no global state.
 const PURE: [&str; 15] = [
-    "autopilot", "did_you_mean", "firmware", "flight", "geo", "pilot", "plan", "printable", "scenario", "signals", "sim",
-    "source_snippet", "telemetry", "timeline", "vehicle",
+    "autopilot",
+    "did_you_mean",
+    "firmware",
+    "flight",
+    "geo",
+    "pilot",
+    "plan",
+    "printable",
+    "scenario",
+    "signals",
+    "sim",
+    "source_snippet",
+    "telemetry",
+    "timeline",
+    "vehicle",
 ];
 
 /// Modules of `std` that reach the world outside the program.
@@ -47,7 +60,9 @@ fn detours(file: &SourceFile) -> Vec<String> {
             _ if named.is_passed_on && !named.is_ours => {
                 let first = named.path.first();
                 let source = all.iter().find(|other| is_foreign(other) && Some(&other.name) == first);
-                found.extend(source.map(|source| format!("{}: passes {} on", file.name, source.path.join("::"))));
+                found.extend(
+                    source.map(|source| format!("{}: passes {} on", file.name, source.path.join("::"))),
+                );
             }
             _ => {}
         }
@@ -63,7 +78,9 @@ fn ways_out(file: &SourceFile) -> Vec<String> {
         let path: Vec<&str> = named.path.iter().map(String::as_str).collect();
         let is_out = match path[..] {
             ["std", module, ..] if OUTSIDE.contains(&module) => true,
-            ["std", "time", "Instant" | "SystemTime", ..] | ["std"] | ["std", "*"] | ["std", "time", "*"] => true,
+            ["std", "time", "Instant" | "SystemTime", ..] | ["std"] | ["std", "*"] | ["std", "time", "*"] => {
+                true
+            }
             ["tokio" | "rustix" | "tempfile", ..] => true,
             _ => false,
         };
@@ -77,7 +94,9 @@ fn ways_out(file: &SourceFile) -> Vec<String> {
         let declared: Vec<&str> =
             tokens[index..].iter().take_while(|token| *token != "=").map(String::as_str).take(40).collect();
         let is_variable = declared.iter().any(|word| VARIABLES.contains(word) || word.starts_with("Atomic"));
-        if token == "thread_local" || token == "static" && !is_lifetime && (is_variable || declared.contains(&"mut")) {
+        if token == "thread_local"
+            || token == "static" && !is_lifetime && (is_variable || declared.contains(&"mut"))
+        {
             found.push(format!("{}: has global state: {}", file.name, declared.join(" ")));
         }
     }
@@ -115,7 +134,9 @@ fn every_known_detour_is_found() {
     ] {
         assert_eq!(detours(&file(text)).len(), 1, "{text}");
     }
-    for text in ["use super::*;", "pub use crate::sim::World;", "use crate::ui::State;", "pub use world::World;"] {
+    for text in
+        ["use super::*;", "pub use crate::sim::World;", "use crate::ui::State;", "pub use world::World;"]
+    {
         assert_eq!(detours(&file(text)), [""; 0], "{text}");
     }
 }

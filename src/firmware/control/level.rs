@@ -236,4 +236,22 @@ mod tests {
         assert!((horizon.update(0.0, 0.0, &tuning, 0.002) - 0.75).abs() < 0.01);
         assert_eq!(horizon.update(0.8, 0.0, &tuning, 0.002), 0.0);
     }
+
+    #[test]
+    fn horizon_levels_again_slowly_after_the_sticks() {
+        let tuning = LevelTuning { horizon_delay_s: 0.5, ..Tuning::default().level };
+        let mut horizon = Horizon::default();
+        let mut after = |stick: f64, seconds: f64| {
+            let steps = (seconds / 0.002).round() as usize;
+            (0..steps).map(|_| horizon.update(stick, 0.0, &tuning, 0.002)).last().unwrap_or_default()
+        };
+        let full = after(0.0, 5.0);
+        assert!(full > 0.7, "{full}");
+        assert_eq!(after(1.0, 0.002), 0.0, "a flip begins at once");
+        let soon = after(0.0, 0.05);
+        assert!((0.02 * full..0.2 * full).contains(&soon), "centred sticks do not level at once: {soon}");
+        let later = after(0.0, 0.45);
+        assert!((0.5 * full..0.75 * full).contains(&later), "after the delay it is more than half: {later}");
+        assert!(after(0.0, 3.0) > 0.98 * full);
+    }
 }

@@ -328,4 +328,49 @@ mod tests {
         let sums = RateLoop::default().step(&demand(0.0, f64::NAN), &tuning.rate, &derived);
         assert!(sums.iter().all(|sum| sum.is_finite()));
     }
+
+    #[test]
+    fn with_inc_an_integral_may_shrink_but_not_grow_while_the_setpoint_jumps() {
+        // The integral of roll, 100 before a jump of the setpoint to 300 °/s and one step in which the craft turns
+        // at `gyro`.
+        let after_jump = |increments_only: bool, gyro: f64| {
+            let mut tuning = Tuning::default();
+            tuning.rate.relax.increments_only = increments_only;
+            let derived = Derived::new(&tuning, 0.001);
+            let mut rate_loop = RateLoop::default();
+            rate_loop.step(&demand(0.0, 0.0), &tuning.rate, &derived);
+            rate_loop.axes[0].integral = 100.0;
+            rate_loop.step(&demand(300.0, gyro), &tuning.rate, &derived);
+            rate_loop.axes[0].integral
+        };
+        assert!(after_jump(true, 600.0) < 99.0, "the integral of a craft that turns too fast shrinks");
+        assert_eq!(after_jump(true, 0.0), 100.0, "the integral of a craft that lags does not grow");
+        assert_eq!(after_jump(false, 600.0), 100.0, "without INC it waits in both directions");
+    }
+
+    #[test]
+    fn tpa_weakens_d() {
+        // The answer to a craft that turns ever faster, without P and I.
+        let damping = |tpa: f64, tpa_on_p: bool| {
+            let mut tuning = Tuning::default();
+            tuning.rate.tpa_on_p = tpa_on_p;
+            for gains in &mut tuning.rate.gains {
+                (gains.p, gains.i) = (0.0, 0.0);
+            }
+            let derived = Derived::new(&tuning, 0.001);
+            let mut rate_loop = RateLoop::default();
+            let mut sum = 0.0;
+            for step in 0..100 {
+                let turning = RateDemand { tpa, ..demand(0.0, f64::from(step)) };
+                sum = rate_loop.step(&turning, &tuning.rate, &derived)[0];
+            }
+            sum
+        };
+        for tpa_on_p in [false, true] {
+            let full = damping(1.0, tpa_on_p);
+            assert!(full < -1.0, "D acts against the turn: {full}");
+            assert!((damping(0.4, tpa_on_p) / full - 0.4).abs() < 0.01);
+            assert_eq!(damping(0.0, tpa_on_p), 0.0);
+        }
+    }
 }

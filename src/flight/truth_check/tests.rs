@@ -219,3 +219,24 @@ fn a_craft_parked_at_the_end_is_told_with_its_speed() {
     assert!((parked.speed_mps - 5.0).abs() < 1e-9);
     assert!(bench.check.worst_miss(&truth).is_some_and(|told| told.contains("33.0 m off at the end")));
 }
+
+/// Returns the altitude error of a hold at 20 m with a tolerance of 10 m, for the altitudes of each second.
+fn held(altitudes_m: &[f64]) -> f64 {
+    let mut bench = Bench::new(WaypointType::Hold);
+    bench.craft.alt_m = altitudes_m[0];
+    bench.enter(NavState::Approaching, TransitionReason::Reset, None);
+    bench.fly_to(0.0);
+    bench.enter(NavState::Arrived, TransitionReason::Arrival, None);
+    bench.enter(NavState::Holding, TransitionReason::Hold, None);
+    for &alt_m in altitudes_m {
+        bench.craft.alt_m = alt_m;
+        bench.fly_to(0.0);
+    }
+    bench.waypoints()[0].alt_error_m.expect("an altitude error")
+}
+
+#[test]
+fn a_hold_counts_its_altitude_from_half_the_tolerance_on() {
+    assert!((held(&[16.0, 5.0, 20.0]) + 15.0).abs() < 1e-9, "it was at its altitude and fell");
+    assert!(held(&[12.0, 9.0, 20.0]).abs() < 1e-9, "it was still on its way up");
+}

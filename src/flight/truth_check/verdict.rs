@@ -146,4 +146,24 @@ mod tests {
         );
         assert_eq!(worst_miss(&truth, 200.0), None);
     }
+
+    #[test]
+    fn a_parked_craft_is_too_low_only_beyond_the_tolerance() {
+        let parked = |alt_error_m| {
+            let parked = ParkedTruth {
+                wp: 0,
+                kind: WaypointType::Hold,
+                distance_m: Some(0.0),
+                alt_error_m,
+                speed_mps: 0.0,
+                radius_m: 2.0,
+            };
+            worst_miss(&FlightTruth { parked: Some(parked), ..FlightTruth::default() }, 10.0)
+        };
+        assert_eq!((parked(-9.6), parked(9.6)), (None, None), "within the tolerance");
+        assert_eq!(
+            parked(-10.4).as_deref(),
+            Some("the craft parked at waypoint 0 (HOLD) was 10.4 m too low at the end; 10.0 m are allowed")
+        );
+    }
 }
