@@ -13,7 +13,8 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use betadeck::signals::MotorCommand;
-use betadeck::sim::{Airframe, Noise, Turbulence, World, WorldCommand, WorldConfig};
+use betadeck::sim::{Airframe, Noise, World, WorldCommand, WorldConfig};
+use betadeck::telemetry::Turbulence;
 use nalgebra::{Quaternion, Vector3};
 
 const TICKS: u32 = 400_000;

@@ -18,8 +18,9 @@ use betadeck::plan::builtin::{BuiltinPlan, DEMO};
 use betadeck::session::command::Seek;
 use betadeck::session::{Command, Handle, SessionConfig, start, upload};
 use betadeck::signals::SimTime;
-use betadeck::sim::{Turbulence, WorldConfig};
+use betadeck::sim::WorldConfig;
 use betadeck::storage::Store;
+use betadeck::telemetry::Turbulence;
 
 /// The number of seeks.
 const SEEKS: u64 = 200;

@@ -22,7 +22,8 @@ use betadeck::flight::{Flight, FlightOptions, FlightResult, FlightSetup};
 use betadeck::plan::builtin::{BuiltinPlan, DEMO};
 use betadeck::plan::upload_lines;
 use betadeck::signals::{MotorCommand, RcFrame, RcSource, SensorFrame};
-use betadeck::sim::{Turbulence, World, WorldConfig};
+use betadeck::sim::{World, WorldConfig};
+use betadeck::telemetry::Turbulence;
 use betadeck::vehicle::Vehicle;
 
 const RUNS: usize = 5;

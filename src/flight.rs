@@ -18,7 +18,6 @@ use nalgebra::Vector2;
 use truth_check::{CraftTruth, TruthCheck, agreement};
 
 use crate::firmware::Firmware;
-pub use crate::pilot::StickInput;
 use crate::plan::{FlightPlan, WaypointType};
 use crate::signals::SimTime;
 use crate::telemetry::{

@@ -18,11 +18,6 @@ mod simulator;
 pub mod sitl;
 mod upload;
 
-pub use crate::flight::FlightResult as ForecastResult;
-pub use crate::flight::forecast::{
-    CONTROLLER_IS_REMOTE, Forecast, ForecastEnd, ForecastKind, LegTime, PHYSICS_IS_EXTERNAL, PathPoint,
-    WHAT_IFS, WhatIf, WorstXte,
-};
 pub use command::{Command, Seek, SessionView};
 pub use event::{EndpointAddresses, Event, SessionEvent};
 pub use forecaster::{ForecastJob, ForecastReply, ForecastRequest, Forecaster};

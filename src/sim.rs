@@ -53,7 +53,7 @@ pub use atmosphere::{density, density_ratio, pressure_pa, temperature_k};
 pub use battery::{BatterySpec, motor_power_w};
 pub use body::{AirSample, BodyState, Loads, lever_arm_acceleration};
 pub use command::{COMMAND_WORDS, CommandWord, WorldCommand};
-pub use config::{Home, Noise, STEP_RATES_HZ, Turbulence, Wind, WorldConfig, WorldError, step_us};
+pub use config::{Home, Noise, STEP_RATES_HZ, Wind, WorldConfig, WorldError, step_us};
 pub use event::{WorldEvent, WorldEventKind};
 pub use fault::{
     BatteryFault, Direction, FAULTS, Fault, FaultInfo, FaultKey, FaultLink, FaultStart, LinkFaults,

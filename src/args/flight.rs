@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use crate::plan::format::HomePosition;
-use crate::sim::{self, Noise, Switches, Turbulence, Wind};
+use crate::sim::{self, Noise, Switches, Wind};
+use crate::telemetry::Turbulence;
 
 use super::help;
 use super::value::{self, AttitudeChoice, OnOff, Speed};

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::flight::StickInput;
+use crate::pilot::StickInput;
 use crate::sim::ScheduledFault;
 
 use super::plan_arg::PlanArg;

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use crate::plan::format::{Format, setting_line};
-use crate::sim::{Noise, ParseError, ScheduledFault, Switches, Turbulence, Wind, step_us};
+use crate::sim::{Noise, ParseError, ScheduledFault, Switches, Wind, step_us};
+use crate::telemetry::Turbulence;
 
 /// A switch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

@@ -6,9 +6,9 @@
 mod value;
 
 use crate::geo::GRAVITY;
-use crate::telemetry::FenceAction;
+use crate::telemetry::{FenceAction, RxLossPolicy};
 use value::Value;
-pub use value::{RxLossPolicy, YawMode};
+pub use value::YawMode;
 
 /// One parameter of the list, with the access to its field.
 #[derive(Debug, Clone, Copy)]

@@ -10,12 +10,13 @@ mod plan_distance;
 mod report;
 mod what_if;
 
+pub use super::FlightResult;
 pub use observer::{LegTime, WorstXte};
 pub use path::PathPoint;
 pub use report::{Forecast, ForecastEnd, ForecastKind};
 pub use what_if::{WHAT_IFS, WhatIf};
 
-use super::{Flight, FlightEnd, FlightOptions, FlightResult, Report, Verdict};
+use super::{Flight, FlightEnd, FlightOptions, Report, Verdict};
 use crate::firmware::Firmware;
 use crate::firmware::cli::Interpreter;
 use crate::plan::{FlightPlan, upload_lines};

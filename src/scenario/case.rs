@@ -5,8 +5,8 @@ use super::happening::Pattern;
 use super::input::TimedInput;
 use super::quantity::Dimension;
 use crate::flight::{FlightOptions, FlightSetup};
-use crate::sim::{Noise, Turbulence, Wind};
-use crate::telemetry::{NavState, PlanSource};
+use crate::sim::{Noise, Wind};
+use crate::telemetry::{NavState, PlanSource, Turbulence};
 
 /// The keys of the command lines that are written in the scenario itself.
 pub(super) const OWN_LINES: [&str; 2] = ["settings", "lines"];

@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-pub use crate::sim::{COMMAND_WORDS as WORLD_WORDS, FAULTS, FaultInfo, SWITCHES as WORLD_SWITCHES};
-
 use super::remote::RemoteView;
 use super::upload::UploadReport;
 use crate::plan::FlightPlan;

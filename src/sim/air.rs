@@ -6,10 +6,11 @@
 use nalgebra::Vector3;
 
 use crate::signals::SimTime;
+use crate::telemetry::Turbulence;
 
 use super::atmosphere;
 use super::body::AirSample;
-use super::config::{Turbulence, Wind, WorldConfig};
+use super::config::{Wind, WorldConfig};
 use super::switches::{AirDensity, Switches, WindProfile};
 
 mod gust;

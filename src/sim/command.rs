@@ -1,7 +1,8 @@
 //! The changes of a world while it runs.
 
-use super::config::{Noise, Turbulence, Wind, WorldError};
+use super::config::{Noise, Wind, WorldError};
 use super::fault::{Fault, FaultKey, MAX_TIME_S, ScheduledFault};
+use crate::telemetry::Turbulence;
 
 mod text;
 

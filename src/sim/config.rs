@@ -7,7 +7,7 @@ use super::fault::{FaultLink, ScheduledFault};
 use super::switches::Switches;
 use super::value_text::ParseError;
 use crate::did_you_mean;
-pub use crate::telemetry::Turbulence;
+use crate::telemetry::Turbulence;
 
 mod error;
 mod home;

@@ -7,8 +7,8 @@ use crate::firmware::{FirmwareOptions, msp};
 use crate::plan::builtin::{BuiltinPlan, DEMO};
 use crate::plan::upload_lines;
 use crate::signals::{RcFrame, RcSource};
-use crate::sim::{Turbulence, WorldCommand, WorldConfig};
-use crate::telemetry::InFlightCommand;
+use crate::sim::{WorldCommand, WorldConfig};
+use crate::telemetry::{InFlightCommand, Turbulence};
 use crate::vehicle::{FlightController, VehicleConfig};
 
 /// Key frames every two seconds, so that a short flight has many.

@@ -9,7 +9,8 @@ mod ghost;
 
 use std::time::Duration;
 
-use crate::session::{Forecast, ForecastJob, ForecastKind, ForecastReply, ForecastRequest, WhatIf};
+use crate::flight::forecast::{Forecast, ForecastKind, WhatIf};
+use crate::session::{ForecastJob, ForecastReply, ForecastRequest};
 use crate::signals::SimTime;
 
 use super::app_state::AppState;

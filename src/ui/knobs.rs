@@ -8,7 +8,7 @@ use super::formatting::fixed;
 use super::message::Effect;
 use super::text_field::TextField;
 use super::units::Units;
-use crate::session::command::{FAULTS, FaultInfo};
+use crate::sim::{FAULTS, FaultInfo};
 use crate::telemetry::snapshot::{FaultView, WindView, WorldView};
 use crate::telemetry::{FaultValue, Turbulence};
 

@@ -3,6 +3,7 @@
 mod file;
 mod form;
 
+use crate::flight::forecast::WHAT_IFS;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 use super::app_state::AppState;
@@ -12,7 +13,6 @@ use super::message::{Effect, Msg};
 use super::permission;
 use super::popup::Popup;
 use super::update::update;
-use crate::session::WHAT_IFS;
 
 /// The last line of a list of choices.
 const NONE: &str = "A number chooses, an empty line leaves it.";

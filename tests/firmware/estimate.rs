@@ -3,7 +3,8 @@
 
 use crate::control_support::{Rig, world};
 use betadeck::firmware::settings::Settings;
-use betadeck::sim::{Airframe, Fault, Noise, Turbulence, Wind, WorldCommand, WorldConfig};
+use betadeck::sim::{Airframe, Fault, Noise, Wind, WorldCommand, WorldConfig};
+use betadeck::telemetry::Turbulence;
 use nalgebra::{Vector2, Vector3};
 
 /// The greatest errors of a flight.

@@ -3,7 +3,8 @@
 use crate::control_support::{Rig, world};
 use betadeck::firmware::control::hold::{DescentRate, HoldModes};
 use betadeck::firmware::settings::Settings;
-use betadeck::sim::{Airframe, Noise, Turbulence, Wind, WorldConfig};
+use betadeck::sim::{Airframe, Noise, Wind, WorldConfig};
+use betadeck::telemetry::Turbulence;
 
 fn settings() -> Settings {
     let mut settings = Settings::default();

@@ -2,8 +2,8 @@
 
 use crate::checks::{Checks, assert_met, greatest};
 use crate::rig::{Rig, SEEDS, Sample, world};
-use betadeck::sim::{Fault, GpsGrade, Turbulence, WorldCommand};
-use betadeck::telemetry::{DisarmReason, EventKind, FirmwareEvent, Mode, NavState};
+use betadeck::sim::{Fault, GpsGrade, WorldCommand};
+use betadeck::telemetry::{DisarmReason, EventKind, FirmwareEvent, Mode, NavState, Turbulence};
 
 const MISSION: &str = "
 waypoint insert 0 40.4640403 -79.5182000 2000 500 FLYOVER 0 ORBIT

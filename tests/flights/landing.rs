@@ -2,8 +2,8 @@
 
 use crate::checks::{Checks, assert_met, greatest};
 use crate::rig::{Rig, SEEDS, Sample, world};
-use betadeck::sim::{Turbulence, Wind};
-use betadeck::telemetry::{DisarmReason, EventKind, NavState};
+use betadeck::sim::Wind;
+use betadeck::telemetry::{DisarmReason, EventKind, NavState, Turbulence};
 
 fn landing(seed: u64, wind: Wind) -> Option<String> {
     let (mut world, extra) = world(seed);

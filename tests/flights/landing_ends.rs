@@ -116,7 +116,7 @@ waypoint insert 1 40.4635000 -79.5182000 2000 500 LAND 0 NONE";
 
 #[test]
 fn the_landing_of_the_failsafe_feels_for_the_ground() {
-    let turbulence = betadeck::sim::Turbulence::Light;
+    let turbulence = betadeck::telemetry::Turbulence::Light;
     assert_met((1..=8).map(|seed| {
         let mut world = world(seed).0;
         world.wind = Wind { speed_mps: 3.0, from_deg: 45.0 * seed as f64 };

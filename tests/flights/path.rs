@@ -2,8 +2,8 @@
 
 use crate::checks::{Checks, assert_met, greatest, mean};
 use crate::rig::{Rig, SEEDS, Sample, world};
-use betadeck::sim::{Fault, Turbulence, Wind, WorldCommand};
-use betadeck::telemetry::NavState;
+use betadeck::sim::{Fault, Wind, WorldCommand};
+use betadeck::telemetry::{NavState, Turbulence};
 
 const LINE: &str = "
 waypoint insert 0 40.4635901 -79.5182000 2000 500 FLYOVER 0 ORBIT

@@ -1,8 +1,8 @@
 //! The heading of the craft in flight.
 
 use betadeck::pilot::StickInput;
-use betadeck::sim::{Airframe, Turbulence};
-use betadeck::telemetry::NavState;
+use betadeck::sim::Airframe;
+use betadeck::telemetry::{NavState, Turbulence};
 
 use crate::checks::{Checks, assert_met, greatest};
 use crate::rig::{Rig, world};

@@ -8,8 +8,8 @@ use crate::oracle;
 use betadeck::flight::FlightResult;
 use betadeck::geo::{LatLon, offset_to_latlon};
 use betadeck::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType, plan_lines};
-use betadeck::sim::{Airframe, ScheduledFault, Turbulence, Wind};
-use betadeck::telemetry::DisarmReason;
+use betadeck::sim::{Airframe, ScheduledFault, Wind};
+use betadeck::telemetry::{DisarmReason, Turbulence};
 use nalgebra::Vector2;
 
 /// The number of missions of the quick search.

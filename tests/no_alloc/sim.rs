@@ -1,7 +1,8 @@
 //! One step of the world allocates nothing, whatever happens in it.
 
 use betadeck::signals::MotorCommand;
-use betadeck::sim::{Fault, Noise, Turbulence, World, WorldCommand, WorldConfig};
+use betadeck::sim::{Fault, Noise, World, WorldCommand, WorldConfig};
+use betadeck::telemetry::Turbulence;
 
 use crate::allocations;
 

@@ -1,7 +1,8 @@
 //! The first half hour of a new user, by keys: the screen is true, stays readable and says how to go on.
 
+use betadeck::flight::forecast::ForecastKind;
 use betadeck::plan::WaypointType;
-use betadeck::session::{Event, ForecastJob, ForecastKind, ForecastReply, SessionEvent, SessionView};
+use betadeck::session::{Event, ForecastJob, ForecastReply, SessionEvent, SessionView};
 use betadeck::signals::SimTime;
 use betadeck::telemetry::{AbortReason, Guard, GuardName, GuardOp, NavState, Refusal};
 use betadeck::timeline::TimelineView;

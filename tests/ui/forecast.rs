@@ -3,10 +3,10 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use betadeck::session::{
-    Command, Forecast, ForecastEnd, ForecastJob, ForecastKind, ForecastReply, ForecastRequest,
-    ForecastResult, PathPoint, UploadReport, WHAT_IFS, WorstXte,
+use betadeck::flight::forecast::{
+    FlightResult, Forecast, ForecastEnd, ForecastKind, PathPoint, WHAT_IFS, WorstXte,
 };
+use betadeck::session::{Command, ForecastJob, ForecastReply, ForecastRequest, UploadReport};
 use betadeck::telemetry::{InFlightCommand, Snapshot};
 use betadeck::ui::{AppState, Effect, Msg, draw, update};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
@@ -85,7 +85,7 @@ fn square(kind: ForecastKind) -> Forecast {
     path.push(PathPoint { n: 54.0, e: -68.0, alt: 0.0, along_m: 430.6, time_s: 221.0 });
     Forecast {
         kind,
-        end: ForecastEnd::Flight(ForecastResult::Complete),
+        end: ForecastEnd::Flight(FlightResult::Complete),
         reason: "mission complete, landed and disarmed".to_owned(),
         time_s: 221.2,
         battery_used_pct: 38.4,
@@ -133,7 +133,7 @@ fn the_numbers_of_the_newest_estimate_stand_under_the_plan() {
 fn an_estimate_that_does_not_complete_says_why_first() {
     let (mut state, first) = ready((120, 40));
     let missed = Forecast {
-        end: ForecastEnd::Flight(ForecastResult::Refused),
+        end: ForecastEnd::Flight(FlightResult::Refused),
         reason: "autopilot refused: Waypoint 3 is 142 m from home, the fence is 100 m.".to_owned(),
         ..square(ForecastKind::PlanEstimate)
     };
@@ -206,7 +206,7 @@ fn a_what_if_is_chosen_flown_shown_and_dismissed() {
     assert_eq!(chosen.request, ForecastRequest::WhatIf(WHAT_IFS[0]));
     assert!(state.popups.is_empty() && text(&state).contains("GPS lost here: …"));
     let drifts = Forecast {
-        end: ForecastEnd::Flight(ForecastResult::Aborted),
+        end: ForecastEnd::Flight(FlightResult::Aborted),
         reason: "mission given up: The GPS fix was lost: the mission resumes 2 s after it is back."
             .to_owned(),
         time_s: 30.0,

@@ -4,11 +4,10 @@
 
 use std::sync::Arc;
 
+use betadeck::flight::forecast::{FlightResult, Forecast, ForecastEnd, ForecastKind};
 use betadeck::plan::edit::{History, PlanDocument};
 use betadeck::plan::estimate::Assumptions;
-use betadeck::session::{
-    Forecast, ForecastEnd, ForecastKind, ForecastReply, ForecastRequest, ForecastResult, UploadReport,
-};
+use betadeck::session::{ForecastReply, ForecastRequest, UploadReport};
 use betadeck::telemetry::snapshot::SettingsView;
 use betadeck::ui::editor::{FileReply, Opened, PlanId};
 use betadeck::ui::{AppState, Effect, Msg, update};
@@ -125,7 +124,7 @@ fn the_estimate_says_whose_fence_it_keeps_to() {
         });
         let forecast = Forecast {
             kind: ForecastKind::PlanEstimate,
-            end: ForecastEnd::Flight(ForecastResult::Complete),
+            end: ForecastEnd::Flight(FlightResult::Complete),
             reason: String::new(),
             time_s: 221.2,
             battery_used_pct: 38.4,

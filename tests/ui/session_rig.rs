@@ -14,9 +14,9 @@ use betadeck::record::sentence;
 use betadeck::session::command::{CliOutput, Seek};
 use betadeck::session::{Command, Handle, SessionConfig, start};
 use betadeck::signals::SimTime;
-use betadeck::sim::{Turbulence, WorldConfig};
+use betadeck::sim::WorldConfig;
 use betadeck::storage::Store;
-use betadeck::telemetry::{NavState, Snapshot};
+use betadeck::telemetry::{NavState, Snapshot, Turbulence};
 use betadeck::ui::editor::PlanId;
 use betadeck::ui::keymap::Keymap;
 use betadeck::ui::{

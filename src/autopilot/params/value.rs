@@ -2,7 +2,7 @@
 
 use strum::VariantNames as _;
 
-pub use crate::telemetry::RxLossPolicy;
+use crate::telemetry::RxLossPolicy;
 
 use crate::telemetry::FenceAction;
 

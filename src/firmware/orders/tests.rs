@@ -3,10 +3,9 @@ use strum::IntoEnumIterator as _;
 
 use super::*;
 use crate::autopilot::control::FlightControllers;
-use crate::autopilot::params::RxLossPolicy;
 use crate::geo::LatLon;
 use crate::plan::{Waypoint, WaypointType};
-use crate::telemetry::PlanSource;
+use crate::telemetry::{PlanSource, RxLossPolicy};
 
 fn plan() -> FlightPlan {
     let far = Waypoint {

@@ -9,7 +9,8 @@ use super::reader::{Layers, Reader};
 use crate::plan::format::{TomlTable, Value};
 use crate::scenario::expression::{Cursor, Number, Scope, read_number};
 use crate::scenario::quantity::Dimension;
-use crate::sim::{Noise, Turbulence, Wind, WorldConfig};
+use crate::sim::{Noise, Wind, WorldConfig};
+use crate::telemetry::Turbulence;
 use toml::de::DeValue;
 
 /// The most seeds of a case.

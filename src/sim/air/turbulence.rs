@@ -7,8 +7,9 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 use nalgebra::Vector3;
 
-use crate::sim::config::{Turbulence, Wind};
+use crate::sim::config::Wind;
 use crate::sim::random::{Normals, Stream};
+use crate::telemetry::Turbulence;
 
 const FEET_PER_METRE: f64 = 1.0 / 0.3048;
 const KNOT_MPS: f64 = 1852.0 / 3600.0;

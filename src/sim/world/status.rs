@@ -2,9 +2,10 @@
 
 use arrayvec::ArrayVec;
 
-use crate::sim::config::{Noise, Turbulence, Wind};
+use crate::sim::config::{Noise, Wind};
 use crate::sim::fault::{ActiveFault, Fault, MAX_FAULTS, ScheduledFault};
 use crate::sim::switches::Switches;
+use crate::telemetry::Turbulence;
 
 use super::World;
 

@@ -3,9 +3,9 @@
 use super::*;
 use crate::sim::airframe::Airframe;
 use crate::sim::command::WorldCommand;
-use crate::sim::config::{Noise, Turbulence, Wind, WorldConfig, WorldError};
+use crate::sim::config::{Noise, Wind, WorldConfig, WorldError};
 use crate::sim::fault::{FAULTS, Fault, FaultStart, ScheduledFault};
-use crate::telemetry::FaultKind;
+use crate::telemetry::{FaultKind, Turbulence};
 
 fn ideal() -> WorldConfig {
     WorldConfig { noise: Noise::None, ..WorldConfig::default() }

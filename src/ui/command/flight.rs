@@ -1,7 +1,8 @@
 //! Flight commands with a choice. Without an argument they open the same list as their keys.
 
 use super::did_you_mean_end;
-use crate::session::{Command, WHAT_IFS};
+use crate::flight::forecast::WHAT_IFS;
+use crate::session::Command;
 use crate::telemetry::InFlightCommand;
 use crate::ui::action::{self, Action};
 use crate::ui::app_state::AppState;

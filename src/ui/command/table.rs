@@ -1,7 +1,7 @@
 //! The commands that take an argument. To add one, add a row here and its function in the file of its subject.
 
 use super::{display, flight, plan, time, vehicle, world};
-use crate::session::command::WORLD_WORDS;
+use crate::sim::COMMAND_WORDS;
 use crate::ui::app_state::AppState;
 use crate::ui::message::Effect;
 
@@ -109,7 +109,7 @@ const COMMANDS: &[Command] = &[
 /// Returns all commands with an argument: those of the table, and the words that change the world.
 pub fn all() -> impl Iterator<Item = Command> {
     // The reset of the craft is an action, because the firmware is notified of it.
-    let words = WORLD_WORDS.iter().filter(|word| !word.value.is_empty());
+    let words = COMMAND_WORDS.iter().filter(|word| !word.value.is_empty());
     let world_commands = words.map(|word| Command {
         name: word.name,
         argument: word.value,

@@ -1,13 +1,13 @@
 //! Commands that change the simulated world: wind, noise, faults. The session parses and checks the values.
 
 use super::did_you_mean_end;
-use crate::session::command::{FAULTS, FaultInfo, WORLD_SWITCHES, WORLD_WORDS};
+use crate::sim::{COMMAND_WORDS, FAULTS, FaultInfo, SWITCHES};
 use crate::ui::app_state::AppState;
 use crate::ui::message::Effect;
 
 /// Runs `wind 5@270`, `fault gps-loss,6` and the like.
 pub(super) fn change(_: &mut AppState, name: &str, argument: &str) -> Result<Vec<Effect>, String> {
-    match WORLD_WORDS.iter().find(|word| word.name == name) {
+    match COMMAND_WORDS.iter().find(|word| word.name == name) {
         Some(word) if argument.is_empty() => Err(format!("Write :{name} {}.", word.value)),
         _ => Ok(vec![Effect::World(format!("{name}={}", argument.trim_start_matches('=').trim_start()))]),
     }
@@ -21,7 +21,7 @@ pub(super) fn complete(_: &AppState, name: &str, typed: &str) -> Vec<String> {
     match name {
         "fault" => starting(FAULTS.iter().map(FaultInfo::name).collect()),
         "end" => starting(FAULTS.iter().map(FaultInfo::name).chain(["all"]).collect()),
-        _ => match WORLD_WORDS.iter().find(|word| word.name == name) {
+        _ => match COMMAND_WORDS.iter().find(|word| word.name == name) {
             Some(word) => starting(words_of(word.value)),
             None => Vec::new(),
         },
@@ -33,7 +33,7 @@ pub(super) fn switch(_: &mut AppState, _: &str, argument: &str) -> Result<Vec<Ef
     let usage = "Write :world NAME=VALUE, such as :world battery_sag=on.";
     let (name, value) = argument.split_once(['=', ' ']).ok_or(usage)?;
     let (name, value) = (name.trim(), value.trim());
-    let names = || WORLD_SWITCHES.iter().map(|switch| switch.name);
+    let names = || SWITCHES.iter().map(|switch| switch.name);
     if !names().any(|known| known == name) {
         return Err(format!("There is no switch {name}{}", did_you_mean_end(name, names())));
     }
@@ -42,7 +42,7 @@ pub(super) fn switch(_: &mut AppState, _: &str, argument: &str) -> Result<Vec<Ef
 
 /// Returns the matching names of switches, then their values.
 pub(super) fn complete_switch(_: &AppState, _: &str, typed: &str) -> Vec<String> {
-    let lines = WORLD_SWITCHES.iter().flat_map(|switch| match typed.split_once('=') {
+    let lines = SWITCHES.iter().flat_map(|switch| match typed.split_once('=') {
         Some((name, _)) if name == switch.name => {
             words_of(switch.values).into_iter().map(|value| format!("{name}={value}")).collect()
         }

@@ -3,8 +3,8 @@
 use ratatui::text::Line;
 use unicode_width::UnicodeWidthStr as _;
 
+use crate::flight::forecast::{FlightResult, Forecast, ForecastEnd};
 use crate::plan::estimate::SettingSource;
-use crate::session::{Forecast, ForecastEnd, ForecastResult};
 use crate::ui::app_state::AppState;
 use crate::ui::editor::settings_in_force;
 use crate::ui::formatting::cut;
@@ -29,7 +29,7 @@ pub(in crate::ui) fn lines(state: &AppState, width: u16) -> Vec<Line<'static>> {
         return said(theme, Role::Dim, "flown estimate …", width);
     };
     let (mark, role) = match estimate.end {
-        ForecastEnd::Flight(ForecastResult::Complete) => ("", Role::Text),
+        ForecastEnd::Flight(FlightResult::Complete) => ("", Role::Text),
         ForecastEnd::Endless | ForecastEnd::TooLong => ("▲ ", Role::Warn),
         ForecastEnd::Flight(_) | ForecastEnd::Grounded => ("✗ ", Role::Fault),
     };

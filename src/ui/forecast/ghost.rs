@@ -1,6 +1,6 @@
 //! The forecast that the map shows.
 
-use crate::session::{Forecast, PathPoint};
+use crate::flight::forecast::{Forecast, PathPoint};
 use crate::ui::app_state::AppState;
 use crate::ui::units::Units;
 

@@ -5,7 +5,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
-use crate::session::{WHAT_IFS, WhatIf};
+use crate::flight::forecast::{WHAT_IFS, WhatIf};
 use crate::ui::app_state::AppState;
 use crate::ui::draw::popup;
 use crate::ui::theme::Role;

@@ -6,7 +6,8 @@ use std::time::Instant;
 use tokio::sync::mpsc;
 
 use super::{Ending, SessionLink, carry_out};
-use crate::session::{Command, ForecastKind, Forecaster};
+use crate::flight::forecast::ForecastKind;
+use crate::session::{Command, Forecaster};
 use crate::ui::app_state::{AppState, UiConfig};
 use crate::ui::editor::{FileReply, FileRequest};
 use crate::ui::files_link::FilesLink;

@@ -5,12 +5,11 @@ use std::str::FromStr;
 use betadeck::autopilot::engage::{EngageFacts, check};
 use betadeck::autopilot::fence::{FenceFacts, pre_flight};
 use betadeck::autopilot::machine::{Facts, Outcome, transition};
-use betadeck::autopilot::params::RxLossPolicy;
 use betadeck::autopilot::rx_loss::{RxLossFacts, decide};
 use betadeck::geo::LatLon;
 use betadeck::plan::validate::{PlanFault, WaypointFault, check_records};
 use betadeck::plan::{FlightPlan, HoldPattern, MAX_WAYPOINTS, Waypoint, WaypointType};
-use betadeck::telemetry::{AbortReason, FenceAction, PlanSource, Refusal};
+use betadeck::telemetry::{AbortReason, FenceAction, PlanSource, Refusal, RxLossPolicy};
 use serde_json::Value;
 use strum::IntoEnumIterator;
 

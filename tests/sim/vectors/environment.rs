@@ -4,9 +4,10 @@ use betadeck::geo::LocalFrame;
 use betadeck::link::proto::fdm;
 use betadeck::signals::fdm::Dialect;
 use betadeck::sim::{
-    DrydenScales, SITL_DECLINATION_DEG, Turbulence, density, magnetic_field_enu, one_minus_cosine,
-    pressure_pa, temperature_k,
+    DrydenScales, SITL_DECLINATION_DEG, density, magnetic_field_enu, one_minus_cosine, pressure_pa,
+    temperature_k,
 };
+use betadeck::telemetry::Turbulence;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use crate::vectors::{close, near, num, rows, section, vec3};

@@ -3,7 +3,8 @@
 use std::hash::{DefaultHasher, Hasher};
 
 use betadeck::signals::{MotorCommand, SensorFrame};
-use betadeck::sim::{Noise, ScheduledFault, Turbulence, World, WorldConfig};
+use betadeck::sim::{Noise, ScheduledFault, World, WorldConfig};
+use betadeck::telemetry::Turbulence;
 
 use crate::world::{ideal, put_on, stand, world};
 

@@ -2,8 +2,8 @@
 
 use std::io::{self, Write};
 
+use crate::flight::forecast::ForecastKind;
 use crate::printable;
-use crate::session::ForecastKind;
 use crate::ui::action::{ACTIONS, Context};
 use crate::ui::app_state::AppState;
 use crate::ui::command;
