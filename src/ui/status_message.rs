@@ -9,6 +9,7 @@ use crate::telemetry::{
 
 use super::action::{Action, EditAction};
 use super::app_state::AppState;
+use super::editor::findings;
 use super::event_log::Severity;
 use super::panel::Panel;
 use super::transmitter;
@@ -284,6 +285,15 @@ fn by_hand(state: &AppState) -> Option<StatusMessage> {
     let [arm, throttle, autopilot, home, upload] =
         [Action::Arm, Action::Throttle, Action::Autopilot, Action::ReturnHome, Action::Upload]
             .map(|action| state.key(action));
+    if let Some(refusal) = findings::refusal_of_the_stored(state) {
+        let plan = state.key(Action::Show(Panel::Plan));
+        let condition = format!("The autopilot would refuse: {}.", refusal.reason());
+        return message(
+            Severity::Warn,
+            condition,
+            format!("{plan} shows it; {throttle} comes down, {home} flies home"),
+        );
+    }
     let (condition, action) = match (transmitter::is_standing(state), transmitter::throttle_move(state)) {
         (true, ThrottleMove::Low) if lacks_plan(state) => {
             ("Armed, on the ground.", format!("{upload} uploads the plan, then {autopilot} takes off"))

@@ -100,12 +100,19 @@ async fn a_plan_that_the_autopilot_would_refuse_is_not_flown_and_the_pilot_keeps
     rig.keys("F").await;
     rig.assert_shown(&["Not flown, the autopilot would refuse: waypoint", "By hand: a and t."]);
     assert_eq!(rig.state.view.pilot, None);
+    rig.keys(" ").await;
+    rig.until("a fix", |state| state.view.vehicle.time.as_secs_f64() > 6.0).await;
+    rig.keys("a").await;
+    rig.until("armed", |state| state.view.vehicle.craft.armed == Some(true)).await;
+    rig.assert_shown(&["The autopilot would refuse: waypoint", "2 shows it"]);
+    rig.keys("a").await;
+    rig.until("disarmed", |state| state.view.vehicle.craft.armed == Some(false)).await;
     rig.cli("set ap_max_distance_from_home = 500").await;
     rig.until("the fence", |state| {
         state.view.vehicle.settings.is_some_and(|settings| settings.assumptions().fence_m == Some(500.0))
     })
     .await;
-    rig.keys("F ").await;
+    rig.keys("F").await;
     rig.until("the climb", |state| state.view.vehicle.truth.as_ref().unwrap().alt > 2.0).await;
     rig.keys("F").await;
     rig.until("the pilot is stopped", |state| state.view.pilot.is_none()).await;

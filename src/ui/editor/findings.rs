@@ -1,7 +1,9 @@
 //! The findings about the open plan with the craft's settings, and the edits that fix them.
 
 use crate::geo::LatLon;
+use crate::plan::FlightPlan;
 use crate::plan::edit::fix::{Fix, fix, waypoint_of};
+use crate::plan::estimate::Assumptions;
 use crate::plan::review::{Finding, review};
 use crate::ui::app_state::AppState;
 use crate::ui::editor::settings_in_force;
@@ -30,6 +32,17 @@ pub(crate) fn findings(state: &AppState) -> Vec<Finding> {
         }
         _ => Vec::new(),
     }
+}
+
+/// Returns the finding for which the autopilot would refuse a plan in the air.
+pub(crate) fn refusal(state: &AppState, plan: &FlightPlan, limits: &Assumptions) -> Option<Finding> {
+    review(plan, home(state)?, limits).into_iter().find(Finding::is_refusal)
+}
+
+/// Returns the finding for which the autopilot would refuse the plan that the craft stores.
+pub(crate) fn refusal_of_the_stored(state: &AppState) -> Option<Finding> {
+    let stored = state.view.vehicle.stored_plan.as_ref().filter(|plan| !plan.waypoints.is_empty())?;
+    refusal(state, stored, &settings_in_force::of_the_craft(state)?)
 }
 
 /// Returns the shown finding (about the waypoint under the cursor, else the first) and its fix.

@@ -1,8 +1,6 @@
 //! The flight as a whole: the scripted pilot, the upload of the plan, the speed of the simulation.
 
-use crate::plan::FlightPlan;
-use crate::plan::estimate::Assumptions;
-use crate::plan::review::{Finding, review};
+use crate::plan::review::Finding;
 use crate::session::{Command, UploadReport};
 use crate::ui::action::{Action, EditAction};
 use crate::ui::app_state::AppState;
@@ -26,10 +24,8 @@ pub(super) fn fly(state: &mut AppState) -> Vec<Effect> {
         let text = format!("The simulation is paused: {} goes on.", state.key(Action::Pause));
         state.notify(Severity::Info, text);
     }
-    if let Some(stored) = state.view.vehicle.stored_plan.as_ref().filter(|plan| !plan.waypoints.is_empty()) {
-        if let Some(limits) = settings_in_force::of_the_craft(state)
-            && let Some(refusal) = refusal(state, stored, &limits)
-        {
+    if state.view.vehicle.stored_plan.as_ref().is_some_and(|plan| !plan.waypoints.is_empty()) {
+        if let Some(refusal) = findings::refusal_of_the_stored(state) {
             return not_flown(state, &refusal);
         }
         let upload = state.key(Action::Upload);
@@ -56,16 +52,11 @@ pub(super) fn fly(state: &mut AppState) -> Vec<Effect> {
         return Vec::new();
     }
     let limits = settings_in_force::assumptions(state, state.editor.document());
-    if let Some(refusal) = refusal(state, state.plan(), &limits) {
+    if let Some(refusal) = findings::refusal(state, state.plan(), &limits) {
         return not_flown(state, &refusal);
     }
     state.fly_after_upload = Some(state.editor.plan().id());
     vec![upload_now(state)]
-}
-
-/// Returns the finding for which the autopilot would refuse a plan in the air.
-fn refusal(state: &AppState, plan: &FlightPlan, limits: &Assumptions) -> Option<Finding> {
-    review(plan, findings::home(state)?, limits).into_iter().find(Finding::is_refusal)
 }
 
 /// Keeps the craft on the ground: the autopilot would refuse the plan after the climb.

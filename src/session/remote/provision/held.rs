@@ -157,7 +157,8 @@ fn tells_of_no_change(output: &str) -> bool {
         let word = line.split_ascii_whitespace().next();
         word.is_some_and(|word| !NO_CHANGE.contains(&word)) && *line != NO_PLAN
     });
-    !output.trim().is_empty() && changes.next().is_none()
+    // A prompt alone is not an answer.
+    output.contains(char::is_alphanumeric) && changes.next().is_none()
 }
 
 /// Returns `true` if two texts are the same value: `on` is `ON`, `05` is `5`.

@@ -219,7 +219,8 @@ fn one_with_a_setting_a_switch_or_a_plan_of_its_own_is_left_alone() {
 #[test]
 fn one_that_answers_nothing_to_diff_is_not_taken_for_a_bare_one() {
     let fresh = ProvisionLines { usual: vec![MODES[0].to_owned()], of_user: Vec::new() };
-    for (text, failed) in [("", false), ("\r\n", false), ("###ERROR IN diff: UNKNOWN COMMAND###\r\n", true)] {
+    for (text, failed) in [("", false), ("\r\n# ", false), ("###ERROR IN diff: UNKNOWN COMMAND###\r\n", true)]
+    {
         let mut provision = Provision::new(ProvisionLines::default(), false).or_when_bare(fresh.clone());
         assert_eq!(provision.next(), Some(Ask::Line("diff".to_owned())));
         provision.take(&Answer::Line { text: text.to_owned(), failed, restarted: false });
