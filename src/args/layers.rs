@@ -109,7 +109,9 @@ impl Layers {
         typed: &ArgMatches,
         sources: &mut BTreeMap<String, String>,
     ) -> Result<Vec<OsString>, String> {
-        let mut given: Vec<&Arg> = options(definition).filter(|option| is_typed(typed, option)).collect();
+        // Also options that no layer can give: `check --list` silences the ports of a firmware.
+        let mut given: Vec<&Arg> =
+            definition.get_arguments().filter(|option| is_typed(typed, option)).collect();
         let mut decided = given.clone();
         let mut added = Vec::new();
         for layer in [Self::in_environment, Self::in_file] {

@@ -270,6 +270,12 @@ fn a_typed_option_silences_the_layered_one_it_conflicts_with() {
 }
 
 #[test]
+fn a_list_of_scenarios_needs_no_ports_whatever_the_environment_says() {
+    let ports = layers(&[("BETADECK_TCP_PORT", "0"), ("BETADECK_UDP_PORTS", "0,0,0,0")], "");
+    assert!(parse_line("betadeck check --list", &ports).is_ok());
+}
+
+#[test]
 fn wrong_layers_are_named() {
     for (environment, file, part) in [
         (&[("BETADECK_WIND", "5")][..], "", "environment variable BETADECK_WIND"),
