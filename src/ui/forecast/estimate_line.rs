@@ -92,7 +92,7 @@ fn numbers(
     let length = metres(Some(along_m), 0);
     let fence = (format!("{fence}{long}"), format!("{fence}{short}"));
     let xte = (format!("worst xte {xte}"), format!("xte {xte}"));
-    // What a narrow line cuts off is the last.
+    // A narrow line cuts off the last number.
     let [next, last] = if fence_from == SettingSource::Unsaid { [xte, fence] } else { [fence, xte] };
     [
         (length.clone(), length),

@@ -9,7 +9,7 @@ pub(super) struct Shown {
     pub(super) place: String,
     /// The command as the page has it.
     pub(super) text: String,
-    /// It stands in a block, where its exit code is 0 unless the comment beside it says otherwise.
+    /// `true` in a block, where its exit code is 0 unless the comment beside it says otherwise.
     pub(super) in_block: bool,
 }
 
