@@ -88,13 +88,23 @@ impl MarkKind {
 
 /// The marks of the flight, oldest first. Views share them.
 #[derive(Debug, Default)]
-pub struct Marks(Arc<Vec<Mark>>);
+pub struct Marks {
+    all: Arc<Vec<Mark>>,
+    /// The times of crashes and of all disarming, oldest first.
+    ends: Vec<SimTime>,
+}
 
 impl Marks {
     /// Adds the mark of an event.
     pub fn note(&mut self, event: &Event) {
         let Some(kind) = MarkKind::of(&event.kind) else { return };
-        let marks = Arc::make_mut(&mut self.0);
+        if matches!(event.kind, EventKind::Crash { .. } | EventKind::Firmware(FirmwareEvent::Disarmed(_))) {
+            if self.ends.len() == MOST {
+                self.ends.drain(..MOST / 4);
+            }
+            self.ends.push(event.time);
+        }
+        let marks = Arc::make_mut(&mut self.all);
         if marks.len() == MOST {
             marks.drain(..MOST / 4);
         }
@@ -103,22 +113,27 @@ impl Marks {
 
     /// Forgets the marks after `time`.
     pub fn forget_after(&mut self, time: SimTime) {
-        Arc::make_mut(&mut self.0).retain(|mark| mark.time <= time);
+        Arc::make_mut(&mut self.all).retain(|mark| mark.time <= time);
+        self.ends.retain(|end| *end <= time);
     }
 
     pub fn all(&self) -> Arc<Vec<Mark>> {
-        Arc::clone(&self.0)
+        Arc::clone(&self.all)
     }
 
-    /// Returns the first mark of the mishap that ends at `time`. A mishap is a sequence of alarms, disarming,
-    /// touchdown and end of the mission with short times between them.
+    /// Returns the first mark of the mishap that ended the last flight before `time`. A mishap is a sequence of alarms,
+    /// touchdown and end of the mission with short times between them, which ends with the disarming or the crash. Later
+    /// marks, of a wreck, do not count.
     pub fn mishap_before(&self, time: SimTime) -> Option<Mark> {
+        let armed = self.all.iter().rfind(|mark| mark.time <= time && mark.kind == MarkKind::Armed);
+        let since = armed.map_or(SimTime::ZERO, |mark| mark.time);
+        let end = *self.ends.iter().find(|end| (since..=time).contains(end))?;
         let is_part = |mark: &Mark| {
-            use MarkKind::{Alarm, Disarmed, State, Touchdown};
-            matches!(mark.kind, Alarm | Disarmed | Touchdown | State(NavState::Idle))
+            use MarkKind::{Alarm, Disarmed, Recovery, State, Touchdown};
+            matches!(mark.kind, Alarm | Recovery | Disarmed | Touchdown | State(NavState::Idle))
         };
         let mut first: Option<Mark> = None;
-        for mark in self.0.iter().rev().filter(|mark| mark.time <= time) {
+        for mark in self.all.iter().rev().filter(|mark| mark.time <= end) {
             let is_close = first.is_none_or(|first| first.time.seconds_since(mark.time) <= MISHAP_GAP_S);
             if !is_part(mark) || !is_close {
                 break;
@@ -130,11 +145,44 @@ impl Marks {
 
     /// Returns the latest mark before `time`, of all marks or only of the states.
     pub fn before(&self, time: SimTime, states_only: bool) -> Option<Mark> {
-        self.0.iter().rfind(|mark| mark.time < time && (!states_only || mark.kind.is_state())).copied()
+        self.all.iter().rfind(|mark| mark.time < time && (!states_only || mark.kind.is_state())).copied()
     }
 
     /// Returns the earliest mark after `time`, of all marks or only of the states.
     pub fn after(&self, time: SimTime, states_only: bool) -> Option<Mark> {
-        self.0.iter().find(|mark| mark.time > time && (!states_only || mark.kind.is_state())).copied()
+        self.all.iter().find(|mark| mark.time > time && (!states_only || mark.kind.is_state())).copied()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn marks(events: &[(u64, EventKind)]) -> Marks {
+        let mut marks = Marks::default();
+        for (second, kind) in events {
+            marks.note(&Event { time: SimTime(second * 1_000_000), kind: kind.clone() });
+        }
+        marks
+    }
+
+    #[test]
+    fn what_happens_to_a_wreck_does_not_hide_the_mishap() {
+        use FirmwareEvent::{Armed, Disarmed, RxLoss, RxRecovered};
+        let flight = [
+            (5, EventKind::Firmware(Armed)),
+            (100, EventKind::Firmware(RxLoss)),
+            (102, EventKind::Firmware(Disarmed(DisarmReason::Failsafe))),
+            (300, EventKind::Firmware(RxRecovered)),
+            (400, EventKind::Firmware(RxLoss)),
+            (500, EventKind::Firmware(Disarmed(DisarmReason::Switch))),
+        ];
+        for known in 3..=flight.len() {
+            let mishap = marks(&flight[..known]).mishap_before(SimTime(600_000_000));
+            assert_eq!(mishap.map(|mark| mark.time), Some(SimTime(100_000_000)), "{known} events");
+        }
+        let mut marks = marks(&flight);
+        marks.forget_after(SimTime(101_000_000));
+        assert_eq!(marks.mishap_before(SimTime(600_000_000)), None, "the flight goes on");
     }
 }

@@ -48,6 +48,8 @@ pub struct Editor {
     register: Vec<Waypoint>,
     /// The plan uploaded to the craft last.
     uploaded: Option<Uploaded>,
+    /// The upload before the last one.
+    uploaded_before: Option<Uploaded>,
     pub(super) popup: Option<EditorPopup>,
     /// The waypoint whose altitude is dragged in the profile, and its current altitude, cm.
     pub(super) dragged_altitude: Option<(usize, i32)>,
@@ -90,6 +92,7 @@ impl Editor {
             field: None,
             register: Vec::new(),
             uploaded: None,
+            uploaded_before: None,
             popup: None,
             dragged_altitude: None,
             quitting: false,
@@ -112,7 +115,15 @@ impl Editor {
     pub(super) fn remember_upload(&mut self) {
         let document = self.document();
         let (plan, settings) = (document.plan.clone(), document.settings.clone());
-        self.uploaded = Some(Uploaded { id: self.plan().id(), plan, settings, refused: Vec::new() });
+        let uploaded = Uploaded { id: self.plan().id(), plan, settings, refused: Vec::new() };
+        self.uploaded_before = self.uploaded.replace(uploaded);
+    }
+
+    /// Forgets an upload that failed: the craft has what it had before.
+    pub(super) fn forget_upload(&mut self, id: PlanId) {
+        if self.uploaded.as_ref().is_some_and(|uploaded| uploaded.id == id) {
+            self.uploaded = self.uploaded_before.take();
+        }
     }
 
     /// Remembers the settings of the plan uploaded last that the firmware refused.
@@ -122,9 +133,10 @@ impl Editor {
         }
     }
 
-    /// Returns the settings uploaded last that the firmware refused.
-    pub(super) fn refused_settings(&self) -> &[String] {
-        self.uploaded.as_ref().map_or(&[], |uploaded| &uploaded.refused)
+    /// Returns the settings that the firmware refused when this editor uploaded this plan.
+    pub(super) fn refused_settings(&self, plan: &FlightPlan) -> &[String] {
+        let uploaded = self.uploaded.as_ref().filter(|uploaded| uploaded.plan == *plan);
+        uploaded.map_or(&[], |uploaded| &uploaded.refused)
     }
 
     /// Returns `true` if this editor uploaded this plan to the craft.

@@ -286,13 +286,15 @@ fn by_hand(state: &AppState) -> Option<StatusMessage> {
         [Action::Arm, Action::Throttle, Action::Autopilot, Action::ReturnHome, Action::Upload]
             .map(|action| state.key(action));
     if let Some(refusal) = findings::refusal_of_the_stored(state) {
-        let plan = state.key(Action::Show(Panel::Plan));
         let condition = format!("The autopilot would refuse: {}.", refusal.reason());
-        return message(
-            Severity::Warn,
-            condition,
-            format!("{plan} shows it; {throttle} comes down, {home} flies home"),
-        );
+        let action = match (transmitter::is_standing(state), transmitter::throttle_move(state)) {
+            (true, _) => format!("{arm} disarms"),
+            (false, _) if transmitter::is_sinking(state) => format!("{throttle} stops the descent"),
+            (false, ThrottleMove::Sink(_)) => format!("{throttle} comes down, {home} flies home"),
+            (false, ThrottleMove::Hover) => format!("{throttle} holds the place"),
+            (false, ThrottleMove::Low) => format!("{home} flies home"),
+        };
+        return message(Severity::Warn, condition, action);
     }
     let (condition, action) = match (transmitter::is_standing(state), transmitter::throttle_move(state)) {
         (true, ThrottleMove::Low) if lacks_plan(state) => {

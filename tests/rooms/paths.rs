@@ -72,7 +72,9 @@ pub(crate) fn named(file: &SourceFile) -> Vec<Named> {
                 index = end;
                 continue;
             }
-            "crate" | "super" | "std" if is_path(index + 1) && (index == 0 || tokens[index - 1] != "::") => {
+            "crate" | "super" | "std" | "tokio" | "rustix" | "tempfile"
+                if is_path(index + 1) && !follows_a_segment(&tokens[..index]) =>
+            {
                 let mut leaves = Vec::new();
                 let end = leaves_of(&tokens, index, &[], &mut leaves);
                 let modules: Vec<&str> = module
@@ -93,6 +95,12 @@ pub(crate) fn named(file: &SourceFile) -> Vec<Named> {
         index += 1;
     }
     found
+}
+
+/// Returns `true` if the tokens end within a path; a `::` at its beginning is not one.
+fn follows_a_segment(before: &[String]) -> bool {
+    let mut last = before.iter().rev().map(String::as_str);
+    last.next() == Some("::") && last.next().is_some_and(|token| is_word(token) || token == ">")
 }
 
 /// Returns `true` if the tokens end with `pub` or `pub(crate)`.

@@ -23,7 +23,7 @@ const PURE: [&str; 15] = [
 ];
 
 /// Modules of `std` that reach the world outside the program.
-const OUTSIDE: [&str; 5] = ["env", "fs", "net", "process", "thread"];
+const OUTSIDE: [&str; 6] = ["env", "fs", "net", "os", "process", "thread"];
 
 /// Types that make a `static` a variable.
 const VARIABLES: [&str; 8] =
@@ -81,6 +81,7 @@ fn ways_out(file: &SourceFile) -> Vec<String> {
             ["std", "time", "Instant" | "SystemTime", ..] | ["std"] | ["std", "*"] | ["std", "time", "*"] => {
                 true
             }
+            ["std", "io", "stdin" | "stdout" | "stderr", ..] => true,
             ["tokio" | "rustix" | "tempfile", ..] => true,
             _ => false,
         };
@@ -150,6 +151,10 @@ fn every_known_way_out_is_found() {
         "let now = std::time::Instant::now();",
         "use std::time::*;",
         "use tokio::net;",
+        "fn f() { tokio::spawn(g); }",
+        "let text = ::std::fs::read(name);",
+        "let line = std::io::stdin().lines();",
+        "use std::os::unix::net::UnixStream;",
         "static mut COUNT: u32 = 0;",
         "static COUNT: std::sync::atomic::AtomicU32 = AtomicU32::new(0);",
         "static ALL: Mutex<Vec<u32>> = Mutex::new(Vec::new());",

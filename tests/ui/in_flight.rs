@@ -104,7 +104,7 @@ async fn a_plan_that_the_autopilot_would_refuse_is_not_flown_and_the_pilot_keeps
     rig.until("a fix", |state| state.view.vehicle.time.as_secs_f64() > 6.0).await;
     rig.keys("a").await;
     rig.until("armed", |state| state.view.vehicle.craft.armed == Some(true)).await;
-    rig.assert_shown(&["The autopilot would refuse: waypoint", "2 shows it"]);
+    rig.assert_shown(&["The autopilot would refuse: waypoint", "→ a disarms"]);
     rig.keys("a").await;
     rig.until("disarmed", |state| state.view.vehicle.craft.armed == Some(false)).await;
     rig.cli("set ap_max_distance_from_home = 500").await;

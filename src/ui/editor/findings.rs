@@ -36,7 +36,11 @@ pub(crate) fn findings(state: &AppState) -> Vec<Finding> {
 
 /// Returns the finding for which the autopilot would refuse a plan in the air.
 pub(crate) fn refusal(state: &AppState, plan: &FlightPlan, limits: &Assumptions) -> Option<Finding> {
-    review(plan, home(state)?, limits).into_iter().find(Finding::is_refusal)
+    // Arming sets home where the craft is.
+    let craft = &state.view.vehicle.craft;
+    let here = craft.gps.as_ref().filter(|_| craft.has_fix()).map(|gps| gps.position);
+    let home = craft.home.filter(|_| craft.is_armed()).or(here).or_else(|| home(state))?;
+    review(plan, home, limits).into_iter().find(Finding::is_refusal)
 }
 
 /// Returns the finding for which the autopilot would refuse the plan that the craft stores.

@@ -60,7 +60,7 @@ pub(crate) fn differing(state: &AppState, document: &PlanDocument) -> Vec<String
         let name = name_of(line);
         !document.settings[at + 1..].iter().any(|later| name_of(later) == name)
             && !edited.contains(&line.as_str())
-            && !state.editor.refused_settings().iter().any(|refused| name_of(refused) == name)
+            && !state.editor.refused_settings(&document.plan).iter().any(|refused| name_of(refused) == name)
     });
     let differs = |line: &String| craft.with_settings(&[line]) != craft;
     lines.map(|(_, line)| line).filter(|line| differs(line)).cloned().collect()

@@ -12,6 +12,9 @@ use crate::ui::popup::{GoTo, Popup};
 
 mod moved_target;
 
+/// The setting of the fence.
+const FENCE_SETTING: &str = "ap_max_distance_from_home";
+
 /// The speeds `[` and `]` go through.
 const SPEEDS: [f64; 12] = [0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, f64::INFINITY];
 
@@ -110,14 +113,17 @@ pub(super) fn uploaded(
                 }
             };
             let converted = report.remark().map_or_else(String::new, |sentence| format!(" {sentence}"));
-            let fence =
-                state.replaced_fence.take().map_or_else(String::new, |sentence| format!(" {sentence}"));
+            let is_refused = report.refused.iter().any(|line| line.contains(FENCE_SETTING));
+            let fence = state.replaced_fence.take().filter(|_| !is_refused);
+            let fence = fence.map_or_else(String::new, |sentence| format!(" {sentence}"));
             let text = format!("Uploaded {title}: {count} waypoints.{fence}{converted}{then}");
             state.editor.remember_refused(id, report.refused);
             state.notify(Severity::Good, text);
             if fly { vec![Effect::Send(Command::Pilot(true))] } else { Vec::new() }
         }
         Err(sentence) => {
+            state.editor.forget_upload(id);
+            state.replaced_fence = None;
             state.notify(
                 Severity::Fault,
                 format!("Uploading {title} failed: {}", state.keymap.in_force(&sentence)),

@@ -7,7 +7,7 @@ use crate::pty::Terminal;
 /// The beginning of a line, and the words on the screen after it was carried out.
 const CARRIED_OUT: [(&str, &str); 12] = [
     (":allow-changes", "changes need no permission"),
-    (":arm", "DISARMED"),
+    (":arm", "Cannot arm, "),
     (":fault gps-loss", "Fault gps-loss begins."),
     (":fault teleport", "Fault teleport 90,90,0 begins."),
     (":flight.home", "Nothing to bring home"),
@@ -32,7 +32,7 @@ fn every_line_of_the_pages_for_the_screen_is_carried_out() {
         }
         let mut terminal = Terminal::betadeck(200, 60, &["--fresh", "--no-ports"]);
         terminal.until_shown("DISARMED");
-        assert!(*words == "DISARMED" || !terminal.screen().contains(words), "{words} is always there");
+        assert!(!terminal.screen().contains(words), "{words} is always there");
         terminal.send(&format!("{line}\r"));
         terminal.until_shown(words);
         terminal.send("q");
@@ -47,10 +47,10 @@ fn a_refused_line_of_the_screen_names_what_is_wrong_with_it() {
     let mut terminal = Terminal::betadeck(200, 60, &["--fresh", "--no-ports"]);
     terminal.until_shown("DISARMED");
     for (line, problem) in [
-        (":nonsense", "nonsense"),
-        (":wind 5@27x", "27x"),
-        (":set ap_l1_enabel=OFF", "ap_l1_enable"),
-        (":fault teleport,90,90,0", "teleport"),
+        (":nonsense", "There is no command nonsense"),
+        (":wind 5@27x", "direction 27x is not a number"),
+        (":set ap_l1_enabel=OFF", "Did you mean ap_l1_enable?"),
+        (":fault teleport,90,90,0", "three numbers are needed"),
     ] {
         let before = terminal.screen();
         terminal.send(&format!("{line}\r"));
