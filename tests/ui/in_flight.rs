@@ -119,6 +119,8 @@ async fn a_plan_that_the_autopilot_would_refuse_is_not_flown_and_the_pilot_keeps
     let stopped = rig.time();
     rig.session.commands.send(Command::Speed(4.0)).await.unwrap();
     rig.until("ten seconds", |state| state.view.vehicle.time.seconds_since(stopped) > 10.0).await;
+    rig.keys("F").await;
+    rig.assert_shown(&["The craft is in the air already: `g` engages the autopilot."]);
     assert!(rig.picture().truth.as_ref().unwrap().alt < 12.0, "{}", rig.screen());
 }
 

@@ -96,6 +96,9 @@ pub fn enabled(state: &AppState, action: Action) -> Result<(), String> {
         }
         Action::Fly if state.view.pilot.is_none() && craft.is_armed() => {
             let (engage, arm) = (state.key(Action::Autopilot), state.key(Action::Arm));
+            if !transmitter::is_standing(state) {
+                return Err(format!("The craft is in the air already: `{engage}` engages the autopilot."));
+            }
             Err(format!(
                 "The craft is armed already: `{engage}` engages the autopilot, or disarm with `{arm}` first."
             ))
