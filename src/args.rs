@@ -29,7 +29,7 @@ use std::ffi::OsString;
 use clap::error::ErrorKind;
 use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 
-use crate::did_you_mean;
+use crate::text::did_you_mean;
 
 pub use betaloop::{Betaloop, BetaloopError};
 pub use check::{CheckArgs, MOST_FLIGHTS};

@@ -9,7 +9,7 @@ use betadeck::flight::forecast::ForecastRun;
 use betadeck::plan::builtin::{BuiltinPlan, DEMO};
 use betadeck::plan::edit::History;
 use betadeck::plan::upload_lines;
-use betadeck::record::sentence;
+use betadeck::report::sentence;
 use betadeck::session::{ForecastReply, ForecastRequest, SessionView};
 use betadeck::signals::SimTime;
 use betadeck::sim::WorldConfig;

@@ -16,7 +16,7 @@ use super::firmware::{self, Beside, RemoteFirmware};
 use super::interrupt::interrupt_flag;
 use super::setup;
 use crate::args::{CheckArgs, FlightArgs, PhysicsArgs};
-use crate::record::check::{Compared, Summary};
+use crate::report::check::{Compared, Summary};
 use crate::scenario::Draft;
 use load::Loaded;
 pub(super) use load::load_one;

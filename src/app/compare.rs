@@ -7,7 +7,7 @@ mod recorder;
 use super::error::{self, AppError};
 use super::firmware::{Beside, Chosen, RemoteFirmware};
 use crate::args::{CompareArgs, FirmwareChoice, FlightArgs, PhysicsArgs};
-use crate::record::compare::{Comparison, Side};
+use crate::report::compare::{Comparison, Side};
 use flights::Flights;
 use outputs::Outputs;
 
@@ -132,10 +132,10 @@ fn names(choices: [&FirmwareChoice; 2]) -> [String; 2] {
 
 /// Returns the air and the seed, for people.
 fn conditions(flight: &FlightArgs) -> String {
-    let mut told = vec![flight.wind.map_or_else(|| "calm".to_owned(), |wind| format!("wind {wind}"))];
-    told.extend(flight.gust.map(|gust| format!("gusts {gust} m/s")));
-    told.extend(flight.turbulence.map(|level| format!("turbulence {level}")));
-    told.extend(flight.noise.map(|noise| format!("noise {noise}")));
-    told.push(format!("seed {}", flight.seed.unwrap_or(1)));
-    told.join(", ")
+    let mut reported = vec![flight.wind.map_or_else(|| "calm".to_owned(), |wind| format!("wind {wind}"))];
+    reported.extend(flight.gust.map(|gust| format!("gusts {gust} m/s")));
+    reported.extend(flight.turbulence.map(|level| format!("turbulence {level}")));
+    reported.extend(flight.noise.map(|noise| format!("noise {noise}")));
+    reported.push(format!("seed {}", flight.seed.unwrap_or(1)));
+    reported.join(", ")
 }

@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_network_can_do_at_the_doors_of_a_craft_is_told_whole() {
+    fn everything_a_network_can_do_at_the_doors_of_a_craft_is_reported() {
         let address = IpAddr::V4(Ipv4Addr::UNSPECIFIED);
         let of_real_craft = beyond_loopback(address, true);
         assert!(

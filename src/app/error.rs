@@ -3,7 +3,7 @@
 use std::io::Write as _;
 
 use super::patient_output::PatientOutput;
-use crate::printable;
+use crate::text::printable;
 
 /// Exit code: an expectation was not met.
 pub(super) const FAILED: u8 = 1;

@@ -5,8 +5,8 @@ mod executable;
 mod folder;
 pub(super) mod link;
 mod patience;
+pub(super) mod reported;
 pub(super) mod run;
-pub(super) mod told;
 
 use std::path::{Path, PathBuf};
 

@@ -16,7 +16,7 @@ use crate::args::{FlyArgs, PhysicsArgs};
 use crate::flight::setup::{BootLines, PhysicsSource};
 use crate::flight::{Flight, FlightEnd, FlightOptions, FlightResult};
 use crate::plan::format::PlanFile;
-use crate::record::End;
+use crate::report::End;
 use crate::session::{Event, Pacer, hazards, upload};
 use crate::storage::Store;
 use crate::vehicle::Vehicle;

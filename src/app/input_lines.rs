@@ -69,7 +69,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_text_or_too_long_is_passed_over_and_the_rest_is_read() {
+    fn bytes_that_are_no_text_and_long_lines_are_skipped_and_the_rest_is_read() {
         let long = vec![b'x'; 3 * LONGEST as usize];
         let input = [b"one\r\n\xff\n\ntwo\n".as_slice(), &long, b"\nthree"].concat();
         let read = lines(&input);

@@ -5,12 +5,12 @@ use super::error::AppError;
 use super::live::LiveArgs;
 use super::tui::{self, Screen};
 use crate::args::{DoorArgs, FlightArgs, Instant, OpenArgs, PhysicsArgs, ReviewArgs};
-use crate::did_you_mean;
 use crate::scenario::{Air, Case, CaseFlight, Scenario};
 use crate::session::{FlownBefore, SessionView};
 use crate::signals::SimTime;
 use crate::storage::Store;
 use crate::telemetry::Event;
+use crate::text::did_you_mean;
 use crate::timeline::Timeline;
 use crate::ui::keymap::Keymap;
 

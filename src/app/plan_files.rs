@@ -38,7 +38,7 @@ pub(super) struct PlanFiles {
     /// The directory in which a plan was last opened or saved.
     directory: PathBuf,
     /// `true` if it was reported that a journal could not be written.
-    told: bool,
+    reported: bool,
     /// The losses of journals, as sentences that were not reported yet.
     lost: Vec<String>,
     lines: LineHistory,
@@ -50,7 +50,7 @@ struct OpenFile {
     /// The contents of the file when it was last read or written.
     seen: Content,
     /// `true` if the change was reported.
-    told: bool,
+    reported: bool,
     /// The document with its history, as in the journal's file, or as it will be there once there is an edit to keep.
     kept: Journal,
     journal: Option<JournalFile>,
@@ -68,7 +68,7 @@ impl PlanFiles {
             open: BTreeMap::new(),
             next: 1,
             directory,
-            told: false,
+            reported: false,
             lost: Vec::new(),
             lines: LineHistory::new(state),
         }
@@ -189,7 +189,7 @@ impl PlanFiles {
             FileRequest::Begin(id, document) => {
                 let kept = Journal { file: None, history: History::new(*document, false) };
                 let (path, seen, journal) = (None, Content::Missing, None);
-                let file = OpenFile { path, seen, told: false, kept, journal, is_behind: false };
+                let file = OpenFile { path, seen, reported: false, kept, journal, is_behind: false };
                 self.open.insert(id, file);
                 Vec::new()
             }
@@ -254,7 +254,7 @@ impl PlanFiles {
         }
         if let Some(file) = self.open.get_mut(&id) {
             file.seen = content;
-            file.told = false;
+            file.reported = false;
         }
         Opened { id, file: Some(path), history, notes, recovered: false }
     }
@@ -322,7 +322,7 @@ impl PlanFiles {
         // The journal is rewritten without the part that was cut short.
         let mut journal = journal;
         let is_behind = journal.as_mut().is_some_and(|journal| journal.rewrite(&kept).is_err());
-        let file = OpenFile { path: path.clone(), seen, told: false, kept, journal, is_behind };
+        let file = OpenFile { path: path.clone(), seen, reported: false, kept, journal, is_behind };
         self.open.insert(id, file);
         Opened { id, file: path, history, notes, recovered: false }
     }
@@ -350,7 +350,7 @@ impl PlanFiles {
             Err(sentence) => return vec![FileReply::Failed(sentence)],
         };
         file.seen = seen;
-        file.told = false;
+        file.reported = false;
         file.path = Some(path.clone());
         if let Some(parent) = path.parent() {
             self.directory = parent.to_owned();
@@ -371,11 +371,11 @@ impl PlanFiles {
         };
         file.is_behind = written.is_err();
         let Err(error) = written else {
-            let again = self.told && !self.open.values().any(|file| file.is_behind);
-            self.told &= !again;
+            let again = self.reported && !self.open.values().any(|file| file.is_behind);
+            self.reported &= !again;
             return again.then_some(FileReply::KeptAgain);
         };
-        let first = !std::mem::replace(&mut self.told, true);
+        let first = !std::mem::replace(&mut self.reported, true);
         first.then(|| {
             FileReply::NotKept(format!(
                 "Edits cannot be kept in {}: {error}. Save often.",
@@ -395,10 +395,10 @@ impl PlanFiles {
         for (&id, file) in &mut self.open {
             let Some(path) = &file.path else { continue };
             let is_other = Content::of(path) != file.seen;
-            if is_other && !file.told {
+            if is_other && !file.reported {
                 changed.push(id);
             }
-            file.told = is_other;
+            file.reported = is_other;
         }
         changed
     }

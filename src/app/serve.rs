@@ -11,9 +11,9 @@ use super::setup;
 use super::stop_signal;
 use crate::args::{OutputFile, ServeArgs};
 use crate::plan::format::PlanFile;
-use crate::printable;
-use crate::record::{json, sentence};
+use crate::report::{json, sentence};
 use crate::session::{Command, Event, Handle};
+use crate::text::printable;
 
 /// Serves until a signal. Every event is a line of output.
 pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {

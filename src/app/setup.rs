@@ -16,7 +16,7 @@ use crate::plan::builtin::BuiltinPlan;
 use crate::plan::format::{self, PlanFile, SettingPart};
 use crate::plan::review::Finding;
 use crate::plan::validate::check_plan;
-use crate::record::UtcSeconds;
+use crate::report::UtcSeconds;
 use crate::signals::SimTime;
 use crate::sim::{Airframe, Home, WorldConfig};
 use crate::storage::Store;

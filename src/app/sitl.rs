@@ -22,11 +22,11 @@ use crate::flight::FlightSetup;
 use crate::flight::setup::PhysicsSource;
 use crate::link::ListenConfig;
 use crate::link::proto::fdm_link::FdmLinkConfig;
-use crate::printable;
-use crate::record::gpx::{GpxHeader, GpxPoint, GpxWriter, UtcSeconds};
+use crate::report::gpx::{GpxHeader, GpxPoint, GpxWriter, UtcSeconds};
 use crate::session::sitl::{OutputLine, Sitl, SitlConfig, SitlEnd, SitlError, SitlPorts, show_links};
 use crate::storage::Store;
 use crate::telemetry::Snapshot;
+use crate::text::printable;
 
 /// The name of the track file.
 const TRACK: &str = "sitl_track.gpx";

@@ -20,7 +20,7 @@ use crate::firmware::cli;
 use crate::flight::setup::check_setting;
 use crate::plan::builtin::{BuiltinPlan, DEMO};
 use crate::plan::format::PlanFile;
-use crate::record::sentence;
+use crate::report::sentence;
 use crate::session::{FlownBefore, SessionView};
 use crate::storage::Store;
 use crate::ui::editor::FileReply;

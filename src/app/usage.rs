@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::error;
 use crate::args::{self, Layers};
-use crate::printable;
+use crate::text::printable;
 
 /// Makes the name of the program printable, because every usage line shows it.
 pub(super) fn with_printable_name(mut arguments: Vec<OsString>) -> Vec<OsString> {

@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn other_files_are_told_apart() {
+    fn other_files_are_recognized() {
         assert_eq!(Betaloop::read(""), Err(BetaloopError::NoSection));
         assert_eq!(Betaloop::read("[betaloop]\nBetaflightElf=x"), Err(BetaloopError::NoSection));
         assert_eq!(Betaloop::read("set ap_max_angle = 25\nsave\n"), Err(BetaloopError::NoSection));

@@ -82,11 +82,11 @@ mod tests {
 
     #[test]
     fn a_wrong_place_and_a_second_source_of_flight_are_refused() {
-        let told = tui(&["--connect", "/dev/ttyACM0"]).unwrap_err();
-        assert!(told.contains("such as serial:/dev/ttyACM0"), "{told}");
+        let reported = tui(&["--connect", "/dev/ttyACM0"]).unwrap_err();
+        assert!(reported.contains("such as serial:/dev/ttyACM0"), "{reported}");
         for other in ["--firmware=attach", "--physics=external", "--betaloop=config.txt"] {
-            let told = tui(&["--connect", "tcp:localhost:5761", other]).unwrap_err();
-            assert!(told.contains("cannot be used with"), "{told}");
+            let reported = tui(&["--connect", "tcp:localhost:5761", other]).unwrap_err();
+            assert!(reported.contains("cannot be used with"), "{reported}");
         }
     }
 
@@ -95,9 +95,9 @@ mod tests {
         let place = ["--connect", "tcp:localhost:5761"];
         assert_eq!(idle(&place), None);
         assert_eq!(idle(&[&place[..], &["--tcp-port", "0", "--listen", "::1"]].concat()), None);
-        let told = idle(&[&place[..], &["--wind", "5@270", "--udp-ports", "1,2,3,4"]].concat());
+        let reported = idle(&[&place[..], &["--wind", "5@270", "--udp-ports", "1,2,3,4"]].concat());
         assert_eq!(
-            told.as_deref(),
+            reported.as_deref(),
             Some("--wind, --udp-ports have no effect: nothing is simulated with --connect.")
         );
         assert!(idle(&[&place[..], &["--listen", "::1"]].concat()).unwrap().starts_with("--listen has"));

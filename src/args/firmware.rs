@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn firmware_and_physics_cannot_both_be_outside() {
+    fn firmware_and_physics_cannot_both_be_remote() {
         let physics = PhysicsArgs { physics: Some(PhysicsChoice::External), ..PhysicsArgs::default() };
         let check = |firmware: FirmwareChoice| {
             firmware.check(&FirmwareLinkArgs::default(), &FlightArgs::default(), &physics)

@@ -13,7 +13,7 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, FromArgMatches as _};
 
 use super::Cli;
-use crate::did_you_mean;
+use crate::text::did_you_mean;
 
 /// The start of the names of environment variables.
 pub const ENVIRONMENT_PREFIX: &str = "BETADECK_";

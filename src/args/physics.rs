@@ -61,7 +61,7 @@ impl PhysicsArgs {
     }
 
     /// Returns a sentence about options that were given but have no effect with this physics and firmware.
-    pub fn idle_options(&self, flight: &FlightArgs, firmware_outside: bool) -> Option<String> {
+    pub fn idle_options(&self, flight: &FlightArgs, remote_firmware: bool) -> Option<String> {
         let mirror = ("--fdm-mirror", self.simulator.fdm_mirror.is_some());
         let (names, why) = if self.is_external() {
             let given = [
@@ -76,7 +76,7 @@ impl PhysicsArgs {
                 ("--speed", flight.speed.is_some()),
             ];
             (given.to_vec(), "the external simulator decides that")
-        } else if firmware_outside {
+        } else if remote_firmware {
             let given = [
                 mirror,
                 ("--attitude", flight.attitude.is_some()),
@@ -140,7 +140,7 @@ mod tests {
             ordered.idle_options(&flight, false).unwrap(),
             "--motor-order has no effect: firmware and physics are embedded (--firmware PATH, --physics external)."
         );
-        assert_eq!(ordered.idle_options(&flight, true), None, "it orders the motors of the firmware outside");
+        assert_eq!(ordered.idle_options(&flight, true), None, "it orders the motors of the remote firmware");
         let attitude = FlightArgs { attitude: Some(AttitudeChoice::Truth), ..flight };
         assert_eq!(
             ordered.idle_options(&attitude, true).unwrap(),

@@ -71,7 +71,7 @@ fn fly_reads_every_option() {
 }
 
 #[test]
-fn the_firmware_can_be_outside() {
+fn the_firmware_can_be_remote() {
     let fly =
         fly("betadeck fly square --firmware ./sitl.elf --firmware-arg --ip --firmware-arg 127.0.0.1 --yes \
          --fdm-stamps sim --tcp-port 6000 --udp-ports 1,2,3,4 --fdm-dialect legacy --motor-order legacy");

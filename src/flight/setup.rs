@@ -117,8 +117,8 @@ impl FlightSetup {
         let of_plan =
             BootLines::settings(format!("settings of plan {}", self.plan.name), &self.plan.settings);
         for lines in std::iter::once(&of_plan).chain(&self.boot_lines) {
-            let told = lines.apply(&mut configuration).map_err(SetupError::BootLines)?;
-            notices.extend(told.into_iter().map(SetupNotice::Firmware));
+            let reported = lines.apply(&mut configuration).map_err(SetupError::BootLines)?;
+            notices.extend(reported.into_iter().map(SetupNotice::Firmware));
         }
         notices.extend(configuration.starter_modes().then_some(SetupNotice::StarterModes));
         Ok((configuration, notices))
@@ -153,7 +153,7 @@ impl FlightSetup {
     fn build_remote(self) -> Result<(Vehicle, Vec<SetupNotice>), SetupError> {
         let (home, notice) = self.boot_home();
         let WorldConfig { faults, switches, .. } = &self.world;
-        let idle = faults.iter().filter(|scheduled| !scheduled.fault.acts_on_controller_outside(switches));
+        let idle = faults.iter().filter(|scheduled| !scheduled.fault.acts_on_remote_controller(switches));
         let mut notices: Vec<SetupNotice> = notice.into_iter().collect();
         for notice in idle.map(|scheduled| SetupNotice::IdleFault(scheduled.fault.kind())) {
             if !notices.contains(&notice) {
@@ -194,23 +194,23 @@ mod tests {
     }
 
     #[test]
-    fn a_craft_without_modes_gets_the_starter_modes_and_is_told() {
+    fn a_craft_without_modes_gets_the_starter_modes_and_is_reported() {
         let starter = ["ARM", "AUTOPILOT", "ANGLE", "ALTHOLD", "POS HOLD"];
         assert_eq!(modes(FlightSetup::default()), (starter.to_vec(), true));
         assert_eq!(modes(with_lines("set ap_max_angle = 25")), (starter.to_vec(), true));
     }
 
     #[test]
-    fn a_given_value_that_current_firmware_refuses_is_told() {
-        let told = |lines: &str| -> Vec<String> {
+    fn a_given_value_that_current_firmware_refuses_is_reported() {
+        let reported = |lines: &str| -> Vec<String> {
             let notices = with_lines(lines).build().unwrap().1;
             let firmware = notices.iter().filter(|notice| matches!(notice, SetupNotice::Firmware(_)));
             firmware.map(ToString::to_string).collect()
         };
-        let notices = told("set ap_position_cutoff = 5\nset ap_max_angle = 25");
+        let notices = reported("set ap_position_cutoff = 5\nset ap_max_angle = 25");
         assert_eq!(notices.len(), 1, "{notices:?}");
         assert!(notices[0].starts_with("ap_position_cutoff = 5 is taken here"), "{notices:?}");
-        assert_eq!(told("set ap_position_cutoff = 30"), [""; 0]);
+        assert_eq!(reported("set ap_position_cutoff = 30"), [""; 0]);
     }
 
     #[test]
@@ -276,8 +276,8 @@ mod tests {
     }
 
     #[test]
-    fn a_fault_that_a_firmware_outside_cannot_notice_is_told_at_the_start() {
-        let told = |switches: &str, remote_controller: bool| {
+    fn a_fault_that_a_remote_firmware_cannot_notice_is_reported_at_the_start() {
+        let reported = |switches: &str, remote_controller: bool| {
             let faults = ["mag-off@20", "gps-loss@20", "mag-bias@1,,30", "battery@5", "battery@9", "motor@9"];
             let mut setup = FlightSetup { remote_controller, ..FlightSetup::default() };
             setup.world.faults = faults.map(|fault| fault.parse().unwrap()).to_vec();
@@ -286,14 +286,14 @@ mod tests {
             let faults = notices.iter().filter(|notice| matches!(notice, SetupNotice::IdleFault(_)));
             faults.map(ToString::to_string).collect::<Vec<_>>()
         };
-        assert_eq!(told("battery_sag=off", false), [""; 0]);
-        let notices = told("battery_sag=off", true);
+        assert_eq!(reported("battery_sag=off", false), [""; 0]);
+        let notices = reported("battery_sag=off", true);
         assert_eq!(
             notices[0],
             "The fault mag-off has no effect: a remote firmware gets no magnetometer data."
         );
         let named = |name: &str| notices.iter().filter(|notice| notice.contains(name)).count();
         assert_eq!((notices.len(), named("mag-bias"), named("battery_sag=on")), (3, 1, 1), "{notices:?}");
-        assert_eq!(told("battery_sag=on", true).len(), 2);
+        assert_eq!(reported("battery_sag=on", true).len(), 2);
     }
 }

@@ -39,8 +39,8 @@ fn arming(vehicle: &Vehicle) -> Option<String> {
     }
     let flags = firmware.arming_flags();
     let causes = if flags.causes().is_empty() { flags } else { flags.causes() };
-    let told: Vec<String> = causes.iter().map(|flag| format!("{flag} ({})", flag.hint())).collect();
-    (!told.is_empty()).then(|| format!("arming is blocked by {}", told.join(", ")))
+    let reported: Vec<String> = causes.iter().map(|flag| format!("{flag} ({})", flag.hint())).collect();
+    (!reported.is_empty()).then(|| format!("arming is blocked by {}", reported.join(", ")))
 }
 
 /// Describes a climb that does not reach its altitude.

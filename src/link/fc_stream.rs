@@ -86,21 +86,21 @@ impl Ended {
 /// Connects, moves bytes, and connects again, until the session's end is dropped.
 async fn keep_connected(place: FcPlace, mut to: mpsc::Receiver<Vec<u8>>, from: mpsc::Sender<StreamEvent>) {
     let mut pause = PAUSE_FIRST;
-    let mut told = None;
+    let mut reported = None;
     loop {
         let begun = Instant::now();
         let attempt = tokio::select! {
-            ended = connect(&place, &mut to, &from, &mut told) => ended,
+            ended = connect(&place, &mut to, &from, &mut reported) => ended,
             () = from.closed() => return,
         };
         let Ended::Lost(reason) = attempt else { return };
         // A connection that closes at once counts as a failed attempt.
         pause = if begun.elapsed() > PAUSE_LONGEST { PAUSE_FIRST } else { pause };
-        if told.as_ref() != Some(&reason) {
+        if reported.as_ref() != Some(&reason) {
             if from.send(StreamEvent::Lost(reason.clone())).await.is_err() {
                 return;
             }
-            told = Some(reason);
+            reported = Some(reason);
         }
         tokio::select! {
             () = tokio::time::sleep(pause) => {}
@@ -115,7 +115,7 @@ async fn connect(
     place: &FcPlace,
     to: &mut mpsc::Receiver<Vec<u8>>,
     from: &mpsc::Sender<StreamEvent>,
-    told: &mut Option<String>,
+    reported: &mut Option<String>,
 ) -> Ended {
     let connection = match place {
         FcPlace::Serial { device, baud } => serial::open(device, *baud).map(Connection::Serial),
@@ -130,7 +130,7 @@ async fn connect(
     };
     // Drops bytes that were meant for the previous connection.
     while to.try_recv().is_ok() {}
-    *told = None;
+    *reported = None;
     if from.send(StreamEvent::Connected).await.is_err() {
         return Ended::Dropped;
     }

@@ -24,24 +24,24 @@ const COUNTED_FOR: Duration = Duration::from_secs(1);
 #[derive(Debug, Clone)]
 pub(super) struct Notices {
     requests: mpsc::Sender<Request>,
-    told: Arc<Mutex<BTreeSet<String>>>,
+    reported: Arc<Mutex<BTreeSet<String>>>,
     floods: Arc<Mutex<BTreeMap<Stranger, Flood>>>,
 }
 
 impl Notices {
     pub(super) fn new(requests: mpsc::Sender<Request>) -> Self {
-        Self { requests, told: Arc::default(), floods: Arc::default() }
+        Self { requests, reported: Arc::default(), floods: Arc::default() }
     }
 
     /// Sends this notice unless it was sent before. If the session's queue is full, the notice is sent the
     /// next time; until then only the door's error count shows it.
     pub(super) fn tell(&self, notice: String) {
-        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
-        if told.len() < NOTICES_MAX
-            && !told.contains(&notice)
+        let mut reported = self.reported.lock().unwrap_or_else(PoisonError::into_inner);
+        if reported.len() < NOTICES_MAX
+            && !reported.contains(&notice)
             && self.requests.try_send(Request::Notice(notice.clone())).is_ok()
         {
-            told.insert(notice);
+            reported.insert(notice);
         }
     }
 
@@ -70,7 +70,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_notice_is_told_once_whoever_tells_it_and_again_when_nobody_listened() {
+    fn a_notice_is_reported_once_by_all_its_sources_and_again_without_a_listener() {
         let (requests, mut inbox) = mpsc::channel(1);
         let notices = Notices::new(requests);
         notices.tell("first".to_owned());

@@ -3,8 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::did_you_mean;
 use crate::signals::{RC_CHANNELS, SimTime};
+use crate::text::did_you_mean;
 
 /// A channel that is forced to a value for a while.
 #[derive(Debug, Clone, Copy, PartialEq)]

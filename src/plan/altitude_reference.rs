@@ -7,7 +7,7 @@ use super::{FlightPlan, WaypointType};
 pub enum AltitudeReference {
     /// The craft has not reported it yet.
     #[default]
-    Untold,
+    Unreported,
     Home,
     /// Altitudes count from mean sea level.
     SeaLevel {
@@ -23,7 +23,7 @@ pub enum AltitudeError {
     #[error(
         "The altitude reference of its firmware is not known yet: wait until it has reported its settings."
     )]
-    Untold,
+    Unreported,
     /// Altitudes count from sea level, and the altitude of home is unknown.
     #[error(
         "Its firmware counts waypoint altitudes from sea level, and the altitude of home, where it is disarmed, is not \
@@ -39,7 +39,7 @@ impl AltitudeReference {
     /// Returns an error if the difference is unknown.
     pub fn added_m(self) -> Result<f64, AltitudeError> {
         match self {
-            Self::Untold => Err(AltitudeError::Untold),
+            Self::Unreported => Err(AltitudeError::Unreported),
             Self::Home => Ok(0.0),
             Self::SeaLevel { home_m } => home_m.ok_or(AltitudeError::HomeUnknown),
         }
@@ -105,6 +105,6 @@ mod tests {
         }
         let unknown = AltitudeReference::SeaLevel { home_m: None };
         assert_eq!(unknown.plan_for_craft(&plan), Err(AltitudeError::HomeUnknown));
-        assert_eq!(AltitudeReference::default().plan_of_craft(&plan), Err(AltitudeError::Untold));
+        assert_eq!(AltitudeReference::default().plan_of_craft(&plan), Err(AltitudeError::Unreported));
     }
 }

@@ -1,7 +1,7 @@
 //! The plans in the executable, by name: the same files as in `plans/`.
 
 use super::format::{Format, PlanError, PlanFile, parse};
-use crate::did_you_mean;
+use crate::text::did_you_mean;
 
 /// The plan that is loaded if no other is named: the square of the Betaflight SITL autopilot guide.
 pub const DEMO: &str = "square";

@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn a_plan_of_another_program_is_told_from_an_empty_one() {
+    fn a_plan_of_another_program_is_not_taken_for_an_empty_one() {
         for (text, is) in [
             ("{\n \"fileType\": \"Plan\"\n}", "this is JSON"),
             ("\u{feff}\n <?xml version=\"1.0\"?>", "this is XML"),
@@ -219,8 +219,8 @@ mod tests {
         ] {
             let format = Format::of_text(text);
             let errors = parse("-", text, format).unwrap_err();
-            let told = report(&errors);
-            assert!(told.contains(is) && told.contains(".toml, .txt"), "{told}");
+            let reported = report(&errors);
+            assert!(reported.contains(is) && reported.contains(".toml, .txt"), "{reported}");
         }
     }
 

@@ -103,7 +103,10 @@ impl Finding {
                     SettingSource::Craft => "the craft's ap_max_distance_from_home",
                     SettingSource::Plan => "the plan's ap_max_distance_from_home, set at the upload,",
                 };
-                format!("waypoint {index} is {distance_m:.0} m from home, {fence} is {limit_m:.0} m")
+                let decimals = decimals_apart(*distance_m, *limit_m);
+                format!(
+                    "waypoint {index} is {distance_m:.decimals$} m from home, {fence} is {limit_m:.decimals$} m"
+                )
             }
             _ => self.to_string(),
         }
@@ -161,8 +164,7 @@ impl fmt::Display for Finding {
                 -alt_m
             ),
             Self::AboveLimit { index, alt_m, limit_m } => {
-                // One decimal if both round to the same metre.
-                let decimals = usize::from(format!("{alt_m:.0}") == format!("{limit_m:.0}"));
+                let decimals = decimals_apart(*alt_m, *limit_m);
                 write!(
                     f,
                     "waypoint {index} is {alt_m:.decimals$} m above home, the limit (max_altitude_m) is {limit_m:.decimals$} m"
@@ -240,6 +242,11 @@ pub fn review(plan: &FlightPlan, home: LatLon, assumptions: &Assumptions) -> Vec
     findings
 }
 
+/// Returns the smallest number of decimals, at most two, with which two lengths read differently.
+fn decimals_apart(one_m: f64, other_m: f64) -> usize {
+    (0..2).find(|&decimals| format!("{one_m:.decimals$}") != format!("{other_m:.decimals$}")).unwrap_or(2)
+}
+
 /// Returns the legs that are flown below home.
 fn below_ground(waypoints: &[Waypoint]) -> impl Iterator<Item = Finding> {
     let below = altitude::legs(waypoints).filter(|leg| leg.alt_m < 0.0);
@@ -281,6 +288,16 @@ mod tests {
     #[test]
     fn a_sound_plan_has_no_findings() {
         assert!(say(&[(WaypointType::Flyover, 500, 0), (WaypointType::Land, 0, 0)], None).is_empty());
+    }
+
+    #[test]
+    fn a_distance_that_rounds_to_its_limit_shows_decimals() {
+        assert_eq!(decimals_apart(150.0, 100.0), 0);
+        assert_eq!(decimals_apart(50.4, 50.0), 1);
+        assert_eq!(decimals_apart(50.04, 50.0), 2);
+        let from = SettingSource::Craft;
+        let finding = Finding::OutsideFence { index: 0, distance_m: 50.4, limit_m: 50.0, from };
+        assert!(finding.reason().contains("50.4 m from home") && finding.reason().ends_with("is 50.0 m"));
     }
 
     #[test]

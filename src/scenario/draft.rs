@@ -176,7 +176,7 @@ mod tests {
     fn upload(plan: &PlanFile, vehicle: &mut Vehicle) {
         let mut session = Interpreter::default();
         for line in upload_lines(&plan.plan, &plan.settings) {
-            let _told = vehicle.controller_mut().run_cli(&mut session, &line);
+            let _reported = vehicle.controller_mut().run_cli(&mut session, &line);
         }
     }
 

@@ -259,7 +259,7 @@ impl Belongs<'_> {
         }
         for (name, span) in &names {
             if !self.all.contains(name) {
-                let guess = crate::did_you_mean::suffix(name, self.all.iter().map(String::as_str));
+                let guess = crate::text::did_you_mean::suffix(name, self.all.iter().map(String::as_str));
                 let message = format!("there is no case {name}{guess}");
                 let allowed: Vec<&str> = self.all.iter().take(SHOWN_CASES).map(String::as_str).collect();
                 let more = if self.all.len() > SHOWN_CASES { " …" } else { "" };
@@ -393,8 +393,8 @@ fn read_inputs(
                 "leave each out, or write at = \"COMPLETE\"",
             );
         }
-        let told = reader.required(&table, "do").and_then(|value| Some((value, reader.text(value)?)));
-        let Some((value, text)) = told else { continue };
+        let reported = reader.required(&table, "do").and_then(|value| Some((value, reader.text(value)?)));
+        let Some((value, text)) = reported else { continue };
         let action = read_action(&text, &mut |plan| reader.plan(plan));
         match (action, at) {
             (Ok(action), Some(at)) => {

@@ -261,10 +261,12 @@ impl Pattern {
             }
             (
                 Self::Event { name, words, text },
-                HappeningKind::Event { name: happened, words: told, text: said, .. },
+                HappeningKind::Event { name: happened, words: reported, text: said, .. },
             ) => {
                 name == happened
-                    && words.iter().all(|word| told.iter().any(|told| told.eq_ignore_ascii_case(word)))
+                    && words
+                        .iter()
+                        .all(|word| reported.iter().any(|reported| reported.eq_ignore_ascii_case(word)))
                     && text.as_ref().is_none_or(|text| said.to_lowercase().contains(&text.to_lowercase()))
             }
             _ => false,
@@ -304,7 +306,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_event_stands_at_its_place() {
+    fn every_event_is_at_its_place() {
         for (index, info) in EVENTS.iter().enumerate() {
             assert_eq!(info.event as usize, index);
         }

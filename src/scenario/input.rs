@@ -171,7 +171,7 @@ fn world(text: &str) -> Result<Action, String> {
         let problem = error.problem().to_owned();
         let word = text.split(['=', ' ']).next().unwrap_or_default();
         let firsts = FORMS.iter().filter_map(|(form, _)| form.split(' ').next());
-        match crate::did_you_mean::closest(word, firsts) {
+        match crate::text::did_you_mean::closest(word, firsts) {
             Some(meant) if problem.starts_with("there is no") && meant != word => {
                 format!("there is no input {word}; did you mean {meant}?")
             }

@@ -277,7 +277,7 @@ fn happening(pattern: &Pattern) -> Insight {
 /// Returns the knowledge that an action needs. The world and the transmitter belong to betadeck. Some faults have no
 /// effect on a remote firmware, and only the embedded firmware takes orders.
 fn action(action: &Action, switches: &Switches) -> Insight {
-    let is_idle = |fault: &Fault| !fault.acts_on_controller_outside(switches);
+    let is_idle = |fault: &Fault| !fault.acts_on_remote_controller(switches);
     match action {
         Action::World(command) if command.fault().is_some_and(is_idle) => Insight::Inner,
         Action::World(_)

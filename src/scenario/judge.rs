@@ -28,7 +28,7 @@ pub fn judge(case: &Case, flown: &Flown) -> (Vec<Judgement>, Vec<(String, f64)>)
     let needs = Needs::of(case);
     let needed_to_fly = needs.flight(case);
     // A value that was not reported cannot be measured.
-    names.retain(|(name, _)| needs.measure(name) <= flown.told);
+    names.retain(|(name, _)| needs.measure(name) <= flown.reported);
     let evaluator = Evaluator::new(&flown.trace, &names);
     let mut judgements: Vec<Judgement> = case
         .expectations
@@ -36,13 +36,13 @@ pub fn judge(case: &Case, flown: &Flown) -> (Vec<Judgement>, Vec<(String, f64)>)
         .map(|expectation| {
             // Without reports the inputs were not carried out. Such a flight cannot be judged.
             let outcome = match needs.expectation(expectation).max(needed_to_fly) {
-                needed if needed > flown.told => Outcome::Skipped(needed),
+                needed if needed > flown.reported => Outcome::Skipped(needed),
                 _ => judge_one(expectation, flown, &evaluator),
             };
             judgement(expectation, outcome)
         })
         .collect();
-    if needed_to_fly <= flown.told {
+    if needed_to_fly <= flown.reported {
         judgements.extend(inputs::judge(case, &flown.trace));
     }
     (judgements, names)
@@ -71,12 +71,12 @@ pub(super) fn statistic(
     measures::over(window, statistic, number, evaluator)
 }
 
-/// Judges an expectation that compares several flights. `names` are their measures as `CASE.MEASURE`, and `told` is the
+/// Judges an expectation that compares several flights. `names` are their measures as `CASE.MEASURE`, and `reported` is the
 /// knowledge of all flights.
-pub fn compare(compare: &Compare, names: &[(String, f64)], told: Insight) -> Judgement {
+pub fn compare(compare: &Compare, names: &[(String, f64)], reported: Insight) -> Judgement {
     let trace = Trace::of_nothing();
     let is_known = |name: &str| names.iter().any(|(known, _)| known == name);
-    let outcome = if told < Insight::Inner && !compare.that.names().iter().all(|name| is_known(name)) {
+    let outcome = if reported < Insight::Inner && !compare.that.names().iter().all(|name| is_known(name)) {
         Outcome::Skipped(Insight::Inner)
     } else {
         that(&compare.that, &Evaluator::new(&trace, names))

@@ -1,8 +1,8 @@
 //! The scenarios in the executable: the same files as in `plans/scenarios/`.
 
 use super::Files;
-use crate::did_you_mean;
 use crate::plan::format::PlanFile;
+use crate::text::did_you_mean;
 
 macro_rules! scenarios {
     ($($name:literal)*) => {

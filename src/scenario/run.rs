@@ -26,7 +26,7 @@ pub struct Flown {
     /// The time at which the flight ended; the record may go on.
     pub ended_at: SimTime,
     /// The knowledge that the flight controller gave.
-    pub told: Insight,
+    pub reported: Insight,
 }
 
 /// A flight of a case in progress.
@@ -41,7 +41,7 @@ pub struct CaseFlight<'a> {
     end: Option<FlightEnd>,
     /// The word for the result and the reason, if the scenario ended the flight.
     stopped: Option<(&'static str, String)>,
-    told: Insight,
+    reported: Insight,
     sample_us: u64,
     standing_m: f64,
     is_over: bool,
@@ -64,7 +64,7 @@ impl<'a> CaseFlight<'a> {
     /// # Errors
     /// Returns a sentence if a mode that the pilot needs has no switch.
     pub fn of_vehicle(case: &'a Case, vehicle: Vehicle) -> Result<Self, String> {
-        let told = if vehicle.embedded().is_some() { Insight::Inner } else { Insight::Telemetry };
+        let reported = if vehicle.embedded().is_some() { Insight::Inner } else { Insight::Telemetry };
         let standing_m = vehicle.world().map_or(0.0, |world| world.truth().pos_enu.z);
         let trace = Trace::new(case.setup.plan.plan.clone(), vehicle.local_frame().copied());
         // The time limit of the scenario applies.
@@ -87,7 +87,7 @@ impl<'a> CaseFlight<'a> {
             ends: case.ends.as_ref().map(Search::new),
             end: None,
             stopped: None,
-            told,
+            reported,
             sample_us,
             standing_m,
             is_over: false,
@@ -169,7 +169,7 @@ impl<'a> CaseFlight<'a> {
         let vehicle = self.flight.vehicle();
         let sample = sample(vehicle, origin);
         if vehicle.controller().nav().is_some() {
-            self.told = self.told.max(Insight::Mission);
+            self.reported = self.reported.max(Insight::Mission);
         }
         if let Some(nav) = vehicle.controller().nav()
             && nav.engaged
@@ -236,6 +236,6 @@ impl<'a> CaseFlight<'a> {
             Some((word, reason)) => (word.to_owned(), reason),
             None => (end.verdict.result.to_string(), end.verdict.reason),
         };
-        Flown { trace: self.trace, result, reason, ended_at: end.time, told: self.told }
+        Flown { trace: self.trace, result, reason, ended_at: end.time, reported: self.reported }
     }
 }

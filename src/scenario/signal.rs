@@ -134,7 +134,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_signal_stands_at_its_place_and_has_its_own_name() {
+    fn every_signal_is_at_its_place_and_has_its_own_name() {
         for (index, info) in SIGNALS.iter().enumerate() {
             assert_eq!(info.signal as usize, index);
             assert_eq!(Signal::find(info.name), Some(info.signal));

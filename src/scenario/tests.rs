@@ -60,7 +60,7 @@ fn hints(text: &str) -> String {
 }
 
 #[test]
-fn a_craft_that_stands_is_seen_to_stand() {
+fn a_craft_at_rest_is_seen_to_be_at_rest() {
     for (expectation, met) in [
         ("always = 'altitude in -0.1..0.1 m and not armed'\nfrom = 'boot'", true),
         ("always = 'armed'\nfrom = 'boot'", false),
@@ -221,7 +221,7 @@ fn nobody_can_wait_for_what_only_the_end_of_a_flight_shows() {
 }
 
 #[test]
-fn numbers_and_names_that_cannot_be_meant_are_told() {
+fn numbers_and_names_that_cannot_be_meant_are_reported() {
     let long = "9".repeat(400);
     for (text, problem) in [
         ("[[expect]]\nalways = 'lean <= 80 deg'\nuntil = '99999999999999999999 s after boot'".to_owned(), "no flight is this long"),
@@ -309,7 +309,7 @@ fn real_sensors_get_their_allowance_and_exact_ones_do_not() {
 }
 
 #[test]
-fn every_problem_of_a_file_is_told_with_its_place() {
+fn every_problem_of_a_file_is_reported_with_its_place() {
     let text = "format = 2
 nmae = 'x'
 [plan]
@@ -354,30 +354,34 @@ within = '5..2 s after engaged'
 }
 
 #[test]
-fn a_missing_plan_and_an_unknown_case_are_told() {
-    let told = |text: &str| problems(text).join("\n");
-    assert!(told("format = 1\n[plan]\nfile = 'no.toml'").contains("test.toml:3:8: cannot open no.toml"));
+fn a_missing_plan_and_an_unknown_case_are_reported() {
+    let reported = |text: &str| problems(text).join("\n");
+    assert!(reported("format = 1\n[plan]\nfile = 'no.toml'").contains("test.toml:3:8: cannot open no.toml"));
     assert!(
-        told("format = 1\n[plan]\nbuiltin = 'sqare'")
+        reported("format = 1\n[plan]\nbuiltin = 'sqare'")
             .contains("no built-in plan sqare; did you mean square?")
     );
-    assert!(told("format = 1").contains("the scenario has no plan"));
-    assert!(told("[plan]\nbuiltin = 'square'").contains("format is missing"));
+    assert!(reported("format = 1").contains("the scenario has no plan"));
+    assert!(reported("[plan]\nbuiltin = 'square'").contains("format is missing"));
     let text = "format = 1\n[plan]\nbuiltin = 'square'\n[[case]]\nname = 'calm'\n[[expect]]\ncases = ['clam']\nresult = 'complet'";
-    let told = told(text);
-    assert!(told.contains("test.toml:7:10: there is no case clam; did you mean calm?"), "{told}");
-    assert!(!told.contains("complet is not"), "what is to no case is not read: {told}");
+    let reported = reported(text);
+    assert!(reported.contains("test.toml:7:10: there is no case clam; did you mean calm?"), "{reported}");
+    assert!(!reported.contains("complet is not"), "an expectation without its case is not read: {reported}");
     assert!(problems("format = 1\nx = [").len() == 1);
 }
 
 #[test]
 fn more_samples_than_memory_should_hold_are_refused() {
-    let told = problems("format = 1\ntime_limit_s = 1000000\nsample_hz = 1000\n[plan]\nbuiltin = 'square'");
-    assert_eq!(told, ["test.toml:2:16: 1000000 s with 1000 samples a second are too many samples to keep"]);
+    let reported =
+        problems("format = 1\ntime_limit_s = 1000000\nsample_hz = 1000\n[plan]\nbuiltin = 'square'");
+    assert_eq!(
+        reported,
+        ["test.toml:2:16: 1000000 s with 1000 samples a second are too many samples to keep"]
+    );
 }
 
 #[test]
-fn one_mistake_is_told_once_however_many_cases_read_it() {
+fn one_mistake_is_reported_once_however_many_cases_read_it() {
     let text = "format = 1\n[plan]\nbuiltin = 'square'\n[vary]\nwind = ['calm', '5@270', '8@270']\n[[expect]]\nalways = 'sped <= 5 m/s'";
     assert_eq!(problems(text), ["test.toml:7:11: sped is not a signal or a measure"]);
 }
@@ -391,13 +395,13 @@ proptest::proptest! {
 }
 
 /// Returns the outcomes of the expectations of one flight for each level of knowledge.
-fn judged_by<const N: usize>(told: [Insight; N], expectations: &str) -> [Vec<Outcome>; N] {
+fn judged_by<const N: usize>(reported: [Insight; N], expectations: &str) -> [Vec<Outcome>; N] {
     let scenario = scenario(&format!("{STANDING}{expectations}"));
     let case = &scenario.cases[0];
     let mut flown = CaseFlight::new(case, &case.airs[0]).unwrap().fly();
-    assert_eq!(flown.told, Insight::Inner);
-    told.map(|told| {
-        flown.told = told;
+    assert_eq!(flown.reported, Insight::Inner);
+    reported.map(|reported| {
+        flown.reported = reported;
         judge(case, &flown).0.into_iter().map(|judgement| judgement.outcome).collect()
     })
 }
@@ -421,34 +425,36 @@ fn what_a_flight_controller_does_not_tell_is_skipped_and_the_rest_judged() {
         (Inner, "no_event = 'disarmed CRASH_PROTECTION'\nfrom = 'boot'"),
     ];
     let text: String = expected.iter().map(|(_, text)| format!("[[expect]]\n{text}\n")).collect();
-    let told = [Telemetry, Mission, Inner];
-    for (told, outcomes) in std::iter::zip(told, judged_by(told, &text)) {
+    let reported = [Telemetry, Mission, Inner];
+    for (reported, outcomes) in std::iter::zip(reported, judged_by(reported, &text)) {
         for ((needed, expectation), outcome) in
             std::iter::zip(expected, outcomes.into_iter().rev().take(13).rev())
         {
-            let is_right = if needed > told { outcome == Outcome::Skipped(needed) } else { outcome.is_met() };
-            assert!(is_right, "{expectation} of which {told:?} is told: {outcome:?}");
+            let is_right =
+                if needed > reported { outcome == Outcome::Skipped(needed) } else { outcome.is_met() };
+            assert!(is_right, "{expectation} of {reported:?}: {outcome:?}");
         }
     }
 }
 
 #[test]
-fn a_flight_whose_input_waited_for_what_nobody_told_is_not_judged() {
+fn a_flight_whose_input_waited_for_an_unreported_value_is_not_judged() {
     use Insight::{Mission, Telemetry};
     let text = "[[input]]\nat = 'engaged'\ndo = 'wind 5@270'\n\
                 [[expect]]\nalways = 'altitude < 1 m'\nfrom = 'boot'\n";
-    let [untold, told] = judged_by([Telemetry, Mission], text);
-    assert_eq!(untold.last(), Some(&Outcome::Skipped(Mission)));
+    let [unreported, reported] = judged_by([Telemetry, Mission], text);
+    assert_eq!(unreported.last(), Some(&Outcome::Skipped(Mission)));
     // With its instant known, the input is judged as not carried out. That judgement comes after the expectations.
-    assert_eq!(told.len(), untold.len() + 1);
+    assert_eq!(reported.len(), unreported.len() + 1);
     assert!(
-        told[told.len() - 2].is_met() && matches!(told[told.len() - 1], Outcome::NeverJudged(_)),
-        "{told:?}"
+        reported[reported.len() - 2].is_met()
+            && matches!(reported[reported.len() - 1], Outcome::NeverJudged(_)),
+        "{reported:?}"
     );
 }
 
 #[test]
-fn a_measure_of_what_is_not_told_is_left_out_and_what_builds_on_it_skipped() {
+fn a_measure_of_an_unreported_value_is_left_out_and_its_expectations_skipped() {
     let text = "[[measure]]\nname = 'high'\nmax = 'throttle'\nfrom = 'boot'\n[[measure]]\nname = 'double'\n\
                 value = 'high * 2'\n[[measure]]\nname = 'wide'\nmax = 'speed'\nfrom = 'boot'\n\
                 [[expect]]\nthat = 'double > 0 us'\n[[expect]]\nthat = 'wide < 1 m/s'\n";
@@ -473,7 +479,7 @@ fn a_flight_whose_inputs_only_the_embedded_firmware_takes_is_not_flown() {
 }
 
 #[test]
-fn most_of_the_built_in_scenarios_can_be_flown_with_a_firmware_outside() {
+fn most_of_the_built_in_scenarios_can_be_flown_with_a_remote_firmware() {
     let guide: Vec<&BuiltinScenario> =
         SCENARIOS.iter().filter(|scenario| scenario.name.starts_with("guide-")).collect();
     assert_eq!(guide.len(), 8);

@@ -63,15 +63,18 @@ mod tests {
     }
 
     #[test]
-    fn a_switch_that_is_on_in_vain_is_told_once() {
+    fn a_switch_that_is_on_in_vain_is_reported_once() {
         let mut watch = ArmingWatch::default();
         let blocked =
             |seconds| vehicle(seconds, &[ArmingFlag::Throttle, ArmingFlag::Cli, ArmingFlag::ArmSwitch]);
         assert_eq!(watch.check(&blocked(10.0)), None);
         assert_eq!(watch.check(&blocked(10.9)), None);
-        let told = watch.check(&blocked(11.0)).expect("a sentence");
-        assert!(told.contains("THROTTLE (lower the throttle), CLI (a CLI session was opened: "), "{told}");
-        assert!(!told.contains("ARM_SWITCH"), "{told}");
+        let reported = watch.check(&blocked(11.0)).expect("a sentence");
+        assert!(
+            reported.contains("THROTTLE (lower the throttle), CLI (a CLI session was opened: "),
+            "{reported}"
+        );
+        assert!(!reported.contains("ARM_SWITCH"), "{reported}");
         assert_eq!(watch.check(&blocked(20.0)), None);
         let mut off = blocked(21.0);
         off.craft.channels.get_or_insert_default()[4] = 1000;

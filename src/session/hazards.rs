@@ -51,8 +51,11 @@ mod tests {
             plan.waypoints.push(Waypoint { position, alt_cm, kind, ..Waypoint::default() });
         }
         upload(&mut controller, &plan, &[]).unwrap();
-        let told = hazards_from(&controller, Some(home), 10.0, None);
-        assert!(told.len() == 1 && told[0].starts_with("Caution: waypoint 0 is passed about"), "{told:?}");
+        let reported = hazards_from(&controller, Some(home), 10.0, None);
+        assert!(
+            reported.len() == 1 && reported[0].starts_with("Caution: waypoint 0 is passed about"),
+            "{reported:?}"
+        );
         assert!(hazards_from(&controller, Some(home), 75.0, None).is_empty(), "it is level there");
         assert!(hazards_from(&controller, None, 10.0, None).is_empty(), "without a home no leg is known");
     }
@@ -70,11 +73,11 @@ mod tests {
             ..Waypoint::default()
         });
         upload(&mut controller, &plan, &["ap_landing_throttle_threshold = 300".to_owned()]).unwrap();
-        let told = hazards_from(&controller, Some(home), 10.0, None);
-        assert!(told[0].starts_with("Caution: waypoint 0 is 3.0 m below home"), "{told:?}");
+        let reported = hazards_from(&controller, Some(home), 10.0, None);
+        assert!(reported[0].starts_with("Caution: waypoint 0 is 3.0 m below home"), "{reported:?}");
         assert!(
-            told[1].starts_with("Caution: ap_landing_throttle_threshold = 300 can never be met"),
-            "{told:?}"
+            reported[1].starts_with("Caution: ap_landing_throttle_threshold = 300 can never be met"),
+            "{reported:?}"
         );
     }
 }

@@ -39,7 +39,7 @@ pub(super) fn replace_falling_gains(settings: &mut [String]) -> Vec<String> {
 }
 
 /// Returns the notice that these settings replaced the guide's; `None` if there are none.
-pub(super) fn landing_gains_told(settings: &[String]) -> Option<String> {
+pub(super) fn landing_gains_reported(settings: &[String]) -> Option<String> {
     (!settings.is_empty()).then(|| {
         format!(
             "This firmware falls in LAND with the guide's altitude gains, so it gets {} instead; your own gains are \

@@ -42,7 +42,7 @@ pub(super) struct RealTime {
     /// … and its maximum. Time that the simulator makes up for later was lost all the same.
     most_behind: Duration,
     /// The time of the last notice, since the session began, and the loss that it reported.
-    told: Option<(Duration, Duration)>,
+    reported: Option<(Duration, Duration)>,
 }
 
 impl RealTime {
@@ -64,13 +64,13 @@ impl RealTime {
 
     /// Returns the notice that is due at `now`, counted since the session began.
     pub(super) fn notice(&mut self, now: Duration, wanted: f64, achieved: f64) -> Option<LostTimeNotice> {
-        let (told_at, told) = self.told.unzip();
-        let is_due = told_at.is_none_or(|at| now.saturating_sub(at) >= NOTICE_INTERVAL);
+        let (reported_at, reported) = self.reported.unzip();
+        let is_due = reported_at.is_none_or(|at| now.saturating_sub(at) >= NOTICE_INTERVAL);
         let lost = self.lost(achieved);
-        if !is_due || lost.sum.saturating_sub(told.unwrap_or_default()) < NOTABLE {
+        if !is_due || lost.sum.saturating_sub(reported.unwrap_or_default()) < NOTABLE {
             return None;
         }
-        self.told = Some((now, lost.sum));
+        self.reported = Some((now, lost.sum));
         Some(LostTimeNotice { lost, wanted })
     }
 }
@@ -84,23 +84,24 @@ mod tests {
     }
 
     #[test]
-    fn a_slow_machine_is_told_once_a_minute_with_the_speed_and_the_sum() {
+    fn a_slow_machine_is_reported_once_a_minute_with_the_speed_and_the_sum() {
         let mut time = RealTime::default();
-        let mut told = Vec::new();
+        let mut reported = Vec::new();
         for second in 1..=150 {
             time.lose(ms(400));
-            told.extend(time.notice(ms(second * 1000), 1.0, 0.6).map(|notice| (second, notice.to_string())));
+            reported
+                .extend(time.notice(ms(second * 1000), 1.0, 0.6).map(|notice| (second, notice.to_string())));
         }
-        assert_eq!(told.iter().map(|(second, _)| *second).collect::<Vec<_>>(), [2, 62, 122]);
+        assert_eq!(reported.iter().map(|(second, _)| *second).collect::<Vec<_>>(), [2, 62, 122]);
         assert_eq!(
-            told[1].1,
+            reported[1].1,
             "Real time was lost: 24.8 s so far; the flight recently ran at 0.60 times real time, 1 was requested."
         );
         assert_eq!(time.lost(0.6).to_string(), "60.0 s, at 0.60 times real time");
     }
 
     #[test]
-    fn a_short_stall_is_counted_but_not_told() {
+    fn a_short_stall_is_counted_but_not_reported() {
         let mut time = RealTime::default();
         time.lose(ms(120));
         assert_eq!(time.notice(ms(5000), 1.0, 0.9), None);

@@ -113,7 +113,7 @@ pub struct RemoteLink {
     /// `true` once data came over the current connection, or the last one.
     heard: bool,
     /// The last reported reason for a lost connection; `None` once data has arrived since.
-    told_loss: Option<String>,
+    reported_loss: Option<String>,
     /// The number of requests that it has answered since the first start of its program. Motor packets do not
     /// count.
     answers: u64,
@@ -143,7 +143,7 @@ impl RemoteLink {
             first_connected: None,
             connected: None,
             heard: false,
-            told_loss: None,
+            reported_loss: None,
             answers: 0,
             motors: FeedState::Waiting,
             self_check: SelfCheck::default(),
@@ -273,7 +273,7 @@ impl RemoteLink {
                 ChildEvent::Line(line) => self.notices.push(RemoteNotice::Output(line)),
                 ChildEvent::NotShown(count) => self
                     .notices
-                    .push(RemoteNotice::Told(format!("Lines of the firmware's output that were not shown: {count}."))),
+                    .push(RemoteNotice::Reported(format!("Lines of the firmware's output that were not shown: {count}."))),
                 ChildEvent::Failed(reason) => self.give_up(format!("{} cannot be started: {reason}.", self.ends.name)),
                 ChildEvent::Ended(end) if self.answers == 0 => self.give_up(format!(
                     "{} ended {end} before it answered: is it a SITL executable of Betaflight, and are its ports free?",
@@ -285,14 +285,14 @@ impl RemoteLink {
                     } else {
                         format!("The firmware ended {end}: it is restarted, and the craft is back at home.")
                     };
-                    self.begin_anew(vehicle, notice);
+                    self.restart(vehicle, notice);
                 }
             }
         }
     }
 
     /// Begins another run of an executable that ended. The craft is at home.
-    fn begin_anew(&mut self, vehicle: &mut Vehicle, notice: String) {
+    fn restart(&mut self, vehicle: &mut Vehicle, notice: String) {
         if let Some(peer) = &mut self.ends.peer {
             peer.went_down();
         }
@@ -341,7 +341,7 @@ impl RemoteLink {
             let sentence = "The firmware has sent no motors for a second: they are stopped until it does.";
             self.notices.push(RemoteNotice::Lost(sentence.to_owned()));
         } else if motors == FeedState::Answering && self.motors == FeedState::Silent {
-            self.notices.push(RemoteNotice::Told("The firmware sends motors again.".to_owned()));
+            self.notices.push(RemoteNotice::Reported("The firmware sends motors again.".to_owned()));
         }
         self.motors = motors;
     }

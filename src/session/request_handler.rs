@@ -64,7 +64,7 @@ pub struct RequestHandler {
     cli_sessions: BTreeMap<ClientId, CliSession>,
     /// The last client whose command line turned motors on the bench.
     bench: Option<ClientId>,
-    told_altitude_units: bool,
+    reported_altitude_units: bool,
 }
 
 impl RequestHandler {
@@ -78,7 +78,7 @@ impl RequestHandler {
             msp: None,
             cli_sessions: BTreeMap::new(),
             bench: None,
-            told_altitude_units: false,
+            reported_altitude_units: false,
         }
     }
 
@@ -252,8 +252,8 @@ impl RequestHandler {
     ) {
         for action in &said.actions {
             match *action {
-                CliAction::PlanChanged if !self.told_altitude_units => {
-                    self.told_altitude_units = true;
+                CliAction::PlanChanged if !self.reported_altitude_units => {
+                    self.reported_altitude_units = true;
                     handled.notices.push("Waypoint altitudes are above home, in centimetres.".to_owned());
                 }
                 CliAction::MotorTest { .. } => self.bench = Some(client),

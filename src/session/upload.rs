@@ -2,7 +2,7 @@
 //! plan in the same way.
 
 use super::command::UploadView;
-use super::landing_gains::landing_gains_told;
+use super::landing_gains::landing_gains_reported;
 use crate::firmware::cli::{CliReply, Interpreter};
 use crate::plan::format::{self, Format};
 use crate::plan::{AltitudeError, AltitudeReference, FlightPlan, upload_lines};
@@ -62,7 +62,7 @@ impl UploadReport {
         let sentences: Vec<String> = self
             .conversion()
             .into_iter()
-            .chain(landing_gains_told(&self.landing_gains))
+            .chain(landing_gains_reported(&self.landing_gains))
             .chain(refused)
             .collect();
         (!sentences.is_empty()).then(|| sentences.join(" "))
@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn a_setting_that_another_version_does_not_take_is_told_and_the_plan_uploaded() {
+    fn a_setting_that_another_version_does_not_take_is_reported_and_the_plan_uploaded() {
         let plan = FlightPlan { waypoints: std::iter::once(Waypoint::default()).collect() };
         let mut controller = FlightController::Remote(Box::default());
         let settings = ["ap_position_cutoff = 5".to_owned()];

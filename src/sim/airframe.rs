@@ -20,7 +20,7 @@ use nalgebra::Vector3;
 use crate::geo::GRAVITY;
 
 use super::battery::BatterySpec;
-use crate::did_you_mean;
+use crate::text::did_you_mean;
 
 mod check;
 mod file;
@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn the_iris_stands_one_millimetre_into_its_springs() {
+    fn the_iris_sinks_one_millimetre_into_its_springs() {
         let iris = Airframe::iris();
         assert!((iris.standing_height_m() - 0.198_340_014_525_935_03).abs() < 1e-12);
     }

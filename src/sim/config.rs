@@ -6,8 +6,8 @@ use super::airframe::Airframe;
 use super::fault::{FaultLink, ScheduledFault};
 use super::switches::Switches;
 use super::value_text::ParseError;
-use crate::did_you_mean;
 use crate::telemetry::Turbulence;
+use crate::text::did_you_mean;
 
 mod error;
 mod home;

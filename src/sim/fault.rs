@@ -245,7 +245,7 @@ impl Fault {
     /// Returns `true` if the fault has an effect on a remote flight controller. That controller gets motion,
     /// position, pressure and RC, but neither the magnetic field nor the battery. The battery can act only by weak
     /// motors.
-    pub fn acts_on_controller_outside(&self, switches: &Switches) -> bool {
+    pub fn acts_on_remote_controller(&self, switches: &Switches) -> bool {
         match self {
             Self::MagOff | Self::MagBias(_) => false,
             Self::Battery(_) => switches.battery_sag,

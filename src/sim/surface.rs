@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_ground_is_refused_in_words() {
+    fn an_impossible_ground_is_refused_in_words() {
         for (text, words) in [
             ("hill", "no shape"),
             ("slope", "slope,8,90"),

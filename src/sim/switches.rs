@@ -4,8 +4,8 @@ use super::command::in_range;
 use super::config::WorldError;
 use super::sensors::GpsGrade;
 use super::surface::{MAX_RISE_M, Surface};
-use crate::did_you_mean;
 use crate::sim::value_text::{ParseError, number, on_off};
+use crate::text::did_you_mean;
 
 /// The change of the mean wind with height.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::Display)]

@@ -24,7 +24,7 @@ fn begins(input: &Input) -> bool {
 impl Timeline {
     /// Returns the end of the flight that an instant belongs to, or `None` for the last flight.
     pub fn flight_ends(&self, instant: SimTime) -> Option<SimTime> {
-        self.recording.inputs().find(|(at, input)| *at > instant && begins(input)).map(|(at, _)| at)
+        self.recording.inputs().find(|(at, input)| *at >= instant && begins(input)).map(|(at, _)| at)
     }
 
     /// Returns the flight from its start to `until`, or `None` if the recording does not reach back so far.

@@ -334,14 +334,14 @@ mod tests {
     }
 
     #[test]
-    fn a_flood_of_lines_while_time_stands_still_is_bounded() {
+    fn a_flood_of_lines_while_time_is_paused_is_bounded() {
         let mut vehicle = Vehicle::new(config()).unwrap();
         assert!(vehicle.keep_inputs(true));
         let mut recording = Recording::new(BOUNDS);
         let mut session = crate::firmware::cli::Interpreter::default();
         let line = "x".repeat(10_000);
         for _ in 0..100 {
-            let _told = vehicle.controller_mut().run_cli(&mut session, &line);
+            let _reported = vehicle.controller_mut().run_cli(&mut session, &line);
             assert!(vehicle.input_bytes() > line.len());
             recording.record(&mut vehicle);
             // The limit until the next key frame.

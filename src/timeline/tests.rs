@@ -38,7 +38,7 @@ fn vehicle() -> Vehicle {
 }
 
 fn line(vehicle: &mut Vehicle, session: &mut Interpreter, line: &str) {
-    let _told = vehicle.controller_mut().run_cli(session, line);
+    let _reported = vehicle.controller_mut().run_cli(session, line);
 }
 
 /// Applies the inputs before a tick of the flight.
@@ -82,7 +82,7 @@ fn happen(tick: u64, vehicle: &mut Vehicle, session: &mut Interpreter) {
         19_200 => vehicle.controller_mut().cancel_command(),
         19_500 => {
             let name = b"replayed";
-            let _told = vehicle.controller_mut().run_msp(11, name, None);
+            let _reported = vehicle.controller_mut().run_msp(11, name, None);
         }
         20_000 => vehicle.reset_craft(),
         20_500..22_000 if tick.is_multiple_of(7) => {
@@ -92,9 +92,9 @@ fn happen(tick: u64, vehicle: &mut Vehicle, session: &mut Interpreter) {
         }
         22_000..23_000 if tick.is_multiple_of(10) => {
             let frame: Vec<u8> = (0..8).flat_map(|n| (1400 + n + (tick % 50) as u16).to_le_bytes()).collect();
-            let _told = vehicle.controller_mut().run_msp(200, &frame, None);
+            let _reported = vehicle.controller_mut().run_msp(200, &frame, None);
             // This message only asks.
-            let _told = vehicle.controller_mut().run_msp(101, &[], None);
+            let _reported = vehicle.controller_mut().run_msp(101, &[], None);
         }
         _ => {}
     }
@@ -134,6 +134,19 @@ fn replayed_instants_are_the_flight_to_the_last_bit() {
         assert!(shown == *expected, "at {time:?} {}", first_difference(&shown, expected));
     }
     assert_eq!(timeline.show(head.time(), head.time()), Shown::Newest);
+}
+
+#[test]
+fn a_flight_ends_at_the_very_instant_of_the_next_reset() {
+    let (timeline, head, _) = flight();
+    let (reset, _) = timeline
+        .recording
+        .inputs()
+        .find(|(_, input)| matches!(input, crate::vehicle::Input::ResetCraft))
+        .expect("the craft is put back");
+    assert_eq!(timeline.flight_ends(SimTime(reset.0 - 1)), Some(reset));
+    assert_eq!(timeline.flight_ends(reset), Some(reset), "the reset is not part of the flight before it");
+    assert!(reset < head.time() && timeline.flight_ends(head.time()).is_none(), "the last flight goes on");
 }
 
 /// Returns the first difference of two pictures.
@@ -217,7 +230,7 @@ fn messages_that_only_ask_are_no_inputs() {
     assert!(vehicle.keep_inputs(true));
     for message in msp::MESSAGES.iter().filter(|message| message.access != msp::Access::Write) {
         let before = picture(&vehicle);
-        let _told = vehicle.controller_mut().run_msp(message.code, &[0; 8], None);
+        let _reported = vehicle.controller_mut().run_msp(message.code, &[0; 8], None);
         assert!(!vehicle.has_inputs(), "{}", message.name);
         assert!(picture(&vehicle) == before, "{} changes something", message.name);
     }

@@ -20,7 +20,7 @@ use super::app_state::AppState;
 use super::message::Effect;
 use super::panel::Panel;
 use super::update;
-use crate::did_you_mean;
+use crate::text::did_you_mean;
 
 /// Runs a line.
 ///
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn arguments_stand_behind_a_blank_or_an_equals_sign() {
+    fn arguments_follow_a_blank_or_an_equals_sign() {
         let mut state = bare();
         for line in ["wind 5@270", ":wind=5@270", " wind = 5@270"] {
             let effects = run(&mut state, line).expect(line);

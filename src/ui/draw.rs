@@ -18,7 +18,7 @@ use super::popup::{Popup, command_line, go_to, guards, map_menu, palette, what_i
 use super::text_wrap::wrapped;
 use super::theme::{Charset, Role};
 use super::{hint_bar, notice, panel_bar, permission, status_bar, timeline, tutorial};
-use crate::printable;
+use crate::text::printable;
 
 /// Draws the state; it only reads.
 pub fn draw(state: &AppState, frame: &mut Frame<'_>) {

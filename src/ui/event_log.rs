@@ -31,7 +31,7 @@ impl Severity {
             SessionEvent::Branch { .. } => Self::Step,
             SessionEvent::Remote(RemoteNotice::Lost(_) | RemoteNotice::Restarted(_)) => Self::Warn,
             SessionEvent::Remote(RemoteNotice::Failed(_)) => Self::Fault,
-            SessionEvent::Remote(RemoteNotice::Output(_) | RemoteNotice::Told(_))
+            SessionEvent::Remote(RemoteNotice::Output(_) | RemoteNotice::Reported(_))
             | SessionEvent::Endpoints(_)
             | SessionEvent::Notice(_)
             | SessionEvent::ArmingBlocked(_)

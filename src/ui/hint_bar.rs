@@ -312,7 +312,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_simulator_does_stands_at_the_clock() {
+    fn what_the_simulator_does_is_beside_the_clock() {
         let text = lines(LinkState::Waiting, 0);
         assert!(text.contains(" 00:00.0 no simulator "), "{text}");
         assert!(text.contains("○fdm ○motors"), "{text}");

@@ -158,7 +158,7 @@ impl Keymap {
     /// Replaces the default keys in backquotes in a sentence of the session with the current keys.
     pub fn in_force(&self, sentence: &str) -> String {
         let mut parts = sentence.split('`');
-        let mut told = parts.next().unwrap_or_default().to_owned();
+        let mut reported = parts.next().unwrap_or_default().to_owned();
         let mut is_quoted = true;
         for part in parts {
             let pressed = KeyPress::parse(part).filter(|_| is_quoted);
@@ -173,11 +173,11 @@ impl Keymap {
             let action = named(|context| matches!(context, Context::Global | Context::Always))
                 .or_else(|| named(|context| context == Context::In(Panel::Plan)));
             let text = action.map_or_else(|| part.to_owned(), |spec| self.key(spec.action));
-            told.push('`');
-            told.push_str(&text);
+            reported.push('`');
+            reported.push_str(&text);
             is_quoted = !is_quoted;
         }
-        told
+        reported
     }
 
     /// Returns the action of a key while `focus` has the focus. The panel's own actions come before the general ones.
@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn shift_is_told_by_the_capital_letter() {
+    fn shift_is_reported_by_the_capital_letter() {
         let plain = KeyEvent::new(KeyCode::Char('F'), KeyModifiers::NONE);
         let shifted = KeyEvent::new(KeyCode::Char('F'), KeyModifiers::SHIFT);
         let kitty = KeyEvent::new(KeyCode::Char('f'), KeyModifiers::SHIFT);

@@ -22,12 +22,12 @@ const NONE: &str = "A number chooses, an empty line leaves it.";
 pub(super) struct Answered {
     pub(super) effects: Vec<Effect>,
     /// The change, if the question stays open.
-    pub(super) told: Option<String>,
+    pub(super) reported: Option<String>,
 }
 
 impl From<Vec<Effect>> for Answered {
     fn from(effects: Vec<Effect>) -> Self {
-        Self { effects, told: None }
+        Self { effects, reported: None }
     }
 }
 

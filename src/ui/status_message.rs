@@ -75,8 +75,8 @@ pub fn current(state: &AppState) -> Option<StatusMessage> {
             format!("{} flies on from here, {} goes to the end", key(Action::FlyOn), key(Action::Newest));
         return message(Severity::Info, condition, action);
     }
-    if let Some(told) = state.view.remote.as_ref().and_then(|outside| remote::current(state, outside)) {
-        return Some(told);
+    if let Some(reported) = state.view.remote.as_ref().and_then(|outside| remote::current(state, outside)) {
+        return Some(reported);
     }
     match state.view.simulator {
         Some(LinkState::Silent) => {
@@ -195,6 +195,11 @@ pub fn current(state: &AppState) -> Option<StatusMessage> {
     if switched_on {
         let action = format!("{} switches it off, then {} arms", key(Action::Autopilot), key(Action::Arm));
         return message(Severity::Warn, "AUTOPILOT is on while disarmed.", action);
+    }
+    if let Some(refusal) = findings::refusal_of_the_stored(state) {
+        let (plan, upload) = (key(Action::Show(Panel::Plan)), key(Action::Upload));
+        let condition = format!("The autopilot would refuse: {}.", refusal.reason());
+        return message(Severity::Warn, condition, format!("{plan} edits the plan, {upload} uploads it"));
     }
     let by_hand = [Action::Arm, Action::Throttle, Action::Autopilot].map(key).join(", ");
     message(Severity::Good, "Ready.", format!("{} flies the plan; by hand: {by_hand}", key(Action::Fly)))

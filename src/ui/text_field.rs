@@ -8,7 +8,7 @@ use tui_input::{Input, InputRequest};
 
 use super::drawing;
 use super::theme::{Role, Theme};
-use crate::printable;
+use crate::text::printable;
 
 /// The greatest length, characters. Text pasted by mistake must not block the screen.
 const LONGEST: usize = 2048;

@@ -158,24 +158,24 @@ impl Vehicle {
             Input::SticksFirst(first) => self.controller.take_over_sticks(*first),
             Input::Line(line) => {
                 let (session, line) = &**line;
-                let _told = self.controller.run_cli(&mut session.clone(), line);
+                let _reported = self.controller.run_cli(&mut session.clone(), line);
             }
             Input::Message(message) => {
-                let _told = self.controller.run_msp(message.code, &message.payload, message.clock);
+                let _reported = self.controller.run_msp(message.code, &message.payload, message.clock);
             }
             Input::CliOpened => self.controller.cli_opened(),
             Input::CliClosed => self.controller.cli_closed(),
             Input::Restart(configuration) => self.controller.restart(|| Configuration::clone(configuration)),
             Input::ReturnHome => {
-                let _told = self.controller.return_to_home();
+                let _reported = self.controller.return_to_home();
             }
             Input::InFlight(command) => {
-                let _told = self.controller.command(*command);
+                let _reported = self.controller.command(*command);
             }
             Input::CancelReturn => self.controller.cancel_command(),
             Input::Transmitter(transmitter) => self.transmitter.clone_from(transmitter),
             Input::World(command) => {
-                let _told = self.change_world(WorldCommand::clone(command));
+                let _reported = self.change_world(WorldCommand::clone(command));
             }
             Input::ResetCraft => self.reset_craft(),
         }

@@ -26,7 +26,7 @@ fn run(vehicle: &mut Vehicle, until_s: f64) {
 }
 
 #[test]
-fn lost_events_are_told() {
+fn lost_events_are_reported() {
     let mut vehicle = vehicle();
     for _ in 0..100 {
         // Refused because the craft is not armed.

@@ -129,7 +129,7 @@ fn a_scenario_that_fails_says_where_what_and_how_to_look_at_it() {
 }
 
 #[test]
-fn a_mistake_in_a_scenario_is_told_with_its_place_and_nothing_is_flown() {
+fn a_mistake_in_a_scenario_is_reported_with_its_place_and_nothing_is_flown() {
     let sandbox = Sandbox::new();
     sandbox.write("typo.toml", &STANDING.replace("always", "alwais"));
     sandbox.write("unit.toml", &standing("-1..1 s"));
@@ -292,12 +292,13 @@ fn a_changed_file_is_flown_again_while_it_is_watched() {
     sandbox.write("a.toml", STANDING);
     let mut child = spawn(&sandbox, &["check", "a.toml", "--watch"]);
     let mut lines = BufReader::new(child.0.stdout.take().expect("standard output")).lines();
-    let mut told = BufReader::new(child.0.stderr.take().expect("standard error")).lines();
+    let mut reported = BufReader::new(child.0.stderr.take().expect("standard error")).lines();
     let mut until = |part: &str| {
         lines.by_ref().map(|line| line.expect("a line")).find(|line| line.contains(part)).expect("the line");
     };
     let mut waits = || {
-        told.by_ref()
+        reported
+            .by_ref()
             .map(|line| line.expect("a line"))
             .find(|line| line.contains("Waiting"))
             .expect("it waits");

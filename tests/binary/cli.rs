@@ -174,7 +174,7 @@ fn a_flight_writes_over_none_of_its_own_files() {
 }
 
 #[test]
-fn convert_replaces_a_file_only_when_told() {
+fn convert_replaces_a_file_only_with_force() {
     let sandbox = Sandbox::new();
     sandbox.write("plan.toml", "mine\n");
     let ran = sandbox.run(&["convert", "square", "plan.toml"]).exits(3);
@@ -348,7 +348,7 @@ fn the_doctor_finds_what_is_wrong() {
     let wrong = sandbox.run(&["doctor"]).exits(3).out;
     assert!(wrong.contains("did you mean seed?") && wrong.contains("2.5 ms"), "{wrong}");
     configured(&sandbox, "seed = ");
-    assert!(sandbox.run(&["doctor"]).out.contains("config.toml: "), "a broken file is told");
+    assert!(sandbox.run(&["doctor"]).out.contains("config.toml: "), "a broken file is reported");
     assert_eq!(sandbox.names(), [".config"], "it writes nothing");
 }
 
@@ -406,7 +406,7 @@ fn the_configuration_file_is_written_shown_and_found() {
 }
 
 #[test]
-fn wrong_keys_in_the_configuration_file_are_told_with_their_lines() {
+fn wrong_keys_in_the_configuration_file_are_reported_with_their_lines() {
     let sandbox = Sandbox::new();
     configured(
         &sandbox,

@@ -55,7 +55,7 @@ fn a_plan_that_cannot_be_flown_leaves_the_files_of_an_earlier_comparison_alone()
 }
 
 #[test]
-fn what_was_flown_before_an_error_is_told_and_no_file_is_touched() {
+fn what_was_flown_before_an_error_is_reported_and_no_file_is_touched() {
     let sandbox = with_earlier_files();
     let ran = compare_in_vain(&sandbox, "hop.toml").exits(3);
     for part in
@@ -101,9 +101,9 @@ fn in_the_folder_of_the_launcher_no_option_names_the_firmware() {
     sandbox.write("config.txt", "[Betaloop]\nBetaflightElf=./none.elf\n");
     for arguments in [&["compare", "square"][..], &["fly", "square"], &["check", "guide-1"]] {
         let ran = sandbox.run(arguments).exits(3);
-        let told = ran.err.contains("./none.elf: there is no such file")
+        let reported = ran.err.contains("./none.elf: there is no such file")
             && ran.err.contains("comes from config.txt");
-        assert!(told, "{arguments:?}: {}", ran.err);
+        assert!(reported, "{arguments:?}: {}", ran.err);
     }
 }
 

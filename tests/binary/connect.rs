@@ -160,7 +160,7 @@ fn a_plan_goes_to_the_craft_and_back_over_tcp() {
     dialogue.say("flash");
     dialogue.hear("Saved in the craft's flash");
 
-    for (line, told) in [
+    for (line, reported) in [
         ("arm", "This craft is real"),
         ("flight.fly", "This craft is real"),
         ("reset", "Nothing is simulated here"),
@@ -171,7 +171,7 @@ fn a_plan_goes_to_the_craft_and_back_over_tcp() {
         ("cli bl", "in another program"),
     ] {
         dialogue.say(line);
-        dialogue.hear(told);
+        dialogue.hear(reported);
     }
     dialogue.say("quit");
     assert_eq!(dialogue.end(), Some(0));
@@ -209,10 +209,10 @@ fn programs_at_a_door_read_but_change_only_what_is_permitted() {
     }
     // The App sends this when it connects, and continues when it is refused.
     assert!(msp(&mut client, 99, &[1, 0]).0, "SET_ARMING_DISABLED");
-    for (line, told) in
+    for (line, reported) in
         [("mo\u{200b}tor 1 1500", "###ERROR: This craft is real"), ("bl\u{e9} rom", "in another program")]
     {
-        assert!(framed_line(door, line).contains(told), "{line}");
+        assert!(framed_line(door, line).contains(reported), "{line}");
     }
     assert_eq!(msp(&mut client, 2, &[]), (false, b"BTFL".to_vec()));
     dialogue.say("quit");
@@ -220,8 +220,8 @@ fn programs_at_a_door_read_but_change_only_what_is_permitted() {
 }
 
 #[test]
-fn what_is_no_betaflight_is_told_in_a_sentence() {
-    for (variant, told) in [
+fn another_program_than_betaflight_is_reported_in_a_sentence() {
+    for (variant, reported) in [
         (Some(b"INAV"), "reports INAV, not BTFL: only Betaflight is supported"),
         (None, "nothing there answers MSP"),
     ] {
@@ -234,7 +234,7 @@ fn what_is_no_betaflight_is_told_in_a_sentence() {
         });
         let sandbox = Sandbox::new();
         let mut dialogue = Dialogue::start(&sandbox, &["--plain", "--fresh", "--connect", &place]);
-        dialogue.hear(told);
+        dialogue.hear(reported);
         dialogue.say("quit");
         assert_eq!(dialogue.end(), Some(0));
     }

@@ -129,7 +129,7 @@ fn both_airframes_and_both_attitudes_fly() {
 }
 
 #[test]
-fn the_craft_stands_where_and_as_it_is_told() {
+fn the_craft_is_drawn_where_and_as_it_is_reported() {
     let flown = fly(&["hold-none", "--home", "40.4634,-79.5181,120", "--heading", "90", "--samples", "1"]);
     let first = flown.first("sample");
     assert!((first.number("lat") - 40.4634).abs() < 1e-7 && (first.number("lon") + 79.5181).abs() < 1e-7);
@@ -204,7 +204,7 @@ fn without_json_events_are_sentences_and_the_summary_goes_to_standard_error() {
 }
 
 #[test]
-fn a_mistyped_state_directory_is_told_and_not_made() {
+fn a_mistyped_state_directory_is_reported_and_not_made() {
     let sandbox = Sandbox::new();
     let ran = sandbox.run(&["fly", "square", "--state-dir", "statte"]);
     assert_eq!(ran.code, Some(2), "{}", ran.err);

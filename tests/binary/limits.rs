@@ -91,7 +91,7 @@ fn the_first_signal_ends_a_flight_whose_reader_stopped_reading() {
 }
 
 #[test]
-fn a_line_that_is_no_text_is_told_and_the_next_one_is_obeyed() {
+fn a_line_that_is_no_text_is_reported_and_the_next_one_is_obeyed() {
     let sandbox = Sandbox::new();
     let mut flight = Dialogue::start(&sandbox, &["--plain", "--fresh", "--no-ports", "--speed=max"]);
     flight.say_bytes(b"wind \xff\xfe\n");

@@ -55,7 +55,7 @@ fn help_lines(command: &clap::Command) -> Vec<String> {
 }
 
 #[test]
-fn what_is_not_built_is_not_advertised() {
+fn missing_features_are_not_advertised() {
     let fly = help(&["fly"], true);
     assert!(!fly.contains("--physics") && !fly.contains("fdm-loss"), "a headless flight has its own world");
     for command in [&[][..], &["serve"]] {

@@ -98,7 +98,7 @@ fn a_plan_without_a_landing_ends_parked() {
 }
 
 #[test]
-fn the_guides_block_is_a_plan_as_it_stands_and_on_standard_input() {
+fn the_guides_block_is_a_plan_unchanged_and_on_standard_input() {
     let sandbox = Sandbox::new();
     // As copied from a web page: no line end on the last line, and Windows line ends.
     sandbox.write("guide.txt", GUIDE.trim_end());

@@ -125,7 +125,7 @@ fn a_signal_ends_the_program_while_its_terminal_takes_no_output() {
 }
 
 #[test]
-fn a_program_that_is_stopped_from_outside_gives_the_terminal_back_and_takes_it_again() {
+fn a_program_that_is_stopped_by_a_signal_gives_the_terminal_back_and_takes_it_again() {
     let mut terminal = Terminal::betadeck(80, 24, &["--no-ports"]);
     terminal.until_shown("DISARMED");
     for _ in 0..2 {

@@ -136,7 +136,7 @@ fn a_plan_file_can_be_named() {
 }
 
 #[test]
-fn a_broken_plan_file_is_told_without_taking_the_terminal() {
+fn a_broken_plan_file_is_reported_without_taking_the_terminal() {
     let mut terminal = Terminal::start(
         80,
         24,
@@ -295,7 +295,7 @@ fn the_shell_finds_its_line_discipline_unchanged() {
 }
 
 #[test]
-fn a_panic_gives_the_terminal_back_before_it_is_told() {
+fn a_panic_gives_the_terminal_back_before_it_is_reported() {
     let itself = std::env::current_exe().expect("this test");
     let arguments = ["--ignored", "--exact", "terminal::panics_with_the_terminal_taken", "--nocapture"];
     let mut terminal = Terminal::start(80, 24, itself.to_str().expect("a plain path"), &arguments);
@@ -306,8 +306,8 @@ fn a_panic_gives_the_terminal_back_before_it_is_told() {
     let raw = terminal.raw();
     let taken = raw.find("\x1b[?1049h").expect("the alternate screen");
     let left = raw.find("\x1b[?1049l").expect("the ordinary screen");
-    let told = raw.find("everything is wrong").expect("the message");
-    assert!(taken < left && left < told, "{raw:?}");
+    let reported = raw.find("everything is wrong").expect("the message");
+    assert!(taken < left && left < reported, "{raw:?}");
 }
 
 /// Runs in its own terminal, started by the test above.

@@ -111,7 +111,7 @@ fn what_the_pilot_flies_and_what_is_resumed_does_not_count() {
 }
 
 #[test]
-fn a_return_home_is_told_but_not_judged() {
+fn a_return_home_is_reported_but_not_judged() {
     let far = "waypoint insert 0 40.4680000 -79.5182000 2000 0 FLYOVER 0 NONE\n";
     let lines = "set ap_max_distance_from_home = 600\nset ap_geofence_action = RTH\n";
     let sandbox = Sandbox::new();
@@ -127,7 +127,7 @@ fn a_return_home_is_told_but_not_judged() {
 }
 
 #[test]
-fn what_really_happened_is_told_in_sentences_too() {
+fn what_really_happened_is_reported_in_sentences_too() {
     let sandbox = Sandbox::new();
     sandbox.write("plan.txt", HOLD);
     let ran = sandbox.run(&["fly", "plan.txt"]).exits(0);

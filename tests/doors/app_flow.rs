@@ -27,7 +27,7 @@ fn the_app_connects_saves_a_plan_and_comes_back() {
     let mut serve = Serve::start("4");
     serve.event("gps_fix");
     let mut app = App::connect(serve.websocket);
-    assert!((0..4).all(|_| app.poll()), "a GPS is told in every round");
+    assert!((0..4).all(|_| app.poll()), "a GPS is reported in every round");
     app.plan();
     assert_eq!(app.line("waypoint clear"), ["Waypoints cleared"]);
     for line in PLAN {
@@ -81,7 +81,7 @@ fn the_app_and_eight_clients_get_every_answer_in_flight() {
     let mut delays: Vec<Duration> = thread::scope(|scope| {
         let clients: Vec<_> = (0..CLIENTS).map(|client| scope.spawn(move || poll(client))).collect();
         while !clients.iter().all(thread::ScopedJoinHandle::is_finished) {
-            assert!(app.poll(), "a GPS is told");
+            assert!(app.poll(), "a GPS is reported");
         }
         clients.into_iter().flat_map(|client| client.join().unwrap()).collect()
     });

@@ -118,8 +118,8 @@ fn rude_clients_do_not_disturb_a_flight() {
     });
     script.end();
     App::connect(websocket).poll();
-    let told = serve.notices("--allow-origin https://evil.example");
-    assert_eq!(told, 1, "a stranger's page is told once");
+    let reported = serve.notices("--allow-origin https://evil.example");
+    assert_eq!(reported, 1, "a stranger's page is reported once");
 }
 
 /// Stops the hostile clients when dropped, even if the flight failed.

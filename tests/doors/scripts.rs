@@ -130,7 +130,7 @@ fn a_script_that_speaks_msp_uploads_and_flies_a_plan() {
 }
 
 #[test]
-fn a_script_that_cannot_arm_is_told_why() {
+fn a_script_that_cannot_arm_is_reported_why() {
     let mut serve = Serve::start("4");
     // A client opened a command line and left. The craft needs a reboot to arm.
     drop(Terminal::open(serve.tcp));

@@ -5,7 +5,7 @@ use serde_json::Value;
 use super::program::Program;
 
 #[test]
-fn the_second_of_two_is_told_what_the_first_has() {
+fn the_second_of_two_is_reported_what_the_first_has() {
     let directory = tempfile::tempdir().unwrap();
     let directory = directory.path().to_str().unwrap();
     let serve = |tcp_port: &str| {

@@ -70,7 +70,7 @@ fn a_damaged_file_is_kept_and_the_previous_copy_used() {
 }
 
 #[test]
-fn without_a_good_copy_the_defaults_are_used_and_told() {
+fn without_a_good_copy_the_defaults_are_used_and_reported() {
     let directory = tempfile::tempdir().expect("a directory");
     std::fs::write(directory.path().join(FILE_NAME), b"rubbish").expect("written");
     let loaded = open(directory.path()).load();

@@ -202,7 +202,7 @@ fn motor_command_turns_motors_until_the_session_ends() {
 }
 
 #[test]
-fn mixer_that_cannot_fly_is_told_at_boot() {
+fn mixer_that_cannot_fly_is_reported_at_boot() {
     let configuration = Configuration { mixer: MixerKind::Hex6, ..Configuration::default() };
     let mut firmware = Firmware::new(configuration, FirmwareOptions::default());
     assert!(matches!(firmware.take_event(), Some(FirmwareEvent::Notice(_))));
@@ -233,8 +233,8 @@ fn tasks_and_smoothing_tell_the_rates_of_this_firmware() {
 }
 
 #[test]
-fn losing_the_gps_to_a_real_quads_receiver_is_told() {
-    let told = |bench: &Bench| {
+fn losing_the_gps_to_a_real_quads_receiver_is_reported() {
+    let reported = |bench: &Bench| {
         bench
             .events
             .iter()
@@ -245,24 +245,24 @@ fn losing_the_gps_to_a_real_quads_receiver_is_told() {
     bench.run(0.1);
     bench.type_line("set gps_provider = UBLOX");
     bench.run(0.2);
-    assert_eq!(told(&bench), 0, "not before it happens");
+    assert_eq!(reported(&bench), 0, "not before it happens");
     bench.type_line("save");
     bench.run(0.3);
-    assert_eq!(told(&bench), 1);
+    assert_eq!(reported(&bench), 1);
     bench.firmware.restart_in_place();
     bench.run(0.4);
-    assert_eq!(told(&bench), 1, "it was off already");
+    assert_eq!(reported(&bench), 1, "it was off already");
     let mut asked = Configuration::default();
     let provider = betadeck::firmware::settings::find("gps_provider").expect("a setting");
     asked.settings.assign(provider, "UBLOX").expect("a provider");
     bench.firmware.restart(asked);
     bench.run(0.5);
-    assert_eq!(told(&bench), 2);
+    assert_eq!(reported(&bench), 2);
 }
 
 #[test]
 fn a_value_that_current_firmware_refuses_is_taken_with_a_notice() {
-    let told = |bench: &Bench| -> Vec<String> {
+    let reported = |bench: &Bench| -> Vec<String> {
         let notices = bench.events.iter().filter_map(|event| match event {
             FirmwareEvent::Notice(notice @ FirmwareNotice::BeyondCurrentFirmware { .. }) => {
                 Some(notice.to_string())
@@ -277,13 +277,13 @@ fn a_value_that_current_firmware_refuses_is_taken_with_a_notice() {
     bench.run(0.2);
     let notice =
         "ap_position_cutoff = 5 is taken here, but current Betaflight refuses it: it allows 10 to 50.";
-    assert_eq!(told(&bench), [notice]);
+    assert_eq!(reported(&bench), [notice]);
     bench.type_line("set ap_position_cutoff = 20");
     bench.run(0.3);
-    assert_eq!(told(&bench).len(), 1, "a value that current firmware takes");
+    assert_eq!(reported(&bench).len(), 1, "a value that current firmware takes");
     bench.type_line("set ap_velocity_drag_coeff = 101");
     bench.run(0.4);
-    assert_eq!(told(&bench).len(), 2);
+    assert_eq!(reported(&bench).len(), 2);
 }
 
 #[test]

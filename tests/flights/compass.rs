@@ -36,7 +36,7 @@ fn landing_with_bias(seed: u64, plan: &str, bias_deg: f64) -> Option<String> {
     let mut checks = Checks::default();
     checks.holds("whole", !rig.vehicle.world().unwrap().truth().crashed);
     checks.same("reason", rig.disarmed().map(|(_, reason)| reason), Some(DisarmReason::Landing));
-    checks.holds("told", doubts(&rig).first() == Some(&true));
+    checks.holds("reported", doubts(&rig).first() == Some(&true));
     checks.at_most("heading", heading_error_deg(&rig), 25.0);
     let last = *rig.samples.last().unwrap();
     let place = rig.waypoint(rig.vehicle.embedded().unwrap().stored_plan().waypoints.len() - 1);

@@ -88,7 +88,7 @@ fn rough_landing(seed: u64) -> (f64, Option<String>) {
 }
 
 #[test]
-fn landing_in_rough_air_stands_level() {
+fn a_craft_that_landed_in_rough_air_is_level() {
     let (places, faults): (Vec<f64>, Vec<_>) = (1..=20).map(rough_landing).unzip();
     assert_met(faults);
     let mean = places.iter().sum::<f64>() / places.len() as f64;

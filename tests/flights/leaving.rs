@@ -74,7 +74,7 @@ fn flyaway_parks_the_craft_until_the_switch_is_cycled() {
     rig.vehicle.change_world(WorldCommand::FaultOn(Fault::Teleport([-80.0, -60.0, 0.0]), None)).unwrap();
     rig.until_state(3.0, NavState::Idle).fly(5.0);
     assert_eq!(modes(&rig), "ARM ANGLE ALTHOLD POS HOLD");
-    assert_eq!(refusals(&rig), [Refusal::Aborted(AbortReason::Flyaway)], "told once");
+    assert_eq!(refusals(&rig), [Refusal::Aborted(AbortReason::Flyaway)], "reported once");
     rig.vehicle.transmitter_mut().sticks_mut().channels[AUTOPILOT] = 1000;
     rig.fly(0.2);
     assert_eq!(modes(&rig), "ARM", "acro, as the pilot's switches say");
@@ -106,7 +106,7 @@ fn mode_events_tell_every_change_and_nothing_else() {
     let mut rig = on_its_way();
     rig.vehicle.transmitter_mut().sticks_mut().channels[AUTOPILOT] = 1000;
     rig.fly(1.0);
-    let told: Vec<_> = rig
+    let reported: Vec<_> = rig
         .events
         .iter()
         .filter_map(|event| match event.kind {
@@ -114,9 +114,9 @@ fn mode_events_tell_every_change_and_nothing_else() {
             _ => None,
         })
         .collect();
-    assert!(told.windows(2).all(|pair| pair[0] != pair[1]), "{told:?}");
-    assert_eq!(told.last().copied(), Some(rig.vehicle.embedded().unwrap().modes()));
-    let counted = told.iter().filter(|modes| modes.has(Mode::Autopilot)).count();
+    assert!(reported.windows(2).all(|pair| pair[0] != pair[1]), "{reported:?}");
+    assert_eq!(reported.last().copied(), Some(rig.vehicle.embedded().unwrap().modes()));
+    let counted = reported.iter().filter(|modes| modes.has(Mode::Autopilot)).count();
     assert_eq!(counted, 1);
     let lost = |event: &&Event| matches!(&event.kind, EventKind::Notice(VehicleNotice::EventsLost(_)));
     assert_eq!(rig.events.iter().find(lost), None);

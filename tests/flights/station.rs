@@ -14,7 +14,7 @@ fn holding(seed: u64, lines: &str) -> Rig {
 }
 
 /// Returns the reports in order, with the time since engagement.
-fn told(rig: &Rig) -> Vec<(bool, CannotHold)> {
+fn reported(rig: &Rig) -> Vec<(bool, CannotHold)> {
     rig.events
         .iter()
         .filter_map(|event| match &event.kind {
@@ -39,19 +39,19 @@ fn a_craft_blown_off_its_hold_says_so() {
     for seed in [0, 1] {
         let mut rig = holding(seed, HOLD);
         wind(&mut rig, "17@0");
-        rig.until(25.0, "it is told", |rig| !told(rig).is_empty());
-        let (on, deviation) = told(&rig)[0];
+        rig.until(25.0, "it is reported", |rig| !reported(rig).is_empty());
+        let (on, deviation) = reported(&rig)[0];
         assert!(on && deviation.distance_m > 4.0, "{deviation:?}");
         assert_eq!(deviation.limit, HoldLimit::Lean);
         rig.fly(5.0);
         assert!(shown(&rig).unwrap().distance_m > deviation.distance_m + 5.0, "the picture keeps up");
         wind(&mut rig, "calm");
-        rig.until(60.0, "it holds again", |rig| told(rig).len() == 2);
-        assert!(!told(&rig)[1].0);
+        rig.until(60.0, "it holds again", |rig| reported(rig).len() == 2);
+        assert!(!reported(&rig)[1].0);
         assert_eq!(shown(&rig), None);
         assert_eq!(rig.samples.last().unwrap().state, NavState::Holding, "nothing ends the mission");
         rig.fly(30.0);
-        assert_eq!(told(&rig).len(), 2, "{}", rig.story());
+        assert_eq!(reported(&rig).len(), 2, "{}", rig.story());
     }
 }
 
@@ -59,12 +59,12 @@ fn a_craft_blown_off_its_hold_says_so() {
 fn a_craft_that_sinks_from_its_hold_says_so() {
     let mut rig = holding(0, HOLD);
     rig.cli("set ap_throttle_max = 1480");
-    rig.until(30.0, "it is told", |rig| !told(rig).is_empty());
-    let (_, deviation) = told(&rig)[0];
+    rig.until(30.0, "it is reported", |rig| !reported(rig).is_empty());
+    let (_, deviation) = reported(&rig)[0];
     assert!(deviation.vertical_m < -3.0, "{deviation:?}");
     assert_eq!(deviation.limit, HoldLimit::Throttle);
     rig.cli("set ap_throttle_max = 1900");
-    rig.until(60.0, "it holds again", |rig| told(rig).len() == 2);
+    rig.until(60.0, "it holds again", |rig| reported(rig).len() == 2);
 }
 
 #[test]
@@ -76,8 +76,8 @@ fn a_craft_that_sinks_on_a_tired_battery_says_so() {
     rig.vehicle
         .change_world(WorldCommand::FaultOn(Fault::Battery(BatteryFault::Offset(-8.0)), None))
         .unwrap();
-    rig.until(60.0, "it is told", |rig| !told(rig).is_empty());
-    let (_, deviation) = told(&rig)[0];
+    rig.until(60.0, "it is reported", |rig| !reported(rig).is_empty());
+    let (_, deviation) = reported(&rig)[0];
     assert!(deviation.vertical_m < -3.0, "{deviation:?}");
     assert_eq!(deviation.limit, HoldLimit::Battery);
 }
@@ -88,7 +88,7 @@ fn a_landing_that_is_blown_away_says_so() {
     let mut rig = Rig::new(world(0).0, &format!("{land}\nset ap_max_distance_from_home = 0"), 30.0);
     rig.engaged().until_state(60.0, NavState::Landing).fly(5.0);
     wind(&mut rig, "17@0");
-    rig.until(25.0, "it is told", |rig| !told(rig).is_empty());
+    rig.until(25.0, "it is reported", |rig| !reported(rig).is_empty());
 }
 
 #[test]
@@ -103,6 +103,6 @@ fn what_holds_says_nothing() {
         let mut rig = holding(1, &lines);
         air(&mut rig);
         rig.until(300.0, "the landing", |rig| rig.disarmed().is_some());
-        assert!(told(&rig).is_empty(), "{pattern}: {}", rig.story());
+        assert!(reported(&rig).is_empty(), "{pattern}: {}", rig.story());
     }
 }

@@ -274,7 +274,7 @@ fn corpus(name: &str) -> Vec<(String, Vec<u8>)> {
 }
 
 #[test]
-fn the_decoder_finds_the_good_frame_behind_every_stored_damage() {
+fn the_decoder_finds_the_good_frame_after_every_stored_damage() {
     for (name, bytes) in corpus("msp") {
         let (frames, decoder) = decode_all(Decoder::server(), &bytes);
         assert!(decoder.is_between_frames(), "{name}");

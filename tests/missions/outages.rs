@@ -79,7 +79,7 @@ fn fly(seed: u64) -> Flown {
     let (at, for_s) = (dice.between(from, until), dice.between(1.0, 25.0));
     let fault = format!("gps-loss@{at:.2},{for_s:.1}");
     mission.world.faults.push(fault.parse::<ScheduledFault>().unwrap());
-    let told = format!(
+    let reported = format!(
         "seed {seed}: {fault} in {phase}, wind {}, takeoff {}",
         mission.world.wind, mission.takeoff_m
     );
@@ -93,7 +93,11 @@ fn fly(seed: u64) -> Flown {
         FlightResult::Crashed if wind.speed_mps < 3.0 => Some(outcome.end.verdict.reason.clone()),
         _ => None,
     };
-    Flown { phase, result, problem: problem.map(|problem| format!("{told}: {result} although {problem}")) }
+    Flown {
+        phase,
+        result,
+        problem: problem.map(|problem| format!("{reported}: {result} although {problem}")),
+    }
 }
 
 fn check(flown: Vec<Flown>) {

@@ -139,7 +139,7 @@ fn complaint(seed: u64) -> Option<String> {
     mission.settings.push("failsafe_procedure = AUTO-LAND".to_owned());
     let lines: Vec<String> = plan_lines(&mission.plan).collect();
     let Mission { takeoff_m, settings, world, .. } = &mission;
-    let told = format!(
+    let reported = format!(
         "seed {seed}: {}, takeoff {takeoff_m} m, wind {}, {:?}, {faults:?}, {settings:?}\n{}",
         world.airframe.name,
         world.wind,
@@ -170,7 +170,7 @@ fn complaint(seed: u64) -> Option<String> {
             .find(|(reason, alt_m)| *alt_m > AIRBORNE_M && *reason != DisarmReason::Switch && !is_fatal)
             .map(|(reason, alt_m)| format!("disarmed by {reason} {alt_m:.1} m up"))
     };
-    problem.map(|problem| format!("{told}: {problem}"))
+    problem.map(|problem| format!("{reported}: {problem}"))
 }
 
 /// Flies the missions of these seeds and returns their problems.

@@ -102,7 +102,7 @@ struct Heights {
 fn heights(seed: u64) -> Heights {
     let mission = random_mission(seed);
     let steep = steep_legs(&mission.plan, &mission.settings, mission.takeoff_m);
-    let told = format!(
+    let reported = format!(
         "seed {seed}: {}, takeoff {} m, wind {}, {:?}\n{}",
         mission.world.airframe.name,
         mission.takeoff_m,
@@ -113,7 +113,7 @@ fn heights(seed: u64) -> Heights {
     let outcome = mission.fly();
     let mut heights = Heights::default();
     if !matches!(outcome.result(), FlightResult::Complete | FlightResult::Missed) {
-        heights.crashes.push(format!("{told}\n{:?}", outcome.end.verdict));
+        heights.crashes.push(format!("{reported}\n{:?}", outcome.end.verdict));
     }
     for truth in outcome.end.truth.waypoints.iter().filter(|truth| truth.source == PlanSource::Stored) {
         let passes = matches!(truth.kind, WaypointType::Flyover | WaypointType::Flyby);
@@ -121,7 +121,7 @@ fn heights(seed: u64) -> Heights {
         heights.legs += 1;
         let said = steep.iter().find(|leg| leg.index == usize::from(truth.wp));
         let line =
-            |said: f64| format!("waypoint {}: said {said:.1} m, flown {error_m:.1} m; {told}", truth.wp);
+            |said: f64| format!("waypoint {}: said {said:.1} m, flown {error_m:.1} m; {reported}", truth.wp);
         match said {
             Some(leg) if error_m.abs() > TOLERANCE_M => {
                 heights.found += 1;

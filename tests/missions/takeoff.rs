@@ -18,10 +18,11 @@ fn complaint(name: &str, airframe: Airframe, takeoff_m: f64, seed: u64) -> Optio
     mission.world.seed = seed;
     let outcome = mission.fly();
     let over_m = outcome.climbed_m - takeoff_m;
-    let told = (outcome.result() != FlightResult::Complete)
+    let reported = (outcome.result() != FlightResult::Complete)
         .then(|| format!("{:?}: {}", outcome.result(), outcome.end.verdict.reason))
         .or_else(|| (over_m > 0.5 + 0.05 * takeoff_m).then(|| format!("climbed {over_m:.2} m too high")));
-    told.map(|told| format!("{name}, {}, takeoff {takeoff_m} m, seed {seed}: {told}", airframe.name))
+    reported
+        .map(|reported| format!("{name}, {}, takeoff {takeoff_m} m, seed {seed}: {reported}", airframe.name))
 }
 
 fn all(seeds: impl Fn(usize) -> Vec<u64>) -> impl Iterator<Item = Option<String>> {

@@ -59,7 +59,7 @@ fn a_craft_that_cannot_lean_that_far_flies_slower_and_says_so() {
     for (amsl_m, lean_deg, payload_kg) in cases {
         let outcome = far(amsl_m, 25.0, lean_deg, payload_kg, Airframe::iris());
         assert!(!is_down(&outcome), "{amsl_m} m, {lean_deg}°, {payload_kg} kg: {:?}", outcome.end.verdict);
-        assert!(outcome.limited, "{amsl_m} m, {lean_deg}°, {payload_kg} kg: nothing was told");
+        assert!(outcome.limited, "{amsl_m} m, {lean_deg}°, {payload_kg} kg: nothing was reported");
     }
 }
 

@@ -54,7 +54,7 @@ fn a_state_before_the_boot_is_its_end_as_it_is_the_public_ones() {
 }
 
 #[test]
-fn a_crash_is_told_with_its_signal() {
+fn a_crash_is_reported_with_its_signal() {
     let (mut child, _directory) = start(free_ports(), Trouble::Crashes);
     assert_eq!(end(&mut child), ChildEnd::Signal(6));
 }

@@ -92,7 +92,7 @@ fn write(directory: &Path, name: &str, text: &str) -> String {
 }
 
 #[test]
-fn a_scenario_is_judged_by_truth_and_what_is_not_told_is_skipped() {
+fn a_scenario_is_judged_by_truth_and_unreported_values_are_skipped() {
     let directory = tempfile::tempdir().unwrap();
     let scenario = write(directory.path(), "standing.toml", STANDING);
     let (code, summary) = end(start(&["check", &scenario, "--json", "-"]));
@@ -138,7 +138,7 @@ fn a_plan_is_flown_to_its_landing_and_compared_with_the_embedded_firmware() {
 }
 
 #[test]
-fn what_cannot_fly_is_told_before_anything_starts() {
+fn what_cannot_fly_is_reported_before_anything_starts() {
     let directory = tempfile::tempdir().unwrap();
     let none = directory.path().join("none.elf").display().to_string();
     for (arguments, code, part) in [
@@ -206,7 +206,7 @@ fn an_interrupt_before_the_flight_leaves_no_broken_file() {
 }
 
 #[test]
-fn a_firmware_at_another_tcp_port_is_told_with_the_option() {
+fn a_firmware_at_another_tcp_port_is_reported_with_the_option() {
     let ports = free_ports();
     let named = Ports { tcp: free_ports().tcp, ..ports };
     let (code, said) = end_said(start_stand_in(&["fly", "square"], ports, named, Trouble::None));
@@ -244,7 +244,7 @@ fn a_firmware_that_its_save_has_ended_is_to_be_started_again() {
 }
 
 #[test]
-fn a_firmware_without_waypoints_is_told_how_to_be_built() {
+fn a_firmware_without_waypoints_is_reported_how_to_be_built() {
     let ports = free_ports();
     let (code, said) = end_said(start_stand_in(&["fly", "square"], ports, ports, Trouble::HasNoPlans));
     assert_eq!(code, 3, "{said}");

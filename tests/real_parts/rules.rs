@@ -60,7 +60,7 @@ fn the_centre_of_the_mirror_is_the_first_position_that_it_processes_even_one_off
 }
 
 #[test]
-fn its_clock_leaps_with_stamps_that_advance_out_of_step_and_keeps_time_with_one_that_stands_still() {
+fn its_clock_leaps_with_stamps_that_advance_out_of_step_and_keeps_time_with_one_that_stops() {
     let fly = |stamp: &dyn Fn(u64) -> f64| {
         let (mut receiver, mut packet, mut wall) = (Receiver::new(), stamped(0.0), 0);
         for k in 0..10_000_u64 {

@@ -96,7 +96,7 @@ fn a_firmware_that_crashes_is_started_again() {
 }
 
 #[test]
-fn a_firmware_that_hangs_is_told() {
+fn a_firmware_that_hangs_is_reported() {
     let mut served = Served::stand_in(free_ports(), Trouble::Hangs);
     served.notice(" answers: Betaflight ");
     served.notice("has sent no motors for a second");
@@ -109,7 +109,7 @@ fn a_firmware_may_start_slowly() {
 }
 
 #[test]
-fn a_port_in_use_is_told_and_ends_the_program() {
+fn a_port_in_use_is_reported_and_ends_the_program() {
     let ports = free_ports();
     let _taken = std::net::UdpSocket::bind(("127.0.0.1", ports.fdm)).unwrap();
     let (code, said) = Served::stand_in(ports, Trouble::None).end();
@@ -118,7 +118,7 @@ fn a_port_in_use_is_told_and_ends_the_program() {
 }
 
 #[test]
-fn our_own_motor_port_in_use_is_told_and_ends_the_program() {
+fn our_own_motor_port_in_use_is_reported_and_ends_the_program() {
     let ports = free_ports();
     let _taken = std::net::UdpSocket::bind(("127.0.0.1", ports.motors)).unwrap();
     let (code, said) = Served::stand_in(ports, Trouble::None).end();
@@ -130,7 +130,7 @@ fn our_own_motor_port_in_use_is_told_and_ends_the_program() {
 }
 
 #[test]
-fn a_program_that_is_no_sitl_is_told_and_ends_the_program() {
+fn a_program_that_is_no_sitl_is_reported_and_ends_the_program() {
     let (code, said) = Served::stand_in(free_ports(), Trouble::IsNoSitl).end();
     assert_eq!(code, 3, "{said}");
     assert!(said.contains("SITL executable of Betaflight"), "{said}");
@@ -175,7 +175,7 @@ fn one_that_runs_already_is_taken_and_its_reboot_survived() {
 }
 
 #[test]
-fn one_that_runs_already_and_hangs_is_told() {
+fn a_hanging_program_that_runs_already_is_reported() {
     let Ports { raw, motors, .. } = free_ports();
     let stand_in = StandIn::start(raw, motors);
     let mut served = Served::start(stand_in.ports, &["--fresh", "--firmware", "attach"]);
@@ -187,7 +187,7 @@ fn one_that_runs_already_and_hangs_is_told() {
 }
 
 #[test]
-fn one_that_stands_at_a_breakpoint_is_waited_for() {
+fn one_that_is_at_a_breakpoint_is_waited_for() {
     let Ports { raw, motors, .. } = free_ports();
     let stand_in = StandIn::start(raw, motors);
     // The system accepts the connection for the stand-in meanwhile.
@@ -199,7 +199,7 @@ fn one_that_stands_at_a_breakpoint_is_waited_for() {
 }
 
 #[test]
-fn one_that_stands_for_ever_ends_the_program() {
+fn one_that_never_goes_on_ends_the_program() {
     let Ports { raw, motors, .. } = free_ports();
     let stand_in = StandIn::start(raw, motors);
     stand_in.hang(true);
@@ -215,8 +215,8 @@ fn one_that_serves_another_client_says_why_it_is_lost_and_says_it_once() {
     let other = std::net::TcpStream::connect(("127.0.0.1", stand_in.ports.tcp)).unwrap();
     std::thread::sleep(Duration::from_millis(100));
     let mut served = Served::start(stand_in.ports, &["--fresh", "--firmware", "attach"]);
-    let told = served.notice("closed the connection at once");
-    assert!(told.contains("close the other program"), "{told}");
+    let reported = served.notice("closed the connection at once");
+    assert!(reported.contains("close the other program"), "{reported}");
     // Time for several more attempts.
     std::thread::sleep(Duration::from_secs(7));
     let said = served.program.seen();

@@ -71,7 +71,7 @@ fn an_executable_is_answered_for_nearly_every_packet_and_its_clock_is_the_walls(
 }
 
 #[test]
-fn a_silent_executable_is_told_and_found_again() {
+fn a_silent_executable_is_reported_and_found_again() {
     let Ports { raw, motors, .. } = free_ports();
     let stand_in = StandIn::start(raw, motors);
     let mut peer = open(stand_in.ports, true);

@@ -4,20 +4,18 @@ use crate::paths::{Named, named, tokens};
 use crate::source::{SourceFile, files};
 
 /// Rooms that are pure: no file, no socket, no thread, no clock, no global state.
-const PURE: [&str; 15] = [
+const PURE: [&str; 13] = [
     "autopilot",
-    "did_you_mean",
     "firmware",
     "flight",
     "geo",
     "pilot",
     "plan",
-    "printable",
     "scenario",
     "signals",
     "sim",
-    "source_snippet",
     "telemetry",
+    "text",
     "timeline",
     "vehicle",
 ];

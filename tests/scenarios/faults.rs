@@ -70,10 +70,10 @@ fn guide_4_sees_a_landing_that_never_disarms() {
     assert_fails(&judgements, "disarmed by the landing, on the ground", "it did not happen");
     assert_fails(&judgements, "straight to the landing", "after LANDING 0 COMPLETE 0 was expected");
     assert_fails(&judgements, "result complete", "it ended timeout");
-    let told = judgements.iter().find(|one| one.label == "result complete").map(|one| &one.outcome);
+    let reported = judgements.iter().find(|one| one.label == "result complete").map(|one| &one.outcome);
     assert!(
-        matches!(told, Some(Outcome::Failed { guard: Some(guard), .. }) if guard.contains("touchdown throttle")),
-        "{told:?}"
+        matches!(reported, Some(Outcome::Failed { guard: Some(guard), .. }) if guard.contains("touchdown throttle")),
+        "{reported:?}"
     );
 }
 

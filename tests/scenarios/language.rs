@@ -56,24 +56,24 @@ fn an_input_is_done_once_or_each_time() {
 
 #[test]
 fn an_input_whose_instant_comes_once_cannot_be_done_each_time() {
-    let told = problems("[[input]]\nat = \"3 s after boot\"\neach = true\ndo = \"rc cut\"\n");
-    assert!(told.contains("this instant comes only once"), "{told}");
+    let reported = problems("[[input]]\nat = \"3 s after boot\"\neach = true\ndo = \"rc cut\"\n");
+    assert!(reported.contains("this instant comes only once"), "{reported}");
 }
 
 #[test]
 fn a_name_that_would_never_be_meant_is_refused() {
-    let told = problems("[parameters]\ncross_track = \"1 m\"\n");
-    assert!(told.contains("cross_track is a signal"), "{told}");
-    let told = problems("[[measure]]\nname = \"speed\"\nmax = \"altitude\"\n");
-    assert!(told.contains("speed is a signal"), "{told}");
+    let reported = problems("[parameters]\ncross_track = \"1 m\"\n");
+    assert!(reported.contains("cross_track is a signal"), "{reported}");
+    let reported = problems("[[measure]]\nname = \"speed\"\nmax = \"altitude\"\n");
+    assert!(reported.contains("speed is a signal"), "{reported}");
 }
 
 #[test]
 fn a_reason_that_does_not_exist_is_refused() {
-    let told = problems("[[expect]]\nevent = \"APPROACHING 0 by resumed\"\n");
-    assert!(told.contains("did you mean resume?"), "{told}");
-    let told = problems("[[expect]]\nevent = \"ARRIVED 0 by 'turn radios'\"\n");
-    assert!(told.contains("turn radius"), "{told}");
+    let reported = problems("[[expect]]\nevent = \"APPROACHING 0 by resumed\"\n");
+    assert!(reported.contains("did you mean resume?"), "{reported}");
+    let reported = problems("[[expect]]\nevent = \"ARRIVED 0 by 'turn radios'\"\n");
+    assert!(reported.contains("turn radius"), "{reported}");
 }
 
 #[test]
@@ -103,8 +103,9 @@ fn a_refusal_by_the_fence_tells_both_distances() {
     case.watch_s = 0.1;
     let flown = fly(&case);
     let judged = judge(&case, &flown).0;
-    let told = judged.iter().find(|one| one.label == "rejected at the start, with both distances").unwrap();
-    assert!(told.outcome.is_met(), "{told:?}");
-    let margin = told.outcome.margin().unwrap();
+    let reported =
+        judged.iter().find(|one| one.label == "rejected at the start, with both distances").unwrap();
+    assert!(reported.outcome.is_met(), "{reported:?}");
+    let margin = reported.outcome.margin().unwrap();
     assert!((margin.verdict.value - 150.4).abs() < 0.3, "{}", margin.shown());
 }

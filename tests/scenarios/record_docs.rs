@@ -5,7 +5,7 @@ use std::path::Path;
 
 use betadeck::geo::LatLon;
 use betadeck::plan::{FlightPlan, Waypoint, WaypointType};
-use betadeck::record::{End, json};
+use betadeck::report::{End, json};
 use betadeck::session::{EndpointAddresses, Event, SessionEvent};
 use betadeck::signals::SimTime;
 use betadeck::telemetry::{
@@ -202,9 +202,12 @@ fn the_nested_objects_are_as_the_page_says() {
     for (event, line) in events.chain([("end", json::end_line(SimTime(1), &an_end()))]) {
         let value: serde_json::Value = serde_json::from_str(&line).expect("an object");
         let nested = if event == "state" { &value["guard"] } else { &value["waypoints"][0] };
-        let told = &rows.iter().find(|row| row[0] == [event]).expect("the row")[2];
+        let reported = &rows.iter().find(|row| row[0] == [event]).expect("the row")[2];
         let keys: Vec<&String> = nested.as_object().expect("an object").keys().collect();
-        assert!(!keys.is_empty() && keys.iter().all(|key| told.contains(key)), "{keys:?} in {told:?}");
+        assert!(
+            !keys.is_empty() && keys.iter().all(|key| reported.contains(key)),
+            "{keys:?} in {reported:?}"
+        );
     }
 }
 

@@ -57,14 +57,14 @@ pub(crate) fn with_settings(mut case: Case, settings: &[&str]) -> Case {
 
 /// Panics unless the expectation of this name has failed with this text in its sentence.
 #[track_caller]
-pub(crate) fn assert_fails(judgements: &[Judgement], name: &str, told: &str) {
+pub(crate) fn assert_fails(judgements: &[Judgement], name: &str, reported: &str) {
     let judgement = judgements
         .iter()
         .find(|judgement| judgement.label == name)
         .unwrap_or_else(|| panic!("there is no expectation {name}"));
     match &judgement.outcome {
         Outcome::Failed { sentence, .. } => {
-            assert!(sentence.contains(told), "{name}: {sentence}");
+            assert!(sentence.contains(reported), "{name}: {sentence}");
         }
         other => panic!("{name}: {other:?}"),
     }

@@ -153,7 +153,7 @@ async fn a_craft_put_back_home_does_not_arm_while_somebody_is_at_the_command_lin
 }
 
 #[tokio::test]
-async fn what_a_client_changes_is_seen_while_time_stands_still() {
+async fn what_a_client_changes_is_seen_while_time_is_paused() {
     let mut rig = rig().await;
     rig.session.commands.send(Command::Pause(true)).await.unwrap();
     rig.picture("the pause", |view| view.paused).await;
@@ -211,10 +211,10 @@ async fn sticks_are_cut_while_a_script_flies_and_after_it_until_they_are_taken_b
         assert!(view.rc_cut && !is_on(&view, STICKS), "the sticks fly in the script's place");
         assert_eq!(view.vehicle.craft.rc_link, Some(false));
     }
-    let told =
+    let reported =
         |event: &Event| matches!(&event.kind, SessionEvent::Notice(text) if text.contains("`x` takes"));
     let events = std::iter::from_fn(|| rig.session.events.try_recv().ok());
-    assert_eq!(events.filter(told).count(), 1);
+    assert_eq!(events.filter(reported).count(), 1);
     // A user who takes the sticks back flies, regardless of the script.
     let running = tokio::spawn(script(rig.requests.clone()));
     rig.session.commands.send(Command::CutRc(false)).await.unwrap();
@@ -226,7 +226,7 @@ async fn sticks_are_cut_while_a_script_flies_and_after_it_until_they_are_taken_b
 }
 
 #[tokio::test]
-async fn flying_on_from_an_earlier_instant_closes_the_links_and_is_told() {
+async fn flying_on_from_an_earlier_instant_closes_the_links_and_is_reported() {
     let mut rig = rig().await;
     let mut person = rig.person().await;
     rig.picture("the block", is_blocked_by_cli).await;
@@ -245,7 +245,7 @@ async fn flying_on_from_an_earlier_instant_closes_the_links_and_is_told() {
     tokio::time::timeout(PATIENCE, person.read_to_end(&mut rest)).await.unwrap().unwrap();
     rig.picture("the branch", |view| view.timeline.as_ref().is_some_and(|timeline| timeline.branch == 1))
         .await;
-    let told = async {
+    let reported = async {
         while let Some(event) = rig.session.events.recv().await {
             if let SessionEvent::Branch { number, left } = event.kind {
                 return Some((number, left > event.time));
@@ -253,7 +253,7 @@ async fn flying_on_from_an_earlier_instant_closes_the_links_and_is_told() {
         }
         None
     };
-    assert_eq!(tokio::time::timeout(PATIENCE, told).await.unwrap(), Some((1, true)));
+    assert_eq!(tokio::time::timeout(PATIENCE, reported).await.unwrap(), Some((1, true)));
 }
 
 #[tokio::test]
@@ -342,8 +342,8 @@ async fn clients_change_nothing_while_an_earlier_instant_is_shown_and_are_answer
     assert!(!framed_line(&rig, "status").await.text.contains("earlier instant"));
     assert_eq!(framed_line(&rig, "waypoint list").await, list, "nothing was changed");
     assert!(!framed_line(&rig, WAYPOINT).await.refused);
-    let told =
+    let reported =
         |event: &Event| matches!(&event.kind, SessionEvent::Notice(text) if text.contains("was refused"));
     let events = std::iter::from_fn(|| rig.session.events.try_recv().ok());
-    assert_eq!(events.filter(told).count(), 1, "told once");
+    assert_eq!(events.filter(reported).count(), 1, "reported once");
 }

@@ -183,7 +183,7 @@ async fn a_script_is_lost_after_the_same_wall_time_at_any_speed() {
 }
 
 #[tokio::test]
-async fn a_script_is_not_lost_while_time_stands_still() {
+async fn a_script_is_not_lost_while_time_is_paused() {
     let mut bench = Bench::new().await;
     for ms in 0..500_u32 {
         if ms.is_multiple_of(20) {
@@ -285,7 +285,7 @@ async fn an_armed_craft_is_not_restarted() {
 }
 
 #[tokio::test]
-async fn what_cannot_be_saved_is_told_in_a_sentence() {
+async fn what_cannot_be_saved_is_reported_in_a_sentence() {
     let directory = tempfile::tempdir().unwrap();
     let mut bench = Bench::without_room(&directory).await;
     let (reply, mut answer) = oneshot::channel();

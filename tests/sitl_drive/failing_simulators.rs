@@ -39,7 +39,7 @@ fn a_simulator_that_dies_and_comes_back_begins_a_new_flight() {
     assert!(simulator.motors().iter().all(|motor| *motor > 0.0));
     let ended = simulator.end();
     let mut simulator = ended.start(Dialect::GzPlugin);
-    begins_anew(&mut simulator);
+    restarts(&mut simulator);
     child.line("the simulator was restarted: disarmed");
     simulator.fly(4);
     simulator.flown.is_the_square(&BOUNDS);
@@ -53,8 +53,8 @@ fn a_world_that_is_reset_begins_a_new_flight() {
     simulator.plant = Plant::new(Dialect::SitlGz);
     simulator.flown = Flown::new(simulator.plant.world.local_frame());
     simulator.hand = Hand::Waits;
-    simulator.begin_rc_anew();
-    begins_anew(&mut simulator);
+    simulator.restart_rc();
+    restarts(&mut simulator);
     child.line("the simulator was restarted: disarmed");
     simulator.fly(10);
     simulator.flown.is_the_square(&BOUNDS);
@@ -62,7 +62,7 @@ fn a_world_that_is_reset_begins_a_new_flight() {
 
 /// Checks that the craft of a new world is disarmed and stays at home until it is armed again.
 #[track_caller]
-fn begins_anew(simulator: &mut Simulator) {
+fn restarts(simulator: &mut Simulator) {
     while simulator.plant.time_ms() < 5000 {
         simulator.step(4);
     }

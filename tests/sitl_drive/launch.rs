@@ -46,7 +46,7 @@ fn a_firmware_that_reboots_is_started_again_in_its_directory() {
 }
 
 #[test]
-fn a_firmware_that_crashes_is_told_with_its_signal_and_started_again() {
+fn a_firmware_that_crashes_is_reported_with_its_signal_and_started_again() {
     let (mut child, _directory) = start("/bin/sh", &["-c", "kill -SEGV $$"]);
     assert_eq!(next(&mut child), ChildEvent::Started);
     assert_eq!(next(&mut child), ChildEvent::Ended(ChildEnd::Signal(11)));
@@ -54,7 +54,7 @@ fn a_firmware_that_crashes_is_told_with_its_signal_and_started_again() {
 }
 
 #[test]
-fn a_file_that_is_not_there_or_no_program_is_told_in_words() {
+fn a_file_that_is_not_there_or_no_program_is_reported_in_words() {
     let (mut child, _directory) = start("/nowhere/betaflight_SITL.elf", &[]);
     assert_eq!(next(&mut child), ChildEvent::Started);
     assert!(matches!(next(&mut child), ChildEvent::Line(_)));
@@ -90,7 +90,7 @@ fn written(directory: &TempDir, name: &str) -> String {
 }
 
 #[test]
-fn a_firmware_that_prints_without_end_is_shown_in_part_and_its_end_is_told() {
+fn a_firmware_that_prints_without_end_is_shown_in_part_and_its_end_is_reported() {
     let script = "yes | head -n 300000; echo through > done; exit 3";
     let (mut child, directory) = start("/bin/sh", &["-c", script]);
     // The events are not taken meanwhile.

@@ -17,9 +17,9 @@ const BETWEEN_MS: u64 = 8000;
 pub(crate) fn sitl(dialect: Dialect) -> (Child, Simulator) {
     let mut simulator = Simulator::new(dialect);
     let (motors, raw) = simulator.ports();
-    let told = format!("--fdm-dialect={dialect}");
+    let reported = format!("--fdm-dialect={dialect}");
     // The legacy dialect has the size of another one, so it must be named.
-    let more: &[&str] = if dialect == Dialect::Legacy { &[&told] } else { &[] };
+    let more: &[&str] = if dialect == Dialect::Legacy { &[&reported] } else { &[] };
     let mut child = Child::sitl(motors, raw, more);
     simulator.connect(child.sitl_ports());
     (child, simulator)

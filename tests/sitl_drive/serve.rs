@@ -37,7 +37,7 @@ fn a_mission_flies_in_an_external_simulator() {
 }
 
 #[test]
-fn silence_return_and_restart_are_told_and_survived() {
+fn silence_return_and_restart_are_reported_and_survived() {
     let (mut child, mut simulator) = serve(Dialect::GzPlugin, &[]);
     simulator.fly_up_to(10, 12.0);
     hang(&mut simulator);
@@ -79,7 +79,7 @@ fn trouble_on_the_link_is_flown_through() {
 }
 
 #[test]
-fn packets_that_are_refused_are_told_once() {
+fn packets_that_are_refused_are_reported_once() {
     let (mut child, mut simulator) = serve(Dialect::SitlGz, &[]);
     let mut senseless = simulator.plant.packet();
     senseless[8..16].copy_from_slice(&f64::NAN.to_le_bytes());
@@ -91,8 +91,8 @@ fn packets_that_are_refused_are_told_once() {
     simulator.fly(10);
     simulator.flown.is_the_square(&BOUNDS);
     child.line("Disarmed: landed.");
-    let told = child.lines().iter().filter(|line| line.contains("are refused")).count();
-    assert_eq!(told, 1);
+    let reported = child.lines().iter().filter(|line| line.contains("are refused")).count();
+    assert_eq!(reported, 1);
 }
 
 #[test]

@@ -153,7 +153,7 @@ impl Simulator {
     }
 
     /// Restarts the transmitter's clock for a new world.
-    pub(crate) fn begin_rc_anew(&mut self) {
+    pub(crate) fn restart_rc(&mut self) {
         self.next_rc_ms = 0;
     }
 

@@ -46,7 +46,7 @@ fn uploads(effects: &[Effect]) -> bool {
 }
 
 #[test]
-fn a_digit_too_many_is_told_and_one_key_lowers_it() {
+fn a_digit_too_many_is_reported_and_one_key_lowers_it() {
     let mut state = state_with_fix((120, 40));
     set_altitude(&mut state, 1, 500);
     keys(&mut state, "up up");

@@ -114,7 +114,7 @@ fn an_upload_and_a_save_in_flash_ask_and_a_download_does_not() {
 }
 
 #[test]
-fn a_refusal_drops_what_was_kept_back_and_the_lines_behind_it() {
+fn a_refusal_drops_what_was_kept_back_and_the_lines_after_it() {
     for leave in [KeyCode::Char('n'), KeyCode::Esc] {
         let mut state = connected(|_| {});
         state.focus = Panel::Cli;
@@ -244,7 +244,7 @@ fn a_firmware_without_plans_says_so() {
 }
 
 #[test]
-fn over_a_simulated_craft_with_a_firmware_outside_only_what_can_work_is_offered() {
+fn over_a_simulated_craft_with_a_remote_firmware_only_what_can_work_is_offered() {
     let flying = |change: fn(&mut RemoteView)| {
         connected(|remote| {
             remote.access = Access::Everything;
@@ -267,7 +267,7 @@ fn over_a_simulated_craft_with_a_firmware_outside_only_what_can_work_is_offered(
 }
 
 #[test]
-fn a_plan_that_the_firmware_outside_has_not_told_is_not_flown_unseen() {
+fn a_plan_that_the_remote_firmware_has_not_reported_is_not_flown_unseen() {
     let mut state = connected(|remote| remote.access = Access::Everything);
     let mut view = state.view.clone();
     std::sync::Arc::make_mut(&mut view.vehicle).stored_plan = None;

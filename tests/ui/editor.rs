@@ -180,7 +180,7 @@ fn waypoints_are_added_picked_and_deleted_with_the_cursor_on_the_map() {
 }
 
 #[test]
-fn a_survey_beyond_thirty_waypoints_is_told_before_it_is_made() {
+fn a_survey_beyond_thirty_waypoints_is_reported_before_it_is_made() {
     let mut state = state((120, 40));
     keys(&mut state, "2 P right right right down down backspace backspace '300 down backspace backspace '5");
     let seen = screen(&state);
@@ -479,7 +479,7 @@ fn a_huge_paste_into_a_field_is_cut() {
 }
 
 #[test]
-fn a_waypoint_inserted_behind_the_end_of_a_closed_square_goes_on_in_its_direction() {
+fn a_waypoint_inserted_after_the_end_of_a_closed_square_goes_on_in_its_direction() {
     let mut state = state((120, 40));
     keys(&mut state, "2 n P enter down down down down i");
     let [.., before, last, next] = state.plan().waypoints.as_slice() else { panic!("six") };

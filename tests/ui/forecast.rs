@@ -280,8 +280,8 @@ fn an_upload_in_flight_takes_effect_at_the_next_engagement_or_by_going_there() {
     assert!(state.popups.is_empty());
     let id = state.editor.plan().id();
     update(&mut state, Msg::UploadReply { id, count: 4, result: Ok(UploadReport::default()) });
-    let told = state.notice.as_ref().map(|notice| notice.text.clone()).unwrap_or_default();
-    assert!(told.contains("at the next engagement; `G` continues on it"), "{told}");
+    let reported = state.notice.as_ref().map(|notice| notice.text.clone()).unwrap_or_default();
+    assert!(reported.contains("at the next engagement; `G` continues on it"), "{reported}");
     let open = state.plan().clone();
     picture(&mut state, |vehicle| vehicle.stored_plan = Some(open));
     let shown = text(&state);

@@ -102,6 +102,7 @@ async fn a_plan_that_the_autopilot_would_refuse_is_not_flown_and_the_pilot_keeps
     assert_eq!(rig.state.view.pilot, None);
     rig.keys(" ").await;
     rig.until("a fix", |state| state.view.vehicle.time.as_secs_f64() > 6.0).await;
+    rig.assert_shown(&["The autopilot would refuse: waypoint", "2 edits the plan, U uploads it"]);
     rig.keys("a").await;
     rig.until("armed", |state| state.view.vehicle.craft.armed == Some(true)).await;
     rig.assert_shown(&["The autopilot would refuse: waypoint", "→ a disarms"]);

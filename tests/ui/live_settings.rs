@@ -89,7 +89,7 @@ fn upload(state: &mut AppState) {
 }
 
 #[test]
-fn a_fence_set_on_the_craft_after_the_upload_counts_and_is_told() {
+fn a_fence_set_on_the_craft_after_the_upload_counts_and_is_reported() {
     let mut state = open((120, 40));
     upload(&mut state);
     assert!(!said(&state).contains("refused"), "{}", said(&state));

@@ -37,8 +37,8 @@ fn move_cursor_to(state: &mut AppState, (column, row): (u16, u16)) {
 fn metres_from_home(state: &AppState) -> f64 {
     let seen = screen(state);
     let title = seen.lines().find(|line| line.contains("edit ·")).expect("the title of the map");
-    let told = title.rsplit_once(" m ").expect("metres").0;
-    told.rsplit(' ').next().and_then(|text| text.parse().ok()).expect("a number")
+    let reported = title.rsplit_once(" m ").expect("metres").0;
+    reported.rsplit(' ').next().and_then(|text| text.parse().ok()).expect("a number")
 }
 
 /// Moves the cursor east from home until it is on the ring of the fence, and returns its cell.

@@ -182,7 +182,7 @@ fn a_searched_log_at_four_sizes() {
 }
 
 #[test]
-fn the_cursor_of_the_graphs_stands_on_the_map_too_and_time_is_scaled() {
+fn the_cursor_of_the_graphs_is_on_the_map_too_and_time_is_scaled() {
     let mut state = fixture::state((200, 60), fixture::colour());
     fixture::approach(&mut state);
     press(&mut state, '6');

@@ -83,7 +83,7 @@ fn altitudes_are_dragged_by_whole_feet() {
 }
 
 #[test]
-fn the_flown_altitude_stands_beside_the_plan_and_the_legend_names_it() {
+fn the_flown_altitude_is_beside_the_plan_and_the_legend_names_it() {
     let mut state = fixture::state((120, 40), fixture::colour());
     keys(&mut state, "2 z");
     assert!(!screen(&state).contains("• flown"), "nothing was flown");

@@ -119,7 +119,7 @@ fn the_search_for_old_keys_finds_them() {
 }
 
 #[test]
-fn a_sentence_names_the_keys_as_they_were_remapped_wherever_it_stands() {
+fn a_sentence_names_the_keys_as_they_were_remapped_everywhere() {
     let keymap = with_alt();
     let mut seen_keys = 0;
     for (name, situation) in SITUATIONS {

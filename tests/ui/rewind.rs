@@ -147,7 +147,7 @@ async fn nothing_steers_an_instant_that_is_past() {
 }
 
 #[tokio::test]
-async fn the_flight_goes_on_from_an_earlier_instant_and_the_old_one_is_left_behind() {
+async fn the_flight_goes_on_from_an_earlier_instant_and_the_old_one_is_dropped() {
     let mut rig = Rig::new().await;
     rig.keys("F").await;
     rig.fly_to(NavState::Approaching).await;

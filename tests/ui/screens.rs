@@ -252,7 +252,7 @@ fn long_lines_of_the_cli_wrap_and_scroll_to_the_first() {
 }
 
 #[test]
-fn a_long_plan_scrolls_to_its_last_waypoint_whatever_stands_below() {
+fn a_long_plan_scrolls_to_its_last_waypoint_whatever_is_below() {
     for far_ones in [0, 1, 3] {
         let corner = fixture::square().waypoints[0];
         let mut plan = FlightPlan { waypoints: std::iter::repeat_n(corner, 30).collect() };

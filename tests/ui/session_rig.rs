@@ -10,7 +10,7 @@ use betadeck::firmware::FirmwareOptions;
 use betadeck::firmware::config::Configuration;
 use betadeck::plan::builtin::{BuiltinPlan, DEMO};
 use betadeck::plan::edit::History;
-use betadeck::record::sentence;
+use betadeck::report::sentence;
 use betadeck::session::command::{CliOutput, Seek};
 use betadeck::session::{Command, Handle, SessionConfig, start};
 use betadeck::signals::SimTime;

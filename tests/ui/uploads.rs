@@ -38,6 +38,7 @@ fn the_plan_panel_shows_how_far_the_upload_is_until_the_craft_was_read_back() {
         assert!(screen(&state).contains("↑ uploading 3/12"), "{}", screen(&state));
         assert!(keys(&mut state, "U").is_empty(), "one after the other");
         assert!(screen(&state).contains("line 3 of 12: wait for its end"), "{}", screen(&state));
+        assert!(keys(&mut state, "F").is_empty(), "no second upload before the flight");
         // The other plan is not being uploaded.
         keys(&mut state, "n i");
         assert!(!screen(&state).contains("uploading"), "{}", screen(&state));
@@ -124,8 +125,8 @@ fn a_plan_that_is_closed_takes_nothing_in_and_neither_does_the_next() {
 #[test]
 fn what_went_wrong_stays_while_keys_are_pressed_until_esc_or_its_time_is_over() {
     let mut state = state((80, 24));
-    let told = "Edits cannot be kept in /state: no space. Save often.";
-    update(&mut state, Msg::Files(FileReply::NotKept(told.to_owned())));
+    let reported = "Edits cannot be kept in /state: no space. Save often.";
+    update(&mut state, Msg::Files(FileReply::NotKept(reported.to_owned())));
     keys(&mut state, "2 + + j");
     assert!(screen(&state).contains("Save often."), "{}", screen(&state));
     keys(&mut state, "esc");

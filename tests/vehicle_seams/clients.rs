@@ -99,7 +99,7 @@ async fn what_a_client_sets_is_set_there_and_stored_there() {
 }
 
 #[tokio::test]
-async fn a_client_of_a_silent_flight_controller_is_told_so() {
+async fn a_client_of_a_silent_flight_controller_gets_an_error() {
     let mut links = Links::new().await;
     let mut version = links.message(API_VERSION);
     let mut line = links.line("status");

@@ -5,7 +5,7 @@
 use betadeck::firmware::FirmwareOptions;
 use betadeck::firmware::cli::Interpreter;
 use betadeck::firmware::config::Configuration;
-use betadeck::record::json;
+use betadeck::report::json;
 use betadeck::session::SessionView;
 use betadeck::sim::{WorldCommand, WorldConfig};
 use betadeck::telemetry::Snapshot;
@@ -198,7 +198,7 @@ fn rx_jitter_drops_its_fraction_of_the_rc_frames() {
 }
 
 #[test]
-fn the_altitude_shown_is_zero_where_the_craft_stands() {
+fn the_altitude_shown_is_zero_where_the_craft_is() {
     let vehicle = Vehicle::with_remote_controller(WorldConfig::default()).unwrap();
     assert!(truth_altitude(&vehicle.snapshot()).abs() < 0.02, "{:?}", vehicle.snapshot().truth);
 }

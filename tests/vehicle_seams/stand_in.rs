@@ -71,7 +71,7 @@ impl StandIn {
         let EstimateView { roll_deg, pitch_deg, heading_deg, .. } = self.firmware.estimate_view();
         let estimate = EstimateView { roll_deg, pitch_deg, heading_deg, ..EstimateView::default() };
         let altitude_reference = AltitudeReference::Home;
-        let told = RemoteTelemetry { estimate, altitude_reference, ..RemoteTelemetry::default() };
-        mailbox.deliver_telemetry(told);
+        let reported = RemoteTelemetry { estimate, altitude_reference, ..RemoteTelemetry::default() };
+        mailbox.deliver_telemetry(reported);
     }
 }

@@ -6,7 +6,7 @@ use crate::app::{AppError, input_file};
 use crate::args::{CheckArgs, MOST_FLIGHTS};
 use crate::flight::setup::check_setting;
 use crate::plan::format::{self, Format, PlanFile};
-use crate::record::check::STANDARD_INPUT;
+use crate::report::check::STANDARD_INPUT;
 use crate::scenario::{self, BuiltinFiles, BuiltinScenario, Files, SCENARIOS, Scenario, read_at_most};
 
 #[derive(Debug)]

@@ -10,10 +10,10 @@ use crate::app::output_file::{self, FinalOutput, KeptFiles};
 use crate::app::patient_output::PatientOutput;
 use crate::app::setup;
 use crate::args::{CheckArgs, OutputFile};
-use crate::printable;
-use crate::record::check::{
+use crate::report::check::{
     CheckedFlight, Summary, flight_line, flight_lines, junit, markdown, summary_line, summary_lines,
 };
+use crate::text::printable;
 
 /// The outputs for the results.
 pub(super) struct Output {

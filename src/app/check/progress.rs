@@ -3,7 +3,7 @@
 use std::io::{IsTerminal as _, Write as _};
 
 use crate::app::patient_output::PatientOutput;
-use crate::printable;
+use crate::text::printable;
 
 /// Width of the bar, characters.
 const WIDTH: usize = 24;

@@ -7,9 +7,9 @@ use super::Loaded;
 use super::results::Results;
 use super::run::{self, Job, Stopwatch};
 use crate::app::firmware::run::{RemoteRun, RunOptions, Stopped};
-use crate::app::firmware::{RemoteFirmware, told};
+use crate::app::firmware::{RemoteFirmware, reported};
 use crate::app::{AppError, error, setup};
-use crate::record::check::CheckedFlight;
+use crate::report::check::CheckedFlight;
 use crate::scenario::{self, Air, Case, CaseFlight};
 use crate::session::{Event, Unset};
 
@@ -94,7 +94,7 @@ fn fly(
     let mut vehicle = setup::build(setup, &mut Vec::new())?;
     let options = RunOptions { state: None, speed: 1.0, interrupted: Arc::clone(interrupted) };
     let mut tell = |event: &Event| {
-        if let Some(sentence) = told::sentence(event) {
+        if let Some(sentence) = reported::sentence(event) {
             results.tell(&sentence);
         }
         Ok(())

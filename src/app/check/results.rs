@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::output::Output;
 use crate::app::AppError;
-use crate::record::check::CheckedFlight;
+use crate::report::check::CheckedFlight;
 
 /// The finished flights, which are reported as they end.
 pub(super) struct Results<'a> {

@@ -10,7 +10,7 @@ use std::time::Instant;
 use super::{Comparisons, Loaded};
 use crate::app::AppError;
 use crate::args::{CheckArgs, MOST_FLIGHTS};
-use crate::record::check::{CheckedFlight, Compared};
+use crate::report::check::{CheckedFlight, Compared};
 use crate::scenario::{self, Air, Case, CaseFlight, Flown, Scenario};
 
 /// A flight to be flown: the indices of its scenario, case and air, and the number of the repetition.
@@ -92,14 +92,14 @@ pub(super) fn is_wanted(scenario: &Scenario, case: &Case, args: &CheckArgs) -> b
     args.filter.as_ref().is_none_or(|text| format!("{} {}", scenario.name, case.name).contains(text.as_str()))
 }
 
-/// Flies all jobs. `told` gets each result in the order of the jobs, with the number of finished flights.
+/// Flies all jobs. `reported` gets each result in the order of the jobs, with the number of finished flights.
 pub(super) fn all(
     loaded: &Loaded,
     jobs: &[Job],
     args: &CheckArgs,
     interrupted: &AtomicBool,
     stop: &AtomicBool,
-    mut told: impl FnMut(CheckedFlight, usize),
+    mut reported: impl FnMut(CheckedFlight, usize),
 ) -> Result<(), AppError> {
     let threads = args.jobs.map_or_else(
         || std::thread::available_parallelism().map_or(1, std::num::NonZero::get),
@@ -124,18 +124,18 @@ pub(super) fn all(
         }
         drop(results);
         let mut early = BTreeMap::new();
-        let (mut told_up_to, mut arrived_count) = (0, 0);
+        let (mut reported_up_to, mut arrived_count) = (0, 0);
         let mut repetitions = Repetitions::default();
         for (index, flown) in arrived {
             arrived_count += 1;
             early.insert(index, flown);
-            while let Some(flown) = early.remove(&told_up_to) {
-                told_up_to += 1;
+            while let Some(flown) = early.remove(&reported_up_to) {
+                reported_up_to += 1;
                 match flown {
                     Err(_) => return Err(AppError::internal("a flight panicked")),
                     // Interrupted in the air: there is no result.
                     Ok(None) => {}
-                    Ok(Some(flown)) => told(repetitions.compare(flown), arrived_count),
+                    Ok(Some(flown)) => reported(repetitions.compare(flown), arrived_count),
                 }
             }
         }
@@ -176,7 +176,7 @@ fn one(loaded: &Loaded, job: Job, is_stopped: &impl Fn() -> bool) -> Option<Chec
 pub(super) fn judged(flight: CheckedFlight, case: &Case, flown: Flown, started: &Stopwatch) -> CheckedFlight {
     let (judgements, measures) = scenario::judge(case, &flown);
     CheckedFlight {
-        told: flown.told,
+        reported: flown.reported,
         judgements,
         measures,
         hash: flown.trace.hash(),
@@ -275,9 +275,9 @@ pub(super) fn compared(loaded: &Loaded, flights: &[CheckedFlight], is_filtered: 
                         measures.map(|(name, value)| (format!("{}.{name}", flight.base), *value))
                     })
                     .collect();
-                let told = group(seed).map(|flight| flight.told).min().unwrap_or_default();
+                let reported = group(seed).map(|flight| flight.reported).min().unwrap_or_default();
                 for compare in &scenario.compares {
-                    tell(seed, scenario::compare(compare, &names, told));
+                    tell(seed, scenario::compare(compare, &names, reported));
                 }
             }
             if whole.is_empty() && !is_filtered {

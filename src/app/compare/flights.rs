@@ -7,7 +7,7 @@ use super::Compared;
 use super::recorder::Recorder;
 use crate::app::firmware::configuration::guide_settings;
 use crate::app::firmware::run::{RemoteRun, RunOptions, Seen, Stopped, unless_interrupted};
-use crate::app::firmware::{RemoteFirmware, told};
+use crate::app::firmware::{RemoteFirmware, reported};
 use crate::app::interrupt::interrupt_flag;
 use crate::app::{AppError, setup};
 use crate::args::{CompareArgs, Speed};
@@ -15,7 +15,7 @@ use crate::firmware::config::Configuration;
 use crate::flight::setup::{BootLines, PhysicsSource};
 use crate::flight::{FlightOptions, FlightSetup};
 use crate::plan::format::PlanFile;
-use crate::record::compare::{Route, Track};
+use crate::report::compare::{Route, Track};
 use crate::session::{Event, SessionEvent, upload};
 
 /// The number of ticks between two checks for an interrupt.
@@ -123,7 +123,7 @@ impl Flights {
         // Every flight starts without a configuration, so this is not reported.
         let mut tell = |event: &Event| {
             if matches!(event.kind, SessionEvent::Remote(_)) {
-                told::tell(event);
+                reported::tell(event);
             }
             Ok(())
         };
@@ -133,7 +133,7 @@ impl Flights {
         let end = run.fly(&mut flight, &mut |seen| {
             match seen {
                 Seen::Report(report) => recorder.hear(&report),
-                Seen::Told(event) => told::tell(&event),
+                Seen::Reported(event) => reported::tell(&event),
                 Seen::Ticked(flight) => recorder.look(flight),
             }
             Ok(())

@@ -3,7 +3,7 @@
 use crate::app::output_file::FinalOutput;
 use crate::app::{AppError, error, setup};
 use crate::args::{CompareArgs, OutputFile};
-use crate::record::compare::Comparison;
+use crate::report::compare::Comparison;
 
 /// The outputs of a comparison.
 #[derive(Debug)]

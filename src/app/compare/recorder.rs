@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 use crate::flight::{Flight, FlightEnd, Report};
-use crate::record::compare::{Track, TrackSample};
+use crate::report::compare::{Track, TrackSample};
 use crate::signals::SimTime;
 use crate::telemetry::{Event, EventKind};
 use crate::vehicle::Vehicle;

@@ -54,7 +54,7 @@ pub(super) fn find(path: &Path) -> Result<PathBuf, AppError> {
 /// Returns a suggestion for a word that is not a file.
 fn guess(path: &Path) -> String {
     let word = path.to_str().unwrap_or_default();
-    match crate::did_you_mean::closest(word, ["embedded", "attach"]) {
+    match crate::text::did_you_mean::closest(word, ["embedded", "attach"]) {
         Some(meant) => format!(", did you mean {meant}?"),
         None => String::new(),
     }
@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_started_is_told_in_one_sentence() {
+    fn what_cannot_be_started_is_reported_in_one_sentence() {
         let directory = tempfile::tempdir().expect("a directory");
         let refusal = |name: &str| {
             let error = find(&directory.path().join(name)).expect_err(name);

@@ -85,7 +85,7 @@ pub(in crate::app) enum Seen<'a> {
     /// A report of the flight.
     Report(Report<'a>),
     /// A report about the firmware.
-    Told(Event),
+    Reported(Event),
     /// The flight after a tick.
     Ticked(&'a Flight),
 }
@@ -180,7 +180,7 @@ impl RemoteRun {
         let reference = vehicle.controller().altitude_reference();
         let mut upload = Upload::new(plan, &[], reference).map_err(|unknown| {
             AppError::environment(match unknown {
-                AltitudeError::Untold => format!(
+                AltitudeError::Unreported => format!(
                     "{name} has reported no settings of its autopilot (`get ap_`), so the reference of its altitudes \
                      is unknown: fly a build with waypoints"
                 ),
@@ -192,8 +192,8 @@ impl RemoteRun {
             let waits_for = match progress {
                 UploadProgress::Done(result) => {
                     let report = result.map_err(|refusal| self.refused(refusal))?;
-                    if let Some(told) = report.conversion() {
-                        tell(&Event::notice(vehicle.time(), told))?;
+                    if let Some(reported) = report.conversion() {
+                        tell(&Event::notice(vehicle.time(), reported))?;
                     }
                     return Ok(());
                 }
@@ -248,7 +248,7 @@ impl RemoteRun {
                 }
             }
             for event in self.exchange(flight.vehicle_mut())? {
-                see(Seen::Told(event))?;
+                see(Seen::Reported(event))?;
             }
             self.rest();
         }
@@ -263,13 +263,13 @@ impl RemoteRun {
         for _ in 0..self.due() {
             vehicle.tick();
         }
-        let mut told = Ok(());
+        let mut reported = Ok(());
         vehicle.drain_events(|event| {
-            if told.is_ok() {
-                told = tell(&event.into());
+            if reported.is_ok() {
+                reported = tell(&event.into());
             }
         });
-        told?;
+        reported?;
         for event in self.exchange(vehicle)? {
             tell(&event)?;
         }
@@ -288,14 +288,14 @@ impl RemoteRun {
         if self.interrupted.load(Ordering::Relaxed) {
             return Err(Stopped::Interrupted);
         }
-        let mut told = Vec::new();
+        let mut reported = Vec::new();
         for notice in self.link.exchange(vehicle, None, Instant::now()) {
             if let RemoteNotice::Failed(sentence) = notice {
                 return Err(AppError::environment(sentence).into());
             }
-            told.push(Event { time: vehicle.time(), kind: SessionEvent::Remote(notice) });
+            reported.push(Event { time: vehicle.time(), kind: SessionEvent::Remote(notice) });
         }
-        Ok(told)
+        Ok(reported)
     }
 
     /// Sleeps until the next tick is due.

@@ -21,7 +21,7 @@ fn betaloop(file: PathBuf) -> FirmwareArgs {
 }
 
 #[test]
-fn the_launchers_file_names_the_executable_and_what_is_not_used_is_told() {
+fn the_launchers_file_names_the_executable_and_what_is_not_used_is_reported() {
     let directory = tempfile::tempdir().expect("a directory");
     let own = std::env::current_exe().expect("a path");
     std::os::unix::fs::symlink(&own, directory.path().join("sitl.elf")).expect("a link");
@@ -57,7 +57,7 @@ fn a_file_that_is_asked_for_has_to_be_the_launchers() {
 }
 
 #[test]
-fn ports_of_a_firmware_outside_are_known_ones() {
+fn ports_of_a_remote_firmware_are_known() {
     let attach = FirmwareArgs { firmware: Some(FirmwareChoice::Attach), ..FirmwareArgs::default() };
     let any = FirmwarePortArgs { tcp_port: Some(0), ..FirmwarePortArgs::default() };
     let error = choice(&attach, &FlightArgs::default(), &any).0.expect_err("refused");

@@ -4,17 +4,17 @@ use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use crate::app::error::{self, AppError};
-use crate::app::firmware::told;
+use crate::app::firmware::reported;
 use crate::app::output_file::{self, StreamedOutput};
 use crate::app::patient_output::PatientOutput;
 use crate::app::setup;
 use crate::args::{FlyArgs, OutputFile};
 use crate::flight::Report;
 use crate::plan::format::PlanFile;
-use crate::printable;
-use crate::record::{End, GpxHeader, GpxPoint, GpxWriter, UtcSeconds, json, sentence, truth};
+use crate::report::{End, GpxHeader, GpxPoint, GpxWriter, UtcSeconds, json, sentence, truth};
 use crate::session::Event;
 use crate::signals::SimTime;
+use crate::text::printable;
 use crate::vehicle::Vehicle;
 
 /// The messages before a flight with a remote firmware. The files begin with the flight.
@@ -34,7 +34,7 @@ impl<'a> Prelude<'a> {
     /// Reports an event: as a sentence on standard output, or, with JSON, on standard error until the lines begin.
     pub(super) fn event(&mut self, event: &Event) -> Result<(), AppError> {
         if self.args.json.is_some() {
-            told::tell(event);
+            reported::tell(event);
             self.held.push(event.clone());
         } else if let Some(line) = sentence::line(event) {
             error::write_stdout(format!("{}\n", printable::line(&line)).as_bytes())?;

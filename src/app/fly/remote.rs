@@ -36,7 +36,7 @@ pub(super) fn fly(start: Start<'_>, firmware: &RemoteFirmware) -> Result<Option<
     let mut engaged = None;
     let flown = run.fly(&mut flight, &mut |seen| match seen {
         Seen::Report(report) => output.report(report).and_then(|()| output.flush()),
-        Seen::Told(event) => output.event(&event).and_then(|()| output.flush()),
+        Seen::Reported(event) => output.event(&event).and_then(|()| output.flush()),
         Seen::Ticked(flight) => {
             if engaged.is_none() && flight.engaged_at().is_some() {
                 engaged = Some(Instant::now());

@@ -256,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn where_nothing_can_be_written_is_told_before() {
+    fn where_nothing_can_be_written_is_reported_before() {
         let directory = tempfile::tempdir().expect("a directory");
         let at = |name: &str| directory.path().join(name);
         for path in [directory.path().to_owned(), at("none/x.svg"), at("x.svg/")] {

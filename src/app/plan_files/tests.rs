@@ -89,7 +89,7 @@ fn a_file_of_somebody_else_is_never_replaced_unasked() {
 
     std::fs::write(&path, "waypoint insert 0 1 2 300 0 LAND 0 NONE\n").unwrap();
     assert_eq!(files.changed(), [opened.id]);
-    assert!(files.changed().is_empty(), "told once");
+    assert!(files.changed().is_empty(), "reported once");
     edit(&mut files, &mut opened, document(5));
     assert!(matches!(save(&mut files, &mut opened, &path, false), FileReply::Occupied { changed: true, .. }));
     let again = open(&mut files, &path);

@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lean_that_the_thrust_cuts_is_told() {
+    fn a_lean_that_the_thrust_cuts_is_reported() {
         let (controllers, _, params) = weak_craft();
         assert!(controllers.position.max_lean_rad(&params) < 0.5);
         assert!(controllers.thrust_limits_lean());

@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn a_craft_that_stands_is_landed_whatever_the_barometer_says() {
+    fn a_craft_at_rest_is_landed_whatever_the_barometer_says() {
         assert!(held(&STANDING, true, 10) > STATIONARY_S);
         assert_eq!(held(&STANDING, false, 10), 0.0);
     }

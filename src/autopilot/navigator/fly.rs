@@ -96,7 +96,7 @@ impl Navigator {
 
     /// Reports once per leg that the thrust is too low for the lean.
     fn tell_limited_lean(&mut self, controllers: &FlightControllers, params: &Params) {
-        if controllers.thrust_limits_lean() && !std::mem::replace(&mut self.leg.told_limited, true) {
+        if controllers.thrust_limits_lean() && !std::mem::replace(&mut self.leg.reported_limited, true) {
             self.push(NavEvent::Limited { lean_rad: controllers.position.max_lean_rad(params) });
         }
     }

@@ -38,7 +38,7 @@ pub(super) struct Leg {
     /// The arc at the start of the leg.
     pub arc: Option<CornerArc>,
     /// `true` once it was reported that the thrust limits the lean.
-    pub told_limited: bool,
+    pub reported_limited: bool,
 }
 
 impl Navigator {

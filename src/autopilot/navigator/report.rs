@@ -60,7 +60,7 @@ impl Navigator {
                 held_by_command: self.hold.is_by_command(),
                 eta_s: (on_leg && speed >= ETA_MIN_MPS).then(|| seen.distance_m / speed),
                 stick_override: seen.stick_override,
-                cannot_hold: self.station.told(),
+                cannot_hold: self.station.reported(),
                 yaw_override: output.yaw_rate_rps.is_none(),
                 guards,
                 output,

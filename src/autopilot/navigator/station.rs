@@ -88,13 +88,13 @@ pub(super) struct StationMonitor {
     period: Period,
     /// Mean excess of the previous period, m.
     before_m: Option<f64>,
-    told: Option<CannotHold>,
+    reported: Option<CannotHold>,
 }
 
 impl StationMonitor {
     /// Returns the report that still holds.
-    pub(super) fn told(&self) -> Option<CannotHold> {
-        self.told
+    pub(super) fn reported(&self) -> Option<CannotHold> {
+        self.reported
     }
 
     /// Takes an update. Returns the event to report now.
@@ -102,12 +102,12 @@ impl StationMonitor {
         let deviation =
             |limit| CannotHold { distance_m: station.distance_m, vertical_m: station.vertical_m, limit };
         if !station.is_off() {
-            let limit = self.told.map(|told| told.limit);
+            let limit = self.reported.map(|reported| reported.limit);
             *self = Self::default();
             return limit.map(|limit| NavEvent::CannotHold { on: false, deviation: deviation(limit) });
         }
-        if let Some(told) = &mut self.told {
-            *told = deviation(told.limit);
+        if let Some(reported) = &mut self.reported {
+            *reported = deviation(reported.limit);
         }
         self.period.add(station, dt);
         if self.period.time_s < PERIOD_S {
@@ -115,8 +115,8 @@ impl StationMonitor {
         }
         let period = std::mem::take(&mut self.period);
         let mean_m = period.mean_excess_m();
-        if let Some(told) = &mut self.told {
-            told.limit = period.limit(station);
+        if let Some(reported) = &mut self.reported {
+            reported.limit = period.limit(station);
             return None;
         }
         let before_m = self.before_m.replace(mean_m)?;
@@ -124,14 +124,14 @@ impl StationMonitor {
             return None;
         }
         let deviation = deviation(period.limit(station));
-        self.told = Some(deviation);
+        self.reported = Some(deviation);
         Some(NavEvent::CannotHold { on: true, deviation })
     }
 
     /// Ends the monitoring, since no place is kept any more or something else flies.
     fn leave(&mut self) -> Option<NavEvent> {
-        let told = std::mem::take(self).told;
-        told.map(|deviation| NavEvent::CannotHold { on: false, deviation })
+        let reported = std::mem::take(self).reported;
+        reported.map(|deviation| NavEvent::CannotHold { on: false, deviation })
     }
 }
 

@@ -4,7 +4,7 @@
 use super::super::settings::{SETTINGS, find, needs_restart};
 use super::CliReply;
 use super::command_table::{COMMANDS, by_name};
-use crate::did_you_mean;
+use crate::text::did_you_mean;
 
 /// Returns the advice to show after `line` was answered with `reply`, if any.
 pub fn advice(line: &str, reply: &CliReply) -> Option<String> {

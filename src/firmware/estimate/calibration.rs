@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn a_craft_that_stands_or_only_spins_keeps_its_magnetometer_offset() {
+    fn a_craft_at_rest_or_that_only_spins_keeps_its_magnetometer_offset() {
         for spin in [0.0, 1.0] {
             let mut mag = MagCalibration::new();
             let mut result = None;

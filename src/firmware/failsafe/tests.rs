@@ -85,7 +85,7 @@ fn stage_2_by_response() {
 }
 
 #[test]
-fn stage_1_is_told_once() {
+fn stage_1_is_reported_once() {
     let mut machine = Failsafe::default();
     let facts = FailsafeFacts { signal: false, ..flying() };
     assert_eq!(machine.update(&FailsafeConfig::default(), &flying()), None);

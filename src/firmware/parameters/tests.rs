@@ -26,7 +26,7 @@ const ELSEWHERE: [(&str, &str); 8] = [
     ("rateprofile_name", "shown by MSP"),
     ("battery_profile_name", "shown by MSP"),
     ("craft_name", "shown by MSP and dumps"),
-    ("bat_capacity", "told by MSP with the charge drawn"),
+    ("bat_capacity", "reported by MSP with the charge drawn"),
     ("rssi_channel", "read by MSP"),
     ("task_statistics", "columns of the tasks command"),
     ("gps_provider", "a real receiver without a port turns the feature GPS off at boot"),

@@ -2,8 +2,8 @@
 
 use super::parse::parse;
 use super::{AssignError, Kind, PORT_NAMES, SETTINGS, Setting, find, foreign_name};
-use crate::did_you_mean;
 use crate::plan::format::{SettingFault, SettingPart};
+use crate::text::did_you_mean;
 
 /// Checks that the craft accepts `value` for the setting `name`. Settings of other builds are kept, whatever their
 /// value.

@@ -154,7 +154,7 @@ fn a_lost_fix_makes_another_end() {
 }
 
 #[test]
-fn a_craft_that_stands_has_nothing_ahead() {
+fn a_craft_at_rest_has_nothing_ahead() {
     let refused = ForecastRun::look_ahead(vehicle("square", Noise::None)).unwrap_err();
     assert!(refused.contains("disarmed"), "{refused}");
 }

@@ -1,6 +1,5 @@
 //! Command lines that are applied at boot as if they were typed.
 
-use crate::did_you_mean;
 use crate::firmware::cli::{
     COMMANDS, CliContext, CliFacts, CliMode, CliReply, Interpreter, advice, apply_lines,
 };
@@ -8,6 +7,7 @@ use crate::firmware::config::Configuration;
 use crate::firmware::settings;
 use crate::plan::format::{PlanError, Problems, SettingPart};
 use crate::telemetry::FirmwareNotice;
+use crate::text::did_you_mean;
 
 /// The replacement for a line that is not a command.
 const NOT_SHOWN: &str = "(not shown: this is no command)";

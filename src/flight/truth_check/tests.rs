@@ -127,7 +127,7 @@ fn a_waypoint_that_is_left_by_a_command_does_not_count() {
     bench.enter(NavState::Arrived, TransitionReason::Arrival, None);
     bench.enter(NavState::Holding, TransitionReason::Hold, None);
     bench.fly_to(80.0);
-    assert!((bench.waypoints()[0].miss_m - 80.0).abs() < 1e-9, "told while it lasts");
+    assert!((bench.waypoints()[0].miss_m - 80.0).abs() < 1e-9, "reported while it lasts");
     bench.enter(NavState::Approaching, TransitionReason::SetCurrent, None);
     assert!(bench.waypoints().is_empty());
     bench.enter(NavState::Holding, TransitionReason::Hold, None);
@@ -203,11 +203,13 @@ fn a_landing_that_starts_again_elsewhere_after_an_outage_is_measured_from_the_pl
     bench.enter_at(NavState::Complete, TransitionReason::Touchdown, None, blown_to);
     let truth = bench.check.truth(&bench.craft, None);
     assert!((truth.waypoints[0].miss_m - 74.0).abs() < 0.5, "{truth:?}");
-    assert!(bench.check.worst_miss(&truth).is_some_and(|told| told.contains("the craft touched down 7")));
+    assert!(
+        bench.check.worst_miss(&truth).is_some_and(|reported| reported.contains("the craft touched down 7"))
+    );
 }
 
 #[test]
-fn a_craft_parked_at_the_end_is_told_with_its_speed() {
+fn a_craft_parked_at_the_end_is_reported_with_its_speed() {
     let mut bench = Bench::new(WaypointType::Flyover);
     bench.enter(NavState::Approaching, TransitionReason::Reset, None);
     bench.enter(NavState::Arrived, TransitionReason::Arrival, None);
@@ -217,7 +219,9 @@ fn a_craft_parked_at_the_end_is_told_with_its_speed() {
     let parked = truth.parked.unwrap();
     assert!(parked.distance_m.is_some_and(|distance| (distance - 33.0).abs() < 1e-9), "{parked:?}");
     assert!((parked.speed_mps - 5.0).abs() < 1e-9);
-    assert!(bench.check.worst_miss(&truth).is_some_and(|told| told.contains("33.0 m off at the end")));
+    assert!(
+        bench.check.worst_miss(&truth).is_some_and(|reported| reported.contains("33.0 m off at the end"))
+    );
 }
 
 /// Returns the altitude error of a hold at 20 m with a tolerance of 10 m, for the altitudes of each second.

@@ -34,7 +34,7 @@ pub(super) fn agreement(truth: &FlightTruth) -> Option<String> {
 fn waypoint_misses(waypoint: &WaypointTruth, tolerance_m: f64) -> [Option<Miss>; 3] {
     let WaypointTruth { wp, kind, miss_m, alt_error_m, hold_max_m, radius_m, .. } = *waypoint;
     let name = format!("waypoint {wp} ({kind})");
-    let told = match kind {
+    let reported = match kind {
         WaypointType::Land => format!("the craft touched down {miss_m:.1} m from {name}"),
         WaypointType::Hold => format!("{name} was not held, the craft was up to {miss_m:.1} m off"),
         WaypointType::Takeoff => format!("the craft was {miss_m:.1} m off in {name}"),
@@ -44,34 +44,34 @@ fn waypoint_misses(waypoint: &WaypointTruth, tolerance_m: f64) -> [Option<Miss>;
         _ => format!("{name} was missed, the craft passed {miss_m:.1} m from it"),
     };
     let waited = hold_max_m.filter(|_| kind == WaypointType::Land).and_then(|waited_m| {
-        let told = format!("the craft was up to {waited_m:.1} m off while it waited at {name}");
-        miss(waited_m, radius_m + tolerance_m, &told)
+        let reported = format!("the craft was up to {waited_m:.1} m off while it waited at {name}");
+        miss(waited_m, radius_m + tolerance_m, &reported)
     });
     let vertical = alt_error_m.and_then(|error_m| {
-        let told = match kind {
+        let reported = match kind {
             WaypointType::Hold => format!("{name} was not held, the craft was up to {}", too(error_m)),
             _ => format!("{name} was missed, the craft passed {}", too(error_m)),
         };
-        miss(error_m.abs(), tolerance_m, &told)
+        miss(error_m.abs(), tolerance_m, &reported)
     });
-    [miss(miss_m, radius_m + tolerance_m, &told), waited, vertical]
+    [miss(miss_m, radius_m + tolerance_m, &reported), waited, vertical]
 }
 
 fn parked_misses(parked: &ParkedTruth, tolerance_m: f64) -> [Option<Miss>; 2] {
     let ParkedTruth { wp, kind, distance_m, alt_error_m, speed_mps, radius_m } = *parked;
     let name = format!("the craft parked at waypoint {wp} ({kind})");
     let away = distance_m.and_then(|distance_m| {
-        let told = format!("{name} was {distance_m:.1} m off at the end, moving at {speed_mps:.1} m/s");
-        miss(distance_m, radius_m + tolerance_m, &told)
+        let reported = format!("{name} was {distance_m:.1} m off at the end, moving at {speed_mps:.1} m/s");
+        miss(distance_m, radius_m + tolerance_m, &reported)
     });
     let vertical =
         miss(alt_error_m.abs(), tolerance_m, &format!("{name} was {} at the end", too(alt_error_m)));
     [away, vertical]
 }
 
-fn miss(value_m: f64, allowed_m: f64, told: &str) -> Option<Miss> {
+fn miss(value_m: f64, allowed_m: f64, reported: &str) -> Option<Miss> {
     let excess_m = value_m - allowed_m;
-    (excess_m > 0.0).then(|| Miss { excess_m, sentence: format!("{told}; {allowed_m:.1} m are allowed") })
+    (excess_m > 0.0).then(|| Miss { excess_m, sentence: format!("{reported}; {allowed_m:.1} m are allowed") })
 }
 
 /// `19.7 m too low`.
@@ -120,8 +120,8 @@ mod tests {
     #[test]
     fn the_worst_one_is_named() {
         let far = flown(WaypointType::Land, 819.2, None);
-        let told = worst(&[flown(WaypointType::Flyover, 16.0, None), far]).unwrap();
-        assert_eq!(told, "the craft touched down 819.2 m from waypoint 2 (LAND); 15.0 m are allowed");
+        let reported = worst(&[flown(WaypointType::Flyover, 16.0, None), far]).unwrap();
+        assert_eq!(reported, "the craft touched down 819.2 m from waypoint 2 (LAND); 15.0 m are allowed");
         let injected = WaypointTruth { source: PlanSource::Rth, ..far };
         assert_eq!(worst(&[injected]), None, "a plan of the firmware is not the user's");
     }

@@ -200,9 +200,12 @@ mod tests {
             ("ws:http://craft.example", "ws:// or wss://"),
             ("ws://", "\"ws://\""),
         ] {
-            let told = refusal(text);
-            assert!(told.contains(part), "{text}: {told}");
-            assert!(told.contains("allowed are serial:DEVICE[,BAUD], tcp:HOST:PORT and ws:URL"), "{told}");
+            let reported = refusal(text);
+            assert!(reported.contains(part), "{text}: {reported}");
+            assert!(
+                reported.contains("allowed are serial:DEVICE[,BAUD], tcp:HOST:PORT and ws:URL"),
+                "{reported}"
+            );
         }
     }
 

@@ -55,7 +55,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_no_port_is_told_in_a_sentence() {
+    fn a_wrong_port_is_reported_in_a_sentence() {
         let file = tempfile::NamedTempFile::new().unwrap();
         let directory = tempfile::tempdir().unwrap();
         for (path, part) in [
@@ -63,8 +63,8 @@ mod tests {
             (file.path(), "is not a serial port"),
             (directory.path(), "is a directory"),
         ] {
-            let told = open(path, 115_200).expect_err("no port");
-            assert!(told.contains(part), "{told}");
+            let reported = open(path, 115_200).expect_err("no port");
+            assert!(reported.contains(part), "{reported}");
         }
         let denied = refusal(Path::new("/dev/ttyACM0"), 9600, &ErrorKind::PermissionDenied.into());
         assert!(denied.contains("usermod -aG dialout"), "{denied}");

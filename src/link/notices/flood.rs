@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn one_connection_is_told_in_the_singular() {
+    fn one_connection_is_reported_in_the_singular() {
         let stranger = Stranger::Began(ForeignProtocol::Text);
         assert_eq!(
             sentence("TCP", stranger, 1),

@@ -329,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_asked_behind_bytes_that_are_no_text() {
+    fn nothing_is_asked_after_bytes_that_are_no_text() {
         for bytes in [b"\x00\x64\x00\x01#".as_slice(), b"#\x00", b"\n\xff\n#", b"$M\x00#"] {
             let asks = asked(&[FRAME, bytes, FRAME, b"\n#"]);
             assert!(

@@ -266,7 +266,7 @@ mod tests {
         }
         // Ten at once, then one in ten.
         assert!((105..=115).contains(&flown), "{flown}");
-        assert!(!feed.waits(1060 * MS), "it is silent, which is told and has its own rule");
+        assert!(!feed.waits(1060 * MS), "it is silent, which is reported and has its own rule");
         motors(&mut feed, 1061);
         assert!(!feed.waits(1062 * MS));
     }
@@ -284,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn until_it_has_answered_for_a_while_the_craft_stands_at_home_with_a_fix() {
+    fn until_it_has_answered_for_a_while_the_craft_is_at_home_with_a_fix() {
         let mut feed = feed(Dialect::SitlGz);
         let north = HOME.0 + 0.001;
         for (ms, fix) in [(0, false), (500, true)] {
@@ -334,7 +334,7 @@ mod tests {
     }
 
     #[test]
-    fn a_second_of_silence_is_told() {
+    fn a_second_of_silence_is_reported() {
         let mut feed = feed(Dialect::SitlGz);
         assert_eq!(feed.state(5000 * MS), FeedState::Waiting);
         motors(&mut feed, 5000);

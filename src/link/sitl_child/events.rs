@@ -24,7 +24,7 @@ struct Queue {
     lines: usize,
     window: Option<Instant>,
     /// The number of lines accepted since the window began.
-    told: usize,
+    reported: usize,
     /// The number of omitted lines that no event counts yet.
     not_shown: u64,
 }
@@ -56,14 +56,14 @@ impl Queue {
     fn add_line(&mut self, line: &[u8], now: Instant) {
         if self.is_window_over(now) {
             self.window = Some(now);
-            self.told = 0;
+            self.reported = 0;
             self.count_not_shown();
         }
-        if self.told >= TOLD_MAX || self.lines >= WAITING_MAX {
+        if self.reported >= TOLD_MAX || self.lines >= WAITING_MAX {
             self.not_shown += 1;
             return;
         }
-        self.told += 1;
+        self.reported += 1;
         self.lines += 1;
         self.events.push_back(ChildEvent::Line(String::from_utf8_lossy(line).into_owned()));
     }
@@ -115,7 +115,7 @@ mod tests {
 
     #[test]
     #[allow(clippy::disallowed_methods, reason = "an instant to count from")]
-    fn lines_beyond_what_can_be_read_are_counted_and_told() {
+    fn lines_beyond_what_can_be_read_are_counted_and_reported() {
         let (mut queue, begin) = (Queue::default(), Instant::now());
         for _ in 0..TOLD_MAX + 7 {
             queue.add_line(b"y", begin);

@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_that_makes_no_sense_is_reported_with_the_edits_behind_it() {
+    fn a_line_that_makes_no_sense_is_reported_with_the_edits_after_it() {
         let mut history = History::new(document(&[1]), true);
         let mut lines = vec![JournalLine::opened(history.document(), None, true).to_text()];
         for alt_cm in 2..=5 {
@@ -256,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_journal_is_none() {
+    fn a_text_that_is_no_journal_gives_none() {
         for text in ["", "{}", "name = \"x\"", "{\"moved\":3}\n"] {
             assert_eq!(Journal::read(text), None, "{text}");
         }

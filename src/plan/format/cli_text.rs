@@ -7,9 +7,9 @@ use std::ops::Range;
 
 use super::field::{self, FieldError};
 use super::{Note, NoteKind, PlanFile, Problems, Written};
-use crate::did_you_mean;
 use crate::geo::LatLon;
 use crate::plan::{FlightPlan, MAX_WAYPOINTS, Waypoint, plan_lines};
+use crate::text::did_you_mean;
 
 /// The values of `waypoint insert` and `waypoint update`, by name.
 const VALUES: [&str; 8] =

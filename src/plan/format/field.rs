@@ -2,8 +2,8 @@
 
 use strum::IntoEnumIterator as _;
 
-use crate::did_you_mean;
 use crate::plan::{HoldPattern, WaypointType};
+use crate::text::did_you_mean;
 
 /// A mistake in a value, and the allowed values.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 
 use crate::geo::Degrees7;
 use crate::plan::{HoldPattern, Waypoint, WaypointType};
-use crate::printable::is_printable;
+use crate::text::printable::is_printable;
 
 use super::{PlanFile, Written};
 

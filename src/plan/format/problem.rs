@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::Range;
 
-use crate::source_snippet::{SourceSnippet, shortened, source_snippet};
+use crate::text::source_snippet::{SourceSnippet, shortened, source_snippet};
 
 /// The most problems of a file that are listed; the others are counted.
 const MOST_LISTED: usize = 100;

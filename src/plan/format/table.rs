@@ -4,7 +4,7 @@ use crate::geo::{Degrees7, LatLon};
 use crate::plan::estimate::{Assumptions, LegEstimate, PlanEstimate, estimate};
 use crate::plan::review::review;
 use crate::plan::{HoldPattern, Waypoint, WaypointType};
-use crate::printable;
+use crate::text::printable;
 
 use super::PlanFile;
 

@@ -6,7 +6,7 @@ use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
 use super::Problems;
-use crate::did_you_mean;
+use crate::text::did_you_mean;
 
 /// A value with its place.
 pub type Value<'i> = Spanned<DeValue<'i>>;

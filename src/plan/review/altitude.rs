@@ -76,7 +76,7 @@ mod tests {
     }
 
     #[test]
-    fn a_digit_too_many_is_told() {
+    fn a_digit_too_many_is_reported() {
         assert_eq!(
             found(&[50, 500, 50, 20], None),
             ["waypoint 1 is 500 m above home, far above the others (50 m)"]
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn every_waypoint_above_the_limit_is_told() {
+    fn every_waypoint_above_the_limit_is_reported() {
         assert_eq!(
             found(&[120, 121, 150], Some(120.0)),
             [
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn the_waypoint_that_says_the_altitude_is_told() {
+    fn the_waypoint_that_says_the_altitude_is_reported() {
         let change = Waypoint { kind: WaypointType::AltChange, alt_cm: 20_000, ..Waypoint::default() };
         let waypoints = [change, Waypoint { alt_cm: 5000, ..Waypoint::default() }];
         let found = too_high(&waypoints, Some(120.0));

@@ -292,25 +292,28 @@ mod tests {
     }
 
     #[test]
-    fn a_steep_leg_is_told_with_its_miss_and_what_to_do() {
+    fn a_steep_leg_is_reported_with_its_miss_and_what_to_do() {
         use WaypointType::{Flyover, Land};
         let found = steep(&[(Flyover, 55.7, 15, 1000), (Flyover, 85.7, 80, 1000), (Land, 0.0, 15, 0)]);
-        let told: Vec<String> = found.iter().map(ToString::to_string).collect();
+        let reported: Vec<String> = found.iter().map(ToString::to_string).collect();
         assert_eq!(
-            told,
+            reported,
             [
                 "waypoint 1 is passed about 56 m too low: its leg takes 3 s, the climb to 80 m 15 s; fly the leg at 1.6 m/s or \
               slower"
             ]
         );
         let drop = steep(&[(Flyover, 100.0, 100, 200), (Flyover, 104.0, 20, 500), (Land, 0.0, 15, 0)]);
-        let told = drop.last().map(ToString::to_string).unwrap_or_default();
-        assert!(told.contains("too high") && told.contains("the descent to 20 m"), "{told}");
-        assert!(told.ends_with("put a HOLD at 20 m before it, which waits for the altitude"), "{told}");
+        let reported = drop.last().map(ToString::to_string).unwrap_or_default();
+        assert!(reported.contains("too high") && reported.contains("the descent to 20 m"), "{reported}");
+        assert!(
+            reported.ends_with("put a HOLD at 20 m before it, which waits for the altitude"),
+            "{reported}"
+        );
     }
 
     #[test]
-    fn legs_that_wait_for_their_altitude_or_have_the_time_are_not_told() {
+    fn legs_that_wait_for_their_altitude_or_have_the_time_are_not_reported() {
         use WaypointType::{Flyover, Hold, Land, Takeoff};
         assert!(steep(&[(Hold, 5.0, 90, 0), (Flyover, 50.0, 90, 0), (Land, 60.0, 20, 0)]).is_empty());
         assert!(steep(&[(Takeoff, 0.0, 90, 0), (Flyover, 50.0, 90, 0), (Land, 60.0, 20, 0)]).is_empty());

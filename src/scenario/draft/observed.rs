@@ -41,20 +41,20 @@ fn states(flown: &Flown) -> Option<String> {
 /// Returns expectations for the times at which waypoints were reached and landings began.
 fn times(flown: &Flown) -> Vec<Block> {
     let Some(engaged) = flown.trace.engaged_at else { return Vec::new() };
-    let mut told: Vec<String> = Vec::new();
+    let mut reported: Vec<String> = Vec::new();
     let mut blocks = Vec::new();
     for happening in &flown.trace.happenings {
         let HappeningKind::State(entered) = &happening.kind else { continue };
-        let is_told = matches!(entered.state, NavState::Arrived | NavState::Landing | NavState::Complete);
+        let is_reported = matches!(entered.state, NavState::Arrived | NavState::Landing | NavState::Complete);
         let name = format!("{} {} of {}", entered.state, entered.wp, entered.source);
-        if !is_told || happening.time < engaged || told.contains(&name) {
+        if !is_reported || happening.time < engaged || reported.contains(&name) {
             continue;
         }
         let seconds = happening.time.seconds_since(engaged);
         let margin = TIME_S.max(TIME_SHARE * seconds);
         let within = format!("{:.1}..{:.1} s after engaged", (seconds - margin).max(0.0), seconds + margin);
         blocks.push(vec![("event", quoted(&name)), ("within", quoted(&within))]);
-        told.push(name);
+        reported.push(name);
     }
     blocks
 }

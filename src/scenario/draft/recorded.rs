@@ -171,32 +171,32 @@ fn sentences(input: &Input, transmitter: &mut RcTransmitter) -> Result<Vec<Strin
         Input::InFlight(InFlightCommand::Resume) => one("go on"),
         Input::World(command) => Ok(vec![command.to_string()]),
         Input::Transmitter(now) => {
-            let told = changes(transmitter, now);
+            let reported = changes(transmitter, now);
             transmitter.clone_from(now);
-            Ok(told)
+            Ok(reported)
         }
     }
 }
 
 /// Returns the sentences for the changes that were made to the transmitter by hand.
 fn changes(before: &RcTransmitter, now: &RcTransmitter) -> Vec<String> {
-    let mut told = Vec::new();
+    let mut reported = Vec::new();
     match (before.pilot(), now.pilot()) {
-        (None, Some(pilot)) => told.push(format!("pilot {}", pilot.takeoff_m())),
-        (Some(_), None) => told.push("pilot off".to_owned()),
+        (None, Some(pilot)) => reported.push(format!("pilot {}", pilot.takeoff_m())),
+        (Some(_), None) => reported.push("pilot off".to_owned()),
         (None, None) | (Some(_), Some(_)) => {}
     }
     // The stick positions of the scripted pilot follow from the flight.
     if now.pilot().is_none() && (before.sticks() != now.sticks() || before.pilot().is_some()) {
         let values: Vec<String> = now.sticks().channels.iter().map(ToString::to_string).collect();
-        told.push(format!("sticks {}", values.join(" ")));
+        reported.push(format!("sticks {}", values.join(" ")));
     }
     if before.is_cut() != now.is_cut() {
-        told.push(if now.is_cut() { "rc cut" } else { "rc restore" }.to_owned());
+        reported.push(if now.is_cut() { "rc cut" } else { "rc restore" }.to_owned());
     }
     for input in now.inputs().iter().filter(|input| !before.inputs().contains(input)) {
         let for_s = input.for_s.map_or_else(String::new, |for_s| format!(" for {for_s} s"));
-        told.push(format!("stick {} {}{for_s}", channel_name(input.channel), input.value_us));
+        reported.push(format!("stick {} {}{for_s}", channel_name(input.channel), input.value_us));
     }
-    told
+    reported
 }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::did_you_mean;
+use crate::text::did_you_mean;
 
 /// A mistake in an expression, and its place in the text.
 #[derive(Debug, Clone, PartialEq, Eq)]

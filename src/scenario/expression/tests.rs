@@ -119,7 +119,7 @@ fn numbers_have_the_value_that_a_pilot_would_work_out() {
 }
 
 #[test]
-fn what_is_not_known_is_neither_true_nor_false() {
+fn unknown_values_are_neither_true_nor_false() {
     assert!(value("cross_track", 5.0).is_nan());
     assert!(value("since(crash)", 5.0).is_nan());
     assert_eq!(holds("cross_track <= 2 m", 5.0), None);

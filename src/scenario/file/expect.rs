@@ -182,7 +182,7 @@ fn read_results(kind: &str, table: &TomlTable<'_, '_>, reader: &mut Reader<'_, '
     let words = reader.texts(table, kind)?;
     for (word, span) in &words {
         if !RESULTS.contains(&word.as_str()) {
-            let guess = crate::did_you_mean::suffix(word, RESULTS);
+            let guess = crate::text::did_you_mean::suffix(word, RESULTS);
             let hint = format!("allowed: {}", RESULTS.join(", "));
             reader.problem(span.clone(), format!("{word} is not a result{guess}"), hint);
         }

@@ -164,7 +164,7 @@ impl<'r, 'p> Reader<'r, 'p> {
     pub(super) fn refuse_unknown(&mut self, table: &TomlTable<'_, '_>, known: &'static [&'static str]) {
         for (name, span, _) in table.keys() {
             if !known.contains(&name) {
-                let hint = crate::did_you_mean::hint(name, known.iter().copied());
+                let hint = crate::text::did_you_mean::hint(name, known.iter().copied());
                 self.problem(span, format!("{name} is not a key of {}", table.what()), hint);
             }
         }

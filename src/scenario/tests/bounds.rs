@@ -68,11 +68,11 @@ fn terms_of_every_kind_are_counted() {
         }
         let words_of = if key == "event" { "mode " } else { "" };
         let text = format!("{STANDING}[[expect]]\n{key} = '{words_of}{text}'\n");
-        let told = problems(&text).join("\n");
+        let reported = problems(&text).join("\n");
         assert!(
-            told.contains("this expression has too many terms"),
+            reported.contains("this expression has too many terms"),
             "{key} {term}: {}",
-            &told[..told.len().min(300)]
+            &reported[..reported.len().min(300)]
         );
     }
 }
@@ -95,8 +95,8 @@ fn parentheses_that_are_read_as_a_condition_first_do_not_double_the_work_at_each
     for _ in 0..7 {
         inner = format!("(since(when {inner} <= 9 m)) / 1 s * 1 m");
     }
-    let told = problems(&format!("{STANDING}[[expect]]\nmax = '({inner}) <= 9 m'\n")).join("\n");
-    assert!(told.contains("this is nested too deeply"), "{told}");
+    let reported = problems(&format!("{STANDING}[[expect]]\nmax = '({inner}) <= 9 m'\n")).join("\n");
+    assert!(reported.contains("this is nested too deeply"), "{reported}");
 }
 
 #[test]
@@ -190,9 +190,9 @@ fn a_hundred_cases_of_a_hundred_thousand_flights_are_not_made_before_they_are_re
 fn terms_of_all_cases_together_are_bounded() {
     let long = format!("[[expect]]\nmax = \"{}\"\n", sum(999));
     let text = format!("{STANDING}{}{}", long.repeat(40), cases(100));
-    let told = problems(&text);
+    let reported = problems(&text);
     let sentence = "the expressions of all cases together have more than 1000000 terms";
-    assert!(told.len() == 1 && told[0].ends_with(&format!(":7: {sentence}")), "{told:?}");
+    assert!(reported.len() == 1 && reported[0].ends_with(&format!(":7: {sentence}")), "{reported:?}");
     assert!(hints(&text).contains("shorten them, or make several scenarios of it"));
 }
 
@@ -210,8 +210,8 @@ fn a_name_is_a_short_text() {
     for part in ["[[case]]\n", "[[input]]\nat = 'armed'\ndo = 'rc cut'\n", "[[measure]]\nmax = 'altitude'\n"]
     {
         let text = format!("{STANDING}{part}name = '{}'\n", "x".repeat(101));
-        let told = problems(&text).join("\n");
-        assert!(told.contains("this name has 101 characters"), "{part}: {told}");
+        let reported = problems(&text).join("\n");
+        assert!(reported.contains("this name has 101 characters"), "{part}: {reported}");
     }
 }
 
@@ -246,8 +246,11 @@ fn a_file_that_many_cases_name_is_read_once_and_kept_as_often_as_memory_allows()
     assert_eq!(files.reads, 2, "the plan and the settings");
     let mut files = CountedFiles { text: format!("# {}\n", "x".repeat(1000)).repeat(1000), reads: 0 };
     let errors = read("test.toml", &text, None, &mut files).expect_err("100 MB of settings");
-    let told: Vec<String> = errors.iter().map(PlanError::headline).collect();
-    assert_eq!(told, ["test.toml:6:17: the settings and lines of all cases together have more than 64 MiB"]);
+    let reported: Vec<String> = errors.iter().map(PlanError::headline).collect();
+    assert_eq!(
+        reported,
+        ["test.toml:6:17: the settings and lines of all cases together have more than 64 MiB"]
+    );
 }
 
 #[test]

@@ -169,14 +169,15 @@ impl Observer {
         let commanded = simulated.and_then(|simulated| simulated.commanded);
         let craft = CraftView { commanded, ..self.observation.craft_view() };
         let engaged = self.observation.is_active(Mode::Autopilot);
-        let told = self.mission.as_ref().map(|told| mission::nav(told, engaged, stored_plan.as_ref()));
-        for event in self.events.follow(&craft, told.as_ref(), stored_plan.as_ref()) {
+        let reported =
+            self.mission.as_ref().map(|reported| mission::nav(reported, engaged, stored_plan.as_ref()));
+        for event in self.events.follow(&craft, reported.as_ref(), stored_plan.as_ref()) {
             mailbox.deliver_event(event);
         }
         mailbox.deliver_telemetry(RemoteTelemetry {
             estimate: self.observation.estimate_view(origin),
             craft,
-            nav: told.map(|nav| self.events.completed(nav)),
+            nav: reported.map(|nav| self.events.completed(nav)),
             settings: self.settings.view(),
             stored_plan,
             altitude_reference,
@@ -187,7 +188,7 @@ impl Observer {
     /// Returns the reference of the altitudes of waypoints.
     fn altitude_reference(&self, home_m: Option<f64>) -> AltitudeReference {
         if !self.settings.tell_altitude_reference() {
-            AltitudeReference::Untold
+            AltitudeReference::Unreported
         } else if self.counts_from_home() {
             AltitudeReference::Home
         } else {
@@ -275,13 +276,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_mission_that_is_given_up_is_told_once_with_its_cause() {
+    fn a_mission_that_is_given_up_is_reported_once_with_its_cause() {
         let mut observer = Observer::default();
         let status = |state: &str| format!("Waypoint count: 2\r\n\nRuntime status:\r\n  state: {state}\r\n");
         assert_eq!(observer.take_mission(&status("TARGETING")), None);
         let aborted = status("ABORTED") + "  abort reason: MAG FAULT\r\n";
-        let told = "The firmware aborted its mission: MAG FAULT.".to_owned();
-        assert_eq!(observer.take_mission(&aborted), Some(told));
+        let reported = "The firmware aborted its mission: MAG FAULT.".to_owned();
+        assert_eq!(observer.take_mission(&aborted), Some(reported));
         assert_eq!(observer.take_mission(&aborted), None);
     }
 }

@@ -276,7 +276,7 @@ impl RemoteLink {
         self.state = RemoteState::Ready;
         self.self_check = SelfCheck::default();
         self.schedule.refresh();
-        self.notices.push(RemoteNotice::Told(self.observer.introduction(&self.ends.name)));
+        self.notices.push(RemoteNotice::Reported(self.observer.introduction(&self.ends.name)));
     }
 
     /// Continues after the flight controller was identified, perhaps after a restart.
@@ -312,7 +312,7 @@ impl RemoteLink {
         match provision.result() {
             Some(Ok(report)) => {
                 self.unset = report.unset();
-                let notice = if report.is_as_wanted() { RemoteNotice::Told } else { RemoteNotice::Lost };
+                let notice = if report.is_as_wanted() { RemoteNotice::Reported } else { RemoteNotice::Lost };
                 self.notices.extend(report.sentences().into_iter().map(notice));
             }
             Some(Err(why)) => {

@@ -58,8 +58,8 @@ impl RemoteLink {
             Answer::Line { .. } | Answer::Msp(_) => self.observer.learn(question, answer),
         }
         if !knew_settings && self.observer.knows_settings() && self.observer.has_plans() {
-            let told = format!("{}: {}.", self.ends.name, self.observer.about_altitudes());
-            self.notices.push(RemoteNotice::Told(told));
+            let reported = format!("{}: {}.", self.ends.name, self.observer.about_altitudes());
+            self.notices.push(RemoteNotice::Reported(reported));
         }
     }
 }

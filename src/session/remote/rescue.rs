@@ -13,7 +13,7 @@ impl RemoteLink {
                 vehicle.transmitter_mut().sticks_mut().channels[channel] = if on { on_us } else { off_us };
                 self.observer.deliver_again();
             }
-            None => self.notices.push(RemoteNotice::Told(
+            None => self.notices.push(RemoteNotice::Reported(
                 "This firmware flies home only by a switch, and GPS RESCUE has none: assign one with the CLI command \
                  aux."
                     .to_owned(),

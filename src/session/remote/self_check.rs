@@ -41,7 +41,7 @@ impl RemoteLink {
         finding(&AtRest {
             sent: peer.dialect(),
             truth,
-            told: snapshot.estimate,
+            reported: snapshot.estimate,
             trusts_mag: self.observer.trusts_mag(),
             place: snapshot.craft.gps.map(|gps| gps.position),
         })
@@ -83,7 +83,7 @@ pub(super) struct AtRest {
     /// The true state of the craft.
     pub(super) truth: TruthView,
     /// The executable's estimate of the craft.
-    pub(super) told: EstimateView,
+    pub(super) reported: EstimateView,
     /// `true` if its heading comes from the magnetometer and is therefore known at rest.
     pub(super) trusts_mag: bool,
     /// The position reported by its GPS.
@@ -92,8 +92,10 @@ pub(super) struct AtRest {
 
 /// Returns the error as a sentence; `None` if everything is correct.
 pub(super) fn finding(at_rest: &AtRest) -> Option<String> {
-    let AtRest { sent, truth, told, trusts_mag, place } = *at_rest;
-    let (Some(roll), Some(pitch), Some(heading)) = (told.roll_deg, told.pitch_deg, told.heading_deg) else {
+    let AtRest { sent, truth, reported, trusts_mag, place } = *at_rest;
+    let (Some(roll), Some(pitch), Some(heading)) =
+        (reported.roll_deg, reported.pitch_deg, reported.heading_deg)
+    else {
         return None;
     };
     let leans = (roll - truth.roll_deg).abs() > LEAN_DEG || (pitch - truth.pitch_deg).abs() > LEAN_DEG;
@@ -152,23 +154,23 @@ fn off_by(a_deg: f64, b_deg: f64) -> f64 {
 mod tests {
     use super::*;
 
-    fn at_rest(heading_deg: f64, roll_deg: f64, told_heading_deg: f64) -> AtRest {
+    fn at_rest(heading_deg: f64, roll_deg: f64, reported_heading_deg: f64) -> AtRest {
         let truth = TruthView { lat_deg: 40.0, lon_deg: -80.0, heading_deg, ..TruthView::default() };
-        let told = EstimateView {
+        let reported = EstimateView {
             roll_deg: Some(roll_deg),
             pitch_deg: Some(0.3),
-            heading_deg: Some(told_heading_deg),
+            heading_deg: Some(reported_heading_deg),
             ..EstimateView::default()
         };
         let place = Some(LatLon::from_degrees(40.0, -80.0));
-        AtRest { sent: Dialect::SitlGz, truth, told, trusts_mag: true, place }
+        AtRest { sent: Dialect::SitlGz, truth, reported, trusts_mag: true, place }
     }
 
     #[test]
     fn a_firmware_that_understands_is_content_with_two_degrees_of_declination() {
         assert_eq!(finding(&at_rest(0.0, 0.4, 358.0)), None);
-        let untold = EstimateView::default();
-        assert_eq!(finding(&AtRest { told: untold, ..at_rest(0.0, 0.0, 0.0) }), None);
+        let unreported = EstimateView::default();
+        assert_eq!(finding(&AtRest { reported: unreported, ..at_rest(0.0, 0.0, 0.0) }), None);
     }
 
     #[test]

@@ -15,7 +15,7 @@ const MOST_SILENT: u32 = 2;
 pub(super) struct Silence {
     requests: u32,
     /// `true` once the flight controller counts as gone.
-    told: bool,
+    reported: bool,
 }
 
 impl Silence {
@@ -35,7 +35,7 @@ impl RemoteLink {
         let is_silent = self.silence.requests >= MOST_SILENT;
         match self.state {
             RemoteState::Ready | RemoteState::Identifying if is_silent && !self.is_fed() => {
-                self.silence.told = true;
+                self.silence.reported = true;
                 self.state = RemoteState::Lost;
                 self.permission.lost();
                 self.tell_client();
@@ -46,7 +46,7 @@ impl RemoteLink {
                     self.ends.name
                 )));
             }
-            RemoteState::Lost if self.silence.told && self.silence.requests == 0 => self.meet(),
+            RemoteState::Lost if self.silence.reported && self.silence.requests == 0 => self.meet(),
             _ => {}
         }
     }
@@ -60,11 +60,11 @@ impl RemoteLink {
         }
         // A program that somebody else started, and to which another program is connected, was already
         // reported.
-        let is_taken = self.told_loss.is_some() && self.ends.child.is_none();
+        let is_taken = self.reported_loss.is_some() && self.ends.child.is_none();
         if self.answers == 0 && !is_taken && self.first_connected.or(started).is_some_and(is_over) {
             let RemoteEnds { name, stream, .. } = &self.ends;
             let seconds = FIRST_ANSWER.as_secs();
-            self.give_up(match &self.told_loss {
+            self.give_up(match &self.reported_loss {
                 Some(reason) => format!("{name} has not answered for {seconds} s: {reason}."),
                 None if self.first_connected.is_none() && self.motors != FeedState::Waiting => format!(
                     "{name} sends motors, but nothing has answered at {} for {seconds} s: name the port of its command line \

@@ -38,7 +38,7 @@ impl RemoteLink {
                 None => return,
                 Some(StreamEvent::Bytes(bytes)) => {
                     self.heard = true;
-                    self.told_loss = None;
+                    self.reported_loss = None;
                     read += bytes.len();
                     self.client.push(&bytes, since);
                 }
@@ -82,16 +82,16 @@ impl RemoteLink {
                     "{} ended or is restarting: when it is back, the craft is at home.",
                     self.ends.name
                 );
-                self.begin_anew(vehicle, notice);
+                self.restart(vehicle, notice);
                 self.state = RemoteState::Lost;
             }
             RemoteState::Identifying | RemoteState::Ready | RemoteState::Lost => {
                 // A connection that closes at once is reported only once.
-                if self.state != RemoteState::Lost && self.told_loss.as_deref() != Some(reason) {
+                if self.state != RemoteState::Lost && self.reported_loss.as_deref() != Some(reason) {
                     let notice =
                         format!("The connection to {} is lost: {reason}; reconnecting.", self.ends.name);
                     self.notices.push(RemoteNotice::Lost(notice));
-                    self.told_loss = Some(reason.to_owned());
+                    self.reported_loss = Some(reason.to_owned());
                 }
                 if let Some(peer) = self.ends.peer.as_mut().filter(|_| !self.heard) {
                     peer.went_down();

@@ -26,7 +26,7 @@ struct Bench {
     now: Instant,
     to_link: mpsc::Sender<StreamEvent>,
     from_link: mpsc::Receiver<Vec<u8>>,
-    told: Vec<String>,
+    reported: Vec<String>,
 }
 
 impl Bench {
@@ -36,9 +36,9 @@ impl Bench {
         let stream = FcStream { to, from, place: "serial:test".to_owned(), bytes_per_s: None };
         let ends = RemoteEnds { name: "serial:test".to_owned(), stream, peer: None, child: None };
         let now = Instant::now();
-        let (vehicle, told) = (Vehicle::elsewhere().unwrap(), Vec::new());
+        let (vehicle, reported) = (Vehicle::elsewhere().unwrap(), Vec::new());
         let mut bench =
-            Self { vehicle, link: RemoteLink::new(ends, now), board, now, to_link, from_link, told };
+            Self { vehicle, link: RemoteLink::new(ends, now), board, now, to_link, from_link, reported };
         bench.plug_in();
         bench
     }
@@ -60,7 +60,7 @@ impl Bench {
         while self.now < end {
             self.now += TICK;
             let notices = self.link.exchange(&mut self.vehicle, None, self.now);
-            self.told.extend(notices.iter().map(ToString::to_string));
+            self.reported.extend(notices.iter().map(ToString::to_string));
             while let Ok(bytes) = self.from_link.try_recv() {
                 let answer = self.board.answer(&bytes);
                 if !answer.is_empty() {
@@ -74,8 +74,8 @@ impl Bench {
         self.vehicle.controller().altitude_reference()
     }
 
-    fn was_told(&self, part: &str) -> bool {
-        self.told.iter().any(|sentence| sentence.contains(part))
+    fn was_reported(&self, part: &str) -> bool {
+        self.reported.iter().any(|sentence| sentence.contains(part))
     }
 }
 
@@ -89,15 +89,19 @@ fn another_board_at_the_same_port_inherits_nothing_of_the_one_before() {
     assert_eq!(bench.reference(), AltitudeReference::SeaLevel { home_m: Some(5.0) });
     let origin = bench.vehicle.snapshot().origin.unwrap();
     assert!((origin.lat_deg() - 54.0).abs() < 1e-6, "drawn where it is: {origin:?}");
-    assert!(bench.was_told("count from home") && bench.was_told("count from sea level"), "{:?}", bench.told);
+    assert!(
+        bench.was_reported("count from home") && bench.was_reported("count from sea level"),
+        "{:?}",
+        bench.reported
+    );
 
     bench.plug_into(Board { settings: "", ..Board::at(COAST) });
     bench.run(5.0);
-    assert_eq!(bench.reference(), AltitudeReference::Untold);
+    assert_eq!(bench.reference(), AltitudeReference::Unreported);
 }
 
 #[test]
-fn home_is_where_a_real_craft_stands_disarmed_not_where_it_was_seen_first() {
+fn home_is_where_a_real_craft_is_disarmed_not_where_it_was_seen_first() {
     let reference = |home_m| AltitudeReference::SeaLevel { home_m };
     let mut bench = Bench::new(Board { armed: true, answers_in_flight: true, ..Board::at(FIELD) });
     bench.board.place.alt_m = 520;
@@ -132,11 +136,11 @@ fn a_board_that_says_nothing_any_more_is_lost_and_another_one_when_it_speaks_aga
     bench.board.silent = true;
     bench.run(6.0);
     assert_eq!(*bench.link.state(), RemoteState::Lost);
-    assert!(bench.was_told("serial:test no longer answers"), "{:?}", bench.told);
-    assert_eq!(bench.vehicle.snapshot().craft.armed, None, "what was told is old");
+    assert!(bench.was_reported("serial:test no longer answers"), "{:?}", bench.reported);
+    assert_eq!(bench.vehicle.snapshot().craft.armed, None, "the last report is old");
     assert_eq!(bench.link.access(), Access::Reading);
     bench.run(20.0);
-    assert_eq!(bench.told.iter().filter(|told| told.contains("no longer answers")).count(), 1);
+    assert_eq!(bench.reported.iter().filter(|reported| reported.contains("no longer answers")).count(), 1);
 
     bench.board = Board { from_home: true, ..Board::at(COAST) };
     bench.run(8.0);
@@ -147,19 +151,23 @@ fn a_board_that_says_nothing_any_more_is_lost_and_another_one_when_it_speaks_aga
 }
 
 #[test]
-fn what_could_not_be_told_in_flight_is_asked_after_it() {
+fn what_could_not_be_reported_in_flight_is_asked_after_it() {
     let mut bench = Bench::new(Board { armed: true, ..Board::at(FIELD) });
     bench.run(10.0);
-    assert_eq!((bench.link.state(), bench.reference()), (&RemoteState::Ready, AltitudeReference::Untold));
-    assert!(bench.was_told("the reference of its waypoints' altitudes is not known yet"), "{:?}", bench.told);
+    assert_eq!((bench.link.state(), bench.reference()), (&RemoteState::Ready, AltitudeReference::Unreported));
+    assert!(
+        bench.was_reported("the reference of its waypoints' altitudes is not known yet"),
+        "{:?}",
+        bench.reported
+    );
     bench.board.armed = false;
     bench.run(5.0);
     assert_eq!(bench.reference(), AltitudeReference::SeaLevel { home_m: Some(400.0) });
     assert!(!bench.link.opens_cli());
     assert!(
-        bench.told.last().unwrap().contains("its waypoints' altitudes count from sea level"),
+        bench.reported.last().unwrap().contains("its waypoints' altitudes count from sea level"),
         "{:?}",
-        bench.told
+        bench.reported
     );
 }
 
@@ -222,13 +230,13 @@ fn what_does_not_say_that_it_is_betaflight_is_of_no_use() {
     let mut bench = Bench::new(Board { variant: None, ..Board::at(FIELD) });
     bench.run(5.0);
     assert!(matches!(bench.link.state(), RemoteState::Unusable(_)), "{:?}", bench.link.state());
-    assert!(bench.was_told("does not identify itself"), "{:?}", bench.told);
+    assert!(bench.was_reported("does not identify itself"), "{:?}", bench.reported);
 }
 
 #[test]
 fn a_return_home_can_be_taken_back_as_long_as_its_switch_is_on() {
     let mut bench = Bench::new(Board::at(FIELD));
-    assert_eq!(bench.link.rescue_switch(&bench.vehicle), None, "nobody has told of a switch");
+    assert_eq!(bench.link.rescue_switch(&bench.vehicle), None, "no switch was reported");
     bench.run(5.0);
     assert_eq!(bench.link.rescue_switch(&bench.vehicle), Some(false));
     bench.link.switch_rescue(&mut bench.vehicle, true);

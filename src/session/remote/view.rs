@@ -44,7 +44,7 @@ pub struct RemoteView {
 pub enum RemoteNotice {
     /// A line that its program printed.
     Output(String),
-    Told(String),
+    Reported(String),
     /// It no longer answers, or does not answer correctly, as a sentence.
     Lost(String),
     /// It has restarted and lost unsaved settings, as a sentence.
@@ -57,7 +57,7 @@ impl fmt::Display for RemoteNotice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Output(line) => write!(f, "[firmware] {line}"),
-            Self::Told(sentence)
+            Self::Reported(sentence)
             | Self::Lost(sentence)
             | Self::Restarted(sentence)
             | Self::Failed(sentence) => f.write_str(sentence),

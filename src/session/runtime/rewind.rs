@@ -71,7 +71,8 @@ impl Session {
         let (shown, head) = (self.shown_vehicle().time(), self.vehicle.time());
         let timeline = self.timeline.as_mut().ok_or(NOT_RECORDED)?;
         timeline.record(&mut self.vehicle);
-        let until = timeline.flight_ends(shown).unwrap_or(head);
+        let is_rewound = timeline.shown().is_some();
+        let until = if is_rewound { timeline.flight_ends(shown).unwrap_or(head) } else { head };
         timeline.recorded_flight(until).map(Box::new).ok_or_else(|| BEGINNING_LOST.to_owned())
     }
 
@@ -239,7 +240,9 @@ impl Session {
             }
             Seek::Back { states_only } => before(states_only),
             Seek::BeforeMishap => {
-                marks.mishap_before(shown).map(|mark| SimTime(mark.time.0.saturating_sub(MISHAP_LEAD_US)))
+                let mishap = marks.mishap_before(shown);
+                let lead = mishap.map(|mark| SimTime(mark.time.0.saturating_sub(MISHAP_LEAD_US)));
+                lead.or_else(|| before(true))
             }
             Seek::Forward { states_only } => {
                 Some(marks.after(shown, states_only).map_or(head, |mark| mark.time))

@@ -296,9 +296,9 @@ async fn open_links(
         rc: chosen(EndpointKind::Rc, ports.rc),
         ..ports
     };
-    let told =
+    let reported =
         lines::link_lines(&ip, ports, motors_opened, opened(EndpointKind::Fdm), opened(EndpointKind::Rc));
-    told.into_iter().for_each(|line| print(OutputLine::Out(line)));
+    reported.into_iter().for_each(|line| print(OutputLine::Out(line)));
     (links, motors)
 }
 

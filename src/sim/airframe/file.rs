@@ -9,8 +9,8 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::did_you_mean;
-use crate::source_snippet::{shortened, source_snippet};
+use crate::text::did_you_mean;
+use crate::text::source_snippet::{shortened, source_snippet};
 
 use super::{Airframe, check};
 

@@ -4,10 +4,10 @@ use std::str::FromStr;
 
 use strum::VariantNames;
 
-use crate::did_you_mean;
 use crate::sim::config::Wind;
 use crate::sim::value_text::{ParseError, number, number_in};
 use crate::telemetry::FaultKind;
+use crate::text::did_you_mean;
 
 use super::{BatteryFault, Direction, Fault, FaultKey, FaultStart, MotorNumber, ScheduledFault};
 

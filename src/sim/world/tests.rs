@@ -49,7 +49,7 @@ fn the_first_frame_is_complete() {
 }
 
 #[test]
-fn it_stands_still_in_the_wind_for_four_minutes() {
+fn it_does_not_move_in_the_wind_for_four_minutes() {
     let mut world = World::new(WorldConfig { wind: "20@230".parse().unwrap(), ..ideal() }).unwrap();
     let start = world.truth().pos_enu;
     run(&mut world, 240.0, [0.0; 4]);
@@ -145,7 +145,7 @@ fn commands_that_are_no_numbers_are_refused_and_counted() {
 }
 
 #[test]
-fn a_runaway_is_frozen_and_told() {
+fn a_runaway_is_frozen_and_reported() {
     let mut world = lifted(ideal(), 50.0);
     world.body.rate_flu.x = 299.9;
     world.body.rate_flu.z = 20.0;
@@ -159,7 +159,7 @@ fn a_runaway_is_frozen_and_told() {
 }
 
 #[test]
-fn scheduled_faults_are_told_at_their_time() {
+fn scheduled_faults_are_reported_at_their_time() {
     let faults = vec!["gps-loss@boot+1,2".parse().unwrap(), "push@1,,1,east".parse().unwrap()];
     let mut world = World::new(WorldConfig { faults, ..ideal() }).unwrap();
     let mut seen = Vec::new();

@@ -86,10 +86,15 @@ pub fn enabled(state: &AppState, action: Action) -> Result<(), String> {
         Action::Upload if state.plan().waypoints.is_empty() => {
             Err("No plan is open, so there is nothing to upload.".to_owned())
         }
-        Action::Upload if let Some(upload) = state.view.upload => Err(format!(
-            "An upload is under way, line {} of {}: wait for its end.",
-            upload.sent, upload.total
-        )),
+        Action::Upload | Action::Fly
+            if let Some(upload) = state.view.upload
+                && (action == Action::Upload || state.view.pilot.is_none()) =>
+        {
+            Err(format!(
+                "An upload is under way, line {} of {}: wait for its end.",
+                upload.sent, upload.total
+            ))
+        }
         Action::Fly if state.view.pilot.is_none() && is_wrecked(state) => {
             let reset = state.key(Action::ResetCraft);
             Err(format!("The craft crashed and cannot fly: `{reset}` puts it back home."))
@@ -194,7 +199,7 @@ mod tests {
     use crate::timeline::TimelineView;
 
     #[test]
-    fn a_simulator_outside_keeps_time_and_place_to_itself() {
+    fn an_external_simulator_keeps_time_and_place_to_itself() {
         let mut state = AppState::bare((80, 24), SessionView::default());
         let times = [
             Action::Pause,
@@ -226,8 +231,11 @@ mod tests {
         assert!(enabled(&state, Action::LookAhead).unwrap_err().contains("stands disarmed"));
         let truth = crate::telemetry::snapshot::TruthView { alt: 30.0, ..Default::default() };
         std::sync::Arc::make_mut(&mut state.view.vehicle).truth = Some(truth);
-        let told = enabled(&state, Action::LookAhead).unwrap_err();
-        assert!(told.contains("falls disarmed") && told.contains("`R` puts it back home"), "{told}");
+        let reported = enabled(&state, Action::LookAhead).unwrap_err();
+        assert!(
+            reported.contains("falls disarmed") && reported.contains("`R` puts it back home"),
+            "{reported}"
+        );
     }
 
     #[test]

@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_plan_says_so() {
+    fn a_file_that_is_no_plan_says_so() {
         for text in ["", "hello", "set a = 5", "waypoint insert 0 4O 1 2 3 FLYOVER 0 NONE"] {
             assert!(!from_text(text).unwrap_err().is_empty(), "{text}");
         }

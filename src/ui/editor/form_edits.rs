@@ -15,7 +15,7 @@ pub(super) struct GeneratorFoot {
     middle: Option<LatLon>,
     /// The number of waypoints already in the plan.
     taken: usize,
-    told: Result<String, String>,
+    reported: Result<String, String>,
 }
 
 impl Editor {
@@ -27,13 +27,13 @@ impl Editor {
         };
         let waypoints = &self.document().plan.waypoints;
         let (middle, taken) = (middle(waypoints).or(home), waypoints.len());
-        let is_told =
+        let is_reported =
             |foot: &GeneratorFoot| foot.fields == form.fields && foot.middle == middle && foot.taken == taken;
-        if self.generator.as_ref().is_some_and(is_told) {
+        if self.generator.as_ref().is_some_and(is_reported) {
             return;
         }
-        let told = self.generated(form, home).map(|generated| generated.told);
-        self.generator = Some(GeneratorFoot { fields: form.fields.clone(), middle, taken, told });
+        let reported = self.generated(form, home).map(|generated| generated.reported);
+        self.generator = Some(GeneratorFoot { fields: form.fields.clone(), middle, taken, reported });
     }
 
     /// Applies the values of a form. Returns the effects and a sentence about the result.
@@ -81,7 +81,7 @@ impl Editor {
                     effects.extend(self.replace_document("generate", PlanDocument { plan, ..empty }));
                 }
                 self.show(first);
-                Ok((effects, generated.told))
+                Ok((effects, generated.reported))
             }
         }
     }
@@ -97,11 +97,11 @@ impl Editor {
     ///
     /// # Errors
     /// Returns the problem with a value, as a sentence.
-    pub(crate) fn form_told(&self, form: &Form) -> Result<String, String> {
+    pub(crate) fn form_reported(&self, form: &Form) -> Result<String, String> {
         match (&form.problem, form.kind) {
             (Some(problem), _) => Err(problem.clone()),
             (None, FormKind::Generate) => {
-                self.generator.as_ref().map_or_else(|| Ok(String::new()), |foot| foot.told.clone())
+                self.generator.as_ref().map_or_else(|| Ok(String::new()), |foot| foot.reported.clone())
             }
             (None, FormKind::Bulk) => Ok(format!("{} · empty = as it is", which(&self.selected()))),
             (None, FormKind::Properties) => Ok(String::new()),
@@ -123,19 +123,19 @@ mod tests {
         let form = Form::of(FormKind::Generate, editor.document(), Units::Metric);
         editor.popup = Some(EditorPopup::Form(form.clone()));
         editor.follow_generator(None);
-        assert!(editor.form_told(&form).unwrap_err().starts_with("Home is not known"));
+        assert!(editor.form_reported(&form).unwrap_err().starts_with("Home is not known"));
         let home = Some(LatLon::new(404_635_000, -795_182_000));
         editor.follow_generator(home);
-        let told = editor.form_told(&form).unwrap();
-        assert!(told.contains("waypoints"), "{told}");
+        let reported = editor.form_reported(&form).unwrap();
+        assert!(reported.contains("waypoints"), "{reported}");
 
-        editor.generator.as_mut().unwrap().told = Ok("as it was".to_owned());
+        editor.generator.as_mut().unwrap().reported = Ok("as it was".to_owned());
         editor.follow_generator(home);
-        assert_eq!(editor.form_told(&form).unwrap(), "as it was");
+        assert_eq!(editor.form_reported(&form).unwrap(), "as it was");
         let Some(EditorPopup::Form(open)) = &mut editor.popup else { unreachable!() };
         open.set(1, "123").unwrap();
         editor.follow_generator(home);
-        assert_ne!(editor.form_told(&form).unwrap(), "as it was");
+        assert_ne!(editor.form_reported(&form).unwrap(), "as it was");
         editor.popup = None;
         editor.follow_generator(home);
         assert_eq!(editor.generator, None);

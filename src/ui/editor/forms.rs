@@ -139,7 +139,7 @@ pub(super) struct Generated {
     /// One plan, or several, each of which continues the one before.
     pub(super) plans: Vec<Vec<Waypoint>>,
     /// A summary for the line under the form.
-    pub(super) told: String,
+    pub(super) reported: String,
 }
 
 /// Generates the result of the form for a plan that has `taken` waypoints already.
@@ -153,24 +153,24 @@ pub(super) fn generated(form: &Form, middle: LatLon, taken: usize) -> Result<Gen
     let waypoints = pattern.waypoints(middle)?;
     let count = waypoints.len();
     if count <= room {
-        return Ok(Generated { plans: vec![waypoints], told: format!("{count} waypoints.") });
+        return Ok(Generated { plans: vec![waypoints], reported: format!("{count} waypoints.") });
     }
     if form.value("beyond 30") == TOO_MANY[1] && taken == 0 {
         let plans = split(&waypoints);
-        let told = format!("{count} waypoints, a plan holds {MAX_WAYPOINTS}: {} plans.", plans.len());
-        return Ok(Generated { plans, told });
+        let reported = format!("{count} waypoints, a plan holds {MAX_WAYPOINTS}: {} plans.", plans.len());
+        return Ok(Generated { plans, reported });
     }
     let Some(spacing_m) = pattern.spacing_that_fits(room) else {
         return Err(format!("{count} waypoints, there is room for {room}: no spacing makes it fit."));
     };
     let wider = Pattern { spacing_m, ..pattern }.waypoints(middle)?;
-    let told = format!(
+    let reported = format!(
         "{count} waypoints, there is room for {room}: a spacing of {} {} makes {}.",
         shortest(form.units.length(spacing_m)),
         form.units.length_unit(),
         wider.len()
     );
-    Ok(Generated { plans: vec![wider], told })
+    Ok(Generated { plans: vec![wider], reported })
 }
 
 /// Returns the form for name, description, home and settings of a plan.
@@ -254,13 +254,17 @@ mod tests {
     }
 
     #[test]
-    fn a_survey_beyond_thirty_waypoints_is_told_and_either_spaced_wider_or_split() {
+    fn a_survey_beyond_thirty_waypoints_is_reported_and_either_spaced_wider_or_split() {
         let mut form = generate(true, Units::Metric);
         fill(&mut form, "shape", "survey");
         fill(&mut form, "width", "200");
         fill(&mut form, "spacing", "5");
         let wider = generated(&form, LatLon::default(), 0).unwrap();
-        assert!(wider.told.starts_with("82 waypoints, there is room for 30: a spacing of"), "{}", wider.told);
+        assert!(
+            wider.reported.starts_with("82 waypoints, there is room for 30: a spacing of"),
+            "{}",
+            wider.reported
+        );
         assert!(wider.plans.len() == 1 && wider.plans[0].len() <= 30);
         fill(&mut form, "beyond 30", "several plans");
         assert_eq!(generated(&form, LatLon::default(), 0).unwrap().plans.len(), 3);

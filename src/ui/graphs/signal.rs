@@ -205,7 +205,7 @@ mod tests {
     use strum::IntoEnumIterator as _;
 
     #[test]
-    fn every_signal_stands_in_one_plot() {
+    fn every_signal_is_in_one_plot() {
         for signal in Signal::iter() {
             let plots = PLOTS.iter().flat_map(|plot| plot.curves).filter(|curve| curve.0 == signal);
             assert_eq!(plots.count(), 1, "{signal:?}");

@@ -3,7 +3,7 @@
 use crossterm::event::{KeyCode, KeyModifiers};
 
 use super::{KeyPress, Keymap};
-use crate::did_you_mean;
+use crate::text::did_you_mean;
 use crate::ui::action::{ACTIONS, Context, Spec};
 use crate::ui::panel::Panel;
 
@@ -67,8 +67,9 @@ impl Keymap {
             for (before, (_, other_key, other)) in self.bindings.iter().enumerate() {
                 let Some(other) = ACTIONS.iter().find(|spec| spec.action == *other) else { continue };
                 // Of two changed actions only the later one reports the conflict.
-                let told_there = before > at && changed.iter().any(|(_, spec)| spec.action == other.action);
-                if key == other_key && other.action != *action && same_place(other) && !told_there {
+                let reported_there =
+                    before > at && changed.iter().any(|(_, spec)| spec.action == other.action);
+                if key == other_key && other.action != *action && same_place(other) && !reported_there {
                     problems.push((
                         *line,
                         format!(
@@ -112,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn two_changed_actions_with_one_key_are_told_once() {
+    fn two_changed_actions_with_one_key_are_reported_once() {
         let line =
             |line, action: &str| KeyLine { line, action: action.to_owned(), keys: vec!["f10".to_owned()] };
         let problems = Keymap::remapped(&[line(4, "flight.arm"), line(5, "map.fit"), line(6, "sim.step")])

@@ -37,8 +37,8 @@ fn form(state: &AppState, form: &Form, area: Rect, buffer: &mut Buffer) -> Optio
         FormKind::Generate => "Generate a pattern",
         FormKind::Properties => "Name, home, settings",
     };
-    let told = state.editor.form_told(form);
-    let (role, text) = match &told {
+    let reported = state.editor.form_reported(form);
+    let (role, text) = match &reported {
         Ok(text) => (Role::Dim, text.clone()),
         Err(problem) => (Role::Fault, format!("✗ {problem}")),
     };

@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn every_state_stands_in_both_drawings_whoever_is_active() {
+    fn every_state_is_in_both_drawings_in_every_activity() {
         for diagram in [&FULL, &COMPACT, &LOW] {
             for active in NavState::iter() {
                 let drawing = text(diagram, active, None).join("\n");

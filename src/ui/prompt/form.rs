@@ -20,7 +20,7 @@ pub(super) fn question(state: &AppState, form: &Form) -> Vec<String> {
     });
     let end = "NAME = VALUE or NUMBER = VALUE changes one, `take` takes them all, an empty line leaves it.";
     let lines = std::iter::once(title.to_owned()).chain(fields).chain([end.to_owned()]);
-    lines.chain(told(state, form)).collect()
+    lines.chain(reported(state, form)).collect()
 }
 
 /// Handles a line: a value, `take`, or nothing.
@@ -40,11 +40,11 @@ pub(super) fn answer(state: &mut AppState, line: &str) -> Result<Answered, Strin
     let set = set(&mut form, line);
     state.editor.popup = Some(EditorPopup::Form(form.clone()));
     state.editor.follow_generator(findings::home(state));
-    let told = told(state, &form);
+    let reported = reported(state, &form);
     let value = set?;
     Ok(Answered {
         effects: Vec::new(),
-        told: Some(std::iter::once(value).chain(told).collect::<Vec<_>>().join(": ")),
+        reported: Some(std::iter::once(value).chain(reported).collect::<Vec<_>>().join(": ")),
     })
 }
 
@@ -73,7 +73,7 @@ fn hint(field: &FormField) -> String {
 }
 
 /// Returns the result that the form would give now, or the problem.
-fn told(state: &AppState, form: &Form) -> Option<String> {
-    let told = state.editor.form_told(form);
-    Some(told.unwrap_or_else(|problem| problem)).filter(|told| !told.is_empty())
+fn reported(state: &AppState, form: &Form) -> Option<String> {
+    let reported = state.editor.form_reported(form);
+    Some(reported.unwrap_or_else(|problem| problem)).filter(|reported| !reported.is_empty())
 }

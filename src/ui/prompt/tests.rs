@@ -66,10 +66,10 @@ fn a_form_takes_its_values_line_by_line() {
         let refusal = answer(&mut state, line).unwrap_err();
         assert!(refusal.contains(part), "{line}: {refusal}");
     }
-    let told = answer(&mut state, "shape = circle").unwrap().told.unwrap();
-    assert!(told.starts_with("shape = circle: ") && told.ends_with(" waypoints."), "{told}");
-    let told = answer(&mut state, "2 = wide").unwrap().told.unwrap();
-    assert_eq!(told, "length = wide: length: wide is not a number.");
+    let reported = answer(&mut state, "shape = circle").unwrap().reported.unwrap();
+    assert!(reported.starts_with("shape = circle: ") && reported.ends_with(" waypoints."), "{reported}");
+    let reported = answer(&mut state, "2 = wide").unwrap().reported.unwrap();
+    assert_eq!(reported, "length = wide: length: wide is not a number.");
     assert_eq!(answer(&mut state, "take").unwrap_err(), "length: wide is not a number.");
     answer(&mut state, "length = 80").unwrap();
     let effects = answer(&mut state, "take").unwrap().effects;

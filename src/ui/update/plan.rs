@@ -114,7 +114,7 @@ pub(super) fn insert(state: &mut AppState) -> Vec<Effect> {
 /// Inserts a waypoint after the cursor.
 pub(super) fn insert_waypoint(state: &mut AppState, waypoint: Waypoint) -> Vec<Effect> {
     let inserted = state.editor.insert("insert a waypoint", &[waypoint]);
-    told(state, inserted)
+    reported(state, inserted)
 }
 
 pub(super) fn duplicate(state: &mut AppState) -> Vec<Effect> {
@@ -122,7 +122,7 @@ pub(super) fn duplicate(state: &mut AppState) -> Vec<Effect> {
         return Vec::new();
     };
     let inserted = state.editor.insert("duplicate", &[waypoint]);
-    told(state, inserted)
+    reported(state, inserted)
 }
 
 pub(super) fn copy(state: &mut AppState) -> Vec<Effect> {
@@ -140,7 +140,7 @@ pub(super) fn paste_copied(state: &mut AppState) -> Vec<Effect> {
         return Vec::new();
     }
     let pasted = state.editor.paste_copied();
-    told(state, pasted)
+    reported(state, pasted)
 }
 
 /// Inserts text pasted by the terminal.
@@ -162,7 +162,7 @@ pub(super) fn paste_text(state: &mut AppState, text: &str) -> Vec<Effect> {
     }
 }
 
-fn told(state: &mut AppState, done: Result<Vec<Effect>, String>) -> Vec<Effect> {
+fn reported(state: &mut AppState, done: Result<Vec<Effect>, String>) -> Vec<Effect> {
     done.unwrap_or_else(|sentence| {
         state.notify(Severity::Warn, sentence);
         Vec::new()

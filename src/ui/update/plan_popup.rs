@@ -31,8 +31,8 @@ fn form_key(state: &mut AppState, mut form: Form, event: KeyEvent) -> Vec<Effect
         FormKey::Edited => {}
         FormKey::Accept => {
             match state.editor.take_form(&form, findings::home(state), state.cli_help.check_setting) {
-                Ok((effects, told)) => {
-                    state.notify(Severity::Good, told);
+                Ok((effects, reported)) => {
+                    state.notify(Severity::Good, reported);
                     return effects;
                 }
                 Err(problem) => form.problem = Some(problem),
@@ -131,7 +131,7 @@ pub(super) fn answered(state: &mut AppState, reply: FileReply) -> Vec<Effect> {
                 state.notify(Severity::Info, note);
             }
             let name = opened.file.as_ref().map_or_else(String::new, |file| shown(file.as_path()));
-            let told = if opened.recovered {
+            let reported = if opened.recovered {
                 let [undo, save] =
                     [EditAction::Undo, EditAction::Save].map(|action| state.key(Action::Edit(action)));
                 Some(format!(
@@ -141,8 +141,8 @@ pub(super) fn answered(state: &mut AppState, reply: FileReply) -> Vec<Effect> {
                 Some(format!("Opened {name}.")).filter(|_| opened.notes.is_empty())
             };
             state.editor.opened(*opened);
-            if let Some(told) = told {
-                state.notify(Severity::Good, told);
+            if let Some(reported) = reported {
+                state.notify(Severity::Good, reported);
             }
         }
         FileReply::Saved { id, path, revision, lost } => {

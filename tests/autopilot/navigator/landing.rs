@@ -14,7 +14,7 @@ fn coming_down() -> Flight {
 }
 
 #[test]
-fn a_craft_that_stands_is_flown_level_with_its_throttle_off() {
+fn a_craft_at_rest_is_flown_level_with_its_throttle_off() {
     let mut flight = coming_down();
     assert!(flight.until(60.0, |f| f.plant.alt <= 0.0));
     let (contact, air) = (flight.t(), flight.log.last().unwrap().clone());

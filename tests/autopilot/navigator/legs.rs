@@ -41,7 +41,7 @@ fn a_low_waypoint_does_not_climb_again() {
 }
 
 #[test]
-fn takeoff_climbs_where_it_stands() {
+fn takeoff_climbs_over_its_place() {
     let mut takeoff = waypoint(Takeoff, 900.0, 900.0, 15.0, 0.0);
     takeoff.duration_ds = 20;
     let waypoints = [takeoff, waypoint(Hold, 30.0, 0.0, 15.0, 5.0)];
@@ -100,7 +100,7 @@ fn modifiers_change_the_next_leg() {
 }
 
 #[test]
-fn an_offset_leg_is_cut_into_and_a_far_one_starts_anew() {
+fn an_offset_leg_is_cut_into_and_a_far_one_starts_again() {
     let mut flight = Flight::new(
         guide(),
         &[waypoint(Flyover, 10.0, 0.0, 20.0, 5.0), waypoint(Flyover, 210.0, 0.0, 20.0, 5.0)],

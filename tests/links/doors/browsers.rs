@@ -109,7 +109,7 @@ async fn a_web_page_cannot_command_the_craft_over_tcp() {
 }
 
 #[tokio::test]
-async fn a_notice_of_both_loopback_addresses_is_told_once() {
+async fn a_notice_of_both_loopback_addresses_is_reported_once() {
     let mut house = House::usual().await;
     // The test needs IPv6.
     if std::net::TcpListener::bind("[::1]:0").is_err() {
@@ -163,7 +163,7 @@ async fn a_name_that_was_made_to_point_to_this_machine_is_refused() {
 }
 
 #[tokio::test]
-async fn nobody_is_told_to_allow_pages_without_an_origin() {
+async fn no_message_advises_to_allow_pages_without_an_origin() {
     let mut house = House::usual().await;
     for origin in ["null", "file://", "?"] {
         assert!(!is_served(&house, &[("Origin", origin)]).await, "{origin}");

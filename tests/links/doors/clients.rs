@@ -178,7 +178,7 @@ async fn two_clients_do_not_disturb_each_other() {
 }
 
 #[tokio::test]
-async fn a_client_that_goes_away_inside_the_command_line_leaves_nothing_behind() {
+async fn a_client_that_goes_away_inside_the_command_line_leaves_no_session() {
     let house = House::usual().await;
     let mut client = house.tcp().await;
     client.enter_cli().await;
@@ -233,7 +233,7 @@ async fn web_pages_of_strangers_are_turned_away_with_a_notice() {
     }
     let Some(Request::Notice(notice)) = house.others.recv().await else { panic!("no notice") };
     assert!(notice.contains("--allow-origin https://evil.example"), "{notice}");
-    assert!(house.others.try_recv().is_err(), "told once");
+    assert!(house.others.try_recv().is_err(), "reported once");
 }
 
 #[tokio::test]
@@ -249,7 +249,7 @@ async fn a_door_that_is_full_turns_the_next_away_with_a_notice() {
     }
     let Some(Request::Notice(notice)) = house.others.recv().await else { panic!("no notice") };
     assert_eq!(notice, "The TCP door serves 32 clients at once: another one was refused.");
-    assert!(house.others.try_recv().is_err(), "told once");
+    assert!(house.others.try_recv().is_err(), "reported once");
     house.websocket().await.assert_speaks_msp().await;
     drop(clients.pop());
     while house.doors.clients(EndpointKind::Tcp) >= 32 {

@@ -91,8 +91,8 @@ fn arming_flags_of_a_release_with_fewer_end_in_the_arm_switch() {
         (255, 1 << 29, vec![ArmingFlag::ArmSwitch]),
         (0, 0, vec![]),
     ] {
-        let told = Status::decode(&payload(count, bits)).unwrap().arming_blocked_by.unwrap();
-        assert_eq!(told.iter().collect::<Vec<_>>(), flags, "{count} {bits:#x}");
+        let reported = Status::decode(&payload(count, bits)).unwrap().arming_blocked_by.unwrap();
+        assert_eq!(reported.iter().collect::<Vec<_>>(), flags, "{count} {bits:#x}");
     }
     // Before the flags had a count, no flags were at this place.
     assert_eq!(Status::decode(&[0; 15]).unwrap().arming_blocked_by, None);

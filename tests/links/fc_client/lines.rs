@@ -49,7 +49,7 @@ fn a_plan_goes_up_and_comes_back_in_every_way() {
 }
 
 #[test]
-fn long_output_comes_in_pages_and_a_cut_one_is_told() {
+fn long_output_comes_in_pages_and_a_cut_one_is_reported() {
     let mut bench = Bench::new(Manners::default());
     let by_message = |line: &str| Ask::MessageLine(line.to_owned());
     let ap = bench.line("get throttle");
@@ -103,7 +103,7 @@ fn msp_rests_at_the_prompt_until_the_flight_controller_restarts() {
 }
 
 #[test]
-fn a_command_line_that_does_not_open_is_told() {
+fn a_command_line_that_does_not_open_is_reported() {
     let shut = Manners { cli_is_shut: true, no_message_lines: true, ..Manners::default() };
     for access in [CliAccess::Framed, CliAccess::Interactive] {
         let mut bench = Bench::new(shut);

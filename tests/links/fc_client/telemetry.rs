@@ -55,47 +55,52 @@ fn observe(bench: &mut Bench, firmware: &Firmware, observation: &mut Observation
 
 /// Asserts that the two values differ by at most `step`. It allows half a step of the wire's resolution and
 /// values that are cut and not rounded.
-fn assert_near(told: Option<f64>, own: Option<f64>, step: f64, what: &str) {
-    assert_eq!(told.is_some(), own.is_some(), "{what}: {told:?}, {own:?}");
-    if let (Some(told), Some(own)) = (told, own) {
-        assert!((told - own).abs() <= step, "{what}: {told}, {own}");
+fn assert_near(reported: Option<f64>, own: Option<f64>, step: f64, what: &str) {
+    assert_eq!(reported.is_some(), own.is_some(), "{what}: {reported:?}, {own:?}");
+    if let (Some(reported), Some(own)) = (reported, own) {
+        assert!((reported - own).abs() <= step, "{what}: {reported}, {own}");
     }
 }
 
-fn assert_craft(told: &CraftView, own: &CraftView) {
+fn assert_craft(reported: &CraftView, own: &CraftView) {
     let whole = |view: &CraftView| {
         (
             (view.armed, view.modes, view.arming_blocked_by, view.gps_fix, view.sats),
             (view.channels, view.mode_ranges.clone(), view.battery_cells, view.rc_link),
         )
     };
-    assert_eq!(whole(told), whole(own));
+    assert_eq!(whole(reported), whole(own));
     let position = |view: &CraftView| view.gps.map(|gps| gps.position);
-    assert_eq!(position(told), position(own));
-    assert_near(told.gps.map(|gps| gps.alt_amsl_m), own.gps.map(|gps| gps.alt_amsl_m), 0.5, "altitude");
-    assert_near(told.battery_v, own.battery_v, 0.006, "battery V");
-    assert_near(told.battery_a, own.battery_a, 0.006, "battery A");
-    assert_near(told.battery_mah, own.battery_mah, 0.6, "battery mAh");
-    for (told, own) in std::iter::zip(told.motors.expect("told"), own.motors.expect("its own")) {
-        assert_near(Some(told), Some(own), 0.0011, "motor");
+    assert_eq!(position(reported), position(own));
+    assert_near(reported.gps.map(|gps| gps.alt_amsl_m), own.gps.map(|gps| gps.alt_amsl_m), 0.5, "altitude");
+    assert_near(reported.battery_v, own.battery_v, 0.006, "battery V");
+    assert_near(reported.battery_a, own.battery_a, 0.006, "battery A");
+    assert_near(reported.battery_mah, own.battery_mah, 0.6, "battery mAh");
+    for (reported, own) in std::iter::zip(reported.motors.expect("reported"), own.motors.expect("its own")) {
+        assert_near(Some(reported), Some(own), 0.0011, "motor");
     }
 }
 
-fn assert_estimate(told: &EstimateView, own: &EstimateView) {
-    assert_near(told.roll_deg, own.roll_deg, 0.051, "roll");
-    assert_near(told.pitch_deg, own.pitch_deg, 0.051, "pitch");
-    let turn = told.heading_deg.unwrap() - own.heading_deg.unwrap();
-    assert!(((turn + 180.0).rem_euclid(360.0) - 180.0).abs() <= 0.51, "heading {told:?}, {own:?}");
+fn assert_estimate(reported: &EstimateView, own: &EstimateView) {
+    assert_near(reported.roll_deg, own.roll_deg, 0.051, "roll");
+    assert_near(reported.pitch_deg, own.pitch_deg, 0.051, "pitch");
+    let turn = reported.heading_deg.unwrap() - own.heading_deg.unwrap();
+    assert!(((turn + 180.0).rem_euclid(360.0) - 180.0).abs() <= 0.51, "heading {reported:?}, {own:?}");
     // The shown values are smoothed. Places are those of the GPS and not of the filter.
-    assert_near(told.alt, own.alt, 1.0, "altitude");
-    assert_near(told.climb_mps, own.climb_mps, 0.6, "climb");
-    assert_near(told.n, own.n, 3.0, "north");
-    assert_near(told.e, own.e, 3.0, "east");
-    assert_near(told.ground_speed_mps, own.ground_speed_mps.filter(|_| told.n.is_some()), 1.5, "speed");
+    assert_near(reported.alt, own.alt, 1.0, "altitude");
+    assert_near(reported.climb_mps, own.climb_mps, 0.6, "climb");
+    assert_near(reported.n, own.n, 3.0, "north");
+    assert_near(reported.e, own.e, 3.0, "east");
+    assert_near(
+        reported.ground_speed_mps,
+        own.ground_speed_mps.filter(|_| reported.n.is_some()),
+        1.5,
+        "speed",
+    );
 }
 
 #[test]
-fn a_flight_that_is_told_is_the_flight_that_is_flown() {
+fn a_flight_that_is_reported_is_the_flight_that_is_flown() {
     let mut vehicle = vehicle();
     let mut bench = Bench::new(Manners::default());
     let mut observation = Observation::default();
@@ -104,15 +109,15 @@ fn a_flight_that_is_told_is_the_flight_that_is_flown() {
         run(&mut vehicle, 1.0);
         let firmware = vehicle.embedded().unwrap().clone();
         let mission = observe(&mut bench, &firmware, &mut observation);
-        let (told, own) = (observation.craft_view(), firmware.craft_view());
-        assert_craft(&told, &own);
+        let (reported, own) = (observation.craft_view(), firmware.craft_view());
+        assert_craft(&reported, &own);
         let origin = firmware.origin().map(|position| Origin { position, alt_amsl_m: 300.0 });
         let estimate = observation.estimate_view(origin);
         if own.has_fix() {
             assert_estimate(&estimate, &firmware.estimate_view());
         }
-        if let (Some(told), Some(own)) = (told.home, own.home) {
-            let (distance_m, _) = betadeck::geo::distance_bearing(told, own);
+        if let (Some(reported), Some(own)) = (reported.home, own.home) {
+            let (distance_m, _) = betadeck::geo::distance_bearing(reported, own);
             assert!(distance_m < 1.0, "home is {distance_m} m off");
         }
         let nav = firmware.nav();
@@ -133,7 +138,7 @@ fn a_flight_that_is_told_is_the_flight_that_is_flown() {
                 assert_eq!(positions, wanted);
             }
         }
-        seen.push((own.is_armed(), observation.is_active(Mode::Autopilot), told.home.is_some()));
+        seen.push((own.is_armed(), observation.is_active(Mode::Autopilot), reported.home.is_some()));
     }
     for what in [(false, false, false), (true, false, true), (true, true, true)] {
         assert!(seen.contains(&what), "{what:?}");

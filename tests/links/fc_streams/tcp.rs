@@ -29,7 +29,7 @@ async fn bytes_go_both_ways_and_a_closed_connection_comes_back() {
 }
 
 #[tokio::test]
-async fn a_refusal_is_told_once_until_somebody_answers() {
+async fn a_refusal_is_reported_once_until_somebody_answers() {
     let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
     let address = listener.local_addr().unwrap();
     drop(listener);
@@ -46,7 +46,7 @@ async fn a_refusal_is_told_once_until_somebody_answers() {
 }
 
 #[tokio::test]
-async fn one_that_serves_another_client_is_told_to_do_so() {
+async fn one_that_serves_another_client_is_named_as_such() {
     let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
     let mut stream = open(&format!("tcp:{}", listener.local_addr().unwrap()));
     for _ in 0..3 {
@@ -59,7 +59,7 @@ async fn one_that_serves_another_client_is_told_to_do_so() {
 }
 
 #[tokio::test]
-async fn a_name_that_nobody_has_is_told() {
+async fn a_name_that_nobody_has_is_reported() {
     let mut stream = open("tcp:no-such-host.invalid:5761");
     let reason = lost(&mut stream).await;
     assert!(!reason.is_empty() && !reason.contains("os error"), "{reason}");

@@ -72,7 +72,7 @@ async fn a_long_message_comes_in_pieces() {
 }
 
 #[tokio::test]
-async fn what_is_no_websocket_is_told_in_a_sentence() {
+async fn a_reply_that_is_no_websocket_is_reported_in_a_sentence() {
     let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
     let address = listener.local_addr().unwrap();
     tokio::spawn(async move {
@@ -83,8 +83,8 @@ async fn what_is_no_websocket_is_told_in_a_sentence() {
             let _sent = tokio::io::AsyncWriteExt::write_all(&mut stream, answer).await;
         }
     });
-    let told = lost(&mut open(&format!("ws://{address}"))).await;
-    assert_eq!(told, "no websocket is served there (the server answers 404 Not Found)");
-    let told = lost(&mut open(&format!("wss://{address}"))).await;
-    assert!(told.starts_with("TLS fails: "), "{told}");
+    let reported = lost(&mut open(&format!("ws://{address}"))).await;
+    assert_eq!(reported, "no websocket is served there (the server answers 404 Not Found)");
+    let reported = lost(&mut open(&format!("wss://{address}"))).await;
+    assert!(reported.starts_with("TLS fails: "), "{reported}");
 }

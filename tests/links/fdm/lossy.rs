@@ -130,7 +130,7 @@ fn lost_packets_stall_the_simulator_for_a_tenth_at_most() {
 }
 
 #[test]
-fn a_long_pause_leaves_no_packets_behind() {
+fn a_long_pause_leaves_no_packets_queued() {
     let mut sides = LossyLink::new(0.0);
     sides.plugin.bound = true;
     sides.send_servo();

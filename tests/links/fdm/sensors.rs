@@ -151,7 +151,7 @@ fn gravity_is_found_in_the_acceleration_at_rest() {
 }
 
 #[test]
-fn an_acceleration_that_makes_no_sense_is_told_once() {
+fn an_acceleration_that_makes_no_sense_is_reported_once() {
     let mut link = FdmLink::new(FdmLinkConfig::default(), 0);
     let mut notices = Vec::new();
     for ms in 0..1000_u64 {
@@ -163,7 +163,7 @@ fn an_acceleration_that_makes_no_sense_is_told_once() {
 }
 
 #[test]
-fn the_dialect_follows_the_size_and_can_be_told() {
+fn the_dialect_follows_the_size_and_can_be_reported() {
     let (link, _) = flowing(FdmLinkConfig::default(), Dialect::GzPlugin, 10);
     assert_eq!(link.dialect(), Some(Dialect::GzPlugin));
     let legacy = FdmLinkConfig { dialect: Some(Dialect::Legacy), ..FdmLinkConfig::default() };

@@ -106,7 +106,7 @@ fn fly(rate_hz: u64, side: Side) {
 }
 
 #[test]
-fn a_firmware_that_is_held_up_a_hundred_times_leaves_no_motor_packets_behind() {
+fn a_firmware_that_is_held_up_a_hundred_times_leaves_no_motor_packets_queued() {
     for rate_hz in [50, 250, 1000] {
         fly(rate_hz, Side::Firmware);
     }

@@ -10,7 +10,7 @@ use betadeck::telemetry::{EventKind, FirmwareEvent, LinkState, SimulatorStats};
 use super::rig::{Rig, speaking, stats};
 
 #[tokio::test]
-async fn a_stall_lasts_its_time_although_the_firmwares_stands_still() {
+async fn a_stall_lasts_its_time_although_the_firmwares_clock_stops() {
     let (mut rig, begun) = speaking(&[]).await;
     rig.world("fault=stall,0.3").await.unwrap();
     for _ in 0..29 {

@@ -178,7 +178,9 @@ impl Rig {
     /// Waits for the beginning or the end of a fault, and returns its time, ms.
     pub(crate) async fn hear_fault(&mut self, name: &str, on: bool) -> u64 {
         loop {
-            if let Some(&(_, _, at_ms)) = self.faults.iter().find(|told| (told.0, told.1) == (name, on)) {
+            if let Some(&(_, _, at_ms)) =
+                self.faults.iter().find(|reported| (reported.0, reported.1) == (name, on))
+            {
                 return at_ms;
             }
             let event = tokio::time::timeout(PATIENCE, self.session.events.recv()).await;

@@ -129,7 +129,7 @@ async fn a_restarted_simulator_finds_a_disarmed_craft_and_resting_sticks() {
 }
 
 #[tokio::test]
-async fn a_simulator_that_is_slower_than_the_clock_is_told_with_its_speed_and_what_was_lost() {
+async fn a_simulator_that_is_slower_than_the_clock_is_reported_with_its_speed_and_what_was_lost() {
     let (mut rig, _) = speaking(&[]).await;
     // The time that a busy machine lost before the simulator started.
     let before = rig.session.view.borrow().lost_time.sum;

@@ -184,18 +184,18 @@ fn wind_faults_blow_for_their_time() {
     assert!((world.truth().wind_enu.x - 8.0).abs() < 1e-9 && world.truth().wind_enu.y.abs() < 1e-9);
     stand(&mut world, 3.0, |_| {});
     assert!(world.truth().wind_enu.norm() < 1e-9);
-    let told: Vec<_> = events(&mut world)
+    let reported: Vec<_> = events(&mut world)
         .into_iter()
         .filter_map(|kind| match kind {
             WorldEventKind::Fault { fault, on } => Some((fault.name(), on)),
             _ => None,
         })
         .collect();
-    assert_eq!(told, [("wind", true), ("gust", true), ("gust", false), ("wind", false)]);
+    assert_eq!(reported, [("wind", true), ("gust", true), ("gust", false), ("wind", false)]);
 }
 
 #[test]
-fn receiver_and_link_faults_are_told_to_their_owners() {
+fn receiver_and_link_faults_are_reported_to_their_owners() {
     let (mut embedded, _) = hovering();
     put_on(&mut embedded, "rx-loss", None);
     put_on(&mut embedded, "rx-jitter=0.3", None);

@@ -30,7 +30,7 @@ fn tilt_on(world: &World, ground: &Surface) -> f64 {
 }
 
 #[test]
-fn a_craft_stands_on_a_slope_without_sliding() {
+fn a_craft_rests_on_a_slope_without_sliding() {
     for (text, airframe) in [
         ("slope,8,90", Airframe::iris()),
         ("slope,20,200", Airframe::iris()),

@@ -80,7 +80,7 @@ fn a_file_that_was_set_aside_is_never_replaced() {
 }
 
 #[test]
-fn edits_behind_the_damage_that_were_saved_are_in_the_file_and_shown_from_there() {
+fn edits_after_the_damage_that_were_saved_are_in_the_file_and_shown_from_there() {
     for by_name in [true, false] {
         let directory = tempfile::tempdir().unwrap();
         let path = edited_five_times(directory.path());

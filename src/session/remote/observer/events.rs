@@ -178,7 +178,7 @@ mod tests {
     use crate::telemetry::snapshot::ModeRange;
 
     /// Follows a flight given as telemetry steps (armed, state, waypoint). Returns the events in words.
-    fn told(steps: &[(bool, NavState, u8)]) -> (Vec<String>, EventObserver) {
+    fn reported(steps: &[(bool, NavState, u8)]) -> (Vec<String>, EventObserver) {
         let plan = BuiltinPlan::find("square").unwrap().read().unwrap().plan;
         let mut observer = EventObserver::default();
         let mut words = Vec::new();
@@ -204,7 +204,7 @@ mod tests {
     #[test]
     fn a_mission_is_followed_from_waypoint_to_waypoint() {
         use NavState::{Approaching, Complete, Idle};
-        let (words, _) = told(&[
+        let (words, _) = reported(&[
             (true, Idle, 0),
             (true, Approaching, 0),
             (true, Approaching, 0),
@@ -227,7 +227,7 @@ mod tests {
     #[test]
     fn a_hold_and_a_landing_that_disarms_are_the_end_of_the_mission() {
         use NavState::{Approaching, Complete, Holding, Idle, Landing};
-        let (words, observer) = told(&[
+        let (words, observer) = reported(&[
             (true, Approaching, 2),
             (true, Holding, 2),
             (true, Approaching, 3),
@@ -290,7 +290,7 @@ mod tests {
     #[test]
     fn a_firmware_that_tells_of_its_touchdown_before_it_disarms_has_landed_too() {
         use NavState::{Complete, Landing};
-        let (words, observer) = told(&[(true, Landing, 3), (true, Complete, 3), (false, Complete, 3)]);
+        let (words, observer) = reported(&[(true, Landing, 3), (true, Complete, 3), (false, Complete, 3)]);
         assert_eq!(words[words.len() - 2..], ["LANDING COMPLETE 3 touchdown", "disarmed LANDING"]);
         assert_eq!(observer.last_disarm(), Some(DisarmReason::Landing));
     }
@@ -318,8 +318,8 @@ mod tests {
     }
 
     #[test]
-    fn a_craft_that_disarms_in_flight_ends_its_mission_without_a_reason_that_nobody_told() {
-        let (words, _) = told(&[(true, NavState::Approaching, 0), (false, NavState::Approaching, 0)]);
+    fn a_craft_that_disarms_in_flight_ends_its_mission_without_an_invented_reason() {
+        let (words, _) = reported(&[(true, NavState::Approaching, 0), (false, NavState::Approaching, 0)]);
         assert_eq!(words[3..], ["APPROACHING IDLE 0 disarm", "disarmed UNKNOWN"]);
     }
 }

@@ -1,6 +1,6 @@
 //! The report on the configuration of a flight controller.
 
-use crate::session::landing_gains::landing_gains_told;
+use crate::session::landing_gains::landing_gains_reported;
 
 /// The result of the configuration.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -99,7 +99,7 @@ impl ProvisionReport {
                 "The firmware's configuration was never changed: it is set up like a fresh one.".to_owned(),
             );
         }
-        sentences.extend(landing_gains_told(&self.landing_gains).filter(|_| !self.may_not_write));
+        sentences.extend(landing_gains_reported(&self.landing_gains).filter(|_| !self.may_not_write));
         if self.written > 0 && self.is_as_wanted() {
             sentences.push(format!(
                 "The firmware accepted {} lines of settings, and they read back as written.",

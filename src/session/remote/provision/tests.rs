@@ -115,7 +115,7 @@ fn what_this_version_does_not_know_is_listed_and_not_written() {
 }
 
 #[test]
-fn a_refused_line_is_told_and_the_others_are_kept() {
+fn a_refused_line_is_reported_and_the_others_are_kept() {
     let mut craft = Craft::new();
     let lines =
         ["set ap_max_angle = 999", "set ap_max_velocity = 700", "feature NONSENSE"].map(str::to_owned);
@@ -175,8 +175,11 @@ fn a_firmware_that_falls_in_land_gets_other_gains_than_the_guides_and_the_user_h
     let report = provision.result().unwrap().unwrap();
     let parameters = craft.firmware.parameters();
     assert_eq!((parameters.nav.altitude_p, parameters.nav.altitude_d), (2, 20));
-    let told = report.sentences().join(" ");
-    assert!(told.contains("falls in LAND") && told.contains("gets ap_altitude_p = 2 instead"), "{told}");
+    let reported = report.sentences().join(" ");
+    assert!(
+        reported.contains("falls in LAND") && reported.contains("gets ap_altitude_p = 2 instead"),
+        "{reported}"
+    );
 }
 
 /// Configures a craft with unknown history. The line for a fresh one is a switch for ARM.

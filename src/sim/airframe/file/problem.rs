@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::source_snippet::SourceSnippet;
+use crate::text::source_snippet::SourceSnippet;
 
 /// One problem of an airframe file.
 #[derive(Debug, Clone, PartialEq, Eq)]

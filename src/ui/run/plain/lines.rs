@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use crate::flight::forecast::ForecastKind;
-use crate::printable;
+use crate::text::printable;
 use crate::ui::action::{ACTIONS, Context};
 use crate::ui::app_state::AppState;
 use crate::ui::command;
@@ -39,8 +39,8 @@ impl<W: Write> Lines<W> {
             return Ok(permission::hold(state, effects));
         }
         let answered = self.said(prompt::answer(state, line))?;
-        if let Some(told) = answered.told {
-            self.write(&told)?;
+        if let Some(reported) = answered.reported {
+            self.write(&reported)?;
             // The question is not written again.
             self.asked = prompt::question(state);
         }

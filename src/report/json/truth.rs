@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::record::number::{Centi, Decimals, Milli};
+use crate::report::number::{Centi, Decimals, Milli};
 use crate::telemetry::{FlightTruth, WaypointTruth};
 
 /// The fields, in their order.

@@ -60,7 +60,7 @@ mod tests {
     use crate::telemetry::ParkedTruth;
 
     #[test]
-    fn truth_is_told_in_sentences() {
+    fn truth_is_reported_in_sentences() {
         let flown = |wp, kind, miss_m, alt_error_m| WaypointTruth {
             source: PlanSource::Stored,
             wp,

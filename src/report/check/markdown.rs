@@ -12,14 +12,14 @@ pub fn markdown(summary: &Summary) -> String {
     let (skipped_flights, skipped) = summary.skipped();
     // Only a remote flight controller causes skipped expectations.
     let with_skipped = skipped > 0;
-    let told = if with_skipped {
+    let reported = if with_skipped {
         format!(", {skipped_flights} skipped whole, {skipped} expectations skipped")
     } else {
         String::new()
     };
     let (title, line_below) = if with_skipped { ("| skipped ", "| --- ") } else { ("", "") };
     let mut text = format!(
-        "### {word}\n\n{} of {} flights passed{told}; {:.0} s flown in {:.1} s.\n\n| scenario | passed {title}| tightest expectation | left |\n| --- | --- {line_below}| --- | --- |\n",
+        "### {word}\n\n{} of {} flights passed{reported}; {:.0} s flown in {:.1} s.\n\n| scenario | passed {title}| tightest expectation | left |\n| --- | --- {line_below}| --- | --- |\n",
         summary.passed_flights(),
         summary.wanted,
         summary.flown_s(),

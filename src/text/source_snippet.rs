@@ -42,7 +42,7 @@ pub fn shortened(sentence: String) -> String {
 
 #[cfg(test)]
 mod tests {
-    use crate::source_snippet::*;
+    use super::*;
 
     #[test]
     fn a_short_line_is_shown_whole() {

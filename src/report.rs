@@ -1,4 +1,4 @@
-//! The records of a flight: JSON lines, sentences, a GPX track.
+//! Reports of a flight: JSON lines, sentences, a GPX track.
 //!
 //! This module turns events and snapshots into text; the caller decides where the text goes.
 

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use nalgebra::Vector2;
 
-use crate::record::xml::escaped;
+use crate::report::xml::escaped;
 
 /// The longer side of the map, px.
 const SIDE: f64 = 800.0;

@@ -65,11 +65,11 @@ fn results(side: &Side) -> String {
     if all == 0 {
         return UNKNOWN.to_owned();
     }
-    let told = counts.iter().map(|(result, count)| match all {
+    let reported = counts.iter().map(|(result, count)| match all {
         1 => (*result).to_owned(),
         _ => format!("{result} {count}/{all}"),
     });
-    told.collect::<Vec<_>>().join(", ")
+    reported.collect::<Vec<_>>().join(", ")
 }
 
 /// Returns a value with its spread: `12.34 ± 0.05`.

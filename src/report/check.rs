@@ -55,7 +55,7 @@ pub struct CheckedFlight {
     /// Equal for flights that are the same to the last bit.
     pub hash: u64,
     /// The knowledge that the flight controller gave.
-    pub told: Insight,
+    pub reported: Insight,
 }
 
 impl CheckedFlight {

@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 
 use super::{Comparison, Side};
 use crate::plan::WaypointType;
-use crate::record::xml::escaped;
+use crate::report::xml::escaped;
 use canvas::Canvas;
 
 /// The colours of the two firmwares. People who cannot see red or green can tell them apart, too.

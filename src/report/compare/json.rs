@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::track::Track;
 use super::{Comparison, Row, Side, Statistics};
-use crate::record::number::Milli;
+use crate::report::number::Milli;
 
 #[derive(Serialize)]
 struct Object<'a> {

@@ -1,7 +1,7 @@
 //! Checked flights as a JUnit file: one testsuite for each scenario, one testcase for each case and seed.
 
 use super::{CheckedFlight, Compared, Summary, complaint, is_skipped};
-use crate::record::xml::escaped;
+use crate::report::xml::escaped;
 use crate::scenario::Outcome;
 
 pub fn junit(summary: &Summary) -> String {
