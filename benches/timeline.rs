@@ -13,10 +13,11 @@
 
 use std::time::{Duration, Instant};
 
+use betadeck::fc::upload;
 use betadeck::flight::FlightSetup;
 use betadeck::plan::builtin::{BuiltinPlan, DEMO};
 use betadeck::session::command::Seek;
-use betadeck::session::{Command, Handle, SessionConfig, start, upload};
+use betadeck::session::{Command, Handle, SessionConfig, start};
 use betadeck::signals::SimTime;
 use betadeck::sim::WorldConfig;
 use betadeck::storage::Store;

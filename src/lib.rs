@@ -7,6 +7,7 @@
 pub mod app;
 pub mod args;
 pub mod autopilot;
+pub mod fc;
 pub mod firmware;
 pub mod flight;
 pub mod geo;

@@ -5,18 +5,15 @@ pub mod command;
 mod event;
 mod forecaster;
 mod hazards;
-mod landing_gains;
 mod late_answers;
 mod links;
 mod pacer;
 mod persistence;
 mod real_time;
-mod remote;
 mod request_handler;
 mod runtime;
 mod simulator;
 pub mod sitl;
-mod upload;
 
 pub use command::{Command, Seek, SessionView};
 pub use event::{EndpointAddresses, Event, SessionEvent};
@@ -25,11 +22,6 @@ pub use hazards::hazards;
 pub use links::{Links, MotorTargets, MotorsError};
 pub use pacer::{Pacer, SPEED_RANGE};
 pub use persistence::Persistence;
-pub use remote::{
-    Access, Denial, EXCHANGE_PAUSE, Impact, NOT_PERMITTED, NOTHING_MOVES, NOTHING_SIMULATED, Provision,
-    ProvisionLines, RemoteEnds, RemoteLink, RemoteNotice, RemoteState, RemoteView, Unset, UnsetLine,
-};
 pub use request_handler::{Handled, RequestHandler};
 pub use runtime::{Endpoints, FlownBefore, Handle, SessionConfig, start, start_at};
 pub use simulator::SimulatorNotice;
-pub use upload::{Upload, UploadProgress, UploadReport, upload};

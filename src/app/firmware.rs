@@ -1,10 +1,8 @@
 //! The choice of the firmware from the options and the launcher's file, checked before any start.
 
-pub(super) mod configuration;
 mod executable;
 mod folder;
 pub(super) mod link;
-mod patience;
 pub(super) mod reported;
 pub(super) mod run;
 
@@ -17,7 +15,7 @@ use crate::args::{
     Betaloop, BetaloopError, DoorArgs, FdmDialect, FirmwareArgs, FirmwareChoice, FirmwareLinkArgs,
     FirmwarePortArgs, FlightArgs, PhysicsArgs, UdpPorts,
 };
-use crate::session::ProvisionLines;
+use crate::fc::ProvisionLines;
 use crate::signals::fdm::{Dialect, MotorOrder, Stamps};
 
 /// The launcher's file in the working directory.

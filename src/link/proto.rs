@@ -3,8 +3,7 @@
 
 mod between_frames;
 pub mod command_line;
-mod command_message;
-pub mod fc_client;
+pub mod command_message;
 pub mod fdm;
 pub mod fdm_link;
 pub mod first_line;

@@ -2,8 +2,7 @@
 
 use std::sync::Arc;
 
-use super::remote::RemoteView;
-use super::upload::UploadReport;
+use crate::fc::{RemoteView, UploadReport, UploadView};
 use crate::plan::FlightPlan;
 use crate::signals::{RcFrame, SimTime};
 use crate::telemetry::{EndpointStatus, InFlightCommand, LinkState, LostTime, Snapshot};
@@ -177,15 +176,6 @@ pub struct SessionView {
     pub live: bool,
     /// The recording; `None` if the flight cannot be rewound.
     pub timeline: Option<TimelineView>,
-}
-
-/// The progress of an upload, in lines of the command line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct UploadView {
-    /// The number of lines sent.
-    pub sent: usize,
-    /// The total number of lines, including those that read the plan back.
-    pub total: usize,
 }
 
 impl SessionView {

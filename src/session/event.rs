@@ -4,8 +4,8 @@ use std::net::SocketAddr;
 
 use tokio::sync::mpsc;
 
-use super::remote::RemoteNotice;
 use super::simulator::SimulatorNotice;
+use crate::fc::RemoteNotice;
 use crate::signals::{RcFrame, SimTime};
 use crate::telemetry::{self, EventKind, FirmwareEvent};
 use crate::timeline::Marks;

@@ -34,10 +34,10 @@ fn hazards_from(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fc::upload;
     use crate::firmware::FirmwareOptions;
     use crate::firmware::config::Configuration;
     use crate::plan::{FlightPlan, Waypoint, WaypointType};
-    use crate::session::upload;
 
     #[test]
     fn an_upload_with_a_leg_that_is_too_steep_is_warned_of() {

@@ -3,8 +3,8 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
+use crate::fc::UploadView;
 use crate::plan::FlightPlan;
-use crate::session::command::UploadView;
 use crate::session::{Event, SessionEvent, SessionView};
 use crate::signals::{RcFrame, SimTime};
 use crate::telemetry::{EventKind, FirmwareEvent, NavEvent, NavState, PlanSource, TransitionReason};

@@ -2,7 +2,8 @@
 
 use std::collections::VecDeque;
 
-use crate::session::{RemoteNotice, SessionEvent};
+use crate::fc::RemoteNotice;
+use crate::session::SessionEvent;
 use crate::signals::SimTime;
 use crate::telemetry::{BatteryAlarm, DisarmReason, EventKind, FirmwareEvent, NavEvent, NavState};
 

@@ -6,9 +6,10 @@ use std::time::Duration;
 use crossterm::event::{KeyEvent, MouseEvent};
 
 use super::editor::{FileReply, FileRequest, PlanId};
+use crate::fc::UploadReport;
 use crate::plan::FlightPlan;
 use crate::session::command::{CliOutput, Command, SessionView};
-use crate::session::{Event, ForecastJob, ForecastReply, UploadReport};
+use crate::session::{Event, ForecastJob, ForecastReply};
 
 /// An input of the user interface.
 #[derive(Debug)]

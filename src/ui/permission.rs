@@ -12,7 +12,8 @@ use super::panel::{line, row, span};
 use super::popup::Popup;
 use super::text_wrap::wrapped;
 use super::theme::Role;
-use crate::session::{Access, Command, Denial, Impact, RemoteView};
+use crate::fc::{Access, Denial, Impact, RemoteView};
+use crate::session::Command;
 
 /// The width of the inside.
 const WIDTH: u16 = 56;

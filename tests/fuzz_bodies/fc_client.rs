@@ -3,8 +3,8 @@
 
 use std::time::Duration;
 
-use betadeck::link::proto::fc_client::telemetry::{Mission, Observation, code, settings};
-use betadeck::link::proto::fc_client::{Answer, Ask, AskId, CliAccess, FcClient};
+use betadeck::fc::client::{Answer, Ask, AskId, CliAccess, FcClient};
+use betadeck::fc::telemetry::{Mission, Observation, code, settings};
 
 /// The mark of passing time.
 const PAUSE: &[u8] = &[0x1e, 0x1e];

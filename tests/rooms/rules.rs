@@ -20,6 +20,9 @@ const PURE: [&str; 13] = [
     "vehicle",
 ];
 
+/// Pure parts of other rooms.
+const PURE_PARTS: [&str; 4] = ["fc/client", "fc/polling", "fc/telemetry", "link/proto"];
+
 /// Modules of `std` that reach the world outside the program.
 const OUTSIDE: [&str; 6] = ["env", "fs", "net", "os", "process", "thread"];
 
@@ -28,7 +31,7 @@ const VARIABLES: [&str; 8] =
     ["Cell", "LazyLock", "Mutex", "OnceCell", "OnceLock", "RefCell", "RwLock", "UnsafeCell"];
 
 fn is_pure(file: &SourceFile) -> bool {
-    PURE.contains(&file.room().as_str()) || file.name.starts_with("link/proto")
+    PURE.contains(&file.room().as_str()) || PURE_PARTS.iter().any(|part| file.name.starts_with(part))
 }
 
 /// Returns the file without its unit tests, which may read files.

@@ -2,8 +2,9 @@
 //! change.
 
 use crate::fixture;
+use betadeck::fc::{Access, NOTHING_MOVES, NOTHING_SIMULATED, RemoteState, RemoteView};
+use betadeck::session::Command;
 use betadeck::session::command::CliOutput;
-use betadeck::session::{Access, Command, NOTHING_MOVES, NOTHING_SIMULATED, RemoteState, RemoteView};
 use betadeck::telemetry::ArmingFlag;
 use betadeck::ui::action::{self, Action};
 use betadeck::ui::{AppState, Effect, Msg, Panel, draw, update};

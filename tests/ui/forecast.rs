@@ -3,10 +3,11 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use betadeck::fc::UploadReport;
 use betadeck::flight::forecast::{
     FlightResult, Forecast, ForecastEnd, ForecastKind, PathPoint, WHAT_IFS, WorstXte,
 };
-use betadeck::session::{Command, ForecastJob, ForecastReply, ForecastRequest, UploadReport};
+use betadeck::session::{Command, ForecastJob, ForecastReply, ForecastRequest};
 use betadeck::telemetry::{InFlightCommand, Snapshot};
 use betadeck::ui::{AppState, Effect, Msg, draw, update};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};

@@ -2,8 +2,9 @@
 
 use std::time::Duration;
 
+use betadeck::fc::UploadReport;
+use betadeck::session::Command;
 use betadeck::session::command::CliOutput;
-use betadeck::session::{Command, UploadReport};
 use betadeck::ui::editor::FileRequest;
 use betadeck::ui::keymap::KeyPress;
 use betadeck::ui::{AppState, Effect, MapMode, Msg, Panel, Popup, layout, update};

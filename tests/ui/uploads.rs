@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use betadeck::session::UploadReport;
-use betadeck::session::command::UploadView;
+use betadeck::fc::UploadReport;
+use betadeck::fc::UploadView;
 use betadeck::ui::editor::{FileReply, PlanId};
 use betadeck::ui::{AppState, Effect, Msg, Severity, update};
 

@@ -5,10 +5,11 @@
 use std::net::SocketAddr;
 use std::time::{Duration, Instant};
 
+use betadeck::fc::upload;
 use betadeck::link::proto::command_line::{LineReply, LineSource};
 use betadeck::link::{ClientId, ListenConfig, Listeners, Request};
 use betadeck::plan::{FlightPlan, Waypoint};
-use betadeck::session::{Handled, Persistence, RequestHandler, upload};
+use betadeck::session::{Handled, Persistence, RequestHandler};
 use betadeck::signals::RcFrame;
 use betadeck::storage::Store;
 use tokio::sync::{mpsc, oneshot};

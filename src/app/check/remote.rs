@@ -9,9 +9,10 @@ use super::run::{self, Job, Stopwatch};
 use crate::app::firmware::run::{RemoteRun, RunOptions, Stopped};
 use crate::app::firmware::{RemoteFirmware, reported};
 use crate::app::{AppError, error, setup};
+use crate::fc::Unset;
 use crate::report::check::CheckedFlight;
 use crate::scenario::{self, Air, Case, CaseFlight};
-use crate::session::{Event, Unset};
+use crate::session::Event;
 
 /// The message if flights cannot be prepared repeatedly.
 const NO_MORE: &str = "Two flights in a row could not be prepared: the others are not tried.";

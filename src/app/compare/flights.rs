@@ -5,18 +5,18 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::Compared;
 use super::recorder::Recorder;
-use crate::app::firmware::configuration::guide_settings;
 use crate::app::firmware::run::{RemoteRun, RunOptions, Seen, Stopped, unless_interrupted};
 use crate::app::firmware::{RemoteFirmware, reported};
 use crate::app::interrupt::interrupt_flag;
 use crate::app::{AppError, setup};
 use crate::args::{CompareArgs, Speed};
+use crate::fc::{guide_settings, upload};
 use crate::firmware::config::Configuration;
 use crate::flight::setup::{BootLines, PhysicsSource};
 use crate::flight::{FlightOptions, FlightSetup};
 use crate::plan::format::PlanFile;
 use crate::report::compare::{Route, Track};
-use crate::session::{Event, SessionEvent, upload};
+use crate::session::{Event, SessionEvent};
 
 /// The number of ticks between two checks for an interrupt.
 const SLICE: u64 = 4096;
@@ -53,7 +53,11 @@ impl Flights {
         // An executable starts without a configuration and gets the guide's settings, so the embedded one gets them,
         // too.
         if executable_flies {
-            setup.plan.settings = guide_settings()?.into_iter().chain(setup.plan.settings).collect();
+            setup.plan.settings = guide_settings()
+                .map_err(AppError::internal)?
+                .into_iter()
+                .chain(setup.plan.settings)
+                .collect();
         }
         // With two remote firmwares, only the radii of the embedded one are needed, to draw the plan.
         let unheard = &mut Vec::new();

@@ -5,13 +5,13 @@ use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener, UdpSocket};
 use std::path::{Path, PathBuf};
 use std::time::{Instant, SystemTime};
 
+use super::RemoteFirmware;
 use super::folder::FirmwareFolder;
-use super::{RemoteFirmware, configuration};
 use crate::app::AppError;
 use crate::args::UdpPorts;
+use crate::fc::{Provision, RemoteEnds, RemoteLink, starter_lines};
 use crate::link::proto::sitl_feed::FeedConfig;
 use crate::link::{ChildConfig, FcPlace, FcStream, SitlChild, SitlPeer, SitlPorts};
-use crate::session::{Provision, RemoteEnds, RemoteLink};
 use crate::storage::state_file;
 use crate::vehicle::Vehicle;
 
@@ -105,7 +105,7 @@ pub(in crate::app) fn open(
     let stream = FcStream::open(FcPlace::Tcp { host: ip.to_string(), port: ports.tcp });
     let ends = RemoteEnds { name, stream, peer: Some(peer), child };
     let mut link = RemoteLink::new(ends, now);
-    let lines = configuration::lines(&firmware.lines, is_fresh)?;
+    let lines = starter_lines(&firmware.lines, is_fresh).map_err(AppError::internal)?;
     let is_set = |(file, words): &(PathBuf, String)| matches!(state_file::read(file, LONGEST_NOTE), Ok(Some(noted)) if noted == words.as_bytes());
     match note {
         None if lines.is_empty() => {}
@@ -114,7 +114,8 @@ pub(in crate::app) fn open(
         Some(note) => {
             let mut provision = Provision::new(lines, is_fresh || firmware.may_write);
             if !is_fresh && !is_set(&note) {
-                provision = provision.or_when_bare(configuration::lines(&firmware.lines, true)?);
+                let fresh = starter_lines(&firmware.lines, true).map_err(AppError::internal)?;
+                provision = provision.or_when_bare(fresh);
             }
             link.provision(provision.noted_in(note.0, note.1));
         }

@@ -1,7 +1,8 @@
 //! Messages about a remote firmware on standard error.
 
 use crate::app::error;
-use crate::session::{Event, RemoteNotice, SessionEvent};
+use crate::fc::RemoteNotice;
+use crate::session::{Event, SessionEvent};
 
 /// Returns the sentence for the user; `None` for the output of its program, and for events that are not notices.
 pub(in crate::app) fn sentence(event: &Event) -> Option<String> {

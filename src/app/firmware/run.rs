@@ -14,15 +14,14 @@ use tokio::runtime::Runtime;
 use super::RemoteFirmware;
 use super::folder::FirmwareFolder;
 use super::link::{self, OpenLink};
-use super::patience::{Patience, Unready};
 use crate::app::{AppError, runtime};
+use crate::fc::{
+    EXCHANGE_PAUSE, Patience, RemoteLink, RemoteNotice, RemoteState, Unready, Unset, Upload, UploadProgress,
+};
 use crate::firmware::cli::CliReply;
 use crate::flight::{Flight, FlightEnd, Report};
 use crate::plan::{AltitudeError, FlightPlan};
-use crate::session::{
-    EXCHANGE_PAUSE, Event, Pacer, RemoteLink, RemoteNotice, RemoteState, SessionEvent, Unset, Upload,
-    UploadProgress,
-};
+use crate::session::{Event, Pacer, SessionEvent};
 use crate::vehicle::{LateAnswer, Ticket, Vehicle};
 
 /// The most ticks between two exchanges.

@@ -9,15 +9,15 @@ use super::command_line::LineReply;
 use super::msp::Frame;
 
 /// The code of the message.
-pub(super) const CLI_COMMAND: u16 = 0x3012;
+pub const CLI_COMMAND: u16 = 0x3012;
 /// The maximum number of output bytes that are kept.
 const OUTPUT_MAX: usize = 2048;
 /// The maximum number of output bytes of one reply.
 const PAGE_MAX: usize = 512;
 /// Flag: the output was longer than the kept part.
-pub(super) const CUT: u8 = 1;
+pub const CUT: u8 = 1;
 /// Flag: the line was refused.
-pub(super) const REFUSED: u8 = 2;
+pub const REFUSED: u8 = 2;
 
 /// The last line and its output.
 #[derive(Debug, Clone, Default)]

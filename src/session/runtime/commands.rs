@@ -8,14 +8,14 @@ use tokio::sync::oneshot;
 
 use super::Session;
 use super::late::WaitingInterface;
+use crate::fc::replace_falling_gains;
+use crate::fc::{LIST, Upload, plan_above_home};
 use crate::firmware::cli::Interpreter;
 use crate::flight::forecast;
 use crate::plan::AltitudeReference;
 use crate::session::command::{
     Command, PLACE_IS_EXTERNAL, Seek, TIME_IS_EXTERNAL, TIME_IS_THE_FIRMWARES, UPLOADING, VehicleCopy,
 };
-use crate::session::landing_gains::replace_falling_gains;
-use crate::session::upload::{LIST, Upload, plan_above_home};
 use crate::sim::WorldCommand;
 use crate::telemetry::LinkState;
 use crate::vehicle::Answer;

@@ -6,12 +6,13 @@ use tokio::sync::oneshot;
 
 use super::Session;
 use super::console::output;
+use crate::fc::UploadView;
+use crate::fc::{Upload, UploadProgress, UploadReport, plan_above_home};
 use crate::firmware::cli::CliAction;
 use crate::plan::FlightPlan;
-use crate::session::command::{CliOutput, UploadView};
+use crate::session::command::CliOutput;
 use crate::session::hazards;
 use crate::session::late_answers::{NO_ANSWER, no_answer_line};
-use crate::session::upload::{Upload, UploadProgress, UploadReport, plan_above_home};
 use crate::vehicle::LateAnswer;
 
 /// A part of the user interface that waits for the answer of a remote flight controller.

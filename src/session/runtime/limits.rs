@@ -3,10 +3,10 @@
 use tokio::sync::oneshot;
 
 use super::Session;
+use crate::fc::{Access, Denial, Impact, NOTHING_MOVES, NOTHING_SIMULATED, RemoteLink};
 use crate::link::Request;
 use crate::link::proto::command_line::LineReply;
 use crate::session::command::{CliOutput, Command};
-use crate::session::remote::{Access, Denial, Impact, NOTHING_MOVES, NOTHING_SIMULATED, RemoteLink};
 
 impl Session {
     /// Returns the access to the craft.

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::Session;
+use crate::fc::RemoteLink;
 use crate::session::command::SessionView;
-use crate::session::remote::RemoteLink;
 use crate::session::simulator::Simulator;
 use crate::telemetry::EndpointStatus;
 

@@ -5,8 +5,8 @@ use std::task::Context;
 use std::time::Instant;
 
 use super::Session;
+use crate::fc::RemoteNotice;
 use crate::session::event::SessionEvent;
-use crate::session::remote::RemoteNotice;
 
 impl Session {
     /// Sends the vehicle's data for its flight controller and takes the data from it.

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use super::limits::{impact_of_request, refuse};
 use super::{SLICE, Session, console};
+use crate::fc::Impact;
 use crate::firmware::cli::Interpreter;
 use crate::link::Request;
 use crate::session::arming::ArmingWatch;
@@ -11,7 +12,6 @@ use crate::session::command::{
     BEGINNING_LOST, CliOutput, Command, NOT_RECORDED, REWOUND, REWOUND_FOR_CLIENTS, Seek,
 };
 use crate::session::pacer::SPEED_RANGE;
-use crate::session::remote::Impact;
 use crate::signals::SimTime;
 use crate::telemetry;
 use crate::timeline::{RecordedFlight, Shown, Timeline, TimelineView};

@@ -1,12 +1,13 @@
 use tokio::sync::oneshot;
 
 use super::*;
+use crate::fc::UploadView;
+use crate::fc::{RemoteEnds, UploadReport};
 use crate::firmware::config::Configuration;
 use crate::firmware::{Firmware, FirmwareOptions};
 use crate::link::FcStream;
 use crate::plan::{AltitudeReference, FlightPlan, Waypoint};
-use crate::session::command::{Seek, UPLOADING, UploadView};
-use crate::session::{RemoteEnds, UploadReport};
+use crate::session::command::{Seek, UPLOADING};
 use crate::signals::SimTime;
 use crate::sim::WorldConfig;
 use crate::timeline::MarkKind;

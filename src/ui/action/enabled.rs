@@ -1,10 +1,10 @@
 //! Decides which actions are possible now, and gives the reason for each refusal.
 
+use crate::fc::{Access, RemoteState};
 use crate::flight::forecast::{CONTROLLER_IS_REMOTE, PHYSICS_IS_EXTERNAL};
 use crate::session::command::{
     NOT_RECORDED, PLACE_IS_EXTERNAL, REWOUND, TIME_IS_EXTERNAL, TIME_IS_THE_FIRMWARES,
 };
-use crate::session::{Access, RemoteState};
 use crate::telemetry::{LinkState, Mode, NavState};
 use crate::ui::app_state::AppState;
 use crate::ui::stick_recording;

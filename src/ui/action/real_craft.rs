@@ -1,6 +1,6 @@
 //! The actions that are refused with a remote flight controller, and further ones that are refused with a real craft.
 
-use crate::session::{NOTHING_MOVES, NOTHING_SIMULATED, RemoteState, RemoteView};
+use crate::fc::{NOTHING_MOVES, NOTHING_SIMULATED, RemoteState, RemoteView};
 
 use super::{Action, EditAction};
 

@@ -1,7 +1,7 @@
 //! Messages about a remote flight controller: its connection, and the state of a real craft.
 
 use super::{StatusMessage, message, most_useful_flag};
-use crate::session::{RemoteState, RemoteView};
+use crate::fc::{RemoteState, RemoteView};
 use crate::ui::action::{Action, EditAction};
 use crate::ui::app_state::AppState;
 use crate::ui::event_log::Severity;

@@ -1,7 +1,8 @@
 //! The flight as a whole: the scripted pilot, the upload of the plan, the speed of the simulation.
 
+use crate::fc::UploadReport;
 use crate::plan::review::Finding;
-use crate::session::{Command, UploadReport};
+use crate::session::Command;
 use crate::ui::action::{Action, EditAction};
 use crate::ui::app_state::AppState;
 use crate::ui::editor::{EditorPopup, OpenPlan, PlanId, Question, findings, settings_in_force};

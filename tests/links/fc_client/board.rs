@@ -2,11 +2,11 @@
 
 use std::time::Duration;
 
+use betadeck::fc::client::{Answer, Ask, AskId, FcClient};
 use betadeck::firmware::cli::{CliMode, Interpreter};
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{Firmware, FirmwareOptions};
 use betadeck::link::proto::command_line::LineSource;
-use betadeck::link::proto::fc_client::{Answer, Ask, AskId, FcClient};
 use betadeck::link::proto::serial_session::{SerialRequest, SerialSession};
 
 /// A tick of the simulated time.

@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use betadeck::link::proto::fc_client::{Answer, Ask, AskId, FcClient, Unanswered};
+use betadeck::fc::client::{Answer, Ask, AskId, FcClient, Unanswered};
 use betadeck::link::proto::msp::{Decoder, Form, Frame, Kind};
 
 const NOW: Duration = Duration::from_secs(5);

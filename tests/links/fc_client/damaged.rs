@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use betadeck::link::proto::fc_client::{Answer, Ask, AskId, CliAccess, FcClient, Unanswered};
+use betadeck::fc::client::{Answer, Ask, AskId, CliAccess, FcClient, Unanswered};
 use betadeck::link::proto::msp::{Form, Frame, Kind};
 use proptest::prelude::*;
 
@@ -150,7 +150,7 @@ fn a_dead_line_costs_each_request_its_patience_and_no_more() {
 fn a_prompt_that_an_earlier_client_left_open_is_left() {
     let mut bench = Bench::new(Manners::default());
     // Upstream keeps an open prompt over connections.
-    bench.client.set_cli(betadeck::link::proto::fc_client::CliAccess::Interactive);
+    bench.client.set_cli(betadeck::fc::client::CliAccess::Interactive);
     bench.line("version");
     bench.client.connected();
     assert!(bench.msp(ATTITUDE).is_some());
@@ -160,7 +160,7 @@ fn a_prompt_that_an_earlier_client_left_open_is_left() {
 #[test]
 fn a_prompt_that_an_earlier_client_left_open_is_not_left_unasked() {
     let mut bench = Bench::new(Manners::default());
-    bench.client.set_cli(betadeck::link::proto::fc_client::CliAccess::Interactive);
+    bench.client.set_cli(betadeck::fc::client::CliAccess::Interactive);
     bench.line("version");
     bench.client.connected();
     bench.client.set_may_leave_cli(false);
@@ -286,7 +286,7 @@ proptest! {
         let mut client = FcClient::default();
         client.connected();
         if interactive {
-            client.set_cli(betadeck::link::proto::fc_client::CliAccess::Interactive);
+            client.set_cli(betadeck::fc::client::CliAccess::Interactive);
         }
         let mut now = Duration::ZERO;
         let (mut asked, mut answered) = (0, 0);

@@ -1,11 +1,11 @@
 //! Payloads and outputs of real flight controllers, of older releases, and of random bytes.
 
-use betadeck::geo::LatLon;
-use betadeck::link::proto::fc_client::telemetry::{
+use betadeck::fc::telemetry::{
     ApiVersion, Attitude, BatteryReading, BatteryState, BoardInfo, BuildInfo, HomeVector, Mission,
     MissionPhase, Observation, RawGps, Status, channels, code, mode_ranges, motors, setting, settings,
     variant, version,
 };
+use betadeck::geo::LatLon;
 use betadeck::plan::WaypointType;
 use betadeck::telemetry::snapshot::ModeRange;
 use betadeck::telemetry::{AbortReason, ArmingFlag, ModeBox, NavState};

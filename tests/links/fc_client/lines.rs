@@ -1,6 +1,6 @@
 //! Command lines on this program's own server, in all three ways.
 
-use betadeck::link::proto::fc_client::{Answer, Ask, CliAccess, Unanswered};
+use betadeck::fc::client::{Answer, Ask, CliAccess, Unanswered};
 use betadeck::link::proto::msp::Decoder;
 use betadeck::plan::format::{self, Format};
 use betadeck::plan::upload_lines;

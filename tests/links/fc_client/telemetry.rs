@@ -1,11 +1,11 @@
 //! Compares the decoded telemetry of a flight with the state of the firmware itself.
 
+use betadeck::fc::client::{Answer, Ask};
+use betadeck::fc::polling::{Poll, Schedule};
+use betadeck::fc::telemetry::{Mission, MissionPhase, Observation, Origin, code};
 use betadeck::firmware::Firmware;
 use betadeck::firmware::config::Configuration;
 use betadeck::flight::FlightSetup;
-use betadeck::link::proto::fc_client::polling::{Poll, Schedule};
-use betadeck::link::proto::fc_client::telemetry::{Mission, MissionPhase, Observation, Origin, code};
-use betadeck::link::proto::fc_client::{Answer, Ask};
 use betadeck::plan::format::{self, Format};
 use betadeck::telemetry::snapshot::{CraftView, EstimateView};
 use betadeck::telemetry::{Mode, NavState};

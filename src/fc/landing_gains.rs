@@ -27,7 +27,7 @@ pub(super) fn landing_gain(setting: &str) -> Option<String> {
 }
 
 /// Replaces such settings. Returns the replacements.
-pub(super) fn replace_falling_gains(settings: &mut [String]) -> Vec<String> {
+pub fn replace_falling_gains(settings: &mut [String]) -> Vec<String> {
     let mut replaced = Vec::new();
     for setting in settings {
         if let Some(instead) = landing_gain(setting) {

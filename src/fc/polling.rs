@@ -6,8 +6,8 @@
 
 use std::time::Duration;
 
+use super::client::{Answer, Ask, Unanswered};
 use super::telemetry::code;
-use super::{Answer, Ask, Unanswered};
 
 /// The line that prints the mission's progress.
 const MISSION_LINE: &str = "waypoint status";

@@ -1,6 +1,6 @@
 //! The navigator of a remote flight controller, as shown by its `waypoint status`.
 
-use crate::link::proto::fc_client::telemetry::{Mission, MissionPhase};
+use crate::fc::telemetry::{Mission, MissionPhase};
 use crate::plan::{FlightPlan, HoldPattern};
 use crate::telemetry::{NavState, NavTelemetry, TransitionReason};
 

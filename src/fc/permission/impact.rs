@@ -1,8 +1,8 @@
 //! The impact of lines and messages on a craft, as far as it can be judged from them.
 
 use super::NOTHING_MOVES;
+use crate::fc::client::sent_line;
 use crate::firmware::msp::{Access as MessageAccess, MESSAGES};
-use crate::link::proto::fc_client::sent_line;
 
 /// Refusal of a line or message that takes the port away.
 const TAKES_PORT: &str =

@@ -1,7 +1,6 @@
 //! Uploads a plan through the command line, as a ground station does, and reads it back. Downloads a
 //! plan in the same way.
 
-use super::command::UploadView;
 use super::landing_gains::landing_gains_reported;
 use crate::firmware::cli::{CliReply, Interpreter};
 use crate::plan::format::{self, Format};
@@ -70,13 +69,13 @@ impl UploadReport {
 }
 
 /// The line that prints the plan in the craft.
-pub(super) const LIST: &str = "waypoint list";
+pub const LIST: &str = "waypoint list";
 
 /// Returns the plan in an answer to [`LIST`], with the craft's own altitudes.
 ///
 /// # Errors
 /// Returns a sentence if the answer is no plan.
-pub(super) fn plan_of_list(reply: &CliReply) -> Result<FlightPlan, String> {
+pub fn plan_of_list(reply: &CliReply) -> Result<FlightPlan, String> {
     if reply.failed {
         return Err(format!("the craft refused `{LIST}`: {}", reply.text.trim()));
     }
@@ -93,7 +92,7 @@ pub(super) fn plan_of_list(reply: &CliReply) -> Result<FlightPlan, String> {
 ///
 /// # Errors
 /// Returns a sentence if the answer is no plan, or if the reference of its altitudes is unknown.
-pub(super) fn plan_above_home(reply: &CliReply, reference: AltitudeReference) -> Result<FlightPlan, String> {
+pub fn plan_above_home(reply: &CliReply, reference: AltitudeReference) -> Result<FlightPlan, String> {
     let plan = plan_of_list(reply)?;
     reference.plan_of_craft(&plan).map_err(|unknown| unknown.to_string())
 }
@@ -110,6 +109,15 @@ pub struct Upload {
     /// The last line sent.
     sent: String,
     interpreter: Interpreter,
+}
+
+/// The progress of an upload, in lines of the command line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct UploadView {
+    /// The number of lines sent.
+    pub sent: usize,
+    /// The total number of lines, including those that read the plan back.
+    pub total: usize,
 }
 
 /// The progress of an upload.
@@ -144,12 +152,12 @@ impl Upload {
     }
 
     /// Adds these settings, which replace the guide's, to the report.
-    pub(super) fn tell_landing_gains(&mut self, settings: Vec<String>) {
+    pub fn tell_landing_gains(&mut self, settings: Vec<String>) {
         self.report.landing_gains = settings;
     }
 
     /// Returns the number of lines sent and the total. Both include the line that reads the plan back.
-    pub(super) fn lines_sent(&self) -> UploadView {
+    pub fn lines_sent(&self) -> UploadView {
         UploadView { sent: self.total - self.lines.len(), total: self.total }
     }
 

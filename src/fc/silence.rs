@@ -4,7 +4,7 @@
 use std::time::Instant;
 
 use super::{FIRST_ANSWER, FeedState, RemoteEnds, RemoteLink, RemoteNotice, RemoteState};
-use crate::link::proto::fc_client::{Answer, Unanswered};
+use crate::fc::client::{Answer, Unanswered};
 
 /// The number of unanswered requests in a row after which it counts as silent. Each waits for at least two
 /// seconds.

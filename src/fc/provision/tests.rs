@@ -3,8 +3,8 @@ use crate::firmware::cli::{CliMode, Interpreter};
 use crate::firmware::config::Configuration;
 use crate::firmware::{Firmware, FirmwareOptions};
 
-const GUIDE: &str = include_str!("../../../../tests/vectors/guide-step5.txt");
-const PLAN: &str = include_str!("../../../../tests/vectors/guide-step7.txt");
+const GUIDE: &str = include_str!("../../../tests/vectors/guide-step5.txt");
+const PLAN: &str = include_str!("../../../tests/vectors/guide-step7.txt");
 const MODES: [&str; 3] = ["aux 0 0 0 1700 2100 0 0", "aux 1 56 1 1700 2100", "aux 2 1 2 1700 2100 0 0"];
 
 /// A flight controller with an embedded firmware. It does not know lines that begin with one of `lacks`.

@@ -1,7 +1,7 @@
 //! Converts answers of a remote flight controller to those of the embedded one.
 
+use crate::fc::client::Answer;
 use crate::firmware::cli::{CliAction, CliReply};
-use crate::link::proto::fc_client::Answer;
 
 /// Converts the answer to a line to that of an embedded flight controller's command line.
 pub(super) fn cli_reply(answer: Answer) -> CliReply {

@@ -5,8 +5,8 @@ use std::time::Instant;
 use super::identify::Question;
 use super::reply::cli_reply;
 use super::{Purpose, RemoteLink, RemoteNotice, RemoteState, Subject};
-use crate::link::proto::fc_client::Answer;
-use crate::link::proto::fc_client::telemetry::code;
+use crate::fc::client::Answer;
+use crate::fc::telemetry::code;
 use crate::vehicle::{LateAnswer, Vehicle};
 
 /// The poll for the positions of the switches.

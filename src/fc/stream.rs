@@ -116,9 +116,8 @@ mod tests {
     use tokio::sync::mpsc;
 
     use super::*;
+    use crate::fc::RemoteEnds;
     use crate::link::FcStream;
-    use crate::session::remote::RemoteEnds;
-    use crate::sim::WorldConfig;
 
     #[test]
     #[allow(clippy::disallowed_methods, reason = "an instant to count from")]
@@ -127,7 +126,7 @@ mod tests {
         while pieces.try_send(StreamEvent::Bytes(vec![b'$'; 4096])).is_ok() {}
         let stream = FcStream { to, from, place: "tcp:here:1".to_owned(), bytes_per_s: None };
         let ends = RemoteEnds { name: "the board".to_owned(), stream, peer: None, child: None };
-        let mut vehicle = Vehicle::with_remote_controller(WorldConfig::default()).unwrap();
+        let mut vehicle = Vehicle::elsewhere().unwrap();
         let now = Instant::now();
         let mut link = RemoteLink::new(ends, now);
         link.exchange(&mut vehicle, None, now);

@@ -1,6 +1,6 @@
 //! The command lines that configure a flight controller.
 
-use crate::session::landing_gains::landing_gain;
+use crate::fc::landing_gains::landing_gain;
 
 /// The prefix of a setting's line.
 const SET: &str = "set ";

@@ -18,10 +18,8 @@ mod exchange;
 mod framed_line;
 mod line_text;
 mod message_line;
-pub mod polling;
 mod prompt_line;
 mod request;
-pub mod telemetry;
 
 pub use ask::{Answer, Ask, AskId, CliAccess, Unanswered};
 pub use line_text::printable as sent_line;
@@ -35,7 +33,7 @@ use message_line::{MessageLine, Page};
 use prompt_line::PromptLine;
 use request::{Request, Waiting};
 
-use super::msp::{Decoder, Frame};
+use crate::link::proto::msp::{Decoder, Frame};
 
 /// The maximum number of requests that may wait. Further requests are refused.
 const MAX_QUEUE: usize = 256;

@@ -1,6 +1,6 @@
 //! The report on the configuration of a flight controller.
 
-use crate::session::landing_gains::landing_gains_reported;
+use crate::fc::landing_gains::landing_gains_reported;
 
 /// The result of the configuration.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]

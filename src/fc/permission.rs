@@ -5,7 +5,7 @@ mod impact;
 
 use std::fmt;
 
-use crate::link::proto::fc_client::{Answer, CliAccess, Unanswered};
+use crate::fc::client::{Answer, CliAccess, Unanswered};
 pub use impact::Impact;
 
 /// Refusal of an order that would move a remote craft.

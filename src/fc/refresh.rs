@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use super::identify::{Question, how_it_is_set};
 use super::{RemoteLink, RemoteNotice};
-use crate::link::proto::fc_client::{Answer, Unanswered};
+use crate::fc::client::{Answer, Unanswered};
 
 /// The time without further changes before the settings are read. The last of several changes counts.
 const SETTLED: Duration = Duration::from_millis(500);

@@ -1,11 +1,10 @@
 //! The configuration of a remote firmware before a flight.
 
-use crate::app::AppError;
+use super::ProvisionLines;
 use crate::firmware::cli::Interpreter;
 use crate::firmware::config::Configuration;
 use crate::firmware::{Firmware, FirmwareOptions};
 use crate::plan::builtin::{BuiltinPlan, DEMO};
-use crate::session::ProvisionLines;
 
 /// The end of a row of `aux` that binds no switch.
 const UNUSED: &str = "900 900 0 0";
@@ -16,7 +15,7 @@ const COMPASS: [&str; 2] = ["set trust_mag = ON", "set mag_declination = 20"];
 
 /// Returns the command lines for a firmware. For a firmware without a configuration of its own, the guide's settings
 /// and a compass come first, and the starter modes unless the user's lines bind switches.
-pub(super) fn lines(wanted: &ProvisionLines, is_fresh: bool) -> Result<ProvisionLines, AppError> {
+pub fn starter_lines(wanted: &ProvisionLines, is_fresh: bool) -> Result<ProvisionLines, &'static str> {
     let mut lines = ProvisionLines { usual: Vec::new(), of_user: wanted.of_user.clone() };
     if is_fresh {
         lines.usual.extend(guide_settings()?.into_iter().map(|setting| format!("set {setting}")));
@@ -30,9 +29,8 @@ pub(super) fn lines(wanted: &ProvisionLines, is_fresh: bool) -> Result<Provision
 }
 
 /// Returns the settings of the plan that the guide flies.
-pub(in crate::app) fn guide_settings() -> Result<Vec<String>, AppError> {
-    let missing = || AppError::internal("the demo plan is missing");
-    let plan = BuiltinPlan::find(DEMO).and_then(|plan| plan.read().ok()).ok_or_else(missing)?;
+pub fn guide_settings() -> Result<Vec<String>, &'static str> {
+    let plan = BuiltinPlan::find(DEMO).and_then(|plan| plan.read().ok()).ok_or("the demo plan is missing")?;
     Ok(plan.settings)
 }
 
@@ -52,8 +50,8 @@ mod tests {
     #[test]
     fn a_firmware_without_a_configuration_gets_the_guides_and_switches() {
         let of_user = ProvisionLines { usual: Vec::new(), of_user: vec!["set ap_max_angle = 30".to_owned()] };
-        assert_eq!(lines(&of_user, false).expect("lines"), of_user);
-        let fresh = lines(&of_user, true).expect("lines");
+        assert_eq!(starter_lines(&of_user, false).expect("lines"), of_user);
+        let fresh = starter_lines(&of_user, true).expect("lines");
         assert_eq!(fresh.of_user, of_user.of_user);
         let fresh = fresh.usual;
         assert_eq!(fresh.iter().filter(|line| line.starts_with("set ap_")).count(), 24);
@@ -71,7 +69,7 @@ mod tests {
             ]
         );
         let bound = ProvisionLines { usual: Vec::new(), of_user: vec!["aux 0 0 3 1700 2100 0 0".to_owned()] };
-        let fresh = lines(&bound, true).expect("lines");
+        let fresh = starter_lines(&bound, true).expect("lines");
         assert!(!fresh.usual.iter().any(|line| line.starts_with("aux")), "{fresh:?}");
     }
 }

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, VecDeque};
 
 use super::report::Difference;
 use super::wish::{self, Wish};
-use crate::link::proto::fc_client::telemetry::setting;
+use crate::fc::telemetry::setting;
 use crate::plan::FlightPlan;
 use crate::plan::format::{self, Format};
 

@@ -27,7 +27,7 @@ use wish::Wish;
 
 use super::self_check::SelfCheck;
 use super::{Identification, RemoteLink, RemoteNotice, RemoteState};
-use crate::link::proto::fc_client::{Answer, Ask, Unanswered};
+use crate::fc::client::{Answer, Ask, Unanswered};
 
 /// The line that stores the written settings and restarts.
 const SAVE: &str = "save";

@@ -10,7 +10,7 @@ const MOST_CONNECTIONS: u32 = 5;
 
 /// The wait for a firmware.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Patience {
+pub struct Patience {
     answers: u64,
     /// The time of the last answer.
     since: Instant,
@@ -18,7 +18,7 @@ pub(super) struct Patience {
 
 /// The reason for giving up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum NotReady {
+pub enum NotReady {
     /// It has never answered.
     NeverAnswered,
     /// It has answered before, but not any more.
@@ -29,12 +29,12 @@ pub(super) enum NotReady {
 
 impl Patience {
     /// Starts the wait now.
-    pub(super) fn new(now: Instant) -> Self {
+    pub fn new(now: Instant) -> Self {
         Self { answers: 0, since: now }
     }
 
     /// Returns the reason to give up, if any, for this number of answers and connections so far.
-    pub(super) fn look(&mut self, answers: u64, connections: u32, now: Instant) -> Option<NotReady> {
+    pub fn look(&mut self, answers: u64, connections: u32, now: Instant) -> Option<NotReady> {
         if answers > self.answers {
             *self = Self { answers, since: now };
         }
@@ -50,14 +50,14 @@ impl Patience {
 
 /// The reason why a firmware is not ready. `Display` gives a sentence with a suggestion.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Unready<'a> {
+pub struct Unready<'a> {
     /// The name of the firmware.
-    pub(super) name: &'a str,
+    pub name: &'a str,
     /// The port of its command line and MSP.
-    pub(super) tcp: u16,
+    pub tcp: u16,
     /// `true` if betadeck did not start it.
-    pub(super) is_attached: bool,
-    pub(super) why: NotReady,
+    pub is_attached: bool,
+    pub why: NotReady,
 }
 
 impl fmt::Display for Unready<'_> {

@@ -1,9 +1,9 @@
 //! Asks a flight controller for its identity and settings, one question after the other.
 
 use super::observer::Observer;
-use crate::link::proto::fc_client::telemetry::code;
-use crate::link::proto::fc_client::{Answer, Ask, Unanswered};
-use crate::session::upload::LIST;
+use crate::fc::LIST;
+use crate::fc::client::{Answer, Ask, Unanswered};
+use crate::fc::telemetry::code;
 
 /// The questions after each new connection, in this order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,5 +1,4 @@
-//! Exchanges data with a remote flight controller: sends the contents of the vehicle's mailbox and delivers
-//! the answers.
+//! A remote flight controller: sends it the contents of the vehicle's mailbox and delivers its answers.
 //!
 //! ```text
 //!                    ┌── sensor and RC frames ──▶ SitlPeer ──▶ UDP        (a SITL executable only)
@@ -8,44 +7,58 @@
 //!                    └◀─ answers, telemetry ── Observer ◀── polling ──┘
 //! ```
 //!
-//! Nothing here blocks: [`RemoteLink::exchange`] is called between two steps.
+//! `client` exchanges messages and lines over the serial port, `polling` chooses the next message, `telemetry`
+//! decodes the replies, and the observer makes snapshots and events from them. `upload` and `provision` write
+//! a plan and settings. Nothing here blocks: [`RemoteLink::exchange`] is called between two steps.
 
 mod answers;
+pub mod client;
 mod identify;
+mod landing_gains;
 mod observer;
+mod patience;
 mod permission;
+pub mod polling;
 mod provision;
 mod refresh;
 mod reply;
 mod rescue;
 mod self_check;
 mod silence;
+mod starter;
 mod stream;
+pub mod telemetry;
 #[cfg(test)]
 mod tests;
+mod upload;
 mod view;
 
 use std::collections::BTreeMap;
 use std::task::Context;
 use std::time::{Duration, Instant};
 
+use crate::fc::client::{Ask, AskId, FcClient};
+use crate::fc::polling::{Poll as Subject, Schedule};
 use crate::geo::LocalFrame;
-use crate::link::proto::fc_client::polling::{Poll as Subject, Schedule};
-use crate::link::proto::fc_client::{Ask, AskId, FcClient};
 use crate::link::proto::sitl_feed::FeedState;
 use crate::link::{ChildEvent, FcStream, SitlChild, SitlPeer};
-use crate::session::upload::LIST;
 use crate::signals::MotorCommand;
 use crate::telemetry::EndpointStatus;
 use crate::vehicle::{FrameOut, RemoteRequest, Ticket, Vehicle};
 use identify::{Identification, Question};
+pub use landing_gains::replace_falling_gains;
 use observer::{Observer, Simulated};
+pub use patience::{NotReady, Patience, Unready};
 use permission::Permission;
 pub use permission::{Access, Denial, Impact, NOT_PERMITTED, NOTHING_MOVES, NOTHING_SIMULATED};
 pub use provision::{Provision, ProvisionLines, Unset, UnsetLine};
 use refresh::Refresh;
 use self_check::SelfCheck;
 use silence::Silence;
+pub use starter::{guide_settings, starter_lines};
+pub use upload::{
+    LIST, Upload, UploadProgress, UploadReport, UploadView, plan_above_home, plan_of_list, upload,
+};
 pub use view::{RemoteNotice, RemoteState, RemoteView};
 
 /// The message that restarts a flight controller.

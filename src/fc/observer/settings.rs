@@ -1,9 +1,9 @@
 //! The settings of a remote flight controller, as far as they were read.
 
+use crate::fc::telemetry::settings;
 use crate::firmware::cli::Interpreter;
 use crate::firmware::config::Configuration;
 use crate::firmware::{Firmware, FirmwareOptions};
-use crate::link::proto::fc_client::telemetry::settings;
 use crate::telemetry::snapshot::SettingsView;
 
 /// A setting that exists only in firmware with waypoint altitudes above home. Other firmware uses altitudes

@@ -5,14 +5,14 @@ mod mission;
 mod settings;
 
 use super::identify::Question;
-use crate::firmware::cli::CliReply;
-use crate::geo::LocalFrame;
-use crate::link::proto::fc_client::Answer;
-use crate::link::proto::fc_client::telemetry::{
+use crate::fc::client::Answer;
+use crate::fc::plan_of_list;
+use crate::fc::telemetry::{
     ApiVersion, BoardInfo, BuildInfo, Mission, MissionPhase, Observation, Origin, version,
 };
+use crate::firmware::cli::CliReply;
+use crate::geo::LocalFrame;
 use crate::plan::{AltitudeReference, FlightPlan};
-use crate::session::upload::plan_of_list;
 use crate::telemetry::Mode;
 use crate::telemetry::snapshot::{CraftView, ModeRange};
 use crate::vehicle::{RemoteController, RemoteTelemetry};
