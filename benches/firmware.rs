@@ -128,7 +128,7 @@ fn on_a_leg() -> (Firmware, Vec<SensorFrame>) {
     }
     let firmware = vehicle.embedded().unwrap().clone();
     let frames = (0..1000).map(|_| {
-        let frame = *vehicle.world().unwrap().sensors();
+        let frame = *vehicle.sensors();
         vehicle.tick();
         frame
     });

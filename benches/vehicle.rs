@@ -52,10 +52,13 @@ fn main() {
     println!("both     {both:>7.1} ns/tick  ({:.0}x real time at 1 kHz)", 1e6 / both);
 }
 
+fn air(rate_hz: u32) -> WorldConfig {
+    WorldConfig { rate_hz, turbulence: Turbulence::Light, ..WorldConfig::default() }
+}
+
 fn vehicle(rate_hz: u32) -> Vehicle {
     let file = BuiltinPlan::find(DEMO).expect("the demo is built in").read().expect("the demo reads");
-    let world = WorldConfig { rate_hz, turbulence: Turbulence::Light, ..WorldConfig::default() };
-    let setup = FlightSetup { world, ..FlightSetup::default() };
+    let setup = FlightSetup { world: air(rate_hz), ..FlightSetup::default() };
     let (mut vehicle, _) = setup.build().expect("the default world is sound");
     let mut console = Interpreter::default();
     for line in upload_lines(&file.plan, &file.settings) {
@@ -109,23 +112,25 @@ struct Recording {
 
 fn record() -> Recording {
     let mut vehicle = vehicle(1000);
+    let mut world = World::new(air(1000)).expect("the default world is sound");
     vehicle.start_pilot(10.0).expect("the starter modes have the switches");
     while vehicle.engaged_at().is_none() {
         vehicle.tick();
+        world.step(&MotorCommand(vehicle.truth().unwrap().motor_command));
     }
     vehicle.drain_events(drop);
     let mut recording = Recording {
         start: vehicle.clone(),
         firmware: vehicle.embedded().unwrap().clone(),
-        world: vehicle.world().unwrap().clone(),
+        world,
         frames: Vec::with_capacity(REPLAY),
         commands: Vec::with_capacity(REPLAY),
         sticks: vehicle.transmitter().sticks(),
     };
     for _ in 0..REPLAY {
-        recording.frames.push(*vehicle.world().unwrap().sensors());
+        recording.frames.push(*vehicle.sensors());
         vehicle.tick();
-        recording.commands.push(MotorCommand(vehicle.world().unwrap().truth().motor_command));
+        recording.commands.push(MotorCommand(vehicle.truth().unwrap().motor_command));
         vehicle.drain_events(drop);
     }
     recording

@@ -98,10 +98,8 @@ impl Flight {
         let sample_every_us =
             (options.samples_hz > 0.0).then(|| ((1e6 / options.samples_hz).round() as u64).max(1));
         // The altitude of a craft in the air counts from the place of arming.
-        let armed_alt_m = match (vehicle.embedded(), vehicle.world()) {
-            (Some(firmware), Some(world)) if firmware.is_armed() => {
-                world.truth().pos_enu.z - firmware.altitude_m()
-            }
+        let armed_alt_m = match (vehicle.embedded(), vehicle.truth()) {
+            (Some(firmware), Some(truth)) if firmware.is_armed() => truth.pos_enu.z - firmware.altitude_m(),
             _ => 0.0,
         };
         Self {
@@ -225,7 +223,7 @@ impl Flight {
     }
 
     fn craft_truth(&self) -> Option<CraftTruth> {
-        let truth = self.vehicle.world()?.truth();
+        let truth = self.vehicle.truth()?;
         let nav = self.vehicle.controller().nav();
         Some(CraftTruth {
             time: self.vehicle.time(),
@@ -239,18 +237,18 @@ impl Flight {
 
     /// Returns the true altitude of the centre of mass above the ground at the boot place, m.
     fn true_alt_m(&self) -> f64 {
-        self.vehicle.world().map_or(0.0, |world| world.truth().pos_enu.z)
+        self.vehicle.truth().map_or(0.0, |truth| truth.pos_enu.z)
     }
 
     fn battery_used_pct(&self) -> Option<f64> {
-        let battery = self.vehicle.world()?.truth().battery;
+        let battery = self.vehicle.truth()?.battery;
         Some(100.0 * battery.drawn_mah / battery.capacity_mah)
     }
 
     /// Returns the remark of the verdict if the flight took more charge than the battery has.
     fn battery_remark(&self) -> Option<String> {
         let at = self.battery_empty_at?.as_secs_f64();
-        let acts = self.vehicle.world().is_some_and(|world| world.status().switches.battery_sag);
+        let acts = self.vehicle.world_status().is_some_and(|world| world.switches.battery_sag);
         let pack = if acts { "the battery was" } else { "a real battery would have been" };
         Some(format!("{pack} empty {at:.1} s after boot"))
     }

@@ -33,9 +33,27 @@ impl SimTime {
     }
 }
 
-/// Normalised motor commands M1…M4 (rear right, front right, rear left, front left), 0…1.
+/// The number of motors of the craft.
+pub const MOTORS: usize = 4;
+
+/// A value for each motor, M1…M4: rear right, front right, rear left, front left.
+pub type PerMotor<T = f64> = [T; MOTORS];
+
+/// Normalised motor commands, 0…1.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct MotorCommand(pub [f64; 4]);
+pub struct MotorCommand(pub PerMotor);
+
+impl MotorCommand {
+    /// Returns the mean of the commands.
+    pub fn mean(&self) -> f64 {
+        self.0.iter().sum::<f64>() / MOTORS as f64
+    }
+
+    /// Returns the mean of the squares of the commands, the share of the full thrust.
+    pub fn mean_square(&self) -> f64 {
+        self.0.iter().map(|motor| motor * motor).sum::<f64>() / MOTORS as f64
+    }
+}
 
 /// The measurements of the sensors at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -27,6 +27,7 @@ mod airframe;
 mod atmosphere;
 mod battery;
 mod body;
+mod clock;
 mod command;
 mod config;
 mod endurance;
@@ -52,12 +53,13 @@ pub use airframe::{
 pub use atmosphere::{density, density_ratio, pressure_pa, temperature_k};
 pub use battery::{BatterySpec, motor_power_w};
 pub use body::{AirSample, BodyState, Loads, lever_arm_acceleration};
+pub use clock::Clock;
 pub use command::{COMMAND_WORDS, CommandWord, WorldCommand};
 pub use config::{Home, Noise, STEP_RATES_HZ, Wind, WorldConfig, WorldError, step_us};
 pub use event::{WorldEvent, WorldEventKind};
 pub use fault::{
-    BatteryFault, Direction, FAULTS, Fault, FaultInfo, FaultKey, FaultLink, FaultStart, LinkFaults,
-    MAX_FAULTS, MotorNumber, ScheduledFault,
+    BatteryFault, Direction, FAULTS, Fault, FaultInfo, FaultKey, FaultStart, LinkFaults, MAX_FAULTS,
+    MotorNumber, ScheduledFault,
 };
 pub use ground::{ContactAnchors, Ground, GroundContact, NO_ANCHORS};
 pub use plant::{Plant, ground_effect_factor};

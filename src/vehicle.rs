@@ -34,7 +34,8 @@ use crate::pilot::{FRAME_US, Pilot, RcTransmitter};
 use crate::plan::FlightPlan;
 use crate::signals::{MotorCommand, Pose, RcFrame, RcSource, SensorFrame, SimTime};
 use crate::sim::{
-    FaultLink, LinkFaults, Stream, World, WorldCommand, WorldConfig, WorldError, WorldEventKind,
+    Airframe, Clock, LinkFaults, Stream, Truth, World, WorldCommand, WorldConfig, WorldError, WorldEventKind,
+    WorldStatus,
 };
 use crate::telemetry::{Event, EventKind, FirmwareEvent, Mode, NavEvent, NavState, VehicleNotice};
 use physics::{ExternalPhysics, Physics};
@@ -87,8 +88,9 @@ impl Vehicle {
     /// Fails if the step rate or a fault is not allowed.
     pub fn with_external_physics(config: VehicleConfig) -> Result<Self, WorldError> {
         let controller = embedded(config.configuration, config.firmware);
-        let links = World::new(WorldConfig { link: FaultLink::External, ..config.world })?;
-        let physics = Physics::External(Box::new(ExternalPhysics::new(links)));
+        let WorldConfig { rate_hz, seed, faults, .. } = config.world;
+        let clock = Clock::of_external(rate_hz, seed, faults)?;
+        let physics = Physics::External(Box::new(ExternalPhysics::new(clock)));
         Ok(Self::build(controller, physics, config.live))
     }
 
@@ -108,7 +110,8 @@ impl Vehicle {
     /// # Errors
     /// Never fails with the default step rate.
     pub fn elsewhere() -> Result<Self, WorldError> {
-        let clock = World::new(WorldConfig { link: FaultLink::External, ..WorldConfig::default() })?;
+        let WorldConfig { rate_hz, seed, faults, .. } = WorldConfig::default();
+        let clock = Clock::of_external(rate_hz, seed, faults)?;
         let physics = Physics::External(Box::new(ExternalPhysics::new(clock)));
         let mut vehicle = Self::build(FlightController::Remote(Box::default()), physics, true);
         vehicle.events.clear();
@@ -117,15 +120,15 @@ impl Vehicle {
 
     fn build(controller: FlightController, physics: Physics, live: bool) -> Self {
         let boot = EventKind::Boot {
-            seed: physics.seed(),
-            rate_hz: (1_000_000 / physics.step_us()) as u32,
-            airframe: physics.airframe().to_owned(),
+            seed: physics.clock().seed(),
+            rate_hz: (1_000_000 / physics.clock().step_us()) as u32,
+            airframe: physics.airframe_name().to_owned(),
             live,
         };
         let mut events = Vec::with_capacity(64);
         events.push(Event { time: SimTime::ZERO, kind: boot });
         Self {
-            rx_jitter: Stream::RxJitter.rng(physics.seed()),
+            rx_jitter: Stream::RxJitter.rng(physics.clock().seed()),
             controller,
             physics,
             transmitter: RcTransmitter::default(),
@@ -138,12 +141,12 @@ impl Vehicle {
 
     /// Returns the simulated time since boot.
     pub fn time(&self) -> SimTime {
-        self.physics.time()
+        self.physics.clock().time()
     }
 
     /// Returns the length of a tick, µs.
     pub fn step_us(&self) -> u64 {
-        self.physics.step_us()
+        self.physics.clock().step_us()
     }
 
     pub fn controller(&self) -> &FlightController {
@@ -175,14 +178,35 @@ impl Vehicle {
         &mut self.transmitter
     }
 
-    /// Returns the simulated world, if it moves the craft.
-    pub fn world(&self) -> Option<&World> {
-        self.physics.world()
+    /// Returns the true state of the craft. `None` if an external simulator moves it.
+    pub fn truth(&self) -> Option<&Truth> {
+        self.physics.truth()
     }
 
-    /// Returns the seed of all randomness.
-    pub fn seed(&self) -> u64 {
-        self.physics.seed()
+    /// Returns the airframe. `None` if an external simulator moves it.
+    pub fn airframe(&self) -> Option<&Airframe> {
+        self.physics.airframe()
+    }
+
+    /// Returns the settings of air and noise. `None` if an external simulator has them.
+    pub fn world_status(&self) -> Option<WorldStatus> {
+        self.physics.status()
+    }
+
+    /// Returns the maximum thrust over weight in the air at the craft, with its payload. `None` if an external
+    /// simulator moves it.
+    pub fn thrust_to_weight(&self) -> Option<f64> {
+        self.physics.thrust_to_weight()
+    }
+
+    /// Returns the sensor frame of the present instant; of an external simulator, the last one received.
+    pub fn sensors(&self) -> &SensorFrame {
+        self.physics.sensors()
+    }
+
+    /// Returns time, seed and faults of the physics.
+    pub fn clock(&self) -> &Clock {
+        self.physics.clock()
     }
 
     /// Returns the frame with its origin at the boot place. `None` before an external simulator has reported that
@@ -193,22 +217,22 @@ impl Vehicle {
 
     /// Returns the effects of active faults on the packets of an external simulator.
     pub fn link_faults(&self) -> LinkFaults {
-        self.physics.link_faults()
+        self.physics.clock().link_faults()
     }
 
     /// Returns `true` if the craft is known to have crashed.
     pub fn crashed(&self) -> bool {
-        self.physics.crashed()
+        self.truth().is_some_and(|truth| truth.crashed)
     }
 
     /// Returns `true` if the simulation has left the range in which its numbers are meaningful.
     pub fn diverged(&self) -> bool {
-        self.physics.diverged()
+        self.truth().is_some_and(|truth| truth.diverged)
     }
 
     /// Returns `true` if the craft is disarmed and at rest, and no scripted pilot is about to fly it.
     pub fn is_idle(&self) -> bool {
-        let is_at_rest = self.world().is_none_or(|world| world.truth().vel_enu.norm() < AT_REST_MPS);
+        let is_at_rest = self.truth().is_none_or(|truth| truth.vel_enu.norm() < AT_REST_MPS);
         !self.controller.is_armed() && self.transmitter.pilot().is_none() && is_at_rest
     }
 
@@ -247,13 +271,10 @@ impl Vehicle {
         self.transmitter.stop_pilot();
         *self.transmitter.sticks_mut() = RcFrame::SAFE;
         self.controller.restart_in_place();
-        if let Some(external) = self.physics.external_mut() {
-            external.reset();
-            return;
+        self.physics.reset();
+        if self.truth().is_some() {
+            self.notice(VehicleNotice::BackHome);
         }
-        // A return home is always allowed.
-        let _ = self.physics.apply(WorldCommand::ResetToHome);
-        self.notice(VehicleNotice::BackHome);
     }
 
     /// Handles the restart of a remote flight controller by itself: the craft of the simulated world is at home
@@ -264,9 +285,9 @@ impl Vehicle {
         self.engaged_at = None;
         self.active_plan = None;
         *self.transmitter.sticks_mut() = RcFrame::SAFE;
-        // A return home is always allowed. An external simulator is not reset from here.
-        if self.physics.world().is_some() {
-            let _ = self.physics.apply(WorldCommand::ResetToHome);
+        // An external simulator is not reset from here.
+        if self.truth().is_some() {
+            self.physics.reset();
         }
     }
 
@@ -290,7 +311,7 @@ impl Vehicle {
     fn step(&mut self, measured: Option<&SensorFrame>) -> MotorCommand {
         self.send_due_rc();
         // With the `rx-loss` fault no frame from any source reaches the receiver.
-        if self.physics.rx_lost() {
+        if self.physics.clock().rx_lost() {
             self.controller.lose_rc();
         }
         if let Some(external) = self.physics.external_mut() {
@@ -307,7 +328,7 @@ impl Vehicle {
     pub fn end_link_faults(&mut self, silence_us: u64) -> bool {
         let before = self.events.len();
         if let Some(external) = self.physics.external_mut() {
-            external.end_link_faults(silence_us);
+            external.clock_mut().end_link_faults(silence_us);
         }
         self.collect_events();
         self.events.len() != before
@@ -349,8 +370,9 @@ impl Vehicle {
         }
         let facts = self.controller.pilot_facts(self.time());
         let frame = self.transmitter.frame(&facts, self.engaged_at);
-        let fraction = self.physics.rx_drop_fraction();
-        let dropped = !self.physics.rx_lost() && fraction > 0.0 && self.rx_jitter.random::<f64>() < fraction;
+        let fraction = self.physics.clock().rx_drop_fraction();
+        let dropped =
+            !self.physics.clock().rx_lost() && fraction > 0.0 && self.rx_jitter.random::<f64>() < fraction;
         if let Some(frame) = frame
             && !dropped
         {
@@ -370,7 +392,7 @@ impl Vehicle {
         if lost > 0 {
             self.notice(VehicleNotice::EventsLost(lost));
         }
-        while let Some(event) = self.physics.take_event() {
+        while let Some(event) = self.physics.clock_mut().take_event() {
             let kind = match event.kind {
                 WorldEventKind::Contact { impact_mps } => EventKind::Contact { impact_mps },
                 WorldEventKind::Touchdown { impact_mps, peak_mps2 } => {
@@ -392,7 +414,7 @@ impl Vehicle {
             NavEvent::Plan { plan, .. } => self.active_plan = Some(plan.clone()),
             NavEvent::State { to, .. } if *to != NavState::Idle && self.engaged_at.is_none() => {
                 self.engaged_at = Some(time);
-                self.physics.set_engaged(time);
+                self.physics.clock_mut().set_engaged(time);
             }
             NavEvent::State { .. }
             | NavEvent::Climbing(_)

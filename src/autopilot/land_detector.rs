@@ -18,7 +18,7 @@ mod touchdown;
 use nalgebra::Vector3;
 
 use super::io::NavInputs;
-use crate::signals::SimTime;
+use crate::signals::{MotorCommand, SimTime};
 use contact::GroundContact;
 use impact::Impact;
 use relief::ThrottleRelief;
@@ -54,11 +54,11 @@ pub struct GroundMeasurement {
 
 impl GroundMeasurement {
     /// Returns the measurement of a craft in the state `now`.
-    pub fn new(now: &NavInputs, force_flu: Vector3<f64>, rate_rps: f64, motors: &[f64; 4]) -> Self {
+    pub fn new(now: &NavInputs, force_flu: Vector3<f64>, rate_rps: f64, motors: &MotorCommand) -> Self {
         Self {
             force_flu,
             rate_rps,
-            motor_square: motors.iter().map(|motor| motor * motor).sum::<f64>() / 4.0,
+            motor_square: motors.mean_square(),
             altitude_m: now.altitude_valid.then_some(now.alt_m),
             climb_mps: now.climb_mps,
             ground_speed_mps: now.fix.then(|| now.vel_ne.norm()),
@@ -225,8 +225,12 @@ mod tests {
 
     #[test]
     fn a_single_broken_measurement_does_not_blind_the_land_detector() {
-        let sound =
-            GroundMeasurement::new(&NavInputs::hovering(), Vector3::new(0.0, 0.0, GRAVITY), 0.0, &[0.5; 4]);
+        let sound = GroundMeasurement::new(
+            &NavInputs::hovering(),
+            Vector3::new(0.0, 0.0, GRAVITY),
+            0.0,
+            &MotorCommand([0.5; 4]),
+        );
         let broken = [
             GroundMeasurement { force_flu: Vector3::new(f64::NAN, 0.0, 0.0), ..sound },
             GroundMeasurement { force_flu: Vector3::new(0.0, 0.0, f64::INFINITY), ..sound },

@@ -13,7 +13,7 @@
 //! other modules are in SI units.
 
 use crate::firmware::estimate::DueTasks;
-use crate::signals::MotorCommand;
+use crate::signals::{MOTORS, MotorCommand, PerMotor};
 
 mod boost;
 mod controller;
@@ -92,7 +92,7 @@ pub struct ControlInput {
     /// Holds the heading while the yaw stick is centred: MAG.
     pub heading_hold: bool,
     /// The outputs of the `motor` command while disarmed, µs.
-    pub motor_test_us: [f64; 4],
+    pub motor_test_us: PerMotor,
 }
 
 impl Default for ControlInput {
@@ -117,7 +117,7 @@ impl Default for ControlInput {
             failsafe: false,
             headfree_reference_rad: None,
             heading_hold: false,
-            motor_test_us: [1000.0; 4],
+            motor_test_us: [1000.0; MOTORS],
         }
     }
 }
@@ -127,7 +127,7 @@ impl Default for ControlInput {
 pub struct ControlState {
     pub motors: MotorCommand,
     /// The motor commands as pulses, µs.
-    pub motors_us: [f64; 4],
+    pub motors_us: PerMotor,
     /// The throttle that drove the mixer, RC µs.
     pub throttle_us: f64,
     /// The filtered gyro rates, °/s: roll, pitch, yaw.
@@ -144,7 +144,7 @@ impl Default for ControlState {
     fn default() -> Self {
         Self {
             motors: MotorCommand::default(),
-            motors_us: [1000.0; 4],
+            motors_us: [1000.0; MOTORS],
             throttle_us: 1000.0,
             gyro_dps: [0.0; 3],
             setpoint_dps: [0.0; 3],

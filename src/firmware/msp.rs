@@ -36,7 +36,7 @@ pub use table::{Access, MESSAGES, Message};
 
 use super::config::Configuration;
 use crate::geo::LatLon;
-use crate::signals::RcFrame;
+use crate::signals::{PerMotor, RcFrame};
 use crate::telemetry::FirmwareNotice;
 use wire::{Reader, Writer};
 
@@ -73,7 +73,7 @@ pub enum MspAction {
         speed_cms: u16,
     },
     /// Runs the motors of the disarmed craft at these outputs, µs.
-    MotorTest([u16; 4]),
+    MotorTest(PerMotor<u16>),
     CalibrateAcc,
     CalibrateMag,
     /// Holds this heading, degrees.

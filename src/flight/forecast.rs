@@ -92,7 +92,7 @@ impl ForecastRun {
     /// Fails with the reason why no forecast is possible, as a sentence.
     pub fn what_if(mut vehicle: Vehicle, what_if: &WhatIf) -> Result<Self, String> {
         check_flies(&vehicle)?;
-        let wind = vehicle.world().map(|world| world.status().wind).unwrap_or_default();
+        let wind = vehicle.world_status().map(|world| world.wind).unwrap_or_default();
         change(&mut vehicle, what_if.command(wind)?)?;
         Self::begin(ForecastKind::WhatIf, vehicle, FlightOptions::default().takeoff_m)
     }
@@ -181,7 +181,7 @@ pub fn check_possible(vehicle: &Vehicle) -> Result<(), String> {
     if vehicle.embedded().is_none() {
         return Err(CONTROLLER_IS_REMOTE.to_owned());
     }
-    if vehicle.world().is_none() {
+    if vehicle.truth().is_none() {
         return Err(PHYSICS_IS_EXTERNAL.to_owned());
     }
     Ok(())

@@ -15,7 +15,7 @@ pub(super) fn sentence(vehicle: &Vehicle, takeoff_m: f64) -> Option<String> {
     }
     let climbs = vehicle.transmitter().pilot_doing() == Some("climbing");
     if climbs && let Some(firmware) = vehicle.embedded() {
-        return Some(climb(firmware.altitude_m(), takeoff_m, &controller.motors().0));
+        return Some(climb(firmware.altitude_m(), takeoff_m, controller.motors().mean()));
     }
     let refusal = controller.nav().and_then(|nav: &NavTelemetry| nav.refusal)?;
     Some(refusal.sentence().trim_end_matches('.').to_owned())
@@ -23,12 +23,12 @@ pub(super) fn sentence(vehicle: &Vehicle, takeoff_m: f64) -> Option<String> {
 
 /// Returns the thrust over weight of a craft that does not leave the ground at full throttle.
 pub(super) fn lift_share(vehicle: &Vehicle) -> Option<f64> {
-    let world = vehicle.world()?;
+    let thrust_to_weight = vehicle.thrust_to_weight()?;
     if !vehicle.embedded()?.is_too_heavy() {
         return None;
     }
-    let square = vehicle.controller().motors().0.iter().map(|motor| motor * motor).sum::<f64>() / 4.0;
-    Some(world.thrust_to_weight() * square)
+    let square = vehicle.controller().motors().mean_square();
+    Some(thrust_to_weight * square)
 }
 
 /// Returns the reason why the craft does not arm.
@@ -44,10 +44,9 @@ fn arming(vehicle: &Vehicle) -> Option<String> {
 }
 
 /// Describes a climb that does not reach its altitude.
-fn climb(alt_m: f64, takeoff_m: f64, motors: &[f64; 4]) -> String {
+fn climb(alt_m: f64, takeoff_m: f64, mean: f64) -> String {
     // Avoids `-0.0` for a craft on the ground.
     let alt_m = alt_m.max(0.0) + 0.0;
-    let mean = motors.iter().sum::<f64>() / 4.0;
     let why = if mean >= FULL_OUTPUT { ", the thrust does not suffice" } else { "" };
     format!(
         "the climb stopped at {alt_m:.1} m of {takeoff_m:.1} m with the motors at {:.0} %{why}",

@@ -6,7 +6,7 @@ use super::proto::fdm_link::{Counters, FdmLink, FdmLinkConfig, Received, Reply};
 use super::proto::servo;
 use super::udp::{MotorPort, Sent, StateQueue};
 use crate::signals::fdm::MotorOrder;
-use crate::signals::{MotorCommand, SensorFrame};
+use crate::signals::{MotorCommand, PerMotor, SensorFrame};
 use crate::telemetry::{EndpointKind, EndpointState, EndpointStatus, LinkState, SimulatorStats};
 
 /// Drives a firmware with the packets of a simulator.
@@ -18,7 +18,7 @@ pub struct ExternalSimulator {
     states: Option<StateQueue>,
     order: MotorOrder,
     started: Instant,
-    pulses_us: [f32; 4],
+    pulses_us: PerMotor<f32>,
 }
 
 impl ExternalSimulator {

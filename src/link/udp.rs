@@ -13,6 +13,7 @@ use tokio_util::sync::CancellationToken;
 use super::endpoint_stats::EndpointStats;
 use super::proto::{fdm, rc, servo};
 use super::request::Request;
+use crate::signals::PerMotor;
 
 /// The kind of datagrams that a UDP door accepts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -155,7 +156,7 @@ impl MotorPort {
     }
 
     /// Sends the normalised values of four motor pulses, µs.
-    pub fn send_servo(&self, pulses_us: [f32; 4]) -> Sent {
+    pub fn send_servo(&self, pulses_us: PerMotor<f32>) -> Sent {
         let datagram = servo::encode(pulses_us);
         // A pending error belongs to an earlier datagram.
         let earlier_refused = self.take_refusal();
@@ -165,7 +166,7 @@ impl MotorPort {
     }
 
     /// Sends motor pulses, µs. A receiver is optional.
-    pub fn send_raw(&self, pulses_us: [f32; 4]) {
+    pub fn send_raw(&self, pulses_us: PerMotor<f32>) {
         let datagram = servo::encode_raw(pulses_us.len() as u16, &pulses_us);
         let _nobody_there = self.raw.send(&datagram);
         let _of_this_or_an_earlier = self.raw.take_error();

@@ -202,7 +202,7 @@ mod tests {
             _ => {}
         };
         let (flight, flown) = first_flight(happen, 100);
-        let truth = *flown.world().unwrap().truth();
+        let truth = *flown.truth().unwrap();
         let text = Draft::of_recorded("first", flight).unwrap().finish().unwrap();
         assert!(text.contains("wind 3@270") && text.contains("ARRIVED 1 of stored"), "{text}");
         // The flown plan is at the top of the text. No input types it again before the flight.

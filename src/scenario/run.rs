@@ -65,7 +65,7 @@ impl<'a> CaseFlight<'a> {
     /// Returns a sentence if a mode that the pilot needs has no switch.
     pub fn of_vehicle(case: &'a Case, vehicle: Vehicle) -> Result<Self, String> {
         let reported = if vehicle.embedded().is_some() { Insight::Inner } else { Insight::Telemetry };
-        let standing_m = vehicle.world().map_or(0.0, |world| world.truth().pos_enu.z);
+        let standing_m = vehicle.truth().map_or(0.0, |truth| truth.pos_enu.z);
         let trace = Trace::new(case.setup.plan.plan.clone(), vehicle.local_frame().copied());
         // The time limit of the scenario applies.
         let options = FlightOptions { timeout: SimTime(u64::MAX), ..case.options };

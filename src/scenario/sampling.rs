@@ -3,7 +3,6 @@
 use super::signal::{Flag, Signal};
 use super::trace::Sample;
 use crate::signals::SimTime;
-use crate::sim::World;
 use crate::telemetry::snapshot::{CraftView, EstimateView};
 use crate::telemetry::{NavTelemetry, PlanSource};
 use crate::vehicle::Vehicle;
@@ -64,8 +63,7 @@ impl Values {
     }
 
     fn of_truth(&mut self, vehicle: &Vehicle, standing_m: f64) {
-        let Some(world) = vehicle.world() else { return };
-        let truth = world.truth();
+        let Some(truth) = vehicle.truth() else { return };
         let (east, north) = (truth.vel_enu.x, truth.vel_enu.y);
         let speed = north.hypot(east);
         self.set(Signal::North, truth.pos_enu.y);
@@ -133,7 +131,7 @@ impl Values {
 }
 
 fn flags(vehicle: &Vehicle, craft: &CraftView, nav: Option<&NavTelemetry>) -> u16 {
-    let truth = vehicle.world().map(World::truth);
+    let truth = vehicle.truth();
     let set = [
         (Flag::Armed, craft.is_armed()),
         (Flag::Engaged, nav.is_some_and(|nav| nav.engaged)),

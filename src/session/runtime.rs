@@ -194,7 +194,7 @@ impl Session {
         events: mpsc::UnboundedSender<Event>,
     ) -> Self {
         let simulator = config.endpoints.as_mut().and_then(|endpoints| endpoints.simulator.take());
-        let incoming = ImpairedLink::new(Stream::Link.rng(config.vehicle.seed()));
+        let incoming = ImpairedLink::new(Stream::Link.rng(config.vehicle.clock().seed()));
         let (timeline, flown) = match flown {
             Some(flown) => (Some(flown.timeline), Some((flown.events, flown.show))),
             None if config.is_recorded && simulator.is_none() => (Timeline::new(&mut config.vehicle), None),

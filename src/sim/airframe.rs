@@ -18,6 +18,7 @@ use arrayvec::ArrayVec;
 use nalgebra::Vector3;
 
 use crate::geo::GRAVITY;
+use crate::signals::MOTORS;
 
 use super::battery::BatterySpec;
 use crate::text::did_you_mean;
@@ -27,7 +28,7 @@ mod file;
 
 pub use file::{AirframeFileError, AirframeProblem};
 
-pub const ROTORS: usize = 4;
+pub const ROTORS: usize = MOTORS;
 
 /// The maximum number of legs of an airframe.
 pub const MAX_LEGS: usize = 8;

@@ -45,11 +45,6 @@ impl WorldCommand {
         }
     }
 
-    /// Returns `true` if the command is about faults and nothing else.
-    pub(super) fn is_about_faults(&self) -> bool {
-        matches!(self, Self::FaultOn(..) | Self::FaultOff(_) | Self::ClearFaults | Self::Schedule(_))
-    }
-
     /// Checks that the numbers of the command are in range.
     pub(super) fn check(&self) -> Result<(), WorldError> {
         match *self {

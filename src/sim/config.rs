@@ -3,7 +3,7 @@
 use strum::VariantNames;
 
 use super::airframe::Airframe;
-use super::fault::{FaultLink, ScheduledFault};
+use super::fault::ScheduledFault;
 use super::switches::Switches;
 use super::value_text::ParseError;
 use crate::telemetry::Turbulence;
@@ -38,8 +38,6 @@ pub struct WorldConfig {
     pub switches: Switches,
     /// Scheduled faults.
     pub faults: Vec<ScheduledFault>,
-    /// The external link, if there is one for link faults to act on.
-    pub link: FaultLink,
 }
 
 impl Default for WorldConfig {
@@ -56,7 +54,6 @@ impl Default for WorldConfig {
             turbulence: Turbulence::None,
             switches: Switches::default(),
             faults: Vec::new(),
-            link: FaultLink::Embedded,
         }
     }
 }

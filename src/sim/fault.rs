@@ -331,10 +331,9 @@ impl fmt::Display for ScheduledFault {
 }
 
 /// The link to an external simulator that moves the craft, if there is one for faults to act on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum FaultLink {
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum FaultLink {
     /// Everything is embedded, so link faults are refused.
-    #[default]
     Embedded,
     /// An external simulator moves the craft. Only faults on the way into the firmware are allowed; the rest of the
     /// world belongs to the simulator.

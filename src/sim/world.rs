@@ -1,16 +1,15 @@
 //! The world: one craft, the air, the ground, the sensors and their faults, stepped together.
 
-use arrayvec::ArrayVec;
 use nalgebra::Vector3;
 
-use crate::signals::{MotorCommand, SensorFrame, SimTime};
+use crate::signals::{MotorCommand, SensorFrame};
 
 use super::air::{AIR_TICK_US, Air};
 use super::airframe::{Airframe, ROTORS};
 use super::battery::{Battery, motor_power_w};
 use super::body::{AirSample, BodyState, Loads};
-use super::event::{WorldEvent, WorldEventKind};
-use super::fault::{Effects, FaultLink, FaultSchedule};
+use super::clock::{Clock, FaultHost};
+use super::event::WorldEventKind;
 use super::ground::{ContactAnchors, GroundContact};
 use super::plant::Plant;
 use super::sensors::{SensorInputs, Sensors};
@@ -19,8 +18,6 @@ use super::touchdown::{TouchdownDetector, crash_cause};
 use super::truth::{BatteryTruth, Truth};
 use crate::telemetry::{CrashCause, DivergeCause};
 
-/// The maximum number of events that can wait. If nothing takes them, later ones are lost.
-const MAX_EVENTS: usize = 64;
 /// The limits beyond which the integration has failed: distance from home, m, and body rate, rad/s.
 const MAX_DISTANCE_M: f64 = 100_000.0;
 const MAX_RATE: f64 = 300.0;
@@ -39,12 +36,9 @@ pub struct World {
     airframe: Airframe,
     start: BodyState,
     heading_deg: f64,
-    link: FaultLink,
-    seed: u64,
     switches: Switches,
-    step_us: u64,
     step_s: f64,
-    time: SimTime,
+    clock: Clock,
     // The craft.
     plant: Plant,
     body: BodyState,
@@ -57,10 +51,7 @@ pub struct World {
     touchdown: TouchdownDetector,
     crashed: bool,
     diverged: bool,
-    // Influences on the craft.
     air: Air,
-    faults: FaultSchedule,
-    effects: Effects,
     // The present instant.
     air_now: AirSample,
     loads: Loads,
@@ -68,7 +59,6 @@ pub struct World {
     truth: Truth,
     sensors: Sensors,
     frame: SensorFrame,
-    events: ArrayVec<WorldEvent, MAX_EVENTS>,
 }
 
 impl World {
@@ -80,25 +70,14 @@ impl World {
         if !self.diverged {
             self.move_body();
         }
-        self.time.0 += self.step_us;
-        if self.faults.is_due(self.time) {
-            self.run_faults();
-        }
-        if self.time.0.is_multiple_of(AIR_TICK_US) {
+        self.clock.advance();
+        self.run_faults();
+        if self.clock.time.0.is_multiple_of(AIR_TICK_US) {
             self.slow_tick();
         }
         self.rate_before = before.rate_flu;
         self.update_outputs();
         self.detect_touchdown(&before);
-    }
-
-    /// Advances by one step in which nothing moves, for a craft that an external simulator moves. Faults begin and
-    /// end.
-    pub fn pass(&mut self) {
-        self.time.0 += self.step_us;
-        if self.faults.is_due(self.time) {
-            self.run_faults();
-        }
     }
 
     /// Takes finite commands, limited to 0…1.
@@ -117,7 +96,11 @@ impl World {
         let scale = if self.switches.battery_sag { self.battery.speed_scale() } else { 1.0 };
         let full_speed = self.airframe.rotor_speed_max * scale;
         let target = std::array::from_fn(|i| {
-            if self.crashed { 0.0 } else { full_speed * self.effects.stuck[i].unwrap_or(self.command[i]) }
+            if self.crashed {
+                0.0
+            } else {
+                full_speed * self.clock.effects.stuck[i].unwrap_or(self.command[i])
+            }
         });
         let (body, rotors, anchors) = (self.body, self.rotors, self.anchors);
         self.plant.step(
@@ -131,21 +114,21 @@ impl World {
         if let Some(cause) = divergence(&self.body) {
             (self.body, self.rotors, self.anchors) = (body, rotors, anchors);
             self.diverged = true;
-            self.emit(WorldEventKind::Diverged { cause });
+            self.clock.emit(WorldEventKind::Diverged { cause });
         }
     }
 
     /// Advances air and battery, every 10 ms.
     fn slow_tick(&mut self) {
         let ground_m = self.switches.ground.elevation_m(&self.body.pos_enu.xy());
-        self.air.tick(self.time, self.body.pos_enu.z, ground_m, self.body.vel_enu, &self.switches);
+        self.air.tick(self.clock.time, self.body.pos_enu.z, ground_m, self.body.vel_enu, &self.switches);
         let load = self.plant.efficiency().map(|efficiency| efficiency * self.air_now.density_ratio);
         let power = motor_power_w(&self.airframe, &self.rotors, &load);
         let was_charged = self.battery.charge_left() > 0.0;
         let runs_out = self.switches.battery_sag;
-        self.battery.draw(power, self.effects.battery, runs_out, AIR_TICK_US as f64 * 1e-6);
+        self.battery.draw(power, self.clock.effects.battery, runs_out, AIR_TICK_US as f64 * 1e-6);
         if was_charged && self.battery.charge_left() <= 0.0 {
-            self.emit(WorldEventKind::BatteryEmpty { cell_v: self.battery.cell_v() });
+            self.clock.emit(WorldEventKind::BatteryEmpty { cell_v: self.battery.cell_v() });
         }
     }
 
@@ -155,18 +138,19 @@ impl World {
 
     /// Updates truth and sensor readings of the present instant.
     fn update_outputs(&mut self) {
-        let slow_tick = self.time.0.is_multiple_of(AIR_TICK_US).then_some(self.time.0 / AIR_TICK_US);
+        let slow_tick =
+            self.clock.time.0.is_multiple_of(AIR_TICK_US).then_some(self.clock.time.0 / AIR_TICK_US);
         self.update_outputs_on(slow_tick);
     }
 
     /// Does the same as [`World::update_outputs`]. The slower sensors are read if `slow_tick` is the number of a slow
     /// tick.
     fn update_outputs_on(&mut self, slow_tick: Option<u64>) {
-        self.air_now = self.air.sample(self.time);
+        self.air_now = self.air.sample(self.clock.time);
         self.refresh_loads();
         self.contact = self.plant.ground().contact(&self.body);
         let truth = &mut self.truth;
-        truth.time = self.time;
+        truth.time = self.clock.time;
         truth.pos_enu = self.body.pos_enu;
         truth.vel_enu = self.body.vel_enu;
         truth.attitude = self.body.attitude;
@@ -188,7 +172,7 @@ impl World {
         truth.diverged = self.diverged;
         let inputs = SensorInputs {
             truth: &self.truth,
-            effects: &self.effects,
+            effects: &self.clock.effects,
             switches: &self.switches,
             slow_tick,
             rate_dot_flu: (self.body.rate_flu - self.rate_before) / self.step_s,
@@ -200,12 +184,12 @@ impl World {
     fn detect_touchdown(&mut self, before: &BodyState) {
         let contact = self.contact;
         let force = self.truth.specific_force_flu.norm();
-        let event = self.touchdown.update(self.time, contact, before, &self.body, force);
+        let event = self.touchdown.update(self.clock.time, contact, before, &self.body, force);
         // A wreck that bounces and settles has nothing more to report.
         if let Some(kind) = event
             && !self.crashed
         {
-            self.emit(kind);
+            self.clock.emit(kind);
         }
         if self.crashed || !(contact.any_leg || contact.hull) {
             return;
@@ -219,12 +203,7 @@ impl World {
     fn crash(&mut self, cause: CrashCause) {
         self.crashed = true;
         self.truth.crashed = true;
-        self.emit(WorldEventKind::Crash { cause });
-    }
-
-    fn emit(&mut self, kind: WorldEventKind) {
-        // A full queue means that nothing takes the events.
-        let _ = self.events.try_push(WorldEvent { time: self.time, kind });
+        self.clock.emit(WorldEventKind::Crash { cause });
     }
 }
 

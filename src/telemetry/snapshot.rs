@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 use crate::geo::{GRAVITY, LatLon};
 use crate::plan::estimate::{Assumptions, TouchdownThrottle};
 use crate::plan::{FlightPlan, Waypoint};
-use crate::signals::{RC_CHANNELS, RcSource, SimTime};
+use crate::signals::{PerMotor, RC_CHANNELS, RcSource, SimTime};
 use crate::telemetry::{
     ArmingFlags, FailsafeAhead, FaultKind, FaultValue, Mode, ModeBox, ModeFlags, NavTelemetry, Turbulence,
     switch,
@@ -71,7 +71,7 @@ pub struct TruthView {
     /// Heading, degrees clockwise from north, 0…360.
     pub heading_deg: f64,
     /// Motor commands M1…M4, 0…1.
-    pub motors: [f64; 4],
+    pub motors: PerMotor,
     /// Wind at the craft, towards north and east, m/s; `None` from an external simulator, which does not
     /// report it.
     pub wind_ne: Option<Vector2<f64>>,
@@ -134,7 +134,7 @@ pub struct CraftView {
     /// Throttle that drives the mixer, RC µs.
     pub throttle_us: Option<f64>,
     /// Motor outputs M1…M4 in force, 0…1.
-    pub motors: Option<[f64; 4]>,
+    pub motors: Option<PerMotor>,
     /// Channel values that the firmware uses, µs (substituted while the link is lost).
     pub channels: Option<[u16; RC_CHANNELS]>,
     /// The source of the channels; `None` before the first frame.

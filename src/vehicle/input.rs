@@ -121,7 +121,7 @@ impl Vehicle {
     /// Records the inputs from now on for [`Self::take_inputs`], or ends that. Only an embedded flight controller in
     /// the simulated world can be flown again, so other vehicles record none. Returns `true` if inputs are recorded.
     pub fn keep_inputs(&mut self, wanted: bool) -> bool {
-        let wanted = wanted && self.world().is_some();
+        let wanted = wanted && self.truth().is_some();
         self.transmitter_set = false;
         self.controller.input_log_mut().is_some_and(|log| {
             log.set_wanted(wanted);

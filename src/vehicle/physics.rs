@@ -7,8 +7,8 @@ pub(super) use external::ExternalPhysics;
 use nalgebra::Vector2;
 
 use crate::geo::LocalFrame;
-use crate::signals::{MotorCommand, SensorFrame, SimTime};
-use crate::sim::{Fault, LinkFaults, Noise, World, WorldCommand, WorldError, WorldEvent};
+use crate::signals::{MotorCommand, SensorFrame};
+use crate::sim::{Airframe, Clock, Noise, Truth, World, WorldCommand, WorldError, WorldStatus};
 use crate::telemetry::snapshot::{FaultView, TruthView, WindView, WorldView};
 
 /// The name of the airframe if an external simulator has it.
@@ -37,26 +37,19 @@ impl Physics {
         }
     }
 
-    /// Returns the part with the time and the faults.
-    fn clockwork(&self) -> &World {
+    /// Returns time, seed and faults.
+    pub(super) fn clock(&self) -> &Clock {
         match self {
-            Self::World(world) => world,
-            Self::External(external) => external.links(),
+            Self::World(world) => world.clock(),
+            Self::External(external) => external.clock(),
         }
     }
 
-    fn clockwork_mut(&mut self) -> &mut World {
+    /// Returns the clock, to report the engagement to it and to take its events.
+    pub(super) fn clock_mut(&mut self) -> &mut Clock {
         match self {
-            Self::World(world) => world,
-            Self::External(external) => external.links_mut(),
-        }
-    }
-
-    /// Returns the simulated world, if it moves the craft.
-    pub(super) fn world(&self) -> Option<&World> {
-        match self {
-            Self::World(world) => Some(world),
-            Self::External(_) => None,
+            Self::World(world) => world.clock_mut(),
+            Self::External(external) => external.clock_mut(),
         }
     }
 
@@ -68,47 +61,57 @@ impl Physics {
         }
     }
 
-    pub(super) fn time(&self) -> SimTime {
-        self.clockwork().time()
+    /// Returns the name of the airframe.
+    pub(super) fn airframe_name(&self) -> &str {
+        self.airframe().map_or(EXTERNAL, |airframe| &airframe.name)
     }
 
-    pub(super) fn step_us(&self) -> u64 {
-        self.clockwork().step_us()
+    /// Returns the airframe, if its motion is simulated here.
+    pub(super) fn airframe(&self) -> Option<&Airframe> {
+        match self {
+            Self::World(world) => Some(world.airframe()),
+            Self::External(_) => None,
+        }
     }
 
-    pub(super) fn seed(&self) -> u64 {
-        self.clockwork().seed()
+    /// Returns the true state of the craft, if its motion is simulated here.
+    pub(super) fn truth(&self) -> Option<&Truth> {
+        match self {
+            Self::World(world) => Some(world.truth()),
+            Self::External(_) => None,
+        }
     }
 
-    pub(super) fn airframe(&self) -> &str {
-        self.world().map_or(EXTERNAL, |world| &world.airframe().name)
+    /// Returns the settings of air and noise, if they are simulated here.
+    pub(super) fn status(&self) -> Option<WorldStatus> {
+        match self {
+            Self::World(world) => Some(world.status()),
+            Self::External(_) => None,
+        }
     }
 
+    /// Returns the maximum thrust over weight in the air at the craft, if its motion is simulated here.
+    pub(super) fn thrust_to_weight(&self) -> Option<f64> {
+        match self {
+            Self::World(world) => Some(world.thrust_to_weight()),
+            Self::External(_) => None,
+        }
+    }
+
+    /// Changes air, noise or faults.
     pub(super) fn apply(&mut self, command: WorldCommand) -> Result<(), WorldError> {
-        self.clockwork_mut().apply(command)
+        match self {
+            Self::World(world) => world.apply(command),
+            Self::External(external) => external.clock_mut().apply(command),
+        }
     }
 
-    pub(super) fn set_engaged(&mut self, time: SimTime) {
-        self.clockwork_mut().set_engaged(time);
-    }
-
-    pub(super) fn take_event(&mut self) -> Option<WorldEvent> {
-        self.clockwork_mut().take_event()
-    }
-
-    /// Returns `true` if no RC frame reaches the receiver.
-    pub(super) fn rx_lost(&self) -> bool {
-        self.clockwork().rx_lost()
-    }
-
-    /// Returns the fraction of RC frames that are dropped at random, 0…1.
-    pub(super) fn rx_drop_fraction(&self) -> f64 {
-        self.clockwork().rx_drop_fraction()
-    }
-
-    /// Returns the effects of active faults on the packets of an external simulator.
-    pub(super) fn link_faults(&self) -> LinkFaults {
-        self.clockwork().link_faults()
+    /// Puts the craft back at home. A craft that an external simulator moves starts where it is seen next.
+    pub(super) fn reset(&mut self) {
+        match self {
+            Self::World(world) => world.reset_to_home(),
+            Self::External(external) => external.reset(),
+        }
     }
 
     /// Returns the frame with its origin at the boot place, or `None` before an external simulator has reported that
@@ -118,16 +121,6 @@ impl Physics {
             Self::World(world) => Some(world.local_frame()),
             Self::External(external) => external.frame(),
         }
-    }
-
-    /// Returns `true` if the craft has crashed.
-    pub(super) fn crashed(&self) -> bool {
-        self.world().is_some_and(|world| world.truth().crashed)
-    }
-
-    /// Returns `true` if the simulation has left the range in which its numbers are meaningful.
-    pub(super) fn diverged(&self) -> bool {
-        self.world().is_some_and(|world| world.truth().diverged)
     }
 
     /// Returns the true motion of the craft under these motor commands, as far as it is known.
@@ -140,17 +133,15 @@ impl Physics {
 
     /// Returns air, noise and faults.
     pub(super) fn world_view(&self) -> WorldView {
-        let status = self.clockwork().status();
-        let view =
-            |&(fault, left_s): &(Fault, _)| FaultView { kind: fault.kind(), value: fault.value(), left_s };
+        let faults = self.clock().active_faults();
         let view = WorldView {
-            airframe: self.airframe().to_owned(),
-            faults: status.faults.iter().map(view).collect(),
+            airframe: self.airframe_name().to_owned(),
+            faults: faults
+                .map(|(fault, left_s)| FaultView { kind: fault.kind(), value: fault.value(), left_s })
+                .collect(),
             ..WorldView::default()
         };
-        if self.world().is_none() {
-            return view;
-        }
+        let Some(status) = self.status() else { return view };
         WorldView {
             wind: Some(WindView { speed_mps: status.wind.speed_mps, from_deg: status.wind.from_deg }),
             gust_mps: status.gust_mps,

@@ -12,7 +12,7 @@ use betadeck::autopilot::land_detector::GroundMeasurement;
 use betadeck::autopilot::{Navigator, Params};
 use betadeck::geo::{GRAVITY, LatLon, local_offset, offset_to_latlon};
 use betadeck::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType};
-use betadeck::signals::SimTime;
+use betadeck::signals::{MotorCommand, SimTime};
 use betadeck::telemetry::{NavEvent, NavOutput, NavState};
 use nalgebra::{Vector2, Vector3};
 
@@ -269,7 +269,8 @@ impl Flight {
         let on_legs = if plant.alt <= 0.0 { (1.0 - plant.thrust).max(0.0) } else { 0.0 };
         let force = Vector3::new(0.0, 0.0, (plant.thrust + on_legs) * GRAVITY);
         let motor = (self.inputs.throttle_us - 1050.0) / 950.0;
-        let ground = GroundMeasurement::new(&self.inputs, force, plant.yaw_rate.abs(), &[motor; 4]);
+        let ground =
+            GroundMeasurement::new(&self.inputs, force, plant.yaw_rate.abs(), &MotorCommand([motor; 4]));
         self.controllers.land.observe(&ground, true, DT);
     }
 

@@ -160,7 +160,7 @@ fn fly(case: Case, points: &[Point], takeoff_m: f64, limit_s: f64, done: fn(&Sam
         cli(&format!("waypoint insert {index} {at} {alt} {speed} {} 0 {}", point.kind, point.pattern));
     }
     vehicle.start_pilot(takeoff_m).unwrap();
-    let ground = vehicle.world().unwrap().truth().pos_enu.z;
+    let ground = vehicle.truth().unwrap().pos_enu.z;
     let mut log = Vec::new();
     let mut last = 0;
     while vehicle.time().as_secs_f64() < 60.0 + limit_s {
@@ -171,7 +171,7 @@ fn fly(case: Case, points: &[Point], takeoff_m: f64, limit_s: f64, done: fn(&Sam
             continue;
         }
         last = vehicle.time().0 / 10_000;
-        let truth = vehicle.world().unwrap().truth();
+        let truth = vehicle.truth().unwrap();
         let nav = vehicle.embedded().unwrap().nav();
         let sample = Sample {
             t,

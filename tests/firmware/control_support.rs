@@ -152,7 +152,7 @@ impl Rig {
             let now = self.nav_inputs(frame.time);
             let rates = self.estimate().rates;
             let rate_rps = Vector3::new(rates.roll, rates.pitch, rates.yaw).norm();
-            let motors = &self.controller.state().motors.0;
+            let motors = &self.controller.state().motors;
             let ground = GroundMeasurement::new(&now, self.estimate().force_flu, rate_rps, motors);
             let FlightControllers { altitude, land, .. } = &mut self.controllers;
             land.observe(&ground, now.armed, now.dt);

@@ -87,7 +87,7 @@ fn weak_motor_is_recovered_from() {
 fn dead_motor_is_a_crash_without_nonsense() {
     let mut rig = holding(0, "calm", 0.0);
     rig.vehicle.change_world(fault("motor", "2:0")).unwrap();
-    rig.until(20.0, "crash", |rig| rig.vehicle.world().unwrap().truth().crashed).fly(1.0);
+    rig.until(20.0, "crash", |rig| rig.vehicle.truth().unwrap().crashed).fly(1.0);
     let last = rig.samples.last().unwrap();
     assert!([last.n, last.e, last.alt, last.roll].iter().all(|value| value.is_finite()));
     let firmware = rig.vehicle.embedded().unwrap();
@@ -212,7 +212,7 @@ fn flat_battery_ends_the_flight() {
     world.switches.battery_sag = true;
     world.switches.battery_capacity_ah = Some(0.1);
     let mut rig = Rig::new(world, HOLD, 20.0);
-    rig.until(300.0, "the end", |rig| rig.vehicle.world().unwrap().truth().crashed);
+    rig.until(300.0, "the end", |rig| rig.vehicle.truth().unwrap().crashed);
     let alarms: Vec<BatteryAlarm> = rig
         .events
         .iter()
@@ -237,7 +237,7 @@ fn battery_alarms_change_nothing_in_the_mission() {
     let path = |world| {
         let mut rig = Rig::new(world, HOLD, 20.0);
         rig.fly(180.0);
-        (rig.path(), rig.vehicle.world().unwrap().truth().pos_enu)
+        (rig.path(), rig.vehicle.truth().unwrap().pos_enu)
     };
     assert_eq!(path(with), path(world(0).0));
 }

@@ -37,7 +37,7 @@ fn the_sinking_stick_brings_the_craft_down_softly() {
         _ => None,
     });
     assert!(impact.is_some_and(|impact| impact < 1.5), "{impact:?}");
-    assert!(!rig.vehicle.world().unwrap().truth().crashed);
+    assert!(!rig.vehicle.truth().unwrap().crashed);
 }
 
 #[test]
@@ -69,7 +69,7 @@ fn after_stick(throttle_us: u16) -> Truth {
     rig.vehicle.transmitter_mut().stop_pilot();
     rig.vehicle.transmitter_mut().sticks_mut().channels[2] = throttle_us;
     rig.fly(10.0);
-    *rig.vehicle.world().unwrap().truth()
+    *rig.vehicle.truth().unwrap()
 }
 
 #[test]
@@ -110,6 +110,6 @@ fn a_rescue_that_loses_its_fix_comes_down_and_disarms() {
     assert!(modes.has(Mode::Angle) && modes.has(Mode::AltHold), "{modes:?}");
     rig.until(120.0, "disarmed on the ground", |rig| rig.disarmed().is_some());
     assert_eq!(rig.disarmed().unwrap().1, DisarmReason::Landing);
-    let truth = rig.vehicle.world().unwrap().truth();
+    let truth = rig.vehicle.truth().unwrap();
     assert!(truth.on_ground && !truth.crashed);
 }

@@ -14,7 +14,7 @@ waypoint insert 2 40.4635000 -79.5174926 2000 500 LAND 0 ORBIT";
 /// Returns the error of the estimated heading, degrees.
 fn heading_error_deg(rig: &Rig) -> f64 {
     let believed = rig.vehicle.embedded().unwrap().estimate().heading_rad.to_degrees();
-    let truth = rig.vehicle.world().unwrap().truth().heading_deg();
+    let truth = rig.vehicle.truth().unwrap().heading_deg();
     ((believed - truth + 180.0).rem_euclid(360.0) - 180.0).abs()
 }
 
@@ -30,11 +30,9 @@ fn landing_with_bias(seed: u64, plan: &str, bias_deg: f64) -> Option<String> {
     let mut rig = Rig::new(world(seed).0, &format!("set trust_mag = ON\n{plan}"), 20.0);
     rig.engaged().fly(5.0);
     rig.vehicle.change_world(WorldCommand::FaultOn(Fault::MagBias(bias_deg), None)).unwrap();
-    rig.until(240.0, "disarm", |rig| {
-        rig.disarmed().is_some() || rig.vehicle.world().unwrap().truth().crashed
-    });
+    rig.until(240.0, "disarm", |rig| rig.disarmed().is_some() || rig.vehicle.truth().unwrap().crashed);
     let mut checks = Checks::default();
-    checks.holds("whole", !rig.vehicle.world().unwrap().truth().crashed);
+    checks.holds("whole", !rig.vehicle.truth().unwrap().crashed);
     checks.same("reason", rig.disarmed().map(|(_, reason)| reason), Some(DisarmReason::Landing));
     checks.holds("reported", doubts(&rig).first() == Some(&true));
     checks.at_most("heading", heading_error_deg(&rig), 25.0);
@@ -84,7 +82,7 @@ fn without_compass(seed: u64, heading_deg: f64, wind: &str) -> Option<String> {
     checks.at_most("heading at the engagement", heading_error_deg(&rig), 15.0);
     rig.until(240.0, "disarm", |rig| rig.disarmed().is_some());
     checks.same("reason", rig.disarmed().unwrap().1, DisarmReason::Landing);
-    checks.holds("whole", !rig.vehicle.world().unwrap().truth().crashed);
+    checks.holds("whole", !rig.vehicle.truth().unwrap().crashed);
     let last = *rig.samples.last().unwrap();
     checks.at_most("from the landing point", last.from(rig.waypoint(2)), 3.0);
     checks.verdict(&format!("no compass, facing {heading_deg}, {wind}, seed {seed}"), &rig.story())

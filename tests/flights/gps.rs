@@ -96,7 +96,7 @@ fn landing_among_buildings_does_not_tip_over() {
         rig.engaged().until(120.0, "disarm", |rig| rig.disarmed().is_some()).fly(2.0);
         let mut checks = Checks::default();
         checks.same("reason", rig.disarmed().unwrap().1, DisarmReason::Landing);
-        checks.holds("whole", !rig.vehicle.world().unwrap().truth().crashed);
+        checks.holds("whole", !rig.vehicle.truth().unwrap().crashed);
         checks.at_most("lean at rest", rig.samples.last().unwrap().lean(), 2.0);
         checks.verdict(&format!("urban landing, seed {seed}"), &rig.story())
     }));

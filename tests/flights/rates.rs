@@ -34,7 +34,7 @@ fn same_inputs_give_the_same_flight_to_the_last_bit() {
     let fly = || {
         let mut rig = Rig::new(world(3).0, PLAN, 10.0);
         rig.engaged().fly(20.0);
-        *rig.vehicle.world().unwrap().truth()
+        *rig.vehicle.truth().unwrap()
     };
     assert_eq!(fly(), fly());
 }
@@ -48,6 +48,6 @@ fn frozen_copy_goes_on_identically() {
     while copy.time() < rig.vehicle.time() {
         copy.tick();
     }
-    assert_eq!(copy.world().unwrap().truth(), rig.vehicle.world().unwrap().truth());
+    assert_eq!(copy.truth().unwrap(), rig.vehicle.truth().unwrap());
     assert_eq!(copy.embedded().unwrap().nav(), rig.vehicle.embedded().unwrap().nav());
 }

@@ -80,7 +80,7 @@ impl Rig {
     /// CLI lines. The scripted pilot climbs to `takeoff_m` and engages.
     pub(crate) fn new(world: WorldConfig, lines: &str, takeoff_m: f64) -> Self {
         let (vehicle, _) = FlightSetup { world, ..FlightSetup::default() }.build().unwrap();
-        let standing_m = vehicle.world().unwrap().truth().pos_enu.z;
+        let standing_m = vehicle.truth().unwrap().pos_enu.z;
         let mut rig = Self { vehicle, events: Vec::new(), samples: Vec::new(), standing_m };
         rig.cli(&guide_settings().collect::<Vec<_>>().join("\n"));
         rig.cli("set ap_geofence_action = LAND");
@@ -163,7 +163,7 @@ impl Rig {
     }
 
     fn sample(&self) -> Sample {
-        let truth = self.vehicle.world().unwrap().truth();
+        let truth = self.vehicle.truth().unwrap();
         let firmware = self.vehicle.embedded().unwrap();
         let nav = firmware.nav();
         let craft = firmware.craft_view();
@@ -258,8 +258,7 @@ impl Rig {
 
     /// Returns the position of a plan's point from the boot place in the world's projection (north, east), m.
     pub(crate) fn place(&self, position: betadeck::geo::LatLon) -> [f64; 2] {
-        let enu =
-            self.vehicle.world().unwrap().local_frame().to_enu(position.lat_deg(), position.lon_deg(), 0.0);
+        let enu = self.vehicle.local_frame().unwrap().to_enu(position.lat_deg(), position.lon_deg(), 0.0);
         [enu.y, enu.x]
     }
 

@@ -160,7 +160,7 @@ fn a_link_lost_in_a_fast_climb_does_not_stop_the_motors_up_there() {
     rig.until(30.0, "a fast climb", |rig| rig.samples.last().is_some_and(|now| now.vu > 3.5));
     rig.vehicle.transmitter_mut().set_cut(true);
     rig.until(120.0, "disarmed", |rig| rig.disarmed().is_some());
-    let truth = rig.vehicle.world().unwrap().truth();
+    let truth = rig.vehicle.truth().unwrap();
     assert!(truth.on_ground && !truth.crashed, "{}", rig.story());
 }
 

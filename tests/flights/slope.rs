@@ -31,7 +31,7 @@ fn is_down_at(checks: &mut Checks, rig: &Rig, ground_m: f64, impact_limit_mps: f
     checks.holds("a touchdown", impact_mps.is_finite());
     checks.at_most("height at the disarm", (rig.at(disarm).alt - ground_m).abs(), 0.6);
     checks.at_most("place", rig.samples.last().unwrap().from(rig.waypoint(0)), 4.0);
-    checks.holds("stands", rig.vehicle.world().unwrap().truth().on_ground);
+    checks.holds("stands", rig.vehicle.truth().unwrap().on_ground);
 }
 
 #[test]
@@ -68,7 +68,7 @@ fn a_descent_without_a_fix_ends_on_sloping_ground_too() {
         checks.holds("no crash", !crashed);
         checks.at_most("touchdown", impact_mps, 1.0);
         checks.at_most("height at the disarm", (rig.at(disarm).alt - ground_m).abs(), 2.0);
-        checks.holds("stands", rig.vehicle.world().unwrap().truth().on_ground);
+        checks.holds("stands", rig.vehicle.truth().unwrap().on_ground);
         checks.verdict(ground, &rig.story())
     }));
 }

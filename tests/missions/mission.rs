@@ -84,7 +84,7 @@ impl Mission {
         });
         let setup = FlightSetup { world: self.world, home, stored, boot_lines, ..FlightSetup::default() };
         let (vehicle, _) = setup.build().unwrap();
-        let standing_m = vehicle.world().unwrap().truth().pos_enu.z;
+        let standing_m = vehicle.truth().unwrap().pos_enu.z;
         let options = FlightOptions {
             takeoff_m: self.takeoff_m,
             timeout: SimTime::from_secs_f64(self.timeout_s),
@@ -106,7 +106,7 @@ impl Mission {
                 },
                 Report::Sample(_) => {}
             });
-            let truth = flight.vehicle().world().unwrap().truth();
+            let truth = flight.vehicle().truth().unwrap();
             let altitude_m = truth.pos_enu.z - standing_m;
             is_finite &= truth.pos_enu.iter().chain(truth.vel_enu.iter()).all(|value| value.is_finite());
             tick += 1;

@@ -39,7 +39,8 @@ fn a_flight_with_faults_wind_and_a_crash_allocates_nothing() {
     let before = allocations();
     for step in 0..20_000_u32 {
         if step == 100 {
-            world.set_engaged(world.time());
+            let now = world.time();
+            world.clock_mut().set_engaged(now);
         }
         let command = if step % 1000 == 7 { f64::NAN } else { hover };
         world.step(&MotorCommand([command; 4]));

@@ -21,7 +21,7 @@ fn ideal() -> WorldConfig {
 
 /// Steps for a time with the motors stopped, calling `see` after each step.
 fn stand(world: &mut World, seconds: f64, mut see: impl FnMut(&World)) {
-    for _ in 0..(seconds * 1e6 / world.step_us() as f64).round() as u64 {
+    for _ in 0..(seconds * 1e6 / world.clock().step_us() as f64).round() as u64 {
         world.step(&MotorCommand::default());
         see(world);
     }
@@ -29,7 +29,7 @@ fn stand(world: &mut World, seconds: f64, mut see: impl FnMut(&World)) {
 
 /// Steps for a time with four equal commands.
 fn run(world: &mut World, seconds: f64, command: f64) {
-    for _ in 0..(seconds * 1e6 / world.step_us() as f64).round() as u64 {
+    for _ in 0..(seconds * 1e6 / world.clock().step_us() as f64).round() as u64 {
         world.step(&MotorCommand([command; 4]));
     }
 }

@@ -88,6 +88,6 @@ impl Recorder {
 
 /// Returns the position north and east of home and above it, m.
 fn place(vehicle: &Vehicle) -> Option<(Vector2<f64>, f64)> {
-    let position = vehicle.world()?.truth().pos_enu;
+    let position = vehicle.truth()?.pos_enu;
     Some((Vector2::new(position.y, position.x), position.z))
 }

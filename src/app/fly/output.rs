@@ -169,9 +169,7 @@ impl Output {
         if !vehicle.time().0.is_multiple_of(1_000_000) {
             return Ok(());
         }
-        let Some(world) = vehicle.world() else { return Ok(()) };
-        let truth = world.truth();
-        let frame = world.local_frame();
+        let (Some(truth), Some(frame)) = (vehicle.truth(), vehicle.local_frame()) else { return Ok(()) };
         let (lat_deg, lon_deg, amsl_m) = frame.to_geodetic(truth.pos_enu);
         let alt_m = amsl_m - frame.alt_amsl_m;
         gpx.offer(&GpxPoint { time: vehicle.time(), lat_deg, lon_deg, alt_m }).map_err(write_failed)

@@ -4,7 +4,7 @@ use super::{
     Altitude, Attitude, BatteryReading, HomeVector, RawGps, Status, channels, code, mode_ranges, motors,
 };
 use crate::geo::{LatLon, local_offset, offset_to_latlon};
-use crate::signals::RC_CHANNELS;
+use crate::signals::{PerMotor, RC_CHANNELS};
 use crate::telemetry::snapshot::{CraftView, EstimateView, GpsView, ModeRange};
 use crate::telemetry::{ArmingFlag, ArmingFlags, Mode};
 
@@ -30,7 +30,7 @@ pub struct Observation {
     home: Option<LatLon>,
     battery: Option<BatteryReading>,
     channels: Option<[u16; RC_CHANNELS]>,
-    motors: Option<[f64; 4]>,
+    motors: Option<PerMotor>,
 }
 
 impl Observation {
@@ -90,7 +90,7 @@ impl Observation {
     }
 
     /// Returns the motor outputs M1…M4, 0…1.
-    pub fn motors(&self) -> Option<[f64; 4]> {
+    pub fn motors(&self) -> Option<PerMotor> {
         self.motors
     }
 

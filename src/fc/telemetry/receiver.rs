@@ -1,7 +1,7 @@
 //! Channels and motors.
 
 use super::reader::Reader;
-use crate::signals::RC_CHANNELS;
+use crate::signals::{MOTORS, PerMotor, RC_CHANNELS};
 
 /// The value of a channel that the flight controller does not have, µs.
 const ABSENT_US: u16 = 1500;
@@ -24,10 +24,10 @@ pub fn channels(payload: &[u8]) -> Option<[u16; RC_CHANNELS]> {
 }
 
 /// Decodes `MOTOR`. Returns the outputs M1…M4, 0…1.
-pub fn motors(payload: &[u8]) -> Option<[f64; 4]> {
+pub fn motors(payload: &[u8]) -> Option<PerMotor> {
     let (rest, full) = MOTOR_RANGE_US;
     let mut reader = Reader::new(payload);
-    let mut motors = [0.0; 4];
+    let mut motors = [0.0; MOTORS];
     for motor in &mut motors {
         *motor = ((f64::from(reader.u16()?) - rest) / (full - rest)).clamp(0.0, 1.0);
     }

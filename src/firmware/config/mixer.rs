@@ -2,6 +2,8 @@
 
 use strum::IntoEnumIterator;
 
+use crate::signals::PerMotor;
+
 /// The number of rows of the custom mix.
 pub const MAX_MIX_ROWS: usize = 8;
 
@@ -81,7 +83,7 @@ impl MixerKind {
     }
 
     /// Returns the motor rows of the types that fly here.
-    pub fn rows(self) -> Option<[MixRow; 4]> {
+    pub fn rows(self) -> Option<PerMotor<MixRow>> {
         let row = |roll, pitch, yaw| MixRow { throttle: 1.0, roll, pitch, yaw };
         match self {
             Self::QuadX => {

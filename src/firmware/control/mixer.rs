@@ -14,7 +14,7 @@
 //! ```
 
 use super::tuning::MixerTuning;
-use crate::signals::MotorCommand;
+use crate::signals::{MotorCommand, PerMotor};
 
 /// The zero of a motor command, µs, and its range.
 const COMMAND_ZERO_US: f64 = 1000.0;
@@ -34,7 +34,7 @@ pub(super) struct MixDemand {
 }
 
 /// Returns the pulses of the running motors, µs.
-pub(super) fn mix(demand: &MixDemand, tuning: &MixerTuning) -> [f64; 4] {
+pub(super) fn mix(demand: &MixDemand, tuning: &MixerTuning) -> PerMotor {
     let [roll, pitch, yaw] = demand.sums.map(|sum| sum / 1000.0);
     let yaw = if tuning.yaw_reversed { -yaw } else { yaw };
     let mut mixes = tuning.rows.map(|row| roll * row.roll + pitch * row.pitch + yaw * row.yaw);
@@ -81,11 +81,11 @@ fn before_boost(throttle: f64, k: f64) -> f64 {
 }
 
 /// Converts pulses to a motor command.
-pub(super) fn command(pulses_us: &[f64; 4]) -> MotorCommand {
+pub(super) fn command(pulses_us: &PerMotor) -> MotorCommand {
     MotorCommand(pulses_us.map(|pulse| ((pulse - COMMAND_ZERO_US) / COMMAND_RANGE_US).clamp(0.0, 1.0)))
 }
 
-fn bounds(mixes: &[f64; 4]) -> (f64, f64) {
+fn bounds(mixes: &PerMotor) -> (f64, f64) {
     mixes.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &mix| (low.min(mix), high.max(mix)))
 }
 
@@ -166,7 +166,7 @@ mod tests {
                 prop_assert!((1055.0..=2000.0).contains(&pulse));
             }
             // Roll, pitch and yaw keep their proportions: only the common part is clipped.
-            let part = |shares: [f64; 4]| (0..4).map(|m| pulses[m] * shares[m]).sum::<f64>();
+            let part = |shares: PerMotor| (0..4).map(|m| pulses[m] * shares[m]).sum::<f64>();
             let roll = part([-1.0, -1.0, 1.0, 1.0]);
             let pitch = part([1.0, -1.0, 1.0, -1.0]);
             prop_assert!((roll * sums[1] - pitch * sums[0]).abs() < 1e-4 * (1.0 + sums[0].abs() + sums[1].abs()));

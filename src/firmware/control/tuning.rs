@@ -4,6 +4,7 @@ use super::curve::{RateCurve, RatesType, ThrottleCurve, ThrottleLimit};
 use crate::firmware::config::{MixRow, MixerKind};
 use crate::firmware::filter::LowPassKind;
 use crate::firmware::settings::Settings;
+use crate::signals::PerMotor;
 
 /// The gains of one axis. The error is in °/s, the sum in thousandths of the mixer's range.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -157,7 +158,7 @@ pub struct LevelTuning {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MixerTuning {
     /// The shares of the four motors; yaw clockwise positive.
-    pub rows: [MixRow; 4],
+    pub rows: PerMotor<MixRow>,
     /// `true` if the propellers turn the other way round.
     pub yaw_reversed: bool,
     /// The pulse of a stopped motor, µs.

@@ -3,7 +3,7 @@
 use super::{Call, MspAction, Refused};
 use crate::firmware::settings::{SETTINGS, Scope};
 use crate::geo::LatLon;
-use crate::signals::{RC_CHANNELS, RcFrame};
+use crate::signals::{MOTORS, RC_CHANNELS, RcFrame};
 
 /// The most channels of an RC message.
 const RC_MAX: usize = 18;
@@ -142,7 +142,7 @@ pub(super) fn set_heading(call: &mut Call<'_>) -> Result<(), Refused> {
 }
 
 pub(super) fn set_motor(call: &mut Call<'_>) -> Result<(), Refused> {
-    let mut motors = [0; 4];
+    let mut motors = [0; MOTORS];
     if call.request.remaining() < 2 * motors.len() {
         return Err(Refused);
     }

@@ -7,7 +7,7 @@ use crate::firmware::battery::BatteryState as PackState;
 use crate::firmware::cli::BuildInfo;
 use crate::firmware::modes::BoxSet;
 use crate::geo::{LatLon, distance_bearing};
-use crate::signals::RC_CHANNELS;
+use crate::signals::{MOTORS, PerMotor, RC_CHANNELS};
 use crate::telemetry::{ArmingFlags, ModeFlags};
 
 const RSSI_MAX: u16 = 1023;
@@ -56,7 +56,7 @@ pub struct MspFacts {
     /// The channels in use, µs: roll, pitch, **yaw, throttle**, AUX1 ….
     pub channels: [u16; RC_CHANNELS],
     /// The motor outputs M1…M4, µs.
-    pub motors_us: [u16; 4],
+    pub motors_us: PerMotor<u16>,
     pub gps: GpsReading,
     /// The distance and direction of home; `None` without a home.
     pub home: Option<HomeReading>,
@@ -90,7 +90,7 @@ impl Default for MspFacts {
             battery: None,
             rssi: 0,
             channels: [1500; RC_CHANNELS],
-            motors_us: [1000; 4],
+            motors_us: [1000; MOTORS],
             gps: GpsReading::default(),
             home: None,
             clock: None,

@@ -3,7 +3,7 @@
 use crate::firmware::control::{ControlInput, ControlState, Controller, LeanDemand, StickMode, Tuning};
 use crate::firmware::estimate::{DueTasks, Estimate};
 use crate::firmware::rx::Sticks;
-use crate::signals::MotorCommand;
+use crate::signals::{MOTORS, MotorCommand, PerMotor};
 use crate::telemetry::{Mode, ModeFlags, NavOutput};
 
 /// The pulse of a stopped motor, µs.
@@ -65,7 +65,7 @@ const LEVEL: LeanDemand = LeanDemand { roll_rad: 0.0, pitch_rad: 0.0 };
 pub(in crate::firmware) struct FlightControl {
     controller: Controller,
     demand: Demand,
-    motor_test_us: [f64; 4],
+    motor_test_us: PerMotor,
     step_s: f64,
 }
 
@@ -76,7 +76,7 @@ impl FlightControl {
         Self {
             controller: Controller::new(*tuning, step_s),
             demand: Demand::default(),
-            motor_test_us: [MOTOR_STOP_US; 4],
+            motor_test_us: [MOTOR_STOP_US; MOTORS],
             step_s,
         }
     }
@@ -94,7 +94,7 @@ impl FlightControl {
     pub(in crate::firmware) fn test_motor(&mut self, motor: Option<u8>, output_us: u16) {
         let pulse = f64::from(output_us);
         match motor {
-            None => self.motor_test_us = [pulse; 4],
+            None => self.motor_test_us = [pulse; MOTORS],
             Some(index) => {
                 if let Some(motor) = self.motor_test_us.get_mut(usize::from(index)) {
                     *motor = pulse;
@@ -105,7 +105,7 @@ impl FlightControl {
 
     /// Stops the motors that run on the bench.
     pub(in crate::firmware) fn end_motor_test(&mut self) {
-        self.motor_test_us = [MOTOR_STOP_US; 4];
+        self.motor_test_us = [MOTOR_STOP_US; MOTORS];
     }
 
     /// Changes the heading that MAG holds to this one, rad clockwise from north. Does nothing while it holds none.

@@ -127,7 +127,7 @@ impl Navigation {
         };
         let rates = estimate.rates;
         let rate_rps = Vector3::new(rates.roll, rates.pitch, rates.yaw).norm();
-        let ground = GroundMeasurement::new(&self.inputs, estimate.force_flu, rate_rps, &control.motors.0);
+        let ground = GroundMeasurement::new(&self.inputs, estimate.force_flu, rate_rps, &control.motors);
         let FlightControllers { altitude, land, .. } = &mut self.controllers;
         land.observe(&ground, self.inputs.armed, dt);
         altitude.set_on_ground(land.awaits_lift_off(), land.load());

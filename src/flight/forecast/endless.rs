@@ -48,7 +48,7 @@ impl EndlessWatch {
             });
         }
         self.hold_since = None;
-        let alt_m = vehicle.world()?.truth().pos_enu.z;
+        let alt_m = vehicle.truth()?.pos_enu.z;
         let (since, from_m) = *self.quiet_since.get_or_insert((now, alt_m));
         if happened || (alt_m - from_m).abs() > HEIGHT_M {
             self.quiet_since = Some((now, alt_m));

@@ -55,11 +55,10 @@ pub(super) struct Observer {
 }
 
 impl Observer {
-    /// Returns the observer of a vehicle that is about to fly `plan`, or `None` without a simulated world.
+    /// Returns the observer of a vehicle that is about to fly `plan`, or `None` if an external simulator moves the craft.
     pub(super) fn new(vehicle: &Vehicle, plan: Option<&FlightPlan>) -> Option<Self> {
-        let world = vehicle.world()?;
         let unknown = FlightPlan::default();
-        let mut distance = PlanDistance::new(plan.unwrap_or(&unknown), world.local_frame());
+        let mut distance = PlanDistance::new(plan.unwrap_or(&unknown), vehicle.local_frame()?);
         let along_m = vehicle.controller().nav().map_or(0.0, |nav| distance.follow(nav));
         Some(Self {
             seen_at: vehicle.time(),
@@ -137,7 +136,7 @@ impl Observer {
         if let Some(point) = place(vehicle, along_m) {
             self.path.push(point);
         }
-        let battery = vehicle.world().map(|world| world.truth().battery).unwrap_or_default();
+        let battery = vehicle.truth().map(|truth| truth.battery).unwrap_or_default();
         let used_pct = 100.0 * battery.drawn_mah / battery.capacity_mah;
         Forecast {
             kind: ended.kind,
@@ -156,7 +155,7 @@ impl Observer {
 
 /// Returns the true place of the craft.
 fn place(vehicle: &Vehicle, along_m: f64) -> Option<PathPoint> {
-    let truth = vehicle.world()?.truth();
+    let truth = vehicle.truth()?;
     let (e, n, alt) = (truth.pos_enu.x, truth.pos_enu.y, truth.pos_enu.z);
     Some(PathPoint { n, e, alt, along_m, time_s: vehicle.time().as_secs_f64() })
 }

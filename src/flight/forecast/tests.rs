@@ -140,7 +140,7 @@ fn a_look_ahead_is_what_then_happens() {
         flying.tick();
     }
     let last = forecast.path.last().unwrap();
-    let truth = flying.world().unwrap().truth();
+    let truth = flying.truth().unwrap();
     assert_eq!((last.n.to_bits(), last.e.to_bits()), (truth.pos_enu.y.to_bits(), truth.pos_enu.x.to_bits()));
     assert!(!flying.controller().is_armed());
 }

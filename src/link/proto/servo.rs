@@ -7,8 +7,8 @@
 //!                      4  f32 × 16  pulses, µs: the motors, then the servos, unused 0
 //! ```
 
-use crate::signals::MotorCommand;
 use crate::signals::fdm::MotorOrder;
+use crate::signals::{MOTORS, MotorCommand, PerMotor};
 
 /// The size of the normalised datagram. Receivers refuse a shorter one and ignore the surplus of a longer
 /// one.
@@ -22,7 +22,7 @@ pub const RAW_OUTPUTS: usize = 16;
 
 impl MotorOrder {
     /// Arranges the values of M1 … M4 in the order of the packet.
-    pub fn arrange<T>(self, [m1, m2, m3, m4]: [T; 4]) -> [T; 4] {
+    pub fn arrange<T>(self, [m1, m2, m3, m4]: PerMotor<T>) -> PerMotor<T> {
         match self {
             Self::Native => [m1, m2, m3, m4],
             Self::Legacy => [m2, m3, m4, m1],
@@ -30,7 +30,7 @@ impl MotorOrder {
     }
 
     /// Arranges the values of a packet in the order M1 … M4.
-    pub fn in_native_order<T>(self, [first, second, third, fourth]: [T; 4]) -> [T; 4] {
+    pub fn in_native_order<T>(self, [first, second, third, fourth]: PerMotor<T>) -> PerMotor<T> {
         match self {
             Self::Native => [first, second, third, fourth],
             Self::Legacy => [fourth, first, second, third],
@@ -39,7 +39,7 @@ impl MotorOrder {
 }
 
 /// Returns the motor pulses in µs, 1000 at rest, 2000 at full power.
-pub fn pulses_us(motors: &MotorCommand) -> [f32; 4] {
+pub fn pulses_us(motors: &MotorCommand) -> PerMotor<f32> {
     motors
         .0
         .map(|motor| (1000.0 + 1000.0 * if motor.is_finite() { motor.clamp(0.0, 1.0) } else { 0.0 }) as f32)
@@ -51,7 +51,7 @@ pub fn normalised(pulse_us: f32) -> f32 {
 }
 
 /// Returns the normalised datagram of four motor pulses, µs.
-pub fn encode(pulses_us: [f32; 4]) -> [u8; SIZE] {
+pub fn encode(pulses_us: PerMotor<f32>) -> [u8; SIZE] {
     let mut datagram = [0; SIZE];
     for (field, pulse) in datagram.as_chunks_mut::<4>().0.iter_mut().zip(pulses_us) {
         *field = normalised(pulse).to_le_bytes();
@@ -61,8 +61,8 @@ pub fn encode(pulses_us: [f32; 4]) -> [u8; SIZE] {
 
 /// Returns the four normalised motor values of a datagram; `None` if it is too short or a value is not a
 /// number.
-pub fn decode(datagram: &[u8]) -> Option<[f32; 4]> {
-    let mut motors = [0.0; 4];
+pub fn decode(datagram: &[u8]) -> Option<PerMotor<f32>> {
+    let mut motors = [0.0; MOTORS];
     for (motor, field) in motors.iter_mut().zip(datagram.get(..SIZE)?.as_chunks::<4>().0) {
         *motor = f32::from_le_bytes(*field);
         if !motor.is_finite() {

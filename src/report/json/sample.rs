@@ -5,6 +5,7 @@
 use serde::Serialize;
 
 use super::super::number::{Centi, Decimals, Milli, Place, compass};
+use crate::signals::PerMotor;
 use crate::telemetry::Snapshot;
 use crate::telemetry::snapshot::TruthView;
 
@@ -26,7 +27,7 @@ pub(super) struct Fields {
     est_e: Option<Milli>,
     est_alt: Option<Milli>,
     throttle_us: Option<Centi>,
-    motors: Option<[Decimals<4>; 4]>,
+    motors: Option<PerMotor<Decimals<4>>>,
     battery_v: Option<Milli>,
     battery_a: Option<Milli>,
     battery_mah: Option<Milli>,

@@ -55,11 +55,11 @@ impl Draft {
         let RecordedFlight { mut start, inputs, .. } = flight;
         let start_at = start.time();
         let (settings, lines) = configuration(&mut start)?;
-        let world =
-            start.world().ok_or("an external simulator moved the craft: its motion cannot be repeated")?;
-        let status = world.status();
-        let frame = world.local_frame();
-        let truth = world.truth();
+        let external = "an external simulator moved the craft: its motion cannot be repeated";
+        let status = start.world_status().ok_or(external)?;
+        let frame = start.local_frame().ok_or(external)?;
+        let truth = start.truth().ok_or(external)?;
+        let craft = start.airframe().ok_or(external)?;
         let mut air = vec![
             ("wind", quoted(&status.wind.to_string())),
             ("gust_mps", status.gust_mps.to_string()),
@@ -70,8 +70,8 @@ impl Draft {
         if !world_lines.is_empty() {
             air.push(("world", super::toml_text::list(&world_lines)));
         }
-        let airframe = world.airframe().name.clone();
-        if airframe.parse::<crate::sim::Airframe>().as_ref() != Ok(world.airframe()) {
+        let airframe = craft.name.clone();
+        if airframe.parse::<crate::sim::Airframe>().as_ref() != Ok(craft) {
             return Err(format!("the airframe {airframe} is from a file: name it in a scenario of your own"));
         }
         let position = LatLon::from_degrees(frame.lat_deg, frame.lon_deg);
@@ -86,15 +86,15 @@ impl Draft {
             settings,
             lines,
             air,
-            seed: start.seed(),
+            seed: start.clock().seed(),
             ..Self::default()
         };
         // Faults that were already active at the start stay active.
-        for (fault, left_s) in &status.faults {
-            let fault = WorldCommand::FaultOn(*fault, *left_s).to_string();
+        for (fault, left_s) in start.clock().active_faults() {
+            let fault = WorldCommand::FaultOn(fault, left_s).to_string();
             draft.inputs.push((after_boot(SimTime::ZERO), fault));
         }
-        for fault in world.waiting_faults() {
+        for fault in start.clock().waiting_faults() {
             draft.inputs.push((after_boot(SimTime::ZERO), WorldCommand::Schedule(*fault).to_string()));
         }
         let mut transmitter = start.transmitter().clone();

@@ -1,6 +1,5 @@
 //! A world at boot: the checked configuration, a craft on its legs, a full battery.
 
-use arrayvec::ArrayVec;
 use nalgebra::{UnitQuaternion, Vector2, Vector3};
 
 use crate::signals::{SensorFrame, SimTime};
@@ -8,9 +7,10 @@ use crate::sim::air::Air;
 use crate::sim::airframe::{Airframe, ROTORS};
 use crate::sim::battery::Battery;
 use crate::sim::body::BodyState;
+use crate::sim::clock::{Clock, FaultHost as _};
 use crate::sim::command::{check_wind, in_range};
-use crate::sim::config::{Wind, WorldConfig, WorldError, step_us};
-use crate::sim::fault::{Effects, FaultSchedule, MAX_FAULTS};
+use crate::sim::config::{Wind, WorldConfig, WorldError};
+use crate::sim::fault::FaultLink;
 use crate::sim::ground::NO_ANCHORS;
 use crate::sim::plant::Plant;
 use crate::sim::sensors::Sensors;
@@ -27,9 +27,9 @@ impl World {
     /// # Errors
     /// Fails if a value of the configuration is not allowed.
     pub fn new(config: WorldConfig) -> Result<Self, WorldError> {
-        let step_us = step_us(config.rate_hz)?;
         check(&config)?;
-        let step_s = step_us as f64 * 1e-6;
+        let clock = Clock::new(config.rate_hz, config.seed, FaultLink::Embedded, config.faults.clone())?;
+        let step_s = clock.step_us() as f64 * 1e-6;
         let (heading_deg, surface) = (config.home.heading_deg, config.switches.ground);
         let start = standing(&config.airframe, &surface, &Vector2::zeros(), heading_deg);
         let mut plant = Plant::new(&config.airframe, step_s);
@@ -44,17 +44,14 @@ impl World {
         let loads = plant.loads(&start, &rotors, &air_now, &anchors);
         let contact = plant.ground().contact(&start);
         let battery = full_battery(&config.airframe, &config.switches);
-        let WorldConfig { airframe, switches, faults, link, seed, .. } = config;
+        let WorldConfig { airframe, switches, .. } = config;
         let mut world = Self {
             airframe,
             start,
             heading_deg,
-            link,
-            seed,
             switches,
-            step_us,
             step_s,
-            time: SimTime::ZERO,
+            clock,
             plant,
             body: start,
             rotors,
@@ -67,15 +64,12 @@ impl World {
             crashed: false,
             diverged: false,
             air,
-            faults: FaultSchedule::new(faults),
-            effects: Effects::NONE,
             air_now,
             loads,
             rate_before: Vector3::zeros(),
             truth: truth_at_boot(&start),
             sensors,
             frame: SensorFrame::default(),
-            events: ArrayVec::new(),
         };
         world.set_ground_effect();
         world.run_faults();
@@ -91,15 +85,7 @@ fn check(config: &WorldConfig) -> Result<(), WorldError> {
     config.home.check()?;
     check_wind(config.wind)?;
     in_range("gust", config.gust_mps, 0.0, Wind::MAX_MPS)?;
-    config.switches.check()?;
-    if config.faults.len() > MAX_FAULTS {
-        return Err(WorldError::TooManyFaults(MAX_FAULTS));
-    }
-    for scheduled in &config.faults {
-        scheduled.check()?;
-        config.link.allows(&scheduled.fault)?;
-    }
-    Ok(())
+    config.switches.check()
 }
 
 /// Returns a craft on its legs at a place east and north of home, m.

@@ -5,10 +5,10 @@ use nalgebra::{Vector2, Vector3};
 use crate::signals::SimTime;
 use crate::sim::air::usual_length_s;
 use crate::sim::airframe::ROTORS;
+use crate::sim::clock::{Clock, FaultHost};
 use crate::sim::command::WorldCommand;
 use crate::sim::config::{Wind, WorldError};
-use crate::sim::event::WorldEventKind;
-use crate::sim::fault::{ActiveFault, Fault, FaultChange, FaultLink, MAX_FAULTS};
+use crate::sim::fault::{ActiveFault, Fault};
 use crate::sim::ground::NO_ANCHORS;
 use crate::sim::touchdown::TouchdownDetector;
 
@@ -26,12 +26,9 @@ impl World {
     /// Fails if a value is not allowed. Nothing has changed then.
     pub fn apply(&mut self, command: WorldCommand) -> Result<(), WorldError> {
         command.check()?;
-        if self.link == FaultLink::External && !command.is_about_faults() {
-            return Err(WorldError::Outside);
-        }
         match command {
-            WorldCommand::SetWind(wind) => self.air.change_wind(wind, self.time),
-            WorldCommand::SetGust(size) => self.air.gusts.set_size(size, self.time),
+            WorldCommand::SetWind(wind) => self.air.change_wind(wind, self.clock.time),
+            WorldCommand::SetGust(size) => self.air.gusts.set_size(size, self.clock.time),
             WorldCommand::GustNow(wind) => {
                 self.gust(wind, None);
             }
@@ -44,87 +41,22 @@ impl World {
                 self.sensors.gps.set_grade(self.switches.gps);
             }
             WorldCommand::SetGpsRate(rate) => self.sensors.gps.set_rate(rate),
-            WorldCommand::FaultOn(fault, for_s) => {
-                self.check_fault(&fault)?;
-                let until = for_s.map(|seconds| SimTime(self.time.0 + SimTime::from_secs_f64(seconds).0));
-                let begun = self.faults.insert(fault, until);
-                self.begin_fault(&begun);
-            }
-            WorldCommand::FaultOff(key) => {
-                while let Some(ended) = self.faults.end_first(|active| key.covers(active)) {
-                    self.end_fault(&ended);
-                }
-            }
-            WorldCommand::ClearFaults => {
-                self.faults.forget_waiting();
-                while let Some(ended) = self.faults.end_first(|_| true) {
-                    self.end_fault(&ended);
-                }
-            }
-            WorldCommand::Schedule(scheduled) => {
-                scheduled.check()?;
-                self.check_fault(&scheduled.fault)?;
-                self.faults.add(scheduled);
-            }
+            WorldCommand::FaultOn(..)
+            | WorldCommand::FaultOff(_)
+            | WorldCommand::ClearFaults
+            | WorldCommand::Schedule(_) => self.change_faults(command)?,
             WorldCommand::ResetToHome => self.reset_to_home(),
         }
         self.refresh_loads();
         Ok(())
     }
 
-    fn check_fault(&self, fault: &Fault) -> Result<(), WorldError> {
-        fault.check()?;
-        self.link.allows(fault)?;
-        if self.faults.has_room() { Ok(()) } else { Err(WorldError::TooManyFaults(MAX_FAULTS)) }
-    }
-
-    /// Begins and ends the faults that are due.
-    pub(super) fn run_faults(&mut self) {
-        while let Some(change) = self.faults.take_due(self.time) {
-            match change {
-                FaultChange::Begin(begun) => self.begin_fault(&begun),
-                FaultChange::End(fault) => self.end_fault(&fault),
-            }
-        }
-    }
-
-    fn begin_fault(&mut self, begun: &ActiveFault) {
-        let fault = begun.fault;
-        self.emit(WorldEventKind::Fault { fault, on: true });
-        match fault {
-            Fault::Push(impulse, direction) => {
-                self.body.vel_enu += direction.enu() * (impulse / self.plant.mass_kg());
-            }
-            Fault::Teleport([north, east, up]) => self.teleport(Vector3::new(east, north, up)),
-            Fault::Gust(wind) => {
-                let end = self.gust(wind, begun.until);
-                self.faults.set_end(&fault, end);
-            }
-            _ => {}
-        }
-        self.use_effects();
-    }
-
-    fn end_fault(&mut self, fault: &Fault) {
-        self.emit(WorldEventKind::Fault { fault: *fault, on: false });
-        self.use_effects();
-    }
-
     /// Starts a gust that ends at a given time, or after the default length. Returns its end.
     fn gust(&mut self, wind: Wind, until: Option<SimTime>) -> SimTime {
         let rise_s = self.switches.gust_rise_s;
-        let total_s = until.map_or(usual_length_s(rise_s), |until| until.seconds_since(self.time));
-        self.air.gusts.blow(wind, rise_s, total_s, self.time);
-        SimTime(self.time.0 + SimTime::from_secs_f64(total_s).0)
-    }
-
-    /// Updates the plant for the active faults.
-    fn use_effects(&mut self) {
-        self.effects = self.faults.effects();
-        self.plant.set_efficiency(self.effects.efficiency);
-        let depth = self.start.pos_enu.z * PAYLOAD_DEPTH;
-        self.plant.set_payload(&self.airframe, self.effects.payload_kg, depth);
-        self.air.change_wind_fault(self.effects.wind, self.time);
+        let total_s = until.map_or(usual_length_s(rise_s), |until| until.seconds_since(self.clock.time));
+        self.air.gusts.blow(wind, rise_s, total_s, self.clock.time);
+        SimTime(self.clock.time.0 + SimTime::from_secs_f64(total_s).0)
     }
 
     pub(super) fn set_ground_effect(&mut self) {
@@ -162,28 +94,13 @@ impl World {
     fn teleport(&mut self, by_enu: Vector3<f64>) {
         self.body.pos_enu += by_enu;
         if self.lift_out_of_the_ground() > 0.0 {
-            self.touchdown.set_airborne(self.time);
+            self.touchdown.set_airborne(self.clock.time);
         }
     }
 
-    /// Ends the flight. Faults that count from the engagement wait for the next one.
-    pub fn wait_for_next_flight(&mut self) {
-        while let Some(ended) = self.faults.wait_for_next_flight() {
-            self.end_fault(&ended);
-        }
-    }
-
-    /// Ends faults of the link whose time is over when the clock is advanced by this much, µs. A clock that depends
-    /// on the packets of the link stops while there are none.
-    pub fn end_link_faults(&mut self, ahead_us: u64) {
-        let time = SimTime(self.time.0.saturating_add(ahead_us));
-        while let Some(ended) = self.faults.end_link_fault(time) {
-            self.end_fault(&ended);
-        }
-    }
-
-    fn reset_to_home(&mut self) {
-        self.wait_for_next_flight();
+    /// Puts the craft back at home, undamaged, with a full battery. Air, noise and faults stay as they are.
+    pub fn reset_to_home(&mut self) {
+        self.end_flight();
         self.body = self.start;
         self.rotors = [0.0; ROTORS];
         self.anchors = NO_ANCHORS;
@@ -195,5 +112,33 @@ impl World {
         self.sensors.settle(self.start.pos_enu, self.start.vel_enu);
         self.rate_before = self.body.rate_flu;
         self.update_outputs_on(None);
+    }
+}
+
+impl FaultHost for World {
+    fn clock_mut(&mut self) -> &mut Clock {
+        &mut self.clock
+    }
+
+    fn act(&mut self, begun: &ActiveFault) {
+        match begun.fault {
+            Fault::Push(impulse, direction) => {
+                self.body.vel_enu += direction.enu() * (impulse / self.plant.mass_kg());
+            }
+            Fault::Teleport([north, east, up]) => self.teleport(Vector3::new(east, north, up)),
+            Fault::Gust(wind) => {
+                let end = self.gust(wind, begun.until);
+                self.clock.set_fault_end(&begun.fault, end);
+            }
+            _ => {}
+        }
+    }
+
+    fn use_effects(&mut self) {
+        let effects = &self.clock.effects;
+        self.plant.set_efficiency(effects.efficiency);
+        let depth = self.start.pos_enu.z * PAYLOAD_DEPTH;
+        self.plant.set_payload(&self.airframe, effects.payload_kg, depth);
+        self.air.change_wind_fault(effects.wind, self.clock.time);
     }
 }

@@ -1,9 +1,6 @@
 //! The settings that the World panel shows.
 
-use arrayvec::ArrayVec;
-
 use crate::sim::config::{Noise, Wind};
-use crate::sim::fault::{ActiveFault, Fault, MAX_FAULTS, ScheduledFault};
 use crate::sim::switches::Switches;
 use crate::telemetry::Turbulence;
 
@@ -21,24 +18,13 @@ pub struct WorldStatus {
     pub turbulence: Turbulence,
     pub noise: Noise,
     pub switches: Switches,
-    /// Active faults and the remaining seconds of each.
-    pub faults: ArrayVec<(Fault, Option<f64>), MAX_FAULTS>,
-    /// Number of waiting faults.
-    pub waiting: usize,
     /// Number of motor commands refused because they were not numbers.
     pub refused_commands: u64,
 }
 
 impl World {
-    /// Returns the waiting faults.
-    pub fn waiting_faults(&self) -> &[ScheduledFault] {
-        self.faults.waiting()
-    }
-
-    /// Returns the present settings of air, noise and faults.
+    /// Returns the present settings of air and noise.
     pub fn status(&self) -> WorldStatus {
-        let left =
-            |fault: &ActiveFault| (fault.fault, fault.until.map(|until| until.seconds_since(self.time)));
         WorldStatus {
             wind: self.air.settled_wind(),
             gust_mps: self.air.gusts.size_mps(),
@@ -46,8 +32,6 @@ impl World {
             turbulence: self.air.turbulence.level,
             noise: self.sensors.noise,
             switches: self.switches,
-            faults: self.faults.active().iter().map(left).collect(),
-            waiting: self.faults.waiting().len(),
             refused_commands: self.refused_commands,
         }
     }

@@ -1,10 +1,12 @@
 //! Tests of the whole world: on the ground, in flight, falling, failing.
 
 use super::*;
+use crate::signals::SimTime;
 use crate::sim::airframe::Airframe;
 use crate::sim::command::WorldCommand;
 use crate::sim::config::{Noise, Wind, WorldConfig, WorldError};
-use crate::sim::fault::{FAULTS, Fault, FaultStart, ScheduledFault};
+use crate::sim::event::WorldEvent;
+use crate::sim::fault::{Fault, FaultStart, ScheduledFault};
 use crate::telemetry::{FaultKind, Turbulence};
 
 fn ideal() -> WorldConfig {
@@ -165,7 +167,8 @@ fn scheduled_faults_are_reported_at_their_time() {
     let mut seen = Vec::new();
     for step in 0..5000 {
         if step == 3500 {
-            world.set_engaged(world.time());
+            let now = world.time();
+            world.clock_mut().set_engaged(now);
         }
         world.step(&MotorCommand::default());
         while let Some(WorldEvent { time, kind: WorldEventKind::Fault { fault, on } }) = world.take_event() {
@@ -212,47 +215,8 @@ fn a_teleport_into_the_ground_stops_at_its_surface() {
 #[test]
 fn link_faults_are_refused_without_a_link() {
     let faults: Vec<ScheduledFault> = vec!["stall@5".parse().unwrap()];
-    let refused = World::new(WorldConfig { faults: faults.clone(), ..ideal() });
+    let refused = World::new(WorldConfig { faults, ..ideal() });
     assert_eq!(refused.err(), Some(WorldError::NeedsLink(FaultKind::Stall)));
-    let accepted = World::new(WorldConfig { faults, link: FaultLink::External, ..ideal() });
-    assert!(accepted.is_ok());
-}
-
-#[test]
-fn with_a_link_only_what_comes_in_can_fail() {
-    for info in FAULTS {
-        let Ok(fault) = Fault::parse(info.name(), None) else { continue };
-        let start = FaultStart::Boot(5.0);
-        let faults = vec![ScheduledFault { fault, start, for_s: None }];
-        let made = World::new(WorldConfig { faults, link: FaultLink::External, ..ideal() });
-        match info.kind {
-            FaultKind::RxLoss | FaultKind::GpsLoss => assert!(made.is_ok(), "{}", info.kind),
-            kind if info.needs_link() => assert!(made.is_ok(), "{kind}"),
-            kind => assert_eq!(made.err(), Some(WorldError::OutsideFault(kind))),
-        }
-    }
-    let mut world = World::new(WorldConfig { link: FaultLink::External, ..ideal() }).unwrap();
-    assert_eq!(world.apply(WorldCommand::SetGust(3.0)), Err(WorldError::Outside));
-}
-
-#[test]
-fn time_passes_without_motion_and_faults_of_the_link_end_ahead_of_it() {
-    let faults = ["gps-loss@boot+0.1,1", "fdm-loss@boot+0.1,1", "stall@boot+0.1"];
-    let faults = faults.map(|fault| fault.parse().unwrap()).to_vec();
-    let mut world = World::new(WorldConfig { faults, link: FaultLink::External, ..ideal() }).unwrap();
-    let place = world.truth().pos_enu;
-    for _ in 0..200 {
-        world.pass();
-    }
-    assert_eq!((world.time().0, world.truth().pos_enu), (200_000, place));
-    let active =
-        |world: &World| world.status().faults.iter().map(|(fault, _)| fault.name()).collect::<Vec<_>>();
-    assert_eq!(active(&world), ["gps-loss", "fdm-loss", "stall"]);
-    world.end_link_faults(899_999);
-    assert_eq!(active(&world).len(), 3);
-    world.end_link_faults(900_000);
-    assert_eq!(active(&world), ["gps-loss", "stall"], "a fault without an end goes on");
-    assert!(!world.link_faults().loss.is_normal() && world.link_faults().stall);
 }
 
 #[test]
@@ -293,6 +257,6 @@ fn the_status_shows_what_is_set() {
     run(&mut world, 1.0, [0.0; 4]);
     let status = world.status();
     assert_eq!((status.wind.speed_mps, status.turbulence), (6.0, Turbulence::Light));
-    assert_eq!(status.faults[..], [(Fault::GpsLoss, Some(2.0))]);
+    assert_eq!(world.clock().active_faults().collect::<Vec<_>>(), [(Fault::GpsLoss, Some(2.0))]);
     assert!((world.truth().wind_enu.x + 3.0 * 0.396).abs() < 1.0);
 }

@@ -3,8 +3,8 @@
 use nalgebra::Vector3;
 
 use crate::geo::LocalFrame;
-use crate::signals::{Pose, SensorFrame};
-use crate::sim::World;
+use crate::signals::{PerMotor, Pose, SensorFrame};
+use crate::sim::Clock;
 use crate::telemetry::snapshot::TruthView;
 
 /// A craft lower than this above its start (m) and slower than [`STANDING_MPS`] counts as on the ground, since a
@@ -16,25 +16,24 @@ const STANDING_MPS: f64 = 0.3;
 /// The known state of a craft that an external simulator moves.
 #[derive(Debug, Clone)]
 pub(in crate::vehicle) struct ExternalPhysics {
-    /// Time and link faults. Nothing in this world moves.
-    links: World,
+    /// Time, and faults of the links.
+    clock: Clock,
     /// Measurements for the present step.
     sensors: SensorFrame,
     track: Track,
 }
 
 impl ExternalPhysics {
-    /// Returns physics that takes time and faults from `links`.
-    pub(in crate::vehicle) fn new(links: World) -> Self {
-        Self { links, sensors: SensorFrame::default(), track: Track::default() }
+    pub(in crate::vehicle) fn new(clock: Clock) -> Self {
+        Self { clock, sensors: SensorFrame::default(), track: Track::default() }
     }
 
-    pub(super) fn links(&self) -> &World {
-        &self.links
+    pub(super) fn clock(&self) -> &Clock {
+        &self.clock
     }
 
-    pub(super) fn links_mut(&mut self) -> &mut World {
-        &mut self.links
+    pub(in crate::vehicle) fn clock_mut(&mut self) -> &mut Clock {
+        &mut self.clock
     }
 
     pub(super) fn sensors(&self) -> &SensorFrame {
@@ -45,20 +44,15 @@ impl ExternalPhysics {
         self.track.frame.as_ref()
     }
 
-    pub(super) fn truth_view(&self, motors: [f64; 4]) -> Option<TruthView> {
+    pub(super) fn truth_view(&self, motors: PerMotor) -> Option<TruthView> {
         self.track.truth_view(motors)
     }
 
     /// Makes one step with the measurements of the simulator.
     pub(in crate::vehicle) fn measure(&mut self, sensors: &SensorFrame) {
-        self.links.pass();
-        let gps = sensors.gps.filter(|_| !self.links.gps_lost());
-        self.sensors = SensorFrame { time: self.links.time(), gps, ..*sensors };
-    }
-
-    /// Ends faults of the link whose time is over after a silence of this length, µs.
-    pub(in crate::vehicle) fn end_link_faults(&mut self, silence_us: u64) {
-        self.links.end_link_faults(silence_us);
+        self.clock.pass();
+        let gps = sensors.gps.filter(|_| !self.clock.gps_lost());
+        self.sensors = SensorFrame { time: self.clock.time(), gps, ..*sensors };
     }
 
     /// Takes the place of the craft as reported by the simulator.
@@ -72,9 +66,9 @@ impl ExternalPhysics {
     }
 
     /// Resets the track of a craft that is put somewhere else. It starts where it is seen next.
-    pub(in crate::vehicle) fn reset(&mut self) {
+    pub(super) fn reset(&mut self) {
         self.track = Track::default();
-        self.links.wait_for_next_flight();
+        self.clock.wait_for_next_flight();
     }
 }
 
@@ -88,7 +82,7 @@ struct Track {
 
 impl Track {
     /// Returns the motion of the craft as reported by the simulator.
-    fn truth_view(&self, motors: [f64; 4]) -> Option<TruthView> {
+    fn truth_view(&self, motors: PerMotor) -> Option<TruthView> {
         let (pose, frame) = (self.pose.as_ref()?, self.frame.as_ref()?);
         let (lat_deg, lon_deg) = pose.place_deg?;
         let enu = frame.to_enu(lat_deg, lon_deg, pose.alt_m);

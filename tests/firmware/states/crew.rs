@@ -79,7 +79,7 @@ impl Crew {
             Work::Settle => {
                 // A craft that rocks or tumbles may be level for a moment, so its attitude counts only at
                 // rest.
-                let truth = run.vehicle.world().unwrap().truth();
+                let truth = run.vehicle.truth().unwrap();
                 let still = truth.vel_enu.norm() < STILL_MPS && truth.rate_flu.norm() < STILL_RPS;
                 self.resting = if still { self.resting + 1 } else { 0 };
                 let upright = run.vehicle.embedded().unwrap().estimate().cos_tilt > UPRIGHT;

@@ -158,7 +158,7 @@ fn set_parameter(run: &mut Run, rng: &mut ChaCha8Rng) -> String {
 fn waypoint(run: &Run, rng: &mut ChaCha8Rng) -> String {
     let mut metres = || f64::from(rng.random_range(-5..=5)) * 6.0;
     let place = Vector3::new(metres(), metres(), 0.0);
-    let (lat, lon, _) = run.vehicle.world().unwrap().local_frame().to_geodetic(place);
+    let (lat, lon, _) = run.vehicle.local_frame().unwrap().to_geodetic(place);
     let kind = pick(rng, &WaypointType::iter().collect::<Vec<_>>());
     let pattern = pick(rng, &HoldPattern::iter().collect::<Vec<_>>());
     let alt_cm = rng.random_range(100..2500);

@@ -1,7 +1,7 @@
 //! The effect of each fault on the sensor data or on the craft.
 
 use betadeck::signals::GpsSample;
-use betadeck::sim::{World, WorldCommand, WorldConfig, WorldEventKind};
+use betadeck::sim::{Clock, World, WorldCommand, WorldConfig, WorldEventKind};
 
 use crate::world::{events, fault, ideal, put_on, run, stand, statistics, world};
 
@@ -199,19 +199,18 @@ fn receiver_and_link_faults_are_reported_to_their_owners() {
     let (mut embedded, _) = hovering();
     put_on(&mut embedded, "rx-loss", None);
     put_on(&mut embedded, "rx-jitter=0.3", None);
-    assert!(embedded.rx_lost());
-    assert_eq!(embedded.rx_drop_fraction(), 0.3);
-    let config = WorldConfig { link: betadeck::sim::FaultLink::External, ..ideal() };
-    let mut world = world(config);
+    assert!(embedded.clock().rx_lost());
+    assert_eq!(embedded.clock().rx_drop_fraction(), 0.3);
+    let mut clock = Clock::of_external(1000, 1, Vec::new()).expect("a rate");
     for text in ["rx-loss", "gps-loss", "stall", "fdm-loss=0.1", "fdm-late=20", "fdm-dup", "fdm-jitter"] {
-        put_on(&mut world, text, None);
+        clock.apply(WorldCommand::FaultOn(fault(text), None)).expect("accepted");
     }
-    assert!(world.rx_lost() && world.gps_lost());
-    let link = world.link_faults();
+    assert!(clock.rx_lost() && clock.gps_lost());
+    let link = clock.link_faults();
     assert!(link.stall);
     assert_eq!((link.loss, link.late_ms, link.duplicated, link.jitter_ms), (0.1, 20.0, 0.2, 5.0));
-    world.apply(WorldCommand::ClearFaults).expect("cleared");
-    assert!(!world.rx_lost() && !world.link_faults().stall && world.status().faults.is_empty());
+    clock.apply(WorldCommand::ClearFaults).expect("cleared");
+    assert!(!clock.rx_lost() && !clock.link_faults().stall && clock.active_faults().next().is_none());
 }
 
 #[test]
@@ -221,9 +220,10 @@ fn a_fault_is_taken_off_by_name() {
     put_on(&mut world, "motor=4:0.5", None);
     world.apply(WorldCommand::FaultOff(fault("motor=2:1").key())).expect("off");
     run(&mut world, 0.01, hover);
-    assert_eq!(world.status().faults.len(), 1);
-    assert_eq!(world.status().faults[0].0, fault("motor=4:0.5"));
+    let active: Vec<_> = world.clock().active_faults().collect();
+    assert_eq!(active.len(), 1);
+    assert_eq!(active[0].0, fault("motor=4:0.5"));
     put_on(&mut world, "motor=1:0.5", None);
     world.apply(WorldCommand::parse("end=motor").expect("a command")).expect("off");
-    assert!(world.status().faults.is_empty());
+    assert!(world.clock().active_faults().next().is_none());
 }
