@@ -15,6 +15,7 @@ use std::time::{Duration, Instant};
 
 use betadeck::fc::upload;
 use betadeck::flight::FlightSetup;
+use betadeck::plan::Seconds;
 use betadeck::plan::builtin::{BuiltinPlan, DEMO};
 use betadeck::session::command::Seek;
 use betadeck::session::{Command, Handle, SessionConfig, start};
@@ -56,7 +57,7 @@ fn session() -> Handle {
     let mut plan = BuiltinPlan::find(DEMO).unwrap().read().unwrap();
     // The hold has no end.
     plan.plan.waypoints.truncate(3);
-    plan.plan.waypoints[2].duration_ds = 0;
+    plan.plan.waypoints[2].duration = Seconds::default();
     upload(vehicle.controller_mut(), &plan.plan, &plan.settings).unwrap();
     start(SessionConfig {
         vehicle,

@@ -61,7 +61,7 @@ fn vehicle(rate_hz: u32) -> Vehicle {
     let setup = FlightSetup { world: air(rate_hz), ..FlightSetup::default() };
     let (mut vehicle, _) = setup.build().expect("the default world is sound");
     let mut console = Interpreter::default();
-    for line in upload_lines(&file.plan, &file.settings) {
+    for line in upload_lines(file.plan.records(), &file.settings) {
         vehicle.embedded_mut().unwrap().run_cli(&mut console, &line);
     }
     vehicle

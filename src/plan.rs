@@ -1,4 +1,5 @@
-//! Flight plans: pure data and rules, without I/O.
+//! Flight plans: pure data and rules, without I/O. Quantities are in SI; the units of files, lines and messages are in
+//! `format::WaypointRecord` only.
 
 mod altitude_reference;
 pub mod builtin;
@@ -8,14 +9,15 @@ pub mod estimate;
 pub mod format;
 pub mod generate;
 mod leg_time;
+mod quantity;
 pub mod review;
 pub mod setpoint;
 pub mod validate;
 mod waypoint;
 
-pub use altitude_reference::{AltitudeError, AltitudeReference};
-pub(crate) use cli_lines::waypoint_values;
-pub use cli_lines::{plan_lines, upload_lines};
+pub use altitude_reference::{AltitudeError, AltitudeReference, CraftPlan};
+pub use cli_lines::{plan_lines, record_lines, upload_lines};
+pub use quantity::{Altitude, LegSpeed, Seconds};
 pub(crate) use review::{LegAltitude, leg_altitudes};
 pub use waypoint::{HoldPattern, Waypoint, WaypointType};
 
@@ -23,7 +25,7 @@ pub use waypoint::{HoldPattern, Waypoint, WaypointType};
 pub const MAX_WAYPOINTS: usize = 30;
 
 /// An ordered list of at most [`MAX_WAYPOINTS`] waypoints; it never allocates, so the vehicle can copy it in flight.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct FlightPlan {
     /// The waypoints in flight order.
     pub waypoints: arrayvec::ArrayVec<Waypoint, MAX_WAYPOINTS>,

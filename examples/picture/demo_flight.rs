@@ -46,7 +46,7 @@ impl DemoFlight {
         let world = WorldConfig { wind: "3@230".parse()?, ..WorldConfig::default() };
         let (mut vehicle, _) = FlightSetup { world, ..FlightSetup::default() }.build()?;
         let mut console = Interpreter::default();
-        for line in upload_lines(&file.plan, &file.settings) {
+        for line in upload_lines(file.plan.records(), &file.settings) {
             vehicle.embedded_mut().ok_or("no embedded firmware")?.run_cli(&mut console, &line);
         }
         let config = UiConfig {

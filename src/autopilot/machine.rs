@@ -16,7 +16,7 @@ use arrayvec::ArrayVec;
 use super::fence::FenceFacts;
 use super::guidance::PlaneCrossing;
 use super::land_detector::{GroundFacts, TouchdownFacts, TouchdownGuards};
-use crate::plan::{HoldPattern, WaypointType};
+use crate::plan::{HoldPattern, Seconds, WaypointType};
 use crate::telemetry::{AbortReason, FenceAction, Guard, GuardName, NavState, PlanSource, TransitionReason};
 
 pub use rules::rules;
@@ -36,8 +36,8 @@ const HOLD_ALTITUDE_M: f64 = 2.0;
 pub struct WaypointFacts {
     pub kind: WaypointType,
     pub pattern: HoldPattern,
-    /// Hold time, ds.
-    pub duration_ds: u16,
+    /// Hold time.
+    pub duration: Seconds,
     /// `true` if no positional waypoint follows.
     pub last: bool,
     /// `true` if the next positional waypoint is less than 10 cm away.
@@ -113,7 +113,7 @@ impl Default for Facts {
             waypoint: WaypointFacts {
                 kind: WaypointType::Flyover,
                 pattern: HoldPattern::None,
-                duration_ds: 0,
+                duration: Seconds::default(),
                 last: true,
                 co_located: false,
                 missed: false,

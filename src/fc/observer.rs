@@ -12,7 +12,7 @@ use crate::fc::telemetry::{
 };
 use crate::firmware::cli::CliReply;
 use crate::geo::LocalFrame;
-use crate::plan::{AltitudeReference, FlightPlan};
+use crate::plan::{AltitudeReference, CraftPlan};
 use crate::telemetry::Mode;
 use crate::telemetry::snapshot::{CraftView, ModeRange};
 use crate::vehicle::{RemoteController, RemoteTelemetry};
@@ -29,7 +29,7 @@ pub struct Observer {
     observation: Observation,
     settings: Settings,
     /// The plan as the flight controller stores it.
-    stored_plan: Option<FlightPlan>,
+    stored_plan: Option<CraftPlan>,
     mission: Option<Mission>,
     /// The first position of the craft. It is the origin of drawings when no world gives a starting place.
     first_fix: Option<Origin>,

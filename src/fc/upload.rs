@@ -4,7 +4,7 @@
 use super::landing_gains::landing_gains_reported;
 use crate::firmware::cli::{CliReply, Interpreter};
 use crate::plan::format::{self, Format};
-use crate::plan::{AltitudeError, AltitudeReference, FlightPlan, upload_lines};
+use crate::plan::{AltitudeError, AltitudeReference, CraftPlan, FlightPlan, upload_lines};
 use crate::vehicle::{Answer, FlightController, Ticket};
 
 /// Stores `settings` and `plan` in an embedded flight controller.
@@ -75,17 +75,18 @@ pub const LIST: &str = "waypoint list";
 ///
 /// # Errors
 /// Returns a sentence if the answer is no plan.
-pub fn plan_of_list(reply: &CliReply) -> Result<FlightPlan, String> {
+pub fn plan_of_list(reply: &CliReply) -> Result<CraftPlan, String> {
     if reply.failed {
         return Err(format!("the craft refused `{LIST}`: {}", reply.text.trim()));
     }
     // Some releases print nothing if there is no plan.
     if reply.text.trim().is_empty() {
-        return Ok(FlightPlan::default());
+        return Ok(CraftPlan::default());
     }
-    format::parse("the craft", &reply.text, Format::CliText).map(|file| file.plan).map_err(|errors| {
+    let file = format::parse("the craft", &reply.text, Format::CliText).map_err(|errors| {
         errors.first().map_or_else(String::new, |error| format!("the craft's plan cannot be read: {error}"))
-    })
+    })?;
+    Ok(CraftPlan { records: file.plan.records() })
 }
 
 /// Returns the plan in an answer to [`LIST`], with altitudes above home.
@@ -100,8 +101,8 @@ pub fn plan_above_home(reply: &CliReply, reference: AltitudeReference) -> Result
 /// An upload in progress.
 #[derive(Debug)]
 pub struct Upload {
-    /// The plan that the craft must store, with the craft's own altitudes.
-    plan: FlightPlan,
+    /// The plan that the craft must store.
+    plan: CraftPlan,
     report: UploadReport,
     /// The lines that were not sent yet.
     lines: std::vec::IntoIter<String>,
@@ -140,7 +141,8 @@ impl Upload {
         reference: AltitudeReference,
     ) -> Result<Self, AltitudeError> {
         let plan = reference.plan_for_craft(plan)?;
-        let lines: Vec<String> = upload_lines(&plan, settings).chain([LIST.to_owned()]).collect();
+        let lines: Vec<String> =
+            upload_lines(plan.records.clone(), settings).chain([LIST.to_owned()]).collect();
         Ok(Self {
             plan,
             report: UploadReport { added_m: reference.added_m()?, ..UploadReport::default() },
@@ -200,7 +202,7 @@ impl Upload {
             if held == self.plan {
                 return Ok(self.report.clone());
             }
-            let (sent, held) = (&self.plan.waypoints, &held.waypoints);
+            let (sent, held) = (&self.plan.records, &held.records);
             let differs = std::iter::zip(sent, held).position(|(sent, held)| sent != held);
             Err(match differs {
                 Some(index) => {
@@ -272,7 +274,7 @@ mod tests {
 
     #[test]
     fn a_craft_that_prints_nothing_has_no_plan() {
-        assert_eq!(plan_of_list(&CliReply::default()), Ok(FlightPlan::default()));
+        assert_eq!(plan_of_list(&CliReply::default()), Ok(CraftPlan::default()));
         let refused = CliReply { failed: true, ..CliReply::default() };
         assert!(plan_of_list(&refused).is_err());
     }

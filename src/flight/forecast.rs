@@ -61,7 +61,7 @@ impl ForecastRun {
         }
         let Some(firmware) = vehicle.embedded_mut() else { return Err(CONTROLLER_IS_REMOTE.to_owned()) };
         let mut console = Interpreter::default();
-        for line in upload_lines(plan, settings) {
+        for line in upload_lines(plan.records(), settings) {
             let reply = firmware.run_cli(&mut console, &line);
             if reply.failed {
                 return Err(format!("The craft refuses `{line}`: {}", reply.text.trim()));

@@ -193,9 +193,9 @@ impl TruthCheck {
     }
 
     fn leg_speed_mps(&self, wp: u8, settings: &SettingsView) -> f64 {
-        let asked = self.active.waypoints.get(usize::from(wp)).map_or(0, |waypoint| waypoint.speed_cms);
+        let asked = self.active.waypoints.get(usize::from(wp)).and_then(|waypoint| waypoint.speed.own_mps());
         let most = settings.max_velocity_mps.max(SLOWEST_MPS);
-        if asked == 0 { most } else { (f64::from(asked) / 100.0).clamp(SLOWEST_MPS, most) }
+        asked.map_or(most, |mps| mps.clamp(SLOWEST_MPS, most))
     }
 }
 

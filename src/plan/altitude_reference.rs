@@ -1,5 +1,7 @@
 //! The reference of a craft for the altitudes of its waypoints. Plans in betadeck use home.
 
+use super::format::Records;
+use super::quantity::to_cm;
 use super::{FlightPlan, WaypointType};
 
 /// The reference of a craft for the altitudes of its waypoints.
@@ -49,38 +51,40 @@ impl AltitudeReference {
     ///
     /// # Errors
     /// Returns an error if the reference is unknown.
-    pub fn plan_for_craft(self, plan: &FlightPlan) -> Result<FlightPlan, AltitudeError> {
-        Ok(raised(plan, centimetres(self.added_m()?)))
+    pub fn plan_for_craft(self, plan: &FlightPlan) -> Result<CraftPlan, AltitudeError> {
+        Ok(raised(plan.records(), to_cm(self.added_m()?)))
     }
 
     /// Converts a plan of the craft to altitudes above home.
     ///
     /// # Errors
     /// Returns an error if the reference is unknown.
-    pub fn plan_of_craft(self, plan: &FlightPlan) -> Result<FlightPlan, AltitudeError> {
-        Ok(raised(plan, -centimetres(self.added_m()?)))
+    pub fn plan_of_craft(self, plan: &CraftPlan) -> Result<FlightPlan, AltitudeError> {
+        let CraftPlan { records } = raised(plan.records.clone(), -to_cm(self.added_m()?));
+        Ok(FlightPlan::from_records(&records))
     }
 }
 
-fn centimetres(metres: f64) -> i32 {
-    (metres * 100.0).round() as i32
+/// A plan as a craft stores it, with altitudes from the reference of the craft.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct CraftPlan {
+    pub records: Records,
 }
 
-/// Raises every altitude of the plan that has a meaning.
-fn raised(plan: &FlightPlan, by_cm: i32) -> FlightPlan {
-    let mut plan = plan.clone();
-    for waypoint in &mut plan.waypoints {
-        if waypoint.kind.is_positional() || waypoint.kind == WaypointType::AltChange {
-            waypoint.alt_cm = waypoint.alt_cm.saturating_add(by_cm);
+/// Raises every altitude that has a meaning.
+fn raised(mut records: Records, by_cm: i32) -> CraftPlan {
+    for record in &mut records {
+        if record.kind.is_positional() || record.kind == WaypointType::AltChange {
+            record.alt_cm = record.alt_cm.saturating_add(by_cm);
         }
     }
-    plan
+    CraftPlan { records }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::Waypoint;
+    use crate::plan::{Altitude, Waypoint};
 
     #[test]
     fn altitudes_that_mean_something_are_converted_there_and_back() {
@@ -88,7 +92,7 @@ mod tests {
         let mut plan = FlightPlan::default();
         plan.waypoints.extend(WaypointType::iter().map(|kind| Waypoint {
             kind,
-            alt_cm: 4000,
+            altitude: Altitude::above_home(40.0),
             ..Waypoint::default()
         }));
         for (reference, there) in [
@@ -97,7 +101,7 @@ mod tests {
             (AltitudeReference::SeaLevel { home_m: Some(-20.0) }, 2000),
         ] {
             let converted = reference.plan_for_craft(&plan).unwrap();
-            for waypoint in &converted.waypoints {
+            for waypoint in &converted.records {
                 let unused = [WaypointType::Delay, WaypointType::YawRate].contains(&waypoint.kind);
                 assert_eq!(waypoint.alt_cm, if unused { 4000 } else { there }, "{waypoint:?}");
             }
@@ -105,6 +109,9 @@ mod tests {
         }
         let unknown = AltitudeReference::SeaLevel { home_m: None };
         assert_eq!(unknown.plan_for_craft(&plan), Err(AltitudeError::HomeUnknown));
-        assert_eq!(AltitudeReference::default().plan_of_craft(&plan), Err(AltitudeError::Unreported));
+        assert_eq!(
+            AltitudeReference::default().plan_of_craft(&CraftPlan::default()),
+            Err(AltitudeError::Unreported)
+        );
     }
 }

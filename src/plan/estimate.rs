@@ -71,8 +71,8 @@ struct Walk {
 
 impl Walk {
     fn leg(&mut self, waypoint: &Waypoint, assumptions: &Assumptions) -> LegEstimate {
-        let own_alt_m = f64::from(waypoint.alt_cm) / 100.0;
-        let duration_s = f64::from(waypoint.duration_ds) / 10.0;
+        let own_alt_m = waypoint.altitude.above_home_m();
+        let duration_s = waypoint.duration.get();
         match waypoint.kind {
             WaypointType::AltChange => self.alt_change_m = Some(own_alt_m),
             WaypointType::Delay => self.delay_s = Some(duration_s),
@@ -140,7 +140,7 @@ impl Walk {
             WaypointType::Hold => {
                 let waited_s = assumptions.wait_for_hold(setpoint, alt_m);
                 setpoint.run(alt_m, &limits, duration_s);
-                (waypoint.duration_ds > 0).then_some(waited_s + duration_s)
+                (!waypoint.duration.is_zero()).then_some(waited_s + duration_s)
             }
             WaypointType::Takeoff => {
                 let climb_s = setpoint.reach(alt_m, &limits, assumptions.hold_radius_m);
@@ -172,13 +172,22 @@ impl Walk {
 mod tests {
     use super::*;
     use crate::geo::offset_to_latlon;
+    use crate::plan::format::WaypointRecord;
     use nalgebra::Vector2;
 
     const HOME: LatLon = LatLon::new(404_635_000, -795_182_000);
 
     fn waypoint(kind: WaypointType, north: f64, alt_m: i32, speed_cms: u16, duration_ds: u16) -> Waypoint {
         let position = offset_to_latlon(HOME, Vector2::new(north, 0.0));
-        Waypoint { position, alt_cm: alt_m * 100, speed_cms, duration_ds, kind, ..Waypoint::default() }
+        WaypointRecord {
+            position,
+            alt_cm: alt_m * 100,
+            speed: speed_cms,
+            duration_ds,
+            kind,
+            ..Default::default()
+        }
+        .into()
     }
 
     fn plan(waypoints: &[Waypoint]) -> PlanEstimate {

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector2;
 
-use super::{MAX_WAYPOINTS, Waypoint, WaypointType};
+use super::{Altitude, LegSpeed, MAX_WAYPOINTS, Waypoint, WaypointType};
 use crate::geo::{GroundPlane, LatLon};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::Display, strum::EnumIter, strum::EnumString)]
@@ -33,10 +33,8 @@ pub struct Pattern {
     pub spacing_m: f64,
     /// Direction of the length, degrees from north, clockwise.
     pub heading_deg: f64,
-    /// Altitude above home, cm.
-    pub alt_cm: i32,
-    /// Leg speed, cm/s; 0 = `ap_max_velocity`.
-    pub speed_cms: u16,
+    pub altitude: Altitude,
+    pub speed: LegSpeed,
     pub kind: WaypointType,
 }
 
@@ -48,8 +46,8 @@ impl Default for Pattern {
             width_m: 80.0,
             spacing_m: 20.0,
             heading_deg: 0.0,
-            alt_cm: 2000,
-            speed_cms: 0,
+            altitude: Altitude::above_home(20.0),
+            speed: LegSpeed::default(),
             kind: WaypointType::Flyover,
         }
     }
@@ -135,8 +133,8 @@ impl Pattern {
         let plane = GroundPlane::new(middle);
         let waypoint = |place| Waypoint {
             position: plane.to_position(place),
-            alt_cm: self.alt_cm,
-            speed_cms: self.speed_cms,
+            altitude: self.altitude,
+            speed: self.speed,
             kind: self.kind,
             ..Waypoint::default()
         };

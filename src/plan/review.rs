@@ -218,7 +218,7 @@ pub fn review(plan: &FlightPlan, home: LatLon, assumptions: &Assumptions) -> Vec
         if modifies_a_leg && last_place.is_none_or(|last| last < index) {
             findings.push(Finding::NothingToModify { index, kind: waypoint.kind });
         }
-        let speed_mps = f64::from(waypoint.speed_cms) / 100.0;
+        let speed_mps = waypoint.speed.mps();
         if waypoint.kind.is_positional() && speed_mps > assumptions.max_velocity_mps {
             let limit_mps = assumptions.max_velocity_mps;
             findings.push(Finding::SpeedLimited { index, speed_mps, limit_mps });
@@ -256,7 +256,7 @@ fn below_ground(waypoints: &[Waypoint]) -> impl Iterator<Item = Finding> {
 fn ends_the_mission(waypoint: &Waypoint) -> bool {
     match waypoint.kind {
         WaypointType::Land => true,
-        WaypointType::Hold => waypoint.duration_ds == 0,
+        WaypointType::Hold => waypoint.duration.is_zero(),
         WaypointType::Flyover
         | WaypointType::Flyby
         | WaypointType::Takeoff
@@ -269,17 +269,21 @@ fn ends_the_mission(waypoint: &Waypoint) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::Seconds;
+    use crate::plan::format::WaypointRecord;
 
     const HOME: LatLon = LatLon::new(404_635_000, -795_182_000);
 
     fn say(waypoints: &[(WaypointType, u16, u16)], fence_m: Option<f64>) -> Vec<String> {
         let mut plan = FlightPlan::default();
-        plan.waypoints.extend(waypoints.iter().map(|&(kind, speed_cms, duration_ds)| Waypoint {
-            position: LatLon::new(404_648_508, -795_182_000),
-            speed_cms,
-            duration_ds,
-            kind,
-            ..Waypoint::default()
+        plan.waypoints.extend(waypoints.iter().map(|&(kind, speed, duration_ds)| {
+            Waypoint::from(WaypointRecord {
+                position: LatLon::new(404_648_508, -795_182_000),
+                speed,
+                duration_ds,
+                kind,
+                ..Default::default()
+            })
         }));
         let assumptions = Assumptions { fence_m, ..Assumptions::default() };
         review(&plan, HOME, &assumptions).iter().map(ToString::to_string).collect()
@@ -316,9 +320,10 @@ mod tests {
     #[test]
     fn a_plan_longer_than_the_battery_lasts_is_named() {
         let mut plan = FlightPlan::default();
-        for duration_ds in [18_000, 600] {
-            let kind = if duration_ds == 600 { WaypointType::Land } else { WaypointType::Hold };
-            plan.waypoints.push(Waypoint { position: HOME, duration_ds, kind, ..Waypoint::default() });
+        for seconds in [1800.0, 60.0] {
+            let kind = if seconds < 100.0 { WaypointType::Land } else { WaypointType::Hold };
+            let duration = Seconds::new(seconds);
+            plan.waypoints.push(Waypoint { position: HOME, duration, kind, ..Waypoint::default() });
         }
         let findings = |endurance_s| {
             let assumptions = Assumptions { endurance_s, ..Assumptions::default() };
@@ -333,7 +338,9 @@ mod tests {
 
     #[test]
     fn a_waypoint_below_the_ground_is_named() {
-        let at = |kind, alt_cm| Waypoint { position: HOME, kind, alt_cm, ..Waypoint::default() };
+        let at = |kind, alt_cm| -> Waypoint {
+            WaypointRecord { position: HOME, kind, alt_cm, ..Default::default() }.into()
+        };
         let mut plan = FlightPlan::default();
         plan.waypoints.extend([
             at(WaypointType::Flyover, -500),
@@ -402,7 +409,9 @@ mod tests {
 
     #[test]
     fn an_altitude_change_counts_for_the_next_place_only() {
-        let at = |kind, alt_cm| Waypoint { position: HOME, kind, alt_cm, ..Waypoint::default() };
+        let at = |kind, alt_cm| -> Waypoint {
+            WaypointRecord { position: HOME, kind, alt_cm, ..Default::default() }.into()
+        };
         let below = |altitude_change_cm, first_cm, second_cm| -> Vec<Finding> {
             let waypoints = [
                 at(WaypointType::AltChange, altitude_change_cm),

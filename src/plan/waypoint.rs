@@ -1,5 +1,7 @@
-//! One waypoint record, in the external units of CLI, MSP and files.
+//! One waypoint.
 
+use super::format::WaypointRecord;
+use super::quantity::{Altitude, LegSpeed, Seconds};
 use crate::geo::LatLon;
 
 /// The action of the autopilot at a waypoint. The discriminant is the code in MSP messages and in files.
@@ -85,19 +87,28 @@ pub enum HoldPattern {
     Figure8 = 2,
 }
 
-/// A waypoint in the units of CLI, MSP and storage.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, serde::Serialize, serde::Deserialize)]
+/// A waypoint. Journals store it as its record.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(from = "WaypointRecord", into = "WaypointRecord")]
 pub struct Waypoint {
     /// Position, degrees × 10⁷.
     pub position: LatLon,
-    /// Altitude above home, cm.
-    pub alt_cm: i32,
-    /// Leg speed, cm/s; 0 = `ap_max_velocity`.
-    pub speed_cms: u16,
-    /// Hold or delay time, deciseconds; 0 = endless for HOLD.
-    pub duration_ds: u16,
+    pub altitude: Altitude,
+    /// Leg speed; zero of a YAW_RATE.
+    pub speed: LegSpeed,
+    /// The rate of a YAW_RATE, degrees/s; zero of any other type, because records have one field for both.
+    pub yaw_rate_dps: u16,
+    /// Hold or delay time; a HOLD without one is endless.
+    pub duration: Seconds,
     /// The action at the waypoint.
     pub kind: WaypointType,
     /// The pattern of a HOLD.
     pub pattern: HoldPattern,
+}
+
+impl Waypoint {
+    /// Returns the waypoint with another type and the same numbers in its record.
+    pub fn with_kind(self, kind: WaypointType) -> Self {
+        WaypointRecord { kind, ..self.into() }.into()
+    }
 }

@@ -75,7 +75,7 @@ impl<W: Write> GpxWriter<W> {
                 continue;
             }
             let (lat, lon) = (Degrees7(waypoint.position.lat_e7), Degrees7(waypoint.position.lon_e7));
-            let ele = header.home_amsl_m + f64::from(waypoint.alt_cm) * 0.01;
+            let ele = header.home_amsl_m + waypoint.altitude.above_home_m();
             writeln!(out, "  <wpt lat=\"{lat}\" lon=\"{lon}\">")?;
             writeln!(out, "    <ele>{ele:.2}</ele>")?;
             writeln!(out, "    <name>WP{index} {}</name>", waypoint.kind)?;
@@ -128,7 +128,7 @@ impl<W: Write> GpxWriter<W> {
 mod tests {
     use super::*;
     use crate::geo::LatLon;
-    use crate::plan::{Waypoint, WaypointType};
+    use crate::plan::{Altitude, Waypoint, WaypointType};
 
     fn header() -> GpxHeader {
         GpxHeader {
@@ -146,7 +146,7 @@ mod tests {
         plan.waypoints.push(Waypoint { kind: WaypointType::Takeoff, ..Waypoint::default() });
         plan.waypoints.push(Waypoint {
             position: LatLon::new(404_640_000, -795_175_000),
-            alt_cm: 5000,
+            altitude: Altitude::above_home(50.0),
             kind: WaypointType::Flyby,
             ..Waypoint::default()
         });

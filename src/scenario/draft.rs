@@ -175,7 +175,7 @@ mod tests {
 
     fn upload(plan: &PlanFile, vehicle: &mut Vehicle) {
         let mut session = Interpreter::default();
-        for line in upload_lines(&plan.plan, &plan.settings) {
+        for line in upload_lines(plan.plan.records(), &plan.settings) {
             let _reported = vehicle.controller_mut().run_cli(&mut session, &line);
         }
     }

@@ -10,9 +10,6 @@ use crate::vehicle::Vehicle;
 /// The ground speed below which the course has no meaning, m/s.
 const COURSE_MPS: f64 = 0.3;
 
-/// The remaining time of a hold without an end, ds.
-const ENDLESS_DS: u16 = u16::MAX;
-
 /// The facts that a sample needs besides the vehicle.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Origin {
@@ -119,8 +116,7 @@ impl Values {
         self.set_known(Signal::SpeedSetpoint, nav.speed_setpoint_mps);
         self.set_known(Signal::HomeDistance, nav.home_distance_m);
         self.set_known(Signal::FenceMargin, nav.fence_margin_m);
-        let hold_left_ds = nav.hold_remaining_ds.filter(|left_ds| *left_ds != ENDLESS_DS);
-        self.set_known(Signal::HoldRemaining, hold_left_ds.map(|left_ds| f64::from(left_ds) / 10.0));
+        self.set_known(Signal::HoldRemaining, nav.hold_remaining_s.filter(|left_s| left_s.is_finite()));
         self.set_known(Signal::TouchdownHeld, nav.touchdown_held_s);
         self.set(Signal::Hover, nav.hover_us);
         if nav.engaged {

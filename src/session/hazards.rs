@@ -37,7 +37,7 @@ mod tests {
     use crate::fc::upload;
     use crate::firmware::FirmwareOptions;
     use crate::firmware::config::Configuration;
-    use crate::plan::{FlightPlan, Waypoint, WaypointType};
+    use crate::plan::{Altitude, FlightPlan, Waypoint, WaypointType};
 
     #[test]
     fn an_upload_with_a_leg_that_is_too_steep_is_warned_of() {
@@ -45,10 +45,15 @@ mod tests {
         let mut controller = FlightController::from(firmware);
         let home = LatLon::new(404_635_000, -795_182_000);
         let mut plan = FlightPlan::default();
-        for alt_cm in [8000, 2000] {
-            let kind = if alt_cm == 8000 { WaypointType::Flyover } else { WaypointType::Land };
+        for alt_m in [80.0, 20.0] {
+            let kind = if alt_m > 50.0 { WaypointType::Flyover } else { WaypointType::Land };
             let position = LatLon::new(home.lat_e7 + 3000, home.lon_e7);
-            plan.waypoints.push(Waypoint { position, alt_cm, kind, ..Waypoint::default() });
+            plan.waypoints.push(Waypoint {
+                position,
+                altitude: Altitude::above_home(alt_m),
+                kind,
+                ..Waypoint::default()
+            });
         }
         upload(&mut controller, &plan, &[]).unwrap();
         let reported = hazards_from(&controller, Some(home), 10.0, None);
@@ -68,7 +73,7 @@ mod tests {
         let home = LatLon::new(404_635_000, -795_182_000);
         plan.waypoints.push(Waypoint {
             position: home,
-            alt_cm: -300,
+            altitude: Altitude::above_home(-3.0),
             kind: WaypointType::Land,
             ..Waypoint::default()
         });

@@ -210,8 +210,8 @@ pub struct NavTelemetry {
     pub speed_setpoint_mps: Option<f64>,
     /// Phase of the hold pattern, rad.
     pub pattern_angle_rad: Option<f64>,
-    /// The remaining hold time, ds, if it is reported; 65535 = endless, 0 outside a hold.
-    pub hold_remaining_ds: Option<u16>,
+    /// The remaining hold time, s, if it is reported; infinite if the hold is endless, 0 outside a hold.
+    pub hold_remaining_s: Option<f64>,
     /// `true` if the hold was commanded, not planned.
     pub held_by_command: bool,
     /// Distance from home, m.
@@ -239,6 +239,6 @@ pub struct NavTelemetry {
 impl NavTelemetry {
     /// Returns the telemetry of a navigator that flies nothing and reports everything.
     pub fn idle() -> Self {
-        Self { l1_mode: Some(L1Mode::Off), hold_remaining_ds: Some(0), ..Self::default() }
+        Self { l1_mode: Some(L1Mode::Off), hold_remaining_s: Some(0.0), ..Self::default() }
     }
 }

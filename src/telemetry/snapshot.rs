@@ -291,18 +291,15 @@ impl SettingsView {
 
     /// Returns the number of laps that an ORBIT of this waypoint flies in its time; `None` if it has no end.
     pub fn orbit_laps(&self, wp: &Waypoint) -> Option<f64> {
-        if wp.duration_ds == 0 {
+        if wp.duration.is_zero() {
             return None;
         }
-        let speed_mps = match wp.speed_cms {
-            0 => self.max_velocity_mps,
-            cms => f64::from(cms) / 100.0,
-        };
+        let speed_mps = wp.speed.own_mps().unwrap_or(self.max_velocity_mps);
         let radius_m = self.orbit_radius_m.max(0.1);
         // The autopilot has the same limits: the setting, the speed of the leg and half of the maximum lean.
         let by_lean = (0.5 * GRAVITY * self.max_angle_deg.to_radians().tan() / radius_m).sqrt();
         let rate_rps = self.max_turn_rate_dps.to_radians().min(speed_mps / radius_m).min(by_lean);
-        Some(rate_rps * f64::from(wp.duration_ds) / 10.0 / std::f64::consts::TAU)
+        Some(rate_rps * wp.duration.get() / std::f64::consts::TAU)
     }
 }
 

@@ -49,7 +49,7 @@ fn happen(tick: u64, vehicle: &mut Vehicle, session: &mut Interpreter) {
     match tick {
         500 => {
             let demo = BuiltinPlan::find(DEMO).unwrap().read().unwrap();
-            for text in upload_lines(&demo.plan, &demo.settings) {
+            for text in upload_lines(demo.plan.records(), &demo.settings) {
                 line(vehicle, session, &text);
             }
         }

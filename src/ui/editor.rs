@@ -32,7 +32,7 @@ use super::message::Effect;
 use super::text_field::TextField;
 use super::units::Units;
 use crate::plan::edit::PlanDocument;
-use crate::plan::{FlightPlan, MAX_WAYPOINTS, Waypoint};
+use crate::plan::{Altitude, FlightPlan, MAX_WAYPOINTS, Waypoint};
 
 /// The state of the plan editor.
 #[derive(Debug)]
@@ -52,7 +52,7 @@ pub struct Editor {
     uploaded_before: Option<Uploaded>,
     pub(super) popup: Option<EditorPopup>,
     /// The waypoint whose altitude is dragged in the profile, and its current altitude, cm.
-    pub(super) dragged_altitude: Option<(usize, i32)>,
+    pub(super) dragged_altitude: Option<(usize, Altitude)>,
     /// `true` if the program ends as soon as every plan is saved or given up.
     pub(super) quitting: bool,
     /// `true` if edits cannot be kept, so that they are lost when the program is killed.
@@ -201,7 +201,7 @@ impl Editor {
     }
 
     /// The waypoint whose altitude is dragged in the profile, and its current altitude, cm.
-    pub(crate) fn dragged_altitude(&self) -> Option<(usize, i32)> {
+    pub(crate) fn dragged_altitude(&self) -> Option<(usize, Altitude)> {
         self.dragged_altitude
     }
 

@@ -184,10 +184,12 @@ fn leg(nav: &NavTelemetry, units: Units) -> Vec<(u8, &'static str, String, Strin
     let m = || format!(" {}", units.length_unit());
     let length = |value: Option<f64>| value.map(|metres| units.length(metres));
     let bearing = nav.bearing_rad.map(|rad| rad.to_degrees().rem_euclid(360.0));
-    let last = if let Some(left_ds) = nav.hold_remaining_ds.filter(|left_ds| *left_ds > 0) {
-        let left = (left_ds != u16::MAX).then(|| f64::from(left_ds) / 10.0);
-        let text =
-            left.map_or_else(|| "∞".to_owned(), |left| fixed(Some(left), 4, 0).trim_start().to_owned());
+    let last = if let Some(left_s) = nav.hold_remaining_s.filter(|left_s| *left_s > 0.0) {
+        let text = if left_s.is_finite() {
+            fixed(Some(left_s), 4, 0).trim_start().to_owned()
+        } else {
+            "∞".to_owned()
+        };
         (4, " hold ", format!("{text:>3}"), " s".to_owned())
     } else {
         let xte = signed(length(nav.xte_m), 5, 1);

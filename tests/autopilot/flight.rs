@@ -11,7 +11,7 @@ use betadeck::autopilot::io::NavInputs;
 use betadeck::autopilot::land_detector::GroundMeasurement;
 use betadeck::autopilot::{Navigator, Params};
 use betadeck::geo::{GRAVITY, LatLon, local_offset, offset_to_latlon};
-use betadeck::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType};
+use betadeck::plan::{Altitude, FlightPlan, LegSpeed, Waypoint, WaypointType};
 use betadeck::signals::{MotorCommand, SimTime};
 use betadeck::telemetry::{NavEvent, NavOutput, NavState};
 use nalgebra::{Vector2, Vector3};
@@ -212,11 +212,10 @@ pub(crate) fn guide() -> Params {
 pub(crate) fn waypoint(kind: WaypointType, north: f64, east: f64, alt_m: f64, speed_mps: f64) -> Waypoint {
     Waypoint {
         position: offset_to_latlon(HOME, Vector2::new(north, east)),
-        alt_cm: (alt_m * 100.0) as i32,
-        speed_cms: (speed_mps * 100.0) as u16,
-        duration_ds: 0,
+        altitude: Altitude::above_home(alt_m),
+        speed: LegSpeed::from_mps(speed_mps),
         kind,
-        pattern: HoldPattern::None,
+        ..Waypoint::default()
     }
 }
 

@@ -16,7 +16,7 @@ use betadeck::autopilot::guidance::{L1Limits, l1};
 use betadeck::autopilot::land_detector::{GroundFacts, TouchdownFacts, TouchdownGuards};
 use betadeck::autopilot::rx_loss::{RxLossFacts, decide};
 use betadeck::plan::WaypointType::{Flyover, Hold, Land};
-use betadeck::plan::{HoldPattern, Waypoint};
+use betadeck::plan::{HoldPattern, Seconds, Waypoint};
 use betadeck::telemetry::{L1Mode, NavState, PlanSource};
 use nalgebra::Vector2;
 
@@ -399,7 +399,7 @@ fn unused_parameters_change_nothing() {
 #[test]
 fn a_change_in_flight_steps_nothing() {
     let mut orbit = pattern(HoldPattern::Orbit);
-    orbit.duration_ds = 100;
+    orbit.duration = Seconds::new(10.0);
     let mission = [waypoint(Flyover, 40.0, 0.0, 24.0, 5.0), orbit, waypoint(Land, 20.0, 20.0, 20.0, 5.0)];
     for field in Params::FIELDS {
         let mut flight = Flight::new(guide(), &mission, 20.0).wind(0.0, 4.0, 0.0).launch();

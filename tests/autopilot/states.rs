@@ -11,6 +11,7 @@ use std::collections::BTreeSet;
 
 use crate::flight::{Flight, plan, waypoint};
 use betadeck::autopilot::{Params, Rescue};
+use betadeck::plan::format::WaypointRecord;
 use betadeck::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType};
 use betadeck::telemetry::{InFlightCommand, NavEvent, NavState, TransitionReason};
 use nalgebra::Vector2;
@@ -53,12 +54,9 @@ fn any_waypoint() -> impl Strategy<Value = Waypoint> {
     let place = (-4..=4_i8, -4..=4_i8);
     let flags = (prop::sample::select(kinds), prop::sample::select(patterns));
     (place, flags, prop::sample::select(vec![0, 1, 10, 30]), 0..900_u16, 0..2500_i32).prop_map(
-        |((north, east), (kind, pattern), duration_ds, speed_cms, alt_cm)| Waypoint {
-            duration_ds,
-            speed_cms,
-            alt_cm,
-            pattern,
-            ..waypoint(kind, f64::from(north) * 5.0, f64::from(east) * 5.0, 0.0, 0.0)
+        |((north, east), (kind, pattern), duration_ds, speed, alt_cm)| {
+            let place = waypoint(kind, f64::from(north) * 5.0, f64::from(east) * 5.0, 0.0, 0.0);
+            WaypointRecord { duration_ds, speed, alt_cm, pattern, ..place.into() }.into()
         },
     )
 }

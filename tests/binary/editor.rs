@@ -31,7 +31,7 @@ fn kept_altitude(sandbox: &Sandbox) -> Option<i64> {
     });
     let journal = journals.next()?;
     assert!(journals.next().is_none(), "one journal, for one plan");
-    Some(i64::from(journal.history.document().plan.waypoints.first()?.alt_cm) / 100)
+    Some(i64::from(journal.history.document().plan.records().first()?.alt_cm) / 100)
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Laws of the plan formats: a written plan reads back, canonical text prints unchanged, and no text causes a panic.
 
 use betadeck::geo::LatLon;
+use betadeck::plan::format::WaypointRecord;
 use betadeck::plan::format::{Format, HomePosition, PlanFile, degrees_e7, parse, report, write};
 use betadeck::plan::{FlightPlan, HoldPattern, MAX_WAYPOINTS, Waypoint, WaypointType};
 use proptest::collection::vec;
@@ -16,12 +17,12 @@ prop_compose! {
     fn waypoint()(
         position in prop_oneof![Just(LatLon::default()), place()],
         alt_cm in any::<i32>(),
-        speed_cms in any::<u16>(),
+        speed in any::<u16>(),
         duration_ds in any::<u16>(),
         kind in proptest::sample::select(WaypointType::iter().collect::<Vec<_>>()),
         pattern in proptest::sample::select(HoldPattern::iter().collect::<Vec<_>>()),
-    ) -> Waypoint {
-        Waypoint { position, alt_cm, speed_cms, duration_ds, kind, pattern }
+    ) -> WaypointRecord {
+        WaypointRecord { position, alt_cm, speed, duration_ds, kind, pattern }
     }
 }
 
@@ -35,7 +36,7 @@ prop_compose! {
     ) -> PlanFile {
         let home = home.map(|(position, amsl)| HomePosition { position, amsl_m: amsl.map(f64::from) });
         let mut plan = FlightPlan::default();
-        plan.waypoints.extend(waypoints);
+        plan.waypoints.extend(waypoints.into_iter().map(Waypoint::from));
         PlanFile { name, description, home, settings, plan, notes: Vec::new() }
     }
 }
@@ -65,6 +66,11 @@ proptest! {
         let back = read(&written.text, Format::Toml);
         prop_assert_eq!(&back, &file);
         prop_assert_eq!(write(&back, Format::Toml).text, written.text);
+    }
+
+    #[test]
+    fn a_record_survives_the_way_through_si(record in waypoint()) {
+        prop_assert_eq!(WaypointRecord::from(Waypoint::from(record)), record);
     }
 
     #[test]

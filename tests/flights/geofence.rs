@@ -107,7 +107,7 @@ fn fence_returns(seed: u64) -> Option<String> {
     let kinds: Vec<_> = plan.waypoints.iter().map(|waypoint| waypoint.kind).collect();
     checks.same("types", kinds, vec![WaypointType::Flyover, WaypointType::Land]);
     for waypoint in &plan.waypoints {
-        let alt = f64::from(waypoint.alt_cm) / 100.0;
+        let alt = waypoint.altitude.above_home_m();
         checks.within("altitude", alt - rig.at(trigger).alt, -0.5 - extra.v, 0.5 + extra.v);
     }
     let home = rig.transitions().into_iter().find(|entry| entry.t > trigger + 0.1).unwrap();

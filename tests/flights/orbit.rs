@@ -81,10 +81,10 @@ fn timed(seed: u64) -> Option<String> {
     let mut checks = Checks::default();
     let holding = rig.entered(NavState::Holding, 0);
     checks.within("next leg after", rig.entered(NavState::Approaching, 1) - holding, 59.95, 60.05);
-    let counts: Vec<u16> = rig.span(holding, holding + 59.9).map(|s| s.hold_remaining_ds).collect();
-    checks.same("hold remaining begins", counts.first().copied(), Some(600));
-    checks.holds("hold remaining falls", counts.windows(2).all(|pair| pair[1] <= pair[0]));
-    checks.at_most("hold remaining ends", f64::from(*counts.last().unwrap()), 1.0);
+    let left: Vec<f64> = rig.span(holding, holding + 59.9).map(|s| s.hold_remaining_s).collect();
+    checks.same("hold remaining begins", left.first().copied(), Some(60.0));
+    checks.holds("hold remaining falls", left.windows(2).all(|pair| pair[1] <= pair[0]));
+    checks.at_most("hold remaining ends", *left.last().unwrap(), 0.1);
     checks.verdict(&format!("timed orbit, seed {seed}"), &rig.story())
 }
 

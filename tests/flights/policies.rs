@@ -74,7 +74,7 @@ fn rescue_climb(min_start_dist_m: u32) -> f64 {
     let now = *rig.samples.last().unwrap();
     assert!(now.from([0.0, 0.0]) < 28.0, "{}", now.from([0.0, 0.0]));
     let (_, plan) = rig.plans().pop().unwrap();
-    f64::from(plan.waypoints[0].alt_cm) / 100.0 - now.alt
+    plan.waypoints[0].altitude.above_home_m() - now.alt
 }
 
 #[test]

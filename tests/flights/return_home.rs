@@ -24,7 +24,7 @@ fn return_home(seed: u64, wind: Wind) -> Option<String> {
     let home = rig.vehicle.embedded().unwrap().home().unwrap();
     for waypoint in &plan.waypoints {
         checks.same("place", waypoint.position, home);
-        let alt = f64::from(waypoint.alt_cm) / 100.0;
+        let alt = waypoint.altitude.above_home_m();
         checks.within("altitude", alt - rig.at(command).alt, -0.5 - extra.v, 0.5 + extra.v);
     }
     checks.holds(

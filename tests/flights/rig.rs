@@ -40,7 +40,7 @@ pub(crate) struct Sample {
     pub(crate) wp: u8,
     /// The navigator's distance to the waypoint, m.
     pub(crate) distance: f64,
-    pub(crate) hold_remaining_ds: u16,
+    pub(crate) hold_remaining_s: f64,
 }
 
 impl Sample {
@@ -185,7 +185,7 @@ impl Rig {
             state: nav.state,
             wp: nav.wp,
             distance: nav.distance_m.unwrap_or(f64::NAN),
-            hold_remaining_ds: nav.hold_remaining_ds.expect("the embedded firmware tells"),
+            hold_remaining_s: nav.hold_remaining_s.expect("the embedded firmware tells"),
         }
     }
 

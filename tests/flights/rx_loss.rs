@@ -46,7 +46,7 @@ fn lands(seed: u64) -> Option<String> {
     let place = rig.place(plan.waypoints[0].position);
     let there = rig.at(landing);
     checks.at_most("plan's place", there.from(place), 0.5 + extra.h);
-    let alt = f64::from(plan.waypoints[0].alt_cm) / 100.0;
+    let alt = plan.waypoints[0].altitude.above_home_m();
     checks.within("plan's altitude", alt - there.alt, -0.5 - extra.v, 0.5 + extra.v);
     for (mode, on) in [
         (Mode::Failsafe, true),

@@ -25,7 +25,7 @@ pub(crate) fn denies(plan: &FlightPlan, settings: &[String], outcome: &Outcome) 
     for (index, waypoint) in plan.waypoints.iter().enumerate().filter(|(_, wp)| wp.kind.uses_position()) {
         let at = place(waypoint.position);
         let near = |instant: &Instant, radius_m: f64| {
-            let level = (instant.alt_m - f64::from(waypoint.alt_cm) / 100.0).abs() <= TOLERANCE_M + MEASURE_M;
+            let level = (instant.alt_m - waypoint.altitude.above_home_m()).abs() <= TOLERANCE_M + MEASURE_M;
             level && (instant.ne - at).norm() <= radius_m + TOLERANCE_M + MEASURE_M
         };
         let reason = match waypoint.kind {
@@ -37,7 +37,7 @@ pub(crate) fn denies(plan: &FlightPlan, settings: &[String], outcome: &Outcome) 
             WaypointType::Hold => {
                 let radius_m = assumptions.hold_radius_m + pattern_m(waypoint, &assumptions);
                 let held_s = longest(&outcome.path, |instant| near(instant, radius_m));
-                let asked_s = f64::from(waypoint.duration_ds) / 10.0;
+                let asked_s = waypoint.duration.get();
                 (held_s < asked_s - 1.0).then(|| format!("held for {held_s:.1} s of {asked_s:.1} s"))
             }
             _ => {

@@ -7,6 +7,7 @@ use crate::mission::{Mission, assert_none};
 use crate::oracle;
 use betadeck::flight::FlightResult;
 use betadeck::geo::{LatLon, offset_to_latlon};
+use betadeck::plan::format::WaypointRecord;
 use betadeck::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType, plan_lines};
 use betadeck::sim::{Airframe, ScheduledFault, Wind};
 use betadeck::telemetry::{DisarmReason, Turbulence};
@@ -31,14 +32,15 @@ fn random_plan(dice: &mut Dice) -> FlightPlan {
         let kind = if is_land { WaypointType::Land } else { dice.pick(&kinds) };
         let place = Vector2::new(dice.between(-reach_m, reach_m), dice.between(-reach_m, reach_m));
         let patterns = [HoldPattern::None, HoldPattern::Orbit, HoldPattern::Figure8];
-        Waypoint {
+        let record = WaypointRecord {
             position: offset_to_latlon(HOME, place),
             alt_cm: dice.between(300.0, top_m) as i32,
-            speed_cms: if dice.one_in(3) { 0 } else { dice.between(150.0, 1200.0) as u16 },
+            speed: if dice.one_in(3) { 0 } else { dice.between(150.0, 1200.0) as u16 },
             duration_ds: if kind == WaypointType::Hold { 50 + dice.below(250) as u16 } else { 0 },
             kind,
             pattern: dice.pick(&patterns),
-        }
+        };
+        Waypoint::from(record)
     });
     FlightPlan { waypoints: waypoints.collect() }
 }

@@ -9,6 +9,7 @@ use betadeck::geo::{LatLon, offset_to_latlon};
 use betadeck::plan::edit::PlanDocument;
 use betadeck::plan::edit::fix::fix;
 use betadeck::plan::estimate::{Assumptions, estimate};
+use betadeck::plan::format::WaypointRecord;
 use betadeck::plan::review::{Finding, SteepLeg, review};
 use betadeck::plan::setpoint::AltitudeSetpoint;
 use betadeck::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType, plan_lines};
@@ -51,14 +52,15 @@ fn random_mission(seed: u64) -> Mission {
         let reach_m = dice.pick(&[25.0, 60.0, 150.0, 150.0]);
         place += Vector2::new(dice.between(-reach_m, reach_m), dice.between(-reach_m, reach_m));
         let top_m = dice.pick(&[25.0, 25.0, 40.0, 100.0]);
-        Waypoint {
+        let record = WaypointRecord {
             position: offset_to_latlon(HOME, place),
             alt_cm: (100.0 * dice.between(6.0, top_m)) as i32,
-            speed_cms: if dice.one_in(3) { 0 } else { dice.between(150.0, 1000.0) as u16 },
+            speed: if dice.one_in(3) { 0 } else { dice.between(150.0, 1000.0) as u16 },
             duration_ds: if kind == WaypointType::Hold { 20 + dice.below(150) as u16 } else { 0 },
             kind,
             pattern: dice.pick(&[HoldPattern::None, HoldPattern::None, HoldPattern::Orbit]),
-        }
+        };
+        Waypoint::from(record)
     });
     let plan = FlightPlan { waypoints: waypoints.collect() };
     let takeoff_m = dice.pick(&[2.0, 10.0, 20.0]);

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use betadeck::plan::FlightPlan;
+use betadeck::plan::{Altitude, FlightPlan};
 use betadeck::telemetry::NavState;
 use betadeck::ui::{AppState, Effect, Msg, update};
 
@@ -12,7 +12,7 @@ use crate::hands::{keys, screen, state_with_fix};
 
 fn set_altitude(state: &mut AppState, wp: usize, alt_m: i32) {
     let mut plan = state.plan().clone();
-    plan.waypoints[wp].alt_cm = alt_m * 100;
+    plan.waypoints[wp].altitude = Altitude::above_home(alt_m.into());
     open(state, &plan);
 }
 
@@ -53,7 +53,7 @@ fn a_digit_too_many_is_reported_and_one_key_lowers_it() {
     let seen = screen(&state);
     assert!(seen.contains("waypoint 1 is 500 m above home, far above the others"), "{seen}");
     keys(&mut state, "f");
-    assert_eq!(state.plan().waypoints[1].alt_cm, 5000);
+    assert_eq!(state.plan().waypoints[1].altitude, Altitude::above_home(50.0));
     assert!(!screen(&state).contains("above home"), "{}", screen(&state));
 }
 
@@ -67,7 +67,7 @@ fn the_limit_of_the_user_counts() {
     assert!(!screen(&state).contains("above home"), "{}", screen(&state));
     state.max_altitude_m = 120.0;
     keys(&mut state, "f");
-    assert_eq!(state.plan().waypoints[3].alt_cm, 12_000);
+    assert_eq!(state.plan().waypoints[3].altitude, Altitude::above_home(120.0));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! The plan editor by keys, mouse and paste: messages in, screen and effects out.
 
-use betadeck::plan::{FlightPlan, WaypointType};
+use betadeck::plan::{Altitude, FlightPlan, Seconds, WaypointType};
 use betadeck::ui::editor::{Entry, FileReply, FileRequest, Listing};
 use betadeck::ui::{Effect, Msg, update};
 use crossterm::event::{KeyCode, KeyModifiers, MouseEventKind};
@@ -20,7 +20,7 @@ fn save_of(effects: Vec<Effect>) -> FileRequest {
 }
 
 fn altitudes(plan: &FlightPlan) -> Vec<i32> {
-    plan.waypoints.iter().map(|wp| wp.alt_cm).collect()
+    plan.records().iter().map(|wp| wp.alt_cm).collect()
 }
 
 #[test]
@@ -72,7 +72,7 @@ fn waypoints_are_inserted_repeated_moved_and_deleted() {
     keys(&mut state, "2 i");
     assert_eq!(state.plan().waypoints.len(), 5);
     let inserted = state.plan().waypoints[1];
-    assert_eq!((inserted.kind, inserted.alt_cm), (WaypointType::Flyover, 5000));
+    assert_eq!((inserted.kind, inserted.altitude), (WaypointType::Flyover, Altitude::above_home(50.0)));
     keys(&mut state, "alt-down alt-down");
     assert_eq!(state.plan().waypoints[3], inserted);
     keys(&mut state, "c v up d");
@@ -110,7 +110,7 @@ fn a_leg_that_is_too_steep_says_by_how_much_and_one_key_slows_it() {
     let seen = screen(&state);
     assert!(seen.contains("waypoint 1 is passed about") && seen.contains("f: fly WP1 at"), "{seen}");
     keys(&mut state, "f");
-    assert!(state.plan().waypoints[1].speed_cms > 0, "{:?}", state.plan());
+    assert!(state.plan().waypoints[1].speed.mps() > 0.0, "{:?}", state.plan());
     assert!(!screen(&state).contains("waypoint 1 is passed about"));
 }
 
@@ -249,7 +249,7 @@ fn the_plan_of_the_craft_is_compared_downloaded_and_watched() {
     // The App changes a waypoint.
     let mut view = state.view.clone();
     let stored = &mut std::sync::Arc::make_mut(&mut view.vehicle).stored_plan;
-    stored.as_mut().unwrap().waypoints[2].alt_cm = 7000;
+    stored.as_mut().unwrap().waypoints[2].altitude = Altitude::above_home(70.0);
     update(&mut state, Msg::View(view.clone()));
     assert!(screen(&state).contains("The plan in the craft was changed: WP2."), "{}", screen(&state));
     // An upload from this screen is not reported as a change.
@@ -361,14 +361,14 @@ fn the_mouse_chooses_values_and_drags_altitudes_in_the_profile() {
     mouse(&mut state, MouseEventKind::Down, speed);
     mouse(&mut state, MouseEventKind::Up, speed);
     keys(&mut state, "+");
-    assert_eq!(state.plan().waypoints[2].duration_ds, 310);
+    assert_eq!(state.plan().waypoints[2].duration, Seconds::new(31.0));
     let number = place_of(&state, "···3");
     let number = (number.0 + 3, number.1);
     mouse(&mut state, MouseEventKind::Down, number);
     assert!(mouse(&mut state, MouseEventKind::Drag, (number.0, number.1 + 2)).is_empty());
     let effects = mouse(&mut state, MouseEventKind::Up, (number.0, number.1 + 2));
     assert_eq!(journal_lines(&effects), 1);
-    assert!((2000..4500).contains(&state.plan().waypoints[3].alt_cm), "{:?}", altitudes(state.plan()));
+    assert!((2000..4500).contains(&state.plan().records()[3].alt_cm), "{:?}", altitudes(state.plan()));
 }
 
 #[test]

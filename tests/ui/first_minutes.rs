@@ -1,7 +1,7 @@
 //! The first half hour of a new user, by keys: the screen is true, stays readable and says how to go on.
 
 use betadeck::flight::forecast::ForecastKind;
-use betadeck::plan::WaypointType;
+use betadeck::plan::{Seconds, WaypointType};
 use betadeck::session::{Event, ForecastJob, ForecastReply, SessionEvent, SessionView};
 use betadeck::signals::SimTime;
 use betadeck::telemetry::{AbortReason, Guard, GuardName, GuardOp, NavState, Refusal};
@@ -62,7 +62,10 @@ fn the_fix_of_an_endless_hold_keeps_the_rest_of_the_plan() {
     assert!(seen.contains("f: hold WP0 for 10 s"), "{seen}");
     keys(&mut state, "f");
     let waypoints = &state.plan().waypoints;
-    assert_eq!((waypoints.len(), waypoints[0].kind, waypoints[0].duration_ds), (2, WaypointType::Hold, 100));
+    assert_eq!(
+        (waypoints.len(), waypoints[0].kind, waypoints[0].duration),
+        (2, WaypointType::Hold, Seconds::new(10.0))
+    );
 }
 
 #[test]

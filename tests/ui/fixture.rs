@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use betadeck::geo::{LatLon, LocalFrame};
 use betadeck::plan::edit::{History, PlanDocument};
-use betadeck::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType};
+use betadeck::plan::{Altitude, FlightPlan, HoldPattern, Seconds, Waypoint, WaypointType};
 use betadeck::session::{Event, SessionEvent, SessionView};
 use betadeck::signals::{RcFrame, RcSource, SimTime};
 use betadeck::telemetry::snapshot::{ModeRange, SettingsView, TruthView};
@@ -27,20 +27,20 @@ pub(crate) const HOME: LatLon = LatLon::new(404_635_000, -795_182_000);
 
 /// Returns the guide's square.
 pub(crate) fn square() -> FlightPlan {
-    let corner = |lat_e7, lon_e7, kind, duration_ds| Waypoint {
+    let corner = |lat_e7, lon_e7, kind, seconds| Waypoint {
         position: LatLon::new(lat_e7, lon_e7),
-        alt_cm: 5000,
-        speed_cms: 0,
-        duration_ds,
+        altitude: Altitude::above_home(50.0),
+        duration: Seconds::new(seconds),
         kind,
         pattern: HoldPattern::Orbit,
+        ..Waypoint::default()
     };
     let mut plan = FlightPlan::default();
     plan.waypoints.extend([
-        corner(404_640_000, -795_175_000, WaypointType::Flyover, 0),
-        corner(404_630_000, -795_175_000, WaypointType::Flyby, 0),
-        corner(404_630_000, -795_190_000, WaypointType::Hold, 300),
-        corner(404_640_000, -795_190_000, WaypointType::Land, 0),
+        corner(404_640_000, -795_175_000, WaypointType::Flyover, 0.0),
+        corner(404_630_000, -795_175_000, WaypointType::Flyby, 0.0),
+        corner(404_630_000, -795_190_000, WaypointType::Hold, 30.0),
+        corner(404_640_000, -795_190_000, WaypointType::Land, 0.0),
     ]);
     plan
 }
@@ -130,7 +130,7 @@ pub(crate) struct SimpleFlight {
     pub(crate) state: NavState,
     pub(crate) wp: u8,
     pub(crate) guards: Vec<Guard>,
-    pub(crate) hold_ds: u16,
+    pub(crate) hold_s: f64,
 }
 
 impl Default for SimpleFlight {
@@ -147,7 +147,7 @@ impl Default for SimpleFlight {
             state: NavState::Idle,
             wp: 0,
             guards: Vec::new(),
-            hold_ds: 0,
+            hold_s: 0.0,
         }
     }
 }
@@ -238,7 +238,7 @@ pub(crate) fn view(flight: &SimpleFlight) -> SessionView {
         nav.home_distance_m = Some(flight.n.hypot(flight.e));
         nav.fence_margin_m = Some(500.0 - flight.n.hypot(flight.e));
         nav.eta_s = (flight.state == NavState::Approaching).then(|| dn.hypot(de) / flight.speed.max(0.5));
-        nav.hold_remaining_ds = Some(flight.hold_ds);
+        nav.hold_remaining_s = Some(flight.hold_s);
         nav.guards = flight.guards.iter().copied().collect();
         let from = usize::from(flight.wp).checked_sub(1).map_or(HOME, |wp| plan.waypoints[wp].position);
         nav.leg_start = Some(from);
@@ -351,7 +351,7 @@ fn fly(state: &mut AppState, time_s: f64, (n, e): (f64, f64), heading_deg: f64, 
         state: NavState::Approaching,
         wp,
         guards,
-        hold_ds: 0,
+        hold_s: 0.0,
     };
     update(state, Msg::View(view(&flight)));
 }
@@ -373,7 +373,7 @@ pub(crate) fn orbit(state: &mut AppState) {
         state: NavState::Orbiting,
         wp: 2,
         guards: vec![guard],
-        hold_ds: 184,
+        hold_s: 18.4,
     };
     update(state, Msg::View(view(&flight)));
 }

@@ -7,7 +7,7 @@ use betadeck::ui::{Effect, Msg, update};
 use crate::hands::{keys, screen, state_with_fix as state};
 
 fn altitudes(plan: &FlightPlan) -> Vec<i32> {
-    plan.waypoints.iter().map(|wp| wp.alt_cm).collect()
+    plan.records().iter().map(|wp| wp.alt_cm).collect()
 }
 
 #[test]

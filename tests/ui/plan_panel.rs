@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use betadeck::plan::Altitude;
 use betadeck::session::SessionView;
 use betadeck::ui::{AppState, Msg, Units, update};
 use crossterm::event::MouseEventKind;
@@ -25,11 +26,15 @@ fn with_imperial_units_the_table_shows_takes_and_nudges_feet_and_miles_an_hour()
     keys(&mut state, "right right right enter");
     assert!(screen(&state).contains("feet above home"), "{}", screen(&state));
     keys(&mut state, "backspace backspace backspace backspace backspace backspace '200 enter");
-    assert_eq!(state.plan().waypoints[0].alt_cm, 6096, "what is kept and sent is metric");
+    assert_eq!(
+        state.plan().waypoints[0].altitude,
+        Altitude::above_home(60.96),
+        "what is kept and sent is metric"
+    );
     keys(&mut state, "+ + -");
-    assert_eq!(state.plan().waypoints[0].alt_cm, 6126, "201 ft");
+    assert_eq!(state.plan().waypoints[0].altitude, Altitude::above_home(61.26), "201 ft");
     keys(&mut state, "right enter backspace '10 enter");
-    assert_eq!(state.plan().waypoints[0].speed_cms, 447);
+    assert_eq!(state.plan().records()[0].speed, 447);
     // The craft still has the unchanged plan.
     let seen = screen(&state);
     assert!(seen.contains("On the craft WP0 is: altitude 164.0, speed —."), "{seen}");
@@ -41,7 +46,7 @@ fn with_imperial_units_forms_and_the_map_are_in_feet() {
     keys(&mut state, "2 ctrl-a m");
     assert!(screen(&state).contains("ft above home") && screen(&state).contains("mph, 0 = default"));
     keys(&mut state, "'100 down down '10 enter");
-    assert!(state.plan().waypoints.iter().all(|wp| (wp.alt_cm, wp.speed_cms) == (3048, 447)));
+    assert!(state.plan().records().iter().all(|wp| (wp.alt_cm, wp.speed) == (3048, 447)));
     keys(&mut state, "P");
     let seen = screen(&state);
     assert!(seen.contains("262 ") && seen.contains("ft above home"), "80 m\n{seen}");
@@ -63,7 +68,7 @@ fn an_altitude_dragged_far_up_follows_the_mouse_however_often_that_tells() {
             mouse(&mut state, MouseEventKind::Drag, (number.0, number.1 - 15));
         }
         mouse(&mut state, MouseEventKind::Up, (number.0, number.1 - 15));
-        state.plan().waypoints[3].alt_cm
+        state.plan().records()[3].alt_cm
     });
     dragged.sort_unstable();
     assert!(dragged[0] > 5000 && dragged[0] == dragged[1], "{dragged:?}");
@@ -78,7 +83,7 @@ fn altitudes_are_dragged_by_whole_feet() {
     mouse(&mut state, MouseEventKind::Down, number);
     mouse(&mut state, MouseEventKind::Drag, (number.0, number.1 + 2));
     mouse(&mut state, MouseEventKind::Up, (number.0, number.1 + 2));
-    let feet = f64::from(state.plan().waypoints[3].alt_cm) / 30.48;
+    let feet = f64::from(state.plan().records()[3].alt_cm) / 30.48;
     assert!((feet - feet.round()).abs() < 0.02 && feet < 150.0, "{feet} ft");
 }
 

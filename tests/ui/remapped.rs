@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use betadeck::plan::FlightPlan;
+use betadeck::plan::{Altitude, FlightPlan};
 use betadeck::session::{Event, SessionEvent, SessionView};
 use betadeck::signals::SimTime;
 use betadeck::telemetry::snapshot::Snapshot;
@@ -76,7 +76,7 @@ const SITUATIONS: [Situation; 14] = [
             v.craft.armed = Some(true);
             v.nav.as_mut().expect("nav").engaged = true;
             let mut older = fixture::square();
-            older.waypoints[0].alt_cm = 1000;
+            older.waypoints[0].altitude = Altitude::above_home(10.0);
             v.active_plan = Some(older);
         });
     }),

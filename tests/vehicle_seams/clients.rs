@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use betadeck::fc::upload;
 use betadeck::link::proto::command_line::{LineReply, LineSource};
 use betadeck::link::{ClientId, ListenConfig, Listeners, Request};
-use betadeck::plan::{FlightPlan, Waypoint};
+use betadeck::plan::{Altitude, FlightPlan, Waypoint};
 use betadeck::session::{Handled, Persistence, RequestHandler};
 use betadeck::signals::RcFrame;
 use betadeck::storage::Store;
@@ -142,7 +142,7 @@ async fn scripts_and_simulators_are_heard_beside_a_remote_flight_controller() {
 
 fn plan() -> FlightPlan {
     let mut plan = FlightPlan::default();
-    plan.waypoints.push(Waypoint { alt_cm: 2000, ..Waypoint::default() });
+    plan.waypoints.push(Waypoint { altitude: Altitude::above_home(20.0), ..Waypoint::default() });
     plan
 }
 

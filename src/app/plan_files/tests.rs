@@ -1,11 +1,11 @@
 use super::*;
-use crate::plan::Waypoint;
+use crate::plan::format::WaypointRecord;
 
 mod damaged_journals;
 
 fn document(alt_cm: i32) -> PlanDocument {
     let mut document = PlanDocument { name: "test".to_owned(), ..PlanDocument::default() };
-    document.plan.waypoints.push(Waypoint { alt_cm, ..Waypoint::default() });
+    document.plan.waypoints.push(WaypointRecord { alt_cm, ..Default::default() }.into());
     document
 }
 

@@ -6,6 +6,7 @@ use nalgebra::Vector2;
 
 use crate::autopilot::params::Params;
 use crate::geo::GRAVITY;
+use crate::plan::Seconds;
 
 /// A point on a pattern, relative to the waypoint.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,14 +58,13 @@ pub fn pattern_rate_rps(radius_m: f64, leg_speed_mps: f64, params: &Params) -> f
     f64::from(params.max_turn_rate).to_radians().min(leg_speed_mps / radius).min(by_lean)
 }
 
-/// Returns the remaining time of a hold in deciseconds, 65535 if the hold is endless.
-pub fn hold_remaining_ds(duration_ds: u16, elapsed_us: u64) -> u16 {
-    if duration_ds == 0 {
-        return u16::MAX;
+/// Returns the remaining time of a hold, s, rounded down to tenths. It is infinite if the hold is endless.
+pub fn hold_remaining_s(duration: Seconds, elapsed_us: u64) -> f64 {
+    if duration.is_zero() {
+        return f64::INFINITY;
     }
-    let left_us = (u64::from(duration_ds) * 100_000).saturating_sub(elapsed_us);
-    // At most the duration, which is a `u16`.
-    (left_us / 100_000) as u16
+    let left_us = duration.micros().saturating_sub(elapsed_us);
+    (left_us / 100_000) as f64 / 10.0
 }
 
 #[cfg(test)]

@@ -1,14 +1,13 @@
 //! The speed of a leg and of a stop.
 
 use crate::autopilot::params::Params;
+use crate::plan::LegSpeed;
 
-/// Returns the speed of a leg, m/s: the waypoint's own speed (cm/s) between 1 m/s and `ap_max_velocity`. A speed of 0
-/// means `ap_max_velocity`.
-pub fn leg_speed_mps(waypoint_speed_cms: u16, params: &Params) -> f64 {
-    match waypoint_speed_cms {
-        0 => params.max_velocity_mps(),
-        speed => (f64::from(speed) / 100.0).max(1.0).min(params.max_velocity_mps()),
-    }
+/// Returns the speed of a leg, m/s: the waypoint's own speed between 1 m/s and `ap_max_velocity`, or
+/// `ap_max_velocity` if it has none.
+pub fn leg_speed_mps(speed: LegSpeed, params: &Params) -> f64 {
+    let most_mps = params.max_velocity_mps();
+    speed.own_mps().map_or(most_mps, |mps| mps.max(1.0).min(most_mps))
 }
 
 /// Returns the speed (m/s) at `distance_m` from a point to stop at. Near the point it is proportional to the distance

@@ -165,7 +165,7 @@ fn next(facts: &Facts) -> Outcome {
 }
 
 fn arrived(facts: &Facts, list: &mut Rules) {
-    let loiter = facts.waypoint.duration_ds > 0;
+    let loiter = !facts.waypoint.duration.is_zero();
     let (outcome, reason) = match facts.waypoint.kind {
         WaypointType::Hold => (Outcome::Hold, TransitionReason::Hold),
         WaypointType::Land if loiter => (Outcome::Hold, TransitionReason::Loiter),
@@ -192,7 +192,12 @@ fn holding(facts: &Facts, list: &mut Rules) {
             HoldPattern::None => hold_time(facts, list),
         },
         WaypointType::Land => {
-            let over = Guard::new(GuardName::HoldTime, hold_s(facts), GuardOp::AtLeast, duration_s(facts));
+            let over = Guard::new(
+                GuardName::HoldTime,
+                hold_s(facts),
+                GuardOp::AtLeast,
+                facts.waypoint.duration.get(),
+            );
             list.push(rule([over], Outcome::Land, TransitionReason::HoldTime));
         }
         WaypointType::Takeoff
@@ -207,7 +212,8 @@ fn holding(facts: &Facts, list: &mut Rules) {
 /// Adds the rule for the hold time. A duration of zero is endless: the guard is shown with a limit that is never
 /// reached.
 fn hold_time(facts: &Facts, list: &mut Rules) {
-    let limit = if facts.waypoint.duration_ds > 0 { duration_s(facts) } else { f64::INFINITY };
+    let duration = facts.waypoint.duration;
+    let limit = if duration.is_zero() { f64::INFINITY } else { duration.get() };
     let over = Guard::new(GuardName::HoldTime, hold_s(facts), GuardOp::AtLeast, limit);
     list.push(rule([over], next(facts), TransitionReason::HoldTime));
 }
@@ -215,10 +221,6 @@ fn hold_time(facts: &Facts, list: &mut Rules) {
 // Both divisions round the same rational number the same way, so the comparison is exact.
 fn hold_s(facts: &Facts) -> f64 {
     facts.hold_elapsed_us as f64 / 1e6
-}
-
-fn duration_s(facts: &Facts) -> f64 {
-    f64::from(facts.waypoint.duration_ds) / 10.0
 }
 
 fn landing(facts: &Facts, list: &mut Rules) {

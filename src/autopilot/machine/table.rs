@@ -9,7 +9,7 @@ use super::{Facts, Outcome, ProgressFacts, Rules};
 use crate::autopilot::guidance::PlaneCrossing;
 use crate::autopilot::land_detector::{GroundFacts, TouchdownFacts, TouchdownGuards};
 use crate::autopilot::params::Params;
-use crate::plan::{HoldPattern, WaypointType};
+use crate::plan::{HoldPattern, Seconds, WaypointType};
 use crate::telemetry::{FenceAction, Guard, NavState, PlanSource};
 
 /// A situation of the machine, in words, and the rules that apply to it.
@@ -29,7 +29,7 @@ fn facts(kind: WaypointType, last: bool) -> Facts {
 /// Returns the facts of a hold of 2 s.
 fn timed(kind: WaypointType, last: bool) -> Facts {
     let mut facts = facts(kind, last);
-    facts.waypoint.duration_ds = 20;
+    facts.waypoint.duration = Seconds::new(2.0);
     facts
 }
 

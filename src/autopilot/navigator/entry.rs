@@ -7,7 +7,7 @@ use crate::autopilot::engage::{self, EngageFacts};
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::params::Params;
 use crate::geo::{LatLon, local_offset, offset_to_latlon};
-use crate::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType};
+use crate::plan::{Altitude, FlightPlan, LegSpeed, Waypoint, WaypointType};
 use crate::telemetry::{AbortReason, Guard, NavEvent, NavState, PlanSource, Refusal, TransitionReason};
 
 /// A landing ends at its planned place if the fix comes back this near to it, m.
@@ -351,11 +351,9 @@ pub(super) fn here(inputs: &NavInputs) -> LatLon {
 fn injected(kind: WaypointType, position: LatLon, altitude_m: f64, speed_mps: f64) -> Waypoint {
     Waypoint {
         position,
-        // Both saturate: altitude in cm and speed in cm/s fit their fields.
-        alt_cm: (altitude_m * 100.0).round() as i32,
-        speed_cms: (speed_mps * 100.0).round() as u16,
-        duration_ds: 0,
+        altitude: Altitude::above_home(altitude_m),
+        speed: LegSpeed::from_mps(speed_mps),
         kind,
-        pattern: HoldPattern::None,
+        ..Waypoint::default()
     }
 }

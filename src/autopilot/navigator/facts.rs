@@ -45,7 +45,7 @@ impl Navigator {
             waypoint: WaypointFacts {
                 kind: waypoint.kind,
                 pattern: waypoint.pattern,
-                duration_ds: waypoint.duration_ds,
+                duration: waypoint.duration,
                 last: seen.is_last,
                 co_located: seen.is_co_located,
                 missed: self.leg.missed,

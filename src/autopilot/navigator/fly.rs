@@ -168,7 +168,7 @@ impl Navigator {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::{FlightPlan, Waypoint};
+    use crate::plan::{Altitude, FlightPlan, Waypoint};
     use crate::signals::SimTime;
 
     #[test]
@@ -177,7 +177,7 @@ mod tests {
         let mut at_point = NavInputs::hovering();
         let hold = Waypoint {
             position: at_point.origin,
-            alt_cm: 2000,
+            altitude: Altitude::above_home(20.0),
             kind: WaypointType::Hold,
             ..Waypoint::default()
         };

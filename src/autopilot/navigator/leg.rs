@@ -92,12 +92,8 @@ impl Navigator {
         let Some(waypoint) = self.cursor.waypoint(index) else { return };
         self.cursor.move_to(index);
         let position = if waypoint.kind.uses_position() { waypoint.position } else { here(inputs) };
-        self.leg = Leg {
-            waypoint: position,
-            altitude_m: f64::from(waypoint.alt_cm) / 100.0,
-            start,
-            ..Leg::default()
-        };
+        self.leg =
+            Leg { waypoint: position, altitude_m: waypoint.altitude.above_home_m(), start, ..Leg::default() };
         self.clear_clocks();
         self.apply_modifiers(modifiers_from, index, inputs);
         let (from, to) = (local_offset(inputs.origin, start), local_offset(inputs.origin, position));
@@ -119,7 +115,7 @@ impl Navigator {
         for at in from..to {
             let Some(modifier) = self.cursor.waypoint(at) else { return };
             match modifier.kind {
-                WaypointType::AltChange => self.leg.altitude_m = f64::from(modifier.alt_cm) / 100.0,
+                WaypointType::AltChange => self.leg.altitude_m = modifier.altitude.above_home_m(),
                 WaypointType::YawRate => self.yaw_cap_dps = yaw_cap(&modifier),
                 WaypointType::Delay => self.leg.delay = self.delay(&modifier, inputs),
                 WaypointType::Flyover
@@ -132,19 +128,19 @@ impl Navigator {
     }
 
     fn delay(&self, modifier: &Waypoint, inputs: &NavInputs) -> Option<(f64, SimTime)> {
-        if modifier.duration_ds == 0 {
+        if modifier.duration.is_zero() {
             return None;
         }
         let horizontal = (local_offset(inputs.origin, self.leg.waypoint) - inputs.pos_ne).norm();
         let length = horizontal.hypot(self.leg.altitude_m - inputs.alt_m);
-        let speed = length / (f64::from(modifier.duration_ds) / 10.0);
-        let until = SimTime(inputs.time.0.saturating_add(u64::from(modifier.duration_ds) * 100_000));
+        let speed = length / modifier.duration.get();
+        let until = SimTime(inputs.time.0.saturating_add(modifier.duration.micros()));
         Some((speed.max(SLOWEST_MPS), until))
     }
 }
 
 fn yaw_cap(modifier: &Waypoint) -> Option<f64> {
-    (modifier.speed_cms > 0).then(|| f64::from(modifier.speed_cms))
+    (modifier.yaw_rate_dps > 0).then(|| f64::from(modifier.yaw_rate_dps))
 }
 
 fn corner_arc(to_target: Vector2<f64>, velocity: Vector2<f64>, params: &Params) -> Option<CornerArc> {

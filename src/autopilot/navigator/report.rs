@@ -6,10 +6,11 @@ use super::Navigator;
 use super::fly::Flown;
 use super::observed::Observed;
 use crate::autopilot::control::FlightControllers;
-use crate::autopilot::guidance::hold_remaining_ds;
+use crate::autopilot::guidance::hold_remaining_s;
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::machine::{Facts, waiting_for};
 use crate::autopilot::params::Params;
+use crate::plan::Seconds;
 use crate::telemetry::{L1Mode, NavState, NavTelemetry};
 
 /// The ground speed below which a time to the waypoint is meaningless, m/s.
@@ -56,7 +57,7 @@ impl Navigator {
                 speed_setpoint_mps: Some(controllers.position.speed_setpoint_mps()),
                 pattern_angle_rad: matches!(self.state, NavState::Orbiting | NavState::Figure8)
                     .then(|| self.hold.phase_rad()),
-                hold_remaining_ds: Some(self.hold_remaining_ds(now)),
+                hold_remaining_s: Some(self.hold_remaining_s(now)),
                 held_by_command: self.hold.is_by_command(),
                 eta_s: (on_leg && speed >= ETA_MIN_MPS).then(|| seen.distance_m / speed),
                 stick_override: seen.stick_override,
@@ -86,18 +87,18 @@ impl Navigator {
         telemetry.kind = self.cursor.current().map(|waypoint| waypoint.kind);
     }
 
-    fn hold_remaining_ds(&self, now: &NavInputs) -> u16 {
+    fn hold_remaining_s(&self, now: &NavInputs) -> f64 {
         match self.state {
-            NavState::Holding if self.hold.is_by_command() => hold_remaining_ds(0, 0),
+            NavState::Holding if self.hold.is_by_command() => hold_remaining_s(Seconds::default(), 0),
             NavState::Holding | NavState::Orbiting | NavState::Figure8 => {
-                let duration = self.cursor.current().unwrap_or_default().duration_ds;
-                hold_remaining_ds(duration, self.hold.elapsed_us(now.time))
+                let duration = self.cursor.current().unwrap_or_default().duration;
+                hold_remaining_s(duration, self.hold.elapsed_us(now.time))
             }
             NavState::Idle
             | NavState::Approaching
             | NavState::Arrived
             | NavState::Landing
-            | NavState::Complete => 0,
+            | NavState::Complete => 0.0,
         }
     }
 }

@@ -41,7 +41,7 @@ pub(super) struct PathView {
 impl Navigator {
     /// Returns the maximum speed on this leg, m/s.
     pub(super) fn leg_speed(&self, now: &NavInputs, params: &Params) -> f64 {
-        let own = leg_speed_mps(self.cursor.current().unwrap_or_default().speed_cms, params);
+        let own = leg_speed_mps(self.cursor.current().unwrap_or_default().speed, params);
         match self.leg.delay {
             Some((cap, until)) if now.time < until => own.min(cap),
             Some(_) | None => own,

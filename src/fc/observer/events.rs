@@ -163,7 +163,7 @@ impl EventObserver {
             reason,
             guard: None,
             target: waypoint.map_or_else(LatLon::default, |waypoint| waypoint.position),
-            target_alt_m: waypoint.map_or(0.0, |waypoint| f64::from(waypoint.alt_cm) / 100.0),
+            target_alt_m: waypoint.map_or(0.0, |waypoint| waypoint.altitude.above_home_m()),
         }));
         self.landed = self.state == NavState::Landing && to == NavState::Complete;
         (self.state, self.wp) = (to, wp);

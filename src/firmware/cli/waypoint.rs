@@ -5,7 +5,8 @@ use std::str::FromStr as _;
 use super::CliAction;
 use super::session::{Session, integer};
 use crate::geo::{Degrees7, LatLon};
-use crate::plan::{HoldPattern, MAX_WAYPOINTS, Waypoint, WaypointType, plan_lines, waypoint_values};
+use crate::plan::format::WaypointRecord;
+use crate::plan::{HoldPattern, MAX_WAYPOINTS, WaypointType, plan_lines};
 use crate::telemetry::{NavState, Refusal};
 
 /// `waypoint [list|status|insert|update|remove|clear]`.
@@ -72,8 +73,8 @@ fn edit(session: &mut Session<'_>, arguments: &[&str], edit: Edit) {
         session.error(format_args!("index NOT BETWEEN 0 AND {last}"));
         return;
     };
-    let waypoint = match read([lat, lon, alt, speed, kind, duration, pattern]) {
-        Ok(waypoint) => waypoint,
+    let record = match read([lat, lon, alt, speed, kind, duration, pattern]) {
+        Ok(record) => record,
         Err(text) => {
             session.error(text);
             return;
@@ -82,25 +83,22 @@ fn edit(session: &mut Session<'_>, arguments: &[&str], edit: Edit) {
     let waypoints = &mut session.configuration.plan.waypoints;
     let word = match edit {
         Edit::Insert => {
-            waypoints.insert(index, waypoint);
+            waypoints.insert(index, record.into());
             "insert"
         }
         Edit::Update => {
             if let Some(place) = waypoints.get_mut(index) {
-                *place = waypoint;
+                *place = record.into();
             }
             "update"
         }
     };
-    session.line(format_args!(
-        "waypoint {word} {index} {}",
-        waypoint_values(&waypoint, metres(waypoint.alt_cm))
-    ));
+    session.line(format_args!("waypoint {word} {index} {}", record.values(metres(record.alt_cm))));
     session.act(CliAction::PlanChanged);
 }
 
 /// Parses the fields after the index. The order of the checks decides the error text for a line with several faults.
-fn read(fields: [&str; 7]) -> Result<Waypoint, &'static str> {
+fn read(fields: [&str; 7]) -> Result<WaypointRecord, &'static str> {
     let [lat, lon, alt, speed, kind, duration, pattern] = fields;
     let lat_e7 = degrees(lat).ok_or("INVALID LATITUDE FORMAT. USE: -90.0000000 to 90.0000000")?;
     let lon_e7 = degrees(lon).ok_or("INVALID LONGITUDE FORMAT. USE: -180.0000000 to 180.0000000")?;
@@ -108,7 +106,7 @@ fn read(fields: [&str; 7]) -> Result<Waypoint, &'static str> {
     let alt_cm = i32::try_from(alt).map_err(|_| "ALTITUDE OUT OF RANGE")?;
     let speed = integer(speed).ok_or("INVALID SPEED")?;
     let duration = integer(duration).ok_or("INVALID DURATION")?;
-    let speed_cms = u16::try_from(speed).map_err(|_| "speed NOT BETWEEN 0 AND 65535")?;
+    let speed = u16::try_from(speed).map_err(|_| "speed NOT BETWEEN 0 AND 65535")?;
     let duration_ds = u16::try_from(duration).map_err(|_| "duration NOT BETWEEN 0 AND 65535")?;
     let kind = WaypointType::from_str(kind)
         .map_err(|_| "INVALID TYPE. USE: FLYOVER, FLYBY, HOLD, LAND, TAKEOFF, ALT_CHANGE, DELAY, YAW_RATE")?;
@@ -119,7 +117,7 @@ fn read(fields: [&str; 7]) -> Result<Waypoint, &'static str> {
     if !LatLon::new(0, lon_e7).is_on_globe() {
         return Err("LONGITUDE OUT OF RANGE. USE: -180.0 to 180.0");
     }
-    Ok(Waypoint { position: LatLon::new(lat_e7, lon_e7), alt_cm, speed_cms, duration_ds, kind, pattern })
+    Ok(WaypointRecord { position: LatLon::new(lat_e7, lon_e7), alt_cm, speed, duration_ds, kind, pattern })
 }
 
 /// Parses decimal degrees as degrees × 10⁷. Decimals beyond the seventh are cut, not rounded.
@@ -175,13 +173,13 @@ fn status(session: &mut Session<'_>) {
     if !plan.waypoints.is_empty() {
         session.raw("\n");
         session.line("Configured waypoints:");
-        for (at, waypoint) in plan.waypoints.iter().enumerate() {
+        for (at, record) in plan.records().iter().enumerate() {
             session.line(format_args!(
                 "  [{at}] {} {} {} {}",
-                Degrees7(waypoint.position.lat_e7),
-                Degrees7(waypoint.position.lon_e7),
-                metres(waypoint.alt_cm),
-                waypoint.kind
+                Degrees7(record.position.lat_e7),
+                Degrees7(record.position.lon_e7),
+                metres(record.alt_cm),
+                record.kind
             ));
         }
     }

@@ -4,13 +4,13 @@ use strum::IntoEnumIterator as _;
 use super::*;
 use crate::autopilot::control::FlightControllers;
 use crate::geo::LatLon;
-use crate::plan::{Waypoint, WaypointType};
+use crate::plan::{Altitude, Waypoint, WaypointType};
 use crate::telemetry::{PlanSource, RxLossPolicy};
 
 fn plan() -> FlightPlan {
     let far = Waypoint {
         position: LatLon::new(404_645_000, -795_182_000),
-        alt_cm: 2000,
+        altitude: Altitude::above_home(20.0),
         kind: WaypointType::Flyover,
         ..Waypoint::default()
     };
@@ -119,7 +119,7 @@ fn rescue_switch_flies_home_higher_and_lets_go() {
     let on = OrderFacts { autopilot_switch: true, rescue_switch: true, ..CALM };
     flight.update(on);
     assert_eq!(flight.navigator.source(), PlanSource::Rth);
-    assert_eq!(flight.navigator.active_plan().waypoints[0].alt_cm, 3000);
+    assert_eq!(flight.navigator.active_plan().waypoints[0].altitude, Altitude::above_home(30.0));
     flight.update(OrderFacts { rescue_switch: false, ..on });
     assert_eq!(flight.navigator.source(), PlanSource::Stored, "the mission goes on");
 

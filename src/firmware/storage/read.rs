@@ -6,7 +6,8 @@ use super::super::config::{
 };
 use super::super::settings::{Scope, find};
 use crate::geo::LatLon;
-use crate::plan::{HoldPattern, Waypoint, WaypointType};
+use crate::plan::format::WaypointRecord;
+use crate::plan::{HoldPattern, WaypointType};
 use std::str::FromStr;
 use strum::IntoEnumIterator;
 
@@ -210,10 +211,10 @@ fn serial(configuration: &mut Configuration, fields: &[&str]) -> Option<()> {
 
 fn waypoint(configuration: &mut Configuration, fields: &[&str]) -> Outcome {
     let read = || {
-        Some(Waypoint {
+        Some(WaypointRecord {
             position: LatLon::new(number(fields, 0)?, number(fields, 1)?),
             alt_cm: number(fields, 2)?,
-            speed_cms: number(fields, 3)?,
+            speed: number(fields, 3)?,
             kind: WaypointType::from_repr(number(fields, 4)?)?,
             duration_ds: number(fields, 5)?,
             pattern: HoldPattern::from_repr(number(fields, 6)?)?,
@@ -221,7 +222,7 @@ fn waypoint(configuration: &mut Configuration, fields: &[&str]) -> Outcome {
     };
     match read().filter(|waypoint| waypoint.position.is_on_globe()) {
         None => Outcome::Refused,
-        Some(waypoint) => match configuration.plan.waypoints.try_push(waypoint) {
+        Some(waypoint) => match configuration.plan.waypoints.try_push(waypoint.into()) {
             Ok(()) => Outcome::Taken,
             Err(_) => Outcome::PlanFull,
         },

@@ -60,7 +60,7 @@ pub(super) fn payload(configuration: &Configuration) -> String {
             [&row.msp_baud, &row.gps_baud, &row.telemetry_baud, &row.blackbox_baud];
         record(&[&"serial", &at, &row.functions, bauds[0], bauds[1], bauds[2], bauds[3]]);
     }
-    for waypoint in &configuration.plan.waypoints {
+    for waypoint in configuration.plan.records() {
         let place: [&dyn std::fmt::Display; 3] =
             [&waypoint.position.lat_e7, &waypoint.position.lon_e7, &waypoint.alt_cm];
         let (kind, pattern) = (waypoint.kind as u8, waypoint.pattern as u8);
@@ -69,7 +69,7 @@ pub(super) fn payload(configuration: &Configuration) -> String {
             place[0],
             place[1],
             place[2],
-            &waypoint.speed_cms,
+            &waypoint.speed,
             &kind,
             &waypoint.duration_ds,
             &pattern,

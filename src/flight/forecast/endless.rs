@@ -16,8 +16,6 @@ const PILOT_QUIET_S: f64 = 120.0;
 const HEIGHT_M: f64 = 1.0;
 /// The text for a craft without autopilot and without events.
 pub(super) const LEFT_TO_STICKS: &str = "the sticks have the craft, and the flight has no end";
-/// The remaining hold time that means an endless hold, ds.
-const ENDLESS_DS: u16 = u16::MAX;
 
 /// The state of the watch.
 #[derive(Debug, Clone, Default)]
@@ -36,7 +34,7 @@ impl EndlessWatch {
         if nav.engaged {
             self.quiet_since = None;
             let holds = matches!(nav.state, NavState::Holding | NavState::Orbiting | NavState::Figure8);
-            if !(holds && nav.hold_remaining_ds == Some(ENDLESS_DS)) {
+            if !(holds && nav.hold_remaining_s == Some(f64::INFINITY)) {
                 self.hold_since = None;
                 return None;
             }

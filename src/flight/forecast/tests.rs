@@ -1,5 +1,6 @@
 use super::*;
 use crate::flight::FlightSetup;
+use crate::plan::Seconds;
 use crate::plan::builtin::BuiltinPlan;
 use crate::sim::{Noise, WorldConfig};
 
@@ -121,7 +122,7 @@ fn what_the_craft_refuses_is_said() {
 fn a_hold_without_end_ends_the_forecast() {
     let mut endless = plan("hold-none");
     for waypoint in &mut endless.waypoints {
-        waypoint.duration_ds = 0;
+        waypoint.duration = Seconds::default();
     }
     let vehicle = vehicle("square", Noise::None);
     let forecast = end(ForecastRun::plan_estimate(vehicle, &endless, &[], 10.0).unwrap());

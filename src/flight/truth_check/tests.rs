@@ -1,6 +1,6 @@
 use super::*;
 use crate::plan::estimate::TouchdownThrottle;
-use crate::plan::{Waypoint, WaypointType};
+use crate::plan::{Altitude, Waypoint, WaypointType};
 use crate::signals::SimTime;
 use crate::telemetry::{GuardName, GuardOp};
 
@@ -52,7 +52,12 @@ impl Bench {
     fn plan(&mut self, source: PlanSource) {
         let mut plan = Box::<FlightPlan>::default();
         let position = LatLon::from_degrees(40.0, -79.0);
-        plan.waypoints.push(Waypoint { position, kind: self.kind, alt_cm: 2000, ..Waypoint::default() });
+        plan.waypoints.push(Waypoint {
+            position,
+            kind: self.kind,
+            altitude: Altitude::above_home(20.0),
+            ..Waypoint::default()
+        });
         self.follow(&NavEvent::Plan { source, plan });
     }
 

@@ -6,17 +6,17 @@ use super::PlanDocument;
 use crate::geo::{GroundPlane, LatLon, distance_bearing};
 use crate::plan::review::{Finding, Remedy, SteepLeg};
 use crate::plan::validate::{PlanFault, WaypointFault};
-use crate::plan::{HoldPattern, Waypoint, WaypointType};
+use crate::plan::{Altitude, HoldPattern, LegSpeed, Seconds, Waypoint, WaypointType};
 
 /// The distance from home to which a waypoint is moved, as a share of the fence. It leaves room for the turn.
 const INSIDE_FENCE: f64 = 0.95;
-/// The new altitude of a waypoint that was below the ground, cm.
-const RAISED_CM: i32 = 1000;
+/// The new altitude of a waypoint that was below the ground, m.
+const RAISED_M: f64 = 10.0;
 
-/// The time of a HOLD that only waits for its altitude, ds; 0 would hold forever.
-const SHORTEST_HOLD_DS: u16 = 1;
-/// The time suggested for a HOLD that lasts forever, ds.
-const OFFERED_HOLD_DS: u16 = 100;
+/// The time of a HOLD that only waits for its altitude, s; 0 would hold forever.
+const SHORTEST_HOLD_S: f64 = 0.1;
+/// The time suggested for a HOLD that lasts forever, s.
+const OFFERED_HOLD_S: f64 = 10.0;
 
 /// An edit that the editor suggests.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,8 +60,8 @@ pub fn fix(document: &PlanDocument, finding: &Finding, home: LatLon) -> Option<F
             format!("move WP{index} inside the fence")
         }
         Finding::NeverFlown { index, kind: WaypointType::Hold } => {
-            waypoints.get_mut(index)?.duration_ds = OFFERED_HOLD_DS;
-            format!("hold WP{index} for {} s", OFFERED_HOLD_DS / 10)
+            waypoints.get_mut(index)?.duration = Seconds::new(OFFERED_HOLD_S);
+            format!("hold WP{index} for {OFFERED_HOLD_S} s")
         }
         Finding::NeverFlown { index, .. } => {
             let behind = waypoints.len().checked_sub(index + 1)?;
@@ -73,23 +73,22 @@ pub fn fix(document: &PlanDocument, finding: &Finding, home: LatLon) -> Option<F
             format!("delete WP{index} {kind}")
         }
         Finding::SpeedLimited { index, .. } => {
-            waypoints.get_mut(index)?.speed_cms = 0;
+            waypoints.get_mut(index)?.speed = LegSpeed::default();
             format!("fly WP{index} at ap_max_velocity")
         }
         Finding::BelowGround { index, .. } => {
-            waypoints.get_mut(index)?.alt_cm = RAISED_CM;
-            format!("raise WP{index} to {} m", RAISED_CM / 100)
+            waypoints.get_mut(index)?.altitude = Altitude::above_home(RAISED_M);
+            format!("raise WP{index} to {RAISED_M} m")
         }
         Finding::AboveLimit { index, limit_m: lower_m, .. }
         | Finding::FarAboveOthers { index, usual_m: lower_m, .. } => {
-            // Saturates; a limit is far inside the range.
-            waypoints.get_mut(index)?.alt_cm = (lower_m * 100.0).floor() as i32;
+            waypoints.get_mut(index)?.altitude = Altitude::above_home((lower_m * 100.0).floor() / 100.0);
             let decimals = usize::from(lower_m.fract() != 0.0);
             format!("lower WP{index} to {lower_m:.decimals$} m")
         }
-        Finding::SteepLeg(SteepLeg { index, remedy: Remedy::Slow { speed_cms }, .. }) => {
-            waypoints.get_mut(index)?.speed_cms = speed_cms;
-            format!("fly WP{index} at {:.1} m/s", f64::from(speed_cms) / 100.0)
+        Finding::SteepLeg(SteepLeg { index, remedy: Remedy::Slow { speed }, .. }) => {
+            waypoints.get_mut(index)?.speed = speed;
+            format!("fly WP{index} at {:.1} m/s", speed.mps())
         }
         Finding::SteepLeg(SteepLeg { index, alt_m, remedy: Remedy::HoldFirst, .. }) => {
             let before = waypoints.get(..index)?.iter().rposition(|wp| wp.kind.is_positional());
@@ -99,9 +98,8 @@ pub fn fix(document: &PlanDocument, finding: &Finding, home: LatLon) -> Option<F
             let hold = Waypoint {
                 kind: WaypointType::Hold,
                 position: place.unwrap_or(home),
-                // Saturates; a leg has the altitude of a waypoint.
-                alt_cm: (alt_m * 100.0).round() as i32,
-                duration_ds: SHORTEST_HOLD_DS,
+                altitude: Altitude::above_home(alt_m),
+                duration: Seconds::new(SHORTEST_HOLD_S),
                 pattern: HoldPattern::None,
                 ..Waypoint::default()
             };
@@ -113,7 +111,7 @@ pub fn fix(document: &PlanDocument, finding: &Finding, home: LatLon) -> Option<F
             let land = Waypoint {
                 kind: WaypointType::Land,
                 position: last.position,
-                alt_cm: last.alt_cm,
+                altitude: last.altitude,
                 ..Waypoint::default()
             };
             waypoints.try_push(land).ok()?;
@@ -155,8 +153,9 @@ mod tests {
     use crate::plan::review::review;
 
     fn wp(kind: WaypointType, n: f64, alt_cm: i32) -> Waypoint {
+        let altitude = Altitude::above_home(f64::from(alt_cm) / 100.0);
         let position = GroundPlane::new(home()).to_position(Vector2::new(n, 0.0));
-        Waypoint { kind, position, alt_cm, ..Waypoint::default() }
+        Waypoint { kind, position, altitude, ..Waypoint::default() }
     }
 
     fn home() -> LatLon {
@@ -166,10 +165,10 @@ mod tests {
     #[test]
     fn every_fix_takes_its_finding_away() {
         use WaypointType::{Delay, Flyover, Land};
-        let fast = Waypoint { speed_cms: 2000, ..wp(Flyover, 10.0, 2000) };
+        let fast = Waypoint { speed: LegSpeed::from_mps(20.0), ..wp(Flyover, 10.0, 2000) };
         let lost = Waypoint { position: LatLon::new(950_000_000, 0), ..wp(Flyover, 0.0, 2000) };
         let turned = Waypoint { position: LatLon::new(0, 1_900_000_000), ..wp(Flyover, 0.0, 2000) };
-        let steep = Waypoint { speed_cms: 1000, ..wp(Flyover, 85.7, 8000) };
+        let steep = Waypoint { speed: LegSpeed::from_mps(10.0), ..wp(Flyover, 85.7, 8000) };
         let plans: [&[Waypoint]; 12] = [
             &[wp(Flyover, 300.0, 12_100), wp(Land, 0.0, 12_000)],
             &[wp(Flyover, 100.0, 1100), wp(Flyover, 400.0, 11_000), wp(Land, 0.0, 1000)],

@@ -227,6 +227,7 @@ impl History {
 mod tests {
     use super::*;
     use crate::plan::Waypoint;
+    use crate::plan::format::WaypointRecord;
     use proptest::prelude::*;
 
     fn named(name: &str) -> PlanDocument {
@@ -303,7 +304,7 @@ mod tests {
             for list in lists {
                 let mut document = history.document().clone();
                 document.plan.waypoints =
-                    list.iter().map(|&alt_cm| Waypoint { alt_cm, ..Waypoint::default() }).collect();
+                    list.iter().map(|&alt_cm| Waypoint::from(WaypointRecord { alt_cm, ..Default::default() })).collect();
                 if history.commit("edit", document.clone()).is_some() {
                     seen.push(document);
                 }

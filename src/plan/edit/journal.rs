@@ -164,12 +164,15 @@ impl Journal {
 mod tests {
     use super::*;
     use crate::plan::Waypoint;
+    use crate::plan::format::WaypointRecord;
     use proptest::prelude::*;
 
     fn document(alts: &[i32]) -> PlanDocument {
         let mut document = PlanDocument { name: "test".to_owned(), ..PlanDocument::default() };
-        document.plan.waypoints =
-            alts.iter().map(|&alt_cm| Waypoint { alt_cm, ..Waypoint::default() }).collect();
+        document.plan.waypoints = alts
+            .iter()
+            .map(|&alt_cm| Waypoint::from(WaypointRecord { alt_cm, ..Default::default() }))
+            .collect();
         document
     }
 

@@ -4,17 +4,15 @@
 use nalgebra::Vector2;
 
 use crate::geo::{GroundPlane, LatLon};
-use crate::plan::{FlightPlan, Waypoint, WaypointType};
+use crate::plan::{Altitude, FlightPlan, LegSpeed, Waypoint, WaypointType};
 
 /// An edit of each selected waypoint that has such a value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Transform {
-    /// Altitude above home, cm.
-    Altitude(i32),
-    /// A change of altitude, cm.
-    AltitudeBy(i32),
-    /// Leg speed, cm/s; 0 = `ap_max_velocity`.
-    Speed(u16),
+    Altitude(Altitude),
+    /// A change of altitude, m.
+    AltitudeBy(f64),
+    Speed(LegSpeed),
     /// A move, metres north and east.
     Move(Vector2<f64>),
     /// A turn about the middle of the selection, radians clockwise.
@@ -32,13 +30,12 @@ pub fn transform(plan: &mut FlightPlan, selected: std::ops::RangeInclusive<usize
     let end = plan.waypoints.len().min(selected.end().saturating_add(1));
     let Some(waypoints) = plan.waypoints.get_mut(*selected.start()..end) else { return };
     match what {
-        Transform::Altitude(alt_cm) => with_altitude(waypoints).for_each(|wp| wp.alt_cm = alt_cm),
-        Transform::AltitudeBy(by) => {
-            with_altitude(waypoints).for_each(|wp| wp.alt_cm = wp.alt_cm.saturating_add(by));
+        Transform::Altitude(altitude) => with_altitude(waypoints).for_each(|wp| wp.altitude = altitude),
+        Transform::AltitudeBy(by_m) => {
+            with_altitude(waypoints).for_each(|wp| wp.altitude = wp.altitude.raised_m(by_m));
         }
-        // The rate of a YAW_RATE uses the same field.
-        Transform::Speed(speed_cms) => {
-            waypoints.iter_mut().filter(|wp| wp.kind.is_positional()).for_each(|wp| wp.speed_cms = speed_cms);
+        Transform::Speed(speed) => {
+            waypoints.iter_mut().filter(|wp| wp.kind.is_positional()).for_each(|wp| wp.speed = speed);
         }
         Transform::Move(by) => {
             for wp in waypoints.iter_mut().filter(|wp| wp.kind.uses_position()) {
@@ -132,18 +129,18 @@ mod tests {
     #[test]
     fn a_speed_for_many_waypoints_leaves_the_rate_of_a_turn_alone() {
         let mut plan = plan(40.0, -79.0);
-        plan.waypoints[1] = Waypoint { kind: WaypointType::YawRate, speed_cms: 30, ..Waypoint::default() };
-        transform(&mut plan, 0..=2, Transform::Speed(500));
-        transform(&mut plan, 0..=2, Transform::Altitude(700));
-        assert_eq!(plan.waypoints.iter().map(|wp| wp.speed_cms).collect::<Vec<_>>(), [500, 30, 500]);
-        assert_eq!(plan.waypoints.iter().map(|wp| wp.alt_cm).collect::<Vec<_>>(), [700, 0, 700]);
+        plan.waypoints[1] = Waypoint { kind: WaypointType::YawRate, yaw_rate_dps: 30, ..Waypoint::default() };
+        transform(&mut plan, 0..=2, Transform::Speed(LegSpeed::from_mps(5.0)));
+        transform(&mut plan, 0..=2, Transform::Altitude(Altitude::above_home(7.0)));
+        assert_eq!(plan.records().iter().map(|record| record.speed).collect::<Vec<_>>(), [500, 30, 500]);
+        assert_eq!(plan.records().iter().map(|record| record.alt_cm).collect::<Vec<_>>(), [700, 0, 700]);
     }
 
     #[test]
     fn only_what_is_selected_changes_and_a_selection_beyond_the_end_is_cut() {
         let mut after = plan(40.0, -79.0);
-        transform(&mut after, 1..=9, Transform::Altitude(700));
-        assert_eq!(after.waypoints.iter().map(|wp| wp.alt_cm).collect::<Vec<_>>(), [0, 700, 700]);
+        transform(&mut after, 1..=9, Transform::Altitude(Altitude::above_home(7.0)));
+        assert_eq!(after.records().iter().map(|record| record.alt_cm).collect::<Vec<_>>(), [0, 700, 700]);
         let before = after.clone();
         transform(&mut after, 5..=9, Transform::Reverse);
         assert_eq!(after, before);

@@ -177,9 +177,9 @@ impl Assumptions {
 
     /// Returns the speed of the leg to a waypoint, m/s.
     pub(in crate::plan) fn leg_speed_mps(&self, waypoint: &Waypoint) -> f64 {
-        match waypoint.speed_cms {
-            0 => self.max_velocity_mps,
-            speed => (f64::from(speed) / 100.0).clamp(SLOWEST_MPS, self.max_velocity_mps.max(SLOWEST_MPS)),
+        match waypoint.speed.own_mps() {
+            None => self.max_velocity_mps,
+            Some(mps) => mps.clamp(SLOWEST_MPS, self.max_velocity_mps.max(SLOWEST_MPS)),
         }
     }
 

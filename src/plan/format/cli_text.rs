@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use super::field::{self, FieldError};
-use super::{Note, NoteKind, PlanFile, Problems, Written};
+use super::{Note, NoteKind, PlanFile, Problems, WaypointRecord, Written};
 use crate::geo::LatLon;
 use crate::plan::{FlightPlan, MAX_WAYPOINTS, Waypoint, plan_lines};
 use crate::text::did_you_mean;
@@ -142,17 +142,18 @@ impl Reader<'_, '_> {
         let too_many = format!("waypoint {operation} takes {} values", VALUES.len());
         self.no_more_than(VALUES.len(), arguments, line_end, &too_many);
         let index = arguments.first().and_then(|word| self.index(word, insert));
-        let waypoint = Waypoint {
+        let record = WaypointRecord {
             position: LatLon::new(
                 self.value(arguments.get(1), field::latitude),
                 self.value(arguments.get(2), field::longitude),
             ),
             alt_cm: self.value(arguments.get(3), field::altitude_cm),
-            speed_cms: self.value(arguments.get(4), field::speed_cms),
+            speed: self.value(arguments.get(4), field::speed_cms),
             kind: self.value(arguments.get(5), field::waypoint_type),
             duration_ds: self.value(arguments.get(6), field::duration_ds),
             pattern: self.value(arguments.get(7), field::pattern),
         };
+        let waypoint = record.into();
         if insert && self.waypoints.len() == MOST_INSERTED {
             self.gave_up = true;
         } else if insert {
@@ -276,7 +277,7 @@ mod tests {
     fn canonical_text_prints_byte_identically() {
         let file = read_text(TWO);
         assert_eq!(file.name, "plan");
-        assert_eq!(file.plan.waypoints[1].alt_cm, -150);
+        assert_eq!(file.plan.records()[1].alt_cm, -150);
         assert_eq!(file.plan.waypoints[1].pattern, HoldPattern::Figure8);
         assert_eq!(write(&file, Format::CliText), Written { text: TWO.to_owned(), lost: vec![] });
     }

@@ -9,7 +9,7 @@ use super::field::{self, FieldError};
 use super::home::{self, HomePosition};
 use super::setting::{SettingCheck, SettingPart, setting_line};
 use super::toml_table::{TomlTable, Value};
-use super::{PlanFile, Problems};
+use super::{PlanFile, Problems, WaypointRecord};
 use crate::geo::LatLon;
 use crate::plan::{FlightPlan, HoldPattern, MAX_WAYPOINTS, Waypoint, WaypointType};
 
@@ -152,17 +152,18 @@ fn read_waypoint(table: &TomlTable<'_, '_>, problems: &mut Problems<'_>) -> Wayp
     let duration = read("duration_s", needs_duration);
     let pattern = table.get("pattern").and_then(|value| word(value, field::pattern, problems));
     let speed_value = if is_yaw_rate { yaw_rate } else { speed_cms };
-    Waypoint {
+    let record = WaypointRecord {
         position: LatLon::new(
             lat.and_then(|value| number(value, field::latitude, problems)).unwrap_or_default(),
             lon.and_then(|value| number(value, field::longitude, problems)).unwrap_or_default(),
         ),
         alt_cm: alt.and_then(|value| number(value, altitude_cm, problems)).unwrap_or_default(),
-        speed_cms: speed.and_then(|value| number(value, speed_value, problems)).unwrap_or_default(),
+        speed: speed.and_then(|value| number(value, speed_value, problems)).unwrap_or_default(),
         duration_ds: duration.and_then(|value| number(value, duration_ds, problems)).unwrap_or_default(),
         kind: kind.unwrap_or_default(),
         pattern: pattern.unwrap_or(HoldPattern::None),
-    }
+    };
+    record.into()
 }
 
 fn altitude_cm(text: &str) -> Result<i32, FieldError> {
@@ -285,9 +286,9 @@ pattern = "FIGURE8"
     #[test]
     fn canonical_text_prints_byte_identically() {
         let file = read_text(SMALL);
-        let hold = file.plan.waypoints[2];
-        assert_eq!((hold.alt_cm, hold.speed_cms, hold.duration_ds), (-50, 525, 305));
-        assert_eq!(file.plan.waypoints[1].speed_cms, 45);
+        let hold = file.plan.records()[2];
+        assert_eq!((hold.alt_cm, hold.speed, hold.duration_ds), (-50, 525, 305));
+        assert_eq!(file.plan.waypoints[1].yaw_rate_dps, 45);
         assert_eq!(file.settings, ["ap_max_angle = 25"]);
         assert_eq!(write(&file, Format::Toml).text, SMALL);
     }
@@ -300,7 +301,7 @@ pattern = "FIGURE8"
         assert_eq!(file.name, "small");
         assert_eq!(file.settings, ["a = 1"]);
         assert_eq!(file.plan.waypoints[0].position, LatLon::new(404_640_000, -795_000_000));
-        assert_eq!(file.plan.waypoints[0].alt_cm, 1000);
+        assert_eq!(file.plan.records()[0].alt_cm, 1000);
     }
 
     #[test]

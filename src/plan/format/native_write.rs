@@ -1,10 +1,10 @@
 //! The writer of the project's own format, in its canonical form.
 
 use crate::geo::Degrees7;
-use crate::plan::{HoldPattern, Waypoint, WaypointType};
+use crate::plan::{HoldPattern, WaypointType};
 use crate::text::printable::is_printable;
 
-use super::{PlanFile, Written};
+use super::{PlanFile, WaypointRecord, Written};
 
 /// Writes a plan as TOML. Leaves out values that are the default for the type of their record.
 pub(super) fn write(file: &PlanFile) -> Written {
@@ -27,14 +27,14 @@ pub(super) fn write(file: &PlanFile) -> Written {
             text.push_str(&format!("alt_amsl_m = {amsl}\n"));
         }
     }
-    for waypoint in &file.plan.waypoints {
-        write_waypoint(waypoint, &mut text);
+    for record in file.plan.records() {
+        write_waypoint(record, &mut text);
     }
     Written { text, lost: Vec::new() }
 }
 
-fn write_waypoint(waypoint: &Waypoint, text: &mut String) {
-    let Waypoint { position, alt_cm, speed_cms, duration_ds, kind, pattern } = *waypoint;
+fn write_waypoint(record: WaypointRecord, text: &mut String) {
+    let WaypointRecord { position, alt_cm, speed, duration_ds, kind, pattern } = record;
     let (lat, lon) = (Degrees7(position.lat_e7), Degrees7(position.lon_e7));
     let place_matters = kind.uses_position();
     let altitude_matters = kind.is_positional() || kind == WaypointType::AltChange;
@@ -46,9 +46,9 @@ fn write_waypoint(waypoint: &Waypoint, text: &mut String) {
         text.push_str(&format!("alt_m = {}\n", scaled(i64::from(alt_cm), 2)));
     }
     if kind == WaypointType::YawRate {
-        text.push_str(&format!("yaw_rate_dps = {speed_cms}\n"));
-    } else if speed_cms != 0 {
-        text.push_str(&format!("speed_mps = {}\n", scaled(i64::from(speed_cms), 2)));
+        text.push_str(&format!("yaw_rate_dps = {speed}\n"));
+    } else if speed != 0 {
+        text.push_str(&format!("speed_mps = {}\n", scaled(i64::from(speed), 2)));
     }
     if matches!(kind, WaypointType::Hold | WaypointType::Delay) || duration_ds != 0 {
         text.push_str(&format!("duration_s = {}\n", scaled(i64::from(duration_ds), 1)));

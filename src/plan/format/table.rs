@@ -53,13 +53,13 @@ fn row(index: usize, waypoint: &Waypoint, leg: &LegEstimate) -> [String; 10] {
     let has_altitude = waypoint.kind.is_positional() || waypoint.kind == WaypointType::AltChange;
     let speed = match leg.speed_mps {
         Some(speed) => format!("{speed:.1} m/s"),
-        None if waypoint.kind == WaypointType::YawRate => format!("{} deg/s", waypoint.speed_cms),
+        None if waypoint.kind == WaypointType::YawRate => format!("{} deg/s", waypoint.yaw_rate_dps),
         None => String::new(),
     };
-    let stay = match (waypoint.kind, waypoint.duration_ds) {
-        (WaypointType::Hold, 0) => "endless".to_owned(),
-        (_, 0) => String::new(),
-        (_, duration_ds) => format!("{:.1} s", f64::from(duration_ds) / 10.0),
+    let stay = match waypoint.kind {
+        WaypointType::Hold if waypoint.duration.is_zero() => "endless".to_owned(),
+        _ if waypoint.duration.is_zero() => String::new(),
+        _ => format!("{:.1} s", waypoint.duration.get()),
     };
     let done = match leg.done_s {
         _ if !waypoint.kind.is_positional() => String::new(),

@@ -25,7 +25,7 @@ pub(crate) struct LegAltitude {
 pub(crate) fn legs(waypoints: &[Waypoint]) -> impl Iterator<Item = LegAltitude> {
     let mut changed = None;
     waypoints.iter().enumerate().filter_map(move |(index, waypoint)| {
-        let own = (index, f64::from(waypoint.alt_cm) / 100.0);
+        let own = (index, waypoint.altitude.above_home_m());
         if waypoint.kind == WaypointType::AltChange {
             changed = Some(own);
         }
@@ -68,9 +68,11 @@ fn far_above_the_others(altitudes: &[(usize, f64)], at: usize) -> Option<Finding
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::Altitude;
 
     fn found(altitudes_m: &[i32], limit_m: Option<f64>) -> Vec<String> {
-        let at = |&alt_m: &i32| Waypoint { alt_cm: alt_m * 100, ..Waypoint::default() };
+        let at =
+            |&alt_m: &i32| Waypoint { altitude: Altitude::above_home(alt_m.into()), ..Waypoint::default() };
         let waypoints: Vec<Waypoint> = altitudes_m.iter().map(at).collect();
         too_high(&waypoints, limit_m).iter().map(ToString::to_string).collect()
     }
@@ -102,8 +104,12 @@ mod tests {
 
     #[test]
     fn the_waypoint_that_says_the_altitude_is_reported() {
-        let change = Waypoint { kind: WaypointType::AltChange, alt_cm: 20_000, ..Waypoint::default() };
-        let waypoints = [change, Waypoint { alt_cm: 5000, ..Waypoint::default() }];
+        let change = Waypoint {
+            kind: WaypointType::AltChange,
+            altitude: Altitude::above_home(200.0),
+            ..Waypoint::default()
+        };
+        let waypoints = [change, Waypoint { altitude: Altitude::above_home(50.0), ..Waypoint::default() }];
         let found = too_high(&waypoints, Some(120.0));
         assert_eq!(found, [Finding::AboveLimit { index: 0, alt_m: 200.0, limit_m: 120.0 }]);
     }

@@ -9,7 +9,7 @@ use crate::geo::{GRAVITY, LatLon, local_offset};
 use crate::plan::estimate::Assumptions;
 use crate::plan::leg_time::{LegShape, Motion};
 use crate::plan::setpoint::AltitudeSetpoint;
-use crate::plan::{HoldPattern, Waypoint, WaypointType};
+use crate::plan::{HoldPattern, LegSpeed, Waypoint, WaypointType};
 
 /// The altitude error at a waypoint that makes a leg too steep, m.
 const STEEP_M: f64 = 7.0;
@@ -21,12 +21,12 @@ const CO_LOCATED_M: f64 = 0.1;
 const SLOWEST_DMPS: u16 = 10;
 
 /// A change with which the craft reaches the altitude.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Remedy {
     /// Fly the leg no faster than this speed.
     Slow {
-        /// Speed of the waypoint, cm/s.
-        speed_cms: u16,
+        /// Speed of the waypoint.
+        speed: LegSpeed,
     },
     /// Wait for the altitude in a HOLD at the previous place.
     HoldFirst,
@@ -59,8 +59,8 @@ impl fmt::Display for SteepLeg {
             error_m.abs()
         )?;
         match remedy {
-            Remedy::Slow { speed_cms } => {
-                write!(f, "fly the leg at {:.1} m/s or slower", f64::from(*speed_cms) / 100.0)
+            Remedy::Slow { speed } => {
+                write!(f, "fly the leg at {:.1} m/s or slower", speed.mps())
             }
             Remedy::HoldFirst => {
                 write!(f, "put a HOLD at {alt_m:.0} m before it, which waits for the altitude")
@@ -117,10 +117,10 @@ impl Walk<'_> {
     /// Flies to a waypoint. Returns the leg if the craft misses the altitude.
     fn take(&mut self, index: usize, waypoints: &[Waypoint]) -> Option<SteepLeg> {
         let waypoint = &waypoints[index];
-        let own_alt_m = f64::from(waypoint.alt_cm) / 100.0;
+        let own_alt_m = waypoint.altitude.above_home_m();
         match waypoint.kind {
             WaypointType::AltChange => self.alt_change_m = Some(own_alt_m),
-            WaypointType::Delay => self.delay_s = Some(f64::from(waypoint.duration_ds) / 10.0),
+            WaypointType::Delay => self.delay_s = Some(waypoint.duration.get()),
             WaypointType::YawRate => {}
             WaypointType::Takeoff => self.climb_on_the_spot(waypoint, own_alt_m),
             WaypointType::Hold | WaypointType::Land => {
@@ -142,7 +142,7 @@ impl Walk<'_> {
         self.climbs_first = false;
         let limits = self.assumptions.setpoint_limits();
         self.setpoint.reach(alt_m, &limits, self.assumptions.hold_radius_m);
-        self.setpoint.run(alt_m, &limits, f64::from(waypoint.duration_ds) / 10.0);
+        self.setpoint.run(alt_m, &limits, waypoint.duration.get());
         self.motion = Motion::REST;
     }
 
@@ -238,12 +238,12 @@ impl Walk<'_> {
             let middle = slow.midpoint(fast);
             if is_level(middle) { slow = middle } else { fast = middle }
         }
-        Remedy::Slow { speed_cms: slow * 10 }
+        Remedy::Slow { speed: LegSpeed::from_mps(f64::from(slow) / 10.0) }
     }
 
     /// Adds the stay of a HOLD after a leg; a LAND ends the mission.
     fn stay(&mut self, waypoint: &Waypoint, alt_m: f64) {
-        let duration_s = f64::from(waypoint.duration_ds) / 10.0;
+        let duration_s = waypoint.duration.get();
         if waypoint.kind == WaypointType::Hold {
             self.assumptions.wait_for_hold(&mut self.setpoint, alt_m);
             self.setpoint.run(alt_m, &self.assumptions.setpoint_limits(), duration_s);
@@ -272,6 +272,7 @@ impl Walk<'_> {
 mod tests {
     use super::*;
     use crate::geo::offset_to_latlon;
+    use crate::plan::{Altitude, Seconds};
 
     const HOME: LatLon = LatLon::new(404_635_000, -795_182_000);
 
@@ -280,10 +281,10 @@ mod tests {
             .iter()
             .map(|&(kind, north_m, alt_m, speed_cms)| Waypoint {
                 position: offset_to_latlon(HOME, Vector2::new(north_m, 0.0)),
-                alt_cm: alt_m * 100,
-                speed_cms,
+                altitude: Altitude::above_home(alt_m.into()),
+                speed: LegSpeed::from_mps(f64::from(speed_cms) / 100.0),
                 kind,
-                duration_ds: 10,
+                duration: Seconds::new(1.0),
                 ..Waypoint::default()
             })
             .collect();

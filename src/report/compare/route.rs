@@ -42,7 +42,7 @@ impl Route {
         let mut points = Vec::new();
         let mut alt_change_m = None;
         for (wp, waypoint) in (0_u8..).zip(&plan.waypoints) {
-            let alt_m = f64::from(waypoint.alt_cm) / 100.0;
+            let alt_m = waypoint.altitude.above_home_m();
             if waypoint.kind == WaypointType::AltChange {
                 alt_change_m = Some(alt_m);
             }

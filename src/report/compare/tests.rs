@@ -2,7 +2,7 @@ use nalgebra::Vector2;
 
 use super::*;
 use crate::geo::LocalFrame;
-use crate::plan::{FlightPlan, HoldPattern, WaypointType};
+use crate::plan::{Altitude, FlightPlan, HoldPattern, WaypointType};
 use crate::telemetry::snapshot::SettingsView;
 
 const LAT_DEG: f64 = 40.4635;
@@ -28,7 +28,7 @@ fn plan(places: &[(f64, f64, WaypointType)]) -> FlightPlan {
         let (lat, lon, _) = frame().to_geodetic(nalgebra::Vector3::new(*east, *north, 0.0));
         plan.waypoints.push(crate::plan::Waypoint {
             position: crate::geo::LatLon::new((lat * 1e7).round() as i32, (lon * 1e7).round() as i32),
-            alt_cm: 1000,
+            altitude: Altitude::above_home(10.0),
             kind: *kind,
             ..crate::plan::Waypoint::default()
         });

@@ -194,7 +194,7 @@ impl<'a> Fields<'a> {
             r#type: waypoint.kind.to_string(),
             lat: Decimals(waypoint.position.lat_deg()),
             lon: Decimals(waypoint.position.lon_deg()),
-            alt: Decimals(f64::from(waypoint.alt_cm) * 0.01),
+            alt: Decimals(waypoint.altitude.above_home_m()),
         });
         Self::Plan { source: source.to_string(), count: plan.waypoints.len(), waypoints: waypoints.collect() }
     }
@@ -236,7 +236,7 @@ mod tests {
     use super::super::event_line;
     use super::*;
     use crate::geo::LatLon;
-    use crate::plan::Waypoint;
+    use crate::plan::{Altitude, Waypoint};
     use crate::session::Event;
     use crate::signals::SimTime;
     use crate::telemetry::{
@@ -362,7 +362,7 @@ mod tests {
         let mut plan = FlightPlan::default();
         plan.waypoints.push(Waypoint {
             position: LatLon::new(404_635_000, -795_182_000),
-            alt_cm: -150,
+            altitude: Altitude::above_home(-1.5),
             kind: WaypointType::Land,
             ..Waypoint::default()
         });

@@ -86,7 +86,9 @@ impl Fields {
             target_n: target.map(|target| Decimals(target.x)),
             target_e: target.map(|target| Decimals(target.y)),
             target_alt: nav.and_then(|nav| nav.target_alt_m).map(Decimals),
-            hold_remaining_ds: nav.and_then(|nav| nav.hold_remaining_ds),
+            hold_remaining_ds: nav
+                .and_then(|nav| nav.hold_remaining_s)
+                .map(|left_s| (left_s * 10.0).round() as u16),
             wind_n: wind.map(|ne| Decimals(ne.x)),
             wind_e: wind.map(|ne| Decimals(ne.y)),
         }
@@ -160,7 +162,7 @@ mod tests {
             assert!(line.contains(&format!("\"{unknown}\":null")), "{unknown} in {line}");
         }
         let nav =
-            nav.map(|nav| NavTelemetry { l1_mode: Some(L1Mode::Off), hold_remaining_ds: Some(0), ..nav });
+            nav.map(|nav| NavTelemetry { l1_mode: Some(L1Mode::Off), hold_remaining_s: Some(0.0), ..nav });
         let line = sample_line(&Snapshot { nav, ..Snapshot::default() });
         assert!(line.contains(r#""l1_mode":"OFF""#) && line.contains(r#""hold_remaining_ds":0"#), "{line}");
     }

@@ -2,7 +2,6 @@
 
 use super::{Block, Draft};
 use crate::geo::Degrees7;
-use crate::plan::waypoint_values;
 use crate::scenario::file::FORMAT;
 use crate::signals::SimTime;
 
@@ -33,9 +32,11 @@ pub(super) fn text(draft: &Draft, expectations: &[Block]) -> String {
     }
     line(String::new());
     line("[plan]".to_owned());
-    let waypoints = draft.plan.waypoints.iter().enumerate();
-    let waypoints: Vec<String> = waypoints
-        .map(|(index, waypoint)| format!("{index} {}", waypoint_values(waypoint, waypoint.alt_cm)))
+    let records = draft.plan.records();
+    let waypoints: Vec<String> = records
+        .iter()
+        .enumerate()
+        .map(|(index, record)| format!("{index} {}", record.values(record.alt_cm)))
         .collect();
     line(format!("waypoints = {}", list(&waypoints)));
     line(String::new());

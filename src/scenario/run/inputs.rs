@@ -2,7 +2,7 @@
 
 use crate::firmware::cli::Interpreter;
 use crate::pilot::StickInput;
-use crate::plan::upload_lines;
+use crate::plan::plan_lines;
 use crate::scenario::expression::{Evaluator, Search};
 use crate::scenario::happening::{EventName, Happening};
 use crate::scenario::input::{Action, TimedInput};
@@ -125,7 +125,7 @@ impl<'a> Inputs<'a> {
             }
             Action::Cli(line) => self.type_line(line, vehicle),
             Action::Upload(plan) => {
-                let lines: Vec<String> = upload_lines(plan, &[]).collect();
+                let lines: Vec<String> = plan_lines(plan).collect();
                 lines.iter().flat_map(|line| self.type_line(line, vehicle)).collect()
             }
             Action::ReturnHome => match vehicle.controller_mut().return_to_home() {

@@ -6,7 +6,7 @@ use crate::fc::{RemoteEnds, UploadReport};
 use crate::firmware::config::Configuration;
 use crate::firmware::{Firmware, FirmwareOptions};
 use crate::link::FcStream;
-use crate::plan::{AltitudeReference, FlightPlan, Waypoint};
+use crate::plan::{Altitude, AltitudeReference, FlightPlan, Waypoint};
 use crate::session::command::{Seek, UPLOADING};
 use crate::signals::SimTime;
 use crate::sim::WorldConfig;
@@ -65,7 +65,9 @@ impl Rig {
         setting: &str,
     ) -> oneshot::Receiver<Result<UploadReport, String>> {
         let mut plan = Box::new(FlightPlan::default());
-        plan.waypoints.extend((0..waypoints).map(|_| Waypoint { alt_cm: 2000, ..Waypoint::default() }));
+        plan.waypoints.extend(
+            (0..waypoints).map(|_| Waypoint { altitude: Altitude::above_home(20.0), ..Waypoint::default() }),
+        );
         let (reply, result) = oneshot::channel();
         let settings = vec![setting.to_owned()];
         self.commands.try_send(Command::Upload { plan, settings, reply }).unwrap();
@@ -176,12 +178,12 @@ fn a_craft_that_counts_from_sea_level_gets_and_gives_altitudes_from_there() {
     let mut result = rig.upload(2);
     while rig.answer(|_, _| {}) > 0 {}
     assert_eq!(result.try_recv().unwrap(), Ok(UploadReport { added_m: 300.0, ..UploadReport::default() }));
-    assert_eq!(rig.firmware.stored_plan().waypoints[1].alt_cm, 32_000);
+    assert_eq!(rig.firmware.stored_plan().waypoints[1].altitude, Altitude::above_home(320.0));
     let (reply, mut plan) = oneshot::channel();
     rig.commands.try_send(Command::Download { reply }).unwrap();
     rig.take_commands();
     assert_eq!(rig.answer(|_, _| {}), 1);
-    assert_eq!(plan.try_recv().unwrap().unwrap().waypoints[1].alt_cm, 2000);
+    assert_eq!(plan.try_recv().unwrap().unwrap().waypoints[1].altitude, Altitude::above_home(20.0));
 }
 
 #[test]

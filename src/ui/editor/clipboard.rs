@@ -57,13 +57,14 @@ fn renumbered(text: &str) -> String {
 mod tests {
     use super::*;
     use crate::geo::LatLon;
+    use crate::plan::Altitude;
 
     #[test]
     fn what_is_copied_is_pasted_the_same() {
         let waypoints: Vec<Waypoint> = (0..3)
             .map(|n| Waypoint {
                 position: LatLon::new(404_640_000 + n, 5),
-                alt_cm: n * 7,
+                altitude: Altitude::above_home(f64::from(n) * 0.07),
                 ..Waypoint::default()
             })
             .collect();

@@ -4,12 +4,9 @@ use strum::IntoEnumIterator as _;
 
 use crate::geo::{Degrees7, GroundPlane};
 use crate::plan::format::degrees_e7;
-use crate::plan::{HoldPattern, Waypoint, WaypointType};
+use crate::plan::{Altitude, HoldPattern, LegSpeed, Seconds, Waypoint, WaypointType};
 use crate::ui::units::Units;
 use nalgebra::Vector2;
-
-/// The greatest speed of a leg, m/s.
-pub(super) const MOST_MPS: f64 = 655.35;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::EnumIter)]
 pub enum Column {
@@ -59,7 +56,7 @@ impl Column {
             Self::Altitude => format!("{} above home", units.length_name()),
             Self::Speed if kind == WaypointType::YawRate => "degrees per second".to_owned(),
             Self::Speed => {
-                let most = shortest(units.speed(MOST_MPS));
+                let most = shortest(units.speed(LegSpeed::MOST_MPS));
                 format!("{} up to {most}; 0 = ap_max_velocity", units.speed_unit())
             }
             Self::Time if kind == WaypointType::Hold => "seconds up to 6553.5; 0 = endless".to_owned(),
@@ -87,10 +84,10 @@ impl Column {
             Self::Type => wp.kind.to_string(),
             Self::Latitude => Degrees7(wp.position.lat_e7).to_string(),
             Self::Longitude => Degrees7(wp.position.lon_e7).to_string(),
-            Self::Altitude => shortest(units.length(f64::from(wp.alt_cm) / 100.0)),
-            Self::Speed if wp.kind == WaypointType::YawRate => wp.speed_cms.to_string(),
-            Self::Speed => shortest(units.speed(f64::from(wp.speed_cms) / 100.0)),
-            Self::Time => shortest(f64::from(wp.duration_ds) / 10.0),
+            Self::Altitude => shortest(units.length(wp.altitude.above_home_m())),
+            Self::Speed if wp.kind == WaypointType::YawRate => wp.yaw_rate_dps.to_string(),
+            Self::Speed => shortest(units.speed(wp.speed.mps())),
+            Self::Time => shortest(wp.duration.get()),
             Self::Pattern => wp.pattern.to_string(),
         }
     }
@@ -103,22 +100,25 @@ impl Column {
         let text = text.trim();
         let wrong = || format!("{text} is no {}: {}.", self.name(), self.hint(wp.kind, units));
         match self {
-            Self::Type => wp.kind = by_prefix(text, WaypointType::iter()).ok_or_else(wrong)?,
+            Self::Type => *wp = wp.with_kind(by_prefix(text, WaypointType::iter()).ok_or_else(wrong)?),
             Self::Pattern => wp.pattern = by_prefix(text, HoldPattern::iter()).ok_or_else(wrong)?,
             Self::Latitude => wp.position.lat_e7 = within(text, 900_000_000).ok_or_else(wrong)?,
             Self::Longitude => wp.position.lon_e7 = within(text, 1_800_000_000).ok_or_else(wrong)?,
             Self::Altitude => {
                 let cm = scaled(text, units.metres(100.0), f64::from(i32::MIN), f64::from(i32::MAX))
                     .ok_or_else(wrong)?;
-                wp.alt_cm = cm as i32;
+                wp.altitude = Altitude::above_home(cm / 100.0);
+            }
+            Self::Speed if wp.kind == WaypointType::YawRate => {
+                wp.yaw_rate_dps = scaled(text, 1.0, 0.0, f64::from(u16::MAX)).ok_or_else(wrong)? as u16;
             }
             Self::Speed => {
-                let is_rate = wp.kind == WaypointType::YawRate;
-                let scale = if is_rate { 1.0 } else { units.metres_per_second(100.0) };
-                wp.speed_cms = scaled(text, scale, 0.0, f64::from(u16::MAX)).ok_or_else(wrong)? as u16;
+                let cms = scaled(text, units.metres_per_second(100.0), 0.0, f64::from(u16::MAX));
+                wp.speed = LegSpeed::from_mps(cms.ok_or_else(wrong)? / 100.0);
             }
             Self::Time => {
-                wp.duration_ds = scaled(text, 10.0, 0.0, f64::from(u16::MAX)).ok_or_else(wrong)? as u16;
+                let ds = scaled(text, 10.0, 0.0, f64::from(u16::MAX)).ok_or_else(wrong)?;
+                wp.duration = Seconds::new(ds / 10.0);
             }
         }
         Ok(())
@@ -128,9 +128,8 @@ impl Column {
     /// for time. Names wrap around.
     pub(crate) fn nudge(self, wp: &mut Waypoint, steps: i32, units: Units) {
         let ground_m = units.metres(f64::from(steps));
-        let add = |value: u16, by: i32| (i32::from(value) + by).clamp(0, i32::from(u16::MAX)) as u16;
         match self {
-            Self::Type => wp.kind = beside(&wp.kind, WaypointType::iter(), steps),
+            Self::Type => *wp = wp.with_kind(beside(&wp.kind, WaypointType::iter(), steps)),
             Self::Pattern => wp.pattern = beside(&wp.pattern, HoldPattern::iter(), steps),
             Self::Latitude => {
                 wp.position = GroundPlane::new(wp.position).to_position(Vector2::new(ground_m, 0.0));
@@ -138,16 +137,15 @@ impl Column {
             Self::Longitude => {
                 wp.position = GroundPlane::new(wp.position).to_position(Vector2::new(0.0, ground_m));
             }
-            // Conversions from floats stay within the range of the target.
             Self::Altitude => {
-                wp.alt_cm = (units.step_length(f64::from(wp.alt_cm) / 100.0, steps) * 100.0).round() as i32;
+                wp.altitude = Altitude::above_home(units.step_length(wp.altitude.above_home_m(), steps));
             }
-            Self::Speed if wp.kind == WaypointType::YawRate => wp.speed_cms = add(wp.speed_cms, steps),
-            Self::Speed => {
-                wp.speed_cms =
-                    (units.step_speed(f64::from(wp.speed_cms) / 100.0, steps) * 100.0).round() as u16;
+            Self::Speed if wp.kind == WaypointType::YawRate => {
+                let rate_dps = i32::from(wp.yaw_rate_dps) + steps;
+                wp.yaw_rate_dps = rate_dps.clamp(0, i32::from(u16::MAX)) as u16;
             }
-            Self::Time => wp.duration_ds = add(wp.duration_ds, steps.saturating_mul(10)),
+            Self::Speed => wp.speed = LegSpeed::from_mps(units.step_speed(wp.speed.mps(), steps)),
+            Self::Time => wp.duration = Seconds::new(wp.duration.get() + f64::from(steps)),
         }
     }
 }
@@ -187,16 +185,24 @@ fn beside<T: PartialEq>(value: &T, all: impl Iterator<Item = T>, steps: i32) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::format::WaypointRecord;
+
+    /// Returns altitude and speed as they are stored.
+    fn record(wp: &Waypoint) -> (i32, u16) {
+        let record = WaypointRecord::from(*wp);
+        (record.alt_cm, record.speed)
+    }
 
     #[test]
     fn what_is_shown_can_be_typed() {
         let wp = Waypoint {
             position: crate::geo::LatLon::new(404_640_000, -795_175_001),
-            alt_cm: -1250,
-            speed_cms: 333,
-            duration_ds: 305,
+            altitude: Altitude::above_home(-12.5),
+            speed: LegSpeed::from_mps(3.33),
+            duration: Seconds::new(30.5),
             kind: WaypointType::Hold,
             pattern: HoldPattern::Figure8,
+            ..Waypoint::default()
         };
         for units in [Units::Metric, Units::Imperial] {
             let mut typed = Waypoint { kind: WaypointType::Hold, ..Waypoint::default() };
@@ -213,12 +219,12 @@ mod tests {
         let mut wp = Waypoint { kind: WaypointType::Hold, ..Waypoint::default() };
         Column::Altitude.set(&mut wp, "100", units).unwrap();
         Column::Speed.set(&mut wp, "10", units).unwrap();
-        assert_eq!((wp.alt_cm, wp.speed_cms), (3048, 447));
+        assert_eq!(record(&wp), (3048, 447));
         for _ in 0..400 {
             Column::Altitude.nudge(&mut wp, 1, units);
             Column::Speed.nudge(&mut wp, 1, units);
         }
-        assert_eq!((wp.alt_cm, wp.speed_cms), (15_240, 18_329), "500 ft, 410 mph");
+        assert_eq!(record(&wp), (15_240, 18_329), "500 ft, 410 mph");
         assert!(Column::Speed.set(&mut wp, "1500", units).unwrap_err().contains("mph up to 1465.98"));
     }
 
@@ -243,12 +249,12 @@ mod tests {
 
     #[test]
     fn nudges_go_by_a_metre_and_names_go_round() {
-        let mut wp = Waypoint { alt_cm: 1000, ..Waypoint::default() };
+        let mut wp = Waypoint { altitude: Altitude::above_home(10.0), ..Waypoint::default() };
         Column::Altitude.nudge(&mut wp, 3, Units::Metric);
         Column::Speed.nudge(&mut wp, -1, Units::Metric);
         Column::Type.nudge(&mut wp, -1, Units::Metric);
         Column::Latitude.nudge(&mut wp, 10, Units::Metric);
-        assert_eq!((wp.alt_cm, wp.speed_cms, wp.kind), (1300, 0, WaypointType::YawRate));
+        assert_eq!((record(&wp), wp.kind), ((1300, 0), WaypointType::YawRate));
         assert_eq!(wp.position.lat_e7, 898);
     }
 }

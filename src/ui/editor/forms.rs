@@ -3,14 +3,14 @@
 use nalgebra::Vector2;
 use strum::IntoEnumIterator as _;
 
-use super::column::{MOST_MPS, shortest};
+use super::column::shortest;
 use super::form::{Form, FormField, FormKind};
 use crate::geo::LatLon;
 use crate::plan::edit::PlanDocument;
 use crate::plan::edit::transform::{Transform, transform};
 use crate::plan::format::{SettingCheck, setting_line};
 use crate::plan::generate::{Pattern, Shape, split};
-use crate::plan::{FlightPlan, MAX_WAYPOINTS, Waypoint, WaypointType};
+use crate::plan::{Altitude, FlightPlan, LegSpeed, MAX_WAYPOINTS, Waypoint, WaypointType};
 use crate::ui::units::Units;
 
 const MIRRORS: &[&str] = &["no", "north-south", "east-west"];
@@ -49,13 +49,13 @@ pub(super) fn take_bulk(
 ) -> Result<(), String> {
     let mut edits = Vec::new();
     if let Some(metres) = form.metres("altitude")? {
-        edits.push(Transform::Altitude(centi(metres, form.units)?));
+        edits.push(Transform::Altitude(altitude(metres, form.units)?));
     }
     if let Some(metres) = form.metres("altitude by")? {
-        edits.push(Transform::AltitudeBy(centi(metres, form.units)?));
+        edits.push(Transform::AltitudeBy(altitude(metres, form.units)?.above_home_m()));
     }
     if let Some(speed) = form.metres_per_second("speed")? {
-        edits.push(Transform::Speed(speed_cms(speed, form.units)?));
+        edits.push(Transform::Speed(leg_speed(speed, form.units)?));
     }
     let moved = Vector2::new(
         form.metres("move north")?.unwrap_or_default(),
@@ -101,7 +101,7 @@ pub(super) fn generate(is_empty: bool, units: Units) -> Form {
             FormField::typed(
                 "altitude",
                 format!("{length} above home"),
-                shown(f64::from(usual.alt_cm) / 100.0),
+                shown(usual.altitude.above_home_m()),
             ),
             FormField::typed("speed", format!("{}, 0 = default", units.speed_unit()), "0"),
             FormField::choice("type", KINDS),
@@ -127,8 +127,8 @@ fn pattern(form: &Form) -> Result<Pattern, String> {
         width_m: metres("width")?,
         spacing_m: metres("spacing")?,
         heading_deg: form.number("heading")?.ok_or_else(|| missing("heading"))?,
-        alt_cm: centi(metres("altitude")?, form.units)?,
-        speed_cms: speed_cms(speed_mps, form.units)?,
+        altitude: altitude(metres("altitude")?, form.units)?,
+        speed: leg_speed(speed_mps, form.units)?,
         kind: form.value("type").parse().unwrap_or(WaypointType::Flyover),
     })
 }
@@ -225,23 +225,15 @@ pub(super) fn plan_of(waypoints: &[Waypoint]) -> FlightPlan {
     FlightPlan { waypoints: waypoints.iter().copied().take(MAX_WAYPOINTS).collect() }
 }
 
-fn centi(metres: f64, units: Units) -> Result<i32, String> {
-    let cm = (metres * 100.0).round();
-    if cm.abs() < f64::from(i32::MAX) {
-        Ok(cm as i32)
-    } else {
-        Err(format!("{} is out of range.", units.length_text(metres, 0)))
-    }
+fn altitude(metres: f64, units: Units) -> Result<Altitude, String> {
+    Altitude::checked(metres).ok_or_else(|| format!("{} is out of range.", units.length_text(metres, 0)))
 }
 
-fn speed_cms(mps: f64, units: Units) -> Result<u16, String> {
-    let cms = (mps * 100.0).round();
-    if (0.0..=f64::from(u16::MAX)).contains(&cms) {
-        Ok(cms as u16)
-    } else {
-        let (typed, most) = (shortest(units.speed(mps)), units.speed_text(MOST_MPS, 2));
-        Err(format!("{typed} {} is out of range: 0 to {most} is allowed.", units.speed_unit()))
-    }
+fn leg_speed(mps: f64, units: Units) -> Result<LegSpeed, String> {
+    LegSpeed::checked(mps).ok_or_else(|| {
+        let (typed, most) = (shortest(units.speed(mps)), units.speed_text(LegSpeed::MOST_MPS, 2));
+        format!("{typed} {} is out of range: 0 to {most} is allowed.", units.speed_unit())
+    })
 }
 
 #[cfg(test)]

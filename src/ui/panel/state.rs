@@ -155,7 +155,7 @@ fn laps(state: &AppState) -> Option<String> {
     let wp = vehicle.active_plan.as_ref()?.waypoints.get(usize::from(nav.wp))?;
     let laps = vehicle.settings.as_ref()?.orbit_laps(wp)?;
     let unit = if laps < 0.995 { "of a lap" } else { "laps" };
-    Some(format!("  {laps:.2} {unit} in {} s", short(f64::from(wp.duration_ds) / 10.0)))
+    Some(format!("  {laps:.2} {unit} in {} s", short(wp.duration.get())))
 }
 
 /// Returns the time for the rest of the leg at the speed of the leg, s, and that speed, m/s. The current speed says
@@ -165,10 +165,7 @@ fn time_of_leg(state: &AppState) -> Option<(f64, f64)> {
     let nav = vehicle.nav.as_ref().filter(|nav| nav.eta_s.is_some())?;
     let wp = vehicle.active_plan.as_ref()?.waypoints.get(usize::from(nav.wp))?;
     let limit_mps = vehicle.settings.as_ref()?.max_velocity_mps;
-    let speed_mps = match wp.speed_cms {
-        0 => limit_mps,
-        cms => (f64::from(cms) / 100.0).min(limit_mps),
-    };
+    let speed_mps = wp.speed.own_mps().map_or(limit_mps, |mps| mps.min(limit_mps));
     let seconds = nav.distance_m? / speed_mps;
     seconds.is_finite().then_some((seconds, speed_mps))
 }

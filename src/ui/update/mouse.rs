@@ -3,6 +3,7 @@
 use crossterm::event::{KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
 use ratatui::layout::Rect;
 
+use crate::plan::Altitude;
 use crate::ui::app_state::AppState;
 use crate::ui::editor::Column;
 use crate::ui::layout;
@@ -124,10 +125,10 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
 fn release(state: &mut AppState) -> Vec<Effect> {
     state.drag = None;
     state.pressed = None;
-    if let Some((index, alt_cm)) = state.editor.dragged_altitude.take() {
+    if let Some((index, altitude)) = state.editor.dragged_altitude.take() {
         return state.editor.edit(&format!("altitude of WP{index}"), |document| {
             if let Some(wp) = document.plan.waypoints.get_mut(index) {
-                wp.alt_cm = alt_cm;
+                wp.altitude = altitude;
             }
         });
     }
@@ -174,11 +175,12 @@ fn press_on_plan(state: &mut AppState, area: Rect, event: &MouseEvent) {
         Some(PlanTarget::Cell(row, column)) => state.editor.go_to_cell(row, column),
         Some(PlanTarget::Altitude(index)) => {
             state.editor.go_to_cell(index, Column::Altitude);
-            let altitude = state.plan().waypoints.get(index).map(|wp| wp.alt_cm);
-            state.editor.dragged_altitude = altitude.map(|alt_cm| (index, alt_cm));
+            let altitude = state.plan().waypoints.get(index).map(|wp| wp.altitude);
+            state.editor.dragged_altitude = altitude.map(|altitude| (index, altitude));
             // The current scale: it changes with the altitude.
             let metres = plan_panel::metres_per_row(state, layout::inner(area)).unwrap_or_default();
-            state.drag = Some((event.column, event.row, metres, f64::from(altitude.unwrap_or_default())));
+            let from_m = altitude.unwrap_or_default().above_home_m();
+            state.drag = Some((event.column, event.row, metres, from_m));
         }
         None => {}
     }
@@ -186,15 +188,14 @@ fn press_on_plan(state: &mut AppState, area: Rect, event: &MouseEvent) {
 
 /// Drags an altitude of the profile, by whole metres or feet.
 fn drag_altitude(state: &mut AppState, event: &MouseEvent) {
-    let (Some((index, _)), Some((_, from_row, metres, from_cm))) =
-        (state.editor.dragged_altitude, state.drag)
+    let (Some((index, _)), Some((_, from_row, metres, from_m))) = (state.editor.dragged_altitude, state.drag)
     else {
         return;
     };
     let rows = f64::from(from_row) - f64::from(event.row);
-    let shown = state.units.length(from_cm / 100.0 + rows * metres).round();
+    let shown = state.units.length(from_m + rows * metres).round();
     let altitude_m = state.units.metres(shown);
-    state.editor.dragged_altitude = Some((index, (altitude_m * 100.0).round() as i32));
+    state.editor.dragged_altitude = Some((index, Altitude::above_home(altitude_m)));
 }
 
 /// Moves the item that the mouse has picked up. The window stays still meanwhile.

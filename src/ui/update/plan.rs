@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 
 use crate::geo::{GroundPlane, LatLon, distance_bearing};
 use crate::plan::edit::PlanDocument;
-use crate::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType};
+use crate::plan::{Altitude, FlightPlan, HoldPattern, Seconds, Waypoint, WaypointType};
 use crate::ui::action::{Action, EditAction};
 use crate::ui::app_state::AppState;
 use crate::ui::editor::findings;
@@ -18,7 +18,7 @@ use crate::ui::message::Effect;
 /// The distance from the last waypoint to a new one, m.
 const NEXT_LEG_M: f64 = 50.0;
 /// The altitude of the first waypoint, cm.
-const FIRST_ALT_CM: i32 = 2000;
+const FIRST_ALT_M: f64 = 20.0;
 
 /// Handles a key while a cell is typed.
 pub(super) fn field_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
@@ -85,7 +85,11 @@ pub(super) fn next_waypoint(state: &AppState) -> Option<Waypoint> {
     let at = waypoints.get(..=row).and_then(|before| before.iter().rposition(|wp| placed(&wp)));
     let Some((at, last)) = at.and_then(|at| Some((at, waypoints.get(at)?))) else {
         let home = findings::home(state)?;
-        return Some(Waypoint { position: home, alt_cm: FIRST_ALT_CM, ..Waypoint::default() });
+        return Some(Waypoint {
+            position: home,
+            altitude: Altitude::above_home(FIRST_ALT_M),
+            ..Waypoint::default()
+        });
     };
     let from =
         waypoints[..at].iter().rev().find(placed).map(|wp| wp.position).or_else(|| findings::home(state));
@@ -94,7 +98,7 @@ pub(super) fn next_waypoint(state: &AppState) -> Option<Waypoint> {
     let kind = if last.kind == WaypointType::Flyby { WaypointType::Flyby } else { WaypointType::Flyover };
     Some(Waypoint {
         position: GroundPlane::new(last.position).to_position(onward),
-        duration_ds: 0,
+        duration: Seconds::default(),
         pattern: HoldPattern::None,
         kind,
         ..*last

@@ -42,8 +42,9 @@ fn leaving_the_fence_returns_home() {
     let mut flight = fence_flight(FenceAction::Rth);
     let began = flight.t();
     assert_eq!((flight.nav.state(), flight.nav.index()), (NavState::Approaching, 0));
-    let altitudes: Vec<_> = flight.nav.active_plan().waypoints.iter().map(|wp| wp.alt_cm).collect();
-    assert!(altitudes.iter().all(|alt| (alt - 3000).abs() <= 50), "{altitudes:?}");
+    let altitudes: Vec<_> =
+        flight.nav.active_plan().waypoints.iter().map(|wp| wp.altitude.above_home_m()).collect();
+    assert!(altitudes.iter().all(|alt| (alt - 30.0).abs() <= 0.5), "{altitudes:?}");
     assert!(flight.until(60.0, |f| f.nav.state() == NavState::Arrived));
     assert!((20.0..=28.0).contains(&(flight.t() - began)), "{}", flight.t() - began);
     assert!(flight.until(120.0, |f| f.disarmed));

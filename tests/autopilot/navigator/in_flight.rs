@@ -1,5 +1,6 @@
 //! Commands in flight: fly to a waypoint, hold here, resume, continue on a new plan.
 
+use betadeck::plan::Seconds;
 use betadeck::plan::WaypointType::{AltChange, Flyover, Hold};
 use betadeck::telemetry::InFlightCommand::{GoTo, HoldHere, Resume};
 use betadeck::telemetry::{
@@ -59,7 +60,7 @@ fn a_waypoint_that_was_flown_and_a_parked_craft_can_be_gone_back_from() {
 #[test]
 fn the_modifiers_before_the_waypoint_count() {
     let mut higher = waypoint(AltChange, 0.0, 0.0, 35.0, 0.0);
-    higher.duration_ds = 0;
+    higher.duration = Seconds::default();
     let waypoints =
         [waypoint(Flyover, 60.0, 0.0, 20.0, 5.0), higher, waypoint(Flyover, 120.0, 0.0, 20.0, 5.0)];
     let mut flight = Flight::new(guide(), &waypoints, 20.0).launch();
@@ -78,7 +79,7 @@ fn a_hold_by_command_lasts_until_the_next_one() {
     flight.run(60.0);
     let telemetry = flight.nav.telemetry();
     assert_eq!((telemetry.state, telemetry.held_by_command), (NavState::Holding, true));
-    assert_eq!((telemetry.hold_remaining_ds, telemetry.cannot_hold), (Some(u16::MAX), None));
+    assert_eq!((telemetry.hold_remaining_s, telemetry.cannot_hold), (Some(f64::INFINITY), None));
     assert!((flight.plant.pos - here).norm() < 2.0, "{} {here}", flight.plant.pos);
     command(&mut flight, Resume).unwrap();
     let telemetry = flight.nav.telemetry();
@@ -92,7 +93,7 @@ fn a_hold_by_command_lasts_until_the_next_one() {
 fn a_planned_pattern_is_left_and_flown_again() {
     let mut orbit = waypoint(Hold, 30.0, 0.0, 20.0, 5.0);
     orbit.pattern = betadeck::plan::HoldPattern::Orbit;
-    orbit.duration_ds = 600;
+    orbit.duration = Seconds::new(60.0);
     let mut flight = Flight::new(guide(), &[orbit, waypoint(Flyover, 90.0, 0.0, 20.0, 5.0)], 20.0).launch();
     assert!(flight.until(60.0, |f| f.nav.state() == NavState::Orbiting));
     command(&mut flight, HoldHere).unwrap();

@@ -5,8 +5,8 @@ use betadeck::autopilot::io::NavInputs;
 use betadeck::autopilot::params::YawMode;
 use betadeck::autopilot::{Navigator, Params};
 use betadeck::geo::{LatLon, distance_bearing, offset_to_latlon};
-use betadeck::plan::Waypoint;
 use betadeck::plan::WaypointType::{AltChange, Delay, Flyover, Hold, Takeoff, YawRate};
+use betadeck::plan::{Seconds, Waypoint};
 use betadeck::telemetry::{GuardName, L1Mode, NavEvent, NavState};
 use nalgebra::Vector2;
 
@@ -43,7 +43,7 @@ fn a_low_waypoint_does_not_climb_again() {
 #[test]
 fn takeoff_climbs_over_its_place() {
     let mut takeoff = waypoint(Takeoff, 900.0, 900.0, 15.0, 0.0);
-    takeoff.duration_ds = 20;
+    takeoff.duration = Seconds::new(2.0);
     let waypoints = [takeoff, waypoint(Hold, 30.0, 0.0, 15.0, 5.0)];
     let mut flight = Flight::new(guide(), &waypoints, 1.5);
     flight.hover(5.0);
@@ -78,9 +78,9 @@ fn a_missed_flyover_is_come_back_to() {
 #[test]
 fn modifiers_change_the_next_leg() {
     let mut slow = waypoint(Delay, 0.0, 0.0, 0.0, 0.0);
-    slow.duration_ds = 300;
+    slow.duration = Seconds::new(30.0);
     let mut cap = waypoint(YawRate, 0.0, 0.0, 0.0, 0.0);
-    cap.speed_cms = 5;
+    cap.yaw_rate_dps = 5;
     let waypoints = [
         waypoint(Flyover, 0.0, 40.0, 20.0, 5.0),
         waypoint(AltChange, 0.0, 0.0, 26.0, 0.0),
@@ -154,7 +154,7 @@ fn legs_cross_the_antimeridian() {
 #[test]
 fn a_delay_counts_the_height_of_its_leg() {
     let mut slow = waypoint(Delay, 0.0, 0.0, 0.0, 0.0);
-    slow.duration_ds = 500;
+    slow.duration = Seconds::new(50.0);
     // 60 m along the leg and 80 m up make a path of 100 m, flown in 50 s.
     let mut flight = Flight::new(guide(), &[slow, waypoint(Hold, 60.0, 0.0, 100.0, 5.0)], 20.0).launch();
     let mut fastest: f64 = 0.0;
@@ -168,7 +168,7 @@ fn a_delay_counts_the_height_of_its_leg() {
 #[test]
 fn a_resumed_mission_keeps_the_yaw_rate_cap_of_the_plan_before_it() {
     let mut cap = waypoint(YawRate, 0.0, 0.0, 0.0, 0.0);
-    cap.speed_cms = 5;
+    cap.yaw_rate_dps = 5;
     let waypoints = [cap, waypoint(Flyover, 0.0, 40.0, 20.0, 5.0), waypoint(Hold, 60.0, 40.0, 20.0, 5.0)];
     let mut flight = Flight::new(guide(), &waypoints, 20.0).launch();
     assert!(flight.until(60.0, |f| f.nav.index() == 2));

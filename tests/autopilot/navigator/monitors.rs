@@ -3,7 +3,7 @@
 
 use betadeck::autopilot::Params;
 use betadeck::plan::WaypointType::{Flyby, Flyover, Hold, Land, Takeoff};
-use betadeck::plan::{HoldPattern, Waypoint};
+use betadeck::plan::{HoldPattern, Seconds, Waypoint};
 use betadeck::telemetry::{AbortReason, NavEvent, NavState, TransitionReason};
 use nalgebra::Vector2;
 use rand::{RngExt as _, SeedableRng as _};
@@ -58,7 +58,8 @@ fn random_plan(rng: &mut ChaCha8Rng) -> Vec<Waypoint> {
             let (north, east) = (rng.random_range(-size..size), rng.random_range(-size..size));
             let speed = if rng.random() { 0.0 } else { rng.random_range(1.0..25.0) };
             let mut place = waypoint(kind, north, east, rng.random_range(8.0..40.0), speed);
-            place.duration_ds = if kind == Hold { rng.random_range(10..150) } else { 0 };
+            place.duration =
+                Seconds::new(if kind == Hold { f64::from(rng.random_range(10..150)) / 10.0 } else { 0.0 });
             place.pattern =
                 [HoldPattern::None, HoldPattern::Orbit, HoldPattern::Figure8][rng.random_range(0..3)];
             place

@@ -3,7 +3,7 @@
 use betadeck::autopilot::io::NavInputs;
 use betadeck::autopilot::{Navigator, Params};
 use betadeck::plan::WaypointType::{AltChange, Flyby, Flyover, Hold, Land};
-use betadeck::plan::{FlightPlan, HoldPattern};
+use betadeck::plan::{FlightPlan, HoldPattern, Seconds};
 use betadeck::telemetry::{AbortReason, NavEvent, NavState, TransitionReason};
 use nalgebra::Vector2;
 
@@ -14,7 +14,7 @@ use crate::navigator::{flying, three};
 fn arrived_and_holding_before_a_pattern_last_one_update() {
     let mut hold = waypoint(Hold, 20.0, 0.0, 20.0, 5.0);
     hold.pattern = HoldPattern::Orbit;
-    hold.duration_ds = 50;
+    hold.duration = Seconds::new(5.0);
     let mut flight = Flight::new(guide(), &[hold, waypoint(Flyover, 60.0, 0.0, 20.0, 5.0)], 20.0).launch();
     flight.run(40.0);
     let at = |state, wp| flight.entered(state, wp).unwrap();
@@ -27,7 +27,7 @@ fn arrived_and_holding_before_a_pattern_last_one_update() {
 #[test]
 fn every_state_event_carries_the_guard_that_fired() {
     let mut hold = waypoint(Hold, 20.0, 0.0, 20.0, 5.0);
-    hold.duration_ds = 10;
+    hold.duration = Seconds::new(1.0);
     let waypoints = [waypoint(Flyby, 10.0, 0.0, 20.0, 5.0), hold, waypoint(Land, 30.0, 0.0, 20.0, 5.0)];
     let mut flight = Flight::new(guide(), &waypoints, 20.0).launch();
     assert!(flight.until(120.0, |f| f.disarmed));

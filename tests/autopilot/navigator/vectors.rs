@@ -7,7 +7,7 @@ use betadeck::autopilot::io::NavInputs;
 use betadeck::autopilot::{Navigator, Params};
 use betadeck::geo::offset_to_latlon;
 use betadeck::plan::WaypointType::{Flyover, Hold, Land};
-use betadeck::plan::{FlightPlan, Waypoint, WaypointType};
+use betadeck::plan::{Altitude, FlightPlan, Seconds, Waypoint, WaypointType};
 use betadeck::signals::SimTime;
 use betadeck::telemetry::{NavState, Refusal};
 use nalgebra::Vector2;
@@ -115,7 +115,10 @@ fn commands_of_the_vectors() {
                 let kinds: Vec<_> = nav.active_plan().waypoints.iter().map(|wp| wp.kind).collect();
                 assert_eq!(kinds, [Flyover, Land]);
                 assert!(
-                    nav.active_plan().waypoints.iter().all(|wp| wp.alt_cm == 3300 && wp.position == HOME)
+                    nav.active_plan()
+                        .waypoints
+                        .iter()
+                        .all(|wp| wp.altitude == Altitude::above_home(33.0) && wp.position == HOME)
                 );
             }
             "resume" => {
@@ -176,7 +179,7 @@ fn from_words(words: &str, index: usize) -> Waypoint {
         record.pattern = pattern.parse().unwrap();
     }
     if let Some(duration) = parts.next() {
-        record.duration_ds = duration.parse().unwrap();
+        record.duration = Seconds::new(duration.parse::<f64>().unwrap() / 10.0);
     }
     record
 }

@@ -7,6 +7,7 @@ use betadeck::autopilot::fence::{FenceFacts, pre_flight};
 use betadeck::autopilot::machine::{Facts, Outcome, transition};
 use betadeck::autopilot::rx_loss::{RxLossFacts, decide};
 use betadeck::geo::LatLon;
+use betadeck::plan::format::WaypointRecord;
 use betadeck::plan::validate::{PlanFault, WaypointFault, check_records};
 use betadeck::plan::{FlightPlan, HoldPattern, MAX_WAYPOINTS, Waypoint, WaypointType};
 use betadeck::telemetry::{AbortReason, FenceAction, PlanSource, Refusal, RxLossPolicy};
@@ -106,14 +107,15 @@ fn engagement() {
 }
 
 fn record(value: &Value) -> Option<Waypoint> {
-    Some(Waypoint {
+    let record = WaypointRecord {
         position: LatLon::new(num(value, "lat") as i32, num(value, "lon") as i32),
         alt_cm: num(value, "alt") as i32,
-        speed_cms: num(value, "speed") as u16,
+        speed: num(value, "speed") as u16,
         duration_ds: num(value, "duration") as u16,
         kind: WaypointType::from_str(text(value, "type")).ok()?,
         pattern: HoldPattern::from_str(text(value, "pattern")).ok()?,
-    })
+    };
+    Some(record.into())
 }
 
 #[test]

@@ -7,6 +7,7 @@ use betadeck::autopilot::guidance::{
 use betadeck::autopilot::machine::{Facts, Outcome, transition};
 use betadeck::autopilot::params::Params;
 use betadeck::geo::offset_to_latlon;
+use betadeck::plan::LegSpeed;
 use betadeck::telemetry::{L1Mode, NavState};
 
 use crate::vectors::{cases, close, close_angle, close_place, flag, metres, num, point, set, text};
@@ -166,7 +167,7 @@ fn speed_demands() {
     for case in cases("speed_demand", "leg_speed") {
         let mut params = Params::default();
         set(&mut params, "ap_max_velocity", &case, "max_velocity_cms");
-        let got = leg_speed_mps(num(&case, "waypoint_speed_cms") as u16, &params);
+        let got = leg_speed_mps(LegSpeed::from_mps(num(&case, "waypoint_speed_cms") / 100.0), &params);
         close(got * 100.0, num(&case, "leg_speed_cms"), 1.0, &case);
     }
     for case in cases("speed_demand", "build_up_accel") {

@@ -2,10 +2,10 @@
 
 use std::str::FromStr;
 
-use betadeck::autopilot::guidance::{PlaneCrossing, hold_remaining_ds, turn_radius_m};
+use betadeck::autopilot::guidance::{PlaneCrossing, hold_remaining_s, turn_radius_m};
 use betadeck::autopilot::land_detector::{GroundFacts, TouchdownFacts, TouchdownGuards};
 use betadeck::autopilot::machine::{Facts, Outcome, ProgressFacts, transition};
-use betadeck::plan::{HoldPattern, WaypointType};
+use betadeck::plan::{HoldPattern, Seconds, WaypointType};
 use betadeck::signals::SimTime;
 use betadeck::telemetry::{FenceAction, NavState};
 use serde_json::Value;
@@ -15,13 +15,14 @@ use crate::vectors::{cases, fence_action, flag, num, state, text};
 #[test]
 fn hold_timers() {
     for case in cases("hold_timer", "cases") {
-        let duration = num(&case, "duration_ds") as u16;
+        let duration = Seconds::new(num(&case, "duration_ds") / 10.0);
         let elapsed = SimTime::from_secs_f64(num(&case, "elapsed_s")).0;
-        let remaining = u64::from(hold_remaining_ds(duration, elapsed));
+        // Saturates: 65535 ds are endless.
+        let remaining = u64::from((hold_remaining_s(duration, elapsed) * 10.0).round() as u16);
         assert_eq!(Some(remaining), case["remaining_ds"].as_u64(), "{case}");
         let mut facts = Facts { hold_elapsed_us: elapsed, ..Facts::default() };
         facts.waypoint.kind = WaypointType::Hold;
-        facts.waypoint.duration_ds = duration;
+        facts.waypoint.duration = duration;
         let over = transition(NavState::Holding, &facts).is_some();
         assert_eq!(over, flag(&case, "expired"), "guard in {case}");
     }
@@ -36,7 +37,7 @@ fn transition_facts(case: &Value) -> Facts {
     let waypoint = &mut facts.waypoint;
     waypoint.kind = WaypointType::from_str(text(case, "type")).unwrap();
     waypoint.pattern = input["pattern"].as_str().map_or(HoldPattern::None, |name| name.parse().unwrap());
-    waypoint.duration_ds = input["duration_ds"].as_u64().unwrap_or(0) as u16;
+    waypoint.duration = Seconds::new(input["duration_ds"].as_f64().unwrap_or(0.0) / 10.0);
     waypoint.last = num(case, "index") + 1.0 >= num(case, "count");
     waypoint.co_located = is("co_located");
     waypoint.missed = is("missed");

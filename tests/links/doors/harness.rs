@@ -10,7 +10,7 @@ use betadeck::firmware::msp::{GpsReading, MspAction, MspFacts, handle};
 use betadeck::geo::LatLon;
 use betadeck::link::proto::command_line::{Completion, LineSource};
 use betadeck::link::{ListenConfig, Listeners, Request, RestartSignal};
-use betadeck::plan::{HoldPattern, Waypoint, WaypointType};
+use betadeck::plan::{Altitude, HoldPattern, LegSpeed, Seconds, Waypoint, WaypointType};
 use betadeck::telemetry::{EndpointKind, EndpointState, EndpointStatus};
 use futures_util::{SinkExt, StreamExt};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
@@ -66,14 +66,14 @@ pub(crate) fn captured_craft() -> Craft {
     }
     let first = Waypoint {
         position: LatLon::new(-274_973_051, 1_530_000_000),
-        alt_cm: 4000,
-        speed_cms: 500,
+        altitude: Altitude::above_home(40.0),
+        speed: LegSpeed::from_mps(5.0),
         ..Waypoint::default()
     };
     let second = Waypoint {
         position: LatLon::new(-274_973_051, 1_530_015_191),
-        alt_cm: 5000,
-        duration_ds: 50,
+        altitude: Altitude::above_home(50.0),
+        duration: Seconds::new(5.0),
         kind: WaypointType::Hold,
         pattern: HoldPattern::Orbit,
         ..first

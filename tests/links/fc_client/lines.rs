@@ -3,7 +3,7 @@
 use betadeck::fc::client::{Answer, Ask, CliAccess, Unanswered};
 use betadeck::link::proto::msp::Decoder;
 use betadeck::plan::format::{self, Format};
-use betadeck::plan::upload_lines;
+use betadeck::plan::plan_lines;
 
 use crate::fc_client::board::{Bench, Manners};
 
@@ -37,7 +37,7 @@ fn a_plan_goes_up_and_comes_back_in_every_way() {
         let mut bench = Bench::new(manners);
         bench.client.set_cli(access);
         bench.client.set_armed(armed);
-        let lines: Vec<String> = upload_lines(&plan, &[]).collect();
+        let lines: Vec<String> = plan_lines(&plan).collect();
         for line in &lines {
             bench.line(line);
         }

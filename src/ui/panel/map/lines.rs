@@ -213,10 +213,7 @@ fn figure(
 
 /// Returns the turn radius at the speed of the leg, m.
 fn turn_radius(wp: &Waypoint, settings: &SettingsView) -> f64 {
-    settings.turn_radius_m(match wp.speed_cms {
-        0 => settings.max_velocity_mps,
-        cms => f64::from(cms) / 100.0,
-    })
+    settings.turn_radius_m(wp.speed.own_mps().unwrap_or(settings.max_velocity_mps))
 }
 
 /// Draws the curve that leaves one leg and joins the next at `radius` from the corner.
@@ -245,10 +242,11 @@ fn cut_corner(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::LegSpeed;
 
     #[test]
     fn the_turn_radius_is_that_of_a_coordinated_turn() {
-        let wp = Waypoint { speed_cms: 500, ..Waypoint::default() };
+        let wp = Waypoint { speed: LegSpeed::from_mps(5.0), ..Waypoint::default() };
         let settings =
             SettingsView { max_velocity_mps: 10.0, max_angle_deg: 25.0, ..SettingsView::default() };
         assert!((turn_radius(&wp, &settings) - 5.47).abs() < 0.01);

@@ -31,10 +31,10 @@ fn points(state: &AppState) -> Vec<Point> {
     let document = state.editor.document();
     let Some(home) = findings::home(state) else { return Vec::new() };
     let mut plan = document.plan.clone();
-    if let Some((index, alt_cm)) = state.editor.dragged_altitude()
+    if let Some((index, altitude)) = state.editor.dragged_altitude()
         && let Some(wp) = plan.waypoints.get_mut(index)
     {
-        wp.alt_cm = alt_cm;
+        wp.altitude = altitude;
     }
     let estimated = estimate(&plan, home, &settings_in_force::assumptions(state, document));
     let mut along_m = 0.0;

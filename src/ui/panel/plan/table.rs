@@ -189,12 +189,12 @@ fn value(column: Column, wp: &Waypoint, units: Units) -> String {
         return "—".to_owned();
     }
     match column {
-        Column::Altitude => format!("{:.1}", units.length(f64::from(wp.alt_cm) / 100.0)),
-        Column::Speed if wp.kind == WaypointType::YawRate => format!("{}°", wp.speed_cms),
-        Column::Speed if wp.speed_cms == 0 => "—".to_owned(),
-        Column::Speed => format!("{:.1}", units.speed(f64::from(wp.speed_cms) / 100.0)),
-        Column::Time if wp.duration_ds == 0 && wp.kind == WaypointType::Hold => "∞".to_owned(),
-        Column::Time => format!("{:.1}", f64::from(wp.duration_ds) / 10.0),
+        Column::Altitude => format!("{:.1}", units.length(wp.altitude.above_home_m())),
+        Column::Speed if wp.kind == WaypointType::YawRate => format!("{}°", wp.yaw_rate_dps),
+        Column::Speed if wp.speed.own_mps().is_none() => "—".to_owned(),
+        Column::Speed => format!("{:.1}", units.speed(wp.speed.mps())),
+        Column::Time if wp.duration.is_zero() && wp.kind == WaypointType::Hold => "∞".to_owned(),
+        Column::Time => format!("{:.1}", wp.duration.get()),
         _ => column.text(wp, units),
     }
 }
@@ -225,7 +225,7 @@ mod tests {
             (value(Column::Time, &hold, Units::Metric), value(Column::Pattern, &hold, Units::Metric)),
             ("∞".into(), "ORBIT".into())
         );
-        let rate = Waypoint { kind: WaypointType::YawRate, speed_cms: 20, ..Waypoint::default() };
+        let rate = Waypoint { kind: WaypointType::YawRate, yaw_rate_dps: 20, ..Waypoint::default() };
         assert_eq!(value(Column::Speed, &rate, Units::Metric), "20°");
     }
 }
