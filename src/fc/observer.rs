@@ -53,11 +53,11 @@ struct Identity {
 
 /// Facts about a craft that are known because it is simulated here.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Simulated {
+pub struct Simulated {
     /// The altitude of its home above mean sea level, m.
-    pub(super) home_m: Option<f64>,
+    pub home_m: Option<f64>,
     /// `true` while the switch that makes it fly home is on; `None` without such a switch.
-    pub(super) commanded: Option<bool>,
+    pub commanded: Option<bool>,
 }
 
 impl Observer {

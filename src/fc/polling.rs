@@ -73,6 +73,16 @@ struct Entry {
     refused: bool,
 }
 
+impl Entry {
+    fn current_period(&self, in_flight: bool) -> Duration {
+        match self.poll {
+            _ if self.refused => REFUSED_PERIOD,
+            Poll::Mission if !in_flight => MISSION_AT_REST,
+            Poll::Mission | Poll::Message(_) => self.period,
+        }
+    }
+}
+
 impl Schedule {
     /// Creates a schedule for a link with this capacity in bytes per second; `None` if it exceeds every need.
     pub fn new(bytes_per_s: Option<u32>) -> Self {
@@ -105,6 +115,14 @@ impl Schedule {
         }
     }
 
+    /// Returns the time at which the next poll is due.
+    pub fn due(&self, in_flight: bool) -> Duration {
+        let due = |entry: &Entry| {
+            entry.asked.map_or(Duration::ZERO, |asked| asked + entry.current_period(in_flight))
+        };
+        self.entries.iter().map(due).min().unwrap_or_default().max(self.free_at)
+    }
+
     /// Returns the poll to send now, if any, and counts it as sent. `in_flight` means armed or flying a
     /// mission.
     pub fn next(&mut self, in_flight: bool, now: Duration) -> Option<Poll> {
@@ -114,12 +132,7 @@ impl Schedule {
         let lateness = |entry: &Entry| match entry.asked {
             None => f64::INFINITY,
             Some(asked) => {
-                let period = match entry.poll {
-                    _ if entry.refused => REFUSED_PERIOD,
-                    Poll::Mission if !in_flight => MISSION_AT_REST,
-                    Poll::Mission | Poll::Message(_) => entry.period,
-                };
-                now.saturating_sub(asked).as_secs_f64() / period.as_secs_f64()
+                now.saturating_sub(asked).as_secs_f64() / entry.current_period(in_flight).as_secs_f64()
             }
         };
         let mut latest: Option<(f64, &mut Entry)> = None;

@@ -25,8 +25,6 @@ use report::{ProvisionReport, RefusedLine};
 pub use report::{Unset, UnsetLine};
 use wish::Wish;
 
-use super::self_check::SelfCheck;
-use super::{Identification, RemoteLink, RemoteNotice, RemoteState};
 use crate::fc::client::{Answer, Ask, Unanswered};
 
 /// The line that stores the written settings and restarts.
@@ -54,7 +52,7 @@ pub struct Provision {
     when_bare: Option<ProvisionLines>,
     was_bare: bool,
     /// A file to be written after success, with its contents.
-    note: Option<(PathBuf, String)>,
+    pub(super) note: Option<(PathBuf, String)>,
     /// The number of connections that were lost before it was written.
     lost: usize,
 }
@@ -113,14 +111,14 @@ impl Provision {
         self
     }
 
-    /// Writes these words to `file` after success.
+    /// Has these words written to `file` after success.
     pub fn noted_in(mut self, file: PathBuf, words: String) -> Self {
         self.note = Some((file, words));
         self
     }
 
     /// Adapts the lines to a flight controller that falls in LAND with the guide's altitude gains.
-    fn replace_falling_gains(&mut self) {
+    pub(super) fn replace_falling_gains(&mut self) {
         let replaced = self.lines.replace_falling_gains();
         if replaced.is_empty() {
             return;
@@ -133,7 +131,7 @@ impl Provision {
     }
 
     /// Returns the next request; `None` while an answer or a restart is pending, and at the end.
-    fn next(&mut self) -> Option<Ask> {
+    pub(super) fn next(&mut self) -> Option<Ask> {
         if self.asked.is_some() {
             return None;
         }
@@ -155,7 +153,7 @@ impl Provision {
     }
 
     /// Takes the answer to the last request.
-    fn take(&mut self, answer: &Answer) {
+    pub(super) fn take(&mut self, answer: &Answer) {
         let Some(asked) = self.asked.take() else { return };
         if let (Answer::NotAnswered(Unanswered::LinkLost), true) = (answer, self.lost < MOST_LOST) {
             self.lost += 1;
@@ -190,14 +188,14 @@ impl Provision {
     }
 
     /// Continues after the flight controller has restarted and answers again.
-    fn reconnected(&mut self) {
+    pub(super) fn reconnected(&mut self) {
         if let Phase::Restart = self.phase {
             self.look_again();
         }
     }
 
     /// Returns the report at the end, or the reason for a failure as part of a sentence.
-    fn result(&self) -> Option<Result<&ProvisionReport, &str>> {
+    pub(super) fn result(&self) -> Option<Result<&ProvisionReport, &str>> {
         match &self.phase {
             Phase::Done(Ok(())) => Some(Ok(&self.report)),
             Phase::Done(Err(why)) => Some(Err(why)),
@@ -206,7 +204,7 @@ impl Provision {
     }
 
     /// Returns `true` if something was written without a restart, so that the known settings are outdated.
-    fn is_changed_without_restart(&self) -> bool {
+    pub(super) fn is_changed_without_restart(&self) -> bool {
         self.report.written > 0 && !self.restarted
     }
 
@@ -262,76 +260,5 @@ impl Provision {
             Phase::Write { left: (0..self.wishes.len()).filter(known).collect() }
         };
         self.report.may_not_write = !written && must_write && !self.may_write;
-    }
-}
-
-impl RemoteLink {
-    /// Configures the flight controller once it is identified, before it counts as ready.
-    pub fn provision(&mut self, provision: Provision) {
-        self.provision = Some(provision);
-    }
-
-    /// Marks the identified and configured flight controller as ready. Polling starts.
-    pub(super) fn become_ready(&mut self) {
-        self.state = RemoteState::Ready;
-        self.self_check = SelfCheck::default();
-        self.schedule.refresh();
-        self.notices.push(RemoteNotice::Reported(self.observer.introduction(&self.ends.name)));
-    }
-
-    /// Continues after the flight controller was identified, perhaps after a restart.
-    pub(super) fn go_on_with_provision(&mut self) {
-        if let Some(provision) = &mut self.provision {
-            provision.reconnected();
-        }
-        self.end_provision();
-    }
-
-    pub(super) fn ask_to_provision(&mut self) -> Option<Ask> {
-        let provision = self.provision.as_mut()?;
-        if self.observer.falls_in_land() {
-            provision.replace_falling_gains();
-        }
-        let ask = provision.next();
-        self.end_provision();
-        ask
-    }
-
-    pub(super) fn take_provision_answer(&mut self, answer: &Answer) {
-        if let Some(provision) = &mut self.provision {
-            provision.take(answer);
-        }
-        self.end_provision();
-    }
-
-    /// Reports the result once the configuration is finished.
-    fn end_provision(&mut self) {
-        let Some(provision) = self.provision.take_if(|provision| provision.result().is_some()) else {
-            return;
-        };
-        match provision.result() {
-            Some(Ok(report)) => {
-                self.unset = report.unset();
-                let notice = if report.is_as_wanted() { RemoteNotice::Reported } else { RemoteNotice::Lost };
-                self.notices.extend(report.sentences().into_iter().map(notice));
-            }
-            Some(Err(why)) => {
-                let sentence = format!("The firmware could not be configured: {why}.");
-                self.unset = Some(Unset::Everything(sentence.clone()));
-                self.notices.push(RemoteNotice::Lost(sentence));
-            }
-            None => {}
-        }
-        if let (Some(Ok(_)), Some((file, words))) = (provision.result(), &provision.note)
-            && let Err(error) = crate::storage::state_file::replace(file, words.as_bytes())
-        {
-            let place = file.display();
-            self.notices.push(RemoteNotice::Lost(format!("Cannot write {place}: {error}.")));
-        }
-        if provision.is_changed_without_restart() {
-            self.identification = Identification::default();
-        } else {
-            self.become_ready();
-        }
     }
 }

@@ -1,31 +1,23 @@
 //! The return home of a remote firmware, which has a mode for it instead of a command.
 
-use super::{RemoteLink, RemoteNotice};
+use super::observer::Observer;
+use crate::signals::RC_CHANNELS;
 use crate::telemetry::Mode;
 use crate::telemetry::switch::{self, Switch};
-use crate::vehicle::Vehicle;
 
-impl RemoteLink {
-    /// Moves the switch of GPS RESCUE.
-    pub(super) fn switch_rescue(&mut self, vehicle: &mut Vehicle, on: bool) {
-        match Switch::of(Mode::GpsRescue, &vehicle.controller().mode_ranges()) {
-            Some(Switch { channel, on_us, off_us }) => {
-                vehicle.transmitter_mut().sticks_mut().channels[channel] = if on { on_us } else { off_us };
-                self.observer.deliver_again();
-            }
-            None => self.notices.push(RemoteNotice::Reported(
-                "This firmware flies home only by a switch, and GPS RESCUE has none: assign one with the CLI command \
-                 aux."
-                    .to_owned(),
-            )),
-        }
-    }
+/// The message if no switch makes it fly home.
+pub(super) const NO_SWITCH: &str = "This firmware flies home only by a switch, and GPS RESCUE has none: assign one with the CLI command aux.";
 
-    /// Returns `true` while the switch that makes it fly home is on; `None` without such a switch.
-    pub(super) fn rescue_switch(&self, vehicle: &Vehicle) -> Option<bool> {
-        let mut ranges = self.observer.mode_ranges();
-        let Switch { channel, .. } = Switch::of(Mode::GpsRescue, &ranges)?;
-        ranges.retain(|range| usize::from(range.channel) == channel);
-        Some(switch::is_on(Mode::GpsRescue, &ranges, &vehicle.transmitter().sticks().channels))
-    }
+/// Returns the channel of the switch that makes it fly home, and its pulse (µs) when it is on or off.
+pub(super) fn position(observer: &Observer, on: bool) -> Option<(usize, u16)> {
+    let Switch { channel, on_us, off_us } = Switch::of(Mode::GpsRescue, &observer.mode_ranges())?;
+    Some((channel, if on { on_us } else { off_us }))
+}
+
+/// Returns `true` while the switch that makes it fly home is on; `None` without such a switch.
+pub(super) fn is_on(observer: &Observer, channels: &[u16; RC_CHANNELS]) -> Option<bool> {
+    let mut ranges = observer.mode_ranges();
+    let Switch { channel, .. } = Switch::of(Mode::GpsRescue, &ranges)?;
+    ranges.retain(|range| usize::from(range.channel) == channel);
+    Some(switch::is_on(Mode::GpsRescue, &ranges, channels))
 }

@@ -1,16 +1,13 @@
 //! Checks with a craft at rest that a SITL executable interprets its packets correctly.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use nalgebra::Vector3;
 
-use super::{RemoteLink, RemoteState};
 use crate::geo::{LatLon, distance_bearing};
 use crate::link::proto::fdm::{Gravity, State};
-use crate::link::proto::sitl_feed::FeedState;
 use crate::signals::fdm::Dialect;
 use crate::telemetry::snapshot::{EstimateView, TruthView};
-use crate::vehicle::Vehicle;
 
 /// The greatest error of roll and pitch, degrees.
 const LEAN_DEG: f64 = 2.0;
@@ -25,29 +22,6 @@ const PLACE_M: f64 = 50.0;
 /// The time for which it must answer before its values have settled.
 const SETTLED: Duration = Duration::from_secs(8);
 
-impl RemoteLink {
-    /// Checks once, some time after the first answer, that it shows the craft at rest correctly.
-    pub(super) fn check_at_rest(&mut self, vehicle: &Vehicle, now: Instant) -> Option<String> {
-        let peer = self.ends.peer.as_ref()?;
-        let answers = self.state == RemoteState::Ready && self.motors == FeedState::Answering;
-        if !self.self_check.is_due(answers, now) {
-            return None;
-        }
-        let snapshot = vehicle.snapshot();
-        let truth = snapshot.truth.filter(|truth| truth.on_ground && !truth.crashed)?;
-        if snapshot.craft.armed != Some(false) {
-            return None;
-        }
-        finding(&AtRest {
-            sent: peer.dialect(),
-            truth,
-            reported: snapshot.estimate,
-            trusts_mag: self.observer.trusts_mag(),
-            place: snapshot.craft.gps.map(|gps| gps.position),
-        })
-    }
-}
-
 /// The time of the check.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) enum SelfCheck {
@@ -55,13 +29,13 @@ pub(super) enum SelfCheck {
     #[default]
     Waiting,
     /// It answers. The check is due at this time.
-    At(Instant),
+    At(Duration),
     Done,
 }
 
 impl SelfCheck {
     /// Returns `true` once, when the check is due.
-    pub(super) fn is_due(&mut self, answers: bool, now: Instant) -> bool {
+    pub(super) fn is_due(&mut self, answers: bool, now: Duration) -> bool {
         match *self {
             Self::Waiting if answers => *self = Self::At(now + SETTLED),
             Self::At(_) if !answers => *self = Self::Waiting,

@@ -9,12 +9,15 @@ use tokio::sync::mpsc;
 
 use super::*;
 use crate::firmware::cli::Interpreter;
-use crate::link::StreamEvent;
+use crate::link::{FcStream, StreamEvent};
 use crate::plan::AltitudeReference;
 use crate::telemetry::DisarmReason;
+use crate::vehicle::Vehicle;
 use board::{Board, Place};
+use remote::{Craft, Input};
 
 const TICK: Duration = Duration::from_millis(10);
+const SECOND: Duration = Duration::from_secs(1);
 const FIELD: Place = Place { lat: 470_000_000, lon: 80_000_000, alt_m: 400 };
 const COAST: Place = Place { lat: 540_000_000, lon: 100_000_000, alt_m: 5 };
 
@@ -131,30 +134,33 @@ fn home_is_where_a_real_craft_is_disarmed_not_where_it_was_seen_first() {
 fn a_board_that_says_nothing_any_more_is_lost_and_another_one_when_it_speaks_again() {
     let mut bench = Bench::new(Board::at(FIELD));
     bench.run(5.0);
-    assert_eq!(*bench.link.state(), RemoteState::Ready);
-    bench.link.permit_changes(1);
+    assert_eq!(bench.link.remote().state(), RemoteState::Ready);
+    bench.link.remote_mut().permit_changes(1);
     bench.board.silent = true;
     bench.run(6.0);
-    assert_eq!(*bench.link.state(), RemoteState::Lost);
+    assert_eq!(bench.link.remote().state(), RemoteState::Lost);
     assert!(bench.was_reported("serial:test no longer answers"), "{:?}", bench.reported);
     assert_eq!(bench.vehicle.snapshot().craft.armed, None, "the last report is old");
-    assert_eq!(bench.link.access(), Access::Reading);
+    assert_eq!(bench.link.remote().access(), Access::Reading);
     bench.run(20.0);
     assert_eq!(bench.reported.iter().filter(|reported| reported.contains("no longer answers")).count(), 1);
 
     bench.board = Board { from_home: true, ..Board::at(COAST) };
     bench.run(8.0);
-    assert_eq!((bench.link.state(), bench.link.connection()), (&RemoteState::Ready, 2));
+    assert_eq!((bench.link.remote().state(), bench.link.remote().connection()), (RemoteState::Ready, 2));
     assert_eq!(bench.reference(), AltitudeReference::Home);
     assert_eq!(bench.vehicle.snapshot().craft.armed, Some(false));
-    assert_eq!(bench.link.access(), Access::Reading, "it was permitted for the one before");
+    assert_eq!(bench.link.remote().access(), Access::Reading, "it was permitted for the one before");
 }
 
 #[test]
 fn what_could_not_be_reported_in_flight_is_asked_after_it() {
     let mut bench = Bench::new(Board { armed: true, ..Board::at(FIELD) });
     bench.run(10.0);
-    assert_eq!((bench.link.state(), bench.reference()), (&RemoteState::Ready, AltitudeReference::Unreported));
+    assert_eq!(
+        (bench.link.remote().state(), bench.reference()),
+        (RemoteState::Ready, AltitudeReference::Unreported)
+    );
     assert!(
         bench.was_reported("the reference of its waypoints' altitudes is not known yet"),
         "{:?}",
@@ -163,7 +169,7 @@ fn what_could_not_be_reported_in_flight_is_asked_after_it() {
     bench.board.armed = false;
     bench.run(5.0);
     assert_eq!(bench.reference(), AltitudeReference::SeaLevel { home_m: Some(400.0) });
-    assert!(!bench.link.opens_cli());
+    assert!(!bench.link.remote().opens_cli());
     assert!(
         bench.reported.last().unwrap().contains("its waypoints' altitudes count from sea level"),
         "{:?}",
@@ -184,7 +190,7 @@ fn what_a_line_sets_is_known_soon_after() {
     bench.vehicle.controller_mut().run_cli(&mut Interpreter::default(), line);
     bench.run(3.0);
     assert!((radius_m(&bench) - 7.0).abs() < 1e-9);
-    assert_eq!(*bench.link.state(), RemoteState::Ready);
+    assert_eq!(bench.link.remote().state(), RemoteState::Ready);
     let asked = bench.board.lines.iter().filter(|line| *line == "get ap_").count();
     bench.run(5.0);
     assert_eq!(bench.board.lines.iter().filter(|line| *line == "get ap_").count(), asked, "once");
@@ -208,7 +214,7 @@ fn a_craft_that_its_pilot_disarms_is_disarmed_by_the_switch() {
 #[test]
 fn every_question_is_asked_once_and_answered_before_it_counts_as_ready() {
     let mut bench = Bench::new(Board::at(FIELD));
-    while *bench.link.state() != RemoteState::Ready {
+    while bench.link.remote().state() != RemoteState::Ready {
         bench.run(0.01);
     }
     assert_eq!(
@@ -229,18 +235,65 @@ fn the_motors_of_a_real_craft_are_those_that_it_tells() {
 fn what_does_not_say_that_it_is_betaflight_is_of_no_use() {
     let mut bench = Bench::new(Board { variant: None, ..Board::at(FIELD) });
     bench.run(5.0);
-    assert!(matches!(bench.link.state(), RemoteState::Unusable(_)), "{:?}", bench.link.state());
+    assert!(
+        matches!(bench.link.remote().state(), RemoteState::Unusable(_)),
+        "{:?}",
+        bench.link.remote().state()
+    );
     assert!(bench.was_reported("does not identify itself"), "{:?}", bench.reported);
 }
 
 #[test]
 fn a_return_home_can_be_taken_back_as_long_as_its_switch_is_on() {
+    let is_on = |bench: &Bench| {
+        rescue::is_on(bench.link.remote().observer(), &bench.vehicle.transmitter().sticks().channels)
+    };
     let mut bench = Bench::new(Board::at(FIELD));
-    assert_eq!(bench.link.rescue_switch(&bench.vehicle), None, "no switch was reported");
+    assert_eq!(is_on(&bench), None, "no switch was reported");
     bench.run(5.0);
-    assert_eq!(bench.link.rescue_switch(&bench.vehicle), Some(false));
-    bench.link.switch_rescue(&mut bench.vehicle, true);
-    assert_eq!(bench.link.rescue_switch(&bench.vehicle), Some(true));
-    bench.link.switch_rescue(&mut bench.vehicle, false);
-    assert_eq!(bench.link.rescue_switch(&bench.vehicle), Some(false));
+    assert_eq!(is_on(&bench), Some(false));
+    bench.vehicle.controller_mut().return_to_home().unwrap();
+    bench.run(0.1);
+    assert_eq!(is_on(&bench), Some(true));
+    bench.vehicle.controller_mut().cancel_command();
+    bench.run(0.1);
+    assert_eq!(is_on(&bench), Some(false));
+}
+
+#[test]
+fn the_timeout_is_when_something_is_due() {
+    let craft = Craft {
+        name: "the board".to_owned(),
+        place: "serial:test".to_owned(),
+        bytes_per_s: None,
+        is_fed: false,
+        is_child: false,
+    };
+    let (mut board, mut now) = (Board::at(FIELD), Duration::ZERO);
+    let mut remote = Remote::new(craft, now);
+    assert_eq!(remote.timeout(), None, "nothing is due without a connection");
+    remote.handle(Input::Connected, now);
+    // The clock jumps from one timeout to the next.
+    let mut step = |remote: &mut Remote, board: &mut Board| {
+        now = now.max(remote.timeout().unwrap());
+        remote.handle_timeout(now);
+        while let Some(bytes) = remote.poll_transmit() {
+            remote.handle(Input::Received(&board.answer(&bytes)), now);
+        }
+        now
+    };
+    for _ in 0..30 {
+        step(&mut remote, &mut board);
+    }
+    assert_eq!(remote.state(), RemoteState::Ready);
+    let begun = step(&mut remote, &mut board);
+    let steps =
+        std::iter::repeat_with(|| step(&mut remote, &mut board)).take_while(|at| *at < begun + SECOND);
+    let steps = steps.count();
+    assert!((10..300).contains(&steps), "{steps} steps in a second");
+    board.silent = true;
+    let silent = step(&mut remote, &mut board);
+    let lost = std::iter::repeat_with(|| (step(&mut remote, &mut board), remote.state()));
+    let (lost, _) = lost.take(100).find(|(_, state)| *state == RemoteState::Lost).unwrap();
+    assert!((2..8).contains(&(lost - silent).as_secs()), "{:?}", lost - silent);
 }

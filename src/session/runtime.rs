@@ -342,7 +342,9 @@ impl Session {
         {
             return if self.pacer.is_behind() { EXCHANGE_PAUSE } else { due.saturating_sub(present) };
         }
-        self.longest_sleep().saturating_sub(present.saturating_sub(now))
+        let pause = self.remote.as_ref().and_then(|remote| remote.pause(Instant::now()));
+        let longest = self.longest_sleep().saturating_sub(present.saturating_sub(now));
+        pause.map_or(longest, |pause| pause.min(longest))
     }
 
     /// Returns the longest sleep of the thread if nothing arrives.

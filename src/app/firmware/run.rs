@@ -144,12 +144,12 @@ impl RemoteRun {
         vehicle: &mut Vehicle,
         tell: &mut impl FnMut(&Event) -> Result<(), AppError>,
     ) -> Result<(), Stopped> {
-        let mut patience = Patience::new(Instant::now());
-        while *self.link.state() != RemoteState::Ready {
+        let mut patience = Patience::new(self.started.elapsed());
+        while self.link.remote().state() != RemoteState::Ready {
             self.wait(vehicle, tell)?;
-            let (answers, connections) = (self.link.answers(), self.link.connection());
-            if let Some(why) = patience.look(answers, connections, Instant::now()) {
-                let (name, tcp, is_attached) = (self.link.name(), self.tcp, self.is_attached);
+            let remote = self.link.remote();
+            if let Some(why) = patience.look(remote.answers(), remote.connection(), self.started.elapsed()) {
+                let (name, tcp, is_attached) = (&remote.craft().name, self.tcp, self.is_attached);
                 let unready = Unready { name, tcp, is_attached, why };
                 return Err(AppError::environment(unready.to_string()).into());
             }
@@ -159,7 +159,7 @@ impl RemoteRun {
 
     /// Returns the part of the setup that failed, if any.
     pub(in crate::app) fn unset(&self) -> Option<&Unset> {
-        self.link.unset()
+        self.link.remote().unset()
     }
 
     /// Uploads the plan to the craft.
@@ -169,8 +169,8 @@ impl RemoteRun {
         plan: &FlightPlan,
         tell: &mut impl FnMut(&Event) -> Result<(), AppError>,
     ) -> Result<(), Stopped> {
-        let name = self.link.name();
-        if !self.link.observer().has_plans() {
+        let name = &self.link.remote().craft().name;
+        if !self.link.remote().observer().has_plans() {
             return Err(AppError::environment(format!(
                 "{name} has no waypoints: build it with EXTRA_FLAGS=\"-DENABLE_FLIGHT_PLANNING=1\""
             ))
@@ -205,7 +205,7 @@ impl RemoteRun {
 
     /// Returns the error for a refused plan: the craft refused it, or the craft is gone.
     fn refused(&self, refusal: String) -> AppError {
-        match self.link.state() {
+        match self.link.remote().state() {
             RemoteState::Ready => AppError::input(refusal),
             _ => AppError::environment(refusal),
         }

@@ -4,7 +4,7 @@ use crate::fc::landing_gains::landing_gains_reported;
 
 /// The result of the configuration.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub(super) struct ProvisionReport {
+pub(in crate::fc) struct ProvisionReport {
     /// `true` if nothing was ever changed in its configuration, so that it was configured like a fresh one.
     pub(super) was_bare: bool,
     /// The number of lines that were written and accepted.
@@ -64,12 +64,12 @@ pub(super) struct Difference {
 
 impl ProvisionReport {
     /// Returns `true` if all wishes that this firmware supports are fulfilled.
-    pub(super) fn is_as_wanted(&self) -> bool {
+    pub(in crate::fc) fn is_as_wanted(&self) -> bool {
         self.refused.is_empty() && self.differences.is_empty()
     }
 
     /// Returns the wishes that are not fulfilled; `None` if there are none.
-    pub(super) fn unset(&self) -> Option<Unset> {
+    pub(in crate::fc) fn unset(&self) -> Option<Unset> {
         if self.may_not_write {
             return Some(Unset::Everything(self.sentences().join(" ")));
         }
@@ -92,7 +92,7 @@ impl ProvisionReport {
     }
 
     /// Returns the notices as sentences. There are none if nothing had to be done.
-    pub(super) fn sentences(&self) -> Vec<String> {
+    pub(in crate::fc) fn sentences(&self) -> Vec<String> {
         let mut sentences = Vec::new();
         if self.was_bare {
             sentences.push(

@@ -151,7 +151,7 @@ impl Session {
             Command::ResetCraft => self.reset_craft(),
             Command::PermitChanges(connection) => {
                 if let Some(remote) = &mut self.remote {
-                    remote.permit_changes(connection);
+                    remote.remote_mut().permit_changes(connection);
                 }
             }
             Command::World { line, reply } => {

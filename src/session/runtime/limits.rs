@@ -3,7 +3,7 @@
 use tokio::sync::oneshot;
 
 use super::Session;
-use crate::fc::{Access, Denial, Impact, NOTHING_MOVES, NOTHING_SIMULATED, RemoteLink};
+use crate::fc::{Access, Denial, Impact, NOTHING_MOVES, NOTHING_SIMULATED};
 use crate::link::Request;
 use crate::link::proto::command_line::LineReply;
 use crate::session::command::{CliOutput, Command};
@@ -11,7 +11,7 @@ use crate::session::command::{CliOutput, Command};
 impl Session {
     /// Returns the access to the craft.
     pub(super) fn access(&self) -> Access {
-        self.remote.as_ref().map_or(Access::Everything, RemoteLink::access)
+        self.remote.as_ref().map_or(Access::Everything, |link| link.remote().access())
     }
 
     /// Returns the command if it is allowed. Otherwise answers it with the refusal.

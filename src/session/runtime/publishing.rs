@@ -5,7 +5,6 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::Session;
-use crate::fc::RemoteLink;
 use crate::session::command::SessionView;
 use crate::session::simulator::Simulator;
 use crate::telemetry::EndpointStatus;
@@ -28,7 +27,7 @@ impl Session {
             pilot: vehicle.transmitter().pilot_doing(),
             endpoints: self.endpoints(),
             simulator: self.simulator.as_ref().map(Simulator::state),
-            remote: self.remote.as_ref().map(RemoteLink::view),
+            remote: self.remote.as_ref().map(|link| link.remote().view()),
             live: self.endpoints.is_some(),
             timeline: self.timeline_view(),
         }

@@ -7,7 +7,6 @@ use std::time::{Duration, Instant};
 use super::limits::refuse_request;
 use super::rewind::refuse_changing_request;
 use super::{SLICE, Session};
-use crate::fc::RemoteLink;
 use crate::firmware::cli::Interpreter;
 use crate::link::Request;
 use crate::link::proto::fdm::Packet;
@@ -52,7 +51,7 @@ impl Session {
             let request = match refuse_request(request, access) {
                 Ok(request) => request,
                 Err(denial) => {
-                    let connection = self.remote.as_ref().map(RemoteLink::connection);
+                    let connection = self.remote.as_ref().map(|link| link.remote().connection());
                     self.refused_over.retain(|(over, _)| *over == connection);
                     if !self.refused_over.contains(&(connection, denial)) {
                         self.refused_over.push((connection, denial));

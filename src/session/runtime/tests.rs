@@ -146,7 +146,8 @@ fn a_simulated_craft_that_falls_in_land_gets_gains_to_land_with_and_a_real_one_t
             let stream = FcStream { to, from, place: "tcp:here:1".to_owned(), bytes_per_s: None };
             let ends = RemoteEnds { name: "the board".to_owned(), stream, peer: None, child: None };
             let mut link = RemoteLink::new(ends, Instant::now());
-            link.permit_changes(link.connection());
+            let connection = link.remote().connection();
+            link.remote_mut().permit_changes(connection);
             rig.session.remote = Some(link);
         }
         let altitude_reference = AltitudeReference::SeaLevel { home_m: Some(300.0) };

@@ -1,0 +1,303 @@
+//! The links to a remote flight controller: moves the data between its program, its sockets, the protocol and
+//! the vehicle.
+//!
+//! ```text
+//!                    ┌── sensor and RC frames ──▶ Feed ───▶ UDP        (a SITL executable only)
+//!  vehicle's mailbox ┤◀─ motors ─────────────────┘
+//!                    ├── requests ──────────────▶ Remote ─▶ FcStream   (TCP, serial, websocket)
+//!                    └◀─ answers, telemetry ──────┘
+//! ```
+//!
+//! Nothing here blocks: [`RemoteLink::exchange`] is called between two steps.
+
+use std::task::{Context, Poll};
+use std::time::{Duration, Instant};
+
+use super::feed::Feed;
+use super::observer::Simulated;
+use super::remote::{Craft, Event, Input};
+use super::{Remote, RemoteNotice, RemoteState, rescue};
+use crate::geo::LocalFrame;
+use crate::link::{ChildEvent, FcStream, SitlChild, SitlPeer, StreamEvent};
+use crate::storage::state_file;
+use crate::telemetry::EndpointStatus;
+use crate::vehicle::Vehicle;
+
+/// The least wall time between two exchanges. Lost time is made up for at twice the speed.
+pub const EXCHANGE_PAUSE: Duration = Duration::from_micros(500);
+/// The maximum number of events of the child process between two steps. A process that prints much must not
+/// hold up the craft.
+const MOST_EVENTS: usize = 64;
+/// The maximum number of pieces and bytes that are read between two steps, so that a flood from the peer does
+/// not hold up the craft. Unread data holds up the peer.
+const MOST_READ: usize = 64;
+const MOST_BYTES: usize = 8 * 1024;
+/// The greatest distance between the first fixes of two real craft for which the drawing keeps its origin, m.
+const SAME_FIELD_M: f64 = 1000.0;
+
+/// The links to a flight controller.
+#[derive(Debug)]
+pub struct RemoteEnds {
+    /// The name for sentences: a file, or the address.
+    pub name: String,
+    pub stream: FcStream,
+    /// The sockets for states, RC and motors, if it is a SITL executable.
+    pub peer: Option<SitlPeer>,
+    /// The process, if it is a child of this program.
+    pub child: Option<SitlChild>,
+}
+
+/// The link to a remote flight controller.
+#[derive(Debug)]
+pub struct RemoteLink {
+    remote: Remote,
+    stream: FcStream,
+    feed: Option<Feed>,
+    child: Option<SitlChild>,
+    started: Instant,
+    notices: Vec<RemoteNotice>,
+}
+
+impl RemoteLink {
+    /// Creates a link over these ends. A program that is a child of this one starts now.
+    pub fn new(ends: RemoteEnds, now: Instant) -> Self {
+        let RemoteEnds { name, stream, peer, child } = ends;
+        let craft = Craft {
+            name,
+            place: stream.place.clone(),
+            bytes_per_s: stream.bytes_per_s,
+            is_fed: peer.is_some(),
+            is_child: child.is_some(),
+        };
+        Self {
+            remote: Remote::new(craft, Duration::ZERO),
+            stream,
+            feed: peer.map(Feed::new),
+            child,
+            started: now,
+            notices: Vec::new(),
+        }
+    }
+
+    /// Returns the flight controller.
+    pub fn remote(&self) -> &Remote {
+        &self.remote
+    }
+
+    /// Returns the flight controller, for its configuration and for permissions.
+    pub fn remote_mut(&mut self) -> &mut Remote {
+        &mut self.remote
+    }
+
+    /// Returns `true` if this program feeds it with the states of the craft, at the rate of the steps.
+    pub fn is_fed(&self) -> bool {
+        self.feed.is_some()
+    }
+
+    /// Returns the maximum number of steps of `step_us` at `speed` times real time that may be flown before
+    /// the next exchange.
+    pub fn most_steps(&self, step_us: u64, speed: f64, now: Instant) -> u64 {
+        self.feed.as_ref().map_or(u64::MAX, |feed| feed.most_steps(step_us, speed, now))
+    }
+
+    /// Returns its status as an endpoint.
+    pub fn status(&self, now: Instant) -> Option<EndpointStatus> {
+        self.feed.as_ref().map(|feed| feed.peer.status(now))
+    }
+
+    /// Returns the time until an exchange is due even if nothing arrives; `None` if none is.
+    pub fn pause(&self, now: Instant) -> Option<Duration> {
+        let due = self.remote.timeout()?.saturating_sub(self.since(now));
+        Some(due.max(EXCHANGE_PAUSE))
+    }
+
+    /// Sends the contents of the vehicle's mailbox and delivers the data received since. Returns the notices
+    /// for the user. If a context is given, the caller is woken when more data arrives over the serial port.
+    pub fn exchange(
+        &mut self,
+        vehicle: &mut Vehicle,
+        context: Option<&mut Context<'_>>,
+        now: Instant,
+    ) -> Vec<RemoteNotice> {
+        let since = self.since(now);
+        self.follow_program(since);
+        self.read_stream(context, since);
+        self.take_events(vehicle);
+        self.empty_mailbox(vehicle, now);
+        self.remote.handle_timeout(since);
+        while let Some(output) = self.remote.poll_transmit() {
+            // A full queue means that the stream carries nothing any more. The client gives the request up.
+            drop(self.stream.to.try_send(output));
+        }
+        self.take_events(vehicle);
+        self.observe(vehicle, since);
+        std::mem::take(&mut self.notices)
+    }
+
+    fn since(&self, now: Instant) -> Duration {
+        now.saturating_duration_since(self.started)
+    }
+
+    /// Reports the events of its program.
+    fn follow_program(&mut self, since: Duration) {
+        for _ in 0..MOST_EVENTS {
+            let Some(event) = self.child.as_mut().and_then(SitlChild::take_event) else { return };
+            match event {
+                ChildEvent::Started => {}
+                ChildEvent::Line(line) => self.notices.push(RemoteNotice::Output(line)),
+                ChildEvent::NotShown(count) => self.notices.push(RemoteNotice::Reported(format!(
+                    "Lines of the firmware's output that were not shown: {count}."
+                ))),
+                ChildEvent::Failed(reason) => self.remote.handle(Input::NotStarted(&reason), since),
+                ChildEvent::Ended(end) => {
+                    let ended = Input::Ended { how: &end.to_string(), is_reboot: end.is_reboot() };
+                    self.remote.handle(ended, since);
+                }
+            }
+        }
+    }
+
+    /// Reads the data that has arrived over the serial port.
+    fn read_stream(&mut self, mut context: Option<&mut Context<'_>>, since: Duration) {
+        let mut read = 0;
+        for _ in 0..MOST_READ {
+            if read >= MOST_BYTES {
+                break;
+            }
+            let event = match &mut context {
+                Some(context) => match self.stream.from.poll_recv(context) {
+                    Poll::Ready(event) => event,
+                    Poll::Pending => None,
+                },
+                None => self.stream.from.try_recv().ok(),
+            };
+            match event {
+                None => return,
+                Some(StreamEvent::Bytes(bytes)) => {
+                    read += bytes.len();
+                    self.remote.handle(Input::Received(&bytes), since);
+                }
+                Some(StreamEvent::Connected) => self.remote.handle(Input::Connected, since),
+                Some(StreamEvent::Lost(reason)) => self.remote.handle(Input::Lost(&reason), since),
+            }
+        }
+        // The queue was not polled until it was empty, so no wake-up is registered.
+        if let Some(context) = context {
+            context.waker().wake_by_ref();
+        }
+    }
+
+    /// Carries the frames and requests of the vehicle to the flight controller.
+    fn empty_mailbox(&mut self, vehicle: &mut Vehicle, now: Instant) {
+        let since = self.since(now);
+        let Some(mailbox) = vehicle.controller_mut().remote_mut() else { return };
+        match &mut self.feed {
+            Some(feed) => {
+                self.notices.extend(feed.exchange(mailbox, now));
+                if feed.has_motors() {
+                    self.remote.handle(Input::SentMotors, since);
+                }
+            }
+            None => while mailbox.take_frame().is_some() {},
+        }
+        while let Some((ticket, request)) = mailbox.take_request() {
+            self.remote.handle(Input::Requested(ticket, request), since);
+        }
+    }
+
+    /// Applies the consequences for the vehicle, the program and the user.
+    fn take_events(&mut self, vehicle: &mut Vehicle) {
+        while let Some(event) = self.remote.poll_event() {
+            match event {
+                Event::Notice(notice) => self.notices.push(notice),
+                Event::Answered(ticket, answer) => {
+                    if let Some(mailbox) = vehicle.controller_mut().remote_mut() {
+                        mailbox.deliver_answer(ticket, answer);
+                    }
+                }
+                Event::Restarted(notice) => {
+                    if let Some(feed) = &mut self.feed {
+                        feed.peer.went_down();
+                    }
+                    vehicle.remote_restarted();
+                    self.notices.push(RemoteNotice::Restarted(notice));
+                }
+                Event::CameUp => {
+                    if let Some(feed) = &mut self.feed {
+                        feed.peer.came_up();
+                    }
+                }
+                Event::WentDown => {
+                    if let Some(feed) = &mut self.feed {
+                        feed.peer.went_down();
+                    }
+                }
+                Event::BecameReady => {
+                    if let Some(feed) = &mut self.feed {
+                        feed.became_ready();
+                    }
+                }
+                Event::GivenUp => self.child = None,
+                Event::Configured(file, words) => {
+                    if let Err(error) = state_file::replace(&file, words.as_bytes()) {
+                        let place = file.display();
+                        self.notices.push(RemoteNotice::Lost(format!("Cannot write {place}: {error}.")));
+                    }
+                }
+                Event::Switched(channel, pulse_us) => {
+                    vehicle.transmitter_mut().sticks_mut().channels[channel] = pulse_us;
+                }
+            }
+        }
+    }
+
+    /// Delivers the observations and handles their consequences.
+    fn observe(&mut self, vehicle: &mut Vehicle, since: Duration) {
+        let observer = self.remote.observer();
+        if let Some(feed) = &mut self.feed {
+            let is_ready = self.remote.state() == RemoteState::Ready;
+            self.notices.extend(feed.check_at_rest(vehicle, is_ready, observer.trusts_mag(), since));
+        }
+        if let Some(seen) = observer.first_fix()
+            && !vehicle.local_frame().is_some_and(|frame| self.feed.is_some() || is_near(frame, &seen))
+        {
+            vehicle.set_origin(seen);
+        }
+        let frame = vehicle.local_frame().copied();
+        let simulated = self.feed.is_some().then(|| Simulated {
+            home_m: frame.map(|frame| frame.alt_amsl_m),
+            commanded: rescue::is_on(observer, &vehicle.transmitter().sticks().channels),
+        });
+        if let Some(mailbox) = vehicle.controller_mut().remote_mut() {
+            self.remote.deliver(mailbox, frame.as_ref(), simulated);
+        }
+    }
+}
+
+/// Returns `true` if a drawing around one place also shows the other undistorted.
+fn is_near(frame: &LocalFrame, other: &LocalFrame) -> bool {
+    frame.to_enu(other.lat_deg, other.lon_deg, other.alt_amsl_m).xy().norm() < SAME_FIELD_M
+}
+
+#[cfg(test)]
+mod tests {
+    use tokio::sync::mpsc;
+
+    use super::*;
+
+    #[test]
+    #[allow(clippy::disallowed_methods, reason = "an instant to count from")]
+    fn a_peer_that_floods_is_read_a_part_at_a_time() {
+        let ((to, _sent), (pieces, from)) = (mpsc::channel(1), mpsc::channel(MOST_READ));
+        while pieces.try_send(StreamEvent::Bytes(vec![b'$'; 4096])).is_ok() {}
+        let stream = FcStream { to, from, place: "tcp:here:1".to_owned(), bytes_per_s: None };
+        let ends = RemoteEnds { name: "the board".to_owned(), stream, peer: None, child: None };
+        let mut vehicle = Vehicle::elsewhere().unwrap();
+        let now = Instant::now();
+        let mut link = RemoteLink::new(ends, now);
+        link.exchange(&mut vehicle, None, now);
+        assert_eq!(pieces.capacity(), 2, "pieces read");
+        link.exchange(&mut vehicle, None, now);
+        assert_eq!(pieces.capacity(), 4, "pieces read");
+    }
+}
