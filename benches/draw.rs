@@ -35,7 +35,7 @@ fn orbiting(size: (u16, u16)) -> AppState {
 /// Returns a craft that has flown ten kilometres on a widening spiral, with the whole track recorded.
 fn with_long_track(size: (u16, u16)) -> AppState {
     let mut state = orbiting(size);
-    let started_s = state.view.vehicle.time.as_secs_f64();
+    let started_s = state.shared.view.vehicle.time.as_secs_f64();
     let mut angle = 0.0_f64;
     for point in 0..POINTS {
         let radius_m = 20.0 + 0.005 * f64::from(point);
@@ -54,7 +54,11 @@ fn with_long_track(size: (u16, u16)) -> AppState {
         };
         update(&mut state, Msg::View(fixture::view(&flight)));
     }
-    assert!(state.track.points().len() >= POINTS as usize - 100, "{}", state.track.points().len());
+    assert!(
+        state.shared.track.points().len() >= POINTS as usize - 100,
+        "{}",
+        state.shared.track.points().len()
+    );
     state
 }
 

@@ -120,7 +120,7 @@ async fn estimates() -> Vec<Duration> {
         let effects = press(&mut state, if run % 2 == 0 { 'i' } else { 'u' });
         fly(effects, &mut state, &session, &forecaster, &mut answered).await;
         times.push(asked.elapsed());
-        assert!(!state.forecast.is_estimating() && state.forecast.estimate().is_some());
+        assert!(!state.shared.forecast.is_estimating() && state.shared.forecast.estimate().is_some());
     }
     times
 }

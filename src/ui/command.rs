@@ -16,17 +16,16 @@ pub use suggestion::{Suggestion, hint, suggestions};
 pub use table::{Command, all};
 
 use super::action::{self, ACTIONS, Action, Context, Spec};
-use super::app_state::AppState;
-use super::message::Effect;
+use super::message::Request;
 use super::panel::Panel;
-use super::update;
+use super::shared::Shared;
 use crate::text::did_you_mean;
 
-/// Runs a line.
+/// Returns the requests of a line.
 ///
 /// # Errors
 /// Returns the reason for a refusal, in a sentence.
-pub fn run(state: &mut AppState, line: &str) -> Result<Vec<Effect>, String> {
+pub fn run(state: &mut Shared, line: &str) -> Result<Vec<Request>, String> {
     let (word, argument) = split(line);
     if word.is_empty() {
         return Ok(Vec::new());
@@ -39,7 +38,7 @@ pub fn run(state: &mut AppState, line: &str) -> Result<Vec<Effect>, String> {
         return Err(format!("{word} takes no argument."));
     }
     action::enabled(state, action)?;
-    Ok(update::perform(state, action))
+    Ok(vec![Request::Act(action)])
 }
 
 /// Splits a line into its word and its argument.
@@ -94,7 +93,10 @@ fn did_you_mean_end<'a>(word: &str, words: impl IntoIterator<Item = &'a str>) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::{Command as Request, SessionView};
+    use crate::session::{Command as SessionCommand, SessionView};
+    use crate::ui::app_state::AppState;
+    use crate::ui::message::Effect;
+    use crate::ui::update::run_line;
 
     fn bare() -> AppState {
         AppState::bare((80, 24), SessionView::default())
@@ -132,24 +134,24 @@ mod tests {
             ("home", "disarmed"),
         ] {
             if line == "home" {
-                std::sync::Arc::make_mut(&mut state.view.vehicle).craft.armed = Some(false);
+                std::sync::Arc::make_mut(&mut state.shared.view.vehicle).craft.armed = Some(false);
             }
-            let error = run(&mut state, line).expect_err(line);
+            let error = run_line(&mut state, line).expect_err(line);
             assert!(error.contains(part), "{line}: {error}");
         }
-        assert!(run(&mut state, "  : ").is_ok_and(|effects| effects.is_empty()));
+        assert!(run_line(&mut state, "  : ").is_ok_and(|effects| effects.is_empty()));
     }
 
     #[test]
     fn arguments_follow_a_blank_or_an_equals_sign() {
         let mut state = bare();
         for line in ["wind 5@270", ":wind=5@270", " wind = 5@270"] {
-            let effects = run(&mut state, line).expect(line);
+            let effects = run_line(&mut state, line).expect(line);
             assert!(matches!(&effects[..], [Effect::World(line)] if line == "wind=5@270"), "{effects:?}");
         }
-        let effects = run(&mut state, "speed max").expect("a speed");
-        assert!(matches!(effects[..], [Effect::Send(Request::Speed(speed))] if speed.is_infinite()));
-        let effects = run(&mut state, "set ap_max_angle=25").expect("a setting");
+        let effects = run_line(&mut state, "speed max").expect("a speed");
+        assert!(matches!(effects[..], [Effect::Send(SessionCommand::Speed(speed))] if speed.is_infinite()));
+        let effects = run_line(&mut state, "set ap_max_angle=25").expect("a setting");
         assert!(matches!(&effects[..], [Effect::Cli(line)] if line == "set ap_max_angle = 25"));
     }
 
@@ -157,12 +159,12 @@ mod tests {
         #[test]
         fn any_line_is_carried_out_or_refused(line in ".{0,40}", word in 0usize..20) {
             let mut state = bare();
-            let _ = run(&mut state, &line);
+            let _ = run_line(&mut state, &line);
             if let Some(command) = all().nth(word) {
-                let _ = run(&mut state, &format!("{} {line}", command.name));
-                let _ = suggestions(&state, &format!("{} {line}", command.name));
+                let _ = run_line(&mut state, &format!("{} {line}", command.name));
+                let _ = suggestions(&state.shared, &format!("{} {line}", command.name));
             }
-            let _ = (suggestions(&state, &line), hint(&state, &line));
+            let _ = (suggestions(&state.shared, &line), hint(&state.shared, &line));
         }
     }
 }

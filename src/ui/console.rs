@@ -79,18 +79,13 @@ impl CliState {
         self.candidates.clear();
         self.scroll = 0;
         let new = self.history.remember(&line).then(|| line.clone());
-        self.run_line(line);
+        self.queue(line, false);
         new
     }
 
-    /// Queues a line whose answer appears only in this panel.
-    pub fn run_line(&mut self, line: String) {
-        self.queue.push_back(Queued { line, reports: false });
-    }
-
-    /// Queues a line whose answer is also shown as a notice.
-    pub fn run_and_report(&mut self, line: String) {
-        self.queue.push_back(Queued { line, reports: true });
+    /// Queues a line. With `reports`, the answer is also shown as a notice.
+    pub fn queue(&mut self, line: String, reports: bool) {
+        self.queue.push_back(Queued { line, reports });
     }
 
     /// Returns the next line to run, if the firmware is free.

@@ -5,7 +5,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::Color;
 use ratatui::text::Line;
-use ratatui::widgets::{Block, BorderType, Clear, Widget as _};
+use ratatui::widgets::{Block, BorderType, Widget as _};
 
 use super::action::Action;
 use super::app_state::AppState;
@@ -14,7 +14,9 @@ use super::formatting;
 use super::layout::{self, SMALLEST};
 use super::panel::Panel;
 use super::panel::{self, span};
+use super::popup::frame::popup;
 use super::popup::{Popup, command_line, go_to, guards, map_menu, palette, what_if};
+use super::shared::Shared;
 use super::text_wrap::wrapped;
 use super::theme::{Charset, Role};
 use super::{hint_bar, notice, panel_bar, permission, status_bar, timeline, tutorial};
@@ -22,75 +24,77 @@ use crate::text::printable;
 
 /// Draws the state; it only reads.
 pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
+    let shared = &state.shared;
     let area = frame.area();
     let buffer = frame.buffer_mut();
-    let cursor = match layout::divided(state, (area.width, area.height)) {
+    let cursor = match layout::divided(shared, (area.width, area.height)) {
         Some(screen) => {
-            status_bar::draw(state, screen.status, buffer);
+            status_bar::draw(shared, screen.status, buffer);
             let mut cursor = None;
             for &(panel, area) in &screen.panels {
                 cursor = cursor.or(framed_panel(state, panel, area, buffer));
             }
-            panel_bar::draw(state, &screen, buffer);
-            hint_bar::draw(state, screen.hints, buffer);
+            panel_bar::draw(shared, &screen, buffer);
+            hint_bar::draw(shared, screen.hints, buffer);
             if let Some(area) = screen.timeline {
-                timeline::draw(state, area, buffer);
+                timeline::draw(shared, area, buffer);
             }
-            tutorial::draw(state, screen.timeline.unwrap_or(screen.hints), buffer);
-            notice::draw(state, screen.timeline.unwrap_or(screen.hints), buffer);
+            let foot = screen.timeline.unwrap_or(screen.hints);
+            tutorial::draw(state.tutorial, shared, foot, buffer);
+            notice::draw(shared, tutorial::rows(state.tutorial, shared, foot), foot, buffer);
             cursor
         }
         None => {
-            too_small(state, area, buffer);
+            too_small(shared, area, buffer);
             None
         }
     };
-    let mut cursor = match &state.editor.popup {
-        Some(_) => panel::editor_popup::draw(state, area, buffer),
+    let mut cursor = match shared.editor.popup {
+        Some(_) => panel::editor_popup::draw(shared, area, buffer),
         None => cursor,
     }
     .filter(|_| state.popups.is_empty());
     for popup in &state.popups {
         cursor = match popup {
             Popup::Help { scroll } => {
-                panel::help::draw(state, *scroll, area, buffer);
+                panel::help::draw(shared, *scroll, area, buffer);
                 None
             }
             Popup::GoTo(question) => {
-                go_to::draw(state, question, area, buffer);
+                go_to::draw(shared, question, area, buffer);
                 None
             }
             Popup::MapMenu(menu) => {
-                map_menu::draw(state, menu, area, buffer);
+                map_menu::draw(&shared.theme, menu, area, buffer);
                 None
             }
             Popup::WhatIf { selected } => {
-                what_if::draw(state, *selected, area, buffer);
+                what_if::draw(&shared.theme, *selected, area, buffer);
                 None
             }
             Popup::Guards { selected } => {
-                guards::draw(state, *selected, area, buffer);
+                guards::draw(shared, *selected, area, buffer);
                 None
             }
             Popup::Quit => {
-                quit_question(state, area, buffer);
+                quit_question(shared, area, buffer);
                 None
             }
             Popup::Permission => {
-                permission::draw(state, area, buffer);
+                permission::draw(shared, area, buffer);
                 None
             }
             Popup::Plots { selected } => {
-                panel::graphs::draw_choice(state, *selected, area, buffer);
+                panel::graphs::draw_choice(shared, *selected, area, buffer);
                 None
             }
-            Popup::CommandLine => command_line::draw(state, area, buffer),
-            Popup::Palette(palette) => palette::draw(state, palette, area, buffer),
+            Popup::CommandLine => command_line::draw(&state.command_line, shared, area, buffer),
+            Popup::Palette(palette) => palette::draw(shared, palette, area, buffer),
         };
     }
     clean(buffer);
-    paint_background(state, buffer);
-    if state.theme.charset == Charset::Ascii {
+    paint_background(shared, buffer);
+    if shared.theme.charset == Charset::Ascii {
         ascii::replace(buffer);
     }
     if let Some(position) = cursor.filter(|&position| area.contains(position)) {
@@ -99,7 +103,7 @@ pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
 }
 
 /// Fills in the colours of cells that have none, for themes that do not rely on the terminal's colours.
-fn paint_background(state: &AppState, buffer: &mut Buffer) {
+fn paint_background(state: &Shared, buffer: &mut Buffer) {
     let Some(background) = state.theme.background() else { return };
     let text = state.theme.colour(Role::Text);
     for cell in &mut buffer.content {
@@ -124,17 +128,18 @@ fn clean(buffer: &mut Buffer) {
 
 /// Draws a panel with its frame. Returns the position of the cursor if it is in this panel.
 fn framed_panel(state: &AppState, panel: Panel, area: Rect, buffer: &mut Buffer) -> Option<Position> {
-    let theme = &state.theme;
-    let focused = state.focus == panel;
+    let shared = &state.shared;
+    let theme = &shared.theme;
+    let focused = shared.focus == panel;
     let title = match panel {
-        Panel::Map => panel::map::title(state),
-        Panel::Plan => panel::plan::title(state),
-        Panel::State => panel::state::title(state),
-        Panel::Rc => panel::rc::title(state),
-        Panel::Cli => panel::cli::title(state),
-        Panel::Graphs => panel::graphs::title(state),
-        Panel::World => panel::world::title(state),
-        Panel::Log => panel::log::title(state),
+        Panel::Map => panel::map::title(shared),
+        Panel::Plan => panel::plan::title(shared),
+        Panel::State => panel::state::title(shared),
+        Panel::Rc => panel::rc::title(shared),
+        Panel::Cli => panel::cli::title(&state.cli, shared),
+        Panel::Graphs => panel::graphs::title(shared),
+        Panel::World => panel::world::title(shared),
+        Panel::Log => panel::log::title(&state.log_view, shared),
     };
     let title = formatting::cut(&title, usize::from(area.width.saturating_sub(4)));
     let (mark, frame_role, title_role) =
@@ -146,19 +151,19 @@ fn framed_panel(state: &AppState, panel: Panel, area: Rect, buffer: &mut Buffer)
         .render(area, buffer);
     let inner = layout::inner(area);
     match panel {
-        Panel::Map => panel::map::draw(state, inner, buffer),
-        Panel::State => panel::state::draw(state, inner, buffer),
-        Panel::Rc => panel::rc::draw(state, inner, buffer),
-        Panel::Graphs => panel::graphs::draw(state, inner, buffer),
-        Panel::Plan => return panel::plan::draw(state, inner, buffer).filter(|_| focused),
-        Panel::World => return panel::world::draw(state, inner, buffer).filter(|_| focused),
-        Panel::Log => return panel::log::draw(state, inner, buffer).filter(|_| focused),
-        Panel::Cli => return panel::cli::draw(state, inner, buffer).filter(|_| focused),
+        Panel::Map => panel::map::draw(shared, inner, buffer),
+        Panel::State => panel::state::draw(&state.transitions, shared, inner, buffer),
+        Panel::Rc => panel::rc::draw(state.channel, shared, inner, buffer),
+        Panel::Graphs => panel::graphs::draw(shared, inner, buffer),
+        Panel::Plan => return panel::plan::draw(shared, inner, buffer).filter(|_| focused),
+        Panel::World => return panel::world::draw(&state.knobs, shared, inner, buffer).filter(|_| focused),
+        Panel::Log => return panel::log::draw(&state.log_view, shared, inner, buffer).filter(|_| focused),
+        Panel::Cli => return panel::cli::draw(&state.cli, shared, inner, buffer).filter(|_| focused),
     }
     None
 }
 
-fn too_small(state: &AppState, area: Rect, buffer: &mut Buffer) {
+fn too_small(state: &Shared, area: Rect, buffer: &mut Buffer) {
     let text = format!(
         "betadeck needs at least {}x{}, now {}x{}. The flight goes on; {} quits.",
         SMALLEST.0,
@@ -172,8 +177,8 @@ fn too_small(state: &AppState, area: Rect, buffer: &mut Buffer) {
     }
 }
 
-fn quit_question(state: &AppState, area: Rect, buffer: &mut Buffer) {
-    let inside = popup(state, area, (46, 3), "Quit?", buffer);
+fn quit_question(state: &Shared, area: Rect, buffer: &mut Buffer) {
+    let inside = popup(&state.theme, area, (46, 3), "Quit?", buffer);
     let theme = &state.theme;
     panel::row(buffer, inside, 0, theme, Role::Warn, " ▲ The craft is armed and flying ends here.");
     let answers = Line::from(vec![
@@ -183,24 +188,4 @@ fn quit_question(state: &AppState, area: Rect, buffer: &mut Buffer) {
         span(theme, Role::Text, " stay"),
     ]);
     panel::line(buffer, inside, 2, &answers);
-}
-
-/// Draws an empty frame in the middle for a popup of this inner size. Returns the inside.
-pub(super) fn popup(
-    state: &AppState,
-    area: Rect,
-    size: (u16, u16),
-    title: &str,
-    buffer: &mut Buffer,
-) -> Rect {
-    let width = (size.0 + 2).min(area.width);
-    let height = (size.1 + 2).min(area.height);
-    let place =
-        Rect::new(area.x + (area.width - width) / 2, area.y + (area.height - height) / 2, width, height);
-    Clear.render(place, buffer);
-    Block::bordered()
-        .border_style(state.theme.style(Role::Focus))
-        .title(Line::from(span(&state.theme, Role::Focus, title)))
-        .render(place, buffer);
-    layout::inner(place)
 }

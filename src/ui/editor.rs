@@ -50,6 +50,10 @@ pub struct Editor {
     uploaded: Option<Uploaded>,
     /// The upload before the last one.
     uploaded_before: Option<Uploaded>,
+    /// The plan whose upload is under way and after whose upload the pilot starts.
+    pub(super) fly_after_upload: Option<PlanId>,
+    /// The sentence for the answer to the current upload, if that upload replaces the fence of the craft.
+    pub(super) replaced_fence: Option<String>,
     pub(super) popup: Option<EditorPopup>,
     /// The waypoint whose altitude is dragged in the profile, and its current altitude, cm.
     pub(super) dragged_altitude: Option<(usize, Altitude)>,
@@ -93,6 +97,8 @@ impl Editor {
             register: Vec::new(),
             uploaded: None,
             uploaded_before: None,
+            fly_after_upload: None,
+            replaced_fence: None,
             popup: None,
             dragged_altitude: None,
             quitting: false,

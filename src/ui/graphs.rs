@@ -6,9 +6,10 @@ mod signal;
 pub(super) use history::Sample;
 pub(super) use signal::{PLOTS, Plot, Quantity, Signal, Stroke};
 
-use super::app_state::AppState;
 use super::map_point::MapPoint;
+use crate::session::SessionView;
 use crate::signals::SimTime;
+use crate::telemetry::Snapshot;
 use history::SignalHistory;
 
 /// The selectable time spans, s.
@@ -85,6 +86,28 @@ impl GraphsState {
         self.cursor_s.take().is_some()
     }
 
+    /// Adds a picture to the history.
+    pub(super) fn record(&mut self, vehicle: &Snapshot) {
+        self.history.push(Sample::of(vehicle));
+    }
+
+    /// Returns the instant of the cursor, s: of the user's cursor, else the earlier instant on the screen.
+    pub(super) fn cursor_s(&self, view: &SessionView) -> Option<f64> {
+        self.cursor_s.or(view.is_rewound().then(|| view.vehicle.time.as_secs_f64()))
+    }
+
+    /// Returns the instant of the user's cursor.
+    pub(super) fn pointed_at(&self) -> Option<SimTime> {
+        self.cursor_s.map(SimTime::from_secs_f64)
+    }
+
+    /// Returns the position of the craft at the user's cursor.
+    pub(super) fn cursor_place(&self) -> Option<MapPoint> {
+        let sample = self.history.at(self.cursor_s?)?;
+        let place = MapPoint::new(sample.value(Signal::North)?, sample.value(Signal::East)?);
+        (place.n.is_finite() && place.e.is_finite()).then_some(place)
+    }
+
     /// Returns the samples between two times.
     pub(super) fn samples(&self, from_s: f64, to_s: f64) -> impl Iterator<Item = &Sample> {
         self.history.between(from_s, to_s)
@@ -99,62 +122,37 @@ impl GraphsState {
     }
 }
 
-/// Adds the newest picture to the history.
-pub(super) fn record(state: &mut AppState) {
-    let sample = Sample::of(&state.view.vehicle);
-    state.graphs.history.push(sample);
-}
-
-/// Returns the instant of the cursor, s: of the user's cursor, else the earlier instant on the screen.
-pub(super) fn cursor_s(state: &AppState) -> Option<f64> {
-    let shown = state.is_rewound().then(|| state.view.vehicle.time.as_secs_f64());
-    state.graphs.cursor_s.or(shown)
-}
-
-/// Returns the instant of the user's cursor.
-pub(super) fn pointed_at(state: &AppState) -> Option<SimTime> {
-    state.graphs.cursor_s.map(SimTime::from_secs_f64)
-}
-
-/// Returns the position of the craft at the user's cursor.
-pub(super) fn cursor_place(state: &AppState) -> Option<MapPoint> {
-    let sample = state.graphs.history.at(state.graphs.cursor_s?)?;
-    let place = MapPoint::new(sample.value(Signal::North)?, sample.value(Signal::East)?);
-    (place.n.is_finite() && place.e.is_finite()).then_some(place)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::SessionView;
 
-    fn flown(seconds: u32) -> AppState {
-        let mut state = AppState::bare((80, 24), SessionView::default());
+    fn flown(seconds: u32) -> (GraphsState, SessionView) {
+        let (mut graphs, mut view) = (GraphsState::default(), SessionView::default());
         for tenth in 0..=seconds * 10 {
-            let vehicle = std::sync::Arc::make_mut(&mut state.view.vehicle);
+            let vehicle = std::sync::Arc::make_mut(&mut view.vehicle);
             vehicle.time = SimTime::from_secs_f64(f64::from(tenth) / 10.0);
             vehicle.estimate.alt = Some(f64::from(tenth));
-            record(&mut state);
+            graphs.record(vehicle);
         }
-        state
+        (graphs, view)
     }
 
     #[test]
     fn the_cursor_stays_in_the_history_and_in_the_window() {
-        let mut state = flown(300);
-        state.graphs.move_cursor(1.0);
-        assert_eq!(cursor_s(&state), None, "there is nothing newer");
+        let (mut graphs, view) = flown(300);
+        graphs.move_cursor(1.0);
+        assert_eq!(graphs.cursor_s(&view), None, "there is nothing newer");
         for _ in 0..70 {
-            state.graphs.move_cursor(-1.0);
+            graphs.move_cursor(-1.0);
         }
-        let cursor = cursor_s(&state).expect("a cursor");
-        let (from, to) = state.graphs.window(Some(cursor));
+        let cursor = graphs.cursor_s(&view).expect("a cursor");
+        let (from, to) = graphs.window(Some(cursor));
         assert!((from..to).contains(&cursor) && (to - from - 60.0).abs() < 1e-9, "{cursor} {from} {to}");
         for _ in 0..1000 {
-            state.graphs.move_cursor(-1.0);
+            graphs.move_cursor(-1.0);
         }
-        assert_eq!(cursor_s(&state), Some(0.0));
-        assert!(state.graphs.leave_cursor() && !state.graphs.leave_cursor());
+        assert_eq!(graphs.cursor_s(&view), Some(0.0));
+        assert!(graphs.leave_cursor() && !graphs.leave_cursor());
     }
 
     #[test]

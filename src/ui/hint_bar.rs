@@ -8,10 +8,9 @@ use unicode_width::UnicodeWidthStr as _;
 use crate::telemetry::{EndpointState, LinkState};
 
 use super::action::{Action, EditAction, enabled, is_wrecked};
-use super::app_state::AppState;
 use super::panel::Panel;
 use super::panel::span;
-use super::permission;
+use super::shared::Shared;
 use super::status_bar::sides;
 use super::theme::{Role, Theme};
 use super::transmitter;
@@ -21,7 +20,7 @@ use super::transmitter::ThrottleMove;
 const WIDE: u16 = 120;
 
 /// Draws the hint line: keys on the left; help, quit and the doors on the right.
-pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
+pub(super) fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let mut right: Vec<Span<'static>> =
         permanent_hints(state).iter().flat_map(|(keys, label)| hint(theme, keys, label)).collect();
@@ -52,7 +51,7 @@ pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
 }
 
 /// Returns the actions of the hint bar, the most useful first.
-fn hint_actions(state: &AppState) -> Vec<(&'static [Action], &'static str)> {
+fn hint_actions(state: &Shared) -> Vec<(&'static [Action], &'static str)> {
     let craft = &state.view.vehicle.craft;
     let mut hints: Vec<(&'static [Action], &'static str)> = Vec::new();
     if state.is_rewound() {
@@ -111,7 +110,7 @@ fn hint_actions(state: &AppState) -> Vec<(&'static [Action], &'static str)> {
         Panel::State => hints.push((&[Action::ExplainGuards], "explain")),
         Panel::Map => {}
     }
-    if permission::real_craft(state).is_some() {
+    if state.real_craft().is_some() {
         if state.focus != Panel::Plan {
             hints.push((&[Action::Upload], "upload"));
         }
@@ -195,12 +194,12 @@ fn hint_actions(state: &AppState) -> Vec<(&'static [Action], &'static str)> {
 }
 
 /// Returns `true` if a hold was commanded.
-fn vehicle_is_held(state: &AppState) -> bool {
+fn vehicle_is_held(state: &Shared) -> bool {
     state.view.vehicle.nav.as_ref().is_some_and(|nav| nav.held_by_command)
 }
 
 /// Returns the current effect of the throttle key.
-fn throttle_label(state: &AppState) -> &'static str {
+fn throttle_label(state: &Shared) -> &'static str {
     match (transmitter::throttle_move(state), transmitter::is_standing(state)) {
         (ThrottleMove::Low, _) => "throttle low",
         (ThrottleMove::Sink(_), _) => "come down",
@@ -210,7 +209,7 @@ fn throttle_label(state: &AppState) -> &'static str {
 }
 
 /// Returns the keys that are never left out: help and quit; in the CLI panel Esc.
-fn permanent_hints(state: &AppState) -> Vec<(String, &'static str)> {
+fn permanent_hints(state: &Shared) -> Vec<(String, &'static str)> {
     if state.focus == Panel::Cli {
         return vec![("Esc".to_owned(), "leave")];
     }
@@ -218,7 +217,7 @@ fn permanent_hints(state: &AppState) -> Vec<(String, &'static str)> {
 }
 
 /// Returns the first key of each action.
-fn keys_of(state: &AppState, actions: &[Action]) -> String {
+fn keys_of(state: &Shared, actions: &[Action]) -> String {
     let first = |&action: &Action| state.keymap.shown_keys(action).into_iter().next();
     actions.iter().filter_map(first).collect::<Vec<_>>().join(" ")
 }
@@ -229,7 +228,7 @@ fn hint(theme: &Theme, keys: &str, label: &str) -> [Span<'static>; 2] {
 }
 
 /// Returns the doors: the name, a mark for a connection, the fault; then the lost real time.
-fn doors(state: &AppState, width: u16) -> Vec<Span<'static>> {
+fn doors(state: &Shared, width: u16) -> Vec<Span<'static>> {
     let theme = &state.theme;
     let mut spans = Vec::new();
     for endpoint in &state.view.endpoints {
@@ -276,7 +275,7 @@ mod tests {
         let shown = |clients| {
             let stats = ClientStats { clients, received_bytes: 6, sent_bytes: 9, ..ClientStats::default() };
             let endpoints = vec![endpoint((EndpointKind::Tcp, EndpointState::Clients(stats)))];
-            let state = AppState::bare((120, 40), SessionView { endpoints, ..SessionView::default() });
+            let state = Shared::bare((120, 40), SessionView { endpoints, ..SessionView::default() });
             doors(&state, 120).iter().map(|span| span.content.to_string()).collect::<String>()
         };
         assert_eq!((shown(1).trim(), shown(0).trim()), ("●tcp", "○tcp"));
@@ -303,7 +302,7 @@ mod tests {
             endpoints: states.map(endpoint).to_vec(),
             ..SessionView::default()
         };
-        let state = AppState::bare((120, 40), view);
+        let state = Shared::bare((120, 40), view);
         let area = Rect::new(0, 0, 120, 3);
         let mut buffer = Buffer::empty(area);
         status_bar::draw(&state, area, &mut buffer);

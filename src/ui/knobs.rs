@@ -3,9 +3,9 @@
 use crossterm::event::{KeyCode, KeyEvent};
 use strum::IntoEnumIterator as _;
 
-use super::app_state::AppState;
 use super::formatting::fixed;
 use super::message::Effect;
+use super::shared::Shared;
 use super::text_field::TextField;
 use super::units::Units;
 use crate::sim::{FAULTS, FaultInfo};
@@ -40,17 +40,13 @@ pub(super) enum Knob {
 }
 
 /// Returns the knobs that have an effect in the current world, in display order.
-pub(super) fn knobs(state: &AppState) -> Vec<Knob> {
+pub(super) fn knobs(state: &Shared) -> Vec<Knob> {
     let external = state.view.simulator.is_some();
     let faults = FAULTS.iter().filter(|fault| external || !fault.needs_link()).map(Knob::Fault);
     [Knob::WindSpeed, Knob::WindFrom, Knob::Gust, Knob::Turbulence, Knob::Noise]
         .into_iter()
         .chain(faults)
         .collect()
-}
-
-fn selected(state: &AppState) -> Option<Knob> {
-    knobs(state).get(state.knobs.selected).copied()
 }
 
 /// Returns the active fault of this kind, if there is one.
@@ -71,7 +67,7 @@ impl Knob {
     }
 
     /// Returns its value with the unit, or a dash if nothing reports it.
-    pub(super) fn value(self, state: &AppState) -> String {
+    pub(super) fn value(self, state: &Shared) -> String {
         let world = &state.view.vehicle.world;
         let speed = |speed: Option<f64>| {
             let shown = speed.map(|speed| state.units.speed(speed));
@@ -126,111 +122,127 @@ impl Knob {
     }
 }
 
-/// Turns the selected knob by steps. A fault is switched on or off.
-pub(super) fn turn(state: &mut AppState, steps: i32) -> Vec<Effect> {
-    let Some(knob) = selected(state) else { return Vec::new() };
-    let world = &state.view.vehicle.world;
-    let wind = world.wind.unwrap_or(WindView { speed_mps: 0.0, from_deg: 0.0 });
-    let step = f64::from(steps);
-    let stepped = |speed: f64| (speed + step * SPEED_STEP).clamp(0.0, MOST_MPS);
-    match knob {
-        Knob::WindSpeed => set_wind(state, WindView { speed_mps: stepped(wind.speed_mps), ..wind }),
-        Knob::WindFrom => {
-            let from_deg = (wind.from_deg + step * DIRECTION_STEP).rem_euclid(360.0);
-            set_wind(state, WindView { from_deg, ..wind })
-        }
-        Knob::Gust => set_gust(state, stepped(world.gust_mps)),
-        Knob::Turbulence => {
-            let levels: Vec<Turbulence> = Turbulence::iter().collect();
-            let at = levels.iter().position(|level| *level == world.turbulence).unwrap_or(0);
-            let next = at.saturating_add_signed(steps as isize).min(levels.len() - 1);
-            levels.get(next).map_or_else(Vec::new, |level| set_turbulence(state, *level))
-        }
-        Knob::Noise => set_noise(state, steps > 0),
-        Knob::Fault(fault) => match (active(world, fault).is_some(), steps > 0) {
-            (false, true) => begin(state, fault),
-            (true, false) => end(fault),
-            _ => Vec::new(),
-        },
+impl KnobsState {
+    fn selected(&self, state: &Shared) -> Option<Knob> {
+        knobs(state).get(self.selected).copied()
     }
-}
 
-/// Handles Enter: a level or a fault changes at once, a number is typed.
-pub(super) fn enter(state: &mut AppState) -> Vec<Effect> {
-    match selected(state) {
-        Some(Knob::Noise) => {
-            let on = !state.view.vehicle.world.noise;
-            set_noise(state, on)
-        }
-        Some(Knob::Turbulence) => {
-            let levels: Vec<Turbulence> = Turbulence::iter().collect();
-            let now = state.view.vehicle.world.turbulence;
-            let next = levels.iter().position(|level| *level == now).map_or(0, |at| (at + 1) % levels.len());
-            levels.get(next).map_or_else(Vec::new, |level| set_turbulence(state, *level))
-        }
-        Some(Knob::Fault(fault)) if active(&state.view.vehicle.world, fault).is_some() => end(fault),
-        Some(Knob::Fault(fault)) => begin(state, fault),
-        Some(_) => edit(state),
-        None => Vec::new(),
-    }
-}
-
-/// Opens the field for a value of the selected knob.
-pub(super) fn edit(state: &mut AppState) -> Vec<Effect> {
-    state.knobs.field = Some(TextField::default());
-    Vec::new()
-}
-
-/// Sets the selected knob to its default.
-pub(super) fn reset(state: &mut AppState) -> Vec<Effect> {
-    let Some(knob) = selected(state) else { return Vec::new() };
-    if knob.is_default(&state.view.vehicle.world) {
-        return Vec::new();
-    }
-    match knob {
-        Knob::WindSpeed | Knob::WindFrom => set_wind(state, WindView { speed_mps: 0.0, from_deg: 0.0 }),
-        Knob::Gust => set_gust(state, 0.0),
-        Knob::Turbulence => set_turbulence(state, Turbulence::None),
-        Knob::Noise => set_noise(state, true),
-        Knob::Fault(fault) => end(fault),
-    }
-}
-
-/// Handles a key while a value is typed.
-pub(super) fn field_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
-    let Some(field) = &mut state.knobs.field else { return Vec::new() };
-    match event.code {
-        KeyCode::Esc => {
-            state.knobs.field = None;
-            Vec::new()
-        }
-        KeyCode::Enter => {
-            let typed = field.take();
-            state.knobs.field = None;
-            take_typed(state, typed.trim())
-        }
-        _ => {
-            field.key(event);
-            Vec::new()
+    /// Turns the selected knob by steps. A fault is switched on or off.
+    pub(super) fn turn(&mut self, state: &mut Shared, steps: i32) -> Vec<Effect> {
+        let Some(knob) = self.selected(state) else { return Vec::new() };
+        let world = &state.view.vehicle.world;
+        let wind = world.wind.unwrap_or(WindView { speed_mps: 0.0, from_deg: 0.0 });
+        let step = f64::from(steps);
+        let stepped = |speed: f64| (speed + step * SPEED_STEP).clamp(0.0, MOST_MPS);
+        match knob {
+            Knob::WindSpeed => set_wind(state, WindView { speed_mps: stepped(wind.speed_mps), ..wind }),
+            Knob::WindFrom => {
+                let from_deg = (wind.from_deg + step * DIRECTION_STEP).rem_euclid(360.0);
+                set_wind(state, WindView { from_deg, ..wind })
+            }
+            Knob::Gust => set_gust(state, stepped(world.gust_mps)),
+            Knob::Turbulence => {
+                let levels: Vec<Turbulence> = Turbulence::iter().collect();
+                let at = levels.iter().position(|level| *level == world.turbulence).unwrap_or(0);
+                let next = at.saturating_add_signed(steps as isize).min(levels.len() - 1);
+                levels.get(next).map_or_else(Vec::new, |level| set_turbulence(state, *level))
+            }
+            Knob::Noise => set_noise(state, steps > 0),
+            Knob::Fault(fault) => match (active(world, fault).is_some(), steps > 0) {
+                (false, true) => self.begin(fault),
+                (true, false) => end(fault),
+                _ => Vec::new(),
+            },
         }
     }
-}
 
-/// Requests the typed value. A speed is typed in the shown units.
-fn take_typed(state: &mut AppState, typed: &str) -> Vec<Effect> {
-    let Some(knob) = selected(state).filter(|_| !typed.is_empty()) else { return Vec::new() };
-    let wind = state.view.vehicle.world.wind.unwrap_or(WindView { speed_mps: 0.0, from_deg: 0.0 });
-    let number: Result<f64, _> = typed.parse();
-    let speed = number.as_ref().map(|number| number / state.units.speed(1.0));
-    match (knob, speed) {
-        (Knob::WindSpeed, Ok(speed_mps)) => world(format!("wind={}@{}", tidy(speed_mps), wind.from_deg)),
-        (Knob::WindFrom, _) => world(format!("wind={}@{typed}", wind.speed_mps)),
-        (Knob::WindSpeed, Err(_)) => world(format!("wind={typed}")),
-        (Knob::Gust, Ok(speed)) => world(format!("gust={}", tidy(speed))),
-        (Knob::Gust, Err(_)) => world(format!("gust={typed}")),
-        (Knob::Turbulence, _) => world(format!("turbulence={typed}")),
-        (Knob::Noise, _) => world(format!("noise={typed}")),
-        (Knob::Fault(fault), _) => world(format!("fault={},{typed}", fault.name())),
+    /// Handles Enter: a level or a fault changes at once, a number is typed.
+    pub(super) fn enter(&mut self, state: &mut Shared) -> Vec<Effect> {
+        match self.selected(state) {
+            Some(Knob::Noise) => {
+                let on = !state.view.vehicle.world.noise;
+                set_noise(state, on)
+            }
+            Some(Knob::Turbulence) => {
+                let levels: Vec<Turbulence> = Turbulence::iter().collect();
+                let now = state.view.vehicle.world.turbulence;
+                let next =
+                    levels.iter().position(|level| *level == now).map_or(0, |at| (at + 1) % levels.len());
+                levels.get(next).map_or_else(Vec::new, |level| set_turbulence(state, *level))
+            }
+            Some(Knob::Fault(fault)) if active(&state.view.vehicle.world, fault).is_some() => end(fault),
+            Some(Knob::Fault(fault)) => self.begin(fault),
+            Some(_) => self.edit(),
+            None => Vec::new(),
+        }
+    }
+
+    /// Opens the field for a value of the selected knob.
+    pub(super) fn edit(&mut self) -> Vec<Effect> {
+        self.field = Some(TextField::default());
+        Vec::new()
+    }
+
+    /// Sets the selected knob to its default.
+    pub(super) fn reset(&mut self, state: &mut Shared) -> Vec<Effect> {
+        let Some(knob) = self.selected(state) else { return Vec::new() };
+        if knob.is_default(&state.view.vehicle.world) {
+            return Vec::new();
+        }
+        match knob {
+            Knob::WindSpeed | Knob::WindFrom => set_wind(state, WindView { speed_mps: 0.0, from_deg: 0.0 }),
+            Knob::Gust => set_gust(state, 0.0),
+            Knob::Turbulence => set_turbulence(state, Turbulence::None),
+            Knob::Noise => set_noise(state, true),
+            Knob::Fault(fault) => end(fault),
+        }
+    }
+
+    /// Handles a key while a value is typed.
+    pub(super) fn field_key(&mut self, state: &mut Shared, event: KeyEvent) -> Vec<Effect> {
+        let Some(field) = &mut self.field else { return Vec::new() };
+        match event.code {
+            KeyCode::Esc => {
+                self.field = None;
+                Vec::new()
+            }
+            KeyCode::Enter => {
+                let typed = field.take();
+                self.field = None;
+                self.take_typed(state, typed.trim())
+            }
+            _ => {
+                field.key(event);
+                Vec::new()
+            }
+        }
+    }
+
+    /// Requests the typed value. A speed is typed in the shown units.
+    fn take_typed(&self, state: &Shared, typed: &str) -> Vec<Effect> {
+        let Some(knob) = self.selected(state).filter(|_| !typed.is_empty()) else { return Vec::new() };
+        let wind = state.view.vehicle.world.wind.unwrap_or(WindView { speed_mps: 0.0, from_deg: 0.0 });
+        let number: Result<f64, _> = typed.parse();
+        let speed = number.as_ref().map(|number| number / state.units.speed(1.0));
+        match (knob, speed) {
+            (Knob::WindSpeed, Ok(speed_mps)) => world(format!("wind={}@{}", tidy(speed_mps), wind.from_deg)),
+            (Knob::WindFrom, _) => world(format!("wind={}@{typed}", wind.speed_mps)),
+            (Knob::WindSpeed, Err(_)) => world(format!("wind={typed}")),
+            (Knob::Gust, Ok(speed)) => world(format!("gust={}", tidy(speed))),
+            (Knob::Gust, Err(_)) => world(format!("gust={typed}")),
+            (Knob::Turbulence, _) => world(format!("turbulence={typed}")),
+            (Knob::Noise, _) => world(format!("noise={typed}")),
+            (Knob::Fault(fault), _) => world(format!("fault={},{typed}", fault.name())),
+        }
+    }
+
+    fn begin(&mut self, fault: &FaultInfo) -> Vec<Effect> {
+        if fault.value.is_empty() || !fault.default.is_empty() {
+            return world(format!("fault={}", fault.name()));
+        }
+        // The fault needs a value.
+        self.field = Some(TextField::new(","));
+        Vec::new()
     }
 }
 
@@ -239,44 +251,35 @@ fn tidy(speed_mps: f64) -> f64 {
     (speed_mps * 1000.0).round() / 1000.0
 }
 
-fn begin(state: &mut AppState, fault: &FaultInfo) -> Vec<Effect> {
-    if fault.value.is_empty() || !fault.default.is_empty() {
-        return world(format!("fault={}", fault.name()));
-    }
-    // The fault needs a value.
-    state.knobs.field = Some(TextField::new(","));
-    Vec::new()
-}
-
 fn end(fault: &FaultInfo) -> Vec<Effect> {
     world(format!("end={}", fault.name()))
 }
 
 // The new value is shown at once, so that a second press counts from it before the session confirms.
 
-fn set_wind(state: &mut AppState, wind: WindView) -> Vec<Effect> {
+fn set_wind(state: &mut Shared, wind: WindView) -> Vec<Effect> {
     if let Some(shown) = &mut shown(state).wind {
         *shown = wind;
     }
     world(format!("wind={}@{}", wind.speed_mps, wind.from_deg))
 }
 
-fn set_gust(state: &mut AppState, speed_mps: f64) -> Vec<Effect> {
+fn set_gust(state: &mut Shared, speed_mps: f64) -> Vec<Effect> {
     shown(state).gust_mps = speed_mps;
     world(format!("gust={speed_mps}"))
 }
 
-fn set_turbulence(state: &mut AppState, level: Turbulence) -> Vec<Effect> {
+fn set_turbulence(state: &mut Shared, level: Turbulence) -> Vec<Effect> {
     shown(state).turbulence = level;
     world(format!("turbulence={level}"))
 }
 
-fn set_noise(state: &mut AppState, on: bool) -> Vec<Effect> {
+fn set_noise(state: &mut Shared, on: bool) -> Vec<Effect> {
     shown(state).noise = on;
     world(format!("noise={}", if on { "real" } else { "none" }))
 }
 
-fn shown(state: &mut AppState) -> &mut WorldView {
+fn shown(state: &mut Shared) -> &mut WorldView {
     &mut std::sync::Arc::make_mut(&mut state.view.vehicle).world
 }
 

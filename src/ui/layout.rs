@@ -15,52 +15,16 @@
 //! Two status lines are at the top, one hint line at the bottom. The timeline is above the hints, on a tall screen or
 //! while an earlier instant is shown.
 
+mod slots;
+
 use ratatui::layout::Rect;
 
-use super::app_state::AppState;
 use super::panel::Panel;
+use super::shared::Shared;
+pub use slots::Slots;
 
 /// The smallest screen that shows anything useful.
 pub const SMALLEST: (u16, u16) = (60, 20);
-
-/// The contents of the places that several panels share: the panel that had the focus last.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Slots {
-    /// From 80x24: map (with the log below), or one of RC, CLI, plan, graphs, world instead of both.
-    main: Panel,
-    /// From 120x34, bottom left: log, CLI or graphs. From 180x48, bottom left: log or graphs.
-    left: Panel,
-    /// From 120x34, bottom right: RC, plan or world. From 180x48, top right: RC or world.
-    right: Panel,
-}
-
-impl Default for Slots {
-    fn default() -> Self {
-        Self { main: Panel::Map, left: Panel::Log, right: Panel::Plan }
-    }
-}
-
-impl Slots {
-    /// Remembers that a panel got the focus.
-    pub fn visit(&mut self, panel: Panel) {
-        match panel {
-            Panel::Map => self.main = Panel::Map,
-            Panel::Log => {
-                self.main = Panel::Map;
-                self.left = Panel::Log;
-            }
-            Panel::Cli | Panel::Graphs => {
-                self.main = panel;
-                self.left = panel;
-            }
-            Panel::Rc | Panel::Plan | Panel::World => {
-                self.main = panel;
-                self.right = panel;
-            }
-            Panel::State => {}
-        }
-    }
-}
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Screen {
@@ -98,12 +62,12 @@ pub fn inner(area: Rect) -> Rect {
 }
 
 /// Divides the screen; `None` if it is too small.
-pub fn screen(state: &AppState) -> Option<Screen> {
+pub fn screen(state: &Shared) -> Option<Screen> {
     divided(state, state.size)
 }
 
 /// Divides a screen of this many columns and rows; `None` if it is too small.
-pub fn divided(state: &AppState, (width, height): (u16, u16)) -> Option<Screen> {
+pub fn divided(state: &Shared, (width, height): (u16, u16)) -> Option<Screen> {
     if width < SMALLEST.0 || height < SMALLEST.1 {
         return None;
     }

@@ -1,48 +1,19 @@
 //! Edits on the map: waypoints, home and the fence, by a cursor or by the mouse.
 
-use super::app_state::AppState;
-use super::editor::PlanId;
+use super::editor::settings_in_force;
 use super::formatting::compass;
-use super::map_point::{MapPoint, origin, to_map};
+use super::map_point::origin::origin;
+use super::map_point::{MapPoint, to_map};
+use super::map_state::MapItem;
+use super::shared::Shared;
 use crate::geo::{LatLon, LocalFrame, distance_bearing};
 use nalgebra::Vector3;
 
 /// The greatest distance from the cursor at which an item is selected, columns of the map.
 const REACH_COLUMNS: f64 = 2.5;
 
-/// An item of the plan that has a place.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum MapItem {
-    Waypoint(usize),
-    /// Home of the plan.
-    Home,
-    /// The fence, which is picked up at its ring.
-    Fence,
-}
-
-/// The item being moved, and its current place.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Moving {
-    pub item: MapItem,
-    /// The place, m.
-    pub place: MapPoint,
-    /// `true` once it has left the place where it was picked up.
-    pub moved: bool,
-    /// `true` if the mouse moves it: it is put down when the button is released.
-    pub by_mouse: bool,
-    /// The plan and revision in which it was picked up.
-    pub of: (PlanId, usize),
-}
-
-/// The keyboard's cursor on the map.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct MapCursor {
-    /// The place, m.
-    pub place: MapPoint,
-}
-
 /// Returns home on the map: the plan's, else the craft's, else the boot place.
-pub(super) fn home(state: &AppState) -> Option<MapPoint> {
+pub(super) fn home(state: &Shared) -> Option<MapPoint> {
     let frame = origin(state)?;
     let planned = state.editor.document().home.map(|home| home.position);
     Some(
@@ -51,8 +22,8 @@ pub(super) fn home(state: &AppState) -> Option<MapPoint> {
 }
 
 /// Returns the radius of the fence that the plan or the craft sets, m.
-pub(super) fn fence_m(state: &AppState) -> Option<f64> {
-    super::editor::settings_in_force::assumptions(state, state.editor.document()).fence_m
+pub(super) fn fence_m(state: &Shared) -> Option<f64> {
+    settings_in_force::assumptions(state, state.editor.document()).fence_m
 }
 
 /// Converts a place to latitude and longitude.
@@ -62,7 +33,7 @@ pub(super) fn position(frame: &LocalFrame, place: MapPoint) -> LatLon {
 }
 
 /// Returns the item at a place on the map at this scale: the nearest waypoint, else home, else the fence.
-pub(super) fn item_at(state: &AppState, place: MapPoint, metres_per_column: f64) -> Option<MapItem> {
+pub(super) fn item_at(state: &Shared, place: MapPoint, metres_per_column: f64) -> Option<MapItem> {
     let frame = origin(state)?;
     let reach = REACH_COLUMNS * metres_per_column;
     let waypoints = state.plan().waypoints.iter().enumerate().filter(|(_, wp)| wp.kind.uses_position());
@@ -80,7 +51,7 @@ pub(super) fn item_at(state: &AppState, place: MapPoint, metres_per_column: f64)
 }
 
 /// Returns distances and bearings to a place where the user is about to put something.
-pub(super) fn measured(state: &AppState, place: MapPoint, moving: Option<MapItem>) -> Option<String> {
+pub(super) fn measured(state: &Shared, place: MapPoint, moving: Option<MapItem>) -> Option<String> {
     let frame = origin(state)?;
     let here = position(&frame, place);
     let from = |name: &str, there: LatLon| {

@@ -1,11 +1,9 @@
 //! Places on the map: metres north and east of the boot place.
 
-use nalgebra::Vector3;
+pub(super) mod origin;
 
 use crate::geo::{LatLon, LocalFrame};
 use crate::session::SessionView;
-
-use super::app_state::AppState;
 
 /// A place on the ground, metres north and east of the boot place.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -30,20 +28,6 @@ impl MapPoint {
     pub(super) fn towards(self, other: Self, t: f64) -> Self {
         Self::new(self.n + (other.n - self.n) * t, self.e + (other.e - self.e) * t)
     }
-}
-
-/// Returns the position from which the map counts metres; home or the first waypoint while it is unknown.
-pub(super) fn origin(state: &AppState) -> Option<LocalFrame> {
-    let vehicle = &state.view.vehicle;
-    if let Some(truth) = &vehicle.truth {
-        let here = LocalFrame::new(truth.lat_deg, truth.lon_deg, 0.0);
-        let (lat, lon, _) = here.to_geodetic(Vector3::new(-truth.e, -truth.n, 0.0));
-        return Some(LocalFrame::new(lat, lon, 0.0));
-    }
-    let first =
-        || state.shown_plan().waypoints.iter().find(|wp| wp.kind.uses_position()).map(|wp| wp.position);
-    let place = vehicle.origin.or(vehicle.craft.home).or_else(first)?;
-    Some(LocalFrame::new(place.lat_deg(), place.lon_deg(), 0.0))
 }
 
 /// Converts a position to metres from the origin of the map.

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use crossterm::event::{KeyEvent, MouseEvent};
 
+use super::action::Action;
 use super::editor::{FileReply, FileRequest, PlanId};
 use crate::fc::UploadReport;
 use crate::plan::FlightPlan;
@@ -61,6 +62,26 @@ pub enum Msg {
     Files(FileReply),
     /// A command could not be delivered because the session does not keep up.
     Busy,
+}
+
+/// A request of a panel, a popup or a command, which the user interface itself carries out.
+#[derive(Debug)]
+pub enum Request {
+    /// Carry out an action that is enabled.
+    Act(Action),
+    Effect(Effect),
+    /// Run a line of the firmware's command line.
+    Cli {
+        line: String,
+        /// `true` if the answer is also shown as a notice.
+        is_reported: bool,
+    },
+}
+
+impl From<Effect> for Request {
+    fn from(effect: Effect) -> Self {
+        Self::Effect(effect)
+    }
 }
 
 /// A request that the shell carries out.

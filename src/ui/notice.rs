@@ -6,12 +6,11 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr as _;
 
-use super::app_state::AppState;
 use super::drawing;
 use super::event_log::Severity;
 use super::formatting::{cut, within};
+use super::shared::Shared;
 use super::text_wrap::wrapped;
-use super::tutorial;
 
 /// How long a notice stays.
 const NOTICE_FOR: Duration = Duration::from_secs(8);
@@ -34,14 +33,14 @@ struct Row {
 }
 
 /// Lays out the newest notice for a moment, in the frame of the lowest panels, and in the row above it when it is long; all of
-/// it above the tutorial while that is shown. Above it is the oldest of those that stay.
-fn rows(state: &AppState, hints: Rect) -> Vec<Row> {
+/// it above the `above` rows of the tutorial. Above it is the oldest of those that stay.
+fn rows(state: &Shared, above: u16, hints: Rect) -> Vec<Row> {
     let width = usize::from(hints.width.saturating_sub(6));
     let newest = state.notice.as_ref().filter(|notice| within(state.now, notice.at, NOTICE_FOR));
     let newest = newest.map(|notice| (notice.severity, notice.text.clone(), NOTICE_ROWS));
     let pinned =
         state.pinned.first().map(|text| (Severity::Fault, format!("{text} {CLOSED_BY}"), PINNED_ROWS));
-    let mut above = 1 + tutorial::rows(state, hints);
+    let mut above = 1 + above;
     let mut rows = Vec::new();
     for (is_pinned, notice) in newest.map(|it| (false, it)).into_iter().chain(pinned.map(|it| (true, it))) {
         let (severity, text, most) = notice;
@@ -63,15 +62,15 @@ fn rows(state: &AppState, hints: Rect) -> Vec<Row> {
 }
 
 /// Draws the notices.
-pub(super) fn draw(state: &AppState, hints: Rect, buffer: &mut Buffer) {
-    for row in rows(state, hints) {
+pub(super) fn draw(state: &Shared, above: u16, hints: Rect, buffer: &mut Buffer) {
+    for row in rows(state, above, hints) {
         drawing::text(buffer, row.place.x, row.place.y, row.text, state.theme.style(row.severity.role()));
     }
 }
 
 /// Closes the notice at a cell of the screen; returns `false` if there is none.
-pub(super) fn close_at(state: &mut AppState, hints: Rect, cell: (u16, u16)) -> bool {
-    let Some(row) = rows(state, hints).into_iter().find(|row| row.place.contains(cell.into())) else {
+pub(super) fn close_at(state: &mut Shared, above: u16, hints: Rect, cell: (u16, u16)) -> bool {
+    let Some(row) = rows(state, above, hints).into_iter().find(|row| row.place.contains(cell.into())) else {
         return false;
     };
     if row.is_pinned {

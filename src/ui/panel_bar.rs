@@ -6,10 +6,10 @@ use ratatui::text::Line;
 use unicode_width::UnicodeWidthStr as _;
 
 use super::action::Action;
-use super::app_state::AppState;
 use super::drawing;
 use super::layout::Screen;
 use super::panel::{Panel, span};
+use super::shared::Shared;
 use super::theme::Role;
 
 /// The width from which names are further apart.
@@ -21,7 +21,7 @@ fn row(screen: &Screen) -> u16 {
 }
 
 /// Returns each panel that has room, its key, and the cells of key and name.
-fn places(state: &AppState, screen: &Screen) -> Vec<(Panel, String, Rect)> {
+fn places(state: &Shared, screen: &Screen) -> Vec<(Panel, String, Rect)> {
     let y = row(screen);
     let gap = if screen.hints.width >= WIDE { 2 } else { 1 };
     let end = screen.hints.right().saturating_sub(2);
@@ -42,7 +42,7 @@ fn places(state: &AppState, screen: &Screen) -> Vec<(Panel, String, Rect)> {
     places
 }
 
-pub(super) fn draw(state: &AppState, screen: &Screen, buffer: &mut Buffer) {
+pub(super) fn draw(state: &Shared, screen: &Screen, buffer: &mut Buffer) {
     let theme = &state.theme;
     let places = places(state, screen);
     let (Some((_, _, first)), Some((_, _, last))) = (places.first(), places.last()) else { return };
@@ -62,6 +62,6 @@ pub(super) fn draw(state: &AppState, screen: &Screen, buffer: &mut Buffer) {
 }
 
 /// Returns the panel whose name is at a cell.
-pub(super) fn panel_at(state: &AppState, screen: &Screen, cell: (u16, u16)) -> Option<Panel> {
+pub(super) fn panel_at(state: &Shared, screen: &Screen, cell: (u16, u16)) -> Option<Panel> {
     places(state, screen).into_iter().find(|(_, _, place)| place.contains(cell.into())).map(|place| place.0)
 }

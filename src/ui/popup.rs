@@ -1,6 +1,7 @@
 //! The popups.
 
 pub(super) mod command_line;
+pub(super) mod frame;
 pub(super) mod go_to;
 pub(super) mod guards;
 pub(super) mod map_menu;

@@ -34,7 +34,7 @@ impl From<Vec<Effect>> for Answered {
 /// Returns the current question, one sentence or choice per line; `None` if there is none, or if its choices are not
 /// known yet.
 pub(super) fn question(state: &AppState) -> Option<Vec<String>> {
-    match &state.editor.popup {
+    match &state.shared.editor.popup {
         Some(EditorPopup::Form(open)) => return Some(form::question(state, open)),
         Some(EditorPopup::Browser(browser)) => return file::question(browser),
         Some(EditorPopup::Question(question)) => return Some(decision(state, question)),
@@ -42,7 +42,8 @@ pub(super) fn question(state: &AppState) -> Option<Vec<String>> {
     }
     match state.popups.last()? {
         Popup::GoTo(go_to) => {
-            let title = if state.flies_older_plan() { "Continue on the new plan from" } else { "Go now to" };
+            let title =
+                if state.shared.flies_older_plan() { "Continue on the new plan from" } else { "Go now to" };
             let waypoints = go_to.waypoints().map(|(index, kind)| format!("{index} {kind}"));
             Some(list(format!("{title} which waypoint?"), waypoints))
         }
@@ -51,7 +52,7 @@ pub(super) fn question(state: &AppState) -> Option<Vec<String>> {
             Some(list("What if, from this instant on?".to_owned(), choices))
         }
         Popup::Quit => Some(vec!["The craft is armed and flying ends here. Quit? y yes, n no.".to_owned()]),
-        Popup::Permission => Some(vec![format!("{} y yes, n no.", permission::question(state))]),
+        Popup::Permission => Some(vec![format!("{} y yes, n no.", permission::question(&state.shared))]),
         Popup::Help { .. }
         | Popup::Guards { .. }
         | Popup::Plots { .. }
@@ -68,7 +69,7 @@ pub(super) fn question(state: &AppState) -> Option<Vec<String>> {
 pub(super) fn answer(state: &mut AppState, line: &str) -> Result<Answered, String> {
     let line = line.trim();
     let quits = line == "quit" || line == "app.quit";
-    match &state.editor.popup {
+    match &state.shared.editor.popup {
         Some(EditorPopup::Form(_)) => return form::answer(state, line),
         Some(EditorPopup::Browser(_)) => return file::answer(state, line),
         // The journals keep the edits for the next start.
@@ -103,8 +104,8 @@ pub(super) fn answer(state: &mut AppState, line: &str) -> Result<Answered, Strin
         Some(Popup::Permission) => return Err("Answer y to go on, n to change nothing.".to_owned()),
         Some(Popup::GoTo(_) | Popup::WhatIf { .. }) if !line.is_empty() => {
             let effects = match state.popups.last() {
-                Some(Popup::GoTo(_)) => command::flight::go_to_waypoint(state, line)?,
-                _ => command::flight::ask_what_if(state, line)?,
+                Some(Popup::GoTo(_)) => command::flight::go_to_waypoint(&state.shared, line)?,
+                _ => command::flight::ask_what_if(&mut state.shared, line)?,
             };
             state.popups.pop();
             return Ok(effects.into());
@@ -127,7 +128,7 @@ fn decision(state: &AppState, question: &Question) -> Vec<String> {
         Question::Replace { path, changed: false, .. } => format!("{} exists.", path.display()),
         Question::MovesTarget { change, .. } => change.clone(),
         Question::Unsaved { id, .. } => {
-            let title = state.editor.plan_of(*id).map_or_else(String::new, OpenPlan::title);
+            let title = state.shared.editor.plan_of(*id).map_or_else(String::new, OpenPlan::title);
             format!("{title} has edits that no file holds.")
         }
     };

@@ -18,7 +18,8 @@ use tokio::time::sleep;
 use crate::session::{Command, Event, ForecastReply, Forecaster, SessionView};
 use crate::timeline::RecordedFlight;
 
-use super::app_state::{AppState, UiConfig};
+use super::app_state::AppState;
+use super::config::UiConfig;
 use super::editor::FileReply;
 use super::event_log::Severity;
 use super::files_link::FilesLink;
@@ -182,7 +183,7 @@ async fn run_loop(
                     return Ok(Ending::Quit);
                 }
                 if matches!(effect, Effect::Suspend) && !can_be_continued() {
-                    state.notify(
+                    state.shared.notify(
                         Severity::Warn,
                         "Not stopped: there is no shell that could continue the program.",
                     );

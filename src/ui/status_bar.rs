@@ -8,10 +8,10 @@ use unicode_width::UnicodeWidthStr as _;
 use crate::signals::RcSource;
 use crate::telemetry::{LinkState, Mode, NavState, NavTelemetry};
 
-use super::app_state::AppState;
 use super::drawing;
 use super::formatting::{clock, clock_ms, compass, cut, factor, fixed, signed};
 use super::panel::span;
+use super::shared::Shared;
 use super::theme::Role;
 use super::units::Units;
 
@@ -21,7 +21,7 @@ const CELL_V: (f64, f64) = (3.3, 4.2);
 const BAR: usize = 5;
 
 /// Draws the two status lines.
-pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
+pub(super) fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {
     let first = Rect { height: 1, ..area };
     sides(buffer, first, &craft(state), &sensors(state));
     let second = Rect { y: area.y + 1, height: 1, ..area };
@@ -45,7 +45,7 @@ pub(super) fn sides(buffer: &mut Buffer, area: Rect, left: &[Span<'static>], rig
     drawing::line(buffer, area.x + room, area.y, &right, width);
 }
 
-fn craft(state: &AppState) -> Vec<Span<'static>> {
+fn craft(state: &Shared) -> Vec<Span<'static>> {
     let theme = &state.theme;
     let craft = &state.view.vehicle.craft;
     let mut spans = vec![match craft.armed {
@@ -75,7 +75,7 @@ fn craft(state: &AppState) -> Vec<Span<'static>> {
 }
 
 /// Returns GPS, battery and RC.
-fn sensors(state: &AppState) -> Vec<Span<'static>> {
+fn sensors(state: &Shared) -> Vec<Span<'static>> {
     let theme = &state.theme;
     let craft = &state.view.vehicle.craft;
     let (fix, role) = match craft.gps_fix {
@@ -108,7 +108,7 @@ fn battery_bar(volts: Option<f64>, cells: Option<u8>) -> (String, Role) {
 }
 
 /// Returns the source of the channels, in at most ten columns.
-pub(super) fn rc(state: &AppState) -> (String, Role) {
+pub(super) fn rc(state: &Shared) -> (String, Role) {
     let craft = &state.view.vehicle.craft;
     let ours = matches!(craft.rc_source, Some(RcSource::Sticks) | None);
     if state.view.rc_cut && ours {
@@ -128,7 +128,7 @@ pub(super) fn rc(state: &AppState) -> (String, Role) {
 
 /// Returns state, waypoint and the numbers of the leg; without a mission those of the craft alone. A part that does not
 /// fit is left out as a whole, the least important first.
-fn mission(state: &AppState, room: usize) -> Vec<Span<'static>> {
+fn mission(state: &Shared, room: usize) -> Vec<Span<'static>> {
     let theme = &state.theme;
     let vehicle = &state.view.vehicle;
     let nav = vehicle.nav.as_ref();
@@ -203,7 +203,7 @@ fn leg(nav: &NavTelemetry, units: Units) -> Vec<(u8, &'static str, String, Strin
 }
 
 /// Returns simulated time and speed.
-fn time(state: &AppState) -> Vec<Span<'static>> {
+fn time(state: &Shared) -> Vec<Span<'static>> {
     let theme = &state.theme;
     let view = &state.view;
     let halted = match view.simulator {

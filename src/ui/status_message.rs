@@ -3,15 +3,15 @@
 mod remote;
 
 use crate::telemetry::{
-    AbortReason, ArmingFlag, ArmingFlags, CannotHold, FailsafeAhead, FailsafeProcedure, HoldLimit, LinkState,
-    Mode, NavState, Refusal,
+    AbortReason, CannotHold, FailsafeAhead, FailsafeProcedure, HoldLimit, LinkState, Mode, NavState, Refusal,
 };
 
 use super::action::{Action, EditAction};
-use super::app_state::AppState;
+use super::arming_hint::{arming_hint, most_useful_flag};
 use super::editor::findings;
 use super::event_log::Severity;
 use super::panel::Panel;
+use super::shared::Shared;
 use super::transmitter;
 use super::transmitter::ThrottleMove;
 use super::units::Units;
@@ -33,39 +33,8 @@ fn message(
     Some(StatusMessage { severity, condition: condition.into(), action: action.into() })
 }
 
-/// Returns the arming disable flag that helps the user most. Flags that only repeat a cause come last.
-pub fn most_useful_flag(flags: ArmingFlags) -> Option<ArmingFlag> {
-    let rank = |flag: &ArmingFlag| match flag {
-        ArmingFlag::Cli => 0,
-        ArmingFlag::RxLoss => 1,
-        ArmingFlag::BootGrace => 2,
-        ArmingFlag::Calibrating => 3,
-        ArmingFlag::Throttle => 4,
-        ArmingFlag::Failsafe => 5,
-        ArmingFlag::Gps => 6,
-        ArmingFlag::Angle => 7,
-        ArmingFlag::AutopilotSwitch => 8,
-        ArmingFlag::ArmSwitch | ArmingFlag::NotDisarmed => 10,
-        _ => 9,
-    };
-    flags.iter().min_by_key(rank)
-}
-
-/// Returns the advice for an arming disable flag, with the key for it.
-pub fn arming_hint(state: &AppState, flag: ArmingFlag) -> String {
-    let (action, does) = match flag {
-        ArmingFlag::RxLoss => (Action::CutRc, "restores the link"),
-        ArmingFlag::NotDisarmed | ArmingFlag::ArmSwitch => (Action::Arm, "moves the switch"),
-        ArmingFlag::Throttle => (Action::Throttle, "does it"),
-        ArmingFlag::AltHoldSwitch | ArmingFlag::PosHoldSwitch => (Action::Throttle, "up and down does it"),
-        ArmingFlag::AutopilotSwitch => (Action::Autopilot, "switches it off"),
-        _ => return flag.hint().to_owned(),
-    };
-    format!("{}; `{}` {does}", flag.hint(), state.key(action))
-}
-
 /// Returns the current message; `None` while the mission flies.
-pub fn current(state: &AppState) -> Option<StatusMessage> {
+pub fn current(state: &Shared) -> Option<StatusMessage> {
     let vehicle = &state.view.vehicle;
     let craft = &vehicle.craft;
     let key = |action| state.key(action);
@@ -206,7 +175,7 @@ pub fn current(state: &AppState) -> Option<StatusMessage> {
 }
 
 /// Returns the time that the lost link has to come back, and the failsafe action after it.
-fn failsafe_ahead(state: &AppState, ahead: FailsafeAhead) -> Option<StatusMessage> {
+fn failsafe_ahead(state: &Shared, ahead: FailsafeAhead) -> Option<StatusMessage> {
     let does = match ahead.procedure {
         FailsafeProcedure::Drop => "motors off",
         FailsafeProcedure::AutoLand => "it comes down here, level",
@@ -228,7 +197,7 @@ fn failsafe_ahead(state: &AppState, ahead: FailsafeAhead) -> Option<StatusMessag
 }
 
 /// Returns the message for a craft that falls without its motors.
-fn disarmed_in_the_air(state: &AppState) -> Option<StatusMessage> {
+fn disarmed_in_the_air(state: &Shared) -> Option<StatusMessage> {
     let action = if state.view.simulator.is_some() {
         "reset the simulator's world".to_owned()
     } else {
@@ -238,7 +207,7 @@ fn disarmed_in_the_air(state: &AppState) -> Option<StatusMessage> {
 }
 
 /// Returns the keys that undo a mishap, if the flight is recorded.
-fn way_back(state: &AppState) -> String {
+fn way_back(state: &Shared) -> String {
     if state.view.timeline.is_none() {
         return String::new();
     }
@@ -246,7 +215,7 @@ fn way_back(state: &AppState) -> String {
 }
 
 /// Returns the message for a mission in flight.
-fn in_flight(state: &AppState) -> Option<StatusMessage> {
+fn in_flight(state: &Shared) -> Option<StatusMessage> {
     let nav = state.view.vehicle.nav.as_ref()?;
     if let Some(deviation) = nav.cannot_hold {
         return cannot_hold_message(deviation, state.units);
@@ -280,12 +249,12 @@ fn cannot_hold_message(deviation: CannotHold, units: Units) -> Option<StatusMess
 }
 
 /// Returns `true` if the craft has no plan to fly.
-fn lacks_plan(state: &AppState) -> bool {
+fn lacks_plan(state: &Shared) -> bool {
     state.view.vehicle.stored_plan.as_ref().is_some_and(|plan| plan.waypoints.is_empty())
 }
 
 /// Returns the message for an armed craft flown by hand: its state, and the keys for the next step.
-fn by_hand(state: &AppState) -> Option<StatusMessage> {
+fn by_hand(state: &Shared) -> Option<StatusMessage> {
     let craft = &state.view.vehicle.craft;
     let [arm, throttle, autopilot, home, upload] =
         [Action::Arm, Action::Throttle, Action::Autopilot, Action::ReturnHome, Action::Upload]
@@ -329,7 +298,7 @@ fn by_hand(state: &AppState) -> Option<StatusMessage> {
 }
 
 /// Returns the advice after a refusal, with its keys.
-fn action_after(state: &AppState, refusal: Refusal) -> String {
+fn action_after(state: &Shared, refusal: Refusal) -> String {
     let key = |action| state.key(action);
     match refusal {
         Refusal::NotArmed => format!("{} arms, then {} again", key(Action::Arm), key(Action::Autopilot)),
@@ -362,20 +331,5 @@ fn action_after(state: &AppState, refusal: Refusal) -> String {
         Refusal::Aborted(AbortReason::Stalled | AbortReason::Flyaway) => {
             format!("{} off and on again resumes", key(Action::Autopilot))
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_cause_comes_before_the_latch() {
-        use ArmingFlag::{ArmSwitch, Cli, NotDisarmed, Paralyze, Throttle};
-        let first = |flags: &[ArmingFlag]| most_useful_flag(flags.iter().copied().collect());
-        assert_eq!(first(&[NotDisarmed, Throttle, Cli, ArmSwitch]), Some(Cli));
-        assert_eq!(first(&[ArmSwitch, Paralyze]), Some(Paralyze));
-        assert_eq!(first(&[ArmSwitch]), Some(ArmSwitch));
-        assert_eq!(first(&[]), None);
     }
 }

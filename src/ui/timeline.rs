@@ -13,104 +13,28 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 
-use super::app_state::{AppState, Transition};
 use super::drawing;
 use super::formatting::clock;
-use super::graphs;
 use super::panel::span;
+use super::shared::Shared;
 use super::theme::Role;
-use super::track::TrackPoint;
 use crate::signals::SimTime;
 use crate::telemetry::NavState;
 use crate::timeline::{Mark, MarkKind, TimelineView};
 use columns::Columns;
-
-/// The number of tracks of abandoned branches, the newest last.
-const MAX_TRACKS: usize = 4;
-
-/// The tracks of abandoned branches of the flight.
-#[derive(Debug, Default)]
-pub struct TimelineState {
-    tracks: Vec<Vec<TrackPoint>>,
-}
-
-impl TimelineState {
-    /// Keeps the track of an abandoned branch.
-    pub(super) fn keep_track(&mut self, track: Vec<TrackPoint>) {
-        if track.len() > 1 {
-            if self.tracks.len() == MAX_TRACKS {
-                self.tracks.remove(0);
-            }
-            self.tracks.push(track);
-        }
-    }
-
-    pub(super) fn forget_tracks(&mut self) {
-        self.tracks.clear();
-    }
-
-    /// Returns the tracks of abandoned branches.
-    pub(super) fn tracks(&self) -> &[Vec<TrackPoint>] {
-        &self.tracks
-    }
-}
-
-impl AppState {
-    /// Returns `true` if an earlier instant is shown while the flight waits.
-    pub fn is_rewound(&self) -> bool {
-        self.view.is_rewound()
-    }
-
-    /// Returns `true` if `time` is after the shown earlier instant.
-    pub(super) fn is_later_than_shown(&self, time: SimTime) -> bool {
-        self.is_rewound() && time > self.view.vehicle.time
-    }
-
-    /// Returns the time from the shown instant to the newest, s; `None` if the newest is shown.
-    pub(super) fn rewound_s(&self) -> Option<f64> {
-        let timeline = self.view.timeline.as_ref().filter(|timeline| timeline.rewound)?;
-        Some(timeline.head.seconds_since(self.view.vehicle.time))
-    }
-
-    /// Returns the number of track points up to the shown instant.
-    pub(super) fn track_points_shown(&self) -> usize {
-        let points = self.track.points();
-        if !self.is_rewound() {
-            return points.len();
-        }
-        let shown_s = self.view.vehicle.time.as_secs_f64();
-        points.partition_point(|point| point.time_s <= shown_s)
-    }
-
-    /// Returns the transitions up to the shown instant, the oldest first.
-    pub(super) fn transitions_shown(
-        &self,
-    ) -> impl DoubleEndedIterator<Item = &Transition> + ExactSizeIterator {
-        let later = |step: &Transition| self.is_later_than_shown(step.time);
-        let shown = self.transitions.partition_point(|step| !later(step));
-        self.transitions.iter().take(shown)
-    }
-
-    /// Marks the log after `time` as left behind and drops later transitions, because the flight continues from there.
-    pub(super) fn leave_behind(&mut self, time: SimTime) {
-        self.log.leave_behind(time);
-        let kept = self.transitions.partition_point(|step| step.time <= time);
-        self.transitions.truncate(kept);
-    }
-}
 
 /// Returns the instant at a column; `None` beside the line.
 pub(super) fn time_at(timeline: &TimelineView, area: Rect, column: u16) -> Option<SimTime> {
     Columns::new(timeline, area).time_at(column)
 }
 
-pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
+pub(super) fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {
     let Some(timeline) = &state.view.timeline else { return };
     let theme = &state.theme;
     let columns = Columns::new(timeline, area);
     let shown = columns.column_of(state.view.vehicle.time);
     // The cursor of the graphs, if it is within the recording.
-    let pointed_at = graphs::pointed_at(state).filter(|time| *time >= timeline.first);
+    let pointed_at = state.graphs.pointed_at().filter(|time| *time >= timeline.first);
     let pointed_at = pointed_at.map(|time| columns.column_of(time));
     let mut spans: Vec<Span<'_>> = vec![span(theme, Role::Dim, format!(" {} ", clock(timeline.first)))];
     let mut flying = NavState::Idle;
@@ -204,7 +128,7 @@ mod tests {
         SimTime(seconds * 1_000_000)
     }
 
-    fn state(shown_s: u64) -> AppState {
+    fn state(shown_s: u64) -> Shared {
         let mark = |seconds, kind| Mark { time: at(seconds), kind };
         let marks = vec![
             mark(5, MarkKind::State(NavState::Approaching)),
@@ -221,12 +145,12 @@ mod tests {
             ..TimelineView::default()
         };
         let vehicle = Arc::new(Snapshot { time: at(shown_s), ..Snapshot::default() });
-        AppState::bare((80, 24), SessionView { vehicle, timeline: Some(timeline), ..SessionView::default() })
+        Shared::bare((80, 24), SessionView { vehicle, timeline: Some(timeline), ..SessionView::default() })
     }
 
     const AREA: Rect = Rect { x: 0, y: 0, width: 28, height: 1 };
 
-    fn line(state: &AppState) -> String {
+    fn line(state: &Shared) -> String {
         let mut buffer = Buffer::empty(AREA);
         draw(state, AREA, &mut buffer);
         buffer.content().iter().map(ratatui::buffer::Cell::symbol).collect()

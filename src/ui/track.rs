@@ -9,6 +9,9 @@ const JUMP_MPS: f64 = 60.0;
 /// The greatest step that is never a jump, m.
 const STEP_M: f64 = 5.0;
 
+/// The number of tracks of abandoned branches, the newest last.
+const MAX_ABANDONED: usize = 4;
+
 /// A point of the track, metres from the boot place.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct TrackPoint {
@@ -24,6 +27,31 @@ pub struct TrackPoint {
     pub engaged: bool,
     /// The index of the current waypoint of the stored plan.
     pub wp: Option<u8>,
+}
+
+/// The tracks of abandoned branches of the flight.
+#[derive(Debug, Default)]
+pub struct AbandonedTracks {
+    tracks: Vec<Vec<TrackPoint>>,
+}
+
+impl AbandonedTracks {
+    pub(super) fn keep(&mut self, track: Vec<TrackPoint>) {
+        if track.len() > 1 {
+            if self.tracks.len() == MAX_ABANDONED {
+                self.tracks.remove(0);
+            }
+            self.tracks.push(track);
+        }
+    }
+
+    pub(super) fn forget(&mut self) {
+        self.tracks.clear();
+    }
+
+    pub(super) fn tracks(&self) -> &[Vec<TrackPoint>] {
+        &self.tracks
+    }
 }
 
 #[derive(Debug)]

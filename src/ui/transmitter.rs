@@ -10,14 +10,15 @@ use crate::telemetry::switch::Switch;
 use crate::telemetry::{Mode, ModeBox, switch};
 
 use super::action::Action;
-use super::app_state::AppState;
+use super::arming_hint::{arming_hint, most_useful_flag};
 use super::event_log::Severity;
 use super::formatting::within;
 use super::message::Effect;
 use super::panel::Panel;
-use super::status_message;
-use super::update::TWICE_WITHIN;
+use super::shared::Shared;
 
+/// The time within which a second press of a key confirms the first.
+pub(super) const TWICE_WITHIN: Duration = Duration::from_secs(2);
 /// The channel of the throttle.
 const THROTTLE: usize = 2;
 /// The stick at the bottom, µs.
@@ -42,7 +43,7 @@ pub(super) enum ThrottleMove {
 }
 
 /// Returns the base of the next change: the frame sent last, until the session confirms it or it is too old.
-pub(super) fn frame(state: &AppState) -> RcFrame {
+pub(super) fn frame(state: &Shared) -> RcFrame {
     match state.sticks_sent {
         Some((frame, at)) if within(state.now, at, CONFIRM_WITHIN) && state.view.pilot.is_none() => frame,
         _ => state.view.sticks,
@@ -53,7 +54,7 @@ pub(super) fn frame(state: &AppState) -> RcFrame {
 ///
 /// # Errors
 /// Returns a sentence if no channel is assigned to it.
-pub(super) fn switch(state: &AppState, mode: Mode) -> Result<Switch, String> {
+pub(super) fn switch(state: &Shared, mode: Mode) -> Result<Switch, String> {
     let Some(ranges) = &state.view.vehicle.craft.mode_ranges else {
         return Err(format!("The flight controller does not tell which switch turns {mode} on."));
     };
@@ -65,17 +66,17 @@ pub(super) fn switch(state: &AppState, mode: Mode) -> Result<Switch, String> {
 }
 
 /// Returns `true` if the craft sees the switch of a mode as on.
-pub(super) fn switch_is_on(state: &AppState, mode: Mode) -> bool {
+pub(super) fn switch_is_on(state: &Shared, mode: Mode) -> bool {
     state.view.vehicle.craft.is_switched_on(mode)
 }
 
 /// Returns `true` if the switch of a mode is on in this frame.
-fn is_on(state: &AppState, frame: &RcFrame, mode: Mode) -> bool {
+fn is_on(state: &Shared, frame: &RcFrame, mode: Mode) -> bool {
     switch::is_on(mode, state.view.vehicle.craft.mode_ranges(), &frame.channels)
 }
 
 /// Returns the switch of a hold mode, unless its channel also arms, engages or is a stick.
-fn hold_switch(state: &AppState, mode: Mode) -> Option<Switch> {
+fn hold_switch(state: &Shared, mode: Mode) -> Option<Switch> {
     let switch = switch(state, mode).ok()?;
     let is_reserved = |range: &ModeRange| {
         usize::from(range.channel) == switch.channel
@@ -87,7 +88,7 @@ fn hold_switch(state: &AppState, mode: Mode) -> Option<Switch> {
 
 /// Sets the switches of the hold modes that have channels of their own. Without these modes nothing levels a craft that
 /// is flown by keys, or whose autopilot is switched off.
-fn set_hold_modes(state: &AppState, next: &mut RcFrame, on: bool) {
+fn set_hold_modes(state: &Shared, next: &mut RcFrame, on: bool) {
     for mode in HOLD_MODES {
         if let Some(switch) = hold_switch(state, mode)
             && is_on(state, next, mode) != on
@@ -99,20 +100,20 @@ fn set_hold_modes(state: &AppState, next: &mut RcFrame, on: bool) {
 
 /// Prepares the sticks for the moment when the navigator releases the craft, so that it holds its place and neither
 /// sinks nor climbs.
-fn prepare_hold(state: &AppState, next: &mut RcFrame) {
+fn prepare_hold(state: &Shared, next: &mut RcFrame) {
     rest_throttle(state, next);
     set_hold_modes(state, next, true);
 }
 
 /// Moves the throttle stick of a flying craft to the position where ALTHOLD keeps the altitude.
-fn rest_throttle(state: &AppState, next: &mut RcFrame) {
+fn rest_throttle(state: &Shared, next: &mut RcFrame) {
     if is_airborne(state) {
         next.channels[THROTTLE] = hover_us(state);
     }
 }
 
 /// Returns `true` if the craft is on the ground.
-pub(super) fn is_standing(state: &AppState) -> bool {
+pub(super) fn is_standing(state: &Shared) -> bool {
     let vehicle = &state.view.vehicle;
     match &vehicle.truth {
         Some(truth) => truth.on_ground,
@@ -121,17 +122,17 @@ pub(super) fn is_standing(state: &AppState) -> bool {
 }
 
 /// Returns `true` if the craft is armed and in the air.
-fn is_airborne(state: &AppState) -> bool {
+fn is_airborne(state: &Shared) -> bool {
     state.view.vehicle.craft.is_armed() && !is_standing(state)
 }
 
 /// Returns `true` if the throttle stick of a frame counts as raised.
-fn is_raised(state: &AppState, frame: &RcFrame) -> bool {
+fn is_raised(state: &Shared, frame: &RcFrame) -> bool {
     frame.channels[THROTTLE] >= settings(state).raised_stick_us
 }
 
 /// Returns `true` if the throttle stick lets the craft sink in ALTHOLD.
-pub(super) fn is_sinking(state: &AppState) -> bool {
+pub(super) fn is_sinking(state: &Shared) -> bool {
     let frame = frame(state);
     let throttle_us = frame.channels[THROTTLE];
     // The hover throttle changes a little while it is learned, and the sinking stick with it.
@@ -144,7 +145,7 @@ pub(super) fn is_sinking(state: &AppState) -> bool {
 
 /// Returns the current effect of the throttle key. On the ground it alternates between hover and low. In the air the
 /// first press holds the craft, the next lets it sink: a low stick in ALTHOLD would leave it hanging.
-pub(super) fn throttle_move(state: &AppState) -> ThrottleMove {
+pub(super) fn throttle_move(state: &Shared) -> ThrottleMove {
     let now = frame(state);
     if !is_airborne(state) {
         return if now.channels[THROTTLE] > LOW_US { ThrottleMove::Low } else { ThrottleMove::Hover };
@@ -164,22 +165,22 @@ pub(super) fn throttle_move(state: &AppState) -> ThrottleMove {
 ///
 /// # Errors
 /// Returns a sentence with the cause that blocks arming and the remedy.
-pub(super) fn can_arm(state: &AppState) -> Result<(), String> {
+pub(super) fn can_arm(state: &Shared) -> Result<(), String> {
     let switch = switch(state, Mode::Arm)?;
     let craft = &state.view.vehicle.craft;
     if craft.is_armed() || frame(state).channels[switch.channel] == switch.on_us {
         return Ok(());
     }
     // The other flags only say "switch off, then on again", which is the effect of the key.
-    match status_message::most_useful_flag(craft.arming_flags().causes()) {
+    match most_useful_flag(craft.arming_flags().causes()) {
         None => Ok(()),
-        Some(flag) => Err(format!("Cannot arm, {flag}: {}.", status_message::arming_hint(state, flag))),
+        Some(flag) => Err(format!("Cannot arm, {flag}: {}.", arming_hint(state, flag))),
     }
 }
 
 /// Moves the ARM switch. Disarming also lowers the throttle and releases the hold modes, which would block the next
 /// arming.
-pub(super) fn toggle_arm(state: &mut AppState) -> Vec<Effect> {
+pub(super) fn toggle_arm(state: &mut Shared) -> Vec<Effect> {
     let Ok(switch) = switch(state, Mode::Arm) else { return Vec::new() };
     let mut next = frame(state);
     let on = state.view.vehicle.craft.is_armed() || next.channels[switch.channel] == switch.on_us;
@@ -192,7 +193,7 @@ pub(super) fn toggle_arm(state: &mut AppState) -> Vec<Effect> {
 }
 
 /// Like [`toggle_arm`], but in the air the key disarms only if it is pressed again within [`TWICE_WITHIN`].
-pub(super) fn arm_key(state: &mut AppState) -> Vec<Effect> {
+pub(super) fn arm_key(state: &mut Shared) -> Vec<Effect> {
     let was_asked = state.disarm_asked.take().is_some_and(|at| within(state.now, at, TWICE_WITHIN));
     if !is_airborne(state) || was_asked {
         return toggle_arm(state);
@@ -206,7 +207,7 @@ pub(super) fn arm_key(state: &mut AppState) -> Vec<Effect> {
 
 /// Moves the AUTOPILOT switch. Engaging also switches on the hold modes, which take over when the autopilot is switched
 /// off. While a command flies the craft, the switch could only wait for its end, so the command is cancelled instead.
-pub(super) fn toggle_autopilot(state: &mut AppState) -> Vec<Effect> {
+pub(super) fn toggle_autopilot(state: &mut Shared) -> Vec<Effect> {
     let Ok(switch) = switch(state, Mode::Autopilot) else { return Vec::new() };
     let mut next = frame(state);
     let on = next.channels[switch.channel] == switch.on_us;
@@ -227,7 +228,7 @@ pub(super) fn toggle_autopilot(state: &mut AppState) -> Vec<Effect> {
 
 /// Sends the craft home, or cancels that. Switches on the hold modes, which take over after a cancel; the scripted
 /// pilot has them on.
-pub(super) fn toggle_return(state: &mut AppState) -> Vec<Effect> {
+pub(super) fn toggle_return(state: &mut Shared) -> Vec<Effect> {
     if state.view.vehicle.craft.is_commanded() {
         return vec![Effect::Send(Command::CancelReturn)];
     }
@@ -243,7 +244,7 @@ pub(super) fn toggle_return(state: &mut AppState) -> Vec<Effect> {
 }
 
 /// Moves the throttle stick to the position given by [`throttle_move`].
-pub(super) fn move_throttle(state: &mut AppState) -> Vec<Effect> {
+pub(super) fn move_throttle(state: &mut Shared) -> Vec<Effect> {
     let mut next = frame(state);
     let to = throttle_move(state);
     next.channels[THROTTLE] = match to {
@@ -260,27 +261,27 @@ pub(super) fn move_throttle(state: &mut AppState) -> Vec<Effect> {
 }
 
 /// Returns the settings of the sticks; with hover at mid-throttle if the flight controller does not report them.
-fn settings(state: &AppState) -> SettingsView {
+fn settings(state: &Shared) -> SettingsView {
     let unknown =
         SettingsView { hover_stick_us: MIDDLE_US, raised_stick_us: MIDDLE_US, ..SettingsView::default() };
     state.view.vehicle.settings.unwrap_or(unknown)
 }
 
 /// Returns the stick position for hovering, with ALTHOLD and without; it always counts as raised.
-fn hover_us(state: &AppState) -> u16 {
+fn hover_us(state: &Shared) -> u16 {
     let settings = settings(state);
     settings.hover_stick_us.max(settings.raised_stick_us)
 }
 
 /// Changes a channel by some µs.
-pub(super) fn nudge(state: &mut AppState, channel: usize, by_us: i32) -> Vec<Effect> {
+pub(super) fn nudge(state: &mut Shared, channel: usize, by_us: i32) -> Vec<Effect> {
     let mut next = frame(state);
     let Some(value) = next.channels.get_mut(channel) else { return Vec::new() };
     *value = (i32::from(*value) + by_us).clamp(1000, 2000) as u16;
     send(state, next)
 }
 
-pub(super) fn set(state: &mut AppState, channel: usize, us: u16) -> Vec<Effect> {
+pub(super) fn set(state: &mut Shared, channel: usize, us: u16) -> Vec<Effect> {
     let mut next = frame(state);
     let Some(value) = next.channels.get_mut(channel) else { return Vec::new() };
     *value = us.clamp(1000, 2000);
@@ -288,7 +289,7 @@ pub(super) fn set(state: &mut AppState, channel: usize, us: u16) -> Vec<Effect> 
 }
 
 /// Centres a stick, lowers the throttle, or moves a switch from low to high and back.
-pub(super) fn flip(state: &mut AppState, channel: usize) -> Vec<Effect> {
+pub(super) fn flip(state: &mut Shared, channel: usize) -> Vec<Effect> {
     let now = frame(state).channels.get(channel).copied().unwrap_or(MIDDLE_US);
     let us = match channel {
         THROTTLE => LOW_US,
@@ -300,7 +301,7 @@ pub(super) fn flip(state: &mut AppState, channel: usize) -> Vec<Effect> {
 }
 
 /// Sends a frame. The keys take over from the scripted pilot.
-fn send(state: &mut AppState, next: RcFrame) -> Vec<Effect> {
+fn send(state: &mut Shared, next: RcFrame) -> Vec<Effect> {
     let mut effects = Vec::new();
     if state.stick_recording.stop_playing() {
         state.notify(Severity::Info, "Playing stopped: the sticks are yours.");

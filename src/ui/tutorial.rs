@@ -5,11 +5,11 @@ use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr as _;
 
 use super::action::{Action, EditAction};
-use super::app_state::AppState;
 use super::drawing;
 use super::event_log::Severity;
 use super::formatting::cut;
 use super::panel::Panel;
+use super::shared::Shared;
 use super::text_wrap::wrapped;
 use super::theme::Role;
 
@@ -32,9 +32,9 @@ struct Text {
 /// A step: the instruction, the instruction after its first key, and the condition for its end.
 struct Step {
     first: Text,
-    is_begun: fn(&AppState) -> bool,
+    is_begun: fn(&Shared) -> bool,
     then: Text,
-    is_done: fn(&AppState, &Tutorial) -> bool,
+    is_done: fn(&Shared, &Tutorial) -> bool,
 }
 
 const STEPS: [Step; 5] = [
@@ -89,7 +89,7 @@ const STEPS: [Step; 5] = [
             text: "Press {} to go back in time, event by event, and {} to come back to now.",
             actions: &[Action::EventBack, Action::Newest],
         },
-        is_begun: AppState::is_rewound,
+        is_begun: Shared::is_rewound,
         then: Text {
             text: "Every panel shows that instant: {} goes further back, {} comes back to now.",
             actions: &[Action::EventBack, Action::Newest],
@@ -99,26 +99,25 @@ const STEPS: [Step; 5] = [
 ];
 
 /// Begins the tutorial, or ends it.
-pub(super) fn toggle(state: &mut AppState) {
-    if state.tutorial.take().is_some() {
+pub(super) fn toggle(tutorial: &mut Option<Tutorial>, state: &mut Shared) {
+    if tutorial.take().is_some() {
         state.notify(Severity::Info, "The tutorial is over; `:tutorial` begins it again.");
     } else {
-        state.tutorial =
-            Some(Tutorial { revision: state.editor.plan().history().at(), ..Tutorial::default() });
+        *tutorial = Some(Tutorial { revision: state.editor.plan().history().at(), ..Tutorial::default() });
     }
 }
 
 /// Goes on to the next step once the user has done this one.
-pub(super) fn follow(state: &mut AppState) {
-    let Some(mut tutorial) = state.tutorial else { return };
+pub(super) fn follow(shown: &mut Option<Tutorial>, state: &mut Shared) {
+    let Some(mut tutorial) = *shown else { return };
     tutorial.rewound |= state.is_rewound();
     if STEPS.get(tutorial.step).is_some_and(|step| (step.is_done)(state, &tutorial)) {
         let revision = state.editor.plan().history().at();
         tutorial = Tutorial { step: tutorial.step + 1, revision, rewound: false };
     }
-    state.tutorial = Some(tutorial);
+    *shown = Some(tutorial);
     if tutorial.step == STEPS.len() {
-        state.tutorial = None;
+        *shown = None;
         let text = format!(
             "That was the tutorial: {} shows the keys of the focused panel, {} takes every action by name.",
             state.key(Action::Help),
@@ -129,7 +128,7 @@ pub(super) fn follow(state: &mut AppState) {
 }
 
 /// Returns the current instruction with the current keys.
-fn text(state: &AppState, tutorial: Tutorial) -> String {
+fn text(state: &Shared, tutorial: Tutorial) -> String {
     let Some(step) = STEPS.get(tutorial.step) else { return String::new() };
     let Text { text, actions } = if (step.is_begun)(state) { &step.then } else { &step.first };
     let keys = actions.iter().map(|&action| state.key(action));
@@ -141,8 +140,8 @@ fn text(state: &AppState, tutorial: Tutorial) -> String {
 const ROWS: usize = 2;
 
 /// Returns the rows of the step.
-fn lines(state: &AppState, hints: Rect) -> Vec<String> {
-    let Some(tutorial) = state.tutorial else { return Vec::new() };
+fn lines(tutorial: Option<Tutorial>, state: &Shared, hints: Rect) -> Vec<String> {
+    let Some(tutorial) = tutorial else { return Vec::new() };
     let width = usize::from(hints.width.saturating_sub(6));
     let mut lines = wrapped(&text(state, tutorial), width);
     if lines.len() > ROWS {
@@ -153,13 +152,13 @@ fn lines(state: &AppState, hints: Rect) -> Vec<String> {
 }
 
 /// Returns the number of rows of the tutorial above the hints.
-pub(super) fn rows(state: &AppState, hints: Rect) -> u16 {
-    lines(state, hints).len() as u16
+pub(super) fn rows(tutorial: Option<Tutorial>, state: &Shared, hints: Rect) -> u16 {
+    lines(tutorial, state, hints).len() as u16
 }
 
 /// Draws the step in the frame above the hints, and also in the row above it if it is long.
-pub(super) fn draw(state: &AppState, hints: Rect, buffer: &mut Buffer) {
-    let lines = lines(state, hints);
+pub(super) fn draw(tutorial: Option<Tutorial>, state: &Shared, hints: Rect, buffer: &mut Buffer) {
+    let lines = lines(tutorial, state, hints);
     let widest = lines.iter().map(|line| line.width()).max().unwrap_or(0);
     for (at, line) in lines.iter().enumerate() {
         let above = (lines.len() - at) as u16;

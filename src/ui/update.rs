@@ -1,7 +1,5 @@
 //! Applies a message to the state and returns the requested effects.
 
-use std::time::Duration;
-
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind};
 
 use crate::session::{Command, SessionView};
@@ -9,24 +7,23 @@ use crate::telemetry::InFlightCommand;
 
 use super::action::{self, Action, EditAction};
 use super::app_state::AppState;
+use super::command;
 use super::editor::{FormKind, findings};
 use super::event_log::Severity;
 use super::forecast;
 use super::formatting::within;
-use super::graphs;
 use super::keymap::KeyPress;
 use super::knobs;
-use super::log_view;
 use super::map_point;
-use super::message::{Effect, Msg};
+use super::map_state::MapMode;
+use super::message::{Effect, Msg, Request};
 use super::panel::Panel;
-use super::permission;
-use super::popup::{Palette, Popup};
-use super::stick_recording;
+use super::popup::{GoTo, Palette, Popup};
+use super::stick_recording::keys as stick_recording;
 use super::track::TrackPoint;
 use super::transmitter;
+use super::transmitter::TWICE_WITHIN;
 use super::tutorial;
-use super::viewport::MapMode;
 
 mod cli;
 mod fields;
@@ -34,39 +31,35 @@ mod flight;
 mod map_edit;
 mod map_menu;
 mod mouse;
+mod permission;
 mod plan;
 mod plan_popup;
 mod popup;
 mod timeline;
 mod view;
 
-use cli::{cli_key, paste};
-use flight::{ask_where_to_go, fly, speed, upload, uploaded};
-use view::{ZOOM_STEP, follow, neighbour, scroll, zoom_map};
+use cli::{cli_key, paste, run_cli};
+use flight::{fly, speed, upload, uploaded};
+use view::{ZOOM_STEP, focus, focus_neighbour, follow, scroll, zoom_map};
 
-pub(super) use cli::run_cli;
-pub(super) use plan::{write_scenario, write_shown as write_plan};
-pub(super) use view::focus;
-
-/// The time within which a second press of a key confirms the first.
-pub(super) const TWICE_WITHIN: Duration = Duration::from_secs(2);
+pub(super) use permission::hold;
 
 /// Processes a message and returns its effects.
 pub fn update(state: &mut AppState, msg: Msg) -> Vec<Effect> {
     // These messages have no effects: the loop would not carry them out.
     let is_followed = !matches!(msg, Msg::Clock(_) | Msg::Resize(..));
     let is_picture = matches!(msg, Msg::View(_));
-    let connection = permission::real_craft(state).map(|remote| remote.connection);
+    let connection = state.shared.real_craft().map(|remote| remote.connection);
     let effects = take(state, msg);
     let mut effects = permission::hold(state, effects);
     permission::follow(state, connection);
     if is_followed {
-        tutorial::follow(state);
-        effects.extend(forecast::follow_plan(state));
-        state.editor.follow_generator(findings::home(state));
+        tutorial::follow(&mut state.tutorial, &mut state.shared);
+        effects.extend(forecast::follow_plan(&mut state.shared));
+        state.shared.editor.follow_generator(findings::home(&state.shared));
     }
     if is_picture {
-        effects.extend(forecast::repeat(state));
+        effects.extend(forecast::repeat(&mut state.shared));
     }
     effects
 }
@@ -74,7 +67,7 @@ pub fn update(state: &mut AppState, msg: Msg) -> Vec<Effect> {
 fn take(state: &mut AppState, msg: Msg) -> Vec<Effect> {
     match msg {
         Msg::Clock(now) => {
-            state.now = now;
+            state.shared.now = now;
             Vec::new()
         }
         Msg::Key(event) if event.kind == KeyEventKind::Release => Vec::new(),
@@ -82,16 +75,16 @@ fn take(state: &mut AppState, msg: Msg) -> Vec<Effect> {
         Msg::Mouse(event) => mouse::update(state, event),
         Msg::Paste(text) => paste(state, &text),
         Msg::Resize(columns, rows) => {
-            state.size = (columns, rows);
+            state.shared.size = (columns, rows);
             Vec::new()
         }
         Msg::View(view) => {
             take_view(state, view);
-            if state.is_rewound() {
+            if state.shared.is_rewound() {
                 return Vec::new();
             }
-            graphs::record(state);
-            stick_recording::advance(state)
+            state.shared.graphs.record(&state.shared.view.vehicle);
+            stick_recording::advance(&mut state.shared)
         }
         Msg::Event(event) => {
             state.take_event(&event);
@@ -99,102 +92,105 @@ fn take(state: &mut AppState, msg: Msg) -> Vec<Effect> {
         }
         Msg::CliReply(output) => {
             if let Some((severity, text)) = state.cli.answer(output.as_ref()) {
-                state.notify(severity, text);
+                state.shared.notify(severity, text);
             }
-            state.forecast.settings_changed();
+            state.shared.forecast.settings_changed();
             run_cli(state)
         }
         Msg::WorldReply { line, result } => {
             match result {
                 // The log gets the faults from the craft itself.
-                Ok(()) => state.say(Severity::Good, format!("World: {line}.")),
+                Ok(()) => state.shared.say(Severity::Good, format!("World: {line}.")),
                 Err(sentence) => {
-                    let sentence = state.keymap.in_force(&sentence);
-                    state.notify(Severity::Fault, sentence);
+                    let sentence = state.shared.keymap.in_force(&sentence);
+                    state.shared.notify(Severity::Fault, sentence);
                 }
             }
             Vec::new()
         }
-        Msg::UploadReply { id, count, result } => uploaded(state, id, count, result),
+        Msg::UploadReply { id, count, result } => uploaded(&mut state.shared, id, count, result),
         Msg::Forecast(reply) => {
-            forecast::take_answer(state, reply);
+            forecast::take_answer(&mut state.shared, reply);
             Vec::new()
         }
-        Msg::DownloadReply { id, result } => plan::downloaded(state, id, result),
-        Msg::ScenarioReply(result) => plan::scenario_written(state, result),
-        Msg::SaveReply(result) => plan::saved_to_flash(state, result),
-        Msg::Files(reply) => plan_popup::answered(state, reply),
+        Msg::DownloadReply { id, result } => plan::downloaded(&mut state.shared, id, result),
+        Msg::ScenarioReply(result) => plan::scenario_written(&mut state.shared, result),
+        Msg::SaveReply(result) => plan::saved_to_flash(&mut state.shared, result),
+        Msg::Files(reply) => plan_popup::answered(&mut state.shared, reply),
         Msg::Busy => {
-            state.notify(Severity::Warn, "The simulator does not keep up: the last key was dropped.");
+            state.shared.notify(Severity::Warn, "The simulator does not keep up: the last key was dropped.");
             Vec::new()
         }
     }
 }
 
 fn take_view(state: &mut AppState, view: SessionView) {
-    if state.sticks_sent.is_some_and(|(frame, _)| frame == view.sticks) {
-        state.sticks_sent = None;
+    if state.shared.sticks_sent.is_some_and(|(frame, _)| frame == view.sticks) {
+        state.shared.sticks_sent = None;
     }
-    let left = timeline::follow_branch(state, &view);
-    if !left && !view.is_rewound() && view.vehicle.time < state.view.vehicle.time {
-        state.track.clear();
+    let left = timeline::follow_branch(&mut state.shared, &view);
+    if !left && !view.is_rewound() && view.vehicle.time < state.shared.view.vehicle.time {
+        state.shared.track.clear();
     }
-    let before = std::mem::replace(&mut state.view, view);
+    let before = std::mem::replace(&mut state.shared.view, view);
     if !left
-        && !state.is_rewound()
+        && !state.shared.is_rewound()
         && !before.is_rewound()
-        && let (Some(was), Some(now)) = (&before.vehicle.stored_plan, state.view.vehicle.stored_plan.clone())
+        && let (Some(was), Some(now)) =
+            (&before.vehicle.stored_plan, state.shared.view.vehicle.stored_plan.clone())
         && *was != now
-        && !state.editor.has_uploaded(&now)
+        && !state.shared.editor.has_uploaded(&now)
         && !state.cli.waiting
     {
-        plan::craft_plan_changed(state, was, &now);
+        plan::craft_plan_changed(&mut state.shared, was, &now);
     }
-    state.forecast.take_view();
-    if state.is_rewound() {
+    state.shared.forecast.take_view();
+    if state.shared.is_rewound() {
         return;
     }
-    if let Some(place) = map_point::craft(&state.view) {
-        let vehicle = &state.view.vehicle;
+    if let Some(place) = map_point::craft(&state.shared.view) {
+        let vehicle = &state.shared.view.vehicle;
         let engaged = vehicle.is_engaged();
         let time_s = vehicle.time.as_secs_f64();
         let alt_m =
             vehicle.truth.as_ref().map(|truth| truth.alt).or(vehicle.estimate.alt).unwrap_or_default();
-        let wp = vehicle.nav.as_ref().filter(|_| state.flies_stored_plan()).map(|nav| nav.wp);
-        if state.view.vehicle.craft.armed == Some(false) {
-            state.track.disarmed_at(place.n, place.e);
+        let wp = vehicle.nav.as_ref().filter(|_| state.shared.flies_stored_plan()).map(|nav| nav.wp);
+        if state.shared.view.vehicle.craft.armed == Some(false) {
+            state.shared.track.disarmed_at(place.n, place.e);
         }
-        state.track.push(TrackPoint { n: place.n, e: place.e, alt_m, time_s, engaged, wp });
+        state.shared.track.push(TrackPoint { n: place.n, e: place.e, alt_m, time_s, engaged, wp });
     }
 }
 
 fn key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
     let press = KeyPress::of(&event);
-    let found = state.keymap.action(press, state.focus);
+    let found = state.shared.keymap.action(press, state.shared.focus);
     if found != Some(Action::Cancel) {
         state.cancelled = None;
     }
     // A fault must be read, however busy the user is; only Esc clears it.
     if event.code == KeyCode::Esc
-        || state.notice.as_ref().is_some_and(|notice| notice.severity != Severity::Fault)
+        || state.shared.notice.as_ref().is_some_and(|notice| notice.severity != Severity::Fault)
     {
-        state.notice = None;
+        state.shared.notice = None;
     }
     let types = fields::open(state).is_some();
     // Esc first closes an open popup or field.
-    let is_open = !state.popups.is_empty() || state.editor.takes_text() || types;
-    if event.code == KeyCode::Esc && !is_open && !state.pinned.is_empty() {
-        state.pinned.remove(0);
+    let is_open = !state.popups.is_empty() || state.shared.editor.takes_text() || types;
+    if event.code == KeyCode::Esc && !is_open && !state.shared.pinned.is_empty() {
+        state.shared.pinned.remove(0);
     }
     match state.popups.last() {
         _ if found == Some(Action::Cancel) => cancel(state),
         Some(_) => popup::key(state, event, found),
-        None if state.editor.popup.is_some() => plan_popup::key(state, event),
-        None if state.focus == Panel::Plan && state.editor.field().is_some() => plan::field_key(state, event),
+        None if state.shared.editor.popup.is_some() => plan_popup::key(&mut state.shared, event),
+        None if state.shared.focus == Panel::Plan && state.shared.editor.field().is_some() => {
+            plan::field_key(&mut state.shared, event)
+        }
         None if types && takes_as_text(found) => fields::key(state, event),
         None => match found {
             Some(action) => act(state, action),
-            None if state.focus == Panel::Cli => cli_key(state, event),
+            None if state.shared.focus == Panel::Cli => cli_key(state, event),
             None => Vec::new(),
         },
     }
@@ -207,108 +203,136 @@ fn takes_as_text(found: Option<Action>) -> bool {
 
 /// Handles Ctrl-C: the first press cancels, the second quits.
 fn cancel(state: &mut AppState) -> Vec<Effect> {
-    if state.cancelled.is_some_and(|at| within(state.now, at, TWICE_WITHIN)) {
+    if state.cancelled.is_some_and(|at| within(state.shared.now, at, TWICE_WITHIN)) {
         return vec![Effect::Quit];
     }
-    state.cancelled = Some(state.now);
+    state.cancelled = Some(state.shared.now);
     let popup = state.popups.pop().is_some();
     let field = fields::close(state);
-    let input = field || state.focus == Panel::Cli && state.cli.cancel();
-    let upload = state.fly_after_upload.take().is_some();
-    let edit = state.editor.cancel() | map_edit::leave(state);
+    let input = field || state.shared.focus == Panel::Cli && state.cli.cancel();
+    let upload = state.shared.editor.fly_after_upload.take().is_some();
+    let edit = state.shared.editor.cancel() | map_edit::leave(&mut state.shared);
     let what = if popup || input || upload || edit { "Cancelled. " } else { "" };
-    state.notify(Severity::Info, format!("{what}Ctrl-C again within 2 s quits."));
+    state.shared.notify(Severity::Info, format!("{what}Ctrl-C again within 2 s quits."));
     Vec::new()
 }
 
 /// Carries out an action of the plan editor.
 fn edit(state: &mut AppState, action: EditAction) -> Vec<Effect> {
     match action {
-        EditAction::Undo => plan::undo(state, false),
-        EditAction::Redo => plan::undo(state, true),
-        EditAction::Open => plan::open_browser(state),
-        EditAction::Save => plan::save(state),
-        EditAction::SaveAs => plan::save_as(state),
-        EditAction::New => plan::new_plan(state),
-        EditAction::Close => plan::close(state),
-        EditAction::NextPlan => plan::show_other(state, 1),
-        EditAction::PreviousPlan => plan::show_other(state, -1),
-        EditAction::Download => vec![Effect::Download(state.editor.plan().id())],
+        EditAction::Undo => plan::undo(&mut state.shared, false),
+        EditAction::Redo => plan::undo(&mut state.shared, true),
+        EditAction::Open => plan::open_browser(&mut state.shared),
+        EditAction::Save => plan::save(&mut state.shared),
+        EditAction::SaveAs => plan::save_as(&mut state.shared),
+        EditAction::New => plan::new_plan(&mut state.shared),
+        EditAction::Close => plan::close(&mut state.shared),
+        EditAction::NextPlan => plan::show_other(&mut state.shared, 1),
+        EditAction::PreviousPlan => plan::show_other(&mut state.shared, -1),
+        EditAction::Download => vec![Effect::Download(state.shared.editor.plan().id())],
         EditAction::SaveToFlash => vec![Effect::SaveToFlash],
         EditAction::Left => moved(state, -1),
         EditAction::Right => moved(state, 1),
-        EditAction::Cell => plan::edit_cell(state),
-        EditAction::Raise => plan::nudge(state, 1),
-        EditAction::Lower => plan::nudge(state, -1),
-        EditAction::RaiseMuch => plan::nudge(state, 10),
-        EditAction::LowerMuch => plan::nudge(state, -10),
-        EditAction::Insert => plan::insert(state),
-        EditAction::Duplicate => plan::duplicate(state),
-        EditAction::Delete => state.editor.delete(),
-        EditAction::MoveUp => state.editor.move_waypoints(false),
-        EditAction::MoveDown => state.editor.move_waypoints(true),
+        EditAction::Cell => plan::edit_cell(&mut state.shared),
+        EditAction::Raise => plan::nudge(&mut state.shared, 1),
+        EditAction::Lower => plan::nudge(&mut state.shared, -1),
+        EditAction::RaiseMuch => plan::nudge(&mut state.shared, 10),
+        EditAction::LowerMuch => plan::nudge(&mut state.shared, -10),
+        EditAction::Insert => plan::insert(&mut state.shared),
+        EditAction::Duplicate => plan::duplicate(&mut state.shared),
+        EditAction::Delete => state.shared.editor.delete(),
+        EditAction::MoveUp => state.shared.editor.move_waypoints(false),
+        EditAction::MoveDown => state.shared.editor.move_waypoints(true),
         EditAction::Select => {
-            state.editor.toggle_selection();
+            state.shared.editor.toggle_selection();
             Vec::new()
         }
         EditAction::SelectAll => {
-            state.editor.select_all();
+            state.shared.editor.select_all();
             Vec::new()
         }
-        EditAction::Copy => plan::copy(state),
-        EditAction::Paste => plan::paste_copied(state),
-        EditAction::Bulk => plan::open_form(state, FormKind::Bulk),
-        EditAction::Generate => plan::open_form(state, FormKind::Generate),
-        EditAction::Properties => plan::open_form(state, FormKind::Properties),
-        EditAction::Fix => plan::take_fix(state),
-        EditAction::OnMap => map_edit::toggle(state),
-        EditAction::Pick => map_edit::pick(state),
-        EditAction::AddOnMap => map_edit::add(state),
-        EditAction::DeleteOnMap => map_edit::delete(state),
+        EditAction::Copy => plan::copy(&mut state.shared),
+        EditAction::Paste => plan::paste_copied(&mut state.shared),
+        EditAction::Bulk => plan::open_form(&mut state.shared, FormKind::Bulk),
+        EditAction::Generate => plan::open_form(&mut state.shared, FormKind::Generate),
+        EditAction::Properties => plan::open_form(&mut state.shared, FormKind::Properties),
+        EditAction::Fix => plan::take_fix(&mut state.shared),
+        EditAction::OnMap => map_edit::toggle(&mut state.shared),
+        EditAction::Pick => map_edit::pick(&mut state.shared),
+        EditAction::AddOnMap => map_edit::add(&mut state.shared),
+        EditAction::DeleteOnMap => map_edit::delete(&mut state.shared),
     }
 }
 
 fn moved(state: &mut AppState, columns: isize) -> Vec<Effect> {
-    state.editor.move_cursor(0, columns);
+    state.shared.editor.move_cursor(0, columns);
     Vec::new()
 }
 
 /// Carries out an action, or notifies the user of the reason for its refusal.
 fn act(state: &mut AppState, action: Action) -> Vec<Effect> {
-    if let Err(reason) = action::enabled(state, action) {
-        state.notify(Severity::Warn, reason);
+    if let Err(reason) = action::enabled(&state.shared, action) {
+        state.shared.notify(Severity::Warn, reason);
         return Vec::new();
     }
     perform(state, action)
 }
 
+/// Runs a line of the `:` line.
+///
+/// # Errors
+/// Returns the reason for a refusal, in a sentence.
+pub fn run_line(state: &mut AppState, line: &str) -> Result<Vec<Effect>, String> {
+    let mut effects = Vec::new();
+    for request in command::run(&mut state.shared, line)? {
+        match request {
+            Request::Act(action) => effects.extend(perform(state, action)),
+            Request::Effect(effect) => effects.push(effect),
+            Request::Cli { line, is_reported } => {
+                state.cli.queue(line, is_reported);
+                effects.extend(run_cli(state));
+            }
+        }
+    }
+    Ok(effects)
+}
+
 /// Carries out an action that is enabled.
 pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
     match action {
-        Action::Fly => fly(state),
-        Action::Arm => transmitter::arm_key(state),
-        Action::Throttle => transmitter::move_throttle(state),
-        Action::Autopilot => transmitter::toggle_autopilot(state),
-        Action::ReturnHome => transmitter::toggle_return(state),
-        Action::GoTo => ask_where_to_go(state),
+        Action::Fly => fly(&mut state.shared),
+        Action::Arm => transmitter::arm_key(&mut state.shared),
+        Action::Throttle => transmitter::move_throttle(&mut state.shared),
+        Action::Autopilot => transmitter::toggle_autopilot(&mut state.shared),
+        Action::ReturnHome => transmitter::toggle_return(&mut state.shared),
+        Action::GoTo => {
+            let vehicle = &state.shared.view.vehicle;
+            let current = vehicle.nav.as_ref().map_or(0, |nav| nav.wp);
+            let question = vehicle.stored_plan.as_ref().map(|stored| GoTo::new(stored, current));
+            state.popups.extend(question.map(Popup::GoTo));
+            Vec::new()
+        }
         Action::HoldHere => vec![Effect::Send(Command::InFlight(InFlightCommand::HoldHere))],
         Action::Resume => vec![Effect::Send(Command::InFlight(InFlightCommand::Resume))],
         Action::CutRc => {
-            let mut effects = vec![Effect::Send(Command::CutRc(!state.view.rc_cut))];
+            let mut effects = vec![Effect::Send(Command::CutRc(!state.shared.view.rc_cut))];
             // At real time the user can read the countdown of the failsafe.
-            if !state.view.rc_cut && state.view.speed_wanted > 1.0 && state.view.vehicle.craft.is_armed() {
+            if !state.shared.view.rc_cut
+                && state.shared.view.speed_wanted > 1.0
+                && state.shared.view.vehicle.craft.is_armed()
+            {
                 effects.push(Effect::Send(Command::Speed(1.0)));
             }
             effects
         }
-        Action::Upload => upload(state),
+        Action::Upload => upload(&mut state.shared),
         Action::Edit(action) => edit(state, action),
         Action::ResetCraft => {
-            state.track.await_reset();
-            state.sticks_sent = None;
+            state.shared.track.await_reset();
+            state.shared.sticks_sent = None;
             vec![Effect::Send(Command::ResetCraft)]
         }
-        Action::LookAhead => forecast::toggle_look_ahead(state),
+        Action::LookAhead => forecast::toggle_look_ahead(&mut state.shared),
         Action::WhatIf => {
             state.popups.push(Popup::WhatIf { selected: 0 });
             Vec::new()
@@ -317,10 +341,10 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
             state.popups.push(Popup::Guards { selected: 0 });
             Vec::new()
         }
-        Action::Pause => vec![Effect::Send(Command::Pause(!state.view.paused))],
+        Action::Pause => vec![Effect::Send(Command::Pause(!state.shared.view.paused))],
         Action::Step => {
             let mut effects = Vec::new();
-            if !state.view.paused {
+            if !state.shared.view.paused {
                 effects.push(Effect::Send(Command::Pause(true)));
             }
             effects.push(Effect::Send(Command::Step(state.step_ticks)));
@@ -334,20 +358,20 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
         | Action::Earlier
         | Action::Later
         | Action::FlyOn
-        | Action::Newest => timeline::act(state, action),
-        Action::Slower => speed(state, -1),
-        Action::Faster => speed(state, 1),
-        Action::RealTime => speed(state, 0),
-        Action::Show(panel) => focus(state, panel),
-        Action::Next => focus(state, neighbour(state, 1)),
-        Action::Previous => focus(state, neighbour(state, -1)),
+        | Action::Newest => timeline::act(&state.shared, action),
+        Action::Slower => speed(&mut state.shared, -1),
+        Action::Faster => speed(&mut state.shared, 1),
+        Action::RealTime => speed(&mut state.shared, 0),
+        Action::Show(panel) => focus(&mut state.shared, panel),
+        Action::Next => focus_neighbour(&mut state.shared, 1),
+        Action::Previous => focus_neighbour(&mut state.shared, -1),
         Action::Zoom => {
-            state.zoomed = !state.zoomed;
+            state.shared.zoomed = !state.shared.zoomed;
             Vec::new()
         }
-        Action::WriteScenario => plan::write_scenario(state, None),
+        Action::WriteScenario => vec![state.shared.write_scenario(None)],
         Action::Tutorial => {
-            tutorial::toggle(state);
+            tutorial::toggle(&mut state.tutorial, &mut state.shared);
             Vec::new()
         }
         Action::Help => {
@@ -364,14 +388,17 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
         }
         Action::Back => {
             // Leave the text first, so that the next keys are not typed.
-            if state.focus.takes_text() {
-                focus(state, Panel::Map);
-            } else if state.focus == Panel::Graphs && state.graphs.leave_cursor() {
+            if state.shared.focus.takes_text() {
+                focus(&mut state.shared, Panel::Map);
+            } else if state.shared.focus == Panel::Graphs && state.shared.graphs.leave_cursor() {
                 // Leaving the cursor was the step.
-            } else if state.focus == Panel::Log && !state.log_view.search.is_empty() {
-                log_view::end_search(state);
-            } else if !state.forecast.dismiss() && !state.editor.cancel() && !map_edit::leave(state) {
-                state.zoomed = false;
+            } else if state.shared.focus == Panel::Log && !state.log_view.search.is_empty() {
+                state.log_view.end_search();
+            } else if !state.shared.forecast.dismiss()
+                && !state.shared.editor.cancel()
+                && !map_edit::leave(&mut state.shared)
+            {
+                state.shared.zoomed = false;
             }
             Vec::new()
         }
@@ -380,22 +407,22 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
             Vec::new()
         }
         // A real craft flies on without this program.
-        Action::Quit if state.view.is_armed_now() && permission::real_craft(state).is_none() => {
+        Action::Quit if state.shared.view.is_armed_now() && state.shared.real_craft().is_none() => {
             state.popups.push(Popup::Quit);
             Vec::new()
         }
-        Action::Quit => plan_popup::quit(state),
+        Action::Quit => plan_popup::quit(&mut state.shared),
         Action::Cancel => cancel(state),
         Action::Suspend => vec![Effect::Suspend],
-        Action::PanUp => map_edit::arrow(state, 0.0, -1.0),
-        Action::PanDown => map_edit::arrow(state, 0.0, 1.0),
-        Action::PanLeft => map_edit::arrow(state, -1.0, 0.0),
-        Action::PanRight => map_edit::arrow(state, 1.0, 0.0),
-        Action::ZoomIn => zoom_map(state, 1.0 / ZOOM_STEP),
-        Action::ZoomOut => zoom_map(state, ZOOM_STEP),
-        Action::Follow => follow(state),
+        Action::PanUp => map_edit::arrow(&mut state.shared, 0.0, -1.0),
+        Action::PanDown => map_edit::arrow(&mut state.shared, 0.0, 1.0),
+        Action::PanLeft => map_edit::arrow(&mut state.shared, -1.0, 0.0),
+        Action::PanRight => map_edit::arrow(&mut state.shared, 1.0, 0.0),
+        Action::ZoomIn => zoom_map(&mut state.shared, 1.0 / ZOOM_STEP),
+        Action::ZoomOut => zoom_map(&mut state.shared, ZOOM_STEP),
+        Action::Follow => follow(&mut state.shared),
         Action::Fit => {
-            state.map.mode = MapMode::Fit;
+            state.shared.map.mode = MapMode::Fit;
             Vec::new()
         }
         Action::ChannelUp => {
@@ -406,27 +433,23 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
             state.channel = (state.channel + 1).min(crate::signals::RC_CHANNELS - 1);
             Vec::new()
         }
-        Action::Lower => transmitter::nudge(state, state.channel, -10),
-        Action::Raise => transmitter::nudge(state, state.channel, 10),
-        Action::LowerMuch => transmitter::nudge(state, state.channel, -100),
-        Action::RaiseMuch => transmitter::nudge(state, state.channel, 100),
-        Action::Flip => transmitter::flip(state, state.channel),
-        Action::Record => stick_recording::toggle_recording(state),
-        Action::Play => stick_recording::toggle_playing(state),
-        Action::CursorBack => {
-            state.graphs.move_cursor(-1.0);
-            Vec::new()
-        }
-        Action::CursorOn => {
-            state.graphs.move_cursor(1.0);
+        Action::Lower => transmitter::nudge(&mut state.shared, state.channel, -10),
+        Action::Raise => transmitter::nudge(&mut state.shared, state.channel, 10),
+        Action::LowerMuch => transmitter::nudge(&mut state.shared, state.channel, -100),
+        Action::RaiseMuch => transmitter::nudge(&mut state.shared, state.channel, 100),
+        Action::Flip => transmitter::flip(&mut state.shared, state.channel),
+        Action::Record => stick_recording::toggle_recording(&mut state.shared),
+        Action::Play => stick_recording::toggle_playing(&mut state.shared),
+        Action::CursorBack | Action::CursorOn => {
+            state.shared.graphs.move_cursor(if action == Action::CursorOn { 1.0 } else { -1.0 });
             Vec::new()
         }
         Action::SpanLess => {
-            state.graphs.change_span(-1);
+            state.shared.graphs.change_span(-1);
             Vec::new()
         }
         Action::SpanMore => {
-            state.graphs.change_span(1);
+            state.shared.graphs.change_span(1);
             Vec::new()
         }
         Action::ChoosePlots => {
@@ -434,7 +457,7 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
             Vec::new()
         }
         Action::CursorOff => {
-            state.graphs.leave_cursor();
+            state.shared.graphs.leave_cursor();
             Vec::new()
         }
         Action::KnobUp => {
@@ -442,22 +465,28 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
             Vec::new()
         }
         Action::KnobDown => {
-            let last = knobs::knobs(state).len().saturating_sub(1);
+            let last = knobs::knobs(&state.shared).len().saturating_sub(1);
             state.knobs.selected = (state.knobs.selected + 1).min(last);
             Vec::new()
         }
-        Action::KnobLess => knobs::turn(state, -1),
-        Action::KnobMore => knobs::turn(state, 1),
-        Action::KnobEnter => knobs::enter(state),
-        Action::KnobEdit => knobs::edit(state),
-        Action::KnobDefault => knobs::reset(state),
+        Action::KnobLess => state.knobs.turn(&mut state.shared, -1),
+        Action::KnobMore => state.knobs.turn(&mut state.shared, 1),
+        Action::KnobEnter => state.knobs.enter(&mut state.shared),
+        Action::KnobEdit => state.knobs.edit(),
+        Action::KnobDefault => state.knobs.reset(&mut state.shared),
         Action::Search => {
-            focus(state, Panel::Log);
-            log_view::begin_search(state)
+            focus(&mut state.shared, Panel::Log);
+            state.log_view.begin_search();
+            Vec::new()
         }
-        Action::NextMatch => log_view::next_match(state, false),
-        Action::PreviousMatch => log_view::next_match(state, true),
-        Action::Filter => log_view::cycle_filter(state),
+        Action::NextMatch | Action::PreviousMatch => {
+            state.log_view.next_match(&mut state.shared, action == Action::PreviousMatch);
+            Vec::new()
+        }
+        Action::Filter => {
+            state.log_view.cycle_filter();
+            Vec::new()
+        }
         Action::ScrollUp => scroll(state, -1),
         Action::ScrollDown => scroll(state, 1),
         Action::PageUp => scroll(state, -10),

@@ -5,43 +5,15 @@
 
 use ratatui::layout::Rect;
 
-use super::app_state::AppState;
-use super::map_edit::{MapCursor, Moving};
-use super::map_point::{MapPoint, craft, origin, to_map};
+use super::map_point::origin::origin;
+use super::map_point::{MapPoint, craft, to_map};
+use super::map_state::MapMode;
+use super::shared::Shared;
 
 /// The limits of the scale, metres per column.
 const SCALE_LIMITS: (f64, f64) = (0.02, 20_000.0);
 /// The number of steps of the automatic scale per octave.
 const STEPS_PER_OCTAVE: f64 = 4.0;
-
-/// The mode that selects the window of the map.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum MapMode {
-    /// The map shows the whole plan and the craft.
-    #[default]
-    Fit,
-    /// The craft stays in the middle, at this many metres per column.
-    Follow(f64),
-    /// The user has chosen the window.
-    Free {
-        /// The middle, north, m.
-        n: f64,
-        /// The middle, east, m.
-        e: f64,
-        /// Metres per column.
-        scale: f64,
-    },
-}
-
-/// The state of the map panel.
-#[derive(Debug, Default)]
-pub struct MapState {
-    pub mode: MapMode,
-    /// The cursor, while the user edits with it.
-    pub(super) edit: Option<MapCursor>,
-    /// The item being moved.
-    pub(super) moving: Option<Moving>,
-}
 
 /// The window of the map.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,7 +27,7 @@ pub(super) struct Viewport {
 
 impl Viewport {
     /// Returns the window of the map in these cells.
-    pub(super) fn of(state: &AppState, area: Rect) -> Self {
+    pub(super) fn of(state: &Shared, area: Rect) -> Self {
         match state.map.mode {
             MapMode::Fit => Self::fit(state, area),
             MapMode::Follow(scale) => {
@@ -70,7 +42,7 @@ impl Viewport {
 
     /// Returns the window that shows plan, home and craft. Its scale changes in steps, so that it stays constant while
     /// the craft flies inside the plan.
-    fn fit(state: &AppState, area: Rect) -> Self {
+    fn fit(state: &Shared, area: Rect) -> Self {
         let origin = origin(state);
         let home = state.view.vehicle.craft.home;
         let places = origin.iter().flat_map(|frame| {
@@ -206,7 +178,7 @@ mod tests {
 
     #[test]
     fn the_fitted_map_shows_the_craft_however_far_plan_and_craft_are() {
-        let mut state = AppState::bare((80, 24), SessionView::default());
+        let mut state = Shared::bare((80, 24), SessionView::default());
         let far = LatLon::new(470_000_000, 80_000_000);
         for position in [LatLon::new(404_640_000, -795_175_000), far] {
             state.editor.edit("one waypoint", |document| {

@@ -1,6 +1,7 @@
 //! The rooms of `docs/architecture.md` against the code: the allowed uses between them, and their sizes.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test may stop and say what it expects")]
 
+mod circles;
 mod page;
 mod paths;
 mod rules;

@@ -36,17 +36,10 @@ fn is_pure(file: &SourceFile) -> bool {
     is_pure_room || file.name.starts_with("link/proto")
 }
 
-/// Returns the file without its unit tests, which may read files.
-fn product(file: &SourceFile) -> SourceFile {
-    let is_test = file.name.ends_with("tests.rs") || file.name.contains("/tests/");
-    let text = file.text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
-    SourceFile { name: file.name.clone(), text: if is_test { String::new() } else { text.to_owned() } }
-}
-
 /// Returns what a file does to get around the table of rooms.
 fn detours(file: &SourceFile) -> Vec<String> {
     let room = file.room();
-    let file = product(file);
+    let file = file.product();
     let all = named(&file);
     let is_foreign = |named: &Named| named.is_ours && named.room().0 != room;
     let mut found = Vec::new();
@@ -75,7 +68,7 @@ fn detours(file: &SourceFile) -> Vec<String> {
 
 /// Returns the ways from a file to files, sockets, threads, the clock and global state.
 fn ways_out(file: &SourceFile) -> Vec<String> {
-    let file = product(file);
+    let file = file.product();
     let mut found = Vec::new();
     for named in named(&file).iter().filter(|named| !named.is_ours) {
         let path: Vec<&str> = named.path.iter().map(String::as_str).collect();

@@ -22,12 +22,16 @@ impl SourceFile {
         if path == "lib" { Vec::new() } else { path.split('/').map(str::to_owned).collect() }
     }
 
-    /// Returns the number of lines up to the unit tests, or 0 for a file of tests.
+    /// Returns the file without its unit tests.
+    pub(crate) fn product(&self) -> Self {
+        let is_test = self.name.ends_with("tests.rs") || self.name.contains("/tests/");
+        let text = self.text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
+        Self { name: self.name.clone(), text: if is_test { String::new() } else { text.to_owned() } }
+    }
+
+    /// Returns the number of lines without the unit tests.
     pub(crate) fn product_lines(&self) -> usize {
-        if self.name.ends_with("tests.rs") || self.name.contains("/tests/") {
-            return 0;
-        }
-        self.text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default().lines().count()
+        self.product().text.lines().count()
     }
 }
 

@@ -11,7 +11,7 @@ use crate::fixture::SimpleFlight;
 use crate::hands::{keys, screen, state_with_fix};
 
 fn set_altitude(state: &mut AppState, wp: usize, alt_m: i32) {
-    let mut plan = state.plan().clone();
+    let mut plan = state.shared.plan().clone();
     plan.waypoints[wp].altitude = Altitude::above_home(alt_m.into());
     open(state, &plan);
 }
@@ -21,7 +21,7 @@ fn open(state: &mut AppState, plan: &FlightPlan) {
     keys(state, "2 ctrl-a d");
     let lines: Vec<String> = betadeck::plan::plan_lines(plan).skip(1).collect();
     update(state, Msg::Paste(lines.join("\n")));
-    assert_eq!(state.plan(), plan);
+    assert_eq!(state.shared.plan(), plan);
     // The lines are selected, the last is under the cursor.
     keys(state, "esc");
 }
@@ -53,7 +53,7 @@ fn a_digit_too_many_is_reported_and_one_key_lowers_it() {
     let seen = screen(&state);
     assert!(seen.contains("waypoint 1 is 500 m above home, far above the others"), "{seen}");
     keys(&mut state, "f");
-    assert_eq!(state.plan().waypoints[1].altitude, Altitude::above_home(50.0));
+    assert_eq!(state.shared.plan().waypoints[1].altitude, Altitude::above_home(50.0));
     assert!(!screen(&state).contains("above home"), "{}", screen(&state));
 }
 
@@ -63,11 +63,11 @@ fn the_limit_of_the_user_counts() {
     set_altitude(&mut state, 3, 125);
     let seen = screen(&state);
     assert!(seen.contains("waypoint 3 is 125 m above home, the limit") && seen.contains("lower"), "{seen}");
-    state.max_altitude_m = 150.0;
+    state.shared.max_altitude_m = 150.0;
     assert!(!screen(&state).contains("above home"), "{}", screen(&state));
-    state.max_altitude_m = 120.0;
+    state.shared.max_altitude_m = 120.0;
     keys(&mut state, "f");
-    assert_eq!(state.plan().waypoints[3].altitude, Altitude::above_home(120.0));
+    assert_eq!(state.shared.plan().waypoints[3].altitude, Altitude::above_home(120.0));
 }
 
 #[test]
@@ -97,7 +97,7 @@ fn a_small_change_or_one_of_another_leg_is_not_asked_about() {
 #[test]
 fn a_place_far_away_or_no_place_is_asked_about_in_flight_only() {
     let mut state = state_with_fix((120, 40));
-    let mut plan = state.plan().clone();
+    let mut plan = state.shared.plan().clone();
     plan.waypoints[1].position.lat_e7 += 10_000;
     open(&mut state, &plan);
     assert!(uploads(&keys(&mut state, "U")), "on the ground");
@@ -110,7 +110,7 @@ fn a_place_far_away_or_no_place_is_asked_about_in_flight_only() {
     assert!(!uploads(&keys(&mut state, "U")));
     assert!(screen(&state).contains("WP1, which this plan does not have"), "{}", screen(&state));
     // While the craft is armed on the ground, before an engagement, there is no leg yet.
-    let mut view = state.view.clone();
+    let mut view = state.shared.view.clone();
     let vehicle = Arc::make_mut(&mut view.vehicle);
     vehicle.active_plan = None;
     vehicle.nav.as_mut().expect("an autopilot").engaged = false;

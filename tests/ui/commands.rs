@@ -44,20 +44,20 @@ fn ready() -> AppState {
 }
 
 fn screen(state: &AppState) -> String {
-    let (width, height) = state.size;
+    let (width, height) = state.shared.size;
     let mut terminal = Terminal::new(TestBackend::new(width, height)).expect("a test terminal");
     terminal.draw(|frame| draw(state, frame)).expect("drawing in memory");
     terminal.backend().to_string()
 }
 
 fn notice(state: &AppState) -> String {
-    state.notice.as_ref().map(|notice| notice.text.clone()).unwrap_or_default()
+    state.shared.notice.as_ref().map(|notice| notice.text.clone()).unwrap_or_default()
 }
 
 /// Returns the effects of an action as text, as far as they can be compared.
 fn outcome(state: &AppState, effects: &[Effect]) -> String {
     let popups: Vec<_> = state.popups.iter().filter(|popup| !matches!(popup, Popup::Palette(_))).collect();
-    format!("{effects:?} {:?} {} {popups:?} {}", state.focus, state.zoomed, notice(state))
+    format!("{effects:?} {:?} {} {popups:?} {}", state.shared.focus, state.shared.zoomed, notice(state))
 }
 
 #[test]
@@ -69,15 +69,15 @@ fn every_action_does_the_same_by_key_palette_and_name() {
             .unwrap_or_else(|| panic!("{} applies nowhere", spec.name));
         let start = || {
             let mut state = ready();
-            state.focus = focus;
-            state.slots.visit(focus);
+            state.shared.focus = focus;
+            state.shared.slots.visit(focus);
             state
         };
 
         let mut by_key = start();
         let first = spec.keys.first().unwrap_or_else(|| panic!("{} has no key", spec.name));
         let press = KeyPress::parse(first).expect("a key");
-        assert_eq!(by_key.keymap.action(press, focus), Some(spec.action), "{}", spec.name);
+        assert_eq!(by_key.shared.keymap.action(press, focus), Some(spec.action), "{}", spec.name);
         let effects = update(&mut by_key, Msg::Key(press.event()));
         let wanted = outcome(&by_key, &effects);
 
@@ -104,7 +104,7 @@ fn the_palette_finds_by_a_few_letters_and_says_why_not() {
     let mut state = ready();
     ctrl(&mut state, 'p');
     type_text(&mut state, "home");
-    assert!(enabled(&state, Action::ReturnHome).is_err());
+    assert!(enabled(&state.shared, Action::ReturnHome).is_err());
     let shown = screen(&state);
     assert!(shown.contains("✗ flight.home") && shown.contains("✗ Nothing to bring home"), "{shown}");
     assert!(key(&mut state, KeyCode::Enter).is_empty());
@@ -221,9 +221,11 @@ fn a_setting_goes_through_the_command_line_of_the_craft_and_its_answer_is_a_noti
     update(&mut state, Msg::CliReply(Some(CliOutput { text, ..CliOutput::default() })));
     assert!(notice(&state).contains("INVALID VALUE"));
     // The reply to a line from the panel itself is shown only there.
-    state.notice = None;
+    state.shared.notice = None;
     let effects = enter(&mut state, "cli status");
-    assert!(matches!(&effects[..], [Effect::Cli(line)] if line == "status") && state.focus == Panel::Cli);
+    assert!(
+        matches!(&effects[..], [Effect::Cli(line)] if line == "status") && state.shared.focus == Panel::Cli
+    );
     update(&mut state, Msg::CliReply(Some(CliOutput { text: "fine".to_owned(), ..CliOutput::default() })));
     assert_eq!(notice(&state), "");
 }
@@ -244,13 +246,13 @@ fn themes_change_at_once_but_not_against_no_color() {
     use betadeck::ui::theme::{Charset, Palette};
     let mut state = ready();
     enter(&mut state, "theme light");
-    assert_eq!(state.theme.palette, Palette::Light);
+    assert_eq!(state.shared.theme.palette, Palette::Light);
     enter(&mut state, "charset ascii");
-    assert_eq!(state.theme.charset, Charset::Ascii);
-    state.theme.no_colour = true;
-    state.theme.palette = Palette::Mono;
+    assert_eq!(state.shared.theme.charset, Charset::Ascii);
+    state.shared.theme.no_colour = true;
+    state.shared.theme.palette = Palette::Mono;
     enter(&mut state, "theme dark");
-    assert_eq!(state.theme.palette, Palette::Mono);
+    assert_eq!(state.shared.theme.palette, Palette::Mono);
     assert!(notice(&state).contains("NO_COLOR"));
 }
 

@@ -33,7 +33,7 @@ fn connected(change: impl FnOnce(&mut RemoteView)) -> AppState {
 
 /// Shows the next picture, after `change` to its remote flight controller.
 fn show(state: &mut AppState, change: impl FnOnce(&mut RemoteView)) {
-    let mut view = state.view.clone();
+    let mut view = state.shared.view.clone();
     let mut outside = view.remote.take().unwrap_or_else(remote);
     change(&mut outside);
     view.remote = Some(outside);
@@ -53,8 +53,8 @@ fn press(state: &mut AppState, code: KeyCode) -> Vec<Effect> {
 
 /// Enters a line in the CLI panel and returns the effects, except for requests to files.
 fn enter(state: &mut AppState, line: &str) -> Vec<Effect> {
-    state.focus = Panel::Cli;
-    state.slots.visit(Panel::Cli);
+    state.shared.focus = Panel::Cli;
+    state.shared.slots.visit(Panel::Cli);
     for c in line.chars() {
         press(state, KeyCode::Char(c));
     }
@@ -68,7 +68,8 @@ fn answer(state: &mut AppState) -> Vec<Effect> {
 }
 
 fn text(state: &AppState) -> String {
-    let mut terminal = Terminal::new(TestBackend::new(state.size.0, state.size.1)).expect("a test terminal");
+    let mut terminal =
+        Terminal::new(TestBackend::new(state.shared.size.0, state.shared.size.1)).expect("a test terminal");
     terminal.draw(|frame| draw(state, frame)).expect("drawing in memory");
     terminal.backend().to_string()
 }
@@ -118,8 +119,8 @@ fn an_upload_and_a_save_in_flash_ask_and_a_download_does_not() {
 fn a_refusal_drops_what_was_kept_back_and_the_lines_after_it() {
     for leave in [KeyCode::Char('n'), KeyCode::Esc] {
         let mut state = connected(|_| {});
-        state.focus = Panel::Cli;
-        state.slots.visit(Panel::Cli);
+        state.shared.focus = Panel::Cli;
+        state.shared.slots.visit(Panel::Cli);
         assert!(update(&mut state, Msg::Paste("set a = 1\nset b = 2\nsave\n".to_owned())).is_empty());
         assert!(press(&mut state, leave).is_empty());
         assert!(!is_asked(&state) && !state.cli.waiting && state.cli.queued() == 0);
@@ -142,7 +143,7 @@ fn a_question_that_is_closed_otherwise_changes_nothing() {
         press(&mut state, KeyCode::Char('U'));
         assert!(is_asked(&state));
         assert!(close(&mut state).is_empty());
-        assert!(!is_asked(&state) && state.held.is_empty());
+        assert!(!is_asked(&state) && state.permission.held.is_empty());
         assert!(press(&mut state, KeyCode::Char('y')).is_empty());
     }
 }
@@ -150,7 +151,7 @@ fn a_question_that_is_closed_otherwise_changes_nothing() {
 #[test]
 fn changes_are_permitted_ahead_by_a_command() {
     let mut state = connected(|_| {});
-    assert_eq!(betadeck::ui::command::run(&mut state, "allow-changes").map(|effects| effects.len()), Ok(0));
+    assert_eq!(betadeck::ui::run_line(&mut state, "allow-changes").map(|effects| effects.len()), Ok(0));
     assert!(is_asked(&state));
     let effects = press(&mut state, KeyCode::Char('y'));
     assert!(matches!(effects[..], [Effect::Send(Command::PermitChanges(1))]), "{effects:?}");
@@ -165,7 +166,7 @@ fn a_command_line_without_framing_is_opened_with_permission_and_a_warning() {
         assert!(shown.contains(part), "{part}: {shown}");
     }
     press(&mut state, KeyCode::Char('n'));
-    state.focus = Panel::Map;
+    state.shared.focus = Panel::Map;
     assert!(press(&mut state, KeyCode::Char('D')).is_empty() && is_asked(&state));
     press(&mut state, KeyCode::Char('n'));
     show(&mut state, |remote| (remote.opens_cli, remote.in_cli) = (false, true));
@@ -190,10 +191,14 @@ fn nothing_moves_a_real_craft() {
         Action::Flip,
         Action::Play,
     ] {
-        assert_eq!(action::enabled(&state, moving), Err(NOTHING_MOVES.to_owned()), "{moving:?}");
+        assert_eq!(action::enabled(&state.shared, moving), Err(NOTHING_MOVES.to_owned()), "{moving:?}");
     }
     for simulated in [Action::ResetCraft, Action::KnobMore, Action::KnobEdit] {
-        assert_eq!(action::enabled(&state, simulated), Err(NOTHING_SIMULATED.to_owned()), "{simulated:?}");
+        assert_eq!(
+            action::enabled(&state.shared, simulated),
+            Err(NOTHING_SIMULATED.to_owned()),
+            "{simulated:?}"
+        );
     }
     for other in [
         Action::Pause,
@@ -205,10 +210,10 @@ fn nothing_moves_a_real_craft() {
         Action::WhatIf,
         Action::AllowChanges,
     ] {
-        assert!(action::enabled(&state, other).is_err(), "{other:?}");
+        assert!(action::enabled(&state.shared, other).is_err(), "{other:?}");
     }
     for free in [Action::Upload, Action::Show(Panel::Cli), Action::Zoom, Action::Quit] {
-        assert_eq!(action::enabled(&state, free), Ok(()), "{free:?}");
+        assert_eq!(action::enabled(&state.shared, free), Ok(()), "{free:?}");
     }
 }
 
@@ -237,7 +242,7 @@ fn the_screen_says_how_the_connection_is() {
 #[test]
 fn a_firmware_without_plans_says_so() {
     let state = connected(|remote| remote.has_plans = false);
-    let refusal = action::enabled(&state, Action::Upload).unwrap_err();
+    let refusal = action::enabled(&state.shared, Action::Upload).unwrap_err();
     assert!(
         refusal.contains("has no waypoints") && refusal.contains("-DENABLE_FLIGHT_PLANNING=1"),
         "{refusal}"
@@ -254,15 +259,15 @@ fn over_a_simulated_craft_with_a_remote_firmware_only_what_can_work_is_offered()
     };
     let state = flying(|_| {});
     for action in [Action::GoTo, Action::HoldHere, Action::Resume] {
-        let why = action::enabled(&state, action).unwrap_err();
+        let why = action::enabled(&state.shared, action).unwrap_err();
         assert!(why.contains("takes no such order"), "{action:?}: {why}");
     }
-    assert_eq!(action::enabled(&state, Action::Fly), Ok(()));
+    assert_eq!(action::enabled(&state.shared, Action::Fly), Ok(()));
     for (change, reason) in [
         ((|remote| remote.state = RemoteState::Identifying) as fn(&mut RemoteView), "wait until it answers"),
         (|remote| remote.has_plans = false, "has no waypoints"),
     ] {
-        let why = action::enabled(&flying(change), Action::Fly).unwrap_err();
+        let why = action::enabled(&flying(change).shared, Action::Fly).unwrap_err();
         assert!(why.contains(reason), "{why}");
     }
 }
@@ -270,7 +275,7 @@ fn over_a_simulated_craft_with_a_remote_firmware_only_what_can_work_is_offered()
 #[test]
 fn a_plan_that_the_remote_firmware_has_not_reported_is_not_flown_unseen() {
     let mut state = connected(|remote| remote.access = Access::Everything);
-    let mut view = state.view.clone();
+    let mut view = state.shared.view.clone();
     std::sync::Arc::make_mut(&mut view.vehicle).stored_plan = None;
     update(&mut state, Msg::View(view));
     let effects = press(&mut state, KeyCode::Char('F'));

@@ -27,14 +27,14 @@ fn altitudes(plan: &FlightPlan) -> Vec<i32> {
 fn a_value_is_typed_undone_and_redone() {
     let mut state = state((80, 24));
     let effects = keys(&mut state, "2 down right right right enter backspace backspace '62.5 enter");
-    assert_eq!(altitudes(state.plan()), [5000, 6250, 5000, 5000]);
+    assert_eq!(altitudes(state.shared.plan()), [5000, 6250, 5000, 5000]);
     assert_eq!(journal_lines(&effects), 1, "one edit, one line");
     assert!(screen(&state).contains("[62.5]") && screen(&state).contains("unsaved"));
     keys(&mut state, "u");
-    assert_eq!(altitudes(state.plan()), [5000; 4]);
+    assert_eq!(altitudes(state.shared.plan()), [5000; 4]);
     assert!(!screen(&state).contains("unsaved"), "back at what the file holds");
     keys(&mut state, "ctrl-r");
-    assert_eq!(altitudes(state.plan()), [5000, 6250, 5000, 5000]);
+    assert_eq!(altitudes(state.shared.plan()), [5000, 6250, 5000, 5000]);
 }
 
 #[test]
@@ -43,7 +43,7 @@ fn a_wrong_value_stays_in_its_field_with_what_is_allowed() {
     keys(&mut state, "2 right right right enter backspace backspace 'x enter");
     let seen = screen(&state);
     assert!(seen.contains("x is no altitude: metres above home"), "{seen}");
-    assert_eq!(altitudes(state.plan()), [5000; 4]);
+    assert_eq!(altitudes(state.shared.plan()), [5000; 4]);
     keys(&mut state, "esc");
     assert!(!screen(&state).contains("x is no"));
 }
@@ -51,38 +51,38 @@ fn a_wrong_value_stays_in_its_field_with_what_is_allowed() {
 #[test]
 fn many_waypoints_are_selected_and_turned_by_one_edit() {
     let mut state = state((120, 40));
-    let before = state.plan().clone();
+    let before = state.shared.plan().clone();
     let effects = keys(&mut state, "2 ctrl-a m down down down down down '90 enter");
     assert_eq!(journal_lines(&effects), 1);
-    assert_ne!(*state.plan(), before);
+    assert_ne!(*state.shared.plan(), before);
     for _ in 0..3 {
         keys(&mut state, "ctrl-a m down down down down down '90 enter");
     }
-    for (turned, place) in std::iter::zip(&state.plan().waypoints, &before.waypoints) {
+    for (turned, place) in std::iter::zip(&state.shared.plan().waypoints, &before.waypoints) {
         let (distance_m, _) = betadeck::geo::distance_bearing(turned.position, place.position);
         assert!(distance_m < 0.1, "four quarter turns bring {distance_m} m");
     }
     keys(&mut state, "u u u u");
-    assert_eq!(*state.plan(), before);
+    assert_eq!(*state.shared.plan(), before);
 }
 
 #[test]
 fn waypoints_are_inserted_repeated_moved_and_deleted() {
     let mut state = state((80, 24));
     keys(&mut state, "2 i");
-    assert_eq!(state.plan().waypoints.len(), 5);
-    let inserted = state.plan().waypoints[1];
+    assert_eq!(state.shared.plan().waypoints.len(), 5);
+    let inserted = state.shared.plan().waypoints[1];
     assert_eq!((inserted.kind, inserted.altitude), (WaypointType::Flyover, Altitude::above_home(50.0)));
     keys(&mut state, "alt-down alt-down");
-    assert_eq!(state.plan().waypoints[3], inserted);
+    assert_eq!(state.shared.plan().waypoints[3], inserted);
     keys(&mut state, "c v up d");
-    assert_eq!(state.plan().waypoints.len(), 4);
+    assert_eq!(state.shared.plan().waypoints.len(), 4);
     keys(&mut state, "u u u u u");
-    assert_eq!(*state.plan(), fixture::square());
+    assert_eq!(*state.shared.plan(), fixture::square());
     for _ in 0..40 {
         keys(&mut state, "c");
     }
-    assert_eq!(state.plan().waypoints.len(), 30);
+    assert_eq!(state.shared.plan().waypoints.len(), 30);
     assert!(screen(&state).contains("A plan holds 30 waypoints"));
 }
 
@@ -110,7 +110,7 @@ fn a_leg_that_is_too_steep_says_by_how_much_and_one_key_slows_it() {
     let seen = screen(&state);
     assert!(seen.contains("waypoint 1 is passed about") && seen.contains("f: fly WP1 at"), "{seen}");
     keys(&mut state, "f");
-    assert!(state.plan().waypoints[1].speed.mps() > 0.0, "{:?}", state.plan());
+    assert!(state.shared.plan().waypoints[1].speed.mps() > 0.0, "{:?}", state.shared.plan());
     assert!(!screen(&state).contains("waypoint 1 is passed about"));
 }
 
@@ -126,12 +126,12 @@ fn waypoints_go_out_as_cli_lines_and_come_back_by_paste() {
     assert_eq!(text.lines().count(), 2);
     assert!(text.starts_with("waypoint insert 0 40.4630000 -79.5175000 5000 0 FLYBY"), "{text}");
     update(&mut state, Msg::Paste(text));
-    assert_eq!(state.plan().waypoints.len(), 6);
-    assert_eq!(state.plan().waypoints[3], state.plan().waypoints[1]);
+    assert_eq!(state.shared.plan().waypoints.len(), 6);
+    assert_eq!(state.shared.plan().waypoints[3], state.shared.plan().waypoints[1]);
     keys(&mut state, "u p");
-    assert_eq!(state.plan().waypoints.len(), 6, "the copy is kept");
+    assert_eq!(state.shared.plan().waypoints.len(), 6, "the copy is kept");
     update(&mut state, Msg::Paste("no plan at all".to_owned()));
-    assert_eq!(state.plan().waypoints.len(), 6);
+    assert_eq!(state.shared.plan().waypoints.len(), 6);
 }
 
 #[test]
@@ -141,11 +141,11 @@ fn a_waypoint_is_dragged_on_the_map_by_the_mouse_as_one_edit() {
     let seen = screen(&state);
     let (row, line) = seen.lines().enumerate().find(|(_, line)| line.contains("1 FLYBY")).unwrap();
     let column = line.chars().position(|c| c == '◇').expect("the mark") as u16 - 1;
-    let before = state.plan().waypoints[1].position;
+    let before = state.shared.plan().waypoints[1].position;
     let row = row as u16;
     mouse(&mut state, MouseEventKind::Down, (column, row));
     mouse(&mut state, MouseEventKind::Up, (column, row));
-    assert_eq!(state.plan().waypoints[1].position, before, "a click moves nothing");
+    assert_eq!(state.shared.plan().waypoints[1].position, before, "a click moves nothing");
     mouse(&mut state, MouseEventKind::Down, (column, row));
     for step in 1..6 {
         let effects = mouse(&mut state, MouseEventKind::Drag, (column - step, row));
@@ -154,27 +154,27 @@ fn a_waypoint_is_dragged_on_the_map_by_the_mouse_as_one_edit() {
     assert!(screen(&state).contains("from WP0"), "metres and bearing while it moves");
     let effects = mouse(&mut state, MouseEventKind::Up, (column - 5, row));
     assert_eq!(journal_lines(&effects), 1);
-    let after = state.plan().waypoints[1].position;
+    let after = state.shared.plan().waypoints[1].position;
     assert!(after.lon_e7 < before.lon_e7, "{after} is not west of {before}");
     keys(&mut state, "u");
-    assert_eq!(state.plan().waypoints[1].position, before);
+    assert_eq!(state.shared.plan().waypoints[1].position, before);
 }
 
 #[test]
 fn waypoints_are_added_picked_and_deleted_with_the_cursor_on_the_map() {
     let mut state = state((80, 24));
     keys(&mut state, "p left left i");
-    assert_eq!(state.plan().waypoints.len(), 5);
-    let added = state.editor.row();
+    assert_eq!(state.shared.plan().waypoints.len(), 5);
+    let added = state.shared.editor.row();
     keys(&mut state, "enter right right right enter");
-    let place = state.plan().waypoints[added].position;
+    let place = state.shared.plan().waypoints[added].position;
     assert!(screen(&state).contains("edit ·"));
     keys(&mut state, "u");
-    assert!(state.plan().waypoints[added].position.lon_e7 < place.lon_e7, "it was moved east");
+    assert!(state.shared.plan().waypoints[added].position.lon_e7 < place.lon_e7, "it was moved east");
     keys(&mut state, "left left left d");
-    assert_eq!(state.plan().waypoints.len(), 4);
+    assert_eq!(state.shared.plan().waypoints.len(), 4);
     keys(&mut state, "u");
-    assert_eq!(state.plan().waypoints.len(), 5);
+    assert_eq!(state.shared.plan().waypoints.len(), 5);
     keys(&mut state, "esc");
     assert!(!screen(&state).contains("edit ·"));
 }
@@ -186,9 +186,9 @@ fn a_survey_beyond_thirty_waypoints_is_reported_before_it_is_made() {
     let seen = screen(&state);
     assert!(seen.contains("122 waypoints, there is room for 30: a spacing of"), "{seen}");
     keys(&mut state, "enter");
-    assert!(state.plan().waypoints.len() <= 30 && state.plan().waypoints.len() > 20);
+    assert!(state.shared.plan().waypoints.len() <= 30 && state.shared.plan().waypoints.len() > 20);
     keys(&mut state, "u");
-    assert_eq!(*state.plan(), fixture::square());
+    assert_eq!(*state.shared.plan(), fixture::square());
 }
 
 #[test]
@@ -209,7 +209,7 @@ fn a_new_plan_is_saved_under_a_name_and_nothing_is_replaced_unasked() {
     let effects = keys(&mut state, "y");
     assert!(matches!(save_of(effects), FileRequest::Save { replace: true, .. }));
     update(&mut state, Msg::Files(FileReply::Saved { id, path, revision, lost: Vec::new() }));
-    assert!(!state.editor.plan().is_unsaved());
+    assert!(!state.shared.editor.plan().is_unsaved());
     assert!(screen(&state).contains("Saved old.toml."));
 }
 
@@ -242,27 +242,27 @@ fn the_plan_of_the_craft_is_compared_downloaded_and_watched() {
     assert!(seen.contains("● On the craft WP0 is: 1.0 m 180° from here, altitude"), "{seen}");
     let effects = keys(&mut state, "D");
     assert!(effects.iter().any(|effect| matches!(effect, Effect::Download(_))));
-    let id = state.editor.plan().id();
+    let id = state.shared.editor.plan().id();
     update(&mut state, Msg::DownloadReply { id, result: Ok(Box::new(fixture::square())) });
-    assert_eq!(*state.plan(), fixture::square());
+    assert_eq!(*state.shared.plan(), fixture::square());
 
     // The App changes a waypoint.
-    let mut view = state.view.clone();
+    let mut view = state.shared.view.clone();
     let stored = &mut std::sync::Arc::make_mut(&mut view.vehicle).stored_plan;
     stored.as_mut().unwrap().waypoints[2].altitude = Altitude::above_home(70.0);
     update(&mut state, Msg::View(view.clone()));
     assert!(screen(&state).contains("The plan in the craft was changed: WP2."), "{}", screen(&state));
     // An upload from this screen is not reported as a change.
     keys(&mut state, "+ U");
-    std::sync::Arc::make_mut(&mut view.vehicle).stored_plan = Some(state.plan().clone());
+    std::sync::Arc::make_mut(&mut view.vehicle).stored_plan = Some(state.shared.plan().clone());
     update(&mut state, Msg::View(view));
-    assert!(state.notice.as_ref().is_none_or(|notice| !notice.text.contains("was changed")));
+    assert!(state.shared.notice.as_ref().is_none_or(|notice| !notice.text.contains("was changed")));
 }
 
 #[test]
 fn a_plan_that_somebody_else_changed_says_so() {
     let mut state = state((80, 24));
-    let id = state.editor.plan().id();
+    let id = state.shared.editor.plan().id();
     keys(&mut state, "2");
     update(&mut state, Msg::Files(FileReply::Changed(id)));
     assert!(screen(&state).contains("changed on disk"));
@@ -272,14 +272,14 @@ fn a_plan_that_somebody_else_changed_says_so() {
 fn name_home_and_settings_are_edited_in_a_form() {
     let mut state = state((80, 24));
     keys(&mut state, "2 E 'x down down '40.5,-79.5 down 'ap_max_angle=20 enter");
-    let document = state.editor.document();
+    let document = state.shared.editor.document();
     assert_eq!(
         (document.name.as_str(), document.settings.as_slice()),
         ("x", &["ap_max_angle = 20".to_owned()][..])
     );
     assert!(document.home.is_some());
     keys(&mut state, "u");
-    assert_eq!(state.editor.document().name, "square");
+    assert_eq!(state.shared.editor.document().name, "square");
 }
 
 #[test]
@@ -288,7 +288,7 @@ fn a_setting_with_which_the_file_could_not_be_read_again_is_refused() {
         let mut state = state((80, 24));
         keys(&mut state, &format!("2 E down down down '{typed} enter"));
         assert!(screen(&state).contains(why), "{typed}: {}", screen(&state));
-        assert!(state.editor.document().settings.is_empty());
+        assert!(state.shared.editor.document().settings.is_empty());
     }
 }
 
@@ -320,7 +320,7 @@ fn the_tutorial_waits_for_what_the_user_does() {
     update(&mut state, Msg::View(view.clone()));
     keys(&mut state, "2 +");
     assert!(screen(&state).contains("4/5"), "{}", screen(&state));
-    std::sync::Arc::make_mut(&mut view.vehicle).stored_plan = Some(state.plan().clone());
+    std::sync::Arc::make_mut(&mut view.vehicle).stored_plan = Some(state.shared.plan().clone());
     update(&mut state, Msg::View(view));
     keys(&mut state, "1");
     assert!(screen(&state).contains("5/5 Press , to go back in time"), "{}", screen(&state));
@@ -361,14 +361,18 @@ fn the_mouse_chooses_values_and_drags_altitudes_in_the_profile() {
     mouse(&mut state, MouseEventKind::Down, speed);
     mouse(&mut state, MouseEventKind::Up, speed);
     keys(&mut state, "+");
-    assert_eq!(state.plan().waypoints[2].duration, Seconds::new(31.0));
+    assert_eq!(state.shared.plan().waypoints[2].duration, Seconds::new(31.0));
     let number = place_of(&state, "···3");
     let number = (number.0 + 3, number.1);
     mouse(&mut state, MouseEventKind::Down, number);
     assert!(mouse(&mut state, MouseEventKind::Drag, (number.0, number.1 + 2)).is_empty());
     let effects = mouse(&mut state, MouseEventKind::Up, (number.0, number.1 + 2));
     assert_eq!(journal_lines(&effects), 1);
-    assert!((2000..4500).contains(&state.plan().records()[3].alt_cm), "{:?}", altitudes(state.plan()));
+    assert!(
+        (2000..4500).contains(&state.shared.plan().records()[3].alt_cm),
+        "{:?}",
+        altitudes(state.shared.plan())
+    );
 }
 
 #[test]
@@ -391,7 +395,7 @@ fn a_picked_waypoint_is_put_down_in_no_other_plan_and_in_no_other_place_of_the_l
         assert!(screen(&state).contains("from WP"), "{}", screen(&state));
         keys(&mut state, change);
         let plans = |state: &betadeck::ui::AppState| -> Vec<FlightPlan> {
-            state.editor.plans().iter().map(|plan| plan.document().plan.clone()).collect()
+            state.shared.editor.plans().iter().map(|plan| plan.document().plan.clone()).collect()
         };
         let before = plans(&state);
         keys(&mut state, "enter");
@@ -405,15 +409,15 @@ fn escape_leaves_a_picked_waypoint_where_it_was_and_the_map_can_be_dragged() {
     for way_out in ["esc esc", "ctrl-c ctrl-l ctrl-c", "esc p"] {
         let mut state = state((80, 24));
         keys(&mut state, "p left left i enter right right");
-        let before = state.plan().clone();
+        let before = state.shared.plan().clone();
         keys(&mut state, way_out);
-        let mode = state.map.mode;
+        let mode = state.shared.map.mode;
         mouse(&mut state, MouseEventKind::Down, (4, 10));
         mouse(&mut state, MouseEventKind::Drag, (9, 11));
         mouse(&mut state, MouseEventKind::Up, (9, 11));
-        assert_ne!(state.map.mode, mode, "{way_out}");
+        assert_ne!(state.shared.map.mode, mode, "{way_out}");
         assert!(!screen(&state).contains("from WP"), "{way_out}: {}", screen(&state));
-        assert_eq!(*state.plan(), before);
+        assert_eq!(*state.shared.plan(), before);
     }
 }
 
@@ -424,7 +428,7 @@ fn what_is_typed_goes_into_the_value_where_it_was_begun() {
     let place = place_of(&state, "FLYBY");
     mouse_button(&mut state, MouseEventKind::ScrollDown, place);
     keys(&mut state, "enter");
-    assert_eq!(altitudes(state.plan()), [7700, 5000, 5000, 5000]);
+    assert_eq!(altitudes(state.shared.plan()), [7700, 5000, 5000, 5000]);
 }
 
 #[test]
@@ -435,7 +439,7 @@ fn a_value_that_is_typed_is_given_up_when_a_waypoint_is_chosen_on_the_map() {
     mouse(&mut state, MouseEventKind::Down, mark);
     mouse(&mut state, MouseEventKind::Up, mark);
     keys(&mut state, "2 enter");
-    assert_eq!(altitudes(state.plan()), [5000; 4]);
+    assert_eq!(altitudes(state.shared.plan()), [5000; 4]);
 }
 
 #[test]
@@ -446,12 +450,12 @@ fn every_plan_of_a_generated_survey_is_asked_for_at_the_end_and_survives_a_kill(
         "2 P right right right down down backspace backspace '300 down backspace backspace '5 \
          down down down down down down right enter",
     );
-    let made = state.editor.plans().len();
+    let made = state.shared.editor.plans().len();
     assert!(made > 2, "{}", screen(&state));
     assert_eq!(journal_lines(&effects), made, "a line for each");
-    assert!(state.editor.plans().iter().all(betadeck::ui::OpenPlan::is_unsaved));
+    assert!(state.shared.editor.plans().iter().all(betadeck::ui::OpenPlan::is_unsaved));
     keys(&mut state, ") u");
-    assert!(state.plan().waypoints.is_empty(), "undo reaches before the generator");
+    assert!(state.shared.plan().waypoints.is_empty(), "undo reaches before the generator");
 }
 
 #[test]
@@ -465,7 +469,7 @@ fn text_is_pasted_into_the_fields_of_forms_and_of_the_file_browser() {
     keys(&mut state, "E");
     update(&mut state, Msg::Paste(" of mine\nand more".to_owned()));
     keys(&mut state, "enter");
-    assert_eq!(state.editor.document().name, "of mine");
+    assert_eq!(state.shared.editor.document().name, "of mine");
 }
 
 #[test]
@@ -482,7 +486,7 @@ fn a_huge_paste_into_a_field_is_cut() {
 fn a_waypoint_inserted_after_the_end_of_a_closed_square_goes_on_in_its_direction() {
     let mut state = state((120, 40));
     keys(&mut state, "2 n P enter down down down down i");
-    let [.., before, last, next] = state.plan().waypoints.as_slice() else { panic!("six") };
+    let [.., before, last, next] = state.shared.plan().waypoints.as_slice() else { panic!("six") };
     let (_, leg) = betadeck::geo::distance_bearing(before.position, last.position);
     let (_, onward) = betadeck::geo::distance_bearing(last.position, next.position);
     assert!((leg - onward).abs() < 0.01, "{leg} {onward}");

@@ -61,7 +61,7 @@ fn the_fix_of_an_endless_hold_keeps_the_rest_of_the_plan() {
     let seen = screen(&state);
     assert!(seen.contains("f: hold WP0 for 10 s"), "{seen}");
     keys(&mut state, "f");
-    let waypoints = &state.plan().waypoints;
+    let waypoints = &state.shared.plan().waypoints;
     assert_eq!(
         (waypoints.len(), waypoints[0].kind, waypoints[0].duration),
         (2, WaypointType::Hold, Seconds::new(10.0))

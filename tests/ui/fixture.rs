@@ -417,8 +417,8 @@ pub(crate) fn rewind(state: &mut AppState) {
 /// Flies on from the earlier instant, to another place.
 pub(crate) fn branch(state: &mut AppState) {
     rewind(state);
-    let rewound = state.view.timeline.clone().expect("a timeline");
-    let time = state.view.vehicle.time;
+    let rewound = state.shared.view.timeline.clone().expect("a timeline");
+    let time = state.shared.view.vehicle.time;
     let kind = SessionEvent::Branch { number: 1, left: rewound.head };
     update(state, Msg::Event(Event { time, kind }));
     for step in 1..=20 {

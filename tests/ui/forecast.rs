@@ -18,7 +18,7 @@ use crate::fixture;
 use crate::fixture::SimpleFlight;
 
 fn screen(state: &AppState) -> TestBackend {
-    let (width, height) = state.size;
+    let (width, height) = state.shared.size;
     let mut terminal = Terminal::new(TestBackend::new(width, height)).expect("a test terminal");
     terminal.draw(|frame| draw(state, frame)).expect("drawing in memory");
     terminal.backend().clone()
@@ -49,7 +49,7 @@ fn job(effects: &[Effect]) -> Option<&ForecastJob> {
 
 /// Shows a picture changed by `change`, at another instant.
 fn picture(state: &mut AppState, change: impl FnOnce(&mut Snapshot)) -> Vec<Effect> {
-    let mut view = state.view.clone();
+    let mut view = state.shared.view.clone();
     let vehicle = Arc::make_mut(&mut view.vehicle);
     vehicle.time.0 += 20_000;
     change(vehicle);
@@ -108,12 +108,12 @@ fn answer(state: &mut AppState, revision: u64, forecast: Forecast) {
 fn the_open_plan_is_estimated_at_once_and_again_when_it_or_the_air_changes() {
     let (mut state, first) = ready((80, 24));
     let ForecastRequest::PlanEstimate { plan, .. } = &first.request else { panic!("{first:?}") };
-    assert_eq!(**plan, *state.plan());
+    assert_eq!(**plan, *state.shared.plan());
     assert!(picture(&mut state, |_| {}).is_empty(), "nothing has changed");
     press(&mut state, '2');
     let effects = press(&mut state, 'd');
     let second = job(&effects).expect("another plan, at once").clone();
-    assert_eq!(state.plan().waypoints.len(), 3);
+    assert_eq!(state.shared.plan().waypoints.len(), 3);
     assert!(second.revision > first.revision);
     let effects = picture(&mut state, |vehicle| vehicle.world.gust_mps = 3.0);
     assert!(job(&effects).is_some_and(|job| job.revision > second.revision), "other air");
@@ -165,7 +165,7 @@ fn the_look_ahead_is_asked_for_every_second_until_it_is_turned_off() {
     answer(&mut state, first.revision, Forecast { time_s: 112.0, ..square(ForecastKind::LookAhead) });
     insta::assert_snapshot!("look_ahead_80x24", screen(&state));
     assert!(picture(&mut state, |_| {}).is_empty(), "not yet");
-    let later = state.now + Duration::from_millis(1100);
+    let later = state.shared.now + Duration::from_millis(1100);
     update(&mut state, Msg::Clock(later));
     let effects = picture(&mut state, |_| {});
     assert!(job(&effects).is_some_and(|job| job.request == ForecastRequest::LookAhead));
@@ -181,8 +181,8 @@ fn a_look_ahead_ends_with_the_flight() {
     let revision = job(&effects).expect("a look-ahead").revision;
     let forecast = Err("The craft stands disarmed.".to_owned());
     update(&mut state, Msg::Forecast(ForecastReply { revision, kind: ForecastKind::LookAhead, forecast }));
-    assert!(!state.forecast.looks_ahead());
-    assert!(state.notice.as_ref().is_some_and(|notice| notice.text.contains("disarmed")));
+    assert!(!state.shared.forecast.looks_ahead());
+    assert!(state.shared.notice.as_ref().is_some_and(|notice| notice.text.contains("disarmed")));
 }
 
 #[test]
@@ -190,7 +190,9 @@ fn there_is_nothing_to_look_ahead_to_on_the_ground() {
     let (mut state, _) = ready((80, 24));
     for c in ['L', 'w'] {
         assert!(press(&mut state, c).is_empty());
-        assert!(state.notice.as_ref().is_some_and(|notice| notice.text.contains("`F` flies the plan")));
+        assert!(
+            state.shared.notice.as_ref().is_some_and(|notice| notice.text.contains("`F` flies the plan"))
+        );
         assert!(state.popups.is_empty());
     }
 }
@@ -224,9 +226,9 @@ fn a_what_if_is_chosen_flown_shown_and_dismissed() {
         ..square(ForecastKind::WhatIf)
     };
     answer(&mut state, chosen.revision, drifts);
-    assert!(state.notice.as_ref().is_some_and(|notice| notice.text.contains("drifts 31 m in 0:30")));
+    assert!(state.shared.notice.as_ref().is_some_and(|notice| notice.text.contains("drifts 31 m in 0:30")));
     insta::assert_snapshot!("what_if_120x40", {
-        state.size = (120, 40);
+        state.shared.size = (120, 40);
         screen(&state)
     });
     key(&mut state, KeyCode::Esc);
@@ -250,7 +252,7 @@ fn hold_here_and_go_on_are_sent_and_offered_when_they_make_sense() {
     let (mut state, _) = ready((120, 40));
     for c in ['K', 'C', 'G'] {
         assert!(press(&mut state, c).is_empty());
-        assert!(state.notice.as_ref().is_some_and(|notice| notice.text.contains("`g` engages it")));
+        assert!(state.shared.notice.as_ref().is_some_and(|notice| notice.text.contains("`g` engages it")));
     }
 }
 
@@ -279,11 +281,11 @@ fn an_upload_in_flight_takes_effect_at_the_next_engagement_or_by_going_there() {
     assert!(text(&state).contains("at the next engagement, or with `G`"), "{}", text(&state));
     press(&mut state, 'y');
     assert!(state.popups.is_empty());
-    let id = state.editor.plan().id();
+    let id = state.shared.editor.plan().id();
     update(&mut state, Msg::UploadReply { id, count: 4, result: Ok(UploadReport::default()) });
-    let reported = state.notice.as_ref().map(|notice| notice.text.clone()).unwrap_or_default();
+    let reported = state.shared.notice.as_ref().map(|notice| notice.text.clone()).unwrap_or_default();
     assert!(reported.contains("at the next engagement; `G` continues on it"), "{reported}");
-    let open = state.plan().clone();
+    let open = state.shared.plan().clone();
     picture(&mut state, |vehicle| vehicle.stored_plan = Some(open));
     let shown = text(&state);
     assert!(shown.contains("G fly the new plan") && shown.contains("new plan, for the next"), "{shown}");

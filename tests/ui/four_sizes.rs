@@ -92,7 +92,7 @@ fn the_timeline_after_a_rewind() {
     let seen = at_four_sizes(|size| {
         let mut state = fixture::state(size, fixture::colour());
         fixture::rewind(&mut state);
-        assert_eq!(state.view.vehicle.nav.as_ref().map(|nav| nav.state), Some(NavState::Approaching));
+        assert_eq!(state.shared.view.vehicle.nav.as_ref().map(|nav| nav.state), Some(NavState::Approaching));
         state
     });
     assert_eq!(seen.matches("REWOUND").count(), SIZES.len(), "{seen}");
@@ -112,7 +112,7 @@ fn lost_edits_are_named_until_esc_takes_the_notice_away() {
         }
         update(&mut state, Msg::Files(FileReply::KeptAgain));
         assert!(screen(&state).contains("Edits are kept again."));
-        let later = state.now + std::time::Duration::from_secs(3600);
+        let later = state.shared.now + std::time::Duration::from_secs(3600);
         update(&mut state, Msg::Clock(later));
         keys(&mut state, "1 2 q");
         let seen = screen(&state);
@@ -198,7 +198,7 @@ fn everything_open() -> Vec<Open> {
     }
     for changed in [true, false] {
         let (name, mut state) = waiting("2 i");
-        let id = state.editor.plan().id();
+        let id = state.shared.editor.plan().id();
         let path = "/home/pilot/plans/survey.toml".into();
         update(&mut state, Msg::Files(FileReply::Occupied { id, path, changed }));
         open.push((format!("{name}, replace"), state));
@@ -228,7 +228,7 @@ fn drawn_in(state: &AppState, size: (u16, u16), what: &str) {
     let drawn = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
         terminal.draw(|frame| draw(state, frame)).unwrap();
     }));
-    assert!(drawn.is_ok(), "{what} in {}x{}, drawn for {:?}", size.0, size.1, state.size);
+    assert!(drawn.is_ok(), "{what} in {}x{}, drawn for {:?}", size.0, size.1, state.shared.size);
     let Position { x, y } = terminal.get_cursor_position().unwrap();
     assert!(x < size.0 && y < size.1, "{what} in {}x{}: the cursor is at {x}, {y}", size.0, size.1);
 }
@@ -253,10 +253,10 @@ fn every_popup_prompt_and_editor_is_drawn_in_every_window_down_to_one_cell() {
 fn every_panel_is_drawn_in_every_window_with_a_field_open_in_another() {
     for (what, mut state) in everything_open().into_iter().step_by(3) {
         for panel in Panel::ALL {
-            state.focus = panel;
+            state.shared.focus = panel;
             for size in [(1, 1), (2, 1), (80, 1), (1, 80), (80, 2), (60, 19), (60, 20), (79, 23), (120, 34)] {
                 for zoomed in [true, false] {
-                    state.zoomed = zoomed;
+                    state.shared.zoomed = zoomed;
                     update(&mut state, Msg::Resize(size.0, size.1));
                     drawn_in(&state, size, &what);
                 }

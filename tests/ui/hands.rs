@@ -60,7 +60,7 @@ pub(crate) fn press(state: &mut AppState, code: KeyCode, modifiers: KeyModifiers
 }
 
 pub(crate) fn screen(state: &AppState) -> String {
-    let mut terminal = Terminal::new(TestBackend::new(state.size.0, state.size.1)).unwrap();
+    let mut terminal = Terminal::new(TestBackend::new(state.shared.size.0, state.shared.size.1)).unwrap();
     terminal.draw(|frame| draw(state, frame)).unwrap();
     terminal.backend().to_string()
 }

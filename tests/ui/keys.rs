@@ -61,7 +61,7 @@ fn arm_throttle_and_autopilot_move_the_channels_of_the_mode_conditions() {
 fn arming_too_early_moves_nothing_and_says_why() {
     let mut state = fixture::state((120, 40), fixture::colour());
     assert!(press(&mut state, 'a').is_empty());
-    let notice = state.notice.as_ref().map(|notice| notice.text.clone()).unwrap_or_default();
+    let notice = state.shared.notice.as_ref().map(|notice| notice.text.clone()).unwrap_or_default();
     assert!(notice.contains("BOOTGRACE") && notice.contains("wait"), "{notice}");
 }
 
@@ -70,7 +70,7 @@ fn f_uploads_first_when_the_craft_has_no_plan_and_stops_the_pilot_when_it_flies(
     let mut state = ready();
     assert!(matches!(press(&mut state, 'F')[..], [Effect::Send(Command::Pilot(true))]));
 
-    let mut view = state.view.clone();
+    let mut view = state.shared.view.clone();
     std::sync::Arc::make_mut(&mut view.vehicle).stored_plan.as_mut().unwrap().waypoints.clear();
     update(&mut state, Msg::View(view.clone()));
     let [Effect::Upload { id, plan, .. }] = &press(&mut state, 'F')[..] else { panic!("an upload first") };
@@ -87,18 +87,18 @@ fn f_uploads_first_when_the_craft_has_no_plan_and_stops_the_pilot_when_it_flies(
 #[test]
 fn a_refused_upload_does_not_fly() {
     let mut state = ready();
-    std::sync::Arc::make_mut(&mut state.view.vehicle).stored_plan.as_mut().unwrap().waypoints.clear();
+    std::sync::Arc::make_mut(&mut state.shared.view.vehicle).stored_plan.as_mut().unwrap().waypoints.clear();
     press(&mut state, 'F');
-    let id = state.editor.plan().id();
+    let id = state.shared.editor.plan().id();
     let refused = Msg::UploadReply { id, count: 4, result: Err("WP1 is invalid.".to_owned()) };
     assert!(update(&mut state, refused).is_empty());
-    assert!(state.notice.is_some_and(|notice| notice.text.contains("WP1 is invalid.")));
+    assert!(state.shared.notice.is_some_and(|notice| notice.text.contains("WP1 is invalid.")));
 }
 
 #[test]
 fn the_hand_takes_over_from_the_pilot() {
     let mut state = ready();
-    state.view.pilot = Some("climbing");
+    state.shared.view.pilot = Some("climbing");
     let effects = press(&mut state, 't');
     assert!(matches!(effects[0], Effect::Send(Command::Pilot(false))));
     assert!(sticks(&effects).is_some());
@@ -133,7 +133,7 @@ fn one_key_commands() {
     assert!(press(&mut state, 'H').is_empty(), "nothing to bring home while disarmed");
     fixture::approach(&mut state);
     assert!(matches!(press(&mut state, 'H').last(), Some(Effect::Send(Command::ReturnHome))));
-    std::sync::Arc::make_mut(&mut state.view.vehicle).craft.commanded = Some(true);
+    std::sync::Arc::make_mut(&mut state.shared.view.vehicle).craft.commanded = Some(true);
     assert!(matches!(press(&mut state, 'H')[..], [Effect::Send(Command::CancelReturn)]));
 }
 
@@ -142,7 +142,11 @@ fn the_throttle_key_is_refused_while_the_autopilot_flies() {
     let mut state = ready();
     fixture::approach(&mut state);
     assert!(press(&mut state, 't').is_empty(), "later the stick would take the craft by surprise");
-    assert!(state.notice.as_ref().is_some_and(|notice| notice.text.contains("`g`")), "{:?}", state.notice);
+    assert!(
+        state.shared.notice.as_ref().is_some_and(|notice| notice.text.contains("`g`")),
+        "{:?}",
+        state.shared.notice
+    );
 }
 
 #[test]
@@ -151,17 +155,17 @@ fn scrolling_ends_where_the_oldest_line_is_visible_and_turns_at_once() {
     press(&mut state, '8');
     let long = "a sentence that is longer than the panel is wide, so that it takes several rows of it";
     for line in 0..40 {
-        state.notify(betadeck::ui::Severity::Info, format!("{line} {long}"));
+        state.shared.notify(betadeck::ui::Severity::Info, format!("{line} {long}"));
     }
     key(&mut state, KeyCode::End);
-    let end = state.scrolls.log;
+    let end = state.log_view.scroll;
     assert!(end > 30, "{end}");
     press(&mut state, 'j');
-    assert_eq!(state.scrolls.log, end, "there is no more");
+    assert_eq!(state.log_view.scroll, end, "there is no more");
     press(&mut state, 'k');
-    assert_eq!(state.scrolls.log, end - 1);
+    assert_eq!(state.log_view.scroll, end - 1);
     key(&mut state, KeyCode::Home);
-    assert_eq!(state.scrolls.log, 0);
+    assert_eq!(state.log_view.scroll, 0);
 }
 
 #[test]
@@ -210,7 +214,7 @@ fn in_the_cli_letters_are_text_until_esc() {
     let output = CliOutput { text: "Saving\r\n".to_owned(), advice: None, restarted: true };
     assert!(update(&mut state, Msg::CliReply(Some(output))).is_empty());
     key(&mut state, KeyCode::Esc);
-    assert_eq!(state.focus, Panel::Map);
+    assert_eq!(state.shared.focus, Panel::Map);
     assert!(matches!(press(&mut state, ' ')[..], [Effect::Send(Command::Pause(true))]));
 }
 
@@ -225,7 +229,7 @@ fn tab_completes_in_the_cli_and_moves_on_when_there_is_nothing_to_complete() {
     assert_eq!(state.cli.input.value(), "set ap_position_");
     ctrl_c(&mut state);
     key(&mut state, KeyCode::Tab);
-    assert_eq!(state.focus, Panel::Graphs);
+    assert_eq!(state.shared.focus, Panel::Graphs);
 }
 
 #[test]
@@ -244,13 +248,16 @@ fn tab_goes_through_all_panels_and_back() {
     let mut state = ready();
     let mut seen = Vec::new();
     for _ in Panel::ALL {
-        seen.push(state.focus);
-        assert!(layout::screen(&state).is_some_and(|screen| screen.panel(state.focus).is_some()), "visible");
+        seen.push(state.shared.focus);
+        assert!(
+            layout::screen(&state.shared).is_some_and(|screen| screen.panel(state.shared.focus).is_some()),
+            "visible"
+        );
         key(&mut state, KeyCode::Tab);
     }
     assert_eq!(seen, Panel::ALL);
     key(&mut state, KeyCode::BackTab);
-    assert_eq!(state.focus, Panel::Log);
+    assert_eq!(state.shared.focus, Panel::Log);
 }
 
 #[test]
@@ -258,41 +265,42 @@ fn the_map_pans_zooms_follows_and_fits() {
     let mut state = ready();
     fixture::approach(&mut state);
     key(&mut state, KeyCode::Left);
-    let MapMode::Free { e: first, .. } = state.map.mode else { panic!("panned") };
+    let MapMode::Free { e: first, .. } = state.shared.map.mode else { panic!("panned") };
     press(&mut state, 'h');
-    let MapMode::Free { e: second, scale: before, .. } = state.map.mode else { panic!("panned") };
+    let MapMode::Free { e: second, scale: before, .. } = state.shared.map.mode else { panic!("panned") };
     assert!(second < first, "left is west");
     press(&mut state, '+');
-    let MapMode::Free { scale, .. } = state.map.mode else { panic!("zoomed") };
+    let MapMode::Free { scale, .. } = state.shared.map.mode else { panic!("zoomed") };
     assert!(scale < before);
     press(&mut state, 'f');
-    assert!(matches!(state.map.mode, MapMode::Follow(_)));
+    assert!(matches!(state.shared.map.mode, MapMode::Follow(_)));
     press(&mut state, '0');
-    assert_eq!(state.map.mode, MapMode::Fit);
+    assert_eq!(state.shared.map.mode, MapMode::Fit);
 }
 
 #[test]
 fn the_mouse_sets_a_channel_and_drags_the_map() {
     let mut state = ready();
     press(&mut state, '4');
-    let area = layout::screen(&state).and_then(|screen| screen.panel(Panel::Rc)).expect("visible");
+    let area = layout::screen(&state.shared).and_then(|screen| screen.panel(Panel::Rc)).expect("visible");
     let at = |kind, column, row| Msg::Mouse(MouseEvent { kind, column, row, modifiers: KeyModifiers::NONE });
     let down = MouseEventKind::Down(MouseButton::Left);
     let effects = update(&mut state, at(down, area.x + 25, area.y + 2));
     let channels = sticks(&effects).expect("a click on a bar sets the channel");
     assert_ne!(channels[1], 1500);
 
-    let area = layout::screen(&state).and_then(|screen| screen.panel(Panel::Map)).expect("visible");
+    let area = layout::screen(&state.shared).and_then(|screen| screen.panel(Panel::Map)).expect("visible");
     update(&mut state, at(down, area.x + 10, area.y + 10));
     update(&mut state, at(MouseEventKind::Drag(MouseButton::Left), area.x + 14, area.y + 10));
-    assert!(matches!(state.map.mode, MapMode::Free { .. }));
+    assert!(matches!(state.shared.map.mode, MapMode::Free { .. }));
 }
 
 #[test]
 fn a_drag_that_strays_from_the_map_over_the_sliders_moves_no_stick() {
     let mut state = ready();
     press(&mut state, '4');
-    let place = |panel| layout::screen(&state).and_then(|screen| screen.panel(panel)).expect("visible");
+    let place =
+        |panel| layout::screen(&state.shared).and_then(|screen| screen.panel(panel)).expect("visible");
     let (map, rc) = (place(Panel::Map), place(Panel::Rc));
     let at = |kind, column, row| Msg::Mouse(MouseEvent { kind, column, row, modifiers: KeyModifiers::NONE });
     let (down, drag) = (MouseEventKind::Down(MouseButton::Left), MouseEventKind::Drag(MouseButton::Left));
@@ -308,7 +316,7 @@ fn a_drag_that_strays_from_the_map_over_the_sliders_moves_no_stick() {
 fn a_dragged_slider_stays_the_one_that_was_pressed() {
     let mut state = ready();
     press(&mut state, '4');
-    let rc = layout::screen(&state).and_then(|screen| screen.panel(Panel::Rc)).expect("visible");
+    let rc = layout::screen(&state.shared).and_then(|screen| screen.panel(Panel::Rc)).expect("visible");
     let at = |kind, column, row| Msg::Mouse(MouseEvent { kind, column, row, modifiers: KeyModifiers::NONE });
     let (down, drag) = (MouseEventKind::Down(MouseButton::Left), MouseEventKind::Drag(MouseButton::Left));
     state.channel = 15;
@@ -335,10 +343,10 @@ fn help_closes_by_the_key_it_explains() {
 fn z_zooms_the_focused_panel_and_esc_ends_it() {
     let mut state = ready();
     press(&mut state, 'z');
-    let screen = layout::screen(&state).expect("large enough");
+    let screen = layout::screen(&state.shared).expect("large enough");
     assert_eq!(screen.panels.len(), 1);
     key(&mut state, KeyCode::Esc);
-    assert!(layout::screen(&state).is_some_and(|screen| screen.panels.len() > 1));
+    assert!(layout::screen(&state.shared).is_some_and(|screen| screen.panels.len() > 1));
 }
 
 #[test]
@@ -347,22 +355,26 @@ fn esc_in_the_zoomed_cli_leaves_the_text_first() {
     press(&mut state, 'z');
     press(&mut state, '5');
     key(&mut state, KeyCode::Esc);
-    assert!(!state.focus.takes_text());
+    assert!(!state.shared.focus.takes_text());
     assert!(
         matches!(press(&mut state, ' ')[..], [Effect::Send(Command::Pause(true))]),
         "keys are keys again"
     );
     key(&mut state, KeyCode::Esc);
-    assert!(!state.zoomed);
+    assert!(!state.shared.zoomed);
 }
 
 #[test]
 fn a_crashed_craft_is_not_flown_but_reset() {
     let mut state = ready();
-    let vehicle = std::sync::Arc::make_mut(&mut state.view.vehicle);
+    let vehicle = std::sync::Arc::make_mut(&mut state.shared.view.vehicle);
     vehicle.truth.as_mut().expect("the fixture tells the truth").crashed = true;
     assert!(press(&mut state, 'F').is_empty());
-    assert!(state.notice.as_ref().is_some_and(|notice| notice.text.contains("`R`")), "{:?}", state.notice);
+    assert!(
+        state.shared.notice.as_ref().is_some_and(|notice| notice.text.contains("`R`")),
+        "{:?}",
+        state.shared.notice
+    );
     assert!(matches!(press(&mut state, 'R')[..], [Effect::Send(Command::ResetCraft)]));
 }
 

@@ -58,7 +58,7 @@ fn set_fence(state: &mut AppState, fence_m: f64) -> Option<Vec<String>> {
 }
 
 fn change(state: &mut AppState, change: impl FnOnce(&mut SettingsView)) -> Vec<Effect> {
-    let mut view = state.view.clone();
+    let mut view = state.shared.view.clone();
     let vehicle = Arc::make_mut(&mut view.vehicle);
     vehicle.time.0 += 20_000;
     change(vehicle.settings.as_mut().unwrap());
@@ -83,7 +83,7 @@ fn upload(state: &mut AppState) {
     });
     let (id, plan) = sent.unwrap();
     let count = plan.waypoints.len();
-    let mut view = state.view.clone();
+    let mut view = state.shared.view.clone();
     Arc::make_mut(&mut view.vehicle).stored_plan = Some(plan);
     update(state, Msg::View(view));
     update(state, Msg::UploadReply { id, count, result: Ok(UploadReport::default()) });
@@ -108,7 +108,7 @@ fn a_fence_set_on_the_craft_after_the_upload_counts_and_is_reported() {
         "{seen}"
     );
     // The next upload sets the fence of the plan again.
-    let mut view = state.view.clone();
+    let mut view = state.shared.view.clone();
     Arc::make_mut(&mut view.vehicle).stored_plan = None;
     update(&mut state, Msg::View(view));
     let seen = said(&state);
@@ -139,7 +139,7 @@ fn the_estimate_says_whose_fence_it_keeps_to() {
         let revision = job.unwrap().revision;
         update(state, Msg::Forecast(ForecastReply { revision, kind: ForecastKind::PlanEstimate, forecast }));
     };
-    let mut view = state.view.clone();
+    let mut view = state.shared.view.clone();
     Arc::make_mut(&mut view.vehicle).stored_plan = None;
     update(&mut state, Msg::View(view));
     let effects = change(&mut state, |settings| settings.fence_m = Some(82.0));
@@ -160,7 +160,7 @@ fn a_plan_that_is_to_be_uploaded_sets_its_fence() {
     let mut state = open((120, 40));
     keys(&mut state, "+");
     let settings = set_fence(&mut state, 82.0).unwrap();
-    assert_eq!(settings, state.editor.document().settings);
+    assert_eq!(settings, state.shared.editor.document().settings);
     assert!(!said(&state).contains("refused"), "{}", said(&state));
     // A plan without a fence of its own keeps the craft's fence.
     keys(&mut state, "n");
@@ -175,9 +175,9 @@ fn an_edit_of_the_fence_counts_before_the_upload() {
     let mut state = open((120, 40));
     upload(&mut state);
     set_fence(&mut state, 90.0);
-    let mut lines = state.editor.document().settings.clone();
+    let mut lines = state.shared.editor.document().settings.clone();
     lines[0] = "ap_max_distance_from_home = 70".to_owned();
-    let document = PlanDocument { settings: lines.clone(), ..state.editor.document().clone() };
+    let document = PlanDocument { settings: lines.clone(), ..state.shared.editor.document().clone() };
     let opened = Opened {
         id: PlanId(7),
         file: None,

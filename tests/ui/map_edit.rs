@@ -52,7 +52,7 @@ fn find_the_fence(state: &mut AppState, fence_m: f64) -> (u16, u16) {
 }
 
 fn fence(state: &AppState) -> Option<f64> {
-    let lines = &state.editor.document().settings;
+    let lines = &state.shared.editor.document().settings;
     let value = lines.iter().find_map(|line| line.strip_prefix("ap_max_distance_from_home = "))?;
     value.parse().ok()
 }
@@ -64,18 +64,18 @@ fn home_is_moved_by_the_cursor_as_one_edit_and_stays_where_it_was_put() {
     move_cursor_to(&mut state, home);
     keys(&mut state, "enter");
     keys(&mut state, "left left left left down down");
-    let before_it_is_put_down = state.editor.document().home;
+    let before_it_is_put_down = state.shared.editor.document().home;
     let effects = keys(&mut state, "enter");
     assert_eq!((before_it_is_put_down, journal_lines(&effects)), (None, 1));
     let put = (home.0 - 4, home.1 + 2);
-    let moved = state.editor.document().home.expect("home of the plan").position;
+    let moved = state.shared.editor.document().home.expect("home of the plan").position;
     assert!(moved.lat_e7 < fixture::HOME.lat_e7 && moved.lon_e7 < fixture::HOME.lon_e7, "{moved}");
     keys(&mut state, "left left left");
     assert_eq!(place_of(&state, "⌂"), put, "{}", screen(&state));
     keys(&mut state, "p");
     assert!(screen(&state).contains("home of the plan"), "beside home of the craft: {}", screen(&state));
     keys(&mut state, "u");
-    assert_eq!(state.editor.document().home, None);
+    assert_eq!(state.shared.editor.document().home, None);
 }
 
 #[test]
@@ -90,7 +90,7 @@ fn home_is_moved_by_the_mouse() {
     assert!(screen(&state).contains("° from home"), "{}", screen(&state));
     let effects = mouse(&mut state, MouseEventKind::Up, (home.0 + 6, home.1));
     assert_eq!(journal_lines(&effects), 1);
-    let moved = state.editor.document().home.expect("home of the plan").position;
+    let moved = state.shared.editor.document().home.expect("home of the plan").position;
     assert!(moved.lon_e7 > fixture::HOME.lon_e7, "{moved}");
     assert_eq!(place_of(&state, "⌂"), (home.0 + 6, home.1));
 }
@@ -113,7 +113,7 @@ fn the_fence_is_made_wider_by_the_cursor_and_follows_home() {
     let narrower = fence(&state).expect("a fence");
     assert!(narrower < wider && (narrower - metres_from_home(&state)).abs() < 1.0, "{narrower}");
     keys(&mut state, "u u u");
-    assert_eq!((fence(&state), state.editor.document().home), (None, None));
+    assert_eq!((fence(&state), state.shared.editor.document().home), (None, None));
 }
 
 #[test]
@@ -132,12 +132,12 @@ fn the_fence_is_dragged_by_the_mouse_and_put_down_wherever_the_button_is_release
 fn without_the_cursor_the_mouse_drags_the_map_over_home_and_fence() {
     let mut state = away_from_home();
     keys(&mut state, "z 2 ctrl-a d 1");
-    assert_eq!(*state.plan(), FlightPlan::default());
+    assert_eq!(*state.shared.plan(), FlightPlan::default());
     let home = place_of(&state, "⌂");
     mouse(&mut state, MouseEventKind::Down, home);
     mouse(&mut state, MouseEventKind::Drag, (home.0 + 5, home.1));
     assert!(mouse(&mut state, MouseEventKind::Up, (home.0 + 5, home.1)).is_empty());
-    assert_eq!(state.editor.document().home, None);
+    assert_eq!(state.shared.editor.document().home, None);
 }
 
 #[test]
@@ -149,10 +149,10 @@ fn the_right_button_opens_a_menu_that_keys_and_clicks_choose_from() {
     assert!(screen(&state).contains("i  add a waypoint here"), "{}", screen(&state));
     let effects = keys(&mut state, "down enter");
     assert_eq!(journal_lines(&effects), 1);
-    assert!(state.editor.document().home.is_some() && state.popups.is_empty());
+    assert!(state.shared.editor.document().home.is_some() && state.popups.is_empty());
     mouse_button(&mut state, right, (40, 20));
     assert_eq!(journal_lines(&keys(&mut state, "i")), 1);
-    assert_eq!(state.plan().waypoints.len(), 5);
+    assert_eq!(state.shared.plan().waypoints.len(), 5);
     mouse_button(&mut state, right, (20, 10));
     let row = place_of(&state, "fence through here");
     assert_eq!(journal_lines(&mouse(&mut state, MouseEventKind::Down, row)), 1);
@@ -164,8 +164,8 @@ fn the_right_button_opens_a_menu_that_keys_and_clicks_choose_from() {
     mouse(&mut state, MouseEventKind::Down, (100, 3));
     mouse_button(&mut state, right, place);
     keys(&mut state, "esc");
-    assert_eq!((state.plan().waypoints.len(), state.popups.len()), (5, 0));
+    assert_eq!((state.shared.plan().waypoints.len(), state.popups.len()), (5, 0));
     mouse_button(&mut state, right, place);
     keys(&mut state, "d");
-    assert_eq!(state.plan().waypoints.len(), 4);
+    assert_eq!(state.shared.plan().waypoints.len(), 4);
 }

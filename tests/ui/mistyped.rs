@@ -14,13 +14,13 @@ fn altitudes(plan: &FlightPlan) -> Vec<i32> {
 fn the_first_typed_character_replaces_a_value_and_an_arrow_keeps_it() {
     let mut state = state((120, 40));
     keys(&mut state, "2 right right right enter '35 enter");
-    assert_eq!(altitudes(state.plan()), [3500, 5000, 5000, 5000], "not 5035 m");
+    assert_eq!(altitudes(state.shared.plan()), [3500, 5000, 5000, 5000], "not 5035 m");
     keys(&mut state, "down enter left '2 enter");
-    assert_eq!(altitudes(state.plan()), [3500, 52_000, 5000, 5000], "an arrow edits 50 to 520");
+    assert_eq!(altitudes(state.shared.plan()), [3500, 52_000, 5000, 5000], "an arrow edits 50 to 520");
     keys(&mut state, "u enter");
     update(&mut state, Msg::Paste("61".to_owned()));
     keys(&mut state, "enter");
-    assert_eq!(altitudes(state.plan()), [3500, 6100, 5000, 5000], "pasted text replaces, too");
+    assert_eq!(altitudes(state.shared.plan()), [3500, 6100, 5000, 5000], "pasted text replaces, too");
 }
 
 #[test]

@@ -20,14 +20,14 @@ fn a_bar_names_the_panels_and_the_mouse_clicks_them() {
             ("1 Map", Panel::Map),
         ] {
             // In the CLI digits are text.
-            let name = if state.focus == Panel::Cli { &name[2..] } else { name };
+            let name = if state.shared.focus == Panel::Cli { &name[2..] } else { name };
             let row =
                 screen(&state).lines().position(|line| line.contains("World") && line.contains("Graphs"));
             let (column, at) = place_of(&state, name);
             assert_eq!(Some(usize::from(at)), row, "{name} in\n{}", screen(&state));
             mouse(&mut state, MouseEventKind::Down, (column, at));
             mouse(&mut state, MouseEventKind::Up, (column, at));
-            assert_eq!(state.focus, panel, "{}", screen(&state));
+            assert_eq!(state.shared.focus, panel, "{}", screen(&state));
         }
     }
 }
@@ -93,7 +93,7 @@ fn the_tutorial_goes_on_from_what_was_pressed() {
     let mut state = state((120, 40));
     keys(&mut state, ":");
     keys(&mut state, "'app.tutorial enter");
-    let mut view = state.view.clone();
+    let mut view = state.shared.view.clone();
     view.pilot = Some("climbing");
     update(&mut state, Msg::View(view.clone()));
     assert!(screen(&state).contains("1/5 The pilot"), "{}", screen(&state));

@@ -27,7 +27,7 @@ fn type_text(state: &mut AppState, text: &str) {
 }
 
 fn screen(state: &AppState) -> String {
-    let (width, height) = state.size;
+    let (width, height) = state.shared.size;
     let mut terminal = Terminal::new(TestBackend::new(width, height)).expect("a test terminal");
     terminal.draw(|frame| draw(state, frame)).expect("drawing in memory");
     terminal.backend().to_string()
@@ -47,7 +47,7 @@ fn asked(effects: &[Effect]) -> Vec<&str> {
 fn windy(size: (u16, u16)) -> AppState {
     let mut state = fixture::state(size, fixture::colour());
     fixture::approach(&mut state);
-    let mut view: SessionView = state.view.clone();
+    let mut view: SessionView = state.shared.view.clone();
     let world = &mut std::sync::Arc::make_mut(&mut view.vehicle).world;
     world.airframe = "iris".to_owned();
     world.wind = Some(WindView { speed_mps: 3.0, from_deg: 270.0 });
@@ -62,7 +62,7 @@ fn windy(size: (u16, u16)) -> AppState {
 #[test]
 fn arrows_turn_the_knobs_of_the_air_and_count_from_what_was_asked_for() {
     let mut state = windy((120, 40));
-    assert_eq!(state.focus, Panel::World);
+    assert_eq!(state.shared.focus, Panel::World);
     assert_eq!(asked(&key(&mut state, KeyCode::Right)), ["wind=3.5@270"]);
     assert_eq!(asked(&key(&mut state, KeyCode::Right)), ["wind=4@270"]);
     press(&mut state, 'j');
@@ -84,7 +84,7 @@ fn numbers_are_typed_in_the_units_that_are_shown() {
     type_text(&mut state, "7.5");
     assert!(screen(&state).contains("wind speed     7.5"), "{}", screen(&state));
     assert_eq!(asked(&key(&mut state, KeyCode::Enter)), ["wind=7.5@270"]);
-    state.units = betadeck::ui::Units::Imperial;
+    state.shared.units = betadeck::ui::Units::Imperial;
     key(&mut state, KeyCode::Enter);
     type_text(&mut state, "10");
     assert_eq!(asked(&key(&mut state, KeyCode::Enter)), ["wind=4.47@270"]);
@@ -95,7 +95,7 @@ fn numbers_are_typed_in_the_units_that_are_shown() {
     key(&mut state, KeyCode::Enter);
     type_text(&mut state, "q");
     key(&mut state, KeyCode::Esc);
-    assert!(state.knobs.field.is_none() && state.focus == Panel::World);
+    assert!(state.knobs.field.is_none() && state.shared.focus == Panel::World);
 }
 
 /// Moves the selection to the fault of this name.
@@ -134,28 +134,28 @@ fn ctrl_c_takes_back_what_is_typed() {
     type_text(&mut state, "99");
     update(&mut state, Msg::Key(KeyEvent::new(KeyCode::Char('c'), KeyModifiers::CONTROL)));
     assert!(state.knobs.field.is_none());
-    assert!(state.notice.is_some_and(|notice| notice.text.starts_with("Cancelled.")));
+    assert!(state.shared.notice.is_some_and(|notice| notice.text.starts_with("Cancelled.")));
 }
 
 #[test]
 fn the_log_is_searched_and_filtered_by_keys() {
     let mut state = fixture::state((120, 40), fixture::colour());
     fixture::approach(&mut state);
-    state.notify(Severity::Warn, "the wind grows");
-    state.notify(Severity::Info, "nothing of note");
+    state.shared.notify(Severity::Warn, "the wind grows");
+    state.shared.notify(Severity::Info, "nothing of note");
     press(&mut state, '8');
     press(&mut state, '/');
     type_text(&mut state, "wind");
     key(&mut state, KeyCode::Enter);
     assert!(screen(&state).contains("8 Log — /wind"), "{}", screen(&state));
     press(&mut state, 'n');
-    assert!(state.notice.as_ref().is_some_and(|notice| notice.text.contains("No older line")));
+    assert!(state.shared.notice.as_ref().is_some_and(|notice| notice.text.contains("No older line")));
     press(&mut state, 'f');
     let shown = screen(&state);
     assert!(shown.contains("warnings and faults") && !shown.contains("nothing of note"), "{shown}");
     key(&mut state, KeyCode::Esc);
     assert!(!screen(&state).contains("/wind"));
-    assert_eq!(state.focus, Panel::Log);
+    assert_eq!(state.shared.focus, Panel::Log);
 }
 
 #[test]
@@ -251,9 +251,9 @@ fn a_long_notice_leaves_no_letter_of_the_log_in_front_of_it() {
     use betadeck::ui::Severity;
     let mut state = fixture::state((80, 24), fixture::colour());
     for _ in 0..9 {
-        state.notify(Severity::Info, "a line of the log");
+        state.shared.notify(Severity::Info, "a line of the log");
     }
-    state.notify(Severity::Warn, "x ".repeat(60));
+    state.shared.notify(Severity::Warn, "x ".repeat(60));
     let seen = screen(&state);
     let above = seen.lines().rfind(|line| line.contains("▲ x x")).expect("the notice");
     assert!(above.starts_with("\"│  ▲ x"), "{seen}");
@@ -276,7 +276,10 @@ fn recorded_sticks_are_played_again_in_their_time() {
     at(&mut state, 10.0, 1000);
     press(&mut state, '4');
     press(&mut state, 'p');
-    assert!(state.notice.as_ref().is_some_and(|notice| notice.text.contains("`r`")), "nothing to play yet");
+    assert!(
+        state.shared.notice.as_ref().is_some_and(|notice| notice.text.contains("`r`")),
+        "nothing to play yet"
+    );
     press(&mut state, 'r');
     at(&mut state, 11.0, 1000);
     at(&mut state, 12.0, 1400);
@@ -375,9 +378,9 @@ fn every_popup_and_panel_is_drawn_at_every_size() {
         for height in (1..=80).step_by(5) {
             update(&mut state, Msg::Resize(width, height));
             for (at, panel) in Panel::ALL.into_iter().enumerate() {
-                state.focus = panel;
-                state.slots.visit(panel);
-                state.zoomed = (width + height) % 2 == 0;
+                state.shared.focus = panel;
+                state.shared.slots.visit(panel);
+                state.shared.zoomed = (width + height) % 2 == 0;
                 state.popups.clone_from(&popups[(usize::from(width + height) + at) % popups.len()]);
                 screen(&state);
             }

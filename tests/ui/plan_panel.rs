@@ -12,7 +12,7 @@ use crate::hands::{keys, mouse, place_of, screen, state_with_fix};
 
 fn imperial(size: (u16, u16)) -> AppState {
     let mut state = state_with_fix(size);
-    state.units = Units::Imperial;
+    state.shared.units = Units::Imperial;
     state
 }
 
@@ -27,14 +27,14 @@ fn with_imperial_units_the_table_shows_takes_and_nudges_feet_and_miles_an_hour()
     assert!(screen(&state).contains("feet above home"), "{}", screen(&state));
     keys(&mut state, "backspace backspace backspace backspace backspace backspace '200 enter");
     assert_eq!(
-        state.plan().waypoints[0].altitude,
+        state.shared.plan().waypoints[0].altitude,
         Altitude::above_home(60.96),
         "what is kept and sent is metric"
     );
     keys(&mut state, "+ + -");
-    assert_eq!(state.plan().waypoints[0].altitude, Altitude::above_home(61.26), "201 ft");
+    assert_eq!(state.shared.plan().waypoints[0].altitude, Altitude::above_home(61.26), "201 ft");
     keys(&mut state, "right enter backspace '10 enter");
-    assert_eq!(state.plan().records()[0].speed, 447);
+    assert_eq!(state.shared.plan().records()[0].speed, 447);
     // The craft still has the unchanged plan.
     let seen = screen(&state);
     assert!(seen.contains("On the craft WP0 is: altitude 164.0, speed —."), "{seen}");
@@ -46,7 +46,7 @@ fn with_imperial_units_forms_and_the_map_are_in_feet() {
     keys(&mut state, "2 ctrl-a m");
     assert!(screen(&state).contains("ft above home") && screen(&state).contains("mph, 0 = default"));
     keys(&mut state, "'100 down down '10 enter");
-    assert!(state.plan().records().iter().all(|wp| (wp.alt_cm, wp.speed) == (3048, 447)));
+    assert!(state.shared.plan().records().iter().all(|wp| (wp.alt_cm, wp.speed) == (3048, 447)));
     keys(&mut state, "P");
     let seen = screen(&state);
     assert!(seen.contains("262 ") && seen.contains("ft above home"), "80 m\n{seen}");
@@ -68,7 +68,7 @@ fn an_altitude_dragged_far_up_follows_the_mouse_however_often_that_tells() {
             mouse(&mut state, MouseEventKind::Drag, (number.0, number.1 - 15));
         }
         mouse(&mut state, MouseEventKind::Up, (number.0, number.1 - 15));
-        state.plan().records()[3].alt_cm
+        state.shared.plan().records()[3].alt_cm
     });
     dragged.sort_unstable();
     assert!(dragged[0] > 5000 && dragged[0] == dragged[1], "{dragged:?}");
@@ -83,7 +83,7 @@ fn altitudes_are_dragged_by_whole_feet() {
     mouse(&mut state, MouseEventKind::Down, number);
     mouse(&mut state, MouseEventKind::Drag, (number.0, number.1 + 2));
     mouse(&mut state, MouseEventKind::Up, (number.0, number.1 + 2));
-    let feet = f64::from(state.plan().records()[3].alt_cm) / 30.48;
+    let feet = f64::from(state.shared.plan().records()[3].alt_cm) / 30.48;
     assert!((feet - feet.round()).abs() < 0.02 && feet < 150.0, "{feet} ft");
 }
 
@@ -112,7 +112,7 @@ fn a_climb_above_the_plan_is_seen_in_the_profile() {
     let mut state = fixture::state((120, 40), fixture::plain());
     keys(&mut state, "2 z");
     fixture::approach(&mut state);
-    let mut view: SessionView = state.view.clone();
+    let mut view: SessionView = state.shared.view.clone();
     for step in 1..40 {
         let vehicle = Arc::make_mut(&mut view.vehicle);
         vehicle.time.0 += 500_000;

@@ -10,7 +10,7 @@ use betadeck::telemetry::{ArmingFlag, Refusal};
 use betadeck::timeline::TimelineView;
 use betadeck::ui::action::ACTIONS;
 use betadeck::ui::keymap::{KeyLine, Keymap};
-use betadeck::ui::{AppState, Msg, command, status_message, update};
+use betadeck::ui::{AppState, Msg, run_line, status_message, update};
 
 use crate::fixture;
 use crate::hands::{keys, screen};
@@ -92,7 +92,7 @@ const SITUATIONS: [Situation; 14] = [
 
 fn in_situation(keymap: &Keymap, change: fn(&mut SessionView)) -> AppState {
     let mut state = fixture::state((120, 40), fixture::colour());
-    state.keymap = keymap.clone();
+    state.shared.keymap = keymap.clone();
     let flight = fixture::SimpleFlight { time_s: 8.0, fix: true, ..fixture::SimpleFlight::default() };
     let mut view = fixture::view(&flight);
     change(&mut view);
@@ -123,15 +123,15 @@ fn a_sentence_names_the_keys_as_they_were_remapped_everywhere() {
     let keymap = with_alt();
     let mut seen_keys = 0;
     for (name, situation) in SITUATIONS {
-        if let Some(message) = status_message::current(&in_situation(&keymap, situation)) {
+        if let Some(message) = status_message::current(&in_situation(&keymap, situation).shared) {
             assert_eq!(old_keys(&message.action), [""; 0], "{name}: {}", message.action);
             seen_keys += message.action.matches("Alt-").count();
         }
         for spec in ACTIONS {
             let mut state = in_situation(&keymap, situation);
-            let said = match command::run(&mut state, spec.name) {
+            let said = match run_line(&mut state, spec.name) {
                 Err(sentence) => sentence,
-                Ok(_) => state.notice.as_ref().map_or_else(String::new, |notice| notice.text.clone()),
+                Ok(_) => state.shared.notice.as_ref().map_or_else(String::new, |notice| notice.text.clone()),
             };
             assert_eq!(old_keys(&said), [""; 0], "{name}, {}: {said}", spec.name);
             seen_keys += said.matches("Alt-").count();
@@ -144,7 +144,7 @@ fn a_sentence_names_the_keys_as_they_were_remapped_everywhere() {
 fn empty_panels_and_titles_name_the_keys_in_force() {
     let mut state = in_situation(&with_alt(), |view| view.rc_cut = true);
     keys(&mut state, "f2 ctrl-a");
-    command::run(&mut state, "plan.delete").expect("deleted");
+    run_line(&mut state, "plan.delete").expect("deleted");
     let seen = screen(&state);
     assert!(seen.contains("`Alt-i` inserts one, `Alt-P` generates"), "{seen}");
     assert!(seen.contains("→ Alt-x restores it"), "{seen}");
@@ -177,7 +177,7 @@ fn notices_of_the_session_name_the_keys_in_force_too() {
     update(&mut state, Msg::SaveReply(Err("Not saved while armed: `a` disarms it.".to_owned())));
     assert!(screen(&state).contains("`Alt-a` disarms it"), "{}", screen(&state));
     let result = Err("an earlier instant is shown: `b` flies on.".to_owned());
-    let id = state.editor.plan().id();
+    let id = state.shared.editor.plan().id();
     update(&mut state, Msg::UploadReply { id, count: 4, result });
     assert!(screen(&state).contains("`Alt-b` flies on"), "{}", screen(&state));
 }

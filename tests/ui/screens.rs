@@ -14,7 +14,7 @@ use strum::IntoEnumIterator as _;
 mod svg;
 
 fn screen(state: &AppState) -> TestBackend {
-    let (width, height) = state.size;
+    let (width, height) = state.shared.size;
     let mut terminal = Terminal::new(TestBackend::new(width, height)).expect("a test terminal");
     terminal.draw(|frame| draw(state, frame)).expect("drawing in memory");
     terminal.backend().clone()
@@ -91,9 +91,9 @@ fn a_branch_keeps_the_old_track_faint_and_the_old_log_dimmed_120x40() {
         };
         buffer.content().iter().filter(is_of).count()
     };
-    let new_track = braille(state.theme.colour(Role::Track));
+    let new_track = braille(state.shared.theme.colour(Role::Track));
     assert!(new_track > 5, "{new_track}");
-    let dim = state.theme.colour(Role::Dim);
+    let dim = state.shared.theme.colour(Role::Dim);
     let row = |text: &str| {
         let rows = buffer.area.height;
         let line = |y| (0..buffer.area.width).map(|x| buffer[(x, y)].symbol().to_owned()).collect::<String>();
@@ -149,7 +149,7 @@ fn help_and_quit_are_always_offered() {
         let mut state = fixture::state(size, fixture::colour());
         fixture::approach(&mut state);
         for panel in Panel::ALL {
-            state.focus = panel;
+            state.shared.focus = panel;
             let screen = text(&state);
             let words: &[&str] = if panel == Panel::Cli { &["Esc leave"] } else { &["? help", "q quit"] };
             for word in words {
@@ -175,7 +175,7 @@ fn a_large_cross_track_error_keeps_its_distance_from_its_name() {
     let mut state = fixture::state((120, 40), fixture::colour());
     fixture::approach(&mut state);
     for (xte_m, shown) in [(0.31, "xte +0.3 m"), (-13.2, "xte -13.2 m"), (-1320.0, "xte -1320 m")] {
-        let vehicle = std::sync::Arc::make_mut(&mut state.view.vehicle);
+        let vehicle = std::sync::Arc::make_mut(&mut state.shared.view.vehicle);
         vehicle.nav.as_mut().expect("a mission").xte_m = Some(xte_m);
         assert!(text(&state).contains(shown), "{}", text(&state));
     }
@@ -185,8 +185,8 @@ fn a_large_cross_track_error_keeps_its_distance_from_its_name() {
 fn the_speed_is_the_wanted_one_until_it_is_measured() {
     let mut state = fixture::state((80, 24), fixture::colour());
     for (achieved, shown) in [(0.0, " 8× "), (7.9, " 8× "), (3.0, " 3× ")] {
-        state.view.speed_wanted = 8.0;
-        state.view.speed_achieved = achieved;
+        state.shared.view.speed_wanted = 8.0;
+        state.shared.view.speed_achieved = achieved;
         let screen = text(&state);
         let second = screen.lines().nth(1).expect("a status line");
         assert!(second.contains(shown), "{achieved}: {second}");
@@ -202,7 +202,7 @@ fn a_busy_door_is_marked_and_named_where_there_is_room() {
             address: String::new(),
             state: betadeck::telemetry::EndpointState::Busy,
         };
-        state.view.endpoints = vec![door];
+        state.shared.view.endpoints = vec![door];
         let screen = text(&state);
         assert!(screen.contains(shown), "{screen}");
     }
@@ -216,11 +216,11 @@ fn a_notice_leaves_the_hints_alone_and_loses_no_word() {
         let mut state = fixture::state(size, fixture::colour());
         let hints = |screen: &str| screen.lines().last().map(str::to_owned);
         let before = hints(&text(&state));
-        state.notify(Severity::Warn, long);
+        state.shared.notify(Severity::Warn, long);
         // Zooms a panel, because the log would show the notice, too.
-        state.focus = Panel::Rc;
-        state.slots.visit(Panel::Rc);
-        state.zoomed = true;
+        state.shared.focus = Panel::Rc;
+        state.shared.slots.visit(Panel::Rc);
+        state.shared.zoomed = true;
         let screen = text(&state);
         assert!(
             before.is_some_and(|line| line.contains("? help"))
@@ -288,9 +288,9 @@ fn landing_80x24_shows_the_whole_machine_and_every_guard() {
 fn a_craft_that_cannot_hold_says_so_on_an_80x24_screen() {
     let mut state = fixture::state((80, 24), fixture::colour());
     fixture::orbit(&mut state);
-    state.focus = Panel::State;
-    state.slots.visit(Panel::State);
-    let mut view = state.view.clone();
+    state.shared.focus = Panel::State;
+    state.shared.slots.visit(Panel::State);
+    let mut view = state.shared.view.clone();
     let vehicle = std::sync::Arc::make_mut(&mut view.vehicle);
     let nav = vehicle.nav.as_mut().unwrap();
     nav.cannot_hold = Some(CannotHold { distance_m: 23.4, vertical_m: -0.2, limit: HoldLimit::Lean });
@@ -301,7 +301,7 @@ fn a_craft_that_cannot_hold_says_so_on_an_80x24_screen() {
 #[test]
 fn a_long_advice_leaves_the_machine_on_an_80x24_screen() {
     let mut state = fixture::state((80, 24), fixture::colour());
-    let mut view = state.view.clone();
+    let mut view = state.shared.view.clone();
     let vehicle = std::sync::Arc::make_mut(&mut view.vehicle);
     vehicle.craft.gps_fix = Some(true);
     vehicle.craft.arming_blocked_by = Some(std::iter::once(ArmingFlag::MotorProtocol).collect());
@@ -330,11 +330,11 @@ fn no_size_panics_with_any_focus_zoom_or_popup() {
     for width in (1..=250).step_by(3) {
         for height in (1..=85).step_by(2) {
             update(&mut state, Msg::Resize(width, height));
-            state.focus = Panel::ALL[usize::from(width + height) % Panel::ALL.len()];
-            state.slots.visit(state.focus);
-            state.zoomed = (width / 3 + height) % 3 == 0;
+            state.shared.focus = Panel::ALL[usize::from(width + height) % Panel::ALL.len()];
+            state.shared.slots.visit(state.shared.focus);
+            state.shared.zoomed = (width / 3 + height) % 3 == 0;
             state.popups = if width % 5 == 0 { popup.clone() } else { Vec::new() };
-            state.theme = themes[usize::from(height % 2)];
+            state.shared.theme = themes[usize::from(height % 2)];
             screen(&state);
         }
     }
@@ -345,7 +345,7 @@ fn a_picture_with_nonsense_numbers_is_drawn() {
     let mut state = fixture::state((120, 40), fixture::colour());
     fixture::approach(&mut state);
     for nonsense in [f64::NAN, f64::INFINITY, -1e300] {
-        let mut view = state.view.clone();
+        let mut view = state.shared.view.clone();
         let vehicle = std::sync::Arc::make_mut(&mut view.vehicle);
         let truth = vehicle.truth.as_mut().expect("the fixture tells the truth");
         truth.n = nonsense;

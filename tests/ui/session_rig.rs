@@ -75,7 +75,7 @@ impl Rig {
         let view = session.view.borrow().clone();
         let mut rig = Self { session, state: AppState::new(config, (120, 40), view) };
         rig.keys(" ").await;
-        rig.until("the pause", |state| state.view.paused).await;
+        rig.until("the pause", |state| state.shared.view.paused).await;
         rig
     }
 
@@ -156,27 +156,28 @@ impl Rig {
     pub(crate) async fn fly_to(&mut self, state: NavState) {
         let from = self.time();
         self.keys("}").await;
-        let arrived =
-            |now: &AppState| now.view.vehicle.time > from && now.view.paused && nav_state(now) == Some(state);
+        let arrived = |now: &AppState| {
+            now.shared.view.vehicle.time > from && now.shared.view.paused && nav_state(now) == Some(state)
+        };
         self.until(state.into(), arrived).await;
     }
 
     /// Shows the instant at this time.
     pub(crate) async fn show(&mut self, time: SimTime) {
         self.session.commands.send(Command::Seek(Seek::Time(time))).await.unwrap();
-        self.until("an instant", |state| state.view.vehicle.time == time).await;
+        self.until("an instant", |state| state.shared.view.vehicle.time == time).await;
     }
 
     pub(crate) fn time(&self) -> SimTime {
-        self.state.view.vehicle.time
+        self.state.shared.view.vehicle.time
     }
 
     pub(crate) fn picture(&self) -> Arc<Snapshot> {
-        Arc::clone(&self.state.view.vehicle)
+        Arc::clone(&self.state.shared.view.vehicle)
     }
 
     pub(crate) fn screen(&self) -> String {
-        let (width, height) = self.state.size;
+        let (width, height) = self.state.shared.size;
         let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
         terminal.draw(|frame| draw(&self.state, frame)).unwrap();
         terminal.backend().to_string()
@@ -192,5 +193,5 @@ impl Rig {
 }
 
 pub(crate) fn nav_state(state: &AppState) -> Option<NavState> {
-    state.view.vehicle.nav.as_ref().map(|nav| nav.state)
+    state.shared.view.vehicle.nav.as_ref().map(|nav| nav.state)
 }

@@ -13,7 +13,7 @@ use crate::hands::{keys, screen, state_with_fix as state};
 
 /// Shows the progress of an upload.
 fn progress(state: &mut AppState, upload: Option<(usize, usize)>) {
-    let mut view = state.view.clone();
+    let mut view = state.shared.view.clone();
     view.upload = upload.map(|(sent, total)| UploadView { sent, total });
     update(state, Msg::View(view));
 }
@@ -89,17 +89,17 @@ fn what_reading_back_finds_is_said() {
 fn an_answer_goes_to_the_plan_that_asked_wherever_it_is_by_then() {
     let mut state = state((120, 40));
     keys(&mut state, "2 +");
-    let edited = state.plan().clone();
+    let edited = state.shared.plan().clone();
     let [Effect::Download(id)] = keys(&mut state, "D")[..] else { panic!("a download") };
     keys(&mut state, "n");
     let effects = update(&mut state, Msg::DownloadReply { id, result: Ok(Box::new(fixture::square())) });
     assert_eq!(hands::journal_lines(&effects), 1);
-    assert!(state.plan().waypoints.is_empty(), "the new plan did not ask");
+    assert!(state.shared.plan().waypoints.is_empty(), "the new plan did not ask");
     assert!(screen(&state).contains("Downloaded 4 waypoints into square.toml."), "{}", screen(&state));
     keys(&mut state, "(");
-    assert_eq!(*state.plan(), fixture::square());
+    assert_eq!(*state.shared.plan(), fixture::square());
     keys(&mut state, "u");
-    assert_eq!(*state.plan(), edited);
+    assert_eq!(*state.shared.plan(), edited);
 
     let id = upload(&mut state);
     keys(&mut state, ")");
@@ -111,14 +111,14 @@ fn an_answer_goes_to_the_plan_that_asked_wherever_it_is_by_then() {
 fn a_plan_that_is_closed_takes_nothing_in_and_neither_does_the_next() {
     let mut state = state((120, 40));
     keys(&mut state, "2 n");
-    let closed = state.editor.plan().id();
+    let closed = state.shared.editor.plan().id();
     let [Effect::Download(id)] = keys(&mut state, "D")[..] else { panic!("a download") };
     assert_eq!(id, closed);
     keys(&mut state, "ctrl-w n");
-    assert_ne!(state.editor.plan().id(), closed, "no plan had this identifier before");
+    assert_ne!(state.shared.editor.plan().id(), closed, "no plan had this identifier before");
     let effects = update(&mut state, Msg::DownloadReply { id, result: Ok(Box::new(fixture::square())) });
     assert_eq!(hands::journal_lines(&effects), 0);
-    assert!(state.plan().waypoints.is_empty());
+    assert!(state.shared.plan().waypoints.is_empty());
     assert!(screen(&state).contains("the plan that was to receive it is closed"), "{}", screen(&state));
 }
 
@@ -138,11 +138,11 @@ fn what_went_wrong_stays_while_keys_are_pressed_until_esc_or_its_time_is_over() 
     update(&mut state, Msg::Files(FileReply::KeptAgain));
     assert!(!screen(&state).contains("edits not kept"), "{}", screen(&state));
     // Other notices end with the next key.
-    state.notify(Severity::Warn, "Only a word.");
+    state.shared.notify(Severity::Warn, "Only a word.");
     keys(&mut state, "j");
     assert!(!screen(&state).contains("Only a word."), "{}", screen(&state));
-    state.notify(Severity::Fault, "It failed.");
-    let later = state.now + Duration::from_secs(60);
+    state.shared.notify(Severity::Fault, "It failed.");
+    let later = state.shared.now + Duration::from_secs(60);
     update(&mut state, Msg::Clock(later));
     keys(&mut state, "j");
     assert!(!screen(&state).contains("It failed."), "{}", screen(&state));

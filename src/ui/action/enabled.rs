@@ -6,8 +6,8 @@ use crate::session::command::{
     NOT_RECORDED, PLACE_IS_EXTERNAL, REWOUND, TIME_IS_EXTERNAL, TIME_IS_THE_FIRMWARES,
 };
 use crate::telemetry::{LinkState, Mode, NavState};
-use crate::ui::app_state::AppState;
-use crate::ui::stick_recording;
+use crate::ui::shared::Shared;
+use crate::ui::stick_recording::keys as stick_recording;
 use crate::ui::transmitter;
 
 use super::{Action, real_craft};
@@ -16,7 +16,7 @@ use super::{Action, real_craft};
 ///
 /// # Errors
 /// Returns the reason for a refusal and the way out, in one sentence.
-pub fn enabled(state: &AppState, action: Action) -> Result<(), String> {
+pub fn enabled(state: &Shared, action: Action) -> Result<(), String> {
     let craft = &state.view.vehicle.craft;
     let remote = state.view.remote.as_ref();
     if let Some(sentence) = remote.and_then(|remote| real_craft::refusal(remote, action)) {
@@ -113,7 +113,7 @@ pub fn enabled(state: &AppState, action: Action) -> Result<(), String> {
 }
 
 /// Replaces the reason for a missing switch while the remote firmware has not yet reported its switches.
-fn or_not_known_yet(state: &AppState, why: String) -> String {
+fn or_not_known_yet(state: &Shared, why: String) -> String {
     match &state.view.remote {
         Some(remote) if remote.state != RemoteState::Ready => real_craft::NOT_KNOWN_YET.to_owned(),
         _ => why,
@@ -121,7 +121,7 @@ fn or_not_known_yet(state: &AppState, why: String) -> String {
 }
 
 /// Checks that the navigator accepts a command in flight.
-fn can_command(state: &AppState, action: Action) -> Result<(), String> {
+fn can_command(state: &Shared, action: Action) -> Result<(), String> {
     let vehicle = &state.view.vehicle;
     let Some(nav) = vehicle.nav.as_ref().filter(|nav| nav.engaged) else {
         let (engage, fly) = (state.key(Action::Autopilot), state.key(Action::Fly));
@@ -188,7 +188,7 @@ fn steers(action: Action) -> bool {
 }
 
 /// Returns `true` if the craft has crashed, so that only a reset helps.
-pub(in crate::ui) fn is_wrecked(state: &AppState) -> bool {
+pub(in crate::ui) fn is_wrecked(state: &Shared) -> bool {
     state.view.vehicle.truth.as_ref().is_some_and(|truth| truth.crashed)
 }
 
@@ -200,7 +200,7 @@ mod tests {
 
     #[test]
     fn an_external_simulator_keeps_time_and_place_to_itself() {
-        let mut state = AppState::bare((80, 24), SessionView::default());
+        let mut state = Shared::bare((80, 24), SessionView::default());
         let times = [
             Action::Pause,
             Action::Step,
@@ -212,7 +212,7 @@ mod tests {
             Action::Earlier,
             Action::FlyOn,
         ];
-        let refused = |state: &AppState| times.iter().all(|&action| enabled(state, action).is_err());
+        let refused = |state: &Shared| times.iter().all(|&action| enabled(state, action).is_err());
         state.view.timeline = Some(TimelineView::default());
         assert!(!refused(&state) && enabled(&state, Action::ResetCraft).is_ok());
         state.view.simulator = Some(LinkState::Flowing);
@@ -227,7 +227,7 @@ mod tests {
         let mut view = SessionView::default();
         let vehicle = std::sync::Arc::make_mut(&mut view.vehicle);
         vehicle.craft.armed = Some(false);
-        let mut state = AppState::bare((80, 24), view.clone());
+        let mut state = Shared::bare((80, 24), view.clone());
         assert!(enabled(&state, Action::LookAhead).unwrap_err().contains("stands disarmed"));
         let truth = crate::telemetry::snapshot::TruthView { alt: 30.0, ..Default::default() };
         std::sync::Arc::make_mut(&mut state.view.vehicle).truth = Some(truth);
@@ -240,7 +240,7 @@ mod tests {
 
     #[test]
     fn nothing_steers_while_an_earlier_instant_is_shown() {
-        let mut state = AppState::bare((80, 24), SessionView::default());
+        let mut state = Shared::bare((80, 24), SessionView::default());
         assert_eq!(enabled(&state, Action::Earlier), Err(NOT_RECORDED.to_owned()));
         state.view.timeline = Some(TimelineView { rewound: true, ..TimelineView::default() });
         for action in [Action::Fly, Action::Arm, Action::CutRc, Action::Upload, Action::Raise] {

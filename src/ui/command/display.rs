@@ -1,13 +1,13 @@
 //! Commands that change the display.
 
 use super::did_you_mean_end;
-use crate::ui::app_state::AppState;
-use crate::ui::message::Effect;
+use crate::ui::message::Request;
+use crate::ui::shared::Shared;
 use crate::ui::theme::{Charset, Palette};
 use crate::ui::units::Units;
 
 /// Runs `theme light`.
-pub(super) fn theme(state: &mut AppState, _: &str, argument: &str) -> Result<Vec<Effect>, String> {
+pub(super) fn theme(state: &mut Shared, _: &str, argument: &str) -> Result<Vec<Request>, String> {
     if state.theme.no_colour {
         return Err("The environment variable NO_COLOR asks for no colours: start without it.".to_owned());
     }
@@ -21,12 +21,12 @@ pub(super) fn theme(state: &mut AppState, _: &str, argument: &str) -> Result<Vec
     }
 }
 
-pub(super) fn complete_theme(_: &AppState, _: &str, typed: &str) -> Vec<String> {
+pub(super) fn complete_theme(_: &Shared, _: &str, typed: &str) -> Vec<String> {
     starting(typed, &Palette::NAMES.map(|(name, _)| name))
 }
 
 /// Runs `charset ascii`.
-pub(super) fn charset(state: &mut AppState, _: &str, argument: &str) -> Result<Vec<Effect>, String> {
+pub(super) fn charset(state: &mut Shared, _: &str, argument: &str) -> Result<Vec<Request>, String> {
     state.theme.charset = match argument {
         "unicode" => Charset::Unicode,
         "ascii" => Charset::Ascii,
@@ -36,12 +36,12 @@ pub(super) fn charset(state: &mut AppState, _: &str, argument: &str) -> Result<V
 }
 
 /// Returns the matching names of character sets.
-pub(super) fn complete_charset(_: &AppState, _: &str, typed: &str) -> Vec<String> {
+pub(super) fn complete_charset(_: &Shared, _: &str, typed: &str) -> Vec<String> {
     starting(typed, &["unicode", "ascii"])
 }
 
 /// Runs `units imperial`.
-pub(super) fn units(state: &mut AppState, _: &str, argument: &str) -> Result<Vec<Effect>, String> {
+pub(super) fn units(state: &mut Shared, _: &str, argument: &str) -> Result<Vec<Request>, String> {
     state.units = match argument {
         "metric" => Units::Metric,
         "imperial" => Units::Imperial,
@@ -51,7 +51,7 @@ pub(super) fn units(state: &mut AppState, _: &str, argument: &str) -> Result<Vec
 }
 
 /// Returns the matching names of systems of units.
-pub(super) fn complete_units(_: &AppState, _: &str, typed: &str) -> Vec<String> {
+pub(super) fn complete_units(_: &Shared, _: &str, typed: &str) -> Vec<String> {
     starting(typed, &["metric", "imperial"])
 }
 

@@ -5,22 +5,25 @@ use crate::flight::forecast::WHAT_IFS;
 use crate::session::Command;
 use crate::telemetry::InFlightCommand;
 use crate::ui::action::{self, Action};
-use crate::ui::app_state::AppState;
 use crate::ui::forecast;
-use crate::ui::message::Effect;
-use crate::ui::update;
+use crate::ui::message::{Effect, Request};
+use crate::ui::shared::Shared;
 
 /// Runs `go-to 2`.
-pub(super) fn go_to(state: &mut AppState, _: &str, argument: &str) -> Result<Vec<Effect>, String> {
+pub(super) fn go_to(state: &mut Shared, _: &str, argument: &str) -> Result<Vec<Request>, String> {
     action::enabled(state, Action::GoTo)?;
     if argument.is_empty() {
-        return Ok(update::perform(state, Action::GoTo));
+        return Ok(vec![Request::Act(Action::GoTo)]);
     }
-    go_to_waypoint(state, argument)
+    Ok(requests(go_to_waypoint(state, argument)?))
+}
+
+fn requests(effects: Vec<Effect>) -> Vec<Request> {
+    effects.into_iter().map(Request::from).collect()
 }
 
 /// Sends the craft to the waypoint with this number.
-pub(in crate::ui) fn go_to_waypoint(state: &AppState, number: &str) -> Result<Vec<Effect>, String> {
+pub(in crate::ui) fn go_to_waypoint(state: &Shared, number: &str) -> Result<Vec<Effect>, String> {
     let numbers = waypoints(state);
     match number.parse().ok().filter(|_| numbers.iter().any(|known| known == number)) {
         Some(index) => Ok(vec![Effect::Send(Command::InFlight(InFlightCommand::GoTo(index)))]),
@@ -29,27 +32,27 @@ pub(in crate::ui) fn go_to_waypoint(state: &AppState, number: &str) -> Result<Ve
 }
 
 /// Returns the matching numbers of waypoints that have a place.
-pub(super) fn complete_go_to(state: &AppState, _: &str, typed: &str) -> Vec<String> {
+pub(super) fn complete_go_to(state: &Shared, _: &str, typed: &str) -> Vec<String> {
     waypoints(state).into_iter().filter(|number| number.starts_with(typed)).collect()
 }
 
 /// Returns the numbers of the craft's waypoints that have a place.
-fn waypoints(state: &AppState) -> Vec<String> {
+fn waypoints(state: &Shared) -> Vec<String> {
     let stored = state.view.vehicle.stored_plan.iter().flat_map(|plan| plan.waypoints.iter().enumerate());
     stored.filter(|(_, waypoint)| waypoint.kind.is_positional()).map(|(index, _)| index.to_string()).collect()
 }
 
 /// Runs `what-if gps-loss`.
-pub(super) fn what_if(state: &mut AppState, _: &str, argument: &str) -> Result<Vec<Effect>, String> {
+pub(super) fn what_if(state: &mut Shared, _: &str, argument: &str) -> Result<Vec<Request>, String> {
     action::enabled(state, Action::WhatIf)?;
     if argument.is_empty() {
-        return Ok(update::perform(state, Action::WhatIf));
+        return Ok(vec![Request::Act(Action::WhatIf)]);
     }
-    ask_what_if(state, argument)
+    Ok(requests(ask_what_if(state, argument)?))
 }
 
 /// Flies ahead with the what-if of this name, or of this number in the list.
-pub(in crate::ui) fn ask_what_if(state: &mut AppState, name: &str) -> Result<Vec<Effect>, String> {
+pub(in crate::ui) fn ask_what_if(state: &mut Shared, name: &str) -> Result<Vec<Effect>, String> {
     let numbered = name.parse::<usize>().ok().and_then(|number| number.checked_sub(1));
     let found = match numbered {
         Some(at) => WHAT_IFS.get(at),
@@ -66,7 +69,7 @@ pub(in crate::ui) fn ask_what_if(state: &mut AppState, name: &str) -> Result<Vec
 }
 
 /// Returns the matching names of what-ifs.
-pub(super) fn complete_what_if(_: &AppState, _: &str, typed: &str) -> Vec<String> {
+pub(super) fn complete_what_if(_: &Shared, _: &str, typed: &str) -> Vec<String> {
     let names = WHAT_IFS.iter().map(|what_if| what_if.name);
     names.filter(|name| name.starts_with(typed)).map(str::to_owned).collect()
 }

@@ -2,7 +2,7 @@
 
 use super::{all, short_name, split};
 use crate::ui::action::{self, ACTIONS};
-use crate::ui::app_state::AppState;
+use crate::ui::shared::Shared;
 
 /// The longest argument form shown beside the help.
 const SHORT: usize = 24;
@@ -18,7 +18,7 @@ pub struct Suggestion {
 }
 
 /// Returns the possible completions of `typed`, the commands of the `:` line first.
-pub fn suggestions(state: &AppState, typed: &str) -> Vec<Suggestion> {
+pub fn suggestions(state: &Shared, typed: &str) -> Vec<Suggestion> {
     let typed = typed.trim_start().trim_start_matches(':').trim_start();
     if typed.contains([' ', '=']) {
         let (word, argument) = split(typed);
@@ -54,7 +54,7 @@ pub fn suggestions(state: &AppState, typed: &str) -> Vec<Suggestion> {
 
 /// Returns a hint about the line: the usage of the command, or the effect of the action and the reason if it is refused
 /// now.
-pub fn hint(state: &AppState, typed: &str) -> Option<String> {
+pub fn hint(state: &Shared, typed: &str) -> Option<String> {
     let (word, argument) = split(typed);
     if word == "set" {
         let setting = (state.cli_help.hint)(&format!("set {argument}"));

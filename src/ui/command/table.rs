@@ -2,8 +2,8 @@
 
 use super::{display, flight, plan, time, vehicle, world};
 use crate::sim::COMMAND_WORDS;
-use crate::ui::app_state::AppState;
-use crate::ui::message::Effect;
+use crate::ui::message::Request;
+use crate::ui::shared::Shared;
 
 /// A command that takes an argument.
 #[derive(Debug, Clone, Copy)]
@@ -14,9 +14,9 @@ pub struct Command {
     /// The effect of the command, in one sentence.
     pub help: &'static str,
     /// Runs the command with its name and argument. Returns a sentence if it refuses.
-    pub run: fn(&mut AppState, &str, &str) -> Result<Vec<Effect>, String>,
+    pub run: fn(&mut Shared, &str, &str) -> Result<Vec<Request>, String>,
     /// Returns the possible completions of the typed argument.
-    pub complete: fn(&AppState, &str, &str) -> Vec<String>,
+    pub complete: fn(&Shared, &str, &str) -> Vec<String>,
 }
 
 const COMMANDS: &[Command] = &[

@@ -1,11 +1,11 @@
 //! Commands about time.
 
 use crate::session::{Command, SPEED_RANGE};
-use crate::ui::app_state::AppState;
-use crate::ui::message::Effect;
+use crate::ui::message::{Effect, Request};
+use crate::ui::shared::Shared;
 
 /// Runs `speed 4` or `speed max`.
-pub(super) fn speed(state: &mut AppState, _: &str, argument: &str) -> Result<Vec<Effect>, String> {
+pub(super) fn speed(state: &mut Shared, _: &str, argument: &str) -> Result<Vec<Request>, String> {
     if state.view.simulator.is_some() {
         return Err(crate::session::command::TIME_IS_EXTERNAL.to_owned());
     }
@@ -21,10 +21,10 @@ pub(super) fn speed(state: &mut AppState, _: &str, argument: &str) -> Result<Vec
             })?,
         };
     state.view.speed_wanted = factor;
-    Ok(vec![Effect::Send(Command::Speed(factor))])
+    Ok(vec![Effect::Send(Command::Speed(factor)).into()])
 }
 
-pub(super) fn complete_speed(_: &AppState, _: &str, typed: &str) -> Vec<String> {
+pub(super) fn complete_speed(_: &Shared, _: &str, typed: &str) -> Vec<String> {
     let usual = ["0.1", "0.25", "0.5", "1", "2", "4", "8", "16", "64", "max"];
     usual.into_iter().filter(|factor| factor.starts_with(typed)).map(str::to_owned).collect()
 }

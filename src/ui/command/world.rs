@@ -2,19 +2,21 @@
 
 use super::did_you_mean_end;
 use crate::sim::{COMMAND_WORDS, FAULTS, FaultInfo, SWITCHES};
-use crate::ui::app_state::AppState;
-use crate::ui::message::Effect;
+use crate::ui::message::{Effect, Request};
+use crate::ui::shared::Shared;
 
 /// Runs `wind 5@270`, `fault gps-loss,6` and the like.
-pub(super) fn change(_: &mut AppState, name: &str, argument: &str) -> Result<Vec<Effect>, String> {
+pub(super) fn change(_: &mut Shared, name: &str, argument: &str) -> Result<Vec<Request>, String> {
     match COMMAND_WORDS.iter().find(|word| word.name == name) {
         Some(word) if argument.is_empty() => Err(format!("Write :{name} {}.", word.value)),
-        _ => Ok(vec![Effect::World(format!("{name}={}", argument.trim_start_matches('=').trim_start()))]),
+        _ => Ok(vec![
+            Effect::World(format!("{name}={}", argument.trim_start_matches('=').trim_start())).into(),
+        ]),
     }
 }
 
 /// Returns the matching values that are words.
-pub(super) fn complete(_: &AppState, name: &str, typed: &str) -> Vec<String> {
+pub(super) fn complete(_: &Shared, name: &str, typed: &str) -> Vec<String> {
     let starting = |words: Vec<&str>| -> Vec<String> {
         words.into_iter().filter(|word| word.starts_with(typed)).map(str::to_owned).collect()
     };
@@ -29,7 +31,7 @@ pub(super) fn complete(_: &AppState, name: &str, typed: &str) -> Vec<String> {
 }
 
 /// Runs `world battery_sag=on`.
-pub(super) fn switch(_: &mut AppState, _: &str, argument: &str) -> Result<Vec<Effect>, String> {
+pub(super) fn switch(_: &mut Shared, _: &str, argument: &str) -> Result<Vec<Request>, String> {
     let usage = "Write :world NAME=VALUE, such as :world battery_sag=on.";
     let (name, value) = argument.split_once(['=', ' ']).ok_or(usage)?;
     let (name, value) = (name.trim(), value.trim());
@@ -37,11 +39,11 @@ pub(super) fn switch(_: &mut AppState, _: &str, argument: &str) -> Result<Vec<Ef
     if !names().any(|known| known == name) {
         return Err(format!("There is no switch {name}{}", did_you_mean_end(name, names())));
     }
-    Ok(vec![Effect::World(format!("{name}={value}"))])
+    Ok(vec![Effect::World(format!("{name}={value}")).into()])
 }
 
 /// Returns the matching names of switches, then their values.
-pub(super) fn complete_switch(_: &AppState, _: &str, typed: &str) -> Vec<String> {
+pub(super) fn complete_switch(_: &Shared, _: &str, typed: &str) -> Vec<String> {
     let lines = SWITCHES.iter().flat_map(|switch| match typed.split_once('=') {
         Some((name, _)) if name == switch.name => {
             words_of(switch.values).into_iter().map(|value| format!("{name}={value}")).collect()
@@ -66,7 +68,7 @@ mod tests {
 
     #[test]
     fn values_that_are_words_are_completed() {
-        let state = AppState::bare((80, 24), SessionView::default());
+        let state = Shared::bare((80, 24), SessionView::default());
         assert_eq!(complete(&state, "turbulence", "se"), ["severe"]);
         assert_eq!(complete(&state, "noise", ""), ["real", "none"]);
         assert_eq!(complete(&state, "wind", ""), ["calm"]);

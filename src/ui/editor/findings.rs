@@ -5,21 +5,22 @@ use crate::plan::FlightPlan;
 use crate::plan::edit::fix::{Fix, fix, waypoint_of};
 use crate::plan::estimate::Assumptions;
 use crate::plan::review::{Finding, review};
-use crate::ui::app_state::AppState;
 use crate::ui::editor::settings_in_force;
+use crate::ui::map_point::origin::origin;
+use crate::ui::shared::Shared;
 
 /// Returns the home position: of the craft, else of the plan, else the origin of the map, else the first waypoint.
-pub(crate) fn home(state: &AppState) -> Option<LatLon> {
+pub(crate) fn home(state: &Shared) -> Option<LatLon> {
     let document = state.editor.document();
     let planned = document.home.map(|home| home.position);
     let first = || document.plan.waypoints.iter().find(|wp| wp.kind.uses_position()).map(|wp| wp.position);
-    let map = crate::ui::map_point::origin(state);
+    let map = origin(state);
     let map = map.map(|frame| LatLon::from_degrees(frame.lat_deg, frame.lon_deg));
     state.view.vehicle.craft.home.or(planned).or(map).or_else(first)
 }
 
 /// Returns all findings about the open plan, refusals first; empty for an empty plan.
-pub(crate) fn findings(state: &AppState) -> Vec<Finding> {
+pub(crate) fn findings(state: &Shared) -> Vec<Finding> {
     let document = state.editor.document();
     match home(state) {
         Some(home) if !document.plan.waypoints.is_empty() => {
@@ -35,7 +36,7 @@ pub(crate) fn findings(state: &AppState) -> Vec<Finding> {
 }
 
 /// Returns the finding for which the autopilot would refuse a plan in the air.
-pub(crate) fn refusal(state: &AppState, plan: &FlightPlan, limits: &Assumptions) -> Option<Finding> {
+pub(crate) fn refusal(state: &Shared, plan: &FlightPlan, limits: &Assumptions) -> Option<Finding> {
     // Arming sets home where the craft is.
     let craft = &state.view.vehicle.craft;
     let here = craft.gps.as_ref().filter(|_| craft.has_fix()).map(|gps| gps.position);
@@ -44,13 +45,13 @@ pub(crate) fn refusal(state: &AppState, plan: &FlightPlan, limits: &Assumptions)
 }
 
 /// Returns the finding for which the autopilot would refuse the plan that the craft stores.
-pub(crate) fn refusal_of_the_stored(state: &AppState) -> Option<Finding> {
+pub(crate) fn refusal_of_the_stored(state: &Shared) -> Option<Finding> {
     let stored = state.view.vehicle.stored_plan.as_ref().filter(|plan| !plan.waypoints.is_empty())?;
     refusal(state, stored, &settings_in_force::of_the_craft(state)?)
 }
 
 /// Returns the shown finding (about the waypoint under the cursor, else the first) and its fix.
-pub(crate) fn shown(state: &AppState, findings: &[Finding]) -> Option<(Finding, Option<Fix>)> {
+pub(crate) fn shown(state: &Shared, findings: &[Finding]) -> Option<(Finding, Option<Fix>)> {
     let here = findings.iter().find(|finding| waypoint_of(finding) == Some(state.editor.row()));
     let finding = here.or_else(|| findings.first())?.clone();
     let fix = fix(state.editor.document(), &finding, home(state)?);

@@ -24,6 +24,18 @@ impl Editor {
         self.field = None;
     }
 
+    /// Returns the request to write a plan to a file.
+    pub(in crate::ui) fn write(&self, id: PlanId, path: PathBuf, replace: bool) -> Effect {
+        let plan = self.plan_of(id).unwrap_or_else(|| self.plan());
+        Effect::Files(FileRequest::Save {
+            id,
+            path,
+            document: Box::new(plan.document().clone()),
+            revision: plan.history().at(),
+            replace,
+        })
+    }
+
     /// Opens a new plan with this document, under an identifier that no plan had before, so that replies still on their
     /// way to a closed plan do not reach it.
     pub(in crate::ui) fn open_new(&mut self, document: PlanDocument) -> Effect {

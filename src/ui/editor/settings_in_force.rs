@@ -2,11 +2,11 @@
 
 use crate::plan::edit::PlanDocument;
 use crate::plan::estimate::{Assumptions, SettingSource};
-use crate::ui::app_state::AppState;
+use crate::ui::shared::Shared;
 
 /// Returns the lines of the plan that its upload would set. A craft that has the plan is flown without another upload: only
 /// the lines edited since this editor uploaded it, or opened it, are left.
-pub(crate) fn to_upload<'a>(state: &AppState, document: &'a PlanDocument) -> Vec<&'a str> {
+pub(crate) fn to_upload<'a>(state: &Shared, document: &'a PlanDocument) -> Vec<&'a str> {
     if !state.plan_is_on_craft() {
         return document.settings.iter().map(String::as_str).collect();
     }
@@ -15,8 +15,13 @@ pub(crate) fn to_upload<'a>(state: &AppState, document: &'a PlanDocument) -> Vec
     document.settings.iter().filter(|line| !sent.contains(line)).map(String::as_str).collect()
 }
 
+/// Returns `true` if the craft has the open plan, but not the latest edits of its settings.
+pub(crate) fn has_settings_to_upload(state: &Shared) -> bool {
+    state.plan_is_on_craft() && !to_upload(state, state.editor.document()).is_empty()
+}
+
 /// Returns the limits the plan is judged by, and whose the fence among them is.
-pub(crate) fn assumptions(state: &AppState, document: &PlanDocument) -> Assumptions {
+pub(crate) fn assumptions(state: &Shared, document: &PlanDocument) -> Assumptions {
     let max_alt_m = Some(state.max_altitude_m);
     let Some(settings) = &state.view.vehicle.settings else {
         return Assumptions { max_alt_m, ..Assumptions::from_settings(&document.settings) };
@@ -35,7 +40,7 @@ pub(crate) fn assumptions(state: &AppState, document: &PlanDocument) -> Assumpti
 }
 
 /// Returns the limits by which the craft judges the plan that it stores; `None` if its settings are unknown.
-pub(crate) fn of_the_craft(state: &AppState) -> Option<Assumptions> {
+pub(crate) fn of_the_craft(state: &Shared) -> Option<Assumptions> {
     let settings = state.view.vehicle.settings.as_ref()?;
     Some(Assumptions { fence_from: SettingSource::Craft, ..settings.assumptions() })
 }
@@ -47,7 +52,7 @@ pub(crate) fn sets_a_fence(document: &PlanDocument) -> bool {
 
 /// Returns the settings of a plan on the craft for which the craft has another value. Lines that the firmware refused at the
 /// upload are not among them: the answer to the upload named them.
-pub(crate) fn differing(state: &AppState, document: &PlanDocument) -> Vec<String> {
+pub(crate) fn differing(state: &Shared, document: &PlanDocument) -> Vec<String> {
     let Some(craft) = state.view.vehicle.settings.map(|settings| settings.assumptions()) else {
         return Vec::new();
     };
@@ -67,7 +72,7 @@ pub(crate) fn differing(state: &AppState, document: &PlanDocument) -> Vec<String
 }
 
 /// Returns a sentence if the upload of the plan replaces a fence that the craft has by another.
-pub(crate) fn replaced_fence(state: &AppState, document: &PlanDocument) -> Option<String> {
+pub(crate) fn replaced_fence(state: &Shared, document: &PlanDocument) -> Option<String> {
     let craft = state.view.vehicle.settings.as_ref()?.assumptions();
     let (old_m, new_m) = (craft.fence_m, craft.with_settings(&document.settings).fence_m);
     let length = |metres: f64| state.units.length_text(metres, 0);

@@ -4,8 +4,8 @@ use crate::plan::FlightPlan;
 use crate::session::ForecastRequest;
 use crate::telemetry::Turbulence;
 use crate::telemetry::snapshot::{SettingsView, WindView};
-use crate::ui::app_state::AppState;
 use crate::ui::editor::settings_in_force;
+use crate::ui::shared::Shared;
 
 /// Smaller changes of the mean wind are not worth another estimate.
 const WIND_MPS: f64 = 0.5;
@@ -32,7 +32,7 @@ struct Air {
 
 impl EstimateBasis {
     /// Returns the input for the open plan now.
-    pub(super) fn of(state: &AppState) -> Self {
+    pub(super) fn of(state: &Shared) -> Self {
         let world = &state.view.vehicle.world;
         Self {
             plan: state.plan().clone(),
@@ -49,7 +49,7 @@ impl EstimateBasis {
     }
 
     /// Returns `true` if an estimate for this input still fits the open plan, apart from small changes of the wind.
-    pub(super) fn still_holds(&self, state: &AppState) -> bool {
+    pub(super) fn still_holds(&self, state: &Shared) -> bool {
         let world = &state.view.vehicle.world;
         self.plan == *state.plan()
             && self.settings == to_upload(state)
@@ -74,7 +74,7 @@ impl EstimateBasis {
 
 /// Returns the settings of the open plan that have yet to be uploaded. The estimate sets them on its copy of the craft,
 /// which has all other settings.
-fn to_upload(state: &AppState) -> Vec<String> {
+fn to_upload(state: &Shared) -> Vec<String> {
     let lines = settings_in_force::to_upload(state, state.editor.document());
     lines.into_iter().map(str::to_owned).collect()
 }

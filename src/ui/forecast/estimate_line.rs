@@ -5,17 +5,17 @@ use unicode_width::UnicodeWidthStr as _;
 
 use crate::flight::forecast::{FlightResult, Forecast, ForecastEnd};
 use crate::plan::estimate::SettingSource;
-use crate::ui::app_state::AppState;
 use crate::ui::editor::settings_in_force;
 use crate::ui::formatting::cut;
 use crate::ui::panel::span;
+use crate::ui::shared::Shared;
 use crate::ui::text_wrap::wrapped;
 use crate::ui::theme::{Role, Theme};
 use crate::ui::units::Units;
 
 /// `612 m   flown estimate 03:41   battery 38 %   worst xte 0.9 m   fence 58 m`, as much of it as `width` columns take;
 /// or, in two lines at most, the reason why the plan would not be flown to its end.
-pub(in crate::ui) fn lines(state: &AppState, width: u16) -> Vec<Line<'static>> {
+pub(in crate::ui) fn lines(state: &Shared, width: u16) -> Vec<Line<'static>> {
     let theme = &state.theme;
     let width = usize::from(width);
     let forecast = &state.forecast;

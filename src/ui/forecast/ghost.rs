@@ -1,7 +1,7 @@
 //! The forecast that the map shows.
 
 use crate::flight::forecast::{Forecast, PathPoint};
-use crate::ui::app_state::AppState;
+use crate::ui::shared::Shared;
 use crate::ui::units::Units;
 
 /// A path that was not flown yet, and its description.
@@ -14,7 +14,7 @@ pub(in crate::ui) struct Ghost<'a> {
 
 /// Returns the forecast on the map: the requested what-if or look-ahead, else the estimate of the open plan while no
 /// plan or another one is flown.
-pub(in crate::ui) fn ghost(state: &AppState) -> Option<Ghost<'_>> {
+pub(in crate::ui) fn ghost(state: &Shared) -> Option<Ghost<'_>> {
     let forecast = &state.forecast;
     if let Some(chosen) = &forecast.what_if {
         return Some(asked(state.units, chosen.what_if.title, chosen.asked.forecast()));

@@ -3,10 +3,10 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::ui::app_state::AppState;
-use crate::ui::console::CliLineKind;
+use crate::ui::console::{CliLineKind, CliState};
 use crate::ui::formatting::cut;
 use crate::ui::panel::Panel;
+use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
 
 use super::row;
@@ -23,9 +23,9 @@ const WELCOME: &str =
     "The firmware's own command line. Type `help`, paste a `diff all`; Tab completes, Esc leaves.";
 
 /// Returns the title with the current activity.
-pub(crate) fn title(state: &AppState) -> String {
+pub(crate) fn title(cli: &CliState, state: &Shared) -> String {
     let name = state.panel_title(Panel::Cli);
-    match (state.cli.queued(), state.cli.waiting, state.cli.scroll) {
+    match (cli.queued(), cli.waiting, cli.scroll) {
         (0, false, 0) => name.to_owned(),
         (0, true, 0) => format!("{name} — running"),
         (0, _, lines) => format!("{name} — {lines} newer below"),
@@ -34,14 +34,13 @@ pub(crate) fn title(state: &AppState) -> String {
 }
 
 /// Draws the inside. Returns the position of the cursor.
-pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+pub(crate) fn draw(cli: &CliState, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     if area.height < 2 || area.width < 4 {
         return None;
     }
     let theme = &state.theme;
-    let cli = &state.cli;
     let width = usize::from(area.width);
-    let help = help_rows(state, area);
+    let help = help_rows(cli, state, area);
     let bottom = area.height - 1 - help.len() as u16;
     for (at, text) in help.iter().enumerate() {
         row(buffer, area, bottom + 1 + at as u16, theme, Role::Dim, text);
@@ -51,7 +50,7 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<
     let mut rows: Vec<(Role, String)> = Vec::new();
     let candidates = candidate_rows(&cli.candidates, width);
     rows.extend(candidates.into_iter().rev().map(|text| (Role::Title, text)));
-    let scroll = cli.scroll.min(last_scroll(state, area));
+    let scroll = cli.scroll.min(last_scroll(cli, state, area));
     for entry in cli.lines.iter().rev().skip(scroll) {
         if rows.len() >= usize::from(bottom) {
             break;
@@ -75,19 +74,19 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<
 }
 
 /// Returns the greatest scroll position, at which the oldest line is the first on the screen.
-pub(crate) fn last_scroll(state: &AppState, area: Rect) -> usize {
-    let lines_of = &state.cli.lines;
-    let height = usize::from(area.height).saturating_sub(1 + help_rows(state, area).len());
+pub(crate) fn last_scroll(cli: &CliState, state: &Shared, area: Rect) -> usize {
+    let lines_of = &cli.lines;
+    let height = usize::from(area.height).saturating_sub(1 + help_rows(cli, state, area).len());
     let rows = lines_of.iter().map(|entry| lines(entry, usize::from(area.width)).len());
     lines_of.len().saturating_sub(fitting(rows, height))
 }
 
 /// Returns the help for the typed text: at least one row, so that the prompt keeps its place, at most three rows and
 /// about a quarter of the panel.
-fn help_rows(state: &AppState, area: Rect) -> Vec<String> {
+fn help_rows(cli: &CliState, state: &Shared, area: Rect) -> Vec<String> {
     let width = usize::from(area.width);
     let most = usize::from(area.height / 4).clamp(1, 3);
-    let hint = (state.cli_help.hint)(state.cli.input.value()).unwrap_or_default();
+    let hint = (state.cli_help.hint)(cli.input.value()).unwrap_or_default();
     let mut rows = wrapped(&hint, width);
     if rows.len() > most {
         let rest = rows.split_off(most - 1).join(" ");

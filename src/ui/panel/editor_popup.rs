@@ -5,9 +5,9 @@ use ratatui::layout::{Position, Rect};
 use ratatui::text::Line;
 
 use super::{line, row, span};
-use crate::ui::app_state::AppState;
-use crate::ui::draw::popup;
 use crate::ui::editor::{Browser, EditorPopup, Form, FormField, FormKind, OpenPlan, Purpose, Question};
+use crate::ui::popup::frame::popup;
+use crate::ui::shared::Shared;
 use crate::ui::text_wrap::wrapped;
 use crate::ui::theme::Role;
 
@@ -19,7 +19,7 @@ const NARROW: u16 = 16;
 const WIDTH: u16 = 72;
 
 /// Draws the open popup. Returns the position of the cursor.
-pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+pub(crate) fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     match state.editor.popup.as_ref()? {
         EditorPopup::Form(open) => form(state, open, area, buffer),
         EditorPopup::Browser(open) => browser(state, open, area, buffer),
@@ -30,7 +30,7 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<
     }
 }
 
-fn form(state: &AppState, form: &Form, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+fn form(state: &Shared, form: &Form, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     let theme = &state.theme;
     let title = match form.kind {
         FormKind::Bulk => "Change waypoints",
@@ -44,7 +44,7 @@ fn form(state: &AppState, form: &Form, area: Rect, buffer: &mut Buffer) -> Optio
     };
     let foot = wrapped(&text, usize::from(WIDTH));
     let height = form.fields.len() as u16 + foot.len() as u16 + 2;
-    let inside = popup(state, area, (WIDTH, height), title, buffer);
+    let inside = popup(theme, area, (WIDTH, height), title, buffer);
     let rows = inside.height.saturating_sub(foot.len() as u16 + 2);
     let first = (form.at as u16 + 1).saturating_sub(rows);
     let mut cursor = None;
@@ -83,13 +83,13 @@ fn value_width(field: &FormField, columns: u16) -> u16 {
     VALUE.min(columns.saturating_sub(LABEL + hint).max(NARROW)).min(columns.saturating_sub(LABEL))
 }
 
-fn browser(state: &AppState, browser: &Browser, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+fn browser(state: &Shared, browser: &Browser, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     let theme = &state.theme;
     let title = match browser.purpose {
         Purpose::Open => "Open a plan",
         Purpose::Save(_) => "Save as",
     };
-    let inside = popup(state, area, (WIDTH, area.height.saturating_sub(6).min(22)), title, buffer);
+    let inside = popup(theme, area, (WIDTH, area.height.saturating_sub(6).min(22)), title, buffer);
     let directory = browser.listing.directory.display().to_string();
     row(buffer, inside, 0, theme, Role::Dim, &format!(" {directory}/"));
     row(buffer, inside, 1, theme, Role::Title, " name ");
@@ -114,7 +114,7 @@ fn browser(state: &AppState, browser: &Browser, area: Rect, buffer: &mut Buffer)
     cursor
 }
 
-fn question(state: &AppState, question: &Question, area: Rect, buffer: &mut Buffer) {
+fn question(state: &Shared, question: &Question, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let title_of = |id| state.editor.plan_of(id).map_or_else(String::new, OpenPlan::title);
     let (title, text) = match question {
@@ -128,7 +128,7 @@ fn question(state: &AppState, question: &Question, area: Rect, buffer: &mut Buff
         }
     };
     let lines = wrapped(&format!("▲ {text}"), 58);
-    let inside = popup(state, area, (60, lines.len() as u16 + 2), title, buffer);
+    let inside = popup(theme, area, (60, lines.len() as u16 + 2), title, buffer);
     for (at, text) in lines.iter().enumerate() {
         row(buffer, inside, at as u16, theme, Role::Warn, &format!(" {text}"));
     }
@@ -138,7 +138,7 @@ fn question(state: &AppState, question: &Question, area: Rect, buffer: &mut Buff
     line(buffer, inside, lines.len() as u16 + 1, &keys(state, &answers));
 }
 
-fn keys(state: &AppState, keys: &[(&str, &str)]) -> Line<'static> {
+fn keys(state: &Shared, keys: &[(&str, &str)]) -> Line<'static> {
     let theme = &state.theme;
     let spans = keys.iter().flat_map(|(key, what)| {
         [span(theme, Role::Key, format!(" {key}")), span(theme, Role::Text, format!(" {what} "))]

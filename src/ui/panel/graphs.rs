@@ -8,10 +8,11 @@ use ratatui::widgets::canvas::{Canvas, Line as CanvasLine};
 
 use crate::signals::SimTime;
 use crate::ui::action::Action;
-use crate::ui::app_state::AppState;
 use crate::ui::formatting::{clock, fixed};
-use crate::ui::graphs::{self, PLOTS, Plot, Quantity, Sample, Signal, Stroke};
+use crate::ui::graphs::{PLOTS, Plot, Quantity, Sample, Signal, Stroke};
 use crate::ui::panel::Panel;
+use crate::ui::popup::frame::popup;
+use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
 
 use super::{line, row, span};
@@ -22,15 +23,17 @@ const AXIS: u16 = 8;
 const LEAST_ROWS: u16 = 4;
 
 /// Returns the title with the shown time span and the cursor.
-pub(crate) fn title(state: &AppState) -> String {
+pub(crate) fn title(state: &Shared) -> String {
     let span = state.graphs.span_s();
     let span = if span < 120.0 { format!("{span:.0} s") } else { format!("{:.0} min", span / 60.0) };
-    let cursor = graphs::cursor_s(state)
+    let cursor = state
+        .graphs
+        .cursor_s(&state.view)
         .map_or_else(String::new, |cursor| format!(" — at {}", clock(SimTime::from_secs_f64(cursor))));
     format!("{} — {span}{cursor}", state.panel_title(Panel::Graphs))
 }
 
-pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
+pub(crate) fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let plots: Vec<&Plot> = state.graphs.plots().collect();
     if plots.is_empty() {
@@ -50,7 +53,7 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     }
     let body = Rect { height: area.height - 1, ..area };
     let fitting = usize::from(body.height / LEAST_ROWS).clamp(1, plots.len());
-    let cursor = graphs::cursor_s(state);
+    let cursor = state.graphs.cursor_s(&state.view);
     let window = state.graphs.window(cursor);
     let rows = body.height / fitting as u16;
     let spare = body.height % fitting as u16;
@@ -68,7 +71,7 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
 }
 
 /// Returns the factor and the unit for the values of a plot, and the number of decimals.
-fn unit(state: &AppState, quantity: Quantity) -> (f64, &'static str, usize) {
+fn unit(state: &Shared, quantity: Quantity) -> (f64, &'static str, usize) {
     let units = state.units;
     match quantity {
         Quantity::Length => (units.length(1.0), units.length_unit(), 1),
@@ -99,10 +102,10 @@ fn glyph(stroke: Stroke) -> &'static str {
     }
 }
 
-fn draw_plot(state: &AppState, plot: &Plot, area: Rect, (from, to): (f64, f64), buffer: &mut Buffer) {
+fn draw_plot(state: &Shared, plot: &Plot, area: Rect, (from, to): (f64, f64), buffer: &mut Buffer) {
     let theme = &state.theme;
     let (factor, unit, decimals) = unit(state, plot.quantity);
-    let now = state.graphs.sample_at(graphs::cursor_s(state));
+    let now = state.graphs.sample_at(state.graphs.cursor_s(&state.view));
     let mut title = vec![span(theme, Role::Title, format!("{} {unit}", plot.name))];
     for (at, (signal, name, stroke)) in plot.curves.iter().enumerate().rev() {
         let value = now.and_then(|sample| sample.value(*signal)).map(|value| value * factor);
@@ -210,7 +213,7 @@ fn segments(
     segments
 }
 
-fn draw_cursor(state: &AppState, area: Rect, (from, to): (f64, f64), cursor: f64, buffer: &mut Buffer) {
+fn draw_cursor(state: &Shared, area: Rect, (from, to): (f64, f64), cursor: f64, buffer: &mut Buffer) {
     let share = (cursor - from) / (to - from);
     if !(0.0..=1.0).contains(&share) {
         return;
@@ -225,7 +228,7 @@ fn draw_cursor(state: &AppState, area: Rect, (from, to): (f64, f64), cursor: f64
     }
 }
 
-fn draw_time_axis(state: &AppState, area: Rect, (from, to): (f64, f64), hidden: usize, buffer: &mut Buffer) {
+fn draw_time_axis(state: &Shared, area: Rect, (from, to): (f64, f64), hidden: usize, buffer: &mut Buffer) {
     let theme = &state.theme;
     let left = clock(SimTime::from_secs_f64(from.max(0.0)));
     let right = clock(SimTime::from_secs_f64(to.max(0.0)));
@@ -239,11 +242,10 @@ fn draw_time_axis(state: &AppState, area: Rect, (from, to): (f64, f64), hidden: 
 }
 
 /// Draws the popup with the list of plots.
-pub(crate) fn draw_choice(state: &AppState, selected: usize, area: Rect, buffer: &mut Buffer) {
+pub(crate) fn draw_choice(state: &Shared, selected: usize, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let size = (50, PLOTS.len() as u16);
-    let inside =
-        crate::ui::draw::popup(state, area, size, "Graphs — Enter shows or hides, Esc closes", buffer);
+    let inside = popup(theme, area, size, "Graphs — Enter shows or hides, Esc closes", buffer);
     let first = (selected + 1).saturating_sub(usize::from(inside.height));
     for (at, plot) in PLOTS.iter().enumerate().skip(first).take(usize::from(inside.height)) {
         let role = if at == selected { Role::Selected } else { Role::Text };

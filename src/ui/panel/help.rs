@@ -5,8 +5,8 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 use crate::ui::action::{ACTIONS, Context};
-use crate::ui::app_state::AppState;
-use crate::ui::draw::popup;
+use crate::ui::popup::frame::popup;
+use crate::ui::shared::Shared;
 use crate::ui::text_wrap::wrapped;
 use crate::ui::theme::{Role, Theme};
 
@@ -16,7 +16,7 @@ use super::{line, span};
 const KEYS: usize = 12;
 
 /// Draws the popup, scrolled down by `scroll` lines.
-pub(crate) fn draw(state: &AppState, scroll: usize, area: Rect, buffer: &mut Buffer) {
+pub(crate) fn draw(state: &Shared, scroll: usize, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     // The width inside the frame.
     let columns = usize::from(area.width.saturating_sub(2));
@@ -50,7 +50,7 @@ pub(crate) fn draw(state: &AppState, scroll: usize, area: Rect, buffer: &mut Buf
     let width = lines.iter().map(Line::width).max().unwrap_or(0) as u16 + 1;
     let height = lines.len() as u16;
     let shows = area.height.saturating_sub(4).min(height);
-    let inside = popup(state, area, (width, shows), "Keys — any other key closes, ↑ ↓ scroll", buffer);
+    let inside = popup(theme, area, (width, shows), "Keys — any other key closes, ↑ ↓ scroll", buffer);
     let first = scroll.min(lines.len().saturating_sub(usize::from(inside.height)));
     for (at, text) in lines.iter().skip(first).take(usize::from(inside.height)).enumerate() {
         line(buffer, inside, at as u16, text);

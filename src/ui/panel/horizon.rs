@@ -5,8 +5,8 @@ use ratatui::layout::Rect;
 use ratatui::widgets::Widget as _;
 use ratatui::widgets::canvas::{Canvas, Points};
 
-use crate::ui::app_state::AppState;
 use crate::ui::formatting::{compass, fixed, signed};
+use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
 
 use super::row;
@@ -17,7 +17,7 @@ pub(super) const SIZE: (u16, u16) = (21, 5);
 const DEGREES_A_ROW: f64 = 10.0;
 
 /// Draws the horizon on the left of the area, and roll, pitch and heading to its right.
-pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
+pub(super) fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let (estimate, truth) = (&state.view.vehicle.estimate, &state.view.vehicle.truth);
     // Values that the firmware does not report come from the simulator.

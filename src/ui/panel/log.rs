@@ -5,11 +5,11 @@ use ratatui::layout::{Position, Rect};
 use ratatui::text::{Line, Span};
 
 use crate::ui::action::Action;
-use crate::ui::app_state::AppState;
 use crate::ui::event_log::LogLine;
 use crate::ui::formatting::clock_ms;
-use crate::ui::log_view::{later_above, newest_first};
+use crate::ui::log_view::LogView;
 use crate::ui::panel::Panel;
+use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
 
 use super::{line, row, span};
@@ -19,10 +19,9 @@ use crate::ui::text_wrap::{fitting, wrapped};
 const STAMP: usize = 12;
 
 /// Returns the title with the number of lines above the first shown one, the filter and the search.
-pub(crate) fn title(state: &AppState) -> String {
+pub(crate) fn title(view: &LogView, state: &Shared) -> String {
     let mut title = state.panel_title(Panel::Log).to_owned();
-    let view = &state.log_view;
-    let newer = match state.scrolls.log {
+    let newer = match view.scroll {
         0 => String::new(),
         newer => format!("{newer} newer above"),
     };
@@ -46,43 +45,43 @@ fn text_width(area: Rect) -> usize {
 }
 
 /// Returns the area of the lines, without the row of a search that is being typed.
-fn list(state: &AppState, area: Rect) -> Rect {
-    let search = u16::from(state.log_view.typing && state.focus == Panel::Log);
+fn list(view: &LogView, state: &Shared, area: Rect) -> Rect {
+    let search = u16::from(view.typing && state.focus == Panel::Log);
     Rect { height: area.height.saturating_sub(search), ..area }
 }
 
 /// Returns the greatest scroll position, at which the oldest line is the last on the screen.
-pub(crate) fn last_scroll(state: &AppState, area: Rect) -> usize {
-    let rows = newest_first(state).rev().map(|entry| wrapped(&entry.text, text_width(area)).len());
-    let fitting = fitting(rows, usize::from(list(state, area).height));
-    newest_first(state).count().saturating_sub(fitting)
+pub(crate) fn last_scroll(view: &LogView, state: &Shared, area: Rect) -> usize {
+    let rows = view.newest_first(&state.log).rev().map(|entry| wrapped(&entry.text, text_width(area)).len());
+    let fitting = fitting(rows, usize::from(list(view, state, area).height));
+    view.newest_first(&state.log).count().saturating_sub(fitting)
 }
 
 /// Draws the inside. Returns the position of the cursor while a search is typed.
-pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+pub(crate) fn draw(view: &LogView, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     let theme = &state.theme;
-    let list = list(state, area);
-    draw_lines(state, list, buffer);
+    let list = list(view, state, area);
+    draw_lines(view, state, list, buffer);
     if list.height == area.height {
         return None;
     }
     row(buffer, area, list.height, theme, Role::Key, "/");
     let field = Rect { x: area.x + 1, y: area.y + list.height, width: area.width.checked_sub(1)?, height: 1 };
-    state.log_view.search.draw(theme, field.intersection(area), buffer)
+    view.search.draw(theme, field.intersection(area), buffer)
 }
 
-fn draw_lines(state: &AppState, area: Rect, buffer: &mut Buffer) {
+fn draw_lines(view: &LogView, state: &Shared, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
-    let mut entries = newest_first(state).peekable();
+    let mut entries = view.newest_first(&state.log).peekable();
     if entries.peek().is_none() {
-        let text = match (state.log.len(), state.log_view.filter_name()) {
+        let text = match (state.log.len(), view.filter_name()) {
             (0, _) => "Nothing has happened yet.".to_owned(),
             (_, filter) => format!("No {filter}: `{}` shows everything.", state.key(Action::Filter)),
         };
         row(buffer, area, 0, theme, Role::Dim, &text);
         return;
     }
-    let first = (state.scrolls.log + later_above(state)).min(last_scroll(state, area));
+    let first = (view.scroll + view.later_above(state)).min(last_scroll(view, state, area));
     let text_width = text_width(area);
     let mut at = 0;
     for entry in entries.skip(first) {
@@ -92,7 +91,7 @@ fn draw_lines(state: &AppState, area: Rect, buffer: &mut Buffer) {
             LogLine { severity, .. } => (severity.glyph(), severity.role()),
         };
         let mut stamp = format!("{} ", clock_ms(entry.time));
-        let is_found = state.log_view.found == Some(entry.number);
+        let is_found = view.found == Some(entry.number);
         for part in wrapped(&entry.text, text_width) {
             if at == area.height {
                 return;
@@ -101,7 +100,7 @@ fn draw_lines(state: &AppState, area: Rect, buffer: &mut Buffer) {
                 span(theme, if is_found { Role::Focus } else { Role::Dim }, stamp),
                 span(theme, role, format!("{mark} ")),
             ];
-            spans.extend(highlighted(state, role, &part));
+            spans.extend(highlighted(view, state, role, &part));
             line(buffer, area, at, &Line::from(spans));
             at += 1;
             (stamp, mark) = (" ".repeat(STAMP - 2), " ");
@@ -110,9 +109,9 @@ fn draw_lines(state: &AppState, area: Rect, buffer: &mut Buffer) {
 }
 
 /// Returns a text with the match marked.
-fn highlighted(state: &AppState, role: Role, text: &str) -> Vec<Span<'static>> {
+fn highlighted(view: &LogView, state: &Shared, role: Role, text: &str) -> Vec<Span<'static>> {
     let theme = &state.theme;
-    let Some(found) = state.log_view.find_in(text) else { return vec![span(theme, role, text)] };
+    let Some(found) = view.find_in(text) else { return vec![span(theme, role, text)] };
     let (before, rest) = text.split_at(found.start);
     let (hit, after) = rest.split_at(found.len());
     vec![span(theme, role, before), span(theme, Role::Selected, hit), span(theme, role, after)]

@@ -9,11 +9,13 @@ use crate::geo::LocalFrame;
 use crate::plan::{FlightPlan, Waypoint, WaypointType};
 use crate::telemetry::PlanSource;
 use crate::ui::action::Action;
-use crate::ui::app_state::AppState;
-use crate::ui::map_edit::{self, MapItem, Moving};
+use crate::ui::map_edit;
+use crate::ui::map_point::origin::origin;
 use crate::ui::map_point::{self, MapPoint, to_map};
+use crate::ui::map_state::{MapItem, MapMode, Moving};
 use crate::ui::panel::Panel;
-use crate::ui::viewport::{MapMode, Viewport};
+use crate::ui::shared::Shared;
+use crate::ui::viewport::Viewport;
 
 mod labels;
 mod lines;
@@ -40,7 +42,7 @@ struct Scene {
 }
 
 /// Returns the title with the source of the plan and the map mode.
-pub(crate) fn title(state: &AppState) -> String {
+pub(crate) fn title(state: &Shared) -> String {
     let name = state.panel_title(Panel::Map);
     let source = match &state.view.vehicle.active_plan {
         Some(_) => state.view.vehicle.nav.as_ref().map_or(PlanSource::Stored, |nav| nav.source),
@@ -63,7 +65,7 @@ pub(crate) fn title(state: &AppState) -> String {
     }
 }
 
-pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
+pub(crate) fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {
     if area.width < 8 || area.height < 4 {
         return;
     }
@@ -77,17 +79,17 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     marks::write(state, &scene, buffer);
 }
 
-fn scene(state: &AppState, area: Rect) -> Scene {
+fn scene(state: &Shared, area: Rect) -> Scene {
     let vehicle = &state.view.vehicle;
     let plan = state.shown_plan();
-    let origin = map_point::origin(state);
+    let frame = origin(state);
     let at_boot_place = MapPoint::default();
     let craft_home =
-        origin.zip(vehicle.craft.home).map_or(at_boot_place, |(frame, home)| to_map(&frame, home));
+        frame.zip(vehicle.craft.home).map_or(at_boot_place, |(frame, home)| to_map(&frame, home));
     let planned_home = map_edit::home(state).unwrap_or(craft_home);
     // While editing, the map shows home of the edited plan and the fence around it.
     let mut home = if state.edits_on_map() { planned_home } else { craft_home };
-    let mut spots = origin.map_or_else(Vec::new, |frame| spots(plan, &frame, home));
+    let mut spots = frame.map_or_else(Vec::new, |frame| spots(plan, &frame, home));
     match state.map.moving {
         Some(Moving { item: MapItem::Waypoint(index), place, .. }) => {
             for spot in spots.iter_mut().filter(|spot| spot.index == index) {

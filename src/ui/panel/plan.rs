@@ -10,10 +10,10 @@ use ratatui::text::Line;
 use super::{line, row, span};
 use crate::plan::review::Finding;
 use crate::ui::action::{Action, EditAction};
-use crate::ui::app_state::AppState;
-use crate::ui::editor::{Column, findings};
+use crate::ui::editor::{Column, findings, settings_in_force};
 use crate::ui::forecast;
 use crate::ui::panel::Panel;
+use crate::ui::shared::Shared;
 use crate::ui::text_wrap::wrapped;
 use crate::ui::theme::Role;
 
@@ -21,7 +21,7 @@ use crate::ui::theme::Role;
 const PROFILE_FROM: u16 = 16;
 
 /// Returns the title: the name of the plan, its unsaved edits, and its differences from the craft.
-pub(crate) fn title(state: &AppState) -> String {
+pub(crate) fn title(state: &Shared) -> String {
     let plan = state.editor.plan();
     let count = state.editor.plans().len();
     let which = if count > 1 { format!(" {}/{count}", state.editor.current() + 1) } else { String::new() };
@@ -35,7 +35,9 @@ pub(crate) fn title(state: &AppState) -> String {
     }
     let craft = match &state.view.vehicle.stored_plan {
         _ if plan.document().plan.waypoints.is_empty() => String::new(),
-        Some(_) if state.has_settings_to_upload() => " ● settings not on the craft".to_owned(),
+        Some(_) if settings_in_force::has_settings_to_upload(state) => {
+            " ● settings not on the craft".to_owned()
+        }
         Some(stored) if *stored == plan.document().plan => " ✓ on the craft".to_owned(),
         Some(stored) => {
             format!(" ● {} not on the craft", table::differences(&plan.document().plan, stored))
@@ -55,7 +57,7 @@ pub(crate) enum PlanTarget {
 }
 
 /// Returns the item at a cell of the screen.
-pub(crate) fn target_at(state: &AppState, area: Rect, at: (u16, u16)) -> Option<PlanTarget> {
+pub(crate) fn target_at(state: &Shared, area: Rect, at: (u16, u16)) -> Option<PlanTarget> {
     if state.plan().waypoints.is_empty() {
         return None;
     }
@@ -65,7 +67,7 @@ pub(crate) fn target_at(state: &AppState, area: Rect, at: (u16, u16)) -> Option<
 }
 
 /// Returns the height of a row of the altitude profile, m.
-pub(crate) fn metres_per_row(state: &AppState, area: Rect) -> Option<f64> {
+pub(crate) fn metres_per_row(state: &Shared, area: Rect) -> Option<f64> {
     let (_, _, profile) = divided(area, below(state, &findings::findings(state), area).len());
     profile::metres_per_row(state, profile?)
 }
@@ -81,7 +83,7 @@ fn divided(area: Rect, below_rows: usize) -> (Rect, Rect, Option<Rect>) {
 }
 
 /// Draws the inside. Returns the position of the cursor while a cell is typed.
-pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+pub(crate) fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     let theme = &state.theme;
     if state.plan().waypoints.is_empty() {
         for (at, text) in nothing_planned(state).iter().enumerate() {
@@ -103,7 +105,7 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<
 }
 
 /// Returns the advice for an empty plan.
-fn nothing_planned(state: &AppState) -> [String; 3] {
+fn nothing_planned(state: &Shared) -> [String; 3] {
     use EditAction::{Download, Generate, Insert, Open};
     let [insert, generate, open, download] =
         [Insert, Generate, Open, Download].map(|action| state.key(Action::Edit(action)));
@@ -116,7 +118,7 @@ fn nothing_planned(state: &AppState) -> [String; 3] {
 
 /// Returns the lines below the table: the hint or the problem of the value being typed, else the finding with its fix,
 /// and the estimate.
-fn below(state: &AppState, findings: &[Finding], area: Rect) -> Vec<Line<'static>> {
+fn below(state: &Shared, findings: &[Finding], area: Rect) -> Vec<Line<'static>> {
     let mut lines = said_below(state, findings, usize::from(area.width));
     if state.editor.field().is_none() {
         lines.extend(forecast::estimate_lines(state, area.width));
@@ -124,7 +126,7 @@ fn below(state: &AppState, findings: &[Finding], area: Rect) -> Vec<Line<'static
     lines
 }
 
-fn said_below(state: &AppState, findings: &[Finding], width: usize) -> Vec<Line<'static>> {
+fn said_below(state: &Shared, findings: &[Finding], width: usize) -> Vec<Line<'static>> {
     let theme = &state.theme;
     let said = |role, text: &str| {
         let lines = wrapped(text, width);

@@ -6,10 +6,10 @@ use ratatui::layout::Rect;
 use crate::signals::{RC_CHANNELS, RcSource};
 use crate::telemetry::snapshot::{CraftView, ModeRange};
 use crate::ui::action::Action;
-use crate::ui::app_state::AppState;
 use crate::ui::drawing;
 use crate::ui::formatting::cut;
 use crate::ui::panel::Panel;
+use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
 
 use super::row;
@@ -20,7 +20,7 @@ const LABEL: u16 = 17;
 const SPAN_US: (f64, f64) = (900.0, 2100.0);
 
 /// Returns the title with the source of the channels and the age of the newest frame.
-pub(crate) fn title(state: &AppState) -> String {
+pub(crate) fn title(state: &Shared) -> String {
     let now_s = state.view.vehicle.time.as_secs_f64();
     let recording = state.stick_recording.shown(now_s);
     let name = recording.map_or_else(
@@ -137,14 +137,14 @@ fn name(craft: &CraftView, channel: usize) -> String {
     }
 }
 
-pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
+pub(crate) fn draw(selected_channel: usize, state: &Shared, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let craft = &state.view.vehicle.craft;
     let focused = state.focus == Panel::Rc;
-    for (channel, place) in grid(area, state.channel) {
+    for (channel, place) in grid(area, selected_channel) {
         let us = craft.channels.and_then(|channels| channels.get(channel).copied()).unwrap_or_default();
         let known = us > 0;
-        let selected = focused && channel == state.channel;
+        let selected = focused && channel == selected_channel;
         let value = if known { format!("{us:>4}") } else { "   —".to_owned() };
         let mark = if selected { '▸' } else { ' ' };
         let on = ranges(craft, channel).any(|range| (range.start_us..range.end_us).contains(&us));

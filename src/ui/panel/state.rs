@@ -7,11 +7,12 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 use crate::telemetry::{Guard, GuardName, NavState, TransitionReason};
-use crate::ui::app_state::{AppState, Transition};
 use crate::ui::formatting::{clock, cut, fixed, signed, within};
 use crate::ui::panel::Panel;
+use crate::ui::shared::Shared;
 use crate::ui::status_message;
 use crate::ui::theme::{Role, Theme};
+use crate::ui::transitions::{Transition, Transitions};
 use crate::ui::units::Units;
 
 use super::horizon;
@@ -34,7 +35,7 @@ const HORIZON_ROOM: (u16, u16) = (42, 9);
 const GUARD_ROWS: u16 = 8;
 
 /// Returns the title with the waypoint of the mission.
-pub(crate) fn title(state: &AppState) -> String {
+pub(crate) fn title(state: &Shared) -> String {
     let name = state.panel_title(Panel::State);
     let Some(nav) = state.view.vehicle.nav.as_ref().filter(|nav| nav.engaged && nav.count > 0) else {
         return name.to_owned();
@@ -43,10 +44,10 @@ pub(crate) fn title(state: &AppState) -> String {
     format!("{name} WP{}/{}{kind}", nav.wp, nav.count.saturating_sub(1))
 }
 
-pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
+pub(crate) fn draw(own: &Transitions, state: &Shared, area: Rect, buffer: &mut Buffer) {
     let diagram = diagram(area);
     let mut top = draw_status_message(state, area, diagram, buffer);
-    top += draw_machine(state, below(area, top), diagram, buffer);
+    top += draw_machine(own, state, below(area, top), diagram, buffer);
     top += draw_guards(state, below(area, top), buffer);
     let mut rest = below(area, top);
     if rest.width >= HORIZON_ROOM.0 && rest.height >= HORIZON_ROOM.1 {
@@ -54,7 +55,7 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
         let place = Rect { y: rest.bottom(), height: horizon::SIZE.1, ..rest };
         horizon::draw(state, Rect { x: place.x + 1, width: place.width - 1, ..place }, buffer);
     }
-    draw_transitions(state, rest, buffer);
+    draw_transitions(own, state, rest, buffer);
 }
 
 /// Returns the largest state diagram that leaves room for the guards.
@@ -70,7 +71,7 @@ fn below(area: Rect, rows: u16) -> Rect {
 }
 
 /// Draws the status message. Returns the number of rows used.
-fn draw_status_message(state: &AppState, area: Rect, diagram: &Diagram, buffer: &mut Buffer) -> u16 {
+fn draw_status_message(state: &Shared, area: Rect, diagram: &Diagram, buffer: &mut Buffer) -> u16 {
     let theme = &state.theme;
     let Some(message) = status_message::current(state) else { return 0 };
     let width = usize::from(area.width.saturating_sub(2));
@@ -90,12 +91,18 @@ fn draw_status_message(state: &AppState, area: Rect, diagram: &Diagram, buffer: 
 }
 
 /// Draws the state machine. Returns the number of rows used.
-fn draw_machine(state: &AppState, area: Rect, diagram: &Diagram, buffer: &mut Buffer) -> u16 {
+fn draw_machine(
+    own: &Transitions,
+    state: &Shared,
+    area: Rect,
+    diagram: &Diagram,
+    buffer: &mut Buffer,
+) -> u16 {
     let Some(nav) = &state.view.vehicle.nav else {
         row(buffer, area, 0, &state.theme, Role::Dim, " — the firmware reports no state");
         return 1.min(area.height);
     };
-    let last = state.transitions_shown().next_back().filter(|last| is_lit(state, last));
+    let last = own.shown(state).next_back().filter(|last| is_lit(state, last));
     let left = (area.width.saturating_sub(diagram.width)) / 2;
     let place = Rect { x: area.x + left, width: area.width - left, ..area };
     diagram.draw(&state.theme, nav.state, last.map(|last| (last.from, last.to)), place, buffer);
@@ -104,7 +111,7 @@ fn draw_machine(state: &AppState, area: Rect, diagram: &Diagram, buffer: &mut Bu
 
 /// Returns `true` while the strokes of a transition are lit: it has just occurred, or it is just before the earlier
 /// instant on the screen.
-fn is_lit(state: &AppState, last: &Transition) -> bool {
+fn is_lit(state: &Shared, last: &Transition) -> bool {
     if state.is_rewound() {
         return state.view.vehicle.time.seconds_since(last.time) < LIT_FOR.as_secs_f64();
     }
@@ -113,7 +120,7 @@ fn is_lit(state: &AppState, last: &Transition) -> bool {
 
 /// Draws the guards of the active state, the remaining time of the leg and the laps of an orbit. Returns the number of
 /// rows used.
-fn draw_guards(state: &AppState, area: Rect, buffer: &mut Buffer) -> u16 {
+fn draw_guards(state: &Shared, area: Rect, buffer: &mut Buffer) -> u16 {
     let Some(nav) = state.view.vehicle.nav.as_ref().filter(|nav| !nav.guards.is_empty()) else { return 0 };
     if area.height == 0 {
         return 0;
@@ -149,7 +156,7 @@ fn draw_guards(state: &AppState, area: Rect, buffer: &mut Buffer) -> u16 {
 }
 
 /// Returns the share of its ring that an orbit flies in its time.
-fn laps(state: &AppState) -> Option<String> {
+fn laps(state: &Shared) -> Option<String> {
     let vehicle = &state.view.vehicle;
     let nav = vehicle.nav.as_ref().filter(|nav| nav.state == NavState::Orbiting)?;
     let wp = vehicle.active_plan.as_ref()?.waypoints.get(usize::from(nav.wp))?;
@@ -160,7 +167,7 @@ fn laps(state: &AppState) -> Option<String> {
 
 /// Returns the time for the rest of the leg at the speed of the leg, s, and that speed, m/s. The current speed says
 /// little while the craft speeds up or turns.
-fn time_of_leg(state: &AppState) -> Option<(f64, f64)> {
+fn time_of_leg(state: &Shared) -> Option<(f64, f64)> {
     let vehicle = &state.view.vehicle;
     let nav = vehicle.nav.as_ref().filter(|nav| nav.eta_s.is_some())?;
     let wp = vehicle.active_plan.as_ref()?.waypoints.get(usize::from(nav.wp))?;
@@ -260,8 +267,8 @@ fn wide_guard(theme: &Theme, units: Units, guard: &Guard) -> Line<'static> {
 }
 
 /// Draws the last transitions, the newest on top.
-fn draw_transitions(state: &AppState, area: Rect, buffer: &mut Buffer) {
-    let transitions = state.transitions_shown();
+fn draw_transitions(own: &Transitions, state: &Shared, area: Rect, buffer: &mut Buffer) {
+    let transitions = own.shown(state);
     if area.height < 3 || transitions.len() == 0 {
         return;
     }
@@ -269,7 +276,7 @@ fn draw_transitions(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let wide = area.width >= 40;
     let rows = usize::from(area.height - 2);
     row(buffer, area, 1, theme, Role::Title, "Transitions");
-    let first = state.scrolls.transitions.min(transitions.len().saturating_sub(rows));
+    let first = own.scroll.min(transitions.len().saturating_sub(rows));
     for (at, step) in transitions.rev().skip(first).take(rows).enumerate() {
         let spans = if wide {
             let states = format!("{} → {} ", step.from, step.to);

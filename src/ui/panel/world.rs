@@ -4,10 +4,10 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::ui::action::Action;
-use crate::ui::app_state::AppState;
 use crate::ui::formatting::cut;
-use crate::ui::knobs::{Knob, knobs};
+use crate::ui::knobs::{Knob, KnobsState, knobs};
 use crate::ui::panel::Panel;
+use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
 
 use super::row;
@@ -16,7 +16,7 @@ use super::row;
 const NAME: usize = 18;
 
 /// Returns the title with the airframe.
-pub(crate) fn title(state: &AppState) -> String {
+pub(crate) fn title(state: &Shared) -> String {
     let name = state.panel_title(Panel::World);
     match state.view.vehicle.world.airframe.as_str() {
         "" => name.to_owned(),
@@ -25,28 +25,28 @@ pub(crate) fn title(state: &AppState) -> String {
 }
 
 /// Returns the first shown knob, so that the selected one is visible.
-fn first(state: &AppState, rows: usize) -> usize {
+fn first(own: &KnobsState, state: &Shared, rows: usize) -> usize {
     let last = knobs(state).len().saturating_sub(rows);
-    state.knobs.selected.saturating_sub(rows / 2).min(last)
+    own.selected.saturating_sub(rows / 2).min(last)
 }
 
 /// Returns the knob at a row of the inside.
-pub(crate) fn knob_at(state: &AppState, area: Rect, line: u16) -> Option<usize> {
+pub(crate) fn knob_at(own: &KnobsState, state: &Shared, area: Rect, line: u16) -> Option<usize> {
     let rows = usize::from(area.height.saturating_sub(1));
     let at = usize::from(line.checked_sub(area.y)?);
-    let index = first(state, rows) + at;
+    let index = first(own, state, rows) + at;
     (at < rows && index < knobs(state).len()).then_some(index)
 }
 
 /// Draws the inside. Returns the position of the cursor while a value is typed.
-pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+pub(crate) fn draw(own: &KnobsState, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     let theme = &state.theme;
     let rows = usize::from(area.height.checked_sub(1)?);
     let all = knobs(state);
     let focused = state.focus == Panel::World;
     let mut cursor = None;
-    for (at, knob) in all.iter().enumerate().skip(first(state, rows)).take(rows) {
-        let is_selected = focused && at == state.knobs.selected;
+    for (at, knob) in all.iter().enumerate().skip(first(own, state, rows)).take(rows) {
+        let is_selected = focused && at == own.selected;
         let is_default = knob.is_default(&state.view.vehicle.world);
         let role = match (is_selected, is_default, knob) {
             (true, ..) => Role::Focus,
@@ -61,9 +61,9 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<
             (false, Knob::Fault(_)) => '▲',
             (false, _) => '●',
         };
-        let line = (at - first(state, rows)) as u16;
+        let line = (at - first(own, state, rows)) as u16;
         let name = format!("{pointer}{mark} {:<15}", cut(knob.name(), 15));
-        let typed = state.knobs.field.as_ref().filter(|_| is_selected);
+        let typed = own.field.as_ref().filter(|_| is_selected);
         match typed {
             Some(field) => {
                 row(buffer, area, line, theme, role, &name);
@@ -74,7 +74,7 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<
             None => row(buffer, area, line, theme, role, &format!("{name}{}", knob.value(state))),
         }
     }
-    let help = match all.get(state.knobs.selected) {
+    let help = match all.get(own.selected) {
         Some(knob) if focused => knob.help(state.units),
         _ => format!(
             "wind, noise and faults, changed while it flies: {}",

@@ -6,13 +6,13 @@ use ratatui::layout::{Position, Rect};
 use ratatui::text::Line;
 use ratatui::widgets::{Block, Clear, Widget as _};
 
-use crate::ui::app_state::AppState;
 use crate::ui::command::{self, Suggestion};
 use crate::ui::completion::common_prefix;
 use crate::ui::formatting::cut;
 use crate::ui::history::History;
 use crate::ui::layout;
 use crate::ui::panel::{line, row, span};
+use crate::ui::shared::Shared;
 use crate::ui::text_field::TextField;
 use crate::ui::text_wrap::wrapped;
 use crate::ui::theme::Role;
@@ -63,21 +63,21 @@ impl CommandLine {
 }
 
 /// Handles a key while the line is open.
-pub(in crate::ui) fn key(state: &mut AppState, event: KeyEvent) -> Outcome {
+pub(in crate::ui) fn key(line: &mut CommandLine, state: &Shared, event: KeyEvent) -> Outcome {
     match event.code {
         KeyCode::Esc => return Outcome::Left,
-        KeyCode::Backspace if state.command_line.field.is_empty() => return Outcome::Left,
+        KeyCode::Backspace if line.field.is_empty() => return Outcome::Left,
         KeyCode::Enter => {
-            let entered = state.command_line.field.take();
-            let is_new = state.command_line.history.remember(&entered);
+            let entered = line.field.take();
+            let is_new = line.history.remember(&entered);
             return Outcome::Entered(entered, is_new);
         }
         KeyCode::Tab => {
-            let suggestions = command::suggestions(state, state.command_line.field.value());
-            state.command_line.complete(&suggestions);
+            let suggestions = command::suggestions(state, line.field.value());
+            line.complete(&suggestions);
         }
         KeyCode::Up | KeyCode::Down => {
-            let CommandLine { field, history } = &mut state.command_line;
+            let CommandLine { field, history } = line;
             let recalled =
                 if event.code == KeyCode::Up { history.older(field.value()) } else { history.newer() };
             if let Some(recalled) = recalled {
@@ -85,25 +85,30 @@ pub(in crate::ui) fn key(state: &mut AppState, event: KeyEvent) -> Outcome {
             }
         }
         _ => {
-            state.command_line.field.key(event);
+            line.field.key(event);
         }
     }
     Outcome::Typing
 }
 
 /// Draws the line in the last row and the suggestions above it. Returns the position of the cursor.
-pub(in crate::ui) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+pub(in crate::ui) fn draw(
+    entered: &CommandLine,
+    state: &Shared,
+    area: Rect,
+    buffer: &mut Buffer,
+) -> Option<Position> {
     let theme = &state.theme;
     let bottom = Rect { y: area.y + area.height.checked_sub(1)?, height: 1, ..area };
     Clear.render(bottom, buffer);
     row(buffer, bottom, 0, theme, Role::Key, ":");
-    let typed = state.command_line.field.value();
+    let typed = entered.field.value();
     draw_suggestions(state, typed, Rect { height: area.height - 1, ..area }, buffer);
     let field = Rect { x: bottom.x + 1, width: bottom.width.checked_sub(1)?, ..bottom };
-    state.command_line.field.draw(theme, field, buffer)
+    entered.field.draw(theme, field, buffer)
 }
 
-fn draw_suggestions(state: &AppState, typed: &str, above: Rect, buffer: &mut Buffer) {
+fn draw_suggestions(state: &Shared, typed: &str, above: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let suggestions = command::suggestions(state, typed);
     let width = above.width.min(78);

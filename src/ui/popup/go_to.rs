@@ -6,9 +6,9 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 use crate::plan::FlightPlan;
-use crate::ui::app_state::AppState;
-use crate::ui::draw::popup;
 use crate::ui::panel::{line, row, span};
+use crate::ui::popup::frame::popup;
+use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
 
 /// The width of the inside.
@@ -80,12 +80,12 @@ impl GoTo {
     }
 }
 
-pub(crate) fn draw(state: &AppState, question: &GoTo, area: Rect, buffer: &mut Buffer) {
+pub(crate) fn draw(state: &Shared, question: &GoTo, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let shown = question.waypoints.len().min(ROWS);
     let first = question.selected.saturating_sub(ROWS - 1);
     let title = if state.flies_older_plan() { "Continue on the new plan from" } else { "Go now to" };
-    let inside = popup(state, area, (WIDTH, shown as u16 + 2), title, buffer);
+    let inside = popup(theme, area, (WIDTH, shown as u16 + 2), title, buffer);
     for (at, (index, kind)) in question.waypoints.iter().skip(first).take(shown).enumerate() {
         let (mark, role) =
             if first + at == question.selected { ("▸", Role::Selected) } else { (" ", Role::Text) };

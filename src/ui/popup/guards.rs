@@ -5,9 +5,9 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 use crate::telemetry::Guard;
-use crate::ui::app_state::AppState;
-use crate::ui::draw::popup;
 use crate::ui::panel::row;
+use crate::ui::popup::frame::popup;
+use crate::ui::shared::Shared;
 use crate::ui::text_wrap::wrapped;
 use crate::ui::theme::Role;
 
@@ -30,7 +30,7 @@ const ABBREVIATIONS: [(&str, &str); 6] = [
 type Entry = (&'static str, &'static str);
 
 /// Returns the guards of the active state, then the abbreviations.
-fn entries(state: &AppState) -> Vec<Entry> {
+fn entries(state: &Shared) -> Vec<Entry> {
     let nav = state.view.vehicle.nav.as_ref();
     let explain = |guard: &Guard| -> Entry { (guard.name.into(), guard.name.explanation()) };
     let guards = nav.into_iter().flat_map(|nav| nav.guards.iter().map(explain));
@@ -49,18 +49,18 @@ pub(crate) fn key(selected: &mut usize, event: KeyEvent) -> bool {
 }
 
 /// Limits the selection to the existing entries.
-pub(crate) fn limit(state: &AppState, selected: usize) -> usize {
+pub(crate) fn limit(state: &Shared, selected: usize) -> usize {
     selected.min(entries(state).len() - 1)
 }
 
 /// Draws the list and, below it, the explanation of the selected entry.
-pub(crate) fn draw(state: &AppState, selected: usize, area: Rect, buffer: &mut Buffer) {
+pub(crate) fn draw(state: &Shared, selected: usize, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let entries = entries(state);
     let selected = limit(state, selected);
     let height = entries.len() as u16 + ROWS + 1;
     let title = "Meaning — ↑ ↓ choose, Esc closes";
-    let inside = popup(state, area, (WIDTH, height.min(area.height.saturating_sub(4))), title, buffer);
+    let inside = popup(theme, area, (WIDTH, height.min(area.height.saturating_sub(4))), title, buffer);
     let rows = usize::from(inside.height.saturating_sub(ROWS + 1));
     let first = (selected + 1).saturating_sub(rows);
     for (at, (name, _)) in entries.iter().enumerate().skip(first).take(rows) {

@@ -6,10 +6,9 @@ use ratatui::layout::Rect;
 use ratatui::widgets::{Block, Clear, Widget as _};
 
 use crate::geo::LatLon;
-use crate::ui::app_state::AppState;
 use crate::ui::layout;
 use crate::ui::panel::row;
-use crate::ui::theme::Role;
+use crate::ui::theme::{Role, Theme};
 
 /// The width of the inside.
 const WIDTH: u16 = 30;
@@ -110,8 +109,7 @@ impl MapMenu {
     }
 }
 
-pub(in crate::ui) fn draw(state: &AppState, menu: &MapMenu, area: Rect, buffer: &mut Buffer) {
-    let theme = &state.theme;
+pub(in crate::ui) fn draw(theme: &Theme, menu: &MapMenu, area: Rect, buffer: &mut Buffer) {
     let place = menu.rect(area);
     Clear.render(place, buffer);
     Block::bordered().border_style(theme.style(Role::Focus)).render(place, buffer);

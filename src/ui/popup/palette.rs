@@ -6,12 +6,12 @@ use ratatui::layout::{Position, Rect};
 use ratatui::text::Line;
 
 use crate::ui::action::{self, ACTIONS, Action, Spec};
-use crate::ui::app_state::AppState;
 use crate::ui::command::{self, Command};
-use crate::ui::draw::popup;
 use crate::ui::formatting::cut;
 use crate::ui::fuzzy;
 use crate::ui::panel::{line, row, span};
+use crate::ui::popup::frame::popup;
+use crate::ui::shared::Shared;
 use crate::ui::text_field::TextField;
 use crate::ui::theme::Role;
 
@@ -67,7 +67,7 @@ impl Entry {
         }
     }
 
-    fn keys(&self, state: &AppState) -> String {
+    fn keys(&self, state: &Shared) -> String {
         match self {
             Self::Action(spec) => state.keymap.shown_keys(spec.action).join(" "),
             Self::Command(command) => format!(":{}", command.name),
@@ -75,7 +75,7 @@ impl Entry {
     }
 
     /// Returns the reason if it is refused now.
-    fn refusal(&self, state: &AppState) -> Option<String> {
+    fn refusal(&self, state: &Shared) -> Option<String> {
         match self {
             Self::Action(spec) => action::enabled(state, spec.action).err(),
             Self::Command(_) => None,
@@ -134,13 +134,13 @@ pub(in crate::ui) fn key(palette: &mut Palette, event: KeyEvent) -> Outcome {
 
 /// Draws the palette. Returns the position of the cursor.
 pub(in crate::ui) fn draw(
-    state: &AppState,
+    state: &Shared,
     palette: &Palette,
     area: Rect,
     buffer: &mut Buffer,
 ) -> Option<Position> {
     let theme = &state.theme;
-    let inside = popup(state, area, SIZE, "Commands — Enter runs, Esc closes", buffer);
+    let inside = popup(theme, area, SIZE, "Commands — Enter runs, Esc closes", buffer);
     let found = entries(palette.query.value());
     let rows = inside.height.saturating_sub(AROUND);
     let first = (palette.selected + 1).saturating_sub(usize::from(rows));

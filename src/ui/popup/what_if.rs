@@ -6,9 +6,8 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 use crate::flight::forecast::{WHAT_IFS, WhatIf};
-use crate::ui::app_state::AppState;
-use crate::ui::draw::popup;
-use crate::ui::theme::Role;
+use crate::ui::popup::frame::popup;
+use crate::ui::theme::{Role, Theme};
 
 use crate::ui::panel::{line, row, span};
 
@@ -39,10 +38,9 @@ pub(crate) fn key(selected: &mut usize, event: KeyEvent) -> Outcome {
 }
 
 /// Draws the popup; `selected` is the selected row.
-pub(crate) fn draw(state: &AppState, selected: usize, area: Rect, buffer: &mut Buffer) {
-    let theme = &state.theme;
+pub(crate) fn draw(theme: &Theme, selected: usize, area: Rect, buffer: &mut Buffer) {
     let height = WHAT_IFS.len() as u16 + 2;
-    let inside = popup(state, area, (WIDTH, height), "What if, from this instant on:", buffer);
+    let inside = popup(theme, area, (WIDTH, height), "What if, from this instant on:", buffer);
     for (at, what_if) in WHAT_IFS.iter().enumerate() {
         let (mark, role) = if at == selected { ("▸", Role::Selected) } else { (" ", Role::Text) };
         row(buffer, inside, at as u16, theme, role, &format!("{mark} {}", what_if.title));

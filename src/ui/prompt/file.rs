@@ -28,7 +28,9 @@ pub(super) fn question(browser: &Browser) -> Option<Vec<String>> {
 
 /// Handles a number or a name.
 pub(super) fn answer(state: &mut AppState, line: &str) -> Result<Answered, String> {
-    let Some(EditorPopup::Browser(browser)) = &mut state.editor.popup else { return Ok(Answered::default()) };
+    let Some(EditorPopup::Browser(browser)) = &mut state.shared.editor.popup else {
+        return Ok(Answered::default());
+    };
     if line.is_empty() {
         return Ok(press(state, KeyCode::Esc).into());
     }

@@ -29,17 +29,19 @@ pub(super) fn answer(state: &mut AppState, line: &str) -> Result<Answered, Strin
         "" => return Ok(press(state, KeyCode::Esc).into()),
         "take" => {
             let effects = press(state, KeyCode::Enter);
-            return match &state.editor.popup {
+            return match &state.shared.editor.popup {
                 Some(EditorPopup::Form(Form { problem: Some(problem), .. })) => Err(problem.clone()),
                 _ => Ok(effects.into()),
             };
         }
         _ => {}
     }
-    let Some(EditorPopup::Form(mut form)) = state.editor.popup.take() else { return Ok(Answered::default()) };
+    let Some(EditorPopup::Form(mut form)) = state.shared.editor.popup.take() else {
+        return Ok(Answered::default());
+    };
     let set = set(&mut form, line);
-    state.editor.popup = Some(EditorPopup::Form(form.clone()));
-    state.editor.follow_generator(findings::home(state));
+    state.shared.editor.popup = Some(EditorPopup::Form(form.clone()));
+    state.shared.editor.follow_generator(findings::home(&state.shared));
     let reported = reported(state, &form);
     let value = set?;
     Ok(Answered {
@@ -74,6 +76,6 @@ fn hint(field: &FormField) -> String {
 
 /// Returns the result that the form would give now, or the problem.
 fn reported(state: &AppState, form: &Form) -> Option<String> {
-    let reported = state.editor.form_reported(form);
+    let reported = state.shared.editor.form_reported(form);
     Some(reported.unwrap_or_else(|problem| problem)).filter(|reported| !reported.is_empty())
 }

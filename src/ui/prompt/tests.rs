@@ -9,7 +9,7 @@ use crate::ui::update::perform;
 
 fn state() -> AppState {
     let mut state = AppState::bare((80, 24), SessionView::default());
-    let vehicle = std::sync::Arc::make_mut(&mut state.view.vehicle);
+    let vehicle = std::sync::Arc::make_mut(&mut state.shared.view.vehicle);
     vehicle.craft.home = Some(LatLon::new(404_635_000, -795_182_000));
     let mut plan = crate::plan::FlightPlan::default();
     for kind in [WaypointType::Flyover, WaypointType::AltChange, WaypointType::Land] {
@@ -74,7 +74,7 @@ fn a_form_takes_its_values_line_by_line() {
     answer(&mut state, "length = 80").unwrap();
     let effects = answer(&mut state, "take").unwrap().effects;
     assert!(!effects.is_empty() && question(&state).is_none());
-    assert!(state.plan().waypoints.len() > 3, "{:?}", state.plan());
+    assert!(state.shared.plan().waypoints.len() > 3, "{:?}", state.shared.plan());
 }
 
 #[test]
@@ -99,7 +99,7 @@ fn files_are_chosen_by_number_or_name_once_the_directory_was_read() {
     let mut state = state();
     let browser =
         Browser { listing: listing(), ..Browser::new(Purpose::Save(PlanId::default()), "new.toml") };
-    state.editor.popup = Some(EditorPopup::Browser(browser));
+    state.shared.editor.popup = Some(EditorPopup::Browser(browser));
     assert_eq!(asked(&state)[0], "Save as which file in /plans?");
     let effects = answer(&mut state, "1").unwrap().effects;
     assert!(matches!(&effects[..], [Effect::Files(FileRequest::List(Some(_)))]), "{effects:?}");
@@ -111,7 +111,7 @@ fn files_are_chosen_by_number_or_name_once_the_directory_was_read() {
 #[test]
 fn unsaved_plans_are_asked_for_and_quitting_twice_keeps_them() {
     let mut state = state();
-    state.editor.edit("a name", |document| document.name = "mine".to_owned());
+    state.shared.editor.edit("a name", |document| document.name = "mine".to_owned());
     let ask = |state: &mut AppState| {
         assert!(perform(state, Action::Quit).is_empty());
         let lines = asked(state);
@@ -133,7 +133,7 @@ fn unsaved_plans_are_asked_for_and_quitting_twice_keeps_them() {
 #[test]
 fn an_armed_craft_is_asked_about() {
     let mut state = state();
-    std::sync::Arc::make_mut(&mut state.view.vehicle).craft.armed = Some(true);
+    std::sync::Arc::make_mut(&mut state.shared.view.vehicle).craft.armed = Some(true);
     perform(&mut state, Action::Quit);
     assert!(asked(&state)[0].contains("armed"));
     assert!(answer(&mut state, "perhaps").is_err());

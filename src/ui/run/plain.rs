@@ -8,7 +8,8 @@ use tokio::sync::mpsc;
 use super::{Ending, SessionLink, carry_out};
 use crate::flight::forecast::ForecastKind;
 use crate::session::{Command, Forecaster};
-use crate::ui::app_state::{AppState, UiConfig};
+use crate::ui::app_state::AppState;
+use crate::ui::config::UiConfig;
 use crate::ui::editor::{FileReply, FileRequest};
 use crate::ui::files_link::FilesLink;
 use crate::ui::message::{Effect, Msg};
@@ -78,7 +79,7 @@ async fn run_loop(
                     }
                     let effects = update(&mut state, Msg::Event(event));
                     // The notice has the same sentence.
-                    state.notice = None;
+                    state.shared.notice = None;
                     effects
                 }
             },

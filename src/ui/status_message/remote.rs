@@ -1,15 +1,16 @@
 //! Messages about a remote flight controller: its connection, and the state of a real craft.
 
-use super::{StatusMessage, message, most_useful_flag};
+use super::{StatusMessage, message};
 use crate::fc::{RemoteState, RemoteView};
 use crate::ui::action::{Action, EditAction};
-use crate::ui::app_state::AppState;
+use crate::ui::arming_hint::most_useful_flag;
 use crate::ui::event_log::Severity;
 use crate::ui::panel::Panel;
+use crate::ui::shared::Shared;
 
 /// Returns the message about the connection, or any message about a real craft; `None` if the messages of a simulated
 /// craft apply.
-pub(super) fn current(state: &AppState, remote: &RemoteView) -> Option<StatusMessage> {
+pub(super) fn current(state: &Shared, remote: &RemoteView) -> Option<StatusMessage> {
     let name = &remote.name;
     let is_real = remote.access.is_limited();
     match &remote.state {
@@ -36,7 +37,7 @@ pub(super) fn current(state: &AppState, remote: &RemoteView) -> Option<StatusMes
 }
 
 /// Returns the message for a real craft that answers.
-fn ready(state: &AppState, remote: &RemoteView) -> Option<StatusMessage> {
+fn ready(state: &Shared, remote: &RemoteView) -> Option<StatusMessage> {
     let vehicle = &state.view.vehicle;
     let craft = &vehicle.craft;
     let [cli, download, upload] =

@@ -6,7 +6,7 @@ use crate::telemetry::ArmingFlag;
 
 const SINK_US: u16 = 1194;
 
-fn state(ranges: &[(Mode, u8, u16, u16)]) -> AppState {
+fn state(ranges: &[(Mode, u8, u16, u16)]) -> Shared {
     let mut view = SessionView::default();
     let vehicle = std::sync::Arc::make_mut(&mut view.vehicle);
     let range = |&(mode, channel, start_us, end_us): &(Mode, u8, u16, u16)| ModeRange {
@@ -20,7 +20,7 @@ fn state(ranges: &[(Mode, u8, u16, u16)]) -> AppState {
     settings.hover_stick_us = 1500;
     settings.raised_stick_us = 1300;
     settings.sink_stick_us = Some(SINK_US);
-    AppState::bare((80, 24), view)
+    Shared::bare((80, 24), view)
 }
 
 fn sticks(effects: &[Effect]) -> RcFrame {
@@ -93,7 +93,7 @@ fn switching_the_autopilot_off_in_the_air_leaves_the_craft_held() {
 }
 
 /// Returns an armed craft 20 m up, with all switches.
-fn flying() -> AppState {
+fn flying() -> Shared {
     let mut state = state(&HOLDS);
     let vehicle = std::sync::Arc::make_mut(&mut state.view.vehicle);
     vehicle.craft.armed = Some(true);

@@ -11,7 +11,7 @@ use crate::ui::message::Effect;
 use crate::ui::panel::Panel;
 use crate::ui::popup::Popup;
 
-use super::view::{focus, neighbour, scroll_panel};
+use super::view::{focus_neighbour, scroll_panel};
 
 /// Handles a key while the CLI has the focus.
 pub(super) fn cli_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
@@ -25,9 +25,9 @@ pub(super) fn cli_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
         }
         KeyCode::Tab => {
             if state.cli.input.is_empty() {
-                return focus(state, neighbour(state, 1));
+                return focus_neighbour(&mut state.shared, 1);
             }
-            state.cli.complete(state.cli_help);
+            state.cli.complete(state.shared.cli_help);
         }
         KeyCode::Up => state.cli.older(),
         KeyCode::Down => state.cli.newer(),
@@ -65,17 +65,19 @@ pub(super) fn paste(state: &mut AppState, text: &str) -> Vec<Effect> {
         return Vec::new();
     }
     let first_line = text.lines().next().unwrap_or_default();
-    if state.popups.is_empty() && state.editor.popup.as_mut().is_some_and(|popup| popup.paste(first_line)) {
+    if state.popups.is_empty()
+        && state.shared.editor.popup.as_mut().is_some_and(|popup| popup.paste(first_line))
+    {
         return Vec::new();
     }
-    let is_covered = !state.popups.is_empty() || state.editor.popup.is_some();
-    if matches!(state.focus, Panel::Plan | Panel::Map) && !is_covered {
-        return super::plan::paste_text(state, text);
+    let is_covered = !state.popups.is_empty() || state.shared.editor.popup.is_some();
+    if matches!(state.shared.focus, Panel::Plan | Panel::Map) && !is_covered {
+        return super::plan::paste_text(&mut state.shared, text);
     }
-    if state.focus != Panel::Cli || is_covered {
-        let [cli, plan] = [Panel::Cli, Panel::Plan].map(|panel| state.key(Action::Show(panel)));
+    if state.shared.focus != Panel::Cli || is_covered {
+        let [cli, plan] = [Panel::Cli, Panel::Plan].map(|panel| state.shared.key(Action::Show(panel)));
         let text = format!("Pasted text goes to the CLI ({cli}) or, as waypoints, to the plan ({plan}).");
-        state.notify(Severity::Info, text);
+        state.shared.notify(Severity::Info, text);
         return Vec::new();
     }
     state.cli.paste(text);
@@ -83,6 +85,6 @@ pub(super) fn paste(state: &mut AppState, text: &str) -> Vec<Effect> {
 }
 
 /// Runs the next waiting line, if the firmware is free.
-pub(in crate::ui) fn run_cli(state: &mut AppState) -> Vec<Effect> {
+pub(super) fn run_cli(state: &mut AppState) -> Vec<Effect> {
     state.cli.next_to_run().map(Effect::Cli).into_iter().collect()
 }

@@ -6,11 +6,10 @@ use crate::ui::app_state::AppState;
 use crate::ui::message::Effect;
 use crate::ui::panel::Panel;
 use crate::ui::text_field::TextField;
-use crate::ui::{knobs, log_view};
 
 /// Returns the field that takes letters, if there is one.
 pub(super) fn open(state: &mut AppState) -> Option<&mut TextField> {
-    match state.focus {
+    match state.shared.focus {
         Panel::Log if state.log_view.typing => Some(&mut state.log_view.search),
         Panel::World => state.knobs.field.as_mut(),
         _ => None,
@@ -19,9 +18,12 @@ pub(super) fn open(state: &mut AppState) -> Option<&mut TextField> {
 
 /// Handles a key while a field is open.
 pub(super) fn key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
-    match state.focus {
-        Panel::Log => log_view::search_key(state, event),
-        Panel::World => knobs::field_key(state, event),
+    match state.shared.focus {
+        Panel::Log => {
+            state.log_view.search_key(&state.shared, event);
+            Vec::new()
+        }
+        Panel::World => state.knobs.field_key(&mut state.shared, event),
         _ => Vec::new(),
     }
 }
@@ -30,7 +32,7 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
 pub(super) fn close(state: &mut AppState) -> bool {
     let was_open = open(state).is_some();
     if was_open {
-        log_view::end_search(state);
+        state.log_view.end_search();
         state.knobs.field = None;
     }
     was_open

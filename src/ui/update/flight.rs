@@ -4,12 +4,11 @@ use crate::fc::UploadReport;
 use crate::plan::review::Finding;
 use crate::session::Command;
 use crate::ui::action::{Action, EditAction};
-use crate::ui::app_state::AppState;
 use crate::ui::editor::{EditorPopup, OpenPlan, PlanId, Question, findings, settings_in_force};
 use crate::ui::event_log::Severity;
 use crate::ui::message::Effect;
 use crate::ui::panel::Panel;
-use crate::ui::popup::{GoTo, Popup};
+use crate::ui::shared::Shared;
 
 mod moved_target;
 
@@ -20,7 +19,7 @@ const FENCE_SETTING: &str = "ap_max_distance_from_home";
 const SPEEDS: [f64; 12] = [0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, f64::INFINITY];
 
 /// Starts or stops the scripted pilot; a craft without a plan gets the open one first.
-pub(super) fn fly(state: &mut AppState) -> Vec<Effect> {
+pub(super) fn fly(state: &mut Shared) -> Vec<Effect> {
     if state.view.pilot.is_some() {
         return vec![Effect::Send(Command::Pilot(false))];
     }
@@ -37,7 +36,7 @@ pub(super) fn fly(state: &mut AppState) -> Vec<Effect> {
         if !state.plan().waypoints.is_empty() && !state.plan_is_on_craft() {
             let text = format!("Flying the plan in the craft, which is not {title}: {upload} uploads it.");
             state.notify(Severity::Info, text);
-        } else if state.has_settings_to_upload() {
+        } else if settings_in_force::has_settings_to_upload(state) {
             let text = format!(
                 "Flying with the craft's settings: {upload} uploads those of {title} that you changed."
             );
@@ -59,12 +58,12 @@ pub(super) fn fly(state: &mut AppState) -> Vec<Effect> {
     if let Some(refusal) = findings::refusal(state, state.plan(), &limits) {
         return not_flown(state, &refusal);
     }
-    state.fly_after_upload = Some(state.editor.plan().id());
+    state.editor.fly_after_upload = Some(state.editor.plan().id());
     vec![upload_now(state)]
 }
 
 /// Keeps the craft on the ground: the autopilot would refuse the plan after the climb.
-fn not_flown(state: &mut AppState, refusal: &Finding) -> Vec<Effect> {
+fn not_flown(state: &mut Shared, refusal: &Finding) -> Vec<Effect> {
     let by_hand = [Action::Arm, Action::Throttle].map(|action| state.key(action)).join(" and ");
     let text = format!("Not flown, the autopilot would refuse: {}. By hand: {by_hand}.", refusal.reason());
     state.notify(Severity::Warn, text);
@@ -72,7 +71,7 @@ fn not_flown(state: &mut AppState, refusal: &Finding) -> Vec<Effect> {
 }
 
 /// Uploads the open plan; in flight it asks before the waypoint that is flown to moves far.
-pub(super) fn upload(state: &mut AppState) -> Vec<Effect> {
+pub(super) fn upload(state: &mut Shared) -> Vec<Effect> {
     if let Some(change) = moved_target::question(state) {
         let id = state.editor.plan().id();
         state.editor.popup = Some(EditorPopup::Question(Question::MovesTarget { id, change }));
@@ -81,8 +80,8 @@ pub(super) fn upload(state: &mut AppState) -> Vec<Effect> {
     vec![upload_now(state)]
 }
 
-pub(super) fn upload_now(state: &mut AppState) -> Effect {
-    state.replaced_fence = settings_in_force::replaced_fence(state, state.editor.document());
+pub(super) fn upload_now(state: &mut Shared) -> Effect {
+    state.editor.replaced_fence = settings_in_force::replaced_fence(state, state.editor.document());
     state.editor.remember_upload();
     Effect::Upload {
         id: state.editor.plan().id(),
@@ -93,12 +92,12 @@ pub(super) fn upload_now(state: &mut AppState) -> Effect {
 
 /// The craft answered the upload of a plan of `count` waypoints, which need not be shown any more.
 pub(super) fn uploaded(
-    state: &mut AppState,
+    state: &mut Shared,
     id: PlanId,
     count: usize,
     result: Result<UploadReport, String>,
 ) -> Vec<Effect> {
-    let fly = state.fly_after_upload.take_if(|asked| *asked == id).is_some();
+    let fly = state.editor.fly_after_upload.take_if(|asked| *asked == id).is_some();
     let open = state.editor.plan_of(id);
     let title = open.map_or_else(|| "a plan that is closed now".to_owned(), OpenPlan::title);
     match result {
@@ -115,7 +114,7 @@ pub(super) fn uploaded(
             };
             let converted = report.remark().map_or_else(String::new, |sentence| format!(" {sentence}"));
             let is_refused = report.refused.iter().any(|line| line.contains(FENCE_SETTING));
-            let fence = state.replaced_fence.take().filter(|_| !is_refused);
+            let fence = state.editor.replaced_fence.take().filter(|_| !is_refused);
             let fence = fence.map_or_else(String::new, |sentence| format!(" {sentence}"));
             let text = format!("Uploaded {title}: {count} waypoints.{fence}{converted}{then}");
             state.editor.remember_refused(id, report.refused);
@@ -124,7 +123,7 @@ pub(super) fn uploaded(
         }
         Err(sentence) => {
             state.editor.forget_upload(id);
-            state.replaced_fence = None;
+            state.editor.replaced_fence = None;
             state.notify(
                 Severity::Fault,
                 format!("Uploading {title} failed: {}", state.keymap.in_force(&sentence)),
@@ -134,19 +133,8 @@ pub(super) fn uploaded(
     }
 }
 
-/// Opens the list of the waypoints to go to.
-pub(super) fn ask_where_to_go(state: &mut AppState) -> Vec<Effect> {
-    let vehicle = &state.view.vehicle;
-    let current = vehicle.nav.as_ref().map_or(0, |nav| nav.wp);
-    if let Some(stored) = &vehicle.stored_plan {
-        let question = GoTo::new(stored, current);
-        state.popups.push(Popup::GoTo(question));
-    }
-    Vec::new()
-}
-
 /// Steps through the speeds; 0 = real time.
-pub(super) fn speed(state: &mut AppState, step: i32) -> Vec<Effect> {
+pub(super) fn speed(state: &mut Shared, step: i32) -> Vec<Effect> {
     let wanted = state.view.speed_wanted;
     let next = match step {
         0 => Some(1.0),

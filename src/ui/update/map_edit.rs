@@ -4,19 +4,20 @@ use super::{plan, view};
 use crate::plan::Waypoint;
 use crate::plan::format::HomePosition;
 use crate::ui::action::{Action, EditAction};
-use crate::ui::app_state::AppState;
 use crate::ui::editor::PlanId;
 use crate::ui::event_log::Severity;
-use crate::ui::map_edit::{self, MapCursor, MapItem, Moving};
-use crate::ui::map_point::{self, MapPoint};
+use crate::ui::map_edit;
+use crate::ui::map_point::MapPoint;
+use crate::ui::map_point::origin::origin;
+use crate::ui::map_state::{MapCursor, MapItem, MapMode, Moving};
 use crate::ui::message::Effect;
-use crate::ui::viewport::MapMode;
+use crate::ui::shared::Shared;
 
 /// The greatest radius of the fence that the craft accepts, m.
 const WIDEST_FENCE_M: f64 = 10_000.0;
 
 /// Shows or hides the cursor.
-pub(super) fn toggle(state: &mut AppState) -> Vec<Effect> {
+pub(super) fn toggle(state: &mut Shared) -> Vec<Effect> {
     state.map.moving = None;
     if state.map.edit.take().is_some() {
         return Vec::new();
@@ -29,7 +30,7 @@ pub(super) fn toggle(state: &mut AppState) -> Vec<Effect> {
 }
 
 /// Handles an arrow key: moves the cursor by a cell if there is one, else the map.
-pub(super) fn arrow(state: &mut AppState, columns: f64, rows: f64) -> Vec<Effect> {
+pub(super) fn arrow(state: &mut Shared, columns: f64, rows: f64) -> Vec<Effect> {
     let (Some(cursor), Some(view)) = (state.map.edit, view::viewport(state)) else {
         return view::pan(state, columns, rows);
     };
@@ -47,7 +48,7 @@ pub(super) fn arrow(state: &mut AppState, columns: f64, rows: f64) -> Vec<Effect
 }
 
 /// Picks up the item at the cursor, or puts down the item picked up before.
-pub(super) fn pick(state: &mut AppState) -> Vec<Effect> {
+pub(super) fn pick(state: &mut Shared) -> Vec<Effect> {
     let Some(cursor) = state.map.edit else {
         let key = state.key(Action::Edit(EditAction::OnMap));
         let text = format!("`{key}` shows a cursor with which waypoints are picked, added and moved.");
@@ -69,7 +70,7 @@ pub(super) fn pick(state: &mut AppState) -> Vec<Effect> {
 }
 
 /// Picks an item up.
-pub(super) fn pick_up(state: &mut AppState, item: MapItem, place: MapPoint, by_mouse: bool) {
+pub(super) fn pick_up(state: &mut Shared, item: MapItem, place: MapPoint, by_mouse: bool) {
     if let MapItem::Waypoint(index) = item {
         state.editor.go_to_row(index);
     }
@@ -77,25 +78,25 @@ pub(super) fn pick_up(state: &mut AppState, item: MapItem, place: MapPoint, by_m
 }
 
 /// Returns the shown plan and its revision.
-fn revision(state: &AppState) -> (PlanId, usize) {
+fn revision(state: &Shared) -> (PlanId, usize) {
     let plan = state.editor.plan();
     (plan.id(), plan.history().at())
 }
 
 /// Drops the picked-up item at its old place, else hides the cursor. Returns `true` if there was either.
-pub(super) fn leave(state: &mut AppState) -> bool {
+pub(super) fn leave(state: &mut Shared) -> bool {
     state.map.moving.take().is_some() || state.map.edit.take().is_some()
 }
 
 /// Puts an item at a place, as one edit.
-pub(super) fn put(state: &mut AppState, item: MapItem, place: MapPoint) -> Vec<Effect> {
+pub(super) fn put(state: &mut Shared, item: MapItem, place: MapPoint) -> Vec<Effect> {
     state.map.moving = Some(Moving { item, place, moved: true, by_mouse: false, of: revision(state) });
     put_down(state)
 }
 
 /// Puts down the item being moved, as one edit.
-pub(super) fn put_down(state: &mut AppState) -> Vec<Effect> {
-    let (Some(moving), Some(frame)) = (state.map.moving.take(), map_point::origin(state)) else {
+pub(super) fn put_down(state: &mut Shared) -> Vec<Effect> {
+    let (Some(moving), Some(frame)) = (state.map.moving.take(), origin(state)) else {
         return Vec::new();
     };
     if !moving.moved {
@@ -134,7 +135,7 @@ pub(super) fn put_down(state: &mut AppState) -> Vec<Effect> {
 }
 
 /// Adds a waypoint at the cursor.
-pub(super) fn add(state: &mut AppState) -> Vec<Effect> {
+pub(super) fn add(state: &mut Shared) -> Vec<Effect> {
     let Some(cursor) = state.map.edit else {
         toggle(state);
         let key = state.key(Action::Edit(EditAction::AddOnMap));
@@ -146,15 +147,15 @@ pub(super) fn add(state: &mut AppState) -> Vec<Effect> {
 }
 
 /// Adds a waypoint at a place.
-pub(super) fn add_at(state: &mut AppState, place: MapPoint) -> Vec<Effect> {
-    let Some(frame) = map_point::origin(state) else { return Vec::new() };
+pub(super) fn add_at(state: &mut Shared, place: MapPoint) -> Vec<Effect> {
+    let Some(frame) = origin(state) else { return Vec::new() };
     let position = map_edit::position(&frame, place);
     let like = plan::next_waypoint(state).unwrap_or_default();
     plan::insert_waypoint(state, Waypoint { position, ..like })
 }
 
 /// Deletes the waypoint at the cursor.
-pub(super) fn delete(state: &mut AppState) -> Vec<Effect> {
+pub(super) fn delete(state: &mut Shared) -> Vec<Effect> {
     let (Some(cursor), Some(view)) = (state.map.edit, view::viewport(state)) else {
         let [shows, deletes] =
             [EditAction::OnMap, EditAction::DeleteOnMap].map(|action| state.key(Action::Edit(action)));

@@ -7,8 +7,10 @@ use crate::telemetry::InFlightCommand;
 use crate::ui::action::{self, Action};
 use crate::ui::app_state::AppState;
 use crate::ui::editor::Column;
-use crate::ui::map_edit::{MapItem, item_at, position};
-use crate::ui::map_point::{origin, to_map};
+use crate::ui::map_edit::{item_at, position};
+use crate::ui::map_point::origin::origin;
+use crate::ui::map_point::to_map;
+use crate::ui::map_state::MapItem;
 use crate::ui::message::Effect;
 use crate::ui::panel::Panel;
 use crate::ui::popup::map_menu::{MapChoice, Outcome};
@@ -17,11 +19,12 @@ use crate::ui::viewport::Viewport;
 
 /// Opens the menu for a cell of the map.
 pub(super) fn open(state: &mut AppState, view: &Viewport, at: (u16, u16)) {
-    let Some(frame) = origin(state) else { return };
+    let Some(frame) = origin(&state.shared) else { return };
     let place = view.place(at.0, at.1);
-    let choices = match item_at(state, place, view.scale) {
+    let choices = match item_at(&state.shared, place, view.scale) {
         Some(MapItem::Waypoint(index)) => {
-            let can_go = action::enabled(state, Action::GoTo).is_ok() && state.plan_is_on_craft();
+            let can_go =
+                action::enabled(&state.shared, Action::GoTo).is_ok() && state.shared.plan_is_on_craft();
             let go_to = u8::try_from(index).ok().filter(|_| can_go).map(MapChoice::GoTo);
             let edits = [MapChoice::EditWaypoint(index), MapChoice::DeleteWaypoint(index)];
             edits.into_iter().chain(go_to).collect()
@@ -42,20 +45,20 @@ pub(super) fn take(state: &mut AppState, place: LatLon, outcome: Outcome) -> Vec
         Outcome::Chosen(choice) => choice,
     };
     state.popups.pop();
-    let Some(frame) = origin(state) else { return Vec::new() };
+    let Some(frame) = origin(&state.shared) else { return Vec::new() };
     let place = to_map(&frame, place);
     match choice {
-        MapChoice::AddWaypoint => map_edit::add_at(state, place),
-        MapChoice::SetHome => map_edit::put(state, MapItem::Home, place),
-        MapChoice::SetFence => map_edit::put(state, MapItem::Fence, place),
+        MapChoice::AddWaypoint => map_edit::add_at(&mut state.shared, place),
+        MapChoice::SetHome => map_edit::put(&mut state.shared, MapItem::Home, place),
+        MapChoice::SetFence => map_edit::put(&mut state.shared, MapItem::Fence, place),
         MapChoice::EditWaypoint(index) => {
-            state.editor.go_to_cell(index, Column::default());
-            view::focus(state, Panel::Plan)
+            state.shared.editor.go_to_cell(index, Column::default());
+            view::focus(&mut state.shared, Panel::Plan)
         }
         MapChoice::DeleteWaypoint(index) => {
-            state.editor.cancel();
-            state.editor.go_to_row(index);
-            state.editor.delete()
+            state.shared.editor.cancel();
+            state.shared.editor.go_to_row(index);
+            state.shared.editor.delete()
         }
         MapChoice::GoTo(index) => vec![Effect::Send(Command::InFlight(InFlightCommand::GoTo(index)))],
     }

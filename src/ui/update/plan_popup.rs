@@ -7,16 +7,16 @@ use crossterm::event::{KeyCode, KeyEvent};
 use super::flight::upload_now;
 use super::plan;
 use crate::ui::action::{Action, EditAction};
-use crate::ui::app_state::AppState;
 use crate::ui::editor::findings;
 use crate::ui::editor::{
     Browser, BrowserKey, EditorPopup, FileReply, FileRequest, Form, FormKey, PlanId, Purpose, Question,
 };
 use crate::ui::event_log::Severity;
 use crate::ui::message::Effect;
+use crate::ui::shared::Shared;
 
 /// Handles a key while a popup of the editor is open.
-pub(super) fn key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
+pub(super) fn key(state: &mut Shared, event: KeyEvent) -> Vec<Effect> {
     match state.editor.popup.take() {
         Some(EditorPopup::Form(form)) => form_key(state, form, event),
         Some(EditorPopup::Browser(browser)) => browser_key(state, browser, event),
@@ -25,7 +25,7 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
     }
 }
 
-fn form_key(state: &mut AppState, mut form: Form, event: KeyEvent) -> Vec<Effect> {
+fn form_key(state: &mut Shared, mut form: Form, event: KeyEvent) -> Vec<Effect> {
     match form.key(event) {
         FormKey::Cancel => return Vec::new(),
         FormKey::Edited => {}
@@ -43,7 +43,7 @@ fn form_key(state: &mut AppState, mut form: Form, event: KeyEvent) -> Vec<Effect
     Vec::new()
 }
 
-fn browser_key(state: &mut AppState, mut browser: Browser, event: KeyEvent) -> Vec<Effect> {
+fn browser_key(state: &mut Shared, mut browser: Browser, event: KeyEvent) -> Vec<Effect> {
     let key = browser.key(event);
     match key {
         BrowserKey::Cancel => {
@@ -53,7 +53,7 @@ fn browser_key(state: &mut AppState, mut browser: Browser, event: KeyEvent) -> V
         BrowserKey::Chosen(path) => {
             return match browser.purpose {
                 Purpose::Open => vec![Effect::Files(FileRequest::Open(path))],
-                Purpose::Save(id) => vec![plan::write(state, id, path, false)],
+                Purpose::Save(id) => vec![state.editor.write(id, path, false)],
             };
         }
         BrowserKey::Edited | BrowserKey::List(_) => {}
@@ -65,7 +65,7 @@ fn browser_key(state: &mut AppState, mut browser: Browser, event: KeyEvent) -> V
     }
 }
 
-fn question_key(state: &mut AppState, question: Question, event: KeyEvent) -> Vec<Effect> {
+fn question_key(state: &mut Shared, question: Question, event: KeyEvent) -> Vec<Effect> {
     let answer = match event.code {
         KeyCode::Esc => 'n',
         KeyCode::Char(c) => c.to_ascii_lowercase(),
@@ -76,7 +76,7 @@ fn question_key(state: &mut AppState, question: Question, event: KeyEvent) -> Ve
             state.editor.quitting = false;
             Vec::new()
         }
-        (Question::Replace { id, path, .. }, 'y') => vec![plan::write(state, id, path, true)],
+        (Question::Replace { id, path, .. }, 'y') => vec![state.editor.write(id, path, true)],
         (Question::Replace { path, changed: true, .. }, 'r') => vec![Effect::Files(FileRequest::Open(path))],
         (Question::Replace { .. }, 'o') => plan::save_as(state),
         (Question::MovesTarget { id, .. }, 'y') => {
@@ -106,13 +106,13 @@ fn question_key(state: &mut AppState, question: Question, event: KeyEvent) -> Ve
     }
 }
 
-fn save_plan(state: &mut AppState, id: PlanId) -> Vec<Effect> {
+fn save_plan(state: &mut Shared, id: PlanId) -> Vec<Effect> {
     state.editor.show_plan(id);
     plan::save(state)
 }
 
 /// Quits if all edits are saved; else asks about the first plan with an unsaved edit.
-pub(super) fn quit(state: &mut AppState) -> Vec<Effect> {
+pub(super) fn quit(state: &mut Shared) -> Vec<Effect> {
     match state.editor.plans().iter().find(|plan| plan.is_unsaved()).map(super::super::editor::OpenPlan::id) {
         Some(id) => {
             state.editor.popup = Some(EditorPopup::Question(Question::Unsaved { id, quits: true }));
@@ -123,7 +123,7 @@ pub(super) fn quit(state: &mut AppState) -> Vec<Effect> {
 }
 
 /// Processes a reply of the files.
-pub(super) fn answered(state: &mut AppState, reply: FileReply) -> Vec<Effect> {
+pub(super) fn answered(state: &mut Shared, reply: FileReply) -> Vec<Effect> {
     match reply {
         FileReply::Opened(opened) => {
             for note in &opened.notes {

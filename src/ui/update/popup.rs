@@ -2,19 +2,17 @@
 
 use crossterm::event::{KeyCode, KeyEvent};
 
-use super::{act, map_menu};
+use super::{act, map_menu, permission, run_line};
 use crate::session::Command;
 use crate::telemetry::InFlightCommand;
 use crate::ui::action::{self, Action};
 use crate::ui::app_state::AppState;
-use crate::ui::command;
 use crate::ui::editor::FileRequest;
 use crate::ui::event_log::Severity;
 use crate::ui::forecast;
 use crate::ui::graphs::PLOTS;
 use crate::ui::history::LineField;
 use crate::ui::message::Effect;
-use crate::ui::permission;
 use crate::ui::popup::palette::Entry;
 use crate::ui::popup::{Popup, command_line, go_to, guards, palette, what_if};
 
@@ -45,13 +43,13 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) 
             }
             what_if::Outcome::Chosen(what_if) => {
                 state.popups.pop();
-                forecast::ask_what_if(state, what_if)
+                forecast::ask_what_if(&mut state.shared, what_if)
             }
         },
         Some(Popup::Guards { selected }) => {
             let mut chosen = *selected;
             let stays = guards::key(&mut chosen, event);
-            let chosen = guards::limit(state, chosen);
+            let chosen = guards::limit(&state.shared, chosen);
             match state.popups.last_mut() {
                 Some(Popup::Guards { selected }) if stays => *selected = chosen,
                 _ => {
@@ -73,7 +71,7 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) 
             match event.code {
                 KeyCode::Up | KeyCode::Char('k') => *selected = selected.saturating_sub(1),
                 KeyCode::Down | KeyCode::Char('j') => *selected = (*selected + 1).min(PLOTS.len() - 1),
-                KeyCode::Enter | KeyCode::Char(' ') => state.graphs.toggle(*selected),
+                KeyCode::Enter | KeyCode::Char(' ') => state.shared.graphs.toggle(*selected),
                 KeyCode::Esc => {
                     state.popups.pop();
                 }
@@ -81,7 +79,7 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) 
             }
             Vec::new()
         }
-        Some(Popup::CommandLine) => match command_line::key(state, event) {
+        Some(Popup::CommandLine) => match command_line::key(&mut state.command_line, &state.shared, event) {
             command_line::Outcome::Typing => Vec::new(),
             command_line::Outcome::Left => {
                 state.popups.pop();
@@ -144,9 +142,9 @@ pub(super) fn open_command_line(state: &mut AppState, text: &str) {
 
 /// Runs the entered line, or notifies the user of the reason for its refusal.
 fn run(state: &mut AppState, line: &str) -> Vec<Effect> {
-    command::run(state, line).unwrap_or_else(|sentence| {
-        let sentence = state.keymap.in_force(&sentence);
-        state.notify(Severity::Warn, sentence);
+    run_line(state, line).unwrap_or_else(|sentence| {
+        let sentence = state.shared.keymap.in_force(&sentence);
+        state.shared.notify(Severity::Warn, sentence);
         Vec::new()
     })
 }
@@ -155,7 +153,7 @@ fn quit_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
     match event.code {
         KeyCode::Char('y' | 'Y') => {
             state.popups.pop();
-            super::plan_popup::quit(state)
+            super::plan_popup::quit(&mut state.shared)
         }
         KeyCode::Char('n' | 'N') | KeyCode::Esc => {
             state.popups.pop();

@@ -3,16 +3,16 @@
 use crate::session::command::Seek;
 use crate::session::{Command, SessionView};
 use crate::ui::action::{Action, is_wrecked};
-use crate::ui::app_state::AppState;
 use crate::ui::layout;
 use crate::ui::message::Effect;
+use crate::ui::shared::Shared;
 use crate::ui::timeline;
 
 /// The time that one press of the keys for earlier and later skips, s.
 const SKIP_S: f64 = 10.0;
 
 /// Carries out an action of the timeline.
-pub(super) fn act(state: &AppState, action: Action) -> Vec<Effect> {
+pub(super) fn act(state: &Shared, action: Action) -> Vec<Effect> {
     let command = match action {
         Action::Tick => {
             let pause = (!state.view.paused).then_some(Effect::Send(Command::Pause(true)));
@@ -35,7 +35,7 @@ pub(super) fn act(state: &AppState, action: Action) -> Vec<Effect> {
 }
 
 /// Handles a click on the timeline, which shows that instant; `None` if the click is elsewhere.
-pub(super) fn click(state: &AppState, column: u16, row: u16) -> Option<Vec<Effect>> {
+pub(super) fn click(state: &Shared, column: u16, row: u16) -> Option<Vec<Effect>> {
     let area = layout::screen(state)?.timeline.filter(|area| area.contains((column, row).into()))?;
     let recorded = state.view.timeline.as_ref()?;
     let time = timeline::time_at(recorded, area, column);
@@ -44,7 +44,7 @@ pub(super) fn click(state: &AppState, column: u16, row: u16) -> Option<Vec<Effec
 
 /// Moves the track after the fork to the abandoned tracks if `view` is on another branch than the view before. Returns
 /// `true` in that case.
-pub(super) fn follow_branch(state: &mut AppState, view: &SessionView) -> bool {
+pub(super) fn follow_branch(state: &mut Shared, view: &SessionView) -> bool {
     let branch = |view: &SessionView| view.timeline.as_ref().map_or(0, |timeline| timeline.branch);
     let Some(timeline) = view.timeline.as_ref().filter(|timeline| timeline.branch != branch(&state.view))
     else {
@@ -52,6 +52,6 @@ pub(super) fn follow_branch(state: &mut AppState, view: &SessionView) -> bool {
     };
     state.stick_recording.go_back_to(timeline.branched_at.as_secs_f64());
     let part = state.track.cut_after(timeline.branched_at.as_secs_f64());
-    state.timeline.keep_track(part);
+    state.abandoned.keep(part);
     true
 }

@@ -4,36 +4,38 @@ use crate::ui::app_state::AppState;
 use crate::ui::knobs;
 use crate::ui::layout;
 use crate::ui::map_point;
+use crate::ui::map_state::MapMode;
 use crate::ui::message::Effect;
 use crate::ui::panel;
 use crate::ui::panel::Panel;
-use crate::ui::viewport::{MapMode, Viewport};
+use crate::ui::shared::Shared;
+use crate::ui::viewport::Viewport;
 
 /// The factor of a zoom step of the map.
 pub(super) const ZOOM_STEP: f64 = 1.5;
 
 /// Gives a panel the focus.
-pub(in crate::ui) fn focus(state: &mut AppState, panel: Panel) -> Vec<Effect> {
+pub(super) fn focus(state: &mut Shared, panel: Panel) -> Vec<Effect> {
     state.focus = panel;
     state.slots.visit(panel);
     Vec::new()
 }
 
-/// Returns the panel before or after the focused one in the order of numbers.
-pub(super) fn neighbour(state: &AppState, step: isize) -> Panel {
+/// Gives the focus to the panel before or after the focused one in the order of numbers.
+pub(super) fn focus_neighbour(state: &mut Shared, step: isize) -> Vec<Effect> {
     let count = Panel::ALL.len();
     let at = Panel::ALL.iter().position(|&panel| panel == state.focus).unwrap_or(0);
-    Panel::ALL[(at + count).wrapping_add_signed(step) % count]
+    focus(state, Panel::ALL[(at + count).wrapping_add_signed(step) % count])
 }
 
 /// Returns the current window of the map.
-pub(super) fn viewport(state: &AppState) -> Option<Viewport> {
+pub(super) fn viewport(state: &Shared) -> Option<Viewport> {
     let area = layout::screen(state)?.panel(Panel::Map)?;
     Some(Viewport::of(state, layout::inner(area)))
 }
 
 /// Keeps the craft in the middle of the map, at the current scale.
-pub(super) fn follow(state: &mut AppState) -> Vec<Effect> {
+pub(super) fn follow(state: &mut Shared) -> Vec<Effect> {
     if let Some(view) = viewport(state) {
         state.map.mode = MapMode::Follow(view.scale);
     }
@@ -41,7 +43,7 @@ pub(super) fn follow(state: &mut AppState) -> Vec<Effect> {
 }
 
 /// Moves the map by an eighth of its size.
-pub(super) fn pan(state: &mut AppState, columns: f64, rows: f64) -> Vec<Effect> {
+pub(super) fn pan(state: &mut Shared, columns: f64, rows: f64) -> Vec<Effect> {
     if let Some(view) = viewport(state) {
         let (width, height) = (f64::from(view.area.width), f64::from(view.area.height));
         state.map.mode = view.panned(columns * (width / 8.0).ceil(), rows * (height / 8.0).ceil());
@@ -50,7 +52,7 @@ pub(super) fn pan(state: &mut AppState, columns: f64, rows: f64) -> Vec<Effect> 
 }
 
 /// Zooms around the edit cursor, else around the craft if it is in the window, else around the middle.
-pub(super) fn zoom_map(state: &mut AppState, factor: f64) -> Vec<Effect> {
+pub(super) fn zoom_map(state: &mut Shared, factor: f64) -> Vec<Effect> {
     if let Some(view) = viewport(state) {
         state.map.mode = match state.map.mode {
             MapMode::Follow(scale) => MapMode::Follow(scale * factor),
@@ -66,37 +68,38 @@ pub(super) fn zoom_map(state: &mut AppState, factor: f64) -> Vec<Effect> {
 }
 
 pub(super) fn scroll(state: &mut AppState, by: isize) -> Vec<Effect> {
-    scroll_panel(state, state.focus, by);
+    scroll_panel(state, state.shared.focus, by);
     Vec::new()
 }
 
 /// Scrolls a panel by lines, within its content.
 pub(super) fn scroll_panel(state: &mut AppState, panel: Panel, by: isize) {
-    let Some(area) = layout::screen(state).and_then(|screen| screen.panel(panel)).map(layout::inner) else {
+    let Some(area) = layout::screen(&state.shared).and_then(|screen| screen.panel(panel)).map(layout::inner)
+    else {
         return;
     };
     let (at, by, last) = match panel {
         Panel::State => {
             let last = state.transitions.len().saturating_sub(1);
-            (&mut state.scrolls.transitions, by, last)
+            (&mut state.transitions.scroll, by, last)
         }
         Panel::Log => {
-            let last = panel::log::last_scroll(state, area);
-            (&mut state.scrolls.log, by, last)
+            let last = panel::log::last_scroll(&state.log_view, &state.shared, area);
+            (&mut state.log_view.scroll, by, last)
         }
         Panel::Plan => {
-            state.editor.move_cursor(by, 0);
+            state.shared.editor.move_cursor(by, 0);
             return;
         }
         // The newest line of the CLI is at the bottom, so scrolling up increases its position.
         Panel::Cli => {
-            let last = panel::cli::last_scroll(state, area);
+            let last = panel::cli::last_scroll(&state.cli, &state.shared, area);
             (&mut state.cli.scroll, by.saturating_neg(), last)
         }
         // The knob whose value is typed stays selected.
         Panel::World if state.knobs.field.is_some() => return,
         Panel::World => {
-            let last = knobs::knobs(state).len().saturating_sub(1);
+            let last = knobs::knobs(&state.shared).len().saturating_sub(1);
             (&mut state.knobs.selected, by, last)
         }
         Panel::Map | Panel::Rc | Panel::Graphs => return,

@@ -6,10 +6,12 @@ use ratatui::widgets::canvas::{Context, Line as CanvasLine};
 use crate::plan::{HoldPattern, Waypoint, WaypointType};
 use crate::telemetry::NavTelemetry;
 use crate::telemetry::snapshot::SettingsView;
-use crate::ui::app_state::AppState;
 use crate::ui::forecast;
-use crate::ui::map_edit::{self, MapItem, Moving};
-use crate::ui::map_point::{self, MapPoint, to_map};
+use crate::ui::map_edit;
+use crate::ui::map_point::origin::origin;
+use crate::ui::map_point::{MapPoint, to_map};
+use crate::ui::map_state::{MapItem, Moving};
+use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
 use crate::ui::track::TrackPoint;
 
@@ -106,7 +108,7 @@ impl LinePainter<'_, '_> {
     }
 }
 
-pub(super) fn paint(state: &AppState, scene: &Scene, context: &mut Context<'_>) {
+pub(super) fn paint(state: &Shared, scene: &Scene, context: &mut Context<'_>) {
     let settings = state.view.vehicle.settings;
     let theme = &state.theme;
     let dot_m = scene.view.scale / 2.0;
@@ -138,7 +140,7 @@ pub(super) fn paint(state: &AppState, scene: &Scene, context: &mut Context<'_>) 
     // The track is bright up to the shown instant. The part after it and abandoned branches are faint.
     let (points, later) = state.track.points().split_at(state.track_points_shown());
     layer(Role::Dim, &mut |painter| {
-        for track in state.timeline.tracks().iter().map(Vec::as_slice).chain([later]) {
+        for track in state.abandoned.tracks().iter().map(Vec::as_slice).chain([later]) {
             painter.track(track);
         }
     });
@@ -166,16 +168,16 @@ fn legs(scene: &Scene, painter: &mut LinePainter<'_, '_>) {
 }
 
 /// Returns the start and end of the current leg.
-fn current_leg(state: &AppState, scene: &Scene) -> Option<(MapPoint, MapPoint)> {
+fn current_leg(state: &Shared, scene: &Scene) -> Option<(MapPoint, MapPoint)> {
     let nav: &NavTelemetry = state.view.vehicle.nav.as_ref()?;
     let to = scene.spots.iter().find(|spot| Some(spot.index) == scene.current)?.place;
-    let from = map_point::origin(state).zip(nav.leg_start).map(|(frame, start)| to_map(&frame, start));
+    let from = origin(state).zip(nav.leg_start).map(|(frame, start)| to_map(&frame, start));
     Some((from.or(scene.craft)?, to))
 }
 
 /// Draws the figure at a waypoint: the radius that ends the leg, the hold pattern, the cut corner.
 fn figure(
-    state: &AppState,
+    state: &Shared,
     scene: &Scene,
     at: usize,
     spot: &PlacedWaypoint,

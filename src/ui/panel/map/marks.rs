@@ -3,10 +3,9 @@
 use ratatui::buffer::Buffer;
 
 use crate::plan::WaypointType;
-use crate::ui::app_state::AppState;
 use crate::ui::forecast;
-use crate::ui::graphs;
 use crate::ui::map_point::MapPoint;
+use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
 use crate::ui::viewport::round_length;
 
@@ -17,7 +16,7 @@ use super::{PlacedWaypoint, Scene};
 const ARROWS: [&str; 8] = ["↑", "↗", "→", "↘", "↓", "↙", "←", "↖"];
 
 /// Writes the text of the map: marks, numbers, craft, scale, wind.
-pub(super) fn write(state: &AppState, scene: &Scene, buffer: &mut Buffer) {
+pub(super) fn write(state: &Shared, scene: &Scene, buffer: &mut Buffer) {
     let theme = &state.theme;
     let vehicle = &state.view.vehicle;
     let mut labels = Labels::new(theme, scene.view, buffer);
@@ -45,7 +44,7 @@ pub(super) fn write(state: &AppState, scene: &Scene, buffer: &mut Buffer) {
     {
         labels.mark(believed, "+", Role::Warn);
     }
-    if let Some(place) = graphs::cursor_place(state) {
+    if let Some(place) = state.graphs.cursor_place() {
         labels.mark(place, "╋", Role::Focus);
     }
     if let Some(craft) = scene.craft {
@@ -100,7 +99,7 @@ fn arrow(heading_deg: f64) -> &'static str {
 }
 
 /// Writes the wind at the bottom left, scale bar and north at the bottom right.
-fn frame_notes(state: &AppState, labels: &mut Labels<'_>) {
+fn frame_notes(state: &Shared, labels: &mut Labels<'_>) {
     let vehicle = &state.view.vehicle;
     let units = state.units;
     let wind = match &vehicle.truth {

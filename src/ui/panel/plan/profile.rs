@@ -4,9 +4,9 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 use crate::plan::estimate::estimate;
-use crate::ui::app_state::AppState;
 use crate::ui::drawing;
 use crate::ui::editor::{findings, settings_in_force};
+use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
 
 mod flown;
@@ -27,7 +27,7 @@ struct Point {
     index: usize,
 }
 
-fn points(state: &AppState) -> Vec<Point> {
+fn points(state: &Shared) -> Vec<Point> {
     let document = state.editor.document();
     let Some(home) = findings::home(state) else { return Vec::new() };
     let mut plan = document.plan.clone();
@@ -85,7 +85,7 @@ impl Axes {
 }
 
 /// Returns the waypoint whose number is at a cell.
-pub(super) fn waypoint_at(state: &AppState, area: Rect, (column, row): (u16, u16)) -> Option<usize> {
+pub(super) fn waypoint_at(state: &Shared, area: Rect, (column, row): (u16, u16)) -> Option<usize> {
     let points = points(state);
     let axes = Axes::of(&points, &flown(state, &points), area)?;
     let here =
@@ -94,13 +94,13 @@ pub(super) fn waypoint_at(state: &AppState, area: Rect, (column, row): (u16, u16
 }
 
 /// Returns the height of a row of the profile, m.
-pub(super) fn metres_per_row(state: &AppState, area: Rect) -> Option<f64> {
+pub(super) fn metres_per_row(state: &Shared, area: Rect) -> Option<f64> {
     let points = points(state);
     Axes::of(&points, &flown(state, &points), area).map(|axes| axes.metres_per_row())
 }
 
 /// Draws the profile: a rule with its legend, then the altitudes, the waypoint under the cursor marked.
-pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
+pub(super) fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let points = points(state);
     let flown = flown(state, &points);
@@ -143,7 +143,7 @@ pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
 }
 
 /// Draws the rule above the profile: the unit, and the meaning of the marks.
-fn legend(state: &AppState, has_flown: bool, area: Rect, buffer: &mut Buffer) {
+fn legend(state: &Shared, has_flown: bool, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let rule = "─".repeat(usize::from(area.width));
     drawing::text(buffer, area.x, area.y, rule, theme.style(Role::Dim));

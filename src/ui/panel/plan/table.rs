@@ -8,11 +8,11 @@ use crate::geo::distance_bearing;
 use crate::plan::edit::fix::waypoint_of;
 use crate::plan::review::Finding;
 use crate::plan::{FlightPlan, Waypoint, WaypointType};
-use crate::ui::app_state::AppState;
 use crate::ui::drawing;
 use crate::ui::editor::Column;
 use crate::ui::formatting::{compass, cut};
 use crate::ui::panel::{Panel, row};
+use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
 use crate::ui::units::Units;
 
@@ -39,7 +39,7 @@ fn column(column: Column, wide: bool, units: Units) -> (String, u16) {
 }
 
 /// Returns the columns that fit, with head, first cell and width. The one with the cursor is always among them.
-fn columns(state: &AppState, width: u16) -> Vec<(Column, String, u16, u16)> {
+fn columns(state: &Shared, width: u16) -> Vec<(Column, String, u16, u16)> {
     let wide = width >= WIDE;
     let mut shown: Vec<Column> = Column::iter().collect();
     let total =
@@ -68,7 +68,7 @@ pub(super) fn differences(plan: &FlightPlan, other: &FlightPlan) -> usize {
 }
 
 /// Returns the difference between a waypoint of the craft's plan and of the open one, if there is one.
-pub(super) fn difference(state: &AppState, index: usize) -> Option<String> {
+pub(super) fn difference(state: &Shared, index: usize) -> Option<String> {
     let stored = state.view.vehicle.stored_plan.as_ref().filter(|plan| !plan.waypoints.is_empty())?;
     let ours = state.plan().waypoints.get(index)?;
     let Some(theirs) = stored.waypoints.get(index) else {
@@ -95,13 +95,13 @@ pub(super) fn difference(state: &AppState, index: usize) -> Option<String> {
 }
 
 /// Returns the first shown waypoint for this number of rows.
-fn first_row(state: &AppState, rows: usize) -> usize {
+fn first_row(state: &Shared, rows: usize) -> usize {
     let count = state.plan().waypoints.len();
     state.editor.row().saturating_sub(rows / 2).min(count.saturating_sub(rows))
 }
 
 /// Returns the waypoint and the column at a cell of the screen.
-pub(super) fn cell_at(state: &AppState, area: Rect, (x, y): (u16, u16)) -> Option<(usize, Column)> {
+pub(super) fn cell_at(state: &Shared, area: Rect, (x, y): (u16, u16)) -> Option<(usize, Column)> {
     let rows = area.height.saturating_sub(1);
     let row = y.checked_sub(area.y + 1).filter(|&row| row < rows)?;
     let index = first_row(state, usize::from(rows)) + usize::from(row);
@@ -114,7 +114,7 @@ pub(super) fn cell_at(state: &AppState, area: Rect, (x, y): (u16, u16)) -> Optio
 
 /// Draws the table. Returns the position of the cursor while a cell is typed.
 pub(super) fn draw(
-    state: &AppState,
+    state: &Shared,
     findings: &[Finding],
     area: Rect,
     buffer: &mut Buffer,
@@ -168,7 +168,7 @@ pub(super) fn draw(
 }
 
 /// Returns the mark before a waypoint: it has a finding, is being flown, or differs from the craft's.
-fn mark(state: &AppState, findings: &[Finding], index: usize, wp: &Waypoint) -> (char, Role) {
+fn mark(state: &Shared, findings: &[Finding], index: usize, wp: &Waypoint) -> (char, Role) {
     let vehicle = &state.view.vehicle;
     let wrong = findings.iter().find(|finding| waypoint_of(finding) == Some(index));
     let flying =

@@ -9,10 +9,9 @@ use crate::ui::app_state::AppState;
 use crate::ui::command;
 use crate::ui::forecast;
 use crate::ui::message::{Effect, Msg};
-use crate::ui::permission;
 use crate::ui::popup::Popup;
 use crate::ui::prompt;
-use crate::ui::update::update;
+use crate::ui::update::{self, run_line, update};
 
 /// The output, and the question written last.
 #[derive(Debug)]
@@ -33,10 +32,10 @@ impl<W: Write> Lines<W> {
 
     /// Handles a line of input: as the answer to the question if there is one, else as a command.
     pub(super) fn enter(&mut self, state: &mut AppState, line: &str) -> io::Result<Vec<Effect>> {
-        let is_asked = state.editor.popup.is_some() || !state.popups.is_empty();
+        let is_asked = state.shared.editor.popup.is_some() || !state.popups.is_empty();
         if !is_asked {
-            let effects = self.said(command::run(state, line))?;
-            return Ok(permission::hold(state, effects));
+            let effects = self.said(run_line(state, line))?;
+            return Ok(update::hold(state, effects));
         }
         let answered = self.said(prompt::answer(state, line))?;
         if let Some(reported) = answered.reported {
@@ -63,15 +62,17 @@ impl<W: Write> Lines<W> {
                     self.write(line.trim_end())?;
                 }
                 let effects = update(state, Msg::CliReply(Some(output)));
-                state.notice = None;
+                state.shared.notice = None;
                 Ok(effects)
             }
             Msg::Forecast(reply) if reply.kind == ForecastKind::LookAhead => {
                 let effects = update(state, Msg::Forecast(reply));
-                if let Some(ghost) = forecast::ghost(state).filter(|_| state.forecast.looks_ahead()) {
+                if let Some(ghost) =
+                    forecast::ghost(&state.shared).filter(|_| state.shared.forecast.looks_ahead())
+                {
                     self.write(&ghost.line)?;
                     // Once for each request.
-                    state.forecast.dismiss();
+                    state.shared.forecast.dismiss();
                 }
                 Ok(effects)
             }
@@ -81,7 +82,7 @@ impl<W: Write> Lines<W> {
 
     /// Writes the newest notice, and the question if it has changed.
     pub(super) fn follow(&mut self, state: &mut AppState) -> io::Result<()> {
-        if let Some(notice) = state.notice.take() {
+        if let Some(notice) = state.shared.notice.take() {
             self.write(&notice.text)?;
         }
         match state.popups.last() {
@@ -91,7 +92,7 @@ impl<W: Write> Lines<W> {
             }
             Some(Popup::Guards { .. }) => {
                 state.popups.clear();
-                let guards = state.view.vehicle.nav.iter().flat_map(|nav| &nav.guards);
+                let guards = state.shared.view.vehicle.nav.iter().flat_map(|nav| &nav.guards);
                 for guard in guards.map(|guard| guard.name).collect::<Vec<_>>() {
                     self.write(&format!("{guard}: {}", guard.explanation()))?;
                 }

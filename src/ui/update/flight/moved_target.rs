@@ -3,13 +3,13 @@
 use crate::geo::distance_bearing;
 use crate::plan::{FlightPlan, LegAltitude, Waypoint, leg_altitudes};
 use crate::ui::action::Action;
-use crate::ui::app_state::AppState;
+use crate::ui::shared::Shared;
 
 /// A waypoint that moves by more than this is asked about, m.
 const FAR_M: f64 = 50.0;
 
 /// Returns a sentence for the user if the open plan has the waypoint that the craft flies to far from its place, or lacks it.
-pub(super) fn question(state: &AppState) -> Option<String> {
+pub(super) fn question(state: &Shared) -> Option<String> {
     // A return home and an emergency landing are plans of their own.
     if !state.flies_stored_plan() {
         return None;

@@ -2,8 +2,9 @@
 
 use super::Point;
 use crate::plan::Waypoint;
-use crate::ui::app_state::AppState;
-use crate::ui::map_point::{self, MapPoint, to_map};
+use crate::ui::map_point::origin::origin;
+use crate::ui::map_point::{MapPoint, to_map};
+use crate::ui::shared::Shared;
 
 /// Track points closer than this to each other share a mark of the profile: a share of its length, and m.
 const NEAR_SHARE: f64 = 1.0 / 2000.0;
@@ -16,10 +17,10 @@ pub(super) struct FlownPoint {
 }
 
 /// Returns the flown part of the open plan up to the shown instant; empty if the craft's plan has other places.
-pub(super) fn flown(state: &AppState, points: &[Point]) -> Vec<FlownPoint> {
+pub(super) fn flown(state: &Shared, points: &[Point]) -> Vec<FlownPoint> {
     let waypoints = &state.plan().waypoints;
     let vehicle = &state.view.vehicle;
-    let Some(frame) = map_point::origin(state) else { return Vec::new() };
+    let Some(frame) = origin(state) else { return Vec::new() };
     let Some(flown) = vehicle.active_plan.as_ref().or(vehicle.stored_plan.as_ref()) else {
         return Vec::new();
     };

@@ -1,0 +1,53 @@
+//! The configuration of the user interface at start.
+
+use super::console::CliHelp;
+use super::editor::OpenPlan;
+use super::history::EnteredLines;
+use super::keymap::Keymap;
+use super::theme::Theme;
+use super::units::Units;
+use crate::session::Event;
+
+/// The configuration of the user interface at start.
+#[derive(Debug, Clone)]
+pub struct UiConfig {
+    pub theme: Theme,
+    /// Units of the shown values.
+    pub units: Units,
+    /// Altitude above home above which a waypoint gets a warning, m.
+    pub max_altitude_m: f64,
+    pub keymap: Keymap,
+    /// Completion and help of the CLI panel.
+    pub cli: CliHelp,
+    /// Returns an event as a sentence; empty for events that nobody needs to read.
+    pub sentence: fn(&Event) -> String,
+    /// The plan that is open at start.
+    pub plan: OpenPlan,
+    /// `true` to use the mouse.
+    pub mouse: bool,
+    /// Lines entered in earlier runs.
+    pub entered: EnteredLines,
+    /// `true` to point to the tutorial on the first screen.
+    pub is_first_start: bool,
+}
+
+#[cfg(test)]
+impl UiConfig {
+    pub(super) fn bare() -> Self {
+        use super::editor::PlanId;
+        use crate::plan::edit::{History, PlanDocument};
+
+        Self {
+            theme: Theme::default(),
+            units: Units::default(),
+            max_altitude_m: crate::plan::estimate::MAX_ALTITUDE_M,
+            keymap: Keymap::default(),
+            cli: CliHelp::default(),
+            sentence: |_| String::new(),
+            plan: OpenPlan::new(PlanId::default(), None, History::new(PlanDocument::default(), true)),
+            mouse: false,
+            entered: EnteredLines::default(),
+            is_first_start: false,
+        }
+    }
+}

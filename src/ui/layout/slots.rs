@@ -1,0 +1,42 @@
+//! The places that several panels share.
+
+use crate::ui::panel::Panel;
+
+/// The contents of the places that several panels share: the panel that had the focus last.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Slots {
+    /// From 80x24: map (with the log below), or one of RC, CLI, plan, graphs, world instead of both.
+    pub(super) main: Panel,
+    /// From 120x34, bottom left: log, CLI or graphs. From 180x48, bottom left: log or graphs.
+    pub(super) left: Panel,
+    /// From 120x34, bottom right: RC, plan or world. From 180x48, top right: RC or world.
+    pub(super) right: Panel,
+}
+
+impl Default for Slots {
+    fn default() -> Self {
+        Self { main: Panel::Map, left: Panel::Log, right: Panel::Plan }
+    }
+}
+
+impl Slots {
+    /// Remembers that a panel got the focus.
+    pub fn visit(&mut self, panel: Panel) {
+        match panel {
+            Panel::Map => self.main = Panel::Map,
+            Panel::Log => {
+                self.main = Panel::Map;
+                self.left = Panel::Log;
+            }
+            Panel::Cli | Panel::Graphs => {
+                self.main = panel;
+                self.left = panel;
+            }
+            Panel::Rc | Panel::Plan | Panel::World => {
+                self.main = panel;
+                self.right = panel;
+            }
+            Panel::State => {}
+        }
+    }
+}

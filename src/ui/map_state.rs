@@ -1,0 +1,64 @@
+//! The state of the map: its window, and the edit with the cursor or the mouse.
+
+use super::editor::PlanId;
+use super::map_point::MapPoint;
+
+/// The mode that selects the window of the map.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum MapMode {
+    /// The map shows the whole plan and the craft.
+    #[default]
+    Fit,
+    /// The craft stays in the middle, at this many metres per column.
+    Follow(f64),
+    /// The user has chosen the window.
+    Free {
+        /// The middle, north, m.
+        n: f64,
+        /// The middle, east, m.
+        e: f64,
+        /// Metres per column.
+        scale: f64,
+    },
+}
+
+/// The state of the map panel.
+#[derive(Debug, Default)]
+pub struct MapState {
+    pub mode: MapMode,
+    /// The cursor, while the user edits with it.
+    pub(super) edit: Option<MapCursor>,
+    /// The item being moved.
+    pub(super) moving: Option<Moving>,
+}
+
+/// An item of the plan that has a place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum MapItem {
+    Waypoint(usize),
+    /// Home of the plan.
+    Home,
+    /// The fence, which is picked up at its ring.
+    Fence,
+}
+
+/// The item being moved, and its current place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Moving {
+    pub item: MapItem,
+    /// The place, m.
+    pub place: MapPoint,
+    /// `true` once it has left the place where it was picked up.
+    pub moved: bool,
+    /// `true` if the mouse moves it: it is put down when the button is released.
+    pub by_mouse: bool,
+    /// The plan and revision in which it was picked up.
+    pub of: (PlanId, usize),
+}
+
+/// The keyboard's cursor on the map.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct MapCursor {
+    /// The place, m.
+    pub place: MapPoint,
+}

@@ -1,0 +1,30 @@
+//! The frame of a popup.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::text::Line;
+use ratatui::widgets::{Block, Clear, Widget as _};
+
+use crate::ui::layout;
+use crate::ui::panel::span;
+use crate::ui::theme::{Role, Theme};
+
+/// Draws an empty frame in the middle for a popup of this inner size. Returns the inside.
+pub(in crate::ui) fn popup(
+    theme: &Theme,
+    area: Rect,
+    size: (u16, u16),
+    title: &str,
+    buffer: &mut Buffer,
+) -> Rect {
+    let width = (size.0 + 2).min(area.width);
+    let height = (size.1 + 2).min(area.height);
+    let place =
+        Rect::new(area.x + (area.width - width) / 2, area.y + (area.height - height) / 2, width, height);
+    Clear.render(place, buffer);
+    Block::bordered()
+        .border_style(theme.style(Role::Focus))
+        .title(Line::from(span(theme, Role::Focus, title)))
+        .render(place, buffer);
+    layout::inner(place)
+}

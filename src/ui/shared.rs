@@ -1,0 +1,247 @@
+//! The state that every panel may read.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use crate::fc::{RemoteView, UploadView};
+use crate::plan::FlightPlan;
+use crate::session::SessionView;
+use crate::signals::{RcFrame, SimTime};
+use crate::telemetry::PlanSource;
+
+use super::action::Action;
+use super::config::UiConfig;
+use super::console::CliHelp;
+use super::editor::{Editor, PlanId};
+use super::event_log::{LogState, Severity};
+use super::forecast::ForecastState;
+use super::graphs::GraphsState;
+use super::keymap::Keymap;
+use super::layout::Slots;
+use super::map_state::MapState;
+use super::message::Effect;
+use super::panel::Panel;
+use super::stick_recording::StickRecording;
+use super::theme::Theme;
+use super::track::{AbandonedTracks, Track};
+use super::units::Units;
+
+/// The altitude from which a craft that touches nothing counts as in the air, m. A bounce stays below it.
+const IN_THE_AIR_M: f64 = 1.0;
+
+/// A sentence that is shown for a moment.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Notice {
+    pub text: String,
+    pub severity: Severity,
+    /// The time at which it appeared, wall clock.
+    pub at: Duration,
+}
+
+/// The state that every panel may read.
+#[derive(Debug)]
+pub struct Shared {
+    pub view: SessionView,
+    pub theme: Theme,
+    /// Units of the shown values.
+    pub units: Units,
+    /// Altitude above home above which a waypoint gets a warning, m.
+    pub max_altitude_m: f64,
+    /// Completion and help of the CLI panel.
+    pub cli_help: CliHelp,
+    pub keymap: Keymap,
+    /// The open plans and the state of editing.
+    pub editor: Editor,
+    /// Columns and rows of the terminal.
+    pub size: (u16, u16),
+    /// The panel that gets the keys.
+    pub focus: Panel,
+    /// `true` if the focused panel fills the screen.
+    pub zoomed: bool,
+    /// The panels in the shared places.
+    pub slots: Slots,
+    /// Wall-clock time since start.
+    pub now: Duration,
+    pub map: MapState,
+    pub graphs: GraphsState,
+    /// The path that the craft has flown.
+    pub track: Track,
+    /// The tracks of abandoned branches of the flight.
+    pub abandoned: AbandonedTracks,
+    /// Flights flown ahead of time.
+    pub forecast: ForecastState,
+    pub log: LogState,
+    pub notice: Option<Notice>,
+    /// Notices that stay until Esc clears them, the oldest first.
+    pub pinned: Vec<String>,
+    pub stick_recording: StickRecording,
+    /// The sticks sent but not yet confirmed by the session, and the time of sending.
+    pub sticks_sent: Option<(RcFrame, Duration)>,
+    /// The time at which the key that arms was pressed in the air, wall clock.
+    pub disarm_asked: Option<Duration>,
+}
+
+#[cfg(test)]
+impl Shared {
+    /// Returns a state that only has a picture.
+    pub(super) fn bare(size: (u16, u16), view: SessionView) -> Self {
+        Self::new(UiConfig::bare(), size, view)
+    }
+}
+
+impl Shared {
+    /// Returns the state at start.
+    pub(super) fn new(config: UiConfig, size: (u16, u16), view: SessionView) -> Self {
+        Self {
+            view,
+            theme: config.theme,
+            units: config.units,
+            max_altitude_m: config.max_altitude_m,
+            cli_help: config.cli,
+            keymap: config.keymap,
+            editor: Editor::new(config.plan),
+            size,
+            focus: Panel::Map,
+            zoomed: false,
+            slots: Slots::default(),
+            now: Duration::ZERO,
+            map: MapState::default(),
+            graphs: GraphsState::default(),
+            track: Track::default(),
+            abandoned: AbandonedTracks::default(),
+            forecast: ForecastState::default(),
+            log: LogState::default(),
+            notice: None,
+            pinned: Vec::new(),
+            stick_recording: StickRecording::default(),
+            sticks_sent: None,
+            disarm_asked: None,
+        }
+    }
+
+    /// Returns the remote flight controller if its craft is real.
+    pub(super) fn real_craft(&self) -> Option<&RemoteView> {
+        self.view.remote.as_ref().filter(|remote| remote.access.is_limited())
+    }
+
+    /// Returns the current key of an action, for sentences.
+    pub(super) fn key(&self, action: Action) -> String {
+        self.keymap.key(action)
+    }
+
+    /// Returns the current key that shows a panel, followed by the panel's name.
+    pub(super) fn panel_title(&self, panel: Panel) -> String {
+        let key = self.keymap.shown_keys(Action::Show(panel)).into_iter().next();
+        key.map_or_else(|| panel.name().to_owned(), |key| format!("{key} {}", panel.name()))
+    }
+
+    /// Shows a notice for a moment and keeps it in the log.
+    pub fn notify(&mut self, severity: Severity, text: impl Into<String>) {
+        let text = text.into();
+        self.log.push(self.view.vehicle.time, severity, text.clone());
+        self.notice = Some(Notice { text, severity, at: self.now });
+    }
+
+    /// Reports a loss in the log, and on the screen until Esc clears it.
+    pub(super) fn pin(&mut self, text: String) {
+        self.log.push(self.view.vehicle.time, Severity::Fault, text.clone());
+        self.pinned.push(text);
+    }
+
+    /// Shows a notice for a moment without keeping it in the log.
+    pub(super) fn say(&mut self, severity: Severity, text: impl Into<String>) {
+        self.notice = Some(Notice { text: text.into(), severity, at: self.now });
+    }
+
+    /// Returns `true` if the map shows the edited plan rather than the flown one.
+    pub(super) fn edits_on_map(&self) -> bool {
+        self.map.edit.is_some() || self.map.moving.is_some()
+    }
+
+    /// Returns the plan on the map: the edited one, else the flown one, else the open one, else the craft's.
+    pub fn shown_plan(&self) -> &FlightPlan {
+        let vehicle = &self.view.vehicle;
+        match &vehicle.active_plan {
+            // While the user edits on the map, it shows the edited plan.
+            _ if self.edits_on_map() => self.plan(),
+            Some(plan) => plan,
+            None if self.plan().waypoints.is_empty() => vehicle.stored_plan.as_ref().unwrap_or(self.plan()),
+            None => self.plan(),
+        }
+    }
+
+    /// Returns `true` if the autopilot flies a stored plan, not one of its own.
+    pub fn flies_stored_plan(&self) -> bool {
+        let nav = self.view.vehicle.nav.as_ref();
+        nav.is_some_and(|nav| nav.engaged && nav.source == PlanSource::Stored)
+    }
+
+    /// Returns `true` if the autopilot flies this plan.
+    pub fn flies(&self, plan: &FlightPlan) -> bool {
+        self.view.vehicle.active_plan.as_ref() == Some(plan)
+    }
+
+    /// Returns `true` if the craft has stored another plan than the one it flies. The stored one takes effect at the
+    /// next engagement.
+    pub fn flies_older_plan(&self) -> bool {
+        let stored = self.view.vehicle.stored_plan.as_ref();
+        // A remote flight controller does not report the plan that it flies.
+        self.view.remote.is_none()
+            && self.flies_stored_plan()
+            && stored.is_some_and(|stored| !stored.waypoints.is_empty() && !self.flies(stored))
+    }
+
+    /// Returns the request to write the flight just flown as a scenario.
+    pub(super) fn write_scenario(&mut self, file: Option<PathBuf>) -> Effect {
+        self.notify(Severity::Info, "The flight is flown again to derive its expectations.");
+        Effect::WriteScenario { file, plan: self.editor.plan().document().name.clone() }
+    }
+
+    /// Returns the waypoints of the open plan.
+    pub fn plan(&self) -> &FlightPlan {
+        &self.editor.document().plan
+    }
+
+    /// Returns `true` if the craft is in the air with its motors off.
+    pub(super) fn is_disarmed_in_the_air(&self) -> bool {
+        let vehicle = &self.view.vehicle;
+        vehicle.craft.armed == Some(false)
+            && vehicle.truth.as_ref().is_some_and(|truth| !truth.on_ground && truth.alt > IN_THE_AIR_M)
+    }
+
+    /// Returns the progress of the upload of an open plan while it is under way.
+    pub(super) fn upload_of(&self, id: PlanId) -> Option<UploadView> {
+        self.view.upload.filter(|_| self.editor.uploaded_last() == Some(id))
+    }
+
+    /// Returns `true` if the craft stores the open plan.
+    pub fn plan_is_on_craft(&self) -> bool {
+        self.view.vehicle.stored_plan.as_ref() == Some(self.plan())
+    }
+
+    /// Returns `true` if an earlier instant is shown while the flight waits.
+    pub fn is_rewound(&self) -> bool {
+        self.view.is_rewound()
+    }
+
+    /// Returns `true` if `time` is after the shown earlier instant.
+    pub(super) fn is_later_than_shown(&self, time: SimTime) -> bool {
+        self.is_rewound() && time > self.view.vehicle.time
+    }
+
+    /// Returns the time from the shown instant to the newest, s; `None` if the newest is shown.
+    pub(super) fn rewound_s(&self) -> Option<f64> {
+        let timeline = self.view.timeline.as_ref().filter(|timeline| timeline.rewound)?;
+        Some(timeline.head.seconds_since(self.view.vehicle.time))
+    }
+
+    /// Returns the number of track points up to the shown instant.
+    pub(super) fn track_points_shown(&self) -> usize {
+        let points = self.track.points();
+        if !self.is_rewound() {
+            return points.len();
+        }
+        let shown_s = self.view.vehicle.time.as_secs_f64();
+        points.partition_point(|point| point.time_s <= shown_s)
+    }
+}

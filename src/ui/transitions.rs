@@ -1,0 +1,61 @@
+//! The last transitions of the state machine, for the State panel.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use crate::signals::SimTime;
+use crate::telemetry::{NavState, TransitionReason};
+
+use super::shared::Shared;
+
+/// The number of transitions kept.
+const MAX_TRANSITIONS: usize = 200;
+
+/// A transition of the state machine.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Transition {
+    pub(super) time: SimTime,
+    /// The time at which the interface received it, wall clock.
+    pub(super) received: Duration,
+    pub(super) from: NavState,
+    pub(super) to: NavState,
+    pub(super) wp: u8,
+    pub(super) reason: TransitionReason,
+}
+
+/// The last transitions, and the place in their list.
+#[derive(Debug, Default)]
+pub struct Transitions {
+    /// The newest is the last.
+    list: VecDeque<Transition>,
+    /// The first visible transition, counted from the newest.
+    pub scroll: usize,
+}
+
+impl Transitions {
+    pub(super) fn push(&mut self, transition: Transition) {
+        if self.list.len() == MAX_TRANSITIONS {
+            self.list.pop_front();
+        }
+        self.list.push_back(transition);
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.list.len()
+    }
+
+    /// Returns the transitions up to the shown instant, the oldest first.
+    pub(super) fn shown(
+        &self,
+        state: &Shared,
+    ) -> impl DoubleEndedIterator<Item = &Transition> + ExactSizeIterator {
+        let shown = self.list.partition_point(|step| !state.is_later_than_shown(step.time));
+        self.list.iter().take(shown)
+    }
+
+    /// Drops the transitions after `time`.
+    pub(super) fn leave_behind(&mut self, time: SimTime) {
+        let kept = self.list.partition_point(|step| step.time <= time);
+        self.list.truncate(kept);
+    }
+}

@@ -1,0 +1,62 @@
+//! Asks before a real remote craft is changed.
+
+use crate::session::Command;
+use crate::ui::app_state::AppState;
+use crate::ui::event_log::Severity;
+use crate::ui::message::Effect;
+use crate::ui::popup::Popup;
+
+/// Returns the effects that may be carried out. Effects that would change a real craft are held, and the user is asked.
+pub(in crate::ui) fn hold(state: &mut AppState, effects: Vec<Effect>) -> Vec<Effect> {
+    let Some(remote) = state.shared.real_craft() else { return effects };
+    let held_before = state.permission.held.len();
+    let free = state.permission.hold(remote, effects);
+    if state.permission.held.len() > held_before {
+        ask(state);
+    }
+    free
+}
+
+/// Asks the user to permit changes of the craft.
+pub(super) fn ask(state: &mut AppState) {
+    if !state.popups.contains(&Popup::Permission) {
+        state.popups.push(Popup::Permission);
+    }
+}
+
+/// Permits changes and releases the held effects.
+pub(super) fn permit(state: &mut AppState) -> Vec<Effect> {
+    close(state);
+    let Some(remote) = state.shared.real_craft() else { return Vec::new() };
+    let connection = remote.connection;
+    let mut effects = vec![Effect::Send(Command::PermitChanges(connection))];
+    effects.append(&mut state.permission.held);
+    state.permission.permitted = Some(connection);
+    if effects.len() == 1 {
+        state.shared.notify(Severity::Info, "Changes are permitted until the connection ends.");
+    }
+    effects
+}
+
+/// Declines changes and drops the held effects.
+pub(super) fn decline(state: &mut AppState) {
+    close(state);
+    let held = std::mem::take(&mut state.permission.held);
+    if held.iter().any(|effect| matches!(effect, Effect::Cli(_))) {
+        state.cli.not_run("not run: changes were not permitted");
+    }
+    state.shared.notify(Severity::Info, "Nothing was changed.");
+}
+
+/// Drops the held effects if the question is gone: it was closed in another way, or its connection ended.
+pub(super) fn follow(state: &mut AppState, connection_before: Option<u32>) {
+    let connection = state.shared.real_craft().map(|remote| remote.connection);
+    let is_asked = state.popups.contains(&Popup::Permission);
+    if is_asked && connection != connection_before || !is_asked && !state.permission.held.is_empty() {
+        decline(state);
+    }
+}
+
+fn close(state: &mut AppState) {
+    state.popups.retain(|popup| *popup != Popup::Permission);
+}
