@@ -9,9 +9,11 @@
 
 use nalgebra::Vector2;
 
+mod bounded_path;
 mod ground_plane;
 mod local;
 
+pub use bounded_path::{BoundedPath, Located};
 pub use ground_plane::GroundPlane;
 pub use local::LocalFrame;
 

@@ -14,15 +14,14 @@ mod case;
 mod draft;
 pub mod expression;
 mod file;
+pub mod flag;
 pub mod happening;
 mod input;
 mod insight;
 mod judge;
 mod library;
-pub mod quantity;
 mod run;
 mod sampling;
-pub mod signal;
 mod trace;
 
 pub use case::{

@@ -24,7 +24,7 @@ pub fn event_line(event: &Event) -> Option<String> {
 
 /// Returns the line of a sample, without line end.
 pub fn sample_line(snapshot: &Snapshot) -> String {
-    line(snapshot.time, "sample", &sample::Fields::of(snapshot))
+    line(snapshot.time, "sample", &sample::Fields(snapshot))
 }
 
 /// Returns the last line of a flight, without line end.

@@ -2,8 +2,8 @@
 
 use super::case::{Allowance, Expected};
 use super::expression::{Bound, Comparison, Condition, Number, Operator};
-use super::quantity::Dimension;
-use super::signal::Signal;
+use crate::telemetry::quantity::Dimension;
+use crate::telemetry::signal::Signal;
 
 impl Expected {
     /// Returns the same expectation with wider bounds.

@@ -3,9 +3,9 @@
 use super::expression::{Comparison, Condition, Instant, Number};
 use super::happening::Pattern;
 use super::input::TimedInput;
-use super::quantity::Dimension;
 use crate::flight::{FlightOptions, FlightSetup};
 use crate::sim::{Noise, Wind};
+use crate::telemetry::quantity::Dimension;
 use crate::telemetry::{NavState, PlanSource, Turbulence};
 
 /// The keys of the command lines that are written in the scenario itself.

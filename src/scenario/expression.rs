@@ -15,8 +15,9 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use super::happening::{Field, Pattern};
-use super::quantity::{Dimension, Unit};
-use super::signal::{Flag, Signal};
+use crate::scenario::flag::Flag;
+use crate::telemetry::quantity::{Dimension, Unit};
+use crate::telemetry::signal::Signal;
 use crate::telemetry::{Mode, NavState, PlanSource};
 
 pub use condition::read_condition;

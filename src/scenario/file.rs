@@ -272,8 +272,8 @@ impl Belongs<'_> {
 fn read_parameters(
     layers: &Layers<'_, '_>,
     reader: &mut Reader<'_, '_>,
-) -> Vec<(String, f64, super::quantity::Dimension)> {
-    let mut parameters: Vec<(String, f64, super::quantity::Dimension)> = Vec::new();
+) -> Vec<(String, f64, crate::telemetry::quantity::Dimension)> {
+    let mut parameters: Vec<(String, f64, crate::telemetry::quantity::Dimension)> = Vec::new();
     let mut known: BTreeMap<String, usize> = BTreeMap::new();
     for table in layers.tables("parameters", reader) {
         for (name, span, value) in table.keys() {

@@ -2,8 +2,8 @@
 
 use strum::IntoEnumIterator as _;
 
-use super::quantity::Dimension;
 use crate::signals::SimTime;
+use crate::telemetry::quantity::Dimension;
 use crate::telemetry::{DisarmReason, FaultKind, FenceAction, HoldLimit, Mode, NavState, PlanSource};
 
 macro_rules! events {

@@ -5,8 +5,9 @@ use super::case::{Case, Expectation, Expected, Measured, Window};
 use super::expression::{Anchor, Bound, Comparison, Condition, Instant, Number, Place};
 use super::happening::{EventName, Pattern};
 use super::input::Action;
-use super::signal::{Flag, Signal};
+use crate::scenario::flag::Flag;
 use crate::sim::{Fault, Switches};
+use crate::telemetry::signal::Signal;
 use crate::telemetry::{DisarmReason, PlanSource};
 
 /// The required knowledge of a flight controller, the least first.
@@ -62,10 +63,22 @@ impl Signal {
             | Self::Current
             | Self::Charge
             | Self::BatteryUsed
-            | Self::Wind => Insight::Truth,
-            Self::EstNorth | Self::EstEast | Self::EstAltitude | Self::Satellites | Self::Cell => {
-                Insight::Telemetry
-            }
+            | Self::Wind
+            | Self::WindNorth
+            | Self::WindEast => Insight::Truth,
+            Self::EstNorth
+            | Self::EstEast
+            | Self::EstAltitude
+            | Self::EstSpeed
+            | Self::EstClimb
+            | Self::EstRoll
+            | Self::EstPitch
+            | Self::EstHeading
+            | Self::ReportedBattery
+            | Self::ReportedCurrent
+            | Self::ReportedCharge
+            | Self::Satellites
+            | Self::Cell => Insight::Telemetry,
             Self::Waypoint | Self::WpDistance => Insight::Mission,
             Self::CrossTrack
             | Self::TargetAltitude
@@ -77,6 +90,11 @@ impl Signal {
             | Self::Hover
             | Self::RollDemand
             | Self::PitchDemand
+            | Self::RollSetpoint
+            | Self::PitchSetpoint
+            | Self::Bearing
+            | Self::TargetNorth
+            | Self::TargetEast
             | Self::Throttle => Insight::Inner,
         }
     }

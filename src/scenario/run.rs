@@ -7,7 +7,7 @@ use super::case::{Air, Case};
 use super::expression::{Evaluator, Search};
 use super::happening::{EventName, Happening};
 use super::insight::Insight;
-use super::sampling::{Origin, sample};
+use super::sampling::sample;
 use super::trace::Trace;
 use crate::flight::{Flight, FlightEnd, FlightOptions, FlightResult, Report};
 use crate::signals::SimTime;
@@ -43,7 +43,6 @@ pub struct CaseFlight<'a> {
     stopped: Option<(&'static str, String)>,
     reported: Insight,
     sample_us: u64,
-    standing_m: f64,
     is_over: bool,
 }
 
@@ -65,7 +64,6 @@ impl<'a> CaseFlight<'a> {
     /// Returns a sentence if a mode that the pilot needs has no switch.
     pub fn of_vehicle(case: &'a Case, vehicle: Vehicle) -> Result<Self, String> {
         let reported = if vehicle.embedded().is_some() { Insight::Inner } else { Insight::Telemetry };
-        let standing_m = vehicle.truth().map_or(0.0, |truth| truth.pos_enu.z);
         let trace = Trace::new(case.setup.plan.plan.clone(), vehicle.local_frame().copied());
         // The time limit of the scenario applies.
         let options = FlightOptions { timeout: SimTime(u64::MAX), ..case.options };
@@ -89,7 +87,6 @@ impl<'a> CaseFlight<'a> {
             stopped: None,
             reported,
             sample_us,
-            standing_m,
             is_over: false,
         })
     }
@@ -165,9 +162,8 @@ impl<'a> CaseFlight<'a> {
     }
 
     fn sample(&mut self) {
-        let origin = Origin { standing_m: self.standing_m, engaged_at: self.trace.engaged_at };
         let vehicle = self.flight.vehicle();
-        let sample = sample(vehicle, origin);
+        let sample = sample(vehicle, self.trace.engaged_at);
         if vehicle.controller().nav().is_some() {
             self.reported = self.reported.max(Insight::Mission);
         }

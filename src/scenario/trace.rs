@@ -3,17 +3,17 @@
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
 use super::happening::Happening;
-use super::signal::{Flag, Signal};
 use crate::geo::LocalFrame;
 use crate::plan::FlightPlan;
+use crate::scenario::flag::Flag;
 use crate::signals::SimTime;
+use crate::telemetry::signal::{Signal, SignalValues};
 use crate::telemetry::{Guard, GuardName, ModeFlags, NavState, PlanSource};
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sample {
     pub time: SimTime,
-    /// The signals, SI and degrees; NaN = unknown at this time.
-    pub values: [f32; Signal::COUNT],
+    pub values: SignalValues,
     /// The flags, one bit each.
     pub flags: u16,
     /// The state of the state machine.
@@ -29,7 +29,7 @@ pub struct Sample {
 
 impl Sample {
     pub fn value(&self, signal: Signal) -> f64 {
-        f64::from(self.values[signal as usize])
+        self.values.get(signal)
     }
 
     pub fn has(&self, flag: Flag) -> bool {
@@ -41,6 +41,9 @@ impl Sample {
         [self.value(Signal::North), self.value(Signal::East)]
     }
 }
+
+/// The number of signals in the hash of a flight. Later signals are left out, so that a new signal does not change it.
+const HASHED_SIGNALS: usize = Signal::Satellites as usize + 1;
 
 /// The closest approach of a guard to firing during a state.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -103,7 +106,7 @@ impl Trace {
     pub(super) fn of_nothing() -> Self {
         let sample = Sample {
             time: SimTime::ZERO,
-            values: [f32::NAN; Signal::COUNT],
+            values: SignalValues::UNKNOWN,
             flags: 0,
             state: NavState::Idle,
             wp: 0,
@@ -188,7 +191,8 @@ impl Trace {
         let mut hasher = DefaultHasher::new();
         for sample in &self.samples {
             sample.time.0.hash(&mut hasher);
-            sample.values.iter().chain(&sample.target_ne).for_each(|value| value.to_bits().hash(&mut hasher));
+            let values = sample.values.iter().take(HASHED_SIGNALS).chain(sample.target_ne);
+            values.for_each(|value| value.to_bits().hash(&mut hasher));
             (sample.flags, sample.state, sample.wp, sample.source, sample.modes).hash(&mut hasher);
         }
         for happening in &self.happenings {

@@ -75,11 +75,36 @@ pub struct TruthView {
     /// Wind at the craft, towards north and east, m/s; `None` from an external simulator, which does not
     /// report it.
     pub wind_ne: Option<Vector2<f64>>,
+    /// Wind speed at the craft with its vertical part, m/s.
+    pub wind_mps: Option<f64>,
+    /// Specific force at the centre of mass, m/s²; `None` from an external simulator.
+    pub force_mps2: Option<f64>,
+    /// The battery; `None` from an external simulator.
+    pub battery: Option<BatteryView>,
     /// `true` on the ground; with an external simulator: low and slow.
     pub on_ground: bool,
     pub crashed: bool,
     /// `true` once the simulation has left the range in which its numbers are valid.
     pub diverged: bool,
+}
+
+impl TruthView {
+    pub fn ground_speed_mps(&self) -> f64 {
+        self.vn.hypot(self.ve)
+    }
+}
+
+/// The true state of the battery.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct BatteryView {
+    /// Terminal voltage, V.
+    pub voltage_v: f64,
+    /// Current, A.
+    pub current_a: f64,
+    /// Charge drawn since boot, mAh.
+    pub drawn_mah: f64,
+    /// Capacity of a full pack, mAh.
+    pub capacity_mah: f64,
 }
 
 /// The state as estimated by the firmware.

@@ -1,15 +1,16 @@
 //! The graphs of a flight: the history of its signals, the shown plots, the time span, and the cursor.
 
 mod history;
-mod signal;
+mod plot;
 
 pub(super) use history::Sample;
-pub(super) use signal::{PLOTS, Plot, Quantity, Signal, Stroke};
+pub(super) use plot::{PLOTS, Plot, Stroke};
 
 use super::map_point::MapPoint;
 use crate::session::SessionView;
 use crate::signals::SimTime;
 use crate::telemetry::Snapshot;
+use crate::telemetry::signal::Signal;
 use history::SignalHistory;
 
 /// The selectable time spans, s.

@@ -1,6 +1,8 @@
 //! The flown track: a polyline that never grows beyond a bound.
 
-/// The number of points kept. When it is reached, every second point is dropped and the spacing doubles.
+use crate::geo::{BoundedPath, Located};
+
+/// The maximum number of points.
 const MAX_POINTS: usize = 20_480;
 /// The initial spacing of points, m.
 const SPACING_M: f64 = 0.4;
@@ -54,10 +56,15 @@ impl AbandonedTracks {
     }
 }
 
+impl Located for TrackPoint {
+    fn distance_m(&self, other: &Self) -> f64 {
+        (self.n - other.n).hypot(self.e - other.e).hypot(self.alt_m - other.alt_m)
+    }
+}
+
 #[derive(Debug)]
 pub struct Track {
-    points: Vec<TrackPoint>,
-    spacing_m: f64,
+    path: BoundedPath<TrackPoint>,
     /// The last known position of the craft, which may be too near the last point to be kept.
     seen: Option<TrackPoint>,
     /// `true` after a reset was requested: the next jump counts as that reset, however old the last position is.
@@ -66,7 +73,7 @@ pub struct Track {
 
 impl Default for Track {
     fn default() -> Self {
-        Self { points: Vec::new(), spacing_m: SPACING_M, seen: None, awaits_reset: false }
+        Self { path: BoundedPath::new(MAX_POINTS, SPACING_M), seen: None, awaits_reset: false }
     }
 }
 
@@ -86,28 +93,18 @@ impl Track {
         }
         self.seen = Some(point);
         let is_same_leg = |last: &TrackPoint| last.engaged == point.engaged && last.wp == point.wp;
-        let near = |last: &TrackPoint| {
-            distance(last).hypot(point.alt_m - last.alt_m) < self.spacing_m && is_same_leg(last)
-        };
-        if self.points.last().is_some_and(near) {
-            return;
+        if self.points().last().is_none_or(is_same_leg) {
+            self.path.push(point);
+        } else {
+            self.path.append(point);
         }
-        if self.points.len() == MAX_POINTS {
-            let mut keep = false;
-            self.points.retain(|_| {
-                keep = !keep;
-                keep
-            });
-            self.spacing_m *= 2.0;
-        }
-        self.points.push(point);
     }
 
     /// Removes the part after `time_s`, s. Returns it, starting with the last kept point.
     pub fn cut_after(&mut self, time_s: f64) -> Vec<TrackPoint> {
-        let kept = self.points.partition_point(|point| point.time_s <= time_s);
-        let mut part = self.points.split_off(kept);
-        self.seen = self.points.last().copied();
+        let kept = self.points().partition_point(|point| point.time_s <= time_s);
+        let mut part = self.path.split_off(kept);
+        self.seen = self.points().last().copied();
         if let (Some(last), false) = (self.seen, part.is_empty()) {
             part.insert(0, last);
         }
@@ -134,7 +131,7 @@ impl Track {
 
     /// Returns the points, the oldest first.
     pub fn points(&self) -> &[TrackPoint] {
-        &self.points
+        self.path.points()
     }
 }
 

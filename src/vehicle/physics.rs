@@ -9,7 +9,7 @@ use nalgebra::Vector2;
 use crate::geo::LocalFrame;
 use crate::signals::{MotorCommand, SensorFrame};
 use crate::sim::{Airframe, Clock, Noise, Truth, World, WorldCommand, WorldError, WorldStatus};
-use crate::telemetry::snapshot::{FaultView, TruthView, WindView, WorldView};
+use crate::telemetry::snapshot::{BatteryView, FaultView, TruthView, WindView, WorldView};
 
 /// The name of the airframe if an external simulator has it.
 const EXTERNAL: &str = "external";
@@ -160,7 +160,7 @@ fn world_truth_view(world: &World) -> TruthView {
         lon_deg,
         n: truth.pos_enu.y,
         e: truth.pos_enu.x,
-        alt: truth.pos_enu.z - world.airframe().standing_height_m(),
+        alt: truth.pos_enu.z - world.standing_m(),
         vn: truth.vel_enu.y,
         ve: truth.vel_enu.x,
         vu: truth.vel_enu.z,
@@ -169,6 +169,14 @@ fn world_truth_view(world: &World) -> TruthView {
         heading_deg: truth.heading_deg(),
         motors: truth.motor_command,
         wind_ne: Some(Vector2::new(truth.wind_enu.y, truth.wind_enu.x)),
+        wind_mps: Some(truth.wind_enu.norm()),
+        force_mps2: Some(truth.specific_force_flu.norm()),
+        battery: Some(BatteryView {
+            voltage_v: truth.battery.voltage_v,
+            current_a: truth.battery.current_a,
+            drawn_mah: truth.battery.drawn_mah,
+            capacity_mah: truth.battery.capacity_mah,
+        }),
         on_ground: truth.on_ground,
         crashed: truth.crashed,
         diverged: truth.diverged,

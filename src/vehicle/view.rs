@@ -6,7 +6,7 @@ use super::Vehicle;
 use crate::firmware::Firmware;
 use crate::geo::{LatLon, offset_to_degrees};
 use crate::telemetry::NavTelemetry;
-use crate::telemetry::snapshot::{EstimateView, Snapshot};
+use crate::telemetry::snapshot::{EstimateView, Snapshot, TruthView};
 
 impl Vehicle {
     /// Returns a snapshot of the whole vehicle at this instant.
@@ -16,7 +16,7 @@ impl Vehicle {
         Snapshot {
             time: self.time(),
             origin: self.local_frame().map(|frame| LatLon::from_degrees(frame.lat_deg, frame.lon_deg)),
-            truth: self.physics.truth_view(self.controller.motors()),
+            truth: self.truth_view(),
             estimate: self.estimate_view(),
             craft: self.controller.craft_view(),
             active_plan: engaged.then(|| self.active_plan.as_deref().cloned()).flatten(),
@@ -25,6 +25,11 @@ impl Vehicle {
             settings: self.controller.settings_view(),
             world: self.physics.world_view(),
         }
+    }
+
+    /// Returns the true motion of the craft, if it is known.
+    pub fn truth_view(&self) -> Option<TruthView> {
+        self.physics.truth_view(self.controller.motors())
     }
 
     /// Converts a point from the firmware's own origin and scale to north and east of the boot place on the world's

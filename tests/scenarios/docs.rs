@@ -7,10 +7,11 @@
 
 use std::path::Path;
 
+use betadeck::scenario::flag::Flag;
 use betadeck::scenario::happening::EVENTS;
-use betadeck::scenario::quantity::UNITS;
-use betadeck::scenario::signal::{Flag, SIGNALS};
 use betadeck::scenario::{FORMS, TABLES};
+use betadeck::telemetry::quantity::UNITS;
+use betadeck::telemetry::signal::{SIGNALS, SignalInfo};
 use strum::IntoEnumIterator as _;
 
 /// Returns the tables of the reference, each with the name of the marks around it.
@@ -72,7 +73,7 @@ fn flags() -> String {
 }
 
 fn signals() -> String {
-    let row = |info: &betadeck::scenario::signal::SignalInfo| {
+    let row = |info: &SignalInfo| {
         let unit = info.dimension.unit().map_or("", |unit| unit.name);
         format!("| `{}` | {unit} | {} | {} |", info.name, info.help, info.signal.insight())
     };

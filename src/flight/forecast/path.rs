@@ -1,6 +1,8 @@
 //! The path of a forecast: a polyline with a maximum number of points.
 
-/// The maximum number of points. When it is reached, every second point is dropped and the spacing doubles.
+use crate::geo;
+
+/// The maximum number of points.
 const MAX_POINTS: usize = 2048;
 /// The initial spacing of points, m.
 const SPACING_M: f64 = 0.5;
@@ -20,8 +22,8 @@ pub struct PathPoint {
     pub time_s: f64,
 }
 
-impl PathPoint {
-    fn distance(&self, other: &Self) -> f64 {
+impl geo::Located for PathPoint {
+    fn distance_m(&self, other: &Self) -> f64 {
         (self.n - other.n).hypot(self.e - other.e).hypot(self.alt - other.alt)
     }
 }
@@ -29,8 +31,7 @@ impl PathPoint {
 /// The points so far.
 #[derive(Debug, Clone)]
 pub(super) struct Path {
-    points: Vec<PathPoint>,
-    spacing_m: f64,
+    kept: geo::BoundedPath<PathPoint>,
     /// Newest place of the craft, which may be too near the last point to be kept.
     newest: PathPoint,
 }
@@ -38,33 +39,27 @@ pub(super) struct Path {
 impl Path {
     /// Returns a path that begins here.
     pub(super) fn new(start: PathPoint) -> Self {
-        Self { points: vec![start], spacing_m: SPACING_M, newest: start }
+        let mut kept = geo::BoundedPath::new(MAX_POINTS, SPACING_M);
+        kept.push(start);
+        Self { kept, newest: start }
     }
 
     pub(super) fn push(&mut self, point: PathPoint) {
         self.newest = point;
-        if self.points.last().is_some_and(|last| last.distance(&point) < self.spacing_m) {
-            return;
-        }
-        if self.points.len() == MAX_POINTS {
-            let mut keep = false;
-            self.points.retain(|_| {
-                keep = !keep;
-                keep
-            });
-            self.spacing_m *= 2.0;
-        }
-        self.points.push(point);
+        self.kept.push(point);
     }
 
     /// Returns the horizontal distance from the first to the newest point, m.
     pub(super) fn moved_m(&self) -> f64 {
-        self.points.first().map_or(0.0, |first| (self.newest.n - first.n).hypot(self.newest.e - first.e))
+        self.kept
+            .points()
+            .first()
+            .map_or(0.0, |first| (self.newest.n - first.n).hypot(self.newest.e - first.e))
     }
 
     /// Returns all points, with the end last.
     pub(super) fn points(&self) -> Vec<PathPoint> {
-        let mut points = self.points.clone();
+        let mut points = self.kept.points().to_vec();
         if points.last() != Some(&self.newest) {
             points.push(self.newest);
         }

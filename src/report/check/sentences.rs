@@ -1,8 +1,8 @@
 //! Checked flights as sentences.
 
 use super::{CheckedFlight, Summary, complaint};
-use crate::scenario::quantity::shown;
 use crate::scenario::{Margin, Outcome};
+use crate::telemetry::quantity::shown;
 
 /// The least number of flights of a case for which the spread of their numbers is reported.
 const MANY: usize = 20;

@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::scenario::expression::Verdict;
-use crate::scenario::quantity::Dimension;
 use crate::scenario::{Margin, Outcome};
+use crate::telemetry::quantity::Dimension;
 
 /// Returns a flight of a case with many seeds and with this greatest distance.
 fn flight(seed: u64, distance_m: f64) -> CheckedFlight {

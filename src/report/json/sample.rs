@@ -2,96 +2,112 @@
 //!
 //! All `n`, `e` and `alt` count from the place of the craft at boot, as in the snapshot.
 
-use serde::Serialize;
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
 
 use super::super::number::{Centi, Decimals, Milli, Place, compass};
-use crate::signals::PerMotor;
 use crate::telemetry::Snapshot;
-use crate::telemetry::snapshot::TruthView;
+use crate::telemetry::signal::{Observed, Signal};
 
-/// The fields after `t` and `event`, in the order of the output; a value that does not exist is `null`.
-#[derive(Debug, Serialize)]
-pub(super) struct Fields {
-    lat: Option<Place>,
-    lon: Option<Place>,
-    alt: Option<Milli>,
-    n: Option<Milli>,
-    e: Option<Milli>,
-    vn: Option<Milli>,
-    ve: Option<Milli>,
-    vu: Option<Milli>,
-    roll: Option<Milli>,
-    pitch: Option<Milli>,
-    heading: Option<Milli>,
-    est_n: Option<Milli>,
-    est_e: Option<Milli>,
-    est_alt: Option<Milli>,
-    throttle_us: Option<Centi>,
-    motors: Option<PerMotor<Decimals<4>>>,
-    battery_v: Option<Milli>,
-    battery_a: Option<Milli>,
-    battery_mah: Option<Milli>,
-    state: Option<String>,
-    wp: Option<u8>,
-    wp_type: Option<String>,
-    dist_m: Option<Milli>,
-    bearing: Option<Centi>,
-    xte_m: Option<Milli>,
-    l1_mode: Option<String>,
-    target_n: Option<Milli>,
-    target_e: Option<Milli>,
-    target_alt: Option<Milli>,
-    hold_remaining_ds: Option<u16>,
-    wind_n: Option<Milli>,
-    wind_e: Option<Milli>,
+/// The form of a value.
+#[derive(Debug, Clone, Copy)]
+enum Form {
+    /// A signal, to the thousandth.
+    Milli(Signal),
+    /// A signal, to the hundredth.
+    Centi(Signal),
+    /// A direction, to the thousandth of a degree, below 360 after rounding.
+    Compass(Signal),
+    /// A direction, to the hundredth of a degree.
+    Bearing(Signal),
+    /// Charge in mAh.
+    Charge(Signal),
+    Latitude,
+    Longitude,
+    Motors,
+    State,
+    Wp,
+    WpType,
+    L1Mode,
+    HoldRemaining,
 }
 
-impl Fields {
-    pub(super) fn of(snapshot: &Snapshot) -> Self {
-        let truth =
-            |value: fn(&TruthView) -> f64| snapshot.truth.as_ref().map(|truth| Decimals(value(truth)));
-        let place =
-            |value: fn(&TruthView) -> f64| snapshot.truth.as_ref().map(|truth| Decimals(value(truth)));
-        let (craft, nav, estimate) = (&snapshot.craft, snapshot.nav.as_ref(), &snapshot.estimate);
+/// The fields after `t` and `event`, in the order of the output; a value that does not exist is `null`.
+const FIELDS: [(&str, Form); 32] = [
+    ("lat", Form::Latitude),
+    ("lon", Form::Longitude),
+    ("alt", Form::Milli(Signal::Altitude)),
+    ("n", Form::Milli(Signal::North)),
+    ("e", Form::Milli(Signal::East)),
+    ("vn", Form::Milli(Signal::SpeedNorth)),
+    ("ve", Form::Milli(Signal::SpeedEast)),
+    ("vu", Form::Milli(Signal::Climb)),
+    ("roll", Form::Milli(Signal::Roll)),
+    ("pitch", Form::Milli(Signal::Pitch)),
+    ("heading", Form::Compass(Signal::Heading)),
+    ("est_n", Form::Milli(Signal::EstNorth)),
+    ("est_e", Form::Milli(Signal::EstEast)),
+    ("est_alt", Form::Milli(Signal::EstAltitude)),
+    ("throttle_us", Form::Centi(Signal::Throttle)),
+    ("motors", Form::Motors),
+    ("battery_v", Form::Milli(Signal::ReportedBattery)),
+    ("battery_a", Form::Milli(Signal::ReportedCurrent)),
+    ("battery_mah", Form::Charge(Signal::ReportedCharge)),
+    ("state", Form::State),
+    ("wp", Form::Wp),
+    ("wp_type", Form::WpType),
+    ("dist_m", Form::Milli(Signal::WpDistance)),
+    ("bearing", Form::Bearing(Signal::Bearing)),
+    ("xte_m", Form::Milli(Signal::CrossTrack)),
+    ("l1_mode", Form::L1Mode),
+    ("target_n", Form::Milli(Signal::TargetNorth)),
+    ("target_e", Form::Milli(Signal::TargetEast)),
+    ("target_alt", Form::Milli(Signal::TargetAltitude)),
+    ("hold_remaining_ds", Form::HoldRemaining),
+    ("wind_n", Form::Milli(Signal::WindNorth)),
+    ("wind_e", Form::Milli(Signal::WindEast)),
+];
+
+/// The fields of a sample of this snapshot.
+#[derive(Debug)]
+pub(super) struct Fields<'a>(pub(super) &'a Snapshot);
+
+impl Serialize for Fields<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let (truth, nav) = (&self.0.truth, self.0.nav.as_ref());
+        let observed = Observed::of(self.0);
+        let place = |value: Option<f64>| value.map(Place::from);
         let kind = nav.and_then(|nav| nav.kind);
-        let target = nav.and_then(|nav| nav.target_ne);
-        let wind = snapshot.truth.and_then(|truth| truth.wind_ne);
-        Self {
-            lat: place(|truth| truth.lat_deg),
-            lon: place(|truth| truth.lon_deg),
-            alt: truth(|truth| truth.alt),
-            n: truth(|truth| truth.n),
-            e: truth(|truth| truth.e),
-            vn: truth(|truth| truth.vn),
-            ve: truth(|truth| truth.ve),
-            vu: truth(|truth| truth.vu),
-            roll: truth(|truth| truth.roll_deg),
-            pitch: truth(|truth| truth.pitch_deg),
-            heading: snapshot.truth.as_ref().map(|truth| compass(truth.heading_deg)),
-            est_n: estimate.n.map(Decimals),
-            est_e: estimate.e.map(Decimals),
-            est_alt: estimate.alt.map(Decimals),
-            throttle_us: craft.throttle_us.map(Decimals),
-            motors: craft.motors.map(|motors| motors.map(Decimals)),
-            battery_v: craft.battery_v.map(Decimals),
-            battery_a: craft.battery_a.map(Decimals),
-            battery_mah: craft.battery_mah.map(Decimals),
-            state: nav.map(|nav| nav.state.to_string()),
-            wp: nav.filter(|_| kind.is_some()).map(|nav| nav.wp),
-            wp_type: kind.map(|kind| kind.to_string()),
-            dist_m: nav.and_then(|nav| nav.distance_m).map(Decimals),
-            bearing: nav.and_then(|nav| nav.bearing_rad).map(|bearing| compass(bearing.to_degrees())),
-            xte_m: nav.and_then(|nav| nav.xte_m).map(Decimals),
-            l1_mode: nav.and_then(|nav| nav.l1_mode).map(|mode| mode.to_string()),
-            target_n: target.map(|target| Decimals(target.x)),
-            target_e: target.map(|target| Decimals(target.y)),
-            target_alt: nav.and_then(|nav| nav.target_alt_m).map(Decimals),
-            hold_remaining_ds: nav
-                .and_then(|nav| nav.hold_remaining_s)
-                .map(|left_s| (left_s * 10.0).round() as u16),
-            wind_n: wind.map(|ne| Decimals(ne.x)),
-            wind_e: wind.map(|ne| Decimals(ne.y)),
+        let mut map = serializer.serialize_map(Some(FIELDS.len()))?;
+        for (key, form) in FIELDS {
+            match form {
+                Form::Milli(signal) => map.serialize_entry(key, &signal.read(&observed).map(Milli::from)),
+                Form::Centi(signal) => map.serialize_entry(key, &signal.read(&observed).map(Centi::from)),
+                Form::Compass(signal) => map.serialize_entry(key, &signal.read(&observed).map(compass::<3>)),
+                Form::Bearing(signal) => map.serialize_entry(key, &signal.read(&observed).map(compass::<2>)),
+                Form::Charge(signal) => {
+                    map.serialize_entry(key, &signal.read(&observed).map(|charge| Milli::from(charge / 3.6)))
+                }
+                Form::Latitude => map.serialize_entry(key, &place(truth.map(|truth| truth.lat_deg))),
+                Form::Longitude => map.serialize_entry(key, &place(truth.map(|truth| truth.lon_deg))),
+                Form::Motors => {
+                    let motors = self.0.craft.motors;
+                    map.serialize_entry(key, &motors.map(|motors| motors.map(Decimals::<4>)))
+                }
+                Form::State => map.serialize_entry(key, &nav.map(|nav| nav.state.to_string())),
+                Form::Wp => map.serialize_entry(key, &nav.filter(|_| kind.is_some()).map(|nav| nav.wp)),
+                Form::WpType => map.serialize_entry(key, &kind.map(|kind| kind.to_string())),
+                Form::L1Mode => {
+                    let mode = nav.and_then(|nav| nav.l1_mode);
+                    map.serialize_entry(key, &mode.map(|mode| mode.to_string()))
+                }
+                Form::HoldRemaining => {
+                    let left_s = nav.and_then(|nav| nav.hold_remaining_s);
+                    map.serialize_entry(key, &left_s.map(|left_s| (left_s * 10.0).round() as u16))
+                }
+            }?;
         }
+        map.end()
     }
 }
 

@@ -7,8 +7,8 @@ use crate::scenario::case::Statistic;
 use crate::scenario::expression::Evaluator;
 use crate::scenario::happening::{EventName, Field, Happening, HappeningKind};
 use crate::scenario::run::Flown;
-use crate::scenario::signal::Signal;
 use crate::signals::SimTime;
+use crate::telemetry::signal::Signal;
 use crate::telemetry::{NavState, PlanSource};
 
 /// The least tolerance of a time, s. The share below applies if it gives more.

@@ -8,8 +8,8 @@ use super::cursor::{Cursor, SyntaxError};
 use super::instant::{SOURCES, mode_of, read_state_word, read_waypoint};
 use super::number::{Typed, read_number, share_unit};
 use super::{Bound, Comparison, Condition, Scope};
-use crate::scenario::quantity::Dimension;
-use crate::scenario::signal::Flag;
+use crate::scenario::flag::Flag;
+use crate::telemetry::quantity::Dimension;
 
 /// Reads a condition.
 ///

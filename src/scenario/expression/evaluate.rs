@@ -5,11 +5,12 @@ use std::collections::BTreeMap;
 
 use super::instant::Search;
 use super::{Bound, Comparison, Condition, Function, Instant, Number, Place};
+use crate::scenario::flag::Flag;
 use crate::scenario::happening::Happening;
-use crate::scenario::quantity::Dimension;
-use crate::scenario::signal::{Flag, Signal};
 use crate::scenario::trace::{Sample, Trace};
 use crate::signals::SimTime;
+use crate::telemetry::quantity::Dimension;
+use crate::telemetry::signal::Signal;
 
 /// The interval for a rate of change, µs.
 const RATE_US: u64 = 100_000;

@@ -9,7 +9,7 @@ use super::number::read_number;
 use super::place::waypoints;
 use super::{Anchor, Instant, Number, Occurrence, Scope};
 use crate::scenario::happening::{EVENTS, EventName, Pattern, REFUSALS, mode_word};
-use crate::scenario::quantity::Dimension;
+use crate::telemetry::quantity::Dimension;
 use crate::telemetry::{Mode, NavState, PlanSource, TransitionReason};
 
 /// The origins of a plan with their words.

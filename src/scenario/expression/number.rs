@@ -8,8 +8,8 @@ use super::cursor::{Cursor, SyntaxError};
 use super::instant::read_instant;
 use super::place::{read_line, read_place};
 use super::{Function, Number, Operator, Scope};
-use crate::scenario::quantity::{Dimension, UNITS, Unit};
-use crate::scenario::signal::{SIGNALS, Signal};
+use crate::telemetry::quantity::{Dimension, UNITS, Unit};
+use crate::telemetry::signal::{SIGNALS, Signal};
 
 /// A number and its dimension.
 pub(super) type Typed = (Number, Dimension);

@@ -7,6 +7,7 @@ use crate::scenario::happening::{EventName, Happening};
 use crate::scenario::trace::{Sample, Trace};
 use crate::signals::SimTime;
 use crate::telemetry::ModeFlags;
+use crate::telemetry::signal::SignalValues;
 
 /// A craft that flies north at 5 m/s and climbs at 1 m/s for ten seconds, with 100 samples a second; armed from 2 s on.
 fn climb_to_the_north() -> Trace {
@@ -14,12 +15,12 @@ fn climb_to_the_north() -> Trace {
     plan.waypoints.push(Waypoint { position: LatLon::new(404_640_403, -795_182_000), ..Waypoint::default() });
     let mut trace = Trace::new(plan, None);
     for tick in 0..=1000_u64 {
-        let seconds = tick as f32 * 0.01;
-        let mut values = [f32::NAN; Signal::COUNT];
-        values[Signal::North as usize] = 5.0 * seconds;
-        values[Signal::East as usize] = 3.0;
-        values[Signal::Altitude as usize] = seconds;
-        values[Signal::Heading as usize] = (350.0 + 10.0 * seconds) % 360.0;
+        let seconds = f64::from(tick as f32 * 0.01);
+        let mut values = SignalValues::UNKNOWN;
+        values.set(Signal::North, 5.0 * seconds);
+        values.set(Signal::East, 3.0);
+        values.set(Signal::Altitude, seconds);
+        values.set(Signal::Heading, (350.0 + 10.0 * seconds) % 360.0);
         trace.samples.push(Sample {
             time: SimTime(tick * 10_000),
             values,

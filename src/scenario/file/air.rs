@@ -8,9 +8,9 @@ use super::keys::AIR_KEYS;
 use super::reader::{Layers, Reader};
 use crate::plan::format::{TomlTable, Value};
 use crate::scenario::expression::{Cursor, Number, Scope, read_number};
-use crate::scenario::quantity::Dimension;
 use crate::sim::{Noise, Wind, WorldConfig};
 use crate::telemetry::Turbulence;
+use crate::telemetry::quantity::Dimension;
 use toml::de::DeValue;
 
 /// The most seeds of a case.

@@ -10,8 +10,8 @@ use super::reader::{Layers, Reader};
 use crate::plan::format::TomlTable;
 use crate::scenario::case::{Measure, Measured, Statistic, Window};
 use crate::scenario::expression::{Scope, read_instant, read_number};
-use crate::scenario::quantity::Dimension;
-use crate::scenario::signal::Signal;
+use crate::telemetry::quantity::Dimension;
+use crate::telemetry::signal::Signal;
 
 /// The kinds of measure; each table has one of these keys.
 const KINDS: [&str; 6] = ["mean", "rms", "max", "min", "time", "value"];

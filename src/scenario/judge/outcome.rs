@@ -2,9 +2,9 @@
 
 use crate::scenario::Insight;
 use crate::scenario::expression::Verdict;
-use crate::scenario::quantity::{Dimension, shown};
 use crate::scenario::trace::Trace;
 use crate::signals::SimTime;
+use crate::telemetry::quantity::{Dimension, shown};
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct Judgement {

@@ -5,8 +5,8 @@ use super::outcome::{Margin, Outcome, describe, failed, met, of_verdict, unjudge
 use crate::scenario::case::{Expected, Statistic};
 use crate::scenario::expression::{Comparison, Condition, Evaluator, Verdict};
 use crate::scenario::happening::Happening;
-use crate::scenario::quantity::Dimension;
 use crate::signals::SimTime;
+use crate::telemetry::quantity::Dimension;
 
 const NOTHING_KNOWN: &str = "it was not known at any moment of its time";
 

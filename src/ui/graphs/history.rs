@@ -2,8 +2,8 @@
 
 use std::collections::VecDeque;
 
-use super::signal::{Signal, Values, values};
 use crate::telemetry::Snapshot;
+use crate::telemetry::signal::{Observed, Signal, SignalValues};
 
 /// The time between two fine samples, s, and their number: ten minutes.
 const FINE: (f64, usize) = (0.1, 6000);
@@ -15,18 +15,31 @@ const COARSE: (f64, usize) = (1.0, 7200);
 pub(in crate::ui) struct Sample {
     /// Simulated time, s.
     pub(in crate::ui) time_s: f64,
-    values: Values,
+    values: SignalValues,
 }
 
 impl Sample {
     /// Returns the signals of a picture.
     pub(super) fn of(vehicle: &Snapshot) -> Self {
-        Self { time_s: vehicle.time.as_secs_f64(), values: values(vehicle) }
+        let mut values = SignalValues::of(&Observed::of(vehicle));
+        // A navigator that flies nothing keeps the values of its last mission.
+        if !vehicle.is_engaged() {
+            for signal in [Signal::TargetAltitude, Signal::CrossTrack, Signal::WpDistance] {
+                values.set(signal, f64::NAN);
+            }
+        }
+        // A real craft has no truth.
+        for (truth, estimate) in [(Signal::North, Signal::EstNorth), (Signal::East, Signal::EstEast)] {
+            if values.get(truth).is_nan() {
+                values.set(truth, values.get(estimate));
+            }
+        }
+        Self { time_s: vehicle.time.as_secs_f64(), values }
     }
 
     /// Returns the value of a signal, if it is known.
     pub(in crate::ui) fn value(&self, signal: Signal) -> Option<f64> {
-        self.values.get(signal as usize).map(|value| f64::from(*value)).filter(|value| value.is_finite())
+        Some(self.values.get(signal)).filter(|value| value.is_finite())
     }
 }
 
@@ -104,10 +117,7 @@ mod tests {
         assert!(all.windows(2).all(|pair| pair[0] < pair[1]));
         assert!(all[0] < 2900.0 && all[all.len() - 1] > 9999.0, "{} {}", all[0], all[all.len() - 1]);
         assert_eq!(history.at(5000.4).map(|sample| sample.time_s), Some(5000.0));
-        assert_eq!(
-            history.at(9990.05).and_then(|sample| sample.value(Signal::AltitudeEstimate)),
-            Some(9990.0)
-        );
+        assert_eq!(history.at(9990.05).and_then(|sample| sample.value(Signal::EstAltitude)), Some(9990.0));
     }
 
     #[test]

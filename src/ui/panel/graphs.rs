@@ -7,9 +7,11 @@ use ratatui::widgets::Widget as _;
 use ratatui::widgets::canvas::{Canvas, Line as CanvasLine};
 
 use crate::signals::SimTime;
+use crate::telemetry::quantity::Dimension;
+use crate::telemetry::signal::Signal;
 use crate::ui::action::Action;
 use crate::ui::formatting::{clock, fixed};
-use crate::ui::graphs::{PLOTS, Plot, Quantity, Sample, Signal, Stroke};
+use crate::ui::graphs::{PLOTS, Plot, Sample, Stroke};
 use crate::ui::panel::Panel;
 use crate::ui::popup::frame::popup;
 use crate::ui::shared::Shared;
@@ -71,16 +73,16 @@ pub(crate) fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {
 }
 
 /// Returns the factor and the unit for the values of a plot, and the number of decimals.
-fn unit(state: &Shared, quantity: Quantity) -> (f64, &'static str, usize) {
+fn unit(state: &Shared, dimension: Dimension) -> (f64, &'static str, usize) {
     let units = state.units;
-    match quantity {
-        Quantity::Length => (units.length(1.0), units.length_unit(), 1),
-        Quantity::Speed => (units.speed(1.0), units.speed_unit(), 1),
-        Quantity::Angle => (1.0, "°", 1),
-        Quantity::Pulse => (1.0, "µs", 0),
-        Quantity::Share => (1.0, "%", 0),
-        Quantity::Voltage => (1.0, "V", 2),
-        Quantity::Current => (1.0, "A", 1),
+    match dimension {
+        Dimension::LENGTH => (units.length(1.0), units.length_unit(), 1),
+        Dimension::SPEED => (units.speed(1.0), units.speed_unit(), 1),
+        Dimension::ANGLE => (1.0, "°", 1),
+        Dimension::PULSE => (1.0, "µs", 0),
+        Dimension::VOLTAGE => (1.0, "V", 2),
+        Dimension::CURRENT => (1.0, "A", 1),
+        _ => (100.0, "%", 0),
     }
 }
 
@@ -104,7 +106,7 @@ fn glyph(stroke: Stroke) -> &'static str {
 
 fn draw_plot(state: &Shared, plot: &Plot, area: Rect, (from, to): (f64, f64), buffer: &mut Buffer) {
     let theme = &state.theme;
-    let (factor, unit, decimals) = unit(state, plot.quantity);
+    let (factor, unit, decimals) = unit(state, plot.dimension());
     let now = state.graphs.sample_at(state.graphs.cursor_s(&state.view));
     let mut title = vec![span(theme, Role::Title, format!("{} {unit}", plot.name))];
     for (at, (signal, name, stroke)) in plot.curves.iter().enumerate().rev() {

@@ -103,6 +103,9 @@ impl Track {
             motors,
             on_ground: enu.z < STANDING_M && pose.vel_enu.norm() < STANDING_MPS,
             wind_ne: None,
+            wind_mps: None,
+            force_mps2: None,
+            battery: None,
             crashed: false,
             diverged: false,
         })

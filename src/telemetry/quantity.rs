@@ -1,4 +1,4 @@
-//! Dimensions and units of the numbers in expectations.
+//! Dimensions and units of the signals of a flight, and of the numbers that are compared with them.
 
 use std::fmt;
 
@@ -27,7 +27,7 @@ impl Dimension {
     pub const CHARGE: Self = Self([0, 1, 0, 0, 0, 1]);
 
     /// Returns the dimension of a product, or of a quotient with `sign` −1.
-    pub(super) fn combine(self, other: Self, sign: i8) -> Self {
+    pub fn combine(self, other: Self, sign: i8) -> Self {
         Self(std::array::from_fn(|i| self.0[i].saturating_add(other.0[i].saturating_mul(sign))))
     }
 }
@@ -84,7 +84,7 @@ impl Dimension {
     }
 
     /// Returns the units that may follow a number of this dimension, for messages.
-    pub(super) fn unit_names(self) -> String {
+    pub fn unit_names(self) -> String {
         let names: Vec<_> =
             UNITS.iter().filter(|unit| unit.dimension == self).map(|unit| unit.name).collect();
         if self == Self::NONE { "a plain number or %".to_owned() } else { names.join(", ") }
