@@ -35,7 +35,7 @@ fn main() {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
     runtime.block_on(async {
         let mut session = session();
-        session.commands.send(Command::Pilot(true)).await.unwrap();
+        session.commands.send(Command::StartPilot).await.unwrap();
         fly_to(&mut session, SOUGHT_AT_S).await;
         session.commands.send(Command::Pause(true)).await.unwrap();
         session.view.wait_for(|view| view.paused).await.unwrap();

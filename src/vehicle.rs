@@ -7,25 +7,26 @@
 //! 3. the physics steps with them, which gives the sensor frame of the next instant.
 //!
 //! A clone is a frozen vehicle. If it continues, it gives the same trajectory to the last bit. Everything that
-//! reaches the vehicle from other programs or people in the meantime is an [`Input`].
+//! reaches the vehicle from other programs or people in the meantime is a [`VehicleCommand`].
 //!
 //! The flight controller is embedded or remote ([`FlightController`]). The physics is the simulated world or an
 //! external simulator. With the latter, each [`Vehicle::tick_on`] steps the flight controller on the measurements of
 //! that simulator, and [`Vehicle::see`] reports the place of the craft.
 
+mod command;
 mod controller;
-mod input;
+mod input_log;
 mod physics;
 mod view;
 
 use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;
 
+pub use command::{Message, Reply, VehicleCommand, VehicleRefusal};
 pub use controller::{
     Answer, EmbeddedController, FlightController, FrameOut, LateAnswer, RemoteController, RemoteRequest,
     RemoteTelemetry, Ticket,
 };
-pub use input::{Input, Message};
 
 use crate::firmware::config::Configuration;
 use crate::firmware::{Firmware, FirmwareOptions};
@@ -66,8 +67,6 @@ pub struct Vehicle {
     engaged_at: Option<SimTime>,
     active_plan: Option<Box<FlightPlan>>,
     events: Vec<Event>,
-    /// `true` if the transmitter was changed since the inputs were last taken.
-    transmitter_set: bool,
 }
 
 impl Vehicle {
@@ -135,7 +134,6 @@ impl Vehicle {
             engaged_at: None,
             active_plan: None,
             events,
-            transmitter_set: false,
         }
     }
 
@@ -172,9 +170,8 @@ impl Vehicle {
         &self.transmitter
     }
 
-    /// Returns the RC transmitter, to move its sticks.
+    /// Returns the RC transmitter, to set it up. The changes are not among the inputs of the vehicle.
     pub fn transmitter_mut(&mut self) -> &mut RcTransmitter {
-        self.transmitter_set = true;
         &mut self.transmitter
     }
 
@@ -248,7 +245,7 @@ impl Vehicle {
     pub fn change_world(&mut self, command: WorldCommand) -> Result<(), WorldError> {
         let input = command.clone();
         self.physics.apply(command)?;
-        self.note_input(|| Input::World(Box::new(input)));
+        self.note_input(|| VehicleCommand::World(Box::new(input)));
         Ok(())
     }
 
@@ -257,8 +254,8 @@ impl Vehicle {
     /// # Errors
     /// Fails with the mode that no channel switches.
     pub fn start_pilot(&mut self, takeoff_m: f64) -> Result<(), Mode> {
-        self.transmitter_set = true;
         self.transmitter.start_pilot(Pilot::new(takeoff_m, &self.controller.mode_ranges())?);
+        self.note_input(|| VehicleCommand::StartPilot(takeoff_m));
         Ok(())
     }
 
@@ -266,7 +263,7 @@ impl Vehicle {
     /// count from the engagement wait for the next one. A craft that an external simulator moves is only disarmed,
     /// and starts where it is seen next.
     pub fn reset_craft(&mut self) {
-        self.note_input(|| Input::ResetCraft);
+        self.note_input(|| VehicleCommand::ResetCraft);
         self.engaged_at = None;
         self.transmitter.stop_pilot();
         *self.transmitter.sticks_mut() = RcFrame::SAFE;
@@ -354,7 +351,7 @@ impl Vehicle {
         self.events.drain(..).for_each(sink);
     }
 
-    fn note_input(&mut self, input: impl FnOnce() -> Input) {
+    fn note_input(&mut self, input: impl FnOnce() -> VehicleCommand) {
         if let Some(log) = self.controller.input_log_mut() {
             log.note(input);
         }

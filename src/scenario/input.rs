@@ -6,6 +6,7 @@ use crate::plan::{FlightPlan, MAX_WAYPOINTS};
 use crate::signals::{RC_CHANNELS, RcFrame};
 use crate::sim::WorldCommand;
 use crate::telemetry::{InFlightCommand, Mode};
+use crate::vehicle::VehicleCommand;
 
 /// An input and its instant.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,8 +26,7 @@ pub struct TimedInput {
 /// An action on the craft.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Action {
-    /// A change of the air, the noise or a fault.
-    World(WorldCommand),
+    Vehicle(VehicleCommand),
     /// Holds a channel at a value, for a number of seconds or until its release.
     Stick {
         /// Index from 0.
@@ -35,10 +35,6 @@ pub enum Action {
         value_us: u16,
         for_s: Option<f64>,
     },
-    /// Gives a channel back to its usual source.
-    Release(u8),
-    /// Sets all sixteen virtual channels.
-    Sticks(RcFrame),
     /// The switch of a mode.
     Switch(Mode, bool),
     /// Cuts off the transmitter, for a number of seconds or until it is restored.
@@ -48,14 +44,6 @@ pub enum Action {
     /// A line on the command line.
     Cli(String),
     Upload(Box<FlightPlan>),
-    /// Returns home and lands.
-    ReturnHome,
-    CancelReturn,
-    InFlight(InFlightCommand),
-    /// Gives the sticks to the scripted pilot, who climbs to this height in metres and engages.
-    Pilot(f64),
-    /// Takes the sticks from the scripted pilot.
-    PilotOff,
 }
 
 /// The forms of an input, for messages and the reference: the syntax and the effect.
@@ -105,9 +93,13 @@ pub(super) fn read_action(text: &str, plans: PlanReader<'_>) -> Result<Action, S
                 .ok_or_else(|| whole("the duration is not understood".to_owned(), "write for 3 s"))?,
         },
         ("release", [channel]) => {
-            Action::Release(channel_index(channel).map_err(|problem| whole(problem, ""))?)
+            let channel = channel_index(channel).map_err(|problem| whole(problem, ""))?;
+            Action::Vehicle(VehicleCommand::ReleaseChannel(channel))
         }
-        ("sticks", values) => Action::Sticks(read_sticks(values).map_err(|problem| whole(problem, ""))?),
+        ("sticks", values) => {
+            let frame = read_sticks(values).map_err(|problem| whole(problem, ""))?;
+            Action::Vehicle(VehicleCommand::Sticks(frame))
+        }
         ("switch", [.., position @ ("on" | "off")]) => {
             let name = rest[..rest.len() - position.len()].trim();
             let mut cursor = Cursor::new(name);
@@ -122,17 +114,19 @@ pub(super) fn read_action(text: &str, plans: PlanReader<'_>) -> Result<Action, S
         ("rc", ["restore"]) => Action::RestoreRc,
         ("cli", [_, ..]) => Action::Cli(rest.to_owned()),
         ("upload", [_, ..]) => Action::Upload(Box::new(plans(rest).map_err(|problem| whole(problem, ""))?)),
-        ("return", ["home"]) => Action::ReturnHome,
-        ("cancel", ["return"]) => Action::CancelReturn,
-        ("go", ["on"]) => Action::InFlight(InFlightCommand::Resume),
+        ("return", ["home"]) => Action::Vehicle(VehicleCommand::ReturnHome),
+        ("cancel", ["return"]) => Action::Vehicle(VehicleCommand::CancelReturn),
+        ("go", ["on"]) => Action::Vehicle(VehicleCommand::InFlight(InFlightCommand::Resume)),
         ("go", ["to", wp]) => match wp.parse() {
-            Ok(wp) => Action::InFlight(InFlightCommand::GoTo(wp)),
+            Ok(wp) => Action::Vehicle(VehicleCommand::InFlight(InFlightCommand::GoTo(wp))),
             Err(_) => return Err(whole(format!("{wp} is not the number of a waypoint"), "write go to 2")),
         },
-        ("hold", ["here"]) => Action::InFlight(InFlightCommand::HoldHere),
-        ("pilot", ["off"]) => Action::PilotOff,
+        ("hold", ["here"]) => Action::Vehicle(VehicleCommand::InFlight(InFlightCommand::HoldHere)),
+        ("pilot", ["off"]) => Action::Vehicle(VehicleCommand::StopPilot),
         ("pilot", [height]) => match height.parse::<f64>() {
-            Ok(height) if (0.0..=500.0).contains(&height) => Action::Pilot(height),
+            Ok(height) if (0.0..=500.0).contains(&height) => {
+                Action::Vehicle(VehicleCommand::StartPilot(height))
+            }
             _ => return Err(whole(format!("{height} is not a height"), "allowed: 0 to 500, metres")),
         },
         (
@@ -167,7 +161,8 @@ pub(super) fn waypoints_after(text: &str, plans: PlanReader<'_>) -> Option<usize
 
 /// Reads a change of the world. If the first word is unknown, the suggestion comes from the words of all inputs.
 fn world(text: &str) -> Result<Action, String> {
-    WorldCommand::parse(text).map(Action::World).map_err(|error| {
+    let world = |command| Action::Vehicle(VehicleCommand::World(Box::new(command)));
+    WorldCommand::parse(text).map(world).map_err(|error| {
         let problem = error.problem().to_owned();
         let word = text.split(['=', ' ']).next().unwrap_or_default();
         let firsts = FORMS.iter().filter_map(|(form, _)| form.split(' ').next());

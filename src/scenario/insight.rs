@@ -9,6 +9,7 @@ use crate::scenario::flag::Flag;
 use crate::sim::{Fault, Switches};
 use crate::telemetry::signal::Signal;
 use crate::telemetry::{DisarmReason, PlanSource};
+use crate::vehicle::VehicleCommand;
 
 /// The required knowledge of a flight controller, the least first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, strum::Display)]
@@ -297,20 +298,36 @@ fn happening(pattern: &Pattern) -> Insight {
 fn action(action: &Action, switches: &Switches) -> Insight {
     let is_idle = |fault: &Fault| !fault.acts_on_remote_controller(switches);
     match action {
-        Action::World(command) if command.fault().is_some_and(is_idle) => Insight::Inner,
-        Action::World(_)
+        Action::Vehicle(VehicleCommand::World(command)) if command.fault().is_some_and(is_idle) => {
+            Insight::Inner
+        }
+        Action::Vehicle(
+            VehicleCommand::World(_)
+            | VehicleCommand::ResetCraft
+            | VehicleCommand::Sticks(_)
+            | VehicleCommand::SticksFirst(_)
+            | VehicleCommand::CutRc(_)
+            | VehicleCommand::HoldChannel(_)
+            | VehicleCommand::ReleaseChannel(_)
+            | VehicleCommand::StartPilot(_)
+            | VehicleCommand::StopPilot
+            | VehicleCommand::Rc(..),
+        )
         | Action::Stick { .. }
-        | Action::Release(_)
-        | Action::Sticks(_)
         | Action::Switch(..)
         | Action::CutRc(_)
-        | Action::RestoreRc
-        | Action::Pilot(_)
-        | Action::PilotOff => Insight::Truth,
-        Action::Cli(_)
-        | Action::Upload(_)
-        | Action::ReturnHome
-        | Action::CancelReturn
-        | Action::InFlight(_) => Insight::Inner,
+        | Action::RestoreRc => Insight::Truth,
+        Action::Vehicle(
+            VehicleCommand::ReturnHome
+            | VehicleCommand::CancelReturn
+            | VehicleCommand::InFlight(_)
+            | VehicleCommand::Line(_)
+            | VehicleCommand::Message(_)
+            | VehicleCommand::CliOpened
+            | VehicleCommand::CliClosed
+            | VehicleCommand::Restart(_),
+        )
+        | Action::Cli(_)
+        | Action::Upload(_) => Insight::Inner,
     }
 }

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use crate::fc::{RemoteView, UploadReport, UploadView};
 use crate::plan::FlightPlan;
 use crate::signals::{RcFrame, SimTime};
-use crate::telemetry::{EndpointStatus, InFlightCommand, LinkState, LostTime, Snapshot};
+use crate::telemetry::{EndpointStatus, LinkState, LostTime, Snapshot};
 use crate::timeline::{RecordedFlight, TimelineView};
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Vehicle, VehicleCommand};
 
 /// Refusal to pause, step or accelerate time with an external simulator.
 pub const TIME_IS_EXTERNAL: &str = "The simulator sets the time: pause it or change its speed there.";
@@ -73,10 +73,8 @@ pub enum Command {
     FlyOn,
     /// Runs at this multiple of real time; [`f64::INFINITY`] = as fast as possible.
     Speed(f64),
-    /// Sets the virtual sticks, which are sent 50 times per simulated second until replaced.
-    Sticks(RcFrame),
-    /// Cuts (`true`) or restores the RC link of the virtual sticks.
-    CutRc(bool),
+    /// Changes the vehicle. A refusal is a notice.
+    Vehicle(VehicleCommand),
     /// Runs a CLI line of the console session. The reply is its output.
     Cli {
         /// The line, without line end.
@@ -101,16 +99,8 @@ pub enum Command {
         /// Receives `Ok`, or the reason as a sentence.
         reply: tokio::sync::oneshot::Sender<Result<(), String>>,
     },
-    /// Starts (`true`) or stops the scripted pilot that flies the whole mission: arm, climb, engage.
-    Pilot(bool),
-    /// Goes to a waypoint, holds the position or continues.
-    InFlight(InFlightCommand),
-    /// Flies home and lands.
-    ReturnHome,
-    /// Cancels [`Command::ReturnHome`]. The AUTOPILOT switch decides again.
-    CancelReturn,
-    /// Puts the craft back home, disarmed. Plan and settings are kept.
-    ResetCraft,
+    /// Starts the scripted pilot that flies the whole mission: arm, climb to the session's altitude, engage.
+    StartPilot,
     /// Permits changes to the remote craft over the connection with this number, until it ends.
     PermitChanges(u32),
     /// Changes the air, the noise or a fault: `wind=5@270`, `fault=motor,,2:0.8`, `end=all`…

@@ -3,7 +3,7 @@
 use super::Timeline;
 use super::replay::Replay;
 use crate::signals::SimTime;
-use crate::vehicle::{Input, Vehicle};
+use crate::vehicle::{Vehicle, VehicleCommand};
 
 /// A flight from its start to now.
 #[derive(Debug)]
@@ -11,14 +11,14 @@ pub struct RecordedFlight {
     /// The vehicle at the start: at boot, or after the craft was put back home or restarted.
     pub start: Vehicle,
     /// Inputs since then, with their times since boot.
-    pub inputs: Vec<(SimTime, Input)>,
+    pub inputs: Vec<(SimTime, VehicleCommand)>,
     /// Instant at which the flight ends.
     pub until: SimTime,
 }
 
 /// Returns `true` if the input puts the craft back home or restarts it, so that a flight ends and another begins.
-fn begins(input: &Input) -> bool {
-    matches!(input, Input::ResetCraft | Input::Restart(_))
+fn begins(input: &VehicleCommand) -> bool {
+    matches!(input, VehicleCommand::ResetCraft | VehicleCommand::Restart(_))
 }
 
 impl Timeline {

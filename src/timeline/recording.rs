@@ -10,7 +10,7 @@ use std::collections::VecDeque;
 use super::idle::IdleTime;
 use super::replay::Replay;
 use crate::signals::SimTime;
-use crate::vehicle::{Input, Vehicle};
+use crate::vehicle::{Vehicle, VehicleCommand};
 
 /// The limits of a recording.
 #[derive(Debug, Clone, Copy)]
@@ -77,7 +77,7 @@ impl KeyFrame {
 #[derive(Debug)]
 struct TimedInput {
     at: SimTime,
-    input: Input,
+    input: VehicleCommand,
 }
 
 impl TimedInput {
@@ -150,13 +150,13 @@ impl Recording {
     }
 
     /// Returns the input with this number, if it came at `time` or before.
-    pub(super) fn input(&self, number: u64, time: SimTime) -> Option<&Input> {
+    pub(super) fn input(&self, number: u64, time: SimTime) -> Option<&VehicleCommand> {
         let index = usize::try_from(number.checked_sub(self.first_input)?).ok()?;
         self.inputs.get(index).filter(|input| input.at <= time).map(|input| &input.input)
     }
 
     /// Returns the kept inputs with their times, oldest first.
-    pub(super) fn inputs(&self) -> impl DoubleEndedIterator<Item = (SimTime, &Input)> {
+    pub(super) fn inputs(&self) -> impl DoubleEndedIterator<Item = (SimTime, &VehicleCommand)> {
         self.inputs.iter().map(|input| (input.at, &input.input))
     }
 
@@ -327,7 +327,7 @@ mod tests {
     fn of_many_frames_before_a_tick_the_newest_is_kept() {
         let recording = recorded(BOUNDS, 100, 5);
         assert_eq!(recording.inputs.len(), 100);
-        let Some(Input::Rc(frame, RcSource::Udp)) = recording.input(50, SimTime(50_000)) else {
+        let Some(VehicleCommand::Rc(frame, RcSource::Udp)) = recording.input(50, SimTime(50_000)) else {
             panic!("a frame a tick");
         };
         assert_eq!(frame.channels[0], RcFrame::SAFE.channels[0] + 4);

@@ -39,7 +39,8 @@ impl Replay {
     pub(super) fn fly_to(&mut self, time: SimTime, recording: &Recording) {
         while self.vehicle.time() < time {
             while let Some(input) = recording.input(self.next_input, self.vehicle.time()) {
-                self.vehicle.apply(input);
+                // The answer was reported when the command came.
+                let _reported = self.vehicle.apply(input);
                 self.next_input += 1;
             }
             self.vehicle.tick();

@@ -9,7 +9,7 @@ use crate::plan::upload_lines;
 use crate::signals::{RcFrame, RcSource};
 use crate::sim::{WorldCommand, WorldConfig};
 use crate::telemetry::{InFlightCommand, Turbulence};
-use crate::vehicle::{FlightController, VehicleConfig};
+use crate::vehicle::{Answer, FlightController, Reply, VehicleCommand, VehicleConfig};
 
 /// Key frames every two seconds, so that a short flight has many.
 const BOUNDS: Bounds = Bounds {
@@ -42,6 +42,16 @@ fn line(vehicle: &mut Vehicle, session: &mut Interpreter, line: &str) {
 }
 
 /// Applies the inputs before a tick of the flight.
+fn done(vehicle: &mut Vehicle, command: &VehicleCommand) {
+    assert!(matches!(vehicle.apply(command), Answer::Now(Reply::Done)), "{command:?}");
+}
+
+fn move_stick(vehicle: &mut Vehicle, channel: usize, value_us: u16) {
+    let mut sticks = vehicle.transmitter().sticks();
+    sticks.channels[channel] = value_us;
+    done(vehicle, &VehicleCommand::Sticks(sticks));
+}
+
 fn happen(tick: u64, vehicle: &mut Vehicle, session: &mut Interpreter) {
     let world = |vehicle: &mut Vehicle, line: &str| {
         vehicle.change_world(WorldCommand::parse(line).unwrap()).unwrap();
@@ -68,12 +78,12 @@ fn happen(tick: u64, vehicle: &mut Vehicle, session: &mut Interpreter) {
         15_800 => vehicle.controller_mut().command(InFlightCommand::GoTo(2)).unwrap(),
         16_000 => world(vehicle, "fault=gps-loss,2"),
         17_000 => {
-            vehicle.transmitter_mut().stop_pilot();
-            vehicle.transmitter_mut().sticks_mut().channels[0] = 1620;
+            done(vehicle, &VehicleCommand::StopPilot);
+            move_stick(vehicle, 0, 1620);
         }
-        17_500 => vehicle.transmitter_mut().set_cut(true),
+        17_500 => done(vehicle, &VehicleCommand::CutRc(true)),
         18_100 => {
-            vehicle.transmitter_mut().set_cut(false);
+            done(vehicle, &VehicleCommand::CutRc(false));
             vehicle.controller_mut().take_over_sticks(true);
         }
         18_700 => {
@@ -142,7 +152,7 @@ fn a_flight_ends_at_the_very_instant_of_the_next_reset() {
     let (reset, _) = timeline
         .recording
         .inputs()
-        .find(|(_, input)| matches!(input, crate::vehicle::Input::ResetCraft))
+        .find(|(_, input)| matches!(input, crate::vehicle::VehicleCommand::ResetCraft))
         .expect("the craft is put back");
     assert_eq!(timeline.flight_ends(SimTime(reset.0 - 1)), Some(reset));
     assert_eq!(timeline.flight_ends(reset), Some(reset), "the reset is not part of the flight before it");
@@ -181,7 +191,7 @@ fn a_branch_forgets_what_came_after_it_and_can_itself_be_replayed() {
     let mut later = None;
     for tick in 0..5000 {
         if tick == 1700 {
-            vehicle.transmitter_mut().sticks_mut().channels[1] = 1700;
+            move_stick(&mut vehicle, 1, 1700);
         }
         if tick == 3333 {
             later = Some((vehicle.time(), picture(&vehicle)));

@@ -11,6 +11,7 @@ use crate::fc::UploadReport;
 use crate::plan::FlightPlan;
 use crate::session::command::{CliOutput, Command, SessionView};
 use crate::session::{Event, ForecastJob, ForecastReply};
+use crate::vehicle::VehicleCommand;
 
 /// An input of the user interface.
 #[derive(Debug)]
@@ -121,4 +122,10 @@ pub enum Effect {
     Suspend,
     /// Restore the terminal and end the program.
     Quit,
+}
+
+impl From<VehicleCommand> for Effect {
+    fn from(command: VehicleCommand) -> Self {
+        Self::Send(Command::Vehicle(command))
+    }
 }

@@ -8,6 +8,7 @@ use crate::telemetry::snapshot::ModeRange;
 use crate::telemetry::snapshot::SettingsView;
 use crate::telemetry::switch::Switch;
 use crate::telemetry::{Mode, ModeBox, switch};
+use crate::vehicle::VehicleCommand;
 
 use super::action::Action;
 use super::arming_hint::{arming_hint, most_useful_flag};
@@ -212,7 +213,7 @@ pub(super) fn toggle_autopilot(state: &mut Shared) -> Vec<Effect> {
     let mut next = frame(state);
     let on = next.channels[switch.channel] == switch.on_us;
     if state.view.vehicle.craft.is_commanded() && !on {
-        return vec![Effect::Send(Command::CancelReturn)];
+        return vec![Effect::Send(Command::Vehicle(VehicleCommand::CancelReturn))];
     }
     next.channels[switch.channel] = if on { switch.off_us } else { switch.on_us };
     if on && is_on(state, &next, Mode::AltHold) {
@@ -230,7 +231,7 @@ pub(super) fn toggle_autopilot(state: &mut Shared) -> Vec<Effect> {
 /// pilot has them on.
 pub(super) fn toggle_return(state: &mut Shared) -> Vec<Effect> {
     if state.view.vehicle.craft.is_commanded() {
-        return vec![Effect::Send(Command::CancelReturn)];
+        return vec![Effect::Send(Command::Vehicle(VehicleCommand::CancelReturn))];
     }
     let before = frame(state);
     let mut next = before;
@@ -239,7 +240,7 @@ pub(super) fn toggle_return(state: &mut Shared) -> Vec<Effect> {
     if next != before && state.view.pilot.is_none() {
         effects = send(state, next);
     }
-    effects.push(Effect::Send(Command::ReturnHome));
+    effects.push(Effect::Send(Command::Vehicle(VehicleCommand::ReturnHome)));
     effects
 }
 
@@ -307,7 +308,7 @@ fn send(state: &mut Shared, next: RcFrame) -> Vec<Effect> {
         state.notify(Severity::Info, "Playing stopped: the sticks are yours.");
     }
     if state.view.pilot.is_some() {
-        effects.push(Effect::Send(Command::Pilot(false)));
+        effects.push(Effect::Send(Command::Vehicle(VehicleCommand::StopPilot)));
         state.notify(Severity::Info, "The pilot let go: the sticks are yours.");
     }
     match state.view.vehicle.craft.rc_source {
@@ -321,7 +322,7 @@ fn send(state: &mut Shared, next: RcFrame) -> Vec<Effect> {
         _ => {}
     }
     state.sticks_sent = Some((next, state.now));
-    effects.push(Effect::Send(Command::Sticks(next)));
+    effects.push(Effect::Send(Command::Vehicle(VehicleCommand::Sticks(next))));
     effects
 }
 

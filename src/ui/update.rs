@@ -4,6 +4,7 @@ use crossterm::event::{KeyCode, KeyEvent, KeyEventKind};
 
 use crate::session::{Command, SessionView};
 use crate::telemetry::InFlightCommand;
+use crate::vehicle::VehicleCommand;
 
 use super::action::{self, Action, EditAction};
 use super::app_state::AppState;
@@ -312,10 +313,10 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
             state.popups.extend(question.map(Popup::GoTo));
             Vec::new()
         }
-        Action::HoldHere => vec![Effect::Send(Command::InFlight(InFlightCommand::HoldHere))],
-        Action::Resume => vec![Effect::Send(Command::InFlight(InFlightCommand::Resume))],
+        Action::HoldHere => vec![VehicleCommand::InFlight(InFlightCommand::HoldHere).into()],
+        Action::Resume => vec![VehicleCommand::InFlight(InFlightCommand::Resume).into()],
         Action::CutRc => {
-            let mut effects = vec![Effect::Send(Command::CutRc(!state.shared.view.rc_cut))];
+            let mut effects: Vec<Effect> = vec![VehicleCommand::CutRc(!state.shared.view.rc_cut).into()];
             // At real time the user can read the countdown of the failsafe.
             if !state.shared.view.rc_cut
                 && state.shared.view.speed_wanted > 1.0
@@ -330,7 +331,7 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
         Action::ResetCraft => {
             state.shared.track.await_reset();
             state.shared.sticks_sent = None;
-            vec![Effect::Send(Command::ResetCraft)]
+            vec![VehicleCommand::ResetCraft.into()]
         }
         Action::LookAhead => forecast::toggle_look_ahead(&mut state.shared),
         Action::WhatIf => {

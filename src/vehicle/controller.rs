@@ -6,7 +6,7 @@ mod remote;
 pub use embedded::EmbeddedController;
 pub use remote::{FrameOut, RemoteController, RemoteRequest, RemoteTelemetry};
 
-use super::input::InputLog;
+use super::input_log::InputLog;
 use crate::firmware::Firmware;
 use crate::firmware::cli::{BuildInfo, CliReply, Interpreter, StorageFacts};
 use crate::firmware::config::Configuration;
@@ -30,6 +30,16 @@ pub enum Answer<T> {
     Now(T),
     /// The answer comes later with this ticket from [`FlightController::take_answer`].
     Later(Ticket),
+}
+
+impl<T> Answer<T> {
+    /// Converts an answer that is here.
+    pub(super) fn map<U>(self, convert: impl FnOnce(T) -> U) -> Answer<U> {
+        match self {
+            Self::Now(answer) => Answer::Now(convert(answer)),
+            Self::Later(ticket) => Answer::Later(ticket),
+        }
+    }
 }
 
 /// An answer that came later.

@@ -4,6 +4,7 @@ use crate::rig::{assert_fails, assert_met, builtin, case_of, case_with, fly, jud
 use betadeck::plan::WaypointType;
 use betadeck::scenario::{Action, Insight, Outcome, compare, judge};
 use betadeck::telemetry::InFlightCommand;
+use betadeck::vehicle::VehicleCommand;
 
 #[test]
 fn guide_1_sees_a_wrong_arrival_radius() {
@@ -138,7 +139,7 @@ fn guide_8_sees_a_return_that_is_slow_or_none() {
     let case = with_settings(case_of("guide-8", "calm, noise none"), &["ap_max_velocity = 500"]);
     assert_fails(&judged(&case), "home in time", "13.00 s to 22.00 s");
     let mut case = case_of("guide-8", "calm, noise none");
-    case.inputs[0].action = Action::InFlight(InFlightCommand::HoldHere);
+    case.inputs[0].action = Action::Vehicle(VehicleCommand::InFlight(InFlightCommand::HoldHere));
     case.time_limit_s = 60.0;
     let judgements = judged(&case);
     assert_fails(&judgements, "2 waypoints are created: FLYOVER + LAND", "it did not happen");

@@ -17,7 +17,7 @@ use betadeck::signals::RcFrame;
 use betadeck::sim::WorldConfig;
 use betadeck::storage::Store;
 use betadeck::telemetry::{ArmingFlag, EndpointKind, Snapshot};
-use betadeck::vehicle::{Vehicle, VehicleConfig};
+use betadeck::vehicle::{Vehicle, VehicleCommand, VehicleConfig};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 use tokio::sync::{mpsc, oneshot, watch};
@@ -139,7 +139,7 @@ async fn a_craft_put_back_home_does_not_arm_while_somebody_is_at_the_command_lin
     let mut rig = rig().await;
     let mut person = rig.person().await;
     rig.picture("the block", is_blocked_by_cli).await;
-    rig.session.commands.send(Command::ResetCraft).await.unwrap();
+    rig.session.commands.send(Command::Vehicle(VehicleCommand::ResetCraft)).await.unwrap();
     rig.console("version").await;
     person.write_all(b"version\n").await.unwrap();
     let mut said = Vec::new();
@@ -195,7 +195,7 @@ async fn script(requests: mpsc::Sender<Request>) {
 #[tokio::test]
 async fn sticks_are_cut_while_a_script_flies_and_after_it_until_they_are_taken_back() {
     let mut rig = rig().await;
-    rig.session.commands.send(Command::Sticks(frame_with(STICKS))).await.unwrap();
+    rig.session.commands.send(Command::Vehicle(VehicleCommand::Sticks(frame_with(STICKS)))).await.unwrap();
     let is_on = |view: &SessionView, channel: usize| {
         view.vehicle.craft.channels.is_some_and(|channels| channels[channel] > 1700)
     };
@@ -217,7 +217,7 @@ async fn sticks_are_cut_while_a_script_flies_and_after_it_until_they_are_taken_b
     assert_eq!(events.filter(reported).count(), 1);
     // A user who takes the sticks back flies, regardless of the script.
     let running = tokio::spawn(script(rig.requests.clone()));
-    rig.session.commands.send(Command::CutRc(false)).await.unwrap();
+    rig.session.commands.send(Command::Vehicle(VehicleCommand::CutRc(false))).await.unwrap();
     rig.picture("the sticks again", |view| is_on(view, STICKS) && !view.rc_cut).await;
     let then = rig.session.view.borrow().vehicle.time.as_secs_f64() + 0.5;
     rig.picture("half a second", |view| view.vehicle.time.as_secs_f64() > then).await;

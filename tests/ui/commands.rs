@@ -5,6 +5,7 @@ use betadeck::ui::action::{ACTIONS, Action, enabled};
 use betadeck::ui::editor::FileRequest;
 use betadeck::ui::keymap::KeyPress;
 use betadeck::ui::{AppState, Effect, EnteredLines, LineField, Msg, Panel, Popup, draw, update};
+use betadeck::vehicle::VehicleCommand;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
@@ -112,7 +113,10 @@ fn the_palette_finds_by_a_few_letters_and_says_why_not() {
 
     ctrl(&mut state, 'p');
     type_text(&mut state, "cutrc");
-    assert!(matches!(key(&mut state, KeyCode::Enter)[..], [Effect::Send(Command::CutRc(true))]));
+    assert!(matches!(
+        key(&mut state, KeyCode::Enter)[..],
+        [Effect::Send(Command::Vehicle(VehicleCommand::CutRc(true)))]
+    ));
 
     ctrl(&mut state, 'p');
     type_text(&mut state, "turbulence");

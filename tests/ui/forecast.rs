@@ -10,6 +10,7 @@ use betadeck::flight::forecast::{
 use betadeck::session::{Command, ForecastJob, ForecastReply, ForecastRequest};
 use betadeck::telemetry::{InFlightCommand, Snapshot};
 use betadeck::ui::{AppState, Effect, Msg, draw, update};
+use betadeck::vehicle::VehicleCommand;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
@@ -238,7 +239,7 @@ fn a_what_if_is_chosen_flown_shown_and_dismissed() {
 #[test]
 fn hold_here_and_go_on_are_sent_and_offered_when_they_make_sense() {
     let sent = |effects: &[Effect]| match effects {
-        [Effect::Send(Command::InFlight(command))] => Some(*command),
+        [Effect::Send(Command::Vehicle(VehicleCommand::InFlight(command)))] => Some(*command),
         _ => None,
     };
     let mut state = flying((120, 40));
@@ -264,7 +265,10 @@ fn go_to_asks_which_waypoint() {
     press(&mut state, '3');
     let effects = key(&mut state, KeyCode::Enter);
     assert!(
-        matches!(effects[..], [Effect::Send(Command::InFlight(InFlightCommand::GoTo(3)))]),
+        matches!(
+            effects[..],
+            [Effect::Send(Command::Vehicle(VehicleCommand::InFlight(InFlightCommand::GoTo(3))))]
+        ),
         "{effects:?}"
     );
     assert!(state.popups.is_empty());

@@ -8,6 +8,7 @@ use betadeck::session::command::CliOutput;
 use betadeck::ui::editor::FileRequest;
 use betadeck::ui::keymap::KeyPress;
 use betadeck::ui::{AppState, Effect, MapMode, Msg, Panel, Popup, layout, update};
+use betadeck::vehicle::VehicleCommand;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
 
 use crate::fixture;
@@ -40,7 +41,7 @@ fn ready() -> AppState {
 /// Returns the channels of the sticks that the effects send, if there are any.
 fn sticks(effects: &[Effect]) -> Option<[u16; 16]> {
     effects.iter().find_map(|effect| match effect {
-        Effect::Send(Command::Sticks(frame)) => Some(frame.channels),
+        Effect::Send(Command::Vehicle(VehicleCommand::Sticks(frame))) => Some(frame.channels),
         _ => None,
     })
 }
@@ -68,7 +69,7 @@ fn arming_too_early_moves_nothing_and_says_why() {
 #[test]
 fn f_uploads_first_when_the_craft_has_no_plan_and_stops_the_pilot_when_it_flies() {
     let mut state = ready();
-    assert!(matches!(press(&mut state, 'F')[..], [Effect::Send(Command::Pilot(true))]));
+    assert!(matches!(press(&mut state, 'F')[..], [Effect::Send(Command::StartPilot)]));
 
     let mut view = state.shared.view.clone();
     std::sync::Arc::make_mut(&mut view.vehicle).stored_plan.as_mut().unwrap().waypoints.clear();
@@ -77,11 +78,14 @@ fn f_uploads_first_when_the_craft_has_no_plan_and_stops_the_pilot_when_it_flies(
     assert_eq!(plan.waypoints.len(), 4);
     let effects =
         update(&mut state, Msg::UploadReply { id: *id, count: 4, result: Ok(UploadReport::default()) });
-    assert!(matches!(effects[..], [Effect::Send(Command::Pilot(true))]));
+    assert!(matches!(effects[..], [Effect::Send(Command::StartPilot)]));
 
     view.pilot = Some("climbing");
     update(&mut state, Msg::View(view));
-    assert!(matches!(press(&mut state, 'F')[..], [Effect::Send(Command::Pilot(false))]));
+    assert!(matches!(
+        press(&mut state, 'F')[..],
+        [Effect::Send(Command::Vehicle(VehicleCommand::StopPilot))]
+    ));
 }
 
 #[test]
@@ -100,7 +104,7 @@ fn the_hand_takes_over_from_the_pilot() {
     let mut state = ready();
     state.shared.view.pilot = Some("climbing");
     let effects = press(&mut state, 't');
-    assert!(matches!(effects[0], Effect::Send(Command::Pilot(false))));
+    assert!(matches!(effects[0], Effect::Send(Command::Vehicle(VehicleCommand::StopPilot))));
     assert!(sticks(&effects).is_some());
 }
 
@@ -127,14 +131,26 @@ fn time_keys_pause_step_and_change_speed() {
 #[test]
 fn one_key_commands() {
     let mut state = ready();
-    assert!(matches!(press(&mut state, 'x')[..], [Effect::Send(Command::CutRc(true))]));
-    assert!(matches!(press(&mut state, 'R')[..], [Effect::Send(Command::ResetCraft)]));
+    assert!(matches!(
+        press(&mut state, 'x')[..],
+        [Effect::Send(Command::Vehicle(VehicleCommand::CutRc(true)))]
+    ));
+    assert!(matches!(
+        press(&mut state, 'R')[..],
+        [Effect::Send(Command::Vehicle(VehicleCommand::ResetCraft))]
+    ));
     assert!(matches!(press(&mut state, 'U')[..], [Effect::Upload { .. }]));
     assert!(press(&mut state, 'H').is_empty(), "nothing to bring home while disarmed");
     fixture::approach(&mut state);
-    assert!(matches!(press(&mut state, 'H').last(), Some(Effect::Send(Command::ReturnHome))));
+    assert!(matches!(
+        press(&mut state, 'H').last(),
+        Some(Effect::Send(Command::Vehicle(VehicleCommand::ReturnHome)))
+    ));
     std::sync::Arc::make_mut(&mut state.shared.view.vehicle).craft.commanded = Some(true);
-    assert!(matches!(press(&mut state, 'H')[..], [Effect::Send(Command::CancelReturn)]));
+    assert!(matches!(
+        press(&mut state, 'H')[..],
+        [Effect::Send(Command::Vehicle(VehicleCommand::CancelReturn))]
+    ));
 }
 
 #[test]
@@ -335,7 +351,10 @@ fn help_closes_by_the_key_it_explains() {
     press(&mut state, '?');
     assert!(matches!(state.popups[..], [Popup::Help { .. }]));
     assert!(matches!(press(&mut state, ' ')[..], []), "blank scrolls");
-    assert!(matches!(press(&mut state, 'x')[..], [Effect::Send(Command::CutRc(true))]));
+    assert!(matches!(
+        press(&mut state, 'x')[..],
+        [Effect::Send(Command::Vehicle(VehicleCommand::CutRc(true)))]
+    ));
     assert!(state.popups.is_empty());
 }
 
@@ -375,7 +394,10 @@ fn a_crashed_craft_is_not_flown_but_reset() {
         "{:?}",
         state.shared.notice
     );
-    assert!(matches!(press(&mut state, 'R')[..], [Effect::Send(Command::ResetCraft)]));
+    assert!(matches!(
+        press(&mut state, 'R')[..],
+        [Effect::Send(Command::Vehicle(VehicleCommand::ResetCraft))]
+    ));
 }
 
 #[test]

@@ -5,6 +5,7 @@ use betadeck::session::SessionView;
 use betadeck::telemetry::snapshot::{FaultView, WindView};
 use betadeck::telemetry::{FaultKind, FaultValue, Turbulence};
 use betadeck::ui::{AppState, Effect, Msg, Panel, Severity, draw, update};
+use betadeck::vehicle::VehicleCommand;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
@@ -267,7 +268,7 @@ fn recorded_sticks_are_played_again_in_their_time() {
         view.sticks.channels[2] = throttle_us;
         let effects = update(state, Msg::View(view));
         let sticks = effects.iter().filter_map(|effect| match effect {
-            Effect::Send(Command::Sticks(frame)) => Some(frame.channels[2]),
+            Effect::Send(Command::Vehicle(VehicleCommand::Sticks(frame))) => Some(frame.channels[2]),
             _ => None,
         });
         sticks.collect()
@@ -292,7 +293,7 @@ fn recorded_sticks_are_played_again_in_their_time() {
     let first = press(&mut state, 'p');
     assert!(
         first.iter().any(
-            |effect| matches!(effect, Effect::Send(Command::Sticks(frame)) if frame.channels[2] == 1000)
+            |effect| matches!(effect, Effect::Send(Command::Vehicle(VehicleCommand::Sticks(frame))) if frame.channels[2] == 1000)
         )
     );
     assert_eq!(at(&mut state, 101.9, 1000), Vec::<u16>::new());

@@ -30,7 +30,7 @@ pub(super) enum Batch {
 }
 
 /// The interpreter of one session.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Interpreter {
     pub(super) mode: CliMode,
     pub(super) batch: Batch,

@@ -5,7 +5,7 @@ use crate::plan::validate::check_plan;
 use crate::signals::SimTime;
 use crate::telemetry::{EventKind, FirmwareEvent};
 use crate::timeline::RecordedFlight;
-use crate::vehicle::{Input, Vehicle};
+use crate::vehicle::{Vehicle, VehicleCommand};
 
 /// The time for which the craft is watched after the last activity, µs.
 const WATCH_US: u64 = 10_000_000;
@@ -35,7 +35,7 @@ impl Past {
                 if needs_plan(input) {
                     begun.get_or_insert_with(|| (stored_plan(&vehicle), next));
                 }
-                vehicle.apply(input);
+                let _reported = vehicle.apply(input);
                 next += 1;
                 active_at = vehicle.time();
             }
@@ -58,8 +58,7 @@ impl Past {
         let until = vehicle.time().min(flight.until);
         let (plan, inputs_before) = begun.unwrap_or_else(|| (stored_plan(&vehicle), next));
         // A later `defaults` would empty a plan stored at boot, and a scenario cannot begin with a refused plan.
-        let is_reset =
-            |(_, input): &(SimTime, Input)| matches!(input, Input::Line(line) if is_defaults(&line.1));
+        let is_reset = |(_, input): &(SimTime, VehicleCommand)| matches!(input, VehicleCommand::Line(line) if is_defaults(&line.1));
         let is_refused = !plan.waypoints.is_empty() && check_plan(&plan).is_err();
         if is_refused || flight.inputs.iter().take(inputs_before).any(is_reset) {
             return Self { plan: stored_plan(&flight.start), inputs_before: 0, until };
@@ -68,9 +67,9 @@ impl Past {
     }
 
     /// Returns `true` if the input with this number is already part of the plan.
-    pub(super) fn is_in_plan(&self, number: usize, input: &Input) -> bool {
+    pub(super) fn is_in_plan(&self, number: usize, input: &VehicleCommand) -> bool {
         let makes_plan = |line: &str| line.split_whitespace().next() == Some("waypoint");
-        number < self.inputs_before && matches!(input, Input::Line(line) if makes_plan(&line.1))
+        number < self.inputs_before && matches!(input, VehicleCommand::Line(line) if makes_plan(&line.1))
     }
 }
 
@@ -79,8 +78,8 @@ fn stored_plan(vehicle: &Vehicle) -> FlightPlan {
 }
 
 /// Returns `true` if the effect of an input depends on the stored plan.
-fn needs_plan(input: &Input) -> bool {
-    matches!(input, Input::InFlight(_) | Input::ReturnHome)
+fn needs_plan(input: &VehicleCommand) -> bool {
+    matches!(input, VehicleCommand::InFlight(_) | VehicleCommand::ReturnHome)
 }
 
 fn is_defaults(line: &str) -> bool {

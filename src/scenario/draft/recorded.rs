@@ -7,11 +7,11 @@ use crate::firmware::cli::Interpreter;
 use crate::geo::LatLon;
 use crate::pilot::{RcTransmitter, channel_name};
 use crate::plan::format::{HomePosition, setting_line};
-use crate::signals::SimTime;
+use crate::signals::{RcFrame, SimTime};
 use crate::sim::WorldCommand;
 use crate::telemetry::InFlightCommand;
 use crate::timeline::RecordedFlight;
-use crate::vehicle::{Answer, Input, Vehicle};
+use crate::vehicle::{Answer, Vehicle, VehicleCommand};
 
 /// Lines of `diff all` that set nothing on the craft, or that the scenario gives in another place.
 const PASSED_OVER: [&str; 11] = [
@@ -97,8 +97,8 @@ impl Draft {
         for fault in start.clock().waiting_faults() {
             draft.inputs.push((after_boot(SimTime::ZERO), WorldCommand::Schedule(*fault).to_string()));
         }
-        let mut transmitter = start.transmitter().clone();
-        if let Some(pilot) = transmitter.pilot() {
+        let mut hands = Hands::of(start.transmitter());
+        if let Some(pilot) = start.transmitter().pilot() {
             draft.pilot = true;
             draft.takeoff_m = pilot.takeoff_m();
         }
@@ -106,7 +106,7 @@ impl Draft {
             if past.is_in_plan(number, input) {
                 continue;
             }
-            let what = sentences(input, &mut transmitter)?;
+            let what = sentences(input, &mut hands)?;
             let at = after_boot(since(*at, start_at));
             draft.inputs.extend(what.into_iter().map(|what| (at.clone(), what)));
         }
@@ -143,17 +143,19 @@ fn configuration(vehicle: &mut Vehicle) -> Result<(Vec<String>, Vec<String>), St
 }
 
 /// Returns the sentences of a scenario for an input.
-fn sentences(input: &Input, transmitter: &mut RcTransmitter) -> Result<Vec<String>, String> {
+fn sentences(input: &VehicleCommand, hands: &mut Hands) -> Result<Vec<String>, String> {
     let one = |text: &str| Ok(vec![text.to_owned()]);
     match input {
-        Input::Rc(..) => {
+        VehicleCommand::Rc(..) => {
             Err("RC came from another program: a scenario cannot repeat what it sent".to_owned())
         }
-        Input::Message(_) => {
+        VehicleCommand::Message(_) => {
             Err("a client changed the craft over MSP: a scenario cannot repeat that".to_owned())
         }
-        Input::SticksFirst(_) | Input::CliOpened | Input::CliClosed => Ok(Vec::new()),
-        Input::Line(line) => {
+        VehicleCommand::SticksFirst(_) | VehicleCommand::CliOpened | VehicleCommand::CliClosed => {
+            Ok(Vec::new())
+        }
+        VehicleCommand::Line(line) => {
             let text = line.1.trim();
             let reads = text.is_empty()
                 || READING.iter().any(|word| {
@@ -163,40 +165,49 @@ fn sentences(input: &Input, transmitter: &mut RcTransmitter) -> Result<Vec<Strin
                 });
             Ok(if reads { Vec::new() } else { vec![format!("cli {text}")] })
         }
-        Input::Restart(_) | Input::ResetCraft => Err("the flight was restarted within itself".to_owned()),
-        Input::ReturnHome => one("return home"),
-        Input::CancelReturn => one("cancel return"),
-        Input::InFlight(InFlightCommand::GoTo(wp)) => Ok(vec![format!("go to {wp}")]),
-        Input::InFlight(InFlightCommand::HoldHere) => one("hold here"),
-        Input::InFlight(InFlightCommand::Resume) => one("go on"),
-        Input::World(command) => Ok(vec![command.to_string()]),
-        Input::Transmitter(now) => {
-            let reported = changes(transmitter, now);
-            transmitter.clone_from(now);
-            Ok(reported)
+        VehicleCommand::Restart(_) | VehicleCommand::ResetCraft => {
+            Err("the flight was restarted within itself".to_owned())
         }
+        VehicleCommand::ReturnHome => one("return home"),
+        VehicleCommand::CancelReturn => one("cancel return"),
+        VehicleCommand::InFlight(InFlightCommand::GoTo(wp)) => Ok(vec![format!("go to {wp}")]),
+        VehicleCommand::InFlight(InFlightCommand::HoldHere) => one("hold here"),
+        VehicleCommand::InFlight(InFlightCommand::Resume) => one("go on"),
+        VehicleCommand::World(command) => Ok(vec![command.to_string()]),
+        VehicleCommand::Sticks(frame) => {
+            // The stick positions of the scripted pilot follow from the flight.
+            let moved = hands.sticks.replace(*frame) != Some(*frame);
+            let values: Vec<String> = frame.channels.iter().map(ToString::to_string).collect();
+            Ok(moved.then(|| format!("sticks {}", values.join(" "))).into_iter().collect())
+        }
+        VehicleCommand::CutRc(cut) => {
+            let changed = std::mem::replace(&mut hands.cut, *cut) != *cut;
+            let what = if *cut { "rc cut" } else { "rc restore" };
+            Ok(changed.then(|| what.to_owned()).into_iter().collect())
+        }
+        VehicleCommand::StartPilot(takeoff_m) => {
+            hands.sticks = None;
+            Ok(vec![format!("pilot {takeoff_m}")])
+        }
+        VehicleCommand::StopPilot => one("pilot off"),
+        VehicleCommand::HoldChannel(input) => {
+            let for_s = input.for_s.map_or_else(String::new, |for_s| format!(" for {for_s} s"));
+            Ok(vec![format!("stick {} {}{for_s}", channel_name(input.channel), input.value_us)])
+        }
+        VehicleCommand::ReleaseChannel(channel) => Ok(vec![format!("release {}", channel_name(*channel))]),
     }
 }
 
-/// Returns the sentences for the changes that were made to the transmitter by hand.
-fn changes(before: &RcTransmitter, now: &RcTransmitter) -> Vec<String> {
-    let mut reported = Vec::new();
-    match (before.pilot(), now.pilot()) {
-        (None, Some(pilot)) => reported.push(format!("pilot {}", pilot.takeoff_m())),
-        (Some(_), None) => reported.push("pilot off".to_owned()),
-        (None, None) | (Some(_), Some(_)) => {}
+/// The transmitter as it was last set by hand.
+struct Hands {
+    /// `None` after the scripted pilot moved the sticks.
+    sticks: Option<RcFrame>,
+    cut: bool,
+}
+
+impl Hands {
+    fn of(transmitter: &RcTransmitter) -> Self {
+        let sticks = transmitter.pilot().is_none().then(|| transmitter.sticks());
+        Self { sticks, cut: transmitter.is_cut() }
     }
-    // The stick positions of the scripted pilot follow from the flight.
-    if now.pilot().is_none() && (before.sticks() != now.sticks() || before.pilot().is_some()) {
-        let values: Vec<String> = now.sticks().channels.iter().map(ToString::to_string).collect();
-        reported.push(format!("sticks {}", values.join(" ")));
-    }
-    if before.is_cut() != now.is_cut() {
-        reported.push(if now.is_cut() { "rc cut" } else { "rc restore" }.to_owned());
-    }
-    for input in now.inputs().iter().filter(|input| !before.inputs().contains(input)) {
-        let for_s = input.for_s.map_or_else(String::new, |for_s| format!(" for {for_s} s"));
-        reported.push(format!("stick {} {}{for_s}", channel_name(input.channel), input.value_us));
-    }
-    reported
 }

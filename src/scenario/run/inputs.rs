@@ -10,7 +10,7 @@ use crate::scenario::trace::Trace;
 use crate::signals::SimTime;
 use crate::telemetry::Mode;
 use crate::telemetry::switch::Switch;
-use crate::vehicle::{Answer, Vehicle};
+use crate::vehicle::{Answer, Reply, Vehicle, VehicleCommand};
 
 /// The remaining inputs.
 #[derive(Debug)]
@@ -61,7 +61,7 @@ impl<'a> Inputs<'a> {
         }
         if self.restore_at.is_some_and(|at| now >= at) {
             self.restore_at = None;
-            vehicle.transmitter_mut().set_cut(false);
+            apply(vehicle, &VehicleCommand::CutRc(false));
         }
         let mut due: Vec<(i64, &TimedInput)> = Vec::new();
         self.waiting.retain_mut(|waiting| {
@@ -87,66 +87,28 @@ impl<'a> Inputs<'a> {
 
     /// Carries out an action and returns the replies.
     fn act(&mut self, action: &Action, vehicle: &mut Vehicle) -> Vec<(EventName, String)> {
-        let refused = |text: String| vec![(EventName::Refusal, text)];
         match action {
-            Action::World(command) => match vehicle.change_world(command.clone()) {
-                Ok(()) => Vec::new(),
-                Err(error) => refused(error.to_string()),
-            },
-            Action::Stick { channel, value_us, for_s } => {
-                hold_channel(vehicle, *channel, *value_us, *for_s);
-                Vec::new()
-            }
-            Action::Release(channel) => {
-                vehicle.transmitter_mut().inputs_mut().retain(|input| input.channel != *channel);
-                Vec::new()
-            }
-            Action::Sticks(frame) => {
-                *vehicle.transmitter_mut().sticks_mut() = *frame;
-                Vec::new()
-            }
+            Action::Vehicle(command) => apply(vehicle, command),
+            Action::Stick { channel, value_us, for_s } => hold_channel(vehicle, *channel, *value_us, *for_s),
             Action::Switch(mode, on) => match switch_value(vehicle, *mode, *on) {
                 Some((channel, value_us)) => {
-                    vehicle.transmitter_mut().inputs_mut().retain(|input| input.channel != channel);
-                    hold_channel(vehicle, channel, value_us, None);
-                    Vec::new()
+                    apply(vehicle, &VehicleCommand::ReleaseChannel(channel));
+                    hold_channel(vehicle, channel, value_us, None)
                 }
-                None => refused(format!("no channel switches {mode}")),
+                None => vec![(EventName::Refusal, format!("no channel switches {mode}"))],
             },
             Action::CutRc(for_s) => {
                 self.restore_at = for_s.map(|for_s| SimTime(vehicle.time().0 + (for_s * 1e6).round() as u64));
-                vehicle.transmitter_mut().set_cut(true);
-                Vec::new()
+                apply(vehicle, &VehicleCommand::CutRc(true))
             }
             Action::RestoreRc => {
                 self.restore_at = None;
-                vehicle.transmitter_mut().set_cut(false);
-                Vec::new()
+                apply(vehicle, &VehicleCommand::CutRc(false))
             }
             Action::Cli(line) => self.type_line(line, vehicle),
             Action::Upload(plan) => {
                 let lines: Vec<String> = plan_lines(plan).collect();
                 lines.iter().flat_map(|line| self.type_line(line, vehicle)).collect()
-            }
-            Action::ReturnHome => match vehicle.controller_mut().return_to_home() {
-                Ok(()) => Vec::new(),
-                Err(refusal) => refused(refusal.sentence().into_owned()),
-            },
-            Action::CancelReturn => {
-                vehicle.controller_mut().cancel_command();
-                Vec::new()
-            }
-            Action::InFlight(command) => match vehicle.controller_mut().command(*command) {
-                Ok(()) => Vec::new(),
-                Err(refusal) => refused(refusal.sentence()),
-            },
-            Action::Pilot(takeoff_m) => match vehicle.start_pilot(*takeoff_m) {
-                Ok(()) => Vec::new(),
-                Err(mode) => refused(format!("no channel switches {mode}")),
-            },
-            Action::PilotOff => {
-                vehicle.transmitter_mut().stop_pilot();
-                Vec::new()
             }
         }
     }
@@ -170,10 +132,23 @@ impl Waiting<'_> {
     }
 }
 
-fn hold_channel(vehicle: &mut Vehicle, channel: u8, value_us: u16, for_s: Option<f64>) {
+/// Carries out a command and returns the reply.
+fn apply(vehicle: &mut Vehicle, command: &VehicleCommand) -> Vec<(EventName, String)> {
+    match vehicle.apply(command) {
+        Answer::Now(Reply::Refused(refusal)) => vec![(EventName::Refusal, refusal.to_string())],
+        _ => Vec::new(),
+    }
+}
+
+fn hold_channel(
+    vehicle: &mut Vehicle,
+    channel: u8,
+    value_us: u16,
+    for_s: Option<f64>,
+) -> Vec<(EventName, String)> {
     let at_s = vehicle.time().as_secs_f64();
     let input = StickInput { channel, value_us, at_s, for_s, from_boot: true };
-    vehicle.transmitter_mut().inputs_mut().push(input);
+    apply(vehicle, &VehicleCommand::HoldChannel(input))
 }
 
 /// Returns the channel that switches a mode, and its value for on or off.

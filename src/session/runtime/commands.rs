@@ -18,7 +18,7 @@ use crate::session::command::{
 };
 use crate::sim::WorldCommand;
 use crate::telemetry::LinkState;
-use crate::vehicle::Answer;
+use crate::vehicle::{Answer, Reply, VehicleCommand, VehicleRefusal};
 
 /// The message that stores the configuration.
 const EEPROM_WRITE: u16 = 250;
@@ -86,17 +86,8 @@ impl Session {
             Command::Seek(seek) => self.seek(seek, now),
             Command::FlyOn => self.fly_on(now),
             Command::Speed(speed) => self.pacer.set_speed(speed, now),
-            Command::Sticks(frame) => {
-                if self.vehicle.transmitter_mut().stop_pilot() {
-                    self.notice("The sticks were moved: the scripted pilot let go.");
-                }
-                *self.vehicle.transmitter_mut().sticks_mut() = frame;
-            }
-            Command::CutRc(cut) => {
-                // Taking the sticks back overrides a script that still sends.
-                self.vehicle.controller_mut().take_over_sticks(!cut);
-                self.vehicle.transmitter_mut().set_cut(cut);
-            }
+            Command::Vehicle(command) => self.command_vehicle(&command),
+            Command::StartPilot => self.apply(&VehicleCommand::StartPilot(self.takeoff_m)),
             Command::Cli { line, reply } => self.run_cli(line, reply),
             // The lines of two uploads would mix.
             Command::Upload { reply, .. } if self.upload_under_way().is_some() => {
@@ -136,19 +127,6 @@ impl Session {
                 }
             }
             Command::Save { reply } => self.save(reply),
-            Command::Pilot(on) => self.set_pilot(on),
-            Command::ReturnHome => {
-                if let Err(refusal) = self.vehicle.controller_mut().return_to_home() {
-                    self.notice(format!("No return home: {}", refusal.sentence()));
-                }
-            }
-            Command::InFlight(command) => {
-                if let Err(refusal) = self.vehicle.controller_mut().command(command) {
-                    self.notice(refusal.sentence());
-                }
-            }
-            Command::CancelReturn => self.vehicle.controller_mut().cancel_command(),
-            Command::ResetCraft => self.reset_craft(),
             Command::PermitChanges(connection) => {
                 if let Some(remote) = &mut self.remote {
                     remote.remote_mut().permit_changes(connection);
@@ -168,6 +146,32 @@ impl Session {
             Command::RecordedFlight(reply) => drop(reply.send(self.recorded_flight())),
             Command::Quit => self.quit = true,
         }
+    }
+
+    fn command_vehicle(&mut self, command: &VehicleCommand) {
+        match command {
+            VehicleCommand::ResetCraft => return self.reset_craft(),
+            VehicleCommand::Sticks(_) if self.vehicle.transmitter().pilot().is_some() => {
+                self.apply(&VehicleCommand::StopPilot);
+                self.notice("The sticks were moved: the scripted pilot let go.");
+            }
+            // Taking the sticks back overrides a script that still sends.
+            VehicleCommand::CutRc(cut) => self.apply(&VehicleCommand::SticksFirst(!cut)),
+            _ => {}
+        }
+        self.apply(command);
+    }
+
+    /// Applies a command to the vehicle. A refusal is a notice.
+    fn apply(&mut self, command: &VehicleCommand) {
+        let Answer::Now(Reply::Refused(refusal)) = self.vehicle.apply(command) else { return };
+        self.notice(match refusal {
+            VehicleRefusal::ReturnHome(refusal) => format!("No return home: {}", refusal.sentence()),
+            VehicleRefusal::Pilot(mode) => {
+                format!("The scripted pilot needs a switch for {mode}: assign one with the CLI command aux.")
+            }
+            VehicleRefusal::World(_) | VehicleRefusal::InFlight(_) => refusal.to_string(),
+        });
     }
 
     fn reset_craft(&mut self) {
@@ -205,15 +209,5 @@ impl Session {
     fn change_world(&mut self, line: &str) -> Result<(), String> {
         let command = WorldCommand::parse(line).map_err(|error| error.to_string())?;
         self.vehicle.change_world(command).map_err(|error| error.to_string())
-    }
-
-    fn set_pilot(&mut self, on: bool) {
-        if !on {
-            self.vehicle.transmitter_mut().stop_pilot();
-        } else if let Err(mode) = self.vehicle.start_pilot(self.takeoff_m) {
-            self.notice(format!(
-                "The scripted pilot needs a switch for {mode}: assign one with the CLI command aux."
-            ));
-        }
     }
 }

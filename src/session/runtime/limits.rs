@@ -7,6 +7,7 @@ use crate::fc::{Access, Denial, Impact, NOTHING_MOVES, NOTHING_SIMULATED};
 use crate::link::Request;
 use crate::link::proto::command_line::LineReply;
 use crate::session::command::{CliOutput, Command};
+use crate::vehicle::VehicleCommand;
 
 impl Session {
     /// Returns the access to the craft.
@@ -38,13 +39,9 @@ fn impact_of(command: &Command) -> Impact {
     match command {
         Command::Cli { line, .. } => Impact::of_line(line),
         Command::Upload { .. } | Command::Save { .. } => Impact::Changes,
-        Command::Sticks(_)
-        | Command::CutRc(_)
-        | Command::Pilot(_)
-        | Command::InFlight(_)
-        | Command::ReturnHome
-        | Command::CancelReturn => Impact::Forbidden(NOTHING_MOVES),
-        Command::ResetCraft | Command::World { .. } => Impact::Forbidden(NOTHING_SIMULATED),
+        Command::Vehicle(command) => impact_on_vehicle(command),
+        Command::StartPilot => Impact::Forbidden(NOTHING_MOVES),
+        Command::World { .. } => Impact::Forbidden(NOTHING_SIMULATED),
         Command::Pause(_)
         | Command::Step(_)
         | Command::Speed(_)
@@ -55,6 +52,27 @@ fn impact_of(command: &Command) -> Impact {
         | Command::RecordedFlight(_)
         | Command::PermitChanges(_)
         | Command::Quit => Impact::Reads,
+    }
+}
+
+fn impact_on_vehicle(command: &VehicleCommand) -> Impact {
+    match command {
+        VehicleCommand::Line(line) => Impact::of_line(&line.1),
+        VehicleCommand::Message(message) => Impact::of_message(message.code, &message.payload),
+        VehicleCommand::Restart(_) => Impact::Changes,
+        VehicleCommand::CliOpened | VehicleCommand::CliClosed => Impact::Reads,
+        VehicleCommand::ResetCraft | VehicleCommand::World(_) => Impact::Forbidden(NOTHING_SIMULATED),
+        VehicleCommand::Rc(..)
+        | VehicleCommand::SticksFirst(_)
+        | VehicleCommand::ReturnHome
+        | VehicleCommand::InFlight(_)
+        | VehicleCommand::CancelReturn
+        | VehicleCommand::Sticks(_)
+        | VehicleCommand::CutRc(_)
+        | VehicleCommand::HoldChannel(_)
+        | VehicleCommand::ReleaseChannel(_)
+        | VehicleCommand::StartPilot(_)
+        | VehicleCommand::StopPilot => Impact::Forbidden(NOTHING_MOVES),
     }
 }
 
@@ -136,13 +154,13 @@ mod tests {
             ),
             (Command::Save { reply: channel() }, Impact::Changes),
             (Command::Download { reply: channel() }, Impact::Reads),
-            (Command::Sticks(RcFrame::SAFE), MOVES),
-            (Command::CutRc(true), MOVES),
-            (Command::Pilot(true), MOVES),
-            (Command::ReturnHome, MOVES),
-            (Command::CancelReturn, MOVES),
-            (Command::InFlight(InFlightCommand::HoldHere), MOVES),
-            (Command::ResetCraft, SIMULATED),
+            (Command::Vehicle(VehicleCommand::Sticks(RcFrame::SAFE)), MOVES),
+            (Command::Vehicle(VehicleCommand::CutRc(true)), MOVES),
+            (Command::StartPilot, MOVES),
+            (Command::Vehicle(VehicleCommand::ReturnHome), MOVES),
+            (Command::Vehicle(VehicleCommand::CancelReturn), MOVES),
+            (Command::Vehicle(VehicleCommand::InFlight(InFlightCommand::HoldHere)), MOVES),
+            (Command::Vehicle(VehicleCommand::ResetCraft), SIMULATED),
             (Command::World { line: "wind=5@270".to_owned(), reply: channel() }, SIMULATED),
             (Command::PermitChanges(1), Impact::Reads),
             (Command::Quit, Impact::Reads),

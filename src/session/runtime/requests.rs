@@ -18,7 +18,7 @@ use crate::session::simulator::{RC_REPEAT_US, Simulator};
 use crate::signals::RcSource;
 use crate::telemetry::LinkState;
 use crate::timeline::Timeline;
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Vehicle, VehicleCommand};
 
 /// The maximum wall time for requests in one round of the loop. The remaining requests wait for the next round.
 const REQUEST_TIME: Duration = Duration::from_millis(1);
@@ -129,8 +129,9 @@ impl Session {
         let controller = self.vehicle.controller();
         let from_link = matches!(controller.rc_source(), Some(RcSource::Udp | RcSource::Msp));
         if from_link && !controller.sticks_taken_over() && !self.vehicle.transmitter().is_cut() {
-            self.vehicle.transmitter_mut().set_cut(true);
-            self.vehicle.transmitter_mut().stop_pilot();
+            for command in [VehicleCommand::CutRc(true), VehicleCommand::StopPilot] {
+                let _done = self.vehicle.apply(&command);
+            }
             self.events.notice(
                 &mut self.vehicle,
                 "RC now comes from another program: the virtual sticks are cut, `x` takes them back.",

@@ -124,13 +124,7 @@ impl Session {
                 drop(reply.send(Err(REWOUND.to_owned())));
             }
             Command::Download { reply } => drop(reply.send(Err(REWOUND.to_owned()))),
-            Command::Sticks(_)
-            | Command::CutRc(_)
-            | Command::Pilot(_)
-            | Command::ReturnHome
-            | Command::InFlight(_)
-            | Command::CancelReturn
-            | Command::ResetCraft => self.notice(REWOUND),
+            Command::Vehicle(_) | Command::StartPilot => self.notice(REWOUND),
         }
         None
     }

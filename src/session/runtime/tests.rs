@@ -257,7 +257,7 @@ impl Rig {
         let plan = crate::plan::builtin::BuiltinPlan::find("land").unwrap().read().unwrap().plan;
         let (reply, _result) = oneshot::channel();
         let upload = Command::Upload { plan: Box::new(plan), settings: Vec::new(), reply };
-        for command in [upload, Command::Pilot(true)] {
+        for command in [upload, Command::StartPilot] {
             self.commands.try_send(command).unwrap();
         }
         self.take_commands();

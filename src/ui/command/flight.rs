@@ -8,6 +8,7 @@ use crate::ui::action::{self, Action};
 use crate::ui::forecast;
 use crate::ui::message::{Effect, Request};
 use crate::ui::shared::Shared;
+use crate::vehicle::VehicleCommand;
 
 /// Runs `go-to 2`.
 pub(super) fn go_to(state: &mut Shared, _: &str, argument: &str) -> Result<Vec<Request>, String> {
@@ -26,7 +27,9 @@ fn requests(effects: Vec<Effect>) -> Vec<Request> {
 pub(in crate::ui) fn go_to_waypoint(state: &Shared, number: &str) -> Result<Vec<Effect>, String> {
     let numbers = waypoints(state);
     match number.parse().ok().filter(|_| numbers.iter().any(|known| known == number)) {
-        Some(index) => Ok(vec![Effect::Send(Command::InFlight(InFlightCommand::GoTo(index)))]),
+        Some(index) => {
+            Ok(vec![Effect::Send(Command::Vehicle(VehicleCommand::InFlight(InFlightCommand::GoTo(index))))])
+        }
         None => Err(format!("There is no waypoint {number} to go to; the craft has {}.", numbers.join(", "))),
     }
 }

@@ -6,6 +6,7 @@ use crate::telemetry::InFlightCommand;
 use crate::ui::action::{Action, EditAction};
 use crate::ui::editor::{Browser, FileReply, FileRequest, PlanId, Purpose};
 use crate::ui::update::perform;
+use crate::vehicle::VehicleCommand;
 
 fn state() -> AppState {
     let mut state = AppState::bare((80, 24), SessionView::default());
@@ -31,7 +32,10 @@ fn a_waypoint_to_go_to_is_chosen_by_its_number() {
     assert!(answer(&mut state, "1").unwrap_err().contains("the craft has 0, 2."));
     assert!(question(&state).is_some(), "it is still asked");
     let answered = answer(&mut state, " 2 ").unwrap();
-    assert!(matches!(answered.effects[..], [Effect::Send(Command::InFlight(InFlightCommand::GoTo(2)))]));
+    assert!(matches!(
+        answered.effects[..],
+        [Effect::Send(Command::Vehicle(VehicleCommand::InFlight(InFlightCommand::GoTo(2))))]
+    ));
     assert_eq!(question(&state), None);
     perform(&mut state, Action::GoTo);
     assert!(answer(&mut state, "").unwrap().effects.is_empty() && question(&state).is_none());

@@ -7,6 +7,7 @@ use crate::ui::event_log::Severity;
 use crate::ui::message::Effect;
 use crate::ui::shared::Shared;
 use crate::ui::transmitter;
+use crate::vehicle::VehicleCommand;
 
 /// Begins a recording, or ends it.
 pub(in crate::ui) fn toggle_recording(state: &mut Shared) -> Vec<Effect> {
@@ -84,7 +85,7 @@ pub(in crate::ui) fn advance(state: &mut Shared) -> Vec<Effect> {
             }
             let Some(frame) = frame else { return Vec::new() };
             state.sticks_sent = Some((frame, state.now));
-            vec![Effect::Send(Command::Sticks(frame))]
+            vec![Effect::Send(Command::Vehicle(VehicleCommand::Sticks(frame)))]
         }
     }
 }

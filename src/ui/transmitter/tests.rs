@@ -3,6 +3,7 @@
 use super::*;
 use crate::session::SessionView;
 use crate::telemetry::ArmingFlag;
+use crate::vehicle::VehicleCommand;
 
 const SINK_US: u16 = 1194;
 
@@ -25,7 +26,7 @@ fn state(ranges: &[(Mode, u8, u16, u16)]) -> Shared {
 
 fn sticks(effects: &[Effect]) -> RcFrame {
     match effects.last() {
-        Some(Effect::Send(Command::Sticks(frame))) => *frame,
+        Some(Effect::Send(Command::Vehicle(VehicleCommand::Sticks(frame)))) => *frame,
         other => panic!("sticks expected, got {other:?}"),
     }
 }
@@ -148,12 +149,18 @@ fn disarming_leaves_nothing_that_blocks_the_next_arming() {
 fn a_return_home_is_taken_back_by_its_own_key_and_by_that_of_the_autopilot() {
     let mut state = flying();
     let effects = toggle_return(&mut state);
-    assert!(matches!(effects.last(), Some(Effect::Send(Command::ReturnHome))), "{effects:?}");
+    assert!(
+        matches!(effects.last(), Some(Effect::Send(Command::Vehicle(VehicleCommand::ReturnHome)))),
+        "{effects:?}"
+    );
     assert!(is_on(&state, &frame(&state), Mode::PosHold), "who gets the craft back must find it held");
     std::sync::Arc::make_mut(&mut state.view.vehicle).craft.commanded = Some(true);
     for key in [toggle_return, toggle_autopilot] {
         let effects = key(&mut state);
-        assert!(matches!(effects[..], [Effect::Send(Command::CancelReturn)]), "{effects:?}");
+        assert!(
+            matches!(effects[..], [Effect::Send(Command::Vehicle(VehicleCommand::CancelReturn))]),
+            "{effects:?}"
+        );
     }
 }
 

@@ -9,6 +9,7 @@ use crate::ui::event_log::Severity;
 use crate::ui::message::Effect;
 use crate::ui::panel::Panel;
 use crate::ui::shared::Shared;
+use crate::vehicle::VehicleCommand;
 
 mod moved_target;
 
@@ -21,7 +22,7 @@ const SPEEDS: [f64; 12] = [0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0,
 /// Starts or stops the scripted pilot; a craft without a plan gets the open one first.
 pub(super) fn fly(state: &mut Shared) -> Vec<Effect> {
     if state.view.pilot.is_some() {
-        return vec![Effect::Send(Command::Pilot(false))];
+        return vec![Effect::Send(Command::Vehicle(VehicleCommand::StopPilot))];
     }
     if state.view.paused {
         let text = format!("The simulation is paused: {} goes on.", state.key(Action::Pause));
@@ -42,7 +43,7 @@ pub(super) fn fly(state: &mut Shared) -> Vec<Effect> {
             );
             state.notify(Severity::Info, text);
         }
-        return vec![Effect::Send(Command::Pilot(true))];
+        return vec![Effect::Send(Command::StartPilot)];
     }
     if state.plan().waypoints.is_empty() {
         let insert = state.key(Action::Edit(EditAction::Insert));
@@ -119,7 +120,7 @@ pub(super) fn uploaded(
             let text = format!("Uploaded {title}: {count} waypoints.{fence}{converted}{then}");
             state.editor.remember_refused(id, report.refused);
             state.notify(Severity::Good, text);
-            if fly { vec![Effect::Send(Command::Pilot(true))] } else { Vec::new() }
+            if fly { vec![Effect::Send(Command::StartPilot)] } else { Vec::new() }
         }
         Err(sentence) => {
             state.editor.forget_upload(id);

@@ -16,6 +16,7 @@ use crate::ui::panel::Panel;
 use crate::ui::popup::map_menu::{MapChoice, Outcome};
 use crate::ui::popup::{MapMenu, Popup};
 use crate::ui::viewport::Viewport;
+use crate::vehicle::VehicleCommand;
 
 /// Opens the menu for a cell of the map.
 pub(super) fn open(state: &mut AppState, view: &Viewport, at: (u16, u16)) {
@@ -60,6 +61,8 @@ pub(super) fn take(state: &mut AppState, place: LatLon, outcome: Outcome) -> Vec
             state.shared.editor.go_to_row(index);
             state.shared.editor.delete()
         }
-        MapChoice::GoTo(index) => vec![Effect::Send(Command::InFlight(InFlightCommand::GoTo(index)))],
+        MapChoice::GoTo(index) => {
+            vec![Effect::Send(Command::Vehicle(VehicleCommand::InFlight(InFlightCommand::GoTo(index))))]
+        }
     }
 }

@@ -15,6 +15,7 @@ use crate::ui::history::LineField;
 use crate::ui::message::Effect;
 use crate::ui::popup::palette::Entry;
 use crate::ui::popup::{Popup, command_line, go_to, guards, palette, what_if};
+use crate::vehicle::VehicleCommand;
 
 /// Handles a key for the popup opened last; `found` is the action of the key without a popup.
 pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) -> Vec<Effect> {
@@ -28,7 +29,7 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) 
             }
             go_to::Outcome::Chosen(index) => {
                 state.popups.pop();
-                vec![Effect::Send(Command::InFlight(InFlightCommand::GoTo(index)))]
+                vec![Effect::Send(Command::Vehicle(VehicleCommand::InFlight(InFlightCommand::GoTo(index))))]
             }
         },
         Some(Popup::MapMenu(menu)) => {

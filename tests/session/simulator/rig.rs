@@ -15,7 +15,7 @@ use betadeck::signals::fdm::{Dialect, MotorOrder};
 use betadeck::sim::{WorldConfig, attitude};
 use betadeck::storage::Store;
 use betadeck::telemetry::{EndpointKind, EndpointState, EndpointStatus, EventKind, SimulatorStats};
-use betadeck::vehicle::{Vehicle, VehicleConfig};
+use betadeck::vehicle::{Vehicle, VehicleCommand, VehicleConfig};
 use nalgebra::Vector3;
 use tokio::sync::{mpsc, oneshot, watch};
 
@@ -211,7 +211,7 @@ impl Rig {
         // Waits for a later picture, which only a change brings.
         let mut sticks = self.session.view.borrow().sticks;
         sticks.channels[11] += 1;
-        self.command(Command::Sticks(sticks)).await;
+        self.command(Command::Vehicle(VehicleCommand::Sticks(sticks))).await;
         self.picture(|view| view.sticks == sticks).await.vehicle.time.0 / 1000
     }
 

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use betadeck::session::command::{PLACE_IS_EXTERNAL, TIME_IS_EXTERNAL};
 use betadeck::session::{Command, SessionView};
 use betadeck::telemetry::{EndpointKind, LinkState, SimulatorStats};
+use betadeck::vehicle::VehicleCommand;
 use tokio::sync::oneshot;
 
 use super::rig::{AHEAD, PATIENCE, START, rig, speaking, stats};
@@ -63,7 +64,7 @@ async fn what_is_the_simulators_business_is_refused_with_the_way_out() {
         rig.command(command).await;
         rig.hear(TIME_IS_EXTERNAL).await;
     }
-    rig.command(Command::ResetCraft).await;
+    rig.command(Command::Vehicle(VehicleCommand::ResetCraft)).await;
     rig.hear(PLACE_IS_EXTERNAL).await;
     let refused = rig.world("wind=5@270").await.unwrap_err();
     assert!(refused.contains("the simulator makes the air"), "{refused}");
@@ -87,7 +88,7 @@ async fn silence_stops_time_and_is_shown_until_the_simulator_returns() {
     assert_eq!(stats(&view).link, LinkState::Silent);
 
     // Keys still act: the firmware can be restarted, and a notice names the way out.
-    rig.command(Command::ResetCraft).await;
+    rig.command(Command::Vehicle(VehicleCommand::ResetCraft)).await;
     rig.hear("The firmware restarted, disarmed").await;
     let still = rig.picture(|view| view.vehicle.truth.is_none()).await;
     assert_eq!(still.vehicle.time, view.vehicle.time);
@@ -111,7 +112,7 @@ async fn a_restarted_simulator_finds_a_disarmed_craft_and_resting_sticks() {
     rig.picture(|view| view.vehicle.time.0 >= 6_900_000).await;
     let mut sticks = betadeck::signals::RcFrame::SAFE;
     sticks.channels[4] = 1900;
-    rig.command(Command::Sticks(sticks)).await;
+    rig.command(Command::Vehicle(VehicleCommand::Sticks(sticks))).await;
     rig.picture(|view| view.sticks == sticks).await;
     for _ in 0..100 {
         rig.state(10, 0.0, 0.0).await;

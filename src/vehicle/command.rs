@@ -1,0 +1,170 @@
+//! The commands to a vehicle, as data: everything that changes it between two ticks.
+
+use super::{Answer, Vehicle};
+use crate::firmware::cli::{CliReply, Interpreter};
+use crate::firmware::config::Configuration;
+use crate::firmware::msp::{Outcome, UtcTime};
+use crate::pilot::StickInput;
+use crate::signals::{RcFrame, RcSource};
+use crate::sim::{WorldCommand, WorldError};
+use crate::telemetry::{InFlightCommand, InFlightRefusal, Mode, Refusal};
+
+/// A command to a vehicle. [`Vehicle::apply`] carries it out.
+#[derive(Debug, Clone, PartialEq)]
+pub enum VehicleCommand {
+    /// An RC frame from a link.
+    Rc(RcFrame, RcSource),
+    /// `true` gives the virtual sticks precedence over the other sources of RC, `false` ends that.
+    SticksFirst(bool),
+    /// A CLI line, with the session that ran it in its state before.
+    Line(Box<(Interpreter, String)>),
+    /// An MSP message.
+    Message(Box<Message>),
+    /// A person opened a command line.
+    CliOpened,
+    /// A command line that turned motors was left.
+    CliClosed,
+    /// A restart on this configuration.
+    Restart(Box<Configuration>),
+    /// Fly home and land.
+    ReturnHome,
+    /// Go to a waypoint, hold the position or continue.
+    InFlight(InFlightCommand),
+    /// Cancel [`Self::ReturnHome`]. The AUTOPILOT switch decides again.
+    CancelReturn,
+    /// Set the virtual sticks, which are sent 50 times per simulated second until replaced.
+    Sticks(RcFrame),
+    /// Cut (`true`) or restore the RC link of the virtual sticks.
+    CutRc(bool),
+    /// Hold a channel of the transmitter at a value.
+    HoldChannel(StickInput),
+    /// Give a channel, from 0, back to the virtual sticks.
+    ReleaseChannel(u8),
+    /// Start the scripted pilot, which climbs to this altitude in metres and engages the autopilot.
+    StartPilot(f64),
+    /// Take the sticks from the scripted pilot.
+    StopPilot,
+    /// Change air, noise or faults.
+    World(Box<WorldCommand>),
+    /// Put the craft back home, disarmed. Plan and settings are kept.
+    ResetCraft,
+}
+
+/// An MSP message with the data for its answer.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Message {
+    pub code: u16,
+    pub payload: Vec<u8>,
+    pub clock: Option<UtcTime>,
+}
+
+/// The answer to a command.
+#[derive(Debug)]
+pub enum Reply {
+    Done,
+    /// Nothing has changed.
+    Refused(VehicleRefusal),
+    /// The answer to a CLI line.
+    Line(CliReply),
+    /// The answer to an MSP message.
+    Message(Outcome),
+}
+
+/// The reason why a vehicle does not carry out a command.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum VehicleRefusal {
+    #[error("{0}")]
+    World(WorldError),
+    #[error("{}", .0.sentence())]
+    ReturnHome(Refusal),
+    #[error("{}", .0.sentence())]
+    InFlight(InFlightRefusal),
+    /// No channel switches the mode that the scripted pilot needs.
+    #[error("no channel switches {0}")]
+    Pilot(Mode),
+}
+
+impl From<Result<(), VehicleRefusal>> for Reply {
+    fn from(result: Result<(), VehicleRefusal>) -> Self {
+        result.map_or_else(Self::Refused, |()| Self::Done)
+    }
+}
+
+impl VehicleCommand {
+    /// Returns the approximate memory of the command, bytes.
+    pub fn bytes(&self) -> usize {
+        let heap = match self {
+            Self::Line(line) => size_of_val(&**line) + line.1.len(),
+            Self::Message(message) => size_of::<Message>() + message.payload.len(),
+            // Its tables are on the heap.
+            Self::Restart(configuration) => 4 * size_of_val(&**configuration),
+            Self::World(command) => size_of_val(&**command),
+            _ => 0,
+        };
+        size_of::<Self>() + heap
+    }
+}
+
+impl Vehicle {
+    /// Carries out a command, and records it if inputs are kept. A remote flight controller answers lines and messages
+    /// later.
+    pub fn apply(&mut self, command: &VehicleCommand) -> Answer<Reply> {
+        match command {
+            VehicleCommand::Rc(frame, source) => self.controller.receive_rc(frame, *source),
+            VehicleCommand::SticksFirst(first) => self.controller.take_over_sticks(*first),
+            VehicleCommand::Line(line) => {
+                let (session, line) = &**line;
+                return self.controller.run_cli(&mut session.clone(), line).map(Reply::Line);
+            }
+            VehicleCommand::Message(message) => {
+                let Message { code, payload, clock } = &**message;
+                return self.controller.run_msp(*code, payload, *clock).map(Reply::Message);
+            }
+            VehicleCommand::CliOpened => self.controller.cli_opened(),
+            VehicleCommand::CliClosed => self.controller.cli_closed(),
+            VehicleCommand::Restart(configuration) => {
+                self.controller.restart(|| Configuration::clone(configuration));
+            }
+            VehicleCommand::ReturnHome => {
+                let done = self.controller.return_to_home().map_err(VehicleRefusal::ReturnHome);
+                return Answer::Now(done.into());
+            }
+            VehicleCommand::InFlight(command) => {
+                let done = self.controller.command(*command).map_err(VehicleRefusal::InFlight);
+                return Answer::Now(done.into());
+            }
+            VehicleCommand::CancelReturn => self.controller.cancel_command(),
+            VehicleCommand::Sticks(frame) => {
+                *self.transmitter.sticks_mut() = *frame;
+                self.note_input(|| command.clone());
+            }
+            VehicleCommand::CutRc(cut) => {
+                self.transmitter.set_cut(*cut);
+                self.note_input(|| command.clone());
+            }
+            VehicleCommand::HoldChannel(input) => {
+                self.transmitter.inputs_mut().push(*input);
+                self.note_input(|| command.clone());
+            }
+            VehicleCommand::ReleaseChannel(channel) => {
+                self.transmitter.inputs_mut().retain(|input| input.channel != *channel);
+                self.note_input(|| command.clone());
+            }
+            VehicleCommand::StartPilot(takeoff_m) => {
+                let done = self.start_pilot(*takeoff_m).map_err(VehicleRefusal::Pilot);
+                return Answer::Now(done.into());
+            }
+            VehicleCommand::StopPilot => {
+                if self.transmitter.stop_pilot() {
+                    self.note_input(|| VehicleCommand::StopPilot);
+                }
+            }
+            VehicleCommand::World(command) => {
+                let done = self.change_world(WorldCommand::clone(command)).map_err(VehicleRefusal::World);
+                return Answer::Now(done.into());
+            }
+            VehicleCommand::ResetCraft => self.reset_craft(),
+        }
+        Answer::Now(Reply::Done)
+    }
+}
