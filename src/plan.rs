@@ -3,6 +3,7 @@
 
 mod altitude_reference;
 pub mod builtin;
+mod capability;
 mod cli_lines;
 pub mod edit;
 pub mod estimate;
@@ -16,6 +17,7 @@ pub mod validate;
 mod waypoint;
 
 pub use altitude_reference::{AltitudeError, AltitudeReference, CraftPlan};
+pub use capability::{Approach, Capability, Modifier, SpeedUse, Then, TimeUse};
 pub use cli_lines::{plan_lines, record_lines, upload_lines};
 pub use quantity::{Altitude, LegSpeed, Seconds};
 pub(crate) use review::{LegAltitude, leg_altitudes};

@@ -1,8 +1,8 @@
 //! The reference of a craft for the altitudes of its waypoints. Plans in betadeck use home.
 
+use super::FlightPlan;
 use super::format::Records;
 use super::quantity::to_cm;
-use super::{FlightPlan, WaypointType};
 
 /// The reference of a craft for the altitudes of its waypoints.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -74,7 +74,7 @@ pub struct CraftPlan {
 /// Raises every altitude that has a meaning.
 fn raised(mut records: Records, by_cm: i32) -> CraftPlan {
     for record in &mut records {
-        if record.kind.is_positional() || record.kind == WaypointType::AltChange {
+        if record.kind.capability().altitude {
             record.alt_cm = record.alt_cm.saturating_add(by_cm);
         }
     }
@@ -84,7 +84,7 @@ fn raised(mut records: Records, by_cm: i32) -> CraftPlan {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::{Altitude, Waypoint};
+    use crate::plan::{Altitude, Waypoint, WaypointType};
 
     #[test]
     fn altitudes_that_mean_something_are_converted_there_and_back() {

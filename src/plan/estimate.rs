@@ -6,7 +6,7 @@ mod assumptions;
 use crate::geo::{LatLon, distance_bearing};
 
 use super::setpoint::AltitudeSetpoint;
-use super::{FlightPlan, Waypoint, WaypointType};
+use super::{FlightPlan, Modifier, Then, Waypoint};
 pub use assumptions::{Assumptions, MAX_ALTITUDE_M, SettingSource, TouchdownThrottle};
 
 /// A craft that reaches a LAND at least this far above its altitude first approaches it vertically, m. That approach
@@ -73,15 +73,11 @@ impl Walk {
     fn leg(&mut self, waypoint: &Waypoint, assumptions: &Assumptions) -> LegEstimate {
         let own_alt_m = waypoint.altitude.above_home_m();
         let duration_s = waypoint.duration.get();
-        match waypoint.kind {
-            WaypointType::AltChange => self.alt_change_m = Some(own_alt_m),
-            WaypointType::Delay => self.delay_s = Some(duration_s),
-            WaypointType::YawRate => {}
-            WaypointType::Flyover
-            | WaypointType::Flyby
-            | WaypointType::Hold
-            | WaypointType::Land
-            | WaypointType::Takeoff => return self.fly(waypoint, own_alt_m, duration_s, assumptions),
+        match waypoint.kind.modifier() {
+            Some(Modifier::Altitude) => self.alt_change_m = Some(own_alt_m),
+            Some(Modifier::Delay) => self.delay_s = Some(duration_s),
+            Some(Modifier::YawRate) => {}
+            None => return self.fly(waypoint, own_alt_m, duration_s, assumptions),
         }
         LegEstimate {
             distance_m: None,
@@ -116,7 +112,7 @@ impl Walk {
             self.clock_s = self.clock_s.zip(stay_s).map(|(clock_s, stay_s)| clock_s + leg_s + stay_s);
         }
         let done_s = self.done();
-        self.landed |= waypoint.kind == WaypointType::Land;
+        self.landed |= waypoint.kind.capability().then == Then::Land;
         self.place = target;
         let bearing_deg = (distance_m > 0.0).then(|| bearing_rad.to_degrees());
         let speed_mps = (distance_m > 0.0).then_some(speed_mps);
@@ -136,18 +132,18 @@ impl Walk {
         let limits = assumptions.setpoint_limits();
         let setpoint = &mut self.setpoint;
         setpoint.run(alt_m, &limits, leg_s);
-        match waypoint.kind {
-            WaypointType::Hold => {
+        match waypoint.kind.capability().then {
+            Then::Hold => {
                 let waited_s = assumptions.wait_for_hold(setpoint, alt_m);
                 setpoint.run(alt_m, &limits, duration_s);
                 (!waypoint.duration.is_zero()).then_some(waited_s + duration_s)
             }
-            WaypointType::Takeoff => {
+            Then::Loiter => {
                 let climb_s = setpoint.reach(alt_m, &limits, assumptions.hold_radius_m);
                 setpoint.run(alt_m, &limits, duration_s);
                 Some(duration_s + if climb_s.is_finite() { climb_s } else { 0.0 })
             }
-            WaypointType::Land => {
+            Then::Land => {
                 setpoint.run(alt_m, &limits, duration_s);
                 let floor_m = alt_m.max(assumptions.landing_alt_m + CLEARANCE_M);
                 let approach_s = if setpoint.altitude_m > floor_m + FAR_ABOVE_M {
@@ -158,7 +154,7 @@ impl Walk {
                 let descent_s = setpoint.altitude_m.max(0.0) / assumptions.landing_mps;
                 Some(duration_s + approach_s + descent_s)
             }
-            _ => Some(0.0),
+            Then::GoOn => Some(0.0),
         }
     }
 
@@ -172,6 +168,7 @@ impl Walk {
 mod tests {
     use super::*;
     use crate::geo::offset_to_latlon;
+    use crate::plan::WaypointType;
     use crate::plan::format::WaypointRecord;
     use nalgebra::Vector2;
 

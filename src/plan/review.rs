@@ -9,7 +9,7 @@ use crate::geo::{LatLon, distance_bearing};
 
 use super::estimate::{Assumptions, SettingSource, TouchdownThrottle, estimate};
 use super::validate::{PlanFault, check_plan};
-use super::{FlightPlan, Waypoint, WaypointType};
+use super::{FlightPlan, Modifier, Then, Waypoint, WaypointType};
 pub(crate) use altitude::{LegAltitude, legs as leg_altitudes};
 pub use steep::{Remedy, SteepLeg};
 
@@ -133,7 +133,7 @@ impl fmt::Display for Finding {
                 f,
                 "the plan sets {setting}, the craft has another value, which applies until the next upload"
             ),
-            Self::NeverFlown { index, kind: WaypointType::Land } => {
+            Self::NeverFlown { index, kind } if kind.capability().then == Then::Land => {
                 write!(f, "waypoint {index} lands: the waypoints after it are never flown")
             }
             Self::NeverFlown { index, .. } => {
@@ -214,7 +214,7 @@ pub fn review(plan: &FlightPlan, home: LatLon, assumptions: &Assumptions) -> Vec
         findings.push(Finding::NeverFlown { index, kind: waypoints[index].kind });
     }
     for (index, waypoint) in waypoints.iter().enumerate() {
-        let modifies_a_leg = matches!(waypoint.kind, WaypointType::AltChange | WaypointType::Delay);
+        let modifies_a_leg = matches!(waypoint.kind.modifier(), Some(Modifier::Altitude | Modifier::Delay));
         if modifies_a_leg && last_place.is_none_or(|last| last < index) {
             findings.push(Finding::NothingToModify { index, kind: waypoint.kind });
         }
@@ -224,7 +224,7 @@ pub fn review(plan: &FlightPlan, home: LatLon, assumptions: &Assumptions) -> Vec
             findings.push(Finding::SpeedLimited { index, speed_mps, limit_mps });
         }
     }
-    if !waypoints.iter().any(|waypoint| waypoint.kind == WaypointType::Land) {
+    if !waypoints.iter().any(|waypoint| waypoint.kind.capability().then == Then::Land) {
         findings.push(Finding::StaysInTheAir);
     }
     let time_s = estimate(plan, home, assumptions).time_s;
@@ -254,15 +254,10 @@ fn below_ground(waypoints: &[Waypoint]) -> impl Iterator<Item = Finding> {
 }
 
 fn ends_the_mission(waypoint: &Waypoint) -> bool {
-    match waypoint.kind {
-        WaypointType::Land => true,
-        WaypointType::Hold => waypoint.duration.is_zero(),
-        WaypointType::Flyover
-        | WaypointType::Flyby
-        | WaypointType::Takeoff
-        | WaypointType::AltChange
-        | WaypointType::Delay
-        | WaypointType::YawRate => false,
+    match waypoint.kind.capability().then {
+        Then::Land => true,
+        Then::Hold => waypoint.duration.is_zero(),
+        Then::GoOn | Then::Loiter => false,
     }
 }
 

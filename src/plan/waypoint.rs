@@ -43,21 +43,6 @@ pub enum WaypointType {
     YawRate = 7,
 }
 
-impl WaypointType {
-    /// Returns `true` if the record is a place to fly to. Modifiers only change the flight to the next one.
-    pub fn is_positional(self) -> bool {
-        match self {
-            Self::Flyover | Self::Flyby | Self::Hold | Self::Land | Self::Takeoff => true,
-            Self::AltChange | Self::Delay | Self::YawRate => false,
-        }
-    }
-
-    /// Returns `true` if the record's latitude and longitude have a meaning. A TAKEOFF climbs at the craft's own place.
-    pub fn uses_position(self) -> bool {
-        self.is_positional() && self != Self::Takeoff
-    }
-}
-
 /// The pattern of a HOLD; ignored on other types. The discriminant is the code of Betaflight in MSP messages.
 #[derive(
     Debug,

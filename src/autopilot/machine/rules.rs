@@ -6,7 +6,7 @@ use super::{Facts, HELD_OFF_S, HOLD_ALTITUDE_M, Outcome, Rule, Rules, STALL_S};
 use crate::autopilot::fence;
 use crate::autopilot::guidance::PlaneCrossing;
 use crate::autopilot::land_detector::STATIONARY_S;
-use crate::plan::{HoldPattern, WaypointType};
+use crate::plan::{Approach, HoldPattern, Then};
 use crate::telemetry::{AbortReason, Guard, GuardName, GuardOp, NavState, PlanSource, TransitionReason};
 
 /// Returns the rules of `state` in the order in which they are tried. The first rule whose guards all hold fires.
@@ -62,11 +62,11 @@ fn approaching(facts: &Facts, list: &mut Rules) {
         return;
     }
     monitors(facts, list);
-    match facts.waypoint.kind {
-        WaypointType::Flyover => pass(facts, false, list),
-        WaypointType::Flyby => pass(facts, true, list),
-        WaypointType::Land => list.push(arrival(facts, facts.approach.hold_radius_m)),
-        WaypointType::Hold => {
+    match facts.waypoint.kind.capability().approach {
+        Approach::Pass => pass(facts, false, list),
+        Approach::Turn => pass(facts, true, list),
+        Approach::Stop => list.push(arrival(facts, facts.approach.hold_radius_m)),
+        Approach::Level => {
             list.push(level_arrival(facts, facts.approach.hold_radius_m.max(HOLD_ALTITUDE_M)));
             let held_off = Guard::new(
                 GuardName::HeldOffAltitude,
@@ -76,9 +76,9 @@ fn approaching(facts: &Facts, list: &mut Rules) {
             );
             list.push(rule([held_off], Outcome::Arrive, TransitionReason::HeldOffAltitude));
         }
-        WaypointType::Takeoff => list.push(level_arrival(facts, facts.approach.hold_radius_m)),
+        Approach::Climb => list.push(level_arrival(facts, facts.approach.hold_radius_m)),
         // Never current, since the plan moves on to positional waypoints only.
-        WaypointType::AltChange | WaypointType::Delay | WaypointType::YawRate => {
+        Approach::Modify(_) => {
             list.push(rule([], Outcome::Next, TransitionReason::Advance));
         }
     }
@@ -166,17 +166,11 @@ fn next(facts: &Facts) -> Outcome {
 
 fn arrived(facts: &Facts, list: &mut Rules) {
     let loiter = !facts.waypoint.duration.is_zero();
-    let (outcome, reason) = match facts.waypoint.kind {
-        WaypointType::Hold => (Outcome::Hold, TransitionReason::Hold),
-        WaypointType::Land if loiter => (Outcome::Hold, TransitionReason::Loiter),
-        WaypointType::Land => (Outcome::Land, TransitionReason::Land),
-        WaypointType::Takeoff if loiter => (Outcome::Hold, TransitionReason::Loiter),
-        WaypointType::Flyover
-        | WaypointType::Flyby
-        | WaypointType::Takeoff
-        | WaypointType::AltChange
-        | WaypointType::Delay
-        | WaypointType::YawRate => (next(facts), TransitionReason::Advance),
+    let (outcome, reason) = match facts.waypoint.kind.capability().then {
+        Then::Hold => (Outcome::Hold, TransitionReason::Hold),
+        Then::Land | Then::Loiter if loiter => (Outcome::Hold, TransitionReason::Loiter),
+        Then::Land => (Outcome::Land, TransitionReason::Land),
+        Then::GoOn | Then::Loiter => (next(facts), TransitionReason::Advance),
     };
     list.push(rule([], outcome, reason));
 }
@@ -185,13 +179,13 @@ fn holding(facts: &Facts, list: &mut Rules) {
     if facts.held_by_command {
         return;
     }
-    match facts.waypoint.kind {
-        WaypointType::Hold => match facts.waypoint.pattern {
+    match facts.waypoint.kind.capability().then {
+        Then::Hold => match facts.waypoint.pattern {
             HoldPattern::Orbit => list.push(rule([], Outcome::Orbit, TransitionReason::Pattern)),
             HoldPattern::Figure8 => list.push(rule([], Outcome::Figure8, TransitionReason::Pattern)),
             HoldPattern::None => hold_time(facts, list),
         },
-        WaypointType::Land => {
+        Then::Land => {
             let over = Guard::new(
                 GuardName::HoldTime,
                 hold_s(facts),
@@ -200,12 +194,7 @@ fn holding(facts: &Facts, list: &mut Rules) {
             );
             list.push(rule([over], Outcome::Land, TransitionReason::HoldTime));
         }
-        WaypointType::Takeoff
-        | WaypointType::Flyover
-        | WaypointType::Flyby
-        | WaypointType::AltChange
-        | WaypointType::Delay
-        | WaypointType::YawRate => hold_time(facts, list),
+        Then::GoOn | Then::Loiter => hold_time(facts, list),
     }
 }
 
@@ -236,6 +225,7 @@ fn landing(facts: &Facts, list: &mut Rules) {
 mod tests {
     use super::*;
     use crate::autopilot::machine::transition;
+    use crate::plan::WaypointType;
 
     #[test]
     fn a_takeoff_or_hold_far_above_its_altitude_is_not_reached_yet() {

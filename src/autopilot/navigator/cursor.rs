@@ -86,7 +86,7 @@ impl PlanCursor {
     /// Returns the last YAW_RATE before `index`.
     pub(super) fn yaw_rate_before(&self, index: u8) -> Option<&Waypoint> {
         let before = self.plan.waypoints.iter().take(usize::from(index));
-        before.rev().find(|waypoint| waypoint.kind == WaypointType::YawRate)
+        before.rev().find(|waypoint| waypoint.kind.has_yaw_rate())
     }
 
     /// Makes the stored plan the active one.

@@ -10,7 +10,7 @@ use crate::autopilot::io::NavInputs;
 use crate::autopilot::land_detector::{AT_REST_MPS, GroundFacts, TouchdownFacts, TouchdownGuards};
 use crate::autopilot::machine::{ApproachFacts, Facts, WaypointFacts};
 use crate::autopilot::params::Params;
-use crate::plan::WaypointType;
+use crate::plan::Approach;
 use crate::telemetry::{NavEvent, NavState};
 
 impl Navigator {
@@ -99,16 +99,7 @@ impl Navigator {
             self.finish_climb();
             return;
         }
-        let stops_here = match self.cursor.kind() {
-            WaypointType::Hold | WaypointType::Land | WaypointType::Takeoff => {
-                seen.distance_m <= params.hold_radius_m()
-            }
-            WaypointType::Flyover
-            | WaypointType::Flyby
-            | WaypointType::AltChange
-            | WaypointType::Delay
-            | WaypointType::YawRate => false,
-        };
+        let stops_here = self.cursor.kind().stops() && seen.distance_m <= params.hold_radius_m();
         if !stops_here {
             self.climb.begin(now.pos_ne);
             self.push(NavEvent::Climbing(true));
@@ -116,7 +107,7 @@ impl Navigator {
     }
 
     fn progress_distance_m(&self, now: &NavInputs, seen: &Observed) -> f64 {
-        if self.cursor.kind() == WaypointType::Takeoff {
+        if self.cursor.kind().capability().approach == Approach::Climb {
             (self.leg.altitude_m - now.alt_m).abs()
         } else {
             seen.distance_m
@@ -125,7 +116,8 @@ impl Navigator {
 
     /// Watches a HOLD that waits for its altitude. A climb or descent on the spot is progress, too.
     fn wait_for_altitude(&mut self, now: &NavInputs, params: &Params, seen: &Observed) {
-        let approaches = self.state == NavState::Approaching && self.cursor.kind() == WaypointType::Hold;
+        let approaches = self.state == NavState::Approaching
+            && self.cursor.kind().capability().approach == Approach::Level;
         let is_free = !seen.stick_override && !self.climb.is_on();
         let is_at_place = approaches && is_free && seen.distance_m <= params.hold_radius_m();
         let error_m = (self.leg.altitude_m - now.alt_m).abs();

@@ -11,7 +11,6 @@ use crate::autopilot::control::{
 };
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::params::Params;
-use crate::plan::WaypointType;
 use crate::telemetry::{NavEvent, NavOutput, NavState};
 
 /// The deflection of a stick at its end.
@@ -150,8 +149,7 @@ impl Navigator {
             self.yaw.reset();
             return None;
         }
-        let stops =
-            matches!(self.cursor.kind(), WaypointType::Hold | WaypointType::Land | WaypointType::Takeoff);
+        let stops = self.cursor.kind().stops();
         let facts = YawFacts {
             heading_rad: now.heading_rad,
             yaw_rate_rps: now.yaw_rate_rps,
@@ -168,7 +166,7 @@ impl Navigator {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::{Altitude, FlightPlan, Waypoint};
+    use crate::plan::{Altitude, FlightPlan, Waypoint, WaypointType};
     use crate::signals::SimTime;
 
     #[test]

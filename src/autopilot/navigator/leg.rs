@@ -11,7 +11,7 @@ use crate::autopilot::guidance::{CornerArc, PlaneCrossing, plane_crossing};
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::params::Params;
 use crate::geo::{LatLon, local_offset};
-use crate::plan::{Waypoint, WaypointType};
+use crate::plan::{Modifier, Waypoint};
 use crate::signals::SimTime;
 use crate::telemetry::{Guard, NavState, TransitionReason};
 
@@ -114,15 +114,11 @@ impl Navigator {
     fn apply_modifiers(&mut self, from: u8, to: u8, inputs: &NavInputs) {
         for at in from..to {
             let Some(modifier) = self.cursor.waypoint(at) else { return };
-            match modifier.kind {
-                WaypointType::AltChange => self.leg.altitude_m = modifier.altitude.above_home_m(),
-                WaypointType::YawRate => self.yaw_cap_dps = yaw_cap(&modifier),
-                WaypointType::Delay => self.leg.delay = self.delay(&modifier, inputs),
-                WaypointType::Flyover
-                | WaypointType::Flyby
-                | WaypointType::Hold
-                | WaypointType::Land
-                | WaypointType::Takeoff => {}
+            match modifier.kind.modifier() {
+                Some(Modifier::Altitude) => self.leg.altitude_m = modifier.altitude.above_home_m(),
+                Some(Modifier::YawRate) => self.yaw_cap_dps = yaw_cap(&modifier),
+                Some(Modifier::Delay) => self.leg.delay = self.delay(&modifier, inputs),
+                None => {}
             }
         }
     }

@@ -12,7 +12,6 @@ use crate::autopilot::guidance::{
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::land_detector::LandDetector;
 use crate::autopilot::params::Params;
-use crate::plan::WaypointType;
 use crate::telemetry::{L1Mode, NavState};
 
 /// Below this altitude, m, a landing moves sideways no faster than this, m/s. A jump of the fix just above the ground
@@ -108,7 +107,7 @@ impl Navigator {
             target.aim = at;
             return PathView::default();
         }
-        let passes = matches!(self.cursor.kind(), WaypointType::Flyover | WaypointType::Flyby);
+        let passes = self.cursor.kind().passes();
         target.pass_through = passes && !seen.is_last && !self.leg.missed && !seen.is_co_located;
         if !params.l1_enable || self.cursor.positional_count() < 2 {
             self.leg.arc = None;

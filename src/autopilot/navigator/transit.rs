@@ -73,17 +73,7 @@ impl Navigator {
     }
 
     fn leg_end(&self, kind: WaypointType, now: &NavInputs) -> LatLon {
-        match kind {
-            WaypointType::Flyover | WaypointType::Flyby if !self.leg.missed => self.leg.waypoint,
-            WaypointType::Flyover
-            | WaypointType::Flyby
-            | WaypointType::Hold
-            | WaypointType::Land
-            | WaypointType::Takeoff
-            | WaypointType::AltChange
-            | WaypointType::Delay
-            | WaypointType::YawRate => here(now),
-        }
+        if kind.passes() && !self.leg.missed { self.leg.waypoint } else { here(now) }
     }
 
     pub(super) fn complete(&mut self, reason: TransitionReason, guard: Option<Guard>) {

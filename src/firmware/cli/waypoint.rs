@@ -2,6 +2,8 @@
 
 use std::str::FromStr as _;
 
+use strum::IntoEnumIterator as _;
+
 use super::CliAction;
 use super::session::{Session, integer};
 use crate::geo::{Degrees7, LatLon};
@@ -98,7 +100,7 @@ fn edit(session: &mut Session<'_>, arguments: &[&str], edit: Edit) {
 }
 
 /// Parses the fields after the index. The order of the checks decides the error text for a line with several faults.
-fn read(fields: [&str; 7]) -> Result<WaypointRecord, &'static str> {
+fn read(fields: [&str; 7]) -> Result<WaypointRecord, String> {
     let [lat, lon, alt, speed, kind, duration, pattern] = fields;
     let lat_e7 = degrees(lat).ok_or("INVALID LATITUDE FORMAT. USE: -90.0000000 to 90.0000000")?;
     let lon_e7 = degrees(lon).ok_or("INVALID LONGITUDE FORMAT. USE: -180.0000000 to 180.0000000")?;
@@ -108,14 +110,16 @@ fn read(fields: [&str; 7]) -> Result<WaypointRecord, &'static str> {
     let duration = integer(duration).ok_or("INVALID DURATION")?;
     let speed = u16::try_from(speed).map_err(|_| "speed NOT BETWEEN 0 AND 65535")?;
     let duration_ds = u16::try_from(duration).map_err(|_| "duration NOT BETWEEN 0 AND 65535")?;
-    let kind = WaypointType::from_str(kind)
-        .map_err(|_| "INVALID TYPE. USE: FLYOVER, FLYBY, HOLD, LAND, TAKEOFF, ALT_CHANGE, DELAY, YAW_RATE")?;
+    let kind = WaypointType::from_str(kind).map_err(|_| {
+        let types: Vec<&str> = WaypointType::iter().map(Into::into).collect();
+        format!("INVALID TYPE. USE: {}", types.join(", "))
+    })?;
     let pattern = HoldPattern::from_str(pattern).map_err(|_| "INVALID PATTERN. USE: NONE, ORBIT, FIGURE8")?;
     if !LatLon::new(lat_e7, 0).is_on_globe() {
-        return Err("LATITUDE OUT OF RANGE. USE: -90.0 to 90.0");
+        return Err("LATITUDE OUT OF RANGE. USE: -90.0 to 90.0".to_owned());
     }
     if !LatLon::new(0, lon_e7).is_on_globe() {
-        return Err("LONGITUDE OUT OF RANGE. USE: -180.0 to 180.0");
+        return Err("LONGITUDE OUT OF RANGE. USE: -180.0 to 180.0".to_owned());
     }
     Ok(WaypointRecord { position: LatLon::new(lat_e7, lon_e7), alt_cm, speed, duration_ds, kind, pattern })
 }

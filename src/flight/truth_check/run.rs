@@ -6,7 +6,7 @@ use super::approach::ClosestApproach;
 use super::craft::CraftTruth;
 use super::hold::{HoldLimits, HoldWatch};
 use super::pattern::Pattern;
-use crate::plan::WaypointType;
+use crate::plan::{Approach, WaypointType};
 use crate::signals::SimTime;
 use crate::telemetry::snapshot::SettingsView;
 use crate::telemetry::{Guard, ParkedTruth, PlanSource, TransitionReason, WaypointTruth};
@@ -85,8 +85,8 @@ impl Run {
             return None;
         }
         let alt_error_m = Some(craft.alt_m - self.target.alt_m);
-        match self.target.kind {
-            WaypointType::Flyover | WaypointType::Flyby => {
+        match self.target.kind.capability().approach {
+            Approach::Pass | Approach::Turn => {
                 let (distance_m, at) = closest.get()?;
                 let turn = match (self.target.kind, guard) {
                     (_, Some(guard)) => (reason == TransitionReason::TurnRadius).then_some(guard.limit),
@@ -101,15 +101,11 @@ impl Run {
                 };
                 Some(WaypointTruth { alt_error_m, radius_m, ..self.truth(miss_m, at) })
             }
-            WaypointType::Takeoff => {
+            Approach::Climb => {
                 let distance_m = (craft.ne - self.target.ne).norm();
                 Some(WaypointTruth { alt_error_m, ..self.truth(distance_m, craft.time) })
             }
-            WaypointType::Hold
-            | WaypointType::Land
-            | WaypointType::AltChange
-            | WaypointType::Delay
-            | WaypointType::YawRate => None,
+            Approach::Level | Approach::Stop | Approach::Modify(_) => None,
         }
     }
 

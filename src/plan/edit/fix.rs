@@ -6,7 +6,7 @@ use super::PlanDocument;
 use crate::geo::{GroundPlane, LatLon, distance_bearing};
 use crate::plan::review::{Finding, Remedy, SteepLeg};
 use crate::plan::validate::{PlanFault, WaypointFault};
-use crate::plan::{Altitude, HoldPattern, LegSpeed, Seconds, Waypoint, WaypointType};
+use crate::plan::{Altitude, HoldPattern, LegSpeed, Seconds, Then, Waypoint, WaypointType};
 
 /// The distance from home to which a waypoint is moved, as a share of the fence. It leaves room for the turn.
 const INSIDE_FENCE: f64 = 0.95;
@@ -59,7 +59,7 @@ pub fn fix(document: &PlanDocument, finding: &Finding, home: LatLon) -> Option<F
             wp.position = GroundPlane::new(home).to_position(inside);
             format!("move WP{index} inside the fence")
         }
-        Finding::NeverFlown { index, kind: WaypointType::Hold } => {
+        Finding::NeverFlown { index, kind } if kind.capability().then == Then::Hold => {
             waypoints.get_mut(index)?.duration = Seconds::new(OFFERED_HOLD_S);
             format!("hold WP{index} for {OFFERED_HOLD_S} s")
         }

@@ -4,7 +4,7 @@
 use nalgebra::Vector2;
 
 use crate::geo::{GroundPlane, LatLon};
-use crate::plan::{Altitude, FlightPlan, LegSpeed, Waypoint, WaypointType};
+use crate::plan::{Altitude, FlightPlan, LegSpeed, SpeedUse, Waypoint};
 
 /// An edit of each selected waypoint that has such a value.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,7 +35,10 @@ pub fn transform(plan: &mut FlightPlan, selected: std::ops::RangeInclusive<usize
             with_altitude(waypoints).for_each(|wp| wp.altitude = wp.altitude.raised_m(by_m));
         }
         Transform::Speed(speed) => {
-            waypoints.iter_mut().filter(|wp| wp.kind.is_positional()).for_each(|wp| wp.speed = speed);
+            waypoints
+                .iter_mut()
+                .filter(|wp| wp.kind.capability().speed == SpeedUse::Leg)
+                .for_each(|wp| wp.speed = speed);
         }
         Transform::Move(by) => {
             for wp in waypoints.iter_mut().filter(|wp| wp.kind.uses_position()) {
@@ -53,7 +56,7 @@ pub fn transform(plan: &mut FlightPlan, selected: std::ops::RangeInclusive<usize
 }
 
 fn with_altitude(waypoints: &mut [Waypoint]) -> impl Iterator<Item = &mut Waypoint> {
-    waypoints.iter_mut().filter(|wp| wp.kind.is_positional() || wp.kind == WaypointType::AltChange)
+    waypoints.iter_mut().filter(|wp| wp.kind.capability().altitude)
 }
 
 fn about_middle(waypoints: &mut [Waypoint], place: impl Fn(Vector2<f64>) -> Vector2<f64>) {
@@ -80,6 +83,7 @@ pub fn middle(waypoints: &[Waypoint]) -> Option<LatLon> {
 mod tests {
     use super::*;
     use crate::geo::distance_bearing;
+    use crate::plan::WaypointType;
     use proptest::prelude::*;
 
     fn plan(lat: f64, lon: f64) -> FlightPlan {

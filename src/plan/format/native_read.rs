@@ -11,7 +11,7 @@ use super::setting::{SettingCheck, SettingPart, setting_line};
 use super::toml_table::{TomlTable, Value};
 use super::{PlanFile, Problems, WaypointRecord};
 use crate::geo::LatLon;
-use crate::plan::{FlightPlan, HoldPattern, MAX_WAYPOINTS, Waypoint, WaypointType};
+use crate::plan::{FlightPlan, HoldPattern, MAX_WAYPOINTS, TimeUse, Waypoint, WaypointType};
 
 /// Keys of the whole file.
 pub(super) const FILE_KEYS: &[&str] = &["name", "description", "settings", "home", "waypoint"];
@@ -129,10 +129,11 @@ fn read_waypoints(value: &Value<'_>, problems: &mut Problems<'_>) -> FlightPlan 
 fn read_waypoint(table: &TomlTable<'_, '_>, problems: &mut Problems<'_>) -> Waypoint {
     table.refuse_unknown(WAYPOINT_KEYS, problems);
     let kind = table.required("type", problems).and_then(|value| word(value, field::waypoint_type, problems));
-    let is_yaw_rate = kind == Some(WaypointType::YawRate);
+    let uses = kind.map(WaypointType::capability);
+    let is_yaw_rate = kind.is_some_and(WaypointType::has_yaw_rate);
     // Without a known type, the keys that a record needs are unknown.
-    let needs_place = kind.is_some_and(WaypointType::uses_position);
-    let needs_altitude = kind.is_some_and(|kind| kind.is_positional() || kind == WaypointType::AltChange);
+    let needs_place = uses.is_some_and(|uses| uses.place);
+    let needs_altitude = uses.is_some_and(|uses| uses.altitude);
     let speed_key = if is_yaw_rate { "yaw_rate_dps" } else { "speed_mps" };
     let wrong_key = if is_yaw_rate { "speed_mps" } else { "yaw_rate_dps" };
     if let (Some(kind), Some(value)) = (kind, table.get(wrong_key)) {
@@ -142,7 +143,7 @@ fn read_waypoint(table: &TomlTable<'_, '_>, problems: &mut Problems<'_>) -> Wayp
             format!("write {speed_key}"),
         );
     }
-    let needs_duration = kind == Some(WaypointType::Delay);
+    let needs_duration = uses.is_some_and(|uses| uses.time == TimeUse::Needed);
     let mut read = |key, needed: bool| {
         if needed { table.required(key, problems) } else { table.get(key) }
     };

@@ -1,7 +1,7 @@
 //! The writer of the project's own format, in its canonical form.
 
 use crate::geo::Degrees7;
-use crate::plan::{HoldPattern, WaypointType};
+use crate::plan::{HoldPattern, TimeUse};
 use crate::text::printable::is_printable;
 
 use super::{PlanFile, WaypointRecord, Written};
@@ -36,24 +36,23 @@ pub(super) fn write(file: &PlanFile) -> Written {
 fn write_waypoint(record: WaypointRecord, text: &mut String) {
     let WaypointRecord { position, alt_cm, speed, duration_ds, kind, pattern } = record;
     let (lat, lon) = (Degrees7(position.lat_e7), Degrees7(position.lon_e7));
-    let place_matters = kind.uses_position();
-    let altitude_matters = kind.is_positional() || kind == WaypointType::AltChange;
+    let uses = kind.capability();
     text.push_str(&format!("\n[[waypoint]]\ntype = \"{kind}\"\n"));
-    if place_matters || position.lat_e7 != 0 || position.lon_e7 != 0 {
+    if uses.place || position.lat_e7 != 0 || position.lon_e7 != 0 {
         text.push_str(&format!("lat_deg = {lat}\nlon_deg = {lon}\n"));
     }
-    if altitude_matters || alt_cm != 0 {
+    if uses.altitude || alt_cm != 0 {
         text.push_str(&format!("alt_m = {}\n", scaled(i64::from(alt_cm), 2)));
     }
-    if kind == WaypointType::YawRate {
+    if kind.has_yaw_rate() {
         text.push_str(&format!("yaw_rate_dps = {speed}\n"));
     } else if speed != 0 {
         text.push_str(&format!("speed_mps = {}\n", scaled(i64::from(speed), 2)));
     }
-    if matches!(kind, WaypointType::Hold | WaypointType::Delay) || duration_ds != 0 {
+    if matches!(uses.time, TimeUse::Stay | TimeUse::Needed) || duration_ds != 0 {
         text.push_str(&format!("duration_s = {}\n", scaled(i64::from(duration_ds), 1)));
     }
-    if kind == WaypointType::Hold || pattern != HoldPattern::None {
+    if uses.pattern || pattern != HoldPattern::None {
         text.push_str(&format!("pattern = \"{pattern}\"\n"));
     }
 }

@@ -38,7 +38,7 @@ impl WaypointRecord {
 impl From<Waypoint> for WaypointRecord {
     fn from(waypoint: Waypoint) -> Self {
         let Waypoint { position, altitude, speed, yaw_rate_dps, duration, kind, pattern } = waypoint;
-        let speed = if kind == WaypointType::YawRate { yaw_rate_dps } else { speed.cms() };
+        let speed = if kind.has_yaw_rate() { yaw_rate_dps } else { speed.cms() };
         Self { position, alt_cm: altitude.cm(), speed, duration_ds: duration.ds(), kind, pattern }
     }
 }
@@ -46,7 +46,7 @@ impl From<Waypoint> for WaypointRecord {
 impl From<WaypointRecord> for Waypoint {
     fn from(record: WaypointRecord) -> Self {
         let WaypointRecord { position, alt_cm, speed, duration_ds, kind, pattern } = record;
-        let (cms, yaw_rate_dps) = if kind == WaypointType::YawRate { (0, speed) } else { (speed, 0) };
+        let (cms, yaw_rate_dps) = if kind.has_yaw_rate() { (0, speed) } else { (speed, 0) };
         Self {
             position,
             altitude: Altitude::from_cm(alt_cm),

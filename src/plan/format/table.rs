@@ -3,7 +3,7 @@
 use crate::geo::{Degrees7, LatLon};
 use crate::plan::estimate::{Assumptions, LegEstimate, PlanEstimate, estimate};
 use crate::plan::review::review;
-use crate::plan::{HoldPattern, Waypoint, WaypointType};
+use crate::plan::{HoldPattern, TimeUse, Waypoint};
 use crate::text::printable;
 
 use super::PlanFile;
@@ -43,21 +43,21 @@ pub fn table(file: &PlanFile, home: LatLon, assumptions: &Assumptions) -> String
 }
 
 fn row(index: usize, waypoint: &Waypoint, leg: &LegEstimate) -> [String; 10] {
-    let kind = match (waypoint.kind, waypoint.pattern) {
-        (WaypointType::Hold, HoldPattern::None) => "HOLD".to_owned(),
-        (WaypointType::Hold, pattern) => format!("HOLD {pattern}"),
-        (kind, _) => kind.to_string(),
+    let uses = waypoint.kind.capability();
+    let kind = match waypoint.pattern {
+        pattern if uses.pattern && pattern != HoldPattern::None => format!("{} {pattern}", waypoint.kind),
+        _ => waypoint.kind.to_string(),
     };
     let place =
         |value: i32| if waypoint.kind.uses_position() { Degrees7(value).to_string() } else { String::new() };
-    let has_altitude = waypoint.kind.is_positional() || waypoint.kind == WaypointType::AltChange;
+    let has_altitude = uses.altitude;
     let speed = match leg.speed_mps {
         Some(speed) => format!("{speed:.1} m/s"),
-        None if waypoint.kind == WaypointType::YawRate => format!("{} deg/s", waypoint.yaw_rate_dps),
+        None if waypoint.kind.has_yaw_rate() => format!("{} deg/s", waypoint.yaw_rate_dps),
         None => String::new(),
     };
-    let stay = match waypoint.kind {
-        WaypointType::Hold if waypoint.duration.is_zero() => "endless".to_owned(),
+    let stay = match uses.time {
+        TimeUse::Stay if waypoint.duration.is_zero() => "endless".to_owned(),
         _ if waypoint.duration.is_zero() => String::new(),
         _ => format!("{:.1} s", waypoint.duration.get()),
     };

@@ -1,7 +1,7 @@
 //! Altitudes that are probably a mistake: above a limit of the user, or far above all others of the plan.
 
 use super::Finding;
-use crate::plan::{Waypoint, WaypointType};
+use crate::plan::{Modifier, Waypoint};
 
 /// An altitude is far above the others if it is this many times their median …
 const TIMES_THE_OTHERS: f64 = 5.0;
@@ -26,7 +26,7 @@ pub(crate) fn legs(waypoints: &[Waypoint]) -> impl Iterator<Item = LegAltitude> 
     let mut changed = None;
     waypoints.iter().enumerate().filter_map(move |(index, waypoint)| {
         let own = (index, waypoint.altitude.above_home_m());
-        if waypoint.kind == WaypointType::AltChange {
+        if waypoint.kind.modifier() == Some(Modifier::Altitude) {
             changed = Some(own);
         }
         if !waypoint.kind.is_positional() {
@@ -68,7 +68,7 @@ fn far_above_the_others(altitudes: &[(usize, f64)], at: usize) -> Option<Finding
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::Altitude;
+    use crate::plan::{Altitude, WaypointType};
 
     fn found(altitudes_m: &[i32], limit_m: Option<f64>) -> Vec<String> {
         let at =

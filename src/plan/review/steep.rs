@@ -9,7 +9,7 @@ use crate::geo::{GRAVITY, LatLon, local_offset};
 use crate::plan::estimate::Assumptions;
 use crate::plan::leg_time::{LegShape, Motion};
 use crate::plan::setpoint::AltitudeSetpoint;
-use crate::plan::{HoldPattern, LegSpeed, Waypoint, WaypointType};
+use crate::plan::{Approach, HoldPattern, LegSpeed, Modifier, Then, Waypoint};
 
 /// The altitude error at a waypoint that makes a leg too steep, m.
 const STEEP_M: f64 = 7.0;
@@ -107,7 +107,7 @@ struct Leg {
     distance_m: f64,
     along: Vector2<f64>,
     alt_m: f64,
-    kind: WaypointType,
+    approach: Approach,
     stops: bool,
     /// The speed limit from a DELAY, m/s.
     cap_mps: f64,
@@ -118,17 +118,17 @@ impl Walk<'_> {
     fn take(&mut self, index: usize, waypoints: &[Waypoint]) -> Option<SteepLeg> {
         let waypoint = &waypoints[index];
         let own_alt_m = waypoint.altitude.above_home_m();
-        match waypoint.kind {
-            WaypointType::AltChange => self.alt_change_m = Some(own_alt_m),
-            WaypointType::Delay => self.delay_s = Some(waypoint.duration.get()),
-            WaypointType::YawRate => {}
-            WaypointType::Takeoff => self.climb_on_the_spot(waypoint, own_alt_m),
-            WaypointType::Hold | WaypointType::Land => {
+        match waypoint.kind.capability().approach {
+            Approach::Modify(Modifier::Altitude) => self.alt_change_m = Some(own_alt_m),
+            Approach::Modify(Modifier::Delay) => self.delay_s = Some(waypoint.duration.get()),
+            Approach::Modify(Modifier::YawRate) => {}
+            Approach::Climb => self.climb_on_the_spot(waypoint, own_alt_m),
+            Approach::Level | Approach::Stop => {
                 let leg = self.leg(index, waypoints, own_alt_m);
                 self.fly(waypoint, &leg);
                 self.stay(waypoint, leg.alt_m);
             }
-            WaypointType::Flyover | WaypointType::Flyby => {
+            Approach::Pass | Approach::Turn => {
                 let leg = self.leg(index, waypoints, own_alt_m);
                 return self.pass(index, waypoint, &leg);
             }
@@ -152,7 +152,7 @@ impl Walk<'_> {
         let goes_on = following.is_some_and(|next| {
             next.kind.uses_position() && local_offset(waypoint.position, next.position).norm() >= CO_LOCATED_M
         });
-        let passes = matches!(waypoint.kind, WaypointType::Flyover | WaypointType::Flyby);
+        let passes = waypoint.kind.passes();
         let way = local_offset(self.place, waypoint.position) - self.beside;
         let distance_m = way.norm();
         let alt_m = self.alt_change_m.take().unwrap_or(own_alt_m);
@@ -168,7 +168,7 @@ impl Walk<'_> {
             distance_m,
             along: way.try_normalize(1e-9).unwrap_or_else(Vector2::x),
             alt_m,
-            kind: waypoint.kind,
+            approach: waypoint.kind.capability().approach,
             stops: !passes || !goes_on,
             cap_mps,
         }
@@ -176,13 +176,13 @@ impl Walk<'_> {
 
     /// Returns the distance from the waypoint at which it counts as reached by a craft of this speed, m.
     fn reach_m(&self, leg: &Leg, speed_mps: f64) -> f64 {
-        match leg.kind {
-            WaypointType::Flyover | WaypointType::Flyby if leg.stops => self.assumptions.arrival_radius_m,
-            WaypointType::Flyby => {
+        match leg.approach {
+            Approach::Pass | Approach::Turn if leg.stops => self.assumptions.arrival_radius_m,
+            Approach::Turn => {
                 let lean = self.assumptions.max_angle_deg.clamp(5.0, 80.0).to_radians();
                 speed_mps.powi(2) / (GRAVITY * lean.tan())
             }
-            WaypointType::Flyover => 0.0,
+            Approach::Pass => 0.0,
             _ => self.assumptions.hold_radius_m,
         }
     }
@@ -244,7 +244,7 @@ impl Walk<'_> {
     /// Adds the stay of a HOLD after a leg; a LAND ends the mission.
     fn stay(&mut self, waypoint: &Waypoint, alt_m: f64) {
         let duration_s = waypoint.duration.get();
-        if waypoint.kind == WaypointType::Hold {
+        if waypoint.kind.capability().then == Then::Hold {
             self.assumptions.wait_for_hold(&mut self.setpoint, alt_m);
             self.setpoint.run(alt_m, &self.assumptions.setpoint_limits(), duration_s);
         }
@@ -272,7 +272,7 @@ impl Walk<'_> {
 mod tests {
     use super::*;
     use crate::geo::offset_to_latlon;
-    use crate::plan::{Altitude, Seconds};
+    use crate::plan::{Altitude, Seconds, WaypointType};
 
     const HOME: LatLon = LatLon::new(404_635_000, -795_182_000);
 

@@ -2,7 +2,6 @@
 
 use super::Block;
 use super::toml_text::quoted;
-use crate::plan::WaypointType;
 use crate::scenario::case::Statistic;
 use crate::scenario::expression::Evaluator;
 use crate::scenario::happening::{EventName, Field, Happening, HappeningKind};
@@ -174,11 +173,10 @@ fn legs(flown: &Flown) -> Vec<Block> {
     else {
         return Vec::new();
     };
-    let is_straight = |kind: WaypointType| matches!(kind, WaypointType::Flyover | WaypointType::Flyby);
     let mut blocks = Vec::new();
     for (index, pair) in plan.waypoints.windows(2).enumerate() {
         let [before, after] = pair else { continue };
-        if !is_straight(before.kind) || !is_straight(after.kind) {
+        if !before.kind.passes() || !after.kind.passes() {
             continue;
         }
         let line = format!("across(wp {index} -> wp {})", index + 1);

@@ -4,7 +4,7 @@ use strum::IntoEnumIterator as _;
 
 use crate::geo::{Degrees7, GroundPlane};
 use crate::plan::format::degrees_e7;
-use crate::plan::{Altitude, HoldPattern, LegSpeed, Seconds, Waypoint, WaypointType};
+use crate::plan::{Altitude, HoldPattern, LegSpeed, Seconds, SpeedUse, TimeUse, Waypoint, WaypointType};
 use crate::ui::units::Units;
 use nalgebra::Vector2;
 
@@ -54,12 +54,14 @@ impl Column {
             Self::Latitude => "degrees, -90 to 90".to_owned(),
             Self::Longitude => "degrees, -180 to 180".to_owned(),
             Self::Altitude => format!("{} above home", units.length_name()),
-            Self::Speed if kind == WaypointType::YawRate => "degrees per second".to_owned(),
+            Self::Speed if kind.has_yaw_rate() => "degrees per second".to_owned(),
             Self::Speed => {
                 let most = shortest(units.speed(LegSpeed::MOST_MPS));
                 format!("{} up to {most}; 0 = ap_max_velocity", units.speed_unit())
             }
-            Self::Time if kind == WaypointType::Hold => "seconds up to 6553.5; 0 = endless".to_owned(),
+            Self::Time if kind.capability().time == TimeUse::Stay => {
+                "seconds up to 6553.5; 0 = endless".to_owned()
+            }
             Self::Time => "seconds up to 6553.5".to_owned(),
             Self::Pattern => names(HoldPattern::iter()),
         }
@@ -67,14 +69,14 @@ impl Column {
 
     /// Returns `true` if a waypoint of this type uses the value.
     pub(crate) fn is_used(self, kind: WaypointType) -> bool {
-        use WaypointType::{AltChange, Delay, Hold, YawRate};
+        let uses = kind.capability();
         match self {
             Self::Type => true,
-            Self::Latitude | Self::Longitude => kind.uses_position(),
-            Self::Altitude => kind.is_positional() || kind == AltChange,
-            Self::Speed => kind.is_positional() || kind == YawRate,
-            Self::Time => matches!(kind, Hold | Delay),
-            Self::Pattern => kind == Hold,
+            Self::Latitude | Self::Longitude => uses.place,
+            Self::Altitude => uses.altitude,
+            Self::Speed => uses.speed != SpeedUse::Unused,
+            Self::Time => matches!(uses.time, TimeUse::Stay | TimeUse::Needed),
+            Self::Pattern => uses.pattern,
         }
     }
 
@@ -85,7 +87,7 @@ impl Column {
             Self::Latitude => Degrees7(wp.position.lat_e7).to_string(),
             Self::Longitude => Degrees7(wp.position.lon_e7).to_string(),
             Self::Altitude => shortest(units.length(wp.altitude.above_home_m())),
-            Self::Speed if wp.kind == WaypointType::YawRate => wp.yaw_rate_dps.to_string(),
+            Self::Speed if wp.kind.has_yaw_rate() => wp.yaw_rate_dps.to_string(),
             Self::Speed => shortest(units.speed(wp.speed.mps())),
             Self::Time => shortest(wp.duration.get()),
             Self::Pattern => wp.pattern.to_string(),
@@ -109,7 +111,7 @@ impl Column {
                     .ok_or_else(wrong)?;
                 wp.altitude = Altitude::above_home(cm / 100.0);
             }
-            Self::Speed if wp.kind == WaypointType::YawRate => {
+            Self::Speed if wp.kind.has_yaw_rate() => {
                 wp.yaw_rate_dps = scaled(text, 1.0, 0.0, f64::from(u16::MAX)).ok_or_else(wrong)? as u16;
             }
             Self::Speed => {
@@ -140,7 +142,7 @@ impl Column {
             Self::Altitude => {
                 wp.altitude = Altitude::above_home(units.step_length(wp.altitude.above_home_m(), steps));
             }
-            Self::Speed if wp.kind == WaypointType::YawRate => {
+            Self::Speed if wp.kind.has_yaw_rate() => {
                 let rate_dps = i32::from(wp.yaw_rate_dps) + steps;
                 wp.yaw_rate_dps = rate_dps.clamp(0, i32::from(u16::MAX)) as u16;
             }

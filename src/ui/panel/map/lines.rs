@@ -3,7 +3,7 @@
 use ratatui::style::Color;
 use ratatui::widgets::canvas::{Context, Line as CanvasLine};
 
-use crate::plan::{HoldPattern, Waypoint, WaypointType};
+use crate::plan::{Approach, HoldPattern, Waypoint};
 use crate::telemetry::NavTelemetry;
 use crate::telemetry::snapshot::SettingsView;
 use crate::ui::forecast;
@@ -184,21 +184,22 @@ fn figure(
     painter: &mut LinePainter<'_, '_>,
 ) {
     let Some(settings) = &state.view.vehicle.settings else { return };
-    match (spot.wp.kind, spot.wp.pattern) {
-        (WaypointType::Hold, HoldPattern::Orbit) => {
+    let uses = spot.wp.kind.capability();
+    match (uses.approach, spot.wp.pattern) {
+        (_, HoldPattern::Orbit) if uses.pattern => {
             let laps = settings.orbit_laps(&spot.wp).unwrap_or(1.0);
             painter.ring(spot.place, settings.orbit_radius_m, laps);
         }
-        (WaypointType::Hold, HoldPattern::Figure8) => {
+        (_, HoldPattern::Figure8) if uses.pattern => {
             let radius = settings.figure8_width_m / 2.0;
             for side in [-radius, radius] {
                 painter.circle(MapPoint::new(spot.place.n, spot.place.e + side), radius, false);
             }
         }
-        (WaypointType::Hold | WaypointType::Land | WaypointType::Takeoff, _) => {
+        (Approach::Level | Approach::Stop | Approach::Climb, _) => {
             painter.circle(spot.place, settings.hold_radius_m, false);
         }
-        (WaypointType::Flyby, _) => {
+        (Approach::Turn, _) => {
             let previous = at.checked_sub(1).map_or(scene.home, |before| scene.spots[before].place);
             match scene.spots.get(at + 1) {
                 Some(next) => {
@@ -208,8 +209,8 @@ fn figure(
                 None => painter.circle(spot.place, settings.arrival_radius_m, false),
             }
         }
-        (WaypointType::Flyover, _) => painter.circle(spot.place, settings.arrival_radius_m, false),
-        (WaypointType::AltChange | WaypointType::Delay | WaypointType::YawRate, _) => {}
+        (Approach::Pass, _) => painter.circle(spot.place, settings.arrival_radius_m, false),
+        (Approach::Modify(_), _) => {}
     }
 }
 

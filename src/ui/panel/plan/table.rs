@@ -7,7 +7,7 @@ use strum::IntoEnumIterator as _;
 use crate::geo::distance_bearing;
 use crate::plan::edit::fix::waypoint_of;
 use crate::plan::review::Finding;
-use crate::plan::{FlightPlan, Waypoint, WaypointType};
+use crate::plan::{FlightPlan, TimeUse, Waypoint};
 use crate::ui::drawing;
 use crate::ui::editor::Column;
 use crate::ui::formatting::{compass, cut};
@@ -190,10 +190,10 @@ fn value(column: Column, wp: &Waypoint, units: Units) -> String {
     }
     match column {
         Column::Altitude => format!("{:.1}", units.length(wp.altitude.above_home_m())),
-        Column::Speed if wp.kind == WaypointType::YawRate => format!("{}°", wp.yaw_rate_dps),
+        Column::Speed if wp.kind.has_yaw_rate() => format!("{}°", wp.yaw_rate_dps),
         Column::Speed if wp.speed.own_mps().is_none() => "—".to_owned(),
         Column::Speed => format!("{:.1}", units.speed(wp.speed.mps())),
-        Column::Time if wp.duration.is_zero() && wp.kind == WaypointType::Hold => "∞".to_owned(),
+        Column::Time if wp.duration.is_zero() && wp.kind.capability().time == TimeUse::Stay => "∞".to_owned(),
         Column::Time => format!("{:.1}", wp.duration.get()),
         _ => column.text(wp, units),
     }
@@ -214,7 +214,7 @@ fn in_brackets(text: &str, left: bool) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::HoldPattern;
+    use crate::plan::{HoldPattern, WaypointType};
 
     #[test]
     fn what_a_waypoint_does_not_use_is_a_dash() {
