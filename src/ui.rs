@@ -18,7 +18,7 @@
 //! * `panel` has one file per panel, `popup` the windows over them, `keymap` the keys of the configuration file.
 //!   `transmitter` is the user's virtual RC transmitter, `stick_recording` records its sticks, `forecast` holds the
 //!   results of flights flown ahead of time, `graphs` the history of the graphs' signals, `map_point` the places on the
-//!   map, and `timeline` the timeline of the recording.
+//!   map, `viewport` its window, `map_edit` the edits on it, and `timeline` the timeline of the recording.
 //! * [`run`] is the shell around it: it waits for the terminal, the session and the clock, and carries out the effects.
 //!
 //! `editor` holds the open plans. `update` handles messages, one file per subject. `prompt` asks the questions of the
@@ -91,7 +91,7 @@ pub use files_link::FilesLink;
 pub use history::{EnteredLines, LineField};
 pub use map_state::MapMode;
 pub use message::{Effect, Msg};
-pub use panel::Panel;
+pub use panel::{Panel, Panels};
 pub use popup::{CommandLine, Palette, Popup};
 pub use run::{Ending, SessionLink, run, run_plain};
 pub use shared::{Notice, Shared};

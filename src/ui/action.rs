@@ -4,12 +4,14 @@ use super::panel::Panel;
 
 mod edit;
 mod enabled;
+mod panels;
 mod real_craft;
 mod table;
 
 pub use edit::EditAction;
 pub use enabled::enabled;
 pub(super) use enabled::is_wrecked;
+pub use panels::PanelAction;
 pub use table::ACTIONS;
 
 /// The context in which a key triggers its action.
@@ -100,76 +102,8 @@ pub enum Action {
     Cancel,
     /// Return to the shell for a while.
     Suspend,
-    /// Pan the map up.
-    PanUp,
-    /// Pan the map down.
-    PanDown,
-    /// Pan the map left.
-    PanLeft,
-    /// Pan the map right.
-    PanRight,
-    /// Zoom the map in.
-    ZoomIn,
-    /// Zoom the map out.
-    ZoomOut,
-    /// Keep the craft in the middle of the map.
-    Follow,
-    /// Show the whole plan on the map.
-    Fit,
-    /// Select the channel above.
-    ChannelUp,
-    /// Select the channel below.
-    ChannelDown,
-    /// Lower the selected channel.
-    Lower,
-    /// Raise the selected channel.
-    Raise,
-    /// Lower the selected channel a lot.
-    LowerMuch,
-    /// Raise the selected channel a lot.
-    RaiseMuch,
-    /// Centre a stick or flip a switch.
-    Flip,
-    /// Move the cursor of the graphs to an earlier instant.
-    CursorBack,
-    /// Move the cursor of the graphs to a later instant.
-    CursorOn,
-    /// Show a shorter time span in the graphs.
-    SpanLess,
-    /// Show a longer time span in the graphs.
-    SpanMore,
-    /// Choose the signals of the graphs.
-    ChoosePlots,
-    /// Show the newest instant in the graphs.
-    CursorOff,
-    /// Record the sticks, or end that.
-    Record,
-    /// Play the recorded sticks, or stop.
-    Play,
-    /// Select the knob above.
-    KnobUp,
-    /// Select the knob below.
-    KnobDown,
-    /// Lower the selected knob.
-    KnobLess,
-    /// Raise the selected knob.
-    KnobMore,
-    /// Change the selected knob, or type its value.
-    KnobEnter,
-    /// Type the value of the selected knob.
-    KnobEdit,
-    /// Set the selected knob to its default.
-    KnobDefault,
-    /// Explain the guards and abbreviations.
-    ExplainGuards,
-    /// Search in the log.
-    Search,
-    /// Go to the next older match.
-    NextMatch,
-    /// Go to the next newer match.
-    PreviousMatch,
-    /// Show only serious lines.
-    Filter,
+    /// An action of one panel.
+    Panel(PanelAction),
     /// Scroll up a line.
     ScrollUp,
     /// Scroll down a line.
@@ -210,7 +144,7 @@ impl Context {
             Self::Always => true,
             Self::Global => !focus.takes_text(),
             Self::In(panel) => panel == focus,
-            Self::Lists => matches!(focus, Panel::State | Panel::Log | Panel::Plan),
+            Self::Lists => focus.is_list(),
         }
     }
 }

@@ -8,36 +8,26 @@ use crate::telemetry::{EventKind, FirmwareEvent, NavEvent};
 
 use super::action::Action;
 use super::config::UiConfig;
-use super::console::CliState;
 use super::event_log::Severity;
-use super::knobs::KnobsState;
-use super::log_view::LogView;
-use super::panel::Panel;
+use super::panel::{Panel, Panels};
 use super::permission::Permission;
 use super::popup::{CommandLine, Popup};
 use super::shared::{Notice, Shared};
-use super::transitions::{Transition, Transitions};
+use super::transitions::Transition;
 use super::tutorial::Tutorial;
 
 /// The state of the user interface.
 #[derive(Debug)]
 pub struct AppState {
     pub shared: Shared,
+    pub panels: Panels,
     /// Returns an event as a sentence.
     pub sentence: fn(&Event) -> String,
     pub popups: Vec<Popup>,
     /// The tutorial, while it is shown.
     pub tutorial: Option<Tutorial>,
-    /// Selected channel of the RC panel.
-    pub channel: usize,
-    /// The firmware's command line.
-    pub cli: CliState,
     /// The `:` line.
     pub command_line: CommandLine,
-    /// Search and filter of the Log panel.
-    pub log_view: LogView,
-    pub knobs: KnobsState,
-    pub transitions: Transitions,
     /// The permission to change a real craft.
     pub permission: Permission,
     /// The time of the last Ctrl-C.
@@ -46,9 +36,6 @@ pub struct AppState {
     pub step_ticks: u32,
     /// The panel on which the mouse button went down, while it is down.
     pub pressed: Option<Panel>,
-    /// The cell where the mouse button went down, and the values that the drag changes: for the map its centre (north,
-    /// east), for the altitude profile the metres per row and the altitude, cm.
-    pub drag: Option<(u16, u16, f64, f64)>,
 }
 
 #[cfg(test)]
@@ -75,20 +62,15 @@ impl AppState {
 
     fn after_earlier_runs(config: UiConfig, size: (u16, u16), view: SessionView) -> Self {
         Self {
-            cli: CliState::with_history(&config.entered.cli),
+            panels: Panels::new(&config.entered.cli),
             command_line: CommandLine::with_history(&config.entered.commands),
             sentence: config.sentence,
             popups: Vec::new(),
             tutorial: None,
-            channel: 0,
-            log_view: LogView::default(),
-            knobs: KnobsState::default(),
-            transitions: Transitions::default(),
             permission: Permission::default(),
             cancelled: None,
             step_ticks: 10,
             pressed: None,
-            drag: None,
             shared: Shared::new(config, size, view),
         }
     }
@@ -101,7 +83,7 @@ impl AppState {
         if let SessionEvent::Branch { .. } = event.kind {
             // The flight continues from there.
             shared.log.leave_behind(event.time);
-            self.transitions.leave_behind(event.time);
+            self.panels.state.transitions.leave_behind(event.time);
             shared.forecast.forget_what_if();
         }
         if !text.is_empty() {
@@ -124,7 +106,7 @@ impl AppState {
             }
             EventKind::Firmware(FirmwareEvent::Nav(NavEvent::State { from, to, wp, reason, .. })) => {
                 let received = self.shared.now;
-                self.transitions.push(Transition {
+                self.panels.state.transitions.push(Transition {
                     time,
                     received,
                     from: *from,

@@ -94,6 +94,7 @@ fn did_you_mean_end<'a>(word: &str, words: impl IntoIterator<Item = &'a str>) ->
 mod tests {
     use super::*;
     use crate::session::{Command as SessionCommand, SessionView};
+    use crate::ui::action::PanelAction;
     use crate::ui::app_state::AppState;
     use crate::ui::message::Effect;
     use crate::ui::update::run_line;
@@ -113,7 +114,7 @@ mod tests {
     #[test]
     fn a_short_name_means_the_action_of_the_focused_panel() {
         assert_eq!(action_named("arm", Panel::Cli), Ok(Action::Arm));
-        assert_eq!(action_named("up", Panel::Map), Ok(Action::PanUp));
+        assert_eq!(action_named("up", Panel::Map), Ok(Action::Panel(PanelAction::PanUp)));
         assert_eq!(action_named("up", Panel::Log), Ok(Action::ScrollUp));
         let many = action_named("up", Panel::Cli).expect_err("three actions have this name");
         assert!(many.contains("map.up, rc.up, "), "{many}");

@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use super::completion::common_prefix;
 use super::event_log::Severity;
 use super::history::History;
+use super::message::Effect;
 use super::text_field::TextField;
 use crate::plan::format::SettingCheck;
 use crate::session::command::CliOutput;
@@ -98,6 +99,11 @@ impl CliState {
         self.waiting = true;
         self.push(CliLineKind::Entered, line.clone());
         Some(line)
+    }
+
+    /// Returns the effect that runs the next line, if the firmware is free.
+    pub(super) fn next_effect(&mut self) -> Option<Effect> {
+        self.next_to_run().map(Effect::Cli)
     }
 
     /// Returns the number of lines not run yet.

@@ -35,7 +35,7 @@ pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
                 cursor = cursor.or(framed_panel(state, panel, area, buffer));
             }
             panel_bar::draw(shared, &screen, buffer);
-            hint_bar::draw(shared, screen.hints, buffer);
+            hint_bar::draw(&state.panels.of(shared.focus).hints(shared), shared, screen.hints, buffer);
             if let Some(area) = screen.timeline {
                 timeline::draw(shared, area, buffer);
             }
@@ -131,16 +131,8 @@ fn framed_panel(state: &AppState, panel: Panel, area: Rect, buffer: &mut Buffer)
     let shared = &state.shared;
     let theme = &shared.theme;
     let focused = shared.focus == panel;
-    let title = match panel {
-        Panel::Map => panel::map::title(shared),
-        Panel::Plan => panel::plan::title(shared),
-        Panel::State => panel::state::title(shared),
-        Panel::Rc => panel::rc::title(shared),
-        Panel::Cli => panel::cli::title(&state.cli, shared),
-        Panel::Graphs => panel::graphs::title(shared),
-        Panel::World => panel::world::title(shared),
-        Panel::Log => panel::log::title(&state.log_view, shared),
-    };
+    let content = state.panels.of(panel);
+    let title = content.title(shared);
     let title = formatting::cut(&title, usize::from(area.width.saturating_sub(4)));
     let (mark, frame_role, title_role) =
         if focused { ("▸", Role::Focus, Role::Focus) } else { ("", Role::Dim, Role::Title) };
@@ -149,18 +141,7 @@ fn framed_panel(state: &AppState, panel: Panel, area: Rect, buffer: &mut Buffer)
         .border_style(theme.style(frame_role))
         .title(Line::from(span(theme, title_role, format!("{mark}{title}"))))
         .render(area, buffer);
-    let inner = layout::inner(area);
-    match panel {
-        Panel::Map => panel::map::draw(shared, inner, buffer),
-        Panel::State => panel::state::draw(&state.transitions, shared, inner, buffer),
-        Panel::Rc => panel::rc::draw(state.channel, shared, inner, buffer),
-        Panel::Graphs => panel::graphs::draw(shared, inner, buffer),
-        Panel::Plan => return panel::plan::draw(shared, inner, buffer).filter(|_| focused),
-        Panel::World => return panel::world::draw(&state.knobs, shared, inner, buffer).filter(|_| focused),
-        Panel::Log => return panel::log::draw(&state.log_view, shared, inner, buffer).filter(|_| focused),
-        Panel::Cli => return panel::cli::draw(&state.cli, shared, inner, buffer).filter(|_| focused),
-    }
-    None
+    content.draw(shared, layout::inner(area), buffer).filter(|_| focused)
 }
 
 fn too_small(state: &Shared, area: Rect, buffer: &mut Buffer) {

@@ -3,6 +3,7 @@
 //! Every edit is one revision of a plan's history and one line of its journal. Requests to keep or write something
 //! leave as [`Effect::Files`].
 
+pub(super) mod actions;
 mod browser;
 mod clipboard;
 pub(super) mod column;

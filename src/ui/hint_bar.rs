@@ -7,9 +7,8 @@ use unicode_width::UnicodeWidthStr as _;
 
 use crate::telemetry::{EndpointState, LinkState};
 
-use super::action::{Action, EditAction, enabled, is_wrecked};
-use super::panel::Panel;
-use super::panel::span;
+use super::action::{Action, EditAction, PanelAction, enabled, is_wrecked};
+use super::panel::{Hint, Panel, span};
 use super::shared::Shared;
 use super::status_bar::sides;
 use super::theme::{Role, Theme};
@@ -19,8 +18,8 @@ use super::transmitter::ThrottleMove;
 /// The width from which a door also shows its fault.
 const WIDE: u16 = 120;
 
-/// Draws the hint line: keys on the left; help, quit and the doors on the right.
-pub(super) fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {
+/// Draws the hint line: keys on the left, those of the focused panel first; help, quit and the doors on the right.
+pub(super) fn draw(own: &[Hint], state: &Shared, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let mut right: Vec<Span<'static>> =
         permanent_hints(state).iter().flat_map(|(keys, label)| hint(theme, keys, label)).collect();
@@ -43,7 +42,7 @@ pub(super) fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {
             push(keys, label);
         }
     } else {
-        for (actions, label) in hint_actions(state) {
+        for (actions, label) in hint_actions(own, state) {
             push(&keys_of(state, actions), label);
         }
     }
@@ -51,9 +50,9 @@ pub(super) fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {
 }
 
 /// Returns the actions of the hint bar, the most useful first.
-fn hint_actions(state: &Shared) -> Vec<(&'static [Action], &'static str)> {
+fn hint_actions(own: &[Hint], state: &Shared) -> Vec<Hint> {
     let craft = &state.view.vehicle.craft;
-    let mut hints: Vec<(&'static [Action], &'static str)> = Vec::new();
+    let mut hints: Vec<Hint> = Vec::new();
     if state.is_rewound() {
         hints.extend([
             (&[Action::FlyOn] as &[_], "fly on"),
@@ -66,52 +65,10 @@ fn hint_actions(state: &Shared) -> Vec<(&'static [Action], &'static str)> {
         ]);
         return hints;
     }
-    match state.focus {
-        Panel::Cli => {}
-        Panel::Rc => hints.extend([
-            (&[Action::ChannelUp, Action::ChannelDown] as &[_], "channel"),
-            (&[Action::Lower, Action::Raise], "value"),
-        ]),
-        Panel::Map if state.map.edit.is_some() => hints.extend([
-            (
-                &[Action::Edit(EditAction::Pick)] as &[_],
-                if state.map.moving.is_some() { "put down" } else { "pick" },
-            ),
-            (&[Action::Edit(EditAction::AddOnMap)], "insert"),
-            (&[Action::Edit(EditAction::DeleteOnMap)], "delete"),
-            (&[Action::Edit(EditAction::Undo)], "undo"),
-            (&[Action::Edit(EditAction::OnMap)], "done"),
-        ]),
-        Panel::Map if state.zoomed => hints.extend([
-            (&[Action::ZoomIn, Action::ZoomOut] as &[_], "zoom"),
-            (&[Action::Follow], "follow"),
-            (&[Action::Fit], "fit"),
-        ]),
-        Panel::Plan => hints.extend([
-            (&[Action::Edit(EditAction::Cell)] as &[_], "edit"),
-            (&[Action::Edit(EditAction::Insert)], "insert"),
-            (&[Action::Edit(EditAction::Delete)], "delete"),
-            (&[Action::Edit(EditAction::Select)], "select"),
-            (&[Action::Edit(EditAction::Undo)], "undo"),
-            (&[Action::Upload], "upload"),
-            (&[Action::Edit(EditAction::Save)], "save"),
-        ]),
-        Panel::Graphs => hints.extend([
-            (&[Action::CursorBack, Action::CursorOn] as &[_], "cursor"),
-            (&[Action::SpanLess, Action::SpanMore], "time"),
-            (&[Action::ChoosePlots], "choose"),
-        ]),
-        Panel::World => hints.extend([
-            (&[Action::KnobUp, Action::KnobDown] as &[_], "knob"),
-            (&[Action::KnobLess, Action::KnobMore], "value"),
-            (&[Action::KnobEnter], "change"),
-        ]),
-        Panel::Log => hints.extend([(&[Action::Search] as &[_], "search"), (&[Action::Filter], "filter")]),
-        Panel::State => hints.push((&[Action::ExplainGuards], "explain")),
-        Panel::Map => {}
-    }
+    hints.extend_from_slice(own);
+    let has_upload = own.iter().any(|(actions, _)| actions.contains(&Action::Upload));
     if state.real_craft().is_some() {
-        if state.focus != Panel::Plan {
+        if !has_upload {
             hints.push((&[Action::Upload], "upload"));
         }
         hints.extend([
@@ -163,7 +120,7 @@ fn hint_actions(state: &Shared) -> Vec<(&'static [Action], &'static str)> {
             hints.push((&[Action::Fly], "fly"));
         }
         hints.push((&[Action::Arm], "arm"));
-        if state.focus != Panel::Plan {
+        if !has_upload {
             hints.push((&[Action::Upload], "upload"));
         }
         if state.view.rc_cut {
@@ -186,7 +143,7 @@ fn hint_actions(state: &Shared) -> Vec<(&'static [Action], &'static str)> {
         hints.push((&[Action::Arm], "disarm"));
     }
     if state.focus == Panel::Rc {
-        hints.push((&[Action::Flip], "flip"));
+        hints.push((&[Action::Panel(PanelAction::Flip)], "flip"));
     }
     hints.push((&[Action::CommandLine], "command"));
     hints.retain(|(actions, _)| actions.iter().all(|&action| enabled(state, action).is_ok()));
@@ -306,7 +263,7 @@ mod tests {
         let area = Rect::new(0, 0, 120, 3);
         let mut buffer = Buffer::empty(area);
         status_bar::draw(&state, area, &mut buffer);
-        draw(&state, Rect { y: 2, height: 1, ..area }, &mut buffer);
+        draw(&[], &state, Rect { y: 2, height: 1, ..area }, &mut buffer);
         buffer.content().iter().map(ratatui::buffer::Cell::symbol).collect()
     }
 

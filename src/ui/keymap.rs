@@ -196,6 +196,7 @@ impl Keymap {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ui::action::PanelAction;
 
     #[test]
     fn every_default_key_parses_and_none_is_used_twice_in_one_place() {
@@ -218,7 +219,7 @@ mod tests {
         assert_eq!(keymap.action(key("a"), Panel::Cli), None);
         assert_eq!(keymap.action(key("ctrl-c"), Panel::Cli), Some(Action::Cancel));
         assert_eq!(keymap.action(key("f1"), Panel::Cli), Some(Action::Show(Panel::Map)));
-        assert_eq!(keymap.action(key("up"), Panel::Rc), Some(Action::ChannelUp));
+        assert_eq!(keymap.action(key("up"), Panel::Rc), Some(Action::Panel(PanelAction::ChannelUp)));
         assert_eq!(keymap.action(key("up"), Panel::Log), Some(Action::ScrollUp));
     }
 

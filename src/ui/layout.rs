@@ -118,8 +118,9 @@ fn large(body: Rect, slots: Slots) -> Vec<(Panel, Rect)> {
     vec![
         (Panel::Map, map),
         (Panel::State, state),
-        (if slots.right == Panel::World { Panel::World } else { Panel::Rc }, rc),
-        (if slots.left == Panel::Graphs { Panel::Graphs } else { Panel::Log }, log),
+        // These two have places of their own.
+        (if slots.right == Panel::Plan { Panel::Rc } else { slots.right }, rc),
+        (if slots.left == Panel::Cli { Panel::Log } else { slots.left }, log),
         (Panel::Plan, plan),
         (Panel::Cli, cli),
     ]

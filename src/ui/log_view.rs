@@ -2,7 +2,7 @@
 
 use crossterm::event::{KeyCode, KeyEvent};
 
-use super::action::Action;
+use super::action::{Action, PanelAction};
 use super::event_log::{LogLine, LogState, Severity};
 use super::shared::Shared;
 use super::text_field::TextField;
@@ -96,7 +96,10 @@ impl LogView {
     /// Scrolls to the next older or newer line with a match, and reports if there is none.
     pub(super) fn next_match(&mut self, state: &mut Shared, newer: bool) {
         if self.search.is_empty() {
-            let text = format!("No search yet: `{}` in the log begins.", state.key(Action::Search));
+            let text = format!(
+                "No search yet: `{}` in the log begins.",
+                state.key(Action::Panel(PanelAction::Search))
+            );
             state.notify(Severity::Info, text);
         } else if !self.show_match(state, newer) {
             let end = if newer { "newer" } else { "older" };

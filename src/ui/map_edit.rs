@@ -1,5 +1,7 @@
 //! Edits on the map: waypoints, home and the fence, by a cursor or by the mouse.
 
+pub(super) mod actions;
+
 use super::editor::settings_in_force;
 use super::formatting::compass;
 use super::map_point::origin::origin;

@@ -7,6 +7,7 @@ use crossterm::event::{KeyEvent, MouseEvent};
 
 use super::action::Action;
 use super::editor::{FileReply, FileRequest, PlanId};
+use super::popup::Popup;
 use crate::fc::UploadReport;
 use crate::plan::FlightPlan;
 use crate::session::command::{CliOutput, Command, SessionView};
@@ -71,6 +72,7 @@ pub enum Request {
     /// Carry out an action that is enabled.
     Act(Action),
     Effect(Effect),
+    Open(Popup),
     /// Run a line of the firmware's command line.
     Cli {
         line: String,
@@ -83,6 +85,11 @@ impl From<Effect> for Request {
     fn from(effect: Effect) -> Self {
         Self::Effect(effect)
     }
+}
+
+/// Returns effects as requests.
+pub(super) fn requests(effects: Vec<Effect>) -> Vec<Request> {
+    effects.into_iter().map(Request::from).collect()
 }
 
 /// A request that the shell carries out.

@@ -6,42 +6,39 @@ use crate::session::{Command, SessionView};
 use crate::telemetry::InFlightCommand;
 use crate::vehicle::VehicleCommand;
 
-use super::action::{self, Action, EditAction};
+use super::action::{self, Action, Context, EditAction};
 use super::app_state::AppState;
 use super::command;
+use super::editor::actions as plan;
 use super::editor::{FormKind, findings};
 use super::event_log::Severity;
 use super::forecast;
 use super::formatting::within;
 use super::keymap::KeyPress;
-use super::knobs;
+use super::map_edit::actions as map_edit;
 use super::map_point;
-use super::map_state::MapMode;
 use super::message::{Effect, Msg, Request};
 use super::panel::Panel;
 use super::popup::{GoTo, Palette, Popup};
-use super::stick_recording::keys as stick_recording;
+use super::stick_recording::keys::advance;
 use super::track::TrackPoint;
 use super::transmitter;
 use super::transmitter::TWICE_WITHIN;
 use super::tutorial;
 
-mod cli;
-mod fields;
 mod flight;
-mod map_edit;
 mod map_menu;
 mod mouse;
+mod paste;
 mod permission;
-mod plan;
 mod plan_popup;
 mod popup;
 mod timeline;
 mod view;
 
-use cli::{cli_key, paste, run_cli};
 use flight::{fly, speed, upload, uploaded};
-use view::{ZOOM_STEP, focus, focus_neighbour, follow, scroll, zoom_map};
+use paste::paste;
+use view::{focus, focus_neighbour, scroll};
 
 pub(super) use permission::hold;
 
@@ -85,18 +82,18 @@ fn take(state: &mut AppState, msg: Msg) -> Vec<Effect> {
                 return Vec::new();
             }
             state.shared.graphs.record(&state.shared.view.vehicle);
-            stick_recording::advance(&mut state.shared)
+            advance(&mut state.shared)
         }
         Msg::Event(event) => {
             state.take_event(&event);
             Vec::new()
         }
         Msg::CliReply(output) => {
-            if let Some((severity, text)) = state.cli.answer(output.as_ref()) {
+            if let Some((severity, text)) = state.panels.cli.console.answer(output.as_ref()) {
                 state.shared.notify(severity, text);
             }
             state.shared.forecast.settings_changed();
-            run_cli(state)
+            state.panels.cli.console.next_effect().into_iter().collect()
         }
         Msg::WorldReply { line, result } => {
             match result {
@@ -141,7 +138,7 @@ fn take_view(state: &mut AppState, view: SessionView) {
             (&before.vehicle.stored_plan, state.shared.view.vehicle.stored_plan.clone())
         && *was != now
         && !state.shared.editor.has_uploaded(&now)
-        && !state.cli.waiting
+        && !state.panels.cli.console.waiting
     {
         plan::craft_plan_changed(&mut state.shared, was, &now);
     }
@@ -175,7 +172,8 @@ fn key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
     {
         state.shared.notice = None;
     }
-    let types = fields::open(state).is_some();
+    let focused = state.shared.focus;
+    let types = state.panels.of_mut(focused).field().is_some();
     // Esc first closes an open popup or field.
     let is_open = !state.popups.is_empty() || state.shared.editor.takes_text() || types;
     if event.code == KeyCode::Esc && !is_open && !state.shared.pinned.is_empty() {
@@ -188,13 +186,19 @@ fn key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
         None if state.shared.focus == Panel::Plan && state.shared.editor.field().is_some() => {
             plan::field_key(&mut state.shared, event)
         }
-        None if types && takes_as_text(found) => fields::key(state, event),
+        None if types && takes_as_text(found) => type_key(state, event),
         None => match found {
             Some(action) => act(state, action),
-            None if state.shared.focus == Panel::Cli => cli_key(state, event),
+            None if focused.takes_text() => type_key(state, event),
             None => Vec::new(),
         },
     }
+}
+
+/// Passes a key to the focused panel as text.
+fn type_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
+    let requests = state.panels.of_mut(state.shared.focus).key(&mut state.shared, event);
+    carry_out(state, requests)
 }
 
 /// Returns `true` if an open text field gets a key with this action. Keys that leave the field do not belong to it.
@@ -209,8 +213,12 @@ fn cancel(state: &mut AppState) -> Vec<Effect> {
     }
     state.cancelled = Some(state.shared.now);
     let popup = state.popups.pop().is_some();
-    let field = fields::close(state);
-    let input = field || state.shared.focus == Panel::Cli && state.cli.cancel();
+    let focused = state.panels.of_mut(state.shared.focus);
+    let field = focused.field().is_some();
+    if field {
+        focused.close_field();
+    }
+    let input = field || state.shared.focus == Panel::Cli && state.panels.cli.console.cancel();
     let upload = state.shared.editor.fly_after_upload.take().is_some();
     let edit = state.shared.editor.cancel() | map_edit::leave(&mut state.shared);
     let what = if popup || input || upload || edit { "Cancelled. " } else { "" };
@@ -284,18 +292,25 @@ fn act(state: &mut AppState, action: Action) -> Vec<Effect> {
 /// # Errors
 /// Returns the reason for a refusal, in a sentence.
 pub fn run_line(state: &mut AppState, line: &str) -> Result<Vec<Effect>, String> {
+    let requests = command::run(&mut state.shared, line)?;
+    Ok(carry_out(state, requests))
+}
+
+/// Carries out the requests of a panel or a command. Returns the effects.
+fn carry_out(state: &mut AppState, requests: Vec<Request>) -> Vec<Effect> {
     let mut effects = Vec::new();
-    for request in command::run(&mut state.shared, line)? {
+    for request in requests {
         match request {
             Request::Act(action) => effects.extend(perform(state, action)),
             Request::Effect(effect) => effects.push(effect),
+            Request::Open(popup) => state.popups.push(popup),
             Request::Cli { line, is_reported } => {
-                state.cli.queue(line, is_reported);
-                effects.extend(run_cli(state));
+                state.panels.cli.console.queue(line, is_reported);
+                effects.extend(state.panels.cli.console.next_effect());
             }
         }
     }
-    Ok(effects)
+    effects
 }
 
 /// Carries out an action that is enabled.
@@ -336,10 +351,6 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
         Action::LookAhead => forecast::toggle_look_ahead(&mut state.shared),
         Action::WhatIf => {
             state.popups.push(Popup::WhatIf { selected: 0 });
-            Vec::new()
-        }
-        Action::ExplainGuards => {
-            state.popups.push(Popup::Guards { selected: 0 });
             Vec::new()
         }
         Action::Pause => vec![Effect::Send(Command::Pause(!state.shared.view.paused))],
@@ -389,12 +400,11 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
         }
         Action::Back => {
             // Leave the text first, so that the next keys are not typed.
-            if state.shared.focus.takes_text() {
+            let focus_now = state.shared.focus;
+            if focus_now.takes_text() {
                 focus(&mut state.shared, Panel::Map);
-            } else if state.shared.focus == Panel::Graphs && state.shared.graphs.leave_cursor() {
-                // Leaving the cursor was the step.
-            } else if state.shared.focus == Panel::Log && !state.log_view.search.is_empty() {
-                state.log_view.end_search();
+            } else if state.panels.of_mut(focus_now).go_back(&mut state.shared) {
+                // That was the step.
             } else if !state.shared.forecast.dismiss()
                 && !state.shared.editor.cancel()
                 && !map_edit::leave(&mut state.shared)
@@ -415,78 +425,13 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
         Action::Quit => plan_popup::quit(&mut state.shared),
         Action::Cancel => cancel(state),
         Action::Suspend => vec![Effect::Suspend],
-        Action::PanUp => map_edit::arrow(&mut state.shared, 0.0, -1.0),
-        Action::PanDown => map_edit::arrow(&mut state.shared, 0.0, 1.0),
-        Action::PanLeft => map_edit::arrow(&mut state.shared, -1.0, 0.0),
-        Action::PanRight => map_edit::arrow(&mut state.shared, 1.0, 0.0),
-        Action::ZoomIn => zoom_map(&mut state.shared, 1.0 / ZOOM_STEP),
-        Action::ZoomOut => zoom_map(&mut state.shared, ZOOM_STEP),
-        Action::Follow => follow(&mut state.shared),
-        Action::Fit => {
-            state.shared.map.mode = MapMode::Fit;
-            Vec::new()
-        }
-        Action::ChannelUp => {
-            state.channel = state.channel.saturating_sub(1);
-            Vec::new()
-        }
-        Action::ChannelDown => {
-            state.channel = (state.channel + 1).min(crate::signals::RC_CHANNELS - 1);
-            Vec::new()
-        }
-        Action::Lower => transmitter::nudge(&mut state.shared, state.channel, -10),
-        Action::Raise => transmitter::nudge(&mut state.shared, state.channel, 10),
-        Action::LowerMuch => transmitter::nudge(&mut state.shared, state.channel, -100),
-        Action::RaiseMuch => transmitter::nudge(&mut state.shared, state.channel, 100),
-        Action::Flip => transmitter::flip(&mut state.shared, state.channel),
-        Action::Record => stick_recording::toggle_recording(&mut state.shared),
-        Action::Play => stick_recording::toggle_playing(&mut state.shared),
-        Action::CursorBack | Action::CursorOn => {
-            state.shared.graphs.move_cursor(if action == Action::CursorOn { 1.0 } else { -1.0 });
-            Vec::new()
-        }
-        Action::SpanLess => {
-            state.shared.graphs.change_span(-1);
-            Vec::new()
-        }
-        Action::SpanMore => {
-            state.shared.graphs.change_span(1);
-            Vec::new()
-        }
-        Action::ChoosePlots => {
-            state.popups.push(Popup::Plots { selected: 0 });
-            Vec::new()
-        }
-        Action::CursorOff => {
-            state.shared.graphs.leave_cursor();
-            Vec::new()
-        }
-        Action::KnobUp => {
-            state.knobs.selected = state.knobs.selected.saturating_sub(1);
-            Vec::new()
-        }
-        Action::KnobDown => {
-            let last = knobs::knobs(&state.shared).len().saturating_sub(1);
-            state.knobs.selected = (state.knobs.selected + 1).min(last);
-            Vec::new()
-        }
-        Action::KnobLess => state.knobs.turn(&mut state.shared, -1),
-        Action::KnobMore => state.knobs.turn(&mut state.shared, 1),
-        Action::KnobEnter => state.knobs.enter(&mut state.shared),
-        Action::KnobEdit => state.knobs.edit(),
-        Action::KnobDefault => state.knobs.reset(&mut state.shared),
-        Action::Search => {
-            focus(&mut state.shared, Panel::Log);
-            state.log_view.begin_search();
-            Vec::new()
-        }
-        Action::NextMatch | Action::PreviousMatch => {
-            state.log_view.next_match(&mut state.shared, action == Action::PreviousMatch);
-            Vec::new()
-        }
-        Action::Filter => {
-            state.log_view.cycle_filter();
-            Vec::new()
+        Action::Panel(own) => {
+            let panel = match action::spec_of(action).map(|spec| spec.context) {
+                Some(Context::In(panel)) => panel,
+                _ => state.shared.focus,
+            };
+            let requests = state.panels.of_mut(panel).act(&mut state.shared, own);
+            carry_out(state, requests)
         }
         Action::ScrollUp => scroll(state, -1),
         Action::ScrollDown => scroll(state, 1),

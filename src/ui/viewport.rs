@@ -3,6 +3,8 @@
 //! Places are metres north and east of the boot place. A cell is taken to be twice as high as wide, so a row spans
 //! twice the metres of a column.
 
+pub(super) mod moves;
+
 use ratatui::layout::Rect;
 
 use super::map_point::origin::origin;

@@ -198,7 +198,7 @@ fn lines_of_earlier_runs_are_recalled_and_new_ones_kept_for_the_next() {
     assert_eq!(kept(&mut state), [(LineField::Command, "speed 4".to_owned())]);
     key(&mut state, KeyCode::Char('5'));
     key(&mut state, KeyCode::Up);
-    assert_eq!(state.cli.input.value(), "status");
+    assert_eq!(state.panels.cli.console.input.value(), "status");
     assert_eq!(kept(&mut state), [], "the same line again is one line");
     type_text(&mut state, "version");
     assert_eq!(kept(&mut state), [(LineField::Cli, "version".to_owned())]);

@@ -6,7 +6,7 @@ use betadeck::fc::{Access, NOTHING_MOVES, NOTHING_SIMULATED, RemoteState, Remote
 use betadeck::session::Command;
 use betadeck::session::command::CliOutput;
 use betadeck::telemetry::ArmingFlag;
-use betadeck::ui::action::{self, Action};
+use betadeck::ui::action::{self, Action, PanelAction};
 use betadeck::ui::{AppState, Effect, Msg, Panel, draw, update};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::Terminal;
@@ -123,7 +123,9 @@ fn a_refusal_drops_what_was_kept_back_and_the_lines_after_it() {
         state.shared.slots.visit(Panel::Cli);
         assert!(update(&mut state, Msg::Paste("set a = 1\nset b = 2\nsave\n".to_owned())).is_empty());
         assert!(press(&mut state, leave).is_empty());
-        assert!(!is_asked(&state) && !state.cli.waiting && state.cli.queued() == 0);
+        assert!(
+            !is_asked(&state) && !state.panels.cli.console.waiting && state.panels.cli.console.queued() == 0
+        );
         assert!(text(&state).contains("not run: changes were not permitted"), "{}", text(&state));
         assert!(matches!(&enter(&mut state, "status")[..], [Effect::Cli(_)]), "the panel goes on");
     }
@@ -186,14 +188,16 @@ fn nothing_moves_a_real_craft() {
         Action::HoldHere,
         Action::Resume,
         Action::CutRc,
-        Action::Raise,
-        Action::LowerMuch,
-        Action::Flip,
-        Action::Play,
+        Action::Panel(PanelAction::Raise),
+        Action::Panel(PanelAction::LowerMuch),
+        Action::Panel(PanelAction::Flip),
+        Action::Panel(PanelAction::Play),
     ] {
         assert_eq!(action::enabled(&state.shared, moving), Err(NOTHING_MOVES.to_owned()), "{moving:?}");
     }
-    for simulated in [Action::ResetCraft, Action::KnobMore, Action::KnobEdit] {
+    for simulated in
+        [Action::ResetCraft, Action::Panel(PanelAction::KnobMore), Action::Panel(PanelAction::KnobEdit)]
+    {
         assert_eq!(
             action::enabled(&state.shared, simulated),
             Err(NOTHING_SIMULATED.to_owned()),

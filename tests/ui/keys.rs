@@ -174,14 +174,14 @@ fn scrolling_ends_where_the_oldest_line_is_visible_and_turns_at_once() {
         state.shared.notify(betadeck::ui::Severity::Info, format!("{line} {long}"));
     }
     key(&mut state, KeyCode::End);
-    let end = state.log_view.scroll;
+    let end = state.panels.log.view.scroll;
     assert!(end > 30, "{end}");
     press(&mut state, 'j');
-    assert_eq!(state.log_view.scroll, end, "there is no more");
+    assert_eq!(state.panels.log.view.scroll, end, "there is no more");
     press(&mut state, 'k');
-    assert_eq!(state.log_view.scroll, end - 1);
+    assert_eq!(state.panels.log.view.scroll, end - 1);
     key(&mut state, KeyCode::Home);
-    assert_eq!(state.log_view.scroll, 0);
+    assert_eq!(state.panels.log.view.scroll, 0);
 }
 
 #[test]
@@ -211,7 +211,7 @@ fn ctrl_c_cancels_once_and_quits_twice_within_two_seconds() {
     };
     at(&mut state, 100_000);
     assert!(ctrl_c(&mut state).is_empty());
-    assert_eq!(state.cli.input.value(), "");
+    assert_eq!(state.panels.cli.console.input.value(), "");
     at(&mut state, 103_000);
     assert!(ctrl_c(&mut state).is_empty(), "too late for the second");
     at(&mut state, 104_000);
@@ -242,7 +242,7 @@ fn tab_completes_in_the_cli_and_moves_on_when_there_is_nothing_to_complete() {
         press(&mut state, c);
     }
     key(&mut state, KeyCode::Tab);
-    assert_eq!(state.cli.input.value(), "set ap_position_");
+    assert_eq!(state.panels.cli.console.input.value(), "set ap_position_");
     ctrl_c(&mut state);
     key(&mut state, KeyCode::Tab);
     assert_eq!(state.shared.focus, Panel::Graphs);
@@ -335,12 +335,12 @@ fn a_dragged_slider_stays_the_one_that_was_pressed() {
     let rc = layout::screen(&state.shared).and_then(|screen| screen.panel(Panel::Rc)).expect("visible");
     let at = |kind, column, row| Msg::Mouse(MouseEvent { kind, column, row, modifiers: KeyModifiers::NONE });
     let (down, drag) = (MouseEventKind::Down(MouseButton::Left), MouseEventKind::Drag(MouseButton::Left));
-    state.channel = 15;
+    state.panels.rc.channel = 15;
     let row = rc.y + 2;
     let pressed = sticks(&update(&mut state, at(down, rc.x + 25, row))).expect("a slider");
-    let channel = state.channel;
+    let channel = state.panels.rc.channel;
     let dragged = sticks(&update(&mut state, at(drag, rc.x + 27, row + 1))).expect("the slider");
-    assert_eq!(state.channel, channel);
+    assert_eq!(state.panels.rc.channel, channel);
     let moved: Vec<usize> = (0..16).filter(|&at| dragged[at] != pressed[at]).collect();
     assert_eq!(moved, [channel]);
 }

@@ -96,7 +96,7 @@ fn numbers_are_typed_in_the_units_that_are_shown() {
     key(&mut state, KeyCode::Enter);
     type_text(&mut state, "q");
     key(&mut state, KeyCode::Esc);
-    assert!(state.knobs.field.is_none() && state.shared.focus == Panel::World);
+    assert!(state.panels.world.knobs.field.is_none() && state.shared.focus == Panel::World);
 }
 
 /// Moves the selection to the fault of this name.
@@ -134,7 +134,7 @@ fn ctrl_c_takes_back_what_is_typed() {
     key(&mut state, KeyCode::Enter);
     type_text(&mut state, "99");
     update(&mut state, Msg::Key(KeyEvent::new(KeyCode::Char('c'), KeyModifiers::CONTROL)));
-    assert!(state.knobs.field.is_none());
+    assert!(state.panels.world.knobs.field.is_none());
     assert!(state.shared.notice.is_some_and(|notice| notice.text.starts_with("Cancelled.")));
 }
 

@@ -239,7 +239,7 @@ fn long_lines_of_the_cli_wrap_and_scroll_to_the_first() {
     press(&mut state, '5');
     for line in 0..30 {
         let text = format!("waypoint insert {line} 40.4640000 -79.5175000 5000 0 FLYOVER {line} ORBIT\r\n");
-        state.cli.answer(Some(&CliOutput { text, ..CliOutput::default() }));
+        state.panels.cli.console.answer(Some(&CliOutput { text, ..CliOutput::default() }));
     }
     let screen = text(&state);
     assert!(screen.contains("29 ORBIT") && !screen.contains('…'), "{screen}");

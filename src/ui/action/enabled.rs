@@ -10,7 +10,7 @@ use crate::ui::shared::Shared;
 use crate::ui::stick_recording::keys as stick_recording;
 use crate::ui::transmitter;
 
-use super::{Action, real_craft};
+use super::{Action, PanelAction, real_craft};
 
 /// Checks that the action is possible now.
 ///
@@ -71,7 +71,7 @@ pub fn enabled(state: &Shared, action: Action) -> Result<(), String> {
             let switch = transmitter::switch(state, Mode::Autopilot);
             switch.map(drop).map_err(|why| or_not_known_yet(state, why))
         }
-        Action::Play => stick_recording::can_play(state),
+        Action::Panel(PanelAction::Play) => stick_recording::can_play(state),
         Action::Throttle if state.view.vehicle.is_engaged() => Err(format!(
             "The autopilot has the throttle: `{}` switches it off.",
             state.key(Action::Autopilot)
@@ -179,11 +179,11 @@ fn steers(action: Action) -> bool {
             | Action::CutRc
             | Action::Upload
             | Action::ResetCraft
-            | Action::Lower
-            | Action::Raise
-            | Action::LowerMuch
-            | Action::RaiseMuch
-            | Action::Flip
+            | Action::Panel(PanelAction::Lower)
+            | Action::Panel(PanelAction::Raise)
+            | Action::Panel(PanelAction::LowerMuch)
+            | Action::Panel(PanelAction::RaiseMuch)
+            | Action::Panel(PanelAction::Flip)
     )
 }
 
@@ -243,7 +243,9 @@ mod tests {
         let mut state = Shared::bare((80, 24), SessionView::default());
         assert_eq!(enabled(&state, Action::Earlier), Err(NOT_RECORDED.to_owned()));
         state.view.timeline = Some(TimelineView { rewound: true, ..TimelineView::default() });
-        for action in [Action::Fly, Action::Arm, Action::CutRc, Action::Upload, Action::Raise] {
+        for action in
+            [Action::Fly, Action::Arm, Action::CutRc, Action::Upload, Action::Panel(PanelAction::Raise)]
+        {
             assert_eq!(enabled(&state, action), Err(REWOUND.to_owned()));
         }
         for action in [Action::Pause, Action::Earlier, Action::FlyOn, Action::Zoom, Action::Quit] {

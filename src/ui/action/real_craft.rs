@@ -2,7 +2,7 @@
 
 use crate::fc::{NOTHING_MOVES, NOTHING_SIMULATED, RemoteState, RemoteView};
 
-use super::{Action, EditAction};
+use super::{Action, EditAction, PanelAction};
 
 /// The refusal for a flight controller without waypoints.
 const NO_PLANS: &str = "This flight controller has no waypoints: build its firmware with flight plans, \
@@ -46,13 +46,13 @@ fn moves(action: Action) -> bool {
             | Action::HoldHere
             | Action::Resume
             | Action::CutRc
-            | Action::Lower
-            | Action::Raise
-            | Action::LowerMuch
-            | Action::RaiseMuch
-            | Action::Flip
-            | Action::Record
-            | Action::Play
+            | Action::Panel(PanelAction::Lower)
+            | Action::Panel(PanelAction::Raise)
+            | Action::Panel(PanelAction::LowerMuch)
+            | Action::Panel(PanelAction::RaiseMuch)
+            | Action::Panel(PanelAction::Flip)
+            | Action::Panel(PanelAction::Record)
+            | Action::Panel(PanelAction::Play)
     )
 }
 
@@ -61,10 +61,10 @@ fn changes_world(action: Action) -> bool {
     matches!(
         action,
         Action::ResetCraft
-            | Action::KnobLess
-            | Action::KnobMore
-            | Action::KnobEnter
-            | Action::KnobEdit
-            | Action::KnobDefault
+            | Action::Panel(PanelAction::KnobLess)
+            | Action::Panel(PanelAction::KnobMore)
+            | Action::Panel(PanelAction::KnobEnter)
+            | Action::Panel(PanelAction::KnobEdit)
+            | Action::Panel(PanelAction::KnobDefault)
     )
 }

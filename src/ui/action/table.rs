@@ -1,13 +1,14 @@
 //! The table of actions: name, title, help and default keys.
 
-use super::{Action, Context, EditAction, Spec};
+use super::{Action, Context, EditAction, Spec, panels};
+use crate::ui::panel;
 
 mod general;
+mod lists;
 mod map;
-mod panels;
 mod plan;
 
-const fn spec(
+pub(super) const fn spec(
     action: Action,
     name: &'static str,
     title: &'static str,
@@ -30,7 +31,28 @@ const fn edit(
 }
 
 /// The parts of the table, in the order help shows them.
-const PARTS: [&[Spec]; 4] = [general::ROWS, map::ROWS, plan::ROWS, panels::ROWS];
+const PARTS: [&[Spec]; 8] = [
+    general::FLIGHT,
+    &SHOW,
+    general::SCREEN,
+    panels::MAP,
+    map::ROWS,
+    plan::ROWS,
+    panels::OTHERS,
+    lists::ROWS,
+];
+
+/// The actions that show a panel.
+const SHOW: [Spec; panel::ROWS.len()] = {
+    let mut rows = [general::FLIGHT[0]; panel::ROWS.len()];
+    let mut at = 0;
+    while at < rows.len() {
+        let panel::Row { panel, action: (name, title, help), keys, .. } = &panel::ROWS[at];
+        rows[at] = spec(Action::Show(*panel), name, title, help, keys, Context::Global);
+        at += 1;
+    }
+    rows
+};
 
 pub const ACTIONS: &[Spec] = &joined::<{ count() }>();
 

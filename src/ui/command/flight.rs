@@ -6,7 +6,7 @@ use crate::session::Command;
 use crate::telemetry::InFlightCommand;
 use crate::ui::action::{self, Action};
 use crate::ui::forecast;
-use crate::ui::message::{Effect, Request};
+use crate::ui::message::{Effect, Request, requests};
 use crate::ui::shared::Shared;
 use crate::vehicle::VehicleCommand;
 
@@ -17,10 +17,6 @@ pub(super) fn go_to(state: &mut Shared, _: &str, argument: &str) -> Result<Vec<R
         return Ok(vec![Request::Act(Action::GoTo)]);
     }
     Ok(requests(go_to_waypoint(state, argument)?))
-}
-
-fn requests(effects: Vec<Effect>) -> Vec<Request> {
-    effects.into_iter().map(Request::from).collect()
 }
 
 /// Sends the craft to the waypoint with this number.

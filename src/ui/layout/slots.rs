@@ -1,6 +1,6 @@
 //! The places that several panels share.
 
-use crate::ui::panel::Panel;
+use crate::ui::panel::{Panel, Place};
 
 /// The contents of the places that several panels share: the panel that had the focus last.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,21 +22,21 @@ impl Default for Slots {
 impl Slots {
     /// Remembers that a panel got the focus.
     pub fn visit(&mut self, panel: Panel) {
-        match panel {
-            Panel::Map => self.main = Panel::Map,
-            Panel::Log => {
+        match panel.place() {
+            Place::Main => self.main = panel,
+            Place::Beside => {}
+            Place::Below => {
                 self.main = Panel::Map;
-                self.left = Panel::Log;
+                self.left = panel;
             }
-            Panel::Cli | Panel::Graphs => {
+            Place::Left => {
                 self.main = panel;
                 self.left = panel;
             }
-            Panel::Rc | Panel::Plan | Panel::World => {
+            Place::Right => {
                 self.main = panel;
                 self.right = panel;
             }
-            Panel::State => {}
         }
     }
 }

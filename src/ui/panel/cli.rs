@@ -1,14 +1,20 @@
 //! 5 CLI: the firmware's command line, with completion and the range of the setting below the prompt.
 
+use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
+use crate::ui::action::Action;
 use crate::ui::console::{CliLineKind, CliState};
+use crate::ui::editor::FileRequest;
 use crate::ui::formatting::cut;
-use crate::ui::panel::Panel;
+use crate::ui::history::LineField;
+use crate::ui::message::{Effect, Request, requests};
+use crate::ui::panel::{Content, Panel};
 use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
 
+use super::content::scrolled;
 use super::row;
 use crate::ui::text_wrap::{fitting, folded, wrapped};
 
@@ -22,8 +28,60 @@ const PROMPT: &str = "# ";
 const WELCOME: &str =
     "The firmware's own command line. Type `help`, paste a `diff all`; Tab completes, Esc leaves.";
 
+/// The state of the CLI panel.
+#[derive(Debug, Default)]
+pub struct CliPanel {
+    pub console: CliState,
+}
+
+impl CliPanel {
+    /// Returns the panel with the lines entered in earlier runs.
+    pub(super) fn with_history(lines: &[String]) -> Self {
+        Self { console: CliState::with_history(lines) }
+    }
+}
+
+impl Content for CliPanel {
+    fn title(&self, state: &Shared) -> String {
+        title(&self.console, state)
+    }
+
+    fn draw(&self, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+        draw(&self.console, state, area, buffer)
+    }
+
+    fn key(&mut self, state: &mut Shared, event: KeyEvent) -> Vec<Request> {
+        match event.code {
+            KeyCode::Enter => {
+                let entered = self.console.enter();
+                let keep = entered.map(|line| Effect::Files(FileRequest::KeepLine(LineField::Cli, line)));
+                return requests(self.console.next_effect().into_iter().chain(keep).collect());
+            }
+            KeyCode::Tab if self.console.input.is_empty() => return vec![Request::Act(Action::Next)],
+            KeyCode::Tab => self.console.complete(state.cli_help),
+            KeyCode::Up => self.console.older(),
+            KeyCode::Down => self.console.newer(),
+            KeyCode::PageUp => return vec![Request::Act(Action::PageUp)],
+            KeyCode::PageDown => return vec![Request::Act(Action::PageDown)],
+            _ => {
+                if self.console.input.key(event) {
+                    self.console.candidates.clear();
+                    self.console.scroll = 0;
+                }
+            }
+        }
+        Vec::new()
+    }
+
+    fn scroll(&mut self, state: &mut Shared, area: Rect, by: isize) {
+        // The newest line is at the bottom, so scrolling up increases its position.
+        let last = last_scroll(&self.console, state, area);
+        scrolled(&mut self.console.scroll, by.saturating_neg(), last);
+    }
+}
+
 /// Returns the title with the current activity.
-pub(crate) fn title(cli: &CliState, state: &Shared) -> String {
+fn title(cli: &CliState, state: &Shared) -> String {
     let name = state.panel_title(Panel::Cli);
     match (cli.queued(), cli.waiting, cli.scroll) {
         (0, false, 0) => name.to_owned(),
@@ -34,7 +92,7 @@ pub(crate) fn title(cli: &CliState, state: &Shared) -> String {
 }
 
 /// Draws the inside. Returns the position of the cursor.
-pub(crate) fn draw(cli: &CliState, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+fn draw(cli: &CliState, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     if area.height < 2 || area.width < 4 {
         return None;
     }
@@ -74,7 +132,7 @@ pub(crate) fn draw(cli: &CliState, state: &Shared, area: Rect, buffer: &mut Buff
 }
 
 /// Returns the greatest scroll position, at which the oldest line is the first on the screen.
-pub(crate) fn last_scroll(cli: &CliState, state: &Shared, area: Rect) -> usize {
+fn last_scroll(cli: &CliState, state: &Shared, area: Rect) -> usize {
     let lines_of = &cli.lines;
     let height = usize::from(area.height).saturating_sub(1 + help_rows(cli, state, area).len());
     let rows = lines_of.iter().map(|entry| lines(entry, usize::from(area.width)).len());

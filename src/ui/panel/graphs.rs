@@ -1,7 +1,7 @@
 //! 6 Graphs: signals over time, in plots below each other with one time axis, and a cursor.
 
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Position, Rect};
 use ratatui::text::{Line, Span};
 use ratatui::widgets::Widget as _;
 use ratatui::widgets::canvas::{Canvas, Line as CanvasLine};
@@ -9,10 +9,12 @@ use ratatui::widgets::canvas::{Canvas, Line as CanvasLine};
 use crate::signals::SimTime;
 use crate::telemetry::quantity::Dimension;
 use crate::telemetry::signal::Signal;
-use crate::ui::action::Action;
+use crate::ui::action::{Action, PanelAction};
 use crate::ui::formatting::{clock, fixed};
 use crate::ui::graphs::{PLOTS, Plot, Sample, Stroke};
-use crate::ui::panel::Panel;
+use crate::ui::message::Request;
+use crate::ui::panel::{Content, Hint, Panel};
+use crate::ui::popup::Popup;
 use crate::ui::popup::frame::popup;
 use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
@@ -24,8 +26,50 @@ const AXIS: u16 = 8;
 /// The least number of rows of a plot with its title.
 const LEAST_ROWS: u16 = 4;
 
+/// The Graphs panel; its signals and its cursor are shared.
+#[derive(Debug, Default)]
+pub(super) struct GraphsPanel;
+
+impl Content for GraphsPanel {
+    fn title(&self, state: &Shared) -> String {
+        title(state)
+    }
+
+    fn draw(&self, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+        draw(state, area, buffer);
+        None
+    }
+
+    fn hints(&self, _: &Shared) -> Vec<Hint> {
+        vec![
+            (&[Action::Panel(PanelAction::CursorBack), Action::Panel(PanelAction::CursorOn)], "cursor"),
+            (&[Action::Panel(PanelAction::SpanLess), Action::Panel(PanelAction::SpanMore)], "time"),
+            (&[Action::Panel(PanelAction::ChoosePlots)], "choose"),
+        ]
+    }
+
+    fn act(&mut self, state: &mut Shared, action: PanelAction) -> Vec<Request> {
+        match action {
+            PanelAction::CursorBack => state.graphs.move_cursor(-1.0),
+            PanelAction::CursorOn => state.graphs.move_cursor(1.0),
+            PanelAction::SpanLess => state.graphs.change_span(-1),
+            PanelAction::SpanMore => state.graphs.change_span(1),
+            PanelAction::ChoosePlots => return vec![Request::Open(Popup::Plots { selected: 0 })],
+            PanelAction::CursorOff => {
+                state.graphs.leave_cursor();
+            }
+            _ => {}
+        }
+        Vec::new()
+    }
+
+    fn go_back(&mut self, state: &mut Shared) -> bool {
+        state.graphs.leave_cursor()
+    }
+}
+
 /// Returns the title with the shown time span and the cursor.
-pub(crate) fn title(state: &Shared) -> String {
+fn title(state: &Shared) -> String {
     let span = state.graphs.span_s();
     let span = if span < 120.0 { format!("{span:.0} s") } else { format!("{:.0} min", span / 60.0) };
     let cursor = state
@@ -35,7 +79,7 @@ pub(crate) fn title(state: &Shared) -> String {
     format!("{} — {span}{cursor}", state.panel_title(Panel::Graphs))
 }
 
-pub(crate) fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {
+fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let plots: Vec<&Plot> = state.graphs.plots().collect();
     if plots.is_empty() {

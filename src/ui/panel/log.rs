@@ -1,25 +1,92 @@
 //! 8 Log: every event and notice, the newest on top, with search and filter.
 
+use crossterm::event::KeyEvent;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::text::{Line, Span};
 
-use crate::ui::action::Action;
+use crate::ui::action::{Action, PanelAction};
 use crate::ui::event_log::LogLine;
 use crate::ui::formatting::clock_ms;
 use crate::ui::log_view::LogView;
-use crate::ui::panel::Panel;
+use crate::ui::message::Request;
+use crate::ui::panel::{Content, Hint, Panel};
 use crate::ui::shared::Shared;
+use crate::ui::text_field::TextField;
 use crate::ui::theme::Role;
 
+use super::content::scrolled;
 use super::{line, row, span};
 use crate::ui::text_wrap::{fitting, wrapped};
 
 /// The width of time and mark before the text.
 const STAMP: usize = 12;
 
+/// The state of the Log panel.
+#[derive(Debug, Default)]
+pub struct LogPanel {
+    pub view: LogView,
+}
+
+impl Content for LogPanel {
+    fn title(&self, state: &Shared) -> String {
+        title(&self.view, state)
+    }
+
+    fn draw(&self, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+        draw(&self.view, state, area, buffer)
+    }
+
+    fn hints(&self, _: &Shared) -> Vec<Hint> {
+        vec![
+            (&[Action::Panel(PanelAction::Search)], "search"),
+            (&[Action::Panel(PanelAction::Filter)], "filter"),
+        ]
+    }
+
+    fn act(&mut self, state: &mut Shared, action: PanelAction) -> Vec<Request> {
+        match action {
+            PanelAction::Search => {
+                self.view.begin_search();
+                return vec![Request::Act(Action::Show(Panel::Log))];
+            }
+            PanelAction::NextMatch => self.view.next_match(state, false),
+            PanelAction::PreviousMatch => self.view.next_match(state, true),
+            PanelAction::Filter => self.view.cycle_filter(),
+            _ => {}
+        }
+        Vec::new()
+    }
+
+    fn key(&mut self, state: &mut Shared, event: KeyEvent) -> Vec<Request> {
+        self.view.search_key(state, event);
+        Vec::new()
+    }
+
+    fn field(&mut self) -> Option<&mut TextField> {
+        self.view.typing.then_some(&mut self.view.search)
+    }
+
+    fn close_field(&mut self) {
+        self.view.end_search();
+    }
+
+    fn go_back(&mut self, _: &mut Shared) -> bool {
+        let has_search = !self.view.search.is_empty();
+        if has_search {
+            self.view.end_search();
+        }
+        has_search
+    }
+
+    fn scroll(&mut self, state: &mut Shared, area: Rect, by: isize) {
+        let last = last_scroll(&self.view, state, area);
+        scrolled(&mut self.view.scroll, by, last);
+    }
+}
+
 /// Returns the title with the number of lines above the first shown one, the filter and the search.
-pub(crate) fn title(view: &LogView, state: &Shared) -> String {
+fn title(view: &LogView, state: &Shared) -> String {
     let mut title = state.panel_title(Panel::Log).to_owned();
     let newer = match view.scroll {
         0 => String::new(),
@@ -51,14 +118,14 @@ fn list(view: &LogView, state: &Shared, area: Rect) -> Rect {
 }
 
 /// Returns the greatest scroll position, at which the oldest line is the last on the screen.
-pub(crate) fn last_scroll(view: &LogView, state: &Shared, area: Rect) -> usize {
+fn last_scroll(view: &LogView, state: &Shared, area: Rect) -> usize {
     let rows = view.newest_first(&state.log).rev().map(|entry| wrapped(&entry.text, text_width(area)).len());
     let fitting = fitting(rows, usize::from(list(view, state, area).height));
     view.newest_first(&state.log).count().saturating_sub(fitting)
 }
 
 /// Draws the inside. Returns the position of the cursor while a search is typed.
-pub(crate) fn draw(view: &LogView, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+fn draw(view: &LogView, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     let theme = &state.theme;
     let list = list(view, state, area);
     draw_lines(view, state, list, buffer);
@@ -76,7 +143,9 @@ fn draw_lines(view: &LogView, state: &Shared, area: Rect, buffer: &mut Buffer) {
     if entries.peek().is_none() {
         let text = match (state.log.len(), view.filter_name()) {
             (0, _) => "Nothing has happened yet.".to_owned(),
-            (_, filter) => format!("No {filter}: `{}` shows everything.", state.key(Action::Filter)),
+            (_, filter) => {
+                format!("No {filter}: `{}` shows everything.", state.key(Action::Panel(PanelAction::Filter)))
+            }
         };
         row(buffer, area, 0, theme, Role::Dim, &text);
         return;

@@ -1,26 +1,152 @@
 //! 1 Map: metres, north up.
 
+use crossterm::event::{KeyModifiers, MouseEvent};
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Position, Rect};
 use ratatui::widgets::Widget as _;
 use ratatui::widgets::canvas::Canvas;
 
 use crate::geo::LocalFrame;
 use crate::plan::{FlightPlan, Waypoint, WaypointType};
 use crate::telemetry::PlanSource;
-use crate::ui::action::Action;
-use crate::ui::map_edit;
+use crate::ui::action::{self, Action, EditAction, PanelAction};
+use crate::ui::map_edit::{self, actions};
 use crate::ui::map_point::origin::origin;
 use crate::ui::map_point::{self, MapPoint, to_map};
 use crate::ui::map_state::{MapItem, MapMode, Moving};
-use crate::ui::panel::Panel;
+use crate::ui::message::{Request, requests};
+use crate::ui::panel::{Content, Hint, Panel};
+use crate::ui::popup::map_menu::MapChoice;
+use crate::ui::popup::{MapMenu, Popup};
 use crate::ui::shared::Shared;
 use crate::ui::viewport::Viewport;
+use crate::ui::viewport::moves::{self, ZOOM_STEP};
 
 mod labels;
 mod lines;
 mod marks;
 mod track_line;
+
+/// The mouse on the map; the window and the edit are shared.
+#[derive(Debug, Default)]
+pub(super) struct MapPanel {
+    /// The cell where the mouse picked up the map, and the middle of the map then.
+    dragged: Option<(u16, u16, MapPoint)>,
+}
+
+impl Content for MapPanel {
+    fn title(&self, state: &Shared) -> String {
+        title(state)
+    }
+
+    fn draw(&self, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+        draw(state, area, buffer);
+        None
+    }
+
+    fn hints(&self, state: &Shared) -> Vec<Hint> {
+        if state.map.edit.is_some() {
+            let pick = if state.map.moving.is_some() { "put down" } else { "pick" };
+            return vec![
+                (&[Action::Edit(EditAction::Pick)], pick),
+                (&[Action::Edit(EditAction::AddOnMap)], "insert"),
+                (&[Action::Edit(EditAction::DeleteOnMap)], "delete"),
+                (&[Action::Edit(EditAction::Undo)], "undo"),
+                (&[Action::Edit(EditAction::OnMap)], "done"),
+            ];
+        }
+        if !state.zoomed {
+            return Vec::new();
+        }
+        vec![
+            (&[Action::Panel(PanelAction::ZoomIn), Action::Panel(PanelAction::ZoomOut)], "zoom"),
+            (&[Action::Panel(PanelAction::Follow)], "follow"),
+            (&[Action::Panel(PanelAction::Fit)], "fit"),
+        ]
+    }
+
+    fn act(&mut self, state: &mut Shared, action: PanelAction) -> Vec<Request> {
+        match action {
+            PanelAction::PanUp => actions::arrow(state, 0.0, -1.0),
+            PanelAction::PanDown => actions::arrow(state, 0.0, 1.0),
+            PanelAction::PanLeft => actions::arrow(state, -1.0, 0.0),
+            PanelAction::PanRight => actions::arrow(state, 1.0, 0.0),
+            PanelAction::ZoomIn => moves::zoom_map(state, 1.0 / ZOOM_STEP),
+            PanelAction::ZoomOut => moves::zoom_map(state, ZOOM_STEP),
+            PanelAction::Follow => moves::follow(state),
+            PanelAction::Fit => state.map.mode = MapMode::Fit,
+            _ => {}
+        }
+        Vec::new()
+    }
+
+    fn wheel(&mut self, state: &mut Shared, area: Rect, event: &MouseEvent, direction: isize) {
+        let factor = if direction < 0 { 1.0 / ZOOM_STEP } else { ZOOM_STEP };
+        let view = Viewport::of(state, area);
+        state.map.mode = match state.map.mode {
+            MapMode::Follow(scale) => MapMode::Follow(scale * factor),
+            MapMode::Fit | MapMode::Free { .. } => view.zoomed(factor, view.place(event.column, event.row)),
+        };
+    }
+
+    /// Picks up a waypoint, home or the fence under the mouse, or starts dragging the map. A press with Ctrl adds a
+    /// waypoint.
+    fn press(&mut self, state: &mut Shared, area: Rect, event: &MouseEvent) -> Vec<Request> {
+        let view = Viewport::of(state, area);
+        let place = view.place(event.column, event.row);
+        if event.modifiers.contains(KeyModifiers::CONTROL) {
+            return requests(actions::add_at(state, place));
+        }
+        let item = map_edit::item_at(state, place, view.scale);
+        // Home and fence move only in edit mode, because they are in areas where the map is dragged, too.
+        let item = item.filter(|item| matches!(item, MapItem::Waypoint(_)) || state.map.edit.is_some());
+        match item.filter(|_| state.view.vehicle.active_plan.is_none() || state.map.edit.is_some()) {
+            Some(item) => actions::pick_up(state, item, place, true),
+            None => self.dragged = Some((event.column, event.row, view.centre)),
+        }
+        Vec::new()
+    }
+
+    fn drag(&mut self, state: &mut Shared, area: Rect, event: &MouseEvent) -> Vec<Request> {
+        let view = Viewport::of(state, area);
+        if let Some(moving) = &mut state.map.moving {
+            // The window stays still meanwhile.
+            state.map.mode = MapMode::Free { n: view.centre.n, e: view.centre.e, scale: view.scale };
+            moving.place = view.place(event.column, event.row);
+            moving.moved = true;
+        } else if let Some((column, row, centre)) = self.dragged {
+            let columns = f64::from(column) - f64::from(event.column);
+            let rows = f64::from(row) - f64::from(event.row);
+            if columns != 0.0 || rows != 0.0 {
+                state.map.mode = Viewport { centre, ..view }.panned(columns, rows);
+            }
+        }
+        Vec::new()
+    }
+
+    fn release(&mut self, state: &mut Shared) -> Vec<Request> {
+        self.dragged = None;
+        let is_moved = state.map.moving.is_some_and(|moving| moving.by_mouse);
+        if is_moved { requests(actions::put_down(state)) } else { Vec::new() }
+    }
+
+    fn menu(&self, state: &Shared, area: Rect, event: &MouseEvent) -> Option<Popup> {
+        let frame = origin(state)?;
+        let view = Viewport::of(state, area);
+        let at = (event.column, event.row);
+        let place = view.place(at.0, at.1);
+        let choices = match map_edit::item_at(state, place, view.scale) {
+            Some(MapItem::Waypoint(index)) => {
+                let can_go = action::enabled(state, Action::GoTo).is_ok() && state.plan_is_on_craft();
+                let go_to = u8::try_from(index).ok().filter(|_| can_go).map(MapChoice::GoTo);
+                let edits = [MapChoice::EditWaypoint(index), MapChoice::DeleteWaypoint(index)];
+                edits.into_iter().chain(go_to).collect()
+            }
+            _ => vec![MapChoice::AddWaypoint, MapChoice::SetHome, MapChoice::SetFence],
+        };
+        Some(Popup::MapMenu(MapMenu::new(map_edit::position(&frame, place), at, choices)))
+    }
+}
 
 /// A waypoint on the ground.
 struct PlacedWaypoint {
@@ -42,7 +168,7 @@ struct Scene {
 }
 
 /// Returns the title with the source of the plan and the map mode.
-pub(crate) fn title(state: &Shared) -> String {
+fn title(state: &Shared) -> String {
     let name = state.panel_title(Panel::Map);
     let source = match &state.view.vehicle.active_plan {
         Some(_) => state.view.vehicle.nav.as_ref().map_or(PlanSource::Stored, |nav| nav.source),
@@ -61,11 +187,13 @@ pub(crate) fn title(state: &Shared) -> String {
     match state.map.mode {
         MapMode::Fit => format!("{name}{source}"),
         MapMode::Follow(_) => format!("{name}{source} — follows"),
-        MapMode::Free { .. } => format!("{name}{source} — {} fits", state.key(Action::Fit)),
+        MapMode::Free { .. } => {
+            format!("{name}{source} — {} fits", state.key(Action::Panel(PanelAction::Fit)))
+        }
     }
 }
 
-pub(crate) fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {
+fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {
     if area.width < 8 || area.height < 4 {
         return;
     }

@@ -3,16 +3,19 @@
 mod profile;
 mod table;
 
+use crossterm::event::MouseEvent;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::text::Line;
 
 use super::{line, row, span};
+use crate::plan::Altitude;
 use crate::plan::review::Finding;
 use crate::ui::action::{Action, EditAction};
 use crate::ui::editor::{Column, findings, settings_in_force};
 use crate::ui::forecast;
-use crate::ui::panel::Panel;
+use crate::ui::message::{Request, requests};
+use crate::ui::panel::{Content, Hint, Panel};
 use crate::ui::shared::Shared;
 use crate::ui::text_wrap::wrapped;
 use crate::ui::theme::Role;
@@ -20,8 +23,82 @@ use crate::ui::theme::Role;
 /// The panel height from which the altitude profile is shown.
 const PROFILE_FROM: u16 = 16;
 
+/// The mouse on the altitude profile; the plan and the cursor are those of the editor.
+#[derive(Debug, Default)]
+pub(super) struct PlanPanel {
+    /// The row where the mouse picked up an altitude, the metres per row, and that altitude, m.
+    dragged: Option<(u16, f64, f64)>,
+}
+
+impl Content for PlanPanel {
+    fn title(&self, state: &Shared) -> String {
+        title(state)
+    }
+
+    fn draw(&self, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+        draw(state, area, buffer)
+    }
+
+    fn hints(&self, _: &Shared) -> Vec<Hint> {
+        vec![
+            (&[Action::Edit(EditAction::Cell)], "edit"),
+            (&[Action::Edit(EditAction::Insert)], "insert"),
+            (&[Action::Edit(EditAction::Delete)], "delete"),
+            (&[Action::Edit(EditAction::Select)], "select"),
+            (&[Action::Edit(EditAction::Undo)], "undo"),
+            (&[Action::Upload], "upload"),
+            (&[Action::Edit(EditAction::Save)], "save"),
+        ]
+    }
+
+    fn scroll(&mut self, state: &mut Shared, _: Rect, by: isize) {
+        state.editor.move_cursor(by, 0);
+    }
+
+    /// Moves the cursor to the value under the mouse, or picks up a waypoint of the altitude profile.
+    fn press(&mut self, state: &mut Shared, area: Rect, event: &MouseEvent) -> Vec<Request> {
+        match target_at(state, area, (event.column, event.row)) {
+            Some(PlanTarget::Cell(row, column)) => state.editor.go_to_cell(row, column),
+            Some(PlanTarget::Altitude(index)) => {
+                state.editor.go_to_cell(index, Column::Altitude);
+                let altitude = state.plan().waypoints.get(index).map(|wp| wp.altitude);
+                state.editor.dragged_altitude = altitude.map(|altitude| (index, altitude));
+                // The current scale: it changes with the altitude.
+                let metres = metres_per_row(state, area).unwrap_or_default();
+                let from_m = altitude.unwrap_or_default().above_home_m();
+                self.dragged = Some((event.row, metres, from_m));
+            }
+            None => {}
+        }
+        Vec::new()
+    }
+
+    /// Drags an altitude of the profile, by whole metres or feet.
+    fn drag(&mut self, state: &mut Shared, _: Rect, event: &MouseEvent) -> Vec<Request> {
+        if let (Some((index, _)), Some((from_row, metres, from_m))) =
+            (state.editor.dragged_altitude, self.dragged)
+        {
+            let rows = f64::from(from_row) - f64::from(event.row);
+            let shown = state.units.length(from_m + rows * metres).round();
+            let altitude_m = state.units.metres(shown);
+            state.editor.dragged_altitude = Some((index, Altitude::above_home(altitude_m)));
+        }
+        Vec::new()
+    }
+
+    fn release(&mut self, state: &mut Shared) -> Vec<Request> {
+        self.dragged = None;
+        let Some((index, altitude)) = state.editor.dragged_altitude.take() else { return Vec::new() };
+        requests(state.editor.edit(&format!("altitude of WP{index}"), |document| {
+            if let Some(wp) = document.plan.waypoints.get_mut(index) {
+                wp.altitude = altitude;
+            }
+        }))
+    }
+}
+
 /// Returns the title: the name of the plan, its unsaved edits, and its differences from the craft.
-pub(crate) fn title(state: &Shared) -> String {
+fn title(state: &Shared) -> String {
     let plan = state.editor.plan();
     let count = state.editor.plans().len();
     let which = if count > 1 { format!(" {}/{count}", state.editor.current() + 1) } else { String::new() };
@@ -49,7 +126,7 @@ pub(crate) fn title(state: &Shared) -> String {
 
 /// An item of the panel under the mouse.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum PlanTarget {
+enum PlanTarget {
     /// A value of the table.
     Cell(usize, Column),
     /// A waypoint of the altitude profile.
@@ -57,7 +134,7 @@ pub(crate) enum PlanTarget {
 }
 
 /// Returns the item at a cell of the screen.
-pub(crate) fn target_at(state: &Shared, area: Rect, at: (u16, u16)) -> Option<PlanTarget> {
+fn target_at(state: &Shared, area: Rect, at: (u16, u16)) -> Option<PlanTarget> {
     if state.plan().waypoints.is_empty() {
         return None;
     }
@@ -67,7 +144,7 @@ pub(crate) fn target_at(state: &Shared, area: Rect, at: (u16, u16)) -> Option<Pl
 }
 
 /// Returns the height of a row of the altitude profile, m.
-pub(crate) fn metres_per_row(state: &Shared, area: Rect) -> Option<f64> {
+fn metres_per_row(state: &Shared, area: Rect) -> Option<f64> {
     let (_, _, profile) = divided(area, below(state, &findings::findings(state), area).len());
     profile::metres_per_row(state, profile?)
 }
@@ -83,7 +160,7 @@ fn divided(area: Rect, below_rows: usize) -> (Rect, Rect, Option<Rect>) {
 }
 
 /// Draws the inside. Returns the position of the cursor while a cell is typed.
-pub(crate) fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     let theme = &state.theme;
     if state.plan().waypoints.is_empty() {
         for (at, text) in nothing_planned(state).iter().enumerate() {

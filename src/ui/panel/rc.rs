@@ -1,16 +1,20 @@
 //! 4 RC: the sixteen channels as bars, with the ranges that switch modes on.
 
+use crossterm::event::MouseEvent;
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Position, Rect};
 
 use crate::signals::{RC_CHANNELS, RcSource};
 use crate::telemetry::snapshot::{CraftView, ModeRange};
-use crate::ui::action::Action;
+use crate::ui::action::{Action, PanelAction};
 use crate::ui::drawing;
 use crate::ui::formatting::cut;
-use crate::ui::panel::Panel;
+use crate::ui::message::{Request, requests};
+use crate::ui::panel::{Content, Hint, Panel};
 use crate::ui::shared::Shared;
+use crate::ui::stick_recording::keys::{toggle_playing, toggle_recording};
 use crate::ui::theme::Role;
+use crate::ui::transmitter;
 
 use super::row;
 
@@ -19,8 +23,68 @@ const LABEL: u16 = 17;
 /// The ends of the bars, µs.
 const SPAN_US: (f64, f64) = (900.0, 2100.0);
 
+/// The state of the RC panel.
+#[derive(Debug, Default)]
+pub struct RcPanel {
+    /// The selected channel.
+    pub channel: usize,
+}
+
+impl Content for RcPanel {
+    fn title(&self, state: &Shared) -> String {
+        title(state)
+    }
+
+    fn draw(&self, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+        draw(self.channel, state, area, buffer);
+        None
+    }
+
+    fn hints(&self, _: &Shared) -> Vec<Hint> {
+        vec![
+            (&[Action::Panel(PanelAction::ChannelUp), Action::Panel(PanelAction::ChannelDown)], "channel"),
+            (&[Action::Panel(PanelAction::Lower), Action::Panel(PanelAction::Raise)], "value"),
+        ]
+    }
+
+    fn act(&mut self, state: &mut Shared, action: PanelAction) -> Vec<Request> {
+        requests(match action {
+            PanelAction::ChannelUp => {
+                self.channel = self.channel.saturating_sub(1);
+                Vec::new()
+            }
+            PanelAction::ChannelDown => {
+                self.channel = (self.channel + 1).min(RC_CHANNELS - 1);
+                Vec::new()
+            }
+            PanelAction::Lower => transmitter::nudge(state, self.channel, -10),
+            PanelAction::Raise => transmitter::nudge(state, self.channel, 10),
+            PanelAction::LowerMuch => transmitter::nudge(state, self.channel, -100),
+            PanelAction::RaiseMuch => transmitter::nudge(state, self.channel, 100),
+            PanelAction::Flip => transmitter::flip(state, self.channel),
+            PanelAction::Record => toggle_recording(state),
+            PanelAction::Play => toggle_playing(state),
+            _ => Vec::new(),
+        })
+    }
+
+    fn press(&mut self, state: &mut Shared, area: Rect, event: &MouseEvent) -> Vec<Request> {
+        let Some((channel, us)) = channel_at(area, self.channel, (event.column, event.row)) else {
+            return Vec::new();
+        };
+        self.channel = channel;
+        us.map_or_else(Vec::new, |us| requests(transmitter::set(state, channel, us)))
+    }
+
+    /// Moves the pressed slider, even if the mouse slips to the one below.
+    fn drag(&mut self, state: &mut Shared, area: Rect, event: &MouseEvent) -> Vec<Request> {
+        let us = value_at(area, self.channel, event.column);
+        us.map_or_else(Vec::new, |us| requests(transmitter::set(state, self.channel, us)))
+    }
+}
+
 /// Returns the title with the source of the channels and the age of the newest frame.
-pub(crate) fn title(state: &Shared) -> String {
+fn title(state: &Shared) -> String {
     let now_s = state.view.vehicle.time.as_secs_f64();
     let recording = state.stick_recording.shown(now_s);
     let name = recording.map_or_else(
@@ -80,11 +144,7 @@ fn bar(row: Rect) -> Rect {
 }
 
 /// Returns the channel at a screen cell, and the value there if the cell is on the bar.
-pub(crate) fn channel_at(
-    area: Rect,
-    selected: usize,
-    (column, line): (u16, u16),
-) -> Option<(usize, Option<u16>)> {
+fn channel_at(area: Rect, selected: usize, (column, line): (u16, u16)) -> Option<(usize, Option<u16>)> {
     let hit = |(_, place): &(usize, Rect)| place.contains((column, line).into());
     let (channel, place) = grid(area, selected).into_iter().find(hit)?;
     let on_bar = column >= bar(place).x;
@@ -93,7 +153,7 @@ pub(crate) fn channel_at(
 
 /// Returns the value of a channel's slider at a screen column, limited to the ends of the bar; `None` if the channel is
 /// not visible.
-pub(crate) fn value_at(area: Rect, channel: usize, column: u16) -> Option<u16> {
+fn value_at(area: Rect, channel: usize, column: u16) -> Option<u16> {
     let (_, place) = grid(area, channel).into_iter().find(|(there, _)| *there == channel)?;
     value_on(bar(place), column)
 }
@@ -137,7 +197,7 @@ fn name(craft: &CraftView, channel: usize) -> String {
     }
 }
 
-pub(crate) fn draw(selected_channel: usize, state: &Shared, area: Rect, buffer: &mut Buffer) {
+fn draw(selected_channel: usize, state: &Shared, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let craft = &state.view.vehicle.craft;
     let focused = state.focus == Panel::Rc;

@@ -3,18 +3,22 @@
 use std::time::Duration;
 
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Position, Rect};
 use ratatui::text::Line;
 
 use crate::telemetry::{Guard, GuardName, NavState, TransitionReason};
+use crate::ui::action::{Action, PanelAction};
 use crate::ui::formatting::{clock, cut, fixed, signed, within};
-use crate::ui::panel::Panel;
+use crate::ui::message::Request;
+use crate::ui::panel::{Content, Hint, Panel};
+use crate::ui::popup::Popup;
 use crate::ui::shared::Shared;
 use crate::ui::status_message;
 use crate::ui::theme::{Role, Theme};
 use crate::ui::transitions::{Transition, Transitions};
 use crate::ui::units::Units;
 
+use super::content::scrolled;
 use super::horizon;
 use super::state_diagram::{COMPACT, Diagram, FULL, LOW};
 use super::{line, row, span};
@@ -34,8 +38,41 @@ const HORIZON_ROOM: (u16, u16) = (42, 9);
 /// The number of rows that guards need below the state diagram.
 const GUARD_ROWS: u16 = 8;
 
+/// The state of the State panel.
+#[derive(Debug, Default)]
+pub struct StatePanel {
+    pub transitions: Transitions,
+}
+
+impl Content for StatePanel {
+    fn title(&self, state: &Shared) -> String {
+        title(state)
+    }
+
+    fn draw(&self, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+        draw(&self.transitions, state, area, buffer);
+        None
+    }
+
+    fn hints(&self, _: &Shared) -> Vec<Hint> {
+        vec![(&[Action::Panel(PanelAction::ExplainGuards)], "explain")]
+    }
+
+    fn act(&mut self, _: &mut Shared, action: PanelAction) -> Vec<Request> {
+        match action {
+            PanelAction::ExplainGuards => vec![Request::Open(Popup::Guards { selected: 0 })],
+            _ => Vec::new(),
+        }
+    }
+
+    fn scroll(&mut self, _: &mut Shared, _: Rect, by: isize) {
+        let last = self.transitions.len().saturating_sub(1);
+        scrolled(&mut self.transitions.scroll, by, last);
+    }
+}
+
 /// Returns the title with the waypoint of the mission.
-pub(crate) fn title(state: &Shared) -> String {
+fn title(state: &Shared) -> String {
     let name = state.panel_title(Panel::State);
     let Some(nav) = state.view.vehicle.nav.as_ref().filter(|nav| nav.engaged && nav.count > 0) else {
         return name.to_owned();
@@ -44,7 +81,7 @@ pub(crate) fn title(state: &Shared) -> String {
     format!("{name} WP{}/{}{kind}", nav.wp, nav.count.saturating_sub(1))
 }
 
-pub(crate) fn draw(own: &Transitions, state: &Shared, area: Rect, buffer: &mut Buffer) {
+fn draw(own: &Transitions, state: &Shared, area: Rect, buffer: &mut Buffer) {
     let diagram = diagram(area);
     let mut top = draw_status_message(state, area, diagram, buffer);
     top += draw_machine(own, state, below(area, top), diagram, buffer);

@@ -1,22 +1,97 @@
 //! 7 World: wind, turbulence, noise and faults as a list of knobs. A mark shows each knob that is not at its default.
 
+use crossterm::event::{KeyEvent, MouseEvent};
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::ui::action::Action;
+use crate::ui::action::{Action, PanelAction};
 use crate::ui::formatting::cut;
 use crate::ui::knobs::{Knob, KnobsState, knobs};
-use crate::ui::panel::Panel;
+use crate::ui::message::{Request, requests};
+use crate::ui::panel::{Content, Hint, Panel};
 use crate::ui::shared::Shared;
+use crate::ui::text_field::TextField;
 use crate::ui::theme::Role;
 
+use super::content::scrolled;
 use super::row;
 
 /// The width of a name with its mark.
 const NAME: usize = 18;
 
+/// The state of the World panel.
+#[derive(Debug, Default)]
+pub struct WorldPanel {
+    pub knobs: KnobsState,
+}
+
+impl Content for WorldPanel {
+    fn title(&self, state: &Shared) -> String {
+        title(state)
+    }
+
+    fn draw(&self, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+        draw(&self.knobs, state, area, buffer)
+    }
+
+    fn hints(&self, _: &Shared) -> Vec<Hint> {
+        vec![
+            (&[Action::Panel(PanelAction::KnobUp), Action::Panel(PanelAction::KnobDown)], "knob"),
+            (&[Action::Panel(PanelAction::KnobLess), Action::Panel(PanelAction::KnobMore)], "value"),
+            (&[Action::Panel(PanelAction::KnobEnter)], "change"),
+        ]
+    }
+
+    fn act(&mut self, state: &mut Shared, action: PanelAction) -> Vec<Request> {
+        let last = knobs(state).len().saturating_sub(1);
+        requests(match action {
+            PanelAction::KnobUp => {
+                self.knobs.selected = self.knobs.selected.saturating_sub(1);
+                Vec::new()
+            }
+            PanelAction::KnobDown => {
+                self.knobs.selected = (self.knobs.selected + 1).min(last);
+                Vec::new()
+            }
+            PanelAction::KnobLess => self.knobs.turn(state, -1),
+            PanelAction::KnobMore => self.knobs.turn(state, 1),
+            PanelAction::KnobEnter => self.knobs.enter(state),
+            PanelAction::KnobEdit => self.knobs.edit(),
+            PanelAction::KnobDefault => self.knobs.reset(state),
+            _ => Vec::new(),
+        })
+    }
+
+    fn key(&mut self, state: &mut Shared, event: KeyEvent) -> Vec<Request> {
+        requests(self.knobs.field_key(state, event))
+    }
+
+    fn field(&mut self) -> Option<&mut TextField> {
+        self.knobs.field.as_mut()
+    }
+
+    fn close_field(&mut self) {
+        self.knobs.field = None;
+    }
+
+    fn scroll(&mut self, state: &mut Shared, _: Rect, by: isize) {
+        // The knob whose value is typed stays selected.
+        if self.knobs.field.is_none() {
+            scrolled(&mut self.knobs.selected, by, knobs(state).len().saturating_sub(1));
+        }
+    }
+
+    fn press(&mut self, state: &mut Shared, area: Rect, event: &MouseEvent) -> Vec<Request> {
+        if let Some(knob) = knob_at(&self.knobs, state, area, event.row) {
+            self.knobs.field = None;
+            self.knobs.selected = knob;
+        }
+        Vec::new()
+    }
+}
+
 /// Returns the title with the airframe.
-pub(crate) fn title(state: &Shared) -> String {
+fn title(state: &Shared) -> String {
     let name = state.panel_title(Panel::World);
     match state.view.vehicle.world.airframe.as_str() {
         "" => name.to_owned(),
@@ -31,7 +106,7 @@ fn first(own: &KnobsState, state: &Shared, rows: usize) -> usize {
 }
 
 /// Returns the knob at a row of the inside.
-pub(crate) fn knob_at(own: &KnobsState, state: &Shared, area: Rect, line: u16) -> Option<usize> {
+fn knob_at(own: &KnobsState, state: &Shared, area: Rect, line: u16) -> Option<usize> {
     let rows = usize::from(area.height.saturating_sub(1));
     let at = usize::from(line.checked_sub(area.y)?);
     let index = first(own, state, rows) + at;
@@ -39,7 +114,7 @@ pub(crate) fn knob_at(own: &KnobsState, state: &Shared, area: Rect, line: u16) -
 }
 
 /// Draws the inside. Returns the position of the cursor while a value is typed.
-pub(crate) fn draw(own: &KnobsState, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+fn draw(own: &KnobsState, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     let theme = &state.theme;
     let rows = usize::from(area.height.checked_sub(1)?);
     let all = knobs(state);

@@ -2,7 +2,7 @@
 
 use super::{Activity, MAX_FRAMES, StickRecording};
 use crate::session::Command;
-use crate::ui::action::Action;
+use crate::ui::action::{Action, PanelAction};
 use crate::ui::event_log::Severity;
 use crate::ui::message::Effect;
 use crate::ui::shared::Shared;
@@ -52,7 +52,7 @@ pub(in crate::ui) fn can_play(state: &Shared) -> Result<(), String> {
     match recording.activity {
         Activity::Recording(_) => Err("The sticks are being recorded: end that first.".to_owned()),
         Activity::Idle if recording.frames.is_empty() => {
-            let key = state.key(Action::Record);
+            let key = state.key(Action::Panel(PanelAction::Record));
             Err(format!("No stick movements are recorded: `{key}` in the RC panel begins."))
         }
         Activity::Idle | Activity::Playing(..) => Ok(()),

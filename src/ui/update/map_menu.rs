@@ -1,39 +1,19 @@
-//! Opens the menu of a place on the map and carries out a choice.
+//! Carries out a choice of the menu of a place on the map.
 
-use super::{map_edit, view};
+use super::view;
 use crate::geo::LatLon;
 use crate::session::Command;
 use crate::telemetry::InFlightCommand;
-use crate::ui::action::{self, Action};
 use crate::ui::app_state::AppState;
 use crate::ui::editor::Column;
-use crate::ui::map_edit::{item_at, position};
+use crate::ui::map_edit::actions as map_edit;
 use crate::ui::map_point::origin::origin;
 use crate::ui::map_point::to_map;
 use crate::ui::map_state::MapItem;
 use crate::ui::message::Effect;
 use crate::ui::panel::Panel;
 use crate::ui::popup::map_menu::{MapChoice, Outcome};
-use crate::ui::popup::{MapMenu, Popup};
-use crate::ui::viewport::Viewport;
 use crate::vehicle::VehicleCommand;
-
-/// Opens the menu for a cell of the map.
-pub(super) fn open(state: &mut AppState, view: &Viewport, at: (u16, u16)) {
-    let Some(frame) = origin(&state.shared) else { return };
-    let place = view.place(at.0, at.1);
-    let choices = match item_at(&state.shared, place, view.scale) {
-        Some(MapItem::Waypoint(index)) => {
-            let can_go =
-                action::enabled(&state.shared, Action::GoTo).is_ok() && state.shared.plan_is_on_craft();
-            let go_to = u8::try_from(index).ok().filter(|_| can_go).map(MapChoice::GoTo);
-            let edits = [MapChoice::EditWaypoint(index), MapChoice::DeleteWaypoint(index)];
-            edits.into_iter().chain(go_to).collect()
-        }
-        _ => vec![MapChoice::AddWaypoint, MapChoice::SetHome, MapChoice::SetFence],
-    };
-    state.popups.push(Popup::MapMenu(MapMenu::new(position(&frame, place), at, choices)));
-}
 
 /// Carries out the choice of a key or a click.
 pub(super) fn take(state: &mut AppState, place: LatLon, outcome: Outcome) -> Vec<Effect> {

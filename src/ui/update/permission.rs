@@ -43,7 +43,7 @@ pub(super) fn decline(state: &mut AppState) {
     close(state);
     let held = std::mem::take(&mut state.permission.held);
     if held.iter().any(|effect| matches!(effect, Effect::Cli(_))) {
-        state.cli.not_run("not run: changes were not permitted");
+        state.panels.cli.console.not_run("not run: changes were not permitted");
     }
     state.shared.notify(Severity::Info, "Nothing was changed.");
 }

@@ -5,8 +5,8 @@ use std::path::Path;
 use crossterm::event::{KeyCode, KeyEvent};
 
 use super::flight::upload_now;
-use super::plan;
 use crate::ui::action::{Action, EditAction};
+use crate::ui::editor::actions as plan;
 use crate::ui::editor::findings;
 use crate::ui::editor::{
     Browser, BrowserKey, EditorPopup, FileReply, FileRequest, Form, FormKey, PlanId, Purpose, Question,

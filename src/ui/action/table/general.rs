@@ -3,9 +3,9 @@
 use super::{edit, spec};
 use crate::ui::action::Context::{Always, Global};
 use crate::ui::action::{Action, EditAction, Spec};
-use crate::ui::panel::Panel;
 
-pub(super) const ROWS: &[Spec] = &[
+/// The flight, the plan and time.
+pub(super) const FLIGHT: &[Spec] = &[
     spec(
         Action::Fly,
         "flight.fly",
@@ -145,14 +145,10 @@ pub(super) const ROWS: &[Spec] = &[
         Global,
     ),
     spec(Action::RealTime, "sim.real-time", "real time", "Back to real time", &["\\"], Global),
-    spec(Action::Show(Panel::Map), "view.map", "map", "Map panel", &["1", "f1"], Global),
-    spec(Action::Show(Panel::Plan), "view.plan", "plan", "Plan panel", &["2", "f2"], Global),
-    spec(Action::Show(Panel::State), "view.state", "state", "State panel", &["3", "f3"], Global),
-    spec(Action::Show(Panel::Rc), "view.rc", "RC", "RC panel", &["4", "f4"], Global),
-    spec(Action::Show(Panel::Cli), "view.cli", "CLI", "CLI panel", &["5", "f5"], Global),
-    spec(Action::Show(Panel::Graphs), "view.graphs", "graphs", "Graphs panel", &["6", "f6"], Global),
-    spec(Action::Show(Panel::World), "view.world", "world", "World panel", &["7", "f7"], Global),
-    spec(Action::Show(Panel::Log), "view.log", "log", "Log panel", &["8", "f8"], Global),
+];
+
+/// The panels and the program.
+pub(super) const SCREEN: &[Spec] = &[
     spec(Action::Next, "view.next", "next panel", "Focus the next panel", &["tab"], Global),
     spec(
         Action::Previous,

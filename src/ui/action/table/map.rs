@@ -1,26 +1,11 @@
-//! Actions of the Map panel.
+//! Edits on the map.
 
-use super::{edit, spec};
+use super::edit;
 use crate::ui::action::Context::In;
-use crate::ui::action::{Action, EditAction, Spec};
+use crate::ui::action::{EditAction, Spec};
 use crate::ui::panel::Panel;
 
 pub(super) const ROWS: &[Spec] = &[
-    spec(Action::PanUp, "map.up", "up", "Pan up", &["up", "k"], In(Panel::Map)),
-    spec(Action::PanDown, "map.down", "down", "Pan down", &["down", "j"], In(Panel::Map)),
-    spec(Action::PanLeft, "map.left", "left", "Pan left", &["left", "h"], In(Panel::Map)),
-    spec(Action::PanRight, "map.right", "right", "Pan right", &["right", "l"], In(Panel::Map)),
-    spec(
-        Action::ZoomIn,
-        "map.zoom-in",
-        "zoom in",
-        "Zoom in (or the mouse wheel)",
-        &["+", "="],
-        In(Panel::Map),
-    ),
-    spec(Action::ZoomOut, "map.zoom-out", "zoom out", "Zoom out", &["-"], In(Panel::Map)),
-    spec(Action::Follow, "map.follow", "follow", "Keep the craft in the middle", &["f"], In(Panel::Map)),
-    spec(Action::Fit, "map.fit", "fit", "Show the whole plan", &["0"], In(Panel::Map)),
     edit(
         EditAction::OnMap,
         "map.edit",

@@ -1,47 +1,12 @@
-//! Keys and pasted text while the CLI panel has the focus.
-
-use crossterm::event::{KeyCode, KeyEvent};
+//! Pasted text.
 
 use crate::ui::action::Action;
 use crate::ui::app_state::AppState;
-use crate::ui::editor::FileRequest;
+use crate::ui::editor::actions as plan;
 use crate::ui::event_log::Severity;
-use crate::ui::history::LineField;
 use crate::ui::message::Effect;
 use crate::ui::panel::Panel;
 use crate::ui::popup::Popup;
-
-use super::view::{focus_neighbour, scroll_panel};
-
-/// Handles a key while the CLI has the focus.
-pub(super) fn cli_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
-    match event.code {
-        KeyCode::Enter => {
-            let entered = state.cli.enter();
-            let keep = entered.map(|line| Effect::Files(FileRequest::KeepLine(LineField::Cli, line)));
-            let mut effects = run_cli(state);
-            effects.extend(keep);
-            return effects;
-        }
-        KeyCode::Tab => {
-            if state.cli.input.is_empty() {
-                return focus_neighbour(&mut state.shared, 1);
-            }
-            state.cli.complete(state.shared.cli_help);
-        }
-        KeyCode::Up => state.cli.older(),
-        KeyCode::Down => state.cli.newer(),
-        KeyCode::PageUp => scroll_panel(state, Panel::Cli, -10),
-        KeyCode::PageDown => scroll_panel(state, Panel::Cli, 10),
-        _ => {
-            if state.cli.input.key(event) {
-                state.cli.candidates.clear();
-                state.cli.scroll = 0;
-            }
-        }
-    }
-    Vec::new()
-}
 
 /// Inserts pasted text into the field with the focus; a field of a single line gets the first line.
 pub(super) fn paste(state: &mut AppState, text: &str) -> Vec<Effect> {
@@ -58,7 +23,7 @@ pub(super) fn paste(state: &mut AppState, text: &str) -> Vec<Effect> {
             | Popup::Permission
             | Popup::Quit,
         ) => None,
-        None => super::fields::open(state),
+        None => state.panels.of_mut(state.shared.focus).field(),
     };
     if let Some(field) = field {
         field.insert(text.lines().next().unwrap_or_default());
@@ -72,7 +37,7 @@ pub(super) fn paste(state: &mut AppState, text: &str) -> Vec<Effect> {
     }
     let is_covered = !state.popups.is_empty() || state.shared.editor.popup.is_some();
     if matches!(state.shared.focus, Panel::Plan | Panel::Map) && !is_covered {
-        return super::plan::paste_text(&mut state.shared, text);
+        return plan::paste_text(&mut state.shared, text);
     }
     if state.shared.focus != Panel::Cli || is_covered {
         let [cli, plan] = [Panel::Cli, Panel::Plan].map(|panel| state.shared.key(Action::Show(panel)));
@@ -80,11 +45,6 @@ pub(super) fn paste(state: &mut AppState, text: &str) -> Vec<Effect> {
         state.shared.notify(Severity::Info, text);
         return Vec::new();
     }
-    state.cli.paste(text);
-    run_cli(state)
-}
-
-/// Runs the next waiting line, if the firmware is free.
-pub(super) fn run_cli(state: &mut AppState) -> Vec<Effect> {
-    state.cli.next_to_run().map(Effect::Cli).into_iter().collect()
+    state.panels.cli.console.paste(text);
+    state.panels.cli.console.next_effect().into_iter().collect()
 }

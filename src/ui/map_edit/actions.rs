@@ -1,10 +1,10 @@
 //! Editing on the map: the cursor, picking up and putting down.
 
-use super::{plan, view};
 use crate::plan::Waypoint;
 use crate::plan::format::HomePosition;
 use crate::ui::action::{Action, EditAction};
 use crate::ui::editor::PlanId;
+use crate::ui::editor::actions as plan;
 use crate::ui::event_log::Severity;
 use crate::ui::map_edit;
 use crate::ui::map_point::MapPoint;
@@ -12,12 +12,13 @@ use crate::ui::map_point::origin::origin;
 use crate::ui::map_state::{MapCursor, MapItem, MapMode, Moving};
 use crate::ui::message::Effect;
 use crate::ui::shared::Shared;
+use crate::ui::viewport::moves as view;
 
 /// The greatest radius of the fence that the craft accepts, m.
 const WIDEST_FENCE_M: f64 = 10_000.0;
 
 /// Shows or hides the cursor.
-pub(super) fn toggle(state: &mut Shared) -> Vec<Effect> {
+pub(in crate::ui) fn toggle(state: &mut Shared) -> Vec<Effect> {
     state.map.moving = None;
     if state.map.edit.take().is_some() {
         return Vec::new();
@@ -30,9 +31,10 @@ pub(super) fn toggle(state: &mut Shared) -> Vec<Effect> {
 }
 
 /// Handles an arrow key: moves the cursor by a cell if there is one, else the map.
-pub(super) fn arrow(state: &mut Shared, columns: f64, rows: f64) -> Vec<Effect> {
+pub(in crate::ui) fn arrow(state: &mut Shared, columns: f64, rows: f64) {
     let (Some(cursor), Some(view)) = (state.map.edit, view::viewport(state)) else {
-        return view::pan(state, columns, rows);
+        view::pan(state, columns, rows);
+        return;
     };
     let place =
         MapPoint::new(cursor.place.n - rows * 2.0 * view.scale, cursor.place.e + columns * view.scale);
@@ -42,13 +44,12 @@ pub(super) fn arrow(state: &mut Shared, columns: f64, rows: f64) -> Vec<Effect> 
         moving.moved = true;
     }
     if view.screen_cell(place).is_none() {
-        return view::pan(state, columns, rows);
+        view::pan(state, columns, rows);
     }
-    Vec::new()
 }
 
 /// Picks up the item at the cursor, or puts down the item picked up before.
-pub(super) fn pick(state: &mut Shared) -> Vec<Effect> {
+pub(in crate::ui) fn pick(state: &mut Shared) -> Vec<Effect> {
     let Some(cursor) = state.map.edit else {
         let key = state.key(Action::Edit(EditAction::OnMap));
         let text = format!("`{key}` shows a cursor with which waypoints are picked, added and moved.");
@@ -70,7 +71,7 @@ pub(super) fn pick(state: &mut Shared) -> Vec<Effect> {
 }
 
 /// Picks an item up.
-pub(super) fn pick_up(state: &mut Shared, item: MapItem, place: MapPoint, by_mouse: bool) {
+pub(in crate::ui) fn pick_up(state: &mut Shared, item: MapItem, place: MapPoint, by_mouse: bool) {
     if let MapItem::Waypoint(index) = item {
         state.editor.go_to_row(index);
     }
@@ -84,18 +85,18 @@ fn revision(state: &Shared) -> (PlanId, usize) {
 }
 
 /// Drops the picked-up item at its old place, else hides the cursor. Returns `true` if there was either.
-pub(super) fn leave(state: &mut Shared) -> bool {
+pub(in crate::ui) fn leave(state: &mut Shared) -> bool {
     state.map.moving.take().is_some() || state.map.edit.take().is_some()
 }
 
 /// Puts an item at a place, as one edit.
-pub(super) fn put(state: &mut Shared, item: MapItem, place: MapPoint) -> Vec<Effect> {
+pub(in crate::ui) fn put(state: &mut Shared, item: MapItem, place: MapPoint) -> Vec<Effect> {
     state.map.moving = Some(Moving { item, place, moved: true, by_mouse: false, of: revision(state) });
     put_down(state)
 }
 
 /// Puts down the item being moved, as one edit.
-pub(super) fn put_down(state: &mut Shared) -> Vec<Effect> {
+pub(in crate::ui) fn put_down(state: &mut Shared) -> Vec<Effect> {
     let (Some(moving), Some(frame)) = (state.map.moving.take(), origin(state)) else {
         return Vec::new();
     };
@@ -135,7 +136,7 @@ pub(super) fn put_down(state: &mut Shared) -> Vec<Effect> {
 }
 
 /// Adds a waypoint at the cursor.
-pub(super) fn add(state: &mut Shared) -> Vec<Effect> {
+pub(in crate::ui) fn add(state: &mut Shared) -> Vec<Effect> {
     let Some(cursor) = state.map.edit else {
         toggle(state);
         let key = state.key(Action::Edit(EditAction::AddOnMap));
@@ -147,7 +148,7 @@ pub(super) fn add(state: &mut Shared) -> Vec<Effect> {
 }
 
 /// Adds a waypoint at a place.
-pub(super) fn add_at(state: &mut Shared, place: MapPoint) -> Vec<Effect> {
+pub(in crate::ui) fn add_at(state: &mut Shared, place: MapPoint) -> Vec<Effect> {
     let Some(frame) = origin(state) else { return Vec::new() };
     let position = map_edit::position(&frame, place);
     let like = plan::next_waypoint(state).unwrap_or_default();
@@ -155,7 +156,7 @@ pub(super) fn add_at(state: &mut Shared, place: MapPoint) -> Vec<Effect> {
 }
 
 /// Deletes the waypoint at the cursor.
-pub(super) fn delete(state: &mut Shared) -> Vec<Effect> {
+pub(in crate::ui) fn delete(state: &mut Shared) -> Vec<Effect> {
     let (Some(cursor), Some(view)) = (state.map.edit, view::viewport(state)) else {
         let [shows, deletes] =
             [EditAction::OnMap, EditAction::DeleteOnMap].map(|action| state.key(Action::Edit(action)));

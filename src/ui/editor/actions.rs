@@ -21,7 +21,7 @@ const NEXT_LEG_M: f64 = 50.0;
 const FIRST_ALT_M: f64 = 20.0;
 
 /// Handles a key while a cell is typed.
-pub(super) fn field_key(state: &mut Shared, event: KeyEvent) -> Vec<Effect> {
+pub(in crate::ui) fn field_key(state: &mut Shared, event: KeyEvent) -> Vec<Effect> {
     match event.code {
         KeyCode::Enter => return state.editor.end_typing(state.units),
         KeyCode::Esc => {
@@ -50,7 +50,7 @@ fn insert_key(state: &Shared) -> String {
 }
 
 /// Handles Enter on a cell: chooses the next name, or begins typing a number.
-pub(super) fn edit_cell(state: &mut Shared) -> Vec<Effect> {
+pub(in crate::ui) fn edit_cell(state: &mut Shared) -> Vec<Effect> {
     match state.editor.column() {
         Column::Type | Column::Pattern => nudge(state, 1),
         _ => {
@@ -65,7 +65,7 @@ pub(super) fn edit_cell(state: &mut Shared) -> Vec<Effect> {
     }
 }
 
-pub(super) fn nudge(state: &mut Shared, steps: i32) -> Vec<Effect> {
+pub(in crate::ui) fn nudge(state: &mut Shared, steps: i32) -> Vec<Effect> {
     let column = state.editor.column();
     let kind = state.editor.document().plan.waypoints.get(state.editor.row()).map(|wp| wp.kind);
     match kind {
@@ -78,7 +78,7 @@ pub(super) fn nudge(state: &mut Shared, steps: i32) -> Vec<Effect> {
 }
 
 /// Returns the waypoint that `i` inserts: like the one under the cursor, one leg farther on.
-pub(super) fn next_waypoint(state: &Shared) -> Option<Waypoint> {
+pub(in crate::ui) fn next_waypoint(state: &Shared) -> Option<Waypoint> {
     let waypoints = &state.editor.document().plan.waypoints;
     let row = state.editor.row();
     let placed = |wp: &&Waypoint| wp.kind.uses_position();
@@ -105,7 +105,7 @@ pub(super) fn next_waypoint(state: &Shared) -> Option<Waypoint> {
     })
 }
 
-pub(super) fn insert(state: &mut Shared) -> Vec<Effect> {
+pub(in crate::ui) fn insert(state: &mut Shared) -> Vec<Effect> {
     match next_waypoint(state) {
         Some(waypoint) => insert_waypoint(state, waypoint),
         None => {
@@ -116,12 +116,12 @@ pub(super) fn insert(state: &mut Shared) -> Vec<Effect> {
 }
 
 /// Inserts a waypoint after the cursor.
-pub(super) fn insert_waypoint(state: &mut Shared, waypoint: Waypoint) -> Vec<Effect> {
+pub(in crate::ui) fn insert_waypoint(state: &mut Shared, waypoint: Waypoint) -> Vec<Effect> {
     let inserted = state.editor.insert("insert a waypoint", &[waypoint]);
     reported(state, inserted)
 }
 
-pub(super) fn duplicate(state: &mut Shared) -> Vec<Effect> {
+pub(in crate::ui) fn duplicate(state: &mut Shared) -> Vec<Effect> {
     let Some(waypoint) = state.editor.document().plan.waypoints.get(state.editor.row()).copied() else {
         return Vec::new();
     };
@@ -129,7 +129,7 @@ pub(super) fn duplicate(state: &mut Shared) -> Vec<Effect> {
     reported(state, inserted)
 }
 
-pub(super) fn copy(state: &mut Shared) -> Vec<Effect> {
+pub(in crate::ui) fn copy(state: &mut Shared) -> Vec<Effect> {
     let Some((count, text)) = state.editor.copy() else { return Vec::new() };
     let noun = if count == 1 { "waypoint" } else { "waypoints" };
     let paste = state.key(Action::Edit(EditAction::Paste));
@@ -137,7 +137,7 @@ pub(super) fn copy(state: &mut Shared) -> Vec<Effect> {
     vec![Effect::Copy(text)]
 }
 
-pub(super) fn paste_copied(state: &mut Shared) -> Vec<Effect> {
+pub(in crate::ui) fn paste_copied(state: &mut Shared) -> Vec<Effect> {
     if !state.editor.has_copy() {
         let copy = state.key(Action::Edit(EditAction::Copy));
         state.notify(Severity::Warn, format!("Nothing was copied: `{copy}` copies the selected waypoints."));
@@ -148,7 +148,7 @@ pub(super) fn paste_copied(state: &mut Shared) -> Vec<Effect> {
 }
 
 /// Inserts text pasted by the terminal.
-pub(super) fn paste_text(state: &mut Shared, text: &str) -> Vec<Effect> {
+pub(in crate::ui) fn paste_text(state: &mut Shared, text: &str) -> Vec<Effect> {
     if let Some(field) = state.editor.field_mut() {
         field.text.insert(text.trim());
         return Vec::new();
@@ -173,7 +173,7 @@ fn reported(state: &mut Shared, done: Result<Vec<Effect>, String>) -> Vec<Effect
     })
 }
 
-pub(super) fn undo(state: &mut Shared, redo: bool) -> Vec<Effect> {
+pub(in crate::ui) fn undo(state: &mut Shared, redo: bool) -> Vec<Effect> {
     let done = if redo { state.editor.redo() } else { state.editor.undo() };
     let Some((label, effect)) = done else {
         let nothing = if redo { "Nothing to redo." } else { "Nothing to undo." };
@@ -186,7 +186,7 @@ pub(super) fn undo(state: &mut Shared, redo: bool) -> Vec<Effect> {
 }
 
 /// Applies the offered fix of the shown finding.
-pub(super) fn take_fix(state: &mut Shared) -> Vec<Effect> {
+pub(in crate::ui) fn take_fix(state: &mut Shared) -> Vec<Effect> {
     let found = findings::findings(state);
     match findings::shown(state, &found) {
         None => {
@@ -201,7 +201,7 @@ pub(super) fn take_fix(state: &mut Shared) -> Vec<Effect> {
     }
 }
 
-pub(super) fn open_form(state: &mut Shared, kind: FormKind) -> Vec<Effect> {
+pub(in crate::ui) fn open_form(state: &mut Shared, kind: FormKind) -> Vec<Effect> {
     let document = state.editor.document();
     if kind == FormKind::Bulk && document.plan.waypoints.is_empty() {
         let text = format!("There is no waypoint to change: `{}` inserts one.", insert_key(state));
@@ -213,14 +213,14 @@ pub(super) fn open_form(state: &mut Shared, kind: FormKind) -> Vec<Effect> {
     Vec::new()
 }
 
-pub(super) fn open_browser(state: &mut Shared) -> Vec<Effect> {
+pub(in crate::ui) fn open_browser(state: &mut Shared) -> Vec<Effect> {
     state.editor.popup = Some(EditorPopup::Browser(Browser::new(Purpose::Open, "")));
     let beside = state.editor.plan().file().and_then(std::path::Path::parent).map(std::path::Path::to_owned);
     vec![Effect::Files(FileRequest::List(beside))]
 }
 
 /// Saves the plan in its file. Asks for a name if it has none.
-pub(super) fn save(state: &mut Shared) -> Vec<Effect> {
+pub(in crate::ui) fn save(state: &mut Shared) -> Vec<Effect> {
     let plan = state.editor.plan();
     match plan.file().map(std::path::Path::to_owned) {
         Some(path) => vec![state.editor.write(state.editor.plan().id(), path, false)],
@@ -228,7 +228,7 @@ pub(super) fn save(state: &mut Shared) -> Vec<Effect> {
     }
 }
 
-pub(super) fn save_as(state: &mut Shared) -> Vec<Effect> {
+pub(in crate::ui) fn save_as(state: &mut Shared) -> Vec<Effect> {
     let plan = state.editor.plan();
     let name = plan.title();
     let name = if plan.file().is_some() { name } else { format!("{}.toml", name.replace(['/', ' '], "-")) };
@@ -237,7 +237,7 @@ pub(super) fn save_as(state: &mut Shared) -> Vec<Effect> {
     vec![Effect::Files(FileRequest::List(beside))]
 }
 
-pub(super) fn new_plan(state: &mut Shared) -> Vec<Effect> {
+pub(in crate::ui) fn new_plan(state: &mut Shared) -> Vec<Effect> {
     let effect = state.editor.open_new(PlanDocument { name: "new".to_owned(), ..PlanDocument::default() });
     let [insert, generate, back] = [EditAction::Insert, EditAction::Generate, EditAction::PreviousPlan]
         .map(|action| state.key(Action::Edit(action)));
@@ -249,7 +249,7 @@ pub(super) fn new_plan(state: &mut Shared) -> Vec<Effect> {
 }
 
 /// Closes the shown plan. Asks first if it has unsaved edits.
-pub(super) fn close(state: &mut Shared) -> Vec<Effect> {
+pub(in crate::ui) fn close(state: &mut Shared) -> Vec<Effect> {
     let id = state.editor.plan().id();
     if state.editor.plan().is_unsaved() {
         state.editor.popup = Some(EditorPopup::Question(Question::Unsaved { id, quits: false }));
@@ -258,7 +258,7 @@ pub(super) fn close(state: &mut Shared) -> Vec<Effect> {
     state.editor.close(id)
 }
 
-pub(super) fn show_other(state: &mut Shared, step: isize) -> Vec<Effect> {
+pub(in crate::ui) fn show_other(state: &mut Shared, step: isize) -> Vec<Effect> {
     if state.editor.plans().len() == 1 {
         let [open, new] = [EditAction::Open, EditAction::New].map(|action| state.key(Action::Edit(action)));
         let text = format!("One plan is open: `{open}` opens another, `{new}` makes a new one.");
@@ -270,7 +270,7 @@ pub(super) fn show_other(state: &mut Shared, step: isize) -> Vec<Effect> {
 }
 
 /// Puts the downloaded plan of the craft into the open plan that requested it, as one edit.
-pub(super) fn downloaded(
+pub(in crate::ui) fn downloaded(
     state: &mut Shared,
     id: PlanId,
     result: Result<Box<FlightPlan>, String>,
@@ -304,7 +304,7 @@ pub(super) fn downloaded(
 }
 
 /// Reports that somebody else changed the plan in the craft: the App, a script, a line of the CLI.
-pub(super) fn craft_plan_changed(state: &mut Shared, before: &FlightPlan, now: &FlightPlan) {
+pub(in crate::ui) fn craft_plan_changed(state: &mut Shared, before: &FlightPlan, now: &FlightPlan) {
     let (a, b) = (&before.waypoints, &now.waypoints);
     let mut differs: Vec<String> = std::iter::zip(a, b)
         .enumerate()
@@ -325,7 +325,7 @@ pub(super) fn craft_plan_changed(state: &mut Shared, before: &FlightPlan, now: &
 }
 
 /// Moves a waypoint to a place, as one edit.
-pub(super) fn place_waypoint(state: &mut Shared, index: usize, position: LatLon) -> Vec<Effect> {
+pub(in crate::ui) fn place_waypoint(state: &mut Shared, index: usize, position: LatLon) -> Vec<Effect> {
     state.editor.edit(&format!("move WP{index}"), |document| {
         if let Some(wp) = document.plan.waypoints.get_mut(index).filter(|wp| wp.kind.uses_position()) {
             wp.position = position;
@@ -334,7 +334,7 @@ pub(super) fn place_waypoint(state: &mut Shared, index: usize, position: LatLon)
 }
 
 /// Reports that the craft saved its configuration, or the reason for a failure.
-pub(super) fn saved_to_flash(state: &mut Shared, result: Result<(), String>) -> Vec<Effect> {
+pub(in crate::ui) fn saved_to_flash(state: &mut Shared, result: Result<(), String>) -> Vec<Effect> {
     match result {
         Ok(()) => {
             let stored = state.view.vehicle.stored_plan.as_ref().map_or(0, |plan| plan.waypoints.len());
@@ -346,7 +346,7 @@ pub(super) fn saved_to_flash(state: &mut Shared, result: Result<(), String>) -> 
     Vec::new()
 }
 
-pub(super) fn scenario_written(state: &mut Shared, result: Result<String, String>) -> Vec<Effect> {
+pub(in crate::ui) fn scenario_written(state: &mut Shared, result: Result<String, String>) -> Vec<Effect> {
     match result {
         Ok(sentence) => state.notify(Severity::Good, sentence),
         Err(sentence) => {

@@ -1,0 +1,86 @@
+//! The interface of a panel: its picture, its keys and its mouse.
+
+use crossterm::event::{KeyEvent, MouseEvent};
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+
+use crate::ui::action::{Action, PanelAction};
+use crate::ui::message::Request;
+use crate::ui::popup::Popup;
+use crate::ui::shared::Shared;
+use crate::ui::text_field::TextField;
+
+/// The number of lines per step of the wheel.
+const WHEEL_LINES: isize = 3;
+
+/// The actions of a hint, and its label.
+pub(in crate::ui) type Hint = (&'static [Action], &'static str);
+
+/// The content of a panel: its own state, and what it makes of the state that all panels share. An area is the inside of
+/// the frame.
+pub(in crate::ui) trait Content {
+    /// Returns the title in the frame.
+    fn title(&self, state: &Shared) -> String;
+
+    /// Draws the inside. Returns the position of the cursor of a text field.
+    fn draw(&self, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position>;
+
+    /// Returns the hints of the panel, the most useful first.
+    fn hints(&self, _: &Shared) -> Vec<Hint> {
+        Vec::new()
+    }
+
+    /// Carries out an action of the panel.
+    fn act(&mut self, _: &mut Shared, _: PanelAction) -> Vec<Request> {
+        Vec::new()
+    }
+
+    /// Handles a key that is text here.
+    fn key(&mut self, _: &mut Shared, _: KeyEvent) -> Vec<Request> {
+        Vec::new()
+    }
+
+    /// Returns the open text field.
+    fn field(&mut self) -> Option<&mut TextField> {
+        None
+    }
+
+    fn close_field(&mut self) {}
+
+    /// Goes back by one step. Returns `false` if there is none.
+    fn go_back(&mut self, _: &mut Shared) -> bool {
+        false
+    }
+
+    /// Scrolls by lines, within the content.
+    fn scroll(&mut self, _: &mut Shared, _: Rect, _: isize) {}
+
+    fn wheel(&mut self, state: &mut Shared, area: Rect, _: &MouseEvent, direction: isize) {
+        self.scroll(state, area, direction * WHEEL_LINES);
+    }
+
+    /// Handles a press of the left button.
+    fn press(&mut self, _: &mut Shared, _: Rect, _: &MouseEvent) -> Vec<Request> {
+        Vec::new()
+    }
+
+    /// Handles a drag that began with a press in this panel.
+    fn drag(&mut self, _: &mut Shared, _: Rect, _: &MouseEvent) -> Vec<Request> {
+        Vec::new()
+    }
+
+    /// Handles the release of a button, at any position.
+    fn release(&mut self, _: &mut Shared) -> Vec<Request> {
+        Vec::new()
+    }
+
+    /// Returns the menu for a press of the right button.
+    fn menu(&self, _: &Shared, _: Rect, _: &MouseEvent) -> Option<Popup> {
+        None
+    }
+}
+
+/// Moves a scroll position by lines, from 0 to `last`.
+pub(super) fn scrolled(at: &mut usize, by: isize, last: usize) {
+    *at = (*at).min(last).saturating_add_signed(by).min(last);
+}

@@ -1,0 +1,47 @@
+//! Moves the window of the map.
+
+use super::Viewport;
+use crate::ui::layout;
+use crate::ui::map_point;
+use crate::ui::map_state::MapMode;
+use crate::ui::panel::Panel;
+use crate::ui::shared::Shared;
+
+/// The factor of a zoom step of the map.
+pub(in crate::ui) const ZOOM_STEP: f64 = 1.5;
+
+/// Returns the current window of the map.
+pub(in crate::ui) fn viewport(state: &Shared) -> Option<Viewport> {
+    let area = layout::screen(state)?.panel(Panel::Map)?;
+    Some(Viewport::of(state, layout::inner(area)))
+}
+
+/// Keeps the craft in the middle of the map, at the current scale.
+pub(in crate::ui) fn follow(state: &mut Shared) {
+    if let Some(view) = viewport(state) {
+        state.map.mode = MapMode::Follow(view.scale);
+    }
+}
+
+/// Moves the map by an eighth of its size.
+pub(in crate::ui) fn pan(state: &mut Shared, columns: f64, rows: f64) {
+    if let Some(view) = viewport(state) {
+        let (width, height) = (f64::from(view.area.width), f64::from(view.area.height));
+        state.map.mode = view.panned(columns * (width / 8.0).ceil(), rows * (height / 8.0).ceil());
+    }
+}
+
+/// Zooms around the edit cursor, else around the craft if it is in the window, else around the middle.
+pub(in crate::ui) fn zoom_map(state: &mut Shared, factor: f64) {
+    if let Some(view) = viewport(state) {
+        state.map.mode = match state.map.mode {
+            MapMode::Follow(scale) => MapMode::Follow(scale * factor),
+            MapMode::Fit | MapMode::Free { .. } => {
+                let cursor = state.map.edit.map(|cursor| cursor.place);
+                let place = cursor.or_else(|| map_point::craft(&state.view));
+                let place = place.filter(|&place| view.screen_cell(place).is_some());
+                view.zoomed(factor, place.unwrap_or(view.centre))
+            }
+        };
+    }
+}
