@@ -12,6 +12,7 @@ pub mod firmware;
 pub mod flight;
 pub mod geo;
 pub mod link;
+pub mod msp;
 pub mod pilot;
 pub mod plan;
 pub mod report;

@@ -33,12 +33,10 @@ use message_line::{MessageLine, Page};
 use prompt_line::PromptLine;
 use request::{Request, Waiting};
 
-use crate::link::proto::msp::{Decoder, Frame};
+use crate::msp::{Decoder, Frame, code};
 
 /// The maximum number of requests that may wait. Further requests are refused.
 const MAX_QUEUE: usize = 256;
-/// `API_VERSION`, which every flight controller answers.
-const API_VERSION: u16 = 1;
 /// Opens the framed command line.
 const STX: u8 = 0x02;
 /// Ends a command line that an earlier client left open. Releases that support the word do not restart.
@@ -262,7 +260,8 @@ impl FcClient {
 
     fn start_next(&mut self, now: Duration) {
         if !self.in_step && !self.in_prompt {
-            let request = Request::send(API_VERSION, &[], now, &mut self.output);
+            // Every flight controller answers this message.
+            let request = Request::send(code::API_VERSION, &[], now, &mut self.output);
             self.exchange = Some((None, Exchange::Synchronise(request)));
             return;
         }

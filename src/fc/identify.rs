@@ -3,7 +3,7 @@
 use super::observer::Observer;
 use crate::fc::LIST;
 use crate::fc::client::{Answer, Ask, Unanswered};
-use crate::fc::telemetry::code;
+use crate::msp::{BETAFLIGHT, code};
 
 /// The questions after each new connection, in this order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,9 +50,6 @@ pub(super) fn how_it_is_set() -> impl Iterator<Item = Question> {
     QUESTIONS.into_iter().filter(|question| matches!(question, Question::Settings(_) | Question::Plan))
 }
 
-/// The only supported firmware.
-const BETAFLIGHT: &[u8] = b"BTFL";
-
 impl Question {
     pub(super) fn ask(self) -> Ask {
         match (self.code(), self) {
@@ -70,7 +67,7 @@ impl Question {
             Self::Version => code::FC_VERSION,
             Self::Board => code::BOARD_INFO,
             Self::Build => code::BUILD_INFO,
-            Self::Boxes => code::BOX_IDS,
+            Self::Boxes => code::BOXIDS,
             Self::ModeRanges => code::MODE_RANGES,
             Self::ModeLinks => code::MODE_RANGES_EXTRA,
             Self::Settings(_) | Self::Plan => return None,

@@ -7,11 +7,10 @@ mod settings;
 use super::identify::Question;
 use crate::fc::client::Answer;
 use crate::fc::plan_of_list;
-use crate::fc::telemetry::{
-    ApiVersion, BoardInfo, BuildInfo, Mission, MissionPhase, Observation, Origin, version,
-};
+use crate::fc::telemetry::{Mission, MissionPhase, Observation, Origin};
 use crate::firmware::cli::CliReply;
 use crate::geo::LocalFrame;
+use crate::msp::{ApiVersion, BoardInfo, BuildInfo, FcVersion};
 use crate::plan::{AltitudeReference, CraftPlan};
 use crate::telemetry::Mode;
 use crate::telemetry::snapshot::{CraftView, ModeRange};
@@ -46,7 +45,7 @@ pub struct Observer {
 #[derive(Debug, Clone, Default)]
 struct Identity {
     api: Option<ApiVersion>,
-    version: Option<String>,
+    version: Option<FcVersion>,
     board: Option<BoardInfo>,
     build: Option<BuildInfo>,
 }
@@ -88,7 +87,9 @@ impl Observer {
             (Question::ApiVersion, Answer::Msp(Some(payload))) => {
                 self.identity.api = ApiVersion::decode(payload);
             }
-            (Question::Version, Answer::Msp(Some(payload))) => self.identity.version = version(payload),
+            (Question::Version, Answer::Msp(Some(payload))) => {
+                self.identity.version = FcVersion::decode(payload);
+            }
             (Question::Board, Answer::Msp(Some(payload))) => self.identity.board = BoardInfo::decode(payload),
             (Question::Build, Answer::Msp(Some(payload))) => self.identity.build = BuildInfo::decode(payload),
             (Question::Settings(_), Answer::Line { text, failed: false, .. }) => self.settings.read(text),
@@ -247,7 +248,8 @@ impl Observer {
     /// Returns its identity as a sentence.
     pub(super) fn introduction(&self, name: &str) -> String {
         let Identity { api, version, board, .. } = &self.identity;
-        let version = version.as_deref().unwrap_or("of an unknown version");
+        let version =
+            version.as_ref().map_or_else(|| "of an unknown version".to_owned(), FcVersion::to_string);
         let board = board
             .as_ref()
             .map_or("an unknown board", |board| board.target.as_deref().unwrap_or(&board.identifier));

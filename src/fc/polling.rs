@@ -7,7 +7,7 @@
 use std::time::Duration;
 
 use super::client::{Answer, Ask, Unanswered};
-use super::telemetry::code;
+use crate::msp::code;
 
 /// The line that prints the mission's progress.
 const MISSION_LINE: &str = "waypoint status";
@@ -40,7 +40,7 @@ impl Poll {
 
 /// The polls, most important first, and their periods on a link that can carry them, ms.
 const PLAN: [(Poll, u64); 12] = [
-    (Poll::Message(code::BOX_IDS), 5000),
+    (Poll::Message(code::BOXIDS), 5000),
     (Poll::Message(code::STATUS_EX), 100),
     (Poll::Message(code::ATTITUDE), 50),
     (Poll::Message(code::ALTITUDE), 100),

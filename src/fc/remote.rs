@@ -27,10 +27,8 @@ use super::polling::Schedule;
 use super::setup::Setup;
 use super::{Access, Impact, LIST, Provision, RemoteNotice, RemoteState, RemoteView, Unset, rescue};
 use crate::geo::LocalFrame;
+use crate::msp::code;
 use crate::vehicle::{LateAnswer, RemoteController, RemoteRequest, Ticket};
-
-/// The message that restarts a flight controller.
-const REBOOT: u16 = 68;
 
 /// The flight controller at the other end.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -291,7 +289,7 @@ impl Remote {
             RemoteRequest::ReturnHome => self.switch_rescue(true),
             RemoteRequest::CancelReturn => self.switch_rescue(false),
             RemoteRequest::Restart => {
-                self.ask(Purpose::Nothing, Ask::Msp { code: REBOOT, payload: Vec::new() });
+                self.ask(Purpose::Nothing, Ask::Msp { code: code::REBOOT, payload: Vec::new() });
             }
         }
     }

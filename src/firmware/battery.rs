@@ -1,5 +1,6 @@
 //! The battery as the firmware sees it: cell count and charge state from the voltage.
 
+use crate::msp::BatteryState;
 use crate::signals::BatterySample;
 
 /// The voltage below which no battery counts as connected, V.
@@ -26,18 +27,6 @@ impl Default for BatteryConfig {
     fn default() -> Self {
         Self { max_cell_v: 4.3, warning_cell_v: 3.5, min_cell_v: 3.3, cells: 0 }
     }
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::IntoStaticStr)]
-#[strum(serialize_all = "SCREAMING_SNAKE_CASE")]
-pub enum BatteryState {
-    #[default]
-    Init,
-    #[strum(to_string = "NOT PRESENT")]
-    NotPresent,
-    Ok,
-    Warning,
-    Critical,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -29,16 +29,15 @@ mod state;
 mod table;
 mod text;
 mod tuning;
-mod wire;
 
-pub use observation::{BatteryReading, BatteryState, GpsReading, HomeReading, MspFacts, UtcTime};
-pub use table::{Access, MESSAGES, Message};
+pub use observation::{MspFacts, UtcTime};
+pub use table::{MESSAGES, Message};
 
 use super::config::Configuration;
 use crate::geo::LatLon;
+use crate::msp::{PaddedReader, Writer};
 use crate::signals::{PerMotor, RcFrame};
 use crate::telemetry::FirmwareNotice;
-use wire::{Reader, Writer};
 
 /// The answer to a request.
 #[derive(Debug, Clone, PartialEq)]
@@ -98,7 +97,7 @@ struct Refused;
 struct Call<'a> {
     configuration: &'a mut Configuration,
     facts: &'a MspFacts,
-    request: Reader<'a>,
+    request: PaddedReader<'a>,
     reply: Writer,
     action: Option<MspAction>,
     notice: Option<FirmwareNotice>,
@@ -122,7 +121,7 @@ pub fn handle(code: u16, request: &[u8], configuration: &mut Configuration, fact
     let mut call = Call {
         configuration,
         facts,
-        request: Reader::new(request),
+        request: PaddedReader::new(request),
         reply: Writer::default(),
         action: None,
         notice: None,

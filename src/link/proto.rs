@@ -8,7 +8,6 @@ pub mod fdm;
 pub mod fdm_link;
 pub mod first_line;
 pub mod line_editor;
-pub mod msp;
 pub mod rc;
 pub mod serial_session;
 pub mod servo;

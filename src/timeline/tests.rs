@@ -4,6 +4,7 @@ use super::*;
 use crate::firmware::cli::Interpreter;
 use crate::firmware::config::Configuration;
 use crate::firmware::{FirmwareOptions, msp};
+use crate::msp::{Access, code};
 use crate::plan::builtin::{BuiltinPlan, DEMO};
 use crate::plan::upload_lines;
 use crate::signals::{RcFrame, RcSource};
@@ -92,7 +93,7 @@ fn happen(tick: u64, vehicle: &mut Vehicle, session: &mut Interpreter) {
         19_200 => vehicle.controller_mut().cancel_command(),
         19_500 => {
             let name = b"replayed";
-            let _reported = vehicle.controller_mut().run_msp(11, name, None);
+            let _reported = vehicle.controller_mut().run_msp(code::SET_NAME, name, None);
         }
         20_000 => vehicle.reset_craft(),
         20_500..22_000 if tick.is_multiple_of(7) => {
@@ -102,9 +103,9 @@ fn happen(tick: u64, vehicle: &mut Vehicle, session: &mut Interpreter) {
         }
         22_000..23_000 if tick.is_multiple_of(10) => {
             let frame: Vec<u8> = (0..8).flat_map(|n| (1400 + n + (tick % 50) as u16).to_le_bytes()).collect();
-            let _reported = vehicle.controller_mut().run_msp(200, &frame, None);
+            let _reported = vehicle.controller_mut().run_msp(code::SET_RAW_RC, &frame, None);
             // This message only asks.
-            let _reported = vehicle.controller_mut().run_msp(101, &[], None);
+            let _reported = vehicle.controller_mut().run_msp(code::STATUS, &[], None);
         }
         _ => {}
     }
@@ -238,10 +239,10 @@ fn what_runs_elsewhere_is_not_recorded() {
 fn messages_that_only_ask_are_no_inputs() {
     let mut vehicle = vehicle();
     assert!(vehicle.keep_inputs(true));
-    for message in msp::MESSAGES.iter().filter(|message| message.access != msp::Access::Write) {
+    for message in msp::MESSAGES.iter().filter(|message| message.kind.access != Access::Write) {
         let before = picture(&vehicle);
-        let _reported = vehicle.controller_mut().run_msp(message.code, &[0; 8], None);
-        assert!(!vehicle.has_inputs(), "{}", message.name);
-        assert!(picture(&vehicle) == before, "{} changes something", message.name);
+        let _reported = vehicle.controller_mut().run_msp(message.kind.code, &[0; 8], None);
+        assert!(!vehicle.has_inputs(), "{}", message.kind.name);
+        assert!(picture(&vehicle) == before, "{} changes something", message.kind.name);
     }
 }

@@ -4,7 +4,7 @@ use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream};
 use std::time::{Duration, Instant};
 
-use betadeck::link::proto::msp::{Form, Frame};
+use betadeck::msp::{Form, Frame};
 
 use super::program::PATIENCE;
 

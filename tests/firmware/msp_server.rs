@@ -10,8 +10,9 @@ mod writing;
 
 use betadeck::firmware::cli::BuildInfo;
 use betadeck::firmware::config::{Configuration, ModeCondition};
-use betadeck::firmware::msp::{GpsReading, MspFacts, handle};
+use betadeck::firmware::msp::{MspFacts, handle};
 use betadeck::geo::LatLon;
+use betadeck::msp::RawGps;
 
 fn unhex(text: &str) -> Vec<u8> {
     (0..text.len() / 2).map(|i| u8::from_str_radix(&text[2 * i..2 * i + 2], 16).unwrap()).collect()
@@ -52,12 +53,12 @@ fn facts() -> MspFacts {
         },
         cycle_time_us: 939,
         heading_deg: 358.0,
-        gps: GpsReading {
+        gps: RawGps {
             fix: true,
             sats: 12,
             position: LatLon::new(-275_000_000, 1_530_000_000),
             alt_amsl_m: 30.0,
-            ..GpsReading::default()
+            ..RawGps::default()
         },
         channels,
         ..MspFacts::default()

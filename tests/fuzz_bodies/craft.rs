@@ -78,10 +78,10 @@ fn assert_retyped(configuration: &Configuration) {
 pub fn assert_answers(firmware: &mut Firmware) {
     let reply = firmware.run_cli(&mut Interpreter::default(), "version");
     assert!(!reply.failed && reply.text.contains("Betaflight"), "{}", reply.text);
-    for message in MESSAGES.iter().filter(|message| message.access.to_string() == "read") {
-        let reply = firmware.run_msp(message.code, &[], None).reply;
-        let length = reply.unwrap_or_else(|| panic!("{} is refused", message.name)).len();
-        assert!(length <= LONGEST_MESSAGE, "{}: {length} bytes", message.name);
+    for message in MESSAGES.iter().filter(|message| message.kind.access.to_string() == "read") {
+        let reply = firmware.run_msp(message.kind.code, &[], None).reply;
+        let length = reply.unwrap_or_else(|| panic!("{} is refused", message.kind.name)).len();
+        assert!(length <= LONGEST_MESSAGE, "{}: {length} bytes", message.kind.name);
     }
 }
 

@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use betadeck::link::proto::command_line::{Completion, LineReply};
 use betadeck::link::proto::first_line::{FirstLine, ForeignProtocol};
-use betadeck::link::proto::msp::{Kind, MAX_REQUEST};
 use betadeck::link::proto::serial_session::{SerialRequest, SerialSession};
+use betadeck::msp::{Kind, MAX_REQUEST};
 
 /// The mark of a quiet moment. It is long enough for a `#` before it to open the command line.
 const PAUSE: &[u8] = &[0x1e, 0x1e];

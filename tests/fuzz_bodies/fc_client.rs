@@ -4,7 +4,8 @@
 use std::time::Duration;
 
 use betadeck::fc::client::{Answer, Ask, AskId, CliAccess, FcClient};
-use betadeck::fc::telemetry::{Mission, Observation, code, settings};
+use betadeck::fc::telemetry::{Mission, Observation, settings};
+use betadeck::msp::code;
 
 /// The mark of passing time.
 const PAUSE: &[u8] = &[0x1e, 0x1e];
@@ -35,7 +36,7 @@ struct Talk {
 /// The messages whose payload is understood here.
 const MESSAGES: [u16; 10] = [
     code::STATUS_EX,
-    code::BOX_IDS,
+    code::BOXIDS,
     code::ATTITUDE,
     code::ALTITUDE,
     code::RAW_GPS,

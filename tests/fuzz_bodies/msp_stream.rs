@@ -7,8 +7,8 @@ use betadeck::firmware::cli::{CliMode, Interpreter, complete};
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{Firmware, FirmwareOptions};
 use betadeck::link::proto::command_line::{Completion, LineSource};
-use betadeck::link::proto::msp::{Decoder, Dropped, Form, Frame, Kind, MAX_REPLY, MAX_REQUEST};
 use betadeck::link::proto::serial_session::{SerialRequest, SerialSession};
+use betadeck::msp::{Decoder, Dropped, Form, Frame, Kind, MAX_REPLY, MAX_REQUEST};
 
 use super::craft;
 

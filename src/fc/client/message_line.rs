@@ -5,8 +5,9 @@ use std::time::Duration;
 use super::exchange::LONGEST;
 use super::request::Request;
 use super::{Answer, line_text};
-use crate::link::proto::command_message::{CLI_COMMAND, CUT, REFUSED};
-use crate::link::proto::msp::{Frame, MAX_REQUEST};
+use crate::link::proto::command_message::{CUT, REFUSED};
+use crate::msp::code::CLI_COMMAND;
+use crate::msp::{Frame, MAX_REQUEST};
 
 /// The bytes of a request after the line: a zero and the offset.
 const OFFSET_BYTES: usize = 3;

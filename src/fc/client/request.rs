@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::link::proto::msp::{Form, Frame, Kind};
+use crate::msp::{Form, Frame, Kind, code};
 
 /// The wait for the reply to a read-only message, for each attempt.
 const READ_PATIENCE: Duration = Duration::from_secs(1);
@@ -10,9 +10,17 @@ const READ_PATIENCE: Duration = Duration::from_secs(1);
 const WRITE_PATIENCE: Duration = Duration::from_secs(4);
 /// The highest code of version 1; 255 marks a tunnelled frame.
 const LAST_V1: u16 = 254;
-/// Messages without payload that have an effect: restart, disarming, calibrations, reset of settings,
-/// storing, binding.
-const COMMANDS: [u16; 8] = [68, 99, 205, 206, 208, 219, 250, 0x3000];
+/// Messages without payload that have an effect.
+const COMMANDS: [u16; 8] = [
+    code::REBOOT,
+    code::SET_ARMING_DISABLED,
+    code::ACC_CALIBRATION,
+    code::MAG_CALIBRATION,
+    code::RESET_CONF,
+    code::SET_RESET_CURR_PID,
+    code::EEPROM_WRITE,
+    code::BETAFLIGHT_BIND,
+];
 
 /// A message that was sent.
 #[derive(Debug)]

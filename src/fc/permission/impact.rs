@@ -2,7 +2,7 @@
 
 use super::NOTHING_MOVES;
 use crate::fc::client::sent_line;
-use crate::firmware::msp::{Access as MessageAccess, MESSAGES};
+use crate::msp::{self, code};
 
 /// Refusal of a line or message that takes the port away.
 const TAKES_PORT: &str =
@@ -100,18 +100,9 @@ const MOVE: [&str; 3] = ["motor", "dshotprog", "escprog"];
 /// Lines after which the port carries other data.
 const TAKE_PORT: [&str; 5] = ["serialpassthrough", "gpspassthrough", "bl", "dfu", "msc"];
 
-/// Messages that move a craft: SET_RAW_RC, SET_RAW_GPS, SET_HEADING, SET_MOTOR, SEND_DSHOT_COMMAND.
-const MOVING_MESSAGES: [u16; 5] = [200, 201, 211, 214, 0x3003];
-/// With a first byte other than 0 it disarms an armed craft, which may have armed since the last poll.
-const SET_ARMING_DISABLED: u16 = 99;
-/// Requests several messages. The flight controller takes arbitrary data as the payload of each.
-const MULTIPLE: u16 = 230;
-/// Sets the time of day, as configurators do at every connection.
-const SET_RTC: u16 = 246;
-/// Opens a passthrough of the port to another device.
-const SET_PASSTHROUGH: u16 = 245;
-/// Restarts. With a payload other than 0 it restarts into a boot loader or as a disk.
-const REBOOT: u16 = 68;
+/// Messages that move a craft.
+const MOVING_MESSAGES: [u16; 5] =
+    [code::SET_RAW_RC, code::SET_RAW_GPS, code::SET_HEADING, code::SET_MOTOR, code::SEND_DSHOT_COMMAND];
 
 impl Impact {
     /// Returns at least [`Self::Changes`] if `changes`.
@@ -154,28 +145,28 @@ impl Impact {
 
     /// Returns the impact of an MSP message. An unknown message may change the craft.
     pub fn of_message(code: u16, payload: &[u8]) -> Self {
-        let access = || {
-            let at = MESSAGES.binary_search_by_key(&code, |message| message.code).ok()?;
-            Some(MESSAGES[at].access)
-        };
         match code {
-            SET_RTC => Self::Reads,
-            SET_PASSTHROUGH => Self::Forbidden(TAKES_PORT),
-            REBOOT if payload.first().is_some_and(|kind| *kind != 0) => Self::Forbidden(TAKES_PORT),
-            SET_ARMING_DISABLED if payload.first().is_some_and(|disable| *disable != 0) => {
+            // Configurators set the time of day at every connection.
+            code::SET_RTC => Self::Reads,
+            code::SET_PASSTHROUGH => Self::Forbidden(TAKES_PORT),
+            // It restarts into a boot loader or as a disk.
+            code::REBOOT if payload.first().is_some_and(|kind| *kind != 0) => Self::Forbidden(TAKES_PORT),
+            // It disarms an armed craft, which may have armed since the last poll.
+            code::SET_ARMING_DISABLED if payload.first().is_some_and(|disable| *disable != 0) => {
                 Self::Forbidden(NOTHING_MOVES)
             }
-            MULTIPLE => {
+            code::MULTIPLE_MSP => {
+                // The flight controller takes arbitrary data as the payload of each message.
                 let of_each = |code: &u8| match u16::from(*code) {
-                    MULTIPLE => Self::Changes,
+                    code::MULTIPLE_MSP => Self::Changes,
                     code => Self::of_message(code, &[u8::MAX]),
                 };
                 payload.iter().map(of_each).max().unwrap_or(Self::Reads)
             }
             _ if MOVING_MESSAGES.contains(&code) => Self::Forbidden(NOTHING_MOVES),
-            _ => match access() {
-                Some(MessageAccess::Read | MessageAccess::Ask) => Self::Reads,
-                Some(MessageAccess::Write) | None => Self::Changes,
+            _ => match code::find(code).map(|kind| kind.access) {
+                Some(msp::Access::Read | msp::Access::Ask) => Self::Reads,
+                Some(msp::Access::Write) | None => Self::Changes,
             },
         }
     }

@@ -6,7 +6,7 @@ use super::{Event, Life, Purpose, Question, Remote, RemoteNotice};
 use crate::fc::client::{Answer, Unanswered};
 use crate::fc::polling::Poll;
 use crate::fc::reply::cli_reply;
-use crate::fc::telemetry::code;
+use crate::msp::code;
 use crate::vehicle::LateAnswer;
 
 /// The poll for the positions of the switches.

@@ -1,9 +1,8 @@
 //! Everything that a flight controller has reported, combined.
 
-use super::{
-    Altitude, Attitude, BatteryReading, HomeVector, RawGps, Status, channels, code, mode_ranges, motors,
-};
+use super::mode_ranges;
 use crate::geo::{LatLon, local_offset, offset_to_latlon};
+use crate::msp::{Altitude, Attitude, BatteryReading, Channels, HomeVector, Motors, RawGps, Status, code};
 use crate::signals::{PerMotor, RC_CHANNELS};
 use crate::telemetry::snapshot::{CraftView, EstimateView, GpsView, ModeRange};
 use crate::telemetry::{ArmingFlag, ArmingFlags, Mode};
@@ -37,7 +36,7 @@ impl Observation {
     /// Takes a reply and returns `true` if it was readable. An unreadable reply changes nothing.
     pub fn take(&mut self, code: u16, payload: &[u8]) -> bool {
         match code {
-            code::BOX_IDS => keep(&mut self.box_ids, Some(payload.to_vec())),
+            code::BOXIDS => keep(&mut self.box_ids, Some(payload.to_vec())),
             code::MODE_RANGES => keep(&mut self.ranges, Some(Some(payload.to_vec()))),
             code::MODE_RANGES_EXTRA => keep(&mut self.range_links, Some(Some(payload.to_vec()))),
             code::STATUS_EX => self.take_status(Status::decode(payload)),
@@ -46,8 +45,13 @@ impl Observation {
             code::RAW_GPS => keep(&mut self.gps, RawGps::decode(payload).map(Some)),
             code::COMP_GPS => keep(&mut self.home_vector, HomeVector::decode(payload).map(Some)),
             code::BATTERY_STATE => keep(&mut self.battery, BatteryReading::decode(payload).map(Some)),
-            code::RC => keep(&mut self.channels, channels(payload).map(Some)),
-            code::MOTOR => keep(&mut self.motors, motors(payload).map(Some)),
+            code::RC => keep(
+                &mut self.channels,
+                Channels::decode(payload).map(|channels| Some(channels.of_transmitter())),
+            ),
+            code::MOTOR => {
+                keep(&mut self.motors, Motors::decode(payload).map(|motors| Some(motors.outputs())))
+            }
             _ => false,
         }
     }

@@ -1,6 +1,6 @@
 //! A board that answers MSP and framed command lines.
 
-use crate::link::proto::msp::{Decoder, Frame};
+use crate::msp::{Decoder, Frame, code};
 
 /// The boxes: ARM, FAILSAFE, GPS RESCUE, AUTOPILOT.
 const BOXES: [u8; 4] = [0, 27, 46, 56];
@@ -93,24 +93,24 @@ impl Board {
     fn payload(&self, frame: &Frame) -> Option<Vec<u8>> {
         let Place { lat, lon, alt_m } = self.place;
         Some(match frame.code {
-            1 => vec![0, 1, 49],
-            2 => self.variant?.to_vec(),
-            3 => vec![4, 5, 0],
-            4 => b"TEST\0\0\0\0\x04TEST".to_vec(),
-            5 => [&b"Nov 22 202611:00:530000000"[..], &[0x2b, 0x40]].concat(),
-            34 => MODE_RANGES.to_vec(),
-            104 => [1500_u16; 4].map(u16::to_le_bytes).concat(),
-            105 => {
+            code::API_VERSION => vec![0, 1, 49],
+            code::FC_VARIANT => self.variant?.to_vec(),
+            code::FC_VERSION => vec![4, 5, 0],
+            code::BOARD_INFO => b"TEST\0\0\0\0\x04TEST".to_vec(),
+            code::BUILD_INFO => [&b"Nov 22 202611:00:530000000"[..], &[0x2b, 0x40]].concat(),
+            code::MODE_RANGES => MODE_RANGES.to_vec(),
+            code::MOTOR => [1500_u16; 4].map(u16::to_le_bytes).concat(),
+            code::RC => {
                 let mut channels = [1500_u16; 16];
                 channels[4] = self.arm_us;
                 channels.map(u16::to_le_bytes).concat()
             }
-            106 => {
+            code::RAW_GPS => {
                 let head = [&[2, 12][..], &lat.to_le_bytes(), &lon.to_le_bytes()].concat();
                 [&head[..], &alt_m.to_le_bytes(), &[0; 6]].concat()
             }
-            119 => BOXES.to_vec(),
-            150 => {
+            code::BOXIDS => BOXES.to_vec(),
+            code::STATUS_EX => {
                 let modes = u32::from(self.armed).to_le_bytes();
                 let head = [&[0xe8, 3, 0, 0, 0x2f, 0][..], &modes, &[0, 10, 0, 4, 0, 0, 30]].concat();
                 [&head[..], &[0; 10]].concat()

@@ -1,26 +1,20 @@
 //! The identity of the flight controller.
 
 use super::{Call, Refused};
+use crate::msp::{
+    ApiVersion, BETAFLIGHT, BoardInfo, BuildInfo, FLIGHT_PLAN_OPTION, FcVersion, PROCESSOR_NAMED,
+};
 
-/// The version of the MSP protocol.
-const PROTOCOL: u8 = 0;
-/// The major and minor API version.
-const API: (u8, u8) = (1, 49);
+const API: ApiVersion = ApiVersion { major: 1, minor: 49 };
 /// The year since 2000, month and patch of the firmware version.
 const VERSION: [u8; 3] = [26, 12, 0];
 /// The target and board identifier.
 const TARGET: &str = "SITL";
-/// The code of a microcontroller that is named by a text.
-const MCU_NAMED: u8 = 0xfe;
-/// A board without OSD chip. Configurators stop polling if this is neither 0 nor 2.
-const WITHOUT_OSD_CHIP: u8 = 0;
-/// The code for a configured board.
-const CONFIGURED: u8 = 1;
 
 /// The numbers of the options that are built in. Configurators show only the tabs of these.
-pub(super) const BUILD_OPTIONS: [u16; 6] = [
+const BUILD_OPTIONS: [u16; 6] = [
     16_422, // ALTITUDE_HOLD
-    16_427, // FLIGHT_PLAN
+    FLIGHT_PLAN_OPTION,
     16_412, // GPS
     16_415, // MAG
     16_425, // POSITION_HOLD
@@ -28,51 +22,39 @@ pub(super) const BUILD_OPTIONS: [u16; 6] = [
 ];
 
 pub(super) fn api_version(call: &mut Call<'_>) -> Result<(), Refused> {
-    call.reply.bytes(&[PROTOCOL, API.0, API.1]);
+    API.encode(&mut call.reply);
     Ok(())
 }
 
 pub(super) fn fc_variant(call: &mut Call<'_>) -> Result<(), Refused> {
-    call.reply.bytes(b"BTFL");
+    call.reply.bytes(BETAFLIGHT);
     Ok(())
 }
 
 pub(super) fn fc_version(call: &mut Call<'_>) -> Result<(), Refused> {
-    call.reply.bytes(&VERSION);
-    call.reply.prefixed(&call.facts.build.version);
+    let text = Some(call.facts.build.version.clone());
+    FcVersion { numbers: VERSION, text }.encode(&mut call.reply);
     Ok(())
 }
 
 pub(super) fn board_info(call: &mut Call<'_>) -> Result<(), Refused> {
-    let reply = &mut call.reply;
-    reply.bytes(TARGET.as_bytes());
-    reply.u16(0); // hardware revision
-    reply.u8(WITHOUT_OSD_CHIP);
-    reply.u8(0); // capabilities
-    reply.prefixed(TARGET);
-    reply.prefixed(&call.configuration.board_name);
-    reply.prefixed(&call.configuration.manufacturer_id);
-    reply.zeros(32); // signature
-    reply.u8(MCU_NAMED);
-    reply.u8(CONFIGURED);
-    reply.u16(call.facts.gyro_hz);
-    reply.u32(0); // problems
-    reply.bytes(&[0, 0]); // SPI and I2C devices
+    let board = BoardInfo {
+        identifier: TARGET.to_owned(),
+        target: Some(TARGET.to_owned()),
+        name: Some(call.configuration.board_name.clone()),
+        manufacturer: Some(call.configuration.manufacturer_id.clone()),
+        configured: Some(true),
+        gyro_hz: Some(call.facts.gyro_hz.try_into().unwrap_or(u16::MAX)),
+    };
+    board.encode(&mut call.reply);
     Ok(())
 }
 
 pub(super) fn build_info(call: &mut Call<'_>) -> Result<(), Refused> {
-    let build = &call.facts.build;
-    for (text, size) in [(&build.date, 11), (&build.time, 8), (&build.revision, 7)] {
-        let mut field = vec![b' '; size];
-        for (place, byte) in field.iter_mut().zip(text.bytes()) {
-            *place = byte;
-        }
-        call.reply.bytes(&field);
-    }
-    for option in BUILD_OPTIONS {
-        call.reply.u16(option);
-    }
+    let build = call.facts.build.clone();
+    let options = Some(BUILD_OPTIONS.to_vec());
+    BuildInfo { date: build.date, time: build.time, revision: build.revision, options }
+        .encode(&mut call.reply);
     Ok(())
 }
 
@@ -84,7 +66,7 @@ pub(super) fn uid(call: &mut Call<'_>) -> Result<(), Refused> {
 }
 
 pub(super) fn mcu_info(call: &mut Call<'_>) -> Result<(), Refused> {
-    call.reply.u8(MCU_NAMED);
+    call.reply.u8(PROCESSOR_NAMED);
     call.reply.prefixed("SIMULATOR");
     Ok(())
 }

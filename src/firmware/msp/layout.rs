@@ -1,7 +1,7 @@
 //! Messages that are lists of settings. The same list reads and writes them.
 
-use super::wire::{Reader, Writer};
 use crate::firmware::settings::{Kind, Settings, Value, Width, find};
+use crate::msp::{PaddedReader, Writer};
 
 /// One field of a message.
 #[derive(Debug, Clone, Copy)]
@@ -55,28 +55,28 @@ pub(super) const fn long(value: i64) -> Field {
 pub(super) fn read(fields: &[Field], settings: &Settings, reply: &mut Writer) {
     for field in fields {
         match *field {
-            Field::Setting(width, name) => reply.number(width, settings.number(name)),
+            Field::Setting(width, name) => write_number(reply, width, settings.number(name)),
             Field::Scaled { width, name, factor, offset } => {
-                reply.number(width, settings.number(name) * factor + offset);
+                write_number(reply, width, settings.number(name) * factor + offset);
             }
-            Field::Fixed(width, value) => reply.number(width, value),
+            Field::Fixed(width, value) => write_number(reply, width, value),
         }
     }
 }
 
 /// Sets the fields of a message from the request. Settings without any byte keep their value.
-pub(super) fn write(fields: &[Field], settings: &mut Settings, request: &mut Reader<'_>) {
+pub(super) fn write(fields: &[Field], settings: &mut Settings, request: &mut PaddedReader<'_>) {
     for field in fields {
         if request.remaining() == 0 {
             return;
         }
         match *field {
-            Field::Setting(width, name) => put(settings, name, request.number(width)),
+            Field::Setting(width, name) => put(settings, name, read_number(request, width)),
             Field::Scaled { width, name, factor, offset } => {
-                put(settings, name, (request.number(width) - offset) / factor);
+                put(settings, name, (read_number(request, width) - offset) / factor);
             }
             Field::Fixed(width, _) => {
-                request.number(width);
+                read_number(request, width);
             }
         }
     }
@@ -91,4 +91,24 @@ pub(super) fn put(settings: &mut Settings, name: &str, number: i64) {
         Kind::Choice { .. } | Kind::Port { .. } | Kind::Array { .. } | Kind::Text { .. } => number,
     };
     let _unknown_word = settings.set(name, Value::Number(number));
+}
+
+fn read_number(request: &mut PaddedReader<'_>, width: Width) -> i64 {
+    match width {
+        Width::U8 => i64::from(request.u8()),
+        Width::I8 => i64::from(request.i8()),
+        Width::U16 => i64::from(request.u16()),
+        Width::I16 => i64::from(request.i16()),
+        Width::U32 => i64::from(request.u32()),
+    }
+}
+
+fn write_number(reply: &mut Writer, width: Width, number: i64) {
+    match width {
+        Width::U8 => reply.u8(number),
+        Width::I8 => reply.i8(number),
+        Width::U16 => reply.u16(number),
+        Width::I16 => reply.i16(number),
+        Width::U32 => reply.u32(number),
+    }
 }

@@ -2,19 +2,14 @@
 
 use super::{Call, MspFacts, Refused};
 use crate::firmware::config::{
-    ADJUSTMENT_RANGES, AdjustmentRange, Configuration, Feature, MODE_CONDITIONS, ModeCondition, ModeLogic,
+    ADJUSTMENT_RANGES, AdjustmentRange, Configuration, Feature, ModeCondition, ModeLogic,
 };
 use crate::firmware::modes::boxes::{self, BoxInfo, Equipment};
+use crate::msp::{ModeLink, ModeSlot, range_step, range_us};
 use crate::telemetry::Mode;
 
 /// The number of boxes on one page of the lists.
 const PAGE: usize = 32;
-/// The pulse of step 0 of a range, µs.
-const RANGE_START_US: u16 = 900;
-/// The pulse step of a range, µs.
-const RANGE_STEP_US: u16 = 25;
-/// The highest step of a range.
-const RANGE_STEPS: u8 = 48;
 
 /// Returns the boxes that this craft lists, in order. Names, ids and mode bits all use this list.
 fn listed(configuration: &Configuration, facts: &MspFacts) -> impl Iterator<Item = &'static BoxInfo> {
@@ -72,31 +67,20 @@ fn is_on(facts: &MspFacts, entry: &BoxInfo) -> bool {
     facts.modes.has(mode)
 }
 
-fn step(pulse_us: u16) -> u16 {
-    pulse_us.saturating_sub(RANGE_START_US) / RANGE_STEP_US
-}
-
-fn pulse_us(step: u8) -> u16 {
-    RANGE_START_US + RANGE_STEP_US * u16::from(step.min(RANGE_STEPS))
-}
-
 pub(super) fn mode_ranges(call: &mut Call<'_>) -> Result<(), Refused> {
-    for condition in &call.configuration.modes {
-        call.reply.u8(condition.box_id);
-        call.reply.u8(condition.aux_channel);
-        call.reply.u8(step(condition.start_us));
-        call.reply.u8(step(condition.end_us));
+    for &ModeCondition { box_id, aux_channel, start_us, end_us, .. } in &call.configuration.modes {
+        ModeSlot { box_id, aux_channel, start_us, end_us }.encode(&mut call.reply);
     }
     Ok(())
 }
 
 pub(super) fn mode_ranges_extra(call: &mut Call<'_>) -> Result<(), Refused> {
-    call.reply.u8(MODE_CONDITIONS as i64);
-    for condition in &call.configuration.modes {
-        call.reply.u8(condition.box_id);
-        call.reply.u8(condition.logic as u8);
-        call.reply.u8(condition.linked);
-    }
+    let link = |condition: &ModeCondition| ModeLink {
+        box_id: condition.box_id,
+        logic: condition.logic as u8,
+        linked: condition.linked,
+    };
+    ModeLink::encode_all(call.configuration.modes.iter().map(link), &mut call.reply);
     Ok(())
 }
 
@@ -106,8 +90,8 @@ pub(super) fn set_mode_range(call: &mut Call<'_>) -> Result<(), Refused> {
     let condition = ModeCondition {
         box_id: request.u8(),
         aux_channel: request.u8(),
-        start_us: pulse_us(request.u8()),
-        end_us: pulse_us(request.u8()),
+        start_us: range_us(request.u8()),
+        end_us: range_us(request.u8()),
         logic: ModeLogic::from_repr(request.u8()).unwrap_or_default(),
         linked: request.u8(),
     };
@@ -125,8 +109,8 @@ pub(super) fn adjustment_ranges(call: &mut Call<'_>) -> Result<(), Refused> {
     for range in &call.configuration.adjustments {
         call.reply.u8(0);
         call.reply.u8(range.aux_channel);
-        call.reply.u8(step(range.start_us));
-        call.reply.u8(step(range.end_us));
+        call.reply.u8(range_step(range.start_us));
+        call.reply.u8(range_step(range.end_us));
         call.reply.u8(range.function);
         call.reply.u8(range.select_channel);
         call.reply.u16(range.center);
@@ -141,8 +125,8 @@ pub(super) fn set_adjustment_range(call: &mut Call<'_>) -> Result<(), Refused> {
     request.u8();
     let range = AdjustmentRange {
         aux_channel: request.u8(),
-        start_us: pulse_us(request.u8()),
-        end_us: pulse_us(request.u8()),
+        start_us: range_us(request.u8()),
+        end_us: range_us(request.u8()),
         function: request.u8(),
         select_channel: request.u8(),
         center: request.u16(),

@@ -1,7 +1,7 @@
 //! Several requests in one message.
 
-use super::table::{self, Access};
-use super::{Call, Refused};
+use super::{Call, Refused, table};
+use crate::msp::{Access, PaddedReader, Writer};
 
 /// The most bytes of all answers.
 const REPLY_MAX: usize = 512;
@@ -15,13 +15,14 @@ pub(super) fn multiple(call: &mut Call<'_>) -> Result<(), Refused> {
     }
     let mut answers: Vec<u8> = Vec::with_capacity(REPLY_MAX);
     for &code in codes {
-        let message =
-            table::find(u16::from(code)).filter(|message| message.access == Access::Read).ok_or(Refused)?;
+        let message = table::find(u16::from(code))
+            .filter(|message| message.kind.access == Access::Read)
+            .ok_or(Refused)?;
         let mut question = Call {
             configuration: call.configuration,
             facts: call.facts,
-            request: super::Reader::new(&[]),
-            reply: super::Writer::default(),
+            request: PaddedReader::new(&[]),
+            reply: Writer::default(),
             action: None,
             notice: None,
         };

@@ -3,10 +3,10 @@
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::firmware::Firmware;
-use crate::firmware::battery::BatteryState as PackState;
 use crate::firmware::cli::BuildInfo;
 use crate::firmware::modes::BoxSet;
-use crate::geo::{LatLon, distance_bearing};
+use crate::geo::distance_bearing;
+use crate::msp::{BatteryReading, HomeVector, RawGps};
 use crate::signals::{MOTORS, PerMotor, RC_CHANNELS};
 use crate::telemetry::{ArmingFlags, ModeFlags};
 
@@ -57,9 +57,9 @@ pub struct MspFacts {
     pub channels: [u16; RC_CHANNELS],
     /// The motor outputs M1…M4, µs.
     pub motors_us: PerMotor<u16>,
-    pub gps: GpsReading,
-    /// The distance and direction of home; `None` without a home.
-    pub home: Option<HomeReading>,
+    pub gps: RawGps,
+    /// The distance and direction of home, seen from the craft; zeros without a home.
+    pub home: HomeVector,
     /// The time of day, if it was set.
     pub clock: Option<UtcTime>,
 }
@@ -91,8 +91,8 @@ impl Default for MspFacts {
             rssi: 0,
             channels: [1500; RC_CHANNELS],
             motors_us: [1000; MOTORS],
-            gps: GpsReading::default(),
-            home: None,
+            gps: RawGps::default(),
+            home: HomeVector::default(),
             clock: None,
         }
     }
@@ -123,7 +123,7 @@ impl MspFacts {
             heading_deg: estimate.heading_rad.to_degrees(),
             altitude_m: altitude_m(firmware),
             climb_mps: estimate.shown_climb_mps,
-            battery: BatteryReading::observe(firmware),
+            battery: battery(firmware),
             rssi: rssi(firmware),
             channels: *firmware.receiver().channels(),
             motors_us: firmware
@@ -131,8 +131,8 @@ impl MspFacts {
                 .state()
                 .motors_us
                 .map(|pulse| pulse.round().clamp(0.0, 2500.0) as u16),
-            gps: GpsReading::observe(firmware),
-            home: HomeReading::observe(firmware),
+            gps: gps(firmware),
+            home: home(firmware),
             clock,
         }
     }
@@ -160,103 +160,43 @@ fn rssi(firmware: &Firmware) -> u16 {
     }
 }
 
-/// The state of the battery. The discriminant is the code on the wire.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[repr(u8)]
-pub enum BatteryState {
-    Ok = 0,
-    /// Below the warning voltage.
-    Warning = 1,
-    /// Below the lowest voltage.
-    Critical = 2,
-    #[default]
-    NotPresent = 3,
-    Starting = 4,
+fn battery(firmware: &Firmware) -> Option<BatteryReading> {
+    let sample = firmware.battery().sample()?;
+    let cells = firmware.battery().cells();
+    Some(BatteryReading {
+        cells: (cells > 0).then_some(cells),
+        voltage_v: sample.voltage_v,
+        drawn_mah: sample.drawn_mah,
+        current_a: sample.current_a,
+        state: Some(firmware.battery().state()),
+        ..BatteryReading::default()
+    })
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct BatteryReading {
-    /// The voltage, V.
-    pub voltage_v: f64,
-    /// The current, A.
-    pub current_a: f64,
-    /// The charge drawn, mAh.
-    pub drawn_mah: f64,
-    pub cells: u8,
-    pub state: BatteryState,
-}
-
-impl BatteryReading {
-    fn observe(firmware: &Firmware) -> Option<Self> {
-        let sample = firmware.battery().sample()?;
-        Some(Self {
-            voltage_v: sample.voltage_v,
-            current_a: sample.current_a,
-            drawn_mah: sample.drawn_mah,
-            cells: firmware.battery().cells(),
-            state: match firmware.battery().state() {
-                PackState::Init => BatteryState::Starting,
-                PackState::NotPresent => BatteryState::NotPresent,
-                PackState::Ok => BatteryState::Ok,
-                PackState::Warning => BatteryState::Warning,
-                PackState::Critical => BatteryState::Critical,
-            },
-        })
+fn gps(firmware: &Firmware) -> RawGps {
+    let gps = &firmware.estimate().gps;
+    let solution = gps.solution.unwrap_or_default();
+    let (east, north) = (solution.vel_enu.x, solution.vel_enu.y);
+    let view = firmware.gps_view().unwrap_or_default();
+    RawGps {
+        fix: firmware.gps_fix(),
+        sats: gps.sats,
+        position: view.position,
+        alt_amsl_m: view.alt_amsl_m,
+        ground_speed_mps: view.ground_speed_mps,
+        course_deg: east.atan2(north).to_degrees(),
+        dop: (gps.hdop > 0.0).then_some(gps.hdop),
     }
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct GpsReading {
-    /// `true` while there is a 3-D fix.
-    pub fix: bool,
-    pub sats: u8,
-    pub position: LatLon,
-    /// The altitude above mean sea level, m.
-    pub alt_amsl_m: f64,
-    /// The ground speed, m/s.
-    pub ground_speed_mps: f64,
-    /// The course over ground, degrees clockwise from north.
-    pub course_deg: f64,
-    /// The dilution of precision; 0 = not reported.
-    pub dop: f64,
-    /// A counter that changes with every message of the receiver.
-    pub solution: u8,
-}
-
-impl GpsReading {
-    fn observe(firmware: &Firmware) -> Self {
-        let gps = &firmware.estimate().gps;
-        let solution = gps.solution.unwrap_or_default();
-        let (east, north) = (solution.vel_enu.x, solution.vel_enu.y);
-        let view = firmware.gps_view().unwrap_or_default();
-        Self {
-            fix: firmware.gps_fix(),
-            sats: gps.sats,
-            position: view.position,
-            alt_amsl_m: view.alt_amsl_m,
-            ground_speed_mps: view.ground_speed_mps,
-            course_deg: east.atan2(north).to_degrees(),
-            dop: gps.hdop,
-            solution: gps.messages as u8,
-        }
-    }
-}
-
-/// The distance and direction of home, seen from the craft.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct HomeReading {
-    /// The distance, m.
-    pub distance_m: f64,
-    /// The direction, degrees clockwise from north.
-    pub bearing_deg: f64,
-}
-
-impl HomeReading {
-    fn observe(firmware: &Firmware) -> Option<Self> {
-        let place = firmware.estimate().gps.solution.filter(|_| firmware.gps_fix())?.position;
-        let (distance_m, bearing_rad) = distance_bearing(place, firmware.home()?);
-        Some(Self { distance_m, bearing_deg: bearing_rad.to_degrees() })
-    }
+/// Returns the distance and direction of home, seen from the craft; zeros without a home.
+fn home(firmware: &Firmware) -> HomeVector {
+    let gps = &firmware.estimate().gps;
+    let place = gps.solution.filter(|_| firmware.gps_fix()).map(|solution| solution.position);
+    let (distance_m, bearing_rad) =
+        place.zip(firmware.home()).map_or((0.0, 0.0), |(place, home)| distance_bearing(place, home));
+    let toggle = gps.messages & 1 == 1;
+    HomeVector { distance_m, bearing_deg: bearing_rad.to_degrees(), toggle }
 }
 
 /// A time of day.

@@ -1,8 +1,9 @@
 //! Access of the messages to the running firmware.
 
-use super::{Access, MspAction, MspFacts, Outcome, UtcTime};
+use super::{MspAction, MspFacts, Outcome, UtcTime};
 use crate::firmware::Firmware;
 use crate::firmware::config::Feature;
+use crate::msp::Access;
 use crate::signals::RcSource;
 use crate::telemetry::FirmwareEvent;
 
@@ -14,7 +15,7 @@ impl Firmware {
         let configuration = self.setup.configuration_mut();
         let had_gps = configuration.features.has(Feature::Gps);
         let outcome = super::handle(code, request, configuration, &facts);
-        let writes = super::table::find(code).is_some_and(|message| message.access == Access::Write);
+        let writes = super::table::find(code).is_some_and(|message| message.kind.access == Access::Write);
         if writes && outcome.reply.is_some() && changes_configuration(outcome.action) {
             self.refresh();
         }

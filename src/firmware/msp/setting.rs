@@ -2,6 +2,7 @@
 
 use super::{Call, Refused};
 use crate::firmware::settings::{Kind, PORT_NAMES, Scope, Setting, beyond_current_firmware, find};
+use crate::msp::PaddedReader;
 
 /// Sets with `name = value` or reads with `name`. Replies with `name = value`.
 pub(super) fn setting(call: &mut Call<'_>) -> Result<(), Refused> {
@@ -29,7 +30,7 @@ pub(super) fn setting_info(call: &mut Call<'_>) -> Result<(), Refused> {
     let request = call.request.all();
     let (name, offset) = match request.iter().position(|&byte| byte == 0) {
         Some(end) => {
-            let mut rest = super::Reader::new(&request[end + 1..]);
+            let mut rest = PaddedReader::new(&request[end + 1..]);
             (&request[..end], usize::from(rest.u16()))
         }
         None => (request, 0),

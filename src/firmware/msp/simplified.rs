@@ -4,9 +4,9 @@
 //! only. Each low-pass frequency is its default times the filter's multiplier. 100 means 1.0.
 
 use super::layout::{self, Field, u8};
-use super::wire::{Reader, Writer};
 use super::{Call, Refused};
 use crate::firmware::settings::{Kind, Settings, find};
+use crate::msp::{PaddedReader, Writer};
 
 /// The sliders of the gains in wire order.
 const SLIDERS: [&str; 9] = [
@@ -174,7 +174,7 @@ impl Filter {
         reply.zeros(SPARE);
     }
 
-    fn take_block(request: &mut Reader<'_>) -> (i64, i64, [i64; 4]) {
+    fn take_block(request: &mut PaddedReader<'_>) -> (i64, i64, [i64; 4]) {
         let (switch, multiplier) = (i64::from(request.u8()), i64::from(request.u8()));
         let cutoffs = [(); 4].map(|()| i64::from(request.u16()));
         request.u32();
@@ -182,7 +182,7 @@ impl Filter {
         (switch, multiplier, cutoffs)
     }
 
-    fn write(&self, settings: &mut Settings, request: &mut Reader<'_>) {
+    fn write(&self, settings: &mut Settings, request: &mut PaddedReader<'_>) {
         if request.remaining() == 0 {
             return;
         }

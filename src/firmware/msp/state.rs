@@ -1,41 +1,30 @@
 //! The present measurements and state of the craft.
 
-use super::wire::steps;
-use super::{BatteryReading, BatteryState, Call, Refused, UtcTime, modes};
+use super::{Call, MspFacts, Refused, UtcTime, modes};
 use crate::firmware::config::Feature;
 use crate::firmware::settings::Scope;
 use crate::geo::GRAVITY;
+use crate::msp::{Altitude, Attitude, BatteryReading, Channels, Motors, Status, steps};
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// The accelerometer counts of 1 g.
 const COUNTS_PER_G: f64 = 256.0;
-/// The number of arming disable flags.
-const ARMING_FLAGS: u8 = 30;
-/// The number of boxes whose state is in the fixed part of a status.
-const FIXED_MODE_BITS: u32 = 32;
-/// The number of motors that a message has room for.
-const MOTOR_SLOTS: usize = 8;
 /// The meters of the battery: the measured one and the computed one.
 const METER_MEASURED: u8 = 10;
 const METER_VIRTUAL: u8 = 80;
-/// The code for a fix in `RAW_GPS`.
-const FIX: u8 = 2;
-/// The dilution reported for a source that reports none.
-const UNREPORTED_DOP: f64 = 0.1;
 
 pub(super) fn status(call: &mut Call<'_>) -> Result<(), Refused> {
-    write_status(call, false);
+    present_status(call).encode(false, &mut call.reply);
     Ok(())
 }
 
 pub(super) fn status_ex(call: &mut Call<'_>) -> Result<(), Refused> {
-    write_status(call, true);
+    present_status(call).encode(true, &mut call.reply);
     Ok(())
 }
 
-fn write_status(call: &mut Call<'_>, extended: bool) {
+fn present_status(call: &Call<'_>) -> Status {
     let (configuration, facts) = (&*call.configuration, call.facts);
-    let bits = modes::mode_bits(configuration, facts);
     let settings = &configuration.settings;
     let sensors = [
         true, // accelerometer
@@ -46,31 +35,20 @@ fn write_status(call: &mut Call<'_>, extended: bool) {
         true,  // gyro
         false, // optical flow
     ];
-    let mask = sensors.iter().rev().fold(0_u16, |mask, &present| mask << 1 | u16::from(present));
-    let reply = &mut call.reply;
-    reply.u16(facts.cycle_time_us);
-    reply.u16(0); // I2C errors
-    reply.u16(mask);
-    reply.u32(bits as u32);
-    reply.u8(settings.active(Scope::Profile));
-    reply.u16(facts.cpu_load_percent);
-    if extended {
-        reply.u8(Scope::Profile.instances());
-        reply.u8(settings.active(Scope::RateProfile));
-    } else {
-        reply.u16(0);
+    Status {
+        cycle_time_us: facts.cycle_time_us.try_into().unwrap_or(u16::MAX),
+        sensors: sensors.iter().rev().fold(0, |mask, &present| mask << 1 | u16::from(present)),
+        profile: settings.active(Scope::Profile),
+        profiles: Scope::Profile.instances(),
+        rate_profile: settings.active(Scope::RateProfile),
+        rate_profiles: Scope::RateProfile.instances(),
+        battery_profile: settings.active(Scope::BatteryProfile),
+        battery_profiles: Scope::BatteryProfile.instances(),
+        load_percent: facts.cpu_load_percent.try_into().unwrap_or(u16::MAX),
+        mode_bits: modes::mode_bits(configuration, facts).into(),
+        arming_blocked_by: Some(facts.arming_blocks),
+        reboot_required: Some(facts.reboot_required),
     }
-    let more = (bits >> FIXED_MODE_BITS).to_le_bytes();
-    let used = more.iter().rposition(|&byte| byte != 0).map_or(0, |last| last + 1);
-    reply.u8(used as i64);
-    reply.bytes(&more[..used]);
-    reply.u8(ARMING_FLAGS);
-    reply.u32(facts.arming_blocks.bits());
-    reply.u8(u8::from(facts.reboot_required));
-    reply.u16(0); // temperature unknown
-    reply.u8(Scope::RateProfile.instances());
-    reply.u8(Scope::BatteryProfile.instances());
-    reply.u8(settings.active(Scope::BatteryProfile));
 }
 
 pub(super) fn raw_imu(call: &mut Call<'_>) -> Result<(), Refused> {
@@ -88,11 +66,8 @@ pub(super) fn raw_imu(call: &mut Call<'_>) -> Result<(), Refused> {
 }
 
 pub(super) fn attitude(call: &mut Call<'_>) -> Result<(), Refused> {
-    let facts = call.facts;
-    call.reply.i16(steps(facts.roll_deg, 10.0));
-    // Nose down is positive on the wire.
-    call.reply.i16(steps(-facts.pitch_deg, 10.0));
-    call.reply.i16(steps(facts.heading_deg, 1.0).rem_euclid(360));
+    let &MspFacts { roll_deg, pitch_deg, heading_deg, .. } = call.facts;
+    Attitude { roll_deg, pitch_deg, heading_deg }.encode(&mut call.reply);
     Ok(())
 }
 
@@ -106,8 +81,8 @@ pub(super) fn attitude_quaternion(call: &mut Call<'_>) -> Result<(), Refused> {
 }
 
 pub(super) fn altitude(call: &mut Call<'_>) -> Result<(), Refused> {
-    call.reply.i32(steps(call.facts.altitude_m, 100.0));
-    call.reply.i16(steps(call.facts.climb_mps, 100.0));
+    let &MspFacts { altitude_m, climb_mps, .. } = call.facts;
+    Altitude { alt_m: altitude_m, climb_mps: Some(climb_mps) }.encode(&mut call.reply);
     Ok(())
 }
 
@@ -131,16 +106,8 @@ pub(super) fn analog(call: &mut Call<'_>) -> Result<(), Refused> {
 }
 
 pub(super) fn battery_state(call: &mut Call<'_>) -> Result<(), Refused> {
-    let battery = battery(call);
-    let capacity = call.setting("bat_capacity");
-    let state = if call.facts.battery.is_some() { battery.state } else { BatteryState::NotPresent };
-    call.reply.u8(battery.cells);
-    call.reply.u16(capacity);
-    call.reply.u8(steps(battery.voltage_v, 10.0));
-    call.reply.u16(steps(battery.drawn_mah, 1.0));
-    call.reply.i16(steps(battery.current_a, 100.0));
-    call.reply.u8(state as u8);
-    call.reply.u16(steps(battery.voltage_v, 100.0));
+    let capacity_mah = call.setting("bat_capacity").try_into().unwrap_or(u16::MAX);
+    BatteryReading { capacity_mah, ..battery(call) }.encode(&mut call.reply);
     Ok(())
 }
 
@@ -162,17 +129,12 @@ pub(super) fn current_meters(call: &mut Call<'_>) -> Result<(), Refused> {
 }
 
 pub(super) fn rc(call: &mut Call<'_>) -> Result<(), Refused> {
-    for channel in call.facts.channels {
-        call.reply.u16(channel);
-    }
+    Channels(call.facts.channels).encode(&mut call.reply);
     Ok(())
 }
 
 pub(super) fn motor(call: &mut Call<'_>) -> Result<(), Refused> {
-    for motor in call.facts.motors_us {
-        call.reply.u16(motor);
-    }
-    call.reply.zeros(2 * (MOTOR_SLOTS - call.facts.motors_us.len()));
+    Motors(call.facts.motors_us).encode(&mut call.reply);
     Ok(())
 }
 
@@ -190,24 +152,12 @@ pub(super) fn debug(call: &mut Call<'_>) -> Result<(), Refused> {
 }
 
 pub(super) fn raw_gps(call: &mut Call<'_>) -> Result<(), Refused> {
-    let gps = call.facts.gps;
-    let dop = if gps.dop > 0.0 { gps.dop } else { UNREPORTED_DOP };
-    call.reply.u8(if gps.fix { FIX } else { 0 });
-    call.reply.u8(gps.sats);
-    call.reply.i32(gps.position.lat_e7);
-    call.reply.i32(gps.position.lon_e7);
-    call.reply.u16(steps(gps.alt_amsl_m, 1.0));
-    call.reply.u16(steps(gps.ground_speed_mps, 100.0));
-    call.reply.u16(steps(gps.course_deg, 10.0).rem_euclid(3600));
-    call.reply.u16(steps(dop, 100.0));
+    call.facts.gps.encode(&mut call.reply);
     Ok(())
 }
 
 pub(super) fn comp_gps(call: &mut Call<'_>) -> Result<(), Refused> {
-    let home = call.facts.home.unwrap_or_default();
-    call.reply.u16(steps(home.distance_m, 1.0));
-    call.reply.i16(steps(home.bearing_deg, 1.0));
-    call.reply.u8(call.facts.gps.solution & 1);
+    call.facts.home.encode(&mut call.reply);
     Ok(())
 }
 

@@ -3,11 +3,12 @@
 use nalgebra::Vector3;
 
 use crate::firmware::FirmwareOptions;
-use crate::firmware::battery::{Battery, BatteryState};
+use crate::firmware::battery::Battery;
 use crate::firmware::estimate::{DueTasks, Estimate, Estimator, EstimatorOptions, NotTurned};
 use crate::firmware::outbox::Outbox;
 use crate::firmware::parameters::Parameters;
 use crate::geo::LatLon;
+use crate::msp::BatteryState;
 use crate::signals::{BatterySample, SensorFrame};
 use crate::telemetry::{BatteryAlarm, FirmwareEvent, FirmwareNotice};
 

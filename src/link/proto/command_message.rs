@@ -6,10 +6,9 @@
 //! ```
 
 use super::command_line::LineReply;
-use super::msp::Frame;
+use crate::msp::Frame;
+use crate::msp::code::CLI_COMMAND;
 
-/// The code of the message.
-pub const CLI_COMMAND: u16 = 0x3012;
 /// The maximum number of output bytes that are kept.
 const OUTPUT_MAX: usize = 2048;
 /// The maximum number of output bytes of one reply.

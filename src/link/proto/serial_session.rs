@@ -19,7 +19,7 @@ use super::between_frames::{BetweenFrames, NotText};
 use super::command_line::{AfterLine, Completion, LineReply, LineSource};
 use super::command_message::CommandMessage;
 use super::line_editor::{ENTRY_QUIET, LineEditor, LinkMode};
-use super::msp::{Decoder, Dropped, Frame};
+use crate::msp::{Decoder, Dropped, Frame};
 
 /// Opens the command line for one batch of lines.
 const STX: u8 = 0x02;
@@ -286,7 +286,7 @@ impl SerialSession {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::link::proto::msp::Form;
+    use crate::msp::Form;
 
     const FRAME: &[u8] = b"$M<\x00\x01\x01";
     const QUIET: Duration = Duration::from_millis(150);

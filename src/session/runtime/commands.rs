@@ -12,6 +12,7 @@ use crate::fc::replace_falling_gains;
 use crate::fc::{LIST, Upload, plan_above_home};
 use crate::firmware::cli::Interpreter;
 use crate::flight::forecast;
+use crate::msp::code;
 use crate::plan::AltitudeReference;
 use crate::session::command::{
     Command, PLACE_IS_EXTERNAL, Seek, TIME_IS_EXTERNAL, TIME_IS_THE_FIRMWARES, UPLOADING, VehicleCopy,
@@ -19,9 +20,6 @@ use crate::session::command::{
 use crate::sim::WorldCommand;
 use crate::telemetry::LinkState;
 use crate::vehicle::{Answer, Reply, VehicleCommand, VehicleRefusal};
-
-/// The message that stores the configuration.
-const EEPROM_WRITE: u16 = 250;
 
 impl Session {
     pub(super) fn take_commands(&mut self, now: Duration, context: &mut Context<'_>) {
@@ -201,7 +199,7 @@ impl Session {
             drop(reply.send(Err(format!("Not saved while the craft is armed: {way} on the ground."))));
         } else if controller.configuration().is_some() {
             drop(reply.send(self.persistence.save(controller)));
-        } else if let Answer::Later(ticket) = controller.run_msp(EEPROM_WRITE, &[], None) {
+        } else if let Answer::Later(ticket) = controller.run_msp(code::EEPROM_WRITE, &[], None) {
             self.late_answers.expect(ticket, WaitingInterface::Save { reply }, Instant::now());
         }
     }

@@ -173,7 +173,7 @@ mod tests {
     fn a_refused_client_is_answered() {
         let client = ClientId(1);
         let (reply, answer) = oneshot::channel();
-        let message = Request::Msp { client, code: 214, payload: vec![0; 8], reply };
+        let message = Request::Msp { client, code: crate::msp::code::SET_MOTOR, payload: vec![0; 8], reply };
         assert_eq!(refuse_request(message, Access::Changing).unwrap_err(), Denial::Never(NOTHING_MOVES));
         assert_eq!(answer.blocking_recv(), Ok(None));
 

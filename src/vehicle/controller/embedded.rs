@@ -3,7 +3,8 @@
 use crate::firmware::Firmware;
 use crate::firmware::cli::{CliReply, Interpreter};
 use crate::firmware::config::Configuration;
-use crate::firmware::msp::{Access, MESSAGES, MspAction, Outcome, UtcTime};
+use crate::firmware::msp::{MESSAGES, MspAction, Outcome, UtcTime};
+use crate::msp::Access;
 use crate::signals::{RcFrame, RcSource};
 use crate::telemetry::{InFlightCommand, InFlightRefusal, Refusal};
 use crate::vehicle::input_log::InputLog;
@@ -86,6 +87,9 @@ impl EmbeddedController {
 
 /// Returns `true` if a message can change anything.
 fn writes(code: u16) -> bool {
-    let found = MESSAGES.binary_search_by_key(&code, |message| message.code);
-    found.ok().and_then(|index| MESSAGES.get(index)).is_some_and(|message| message.access == Access::Write)
+    let found = MESSAGES.binary_search_by_key(&code, |message| message.kind.code);
+    found
+        .ok()
+        .and_then(|index| MESSAGES.get(index))
+        .is_some_and(|message| message.kind.access == Access::Write)
 }

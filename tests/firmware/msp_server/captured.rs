@@ -1,8 +1,8 @@
 //! Replies that equal those of the real executable byte for byte.
 
 use betadeck::firmware::config::Configuration;
-use betadeck::firmware::msp::{HomeReading, MspFacts, handle};
-use betadeck::link::proto::msp::Decoder;
+use betadeck::firmware::msp::{MspFacts, handle};
+use betadeck::msp::{Decoder, HomeVector};
 use betadeck::telemetry::Mode;
 
 use super::{ask, craft, facts, hex, unhex};
@@ -37,8 +37,7 @@ fn every_captured_exchange_gets_the_same_bytes() {
                 facts.modes.set(Mode::Arm, true);
                 facts.cycle_time_us = 964;
                 facts.motors_us = [1055; 4];
-                facts.gps.solution = 1;
-                facts.home = Some(HomeReading { distance_m: 0.2, bearing_deg: 89.3 });
+                facts.home = HomeVector { distance_m: 0.2, bearing_deg: 89.3, toggle: true };
             }
             _ => {}
         }

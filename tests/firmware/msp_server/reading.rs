@@ -1,7 +1,8 @@
 //! Messages that report the state of the craft.
 
 use betadeck::firmware::modes::BoxSet;
-use betadeck::firmware::msp::{BatteryReading, BatteryState, MspFacts, UtcTime, handle};
+use betadeck::firmware::msp::{MspFacts, UtcTime, handle};
+use betadeck::msp::{BatteryReading, BatteryState};
 use betadeck::telemetry::{Mode, ModeFlags};
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -41,8 +42,9 @@ fn state_messages_use_the_signs_of_the_wire() {
             voltage_v: 15.64,
             current_a: 12.5,
             drawn_mah: 345.6,
-            cells: 4,
-            state: BatteryState::Warning,
+            cells: Some(4),
+            state: Some(BatteryState::Warning),
+            ..BatteryReading::default()
         }),
         clock: Some(UtcTime { unix_s: 1_700_000_000, millis: 500 }),
         ..facts()

@@ -1,20 +1,20 @@
 //! The table of messages: its order, its copy in the manual, and any payload for any row.
 
-use betadeck::firmware::msp::{Access, MESSAGES, handle};
-use betadeck::link::proto::msp::Frame;
+use betadeck::firmware::msp::{MESSAGES, handle};
+use betadeck::msp::{Access, Form, Frame};
 use proptest::prelude::*;
 
 use super::{craft, facts};
 
 #[test]
 fn the_table_is_sorted_and_every_reading_message_answers() {
-    assert!(MESSAGES.is_sorted_by_key(|message| message.code));
-    for message in MESSAGES.iter().filter(|message| message.access == Access::Read) {
+    assert!(MESSAGES.is_sorted_by_key(|message| message.kind.code));
+    for message in MESSAGES.iter().filter(|message| message.kind.access == Access::Read) {
         let mut configuration = craft();
-        let outcome = handle(message.code, &[], &mut configuration, &facts());
-        assert!(outcome.reply.is_some(), "{}", message.name);
-        assert_eq!(outcome.action, None, "{}", message.name);
-        assert_eq!(configuration, craft(), "{}", message.name);
+        let outcome = handle(message.kind.code, &[], &mut configuration, &facts());
+        assert!(outcome.reply.is_some(), "{}", message.kind.name);
+        assert_eq!(outcome.action, None, "{}", message.kind.name);
+        assert_eq!(configuration, craft(), "{}", message.kind.name);
     }
 }
 
@@ -23,7 +23,8 @@ fn manual_rows() -> String {
     use std::fmt::Write;
     let mut rows = "| code | message | |\n| --- | --- | --- |\n".to_owned();
     for message in MESSAGES {
-        writeln!(rows, "| {} | {} | {} |", message.code, message.name, message.access).unwrap();
+        writeln!(rows, "| {} | {} | {} |", message.kind.code, message.kind.name, message.kind.access)
+            .unwrap();
     }
     rows
 }
@@ -47,14 +48,14 @@ proptest! {
     fn no_payload_does_harm(index in 0..MESSAGES.len(), payload in prop::collection::vec(any::<u8>(), 0..192)) {
         let mut configuration = craft();
         let message = &MESSAGES[index];
-        let outcome = handle(message.code, &payload, &mut configuration, &facts());
+        let outcome = handle(message.kind.code, &payload, &mut configuration, &facts());
         if let Some(reply) = outcome.reply {
-            let frame = Frame::request(betadeck::link::proto::msp::Form::V2, message.code, &[]).answer(Some(reply));
+            let frame = Frame::request(Form::V2, message.kind.code, &[]).answer(Some(reply));
             prop_assert!(frame.payload.len() <= 4096);
         }
         // After any message, the craft still answers every reading message.
-        for message in MESSAGES.iter().filter(|message| message.access == Access::Read) {
-            prop_assert!(handle(message.code, &[], &mut configuration, &facts()).reply.is_some());
+        for message in MESSAGES.iter().filter(|message| message.kind.access == Access::Read) {
+            prop_assert!(handle(message.kind.code, &[], &mut configuration, &facts()).reply.is_some());
         }
     }
 }

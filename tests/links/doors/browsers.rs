@@ -15,7 +15,7 @@ fn commands() -> Vec<Vec<u8>> {
     let mut frames = unhex(API_VERSION);
     // SET_NAME "evil", EEPROM_WRITE, REBOOT.
     for (code, payload) in [(11, b"evil".as_slice()), (250, b""), (68, b"")] {
-        use betadeck::link::proto::msp::{Form, Frame};
+        use betadeck::msp::{Form, Frame};
         frames.extend(Frame::request(Form::V1, code, payload).to_bytes());
     }
     let lines = b"\x02set craft_name = evil\nsave\n\x03".to_vec();

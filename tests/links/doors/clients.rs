@@ -2,8 +2,8 @@
 
 use std::time::{Duration, Instant};
 
-use betadeck::firmware::msp::HomeReading;
 use betadeck::link::{ListenConfig, Listeners, Request};
+use betadeck::msp::HomeVector;
 use betadeck::telemetry::{ClientStats, EndpointState};
 use betadeck::telemetry::{EndpointKind, Mode};
 use futures_util::SinkExt;
@@ -30,8 +30,7 @@ async fn captured_exchanges(house: &House, client: &mut Client) {
                 facts.armed = true;
                 facts.modes.set(Mode::Arm, true);
                 facts.motors_us = [1055; 4];
-                facts.gps.solution = 1;
-                facts.home = Some(HomeReading { distance_m: 0.2, bearing_deg: 89.3 });
+                facts.home = HomeVector { distance_m: 0.2, bearing_deg: 89.3, toggle: true };
             }
         }
         // This exchange closes the link: see `a_reboot_answers_closes_and_lets_in_again`.
@@ -196,7 +195,7 @@ async fn the_command_line_in_messages_pages_through_its_output() {
     let house = House::usual().await;
     let mut client = house.tcp().await;
     let ask = |payload: &[u8]| {
-        use betadeck::link::proto::msp::{Form, Frame};
+        use betadeck::msp::{Form, Frame};
         Frame::request(Form::V2, 0x3012, payload).to_bytes()
     };
     client.send(&ask(b"help")).await;

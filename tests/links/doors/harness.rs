@@ -6,10 +6,11 @@ use std::time::Duration;
 
 use betadeck::firmware::cli::{CliAction, CliContext, CliFacts, CliMode, CliReply, Interpreter, complete};
 use betadeck::firmware::config::{Configuration, ModeCondition};
-use betadeck::firmware::msp::{GpsReading, MspAction, MspFacts, handle};
+use betadeck::firmware::msp::{MspAction, MspFacts, handle};
 use betadeck::geo::LatLon;
 use betadeck::link::proto::command_line::{Completion, LineSource};
 use betadeck::link::{ListenConfig, Listeners, Request, RestartSignal};
+use betadeck::msp::RawGps;
 use betadeck::plan::{Altitude, HoldPattern, LegSpeed, Seconds, Waypoint, WaypointType};
 use betadeck::telemetry::{EndpointKind, EndpointState, EndpointStatus};
 use futures_util::{SinkExt, StreamExt};
@@ -82,12 +83,12 @@ pub(crate) fn captured_craft() -> Craft {
     craft.msp.cycle_time_us = 939;
     craft.msp.heading_deg = 358.0;
     craft.msp.channels[3..10].fill(1000);
-    craft.msp.gps = GpsReading {
+    craft.msp.gps = RawGps {
         fix: true,
         sats: 12,
         position: LatLon::new(-275_000_000, 1_530_000_000),
         alt_amsl_m: 30.0,
-        ..GpsReading::default()
+        ..RawGps::default()
     };
     craft.msp.build.date = "Nov 21 2026".to_owned();
     craft.msp.build.time = "02:51:34".to_owned();

@@ -4,7 +4,7 @@
 use std::time::Duration;
 
 use betadeck::fc::client::{Answer, Ask, AskId, FcClient, Unanswered};
-use betadeck::link::proto::msp::{Decoder, Form, Frame, Kind};
+use betadeck::msp::{Decoder, Form, Frame, Kind};
 
 const NOW: Duration = Duration::from_secs(5);
 

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use betadeck::fc::client::{Answer, Ask, AskId, CliAccess, FcClient, Unanswered};
-use betadeck::link::proto::msp::{Form, Frame, Kind};
+use betadeck::msp::{Form, Frame, Kind};
 use proptest::prelude::*;
 
 use crate::fc_client::board::{Bench, Manners};

@@ -1,11 +1,11 @@
 //! Payloads and outputs of real flight controllers, of older releases, and of random bytes.
 
-use betadeck::fc::telemetry::{
-    ApiVersion, Attitude, BatteryReading, BatteryState, BoardInfo, BuildInfo, HomeVector, Mission,
-    MissionPhase, Observation, RawGps, Status, channels, code, mode_ranges, motors, setting, settings,
-    variant, version,
-};
+use betadeck::fc::telemetry::{Mission, MissionPhase, Observation, mode_ranges, setting, settings};
 use betadeck::geo::LatLon;
+use betadeck::msp::{
+    ApiVersion, Attitude, BETAFLIGHT, BatteryReading, BatteryState, BoardInfo, BuildInfo, Channels,
+    FcVersion, HomeVector, Motors, RawGps, Status, code,
+};
 use betadeck::plan::WaypointType;
 use betadeck::telemetry::snapshot::ModeRange;
 use betadeck::telemetry::{AbortReason, ArmingFlag, ModeBox, NavState};
@@ -18,10 +18,14 @@ fn boxes() -> Vec<u8> {
     payload_of(23)
 }
 
+fn version(payload: &[u8]) -> Option<String> {
+    FcVersion::decode(payload).map(|version| version.to_string())
+}
+
 #[test]
 fn the_captured_identity() {
     assert_eq!(ApiVersion::decode(&payload_of(1)), Some(ApiVersion { major: 1, minor: 49 }));
-    assert_eq!(variant(&payload_of(12)).as_deref(), Some("BTFL"));
+    assert_eq!(payload_of(12), BETAFLIGHT);
     assert_eq!(version(&payload_of(13)).as_deref(), Some("2026.12.0-alpha"));
     let board = BoardInfo::decode(&payload_of(15)).unwrap();
     assert_eq!((&*board.identifier, board.target.as_deref(), board.name), ("SITL", Some("SITL"), None));
@@ -58,10 +62,11 @@ fn the_captured_state() {
     assert_eq!((gps.position, gps.alt_amsl_m), (LatLon::from_degrees(-27.5, 153.0), 30.0));
     let attitude = Attitude::decode(&payload_of(31)).unwrap();
     assert_eq!(attitude, Attitude { roll_deg: 0.0, pitch_deg: 0.0, heading_deg: 358.0 });
-    let rc = channels(&payload_of(32)).unwrap();
+    let rc = Channels::decode(&payload_of(32)).unwrap().of_transmitter();
     assert_eq!(rc[..5], [1500, 1500, 1000, 1500, 1000]);
-    assert_eq!(motors(&payload_of(46)), Some([0.055; 4]));
-    assert_eq!(HomeVector::decode(&payload_of(47)), Some(HomeVector { distance_m: 0.0, bearing_deg: 89.0 }));
+    assert_eq!(Motors::decode(&payload_of(46)).map(|motors| motors.outputs()), Some([0.055; 4]));
+    let home = HomeVector { distance_m: 0.0, bearing_deg: 89.0, toggle: true };
+    assert_eq!(HomeVector::decode(&payload_of(47)), Some(home));
     let range = |mode_box, channel| ModeRange { mode_box, channel, start_us: 1700, end_us: 2100 };
     let wanted = [
         range(ModeBox::Arm, 4),
@@ -170,7 +175,7 @@ proptest! {
     #[test]
     fn any_payload_is_read_or_left(code in 0_u16..256, payload in prop::collection::vec(any::<u8>(), 0..120)) {
         let mut observation = Observation::default();
-        observation.take(code::BOX_IDS, &boxes());
+        observation.take(code::BOXIDS, &boxes());
         observation.take(code, &payload);
         observation.take(code::STATUS_EX, &payload);
         let estimate = observation.estimate_view(None);
@@ -179,7 +184,7 @@ proptest! {
         prop_assert!(craft.motors.iter().flatten().all(|motor| (0.0..=1.0).contains(motor)));
         prop_assert!(craft.mode_ranges().iter().all(|range| range.channel < 16 && range.start_us < range.end_us));
         prop_assert!(BoardInfo::decode(&payload).is_none_or(|board| board.identifier.len() <= 4));
-        let _ = (BuildInfo::decode(&payload), version(&payload), variant(&payload), ApiVersion::decode(&payload));
+        let _ = (BuildInfo::decode(&payload), FcVersion::decode(&payload), ApiVersion::decode(&payload));
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Command lines on this program's own server, in all three ways.
 
 use betadeck::fc::client::{Answer, Ask, CliAccess, Unanswered};
-use betadeck::link::proto::msp::Decoder;
+use betadeck::msp::Decoder;
 use betadeck::plan::format::{self, Format};
 use betadeck::plan::plan_lines;
 

@@ -2,10 +2,11 @@
 
 use betadeck::fc::client::{Answer, Ask};
 use betadeck::fc::polling::{Poll, Schedule};
-use betadeck::fc::telemetry::{Mission, MissionPhase, Observation, Origin, code};
+use betadeck::fc::telemetry::{Mission, MissionPhase, Observation, Origin};
 use betadeck::firmware::Firmware;
 use betadeck::firmware::config::Configuration;
 use betadeck::flight::FlightSetup;
+use betadeck::msp::code;
 use betadeck::plan::format::{self, Format};
 use betadeck::telemetry::snapshot::{CraftView, EstimateView};
 use betadeck::telemetry::{Mode, NavState};
@@ -14,7 +15,7 @@ use betadeck::vehicle::Vehicle;
 use crate::fc_client::board::{Bench, Manners};
 
 const MESSAGES: [u16; 11] = [
-    code::BOX_IDS,
+    code::BOXIDS,
     code::STATUS_EX,
     code::ATTITUDE,
     code::ALTITUDE,

@@ -1,10 +1,12 @@
 //! Attitude, altitude, position.
 
-use super::reader::Reader;
+use super::wire::{Reader, Writer, steps};
 use crate::geo::LatLon;
 
 /// A dilution up to this value (in 0.01) means that the receiver does not report any.
 const UNREPORTED_DOP: u16 = 10;
+/// The code for a fix.
+const FIX: u8 = 2;
 
 /// `ATTITUDE`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -27,6 +29,12 @@ impl Attitude {
             heading_deg: f64::from(reader.i16()?).rem_euclid(360.0),
         })
     }
+
+    pub fn encode(&self, writer: &mut Writer) {
+        writer.i16(steps(self.roll_deg, 10.0));
+        writer.i16(steps(-self.pitch_deg, 10.0));
+        writer.i16(steps(self.heading_deg, 1.0).rem_euclid(360));
+    }
 }
 
 /// `ALTITUDE`.
@@ -44,6 +52,11 @@ impl Altitude {
         let mut reader = Reader::new(payload);
         let alt_m = f64::from(reader.i32()?) / 100.0;
         Some(Self { alt_m, climb_mps: reader.i16().map(|climb| f64::from(climb) / 100.0) })
+    }
+
+    pub fn encode(&self, writer: &mut Writer) {
+        writer.i32(steps(self.alt_m, 100.0));
+        writer.i16(steps(self.climb_mps.unwrap_or_default(), 100.0));
     }
 }
 
@@ -80,6 +93,17 @@ impl RawGps {
         };
         gps.position.is_on_globe().then_some(gps)
     }
+
+    pub fn encode(&self, writer: &mut Writer) {
+        writer.u8(if self.fix { FIX } else { 0 });
+        writer.u8(self.sats);
+        writer.i32(self.position.lat_e7);
+        writer.i32(self.position.lon_e7);
+        writer.u16(steps(self.alt_amsl_m, 1.0));
+        writer.u16(steps(self.ground_speed_mps, 100.0));
+        writer.u16(steps(self.course_deg, 10.0).rem_euclid(3600));
+        writer.u16(self.dop.map_or(i64::from(UNREPORTED_DOP), |dop| steps(dop, 100.0)));
+    }
 }
 
 /// `COMP_GPS`.
@@ -89,12 +113,21 @@ pub struct HomeVector {
     pub distance_m: f64,
     /// Direction to home, degrees clockwise from north, 0…360.
     pub bearing_deg: f64,
+    /// A bit that changes with every message of the receiver.
+    pub toggle: bool,
 }
 
 impl HomeVector {
     pub fn decode(payload: &[u8]) -> Option<Self> {
         let mut reader = Reader::new(payload);
         let distance_m = f64::from(reader.u16()?);
-        Some(Self { distance_m, bearing_deg: f64::from(reader.i16()?).rem_euclid(360.0) })
+        let bearing_deg = f64::from(reader.i16()?).rem_euclid(360.0);
+        Some(Self { distance_m, bearing_deg, toggle: reader.u8().is_some_and(|update| update & 1 == 1) })
+    }
+
+    pub fn encode(&self, writer: &mut Writer) {
+        writer.u16(steps(self.distance_m, 1.0));
+        writer.i16(steps(self.bearing_deg, 1.0));
+        writer.u8(u8::from(self.toggle));
     }
 }
