@@ -188,7 +188,7 @@ impl Observer {
 
     /// Returns the reference of the altitudes of waypoints.
     fn altitude_reference(&self, home_m: Option<f64>) -> AltitudeReference {
-        if !self.settings.tell_altitude_reference() {
+        if !self.settings.report_altitude_reference() {
             AltitudeReference::Unreported
         } else if self.counts_from_home() {
             AltitudeReference::Home
@@ -200,7 +200,7 @@ impl Observer {
     /// Returns `true` if its settings are known, at least those that show the reference of waypoint
     /// altitudes.
     pub(super) fn knows_settings(&self) -> bool {
-        self.settings.tell_altitude_reference()
+        self.settings.report_altitude_reference()
     }
 
     /// Returns `true` if it has just disarmed and the positions of its switches must be requested.
@@ -221,7 +221,7 @@ impl Observer {
     /// Returns `true` if its altitude loop has no limit in LAND, as in upstream's master, whose altitudes are
     /// above sea level.
     pub(super) fn falls_in_land(&self) -> bool {
-        self.settings.tell_altitude_reference() && !self.counts_from_home()
+        self.settings.report_altitude_reference() && !self.counts_from_home()
     }
 
     /// Returns `true` if it uses the magnetometer for its heading, so that the heading is known at rest.

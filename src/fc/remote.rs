@@ -6,8 +6,8 @@
 //!                  └─────────────────────┘
 //! ```
 //!
-//! [`Remote::handle`] takes what happened, [`Remote::handle_timeout`] lets time pass, [`Remote::poll_transmit`]
-//! gives the bytes to send, and [`Remote::poll_event`] what the vehicle and the user get.
+//! [`Remote::handle`] takes an input, [`Remote::handle_timeout`] acts on the time, [`Remote::poll_transmit`] returns the
+//! bytes to send, and [`Remote::poll_event`] returns the events for the vehicle and the user.
 
 mod answers;
 mod connecting;
@@ -130,7 +130,7 @@ impl Remote {
     /// Permits changes over this connection. Permission for an earlier connection has no effect.
     pub fn permit_changes(&mut self, connection: u32) {
         self.permission.permit(connection);
-        self.tell_client();
+        self.report_to_client();
     }
 
     /// Takes an input.
@@ -182,8 +182,9 @@ impl Remote {
         self.events.pop_front()
     }
 
-    /// Returns the time at which [`Self::handle_timeout`] must run even without an input; `None` while it waits
-    /// for an input only.
+    /// Returns the time at which the next request is due even without an input; `None` while it waits for an input
+    /// or for the first answer. The deadline of the first answer is checked by each [`Self::handle_timeout`], which
+    /// therefore must also run now and then.
     pub fn timeout(&self) -> Option<Duration> {
         if !self.client.is_idle() {
             return self.client.due();
@@ -268,7 +269,7 @@ impl Remote {
     }
 
     /// Passes the current permission on to the client.
-    fn tell_client(&mut self) {
+    fn report_to_client(&mut self) {
         self.client.set_cli(self.permission.cli());
         self.client.set_may_leave_cli(self.access() != Access::Reading);
     }

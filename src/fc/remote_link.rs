@@ -23,6 +23,8 @@ use crate::storage::state_file;
 use crate::telemetry::EndpointStatus;
 use crate::vehicle::Vehicle;
 
+/// The wall time before the next question to a flight controller that is not ready.
+const QUESTION_PAUSE: Duration = Duration::from_millis(5);
 /// The least wall time between two exchanges. Lost time is made up for at twice the speed.
 pub const EXCHANGE_PAUSE: Duration = Duration::from_micros(500);
 /// The maximum number of events of the child process between two steps. A process that prints much must not
@@ -107,8 +109,9 @@ impl RemoteLink {
 
     /// Returns the time until an exchange is due even if nothing arrives; `None` if none is.
     pub fn pause(&self, now: Instant) -> Option<Duration> {
-        let due = self.remote.timeout()?.saturating_sub(self.since(now));
-        Some(due.max(EXCHANGE_PAUSE))
+        let due = self.remote.timeout()?;
+        let least = if due.is_zero() { QUESTION_PAUSE } else { EXCHANGE_PAUSE };
+        Some(due.saturating_sub(self.since(now)).max(least))
     }
 
     /// Sends the contents of the vehicle's mailbox and delivers the data received since. Returns the notices
@@ -120,7 +123,7 @@ impl RemoteLink {
         now: Instant,
     ) -> Vec<RemoteNotice> {
         let since = self.since(now);
-        self.follow_program(since);
+        self.follow_program(vehicle, since);
         self.read_stream(context, since);
         self.take_events(vehicle);
         self.empty_mailbox(vehicle, now);
@@ -139,7 +142,7 @@ impl RemoteLink {
     }
 
     /// Reports the events of its program.
-    fn follow_program(&mut self, since: Duration) {
+    fn follow_program(&mut self, vehicle: &mut Vehicle, since: Duration) {
         for _ in 0..MOST_EVENTS {
             let Some(event) = self.child.as_mut().and_then(SitlChild::take_event) else { return };
             match event {
@@ -154,6 +157,8 @@ impl RemoteLink {
                     self.remote.handle(ended, since);
                 }
             }
+            // Notices keep the order of the events, and a program that is given up has no further ones.
+            self.take_events(vehicle);
         }
     }
 

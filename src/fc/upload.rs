@@ -154,7 +154,7 @@ impl Upload {
     }
 
     /// Adds these settings, which replace the guide's, to the report.
-    pub fn tell_landing_gains(&mut self, settings: Vec<String>) {
+    pub fn report_landing_gains(&mut self, settings: Vec<String>) {
         self.report.landing_gains = settings;
     }
 

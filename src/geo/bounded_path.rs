@@ -27,7 +27,7 @@ impl<P: Located> BoundedPath<P> {
         }
     }
 
-    /// Appends a point, however near it is.
+    /// Appends a point, even if it is near the last one.
     pub fn append(&mut self, point: P) {
         if self.points.len() == self.most {
             let mut keep = false;

@@ -30,7 +30,7 @@ pub struct Status {
     pub battery_profiles: u8,
     /// Processor load, percent.
     pub load_percent: u16,
-    /// Bit i is the state of the i-th box of `BOX_IDS`.
+    /// Bit i is the state of the i-th box of `BOXIDS`.
     pub mode_bits: u128,
     pub arming_blocked_by: Option<ArmingFlags>,
     /// `true` if a changed setting takes effect only after a restart.

@@ -63,7 +63,7 @@ pub enum Modifier {
     YawRate,
 }
 
-/// What happens after the arrival. Every type but `GoOn` waits for its duration.
+/// The action after the arrival. Every type but `GoOn` waits for its duration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Then {
     GoOn,

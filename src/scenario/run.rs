@@ -43,6 +43,8 @@ pub struct CaseFlight<'a> {
     stopped: Option<(&'static str, String)>,
     reported: Insight,
     sample_us: u64,
+    /// The altitude at the start of the flight, m.
+    start_m: f64,
     is_over: bool,
 }
 
@@ -64,6 +66,7 @@ impl<'a> CaseFlight<'a> {
     /// Returns a sentence if a mode that the pilot needs has no switch.
     pub fn of_vehicle(case: &'a Case, vehicle: Vehicle) -> Result<Self, String> {
         let reported = if vehicle.embedded().is_some() { Insight::Inner } else { Insight::Telemetry };
+        let start_m = vehicle.truth_view().map_or(0.0, |truth| truth.alt);
         let trace = Trace::new(case.setup.plan.plan.clone(), vehicle.local_frame().copied());
         // The time limit of the scenario applies.
         let options = FlightOptions { timeout: SimTime(u64::MAX), ..case.options };
@@ -87,6 +90,7 @@ impl<'a> CaseFlight<'a> {
             stopped: None,
             reported,
             sample_us,
+            start_m,
             is_over: false,
         })
     }
@@ -163,7 +167,7 @@ impl<'a> CaseFlight<'a> {
 
     fn sample(&mut self) {
         let vehicle = self.flight.vehicle();
-        let sample = sample(vehicle, self.trace.engaged_at);
+        let sample = sample(vehicle, self.trace.engaged_at, self.start_m);
         if vehicle.controller().nav().is_some() {
             self.reported = self.reported.max(Insight::Mission);
         }

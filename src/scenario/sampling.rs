@@ -5,11 +5,13 @@ use super::trace::Sample;
 use crate::signals::SimTime;
 use crate::telemetry::PlanSource;
 use crate::telemetry::signal::{Observed, SignalValues};
+use crate::telemetry::snapshot::TruthView;
 use crate::vehicle::Vehicle;
 
-/// Takes a sample now.
-pub(super) fn sample(vehicle: &Vehicle, engaged_at: Option<SimTime>) -> Sample {
-    let (truth, estimate, nav) = (vehicle.truth_view(), vehicle.estimate_view(), vehicle.nav_view());
+/// Takes a sample now. `start_m` is the altitude at the start of the flight, from which altitudes count, m.
+pub(super) fn sample(vehicle: &Vehicle, engaged_at: Option<SimTime>, start_m: f64) -> Sample {
+    let (estimate, nav) = (vehicle.estimate_view(), vehicle.nav_view());
+    let truth = vehicle.truth_view().map(|truth| TruthView { alt: truth.alt - start_m, ..truth });
     let craft = vehicle.controller().craft_view();
     let (truth, nav) = (truth.as_ref(), nav.as_ref());
     let observed =

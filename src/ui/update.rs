@@ -404,7 +404,7 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
             if focus_now.takes_text() {
                 focus(&mut state.shared, Panel::Map);
             } else if state.panels.of_mut(focus_now).go_back(&mut state.shared) {
-                // That was the step.
+                // The panel has gone back by a step.
             } else if !state.shared.forecast.dismiss()
                 && !state.shared.editor.cancel()
                 && !map_edit::leave(&mut state.shared)

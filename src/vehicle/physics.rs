@@ -160,7 +160,7 @@ fn world_truth_view(world: &World) -> TruthView {
         lon_deg,
         n: truth.pos_enu.y,
         e: truth.pos_enu.x,
-        alt: truth.pos_enu.z - world.standing_m(),
+        alt: truth.pos_enu.z - world.airframe().standing_height_m(),
         vn: truth.vel_enu.y,
         ve: truth.vel_enu.x,
         vu: truth.vel_enu.z,

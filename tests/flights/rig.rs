@@ -179,13 +179,13 @@ impl Rig {
             pitch: truth.pitch_deg(),
             heading: truth.heading_deg(),
             throttle_us: craft.throttle_us.unwrap(),
-            motors: craft.motors.expect("the embedded firmware tells"),
+            motors: craft.motors.expect("the embedded firmware reports it"),
             armed: craft.is_armed(),
             modes: craft.modes.unwrap(),
             state: nav.state,
             wp: nav.wp,
             distance: nav.distance_m.unwrap_or(f64::NAN),
-            hold_remaining_s: nav.hold_remaining_s.expect("the embedded firmware tells"),
+            hold_remaining_s: nav.hold_remaining_s.expect("the embedded firmware reports it"),
         }
     }
 

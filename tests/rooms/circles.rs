@@ -24,7 +24,7 @@ impl Room {
         Self { files, paths }
     }
 
-    /// Returns the modules that a module imports. Modules between which only their nesting is, are left out.
+    /// Returns the modules that a module imports. Parent and child modules are left out.
     fn imports(&self, module: &Module) -> BTreeSet<Module> {
         let is_other =
             |other: &Module| other != module && !is_nested(module, other) && !is_nested(other, module);
@@ -66,7 +66,7 @@ impl Room {
 
     /// Returns the module that defines an item, also if others pass it on.
     fn defined_in(&self, path: &[String], detours: usize) -> Option<Module> {
-        // The path of a visibility.
+        // A path may end in an item or in a module.
         let length = (2..=path.len()).rev().find(|&length| self.files.contains_key(&path[..length]));
         let length =
             length.or_else(|| (path.len() > 1 && self.files.contains_key(&path[..1])).then_some(1))?;

@@ -171,7 +171,6 @@ pub(crate) fn view(flight: &SimpleFlight) -> SessionView {
         alt: flight.alt,
         heading_deg: flight.heading_deg,
         wind_ne: Some(Vector2::new(-2.2, 2.3)),
-        wind_mps: Some(2.2_f64.hypot(2.3)),
         on_ground: flight.alt < 0.1,
         ..TruthView::default()
     });

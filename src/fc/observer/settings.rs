@@ -53,7 +53,7 @@ impl Settings {
     }
 
     /// Returns `true` if the reference of waypoint altitudes is known.
-    pub(super) fn tell_altitude_reference(&self) -> bool {
+    pub(super) fn report_altitude_reference(&self) -> bool {
         self.knows_autopilot
     }
 
@@ -69,15 +69,15 @@ mod tests {
     #[test]
     fn what_was_read_is_shown_and_the_rest_is_as_usual() {
         let mut read = Settings::default();
-        assert!(read.view().is_none() && !read.tell_altitude_reference());
+        assert!(read.view().is_none() && !read.report_altitude_reference());
         read.read("alt_hold_climb_rate = 50\r\n");
-        assert!(!read.tell_altitude_reference());
+        assert!(!read.report_altitude_reference());
         read.read(
             "ap_waypoint_arrival_radius = 700\r\nAllowed range: 100 - 10000\r\n\r\nap_new_thing = 5\r\n",
         );
         let view = read.view().unwrap();
         assert!((view.arrival_radius_m - 7.0).abs() < 1e-9 && !read.waypoints_from_home());
-        assert!(read.tell_altitude_reference());
+        assert!(read.report_altitude_reference());
         read.read("ap_velocity_p = 30\r\n");
         assert!(read.waypoints_from_home());
     }

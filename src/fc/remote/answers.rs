@@ -28,7 +28,7 @@ impl Remote {
                     | Purpose::Identity(Question::Settings(_) | Question::Plan)
             ) {
                 self.permission.line_answered(&answer);
-                self.tell_client();
+                self.report_to_client();
             }
             if let (Purpose::Line(_, true), Answer::Line { .. })
             | (Purpose::Message(_, true), Answer::Msp(Some(_))) = (purpose, &answer)
@@ -97,7 +97,7 @@ impl Remote {
     fn disarmed(&mut self, now: Duration) {
         if !self.observer.knows_settings() || self.permission.opens_cli() {
             self.permission.try_lines_again();
-            self.tell_client();
+            self.report_to_client();
             self.outdate_settings(now);
         }
     }

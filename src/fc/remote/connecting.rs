@@ -23,7 +23,7 @@ impl Remote {
     fn meet(&mut self, met: Connection) {
         self.client.connected();
         self.permission.connected();
-        self.tell_client();
+        self.report_to_client();
         if !self.craft.is_fed {
             self.observer.restarted();
         }
@@ -111,7 +111,7 @@ impl Remote {
                 let connection = std::mem::take(connection);
                 self.life = Life::Silent { connection };
                 self.permission.lost();
-                self.tell_client();
+                self.report_to_client();
                 self.observer.forget();
                 self.notice(RemoteNotice::Lost(format!(
                     "{} no longer answers, although the connection is open: is it without power? Requests go on until \

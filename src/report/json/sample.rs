@@ -20,10 +20,9 @@ enum Form {
     Compass(Signal),
     /// A direction, to the hundredth of a degree.
     Bearing(Signal),
-    /// Charge in mAh.
-    Charge(Signal),
     Latitude,
     Longitude,
+    BatteryMah,
     Motors,
     State,
     Wp,
@@ -52,7 +51,7 @@ const FIELDS: [(&str, Form); 32] = [
     ("motors", Form::Motors),
     ("battery_v", Form::Milli(Signal::ReportedBattery)),
     ("battery_a", Form::Milli(Signal::ReportedCurrent)),
-    ("battery_mah", Form::Charge(Signal::ReportedCharge)),
+    ("battery_mah", Form::BatteryMah),
     ("state", Form::State),
     ("wp", Form::Wp),
     ("wp_type", Form::WpType),
@@ -85,9 +84,7 @@ impl Serialize for Fields<'_> {
                 Form::Centi(signal) => map.serialize_entry(key, &signal.read(&observed).map(Centi::from)),
                 Form::Compass(signal) => map.serialize_entry(key, &signal.read(&observed).map(compass::<3>)),
                 Form::Bearing(signal) => map.serialize_entry(key, &signal.read(&observed).map(compass::<2>)),
-                Form::Charge(signal) => {
-                    map.serialize_entry(key, &signal.read(&observed).map(|charge| Milli::from(charge / 3.6)))
-                }
+                Form::BatteryMah => map.serialize_entry(key, &self.0.craft.battery_mah.map(Milli::from)),
                 Form::Latitude => map.serialize_entry(key, &place(truth.map(|truth| truth.lat_deg))),
                 Form::Longitude => map.serialize_entry(key, &place(truth.map(|truth| truth.lon_deg))),
                 Form::Motors => {

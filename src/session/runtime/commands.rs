@@ -104,7 +104,7 @@ impl Session {
                 };
                 match Upload::new(&plan, &settings, reference) {
                     Ok(mut upload) => {
-                        upload.tell_landing_gains(landing_gains);
+                        upload.report_landing_gains(landing_gains);
                         let progress = upload.send_lines(self.vehicle.controller_mut());
                         self.report_upload(Box::new(upload), progress, reply, Instant::now());
                     }

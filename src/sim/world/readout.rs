@@ -44,11 +44,6 @@ impl World {
         &self.airframe
     }
 
-    /// Returns the height of the centre of mass at the boot place, m.
-    pub fn standing_m(&self) -> f64 {
-        self.start.pos_enu.z
-    }
-
     /// Returns the frame that turns truth into latitude and longitude.
     pub fn local_frame(&self) -> &LocalFrame {
         self.sensors.local()

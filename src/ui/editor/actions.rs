@@ -17,7 +17,7 @@ use crate::ui::shared::Shared;
 
 /// The distance from the last waypoint to a new one, m.
 const NEXT_LEG_M: f64 = 50.0;
-/// The altitude of the first waypoint, cm.
+/// The altitude of the first waypoint, m.
 const FIRST_ALT_M: f64 = 20.0;
 
 /// Handles a key while a cell is typed.

@@ -28,6 +28,9 @@ impl Sample {
                 values.set(signal, f64::NAN);
             }
         }
+        // The curve is the horizontal wind.
+        let wind = values.get(Signal::WindNorth).hypot(values.get(Signal::WindEast));
+        values.set(Signal::Wind, wind);
         // A real craft has no truth.
         for (truth, estimate) in [(Signal::North, Signal::EstNorth), (Signal::East, Signal::EstEast)] {
             if values.get(truth).is_nan() {

@@ -116,5 +116,6 @@ mod tests {
                 drawn.push(*signal);
             }
         }
+        assert_eq!(drawn.len(), 23);
     }
 }

@@ -16,8 +16,8 @@ const WHEEL_LINES: isize = 3;
 /// The actions of a hint, and its label.
 pub(in crate::ui) type Hint = (&'static [Action], &'static str);
 
-/// The content of a panel: its own state, and what it makes of the state that all panels share. An area is the inside of
-/// the frame.
+/// The content of a panel: its own state, and its use of the state that all panels share. An area is the inside of the
+/// frame.
 pub(in crate::ui) trait Content {
     /// Returns the title in the frame.
     fn title(&self, state: &Shared) -> String;

@@ -1,4 +1,4 @@
-//! The keys that record and play the sticks, and what each picture adds to it.
+//! The keys that record and play the sticks, and the step of the recording with each picture.
 
 use super::{Activity, MAX_FRAMES, StickRecording};
 use crate::session::Command;
