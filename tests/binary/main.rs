@@ -13,6 +13,9 @@ mod editor;
 mod first_walk;
 mod fly;
 #[cfg(unix)]
+#[path = "../port_support/free_port.rs"]
+mod free_port;
+#[cfg(unix)]
 mod hostile;
 mod inputs;
 #[cfg(unix)]

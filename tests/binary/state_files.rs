@@ -4,6 +4,7 @@
 use std::os::unix::fs::symlink;
 use std::process::Stdio;
 
+use crate::free_port::free_port;
 use crate::plain::Dialogue;
 use crate::pty::Terminal;
 use crate::streams::until;
@@ -185,11 +186,8 @@ fn with_temporary_files(sandbox: &Sandbox, arguments: &[&str]) -> std::process::
 
 /// Returns options with ports that the system has just chosen.
 fn free_ports() -> [String; 2] {
-    let tcp = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
-    let udp = [(); 4].map(|()| std::net::UdpSocket::bind("127.0.0.1:0").expect("a port"));
-    let tcp = tcp.local_addr().expect("an address").port();
-    let udp = udp.map(|socket| socket.local_addr().expect("an address").port().to_string());
-    [format!("--tcp-port={tcp}"), format!("--udp-ports={}", udp.join(","))]
+    let udp = [(); 4].map(|()| free_port().to_string());
+    [format!("--tcp-port={}", free_port()), format!("--udp-ports={}", udp.join(","))]
 }
 
 #[test]

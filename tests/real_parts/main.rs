@@ -12,6 +12,8 @@ mod checks;
 mod child;
 mod drop_in;
 mod feed;
+#[path = "../port_support/free_port.rs"]
+mod free_port;
 mod headless;
 mod lossy;
 #[allow(dead_code, reason = "shared with the tests of the doors")]

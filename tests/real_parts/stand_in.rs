@@ -15,6 +15,7 @@ use std::sync::atomic::Ordering;
 use std::thread::JoinHandle;
 use std::time::Duration;
 
+use crate::free_port::free_port;
 use cli::Memory;
 use program::{End, Ports, Shared, Sockets, live};
 use receiver::Seen;
@@ -84,11 +85,8 @@ impl Drop for StandIn {
     }
 }
 
-/// Returns ports that were free a moment ago.
+/// Returns free ports.
 pub(crate) fn free_ports() -> Ports {
-    let udp: [std::net::UdpSocket; 4] =
-        std::array::from_fn(|_| std::net::UdpSocket::bind("127.0.0.1:0").unwrap());
-    let [raw, motors, fdm, rc] = udp.map(|socket| socket.local_addr().unwrap().port());
-    let tcp = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    let [raw, motors, fdm, rc, tcp] = std::array::from_fn(|_| free_port());
     Ports { raw, motors, fdm, rc, tcp }
 }

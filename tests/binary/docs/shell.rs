@@ -2,7 +2,6 @@
 #![allow(clippy::disallowed_methods, reason = "a deadline for a program that hangs needs the clock")]
 
 use std::ffi::OsString;
-use std::net::{TcpListener, UdpSocket};
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -12,6 +11,7 @@ use clap::error::ErrorKind;
 
 use super::extract::{Shown, commands, is_screen, pages};
 use super::filled_in;
+use crate::free_port::free_port;
 use crate::pty::Terminal;
 use crate::support::{PROGRAM, Sandbox, plan};
 
@@ -78,10 +78,7 @@ fn words(line: &str) -> Vec<String> {
 
 /// Free ports for a firmware, TCP and the four of UDP.
 fn free_ports() -> (String, String) {
-    let tcp = TcpListener::bind("127.0.0.1:0").expect("a port").local_addr().expect("an address").port();
-    let udp: [UdpSocket; 4] = std::array::from_fn(|_| UdpSocket::bind("127.0.0.1:0").expect("a port"));
-    let udp = udp.map(|socket| socket.local_addr().expect("an address").port().to_string());
-    (tcp.to_string(), udp.join(","))
+    (free_port().to_string(), [(); 4].map(|()| free_port().to_string()).join(","))
 }
 
 /// A home directory with the files that the pages name, at free ports.
