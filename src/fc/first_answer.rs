@@ -17,7 +17,7 @@ pub(super) struct FirstAnswer {
 }
 
 impl FirstAnswer {
-    /// Waits from the start of a program on, or else from the first connection on.
+    /// Returns a wait that begins at the start of a program, or else at the first connection.
     pub(super) fn new(started: Option<Duration>) -> Self {
         Self { since: started, ..Self::default() }
     }

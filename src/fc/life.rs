@@ -91,7 +91,7 @@ impl Life {
         }
     }
 
-    /// Begins the questions over a connection.
+    /// Returns the phase that asks for the identity over a connection.
     pub(super) fn identifying(connection: Connection) -> Self {
         Self::Identifying { connection, identification: Identification::default() }
     }
