@@ -24,12 +24,14 @@ mod support;
 use std::time::{Duration, Instant};
 
 use betadeck::flight::FlightSetup;
-use betadeck::session::{Command, ForecastJob, ForecastReply, Forecaster, Handle, SessionConfig, start};
+use betadeck::session::{
+    Command, ForecastJob, ForecastReply, Forecaster, Handle, ReplyTo, SessionConfig, start,
+};
 use betadeck::storage::Store;
 use betadeck::ui::{AppState, Effect, Msg, update};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use pty::Terminal;
-use tokio::sync::{mpsc, oneshot};
+use tokio::sync::mpsc;
 
 const RUNS: usize = 30;
 const PROGRAM: [&str; 2] = ["--no-ports", "--fresh"];
@@ -138,7 +140,7 @@ async fn fly(
     answered: &mut mpsc::UnboundedReceiver<ForecastReply>,
 ) {
     let job = effects.into_iter().find_map(estimate).expect("an estimate is asked for");
-    let (reply, copy) = oneshot::channel();
+    let (reply, copy) = ReplyTo::channel();
     session.commands.send(Command::CopyVehicle(reply)).await.unwrap();
     forecaster.order(job, copy.await.unwrap().unwrap());
     let reply = answered.recv().await.unwrap();

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::reply::ReplyTo;
 use crate::fc::{RemoteView, UploadReport, UploadView};
 use crate::plan::FlightPlan;
 use crate::signals::{RcFrame, SimTime};
@@ -79,7 +80,7 @@ pub enum Command {
     Cli {
         /// The line, without line end.
         line: String,
-        reply: tokio::sync::oneshot::Sender<CliOutput>,
+        reply: ReplyTo<CliOutput>,
     },
     /// Uploads a plan to the craft as a ground station does. The reply is the craft's answer.
     Upload {
@@ -87,17 +88,17 @@ pub enum Command {
         /// Setting lines that come with the plan file, without `set `.
         settings: Vec<String>,
         /// Receives a report, or the sentence of the first refusal.
-        reply: tokio::sync::oneshot::Sender<Result<UploadReport, String>>,
+        reply: ReplyTo<Result<UploadReport, String>>,
     },
     /// Reads the plan of the craft as a ground station does.
     Download {
         /// Receives the plan, or the sentence of the refusal.
-        reply: tokio::sync::oneshot::Sender<Result<Box<FlightPlan>, String>>,
+        reply: ReplyTo<Result<Box<FlightPlan>, String>>,
     },
     /// Saves the configuration of the craft, plan included, without a restart.
     Save {
         /// Receives `Ok`, or the reason as a sentence.
-        reply: tokio::sync::oneshot::Sender<Result<(), String>>,
+        reply: ReplyTo<Result<(), String>>,
     },
     /// Starts the scripted pilot that flies the whole mission: arm, climb to the session's altitude, engage.
     StartPilot,
@@ -107,14 +108,14 @@ pub enum Command {
     World {
         line: String,
         /// Receives `Ok`, or the reason.
-        reply: tokio::sync::oneshot::Sender<Result<(), String>>,
+        reply: ReplyTo<Result<(), String>>,
     },
     /// Copies the vehicle as shown between two ticks, for a forecast. The reply is the copy, or the reason
     /// why there is none.
-    CopyVehicle(tokio::sync::oneshot::Sender<Result<VehicleCopy, String>>),
+    CopyVehicle(ReplyTo<Result<VehicleCopy, String>>),
     /// Copies the recorded flight of the shown instant up to its end. The reply is the copy, or the reason
     /// why there is none.
-    RecordedFlight(tokio::sync::oneshot::Sender<Result<Box<RecordedFlight>, String>>),
+    RecordedFlight(ReplyTo<Result<Box<RecordedFlight>, String>>),
     Quit,
 }
 

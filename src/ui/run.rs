@@ -6,29 +6,28 @@ use std::io::{self, IsTerminal as _};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use crossterm::clipboard::CopyToClipboard;
 use crossterm::event::{Event as TerminalEvent, EventStream};
-use crossterm::execute;
 use futures_util::StreamExt as _;
 use rustix::process::Signal;
 use tokio::signal::unix::{SignalKind, signal};
-use tokio::sync::{mpsc, oneshot, watch};
+use tokio::sync::{mpsc, watch};
 use tokio::time::sleep;
 
-use crate::session::{Command, Event, ForecastReply, Forecaster, SessionView};
+use crate::session::{Command, Event, Forecaster, SessionView};
 use crate::timeline::RecordedFlight;
 
 use super::app_state::AppState;
 use super::config::UiConfig;
-use super::editor::FileReply;
 use super::event_log::Severity;
 use super::files_link::FilesLink;
 use super::message::{Effect, Msg};
 use super::terminal::{Tui, can_be_continued};
 use super::update::update;
 
+mod effects;
 mod plain;
 
+use effects::{Answers, carry_out};
 pub use plain::run_plain;
 
 /// The shortest time between two frames after a key.
@@ -119,9 +118,8 @@ async fn run_loop(
     let mut keys = EventStream::new();
     tui.draw(&state)?;
 
-    let (replies_in, mut replies) = mpsc::unbounded_channel();
-    let forecasts = replies_in.clone();
-    let forecaster = Forecaster::start(move |reply| drop(forecasts.send(Msg::Forecast(reply))))?;
+    let (answers, mut replies) = Answers::channel();
+    let forecaster = Forecaster::start(answers.of_forecasts())?;
     let mut events = Vec::with_capacity(BATCH);
     let mut drawn = Instant::now();
     // The time of the next frame; `None` while nothing has changed.
@@ -192,7 +190,7 @@ async fn run_loop(
                     let size = tui.terminal().size()?;
                     update(&mut state, Msg::Resize(size.width, size.height));
                 }
-                carry_out(effect, &link, &forecaster, &mut files, &replies_in);
+                carry_out(effect, &link, &forecaster, &mut files, &answers);
             }
         }
         let wanted = drawn + frame;
@@ -214,112 +212,5 @@ fn terminal_message(event: TerminalEvent) -> Option<Msg> {
         TerminalEvent::Paste(text) => Some(Msg::Paste(text)),
         TerminalEvent::Resize(columns, rows) => Some(Msg::Resize(columns, rows)),
         TerminalEvent::FocusGained | TerminalEvent::FocusLost => None,
-    }
-}
-
-/// Carries out an effect; replies come back as messages.
-fn carry_out(
-    effect: Effect,
-    link: &SessionLink,
-    forecaster: &Forecaster,
-    files: &mut FilesLink,
-    replies: &mpsc::UnboundedSender<Msg>,
-) {
-    let sent = match effect {
-        Effect::Files(request) => {
-            if !files.ask(request) {
-                let gone = "Plan files cannot be read or written any more: restart the program.".to_owned();
-                replies.send(Msg::Files(FileReply::Failed(gone))).ok();
-            }
-            Ok(())
-        }
-        Effect::Copy(text) => {
-            // Terminals without this feature show nothing; the editor keeps its own copy.
-            execute!(io::stdout(), CopyToClipboard::to_clipboard_from(text)).ok();
-            Ok(())
-        }
-        Effect::Download(id) => {
-            let (reply, answer) = oneshot::channel();
-            let replies = replies.clone();
-            tokio::spawn(async move {
-                let answer = answer.await.unwrap_or_else(|_| Err("the session did not answer.".to_owned()));
-                replies.send(Msg::DownloadReply { id, result: answer }).ok();
-            });
-            link.commands.try_send(Command::Download { reply })
-        }
-        Effect::WriteScenario { file, plan } => {
-            let (reply, answer) = oneshot::channel();
-            let (replies, write) = (replies.clone(), link.write_scenario);
-            tokio::spawn(async move {
-                let recorded: Result<Box<RecordedFlight>, String> =
-                    answer.await.unwrap_or_else(|_| Err("the session did not answer.".to_owned()));
-                // This flies the flight again, which takes a while.
-                let written = tokio::task::spawn_blocking(move || write(file, &plan, *recorded?)).await;
-                let answer =
-                    written.unwrap_or_else(|_| Err("the flight could not be flown again.".to_owned()));
-                replies.send(Msg::ScenarioReply(answer)).ok();
-            });
-            link.commands.try_send(Command::RecordedFlight(reply))
-        }
-        Effect::SaveToFlash => {
-            let (reply, answer) = oneshot::channel();
-            let replies = replies.clone();
-            tokio::spawn(async move {
-                let answer = answer.await.unwrap_or_else(|_| Err("the session did not answer.".to_owned()));
-                replies.send(Msg::SaveReply(answer)).ok();
-            });
-            link.commands.try_send(Command::Save { reply })
-        }
-        Effect::Send(command) => link.commands.try_send(command),
-        Effect::Cli(line) => {
-            let (reply, answer) = oneshot::channel();
-            let replies = replies.clone();
-            tokio::spawn(async move {
-                let msg = Msg::CliReply(answer.await.ok());
-                replies.send(msg).ok();
-            });
-            link.commands.try_send(Command::Cli { line, reply })
-        }
-        Effect::World(line) => {
-            let (reply, answer) = oneshot::channel();
-            let replies = replies.clone();
-            let asked = line.clone();
-            tokio::spawn(async move {
-                let result = answer.await.unwrap_or_else(|_| Err("The session did not answer.".to_owned()));
-                replies.send(Msg::WorldReply { line: asked, result }).ok();
-            });
-            link.commands.try_send(Command::World { line, reply })
-        }
-        Effect::Upload { id, plan, settings } => {
-            let count = plan.waypoints.len();
-            let (reply, answer) = oneshot::channel();
-            let replies = replies.clone();
-            tokio::spawn(async move {
-                let answer = answer.await.unwrap_or_else(|_| Err("the session did not answer.".to_owned()));
-                replies.send(Msg::UploadReply { id, count, result: answer }).ok();
-            });
-            link.commands.try_send(Command::Upload { plan, settings, reply })
-        }
-        Effect::Forecast(job) => {
-            let (reply, answer) = oneshot::channel();
-            let (forecaster, replies) = (forecaster.clone(), replies.clone());
-            tokio::spawn(async move {
-                let (revision, kind) = (job.revision, job.request.kind());
-                match answer.await {
-                    Ok(Ok(copy)) => forecaster.order(job, copy),
-                    Ok(Err(reason)) => {
-                        let refused = ForecastReply { revision, kind, forecast: Err(reason) };
-                        replies.send(Msg::Forecast(refused)).ok();
-                    }
-                    // The session ends.
-                    Err(_) => {}
-                }
-            });
-            link.commands.try_send(Command::CopyVehicle(reply))
-        }
-        Effect::Suspend | Effect::Quit => Ok(()),
-    };
-    if sent.is_err() {
-        replies.send(Msg::Busy).ok();
     }
 }

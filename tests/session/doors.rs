@@ -9,6 +9,7 @@ use betadeck::firmware::FirmwareOptions;
 use betadeck::firmware::config::Configuration;
 use betadeck::link::proto::command_line::{LineReply, LineSource};
 use betadeck::link::{ClientId, ListenConfig, Listeners, Request};
+use betadeck::session::ReplyTo;
 use betadeck::session::command::Seek;
 use betadeck::session::{
     Command, Endpoints, Event, Handle, RequestHandler, SessionConfig, SessionEvent, SessionView, start,
@@ -72,7 +73,7 @@ impl Rig {
     }
 
     async fn console(&self, line: &str) {
-        let (reply, answer) = oneshot::channel();
+        let (reply, answer) = ReplyTo::channel();
         self.session.commands.send(Command::Cli { line: line.to_owned(), reply }).await.unwrap();
         answer.await.unwrap();
     }

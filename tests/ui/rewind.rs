@@ -3,13 +3,13 @@
 #![allow(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests may panic and wait")]
 
 use betadeck::session::Command;
+use betadeck::session::ReplyTo;
 use betadeck::session::command::Seek;
 use betadeck::signals::SimTime;
 use betadeck::telemetry::NavState;
 use betadeck::timeline::MarkKind;
 use betadeck::ui::{AppState, Msg, update};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
-use tokio::sync::oneshot;
 
 use crate::session_rig::Rig;
 
@@ -135,15 +135,15 @@ async fn nothing_steers_an_instant_that_is_past() {
     let refused = rig.state.shared.notice.as_ref().map(|notice| notice.text.clone()).unwrap();
     assert!(refused.contains("`b`") && refused.contains("`e`"), "{refused}");
     // The session itself refuses, too.
-    let (reply, answer) = oneshot::channel();
+    let (reply, answer) = ReplyTo::channel();
     let plan = Box::default();
     rig.session.commands.send(Command::Upload { plan, settings: Vec::new(), reply }).await.unwrap();
     assert_eq!(answer.await.unwrap(), Err(refused.clone()));
-    let (reply, answer) = oneshot::channel();
+    let (reply, answer) = ReplyTo::channel();
     let line = "wind=5@270".to_owned();
     rig.session.commands.send(Command::World { line, reply }).await.unwrap();
     assert_eq!(answer.await.unwrap(), Err(refused));
-    let (reply, answer) = oneshot::channel();
+    let (reply, answer) = ReplyTo::channel();
     let line = "set ap_max_angle = 30".to_owned();
     rig.session.commands.send(Command::Cli { line, reply }).await.unwrap();
     assert!(answer.await.unwrap().advice.is_some_and(|advice| advice.contains("`b`")));

@@ -11,6 +11,7 @@ use betadeck::firmware::config::Configuration;
 use betadeck::plan::builtin::{BuiltinPlan, DEMO};
 use betadeck::plan::edit::History;
 use betadeck::report::sentence;
+use betadeck::session::ReplyTo;
 use betadeck::session::command::{CliOutput, Seek};
 use betadeck::session::{Command, Handle, SessionConfig, start};
 use betadeck::signals::SimTime;
@@ -26,7 +27,6 @@ use betadeck::vehicle::{Vehicle, VehicleConfig};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
-use tokio::sync::oneshot;
 
 /// Nothing in these tests takes this long unless it hangs.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -91,7 +91,7 @@ impl Rig {
 
     /// Sends a line to the craft and returns its answer.
     pub(crate) async fn cli(&self, line: &str) -> CliOutput {
-        let (reply, answer) = oneshot::channel();
+        let (reply, answer) = ReplyTo::channel();
         self.session.commands.send(Command::Cli { line: line.to_owned(), reply }).await.unwrap();
         answer.await.unwrap()
     }
@@ -102,14 +102,14 @@ impl Rig {
                 Effect::Send(command) => self.session.commands.send(command).await.unwrap(),
                 Effect::Upload { id, plan, settings } => {
                     let count = plan.waypoints.len();
-                    let (reply, answer) = oneshot::channel();
+                    let (reply, answer) = ReplyTo::channel();
                     self.session.commands.send(Command::Upload { plan, settings, reply }).await.unwrap();
                     let result = answer.await.unwrap();
                     let next = update(&mut self.state, Msg::UploadReply { id, count, result });
                     Box::pin(self.carry_out(next)).await;
                 }
                 Effect::World(line) => {
-                    let (reply, answer) = oneshot::channel();
+                    let (reply, answer) = ReplyTo::channel();
                     let asked = line.clone();
                     self.session.commands.send(Command::World { line, reply }).await.unwrap();
                     let result = answer.await.unwrap();
@@ -117,7 +117,7 @@ impl Rig {
                     Box::pin(self.carry_out(next)).await;
                 }
                 Effect::Cli(line) => {
-                    let (reply, answer) = oneshot::channel();
+                    let (reply, answer) = ReplyTo::channel();
                     self.session.commands.send(Command::Cli { line, reply }).await.unwrap();
                     let next = update(&mut self.state, Msg::CliReply(answer.await.ok()));
                     Box::pin(self.carry_out(next)).await;

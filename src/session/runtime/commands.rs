@@ -4,8 +4,6 @@
 use std::task::{Context, Poll};
 use std::time::{Duration, Instant};
 
-use tokio::sync::oneshot;
-
 use super::Session;
 use super::late::WaitingInterface;
 use crate::fc::replace_falling_gains;
@@ -14,6 +12,7 @@ use crate::firmware::cli::Interpreter;
 use crate::flight::forecast;
 use crate::msp::code;
 use crate::plan::AltitudeReference;
+use crate::session::ReplyTo;
 use crate::session::command::{
     Command, PLACE_IS_EXTERNAL, Seek, TIME_IS_EXTERNAL, TIME_IS_THE_FIRMWARES, UPLOADING, VehicleCopy,
 };
@@ -89,7 +88,7 @@ impl Session {
             Command::Cli { line, reply } => self.run_cli(line, reply),
             // The lines of two uploads would mix.
             Command::Upload { reply, .. } if self.upload_under_way().is_some() => {
-                drop(reply.send(Err(UPLOADING.to_owned())));
+                reply.send(Err(UPLOADING.to_owned()));
             }
             Command::Upload { plan, mut settings, reply } => {
                 let reference = self.vehicle.controller().altitude_reference();
@@ -108,7 +107,7 @@ impl Session {
                         let progress = upload.send_lines(self.vehicle.controller_mut());
                         self.report_upload(Box::new(upload), progress, reply, Instant::now());
                     }
-                    Err(unknown) => drop(reply.send(Err(unknown.to_string()))),
+                    Err(unknown) => reply.send(Err(unknown.to_string())),
                 }
             }
             Command::Download { reply } => {
@@ -116,7 +115,7 @@ impl Session {
                 let reference = controller.altitude_reference();
                 match controller.run_cli(&mut Interpreter::default(), LIST) {
                     Answer::Now(answer) => {
-                        drop(reply.send(plan_above_home(&answer, reference).map(Box::new)));
+                        reply.send(plan_above_home(&answer, reference).map(Box::new));
                     }
                     Answer::Later(ticket) => {
                         let waiting = WaitingInterface::Download { reply };
@@ -132,16 +131,16 @@ impl Session {
             }
             Command::World { line, reply } => {
                 let changed = self.change_world(&line);
-                drop(reply.send(changed));
+                reply.send(changed);
             }
             Command::CopyVehicle(reply) => {
                 let copy = forecast::check_possible(&self.vehicle).map(|()| VehicleCopy {
                     vehicle: Box::new(self.copy_of_shown()),
                     takeoff_m: self.takeoff_m,
                 });
-                drop(reply.send(copy));
+                reply.send(copy);
             }
-            Command::RecordedFlight(reply) => drop(reply.send(self.recorded_flight())),
+            Command::RecordedFlight(reply) => reply.send(self.recorded_flight()),
             Command::Quit => self.quit = true,
         }
     }
@@ -191,14 +190,14 @@ impl Session {
 
     /// Saves as a ground station does over MSP, without a restart. A remote flight controller stores
     /// its configuration itself.
-    fn save(&mut self, reply: oneshot::Sender<Result<(), String>>) {
+    fn save(&mut self, reply: ReplyTo<Result<(), String>>) {
         let is_real = self.access().is_limited();
         let controller = self.vehicle.controller_mut();
         if controller.is_armed() {
             let way = if is_real { "its transmitter disarms it" } else { "`a` disarms it" };
-            drop(reply.send(Err(format!("Not saved while the craft is armed: {way} on the ground."))));
+            reply.send(Err(format!("Not saved while the craft is armed: {way} on the ground.")));
         } else if controller.configuration().is_some() {
-            drop(reply.send(self.persistence.save(controller)));
+            reply.send(self.persistence.save(controller));
         } else if let Answer::Later(ticket) = controller.run_msp(code::EEPROM_WRITE, &[], None) {
             self.late_answers.expect(ticket, WaitingInterface::Save { reply }, Instant::now());
         }

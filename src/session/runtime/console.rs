@@ -3,21 +3,20 @@
 
 use std::time::Instant;
 
-use tokio::sync::oneshot;
-
 use super::Session;
 use super::late::WaitingInterface;
 use crate::firmware::cli::{CliReply, Interpreter, advice};
+use crate::session::ReplyTo;
 use crate::session::command::CliOutput;
 use crate::vehicle::Answer;
 
 impl Session {
     /// Runs a line. The answer of a remote flight controller arrives later.
-    pub(super) fn run_cli(&mut self, line: String, reply: oneshot::Sender<CliOutput>) {
+    pub(super) fn run_cli(&mut self, line: String, reply: ReplyTo<CliOutput>) {
         match self.vehicle.controller_mut().run_cli(&mut self.console, &line) {
             Answer::Now(mut answer) => {
                 let restarted = self.carry_out_actions(&mut answer);
-                drop(reply.send(output(&line, answer, restarted)));
+                reply.send(output(&line, answer, restarted));
             }
             Answer::Later(ticket) => {
                 self.late_answers.expect(ticket, WaitingInterface::Line { line, reply }, Instant::now());

@@ -2,14 +2,13 @@
 
 use std::time::Instant;
 
-use tokio::sync::oneshot;
-
 use super::Session;
 use super::console::output;
 use crate::fc::UploadView;
 use crate::fc::{Upload, UploadProgress, UploadReport, plan_above_home};
 use crate::firmware::cli::CliAction;
 use crate::plan::FlightPlan;
+use crate::session::ReplyTo;
 use crate::session::command::CliOutput;
 use crate::session::hazards;
 use crate::session::late_answers::{NO_ANSWER, no_answer_line};
@@ -21,20 +20,20 @@ pub(super) enum WaitingInterface {
     Line {
         /// The line that was run.
         line: String,
-        reply: oneshot::Sender<CliOutput>,
+        reply: ReplyTo<CliOutput>,
     },
     Download {
-        reply: oneshot::Sender<Result<Box<FlightPlan>, String>>,
+        reply: ReplyTo<Result<Box<FlightPlan>, String>>,
     },
     Save {
         /// Receives `Ok` once the configuration is stored.
-        reply: oneshot::Sender<Result<(), String>>,
+        reply: ReplyTo<Result<(), String>>,
     },
     /// An upload, which continues with the answer.
     Upload {
         /// The rest of the upload.
         upload: Box<Upload>,
-        reply: oneshot::Sender<Result<UploadReport, String>>,
+        reply: ReplyTo<Result<UploadReport, String>>,
     },
 }
 
@@ -48,7 +47,7 @@ impl Session {
                     // It has saved and restarted by itself.
                     let restarted =
                         said.actions.iter().any(|action| matches!(action, CliAction::Restart { .. }));
-                    drop(reply.send(output(&line, said, restarted)));
+                    reply.send(output(&line, said, restarted));
                 }
                 (Some(WaitingInterface::Upload { mut upload, reply }), LateAnswer::Cli(said)) => {
                     let progress = upload.take_answer(&said, self.vehicle.controller_mut());
@@ -56,11 +55,11 @@ impl Session {
                 }
                 (Some(WaitingInterface::Download { reply }), LateAnswer::Cli(said)) => {
                     let reference = self.vehicle.controller().altitude_reference();
-                    drop(reply.send(plan_above_home(&said, reference).map(Box::new)));
+                    reply.send(plan_above_home(&said, reference).map(Box::new));
                 }
                 (Some(WaitingInterface::Save { reply }), LateAnswer::Msp(stored)) => {
                     let refusal = || "Not saved: the flight controller refuses to store now.".to_owned();
-                    drop(reply.send(stored.map(drop).ok_or_else(refusal)));
+                    reply.send(stored.map(drop).ok_or_else(refusal));
                 }
                 (_, answer) => {
                     if let Some(endpoints) = &mut self.endpoints {
@@ -72,11 +71,11 @@ impl Session {
         for recipient in self.late_answers.take_overdue(now) {
             match recipient {
                 WaitingInterface::Line { reply, .. } => {
-                    drop(reply.send(CliOutput { text: no_answer_line(), ..CliOutput::default() }));
+                    reply.send(CliOutput { text: no_answer_line(), ..CliOutput::default() });
                 }
-                WaitingInterface::Download { reply } => drop(reply.send(Err(NO_ANSWER.to_owned()))),
-                WaitingInterface::Upload { reply, .. } => drop(reply.send(Err(NO_ANSWER.to_owned()))),
-                WaitingInterface::Save { reply } => drop(reply.send(Err(NO_ANSWER.to_owned()))),
+                WaitingInterface::Download { reply } => reply.send(Err(NO_ANSWER.to_owned())),
+                WaitingInterface::Upload { reply, .. } => reply.send(Err(NO_ANSWER.to_owned())),
+                WaitingInterface::Save { reply } => reply.send(Err(NO_ANSWER.to_owned())),
             }
         }
         if let Some(endpoints) = &mut self.endpoints {
@@ -99,7 +98,7 @@ impl Session {
         &mut self,
         upload: Box<Upload>,
         progress: UploadProgress,
-        reply: oneshot::Sender<Result<UploadReport, String>>,
+        reply: ReplyTo<Result<UploadReport, String>>,
         now: Instant,
     ) {
         match progress {
@@ -109,7 +108,7 @@ impl Session {
                         self.notice(hazard);
                     }
                 }
-                drop(reply.send(result));
+                reply.send(result);
             }
             UploadProgress::Waiting(ticket) => {
                 self.late_answers.expect(ticket, WaitingInterface::Upload { upload, reply }, now);

@@ -22,11 +22,11 @@ impl Session {
         match command {
             Command::Cli { reply, .. } => {
                 let (text, advice) = ("###ERROR: NOT DONE###".to_owned(), Some(sentence));
-                drop(reply.send(CliOutput { text, advice, restarted: false }));
+                reply.send(CliOutput { text, advice, restarted: false });
             }
-            Command::Upload { reply, .. } => drop(reply.send(Err(sentence))),
+            Command::Upload { reply, .. } => reply.send(Err(sentence)),
             Command::Save { reply } | Command::World { reply, .. } => {
-                drop(reply.send(Err(sentence)));
+                reply.send(Err(sentence));
             }
             _ => self.notice(sentence),
         }
@@ -128,6 +128,7 @@ mod tests {
     use crate::link::ClientId;
     use crate::link::proto::command_line::LineSource;
     use crate::plan::FlightPlan;
+    use crate::session::ReplyTo;
     use crate::signals::RcFrame;
     use crate::telemetry::InFlightCommand;
 
@@ -136,8 +137,8 @@ mod tests {
 
     #[test]
     fn commands_of_the_interface_are_held_to_the_rule_too() {
-        fn channel<T>() -> oneshot::Sender<T> {
-            oneshot::channel().0
+        fn channel<T: Send + 'static>() -> ReplyTo<T> {
+            ReplyTo::channel().0
         }
         let line = |line: &str| Command::Cli { line: line.to_owned(), reply: channel() };
         for (command, impact) in [

@@ -113,17 +113,17 @@ impl Session {
             | Command::PermitChanges(_)
             | Command::Quit => return Some(command),
             Command::Cli { line, reply } if Impact::of_line(&line) == Impact::Reads => {
-                drop(reply.send(self.read_shown(&line)));
+                reply.send(self.read_shown(&line));
             }
             Command::Cli { reply, .. } => {
                 let (text, advice) = ("###ERROR: REWOUND###".to_owned(), Some(REWOUND.to_owned()));
-                drop(reply.send(CliOutput { text, advice, restarted: false }));
+                reply.send(CliOutput { text, advice, restarted: false });
             }
-            Command::Upload { reply, .. } => drop(reply.send(Err(REWOUND.to_owned()))),
+            Command::Upload { reply, .. } => reply.send(Err(REWOUND.to_owned())),
             Command::World { reply, .. } | Command::Save { reply } => {
-                drop(reply.send(Err(REWOUND.to_owned())));
+                reply.send(Err(REWOUND.to_owned()));
             }
-            Command::Download { reply } => drop(reply.send(Err(REWOUND.to_owned()))),
+            Command::Download { reply } => reply.send(Err(REWOUND.to_owned())),
             Command::Vehicle(_) | Command::StartPilot => self.notice(REWOUND),
         }
         None

@@ -7,6 +7,7 @@ use crate::firmware::config::Configuration;
 use crate::firmware::{Firmware, FirmwareOptions};
 use crate::link::FcStream;
 use crate::plan::{Altitude, AltitudeReference, FlightPlan, Waypoint};
+use crate::session::ReplyTo;
 use crate::session::command::{Seek, UPLOADING};
 use crate::signals::SimTime;
 use crate::sim::WorldConfig;
@@ -68,7 +69,7 @@ impl Rig {
         plan.waypoints.extend(
             (0..waypoints).map(|_| Waypoint { altitude: Altitude::above_home(20.0), ..Waypoint::default() }),
         );
-        let (reply, result) = oneshot::channel();
+        let (reply, result) = ReplyTo::channel();
         let settings = vec![setting.to_owned()];
         self.commands.try_send(Command::Upload { plan, settings, reply }).unwrap();
         self.take_commands();
@@ -180,7 +181,7 @@ fn a_craft_that_counts_from_sea_level_gets_and_gives_altitudes_from_there() {
     while rig.answer(|_, _| {}) > 0 {}
     assert_eq!(result.try_recv().unwrap(), Ok(UploadReport { added_m: 300.0, ..UploadReport::default() }));
     assert_eq!(rig.firmware.stored_plan().waypoints[1].altitude, Altitude::above_home(320.0));
-    let (reply, mut plan) = oneshot::channel();
+    let (reply, mut plan) = ReplyTo::channel();
     rig.commands.try_send(Command::Download { reply }).unwrap();
     rig.take_commands();
     assert_eq!(rig.answer(|_, _| {}), 1);
@@ -226,7 +227,7 @@ fn a_held_rewind_key_is_one_way_and_each_other_instant_is_shown_before_the_next(
     (0..20).for_each(|_| rig.seek(Seek::Seconds(-1.0)));
     rig.seek(Seek::Seconds(5.0));
     rig.seek(Seek::Time(SimTime(7_000_000)));
-    let (sent, begun) = (oneshot::channel(), rig.session.has_commands());
+    let (sent, begun) = (ReplyTo::channel(), rig.session.has_commands());
     rig.commands.try_send(Command::Save { reply: sent.0 }).unwrap();
     assert!(begun, "the loop does not sleep");
     for expected_s in [40.0, 45.0, 7.0] {
@@ -255,7 +256,7 @@ impl Rig {
     /// Flies the built-in landing to its end. Returns the speed there.
     fn fly_and_land(&mut self) -> f64 {
         let plan = crate::plan::builtin::BuiltinPlan::find("land").unwrap().read().unwrap().plan;
-        let (reply, _result) = oneshot::channel();
+        let (reply, _result) = ReplyTo::channel();
         let upload = Command::Upload { plan: Box::new(plan), settings: Vec::new(), reply };
         for command in [upload, Command::StartPilot] {
             self.commands.try_send(command).unwrap();

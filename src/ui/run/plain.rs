@@ -5,7 +5,8 @@ use std::time::Instant;
 
 use tokio::sync::mpsc;
 
-use super::{Ending, SessionLink, carry_out};
+use super::effects::{Answers, carry_out};
+use super::{Ending, SessionLink};
 use crate::flight::forecast::ForecastKind;
 use crate::session::{Command, Forecaster};
 use crate::ui::app_state::AppState;
@@ -53,9 +54,8 @@ async fn run_loop(
     let mut lines = Lines::new(output);
     let view = link.view.borrow_and_update().clone();
     let mut state = AppState::new(config, SIZE, view);
-    let (replies_in, mut replies) = mpsc::unbounded_channel();
-    let forecasts = replies_in.clone();
-    let forecaster = Forecaster::start(move |reply| drop(forecasts.send(Msg::Forecast(reply))))?;
+    let (answers, mut replies) = Answers::channel();
+    let forecaster = Forecaster::start(answers.of_forecasts())?;
     let mut awaited = 0_usize;
     let ending = loop {
         let effects = tokio::select! {
@@ -111,7 +111,7 @@ async fn run_loop(
                 Effect::Copy(text) => lines.write(&text)?,
                 effect => {
                     awaited += usize::from(is_question(&effect));
-                    carry_out(effect, &link, &forecaster, &mut files, &replies_in);
+                    carry_out(effect, &link, &forecaster, &mut files, &answers);
                 }
             }
         }

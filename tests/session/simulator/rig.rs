@@ -8,6 +8,7 @@ use betadeck::firmware::{AttitudeSource, FirmwareOptions};
 use betadeck::link::proto::fdm::{State, mirrored, pressure_pa};
 use betadeck::link::proto::fdm_link::FdmLinkConfig;
 use betadeck::link::{ClientId, ExternalSimulator, ListenConfig, Listeners, MotorPort, Request};
+use betadeck::session::ReplyTo;
 use betadeck::session::{
     Command, Endpoints, Event, Handle, RequestHandler, SessionConfig, SessionEvent, SessionView, start,
 };
@@ -220,7 +221,7 @@ impl Rig {
     }
 
     pub(crate) async fn world(&self, line: &str) -> Result<(), String> {
-        let (reply, answer) = oneshot::channel();
+        let (reply, answer) = ReplyTo::channel();
         self.command(Command::World { line: line.to_owned(), reply }).await;
         tokio::time::timeout(PATIENCE, answer).await.unwrap().unwrap()
     }

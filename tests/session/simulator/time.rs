@@ -2,11 +2,11 @@
 
 use std::time::{Duration, Instant};
 
+use betadeck::session::ReplyTo;
 use betadeck::session::command::{PLACE_IS_EXTERNAL, TIME_IS_EXTERNAL};
 use betadeck::session::{Command, SessionView};
 use betadeck::telemetry::{EndpointKind, LinkState, SimulatorStats};
 use betadeck::vehicle::VehicleCommand;
-use tokio::sync::oneshot;
 
 use super::rig::{AHEAD, PATIENCE, START, rig, speaking, stats};
 
@@ -24,7 +24,7 @@ async fn until_a_simulator_speaks_the_firmware_lives_and_nothing_is_made_up() {
     let motors = view.endpoints.iter().find(|endpoint| endpoint.kind == EndpointKind::Motors).unwrap();
     assert_eq!(motors.address, rig.motors.local_addr().unwrap().to_string());
 
-    let (reply, answer) = oneshot::channel();
+    let (reply, answer) = ReplyTo::channel();
     rig.command(Command::Cli { line: "get ap_max_angle".to_owned(), reply }).await;
     let answer = tokio::time::timeout(PATIENCE, answer).await.unwrap().unwrap();
     assert!(answer.text.contains("ap_max_angle = "), "{}", answer.text);

@@ -1,0 +1,124 @@
+//! Carries out effects. The answers of the session, the files and the forecasts come back over one channel, as messages.
+
+use std::io;
+
+use crossterm::clipboard::CopyToClipboard;
+use crossterm::execute;
+use tokio::runtime::Handle;
+use tokio::sync::mpsc;
+
+use super::SessionLink;
+use crate::session::command::VehicleCopy;
+use crate::session::{Command, ForecastReply, Forecaster, ReplyTo};
+use crate::timeline::RecordedFlight;
+use crate::ui::editor::FileReply;
+use crate::ui::files_link::FilesLink;
+use crate::ui::message::{Effect, Msg};
+
+/// The channel of all answers.
+#[derive(Debug, Clone)]
+pub(super) struct Answers(mpsc::UnboundedSender<Msg>);
+
+impl Answers {
+    pub(super) fn channel() -> (Self, mpsc::UnboundedReceiver<Msg>) {
+        let (sender, receiver) = mpsc::unbounded_channel();
+        (Self(sender), receiver)
+    }
+
+    /// Returns the receiver of the forecaster's replies.
+    pub(super) fn of_forecasts(&self) -> impl FnMut(ForecastReply) + Send + 'static + use<> {
+        let answers = self.clone();
+        move |reply| answers.send(Msg::Forecast(reply))
+    }
+
+    fn send(&self, msg: Msg) {
+        // The loop that receives it may have ended.
+        self.0.send(msg).ok();
+    }
+
+    /// Returns the way of an answer, which becomes a message on arrival.
+    fn reply<T>(&self, message: impl FnOnce(Option<T>) -> Msg + Send + 'static) -> ReplyTo<T> {
+        let answers = self.clone();
+        ReplyTo::new(move |answer| answers.send(message(answer)))
+    }
+
+    /// Returns the way of an answer that can be a refusal. `missing` is the refusal in place of a missing answer.
+    fn result<T: 'static>(
+        &self,
+        missing: &'static str,
+        message: impl FnOnce(Result<T, String>) -> Msg + Send + 'static,
+    ) -> ReplyTo<Result<T, String>> {
+        self.reply(move |answer| message(answer.unwrap_or_else(|| Err(missing.to_owned()))))
+    }
+}
+
+/// Carries out an effect; answers come back as messages.
+pub(super) fn carry_out(
+    effect: Effect,
+    link: &SessionLink,
+    forecaster: &Forecaster,
+    files: &mut FilesLink,
+    answers: &Answers,
+) {
+    const MISSING: &str = "the session did not answer.";
+    let command = match effect {
+        Effect::Files(request) => {
+            if !files.ask(request) {
+                let gone = "Plan files cannot be read or written any more: restart the program.".to_owned();
+                answers.send(Msg::Files(FileReply::Failed(gone)));
+            }
+            return;
+        }
+        Effect::Copy(text) => {
+            // Terminals without this feature show nothing; the editor keeps its own copy.
+            execute!(io::stdout(), CopyToClipboard::to_clipboard_from(text)).ok();
+            return;
+        }
+        Effect::Suspend | Effect::Quit => return,
+        Effect::Send(command) => command,
+        Effect::Cli(line) => Command::Cli { line, reply: answers.reply(Msg::CliReply) },
+        Effect::World(line) => {
+            let asked = line.clone();
+            let message = |result| Msg::WorldReply { line: asked, result };
+            Command::World { line, reply: answers.result("The session did not answer.", message) }
+        }
+        Effect::Upload { id, plan, settings } => {
+            let count = plan.waypoints.len();
+            let message = move |result| Msg::UploadReply { id, count, result };
+            Command::Upload { plan, settings, reply: answers.result(MISSING, message) }
+        }
+        Effect::Download(id) => {
+            let message = move |result| Msg::DownloadReply { id, result };
+            Command::Download { reply: answers.result(MISSING, message) }
+        }
+        Effect::SaveToFlash => Command::Save { reply: answers.result(MISSING, Msg::SaveReply) },
+        Effect::WriteScenario { file, plan } => {
+            let failed = "the flight could not be flown again.";
+            let written = answers.result(failed, Msg::ScenarioReply);
+            let (threads, write) = (Handle::current(), link.write_scenario);
+            Command::RecordedFlight(ReplyTo::new(move |recorded: Option<Result<Box<RecordedFlight>, _>>| {
+                let recorded = recorded.unwrap_or_else(|| Err(MISSING.to_owned()));
+                // This flies the flight again, which takes a while.
+                threads.spawn_blocking(move || {
+                    written.send(recorded.and_then(|recorded| write(file, &plan, *recorded)));
+                });
+            }))
+        }
+        Effect::Forecast(job) => {
+            let (forecaster, answers) = (forecaster.clone(), answers.clone());
+            Command::CopyVehicle(ReplyTo::new(move |copy: Option<Result<VehicleCopy, String>>| match copy {
+                Some(Ok(copy)) => forecaster.order(job, copy),
+                Some(Err(reason)) => {
+                    let (revision, kind) = (job.revision, job.request.kind());
+                    answers.send(Msg::Forecast(ForecastReply { revision, kind, forecast: Err(reason) }));
+                }
+                // The session ends.
+                None => {}
+            }))
+        }
+    };
+    // A command that is not delivered is dropped after this message.
+    if let Err(_undelivered) = link.commands.try_send(command) {
+        answers.send(Msg::Busy);
+    }
+}
