@@ -33,6 +33,20 @@ pub struct EngageFacts {
 }
 
 impl EngageFacts {
+    /// A craft that is ready for a plan that can be flown.
+    pub const READY: Self = Self {
+        armed: true,
+        throttle_raised: true,
+        fix: true,
+        altitude_valid: true,
+        heading_valid: true,
+        plan: Ok(()),
+        fence: Ok(()),
+        floor: Ok(()),
+        failsafe: false,
+        aborted: None,
+    };
+
     /// Returns the facts about the plan: the check that it can be flown, and the check against the fence.
     pub fn plan_facts(
         stored: &FlightPlan,

@@ -5,7 +5,7 @@
 
 use nalgebra::Vector2;
 
-use crate::geo::LatLon;
+use crate::geo::{LatLon, offset_to_latlon};
 use crate::signals::SimTime;
 
 /// The facts for one update.
@@ -96,6 +96,11 @@ impl NavInputs {
             stick_pitch: 0.0,
             stick_yaw: 0.0,
         }
+    }
+
+    /// Returns the position of the craft.
+    pub(super) fn here(&self) -> LatLon {
+        offset_to_latlon(self.origin, self.pos_ne)
     }
 
     /// Returns the inputs of an armed craft that hovers 20 m above home.

@@ -21,28 +21,26 @@ mod progress;
 mod report;
 mod station;
 mod steer;
+mod task;
 mod transit;
 
 use arrayvec::ArrayVec;
 use nalgebra::Vector2;
 
-use super::control::{FlightControllers, YawController};
+use super::control::FlightControllers;
 use super::io::NavInputs;
+use super::machine::Facts;
 use super::params::Params;
 use crate::plan::FlightPlan;
 use crate::telemetry::{NavEvent, NavOutput, NavState, NavTelemetry, PlanSource, TransitionReason};
-use altitude_wait::AltitudeWait;
-use climb::Climb;
-use cursor::PlanCursor;
-use descent::Descent;
 use engagement::{ArmingEdge, Engagement};
-use hold::Hold;
+use fly::{Flown, Steering};
 use inputs::InputFilter;
-use leg::Leg;
-use progress::ProgressMonitor;
-use station::StationMonitor;
+use observed::Observed;
+use station::{Station, StationMonitor};
+use task::Task;
 
-pub use entry::Rescue;
+pub use task::Rescue;
 
 /// The maximum number of events between two drains. Further events are dropped; the state itself is never lost.
 pub const EVENT_CAPACITY: usize = 16;
@@ -55,24 +53,11 @@ pub struct Navigator {
     reason: Option<TransitionReason>,
     inputs: InputFilter,
     engagement: Engagement,
-    cursor: PlanCursor,
-    leg: Leg,
-    climb: Climb,
-    progress: ProgressMonitor,
-    altitude_wait: AltitudeWait,
-    hold: Hold,
+    task: Task,
+    steering: Steering,
     station: StationMonitor,
-    descent: Descent,
-    rescue: Option<Rescue>,
-    /// Yaw rate cap of a YAW_RATE waypoint, deg/s.
-    yaw_cap_dps: Option<f64>,
     /// Position at the previous update, north and east, m.
     previous: Option<Vector2<f64>>,
-    target_ne: Vector2<f64>,
-    target_alt_m: f64,
-    /// `true` if the craft was taken over since the last update and the controllers are not engaged yet.
-    takes_over: bool,
-    yaw: YawController,
     telemetry: NavTelemetry,
     events: ArrayVec<NavEvent, EVENT_CAPACITY>,
 }
@@ -95,17 +80,17 @@ impl Navigator {
 
     /// Returns the plan that is flown, empty while nothing is flown.
     pub fn active_plan(&self) -> &FlightPlan {
-        self.cursor.plan()
+        self.task.cursor.plan()
     }
 
     /// Returns the source of the active plan.
     pub fn source(&self) -> PlanSource {
-        self.cursor.source()
+        self.task.cursor.source()
     }
 
     /// Returns the index of the current waypoint in the active plan.
     pub fn index(&self) -> u8 {
-        self.cursor.index()
+        self.task.cursor.index()
     }
 
     /// Returns the state of the last update for displays, logs and samples.
@@ -129,50 +114,81 @@ impl Navigator {
     ) -> NavOutput {
         let now = self.inputs.apply(inputs);
         self.follow_arming(&now);
-        let seen = self.observe(&now, params);
+        let seen = Observed::new(&now, params, &self.task);
         let undecided = if self.is_flying() {
-            self.cursor.follow_clearing(stored);
-            self.engage_controllers(&now, params, controllers);
-            self.prepare(&now, params, &seen, controllers.position.speed_setpoint_mps());
+            self.task.cursor.follow_clearing(stored);
+            self.steering.engage(&now, params, controllers);
+            if self.task.prepare(self.state, &seen, controllers.position.speed_setpoint_mps()) {
+                self.push(NavEvent::Climbing(true));
+            }
             self.end_old_descent(controllers);
             controllers.land.follow_altitude(now.alt_m);
-            let mut facts = self.facts(&now, params, &seen, controllers);
+            let mut facts = self.task.facts(self.state, self.previous, &seen, controllers);
             facts.touchdown_held_us = controllers.land.time_touchdown(facts.touchdown.all_hold(), now.time);
             (!self.step(&facts, &now, params)).then_some((facts, seen))
         } else {
-            self.check_fence_after_abort(&now, params, &seen);
+            self.check_fence_after_abort(&seen);
             None
         };
         self.previous = Some(now.pos_ne);
         if !self.is_flying() {
-            self.watch_station(&now, params, &seen, controllers);
-            self.report(&now, params, &seen, controllers, None);
+            self.finish_update(None, &seen, controllers);
             return NavOutput::default();
         }
         // A transition leads to another leg. After an abort it takes over the craft.
-        self.engage_controllers(&now, params, controllers);
+        self.steering.engage(&now, params, controllers);
         self.end_old_descent(controllers);
         let (facts, seen) = undecided.unwrap_or_else(|| {
-            let seen = self.observe(&now, params);
-            (self.facts(&now, params, &seen, controllers), seen)
+            let seen = Observed::new(&now, params, &self.task);
+            (self.task.facts(self.state, self.previous, &seen, controllers), seen)
         });
-        let flown = self.fly(&now, params, &seen, controllers);
-        self.watch_station(&now, params, &seen, controllers);
-        self.report(&now, params, &seen, controllers, Some((&facts, flown)));
+        let flown = self.steering.fly(self.state, &mut self.task, &seen, controllers);
+        if let Some(lean_rad) = flown.limited_lean_rad {
+            self.push(NavEvent::Limited { lean_rad });
+        }
+        self.finish_update(Some((&facts, flown)), &seen, controllers);
         flown.output
+    }
+
+    /// Watches the station and reports the update. `flown` has the facts of the decision and the result of flying it,
+    /// if anything was flown.
+    fn finish_update(
+        &mut self,
+        flown: Option<(&Facts, Flown)>,
+        seen: &Observed,
+        controllers: &FlightControllers,
+    ) {
+        let station = Station::of(self.state, self.steering.target_ne, &self.task.leg, seen, controllers);
+        let station = station.filter(|_| flown.is_some());
+        if let Some(event) = self.station.update(station.as_ref(), seen.now.dt) {
+            self.push(event);
+        }
+        let cannot_hold = self.station.reported();
+        self.telemetry =
+            report::report(self.state, &self.task, &self.steering, cannot_hold, seen, controllers, flown);
+        self.report_status();
+    }
+
+    /// Reports state, plan and refusal, also between two updates.
+    fn report_status(&mut self) {
+        let is_flying = self.is_flying();
+        let (telemetry, cursor) = (&mut self.telemetry, &self.task.cursor);
+        telemetry.state = self.state;
+        telemetry.engaged = is_flying;
+        telemetry.climbing = self.task.climb.is_on();
+        telemetry.refusal = self.engagement.refused().filter(|_| !is_flying);
+        telemetry.reason = self.reason;
+        telemetry.wp = cursor.index();
+        telemetry.next_wp = cursor.next_index();
+        telemetry.count = cursor.count();
+        telemetry.source = cursor.source();
+        telemetry.kind = cursor.current().map(|waypoint| waypoint.kind);
     }
 
     /// Makes the land detector forget a descent that is no longer flown.
     fn end_old_descent(&self, controllers: &mut FlightControllers) {
-        if self.state != NavState::Landing || !self.descent.has_begun() {
+        if self.state != NavState::Landing || !self.task.leg.descent.has_begun() {
             controllers.land.end_descent();
-        }
-    }
-
-    /// Engages the controllers once after taking over the craft.
-    fn engage_controllers(&mut self, now: &NavInputs, params: &Params, controllers: &mut FlightControllers) {
-        if std::mem::take(&mut self.takes_over) {
-            controllers.engage(now, params);
         }
     }
 

@@ -25,10 +25,9 @@ const MAX_RATE: f64 = 300.0;
 mod boot;
 mod changes;
 mod readout;
-mod status;
 
 use boot::full_battery;
-pub use status::WorldStatus;
+pub use readout::WorldStatus;
 
 /// The plant: truth, sensors and everything that acts on them. A clone is a frozen copy that continues identically.
 #[derive(Debug, Clone)]

@@ -3,30 +3,17 @@
 use super::Navigator;
 use super::climb::Climb;
 use super::leg::Leg;
+use super::task::Rescue;
+use super::transit::Cause;
 use crate::autopilot::engage::{self, EngageFacts};
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::params::Params;
-use crate::geo::{LatLon, local_offset, offset_to_latlon};
+use crate::geo::{LatLon, local_offset};
 use crate::plan::{Altitude, FlightPlan, LegSpeed, Waypoint, WaypointType};
-use crate::telemetry::{AbortReason, Guard, NavEvent, NavState, PlanSource, Refusal, TransitionReason};
+use crate::telemetry::{AbortReason, NavEvent, NavState, PlanSource, Refusal, TransitionReason};
 
 /// A landing ends at its planned place if the fix comes back this near to it, m.
 const SAME_LANDING_M: f64 = 20.0;
-
-/// The settings of a rescue, beyond a plain return. A rescue first climbs to its altitude on the spot.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rescue {
-    /// Altitude of the return, m above home, if it is higher than the craft.
-    pub altitude_m: f64,
-    /// Climb rate, m/s.
-    pub climb_mps: f64,
-    /// Ground speed, m/s.
-    pub speed_mps: f64,
-    /// Sink rate down to the last 4 m, m/s.
-    pub descend_mps: f64,
-    /// `true` if the rescue is given up when it makes no progress or flies away from home.
-    pub is_watched: bool,
-}
 
 impl Navigator {
     /// Engages while the mode switch is on: checks the preconditions and resumes the mission, or starts it. Call it
@@ -84,7 +71,7 @@ impl Navigator {
     pub fn forget_given_up(&mut self) {
         self.engagement.forget_mission();
         if !self.is_flying() {
-            self.cursor.unload();
+            self.task.cursor.unload();
         }
     }
 
@@ -92,11 +79,11 @@ impl Navigator {
     /// here.
     fn resume_landing(&mut self, land_at: LatLon, inputs: &NavInputs) {
         self.take_over(inputs);
-        let here = here(inputs);
         let distance_m = (local_offset(inputs.origin, land_at) - inputs.pos_ne).norm();
-        let waypoint = if distance_m <= SAME_LANDING_M { land_at } else { here };
-        self.leg = Leg { waypoint, altitude_m: inputs.alt_m, start: here, ..Leg::default() };
-        self.enter(NavState::Landing, TransitionReason::Resume, None);
+        let waypoint = if distance_m <= SAME_LANDING_M { land_at } else { inputs.here() };
+        self.task.leg = Leg::here(inputs);
+        self.task.leg.waypoint = waypoint;
+        self.enter(NavState::Landing, TransitionReason::Resume);
     }
 
     fn engage_facts(&self, inputs: &NavInputs, params: &Params, stored: &FlightPlan) -> EngageFacts {
@@ -126,7 +113,7 @@ impl Navigator {
     /// Resumes the mission that began since arming if the stored plan is still the same. Otherwise starts the mission
     /// from its first waypoint.
     fn resume(&mut self, inputs: &NavInputs, params: &Params, stored: &FlightPlan) {
-        match self.cursor.resume_index(stored) {
+        match self.task.cursor.resume_index(stored) {
             Some(index) => {
                 self.begin(inputs, stored);
                 self.begin_first_leg(index, true, TransitionReason::Resume, inputs, params);
@@ -141,21 +128,20 @@ impl Navigator {
     /// Fails if the plan cannot be flown, the fence forbids it or there is no fix. The navigator is IDLE then.
     pub fn reset(&mut self, inputs: &NavInputs, params: &Params, stored: &FlightPlan) -> Result<(), Refusal> {
         let inputs = &self.inputs.apply(inputs);
+        let (plan, fence) = EngageFacts::plan_facts(stored, inputs.home, params);
         let facts = EngageFacts {
-            // Preconditions of the switch, not of the plan.
-            armed: true,
-            throttle_raised: true,
-            altitude_valid: true,
-            heading_valid: true,
-            failsafe: false,
-            aborted: None,
-            ..self.engage_facts(inputs, params, stored)
+            fix: inputs.fix,
+            plan,
+            fence,
+            floor: engage::check_floor(params.throttle_min, inputs.hover_us),
+            // The other preconditions are those of the switch, not of the plan.
+            ..EngageFacts::READY
         };
         // The plan is checked before the fix here, so that a missing plan is reported first.
         let plan = engage::check(&EngageFacts { fix: true, fence: Ok(()), ..facts });
         if let Err(refusal) = plan.and_then(|()| engage::check(&facts)) {
             if self.state != NavState::Idle {
-                self.go_idle(TransitionReason::Refused(refusal), None);
+                self.go_idle(TransitionReason::Refused(refusal));
             }
             self.refuse(refusal);
             return Err(refusal);
@@ -166,20 +152,20 @@ impl Navigator {
 
     fn start(&mut self, inputs: &NavInputs, params: &Params, stored: &FlightPlan) {
         self.begin(inputs, stored);
-        let from = self.cursor.begin_mission(stored);
-        match self.cursor.positional_from(from) {
+        let from = self.task.cursor.begin_mission(stored);
+        match self.task.cursor.positional_from(from) {
             Some(index) => self.begin_first_leg(index, false, TransitionReason::Reset, inputs, params),
             None => {
-                self.cursor.rewind();
-                self.leg = Leg { waypoint: here(inputs), altitude_m: inputs.alt_m, ..Leg::default() };
-                self.complete(TransitionReason::Reset, None);
+                self.task.cursor.rewind();
+                self.task.leg = Leg::here(inputs);
+                self.complete(TransitionReason::Reset);
             }
         }
     }
 
     /// Makes the stored plan the active one and takes over the craft.
     fn begin(&mut self, inputs: &NavInputs, stored: &FlightPlan) {
-        self.cursor.load(stored);
+        self.task.cursor.load(stored);
         self.take_over(inputs);
         self.announce_plan();
     }
@@ -187,19 +173,13 @@ impl Navigator {
     /// Resets the state that belongs to one engagement. The next update engages the controllers, unless they already
     /// fly.
     fn take_over(&mut self, inputs: &NavInputs) {
-        if self.state == NavState::Idle {
-            self.takes_over = true;
-            self.yaw.reset();
-        }
+        self.steering.take_over(inputs, self.state == NavState::Idle);
         self.finish_climb();
-        self.climb = Climb::default();
-        self.clear_clocks();
-        self.yaw_cap_dps = None;
-        self.rescue = None;
+        self.task.climb = Climb::default();
+        self.task.yaw_cap_dps = None;
+        self.task.rescue = None;
         self.engagement.clear();
         self.previous = Some(inputs.pos_ne);
-        self.target_ne = inputs.pos_ne;
-        self.target_alt_m = inputs.alt_m;
     }
 
     /// Ends the flight when the mode switch goes off: IDLE, the active plan dropped. The mission can be resumed until
@@ -207,24 +187,24 @@ impl Navigator {
     pub fn disengage(&mut self) {
         self.engagement.clear();
         if self.is_flying() {
-            self.go_idle(TransitionReason::Disengage, None);
+            self.go_idle(TransitionReason::Disengage);
         } else {
-            self.cursor.unload();
+            self.task.cursor.unload();
             self.report_status();
         }
     }
 
     /// Ends the flight and forgets the mission. After a touchdown the state reads COMPLETE until the next arming.
     pub fn on_disarm(&mut self) {
-        self.cursor.forget_flight();
+        self.task.cursor.forget_flight();
         self.engagement.forget_mission();
         if self.engagement.has_landed() {
             return;
         }
         if self.state == NavState::Idle {
-            self.cursor.unload();
+            self.task.cursor.unload();
         } else {
-            self.go_idle(TransitionReason::Disarm, None);
+            self.go_idle(TransitionReason::Disarm);
         }
     }
 
@@ -241,16 +221,15 @@ impl Navigator {
     ) -> bool {
         let inputs = &self.inputs.apply(inputs);
         if !self.is_flying() {
-            return self.cursor.start_next_at(index, stored);
+            return self.task.cursor.start_next_at(index, stored);
         }
-        if self.cursor.source() != PlanSource::Stored || index >= self.cursor.count() {
+        if self.task.cursor.source() != PlanSource::Stored || index >= self.task.cursor.count() {
             return false;
         }
-        let Some(positional) = self.cursor.positional_from(index) else { return false };
-        self.yaw_cap_dps = None;
-        self.clear_clocks();
-        let here = here(inputs);
-        self.begin_leg(positional, index, here, TransitionReason::SetCurrent, None, inputs, params);
+        let Some(positional) = self.task.cursor.positional_from(index) else { return false };
+        self.task.yaw_cap_dps = None;
+        self.task.begin_leg(positional, index, inputs.here(), inputs, params);
+        self.enter(NavState::Approaching, TransitionReason::SetCurrent);
         true
     }
 
@@ -261,7 +240,7 @@ impl Navigator {
     pub fn emergency_land(&mut self, inputs: &NavInputs) -> Result<(), Refusal> {
         let inputs = &self.inputs.apply(inputs);
         self.check_command(inputs)?;
-        self.land_here(TransitionReason::Emergency, None, inputs);
+        self.land_here(TransitionReason::Emergency.into(), inputs);
         Ok(())
     }
 
@@ -278,7 +257,7 @@ impl Navigator {
     ) -> Result<(), Refusal> {
         let inputs = &self.inputs.apply(inputs);
         self.check_command(inputs)?;
-        self.fly_home(TransitionReason::ReturnHome, None, rescue, inputs, params);
+        self.fly_home(TransitionReason::ReturnHome.into(), rescue, inputs, params);
         Ok(())
     }
 
@@ -289,36 +268,30 @@ impl Navigator {
             fix: inputs.fix,
             altitude_valid: inputs.altitude_valid,
             heading_valid: inputs.heading_valid,
-            plan: Ok(()),
-            fence: Ok(()),
-            floor: Ok(()),
-            failsafe: false,
-            aborted: None,
+            ..EngageFacts::READY
         };
         engage::check_craft(&facts)
     }
 
-    pub(super) fn land_here(&mut self, reason: TransitionReason, guard: Option<Guard>, inputs: &NavInputs) {
-        self.cursor
-            .inject(PlanSource::Emergency, &[injected(WaypointType::Land, here(inputs), inputs.alt_m, 0.0)]);
+    pub(super) fn land_here(&mut self, cause: Cause, inputs: &NavInputs) {
+        let land = injected(WaypointType::Land, inputs.here(), inputs.alt_m, 0.0);
+        self.task.cursor.inject(PlanSource::Emergency, &[land]);
         self.take_over(inputs);
         self.announce_plan();
-        self.cursor.move_to(0);
-        let here = here(inputs);
-        self.leg = Leg { waypoint: here, altitude_m: inputs.alt_m, start: here, ..Leg::default() };
-        self.enter(NavState::Landing, reason, guard);
+        self.task.cursor.move_to(0);
+        self.task.leg = Leg::here(inputs);
+        self.enter(NavState::Landing, cause);
     }
 
     pub(super) fn fly_home(
         &mut self,
-        reason: TransitionReason,
-        guard: Option<Guard>,
+        cause: Cause,
         rescue: Option<Rescue>,
         inputs: &NavInputs,
         params: &Params,
     ) {
         let Some(home) = inputs.home else {
-            self.land_here(reason, guard, inputs);
+            self.land_here(cause, inputs);
             return;
         };
         let altitude = inputs
@@ -328,24 +301,32 @@ impl Navigator {
         let speed = rescue.map_or(0.0, |rescue| rescue.speed_mps);
         let records =
             [WaypointType::Flyover, WaypointType::Land].map(|kind| injected(kind, home, altitude, speed));
-        self.cursor.inject(PlanSource::Rth, &records);
+        self.task.cursor.inject(PlanSource::Rth, &records);
         self.take_over(inputs);
-        self.rescue = rescue;
+        self.task.rescue = rescue;
         self.announce_plan();
-        self.begin_first_leg_with_guard(0, false, reason, guard, inputs, params);
+        self.begin_first_leg(0, false, cause, inputs, params);
+    }
+
+    /// Begins the first leg of an engagement; see [`Task::begin_first_leg`](super::task::Task::begin_first_leg).
+    pub(super) fn begin_first_leg(
+        &mut self,
+        index: u8,
+        resumed: bool,
+        cause: impl Into<Cause>,
+        inputs: &NavInputs,
+        params: &Params,
+    ) {
+        self.task.begin_first_leg(index, resumed, inputs, params);
+        self.enter(NavState::Approaching, cause);
     }
 
     pub(super) fn announce_plan(&mut self) {
         self.push(NavEvent::Plan {
-            source: self.cursor.source(),
-            plan: Box::new(self.cursor.plan().clone()),
+            source: self.task.cursor.source(),
+            plan: Box::new(self.task.cursor.plan().clone()),
         });
     }
-}
-
-/// Returns the position of the craft.
-pub(super) fn here(inputs: &NavInputs) -> LatLon {
-    offset_to_latlon(inputs.origin, inputs.pos_ne)
 }
 
 fn injected(kind: WaypointType, position: LatLon, altitude_m: f64, speed_mps: f64) -> Waypoint {

@@ -1,42 +1,43 @@
-//! Collects the facts of one update for the machine.
+//! Runs the clocks and monitors of the task before the decision, and collects the facts for it.
 
-use super::Navigator;
+use nalgebra::Vector2;
+
+use super::hold::Pattern;
 use super::observed::Observed;
 use super::progress::LegTurn;
+use super::task::Task;
 use crate::autopilot::control::{AltitudeController, FlightControllers};
 use crate::autopilot::fence::FenceFacts;
-use crate::autopilot::guidance::{CornerArc, PlaneCrossing, plane_crossing, turn_radius_m};
-use crate::autopilot::io::NavInputs;
+use crate::autopilot::guidance::{PlaneCrossing, plane_crossing, turn_radius_m};
 use crate::autopilot::land_detector::{AT_REST_MPS, GroundFacts, TouchdownFacts, TouchdownGuards};
 use crate::autopilot::machine::{ApproachFacts, Facts, WaypointFacts};
-use crate::autopilot::params::Params;
 use crate::plan::Approach;
-use crate::telemetry::{NavEvent, NavState};
+use crate::telemetry::NavState;
 
-impl Navigator {
-    /// Runs clocks and overlays before the decision.
-    pub(super) fn prepare(
-        &mut self,
-        now: &NavInputs,
-        params: &Params,
-        seen: &Observed,
-        speed_setpoint_mps: f64,
-    ) {
-        self.move_pattern(now, params);
-        self.begin_climb(now, params, seen);
-        self.watch_progress(now, params, seen, speed_setpoint_mps);
-        self.wait_for_altitude(now, params, seen);
+impl Task {
+    /// Runs clocks and overlays before the decision. Returns `true` if the climb before the first leg began.
+    pub(super) fn prepare(&mut self, state: NavState, seen: &Observed, speed_setpoint_mps: f64) -> bool {
+        if let Some(pattern) = Pattern::of(state) {
+            let rate = pattern.rate_rps(self.speed_mps(seen.now, seen.params), seen.params);
+            self.leg.hold.advance_pattern(rate * seen.now.dt, pattern.period_rad());
+        }
+        let climbs = self.begin_climb(state, seen);
+        self.watch_progress(state, seen, speed_setpoint_mps);
+        self.wait_for_altitude(state, seen);
+        climbs
     }
 
+    /// Collects the facts. `previous` is the position at the previous update.
     pub(super) fn facts(
         &self,
-        now: &NavInputs,
-        params: &Params,
+        state: NavState,
+        previous: Option<Vector2<f64>>,
         seen: &Observed,
         controllers: &FlightControllers,
     ) -> Facts {
+        let (now, params) = (seen.now, seen.params);
         let waypoint = self.cursor.current().unwrap_or_default();
-        let plane = self.previous.map_or(PlaneCrossing::NoLeg, |previous| {
+        let plane = previous.map_or(PlaneCrossing::NoLeg, |previous| {
             plane_crossing(seen.start_ne, seen.waypoint_ne, previous, now.pos_ne)
         });
         Facts {
@@ -50,7 +51,7 @@ impl Navigator {
                 co_located: seen.is_co_located,
                 missed: self.leg.missed,
             },
-            fence: self.fence_facts(params, seen),
+            fence: self.fence_facts(state, seen),
             approach: ApproachFacts {
                 distance_m: seen.distance_m,
                 altitude_error_m: self.leg.altitude_m - now.alt_m,
@@ -58,14 +59,14 @@ impl Navigator {
                 turn_radius_m: turn_radius_m(seen.ground_speed_mps, params.max_lean_rad()),
                 arrival_radius_m: params.arrival_radius_m(),
                 hold_radius_m: params.hold_radius_m(),
-                held_off_s: self.altitude_wait.held_off_s(now.time),
+                held_off_s: self.leg.altitude_wait.held_off_s(now.time),
             },
             climb: self.climb.is_on().then(|| (now.alt_m, self.climb_goal_m(params))),
-            progress: self.progress.facts(self.progress_distance_m(now, seen), now.time),
-            held_by_command: self.hold.is_by_command(),
-            hold_elapsed_us: self.hold.elapsed_us(now.time),
+            progress: self.leg.progress.facts(self.progress_distance_m(seen), now.time),
+            held_by_command: self.leg.hold.is_by_command(),
+            hold_elapsed_us: self.leg.hold.elapsed_us(now.time),
             touchdown: TouchdownGuards::new(
-                &touchdown_facts(now, params, seen, &controllers.altitude),
+                &touchdown_facts(seen, &controllers.altitude),
                 &GroundFacts::new(now, params, &controllers.altitude, &controllers.land),
             ),
             touchdown_held_us: controllers.land.held_us(),
@@ -74,82 +75,72 @@ impl Navigator {
         }
     }
 
-    pub(super) fn fence_facts(&self, params: &Params, seen: &Observed) -> FenceFacts {
+    pub(super) fn fence_facts(&self, state: NavState, seen: &Observed) -> FenceFacts {
         FenceFacts {
-            limit_m: params.fence_m(),
+            limit_m: seen.params.fence_m(),
             distance_m: seen.home_distance_m,
-            state: self.state,
+            state,
             source: self.cursor.source(),
-            action: params.geofence_action,
+            action: seen.params.geofence_action,
         }
     }
 
-    /// Returns the altitude at which the climb before the first leg is done, m.
-    pub(super) fn climb_goal_m(&self, params: &Params) -> f64 {
-        let rescue = self.rescue.map_or(f64::NEG_INFINITY, |rescue| rescue.altitude_m - 1.0);
-        f64::from(params.min_nav_altitude_m).max(rescue)
-    }
-
-    fn begin_climb(&mut self, now: &NavInputs, params: &Params, seen: &Observed) {
-        if self.state != NavState::Approaching || !self.climb.is_pending() {
-            return;
+    fn begin_climb(&mut self, state: NavState, seen: &Observed) -> bool {
+        if state != NavState::Approaching || !self.climb.is_pending() {
+            return false;
         }
-        let goal = self.climb_goal_m(params);
-        if goal <= 0.0 || now.alt_m >= goal {
-            self.finish_climb();
-            return;
+        let goal = self.climb_goal_m(seen.params);
+        if goal <= 0.0 || seen.now.alt_m >= goal {
+            self.climb.finish();
+            return false;
         }
-        let stops_here = self.cursor.kind().stops() && seen.distance_m <= params.hold_radius_m();
+        let stops_here = self.cursor.kind().stops() && seen.distance_m <= seen.params.hold_radius_m();
         if !stops_here {
-            self.climb.begin(now.pos_ne);
-            self.push(NavEvent::Climbing(true));
+            self.climb.begin(seen.now.pos_ne);
         }
+        !stops_here
     }
 
-    fn progress_distance_m(&self, now: &NavInputs, seen: &Observed) -> f64 {
+    fn progress_distance_m(&self, seen: &Observed) -> f64 {
         if self.cursor.kind().capability().approach == Approach::Climb {
-            (self.leg.altitude_m - now.alt_m).abs()
+            (self.leg.altitude_m - seen.now.alt_m).abs()
         } else {
             seen.distance_m
         }
     }
 
     /// Watches a HOLD that waits for its altitude. A climb or descent on the spot is progress, too.
-    fn wait_for_altitude(&mut self, now: &NavInputs, params: &Params, seen: &Observed) {
-        let approaches = self.state == NavState::Approaching
-            && self.cursor.kind().capability().approach == Approach::Level;
+    fn wait_for_altitude(&mut self, state: NavState, seen: &Observed) {
+        let approaches =
+            state == NavState::Approaching && self.cursor.kind().capability().approach == Approach::Level;
         let is_free = !seen.stick_override && !self.climb.is_on();
-        let is_at_place = approaches && is_free && seen.distance_m <= params.hold_radius_m();
-        let error_m = (self.leg.altitude_m - now.alt_m).abs();
-        if self.altitude_wait.update(error_m, is_at_place, now.time) {
-            self.progress.credit(now.time);
+        let is_at_place = approaches && is_free && seen.distance_m <= seen.params.hold_radius_m();
+        let error_m = (self.leg.altitude_m - seen.now.alt_m).abs();
+        if self.leg.altitude_wait.update(error_m, is_at_place, seen.now.time) {
+            self.leg.progress.credit(seen.now.time);
         }
     }
 
     /// Runs the monitors on a leg. They start again whenever the craft was not free to make progress.
-    fn watch_progress(&mut self, now: &NavInputs, params: &Params, seen: &Observed, speed_setpoint_mps: f64) {
+    fn watch_progress(&mut self, state: NavState, seen: &Observed, speed_setpoint_mps: f64) {
         let unwatched = self.rescue.is_some_and(|rescue| !rescue.is_watched);
-        let free = self.state == NavState::Approaching && !seen.stick_override && !self.climb.is_on();
+        let free = state == NavState::Approaching && !seen.stick_override && !self.climb.is_on();
         if !free || unwatched {
-            self.progress.pause();
+            self.leg.progress.pause();
         } else {
             let turn = LegTurn {
                 ground_speed_mps: seen.ground_speed_mps,
                 speed_mps: seen.ground_speed_mps.max(speed_setpoint_mps),
-                max_lean_rad: params.max_lean_rad(),
-                arc_rps: self.leg.arc.as_ref().map(CornerArc::turn_rate_rps),
+                max_lean_rad: seen.params.max_lean_rad(),
+                arc_rps: self.leg.arc_rps(),
             };
-            self.progress.update(self.progress_distance_m(now, seen), &turn, now.time);
+            self.leg.progress.update(self.progress_distance_m(seen), &turn, seen.now.time);
         }
     }
 }
 
-fn touchdown_facts(
-    now: &NavInputs,
-    params: &Params,
-    seen: &Observed,
-    altitude: &AltitudeController,
-) -> TouchdownFacts {
+fn touchdown_facts(seen: &Observed, altitude: &AltitudeController) -> TouchdownFacts {
+    let (now, params) = (seen.now, seen.params);
     let facts = TouchdownFacts::new(
         params,
         altitude.reference_hover_us(params),

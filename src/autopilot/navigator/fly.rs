@@ -2,16 +2,16 @@
 
 use nalgebra::Vector2;
 
-use super::Navigator;
 use super::observed::Observed;
 use super::steer::PathView;
+use super::task::Task;
 use crate::autopilot::control::{
-    AltitudeMeasurement, AltitudeTarget, FlightControllers, PositionMeasurement, YawFacts, earth_to_body,
-    throttle_share,
+    AltitudeMeasurement, AltitudeTarget, FlightControllers, PositionMeasurement, YawController, YawFacts,
+    earth_to_body, throttle_share,
 };
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::params::Params;
-use crate::telemetry::{NavEvent, NavOutput, NavState};
+use crate::telemetry::{NavOutput, NavState};
 
 /// The deflection of a stick at its end.
 const FULL_STICK: f64 = 500.0;
@@ -21,6 +21,8 @@ const FULL_STICK: f64 = 500.0;
 pub(super) struct Flown {
     pub output: NavOutput,
     pub path: PathView,
+    /// Maximum lean, rad, if it must be reported now that the thrust is too low for the lean. This is once per leg.
+    pub limited_lean_rad: Option<f64>,
 }
 
 /// No setpoint outside a landing goes below this altitude, m, unless the waypoint is well below home.
@@ -49,18 +51,54 @@ fn stick_share(stick: f64, params: &Params) -> f64 {
     beyond.min(1.0).copysign(stick)
 }
 
-impl Navigator {
+/// The controls of an engagement: what the craft keeps, and the heading.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Steering {
+    /// Target of the last update, north and east, m.
+    pub target_ne: Vector2<f64>,
+    pub target_alt_m: f64,
+    /// `true` if the craft was taken over since the last update and the controllers are not engaged yet.
+    takes_over: bool,
+    yaw: YawController,
+}
+
+impl Steering {
+    /// Takes over the craft where it is. If nothing was flown before, the next update engages the controllers.
+    pub(super) fn take_over(&mut self, now: &NavInputs, was_idle: bool) {
+        if was_idle {
+            self.takes_over = true;
+            self.yaw.reset();
+        }
+        self.target_ne = now.pos_ne;
+        self.target_alt_m = now.alt_m;
+    }
+
+    /// Leaves the craft to something else.
+    pub(super) fn release(&mut self) {
+        self.takes_over = false;
+        self.yaw.reset();
+    }
+
+    /// Engages the controllers once after taking over the craft.
+    pub(super) fn engage(&mut self, now: &NavInputs, params: &Params, controllers: &mut FlightControllers) {
+        if std::mem::take(&mut self.takes_over) {
+            controllers.engage(now, params);
+        }
+    }
+
     /// Returns the demands of this update.
     pub(super) fn fly(
         &mut self,
-        now: &NavInputs,
-        params: &Params,
+        state: NavState,
+        task: &mut Task,
         seen: &Observed,
         controllers: &mut FlightControllers,
     ) -> Flown {
-        let params = &self.with_rescue_climb(params);
-        let (target, path) = self.horizontal_target(now, params, seen, &mut controllers.land);
-        let altitude = self.altitude_target(now, params, controllers);
+        let (now, params) = (seen.now, &task.with_rescue_climb(seen.params));
+        let seen = &Observed { params, ..*seen };
+        let (target, path) = task.horizontal_target(state, self.target_ne, seen, &mut controllers.land);
+        self.target_ne = target.target;
+        let altitude = self.altitude_target(state, task, seen, controllers);
         let FlightControllers { altitude: altitude_controller, land, .. } = controllers;
         altitude_controller.set_relief_us(land.relief_us());
         let throttle_us =
@@ -71,7 +109,9 @@ impl Navigator {
             AltitudeTarget::Rate(_) => altitude_controller.setpoint_m(),
         };
         controllers.limit_lean(now, params);
-        self.tell_limited_lean(controllers, params);
+        let is_limited =
+            controllers.thrust_limits_lean() && !std::mem::replace(&mut task.leg.reported_limited, true);
+        let limited_lean_rad = is_limited.then(|| controllers.position.max_lean_rad(params));
         let position_controller = &mut controllers.position;
         let horizontal = PositionMeasurement::from(now);
         let lean = if seen.stick_override {
@@ -86,39 +126,25 @@ impl Navigator {
         let output = NavOutput {
             roll_rad: lean.y,
             pitch_rad: lean.x,
-            yaw_rate_rps: self.yaw_rate(now, params, seen),
+            yaw_rate_rps: self.yaw_rate(task, seen),
             throttle: throttle_share(throttle_us, params),
             throttle_us,
         };
-        Flown { output, path }
-    }
-
-    /// Reports once per leg that the thrust is too low for the lean.
-    fn tell_limited_lean(&mut self, controllers: &FlightControllers, params: &Params) {
-        if controllers.thrust_limits_lean() && !std::mem::replace(&mut self.leg.reported_limited, true) {
-            self.push(NavEvent::Limited { lean_rad: controllers.position.max_lean_rad(params) });
-        }
-    }
-
-    fn with_rescue_climb(&self, params: &Params) -> Params {
-        match self.rescue {
-            // Saturates at the range of the setting.
-            Some(rescue) => {
-                Params { alt_hold_climb_rate: (rescue.climb_mps * 10.0).clamp(1.0, 200.0) as u8, ..*params }
-            }
-            None => *params,
-        }
+        Flown { output, path, limited_lean_rad }
     }
 
     fn altitude_target(
-        &mut self,
-        now: &NavInputs,
-        params: &Params,
+        &self,
+        state: NavState,
+        task: &mut Task,
+        seen: &Observed,
         controllers: &mut FlightControllers,
     ) -> AltitudeTarget {
+        let (now, params) = (seen.now, seen.params);
         let FlightControllers { altitude, land, .. } = controllers;
-        match self.state {
-            NavState::Landing => self
+        match state {
+            NavState::Landing => task
+                .leg
                 .descent
                 .target(now, params, (altitude.setpoint_m(), altitude.throttle_us()), land)
                 .unwrap_or(AltitudeTarget::Altitude(self.target_alt_m)),
@@ -128,15 +154,15 @@ impl Navigator {
                 params,
                 altitude.setpoint_m(),
             )),
-            NavState::Approaching if self.climb.is_on() => {
-                AltitudeTarget::Altitude(self.leg.altitude_m.max(self.climb_goal_m(params) + 1.0))
+            NavState::Approaching if task.climb.is_on() => {
+                AltitudeTarget::Altitude(task.leg.altitude_m.max(task.climb_goal_m(params) + 1.0))
             }
             NavState::Approaching
             | NavState::Arrived
             | NavState::Holding
             | NavState::Orbiting
             | NavState::Figure8 => AltitudeTarget::Altitude(above_ground_m(
-                self.leg.altitude_m,
+                task.leg.altitude_m,
                 now,
                 params,
                 altitude.setpoint_m(),
@@ -144,12 +170,13 @@ impl Navigator {
         }
     }
 
-    fn yaw_rate(&mut self, now: &NavInputs, params: &Params, seen: &Observed) -> Option<f64> {
+    fn yaw_rate(&mut self, task: &Task, seen: &Observed) -> Option<f64> {
+        let (now, params) = (seen.now, seen.params);
         if now.stick_yaw.abs() > f64::from(params.stick_deadband) {
             self.yaw.reset();
             return None;
         }
-        let stops = self.cursor.kind().stops();
+        let stops = task.cursor.kind().stops();
         let facts = YawFacts {
             heading_rad: now.heading_rad,
             yaw_rate_rps: now.yaw_rate_rps,
@@ -159,13 +186,14 @@ impl Navigator {
             distance_m: seen.distance_m,
             acceptance_radius_m: if stops { params.hold_radius_m() } else { params.arrival_radius_m() },
         };
-        Some(self.yaw.update(&facts, self.yaw_cap_dps, params, now.dt))
+        Some(self.yaw.update(&facts, task.yaw_cap_dps, params, now.dt))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::autopilot::Navigator;
     use crate::plan::{Altitude, FlightPlan, Waypoint, WaypointType};
     use crate::signals::SimTime;
 

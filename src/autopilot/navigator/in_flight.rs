@@ -1,7 +1,6 @@
 //! Commands while the stored plan is flown: go to a waypoint, hold here, continue.
 
 use super::Navigator;
-use super::entry::here;
 use super::leg::Leg;
 use crate::autopilot::engage::{self, EngageFacts};
 use crate::autopilot::io::NavInputs;
@@ -28,8 +27,8 @@ impl Navigator {
         if inputs.failsafe {
             return Err(InFlightRefusal::Failsafe);
         }
-        if self.cursor.source() != PlanSource::Stored {
-            return Err(InFlightRefusal::Injected(self.cursor.source()));
+        if self.task.cursor.source() != PlanSource::Stored {
+            return Err(InFlightRefusal::Injected(self.task.cursor.source()));
         }
         match command {
             InFlightCommand::GoTo(index) => self.go_to(index, inputs, params, stored),
@@ -54,27 +53,16 @@ impl Navigator {
         else {
             return Err(InFlightRefusal::NoWaypoint { wp: index, count });
         };
-        if *self.cursor.plan() != *stored {
+        if *self.task.cursor.plan() != *stored {
             let (plan, fence) = EngageFacts::plan_facts(stored, inputs.home, params);
-            engage::check(&EngageFacts {
-                armed: true,
-                throttle_raised: true,
-                fix: true,
-                altitude_valid: true,
-                heading_valid: true,
-                plan,
-                fence,
-                floor: Ok(()),
-                failsafe: false,
-                aborted: None,
-            })
-            .map_err(InFlightRefusal::Plan)?;
-            self.cursor.load(stored);
+            engage::check(&EngageFacts { plan, fence, ..EngageFacts::READY })
+                .map_err(InFlightRefusal::Plan)?;
+            self.task.cursor.load(stored);
             self.announce_plan();
         }
         // The mission can then be resumed when the switch is cycled, even after it was complete.
-        self.cursor.begin_mission(stored);
-        self.yaw_cap_dps = None;
+        self.task.cursor.begin_mission(stored);
+        self.task.yaw_cap_dps = None;
         self.begin_first_leg(positional, true, TransitionReason::SetCurrent, inputs, params);
         Ok(())
     }
@@ -83,19 +71,17 @@ impl Navigator {
         if self.state == NavState::Complete {
             return Err(InFlightRefusal::Parked);
         }
-        let here = here(inputs);
-        self.clear_clocks();
-        self.leg = Leg { waypoint: here, altitude_m: inputs.alt_m, start: here, ..Leg::default() };
-        self.hold.begin_by_command(inputs.time);
-        self.enter(NavState::Holding, TransitionReason::HoldHere, None);
+        self.task.leg = Leg::here(inputs);
+        self.task.leg.hold.begin_by_command(inputs.time);
+        self.enter(NavState::Holding, TransitionReason::HoldHere);
         Ok(())
     }
 
     fn resume_held(&mut self, inputs: &NavInputs, params: &Params) -> Result<(), InFlightRefusal> {
-        if !self.hold.is_by_command() {
+        if !self.task.leg.hold.is_by_command() {
             return Err(InFlightRefusal::NotHeld);
         }
-        let index = self.cursor.index();
+        let index = self.task.cursor.index();
         self.begin_first_leg(index, true, TransitionReason::Resume, inputs, params);
         Ok(())
     }

@@ -1,19 +1,20 @@
-//! Advances in the plan: the next positional waypoint, the modifiers before it, the start of its leg.
+//! The current waypoint, with the way it is flown and everything that belongs to this one leg.
 
 use nalgebra::Vector2;
 
-use super::Navigator;
 use super::altitude_wait::AltitudeWait;
 use super::descent::Descent;
-use super::entry::here;
 use super::hold::Hold;
-use crate::autopilot::guidance::{CornerArc, PlaneCrossing, plane_crossing};
+use super::observed::Observed;
+use super::progress::ProgressMonitor;
+use crate::autopilot::guidance::{
+    CornerArc, L1Limits, L1Result, PlaneCrossing, l1, leg_speed_mps, plane_crossing,
+};
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::params::Params;
 use crate::geo::{LatLon, local_offset};
-use crate::plan::{Modifier, Waypoint};
+use crate::plan::{LegSpeed, Waypoint};
 use crate::signals::SimTime;
-use crate::telemetry::{Guard, NavState, TransitionReason};
 
 /// The distance below which two waypoints count as one, m.
 pub(super) const CO_LOCATED_M: f64 = 0.1;
@@ -23,7 +24,7 @@ const SLOWEST_MPS: f64 = 0.1;
 const MOVING_MPS: f64 = 0.5;
 
 /// The current waypoint, resolved to the position and the way it is flown.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Leg {
     /// Position of the waypoint. For a TAKEOFF, the place where it began.
     pub waypoint: LatLon,
@@ -36,74 +37,38 @@ pub(super) struct Leg {
     /// Speed cap of a DELAY (m/s) and the time it ends.
     pub delay: Option<(f64, SimTime)>,
     /// The arc at the start of the leg.
-    pub arc: Option<CornerArc>,
+    arc: Option<CornerArc>,
     /// `true` once it was reported that the thrust limits the lean.
     pub reported_limited: bool,
+    pub progress: ProgressMonitor,
+    pub altitude_wait: AltitudeWait,
+    pub hold: Hold,
+    pub descent: Descent,
 }
 
-impl Navigator {
-    pub(super) fn begin_first_leg(
-        &mut self,
-        index: u8,
-        resumed: bool,
-        reason: TransitionReason,
-        inputs: &NavInputs,
-        params: &Params,
-    ) {
-        self.begin_first_leg_with_guard(index, resumed, reason, None, inputs, params);
+impl Leg {
+    /// Returns a leg whose waypoint is the place of the craft.
+    pub(super) fn here(now: &NavInputs) -> Self {
+        let here = now.here();
+        Self { waypoint: here, altitude_m: now.alt_m, start: here, ..Self::default() }
     }
 
-    /// Begins the first leg of an engagement, from the craft. A resumed leg keeps its altitude change and the yaw cap
-    /// of the plan before it. A delay is not repeated.
-    pub(super) fn begin_first_leg_with_guard(
-        &mut self,
-        index: u8,
-        resumed: bool,
-        reason: TransitionReason,
-        guard: Option<Guard>,
-        inputs: &NavInputs,
-        params: &Params,
-    ) {
-        let before = self.cursor.plan().waypoints.iter().take(usize::from(index));
-        let run = before.rev().take_while(|waypoint| !waypoint.kind.is_positional()).count();
-        // Both are below 30.
-        let modifiers_from = index - run as u8;
-        self.begin_leg(index, modifiers_from, here(inputs), reason, guard, inputs, params);
-        if resumed {
-            self.leg.delay = None;
-            if let Some(cap) = self.cursor.yaw_rate_before(index) {
-                self.yaw_cap_dps = yaw_cap(cap);
-            }
+    /// Returns the leg from `start` to a waypoint. A craft that is already behind the plane can reach the waypoint only
+    /// by coming back.
+    pub(super) fn to(waypoint: &Waypoint, start: LatLon, now: &NavInputs, params: &Params) -> Self {
+        let position = if waypoint.kind.uses_position() { waypoint.position } else { now.here() };
+        let (from, to) = (local_offset(now.origin, start), local_offset(now.origin, position));
+        Self {
+            waypoint: position,
+            altitude_m: waypoint.altitude.above_home_m(),
+            start,
+            missed: plane_crossing(from, to, now.pos_ne, now.pos_ne) == PlaneCrossing::Behind,
+            arc: corner_arc(to - now.pos_ne, now.vel_ne, params),
+            ..Self::default()
         }
     }
 
-    /// Starts the leg from `start` to waypoint `index` and applies the modifiers from `modifiers_from` on.
-    #[expect(clippy::too_many_arguments, reason = "the leg, its cause and the two contexts of an update")]
-    pub(super) fn begin_leg(
-        &mut self,
-        index: u8,
-        modifiers_from: u8,
-        start: LatLon,
-        reason: TransitionReason,
-        guard: Option<Guard>,
-        inputs: &NavInputs,
-        params: &Params,
-    ) {
-        let Some(waypoint) = self.cursor.waypoint(index) else { return };
-        self.cursor.move_to(index);
-        let position = if waypoint.kind.uses_position() { waypoint.position } else { here(inputs) };
-        self.leg =
-            Leg { waypoint: position, altitude_m: waypoint.altitude.above_home_m(), start, ..Leg::default() };
-        self.clear_clocks();
-        self.apply_modifiers(modifiers_from, index, inputs);
-        let (from, to) = (local_offset(inputs.origin, start), local_offset(inputs.origin, position));
-        // A craft that is already behind the plane can reach the waypoint only by coming back.
-        self.leg.missed = plane_crossing(from, to, inputs.pos_ne, inputs.pos_ne) == PlaneCrossing::Behind;
-        self.leg.arc = corner_arc(to - inputs.pos_ne, inputs.vel_ne, params);
-        self.enter(NavState::Approaching, reason, guard);
-    }
-
-    /// Forgets the hold, the landing, the progress and the wait of the previous leg.
+    /// Forgets the hold, the landing, the progress and the wait.
     pub(super) fn clear_clocks(&mut self) {
         self.hold = Hold::default();
         self.descent = Descent::default();
@@ -111,32 +76,56 @@ impl Navigator {
         self.altitude_wait = AltitudeWait::default();
     }
 
-    fn apply_modifiers(&mut self, from: u8, to: u8, inputs: &NavInputs) {
-        for at in from..to {
-            let Some(modifier) = self.cursor.waypoint(at) else { return };
-            match modifier.kind.modifier() {
-                Some(Modifier::Altitude) => self.leg.altitude_m = modifier.altitude.above_home_m(),
-                Some(Modifier::YawRate) => self.yaw_cap_dps = yaw_cap(&modifier),
-                Some(Modifier::Delay) => self.leg.delay = self.delay(&modifier, inputs),
-                None => {}
-            }
+    /// Starts the time of a DELAY.
+    pub(super) fn set_delay(&mut self, modifier: &Waypoint, now: &NavInputs) {
+        self.delay = (!modifier.duration.is_zero()).then(|| {
+            let horizontal = (local_offset(now.origin, self.waypoint) - now.pos_ne).norm();
+            let length = horizontal.hypot(self.altitude_m - now.alt_m);
+            let speed = length / modifier.duration.get();
+            let until = SimTime(now.time.0.saturating_add(modifier.duration.micros()));
+            (speed.max(SLOWEST_MPS), until)
+        });
+    }
+
+    /// Returns the maximum speed, m/s. `own` is the speed of the waypoint.
+    pub(super) fn speed_mps(&self, own: LegSpeed, now: &NavInputs, params: &Params) -> f64 {
+        let own = leg_speed_mps(own, params);
+        match self.delay {
+            Some((cap, until)) if now.time < until => own.min(cap),
+            Some(_) | None => own,
         }
     }
 
-    fn delay(&self, modifier: &Waypoint, inputs: &NavInputs) -> Option<(f64, SimTime)> {
-        if modifier.duration.is_zero() {
-            return None;
-        }
-        let horizontal = (local_offset(inputs.origin, self.leg.waypoint) - inputs.pos_ne).norm();
-        let length = horizontal.hypot(self.leg.altitude_m - inputs.alt_m);
-        let speed = length / modifier.duration.get();
-        let until = SimTime(inputs.time.0.saturating_add(modifier.duration.micros()));
-        Some((speed.max(SLOWEST_MPS), until))
+    /// Returns the turn rate of the arc, rad/s, while one is flown.
+    pub(super) fn arc_rps(&self) -> Option<f64> {
+        self.arc.as_ref().map(CornerArc::turn_rate_rps)
     }
-}
 
-fn yaw_cap(modifier: &Waypoint) -> Option<f64> {
-    (modifier.yaw_rate_dps > 0).then(|| f64::from(modifier.yaw_rate_dps))
+    /// Ends the arc, since no line is followed.
+    pub(super) fn end_arc(&mut self) {
+        self.arc = None;
+    }
+
+    /// Returns the aim on the line to `target`, or on the arc while one is flown, and the line behind it.
+    pub(super) fn aim(&mut self, target: Vector2<f64>, seen: &Observed) -> (Vector2<f64>, L1Result) {
+        let now = seen.now;
+        let result = l1(seen.start_ne, target, now.pos_ne, now.vel_ne, &L1Limits::from_params(seen.params));
+        if result.reanchor {
+            self.start = now.here();
+        }
+        (self.arc_aim(&result, now), result)
+    }
+
+    fn arc_aim(&mut self, result: &L1Result, now: &NavInputs) -> Vector2<f64> {
+        let Some(arc) = &mut self.arc else { return result.aim };
+        let to_aim = result.aim - now.pos_ne;
+        if !arc.advance(now.dt, to_aim.y.atan2(to_aim.x)) {
+            self.arc = None;
+            return result.aim;
+        }
+        let (sin, cos) = arc.bearing_rad.sin_cos();
+        now.pos_ne + Vector2::new(cos, sin) * result.lookahead_m
+    }
 }
 
 fn corner_arc(to_target: Vector2<f64>, velocity: Vector2<f64>, params: &Params) -> Option<CornerArc> {

@@ -2,15 +2,17 @@
 
 use nalgebra::Vector2;
 
-use super::Navigator;
 use super::leg::CO_LOCATED_M;
+use super::task::Task;
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::params::Params;
 use crate::geo::local_offset;
 
-/// The position of the craft relative to its leg and to home; north, east, m.
+/// The inputs of an update, and the position of the craft relative to its leg and to home; north, east, m.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Observed {
+pub(super) struct Observed<'a> {
+    pub now: &'a NavInputs,
+    pub params: &'a Params,
     /// Waypoint of the leg.
     pub waypoint_ne: Vector2<f64>,
     /// Start of the leg.
@@ -31,23 +33,26 @@ pub(super) struct Observed {
     pub stick_override: bool,
 }
 
-impl Navigator {
-    pub(super) fn observe(&self, now: &NavInputs, params: &Params) -> Observed {
-        let waypoint_ne = local_offset(now.origin, self.leg.waypoint);
+impl<'a> Observed<'a> {
+    pub(super) fn new(now: &'a NavInputs, params: &'a Params, task: &Task) -> Self {
+        let Task { cursor, leg, .. } = task;
+        let waypoint_ne = local_offset(now.origin, leg.waypoint);
         let to_waypoint = waypoint_ne - now.pos_ne;
-        let following = self.cursor.following();
+        let following = cursor.following();
         let deadband = f64::from(params.stick_deadband);
-        Observed {
+        Self {
+            now,
+            params,
             waypoint_ne,
-            start_ne: local_offset(now.origin, self.leg.start),
+            start_ne: local_offset(now.origin, leg.start),
             to_waypoint,
             distance_m: to_waypoint.norm(),
             ground_speed_mps: now.vel_ne.norm(),
             home_distance_m: now.home.map(|home| (local_offset(now.origin, home) - now.pos_ne).norm()),
             is_last: following.is_none(),
-            is_co_located: following.and_then(|index| self.cursor.waypoint(index)).is_some_and(|next| {
-                let position = if next.kind.uses_position() { next.position } else { self.leg.waypoint };
-                local_offset(self.leg.waypoint, position).norm() < CO_LOCATED_M
+            is_co_located: following.and_then(|index| cursor.waypoint(index)).is_some_and(|next| {
+                let position = if next.kind.uses_position() { next.position } else { leg.waypoint };
+                local_offset(leg.waypoint, position).norm() < CO_LOCATED_M
             }),
             stick_override: now.stick_roll.abs() > deadband || now.stick_pitch.abs() > deadband,
         }

@@ -1,10 +1,11 @@
 //! The station monitor: detects a craft that is away from the place it should keep and does not come closer.
 
-use super::Navigator;
+use nalgebra::Vector2;
+
+use super::hold::Pattern;
+use super::leg::Leg;
 use super::observed::Observed;
 use crate::autopilot::control::FlightControllers;
-use crate::autopilot::io::NavInputs;
-use crate::autopilot::params::Params;
 use crate::telemetry::{CannotHold, HoldLimit, NavEvent, NavState};
 
 /// The number of hold radii that a craft may be away beyond its pattern.
@@ -20,7 +21,7 @@ const THROTTLE_BINDS_US: f64 = 1.0;
 
 /// The values of the station in one update.
 #[derive(Debug, Clone, Copy)]
-struct Station {
+pub(super) struct Station {
     /// Horizontal distance from the target, m.
     distance_m: f64,
     /// Permitted distance from the target, m.
@@ -36,6 +37,42 @@ struct Station {
 }
 
 impl Station {
+    /// Returns the station that is kept in a state, if one is. `seen` is the basis of the demands of this update.
+    pub(super) fn of(
+        state: NavState,
+        target_ne: Vector2<f64>,
+        leg: &Leg,
+        seen: &Observed,
+        controllers: &FlightControllers,
+    ) -> Option<Self> {
+        let (now, params) = (seen.now, seen.params);
+        let pattern_m = match state {
+            NavState::Holding
+            | NavState::Landing
+            | NavState::Complete
+            | NavState::Orbiting
+            | NavState::Figure8 => Pattern::of(state).map_or(0.0, |pattern| pattern.radius_m(params)),
+            NavState::Idle | NavState::Approaching | NavState::Arrived => return None,
+        };
+        if seen.stick_override || controllers.land.stands() {
+            return None;
+        }
+        let mut setpoint_m = controllers.altitude.setpoint_m();
+        if state == NavState::Landing {
+            // The path of a landing continues below the ground.
+            setpoint_m = setpoint_m.max(leg.altitude_m.min(0.0));
+        }
+        Some(Self {
+            distance_m: (target_ne - now.pos_ne).norm(),
+            radius_m: pattern_m + HOLD_RADII * params.hold_radius_m(),
+            vertical_m: now.alt_m - setpoint_m,
+            lean_binds: controllers.position.is_saturated(),
+            throttle_binds: controllers.altitude.throttle_us()
+                >= f64::from(params.throttle_max) - THROTTLE_BINDS_US,
+            battery_low: now.battery_low,
+        })
+    }
+
     fn is_off(&self) -> bool {
         self.distance_m > self.radius_m || self.vertical_m.abs() > VERTICAL_M
     }
@@ -97,8 +134,13 @@ impl StationMonitor {
         self.reported
     }
 
-    /// Takes an update. Returns the event to report now.
-    fn update(&mut self, station: &Station, dt: f64) -> Option<NavEvent> {
+    /// Takes an update, with the station unless none is kept or something else flies. Returns the event to report
+    /// now.
+    pub(super) fn update(&mut self, station: Option<&Station>, dt: f64) -> Option<NavEvent> {
+        let Some(station) = station else {
+            let reported = std::mem::take(self).reported;
+            return reported.map(|deviation| NavEvent::CannotHold { on: false, deviation });
+        };
         let deviation =
             |limit| CannotHold { distance_m: station.distance_m, vertical_m: station.vertical_m, limit };
         if !station.is_off() {
@@ -126,53 +168,5 @@ impl StationMonitor {
         let deviation = deviation(period.limit(station));
         self.reported = Some(deviation);
         Some(NavEvent::CannotHold { on: true, deviation })
-    }
-
-    /// Ends the monitoring, since no place is kept any more or something else flies.
-    fn leave(&mut self) -> Option<NavEvent> {
-        let reported = std::mem::take(self).reported;
-        reported.map(|deviation| NavEvent::CannotHold { on: false, deviation })
-    }
-}
-
-impl Navigator {
-    /// Reports a craft that cannot keep its place. `seen` is the basis of the demands of this update.
-    pub(super) fn watch_station(
-        &mut self,
-        now: &NavInputs,
-        params: &Params,
-        seen: &Observed,
-        controllers: &FlightControllers,
-    ) {
-        let pattern_m = match self.state {
-            NavState::Holding | NavState::Landing | NavState::Complete => Some(0.0),
-            NavState::Orbiting | NavState::Figure8 => Some(self.pattern_radius_m(params)),
-            NavState::Idle | NavState::Approaching | NavState::Arrived => None,
-        };
-        let kept =
-            pattern_m.filter(|_| self.is_flying() && !seen.stick_override && !controllers.land.stands());
-        let event = match kept {
-            None => self.station.leave(),
-            Some(pattern_m) => {
-                let mut setpoint_m = controllers.altitude.setpoint_m();
-                if self.state == NavState::Landing {
-                    // The path of a landing continues below the ground.
-                    setpoint_m = setpoint_m.max(self.leg.altitude_m.min(0.0));
-                }
-                let station = Station {
-                    distance_m: (self.target_ne - now.pos_ne).norm(),
-                    radius_m: pattern_m + HOLD_RADII * params.hold_radius_m(),
-                    vertical_m: now.alt_m - setpoint_m,
-                    lean_binds: controllers.position.is_saturated(),
-                    throttle_binds: controllers.altitude.throttle_us()
-                        >= f64::from(params.throttle_max) - THROTTLE_BINDS_US,
-                    battery_low: now.battery_low,
-                };
-                self.station.update(&station, now.dt)
-            }
-        };
-        if let Some(event) = event {
-            self.push(event);
-        }
     }
 }

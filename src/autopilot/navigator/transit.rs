@@ -1,15 +1,25 @@
 //! Carries out the decisions of the machine.
 
 use super::Navigator;
-use super::entry::here;
 use super::observed::Observed;
 use crate::autopilot::fence::{self, FenceFacts};
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::machine::{Facts, Outcome, Transition, transition};
 use crate::autopilot::params::Params;
-use crate::geo::LatLon;
-use crate::plan::WaypointType;
 use crate::telemetry::{AbortReason, FenceAction, Guard, NavEvent, NavState, TransitionReason};
+
+/// The reason of a transition, with the guard that fired, if there is one.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Cause {
+    reason: TransitionReason,
+    guard: Option<Guard>,
+}
+
+impl From<TransitionReason> for Cause {
+    fn from(reason: TransitionReason) -> Self {
+        Self { reason, guard: None }
+    }
+}
 
 impl Navigator {
     /// Makes at most one transition. Returns `true` if there was one.
@@ -17,42 +27,43 @@ impl Navigator {
         let Some(Transition { outcome, reason, guard }) = transition(self.state, facts) else {
             return false;
         };
+        let cause = Cause { reason, guard };
         match outcome {
-            Outcome::Abort(why) => self.abort(why, reason, guard),
-            Outcome::Fence(action) => self.fence(action, reason, guard, &facts.fence, now, params),
-            Outcome::LandHere => self.land_here(reason, guard, now),
+            Outcome::Abort(why) => self.abort(why, cause),
+            Outcome::Fence(action) => self.fence(action, cause, &facts.fence, now, params),
+            Outcome::LandHere => self.land_here(cause, now),
             Outcome::Climbed => {
                 self.finish_climb();
-                self.leg.start = here(now);
+                self.task.leg.start = now.here();
             }
             Outcome::Missed => {
-                self.leg.missed = true;
+                self.task.leg.missed = true;
                 // The craft turns back, which is another leg to the monitors.
-                self.progress.pause();
+                self.task.leg.progress.pause();
             }
-            Outcome::Arrive => self.enter(NavState::Arrived, reason, guard),
+            Outcome::Arrive => self.enter(NavState::Arrived, cause),
             Outcome::Hold => {
-                self.hold.begin(now.time);
-                self.enter(NavState::Holding, reason, guard);
+                self.task.leg.hold.begin(now.time);
+                self.enter(NavState::Holding, cause);
             }
             Outcome::Orbit => {
-                self.hold.begin_pattern();
-                self.enter(NavState::Orbiting, reason, guard);
+                self.task.leg.hold.begin_pattern();
+                self.enter(NavState::Orbiting, cause);
             }
             Outcome::Figure8 => {
-                self.hold.begin_pattern();
-                self.enter(NavState::Figure8, reason, guard);
+                self.task.leg.hold.begin_pattern();
+                self.enter(NavState::Figure8, cause);
             }
             Outcome::Land => {
-                self.clear_clocks();
-                self.enter(NavState::Landing, reason, guard);
+                self.task.leg.clear_clocks();
+                self.enter(NavState::Landing, cause);
             }
-            Outcome::Next => self.advance(reason, guard, now, params),
-            Outcome::Complete => self.complete(reason, guard),
+            Outcome::Next => self.advance(cause, now, params),
+            Outcome::Complete => self.complete(cause),
             Outcome::Touchdown => {
-                self.cursor.forget_mission();
+                self.task.cursor.forget_mission();
                 self.engagement.land();
-                self.enter(NavState::Complete, reason, guard);
+                self.enter(NavState::Complete, cause);
                 self.push(NavEvent::Disarm);
             }
         }
@@ -61,41 +72,37 @@ impl Navigator {
 
     /// Goes on to the next positional waypoint. The leg begins at the previous waypoint, or at the craft if it stayed
     /// there or came back to it.
-    fn advance(&mut self, reason: TransitionReason, guard: Option<Guard>, now: &NavInputs, params: &Params) {
-        let Some(next) = self.cursor.following() else {
-            self.complete(reason, guard);
+    fn advance(&mut self, cause: Cause, now: &NavInputs, params: &Params) {
+        let Some(next) = self.task.cursor.following() else {
+            self.complete(cause);
             return;
         };
-        let kind = self.cursor.kind();
-        let start = self.leg_end(kind, now);
-        let modifiers_from = self.cursor.index().saturating_add(1);
-        self.begin_leg(next, modifiers_from, start, reason, guard, now, params);
+        let task = &mut self.task;
+        let start =
+            if task.cursor.kind().passes() && !task.leg.missed { task.leg.waypoint } else { now.here() };
+        task.begin_leg(next, task.cursor.index().saturating_add(1), start, now, params);
+        self.enter(NavState::Approaching, cause);
     }
 
-    fn leg_end(&self, kind: WaypointType, now: &NavInputs) -> LatLon {
-        if kind.passes() && !self.leg.missed { self.leg.waypoint } else { here(now) }
+    pub(super) fn complete(&mut self, cause: impl Into<Cause>) {
+        self.task.cursor.finish();
+        self.task.leg.progress.pause();
+        self.enter(NavState::Complete, cause);
     }
 
-    pub(super) fn complete(&mut self, reason: TransitionReason, guard: Option<Guard>) {
-        self.cursor.finish();
-        self.progress.pause();
-        self.enter(NavState::Complete, reason, guard);
-    }
-
-    fn abort(&mut self, why: AbortReason, reason: TransitionReason, guard: Option<Guard>) {
+    fn abort(&mut self, why: AbortReason, cause: Cause) {
         let lands = why == AbortReason::GpsLost && self.state == NavState::Landing;
-        self.engagement.give_up(why, lands.then_some(self.leg.waypoint));
+        self.engagement.give_up(why, lands.then_some(self.task.leg.waypoint));
         if why == AbortReason::NoPlan {
-            self.cursor.forget_mission();
+            self.task.cursor.forget_mission();
         }
-        self.go_idle(reason, guard);
+        self.go_idle(cause);
     }
 
     fn fence(
         &mut self,
         action: FenceAction,
-        reason: TransitionReason,
-        guard: Option<Guard>,
+        cause: Cause,
         fence: &FenceFacts,
         now: &NavInputs,
         params: &Params,
@@ -106,72 +113,73 @@ impl Navigator {
             action,
         });
         match action {
-            FenceAction::Land => self.land_here(reason, guard, now),
-            FenceAction::Rth => self.fly_home(reason, guard, None, now, params),
+            FenceAction::Land => self.land_here(cause, now),
+            FenceAction::Rth => self.fly_home(cause, None, now, params),
         }
     }
 
     /// Checks the fence after an abort. The wind carries the craft off after an abort, so the fence stays active
     /// until the switch is cycled.
-    pub(super) fn check_fence_after_abort(&mut self, now: &NavInputs, params: &Params, seen: &Observed) {
+    pub(super) fn check_fence_after_abort(&mut self, seen: &Observed) {
         if self.engagement.aborted().is_none()
-            || !now.armed
-            || !now.fix
-            || !now.altitude_valid
-            || now.failsafe
+            || !seen.now.armed
+            || !seen.now.fix
+            || !seen.now.altitude_valid
+            || seen.now.failsafe
         {
             return;
         }
         // The same facts as on the leg that was given up.
-        let fence = FenceFacts { state: NavState::Approaching, ..self.fence_facts(params, seen) };
+        let fence = self.task.fence_facts(NavState::Approaching, seen);
         let outside = fence::guard(&fence).filter(Guard::holds);
         if outside.is_some() {
-            self.fence(fence.action, TransitionReason::Fence, outside, &fence, now, params);
+            let cause = Cause { reason: TransitionReason::Fence, guard: outside };
+            self.fence(fence.action, cause, &fence, seen.now, seen.params);
         }
     }
 
-    pub(super) fn go_idle(&mut self, reason: TransitionReason, guard: Option<Guard>) {
-        self.enter(NavState::Idle, reason, guard);
-        self.takes_over = false;
+    pub(super) fn go_idle(&mut self, cause: impl Into<Cause>) {
+        self.enter(NavState::Idle, cause);
+        self.steering.release();
         if self.engagement.landing_at().is_none() {
-            self.cursor.unload();
+            self.task.cursor.unload();
         }
-        self.yaw_cap_dps = None;
-        self.rescue = None;
-        self.clear_clocks();
-        self.yaw.reset();
+        self.task.yaw_cap_dps = None;
+        self.task.rescue = None;
+        self.task.leg.clear_clocks();
     }
 
     /// Ends the climb before the first leg, once per engagement.
     pub(super) fn finish_climb(&mut self) {
-        if self.climb.finish() {
+        if self.task.climb.finish() {
             self.push(NavEvent::Climbing(false));
         }
     }
 
     /// Changes the state. No other function does.
-    pub(super) fn enter(&mut self, to: NavState, reason: TransitionReason, guard: Option<Guard>) {
+    pub(super) fn enter(&mut self, to: NavState, cause: impl Into<Cause>) {
+        let Cause { reason, guard } = cause.into();
         let from = self.state;
         self.state = to;
         self.reason = Some(reason);
         if to != NavState::Approaching {
-            if self.climb.break_off() {
+            if self.task.climb.break_off() {
                 self.push(NavEvent::Climbing(false));
             }
-            self.progress.pause();
+            self.task.leg.progress.pause();
         }
-        let kind = self.cursor.current().map(|waypoint| waypoint.kind);
+        let kind = self.task.cursor.current().map(|waypoint| waypoint.kind);
         // A command between two updates is visible at once.
         self.report_status();
         self.push(NavEvent::State {
             from,
             to,
-            wp: self.cursor.index(),
+            wp: self.task.cursor.index(),
             kind,
             reason,
             guard,
-            target: self.leg.waypoint,
-            target_alt_m: self.leg.altitude_m,
+            target: self.task.leg.waypoint,
+            target_alt_m: self.task.leg.altitude_m,
         });
     }
 
