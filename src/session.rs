@@ -5,6 +5,7 @@ pub mod command;
 mod event;
 mod forecaster;
 mod hazards;
+mod host_status;
 mod late_answers;
 mod links;
 mod pacer;

@@ -5,7 +5,6 @@
 mod arming_flag;
 mod battery_alarm;
 mod cannot_hold;
-mod endpoint;
 pub mod event;
 mod failsafe;
 mod fault;
@@ -30,10 +29,6 @@ mod turbulence;
 pub use arming_flag::{ArmingFlag, ArmingFlags};
 pub use battery_alarm::BatteryAlarm;
 pub use cannot_hold::{CannotHold, HoldLimit};
-pub use endpoint::{
-    BadPackets, ClientStats, EndpointKind, EndpointState, EndpointStatus, PacketStats, SimulatorStats,
-    Transport,
-};
 pub use event::{CrashCause, DivergeCause, Event, EventKind, VehicleNotice};
 pub use failsafe::{FailsafeAhead, FailsafeProcedure, RxLossPolicy};
 pub use fault::{FaultKind, FaultValue};
@@ -46,7 +41,7 @@ pub use link_state::LinkState;
 pub use lost_time::LostTime;
 pub use mode::{Mode, ModeFlags};
 pub use mode_box::ModeBox;
-pub use nav::{FenceAction, L1Mode, NavEvent, NavOutput, NavState, NavTelemetry, PlanSource};
+pub use nav::{FenceAction, L1Mode, NavEvent, NavState, NavTelemetry, PlanSource};
 pub use refusal::{AbortReason, Refusal};
 pub use snapshot::Snapshot;
 pub use transition::TransitionReason;

@@ -10,10 +10,10 @@ use tokio_util::sync::CancellationToken;
 use super::AppError;
 use super::live::LiveArgs;
 use crate::args::{DoorArgs, FlightArgs, PhysicsArgs};
+use crate::link::endpoint::EndpointKind;
 use crate::link::proto::fdm_link::FdmLinkConfig;
 use crate::link::{ExternalSimulator, ListenConfig, Listeners};
 use crate::session::{EndpointAddresses, Endpoints, Links, MotorTargets};
-use crate::telemetry::EndpointKind;
 
 /// The interval at which the state of the doors is published.
 const VIEW: Duration = Duration::from_millis(250);
@@ -124,7 +124,7 @@ fn simulator(
 /// Publishes the state of the doors when it changes, until the doors are closed.
 async fn keep(
     doors: Listeners,
-    views: watch::Sender<Vec<crate::telemetry::EndpointStatus>>,
+    views: watch::Sender<Vec<crate::link::endpoint::EndpointStatus>>,
     stop: CancellationToken,
 ) {
     loop {

@@ -1,4 +1,4 @@
-//! The inputs of the navigator: the interface between the firmware and the autopilot.
+//! The inputs and demands of the navigator: the interface between the firmware and the autopilot.
 //!
 //! Local frame: north, east (m) relative to `origin`, which is fixed while armed; altitude in metres above home (the
 //! arming point). Angles in radians, heading clockwise from north.
@@ -7,6 +7,21 @@ use nalgebra::Vector2;
 
 use crate::geo::{LatLon, offset_to_latlon};
 use crate::signals::SimTime;
+
+/// Demands for the attitude and throttle loops.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct NavOutput {
+    /// Roll demand, rad, right positive.
+    pub roll_rad: f64,
+    /// Pitch demand, rad, nose down positive (accelerates forward).
+    pub pitch_down_rad: f64,
+    /// Yaw rate demand, rad/s, clockwise positive; `None` = the pilot's stick.
+    pub yaw_rate_rps: Option<f64>,
+    /// Throttle into the mixer, 0…1.
+    pub throttle: f64,
+    /// The same throttle as RC µs.
+    pub throttle_us: f64,
+}
 
 /// The facts for one update.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,8 +62,8 @@ pub struct NavInputs {
     pub yaw_rate_rps: f64,
     /// Estimated roll, rad, right wing down positive.
     pub roll_rad: f64,
-    /// Estimated pitch, rad, nose **down** positive.
-    pub pitch_rad: f64,
+    /// Estimated pitch, rad, nose down positive.
+    pub pitch_down_rad: f64,
     /// Cosine of the tilt from level.
     pub cos_tilt: f64,
     /// Earth-frame acceleration without gravity, north and east, m/s².
@@ -87,7 +102,7 @@ impl NavInputs {
             heading_rad: 0.0,
             yaw_rate_rps: 0.0,
             roll_rad: 0.0,
-            pitch_rad: 0.0,
+            pitch_down_rad: 0.0,
             cos_tilt: 1.0,
             accel_ne: Vector2::zeros(),
             throttle_us: 1000.0,

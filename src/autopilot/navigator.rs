@@ -28,11 +28,11 @@ use arrayvec::ArrayVec;
 use nalgebra::Vector2;
 
 use super::control::FlightControllers;
-use super::io::NavInputs;
+use super::io::{NavInputs, NavOutput};
 use super::machine::Facts;
 use super::params::Params;
 use crate::plan::FlightPlan;
-use crate::telemetry::{NavEvent, NavOutput, NavState, NavTelemetry, PlanSource, TransitionReason};
+use crate::telemetry::{NavEvent, NavState, NavTelemetry, PlanSource, TransitionReason};
 use engagement::{ArmingEdge, Engagement};
 use fly::{Flown, Steering};
 use inputs::InputFilter;

@@ -18,9 +18,9 @@ use super::observer::Simulated;
 use super::remote::{Craft, Event, Input};
 use super::{Remote, RemoteNotice, RemoteState, rescue};
 use crate::geo::LocalFrame;
+use crate::link::endpoint::EndpointStatus;
 use crate::link::{ChildEvent, FcStream, SitlChild, SitlPeer, StreamEvent};
 use crate::storage::state_file;
-use crate::telemetry::EndpointStatus;
 use crate::vehicle::Vehicle;
 
 /// The wall time before the next question to a flight controller that is not ready.

@@ -66,9 +66,20 @@ pub struct CliReply {
     pub failed: bool,
     /// Notices for the pilot, in addition to the text.
     pub notices: Vec<FirmwareNotice>,
+    /// The position in the text at which the program around the firmware may report about itself.
+    pub host_lines_at: Option<usize>,
 }
 
 impl CliReply {
+    /// Adds a line about the program around the firmware, if the reply has a place for it.
+    pub fn add_host_line(&mut self, line: &str) {
+        if let Some(at) = &mut self.host_lines_at {
+            let line = format!("{line}\r\n");
+            self.text.insert_str(*at, &line);
+            *at += line.len();
+        }
+    }
+
     /// Turns a reply that announced a save into a refusal with this reason. Nothing restarts, so the configuration in
     /// memory stays.
     pub fn refuse_save(&mut self, why: &str) {

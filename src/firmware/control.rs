@@ -49,8 +49,8 @@ pub enum StickMode {
 pub struct LeanDemand {
     /// Roll, rad, right positive.
     pub roll_rad: f64,
-    /// Pitch, rad, nose **down** positive.
-    pub pitch_rad: f64,
+    /// Pitch, rad, nose down positive.
+    pub pitch_down_rad: f64,
 }
 
 /// The inputs of the controller in one step.

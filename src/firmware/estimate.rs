@@ -10,8 +10,8 @@
 //! magnetometer, GPS ─────► heading: by the magnetometer while it agrees with the course over ground, else by the course
 //! ```
 //!
-//! **Axes and signs of the whole firmware.** Roll is positive to the right, pitch is positive nose *down*, yaw is
-//! positive clockwise seen from above. Headings count clockwise from north. For roll and pitch these are the directions
+//! **Axes and signs of the whole firmware.** Roll is positive to the right, pitch is positive nose *down*, as
+//! the names of angles and rates say (`pitch_down`), and yaw is positive clockwise seen from above. Headings count clockwise from north. For roll and pitch these are the directions
 //! of the body axes forward-left-up; yaw is opposed. The mixer table uses the same signs, so the yaw sum enters it
 //! unchanged. Values that leave the firmware in Betaflight's own convention (yaw rate anticlockwise) are negated at the
 //! interface.
@@ -53,14 +53,14 @@ pub use vertical::AltitudeSource;
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Rates {
     pub roll: f64,
-    pub pitch: f64,
+    pub pitch_down: f64,
     pub yaw: f64,
 }
 
 impl Rates {
     /// Converts rates about the body axes forward, left, up.
     pub fn from_flu(rate: &Vector3<f64>) -> Self {
-        Self { roll: rate.x, pitch: rate.y, yaw: -rate.z }
+        Self { roll: rate.x, pitch_down: rate.y, yaw: -rate.z }
     }
 }
 
@@ -77,8 +77,8 @@ pub struct Estimate {
     pub heading_doubt_rad: Option<f64>,
     /// The roll angle, rad, right positive.
     pub roll_rad: f64,
-    /// The pitch angle, rad, nose **down** positive.
-    pub pitch_rad: f64,
+    /// The pitch angle, rad, nose down positive.
+    pub pitch_down_rad: f64,
     /// The heading, rad clockwise from true north, 0…2π.
     pub heading_rad: f64,
     /// The cosine of the tilt from level.
@@ -123,7 +123,7 @@ impl Default for Estimate {
             heading_valid: false,
             heading_doubt_rad: None,
             roll_rad: 0.0,
-            pitch_rad: 0.0,
+            pitch_down_rad: 0.0,
             heading_rad: 0.0,
             cos_tilt: 1.0,
             rates: Rates::default(),

@@ -1,9 +1,7 @@
 //! Requests that the owner of the firmware can make: command line, plans, return home, restart.
 
 use crate::signals::{RcFrame, RcSource};
-use crate::telemetry::{
-    BadPackets, DisarmReason, FirmwareEvent, InFlightCommand, InFlightRefusal, LostTime, NavEvent, Refusal,
-};
+use crate::telemetry::{DisarmReason, FirmwareEvent, InFlightCommand, InFlightRefusal, NavEvent, Refusal};
 
 use super::Firmware;
 use super::cli::{BuildInfo, CliAction, CliContext, CliFacts, CliReply, Interpreter, StorageFacts};
@@ -60,16 +58,6 @@ impl Firmware {
     /// Sets the facts about the stored configuration that commands print.
     pub fn set_storage_facts(&mut self, facts: StorageFacts) {
         self.setup.set_storage(facts);
-    }
-
-    /// Sets the counts of unusable packets from scripts and simulators that commands print.
-    pub fn set_bad_packets(&mut self, bad_packets: BadPackets) {
-        self.setup.set_bad_packets(bad_packets);
-    }
-
-    /// Sets the lost real time that commands print, which the flight could not keep up with.
-    pub fn set_lost_time(&mut self, lost_time: LostTime) {
-        self.setup.set_lost_time(lost_time);
     }
 
     /// Sets the flag that an earlier instant is shown. Clients cannot change anything then.

@@ -1,5 +1,6 @@
 //! The views of displays and links on the firmware: plain data of the present instant.
 
+use crate::autopilot::io::NavOutput;
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
 use crate::plan::estimate::TouchdownThrottle;
@@ -90,6 +91,11 @@ impl Firmware {
     /// Returns the navigator's telemetry. Its points count from [`Firmware::origin`].
     pub fn nav(&self) -> &NavTelemetry {
         self.navigation.telemetry()
+    }
+
+    /// Returns the demands of the navigator's last update, if it flies.
+    pub fn nav_demand(&self) -> Option<NavOutput> {
+        self.navigation.output()
     }
 
     /// Returns the origin of the local frame of estimate and navigator; `None` before the first fix.
@@ -227,7 +233,7 @@ impl Firmware {
             ground_speed_mps: Some(estimate.vel_ne.norm()),
             climb_mps: Some(estimate.climb_mps),
             roll_deg: Some(estimate.roll_rad.to_degrees()),
-            pitch_deg: Some(-estimate.pitch_rad.to_degrees()),
+            pitch_deg: Some(-estimate.pitch_down_rad.to_degrees()),
             heading_deg: Some(estimate.heading_rad.to_degrees()),
             roll_demand_deg: demand.map(|[roll, _]| roll.to_degrees()),
             pitch_demand_deg: demand.map(|[_, pitch]| -pitch.to_degrees()),

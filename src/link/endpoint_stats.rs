@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
-use crate::telemetry::{ClientStats, PacketStats};
+use crate::link::endpoint::{ClientStats, PacketStats};
 
 /// The time without a packet after which the rate counts as zero.
 const RATE_EXPIRES: Duration = Duration::from_secs(2);

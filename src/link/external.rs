@@ -5,9 +5,10 @@ use std::time::{Duration, Instant};
 use super::proto::fdm_link::{Counters, FdmLink, FdmLinkConfig, Received, Reply};
 use super::proto::servo;
 use super::udp::{MotorPort, Sent, StateQueue};
+use crate::link::endpoint::{EndpointKind, EndpointState, EndpointStatus, SimulatorStats};
 use crate::signals::fdm::MotorOrder;
 use crate::signals::{MotorCommand, PerMotor, SensorFrame};
-use crate::telemetry::{EndpointKind, EndpointState, EndpointStatus, LinkState, SimulatorStats};
+use crate::telemetry::LinkState;
 
 /// Drives a firmware with the packets of a simulator.
 #[derive(Debug)]

@@ -19,7 +19,7 @@ use super::notices::Notices;
 use super::request::Request;
 use super::seats::Seats;
 use super::udp::{DatagramPort, Datagrams, StateQueue};
-use crate::telemetry::{EndpointKind, EndpointState, EndpointStatus};
+use crate::link::endpoint::{EndpointKind, EndpointState, EndpointStatus};
 
 /// The longest time that the listeners may take to close.
 const CLOSING: Duration = Duration::from_secs(1);

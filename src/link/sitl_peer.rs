@@ -7,9 +7,9 @@ use std::time::{Duration, Instant};
 use super::endpoint_stats::EndpointStats;
 use super::proto::rc;
 use super::proto::sitl_feed::{FeedConfig, FeedState, SitlFeed};
+use crate::link::endpoint::{EndpointKind, EndpointState, EndpointStatus};
 use crate::signals::fdm::Dialect;
 use crate::signals::{MotorCommand, RcFrame, SensorFrame};
-use crate::telemetry::{EndpointKind, EndpointState, EndpointStatus};
 
 /// A size above that of any motor packet.
 const BUFFER: usize = 128;

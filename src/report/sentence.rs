@@ -1,10 +1,11 @@
 //! The same events as sentences for people: `fly` without `--json`, `serve`, the log.
 
+use crate::link::endpoint::EndpointKind;
 use crate::plan::{FlightPlan, WaypointType};
 use crate::session::{EndpointAddresses, Event, SessionEvent};
 use crate::telemetry::{
-    AbortReason, BatteryAlarm, CannotHold, DisarmReason, EndpointKind, EventKind, FaultValue, FenceAction,
-    FirmwareEvent, Guard, GuardUnit, HoldLimit, NavEvent, NavState, PlanSource, Refusal, TransitionReason,
+    AbortReason, BatteryAlarm, CannotHold, DisarmReason, EventKind, FaultValue, FenceAction, FirmwareEvent,
+    Guard, GuardUnit, HoldLimit, NavEvent, NavState, PlanSource, Refusal, TransitionReason,
 };
 
 /// Returns `  12.4 s  Armed.`; `None` for the few events that only matter inside the craft.

@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use super::reply::ReplyTo;
 use crate::fc::{RemoteView, UploadReport, UploadView};
+use crate::link::endpoint::EndpointStatus;
 use crate::plan::FlightPlan;
 use crate::signals::{RcFrame, SimTime};
-use crate::telemetry::{EndpointStatus, LinkState, LostTime, Snapshot};
+use crate::telemetry::{LinkState, LostTime, Snapshot};
 use crate::timeline::{RecordedFlight, TimelineView};
 use crate::vehicle::{Vehicle, VehicleCommand};
 

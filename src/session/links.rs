@@ -7,8 +7,8 @@ use tokio::sync::{mpsc, watch};
 
 use super::request_handler::RequestHandler;
 use super::runtime::Endpoints;
+use crate::link::endpoint::EndpointStatus;
 use crate::link::{ExternalSimulator, ListenConfig, Listeners, MotorPort, Request};
-use crate::telemetry::EndpointStatus;
 
 /// The maximum number of requests that may wait for the session.
 const WAITING: usize = 1024;

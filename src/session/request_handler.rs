@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use tokio::sync::oneshot;
 
+use super::host_status::HostStatus;
 use super::late_answers::{LateAnswers, no_answer_line};
 use super::persistence::Persistence;
 use crate::firmware::cli::{COMMANDS, CliAction, CliMode, CliReply, Interpreter, complete};
@@ -65,6 +66,7 @@ pub struct RequestHandler {
     /// The last client whose command line turned motors on the bench.
     bench: Option<ClientId>,
     reported_altitude_units: bool,
+    host: HostStatus,
 }
 
 impl RequestHandler {
@@ -79,7 +81,13 @@ impl RequestHandler {
             cli_sessions: BTreeMap::new(),
             bench: None,
             reported_altitude_units: false,
+            host: HostStatus::default(),
         }
+    }
+
+    /// Sets the figures that `status` shows besides those of the firmware.
+    pub(super) fn set_host_status(&mut self, host: HostStatus) {
+        self.host = host;
     }
 
     /// Handles a request at `now`.
@@ -114,6 +122,7 @@ impl RequestHandler {
             Request::Cli { client, line, source, reply } => {
                 match self.run_line(client, source, &line, controller) {
                     Answer::Now(mut said) => {
+                        self.host.add_to(&mut said);
                         self.act_on_line(client, &mut said, controller, persistence, &mut handled);
                         answer(reply, said.into());
                     }

@@ -25,6 +25,7 @@ use tokio::sync::{mpsc, watch};
 use super::arming::ArmingWatch;
 use super::command::{Command, SessionView};
 use super::event::{Event, EventSender, SessionEvent};
+use super::host_status::HostStatus;
 use super::late_answers::LateAnswers;
 use super::pacer::Pacer;
 use super::persistence::Persistence;
@@ -33,11 +34,12 @@ use super::request_handler::RequestHandler;
 use super::simulator::Simulator;
 use crate::fc::{Denial, EXCHANGE_PAUSE, RemoteLink};
 use crate::firmware::cli::Interpreter;
+use crate::link::endpoint::EndpointStatus;
 use crate::link::{ExternalSimulator, ImpairedLink, Request};
 use crate::signals::SimTime;
 use crate::sim::Stream;
 use crate::storage::Store;
-use crate::telemetry::{self, BadPackets, EndpointStatus, LinkState};
+use crate::telemetry::{self, LinkState};
 use crate::timeline::Timeline;
 use crate::vehicle::Vehicle;
 use late::WaitingInterface;
@@ -144,6 +146,7 @@ struct Session {
     /// The multiple of real time at the start. The speed returns to it after a flight.
     usual_speed: f64,
     console: Interpreter,
+    host: HostStatus,
     takeoff_m: f64,
     simulator: Option<Simulator>,
     remote: Option<RemoteLink>,
@@ -206,6 +209,7 @@ impl Session {
             pacer: Pacer::new(config.vehicle.step_us(), config.speed),
             usual_speed: config.speed,
             console: Interpreter::default(),
+            host: HostStatus::default(),
             vehicle: config.vehicle,
             persistence,
             takeoff_m: config.takeoff_m,
@@ -266,8 +270,10 @@ impl Session {
                 published = after;
                 (self.changed, moved) = (false, false);
                 let view_now = self.view();
-                self.vehicle.controller_mut().set_bad_packets(BadPackets::of(&view_now.endpoints));
-                self.vehicle.controller_mut().set_lost_time(view_now.lost_time);
+                self.host = HostStatus::of(&view_now);
+                if let Some(endpoints) = &mut self.endpoints {
+                    endpoints.handler.set_host_status(self.host);
+                }
                 if !self.is_rewound()
                     && let Some(notice) = self.arming.check(&view_now.vehicle)
                 {

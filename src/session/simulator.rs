@@ -6,12 +6,13 @@ use std::time::{Duration, Instant};
 use arrayvec::ArrayVec;
 
 use super::request_handler::RequestHandler;
+use crate::link::endpoint::EndpointStatus;
 use crate::link::proto::fdm::PacketError;
 use crate::link::proto::fdm_link::{FdmNotice, PacketKind};
 use crate::link::{ExternalSimulator, ImpairedLink, LinkImpairment};
 use crate::session::event::{EventSender, SessionEvent};
 use crate::sim::LinkFaults;
-use crate::telemetry::{EndpointStatus, LinkState};
+use crate::telemetry::LinkState;
 use crate::vehicle::Vehicle;
 
 /// The interval at which frames from sockets are repeated while time runs fast, µs of simulated time.

@@ -1,6 +1,4 @@
-//! The public state of the navigator: state, demands, events and the values for displays, logs and samples.
-//!
-//! Sign conventions of demands: roll right +, pitch **nose down** + (accelerates forward), yaw rate clockwise +.
+//! The public state of the navigator: state, events and the values for displays, logs and samples.
 
 use nalgebra::Vector2;
 
@@ -41,21 +39,6 @@ pub enum NavState {
     Figure8 = 5,
     Landing = 6,
     Complete = 7,
-}
-
-/// Demands for the attitude and throttle loops.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct NavOutput {
-    /// Roll demand, rad, right positive.
-    pub roll_rad: f64,
-    /// Pitch demand, rad, nose **down** positive.
-    pub pitch_rad: f64,
-    /// Yaw rate demand, rad/s, clockwise positive; `None` = the pilot's stick.
-    pub yaw_rate_rps: Option<f64>,
-    /// Throttle into the mixer, 0…1.
-    pub throttle: f64,
-    /// The same throttle as RC µs.
-    pub throttle_us: f64,
 }
 
 /// The origin of the active plan.
@@ -232,8 +215,10 @@ pub struct NavTelemetry {
     pub hover_us: f64,
     /// The guards of the active state, in the order of evaluation.
     pub guards: arrayvec::ArrayVec<Guard, 9>,
-    /// The demands of this update.
-    pub output: NavOutput,
+    /// The roll demand, rad, right positive.
+    pub roll_demand_rad: f64,
+    /// The pitch demand, rad, nose down positive.
+    pub pitch_down_demand_rad: f64,
 }
 
 impl NavTelemetry {

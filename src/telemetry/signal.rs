@@ -129,9 +129,9 @@ signals! {
         = |o| o.nav.and_then(|nav| nav.touchdown_held_s);
     Hover "hover_throttle" PULSE "the hover throttle in use" = |o| o.nav.map(|nav| nav.hover_us);
     RollDemand "roll_demand" ANGLE "the autopilot's roll demand, right positive"
-        = |o| o.engaged().map(|nav| nav.output.roll_rad.to_degrees());
+        = |o| o.engaged().map(|nav| nav.roll_demand_rad.to_degrees());
     PitchDemand "pitch_demand" ANGLE "the autopilot's pitch demand, nose up positive"
-        = |o| o.engaged().map(|nav| -nav.output.pitch_rad.to_degrees());
+        = |o| o.engaged().map(|nav| -nav.pitch_down_demand_rad.to_degrees());
     Throttle "throttle" PULSE "the throttle that drives the mixer" = |o| o.craft.throttle_us;
     Motor1 "motor1" NONE "command of motor 1, 0 to 100 %" = |o| o.motor(0);
     Motor2 "motor2" NONE "command of motor 2" = |o| o.motor(1);
@@ -252,7 +252,7 @@ mod tests {
     fn signs_and_frames_are_those_of_the_table() {
         let truth = TruthView { vn: 0.0, ve: -2.0, pitch_deg: 10.0, ..TruthView::default() };
         let mut nav = NavTelemetry { engaged: true, ..NavTelemetry::idle() };
-        nav.output.pitch_rad = 0.1;
+        nav.pitch_down_demand_rad = 0.1;
         let snapshot = Snapshot { truth: Some(truth), nav: Some(nav), ..Snapshot::default() };
         let read = |signal: Signal| signal.read(&Observed::of(&snapshot)).unwrap();
         assert!((read(Signal::Course) - 270.0).abs() < 1e-9);

@@ -5,7 +5,8 @@ use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 use unicode_width::UnicodeWidthStr as _;
 
-use crate::telemetry::{EndpointState, LinkState};
+use crate::link::endpoint::EndpointState;
+use crate::telemetry::LinkState;
 
 use super::action::{Action, EditAction, PanelAction, enabled, is_wrecked};
 use super::panel::{Hint, Panel, span};
@@ -219,8 +220,8 @@ fn fault(state: &EndpointState) -> Option<&'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::link::endpoint::{ClientStats, EndpointKind, EndpointStatus, PacketStats, SimulatorStats};
     use crate::session::SessionView;
-    use crate::telemetry::{ClientStats, EndpointKind, EndpointStatus, PacketStats, SimulatorStats};
     use crate::ui::status_bar;
 
     fn endpoint((kind, state): (EndpointKind, EndpointState)) -> EndpointStatus {

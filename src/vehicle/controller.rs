@@ -16,8 +16,7 @@ use crate::plan::{AltitudeReference, FlightPlan};
 use crate::signals::{MotorCommand, RcFrame, RcSource, SensorFrame, SimTime};
 use crate::telemetry::snapshot::{CraftView, EstimateView, ModeRange, SettingsView};
 use crate::telemetry::{
-    BadPackets, DisarmReason, FirmwareEvent, InFlightCommand, InFlightRefusal, LostTime, Mode, ModeFlags,
-    NavTelemetry, Refusal,
+    DisarmReason, FirmwareEvent, InFlightCommand, InFlightRefusal, Mode, ModeFlags, NavTelemetry, Refusal,
 };
 
 /// The identity of a request to a remote flight controller until its answer comes.
@@ -174,22 +173,6 @@ impl FlightController {
     pub fn set_storage_facts(&mut self, facts: StorageFacts) {
         if let Self::Embedded(embedded) = self {
             embedded.firmware.set_storage_facts(facts);
-        }
-    }
-
-    /// Sets the number of useless packets from scripts and simulators that the commands of an embedded controller
-    /// report.
-    pub fn set_bad_packets(&mut self, bad_packets: BadPackets) {
-        if let Self::Embedded(embedded) = self {
-            embedded.firmware.set_bad_packets(bad_packets);
-        }
-    }
-
-    /// Sets the lost real time that the commands of an embedded controller report. The flight could not keep up with
-    /// it.
-    pub fn set_lost_time(&mut self, lost_time: LostTime) {
-        if let Self::Embedded(embedded) = self {
-            embedded.firmware.set_lost_time(lost_time);
         }
     }
 

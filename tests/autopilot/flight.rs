@@ -7,13 +7,13 @@ use betadeck::autopilot::control::{
     AltitudeController, AltitudeMeasurement, AltitudeTarget, FlightControllers, PositionController,
     PositionMeasurement, PositionTarget, earth_to_body, throttle_share,
 };
-use betadeck::autopilot::io::NavInputs;
+use betadeck::autopilot::io::{NavInputs, NavOutput};
 use betadeck::autopilot::land_detector::GroundMeasurement;
 use betadeck::autopilot::{Navigator, Params};
 use betadeck::geo::{GRAVITY, LatLon, local_offset, offset_to_latlon};
 use betadeck::plan::{Altitude, FlightPlan, LegSpeed, Waypoint, WaypointType};
 use betadeck::signals::{MotorCommand, SimTime};
-use betadeck::telemetry::{NavEvent, NavOutput, NavState};
+use betadeck::telemetry::{NavEvent, NavState};
 use nalgebra::{Vector2, Vector3};
 
 pub(crate) const HOME: LatLon = LatLon::new(404_635_000, -795_182_000);
@@ -262,7 +262,7 @@ impl Flight {
         self.inputs.heading_rad = plant.heading;
         self.inputs.yaw_rate_rps = plant.yaw_rate;
         self.inputs.roll_rad = plant.lean.y;
-        self.inputs.pitch_rad = plant.lean.x;
+        self.inputs.pitch_down_rad = plant.lean.x;
         self.inputs.cos_tilt = plant.lean.norm().cos();
         self.inputs.accel_ne = plant.accel;
         let on_legs = if plant.alt <= 0.0 { (1.0 - plant.thrust).max(0.0) } else { 0.0 };
@@ -317,7 +317,7 @@ impl Flight {
         let mut out = self.nav.update(&self.inputs, &self.params, &self.plan, &mut self.controllers);
         // As in the firmware, a landed craft is not tilted on its legs.
         let share = self.controllers.land.lean_share();
-        (out.roll_rad, out.pitch_rad) = (share * out.roll_rad, share * out.pitch_rad);
+        (out.roll_rad, out.pitch_down_rad) = (share * out.roll_rad, share * out.pitch_down_rad);
         let t = self.t();
         for event in self.nav.drain_events() {
             if event == NavEvent::Disarm {
@@ -336,7 +336,7 @@ impl Flight {
             alt: self.plant.alt,
             climb: self.plant.climb,
             lean_deg: self.plant.lean.norm().to_degrees(),
-            demand_deg: out.roll_rad.hypot(out.pitch_rad).to_degrees(),
+            demand_deg: out.roll_rad.hypot(out.pitch_down_rad).to_degrees(),
             throttle_us: throttle,
             heading: self.plant.heading,
             xte: telemetry.xte_m,
@@ -345,7 +345,7 @@ impl Flight {
             stands: self.controllers.land.stands(),
         });
         let share = if self.disarmed { 0.0 } else { out.throttle };
-        self.plant.step(out.roll_rad, out.pitch_rad, out.yaw_rate_rps.unwrap_or(0.0), share);
+        self.plant.step(out.roll_rad, out.pitch_down_rad, out.yaw_rate_rps.unwrap_or(0.0), share);
         self.inputs.throttle_us = throttle;
     }
 
@@ -409,7 +409,7 @@ pub(crate) fn horizontal(inputs: &NavInputs) -> PositionMeasurement {
         position: inputs.pos_ne,
         velocity: inputs.vel_ne,
         accel: inputs.accel_ne,
-        lean_body: Vector2::new(inputs.pitch_rad, inputs.roll_rad),
+        lean_body: Vector2::new(inputs.pitch_down_rad, inputs.roll_rad),
         heading_rad: inputs.heading_rad,
     }
 }

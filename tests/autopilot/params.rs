@@ -419,7 +419,7 @@ fn a_change_in_flight_steps_nothing() {
             let (a, b) = (&pair[0].out, &pair[1].out);
             // The demand turns with the nose as well.
             let turn = pair[1].demand_deg.to_radians() * (pair[1].heading - pair[0].heading).sin().abs();
-            let lean = (b.roll_rad - a.roll_rad).hypot(b.pitch_rad - a.pitch_rad) - turn;
+            let lean = (b.roll_rad - a.roll_rad).hypot(b.pitch_down_rad - a.pitch_down_rad) - turn;
             assert!(lean <= LEAN_SLEW_RPS * DT + 1e-3, "{}: lean by {lean} at {}", field.name, pair[1].t);
             let throttle = (b.throttle_us - a.throttle_us).abs();
             assert!(throttle <= THROTTLE_SLEW_US_PER_S * DT + 1e-6, "{}: {throttle} µs", field.name);

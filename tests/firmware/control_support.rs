@@ -151,7 +151,7 @@ impl Rig {
         if due.navigation {
             let now = self.nav_inputs(frame.time);
             let rates = self.estimate().rates;
-            let rate_rps = Vector3::new(rates.roll, rates.pitch, rates.yaw).norm();
+            let rate_rps = Vector3::new(rates.roll, rates.pitch_down, rates.yaw).norm();
             let motors = &self.controller.state().motors;
             let ground = GroundMeasurement::new(&now, self.estimate().force_flu, rate_rps, motors);
             let FlightControllers { altitude, land, .. } = &mut self.controllers;
@@ -171,10 +171,10 @@ impl Rig {
         (input.due, input.rc_frame) = (due, is_frame);
         input.throttle = self.hold.throttle.or(input.throttle);
         let share = self.controllers.land.lean_share();
-        let held = self
-            .hold
-            .lean
-            .map(|lean| LeanDemand { roll_rad: share * lean.roll_rad, pitch_rad: share * lean.pitch_rad });
+        let held = self.hold.lean.map(|lean| LeanDemand {
+            roll_rad: share * lean.roll_rad,
+            pitch_down_rad: share * lean.pitch_down_rad,
+        });
         input.lean = held.or(input.lean);
         input.stands = self.controllers.land.stands();
         if self.modes.altitude && input.lean.is_none() {
@@ -207,7 +207,7 @@ impl Rig {
             heading_rad: estimate.heading_rad,
             yaw_rate_rps: estimate.rates.yaw,
             roll_rad: estimate.roll_rad,
-            pitch_rad: estimate.pitch_rad,
+            pitch_down_rad: estimate.pitch_down_rad,
             cos_tilt: estimate.cos_tilt,
             accel_ne: estimate.accel_ne,
             throttle_us: self.controller.state().throttle_us,
@@ -221,7 +221,7 @@ impl Rig {
     /// Demands this lean from the next frame on.
     pub(crate) fn lean(&mut self, roll_deg: f64, pitch_deg: f64) {
         self.sticks.lean =
-            Some(LeanDemand { roll_rad: roll_deg.to_radians(), pitch_rad: pitch_deg.to_radians() });
+            Some(LeanDemand { roll_rad: roll_deg.to_radians(), pitch_down_rad: pitch_deg.to_radians() });
     }
 }
 

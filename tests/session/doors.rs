@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use betadeck::firmware::FirmwareOptions;
 use betadeck::firmware::config::Configuration;
+use betadeck::link::endpoint::EndpointKind;
 use betadeck::link::proto::command_line::{LineReply, LineSource};
 use betadeck::link::{ClientId, ListenConfig, Listeners, Request};
 use betadeck::session::ReplyTo;
@@ -17,7 +18,7 @@ use betadeck::session::{
 use betadeck::signals::RcFrame;
 use betadeck::sim::WorldConfig;
 use betadeck::storage::Store;
-use betadeck::telemetry::{ArmingFlag, EndpointKind, Snapshot};
+use betadeck::telemetry::{ArmingFlag, Snapshot};
 use betadeck::vehicle::{Vehicle, VehicleCommand, VehicleConfig};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
@@ -31,7 +32,7 @@ struct Rig {
     session: Handle,
     requests: mpsc::Sender<Request>,
     doors: Listeners,
-    _views: watch::Sender<Vec<betadeck::telemetry::EndpointStatus>>,
+    _views: watch::Sender<Vec<betadeck::link::endpoint::EndpointStatus>>,
 }
 
 async fn rig() -> Rig {

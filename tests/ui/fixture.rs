@@ -5,15 +5,15 @@
 use std::time::Duration;
 
 use betadeck::geo::{LatLon, LocalFrame};
+use betadeck::link::endpoint::{ClientStats, EndpointKind, EndpointState, EndpointStatus, PacketStats};
 use betadeck::plan::edit::{History, PlanDocument};
 use betadeck::plan::{Altitude, FlightPlan, HoldPattern, Seconds, Waypoint, WaypointType};
 use betadeck::session::{Event, SessionEvent, SessionView};
 use betadeck::signals::{RcFrame, RcSource, SimTime};
 use betadeck::telemetry::snapshot::{ModeRange, SettingsView, TruthView};
 use betadeck::telemetry::{
-    ArmingFlag, ClientStats, DisarmReason, EndpointKind, EndpointState, EndpointStatus, EventKind,
-    FirmwareEvent, Guard, GuardName, GuardOp, L1Mode, Mode, ModeFlags, NavEvent, NavState, PacketStats,
-    Snapshot, TransitionReason,
+    ArmingFlag, DisarmReason, EventKind, FirmwareEvent, Guard, GuardName, GuardOp, L1Mode, Mode, ModeFlags,
+    NavEvent, NavState, Snapshot, TransitionReason,
 };
 use betadeck::timeline::{Mark, MarkKind, TimelineView};
 use betadeck::ui::editor::PlanId;

@@ -1,9 +1,10 @@
 //! Whole screens of the user interface, and a check that no size and no picture breaks it.
 
 use crate::fixture;
+use betadeck::link::endpoint::EndpointKind;
 use betadeck::plan::FlightPlan;
 use betadeck::session::command::CliOutput;
-use betadeck::telemetry::{ArmingFlag, CannotHold, EndpointKind, HoldLimit, NavState};
+use betadeck::telemetry::{ArmingFlag, CannotHold, HoldLimit, NavState};
 use betadeck::ui::{AppState, Msg, Panel, Severity, Theme, draw, update};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::Terminal;
@@ -197,10 +198,10 @@ fn the_speed_is_the_wanted_one_until_it_is_measured() {
 fn a_busy_door_is_marked_and_named_where_there_is_room() {
     for (width, shown) in [(80, "✗rc "), (120, "✗rc busy ")] {
         let mut state = fixture::state((width, 40), fixture::colour());
-        let door = betadeck::telemetry::EndpointStatus {
+        let door = betadeck::link::endpoint::EndpointStatus {
             kind: EndpointKind::Rc,
             address: String::new(),
-            state: betadeck::telemetry::EndpointState::Busy,
+            state: betadeck::link::endpoint::EndpointState::Busy,
         };
         state.shared.view.endpoints = vec![door];
         let screen = text(&state);

@@ -69,7 +69,7 @@ impl From<&NavInputs> for PositionMeasurement {
             position: now.pos_ne,
             velocity: now.vel_ne,
             accel: now.accel_ne,
-            lean_body: Vector2::new(now.pitch_rad, now.roll_rad),
+            lean_body: Vector2::new(now.pitch_down_rad, now.roll_rad),
             heading_rad: now.heading_rad,
         }
     }

@@ -9,9 +9,9 @@ use crate::autopilot::control::{
     AltitudeMeasurement, AltitudeTarget, FlightControllers, PositionMeasurement, YawController, YawFacts,
     earth_to_body, throttle_share,
 };
-use crate::autopilot::io::NavInputs;
+use crate::autopilot::io::{NavInputs, NavOutput};
 use crate::autopilot::params::Params;
-use crate::telemetry::{NavOutput, NavState};
+use crate::telemetry::NavState;
 
 /// The deflection of a stick at its end.
 const FULL_STICK: f64 = 500.0;
@@ -125,7 +125,7 @@ impl Steering {
         };
         let output = NavOutput {
             roll_rad: lean.y,
-            pitch_rad: lean.x,
+            pitch_down_rad: lean.x,
             yaw_rate_rps: self.yaw_rate(task, seen),
             throttle: throttle_share(throttle_us, params),
             throttle_us,
@@ -211,14 +211,14 @@ mod tests {
         let (mut navigator, mut controllers) = (Navigator::new(), FlightControllers::default());
         navigator.engage(&at_point, &params, &plan).unwrap();
         let mut pitch_deg = |north_m: f64, stick_pitch: f64, seconds: f64| {
-            let mut pitch_rad = 0.0;
+            let mut pitch_down_rad = 0.0;
             for _ in 0..(seconds / at_point.dt).round() as usize {
                 at_point.time = SimTime(at_point.time.0 + 10_000);
                 let now = NavInputs { pos_ne: Vector2::new(north_m, 0.0), stick_pitch, ..at_point.clone() };
-                pitch_rad = navigator.update(&now, &params, &plan, &mut controllers).pitch_rad;
+                pitch_down_rad = navigator.update(&now, &params, &plan, &mut controllers).pitch_down_rad;
             }
             assert_eq!(navigator.state(), NavState::Holding);
-            pitch_rad.to_degrees()
+            pitch_down_rad.to_degrees()
         };
         pitch_deg(0.0, 0.0, 1.0);
         pitch_deg(-1.0, 0.0, 10.0);

@@ -33,7 +33,7 @@ impl InputFilter {
         keep(&mut now.heading_rad, |last| last.heading_rad, 0.0);
         keep(&mut now.yaw_rate_rps, |_| 0.0, 0.0);
         keep(&mut now.roll_rad, |_| 0.0, 0.0);
-        keep(&mut now.pitch_rad, |_| 0.0, 0.0);
+        keep(&mut now.pitch_down_rad, |_| 0.0, 0.0);
         keep(&mut now.cos_tilt, |_| 1.0, 1.0);
         keep(&mut now.throttle_us, |last| last.throttle_us, 1000.0);
         keep(&mut now.stick_roll, |_| 0.0, 0.0);

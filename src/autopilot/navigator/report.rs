@@ -59,7 +59,8 @@ pub(super) fn report(
         cannot_hold,
         yaw_override: output.yaw_rate_rps.is_none(),
         guards: waiting_for(state, facts),
-        output,
+        roll_demand_rad: output.roll_rad,
+        pitch_down_demand_rad: output.pitch_down_rad,
         ..status
     }
 }

@@ -68,7 +68,7 @@ pub(super) fn mixer(session: &mut Session<'_>, name: &str) {
 
 /// Formats one row of the custom mix.
 pub(super) fn mix_row(at: usize, row: &MixRow) -> String {
-    format!("mmix {at} {:>6.3} {:>6.3} {:>6.3} {:>6.3}", row.throttle, row.roll, row.pitch, row.yaw)
+    format!("mmix {at} {:>6.3} {:>6.3} {:>6.3} {:>6.3}", row.throttle, row.roll, row.pitch_down, row.yaw)
 }
 
 /// `mmix [reset | load <mixer> | <row> <throttle> <roll> <pitch> <yaw>]`.
@@ -96,16 +96,16 @@ pub(super) fn mmix(session: &mut Session<'_>, rest: &str) {
             session.configuration.custom_mix = mix;
             session.line(format_args!("Loaded {kind}"));
         }
-        [index, throttle, roll, pitch, yaw] => {
+        [index, throttle, roll, pitch_down, yaw] => {
             let Some(index) = session.bounded(index, "INDEX", 0, MAX_MIX_ROWS as i64 - 1) else { return };
             let shares: Option<Vec<f64>> =
-                [throttle, roll, pitch, yaw].map(|word| share(word)).into_iter().collect();
-            let Some(&[throttle, roll, pitch, yaw]) = shares.as_deref() else {
+                [throttle, roll, pitch_down, yaw].map(|word| share(word)).into_iter().collect();
+            let Some(&[throttle, roll, pitch_down, yaw]) = shares.as_deref() else {
                 session.not_understood();
                 return;
             };
             if let Some(row) = session.configuration.custom_mix.get_mut(index as usize) {
-                *row = MixRow { throttle, roll, pitch, yaw };
+                *row = MixRow { throttle, roll, pitch_down, yaw };
             }
         }
         _ => {

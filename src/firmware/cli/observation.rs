@@ -3,7 +3,7 @@
 use crate::firmware::Firmware;
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
-use crate::telemetry::{ArmingFlags, BadPackets, LostTime, NavTelemetry, Refusal};
+use crate::telemetry::{ArmingFlags, NavTelemetry, Refusal};
 
 /// The housekeeping rate, Hz.
 const SYSTEM_HZ: u32 = 10;
@@ -21,10 +21,6 @@ pub struct CliFacts {
     pub storage: StorageFacts,
     pub gps: GpsFacts,
     pub battery: BatteryFacts,
-    /// The packets from scripts and simulators that could not be used.
-    pub bad_packets: BadPackets,
-    /// The real time that the flight could not keep up with.
-    pub lost_time: LostTime,
     /// `true` while an earlier instant is shown. Clients cannot change anything then.
     pub rewound: bool,
     pub loops: LoopFacts,
@@ -53,8 +49,6 @@ impl CliFacts {
                 cells: firmware.battery().cells(),
                 state: firmware.battery().state().into(),
             },
-            bad_packets: firmware.setup.bad_packets(),
-            lost_time: firmware.setup.lost_time(),
             rewound: firmware.setup.rewound(),
             loops: LoopFacts {
                 cpu_load_percent: 0,

@@ -70,12 +70,7 @@ pub(super) fn status(session: &mut Session<'_>, _rest: &str) {
         "Voltage: {:.2}V ({}S battery - {})",
         battery.voltage_v, battery.cells, battery.state
     ));
-    if !facts.bad_packets.is_none() {
-        session.line(format_args!("Bad packets: {}", facts.bad_packets));
-    }
-    if facts.lost_time.is_notable() {
-        session.line(format_args!("Real time lost: {}", facts.lost_time));
-    }
+    session.reply.host_lines_at = Some(session.reply.text.len());
     if facts.rewound {
         session.line("Changes refused: an earlier instant is shown on the screen");
     }

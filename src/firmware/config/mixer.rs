@@ -84,7 +84,7 @@ impl MixerKind {
 
     /// Returns the motor rows of the types that fly here.
     pub fn rows(self) -> Option<PerMotor<MixRow>> {
-        let row = |roll, pitch, yaw| MixRow { throttle: 1.0, roll, pitch, yaw };
+        let row = |roll, pitch_down, yaw| MixRow { throttle: 1.0, roll, pitch_down, yaw };
         match self {
             Self::QuadX => {
                 Some([row(-1.0, 1.0, -1.0), row(-1.0, -1.0, 1.0), row(1.0, 1.0, 1.0), row(1.0, -1.0, -1.0)])
@@ -108,6 +108,6 @@ pub struct MixRow {
     /// The share of roll, right positive.
     pub roll: f64,
     /// The share of pitch, nose down positive.
-    pub pitch: f64,
+    pub pitch_down: f64,
     pub yaw: f64,
 }

@@ -214,7 +214,7 @@ impl Controller {
             let target = self.target_deg(input, setpoint);
             let demand = LevelDemand {
                 target,
-                flown: [estimate.roll_rad.to_degrees(), estimate.pitch_rad.to_degrees()],
+                flown: [estimate.roll_rad.to_degrees(), estimate.pitch_down_rad.to_degrees()],
                 yaw_dps: setpoint[2],
                 earth_reference: if input.lean.is_some() { 1.0 } else { self.tuning.level.earth_reference },
                 keeps_heading: input.lean.is_some(),
@@ -247,7 +247,7 @@ impl Controller {
         if let Some(lean) = input.lean {
             let sane =
                 |angle: f64| if angle.is_finite() { angle.to_degrees().clamp(-85.0, 85.0) } else { 0.0 };
-            return [sane(lean.roll_rad), sane(lean.pitch_rad)];
+            return [sane(lean.roll_rad), sane(lean.pitch_down_rad)];
         }
         let limit = self.tuning.level.limit_deg;
         [0, 1].map(|axis| limit * (setpoint[axis] / self.full_rates[axis]).clamp(-1.0, 1.0))

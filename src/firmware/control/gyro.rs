@@ -13,7 +13,7 @@ pub(super) struct GyroFilter {
 impl GyroFilter {
     /// Filters one sample. Returns the rates in °/s: roll, pitch, yaw.
     pub(super) fn apply(&mut self, rates: &Rates, derived: &Derived) -> [f64; 3] {
-        let mut filtered = [rates.roll, rates.pitch, rates.yaw];
+        let mut filtered = [rates.roll, rates.pitch_down, rates.yaw];
         for (value, [first, second]) in filtered.iter_mut().zip(&mut self.axes) {
             *value = second.apply(first.apply(value.to_degrees(), &derived.gyro_lpf1), &derived.gyro_lpf2);
         }

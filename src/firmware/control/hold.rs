@@ -129,7 +129,7 @@ impl Holds {
             // On the ground, GPS noise would wind up the integral, and the craft would jump at lift-off.
             self.position.release();
             controllers.track_position(now);
-            Some(LeanDemand { roll_rad: 0.0, pitch_rad: 0.0 })
+            Some(LeanDemand { roll_rad: 0.0, pitch_down_rad: 0.0 })
         } else if keeps_place {
             Some(self.position.update(now, params, tuning, &mut controllers.position))
         } else {

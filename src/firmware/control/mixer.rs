@@ -37,7 +37,7 @@ pub(super) struct MixDemand {
 pub(super) fn mix(demand: &MixDemand, tuning: &MixerTuning) -> PerMotor {
     let [roll, pitch, yaw] = demand.sums.map(|sum| sum / 1000.0);
     let yaw = if tuning.yaw_reversed { -yaw } else { yaw };
-    let mut mixes = tuning.rows.map(|row| roll * row.roll + pitch * row.pitch + yaw * row.yaw);
+    let mut mixes = tuning.rows.map(|row| roll * row.roll + pitch * row.pitch_down + yaw * row.yaw);
     let (mut low, mut high) = bounds(&mixes);
     let range = high - low;
     let mut scale = if range > 1.0 { 1.0 / range } else { 1.0 };

@@ -459,7 +459,7 @@ mod tests {
 
     #[test]
     fn a_custom_mix_flies_when_it_has_four_rows() {
-        let row = MixRow { throttle: 0.9, roll: 0.5, pitch: 0.5, yaw: 0.1 };
+        let row = MixRow { throttle: 0.9, roll: 0.5, pitch_down: 0.5, yaw: 0.1 };
         let of = |rows: &[MixRow]| Tuning::from_settings(&Settings::default(), MixerKind::Custom, rows);
         assert_eq!(of(&[row; 4]).mixer.rows, [row; 4]);
         assert_eq!(of(&[row; 2]).mixer.rows, Tuning::default().mixer.rows);

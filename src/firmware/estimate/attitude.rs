@@ -115,7 +115,7 @@ impl Attitude {
     }
 
     /// Returns roll, right positive, and pitch, nose down positive, rad.
-    pub(super) fn roll_pitch(&self) -> (f64, f64) {
+    pub(super) fn roll_pitch_down(&self) -> (f64, f64) {
         let m = self.matrix.matrix();
         (m[(2, 1)].atan2(m[(2, 2)]), (-m[(2, 0)]).clamp(-1.0, 1.0).asin())
     }
@@ -160,7 +160,7 @@ mod tests {
                 attitude.integrate(&rate, 0.001);
             }
             attitude.refresh();
-            let (roll, pitch) = attitude.roll_pitch();
+            let (roll, pitch) = attitude.roll_pitch_down();
             let heading = attitude.heading();
             assert!((roll - expected.0).abs() < 1e-9, "{roll}");
             assert!((pitch - expected.1).abs() < 1e-9, "{pitch}");

@@ -269,7 +269,7 @@ impl Estimator {
         }
         let estimate = &mut self.estimate;
         estimate.attitude = self.attitude.q;
-        (estimate.roll_rad, estimate.pitch_rad) = self.attitude.roll_pitch();
+        (estimate.roll_rad, estimate.pitch_down_rad) = self.attitude.roll_pitch_down();
         estimate.cos_tilt = self.attitude.cos_tilt();
         estimate.attitude_valid = true;
     }

@@ -1,10 +1,11 @@
 //! The controller, driven by the sticks or by the demands that replace them.
 
+use crate::autopilot::io::NavOutput;
 use crate::firmware::control::{ControlInput, ControlState, Controller, LeanDemand, StickMode, Tuning};
 use crate::firmware::estimate::{DueTasks, Estimate};
 use crate::firmware::rx::Sticks;
 use crate::signals::{MOTORS, MotorCommand, PerMotor};
-use crate::telemetry::{Mode, ModeFlags, NavOutput};
+use crate::telemetry::{Mode, ModeFlags};
 
 /// The pulse of a stopped motor, µs.
 const MOTOR_STOP_US: f64 = 1000.0;
@@ -24,7 +25,7 @@ pub(in crate::firmware) struct Demand {
 impl From<NavOutput> for Demand {
     fn from(output: NavOutput) -> Self {
         Self {
-            lean: Some(LeanDemand { roll_rad: output.roll_rad, pitch_rad: output.pitch_rad }),
+            lean: Some(LeanDemand { roll_rad: output.roll_rad, pitch_down_rad: output.pitch_down_rad }),
             yaw_rate_rps: output.yaw_rate_rps,
             throttle: Some(output.throttle),
             stands: false,
@@ -58,7 +59,7 @@ pub(in crate::firmware) struct ControlStep<'a> {
 }
 
 /// The lean demand while the craft is levelled after a crash.
-const LEVEL: LeanDemand = LeanDemand { roll_rad: 0.0, pitch_rad: 0.0 };
+const LEVEL: LeanDemand = LeanDemand { roll_rad: 0.0, pitch_down_rad: 0.0 };
 
 /// The controller and the demands in force.
 #[derive(Debug, Clone)]

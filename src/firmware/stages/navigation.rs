@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use crate::autopilot::Navigator;
 use crate::autopilot::control::FlightControllers;
-use crate::autopilot::io::NavInputs;
+use crate::autopilot::io::{NavInputs, NavOutput};
 use crate::autopilot::land_detector::{GroundMeasurement, ImpactFacts};
 use crate::firmware::control::hold::{DescentRate, HoldModes, HoldOutput, Holds};
 use crate::firmware::control::{ControlState, LeanDemand};
@@ -18,8 +18,8 @@ use crate::firmware::throttle_takeover::ThrottleTakeover;
 use crate::plan::FlightPlan;
 use crate::signals::SimTime;
 use crate::telemetry::{
-    FirmwareEvent, FirmwareNotice, InFlightCommand, InFlightRefusal, Mode, ModeFlags, NavEvent, NavOutput,
-    NavTelemetry, Refusal,
+    FirmwareEvent, FirmwareNotice, InFlightCommand, InFlightRefusal, Mode, ModeFlags, NavEvent, NavTelemetry,
+    Refusal,
 };
 
 use super::flight_control::Demand;
@@ -116,7 +116,7 @@ impl Navigation {
             heading_rad: estimate.heading_rad,
             yaw_rate_rps: estimate.rates.yaw,
             roll_rad: estimate.roll_rad,
-            pitch_rad: estimate.pitch_rad,
+            pitch_down_rad: estimate.pitch_down_rad,
             cos_tilt: estimate.cos_tilt,
             accel_ne: estimate.accel_ne,
             throttle_us: control.throttle_us,
@@ -126,7 +126,7 @@ impl Navigation {
             stick_yaw: stick(sticks.yaw),
         };
         let rates = estimate.rates;
-        let rate_rps = Vector3::new(rates.roll, rates.pitch, rates.yaw).norm();
+        let rate_rps = Vector3::new(rates.roll, rates.pitch_down, rates.yaw).norm();
         let ground = GroundMeasurement::new(&self.inputs, estimate.force_flu, rate_rps, &control.motors);
         let FlightControllers { altitude, land, .. } = &mut self.controllers;
         land.observe(&ground, self.inputs.armed, dt);
@@ -327,9 +327,10 @@ impl Navigation {
         };
         let land = &self.controllers.land;
         let share = land.lean_share();
-        let lean = demand
-            .lean
-            .map(|lean| LeanDemand { roll_rad: share * lean.roll_rad, pitch_rad: share * lean.pitch_rad });
+        let lean = demand.lean.map(|lean| LeanDemand {
+            roll_rad: share * lean.roll_rad,
+            pitch_down_rad: share * lean.pitch_down_rad,
+        });
         let demand = Demand { lean, stands: land.stands(), ..demand };
         Flown { demand, touchdown: held.touchdown }
     }
@@ -409,6 +410,11 @@ impl Navigation {
     /// Returns the navigator's telemetry.
     pub(in crate::firmware) fn telemetry(&self) -> &NavTelemetry {
         self.navigator.telemetry()
+    }
+
+    /// Returns the demands of the last update, if the navigator flies.
+    pub(in crate::firmware) fn output(&self) -> Option<NavOutput> {
+        self.output
     }
 
     /// Returns the plan being flown, if any.

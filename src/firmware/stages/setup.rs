@@ -7,7 +7,7 @@ use crate::firmware::estimate::NotTurned;
 use crate::firmware::outbox::Outbox;
 use crate::firmware::parameters::{BootChoices, Parameters};
 use crate::firmware::settings::Value;
-use crate::telemetry::{BadPackets, FirmwareEvent, FirmwareNotice, LostTime};
+use crate::telemetry::{FirmwareEvent, FirmwareNotice};
 
 /// The configuration in memory, the choices made from it at boot, and the parameters in force.
 #[derive(Debug, Clone)]
@@ -15,8 +15,6 @@ pub(in crate::firmware) struct Setup {
     options: FirmwareOptions,
     build: BuildInfo,
     storage: StorageFacts,
-    bad_packets: BadPackets,
-    lost_time: LostTime,
     rewound: bool,
     configuration: Configuration,
     boot: BootChoices,
@@ -38,34 +36,16 @@ impl Setup {
             outbox.push(FirmwareEvent::Notice(FirmwareNotice::MixerNotFlown));
         }
         let (build, storage) = (BuildInfo::default(), StorageFacts::default());
-        let (bad_packets, lost_time) = (BadPackets::default(), LostTime::default());
         let rewound = false;
-        let setup = Self {
-            options,
-            build,
-            storage,
-            bad_packets,
-            lost_time,
-            rewound,
-            configuration,
-            boot,
-            parameters,
-        };
+        let setup = Self { options, build, storage, rewound, configuration, boot, parameters };
         setup.report_lost_gps(had_gps, outbox);
         setup
     }
 
-    /// Returns the state after a restart with `configuration`. Facts about build, storage and links stay.
+    /// Returns the state after a restart with `configuration`. Facts about build and storage stay.
     pub(in crate::firmware) fn restarted(&self, configuration: Configuration, outbox: &mut Outbox) -> Self {
         let fresh = Self::new(configuration, self.options, outbox);
-        Self {
-            build: self.build.clone(),
-            storage: self.storage.clone(),
-            bad_packets: self.bad_packets,
-            lost_time: self.lost_time,
-            rewound: self.rewound,
-            ..fresh
-        }
+        Self { build: self.build.clone(), storage: self.storage.clone(), rewound: self.rewound, ..fresh }
     }
 
     /// Returns the options that the firmware was created with.
@@ -89,24 +69,6 @@ impl Setup {
 
     pub(in crate::firmware) fn set_storage(&mut self, storage: StorageFacts) {
         self.storage = storage;
-    }
-
-    /// Returns the packets from scripts and simulators that could not be used.
-    pub(in crate::firmware) fn bad_packets(&self) -> BadPackets {
-        self.bad_packets
-    }
-
-    pub(in crate::firmware) fn set_bad_packets(&mut self, bad_packets: BadPackets) {
-        self.bad_packets = bad_packets;
-    }
-
-    /// Returns the real time that the flight could not keep up with.
-    pub(in crate::firmware) fn lost_time(&self) -> LostTime {
-        self.lost_time
-    }
-
-    pub(in crate::firmware) fn set_lost_time(&mut self, lost_time: LostTime) {
-        self.lost_time = lost_time;
     }
 
     /// Returns `true` while an earlier instant is shown. Clients cannot change anything then.

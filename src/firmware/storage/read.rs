@@ -147,7 +147,7 @@ fn identity(fields: &[&str], max: usize) -> Option<String> {
 
 fn mix(configuration: &mut Configuration, fields: &[&str]) -> Option<()> {
     let share = |at| number::<f64>(fields, at).filter(|share| share.is_finite());
-    let row = MixRow { throttle: share(1)?, roll: share(2)?, pitch: share(3)?, yaw: share(4)? };
+    let row = MixRow { throttle: share(1)?, roll: share(2)?, pitch_down: share(3)?, yaw: share(4)? };
     *slot(&mut configuration.custom_mix, fields)? = row;
     Some(())
 }

@@ -28,7 +28,7 @@ pub(super) fn payload(configuration: &Configuration) -> String {
     record(&[&"features", &configuration.features.0]);
     record(&[&"mixer", &configuration.mixer]);
     for (at, row) in configuration.custom_mix.iter().enumerate() {
-        record(&[&"mix", &at, &row.throttle, &row.roll, &row.pitch, &row.yaw]);
+        record(&[&"mix", &at, &row.throttle, &row.roll, &row.pitch_down, &row.yaw]);
     }
     record(&[&"map", &configuration.channel_map]);
     for (at, row) in configuration.modes.iter().enumerate() {

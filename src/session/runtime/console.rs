@@ -15,6 +15,7 @@ impl Session {
     pub(super) fn run_cli(&mut self, line: String, reply: ReplyTo<CliOutput>) {
         match self.vehicle.controller_mut().run_cli(&mut self.console, &line) {
             Answer::Now(mut answer) => {
+                self.host.add_to(&mut answer);
                 let restarted = self.carry_out_actions(&mut answer);
                 reply.send(output(&line, answer, restarted));
             }

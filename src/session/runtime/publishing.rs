@@ -5,9 +5,9 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::Session;
+use crate::link::endpoint::EndpointStatus;
 use crate::session::command::SessionView;
 use crate::session::simulator::Simulator;
-use crate::telemetry::EndpointStatus;
 
 impl Session {
     pub(super) fn view(&self) -> SessionView {

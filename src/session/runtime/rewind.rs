@@ -134,7 +134,8 @@ impl Session {
         let mut copy = self.copy_of_shown();
         let time_s = copy.time().as_secs_f64();
         match copy.controller_mut().run_cli(&mut Interpreter::default(), line) {
-            Answer::Now(answer) => {
+            Answer::Now(mut answer) => {
+                self.host.add_to(&mut answer);
                 let mut output = console::output(line, answer, false);
                 output
                     .advice

@@ -11,6 +11,7 @@ use tokio::time::{MissedTickBehavior, interval};
 use super::lines::{self, FlightLine, OpenResult, SitlPorts};
 use crate::firmware::FirmwareOptions;
 use crate::firmware::cli::BuildInfo;
+use crate::link::endpoint::{BadPackets, EndpointKind, EndpointStatus};
 use crate::link::proto::fdm_link::FdmLinkConfig;
 use crate::link::{ExternalSimulator, ListenConfig, Listeners, MotorPort};
 use crate::session::links::{Links, MotorTargets, MotorsError};
@@ -18,9 +19,7 @@ use crate::session::{Command, Event, Handle, SessionConfig, SessionEvent, Simula
 use crate::signals::fdm::MotorOrder;
 use crate::sim::{WorldConfig, WorldError};
 use crate::storage::{StorageError, Store};
-use crate::telemetry::{
-    BadPackets, EndpointKind, EndpointStatus, EventKind, FirmwareEvent, LinkState, NavEvent, Snapshot,
-};
+use crate::telemetry::{EventKind, FirmwareEvent, LinkState, NavEvent, Snapshot};
 use crate::vehicle::{Vehicle, VehicleConfig};
 
 /// The interval at which clients of the serial port are counted.

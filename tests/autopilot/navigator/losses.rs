@@ -87,7 +87,7 @@ fn nothing_but_finite_numbers_comes_out_of_broken_inputs() {
     at.dt = f64::NAN;
     for _ in 0..5 {
         let out = nav.update(&at, &params, &stored, &mut controllers);
-        assert!((out.roll_rad + out.pitch_rad + out.throttle + out.yaw_rate_rps.unwrap()).is_finite());
+        assert!((out.roll_rad + out.pitch_down_rad + out.throttle + out.yaw_rate_rps.unwrap()).is_finite());
     }
     let out = nav.update(&good, &params, &stored, &mut controllers);
     assert!(out.throttle.is_finite() && nav.state() == NavState::Approaching);
@@ -115,7 +115,7 @@ fn broken_inputs_while_the_pilot_flies_do_not_reach_the_mission_after_them() {
     nav.engage(&good, &params, &stored).unwrap();
     for _ in 0..200 {
         let out = nav.update(&good, &params, &stored, &mut controllers);
-        assert!((out.roll_rad + out.pitch_rad + out.throttle).is_finite(), "{out:?}");
+        assert!((out.roll_rad + out.pitch_down_rad + out.throttle).is_finite(), "{out:?}");
     }
     assert!(controllers.altitude.hover_us() > 1050.0);
     assert!(controllers.position.speed_setpoint_mps() > 0.0);

@@ -254,7 +254,7 @@ impl Law {
         // Before a pattern, HOLDING lasts one update and waits for nothing.
         let at_rest = matches!(nav.state, NavState::Arrived | NavState::Complete | NavState::Holding);
         assert!(at_rest || !nav.guards.is_empty(), "{} waits for nothing", nav.state);
-        let out = nav.output;
+        let out = firmware.nav_demand().unwrap();
         let now = Limits::of(&firmware.parameters().nav);
         let limits = match self.limits {
             Some(limits) if update <= self.limits_changed_at + SETTLE => limits,
@@ -262,7 +262,7 @@ impl Law {
         };
         assert!((0.0..=1.0).contains(&out.throttle), "{out:?}");
         assert!((limits.low_us..=limits.high_us).contains(&out.throttle_us), "{out:?} {limits:?}");
-        let lean = out.roll_rad.hypot(out.pitch_rad).to_degrees();
+        let lean = out.roll_rad.hypot(out.pitch_down_rad).to_degrees();
         assert!(lean <= limits.lean_deg + 1e-6, "{lean}° {limits:?}");
         assert!(out.yaw_rate_rps.is_none_or(f64::is_finite));
     }

@@ -1,8 +1,8 @@
 //! Web pages that try to command the craft: over TCP, where any page can send a request with bytes of its
 //! choice, and over the websocket.
 
+use betadeck::link::endpoint::EndpointKind;
 use betadeck::link::{ListenConfig, Request};
-use betadeck::telemetry::EndpointKind;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 use tokio_tungstenite::tungstenite::client::IntoClientRequest;

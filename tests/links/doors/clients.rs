@@ -2,10 +2,11 @@
 
 use std::time::{Duration, Instant};
 
+use betadeck::link::endpoint::EndpointKind;
+use betadeck::link::endpoint::{ClientStats, EndpointState};
 use betadeck::link::{ListenConfig, Listeners, Request};
 use betadeck::msp::HomeVector;
-use betadeck::telemetry::{ClientStats, EndpointState};
-use betadeck::telemetry::{EndpointKind, Mode};
+use betadeck::telemetry::Mode;
 use futures_util::SinkExt;
 use tokio::io::AsyncWriteExt;
 use tokio::net::TcpStream;

@@ -8,11 +8,11 @@ use betadeck::firmware::cli::{CliAction, CliContext, CliFacts, CliMode, CliReply
 use betadeck::firmware::config::{Configuration, ModeCondition};
 use betadeck::firmware::msp::{MspAction, MspFacts, handle};
 use betadeck::geo::LatLon;
+use betadeck::link::endpoint::{EndpointKind, EndpointState, EndpointStatus};
 use betadeck::link::proto::command_line::{Completion, LineSource};
 use betadeck::link::{ListenConfig, Listeners, Request, RestartSignal};
 use betadeck::msp::RawGps;
 use betadeck::plan::{Altitude, HoldPattern, LegSpeed, Seconds, Waypoint, WaypointType};
-use betadeck::telemetry::{EndpointKind, EndpointState, EndpointStatus};
 use futures_util::{SinkExt, StreamExt};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;

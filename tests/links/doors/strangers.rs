@@ -2,7 +2,7 @@
 //! clients that send nothing.
 
 use betadeck::link::Request;
-use betadeck::telemetry::EndpointKind;
+use betadeck::link::endpoint::EndpointKind;
 use tokio::io::AsyncWriteExt;
 use tokio::net::TcpStream;
 

@@ -4,8 +4,9 @@ use std::net::SocketAddr;
 use std::time::Instant;
 
 use betadeck::link::Request;
+use betadeck::link::endpoint::SimulatorStats;
 use betadeck::session::SessionEvent;
-use betadeck::telemetry::{EventKind, FirmwareEvent, LinkState, SimulatorStats};
+use betadeck::telemetry::{EventKind, FirmwareEvent, LinkState};
 
 use super::rig::{Rig, speaking, stats};
 

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{AttitudeSource, FirmwareOptions};
+use betadeck::link::endpoint::{EndpointKind, EndpointState, EndpointStatus, SimulatorStats};
 use betadeck::link::proto::fdm::{State, mirrored, pressure_pa};
 use betadeck::link::proto::fdm_link::FdmLinkConfig;
 use betadeck::link::{ClientId, ExternalSimulator, ListenConfig, Listeners, MotorPort, Request};
@@ -15,7 +16,7 @@ use betadeck::session::{
 use betadeck::signals::fdm::{Dialect, MotorOrder};
 use betadeck::sim::{WorldConfig, attitude};
 use betadeck::storage::Store;
-use betadeck::telemetry::{EndpointKind, EndpointState, EndpointStatus, EventKind, SimulatorStats};
+use betadeck::telemetry::EventKind;
 use betadeck::vehicle::{Vehicle, VehicleCommand, VehicleConfig};
 use nalgebra::Vector3;
 use tokio::sync::{mpsc, oneshot, watch};

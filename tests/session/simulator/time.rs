@@ -2,10 +2,11 @@
 
 use std::time::{Duration, Instant};
 
+use betadeck::link::endpoint::{EndpointKind, SimulatorStats};
 use betadeck::session::ReplyTo;
 use betadeck::session::command::{PLACE_IS_EXTERNAL, TIME_IS_EXTERNAL};
 use betadeck::session::{Command, SessionView};
-use betadeck::telemetry::{EndpointKind, LinkState, SimulatorStats};
+use betadeck::telemetry::LinkState;
 use betadeck::vehicle::VehicleCommand;
 
 use super::rig::{AHEAD, PATIENCE, START, rig, speaking, stats};

@@ -51,7 +51,7 @@ fn right_sticks_roll_right_pitch_down_and_turn_clockwise() {
 #[test]
 fn a_demanded_lean_takes_the_place_of_the_sticks() {
     let mut controller = Controller::new(Tuning::default(), DT);
-    let lean = crate::firmware::control::LeanDemand { roll_rad: 0.2, pitch_rad: -0.1 };
+    let lean = crate::firmware::control::LeanDemand { roll_rad: 0.2, pitch_down_rad: -0.1 };
     let input = ControlInput { lean: Some(lean), stick_roll: -500.0, throttle: Some(0.4), ..flying() };
     let state = run(&mut controller, &input, 100);
     assert!(state.setpoint_dps[0] > 0.0 && state.setpoint_dps[1] < 0.0);
@@ -119,7 +119,7 @@ fn race_mode_levels_roll_and_leaves_pitch_to_the_stick() {
     for (race, angle) in [(0, Some(0)), (1, None)] {
         let mut controller = tuned(&[("level_race_mode", race)]);
         let input = ControlInput { mode: StickMode::Angle, stick_pitch: 250.0, rc_frame: true, ..flying() };
-        let estimate = Estimate { roll_rad: 0.3, pitch_rad: 0.3, ..Estimate::default() };
+        let estimate = Estimate { roll_rad: 0.3, pitch_down_rad: 0.3, ..Estimate::default() };
         for _ in 0..500 {
             controller.step(&input, &estimate, DT);
         }
@@ -127,7 +127,7 @@ fn race_mode_levels_roll_and_leaves_pitch_to_the_stick() {
         assert!(setpoint[0] < -10.0, "roll is levelled: {setpoint:?}");
         let by_rate = (setpoint[1] - controller.tuning().rates[1].rate_dps(0.5)).abs() < 1.0;
         assert_eq!(by_rate, angle.is_none(), "{setpoint:?}");
-        let lean = crate::firmware::control::LeanDemand { roll_rad: 0.0, pitch_rad: 0.0 };
+        let lean = crate::firmware::control::LeanDemand { roll_rad: 0.0, pitch_down_rad: 0.0 };
         controller.step(&ControlInput { lean: Some(lean), ..input }, &estimate, DT);
         for _ in 0..100 {
             controller.step(&ControlInput { lean: Some(lean), ..input }, &estimate, DT);

@@ -48,13 +48,13 @@ impl PositionHold {
             self.point = None;
             controller.track(&measured, now.dt);
             let lean = stick.cap_magnitude(1.0) * limit;
-            return LeanDemand { pitch_rad: lean.x, roll_rad: lean.y };
+            return LeanDemand { pitch_down_rad: lean.x, roll_rad: lean.y };
         }
         let point = *self.point.get_or_insert_with(|| stopping_point(now, params));
         let target = PositionTarget::stay(point, params);
         let lean_ne = controller.update(&measured, &target, params, now.dt);
         let body = earth_to_body(lean_ne, now.heading_rad);
-        LeanDemand { pitch_rad: body.x, roll_rad: body.y }
+        LeanDemand { pitch_down_rad: body.x, roll_rad: body.y }
     }
 }
 
@@ -83,7 +83,8 @@ mod tests {
         let (mut hold, mut controller) = (PositionHold::default(), PositionController::default());
         let mut pitch_deg = |now: &NavInputs, seconds: f64| {
             let steps = (seconds / now.dt).round() as usize;
-            let demands = (0..steps).map(|_| hold.update(now, &params, &tuning, &mut controller).pitch_rad);
+            let demands =
+                (0..steps).map(|_| hold.update(now, &params, &tuning, &mut controller).pitch_down_rad);
             demands.last().unwrap_or_default().to_degrees()
         };
         let at_point = NavInputs::hovering();

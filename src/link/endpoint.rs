@@ -1,6 +1,6 @@
 //! The endpoints at which other programs reach the craft, and their status.
 
-use super::LinkState;
+use crate::telemetry::LinkState;
 
 /// The purpose of an endpoint. `Display` gives its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display)]
