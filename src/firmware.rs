@@ -8,7 +8,8 @@
 //!   every step    every step    per RC frame, at least 20 Hz           100 Hz                     every step
 //! ```
 //!
-//! The layers, from the outermost to the innermost. A module uses only its own layer and the ones below it:
+//! The layers, from the outermost to the innermost. A module uses only its own layer and the ones below it. `config` and
+//! `parameters` also fill the types that the modules above them define:
 //!
 //! | layer | modules | purpose |
 //! | --- | --- | --- |

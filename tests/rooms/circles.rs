@@ -11,17 +11,28 @@ const LARGEST_CIRCLE_OF_UI: usize = 5;
 type Module = Vec<String>;
 
 /// The files of a room by their modules, without their unit tests.
-struct Room {
+pub(crate) struct Room {
     files: BTreeMap<Module, SourceFile>,
     paths: BTreeMap<Module, Vec<Named>>,
 }
 
 impl Room {
-    fn new(files: impl IntoIterator<Item = SourceFile>) -> Self {
+    pub(crate) fn new(files: impl IntoIterator<Item = SourceFile>) -> Self {
         let files: BTreeMap<Module, SourceFile> =
             files.into_iter().map(|file| (file.module(), file.product())).collect();
         let paths = files.iter().map(|(module, file)| (module.clone(), named(file))).collect();
         Self { files, paths }
+    }
+
+    /// Returns the arrows between the sub-rooms: the modules that the first page declares, and this page by the name of
+    /// the room.
+    pub(crate) fn arrows(&self) -> BTreeSet<(&str, String)> {
+        let modules = self.files.keys().filter(|module| module.len() > 1);
+        let arrows = modules.flat_map(|module| {
+            let used = self.paths_in(module).into_iter().filter_map(|path| self.defined_in(&path, 0));
+            used.map(move |used| (module[1].as_str(), used.get(1).unwrap_or(&used[0]).clone()))
+        });
+        arrows.filter(|(from, to)| from != to).collect()
     }
 
     /// Returns the modules that a module imports. Parent and child modules are left out.

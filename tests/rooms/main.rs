@@ -3,6 +3,7 @@
 
 mod circles;
 mod impls;
+mod inside;
 mod page;
 mod paths;
 mod rules;
