@@ -10,6 +10,7 @@ mod late_answers;
 mod links;
 mod pacer;
 mod persistence;
+pub mod policy;
 mod real_time;
 mod reply;
 mod request_handler;

@@ -4,8 +4,8 @@ use super::panel::Panel;
 
 mod edit;
 mod enabled;
+mod intent;
 mod panels;
-mod real_craft;
 mod table;
 
 pub use edit::EditAction;

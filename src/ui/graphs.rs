@@ -82,9 +82,8 @@ impl GraphsState {
         self.cursor_s = (to < newest.time_s).then_some(to);
     }
 
-    /// Removes the cursor. Returns `true` if there was one.
-    pub(super) fn leave_cursor(&mut self) -> bool {
-        self.cursor_s.take().is_some()
+    pub(super) fn leave_cursor(&mut self) {
+        self.cursor_s = None;
     }
 
     /// Adds a picture to the history.
@@ -153,7 +152,8 @@ mod tests {
             graphs.move_cursor(-1.0);
         }
         assert_eq!(graphs.cursor_s(&view), Some(0.0));
-        assert!(graphs.leave_cursor() && !graphs.leave_cursor());
+        graphs.leave_cursor();
+        assert_eq!(graphs.pointed_at(), None);
     }
 
     #[test]

@@ -4,7 +4,7 @@ use crossterm::event::{KeyCode, KeyEvent};
 use strum::IntoEnumIterator as _;
 
 use super::formatting::fixed;
-use super::message::Effect;
+use super::message::{Change, Effect, Request};
 use super::shared::Shared;
 use super::text_field::TextField;
 use super::units::Units;
@@ -128,7 +128,7 @@ impl KnobsState {
     }
 
     /// Turns the selected knob by steps. A fault is switched on or off.
-    pub(super) fn turn(&mut self, state: &mut Shared, steps: i32) -> Vec<Effect> {
+    pub(super) fn turn(&mut self, state: &Shared, steps: i32) -> Vec<Request> {
         let Some(knob) = self.selected(state) else { return Vec::new() };
         let world = &state.view.vehicle.world;
         let wind = world.wind.unwrap_or(WindView { speed_mps: 0.0, from_deg: 0.0 });
@@ -157,12 +157,9 @@ impl KnobsState {
     }
 
     /// Handles Enter: a level or a fault changes at once, a number is typed.
-    pub(super) fn enter(&mut self, state: &mut Shared) -> Vec<Effect> {
+    pub(super) fn enter(&mut self, state: &Shared) -> Vec<Request> {
         match self.selected(state) {
-            Some(Knob::Noise) => {
-                let on = !state.view.vehicle.world.noise;
-                set_noise(state, on)
-            }
+            Some(Knob::Noise) => set_noise(state, !state.view.vehicle.world.noise),
             Some(Knob::Turbulence) => {
                 let levels: Vec<Turbulence> = Turbulence::iter().collect();
                 let now = state.view.vehicle.world.turbulence;
@@ -178,13 +175,13 @@ impl KnobsState {
     }
 
     /// Opens the field for a value of the selected knob.
-    pub(super) fn edit(&mut self) -> Vec<Effect> {
+    pub(super) fn edit(&mut self) -> Vec<Request> {
         self.field = Some(TextField::default());
         Vec::new()
     }
 
     /// Sets the selected knob to its default.
-    pub(super) fn reset(&mut self, state: &mut Shared) -> Vec<Effect> {
+    pub(super) fn reset(&mut self, state: &Shared) -> Vec<Request> {
         let Some(knob) = self.selected(state) else { return Vec::new() };
         if knob.is_default(&state.view.vehicle.world) {
             return Vec::new();
@@ -199,7 +196,7 @@ impl KnobsState {
     }
 
     /// Handles a key while a value is typed.
-    pub(super) fn field_key(&mut self, state: &mut Shared, event: KeyEvent) -> Vec<Effect> {
+    pub(super) fn field_key(&mut self, state: &Shared, event: KeyEvent) -> Vec<Request> {
         let Some(field) = &mut self.field else { return Vec::new() };
         match event.code {
             KeyCode::Esc => {
@@ -219,7 +216,7 @@ impl KnobsState {
     }
 
     /// Requests the typed value. A speed is typed in the shown units.
-    fn take_typed(&self, state: &Shared, typed: &str) -> Vec<Effect> {
+    fn take_typed(&self, state: &Shared, typed: &str) -> Vec<Request> {
         let Some(knob) = self.selected(state).filter(|_| !typed.is_empty()) else { return Vec::new() };
         let wind = state.view.vehicle.world.wind.unwrap_or(WindView { speed_mps: 0.0, from_deg: 0.0 });
         let number: Result<f64, _> = typed.parse();
@@ -236,7 +233,7 @@ impl KnobsState {
         }
     }
 
-    fn begin(&mut self, fault: &FaultInfo) -> Vec<Effect> {
+    fn begin(&mut self, fault: &FaultInfo) -> Vec<Request> {
         if fault.value.is_empty() || !fault.default.is_empty() {
             return world(format!("fault={}", fault.name()));
         }
@@ -251,38 +248,34 @@ fn tidy(speed_mps: f64) -> f64 {
     (speed_mps * 1000.0).round() / 1000.0
 }
 
-fn end(fault: &FaultInfo) -> Vec<Effect> {
+fn end(fault: &FaultInfo) -> Vec<Request> {
     world(format!("end={}", fault.name()))
 }
 
-// The new value is shown at once, so that a second press counts from it before the session confirms.
-
-fn set_wind(state: &mut Shared, wind: WindView) -> Vec<Effect> {
-    if let Some(shown) = &mut shown(state).wind {
-        *shown = wind;
-    }
-    world(format!("wind={}@{}", wind.speed_mps, wind.from_deg))
+fn set_wind(state: &Shared, wind: WindView) -> Vec<Request> {
+    let line = format!("wind={}@{}", wind.speed_mps, wind.from_deg);
+    changed(state, line, |world| world.wind = world.wind.map(|_| wind))
 }
 
-fn set_gust(state: &mut Shared, speed_mps: f64) -> Vec<Effect> {
-    shown(state).gust_mps = speed_mps;
-    world(format!("gust={speed_mps}"))
+fn set_gust(state: &Shared, speed_mps: f64) -> Vec<Request> {
+    changed(state, format!("gust={speed_mps}"), |world| world.gust_mps = speed_mps)
 }
 
-fn set_turbulence(state: &mut Shared, level: Turbulence) -> Vec<Effect> {
-    shown(state).turbulence = level;
-    world(format!("turbulence={level}"))
+fn set_turbulence(state: &Shared, level: Turbulence) -> Vec<Request> {
+    changed(state, format!("turbulence={level}"), |world| world.turbulence = level)
 }
 
-fn set_noise(state: &mut Shared, on: bool) -> Vec<Effect> {
-    shown(state).noise = on;
-    world(format!("noise={}", if on { "real" } else { "none" }))
+fn set_noise(state: &Shared, on: bool) -> Vec<Request> {
+    changed(state, format!("noise={}", if on { "real" } else { "none" }), |world| world.noise = on)
 }
 
-fn shown(state: &mut Shared) -> &mut WorldView {
-    &mut std::sync::Arc::make_mut(&mut state.view.vehicle).world
+/// Returns the requests that change the world by `line`, and show the change at once.
+fn changed(state: &Shared, line: String, change: impl FnOnce(&mut WorldView)) -> Vec<Request> {
+    let mut shown = state.view.vehicle.world.clone();
+    change(&mut shown);
+    vec![Change::World(Box::new(shown)).into(), Effect::World(line).into()]
 }
 
-fn world(line: String) -> Vec<Effect> {
-    vec![Effect::World(line)]
+fn world(line: String) -> Vec<Request> {
+    vec![Effect::World(line).into()]
 }

@@ -4,6 +4,7 @@ use crossterm::event::{KeyCode, KeyEvent};
 
 use super::action::{Action, PanelAction};
 use super::event_log::{LogLine, LogState, Severity};
+use super::message::{Change, Request};
 use super::shared::Shared;
 use super::text_field::TextField;
 
@@ -94,18 +95,20 @@ impl LogView {
     }
 
     /// Scrolls to the next older or newer line with a match, and reports if there is none.
-    pub(super) fn next_match(&mut self, state: &mut Shared, newer: bool) {
+    pub(super) fn next_match(&mut self, state: &Shared, newer: bool) -> Vec<Request> {
         if self.search.is_empty() {
             let text = format!(
                 "No search yet: `{}` in the log begins.",
                 state.key(Action::Panel(PanelAction::Search))
             );
-            state.notify(Severity::Info, text);
+            vec![Change::Notify(Severity::Info, text).into()]
         } else if !self.show_match(state, newer) {
             let end = if newer { "newer" } else { "older" };
             let text = format!("No {end} line has {:?}.", self.search.value());
             // Not in the log, because that line would then match.
-            state.say(Severity::Info, text);
+            vec![Change::Say(Severity::Info, text).into()]
+        } else {
+            Vec::new()
         }
     }
 
@@ -161,7 +164,7 @@ mod tests {
 
     #[test]
     fn matches_are_found_from_the_newest_back_and_forth() {
-        let mut state = log();
+        let state = log();
         let mut view = LogView { search: TextField::new("WIND"), ..LogView::default() };
         let text = |view: &LogView, state: &Shared| {
             let found = view.found;
@@ -169,13 +172,13 @@ mod tests {
                 .find(|line| Some(line.number) == found)
                 .map(|line| line.text.clone())
         };
-        view.next_match(&mut state, false);
+        view.next_match(&state, false);
         assert_eq!((text(&view, &state).as_deref(), view.scroll), (Some("wind two"), 1));
-        view.next_match(&mut state, false);
+        view.next_match(&state, false);
         assert_eq!((text(&view, &state).as_deref(), view.scroll), (Some("Wind one"), 3));
-        view.next_match(&mut state, false);
+        view.next_match(&state, false);
         assert_eq!(text(&view, &state).as_deref(), Some("Wind one"), "it is the oldest");
-        view.next_match(&mut state, true);
+        view.next_match(&state, true);
         assert_eq!(text(&view, &state).as_deref(), Some("wind two"));
     }
 

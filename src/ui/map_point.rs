@@ -7,7 +7,7 @@ use crate::session::SessionView;
 
 /// A place on the ground, metres north and east of the boot place.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct MapPoint {
+pub struct MapPoint {
     /// North, m.
     pub n: f64,
     /// East, m.

@@ -34,7 +34,7 @@ pub struct MapState {
 
 /// An item of the plan that has a place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum MapItem {
+pub enum MapItem {
     Waypoint(usize),
     /// Home of the plan.
     Home,

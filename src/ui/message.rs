@@ -6,12 +6,16 @@ use std::time::Duration;
 use crossterm::event::{KeyEvent, MouseEvent};
 
 use super::action::Action;
-use super::editor::{FileReply, FileRequest, PlanId};
+use super::editor::{Column, FileReply, FileRequest, PlanId};
+use super::event_log::Severity;
+use super::map_point::MapPoint;
+use super::map_state::{MapItem, MapMode};
 use super::popup::Popup;
 use crate::fc::UploadReport;
-use crate::plan::FlightPlan;
+use crate::plan::{Altitude, FlightPlan};
 use crate::session::command::{CliOutput, Command, SessionView};
 use crate::session::{Event, ForecastJob, ForecastReply};
+use crate::telemetry::snapshot::WorldView;
 use crate::vehicle::VehicleCommand;
 
 /// An input of the user interface.
@@ -72,6 +76,7 @@ pub enum Request {
     /// Carry out an action that is enabled.
     Act(Action),
     Effect(Effect),
+    Change(Change),
     Open(Popup),
     /// Run a line of the firmware's command line.
     Cli {
@@ -79,6 +84,55 @@ pub enum Request {
         /// `true` if the answer is also shown as a notice.
         is_reported: bool,
     },
+}
+
+/// A change of the state that all panels share.
+#[derive(Debug)]
+pub enum Change {
+    /// Show a notice for a moment and keep it in the log.
+    Notify(Severity, String),
+    /// Show a notice for a moment.
+    Say(Severity, String),
+    /// Move the window of the map.
+    MapWindow(MapMode),
+    /// Move the cursor on the map by columns and rows; without a cursor, the map.
+    MapArrow(f64, f64),
+    /// Pick up an item of the map with the mouse.
+    PickUp(MapItem, MapPoint),
+    /// Move the item picked up.
+    DragTo(MapPoint),
+    /// Put down the item picked up.
+    PutDown,
+    /// Add a waypoint at a place of the map.
+    AddWaypoint(MapPoint),
+    /// Move the cursor of the plan by rows.
+    PlanRows(isize),
+    /// Put the cursor of the plan on a cell.
+    PlanCell(usize, Column),
+    /// Show another altitude of a waypoint while it is dragged.
+    DragAltitude(usize, Altitude),
+    /// Give the dragged waypoint its altitude.
+    DropAltitude,
+    /// Move the cursor of the graphs by steps.
+    GraphsCursor(f64),
+    /// Show the newest instant in the graphs.
+    NoGraphsCursor,
+    /// Show a longer time span in the graphs, or a shorter one.
+    GraphsSpan(isize),
+    /// Move a channel of the virtual sticks to a pulse width, µs.
+    Channel(usize, u16),
+    /// Record the sticks, or end that.
+    Record,
+    /// Play the recorded sticks, or stop.
+    Play,
+    /// Show this world until the session confirms it, so that the next press of a key counts from it.
+    World(Box<WorldView>),
+}
+
+impl From<Change> for Request {
+    fn from(change: Change) -> Self {
+        Self::Change(change)
+    }
 }
 
 impl From<Effect> for Request {

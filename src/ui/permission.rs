@@ -10,7 +10,9 @@ use super::popup::frame::popup;
 use super::shared::Shared;
 use super::text_wrap::wrapped;
 use super::theme::Role;
-use crate::fc::{Access, Denial, Impact, RemoteView};
+use crate::fc::{Access, Denial, Impact};
+use crate::session::SessionView;
+use crate::session::policy::{self, Facts, Intent, Refusal};
 
 /// The width of the inside.
 const WIDTH: u16 = 56;
@@ -26,32 +28,36 @@ pub struct Permission {
 
 impl Permission {
     /// Returns the effects that may be carried out, and holds those that would change the craft.
-    pub(super) fn hold(&mut self, remote: &RemoteView, effects: Vec<Effect>) -> Vec<Effect> {
+    pub(super) fn hold(&mut self, view: &SessionView, effects: Vec<Effect>) -> Vec<Effect> {
+        let mut facts = Facts::from(view);
         // The session confirms the permission only with the next picture.
-        let permitted = self.permitted == Some(remote.connection);
-        let access = if permitted { Access::Changing } else { remote.access };
-        let is_held =
-            |effect: &Effect| access.check(impact_of(effect, remote.opens_cli)) == Err(Denial::NotPermitted);
+        if self.permitted.is_some() && self.permitted == view.remote.as_ref().map(|remote| remote.connection)
+        {
+            facts.access = Access::Changing;
+        }
+        let is_held = |effect: &Effect| {
+            policy::check(&facts, intent_of(effect)) == Err(Refusal::Access(Denial::NotPermitted))
+        };
         let (held, free): (Vec<Effect>, Vec<Effect>) = effects.into_iter().partition(is_held);
         self.held.extend(held);
         free
     }
 }
 
-/// Returns the impact of an effect on the craft.
-fn impact_of(effect: &Effect, opens_cli: bool) -> Impact {
+fn intent_of(effect: &Effect) -> Intent {
     match effect {
-        Effect::Cli(line) => Impact::of_line(line).or_changes(opens_cli),
-        Effect::Download(_) => Impact::Reads.or_changes(opens_cli),
-        Effect::Upload { .. } | Effect::SaveToFlash => Impact::Changes,
-        Effect::Send(_)
-        | Effect::World(_)
-        | Effect::Forecast(_)
-        | Effect::Files(_)
+        Effect::Send(command) => Intent::of(command),
+        Effect::Cli(line) => Intent::Line(Impact::of_line(line)),
+        Effect::Download(_) => Intent::Download,
+        Effect::Upload { .. } => Intent::Upload,
+        Effect::SaveToFlash => Intent::Save,
+        Effect::World(_) => Intent::World,
+        Effect::Forecast(_) => Intent::Forecast,
+        Effect::Files(_)
         | Effect::WriteScenario { .. }
         | Effect::Copy(_)
         | Effect::Suspend
-        | Effect::Quit => Impact::Reads,
+        | Effect::Quit => Intent::Read,
     }
 }
 

@@ -274,12 +274,13 @@ fn hover_us(state: &Shared) -> u16 {
     settings.hover_stick_us.max(settings.raised_stick_us)
 }
 
-/// Changes a channel by some µs.
-pub(super) fn nudge(state: &mut Shared, channel: usize, by_us: i32) -> Vec<Effect> {
-    let mut next = frame(state);
-    let Some(value) = next.channels.get_mut(channel) else { return Vec::new() };
-    *value = (i32::from(*value) + by_us).clamp(1000, 2000) as u16;
-    send(state, next)
+/// Returns the value of a channel, changed by some µs.
+pub(super) fn nudged(state: &Shared, channel: usize, by_us: i32) -> u16 {
+    (i32::from(channel_us(state, channel)) + by_us).clamp(1000, 2000) as u16
+}
+
+fn channel_us(state: &Shared, channel: usize) -> u16 {
+    frame(state).channels.get(channel).copied().unwrap_or(MIDDLE_US)
 }
 
 pub(super) fn set(state: &mut Shared, channel: usize, us: u16) -> Vec<Effect> {
@@ -289,16 +290,14 @@ pub(super) fn set(state: &mut Shared, channel: usize, us: u16) -> Vec<Effect> {
     send(state, next)
 }
 
-/// Centres a stick, lowers the throttle, or moves a switch from low to high and back.
-pub(super) fn flip(state: &mut Shared, channel: usize) -> Vec<Effect> {
-    let now = frame(state).channels.get(channel).copied().unwrap_or(MIDDLE_US);
-    let us = match channel {
+/// Returns the value of a centred stick, the lowered throttle, or a switch that is moved from low to high or back.
+pub(super) fn flipped(state: &Shared, channel: usize) -> u16 {
+    match channel {
         THROTTLE => LOW_US,
         0..=3 => MIDDLE_US,
-        _ if now >= MIDDLE_US => LOW_US,
+        _ if channel_us(state, channel) >= MIDDLE_US => LOW_US,
         _ => 2000,
-    };
-    set(state, channel, us)
+    }
 }
 
 /// Sends a frame. The keys take over from the scripted pilot.

@@ -26,6 +26,7 @@ use super::transmitter;
 use super::transmitter::TWICE_WITHIN;
 use super::tutorial;
 
+mod change;
 mod flight;
 mod map_menu;
 mod mouse;
@@ -36,6 +37,7 @@ mod popup;
 mod timeline;
 mod view;
 
+use change::change;
 use flight::{fly, speed, upload, uploaded};
 use paste::paste;
 use view::{focus, focus_neighbour, scroll};
@@ -197,7 +199,7 @@ fn key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
 
 /// Passes a key to the focused panel as text.
 fn type_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
-    let requests = state.panels.of_mut(state.shared.focus).key(&mut state.shared, event);
+    let requests = state.panels.of_mut(state.shared.focus).key(&state.shared, event);
     carry_out(state, requests)
 }
 
@@ -303,6 +305,7 @@ fn carry_out(state: &mut AppState, requests: Vec<Request>) -> Vec<Effect> {
         match request {
             Request::Act(action) => effects.extend(perform(state, action)),
             Request::Effect(effect) => effects.push(effect),
+            Request::Change(requested) => effects.extend(change(&mut state.shared, requested)),
             Request::Open(popup) => state.popups.push(popup),
             Request::Cli { line, is_reported } => {
                 state.panels.cli.console.queue(line, is_reported);
@@ -403,8 +406,8 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
             let focus_now = state.shared.focus;
             if focus_now.takes_text() {
                 focus(&mut state.shared, Panel::Map);
-            } else if state.panels.of_mut(focus_now).go_back(&mut state.shared) {
-                // The panel has gone back by a step.
+            } else if let Some(requests) = state.panels.of_mut(focus_now).go_back(&state.shared) {
+                return carry_out(state, requests);
             } else if !state.shared.forecast.dismiss()
                 && !state.shared.editor.cancel()
                 && !map_edit::leave(&mut state.shared)
@@ -430,7 +433,7 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
                 Some(Context::In(panel)) => panel,
                 _ => state.shared.focus,
             };
-            let requests = state.panels.of_mut(panel).act(&mut state.shared, own);
+            let requests = state.panels.of_mut(panel).act(&state.shared, own);
             carry_out(state, requests)
         }
         Action::ScrollUp => scroll(state, -1),

@@ -1,34 +1,32 @@
 //! Decides which actions are possible now, and gives the reason for each refusal.
 
-use crate::fc::{Access, RemoteState};
-use crate::flight::forecast::{CONTROLLER_IS_REMOTE, PHYSICS_IS_EXTERNAL};
-use crate::session::command::{
-    NOT_RECORDED, PLACE_IS_EXTERNAL, REWOUND, TIME_IS_EXTERNAL, TIME_IS_THE_FIRMWARES,
-};
-use crate::telemetry::{LinkState, Mode, NavState};
+use crate::fc::{Access, Denial, RemoteState};
+use crate::session::policy::{self, Facts, NOT_KNOWN_YET, Refusal};
+use crate::telemetry::{Mode, NavState};
 use crate::ui::shared::Shared;
 use crate::ui::stick_recording::keys as stick_recording;
 use crate::ui::transmitter;
 
-use super::{Action, PanelAction, real_craft};
+use super::intent::intent_of;
+use super::{Action, PanelAction};
 
 /// Checks that the action is possible now.
 ///
 /// # Errors
 /// Returns the reason for a refusal and the way out, in one sentence.
 pub fn enabled(state: &Shared, action: Action) -> Result<(), String> {
-    let craft = &state.view.vehicle.craft;
-    let remote = state.view.remote.as_ref();
-    if let Some(sentence) = remote.and_then(|remote| real_craft::refusal(remote, action)) {
-        return Err(sentence.to_owned());
+    match policy::check(&Facts::from(&state.view), intent_of(state, action)) {
+        // The user is asked for a missing permission.
+        Ok(()) | Err(Refusal::Access(Denial::NotPermitted)) => can_do(state, action),
+        Err(refusal) => Err(state.keymap.in_force(&refusal.to_string())),
     }
+}
+
+/// Checks that an action that the policy allows has an effect in this state of the craft.
+fn can_do(state: &Shared, action: Action) -> Result<(), String> {
+    let craft = &state.view.vehicle.craft;
     match action {
-        Action::Pause | Action::Step | Action::Tick | Action::Slower | Action::Faster | Action::RealTime
-            if remote.is_some() =>
-        {
-            Err(TIME_IS_THE_FIRMWARES.to_owned())
-        }
-        Action::AllowChanges => match remote.map(|remote| remote.access) {
+        Action::AllowChanges => match state.view.remote.as_ref().map(|remote| remote.access) {
             Some(Access::Reading) => Ok(()),
             Some(Access::Changing) => {
                 Err("Changes are permitted already, until the connection ends.".to_owned())
@@ -37,23 +35,8 @@ pub fn enabled(state: &Shared, action: Action) -> Result<(), String> {
                 Err("The craft is simulated: changes need no permission.".to_owned())
             }
         },
-        Action::Pause | Action::Step | Action::Tick | Action::Slower | Action::Faster | Action::RealTime
-            if state.view.simulator.is_some() =>
-        {
-            Err(TIME_IS_EXTERNAL.to_owned())
-        }
-        _ if is_in_recording(action) && state.view.simulator.is_some() => Err(TIME_IS_EXTERNAL.to_owned()),
-        _ if is_in_recording(action) && state.view.timeline.is_none() => Err(NOT_RECORDED.to_owned()),
-        _ if steers(action) && state.is_rewound() => Err(state.keymap.in_force(REWOUND)),
-        Action::ResetCraft if state.view.simulator == Some(LinkState::Flowing) => {
-            Err(PLACE_IS_EXTERNAL.to_owned())
-        }
         Action::GoTo | Action::HoldHere | Action::Resume => can_command(state, action),
         Action::LookAhead if state.forecast.looks_ahead() => Ok(()),
-        Action::LookAhead | Action::WhatIf if remote.is_some() => Err(CONTROLLER_IS_REMOTE.to_owned()),
-        Action::LookAhead | Action::WhatIf if state.view.simulator.is_some() => {
-            Err(PHYSICS_IS_EXTERNAL.to_owned())
-        }
         Action::LookAhead | Action::WhatIf if !craft.is_armed() && state.view.pilot.is_none() => {
             if state.is_disarmed_in_the_air() {
                 let reset = state.key(Action::ResetCraft);
@@ -86,15 +69,6 @@ pub fn enabled(state: &Shared, action: Action) -> Result<(), String> {
         Action::Upload if state.plan().waypoints.is_empty() => {
             Err("No plan is open, so there is nothing to upload.".to_owned())
         }
-        Action::Upload | Action::Fly
-            if let Some(upload) = state.view.upload
-                && (action == Action::Upload || state.view.pilot.is_none()) =>
-        {
-            Err(format!(
-                "An upload is under way, line {} of {}: wait for its end.",
-                upload.sent, upload.total
-            ))
-        }
         Action::Fly if state.view.pilot.is_none() && is_wrecked(state) => {
             let reset = state.key(Action::ResetCraft);
             Err(format!("The craft crashed and cannot fly: `{reset}` puts it back home."))
@@ -115,7 +89,7 @@ pub fn enabled(state: &Shared, action: Action) -> Result<(), String> {
 /// Replaces the reason for a missing switch while the remote firmware has not yet reported its switches.
 fn or_not_known_yet(state: &Shared, why: String) -> String {
     match &state.view.remote {
-        Some(remote) if remote.state != RemoteState::Ready => real_craft::NOT_KNOWN_YET.to_owned(),
+        Some(remote) if remote.state != RemoteState::Ready => NOT_KNOWN_YET.to_owned(),
         _ => why,
     }
 }
@@ -149,44 +123,6 @@ fn can_command(state: &Shared, action: Action) -> Result<(), String> {
     }
 }
 
-/// Returns `true` if the action moves through the recording of the flight.
-fn is_in_recording(action: Action) -> bool {
-    matches!(
-        action,
-        Action::EventBack
-            | Action::EventForward
-            | Action::StateBack
-            | Action::StateForward
-            | Action::Earlier
-            | Action::Later
-            | Action::FlyOn
-            | Action::Newest
-    )
-}
-
-/// Returns `true` if the action would change the flight. Such actions wait while an earlier instant is shown.
-fn steers(action: Action) -> bool {
-    matches!(
-        action,
-        Action::Fly
-            | Action::Arm
-            | Action::Throttle
-            | Action::Autopilot
-            | Action::ReturnHome
-            | Action::GoTo
-            | Action::HoldHere
-            | Action::Resume
-            | Action::CutRc
-            | Action::Upload
-            | Action::ResetCraft
-            | Action::Panel(PanelAction::Lower)
-            | Action::Panel(PanelAction::Raise)
-            | Action::Panel(PanelAction::LowerMuch)
-            | Action::Panel(PanelAction::RaiseMuch)
-            | Action::Panel(PanelAction::Flip)
-    )
-}
-
 /// Returns `true` if the craft has crashed, so that only a reset helps.
 pub(in crate::ui) fn is_wrecked(state: &Shared) -> bool {
     state.view.vehicle.truth.as_ref().is_some_and(|truth| truth.crashed)
@@ -196,31 +132,8 @@ pub(in crate::ui) fn is_wrecked(state: &Shared) -> bool {
 mod tests {
     use super::*;
     use crate::session::SessionView;
+    use crate::session::command::REWOUND;
     use crate::timeline::TimelineView;
-
-    #[test]
-    fn an_external_simulator_keeps_time_and_place_to_itself() {
-        let mut state = Shared::bare((80, 24), SessionView::default());
-        let times = [
-            Action::Pause,
-            Action::Step,
-            Action::Tick,
-            Action::Slower,
-            Action::Faster,
-            Action::RealTime,
-            Action::EventBack,
-            Action::Earlier,
-            Action::FlyOn,
-        ];
-        let refused = |state: &Shared| times.iter().all(|&action| enabled(state, action).is_err());
-        state.view.timeline = Some(TimelineView::default());
-        assert!(!refused(&state) && enabled(&state, Action::ResetCraft).is_ok());
-        state.view.simulator = Some(LinkState::Flowing);
-        assert!(refused(&state));
-        assert_eq!(enabled(&state, Action::ResetCraft), Err(PLACE_IS_EXTERNAL.to_owned()));
-        state.view.simulator = Some(LinkState::Silent);
-        assert!(refused(&state) && enabled(&state, Action::ResetCraft).is_ok(), "it disarms at least");
-    }
 
     #[test]
     fn a_craft_that_falls_disarmed_does_not_stand() {
@@ -241,7 +154,6 @@ mod tests {
     #[test]
     fn nothing_steers_while_an_earlier_instant_is_shown() {
         let mut state = Shared::bare((80, 24), SessionView::default());
-        assert_eq!(enabled(&state, Action::Earlier), Err(NOT_RECORDED.to_owned()));
         state.view.timeline = Some(TimelineView { rewound: true, ..TimelineView::default() });
         for action in
             [Action::Fly, Action::Arm, Action::CutRc, Action::Upload, Action::Panel(PanelAction::Raise)]

@@ -1,17 +1,13 @@
 //! Commands about time.
 
+use crate::session::policy::{self, Facts, Intent};
 use crate::session::{Command, SPEED_RANGE};
 use crate::ui::message::{Effect, Request};
 use crate::ui::shared::Shared;
 
 /// Runs `speed 4` or `speed max`.
 pub(super) fn speed(state: &mut Shared, _: &str, argument: &str) -> Result<Vec<Request>, String> {
-    if state.view.simulator.is_some() {
-        return Err(crate::session::command::TIME_IS_EXTERNAL.to_owned());
-    }
-    if state.view.remote.is_some() {
-        return Err(crate::session::command::TIME_IS_THE_FIRMWARES.to_owned());
-    }
+    policy::check(&Facts::from(&state.view), Intent::Time).map_err(|refusal| refusal.to_string())?;
     let (slowest, fastest) = SPEED_RANGE.into_inner();
     let factor =
         match argument.trim_end_matches(['x', '×']) {

@@ -50,7 +50,7 @@ impl Content for CliPanel {
         draw(&self.console, state, area, buffer)
     }
 
-    fn key(&mut self, state: &mut Shared, event: KeyEvent) -> Vec<Request> {
+    fn key(&mut self, state: &Shared, event: KeyEvent) -> Vec<Request> {
         match event.code {
             KeyCode::Enter => {
                 let entered = self.console.enter();
@@ -73,10 +73,11 @@ impl Content for CliPanel {
         Vec::new()
     }
 
-    fn scroll(&mut self, state: &mut Shared, area: Rect, by: isize) {
+    fn scroll(&mut self, state: &Shared, area: Rect, by: isize) -> Vec<Request> {
         // The newest line is at the bottom, so scrolling up increases its position.
         let last = last_scroll(&self.console, state, area);
         scrolled(&mut self.console.scroll, by.saturating_neg(), last);
+        Vec::new()
     }
 }
 

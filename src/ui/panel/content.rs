@@ -16,8 +16,8 @@ const WHEEL_LINES: isize = 3;
 /// The actions of a hint, and its label.
 pub(in crate::ui) type Hint = (&'static [Action], &'static str);
 
-/// The content of a panel: its own state, and its use of the state that all panels share. An area is the inside of the
-/// frame.
+/// The content of a panel: its own state, and its view of the state that all panels share, which it changes by requests
+/// only. An area is the inside of the frame.
 pub(in crate::ui) trait Content {
     /// Returns the title in the frame.
     fn title(&self, state: &Shared) -> String;
@@ -31,12 +31,12 @@ pub(in crate::ui) trait Content {
     }
 
     /// Carries out an action of the panel.
-    fn act(&mut self, _: &mut Shared, _: PanelAction) -> Vec<Request> {
+    fn act(&mut self, _: &Shared, _: PanelAction) -> Vec<Request> {
         Vec::new()
     }
 
     /// Handles a key that is text here.
-    fn key(&mut self, _: &mut Shared, _: KeyEvent) -> Vec<Request> {
+    fn key(&mut self, _: &Shared, _: KeyEvent) -> Vec<Request> {
         Vec::new()
     }
 
@@ -47,30 +47,32 @@ pub(in crate::ui) trait Content {
 
     fn close_field(&mut self) {}
 
-    /// Goes back by one step. Returns `false` if there is none.
-    fn go_back(&mut self, _: &mut Shared) -> bool {
-        false
+    /// Goes back by one step. Returns `None` if there is none.
+    fn go_back(&mut self, _: &Shared) -> Option<Vec<Request>> {
+        None
     }
 
     /// Scrolls by lines, within the content.
-    fn scroll(&mut self, _: &mut Shared, _: Rect, _: isize) {}
+    fn scroll(&mut self, _: &Shared, _: Rect, _: isize) -> Vec<Request> {
+        Vec::new()
+    }
 
-    fn wheel(&mut self, state: &mut Shared, area: Rect, _: &MouseEvent, direction: isize) {
-        self.scroll(state, area, direction * WHEEL_LINES);
+    fn wheel(&mut self, state: &Shared, area: Rect, _: &MouseEvent, direction: isize) -> Vec<Request> {
+        self.scroll(state, area, direction * WHEEL_LINES)
     }
 
     /// Handles a press of the left button.
-    fn press(&mut self, _: &mut Shared, _: Rect, _: &MouseEvent) -> Vec<Request> {
+    fn press(&mut self, _: &Shared, _: Rect, _: &MouseEvent) -> Vec<Request> {
         Vec::new()
     }
 
     /// Handles a drag that began with a press in this panel.
-    fn drag(&mut self, _: &mut Shared, _: Rect, _: &MouseEvent) -> Vec<Request> {
+    fn drag(&mut self, _: &Shared, _: Rect, _: &MouseEvent) -> Vec<Request> {
         Vec::new()
     }
 
     /// Handles the release of a button, at any position.
-    fn release(&mut self, _: &mut Shared) -> Vec<Request> {
+    fn release(&mut self, _: &Shared) -> Vec<Request> {
         Vec::new()
     }
 

@@ -12,7 +12,7 @@ use crate::telemetry::signal::Signal;
 use crate::ui::action::{Action, PanelAction};
 use crate::ui::formatting::{clock, fixed};
 use crate::ui::graphs::{PLOTS, Plot, Sample, Stroke};
-use crate::ui::message::Request;
+use crate::ui::message::{Change, Request};
 use crate::ui::panel::{Content, Hint, Panel};
 use crate::ui::popup::Popup;
 use crate::ui::popup::frame::popup;
@@ -48,23 +48,20 @@ impl Content for GraphsPanel {
         ]
     }
 
-    fn act(&mut self, state: &mut Shared, action: PanelAction) -> Vec<Request> {
-        match action {
-            PanelAction::CursorBack => state.graphs.move_cursor(-1.0),
-            PanelAction::CursorOn => state.graphs.move_cursor(1.0),
-            PanelAction::SpanLess => state.graphs.change_span(-1),
-            PanelAction::SpanMore => state.graphs.change_span(1),
-            PanelAction::ChoosePlots => return vec![Request::Open(Popup::Plots { selected: 0 })],
-            PanelAction::CursorOff => {
-                state.graphs.leave_cursor();
-            }
-            _ => {}
-        }
-        Vec::new()
+    fn act(&mut self, _: &Shared, action: PanelAction) -> Vec<Request> {
+        vec![match action {
+            PanelAction::CursorBack => Change::GraphsCursor(-1.0).into(),
+            PanelAction::CursorOn => Change::GraphsCursor(1.0).into(),
+            PanelAction::SpanLess => Change::GraphsSpan(-1).into(),
+            PanelAction::SpanMore => Change::GraphsSpan(1).into(),
+            PanelAction::ChoosePlots => Request::Open(Popup::Plots { selected: 0 }),
+            PanelAction::CursorOff => Change::NoGraphsCursor.into(),
+            _ => return Vec::new(),
+        }]
     }
 
-    fn go_back(&mut self, state: &mut Shared) -> bool {
-        state.graphs.leave_cursor()
+    fn go_back(&mut self, state: &Shared) -> Option<Vec<Request>> {
+        state.graphs.pointed_at().map(|_| vec![Change::NoGraphsCursor.into()])
     }
 }
 

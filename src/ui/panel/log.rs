@@ -44,21 +44,21 @@ impl Content for LogPanel {
         ]
     }
 
-    fn act(&mut self, state: &mut Shared, action: PanelAction) -> Vec<Request> {
+    fn act(&mut self, state: &Shared, action: PanelAction) -> Vec<Request> {
         match action {
             PanelAction::Search => {
                 self.view.begin_search();
                 return vec![Request::Act(Action::Show(Panel::Log))];
             }
-            PanelAction::NextMatch => self.view.next_match(state, false),
-            PanelAction::PreviousMatch => self.view.next_match(state, true),
+            PanelAction::NextMatch => return self.view.next_match(state, false),
+            PanelAction::PreviousMatch => return self.view.next_match(state, true),
             PanelAction::Filter => self.view.cycle_filter(),
             _ => {}
         }
         Vec::new()
     }
 
-    fn key(&mut self, state: &mut Shared, event: KeyEvent) -> Vec<Request> {
+    fn key(&mut self, state: &Shared, event: KeyEvent) -> Vec<Request> {
         self.view.search_key(state, event);
         Vec::new()
     }
@@ -71,17 +71,18 @@ impl Content for LogPanel {
         self.view.end_search();
     }
 
-    fn go_back(&mut self, _: &mut Shared) -> bool {
+    fn go_back(&mut self, _: &Shared) -> Option<Vec<Request>> {
         let has_search = !self.view.search.is_empty();
-        if has_search {
+        has_search.then(|| {
             self.view.end_search();
-        }
-        has_search
+            Vec::new()
+        })
     }
 
-    fn scroll(&mut self, state: &mut Shared, area: Rect, by: isize) {
+    fn scroll(&mut self, state: &Shared, area: Rect, by: isize) -> Vec<Request> {
         let last = last_scroll(&self.view, state, area);
         scrolled(&mut self.view.scroll, by, last);
+        Vec::new()
     }
 }
 

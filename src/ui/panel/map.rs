@@ -10,11 +10,11 @@ use crate::geo::LocalFrame;
 use crate::plan::{FlightPlan, Waypoint, WaypointType};
 use crate::telemetry::PlanSource;
 use crate::ui::action::{self, Action, EditAction, PanelAction};
-use crate::ui::map_edit::{self, actions};
+use crate::ui::map_edit;
 use crate::ui::map_point::origin::origin;
 use crate::ui::map_point::{self, MapPoint, to_map};
 use crate::ui::map_state::{MapItem, MapMode, Moving};
-use crate::ui::message::{Request, requests};
+use crate::ui::message::{Change, Request};
 use crate::ui::panel::{Content, Hint, Panel};
 use crate::ui::popup::map_menu::MapChoice;
 use crate::ui::popup::{MapMenu, Popup};
@@ -65,69 +65,73 @@ impl Content for MapPanel {
         ]
     }
 
-    fn act(&mut self, state: &mut Shared, action: PanelAction) -> Vec<Request> {
-        match action {
-            PanelAction::PanUp => actions::arrow(state, 0.0, -1.0),
-            PanelAction::PanDown => actions::arrow(state, 0.0, 1.0),
-            PanelAction::PanLeft => actions::arrow(state, -1.0, 0.0),
-            PanelAction::PanRight => actions::arrow(state, 1.0, 0.0),
-            PanelAction::ZoomIn => moves::zoom_map(state, 1.0 / ZOOM_STEP),
-            PanelAction::ZoomOut => moves::zoom_map(state, ZOOM_STEP),
-            PanelAction::Follow => moves::follow(state),
-            PanelAction::Fit => state.map.mode = MapMode::Fit,
-            _ => {}
-        }
-        Vec::new()
+    fn act(&mut self, state: &Shared, action: PanelAction) -> Vec<Request> {
+        let change = match action {
+            PanelAction::PanUp => Some(Change::MapArrow(0.0, -1.0)),
+            PanelAction::PanDown => Some(Change::MapArrow(0.0, 1.0)),
+            PanelAction::PanLeft => Some(Change::MapArrow(-1.0, 0.0)),
+            PanelAction::PanRight => Some(Change::MapArrow(1.0, 0.0)),
+            PanelAction::ZoomIn => moves::zoomed(state, 1.0 / ZOOM_STEP).map(Change::MapWindow),
+            PanelAction::ZoomOut => moves::zoomed(state, ZOOM_STEP).map(Change::MapWindow),
+            PanelAction::Follow => moves::following(state).map(Change::MapWindow),
+            PanelAction::Fit => Some(Change::MapWindow(MapMode::Fit)),
+            _ => None,
+        };
+        change.map(Request::Change).into_iter().collect()
     }
 
-    fn wheel(&mut self, state: &mut Shared, area: Rect, event: &MouseEvent, direction: isize) {
+    fn wheel(&mut self, state: &Shared, area: Rect, event: &MouseEvent, direction: isize) -> Vec<Request> {
         let factor = if direction < 0 { 1.0 / ZOOM_STEP } else { ZOOM_STEP };
         let view = Viewport::of(state, area);
-        state.map.mode = match state.map.mode {
+        let window = match state.map.mode {
             MapMode::Follow(scale) => MapMode::Follow(scale * factor),
             MapMode::Fit | MapMode::Free { .. } => view.zoomed(factor, view.place(event.column, event.row)),
         };
+        vec![Change::MapWindow(window).into()]
     }
 
     /// Picks up a waypoint, home or the fence under the mouse, or starts dragging the map. A press with Ctrl adds a
     /// waypoint.
-    fn press(&mut self, state: &mut Shared, area: Rect, event: &MouseEvent) -> Vec<Request> {
+    fn press(&mut self, state: &Shared, area: Rect, event: &MouseEvent) -> Vec<Request> {
         let view = Viewport::of(state, area);
         let place = view.place(event.column, event.row);
         if event.modifiers.contains(KeyModifiers::CONTROL) {
-            return requests(actions::add_at(state, place));
+            return vec![Change::AddWaypoint(place).into()];
         }
         let item = map_edit::item_at(state, place, view.scale);
         // Home and fence move only in edit mode, because they are in areas where the map is dragged, too.
         let item = item.filter(|item| matches!(item, MapItem::Waypoint(_)) || state.map.edit.is_some());
         match item.filter(|_| state.view.vehicle.active_plan.is_none() || state.map.edit.is_some()) {
-            Some(item) => actions::pick_up(state, item, place, true),
-            None => self.dragged = Some((event.column, event.row, view.centre)),
+            Some(item) => vec![Change::PickUp(item, place).into()],
+            None => {
+                self.dragged = Some((event.column, event.row, view.centre));
+                Vec::new()
+            }
         }
-        Vec::new()
     }
 
-    fn drag(&mut self, state: &mut Shared, area: Rect, event: &MouseEvent) -> Vec<Request> {
+    fn drag(&mut self, state: &Shared, area: Rect, event: &MouseEvent) -> Vec<Request> {
         let view = Viewport::of(state, area);
-        if let Some(moving) = &mut state.map.moving {
+        if state.map.moving.is_some() {
             // The window stays still meanwhile.
-            state.map.mode = MapMode::Free { n: view.centre.n, e: view.centre.e, scale: view.scale };
-            moving.place = view.place(event.column, event.row);
-            moving.moved = true;
-        } else if let Some((column, row, centre)) = self.dragged {
+            let still = MapMode::Free { n: view.centre.n, e: view.centre.e, scale: view.scale };
+            let place = view.place(event.column, event.row);
+            return vec![Change::MapWindow(still).into(), Change::DragTo(place).into()];
+        }
+        if let Some((column, row, centre)) = self.dragged {
             let columns = f64::from(column) - f64::from(event.column);
             let rows = f64::from(row) - f64::from(event.row);
             if columns != 0.0 || rows != 0.0 {
-                state.map.mode = Viewport { centre, ..view }.panned(columns, rows);
+                return vec![Change::MapWindow(Viewport { centre, ..view }.panned(columns, rows)).into()];
             }
         }
         Vec::new()
     }
 
-    fn release(&mut self, state: &mut Shared) -> Vec<Request> {
+    fn release(&mut self, state: &Shared) -> Vec<Request> {
         self.dragged = None;
         let is_moved = state.map.moving.is_some_and(|moving| moving.by_mouse);
-        if is_moved { requests(actions::put_down(state)) } else { Vec::new() }
+        if is_moved { vec![Change::PutDown.into()] } else { Vec::new() }
     }
 
     fn menu(&self, state: &Shared, area: Rect, event: &MouseEvent) -> Option<Popup> {

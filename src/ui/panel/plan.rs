@@ -14,7 +14,7 @@ use crate::plan::review::Finding;
 use crate::ui::action::{Action, EditAction};
 use crate::ui::editor::{Column, findings, settings_in_force};
 use crate::ui::forecast;
-use crate::ui::message::{Request, requests};
+use crate::ui::message::{Change, Request};
 use crate::ui::panel::{Content, Hint, Panel};
 use crate::ui::shared::Shared;
 use crate::ui::text_wrap::wrapped;
@@ -51,49 +51,44 @@ impl Content for PlanPanel {
         ]
     }
 
-    fn scroll(&mut self, state: &mut Shared, _: Rect, by: isize) {
-        state.editor.move_cursor(by, 0);
+    fn scroll(&mut self, _: &Shared, _: Rect, by: isize) -> Vec<Request> {
+        vec![Change::PlanRows(by).into()]
     }
 
     /// Moves the cursor to the value under the mouse, or picks up a waypoint of the altitude profile.
-    fn press(&mut self, state: &mut Shared, area: Rect, event: &MouseEvent) -> Vec<Request> {
+    fn press(&mut self, state: &Shared, area: Rect, event: &MouseEvent) -> Vec<Request> {
         match target_at(state, area, (event.column, event.row)) {
-            Some(PlanTarget::Cell(row, column)) => state.editor.go_to_cell(row, column),
+            Some(PlanTarget::Cell(row, column)) => vec![Change::PlanCell(row, column).into()],
             Some(PlanTarget::Altitude(index)) => {
-                state.editor.go_to_cell(index, Column::Altitude);
-                let altitude = state.plan().waypoints.get(index).map(|wp| wp.altitude);
-                state.editor.dragged_altitude = altitude.map(|altitude| (index, altitude));
+                let altitude = state.plan().waypoints.get(index).map(|wp| wp.altitude).unwrap_or_default();
                 // The current scale: it changes with the altitude.
                 let metres = metres_per_row(state, area).unwrap_or_default();
-                let from_m = altitude.unwrap_or_default().above_home_m();
-                self.dragged = Some((event.row, metres, from_m));
+                self.dragged = Some((event.row, metres, altitude.above_home_m()));
+                vec![
+                    Change::PlanCell(index, Column::Altitude).into(),
+                    Change::DragAltitude(index, altitude).into(),
+                ]
             }
-            None => {}
+            None => Vec::new(),
         }
-        Vec::new()
     }
 
     /// Drags an altitude of the profile, by whole metres or feet.
-    fn drag(&mut self, state: &mut Shared, _: Rect, event: &MouseEvent) -> Vec<Request> {
-        if let (Some((index, _)), Some((from_row, metres, from_m))) =
+    fn drag(&mut self, state: &Shared, _: Rect, event: &MouseEvent) -> Vec<Request> {
+        let (Some((index, _)), Some((from_row, metres, from_m))) =
             (state.editor.dragged_altitude, self.dragged)
-        {
-            let rows = f64::from(from_row) - f64::from(event.row);
-            let shown = state.units.length(from_m + rows * metres).round();
-            let altitude_m = state.units.metres(shown);
-            state.editor.dragged_altitude = Some((index, Altitude::above_home(altitude_m)));
-        }
-        Vec::new()
+        else {
+            return Vec::new();
+        };
+        let rows = f64::from(from_row) - f64::from(event.row);
+        let shown = state.units.length(from_m + rows * metres).round();
+        let altitude = Altitude::above_home(state.units.metres(shown));
+        vec![Change::DragAltitude(index, altitude).into()]
     }
 
-    fn release(&mut self, state: &mut Shared) -> Vec<Request> {
+    fn release(&mut self, state: &Shared) -> Vec<Request> {
         self.dragged = None;
-        let Some((index, altitude)) = state.editor.dragged_altitude.take() else { return Vec::new() };
-        requests(state.editor.edit(&format!("altitude of WP{index}"), |document| {
-            if let Some(wp) = document.plan.waypoints.get_mut(index) {
-                wp.altitude = altitude;
-            }
-        }))
+        state.editor.dragged_altitude.map(|_| Change::DropAltitude.into()).into_iter().collect()
     }
 }
 

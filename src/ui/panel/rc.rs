@@ -9,10 +9,9 @@ use crate::telemetry::snapshot::{CraftView, ModeRange};
 use crate::ui::action::{Action, PanelAction};
 use crate::ui::drawing;
 use crate::ui::formatting::cut;
-use crate::ui::message::{Request, requests};
+use crate::ui::message::{Change, Request};
 use crate::ui::panel::{Content, Hint, Panel};
 use crate::ui::shared::Shared;
-use crate::ui::stick_recording::keys::{toggle_playing, toggle_recording};
 use crate::ui::theme::Role;
 use crate::ui::transmitter;
 
@@ -47,39 +46,41 @@ impl Content for RcPanel {
         ]
     }
 
-    fn act(&mut self, state: &mut Shared, action: PanelAction) -> Vec<Request> {
-        requests(match action {
+    fn act(&mut self, state: &Shared, action: PanelAction) -> Vec<Request> {
+        let nudged = |by_us| Change::Channel(self.channel, transmitter::nudged(state, self.channel, by_us));
+        let change = match action {
+            PanelAction::Lower => nudged(-10),
+            PanelAction::Raise => nudged(10),
+            PanelAction::LowerMuch => nudged(-100),
+            PanelAction::RaiseMuch => nudged(100),
+            PanelAction::Flip => Change::Channel(self.channel, transmitter::flipped(state, self.channel)),
+            PanelAction::Record => Change::Record,
+            PanelAction::Play => Change::Play,
             PanelAction::ChannelUp => {
                 self.channel = self.channel.saturating_sub(1);
-                Vec::new()
+                return Vec::new();
             }
             PanelAction::ChannelDown => {
                 self.channel = (self.channel + 1).min(RC_CHANNELS - 1);
-                Vec::new()
+                return Vec::new();
             }
-            PanelAction::Lower => transmitter::nudge(state, self.channel, -10),
-            PanelAction::Raise => transmitter::nudge(state, self.channel, 10),
-            PanelAction::LowerMuch => transmitter::nudge(state, self.channel, -100),
-            PanelAction::RaiseMuch => transmitter::nudge(state, self.channel, 100),
-            PanelAction::Flip => transmitter::flip(state, self.channel),
-            PanelAction::Record => toggle_recording(state),
-            PanelAction::Play => toggle_playing(state),
-            _ => Vec::new(),
-        })
+            _ => return Vec::new(),
+        };
+        vec![change.into()]
     }
 
-    fn press(&mut self, state: &mut Shared, area: Rect, event: &MouseEvent) -> Vec<Request> {
+    fn press(&mut self, _: &Shared, area: Rect, event: &MouseEvent) -> Vec<Request> {
         let Some((channel, us)) = channel_at(area, self.channel, (event.column, event.row)) else {
             return Vec::new();
         };
         self.channel = channel;
-        us.map_or_else(Vec::new, |us| requests(transmitter::set(state, channel, us)))
+        us.map(|us| Change::Channel(channel, us).into()).into_iter().collect()
     }
 
     /// Moves the pressed slider, even if the mouse slips to the one below.
-    fn drag(&mut self, state: &mut Shared, area: Rect, event: &MouseEvent) -> Vec<Request> {
+    fn drag(&mut self, _: &Shared, area: Rect, event: &MouseEvent) -> Vec<Request> {
         let us = value_at(area, self.channel, event.column);
-        us.map_or_else(Vec::new, |us| requests(transmitter::set(state, self.channel, us)))
+        us.map(|us| Change::Channel(self.channel, us).into()).into_iter().collect()
     }
 }
 

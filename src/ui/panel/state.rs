@@ -58,16 +58,17 @@ impl Content for StatePanel {
         vec![(&[Action::Panel(PanelAction::ExplainGuards)], "explain")]
     }
 
-    fn act(&mut self, _: &mut Shared, action: PanelAction) -> Vec<Request> {
+    fn act(&mut self, _: &Shared, action: PanelAction) -> Vec<Request> {
         match action {
             PanelAction::ExplainGuards => vec![Request::Open(Popup::Guards { selected: 0 })],
             _ => Vec::new(),
         }
     }
 
-    fn scroll(&mut self, _: &mut Shared, _: Rect, by: isize) {
+    fn scroll(&mut self, _: &Shared, _: Rect, by: isize) -> Vec<Request> {
         let last = self.transitions.len().saturating_sub(1);
         scrolled(&mut self.transitions.scroll, by, last);
+        Vec::new()
     }
 }
 

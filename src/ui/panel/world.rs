@@ -7,7 +7,7 @@ use ratatui::layout::{Position, Rect};
 use crate::ui::action::{Action, PanelAction};
 use crate::ui::formatting::cut;
 use crate::ui::knobs::{Knob, KnobsState, knobs};
-use crate::ui::message::{Request, requests};
+use crate::ui::message::Request;
 use crate::ui::panel::{Content, Hint, Panel};
 use crate::ui::shared::Shared;
 use crate::ui::text_field::TextField;
@@ -42,9 +42,9 @@ impl Content for WorldPanel {
         ]
     }
 
-    fn act(&mut self, state: &mut Shared, action: PanelAction) -> Vec<Request> {
+    fn act(&mut self, state: &Shared, action: PanelAction) -> Vec<Request> {
         let last = knobs(state).len().saturating_sub(1);
-        requests(match action {
+        match action {
             PanelAction::KnobUp => {
                 self.knobs.selected = self.knobs.selected.saturating_sub(1);
                 Vec::new()
@@ -59,11 +59,11 @@ impl Content for WorldPanel {
             PanelAction::KnobEdit => self.knobs.edit(),
             PanelAction::KnobDefault => self.knobs.reset(state),
             _ => Vec::new(),
-        })
+        }
     }
 
-    fn key(&mut self, state: &mut Shared, event: KeyEvent) -> Vec<Request> {
-        requests(self.knobs.field_key(state, event))
+    fn key(&mut self, state: &Shared, event: KeyEvent) -> Vec<Request> {
+        self.knobs.field_key(state, event)
     }
 
     fn field(&mut self) -> Option<&mut TextField> {
@@ -74,14 +74,15 @@ impl Content for WorldPanel {
         self.knobs.field = None;
     }
 
-    fn scroll(&mut self, state: &mut Shared, _: Rect, by: isize) {
+    fn scroll(&mut self, state: &Shared, _: Rect, by: isize) -> Vec<Request> {
         // The knob whose value is typed stays selected.
         if self.knobs.field.is_none() {
             scrolled(&mut self.knobs.selected, by, knobs(state).len().saturating_sub(1));
         }
+        Vec::new()
     }
 
-    fn press(&mut self, state: &mut Shared, area: Rect, event: &MouseEvent) -> Vec<Request> {
+    fn press(&mut self, state: &Shared, area: Rect, event: &MouseEvent) -> Vec<Request> {
         if let Some(knob) = knob_at(&self.knobs, state, area, event.row) {
             self.knobs.field = None;
             self.knobs.selected = knob;

@@ -52,28 +52,23 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
         _ => screen.at(event.column, event.row),
     };
     let Some((panel, area)) = at else { return Vec::new() };
+    if let MouseEventKind::Down(MouseButton::Left | MouseButton::Right) = event.kind {
+        focus(&mut state.shared, panel);
+    }
     let content = state.panels.of_mut(panel);
-    let shared = &mut state.shared;
+    let shared = &state.shared;
     let inside = layout::inner(area);
     let requests = match event.kind {
         MouseEventKind::Down(MouseButton::Left) => {
-            focus(shared, panel);
             state.pressed = Some(panel);
             content.press(shared, inside, &event)
         }
         MouseEventKind::Drag(MouseButton::Left) => content.drag(shared, inside, &event),
         MouseEventKind::Down(MouseButton::Right) => {
-            focus(shared, panel);
             content.menu(shared, inside, &event).map(Request::Open).into_iter().collect()
         }
-        MouseEventKind::ScrollUp => {
-            content.wheel(shared, inside, &event, -1);
-            Vec::new()
-        }
-        MouseEventKind::ScrollDown => {
-            content.wheel(shared, inside, &event, 1);
-            Vec::new()
-        }
+        MouseEventKind::ScrollUp => content.wheel(shared, inside, &event, -1),
+        MouseEventKind::ScrollDown => content.wheel(shared, inside, &event, 1),
         _ => Vec::new(),
     };
     carry_out(state, requests)
@@ -82,7 +77,7 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
 /// Ends a drag, at any position of the mouse.
 fn release(state: &mut AppState) -> Vec<Effect> {
     state.pressed = None;
-    let released = |panel| state.panels.of_mut(panel).release(&mut state.shared);
+    let released = |panel| state.panels.of_mut(panel).release(&state.shared);
     let requests = Panel::ALL.into_iter().flat_map(released).collect();
     carry_out(state, requests)
 }

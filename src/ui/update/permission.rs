@@ -8,9 +8,11 @@ use crate::ui::popup::Popup;
 
 /// Returns the effects that may be carried out. Effects that would change a real craft are held, and the user is asked.
 pub(in crate::ui) fn hold(state: &mut AppState, effects: Vec<Effect>) -> Vec<Effect> {
-    let Some(remote) = state.shared.real_craft() else { return effects };
+    if state.shared.real_craft().is_none() {
+        return effects;
+    }
     let held_before = state.permission.held.len();
-    let free = state.permission.hold(remote, effects);
+    let free = state.permission.hold(&state.shared.view, effects);
     if state.permission.held.len() > held_before {
         ask(state);
     }

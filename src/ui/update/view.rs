@@ -1,5 +1,6 @@
 //! The view: focus and scrolling.
 
+use super::carry_out;
 use crate::ui::app_state::AppState;
 use crate::ui::layout;
 use crate::ui::message::Effect;
@@ -23,10 +24,8 @@ pub(super) fn focus_neighbour(state: &mut Shared, step: isize) -> Vec<Effect> {
 /// Scrolls the focused panel by lines.
 pub(super) fn scroll(state: &mut AppState, by: isize) -> Vec<Effect> {
     let panel = state.shared.focus;
-    if let Some(area) =
-        layout::screen(&state.shared).and_then(|screen| screen.panel(panel)).map(layout::inner)
-    {
-        state.panels.of_mut(panel).scroll(&mut state.shared, area, by);
-    }
-    Vec::new()
+    let area = layout::screen(&state.shared).and_then(|screen| screen.panel(panel)).map(layout::inner);
+    let Some(area) = area else { return Vec::new() };
+    let requests = state.panels.of_mut(panel).scroll(&state.shared, area, by);
+    carry_out(state, requests)
 }

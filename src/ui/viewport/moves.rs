@@ -16,11 +16,9 @@ pub(in crate::ui) fn viewport(state: &Shared) -> Option<Viewport> {
     Some(Viewport::of(state, layout::inner(area)))
 }
 
-/// Keeps the craft in the middle of the map, at the current scale.
-pub(in crate::ui) fn follow(state: &mut Shared) {
-    if let Some(view) = viewport(state) {
-        state.map.mode = MapMode::Follow(view.scale);
-    }
+/// Returns the mode that keeps the craft in the middle of the map, at the current scale.
+pub(in crate::ui) fn following(state: &Shared) -> Option<MapMode> {
+    viewport(state).map(|view| MapMode::Follow(view.scale))
 }
 
 /// Moves the map by an eighth of its size.
@@ -31,17 +29,17 @@ pub(in crate::ui) fn pan(state: &mut Shared, columns: f64, rows: f64) {
     }
 }
 
-/// Zooms around the edit cursor, else around the craft if it is in the window, else around the middle.
-pub(in crate::ui) fn zoom_map(state: &mut Shared, factor: f64) {
-    if let Some(view) = viewport(state) {
-        state.map.mode = match state.map.mode {
-            MapMode::Follow(scale) => MapMode::Follow(scale * factor),
-            MapMode::Fit | MapMode::Free { .. } => {
-                let cursor = state.map.edit.map(|cursor| cursor.place);
-                let place = cursor.or_else(|| map_point::craft(&state.view));
-                let place = place.filter(|&place| view.screen_cell(place).is_some());
-                view.zoomed(factor, place.unwrap_or(view.centre))
-            }
-        };
-    }
+/// Returns the mode after a zoom around the edit cursor, else around the craft if it is in the window, else around the
+/// middle.
+pub(in crate::ui) fn zoomed(state: &Shared, factor: f64) -> Option<MapMode> {
+    let view = viewport(state)?;
+    Some(match state.map.mode {
+        MapMode::Follow(scale) => MapMode::Follow(scale * factor),
+        MapMode::Fit | MapMode::Free { .. } => {
+            let cursor = state.map.edit.map(|cursor| cursor.place);
+            let place = cursor.or_else(|| map_point::craft(&state.view));
+            let place = place.filter(|&place| view.screen_cell(place).is_some());
+            view.zoomed(factor, place.unwrap_or(view.centre))
+        }
+    })
 }

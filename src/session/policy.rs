@@ -1,0 +1,417 @@
+//! Decides which requests are allowed now. Keys, the palette, the `:` line and the session give the reason for a refusal
+//! in its words.
+
+use std::fmt;
+
+use super::command::{
+    Command, NOT_RECORDED, PLACE_IS_EXTERNAL, REWOUND, SessionView, TIME_IS_EXTERNAL, TIME_IS_THE_FIRMWARES,
+};
+use crate::fc::{
+    Access, Denial, Impact, NOTHING_MOVES, NOTHING_SIMULATED, RemoteState, RemoteView, UploadView,
+};
+use crate::flight::forecast::{CONTROLLER_IS_REMOTE, PHYSICS_IS_EXTERNAL};
+use crate::telemetry::LinkState;
+use crate::vehicle::VehicleCommand;
+
+/// The refusal for a flight controller without waypoints.
+const NO_PLANS: &str = "This flight controller has no waypoints: build its firmware with flight plans, \
+                        EXTRA_FLAGS=\"-DENABLE_FLIGHT_PLANNING=1\" (board or SITL).";
+
+/// The refusal for orders to the navigator of another program.
+const NO_ORDERS: &str = "A remote firmware takes no such order in flight: switch the autopilot off and fly there, or upload another plan.";
+
+/// The refusal for a firmware that has not yet reported its settings.
+pub const NOT_KNOWN_YET: &str =
+    "The remote firmware has not reported its identity and switches: wait until it answers.";
+
+/// The facts on which the policy depends.
+#[derive(Debug, Clone, Copy)]
+pub struct Facts {
+    /// The access to the craft.
+    pub access: Access,
+    pub remote: Option<RemoteFacts>,
+    /// The link to the external simulator.
+    pub simulator: Option<LinkState>,
+    /// The current upload.
+    pub upload: Option<UploadView>,
+    /// `true` while the scripted pilot flies.
+    pub is_piloted: bool,
+    /// `true` if the flight is recorded.
+    pub is_recorded: bool,
+    /// `true` while an earlier instant is shown.
+    pub is_rewound: bool,
+}
+
+/// The facts about a remote flight controller.
+#[derive(Debug, Clone, Copy)]
+pub struct RemoteFacts {
+    /// `true` if it has reported its identity and settings.
+    is_ready: bool,
+    has_plans: bool,
+    /// `true` if a line would have to open its command line, which is itself a change.
+    opens_cli: bool,
+}
+
+impl From<&RemoteView> for RemoteFacts {
+    fn from(remote: &RemoteView) -> Self {
+        let &RemoteView { has_plans, opens_cli, .. } = remote;
+        Self { is_ready: remote.state == RemoteState::Ready, has_plans, opens_cli }
+    }
+}
+
+impl From<&SessionView> for Facts {
+    fn from(view: &SessionView) -> Self {
+        Self {
+            access: view.remote.as_ref().map_or(Access::Everything, |remote| remote.access),
+            remote: view.remote.as_ref().map(RemoteFacts::from),
+            simulator: view.simulator,
+            upload: view.upload,
+            is_piloted: view.pilot.is_some(),
+            is_recorded: view.timeline.is_some(),
+            is_rewound: view.is_rewound(),
+        }
+    }
+}
+
+/// The purpose of a request, as far as the policy distinguishes it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Intent {
+    /// Reads, or changes only what is shown.
+    Read,
+    /// Pauses, steps or accelerates time.
+    Time,
+    /// Shows another instant of the recording, or flies on from it.
+    Recording,
+    /// Starts the scripted pilot, or stops it.
+    Fly,
+    /// Moves a switch or a stick, or makes the craft fly elsewhere.
+    Move,
+    /// Gives an order to the navigator in flight.
+    Order,
+    /// Puts the craft back home.
+    Reset,
+    /// Changes the air, the noise or a fault.
+    World,
+    Upload,
+    Download,
+    /// Stores the configuration.
+    Save,
+    /// Runs a line with this impact, or exchanges such a message.
+    Line(Impact),
+    /// Flies a copy of the vehicle ahead.
+    Forecast,
+}
+
+impl Intent {
+    /// Returns the intent of a command.
+    pub fn of(command: &Command) -> Self {
+        match command {
+            Command::Pause(_) | Command::Step(_) | Command::Speed(_) => Self::Time,
+            Command::Seek(_) | Command::FlyOn => Self::Recording,
+            Command::Vehicle(command) => Self::of_vehicle(command),
+            Command::StartPilot => Self::Fly,
+            Command::Cli { line, .. } => Self::Line(Impact::of_line(line)),
+            Command::Upload { .. } => Self::Upload,
+            Command::Download { .. } => Self::Download,
+            Command::Save { .. } => Self::Save,
+            Command::World { .. } => Self::World,
+            Command::CopyVehicle(_) => Self::Forecast,
+            Command::RecordedFlight(_) | Command::PermitChanges(_) | Command::Quit => Self::Read,
+        }
+    }
+
+    fn of_vehicle(command: &VehicleCommand) -> Self {
+        match command {
+            VehicleCommand::Line(line) => Self::Line(Impact::of_line(&line.1)),
+            VehicleCommand::Message(message) => {
+                Self::Line(Impact::of_message(message.code, &message.payload))
+            }
+            VehicleCommand::Restart(_) => Self::Line(Impact::Changes),
+            VehicleCommand::CliOpened | VehicleCommand::CliClosed => Self::Read,
+            VehicleCommand::ResetCraft => Self::Reset,
+            VehicleCommand::World(_) => Self::World,
+            VehicleCommand::InFlight(_) => Self::Order,
+            VehicleCommand::StartPilot(_) => Self::Fly,
+            VehicleCommand::Rc(..)
+            | VehicleCommand::SticksFirst(_)
+            | VehicleCommand::ReturnHome
+            | VehicleCommand::CancelReturn
+            | VehicleCommand::Sticks(_)
+            | VehicleCommand::CutRc(_)
+            | VehicleCommand::HoldChannel(_)
+            | VehicleCommand::ReleaseChannel(_)
+            | VehicleCommand::StopPilot => Self::Move,
+        }
+    }
+
+    /// Returns the impact on a real craft. Time and forecasts have their own rules.
+    fn impact(self, facts: &Facts) -> Impact {
+        let opens_cli = facts.remote.is_some_and(|remote| remote.opens_cli);
+        match self {
+            Self::Read | Self::Time | Self::Recording | Self::Forecast => Impact::Reads,
+            Self::Download => Impact::Reads.or_changes(opens_cli),
+            Self::Line(impact) => impact.or_changes(opens_cli),
+            Self::Upload | Self::Save => Impact::Changes,
+            Self::Fly | Self::Move | Self::Order => Impact::Forbidden(NOTHING_MOVES),
+            Self::Reset | Self::World => Impact::Forbidden(NOTHING_SIMULATED),
+        }
+    }
+
+    /// Returns `true` if it needs the vehicle that flies, which waits while an earlier instant is shown.
+    fn needs_newest(self) -> bool {
+        match self {
+            Self::Read | Self::Time | Self::Recording | Self::Forecast => false,
+            Self::Line(impact) => impact != Impact::Reads,
+            Self::Fly
+            | Self::Move
+            | Self::Order
+            | Self::Reset
+            | Self::World
+            | Self::Upload
+            | Self::Download
+            | Self::Save => true,
+        }
+    }
+}
+
+/// The reason for a refusal. `Display` gives a sentence.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Refusal {
+    /// The craft is real.
+    Access(Denial),
+    /// It is impossible now.
+    Now(&'static str),
+    /// Another upload is under way.
+    Uploading(UploadView),
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Access(denial) => denial.fmt(f),
+            Self::Now(sentence) => f.write_str(sentence),
+            Self::Uploading(upload) => {
+                let UploadView { sent, total } = upload;
+                write!(f, "An upload is under way, line {sent} of {total}: wait for its end.")
+            }
+        }
+    }
+}
+
+/// A rule: the sentence of the refusal, and the requests and facts that it applies to.
+type Rule = (&'static str, fn(&Facts, Intent) -> bool);
+
+/// The rules for a craft whose access allows the request. The first that applies refuses it.
+const RULES: [Rule; 11] = [
+    (NO_ORDERS, |facts, intent| intent == Intent::Order && facts.remote.is_some()),
+    (NOT_KNOWN_YET, |facts, intent| {
+        intent == Intent::Fly && facts.remote.is_some_and(|remote| !remote.is_ready)
+    }),
+    (NO_PLANS, |facts, intent| intent == Intent::Fly && facts.remote.is_some_and(|remote| !remote.has_plans)),
+    (NO_PLANS, |facts, intent| {
+        matches!(intent, Intent::Upload | Intent::Download)
+            && facts.remote.is_some_and(|remote| remote.is_ready && !remote.has_plans)
+    }),
+    (TIME_IS_EXTERNAL, |facts, intent| {
+        matches!(intent, Intent::Time | Intent::Recording) && facts.simulator.is_some()
+    }),
+    (TIME_IS_THE_FIRMWARES, |facts, intent| intent == Intent::Time && facts.remote.is_some()),
+    (NOT_RECORDED, |facts, intent| intent == Intent::Recording && !facts.is_recorded),
+    (REWOUND, |facts, intent| facts.is_rewound && intent.needs_newest()),
+    (PLACE_IS_EXTERNAL, |facts, intent| {
+        intent == Intent::Reset && facts.simulator == Some(LinkState::Flowing)
+    }),
+    (CONTROLLER_IS_REMOTE, |facts, intent| intent == Intent::Forecast && facts.remote.is_some()),
+    (PHYSICS_IS_EXTERNAL, |facts, intent| intent == Intent::Forecast && facts.simulator.is_some()),
+];
+
+/// Checks that a request is allowed.
+///
+/// # Errors
+/// Returns the reason for the refusal. A missing permission is the last reason, because the user can give it.
+pub fn check(facts: &Facts, intent: Intent) -> Result<(), Refusal> {
+    let access = facts.access.check(intent.impact(facts)).map_err(Refusal::Access);
+    if let Err(Refusal::Access(Denial::Never(_))) = access {
+        return access;
+    }
+    if let Some((sentence, _)) = RULES.iter().find(|(_, applies)| applies(facts, intent)) {
+        return Err(Refusal::Now(sentence));
+    }
+    match facts.upload {
+        // The lines of two uploads would mix.
+        Some(upload) if intent == Intent::Upload || intent == Intent::Fly && !facts.is_piloted => {
+            Err(Refusal::Uploading(upload))
+        }
+        _ => access,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fc::NOT_PERMITTED;
+    use crate::plan::FlightPlan;
+    use crate::session::ReplyTo;
+    use crate::signals::RcFrame;
+    use crate::telemetry::InFlightCommand;
+
+    const ALL: [Intent; 15] = [
+        Intent::Read,
+        Intent::Time,
+        Intent::Recording,
+        Intent::Fly,
+        Intent::Move,
+        Intent::Order,
+        Intent::Reset,
+        Intent::World,
+        Intent::Upload,
+        Intent::Download,
+        Intent::Save,
+        Intent::Line(Impact::Reads),
+        Intent::Line(Impact::Changes),
+        Intent::Line(Impact::Forbidden(NOTHING_MOVES)),
+        Intent::Forecast,
+    ];
+
+    const EMBEDDED: Facts = Facts {
+        access: Access::Everything,
+        remote: None,
+        simulator: None,
+        upload: None,
+        is_piloted: false,
+        is_recorded: true,
+        is_rewound: false,
+    };
+    const REMOTE: Facts = Facts {
+        remote: Some(RemoteFacts { is_ready: true, has_plans: true, opens_cli: false }),
+        is_recorded: false,
+        ..EMBEDDED
+    };
+
+    /// Returns the refused intents with the sentences.
+    fn refused(facts: &Facts) -> Vec<(Intent, String)> {
+        let refusal = |intent| check(facts, intent).err().map(|refusal| (intent, refusal.to_string()));
+        ALL.into_iter().filter_map(refusal).collect()
+    }
+
+    fn table(rows: &[(Intent, &str)]) -> Vec<(Intent, String)> {
+        rows.iter().map(|(intent, sentence)| (*intent, (*sentence).to_owned())).collect()
+    }
+
+    #[test]
+    fn an_embedded_craft_is_free() {
+        assert_eq!(refused(&EMBEDDED), []);
+    }
+
+    #[test]
+    fn an_earlier_instant_is_only_read() {
+        let rewound = Facts { is_rewound: true, ..EMBEDDED };
+        let refused: Vec<Intent> = refused(&rewound)
+            .into_iter()
+            .map(|(intent, sentence)| {
+                assert_eq!(sentence, REWOUND);
+                intent
+            })
+            .collect();
+        assert_eq!(refused, [&ALL[3..11], &ALL[12..14]].concat());
+    }
+
+    #[test]
+    fn an_external_simulator_keeps_time_and_place_to_itself() {
+        let silent = Facts { simulator: Some(LinkState::Silent), is_recorded: false, ..EMBEDDED };
+        let time = [
+            (Intent::Time, TIME_IS_EXTERNAL),
+            (Intent::Recording, TIME_IS_EXTERNAL),
+            (Intent::Forecast, PHYSICS_IS_EXTERNAL),
+        ];
+        assert_eq!(refused(&silent), table(&time));
+        let flowing = Facts { simulator: Some(LinkState::Flowing), ..silent };
+        assert_eq!(check(&flowing, Intent::Reset), Err(Refusal::Now(PLACE_IS_EXTERNAL)));
+    }
+
+    #[test]
+    fn a_remote_flight_controller_of_a_simulated_craft_keeps_its_time() {
+        let always = [
+            (Intent::Time, TIME_IS_THE_FIRMWARES),
+            (Intent::Recording, NOT_RECORDED),
+            (Intent::Order, NO_ORDERS),
+            (Intent::Forecast, CONTROLLER_IS_REMOTE),
+        ];
+        assert_eq!(refused(&REMOTE), table(&always));
+        let remote = |is_ready, has_plans| Facts {
+            remote: Some(RemoteFacts { is_ready, has_plans, opens_cli: false }),
+            ..REMOTE
+        };
+        assert_eq!(check(&remote(false, false), Intent::Fly), Err(Refusal::Now(NOT_KNOWN_YET)));
+        assert_eq!(check(&remote(false, false), Intent::Upload), Ok(()));
+        for intent in [Intent::Fly, Intent::Upload, Intent::Download] {
+            assert_eq!(check(&remote(true, false), intent), Err(Refusal::Now(NO_PLANS)));
+        }
+    }
+
+    #[test]
+    fn a_real_craft_is_read_and_changed_with_permission() {
+        let reading = Facts { access: Access::Reading, ..REMOTE };
+        let never = [
+            (Intent::Time, TIME_IS_THE_FIRMWARES),
+            (Intent::Recording, NOT_RECORDED),
+            (Intent::Fly, NOTHING_MOVES),
+            (Intent::Move, NOTHING_MOVES),
+            (Intent::Order, NOTHING_MOVES),
+            (Intent::Reset, NOTHING_SIMULATED),
+            (Intent::World, NOTHING_SIMULATED),
+            (Intent::Line(Impact::Forbidden(NOTHING_MOVES)), NOTHING_MOVES),
+            (Intent::Forecast, CONTROLLER_IS_REMOTE),
+        ];
+        assert_eq!(refused(&Facts { access: Access::Changing, ..REMOTE }), table(&never));
+        let unpermitted = [Intent::Upload, Intent::Save, Intent::Line(Impact::Changes)];
+        for intent in unpermitted {
+            assert_eq!(check(&reading, intent).unwrap_err().to_string(), NOT_PERMITTED);
+        }
+        assert_eq!(refused(&reading).len(), never.len() + unpermitted.len());
+        let opens = RemoteFacts { is_ready: true, has_plans: true, opens_cli: true };
+        let opening = Facts { remote: Some(opens), ..reading };
+        for intent in [Intent::Download, Intent::Line(Impact::Reads)] {
+            assert_eq!(check(&opening, intent), Err(Refusal::Access(Denial::NotPermitted)));
+        }
+    }
+
+    #[test]
+    fn one_upload_ends_before_the_next_and_before_a_flight() {
+        let upload = Some(UploadView { sent: 3, total: 12 });
+        let uploading = Facts { upload, ..EMBEDDED };
+        let sentence = "An upload is under way, line 3 of 12: wait for its end.";
+        assert_eq!(refused(&uploading), table(&[(Intent::Fly, sentence), (Intent::Upload, sentence)]));
+        let piloted = Facts { is_piloted: true, ..uploading };
+        assert_eq!(refused(&piloted), table(&[(Intent::Upload, sentence)]));
+    }
+
+    #[test]
+    fn the_intents_of_commands() {
+        fn reply<T: Send + 'static>() -> ReplyTo<T> {
+            ReplyTo::channel().0
+        }
+        let line = |line: &str| Command::Cli { line: line.to_owned(), reply: reply() };
+        let (plan, settings) = (Box::<FlightPlan>::default(), Vec::new());
+        for (command, intent) in [
+            (line("get"), Intent::Line(Impact::Reads)),
+            (line("save"), Intent::Line(Impact::Changes)),
+            (line("motor 1 1500"), Intent::Line(Impact::Forbidden(NOTHING_MOVES))),
+            (Command::Upload { plan, settings, reply: reply() }, Intent::Upload),
+            (Command::Save { reply: reply() }, Intent::Save),
+            (Command::Download { reply: reply() }, Intent::Download),
+            (Command::Vehicle(VehicleCommand::Sticks(RcFrame::SAFE)), Intent::Move),
+            (Command::Vehicle(VehicleCommand::CutRc(true)), Intent::Move),
+            (Command::StartPilot, Intent::Fly),
+            (Command::Vehicle(VehicleCommand::ReturnHome), Intent::Move),
+            (Command::Vehicle(VehicleCommand::CancelReturn), Intent::Move),
+            (Command::Vehicle(VehicleCommand::InFlight(InFlightCommand::HoldHere)), Intent::Order),
+            (Command::Vehicle(VehicleCommand::ResetCraft), Intent::Reset),
+            (Command::World { line: "wind=5@270".to_owned(), reply: reply() }, Intent::World),
+            (Command::PermitChanges(1), Intent::Read),
+            (Command::Quit, Intent::Read),
+        ] {
+            assert_eq!(Intent::of(&command), intent, "{command:?}");
+        }
+    }
+}

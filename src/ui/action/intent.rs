@@ -1,0 +1,55 @@
+//! The intent of an action, by which the session's policy allows it or refuses it.
+
+use crate::session::policy::Intent;
+use crate::ui::shared::Shared;
+
+use super::{Action, EditAction, PanelAction};
+
+/// Returns the intent of an action.
+pub(super) fn intent_of(state: &Shared, action: Action) -> Intent {
+    match action {
+        Action::Pause | Action::Step | Action::Tick | Action::Slower | Action::Faster | Action::RealTime => {
+            Intent::Time
+        }
+        Action::EventBack
+        | Action::EventForward
+        | Action::StateBack
+        | Action::StateForward
+        | Action::Earlier
+        | Action::Later
+        | Action::FlyOn
+        | Action::Newest => Intent::Recording,
+        Action::Fly => Intent::Fly,
+        Action::Arm | Action::Throttle | Action::Autopilot | Action::ReturnHome | Action::CutRc => {
+            Intent::Move
+        }
+        Action::GoTo | Action::HoldHere | Action::Resume => Intent::Order,
+        Action::ResetCraft => Intent::Reset,
+        Action::Upload => Intent::Upload,
+        Action::Edit(EditAction::Download) => Intent::Download,
+        Action::Edit(EditAction::SaveToFlash) => Intent::Save,
+        // Ending it needs no flight.
+        Action::LookAhead if state.forecast.looks_ahead() => Intent::Read,
+        Action::LookAhead | Action::WhatIf => Intent::Forecast,
+        Action::Panel(action) => of_panel(action),
+        _ => Intent::Read,
+    }
+}
+
+fn of_panel(action: PanelAction) -> Intent {
+    match action {
+        PanelAction::Lower
+        | PanelAction::Raise
+        | PanelAction::LowerMuch
+        | PanelAction::RaiseMuch
+        | PanelAction::Flip
+        | PanelAction::Record
+        | PanelAction::Play => Intent::Move,
+        PanelAction::KnobLess
+        | PanelAction::KnobMore
+        | PanelAction::KnobEnter
+        | PanelAction::KnobEdit
+        | PanelAction::KnobDefault => Intent::World,
+        _ => Intent::Read,
+    }
+}

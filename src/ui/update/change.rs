@@ -1,0 +1,45 @@
+//! Changes the state that all panels share, as a panel requests it.
+
+use crate::ui::map_edit::actions as map_edit;
+use crate::ui::message::{Change, Effect};
+use crate::ui::shared::Shared;
+use crate::ui::stick_recording::keys::{toggle_playing, toggle_recording};
+use crate::ui::transmitter;
+
+/// Carries out a change.
+pub(super) fn change(state: &mut Shared, change: Change) -> Vec<Effect> {
+    match change {
+        Change::Notify(severity, text) => state.notify(severity, text),
+        Change::Say(severity, text) => state.say(severity, text),
+        Change::MapWindow(mode) => state.map.mode = mode,
+        Change::MapArrow(columns, rows) => map_edit::arrow(state, columns, rows),
+        Change::PickUp(item, place) => map_edit::pick_up(state, item, place, true),
+        Change::DragTo(place) => {
+            if let Some(moving) = &mut state.map.moving {
+                moving.place = place;
+                moving.moved = true;
+            }
+        }
+        Change::PutDown => return map_edit::put_down(state),
+        Change::AddWaypoint(place) => return map_edit::add_at(state, place),
+        Change::PlanRows(rows) => state.editor.move_cursor(rows, 0),
+        Change::PlanCell(row, column) => state.editor.go_to_cell(row, column),
+        Change::DragAltitude(index, altitude) => state.editor.dragged_altitude = Some((index, altitude)),
+        Change::DropAltitude => {
+            let Some((index, altitude)) = state.editor.dragged_altitude.take() else { return Vec::new() };
+            return state.editor.edit(&format!("altitude of WP{index}"), |document| {
+                if let Some(wp) = document.plan.waypoints.get_mut(index) {
+                    wp.altitude = altitude;
+                }
+            });
+        }
+        Change::GraphsCursor(steps) => state.graphs.move_cursor(steps),
+        Change::NoGraphsCursor => state.graphs.leave_cursor(),
+        Change::GraphsSpan(by) => state.graphs.change_span(by),
+        Change::Channel(channel, us) => return transmitter::set(state, channel, us),
+        Change::Record => return toggle_recording(state),
+        Change::Play => return toggle_playing(state),
+        Change::World(world) => std::sync::Arc::make_mut(&mut state.view.vehicle).world = *world,
+    }
+    Vec::new()
+}
