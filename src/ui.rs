@@ -13,6 +13,7 @@
 //!   editor, theme, units, keys, size and time. The state of a single panel and the popups are beside it in
 //!   [`AppState`], which only `update`, `draw` and `prompt` know.
 //! * [`draw`] only reads. [`layout`] computes everything that depends on the screen size; both use it.
+//! * A panel reads [`Shared`] and its own state, and returns requests. `update` alone carries them out.
 //! * Every key is a named [`action`]: keymap, hint bar, help, palette and the `:` line are read from one table. A
 //!   [`command`] takes an argument and returns requests, which `update` carries out.
 //! * `panel` has one file per panel, `popup` the windows over them, `keymap` the keys of the configuration file.

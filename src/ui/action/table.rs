@@ -1,45 +1,45 @@
 //! The table of actions: name, title, help and default keys.
 
-use super::{Action, Context, EditAction, Spec, panels};
+use super::{Action, Context, Spec, edit, general, panels};
 use crate::ui::panel;
 
-mod general;
-mod lists;
-mod map;
-mod plan;
+/// Makes an enum with a variant for each row, and a list of the rows of each group. A row has the context of its keys,
+/// a stable name, a title, a help and the keys. `wrap` makes a member of the enum an [`Action`].
+macro_rules! actions {
+    ($(#[$meta:meta])* $name:ident [$wrap:path] { $($other:tt)* }
+        $($group:ident { $($action:ident $context:ident $id:literal $title:literal $help:literal [$($key:literal),+];)* })*
+    ) => {
+        $(#[$meta])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum $name {
+            $($(#[doc = $help] $action,)*)*
+            $($other)*
+        }
 
-pub(super) const fn spec(
-    action: Action,
-    name: &'static str,
-    title: &'static str,
-    help: &'static str,
-    keys: &'static [&'static str],
-    context: Context,
-) -> Spec {
-    Spec { action, name, title, help, keys, context }
+        $(pub(super) const $group: &[super::Spec] = &[$(super::Spec {
+            action: $wrap($name::$action),
+            name: $id,
+            title: $title,
+            help: $help,
+            keys: &[$($key),+],
+            context: $context,
+        }),*];)*
+    };
 }
-
-const fn edit(
-    action: EditAction,
-    name: &'static str,
-    title: &'static str,
-    help: &'static str,
-    keys: &'static [&'static str],
-    context: Context,
-) -> Spec {
-    spec(Action::Edit(action), name, title, help, keys, context)
-}
+pub(super) use actions;
 
 /// The parts of the table, in the order help shows them.
-const PARTS: [&[Spec]; 8] = [
+const PARTS: [&[Spec]; 10] = [
     general::FLIGHT,
+    edit::EVERYWHERE,
+    general::TIME,
     &SHOW,
     general::SCREEN,
-    panels::MAP,
-    map::ROWS,
-    plan::ROWS,
+    panels::ON_MAP,
+    edit::MAP,
+    edit::PLAN,
     panels::OTHERS,
-    lists::ROWS,
+    general::LISTS,
 ];
 
 /// The actions that show a panel.
@@ -48,7 +48,7 @@ const SHOW: [Spec; panel::ROWS.len()] = {
     let mut at = 0;
     while at < rows.len() {
         let panel::Row { panel, action: (name, title, help), keys, .. } = &panel::ROWS[at];
-        rows[at] = spec(Action::Show(*panel), name, title, help, keys, Context::Global);
+        rows[at] = Spec { action: Action::Show(*panel), name, title, help, keys, context: Context::Global };
         at += 1;
     }
     rows
