@@ -1,7 +1,7 @@
 //! A headless flight: a vehicle, the scripted pilot and a judge.
 //!
 //! The flight boots, waits for the fix, arms, climbs, engages and flies to the end. Like the core, it has no clock
-//! and no files. The caller gets events and samples and decides about their use.
+//! and no files. The caller gets its events and decides about their use.
 
 pub mod forecast;
 mod judge;
@@ -32,8 +32,6 @@ pub struct FlightOptions {
     pub takeoff_m: f64,
     /// Time of the timeout, counted from boot.
     pub timeout: SimTime,
-    /// Samples per simulated second; 0 = none.
-    pub samples_hz: f64,
     /// Permitted distance of the truth beyond a waypoint's own radius, and from its altitude, m.
     pub tolerance_m: f64,
 }
@@ -41,7 +39,7 @@ pub struct FlightOptions {
 impl Default for FlightOptions {
     /// Returns the defaults of `fly`.
     fn default() -> Self {
-        Self { takeoff_m: 10.0, timeout: SimTime::from_secs_f64(1800.0), samples_hz: 0.0, tolerance_m: 10.0 }
+        Self { takeoff_m: 10.0, timeout: SimTime::from_secs_f64(1800.0), tolerance_m: 10.0 }
     }
 }
 
@@ -50,7 +48,6 @@ impl Default for FlightOptions {
 pub struct Flight {
     vehicle: Vehicle,
     judge: Judge,
-    sample_every_us: Option<u64>,
     touched_down: bool,
     ends_in_land: bool,
     takeoff_m: f64,
@@ -60,14 +57,6 @@ pub struct Flight {
     /// True altitude at which the craft was armed, m.
     armed_alt_m: f64,
     battery_empty_at: Option<SimTime>,
-}
-
-/// A report of a flight.
-#[derive(Debug)]
-pub enum Report<'a> {
-    Event(Event),
-    /// A sample is due.
-    Sample(&'a Vehicle),
 }
 
 /// The end of a flight.
@@ -95,8 +84,6 @@ impl Flight {
         let controller = vehicle.controller();
         let flown = vehicle.embedded().and_then(Firmware::active_plan).or(controller.stored_plan());
         let ends_in_land = flown.is_some_and(ends_in_land);
-        let sample_every_us =
-            (options.samples_hz > 0.0).then(|| ((1e6 / options.samples_hz).round() as u64).max(1));
         // The altitude of a craft in the air counts from the place of arming.
         let armed_alt_m = match (vehicle.embedded(), vehicle.truth()) {
             (Some(firmware), Some(truth)) if firmware.is_armed() => truth.pos_enu.z - firmware.altitude_m(),
@@ -105,7 +92,6 @@ impl Flight {
         Self {
             vehicle,
             judge: Judge::new(options.timeout),
-            sample_every_us,
             touched_down: false,
             ends_in_land,
             takeoff_m: options.takeoff_m,
@@ -135,8 +121,8 @@ impl Flight {
         self.judge.engaged_at()
     }
 
-    /// Flies one tick. Returns the end when the flight is over.
-    pub fn tick(&mut self, mut report: impl FnMut(Report)) -> Option<FlightEnd> {
+    /// Flies one tick and reports its events. Returns the end when the flight is over.
+    pub fn tick(&mut self, mut report: impl FnMut(Event)) -> Option<FlightEnd> {
         self.vehicle.tick();
         let (touched_down, nav_events) = (&mut self.touched_down, &mut self.nav_events);
         let battery_empty_at = &mut self.battery_empty_at;
@@ -157,18 +143,12 @@ impl Flight {
                 | EventKind::Crash { .. }
                 | EventKind::Notice(_) => {}
             }
-            report(Report::Event(event));
+            report(event);
         });
         if was_armed {
             self.armed_alt_m = self.true_alt_m();
         }
         self.check_truth();
-        let now = self.vehicle.time();
-        if let Some(every) = self.sample_every_us
-            && now.0 / every != (now.0 - self.vehicle.step_us()) / every
-        {
-            report(Report::Sample(&self.vehicle));
-        }
         let verdict = self.judge.look(&self.facts())?;
         Some(self.end(verdict))
     }
@@ -297,12 +277,7 @@ mod tests {
         setup.world.switches.battery_sag = battery_sag;
         setup.stored.plan = plan.plan;
         let (vehicle, _) = setup.build().unwrap();
-        let options = FlightOptions {
-            takeoff_m: 10.0,
-            timeout: SimTime(600_000_000),
-            samples_hz: 0.0,
-            tolerance_m: 10.0,
-        };
+        let options = FlightOptions { takeoff_m: 10.0, timeout: SimTime(600_000_000), tolerance_m: 10.0 };
         let mut flight = Flight::new(vehicle, &options).unwrap();
         loop {
             if let Some(end) = flight.tick(|_| {}) {

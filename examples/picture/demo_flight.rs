@@ -83,7 +83,7 @@ impl DemoFlight {
             let mut heard = Vec::new();
             self.vehicle.drain_events(|event| heard.push(event));
             for event in heard {
-                self.marks.note(&event);
+                self.marks.note(event.time, &event.kind);
                 self.tell(Msg::Event(event.into()))?;
             }
             self.tell(Msg::View(view(&self.vehicle)))?;

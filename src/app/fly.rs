@@ -1,30 +1,27 @@
 //! `betadeck fly`: a complete flight without a screen.
-#![allow(clippy::disallowed_methods, reason = "measures the wall time of the flight and paces it when asked")]
+#![allow(clippy::disallowed_methods, reason = "measures the wall time of the flight")]
 
 mod output;
-mod remote;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use super::error::{self, AppError};
-use super::firmware::{self, Beside};
+use super::firmware::run::{RemoteRun, RunOptions, unless_interrupted};
+use super::firmware::{self, Beside, RemoteFirmware};
 use super::interrupt::interrupt_flag;
 use super::setup;
-use crate::args::{FlyArgs, PhysicsArgs};
+use crate::args::{FlyArgs, PhysicsArgs, Speed};
 use crate::fc::upload;
 use crate::flight::setup::{BootLines, PhysicsSource};
-use crate::flight::{Flight, FlightEnd, FlightOptions, FlightResult};
+use crate::flight::{Flight, FlightResult};
 use crate::plan::format::PlanFile;
 use crate::report::End;
-use crate::session::{Event, Pacer, hazards};
+use crate::session::{Event, Runner, Stopped, Subscriber, hazards};
 use crate::storage::Store;
 use crate::vehicle::Vehicle;
-use output::Output;
-
-/// The number of ticks between two checks of the clock and of the interrupt.
-const SLICE: u64 = 4096;
+use output::{Output, Prelude};
 
 /// Flies and reports. The exit code is 0 if the mission completed.
 pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
@@ -50,17 +47,31 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
     setup.remote_controller = firmware.is_some();
     let vehicle = setup::build(setup, &mut notices)?;
     let start = Start { args, plan, vehicle, notices, interrupted: interrupt_flag()? };
-    let flown = match &firmware {
-        None => embedded(start)?,
-        Some(firmware) => remote::fly(start, firmware)?,
+    let prepared = match &firmware {
+        None => Some(start.embedded()?),
+        Some(firmware) => start.remote(firmware)?,
     };
-    let Some(Flown { end, wall, output, failure }) = flown else { return Ok(error::INTERRUPTED) };
+    let Some(Prepared { mut flight, mut output, mut run, interrupted }) = prepared else {
+        return Ok(error::INTERRUPTED);
+    };
+    let mut watch = Stopwatch::start();
+    let flown =
+        run.runner().fly(&mut flight, &mut (&mut output, &mut watch), || interrupted.load(Ordering::Relaxed));
+    let (end, failure) = match flown {
+        Ok(end) => (end, None),
+        Err(Stopped::Interrupted) => (flight.interrupt("stopped by a signal"), None),
+        Err(Stopped::BySubscriber) => return Err(output.into_problem()),
+        // The files end like those of a finished flight.
+        Err(Stopped::Failed(sentence)) => {
+            (flight.interrupt(&sentence), Some(AppError::environment(sentence)))
+        }
+    };
     let end_record = End {
         result: end.verdict.result.to_string(),
         reason: end.verdict.reason,
         truth: end.truth,
         flown_s: end.flown_s,
-        wall_s: wall.as_secs_f64(),
+        wall_s: watch.seconds(),
     };
     let finished = output.finish(end.time, &end_record);
     match failure {
@@ -79,32 +90,91 @@ struct Start<'a> {
     interrupted: Arc<AtomicBool>,
 }
 
-/// A finished flight.
-struct Flown {
-    end: FlightEnd,
-    /// Wall time from the engagement to the end, or from the start if it did not engage.
-    wall: Duration,
+/// A flight at its first tick.
+struct Prepared {
+    flight: Flight,
     output: Output,
-    /// The error that ended the flight early.
-    failure: Option<AppError>,
+    run: Run,
+    interrupted: Arc<AtomicBool>,
 }
 
-impl Start<'_> {
-    fn options(&self) -> FlightOptions {
-        setup::flight_options(&self.args.mission, self.args.samples.unwrap_or(0.0))
+/// The runner of the flight, with the remote firmware if there is one.
+enum Run {
+    Embedded(Runner),
+    Remote(RemoteRun),
+}
+
+impl Run {
+    fn runner(&mut self) -> &mut Runner {
+        match self {
+            Self::Embedded(runner) => runner,
+            Self::Remote(run) => run.runner(),
+        }
     }
 }
 
-/// Opens the outputs and reports the events so far.
-fn open_output(
-    args: &FlyArgs,
-    plan: &PlanFile,
-    vehicle: &mut Vehicle,
-    notices: Vec<String>,
-) -> Result<Output, AppError> {
-    let mut output = Output::open(args, vehicle, plan)?;
-    first_events(vehicle, notices).iter().try_for_each(|event| output.event(event))?;
-    Ok(output)
+impl Start<'_> {
+    /// Prepares a flight with the embedded firmware.
+    fn embedded(mut self) -> Result<Prepared, AppError> {
+        // A plan that the craft refuses is invalid input.
+        upload(self.vehicle.controller_mut(), &self.plan.plan, &[]).map_err(AppError::input)?;
+        let options = setup::flight_options(&self.args.mission);
+        self.notices.extend(self.hazards(&self.vehicle));
+        let Self { args, plan, vehicle, notices, interrupted } = self;
+        let mut flight = setup::start_flight(vehicle, &options)?;
+        let mut output = Output::open(args, flight.vehicle(), &plan)?;
+        first_events(flight.vehicle_mut(), notices).iter().try_for_each(|event| output.write(event))?;
+        let run = Run::Embedded(Runner::new(flight.vehicle().step_us(), args.speed(), None));
+        Ok(Prepared { flight, output, run, interrupted })
+    }
+
+    /// Prepares a flight with a remote firmware, in real time; `None` if a signal came before the flight began.
+    fn remote(mut self, firmware: &RemoteFirmware) -> Result<Option<Prepared>, AppError> {
+        let mut prelude = Prelude::new(self.args);
+        for event in first_events(&mut self.vehicle, std::mem::take(&mut self.notices)) {
+            prelude.write(&event)?;
+        }
+        let options = RunOptions {
+            state: self.args.flight.state_dir.as_deref(),
+            speed: self.args.flight.speed.map_or(1.0, |Speed(speed)| speed),
+            interrupted: Arc::clone(&self.interrupted),
+        };
+        let prepared =
+            RemoteRun::prepare(firmware, &mut self.vehicle, &self.plan.plan, options, &mut prelude);
+        prelude.check()?;
+        let Some(run) = unless_interrupted(prepared)? else { return Ok(None) };
+        for hazard in self.hazards(&self.vehicle) {
+            prelude.write(&Event::notice(self.vehicle.time(), hazard))?;
+        }
+        let flight = setup::start_flight(self.vehicle, &setup::flight_options(&self.args.mission))?;
+        let output = prelude.open(flight.vehicle(), &self.plan)?;
+        Ok(Some(Prepared { flight, output, run: Run::Remote(run), interrupted: self.interrupted }))
+    }
+
+    fn hazards(&self, vehicle: &Vehicle) -> Vec<String> {
+        hazards(vehicle, self.args.mission.takeoff_m(), Some(self.args.review.max_altitude_m()))
+    }
+}
+
+/// Measures the wall time from the engagement, or from the start if there is none.
+struct Stopwatch(Instant, bool);
+
+impl Stopwatch {
+    fn start() -> Self {
+        Self(Instant::now(), false)
+    }
+
+    fn seconds(&self) -> f64 {
+        self.0.elapsed().as_secs_f64()
+    }
+}
+
+impl Subscriber<Flight> for Stopwatch {
+    fn after_tick(&mut self, flight: &Flight) {
+        if !self.1 && flight.engaged_at().is_some() {
+            *self = Self(Instant::now(), true);
+        }
+    }
 }
 
 /// Returns the events of the vehicle so far, and the notices.
@@ -140,62 +210,5 @@ fn open_store(args: &FlyArgs) -> Result<Store, AppError> {
         ))),
         Some(directory) => Ok(Store::read_only(directory)),
         None => Ok(Store::in_memory()),
-    }
-}
-
-/// Flies with the embedded firmware.
-fn embedded(mut start: Start<'_>) -> Result<Option<Flown>, AppError> {
-    // A plan that the craft refuses is invalid input.
-    upload(start.vehicle.controller_mut(), &start.plan.plan, &[]).map_err(AppError::input)?;
-    let options = start.options();
-    let max_alt_m = Some(start.args.review.max_altitude_m());
-    start.notices.extend(hazards(&start.vehicle, options.takeoff_m, max_alt_m));
-    let Start { args, plan, vehicle, notices, interrupted } = start;
-    let mut flight = setup::start_flight(vehicle, &options)?;
-    let mut output = open_output(args, &plan, flight.vehicle_mut(), notices)?;
-    let (end, wall) = fly(flight, args.speed(), &interrupted, &mut output)?;
-    Ok(Some(Flown { end, wall, output, failure: None }))
-}
-
-/// Runs the flight to its end. The wall time counts from the engagement, or from boot if there was none.
-fn fly(
-    mut flight: Flight,
-    speed: f64,
-    interrupted: &AtomicBool,
-    output: &mut Output,
-) -> Result<(FlightEnd, Duration), AppError> {
-    let started = Instant::now();
-    let mut engaged: Option<Instant> = None;
-    let mut pacer = Pacer::new(flight.vehicle().step_us(), speed);
-    let mut problem = None;
-    loop {
-        let due = pacer.due(started.elapsed(), SLICE);
-        for _ in 0..due {
-            let end = flight.tick(|report| {
-                if let Err(error) = output.report(report) {
-                    problem.get_or_insert(error);
-                }
-            });
-            if engaged.is_none() && flight.engaged_at().is_some() {
-                engaged = Some(Instant::now());
-            }
-            if let Err(error) = output.track(flight.vehicle()) {
-                problem.get_or_insert(error);
-            }
-            if let Some(error) = problem.take() {
-                return Err(error);
-            }
-            if let Some(end) = end {
-                return Ok((end, engaged.unwrap_or(started).elapsed()));
-            }
-        }
-        if interrupted.load(Ordering::Relaxed) {
-            return Ok((flight.interrupt("stopped by a signal"), engaged.unwrap_or(started).elapsed()));
-        }
-        if due < SLICE {
-            // A person may be watching the output.
-            output.flush()?;
-            std::thread::sleep(Duration::from_millis(2));
-        }
     }
 }

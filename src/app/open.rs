@@ -6,10 +6,9 @@ use super::live::LiveArgs;
 use super::tui::{self, Screen};
 use crate::args::{DoorArgs, FlightArgs, Instant, OpenArgs, PhysicsArgs, ReviewArgs};
 use crate::scenario::{Air, Case, CaseFlight, Scenario};
-use crate::session::{FlownBefore, SessionView};
+use crate::session::{Event, FlownBefore, Runner, SessionView, Subscriber};
 use crate::signals::SimTime;
 use crate::storage::Store;
-use crate::telemetry::Event;
 use crate::text::did_you_mean;
 use crate::timeline::Timeline;
 use crate::ui::keymap::Keymap;
@@ -17,25 +16,39 @@ use crate::ui::keymap::Keymap;
 /// The pictures for each simulated second of the finished flight. Tracks and graphs are made from them.
 const PICTURES_HZ: u64 = 5;
 
+/// The record of a flight for the screen.
+#[derive(Default)]
+struct Recorded {
+    events: Vec<Event>,
+    past: Vec<SessionView>,
+}
+
+impl Subscriber<CaseFlight<'_>> for Recorded {
+    fn event(&mut self, event: &Event) {
+        self.events.push(event.clone());
+    }
+
+    fn after_tick(&mut self, flight: &CaseFlight<'_>) {
+        if flight.vehicle().time().0.is_multiple_of(1_000_000 / PICTURES_HZ) {
+            self.past.push(SessionView::of_recorded(flight.vehicle()));
+        }
+    }
+}
+
 /// Flies the case to its end and opens the screen at the instant.
 pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
     tui::require_terminal(false)?;
     let scenario = check::load_one(&args.scenario, args.seed)?;
     let (case, air) = choose(&scenario, args)?;
     let mut flight = CaseFlight::new(case, &air).map_err(AppError::input)?;
-    let mut timeline = Timeline::new(flight.vehicle_mut())
+    let timeline = Timeline::new(flight.vehicle_mut())
         .ok_or_else(|| AppError::internal("the flight of a scenario is not recorded"))?;
-    let mut events: Vec<Event> = Vec::new();
-    let mut past = Vec::new();
-    let interval_us = 1_000_000 / PICTURES_HZ;
-    while !flight.is_over() {
-        flight.prepare();
-        timeline.record(flight.vehicle_mut());
-        flight.tick(|event| events.push(event.clone()));
-        if flight.vehicle().time().0.is_multiple_of(interval_us) {
-            past.push(SessionView::of_recorded(flight.vehicle()));
-        }
-    }
+    let mut recorded = (timeline, Recorded::default());
+    let mut runner = Runner::new(flight.vehicle().step_us(), f64::INFINITY, None);
+    runner
+        .fly(&mut flight, &mut recorded, || false)
+        .map_err(|_| AppError::internal("the flight of a scenario stopped"))?;
+    let (timeline, Recorded { events, past }) = recorded;
     let show = instant(args.at, flight.trace().engaged_at, flight.vehicle().time())?;
     let name = if case.name.is_empty() {
         scenario.name.clone()

@@ -93,11 +93,10 @@ pub(super) fn build(setup: FlightSetup, notices: &mut Vec<String>) -> Result<Veh
 }
 
 /// Returns the options for the flight and the judgement of a plan, with this number of reported samples a second.
-pub(super) fn flight_options(args: &MissionArgs, samples_hz: f64) -> FlightOptions {
+pub(super) fn flight_options(args: &MissionArgs) -> FlightOptions {
     FlightOptions {
         takeoff_m: args.takeoff_m(),
         timeout: SimTime::from_secs_f64(args.timeout_s()),
-        samples_hz,
         tolerance_m: args.tolerance_m(),
     }
 }

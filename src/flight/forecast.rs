@@ -16,7 +16,7 @@ pub use path::PathPoint;
 pub use report::{Forecast, ForecastEnd, ForecastKind};
 pub use what_if::{WHAT_IFS, WhatIf};
 
-use super::{Flight, FlightEnd, FlightOptions, Report, Verdict};
+use super::{Flight, FlightEnd, FlightOptions, Verdict};
 use crate::firmware::Firmware;
 use crate::firmware::cli::Interpreter;
 use crate::plan::{FlightPlan, upload_lines};
@@ -123,7 +123,7 @@ impl ForecastRun {
 
     fn tick(&mut self) -> Option<Forecast> {
         let mut happened = false;
-        let end = self.flight.tick(|report| happened |= matches!(report, Report::Event(_)));
+        let end = self.flight.tick(|_| happened = true);
         let vehicle = self.flight.vehicle();
         self.observer.look(vehicle);
         let (end, reason) = match end {

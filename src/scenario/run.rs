@@ -9,8 +9,9 @@ use super::happening::{EventName, Happening};
 use super::insight::Insight;
 use super::sampling::sample;
 use super::trace::Trace;
-use crate::flight::{Flight, FlightEnd, FlightOptions, FlightResult, Report};
+use crate::flight::{Flight, FlightEnd, FlightOptions, FlightResult};
 use crate::signals::SimTime;
+use crate::telemetry::Event;
 use crate::vehicle::Vehicle;
 use inputs::Inputs;
 use log::Log;
@@ -137,14 +138,12 @@ impl<'a> CaseFlight<'a> {
     }
 
     /// Flies one tick and reports its events to `report`.
-    pub fn tick(&mut self, mut report: impl FnMut(&crate::telemetry::Event)) {
+    pub fn tick(&mut self, mut report: impl FnMut(Event)) {
         let (log, trace) = (&mut self.log, &mut self.trace);
         let before = trace.happenings.len();
-        let end = self.flight.tick(|reported| {
-            if let Report::Event(event) = reported {
-                log.note(&event, trace);
-                report(&event);
-            }
+        let end = self.flight.tick(|event| {
+            log.note(&event, trace);
+            report(event);
         });
         let now = self.flight.vehicle().time();
         trace.engaged_at = self.flight.engaged_at().or(trace.engaged_at);

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::event::Event;
 use super::reply::ReplyTo;
 use crate::fc::{RemoteView, UploadReport, UploadView};
 use crate::link::endpoint::EndpointStatus;
@@ -117,6 +118,8 @@ pub enum Command {
     /// Copies the recorded flight of the shown instant up to its end. The reply is the copy, or the reason
     /// why there is none.
     RecordedFlight(ReplyTo<Result<Box<RecordedFlight>, String>>),
+    /// Sends all later events to this receiver, too, until it is dropped.
+    Subscribe(tokio::sync::mpsc::UnboundedSender<Event>),
     Quit,
 }
 

@@ -85,15 +85,20 @@ impl From<telemetry::Event> for Event {
 /// marks for them.
 #[derive(Debug)]
 pub(super) struct EventSender {
-    events: mpsc::UnboundedSender<Event>,
+    receivers: Vec<mpsc::UnboundedSender<Event>>,
     marks: Marks,
     /// `true` if the craft was disarmed since the last query.
     disarmed: bool,
 }
 
 impl EventSender {
-    pub(super) fn new(events: mpsc::UnboundedSender<Event>) -> Self {
-        Self { events, marks: Marks::default(), disarmed: false }
+    pub(super) fn new(receiver: mpsc::UnboundedSender<Event>) -> Self {
+        Self { receivers: vec![receiver], marks: Marks::default(), disarmed: false }
+    }
+
+    /// Sends all later events to this receiver, too, until it is dropped.
+    pub(super) fn subscribe(&mut self, receiver: mpsc::UnboundedSender<Event>) {
+        self.receivers.push(receiver);
     }
 
     pub(super) fn marks(&self) -> &Marks {
@@ -107,20 +112,13 @@ impl EventSender {
     }
 
     /// Sends the events of a flight that was flown before.
-    pub(super) fn send_all(&mut self, events: Vec<telemetry::Event>) {
-        for event in events {
-            self.marks.note(&event);
-            send(&self.events, event.into());
-        }
+    pub(super) fn send_all(&mut self, events: &[Event]) {
+        events.iter().for_each(|event| self.send(event));
     }
 
     /// Sends the new events of the vehicle.
     pub(super) fn send_events_of(&mut self, vehicle: &mut Vehicle) {
-        vehicle.drain_events(|event| {
-            self.marks.note(&event);
-            self.disarmed |= matches!(event.kind, EventKind::Firmware(FirmwareEvent::Disarmed(_)));
-            send(&self.events, event.into());
-        });
+        vehicle.drain_events(|event| self.send(&event.into()));
     }
 
     /// Returns `true` if the craft was disarmed since the last call.
@@ -136,16 +134,19 @@ impl EventSender {
     /// Sends any event, in the same way as [`Self::notice`].
     pub(super) fn report(&mut self, vehicle: &mut Vehicle, kind: SessionEvent) {
         self.send_events_of(vehicle);
-        send(&self.events, Event { time: vehicle.time(), kind });
+        self.send(&Event { time: vehicle.time(), kind });
     }
 
     /// Sends a notice about an earlier instant.
-    pub(super) fn notice_at(&self, time: SimTime, text: impl Into<String>) {
-        send(&self.events, Event::notice(time, text));
+    pub(super) fn notice_at(&mut self, time: SimTime, text: impl Into<String>) {
+        self.send(&Event::notice(time, text));
     }
-}
 
-fn send(events: &mpsc::UnboundedSender<Event>, event: Event) {
-    // The receiver is gone only while the program ends.
-    drop(events.send(event));
+    pub(super) fn send(&mut self, event: &Event) {
+        if let SessionEvent::Vehicle(kind) = &event.kind {
+            self.marks.note(event.time, kind);
+            self.disarmed |= matches!(kind, EventKind::Firmware(FirmwareEvent::Disarmed(_)));
+        }
+        self.receivers.retain(|receiver| receiver.send(event.clone()).is_ok());
+    }
 }

@@ -14,7 +14,7 @@ pub const SPEED_RANGE: std::ops::RangeInclusive<f64> = 0.05..=1000.0;
 
 /// Relates the vehicle's time to the wall clock.
 #[derive(Debug, Clone)]
-pub struct Pacer {
+pub(super) struct Pacer {
     step: Duration,
     speed: f64,
     paused: bool,
@@ -32,7 +32,7 @@ pub struct Pacer {
 impl Pacer {
     /// Creates a pacer for steps of `step_us` microseconds at `speed` times real time (infinite: as fast as
     /// possible).
-    pub fn new(step_us: u64, speed: f64) -> Self {
+    pub(super) fn new(step_us: u64, speed: f64) -> Self {
         Self {
             step: Duration::from_micros(step_us),
             speed: clamp_speed(speed),
@@ -47,23 +47,23 @@ impl Pacer {
     }
 
     /// Returns the requested multiple of real time; infinite = as fast as possible.
-    pub fn speed(&self) -> f64 {
+    pub(super) fn speed(&self) -> f64 {
         self.speed
     }
 
     /// Changes the speed. Values outside [`SPEED_RANGE`] are clamped, infinity is kept.
-    pub fn set_speed(&mut self, speed: f64, now: Duration) {
+    pub(super) fn set_speed(&mut self, speed: f64, now: Duration) {
         self.speed = clamp_speed(speed);
         self.drop_backlog(now);
     }
 
     /// Returns `true` while time is paused.
-    pub fn is_paused(&self) -> bool {
+    pub(super) fn is_paused(&self) -> bool {
         self.paused
     }
 
     /// Pauses or resumes time.
-    pub fn set_paused(&mut self, paused: bool, now: Duration) {
+    pub(super) fn set_paused(&mut self, paused: bool, now: Duration) {
         self.paused = paused;
         self.drop_backlog(now);
         if paused {
@@ -74,13 +74,13 @@ impl Pacer {
     }
 
     /// Returns the achieved multiple of real time, averaged over the last second.
-    pub fn achieved(&self) -> f64 {
+    pub(super) fn achieved(&self) -> f64 {
         self.achieved
     }
 
     /// Returns the ticks due at wall time `now`, at most `most`. The rest stays due, up to 50 ms of wall
     /// time.
-    pub fn due(&mut self, now: Duration, most: u64) -> u64 {
+    pub(super) fn due(&mut self, now: Duration, most: u64) -> u64 {
         if self.paused {
             self.handed_out = now;
             return 0;
@@ -104,7 +104,7 @@ impl Pacer {
 
     /// Returns the wall time, counted like `now`, at which the next step is due; `None` while time is paused
     /// or runs as fast as possible.
-    pub fn next_due(&self) -> Option<Duration> {
+    pub(super) fn next_due(&self) -> Option<Duration> {
         if self.paused || self.speed.is_infinite() {
             return None;
         }
@@ -113,17 +113,17 @@ impl Pacer {
     }
 
     /// Returns `true` if a due step was not returned yet.
-    pub fn is_behind(&self) -> bool {
+    pub(super) fn is_behind(&self) -> bool {
         self.carry >= 1.0
     }
 
     /// Returns the wall time that was dropped since the last call.
-    pub fn take_lost(&mut self) -> Duration {
+    pub(super) fn take_lost(&mut self) -> Duration {
         std::mem::take(&mut self.lost)
     }
 
     /// Records that `ticks` were run by wall time `now`.
-    pub fn ran(&mut self, ticks: u64, now: Duration) {
+    pub(super) fn ran(&mut self, ticks: u64, now: Duration) {
         self.window_ticks += ticks;
         let span = now.saturating_sub(self.window_start);
         if span >= WINDOW {

@@ -116,7 +116,10 @@ impl Intent {
             Command::Save { .. } => Self::Save,
             Command::World { .. } => Self::World,
             Command::CopyVehicle(_) => Self::Forecast,
-            Command::RecordedFlight(_) | Command::PermitChanges(_) | Command::Quit => Self::Read,
+            Command::RecordedFlight(_)
+            | Command::PermitChanges(_)
+            | Command::Subscribe(_)
+            | Command::Quit => Self::Read,
         }
     }
 

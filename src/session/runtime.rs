@@ -1,17 +1,13 @@
 //! The thread that owns the vehicle: takes commands and requests, runs the due ticks, publishes views and events.
 //!
-//! `commands` carries out the commands of the user interface, `console` its command line, `requests` those of
-//! the links. `limits` refuses actions that are not allowed on a real craft. `late` passes on the answers of
-//! a remote flight controller. `rewind` shows earlier instants and continues the flight from them.
-//! `publishing` builds the view.
+//! `commands` carries out the commands of the user interface, `requests` those of the links. `interface` passes the
+//! requests of the user interface to the flight controller and returns the answers. `limits` refuses actions that are not
+//! allowed on a real craft. `rewind` shows earlier instants and continues the flight from them.
 #![allow(clippy::disallowed_methods, reason = "this is where wall time meets simulated time")]
 
 mod commands;
-mod console;
-mod late;
+mod interface;
 mod limits;
-mod publishing;
-mod remote;
 mod requests;
 mod rewind;
 
@@ -26,23 +22,21 @@ use super::arming::ArmingWatch;
 use super::command::{Command, SessionView};
 use super::event::{Event, EventSender, SessionEvent};
 use super::host_status::HostStatus;
-use super::late_answers::LateAnswers;
-use super::pacer::Pacer;
 use super::persistence::Persistence;
 use super::real_time::RealTime;
 use super::request_handler::RequestHandler;
+use super::runner::{Runner, Subscriber};
 use super::simulator::Simulator;
-use crate::fc::{Denial, EXCHANGE_PAUSE, RemoteLink};
-use crate::firmware::cli::Interpreter;
+use crate::fc::{Access, Denial, RemoteLink, RemoteNotice};
 use crate::link::endpoint::EndpointStatus;
 use crate::link::{ExternalSimulator, ImpairedLink, Request};
 use crate::signals::SimTime;
 use crate::sim::Stream;
 use crate::storage::Store;
-use crate::telemetry::{self, LinkState};
+use crate::telemetry::LinkState;
 use crate::timeline::Timeline;
 use crate::vehicle::Vehicle;
-use late::WaitingInterface;
+use interface::{Interface, UploadTo};
 use rewind::RunOn;
 
 /// The interval of published views.
@@ -94,7 +88,7 @@ pub struct SessionConfig {
 pub struct FlownBefore {
     pub timeline: Timeline,
     /// The events of the flight.
-    pub events: Vec<telemetry::Event>,
+    pub events: Vec<Event>,
     /// The instant to show.
     pub show: SimTime,
 }
@@ -109,6 +103,23 @@ pub struct Handle {
     /// The thread. It ends on [`Command::Quit`] or when all senders are gone. It also ends by itself when
     /// there is no usable flight controller, and then returns the reason as a sentence.
     pub thread: std::thread::JoinHandle<Option<String>>,
+}
+
+/// The state and the events of a session, for a subscriber beside the owner of the [`Handle`].
+#[derive(Debug)]
+pub struct Subscription {
+    pub view: watch::Receiver<SessionView>,
+    /// Every event from the subscription on, in order. They wait without a limit, so they must be read.
+    pub events: mpsc::UnboundedReceiver<Event>,
+}
+
+impl Handle {
+    /// Returns a further receiver of the session's views and events; `None` if the session has ended.
+    pub async fn subscribe(&self) -> Option<Subscription> {
+        let (sender, events) = mpsc::unbounded_channel();
+        self.commands.send(Command::Subscribe(sender)).await.ok()?;
+        Some(Subscription { view: self.view.clone(), events })
+    }
 }
 
 /// Formats a speed as a multiple of real time.
@@ -142,22 +153,18 @@ pub fn start_at(config: SessionConfig, flown: Option<FlownBefore>) -> std::io::R
 struct Session {
     vehicle: Vehicle,
     persistence: Persistence,
-    pacer: Pacer,
+    runner: Runner,
     /// The multiple of real time at the start. The speed returns to it after a flight.
     usual_speed: f64,
-    console: Interpreter,
-    host: HostStatus,
     takeoff_m: f64,
     simulator: Option<Simulator>,
-    remote: Option<RemoteLink>,
     endpoints: Option<Endpoints>,
     commands: mpsc::Receiver<Command>,
     /// A command that was taken from the queue and is carried out next.
     held_back: Option<Command>,
     events: EventSender,
     arming: ArmingWatch,
-    /// The requests of the user interface to a remote flight controller.
-    late_answers: LateAnswers<WaitingInterface>,
+    interface: Interface,
     real_time: RealTime,
     /// The recording, unless the flight cannot be rewound.
     timeline: Option<Timeline>,
@@ -206,21 +213,18 @@ impl Session {
         let persistence =
             Persistence::new(config.store, config.vehicle.controller_mut(), config.starter_modes);
         let mut session = Self {
-            pacer: Pacer::new(config.vehicle.step_us(), config.speed),
+            runner: Runner::new(config.vehicle.step_us(), config.speed, config.remote).with_slice(SLICE),
             usual_speed: config.speed,
-            console: Interpreter::default(),
-            host: HostStatus::default(),
             vehicle: config.vehicle,
             persistence,
             takeoff_m: config.takeoff_m,
             simulator: simulator.map(|link| Simulator::new(link, incoming, Instant::now())),
-            remote: config.remote,
             endpoints: config.endpoints,
             commands,
             held_back: None,
             events: EventSender::new(events),
             arming: ArmingWatch::default(),
-            late_answers: LateAnswers::default(),
+            interface: Interface::default(),
             real_time: RealTime::default(),
             timeline,
             run_on: None,
@@ -234,7 +238,7 @@ impl Session {
             failure: None,
         };
         if let Some((events, show)) = flown {
-            session.begin_with(events, show);
+            session.begin_with(&events, show);
         }
         for event in config.first_events {
             session.events.report(&mut session.vehicle, event);
@@ -255,11 +259,11 @@ impl Session {
             let flown = self.handle_requests(&mut context);
             let now = start.elapsed();
             self.record_flood();
-            let due = if self.follows_wall_clock() { self.pacer.due(now, self.most_steps()) } else { 0 };
+            let due = if self.follows_wall_clock() { self.runner.due(now) } else { 0 };
             let ticks = flown + self.advance(due, now);
             self.exchange_with_remote(&mut context);
             let after = start.elapsed();
-            self.pacer.ran(ticks, after);
+            self.runner.pacer.ran(ticks, after);
             self.count_lost_time(after);
             if ticks > 0 || self.changed {
                 self.flush_events();
@@ -270,9 +274,9 @@ impl Session {
                 published = after;
                 (self.changed, moved) = (false, false);
                 let view_now = self.view();
-                self.host = HostStatus::of(&view_now);
+                self.interface.host = HostStatus::of(&view_now);
                 if let Some(endpoints) = &mut self.endpoints {
-                    endpoints.handler.set_host_status(self.host);
+                    endpoints.handler.set_host_status(self.interface.host);
                 }
                 if !self.is_rewound()
                     && let Some(notice) = self.arming.check(&view_now.vehicle)
@@ -291,11 +295,11 @@ impl Session {
     /// Resets the speed to that of the start when the craft was disarmed. A speed chosen later, while the
     /// craft is disarmed, is kept.
     fn slow_down_after_flight(&mut self, now: Duration) {
-        let (fast, usual) = (self.pacer.speed(), self.usual_speed);
+        let (fast, usual) = (self.runner.pacer.speed(), self.usual_speed);
         if !self.events.take_disarmed() || !self.sets_time() || fast <= usual {
             return;
         }
-        self.pacer.set_speed(usual, now);
+        self.runner.pacer.set_speed(usual, now);
         self.changed = true;
         self.notice(format!(
             "The craft is disarmed: time runs at {} again ({} before); `]` makes it faster.",
@@ -306,14 +310,7 @@ impl Session {
 
     /// Returns `true` if the session sets the time, rather than an external simulator or a remote firmware.
     fn sets_time(&self) -> bool {
-        self.simulator.is_none() && self.remote.is_none()
-    }
-
-    /// Returns the maximum number of steps of one round.
-    fn most_steps(&self) -> u64 {
-        let (step_us, speed) = (self.vehicle.step_us(), self.pacer.speed());
-        let of_remote = self.remote.as_ref().map(|remote| remote.most_steps(step_us, speed, Instant::now()));
-        SLICE.min(of_remote.unwrap_or(SLICE))
+        self.simulator.is_none() && self.runner.link.is_none()
     }
 
     /// Returns `true` while time follows the wall clock: without an external simulator, or until it sends its
@@ -324,33 +321,24 @@ impl Session {
 
     /// Counts the real time that was lost by `now`, and reports it.
     fn count_lost_time(&mut self, now: Duration) {
-        self.real_time.lose(self.pacer.take_lost());
+        self.real_time.lose(self.runner.pacer.take_lost());
         if let Some(simulator) = &mut self.simulator {
             let (wall, simulated) = simulator.take_passed();
             self.real_time.advance(wall, simulated);
         }
-        let wanted = if self.simulator.is_some() { 1.0 } else { self.pacer.speed() };
+        let wanted = if self.simulator.is_some() { 1.0 } else { self.runner.pacer.speed() };
         // While time is paused there is no speed to report, and a real craft does not wait for it.
-        if !self.pacer.is_paused()
+        if !self.runner.pacer.is_paused()
             && !self.access().is_limited()
-            && let Some(notice) = self.real_time.notice(now, wanted, self.pacer.achieved())
+            && let Some(notice) = self.real_time.notice(now, wanted, self.runner.pacer.achieved())
         {
             self.notice(notice.to_string());
         }
     }
 
-    /// Returns the longest sleep of the thread at `present` if nothing arrives; its round began at `now`. A
-    /// remote flight controller that this program feeds gets its states at the rate of the steps.
+    /// Returns the longest sleep of the thread at `present` if nothing arrives; its round began at `now`.
     fn sleep_from(&self, now: Duration, present: Duration) -> Duration {
-        if let Some(remote) = &self.remote
-            && remote.is_fed()
-            && let Some(due) = self.pacer.next_due()
-        {
-            return if self.pacer.is_behind() { EXCHANGE_PAUSE } else { due.saturating_sub(present) };
-        }
-        let pause = self.remote.as_ref().and_then(|remote| remote.pause(Instant::now()));
-        let longest = self.longest_sleep().saturating_sub(present.saturating_sub(now));
-        pause.map_or(longest, |pause| pause.min(longest))
+        self.runner.rest(present, self.longest_sleep().saturating_sub(present.saturating_sub(now)))
     }
 
     /// Returns the longest sleep of the thread if nothing arrives.
@@ -359,8 +347,81 @@ impl Session {
             Some(simulator) if !self.follows_wall_clock() => {
                 PAUSED_SLEEP.min(simulator.longest_wait(Instant::now()))
             }
-            _ if self.pacer.is_paused() => PAUSED_SLEEP,
+            _ if self.runner.pacer.is_paused() => PAUSED_SLEEP,
             _ => PACED_SLEEP,
+        }
+    }
+
+    /// Returns the access to the craft.
+    fn access(&self) -> Access {
+        self.runner.link.as_ref().map_or(Access::Everything, |link| link.remote().access())
+    }
+
+    /// Sends the vehicle's data for its remote flight controller, and takes the data from it.
+    fn exchange_with_remote(&mut self, context: &mut Context<'_>) {
+        let Some(link) = &mut self.runner.link else { return };
+        for notice in link.exchange(&mut self.vehicle, Some(context), Instant::now()) {
+            self.changed = true;
+            if let RemoteNotice::Failed(sentence) = &notice
+                && link.is_fed()
+            {
+                self.failure = Some(sentence.clone());
+                self.quit = true;
+            }
+            let restarted = matches!(notice, RemoteNotice::Restarted(_));
+            self.events.report(&mut self.vehicle, SessionEvent::Remote(notice));
+            if restarted {
+                if let Some(endpoints) = &mut self.endpoints {
+                    endpoints.handler.after_restart(true, self.vehicle.controller_mut());
+                }
+                self.events.report(&mut self.vehicle, SessionEvent::Restarted);
+            }
+        }
+    }
+
+    /// Passes on the new answers of a remote flight controller, and gives up overdue requests.
+    fn take_late_answers(&mut self, now: Instant) {
+        while let Some((ticket, answer)) = self.vehicle.controller_mut().take_answer() {
+            self.changed = true;
+            let craft = &mut UploadTo { vehicle: &mut self.vehicle, takeoff_m: self.takeoff_m };
+            match self.interface.take_answer(ticket, answer, craft, now) {
+                Ok(notices) => self.notices(notices),
+                Err(answer) => {
+                    if let Some(endpoints) = &mut self.endpoints {
+                        endpoints.handler.deliver(ticket, answer);
+                    }
+                }
+            }
+        }
+        self.interface.give_up_overdue(now);
+        if let Some(endpoints) = &mut self.endpoints {
+            endpoints.handler.give_up_overdue(now);
+        }
+    }
+
+    /// Returns the view to publish.
+    fn view(&self) -> SessionView {
+        let vehicle = self.shown_vehicle();
+        let mut endpoints =
+            self.endpoints.as_ref().map_or_else(Vec::new, |endpoints| endpoints.status.borrow().clone());
+        let link = self.runner.link.as_ref();
+        endpoints.extend(link.and_then(|link| link.status(Instant::now())));
+        endpoints.extend(self.simulator.as_ref().map(|simulator| simulator.status(Instant::now())));
+        SessionView {
+            paused: self.runner.pacer.is_paused() && !self.is_running_on(),
+            speed_wanted: match self.simulator {
+                Some(_) => f64::INFINITY,
+                None => self.runner.pacer.speed(),
+            },
+            speed_achieved: self.runner.pacer.achieved(),
+            lost_time: self.real_time.lost(self.runner.pacer.achieved()),
+            upload: self.interface.upload_under_way(),
+            endpoints,
+            simulator: self.simulator.as_ref().map(Simulator::state),
+            remote: link.map(|link| link.remote().view()),
+            live: self.endpoints.is_some(),
+            timeline: self.timeline_view(),
+            ..SessionView::of_recorded(vehicle)
         }
     }
 
@@ -368,11 +429,21 @@ impl Session {
         self.events.send_events_of(&mut self.vehicle);
     }
 
+    fn notices(&mut self, texts: impl IntoIterator<Item = String>) {
+        texts.into_iter().for_each(|text| self.notice(text));
+    }
+
     fn notice(&mut self, text: impl Into<String>) {
         match self.timeline.as_ref().and_then(Timeline::shown) {
             Some(shown) => self.events.notice_at(shown.time(), text),
             None => self.events.notice(&mut self.vehicle, text),
         }
+    }
+}
+
+impl<F> Subscriber<F> for EventSender {
+    fn event(&mut self, event: &Event) {
+        self.send(event);
     }
 }
 

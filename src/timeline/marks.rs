@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::signals::SimTime;
-use crate::telemetry::{BatteryAlarm, DisarmReason, Event, EventKind, FirmwareEvent, NavEvent, NavState};
+use crate::telemetry::{BatteryAlarm, DisarmReason, EventKind, FirmwareEvent, NavEvent, NavState};
 
 /// The maximum number of marks. A flight of an hour has some hundred.
 const MOST: usize = 4096;
@@ -96,19 +96,19 @@ pub struct Marks {
 
 impl Marks {
     /// Adds the mark of an event.
-    pub fn note(&mut self, event: &Event) {
-        let Some(kind) = MarkKind::of(&event.kind) else { return };
-        if matches!(event.kind, EventKind::Crash { .. } | EventKind::Firmware(FirmwareEvent::Disarmed(_))) {
+    pub fn note(&mut self, time: SimTime, event: &EventKind) {
+        let Some(kind) = MarkKind::of(event) else { return };
+        if matches!(event, EventKind::Crash { .. } | EventKind::Firmware(FirmwareEvent::Disarmed(_))) {
             if self.ends.len() == MOST {
                 self.ends.drain(..MOST / 4);
             }
-            self.ends.push(event.time);
+            self.ends.push(time);
         }
         let marks = Arc::make_mut(&mut self.all);
         if marks.len() == MOST {
             marks.drain(..MOST / 4);
         }
-        marks.push(Mark { time: event.time, kind });
+        marks.push(Mark { time, kind });
     }
 
     /// Forgets the marks after `time`.
@@ -161,7 +161,7 @@ mod tests {
     fn marks(events: &[(u64, EventKind)]) -> Marks {
         let mut marks = Marks::default();
         for (second, kind) in events {
-            marks.note(&Event { time: SimTime(second * 1_000_000), kind: kind.clone() });
+            marks.note(SimTime(second * 1_000_000), kind);
         }
         marks
     }

@@ -2,7 +2,7 @@
 
 use betadeck::firmware::config::Configuration;
 use betadeck::flight::setup::BootLines;
-use betadeck::flight::{Flight, FlightEnd, FlightOptions, FlightResult, FlightSetup, Report};
+use betadeck::flight::{Flight, FlightEnd, FlightOptions, FlightResult, FlightSetup};
 use betadeck::geo::{LatLon, LocalFrame};
 use betadeck::plan::FlightPlan;
 use betadeck::plan::format::{Format, HomePosition, parse};
@@ -97,14 +97,11 @@ impl Mission {
         let mut tick = 0_u64;
         loop {
             let (mut disarmed, mut entered) = (None, None);
-            let end = flight.tick(|report| match report {
-                Report::Event(event) => match event.kind {
-                    EventKind::Firmware(FirmwareEvent::Disarmed(reason)) => disarmed = Some(reason),
-                    EventKind::Firmware(FirmwareEvent::Nav(NavEvent::Limited { .. })) => limited = true,
-                    EventKind::Firmware(FirmwareEvent::Nav(NavEvent::State { to, .. })) => entered = Some(to),
-                    _ => {}
-                },
-                Report::Sample(_) => {}
+            let end = flight.tick(|event| match event.kind {
+                EventKind::Firmware(FirmwareEvent::Disarmed(reason)) => disarmed = Some(reason),
+                EventKind::Firmware(FirmwareEvent::Nav(NavEvent::Limited { .. })) => limited = true,
+                EventKind::Firmware(FirmwareEvent::Nav(NavEvent::State { to, .. })) => entered = Some(to),
+                _ => {}
             });
             let truth = flight.vehicle().truth().unwrap();
             let altitude_m = truth.pos_enu.z - standing_m;

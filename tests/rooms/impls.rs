@@ -8,9 +8,6 @@ use crate::source::{SourceFile, files};
 /// The greatest number of files with methods of one type.
 const MOST_FILES: usize = 4;
 
-/// Types that still have methods in more files, with their rooms.
-const EXCEPTIONS: [(&str, &str); 1] = [("session", "Session")];
-
 /// Returns the types that have inherent `impl` blocks in a file, also under another name.
 fn types_with_methods(file: &SourceFile) -> BTreeSet<String> {
     let file = file.product();
@@ -62,10 +59,8 @@ fn spread(files: &[SourceFile]) -> Vec<(String, String, Vec<String>)> {
 
 #[test]
 fn the_methods_of_a_type_are_in_few_files() {
-    let (known, found): (Vec<_>, Vec<_>) =
-        spread(&files()).into_iter().partition(|(room, name, _)| EXCEPTIONS.contains(&(room, name)));
+    let found = spread(&files());
     assert!(found.is_empty(), "{found:#?}");
-    assert_eq!(known.len(), EXCEPTIONS.len(), "an exception is not needed any more: {known:#?}");
 }
 
 #[test]

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::Loaded;
 use super::results::Results;
 use super::run::{self, Job, Stopwatch};
-use crate::app::firmware::run::{RemoteRun, RunOptions, Stopped};
+use crate::app::firmware::run::{OnEvent, RemoteRun, RunOptions, Stopped};
 use crate::app::firmware::{RemoteFirmware, reported};
 use crate::app::{AppError, error, setup};
 use crate::fc::Unset;
@@ -56,7 +56,7 @@ pub(super) fn all(
                     flight
                 }
                 // Interrupted in the air: there is no result.
-                Err(Stopped::Interrupted) => return trouble,
+                Err(Stopped::Interrupted | Stopped::BySubscriber) => return trouble,
                 Err(Stopped::Failed(AppError { code, message })) => {
                     is_in_trouble = code >= error::ENVIRONMENT;
                     trouble = trouble.max(is_in_trouble.then_some(code));
@@ -94,30 +94,18 @@ fn fly(
     firmware.lines.of_user.extend(of_case.map(str::to_owned));
     let mut vehicle = setup::build(setup, &mut Vec::new())?;
     let options = RunOptions { state: None, speed: 1.0, interrupted: Arc::clone(interrupted) };
-    let mut tell = |event: &Event| {
+    let mut tell = OnEvent(|event: &Event| {
         if let Some(sentence) = reported::sentence(event) {
             results.tell(&sentence);
         }
-        Ok(())
-    };
+    });
     let mut remote = RemoteRun::prepare(&firmware, &mut vehicle, &plan, options, &mut tell)?;
     let problem = remote.unset().and_then(|unset| not_as_wanted(case, unset));
     let mut flight = match CaseFlight::of_vehicle(case, vehicle) {
         Ok(flight) => flight,
         Err(problem) => return Ok(CheckedFlight { problem: Some(problem), ..checked }),
     };
-    while !flight.is_over() {
-        for _ in 0..remote.due() {
-            if !flight.is_over() {
-                flight.prepare();
-                flight.tick(|_| {});
-            }
-        }
-        for event in remote.exchange(flight.vehicle_mut())? {
-            tell(&event)?;
-        }
-        remote.rest();
-    }
+    remote.fly(&mut flight, &mut tell)?;
     Ok(CheckedFlight { problem, ..run::judged(checked, case, flight.finish(), &started) })
 }
 

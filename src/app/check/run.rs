@@ -12,6 +12,7 @@ use crate::app::AppError;
 use crate::args::{CheckArgs, MOST_FLIGHTS};
 use crate::report::check::{CheckedFlight, Compared};
 use crate::scenario::{self, Air, Case, CaseFlight, Flown, Scenario};
+use crate::session::Runner;
 
 /// A flight to be flown: the indices of its scenario, case and air, and the number of the repetition.
 #[derive(Debug, Clone, Copy)]
@@ -145,8 +146,6 @@ pub(super) fn all(
 
 /// Flies and judges one flight; `None` if it was interrupted.
 fn one(loaded: &Loaded, job: Job, is_stopped: &impl Fn() -> bool) -> Option<CheckedFlight> {
-    /// The number of ticks between two checks for an interrupt.
-    const SLICE: u32 = 4096;
     let (case, air) = job.of(loaded)?;
     let started = Stopwatch::start();
     let mut checked = job.not_flown_yet(loaded)?;
@@ -157,18 +156,8 @@ fn one(loaded: &Loaded, job: Job, is_stopped: &impl Fn() -> bool) -> Option<Chec
             return Some(checked);
         }
     };
-    while !flight.is_over() {
-        for _ in 0..SLICE {
-            if flight.is_over() {
-                break;
-            }
-            flight.prepare();
-            flight.tick(|_| {});
-        }
-        if is_stopped() {
-            return None;
-        }
-    }
+    let mut runner = Runner::new(flight.vehicle().step_us(), f64::INFINITY, None);
+    runner.fly(&mut flight, &mut (), is_stopped).ok()?;
     Some(judged(checked, case, flight.finish(), &started))
 }
 

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::Compared;
 use super::recorder::Recorder;
-use crate::app::firmware::run::{RemoteRun, RunOptions, Seen, Stopped, unless_interrupted};
+use crate::app::firmware::run::{OnEvent, RemoteRun, RunOptions, Stopped, unless_interrupted};
 use crate::app::firmware::{RemoteFirmware, reported};
 use crate::app::interrupt::interrupt_flag;
 use crate::app::{AppError, setup};
@@ -16,10 +16,7 @@ use crate::flight::setup::{BootLines, PhysicsSource};
 use crate::flight::{FlightOptions, FlightSetup};
 use crate::plan::format::PlanFile;
 use crate::report::compare::{Route, Track};
-use crate::session::{Event, SessionEvent};
-
-/// The number of ticks between two checks for an interrupt.
-const SLICE: u64 = 4096;
+use crate::session::{Event, Runner, SessionEvent};
 
 /// The common start of all flights.
 #[derive(Debug)]
@@ -72,7 +69,7 @@ impl Flights {
             route: Route::new(&plan.plan, frame, &settings),
             plan,
             setup,
-            options: setup::flight_options(&args.mission, 0.0),
+            options: setup::flight_options(&args.mission),
             set: args.mission.set.clone(),
             speed: args.flight.speed.map_or(1.0, |Speed(speed)| speed),
             interrupted: interrupt_flag()?,
@@ -102,18 +99,9 @@ impl Flights {
         upload(vehicle.controller_mut(), &self.plan.plan, &[]).map_err(AppError::input)?;
         let mut recorder = Recorder::new(&vehicle);
         let mut flight = setup::start_flight(vehicle, &self.options)?;
-        loop {
-            for _ in 0..SLICE {
-                let end = flight.tick(|report| recorder.hear(&report));
-                recorder.look(&flight);
-                if let Some(end) = end {
-                    return Ok(Some(recorder.finish(&flight, end)));
-                }
-            }
-            if self.interrupted.load(Ordering::Relaxed) {
-                return Ok(None);
-            }
-        }
+        let mut runner = Runner::new(flight.vehicle().step_us(), f64::INFINITY, None);
+        let end = runner.fly(&mut flight, &mut recorder, || self.interrupted.load(Ordering::Relaxed));
+        Ok(end.ok().map(|end| recorder.finish(&flight, end)))
     }
 
     /// Flies a remote firmware. An executable is restarted for each flight in an empty directory, because only that
@@ -125,23 +113,15 @@ impl Flights {
         let options =
             RunOptions { state: None, speed: self.speed, interrupted: Arc::clone(&self.interrupted) };
         // Every flight starts without a configuration, so this is not reported.
-        let mut tell = |event: &Event| {
+        let mut tell = OnEvent(|event: &Event| {
             if matches!(event.kind, SessionEvent::Remote(_)) {
                 reported::tell(event);
             }
-            Ok(())
-        };
+        });
         let mut run = RemoteRun::prepare(&firmware, &mut vehicle, &self.plan.plan, options, &mut tell)?;
         let mut recorder = Recorder::new(&vehicle);
         let mut flight = setup::start_flight(vehicle, &self.options)?;
-        let end = run.fly(&mut flight, &mut |seen| {
-            match seen {
-                Seen::Report(report) => recorder.hear(&report),
-                Seen::Reported(event) => reported::tell(&event),
-                Seen::Ticked(flight) => recorder.look(flight),
-            }
-            Ok(())
-        })?;
+        let end = run.fly(&mut flight, &mut (&mut recorder, &mut tell))?;
         Ok(recorder.finish(&flight, end))
     }
 }

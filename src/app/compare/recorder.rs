@@ -2,10 +2,11 @@
 
 use nalgebra::Vector2;
 
-use crate::flight::{Flight, FlightEnd, Report};
+use crate::flight::{Flight, FlightEnd};
 use crate::report::compare::{Track, TrackSample};
+use crate::session::{Event, SessionEvent, Subscriber};
 use crate::signals::SimTime;
-use crate::telemetry::{Event, EventKind};
+use crate::telemetry::EventKind;
 use crate::vehicle::Vehicle;
 
 /// The interval between two samples, µs.
@@ -38,14 +39,28 @@ impl Recorder {
         }
     }
 
-    pub(super) fn hear(&mut self, report: &Report<'_>) {
-        if let Report::Event(Event { kind: EventKind::Touchdown { .. }, .. }) = report {
-            self.touched_down = true;
+    /// Returns the track of a finished flight.
+    pub(super) fn finish(self, flight: &Flight, end: FlightEnd) -> Track {
+        let Some(engaged_at) = flight.engaged_at() else {
+            let result = end.verdict.result.to_string();
+            return Track { result, reason: end.verdict.reason, ..Track::default() };
+        };
+        let begin = self.switched_at.unwrap_or(engaged_at);
+        Track {
+            result: end.verdict.result.to_string(),
+            reason: end.verdict.reason,
+            flown_s: Some(end.time.seconds_since(begin)),
+            ..self.track
         }
     }
+}
 
-    /// Looks at the craft once in each tick.
-    pub(super) fn look(&mut self, flight: &Flight) {
+impl Subscriber<Flight> for Recorder {
+    fn event(&mut self, event: &Event) {
+        self.touched_down |= matches!(event.kind, SessionEvent::Vehicle(EventKind::Touchdown { .. }));
+    }
+
+    fn after_tick(&mut self, flight: &Flight) {
         let touched_down = std::mem::take(&mut self.touched_down);
         let vehicle = flight.vehicle();
         let now = vehicle.time();
@@ -67,21 +82,6 @@ impl Recorder {
         }
         if now.0.is_multiple_of(INTERVAL_US) {
             self.track.samples.push(TrackSample { time_s, ne, alt_m: alt_m - self.standing_m });
-        }
-    }
-
-    /// Returns the track of a finished flight.
-    pub(super) fn finish(self, flight: &Flight, end: FlightEnd) -> Track {
-        let Some(engaged_at) = flight.engaged_at() else {
-            let result = end.verdict.result.to_string();
-            return Track { result, reason: end.verdict.reason, ..Track::default() };
-        };
-        let begin = self.switched_at.unwrap_or(engaged_at);
-        Track {
-            result: end.verdict.result.to_string(),
-            reason: end.verdict.reason,
-            flown_s: Some(end.time.seconds_since(begin)),
-            ..self.track
         }
     }
 }

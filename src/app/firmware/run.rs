@@ -1,13 +1,8 @@
-//! Flies with a remote firmware in real time, without a session.
-#![allow(
-    clippy::disallowed_methods,
-    reason = "the firmware's clock is the wall clock, which paces the flight"
-)]
+//! Prepares a remote firmware for a headless flight: starts it, waits for its setup, and uploads the plan.
 
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
 
 use tokio::runtime::Runtime;
 
@@ -15,31 +10,22 @@ use super::RemoteFirmware;
 use super::folder::FirmwareFolder;
 use super::link::{self, OpenLink};
 use crate::app::{AppError, runtime};
-use crate::fc::{
-    EXCHANGE_PAUSE, Patience, RemoteLink, RemoteNotice, RemoteState, Unready, Unset, Upload, UploadProgress,
-};
+use crate::fc::{Patience, Remote, RemoteLink, RemoteState, Unready, Unset, Upload, UploadProgress};
 use crate::firmware::cli::CliReply;
-use crate::flight::{Flight, FlightEnd, Report};
 use crate::plan::{AltitudeError, FlightPlan};
-use crate::session::{Event, Pacer, SessionEvent};
+use crate::session::{self, Event, Flying, Runner, Subscriber};
 use crate::vehicle::{LateAnswer, Ticket, Vehicle};
-
-/// The most ticks between two exchanges.
-const SLICE: u64 = 50;
 
 /// A remote firmware in operation. It ends on drop.
 #[derive(Debug)]
 pub(in crate::app) struct RemoteRun {
-    link: RemoteLink,
-    pacer: Pacer,
-    step_us: u64,
-    started: Instant,
+    runner: Runner,
     interrupted: Arc<AtomicBool>,
     /// The port of its command line and MSP.
     tcp: u16,
     /// `true` if betadeck did not start it.
     is_attached: bool,
-    /// Declared after the link, because the program of the link runs in this folder.
+    /// Declared after the runner, because the program of its link runs in this folder.
     _directory: Option<FirmwareFolder>,
     _runtime: Runtime,
 }
@@ -48,12 +34,24 @@ pub(in crate::app) struct RemoteRun {
 #[derive(Debug)]
 pub(in crate::app) enum Stopped {
     Interrupted,
+    /// A subscriber cannot go on. It knows the reason.
+    BySubscriber,
     Failed(AppError),
 }
 
 impl From<AppError> for Stopped {
     fn from(error: AppError) -> Self {
         Self::Failed(error)
+    }
+}
+
+impl From<session::Stopped> for Stopped {
+    fn from(stopped: session::Stopped) -> Self {
+        match stopped {
+            session::Stopped::Interrupted => Self::Interrupted,
+            session::Stopped::BySubscriber => Self::BySubscriber,
+            session::Stopped::Failed(sentence) => Self::Failed(AppError::environment(sentence)),
+        }
     }
 }
 
@@ -64,7 +62,7 @@ impl From<AppError> for Stopped {
 pub(in crate::app) fn unless_interrupted<T>(result: Result<T, Stopped>) -> Result<Option<T>, AppError> {
     match result {
         Ok(done) => Ok(Some(done)),
-        Err(Stopped::Interrupted) => Ok(None),
+        Err(Stopped::Interrupted | Stopped::BySubscriber) => Ok(None),
         Err(Stopped::Failed(error)) => Err(error),
     }
 }
@@ -78,15 +76,14 @@ pub(in crate::app) struct RunOptions<'a> {
     pub(in crate::app) interrupted: Arc<AtomicBool>,
 }
 
-/// An observation of a flight.
+/// A subscriber that passes each event to a function.
 #[derive(Debug)]
-pub(in crate::app) enum Seen<'a> {
-    /// A report of the flight.
-    Report(Report<'a>),
-    /// A report about the firmware.
-    Reported(Event),
-    /// The flight after a tick.
-    Ticked(&'a Flight),
+pub(in crate::app) struct OnEvent<T>(pub(in crate::app) T);
+
+impl<F, T: FnMut(&Event)> Subscriber<F> for OnEvent<T> {
+    fn event(&mut self, event: &Event) {
+        (self.0)(event);
+    }
 }
 
 impl RemoteRun {
@@ -96,59 +93,66 @@ impl RemoteRun {
         vehicle: &mut Vehicle,
         plan: &FlightPlan,
         options: RunOptions<'_>,
-        tell: &mut impl FnMut(&Event) -> Result<(), AppError>,
+        subscriber: &mut impl Subscriber<Vehicle>,
     ) -> Result<Self, Stopped> {
-        let RunOptions { state, speed, interrupted } = options;
-        let mut notices = Vec::new();
-        let mut run = Self::start(firmware, vehicle, state, speed, interrupted, &mut notices)?;
-        for notice in notices {
-            tell(&Event::notice(vehicle.time(), notice))?;
-        }
-        run.wait_until_ready(vehicle, tell)?;
-        run.upload(vehicle, plan, tell)?;
-        Ok(run)
-    }
-
-    /// Starts the firmware for `vehicle`, and adds messages for the user to `notices`.
-    fn start(
-        firmware: &RemoteFirmware,
-        vehicle: &Vehicle,
-        state: Option<&Path>,
-        speed: f64,
-        interrupted: Arc<AtomicBool>,
-        notices: &mut Vec<String>,
-    ) -> Result<Self, AppError> {
         let runtime = runtime::with_threads(1)?;
         let opened = {
             let _inside = runtime.enter();
-            link::open(firmware, vehicle, state)?
+            link::open(firmware, vehicle, options.state)?
         };
-        notices.extend(opened.notice());
+        if let Some(notice) = opened.notice() {
+            subscriber.event(&Event::notice(vehicle.time(), notice));
+        }
         let OpenLink { link, directory, .. } = opened;
-        Ok(Self {
-            link,
-            pacer: Pacer::new(vehicle.step_us(), speed),
-            step_us: vehicle.step_us(),
-            started: Instant::now(),
-            interrupted,
+        let mut run = Self {
+            runner: Runner::new(vehicle.step_us(), options.speed, Some(link)),
+            interrupted: options.interrupted,
             tcp: firmware.ports.tcp,
             is_attached: firmware.executable.is_none(),
             _directory: directory,
             _runtime: runtime,
-        })
+        };
+        run.wait_until_ready(vehicle, subscriber)?;
+        run.upload(vehicle, plan, subscriber)?;
+        Ok(run)
+    }
+
+    /// Returns the runner of the firmware's flight.
+    pub(in crate::app) fn runner(&mut self) -> &mut Runner {
+        &mut self.runner
+    }
+
+    /// Returns the part of the setup that failed, if any.
+    pub(in crate::app) fn unset(&self) -> Option<&Unset> {
+        self.remote()?.unset()
+    }
+
+    /// Flies to the end.
+    pub(in crate::app) fn fly<F: Flying>(
+        &mut self,
+        flight: &mut F,
+        subscriber: &mut impl Subscriber<F>,
+    ) -> Result<F::End, Stopped> {
+        let interrupted = &self.interrupted;
+        Ok(self.runner.fly(flight, subscriber, || interrupted.load(Ordering::Relaxed))?)
+    }
+
+    fn remote(&self) -> Option<&Remote> {
+        self.runner.link().map(RemoteLink::remote)
     }
 
     /// Waits until the firmware answers and its setup is reported.
     fn wait_until_ready(
         &mut self,
         vehicle: &mut Vehicle,
-        tell: &mut impl FnMut(&Event) -> Result<(), AppError>,
+        subscriber: &mut impl Subscriber<Vehicle>,
     ) -> Result<(), Stopped> {
-        let mut patience = Patience::new(self.started.elapsed());
-        while self.link.remote().state() != RemoteState::Ready {
-            self.wait(vehicle, tell)?;
-            let remote = self.link.remote();
-            if let Some(why) = patience.look(remote.answers(), remote.connection(), self.started.elapsed()) {
+        let mut patience = Patience::new(self.runner.elapsed());
+        while self.remote().is_some_and(|remote| remote.state() != RemoteState::Ready) {
+            self.wait(vehicle, subscriber)?;
+            let Some(remote) = self.remote() else { break };
+            let now = self.runner.elapsed();
+            if let Some(why) = patience.look(remote.answers(), remote.connection(), now) {
                 let (name, tcp, is_attached) = (&remote.craft().name, self.tcp, self.is_attached);
                 let unready = Unready { name, tcp, is_attached, why };
                 return Err(AppError::environment(unready.to_string()).into());
@@ -157,20 +161,16 @@ impl RemoteRun {
         Ok(())
     }
 
-    /// Returns the part of the setup that failed, if any.
-    pub(in crate::app) fn unset(&self) -> Option<&Unset> {
-        self.link.remote().unset()
-    }
-
     /// Uploads the plan to the craft.
     fn upload(
         &mut self,
         vehicle: &mut Vehicle,
         plan: &FlightPlan,
-        tell: &mut impl FnMut(&Event) -> Result<(), AppError>,
+        subscriber: &mut impl Subscriber<Vehicle>,
     ) -> Result<(), Stopped> {
-        let name = &self.link.remote().craft().name;
-        if !self.link.remote().observer().has_plans() {
+        let Some(remote) = self.remote() else { return Ok(()) };
+        let name = &remote.craft().name;
+        if !remote.observer().has_plans() {
             return Err(AppError::environment(format!(
                 "{name} has no waypoints: build it with EXTRA_FLAGS=\"-DENABLE_FLIGHT_PLANNING=1\""
             ))
@@ -192,21 +192,21 @@ impl RemoteRun {
                 UploadProgress::Done(result) => {
                     let report = result.map_err(|refusal| self.refused(refusal))?;
                     if let Some(reported) = report.conversion() {
-                        tell(&Event::notice(vehicle.time(), reported))?;
+                        subscriber.event(&Event::notice(vehicle.time(), reported));
                     }
                     return Ok(());
                 }
                 UploadProgress::Waiting(ticket) => ticket,
             };
-            let said = self.answer(vehicle, waits_for, tell)?;
+            let said = self.answer(vehicle, waits_for, subscriber)?;
             progress = upload.take_answer(&said, vehicle.controller_mut());
         }
     }
 
     /// Returns the error for a refused plan: the craft refused it, or the craft is gone.
     fn refused(&self, refusal: String) -> AppError {
-        match self.link.remote().state() {
-            RemoteState::Ready => AppError::input(refusal),
+        match self.remote().map(Remote::state) {
+            Some(RemoteState::Ready) => AppError::input(refusal),
             _ => AppError::environment(refusal),
         }
     }
@@ -216,10 +216,10 @@ impl RemoteRun {
         &mut self,
         vehicle: &mut Vehicle,
         waits_for: Ticket,
-        tell: &mut impl FnMut(&Event) -> Result<(), AppError>,
+        subscriber: &mut impl Subscriber<Vehicle>,
     ) -> Result<CliReply, Stopped> {
         loop {
-            self.wait(vehicle, tell)?;
+            self.wait(vehicle, subscriber)?;
             match vehicle.controller_mut().take_answer() {
                 Some((ticket, LateAnswer::Cli(said))) if ticket == waits_for => return Ok(said),
                 _ => {}
@@ -227,81 +227,14 @@ impl RemoteRun {
         }
     }
 
-    /// Flies to the end.
-    pub(in crate::app) fn fly(
-        &mut self,
-        flight: &mut Flight,
-        see: &mut impl FnMut(Seen<'_>) -> Result<(), AppError>,
-    ) -> Result<FlightEnd, Stopped> {
-        loop {
-            for _ in 0..self.due() {
-                let mut seen = Ok(());
-                let end = flight.tick(|report| {
-                    if seen.is_ok() {
-                        seen = see(Seen::Report(report));
-                    }
-                });
-                seen.and_then(|()| see(Seen::Ticked(flight)))?;
-                if let Some(end) = end {
-                    return Ok(end);
-                }
-            }
-            for event in self.exchange(flight.vehicle_mut())? {
-                see(Seen::Reported(event))?;
-            }
-            self.rest();
-        }
-    }
-
     /// Lets time pass for a craft on the ground.
     fn wait(
         &mut self,
         vehicle: &mut Vehicle,
-        tell: &mut impl FnMut(&Event) -> Result<(), AppError>,
+        subscriber: &mut impl Subscriber<Vehicle>,
     ) -> Result<(), Stopped> {
-        for _ in 0..self.due() {
-            vehicle.tick();
-        }
-        let mut reported = Ok(());
-        vehicle.drain_events(|event| {
-            if reported.is_ok() {
-                reported = tell(&event.into());
-            }
-        });
-        reported?;
-        for event in self.exchange(vehicle)? {
-            tell(&event)?;
-        }
-        self.rest();
+        let interrupted = &self.interrupted;
+        self.runner.round(vehicle, subscriber, || interrupted.load(Ordering::Relaxed))?;
         Ok(())
-    }
-
-    /// Returns the number of ticks that are due now.
-    pub(in crate::app) fn due(&mut self) -> u64 {
-        let most = self.link.most_steps(self.step_us, self.pacer.speed(), Instant::now());
-        self.pacer.due(self.started.elapsed(), SLICE.min(most))
-    }
-
-    /// Exchanges the results of the ticks with the firmware, and returns the reports about it.
-    pub(in crate::app) fn exchange(&mut self, vehicle: &mut Vehicle) -> Result<Vec<Event>, Stopped> {
-        if self.interrupted.load(Ordering::Relaxed) {
-            return Err(Stopped::Interrupted);
-        }
-        let mut reported = Vec::new();
-        for notice in self.link.exchange(vehicle, None, Instant::now()) {
-            if let RemoteNotice::Failed(sentence) = notice {
-                return Err(AppError::environment(sentence).into());
-            }
-            reported.push(Event { time: vehicle.time(), kind: SessionEvent::Remote(notice) });
-        }
-        Ok(reported)
-    }
-
-    /// Sleeps until the next tick is due.
-    pub(in crate::app) fn rest(&self) {
-        let now = self.started.elapsed();
-        let next = self.pacer.next_due().unwrap_or(now + Duration::from_millis(1));
-        let pause = if self.pacer.is_behind() { EXCHANGE_PAUSE } else { next.saturating_sub(now) };
-        std::thread::sleep(pause);
     }
 }

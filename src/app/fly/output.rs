@@ -9,10 +9,10 @@ use crate::app::output_file::{self, StreamedOutput};
 use crate::app::patient_output::PatientOutput;
 use crate::app::setup;
 use crate::args::{FlyArgs, OutputFile};
-use crate::flight::Report;
+use crate::flight::Flight;
 use crate::plan::format::PlanFile;
 use crate::report::{End, GpxHeader, GpxPoint, GpxWriter, UtcSeconds, json, sentence, truth};
-use crate::session::Event;
+use crate::session::{Event, Subscriber};
 use crate::signals::SimTime;
 use crate::text::printable;
 use crate::vehicle::Vehicle;
@@ -23,16 +23,17 @@ pub(super) struct Prelude<'a> {
     args: &'a FlyArgs,
     /// The first events of the JSON lines.
     held: Vec<Event>,
+    problem: Option<AppError>,
 }
 
 impl<'a> Prelude<'a> {
     /// Creates the messages before the flight of these options.
     pub(super) fn new(args: &'a FlyArgs) -> Self {
-        Self { args, held: Vec::new() }
+        Self { args, held: Vec::new(), problem: None }
     }
 
     /// Reports an event: as a sentence on standard output, or, with JSON, on standard error until the lines begin.
-    pub(super) fn event(&mut self, event: &Event) -> Result<(), AppError> {
+    pub(super) fn write(&mut self, event: &Event) -> Result<(), AppError> {
         if self.args.json.is_some() {
             reported::tell(event);
             self.held.push(event.clone());
@@ -42,12 +43,29 @@ impl<'a> Prelude<'a> {
         Ok(())
     }
 
+    /// Returns the error with which an event could not be reported, if there was one.
+    pub(super) fn check(&mut self) -> Result<(), AppError> {
+        self.problem.take().map_or(Ok(()), Err)
+    }
+
     /// Opens the outputs at the beginning of the flight.
     pub(super) fn open(self, vehicle: &Vehicle, plan: &PlanFile) -> Result<Output, AppError> {
         let mut output = Output::open(self.args, vehicle, plan)?;
-        self.held.iter().try_for_each(|event| output.event(event))?;
+        self.held.iter().try_for_each(|event| output.write(event))?;
         output.flush()?;
         Ok(output)
+    }
+}
+
+impl Subscriber<Vehicle> for Prelude<'_> {
+    fn event(&mut self, event: &Event) {
+        if let Err(problem) = self.write(event) {
+            self.problem.get_or_insert(problem);
+        }
+    }
+
+    fn goes_on(&self) -> bool {
+        self.problem.is_none()
     }
 }
 
@@ -79,7 +97,11 @@ pub(super) struct Output {
     lines: Option<Lines>,
     /// `true` for JSON lines, `false` for sentences.
     json: bool,
+    /// The interval of the samples, µs; `None` = no samples.
+    sample_every_us: Option<u64>,
     gpx: Option<GpxWriter<StreamedOutput>>,
+    /// The first error. The flight stops.
+    problem: Option<AppError>,
 }
 
 /// The output for the lines.
@@ -121,18 +143,18 @@ impl Output {
                 Some(GpxWriter::new(file, header, &plan.plan).map_err(write_failed)?)
             }
         };
-        Ok(Self { lines: Some(lines), json, gpx })
+        let samples_hz = args.samples.filter(|hz| *hz > 0.0);
+        let sample_every_us = samples_hz.map(|hz| ((1e6 / hz).round() as u64).max(1));
+        Ok(Self { lines: Some(lines), json, sample_every_us, gpx, problem: None })
     }
 
-    /// Writes an event or a sample.
-    pub(super) fn report(&mut self, report: Report) -> Result<(), AppError> {
-        match report {
-            Report::Event(event) => self.event(&event.into()),
-            Report::Sample(vehicle) => self.line(&json::sample_line(&vehicle.snapshot())),
-        }
+    /// Returns the error that stopped the flight.
+    pub(super) fn into_problem(self) -> AppError {
+        self.problem.unwrap_or_else(|| AppError::internal("the output stopped without an error"))
     }
 
-    pub(super) fn event(&mut self, event: &Event) -> Result<(), AppError> {
+    /// Writes an event.
+    pub(super) fn write(&mut self, event: &Event) -> Result<(), AppError> {
         let line = if self.json { json::event_line(event) } else { sentence::line(event) };
         line.map_or(Ok(()), |line| self.line(&line))
     }
@@ -144,8 +166,18 @@ impl Output {
         self.after(written)
     }
 
+    /// Writes a sample if one is due.
+    fn sample(&mut self, vehicle: &Vehicle) -> Result<(), AppError> {
+        let Some(every) = self.sample_every_us else { return Ok(()) };
+        let now = vehicle.time().0;
+        if now / every == (now - vehicle.step_us()) / every {
+            return Ok(());
+        }
+        self.line(&json::sample_line(&vehicle.snapshot()))
+    }
+
     /// Flushes the lines to the reader.
-    pub(super) fn flush(&mut self) -> Result<(), AppError> {
+    fn flush(&mut self) -> Result<(), AppError> {
         let Some(lines) = &mut self.lines else { return Ok(()) };
         let written = lines.writer().flush();
         self.after(written)
@@ -164,7 +196,7 @@ impl Output {
     }
 
     /// Writes a point of the track at each full second.
-    pub(super) fn track(&mut self, vehicle: &Vehicle) -> Result<(), AppError> {
+    fn track(&mut self, vehicle: &Vehicle) -> Result<(), AppError> {
         let Some(gpx) = &mut self.gpx else { return Ok(()) };
         if !vehicle.time().0.is_multiple_of(1_000_000) {
             return Ok(());
@@ -173,6 +205,13 @@ impl Output {
         let (lat_deg, lon_deg, amsl_m) = frame.to_geodetic(truth.pos_enu);
         let alt_m = amsl_m - frame.alt_amsl_m;
         gpx.offer(&GpxPoint { time: vehicle.time(), lat_deg, lon_deg, alt_m }).map_err(write_failed)
+    }
+
+    /// Keeps the error of `done`, if there is one.
+    fn keep(&mut self, done: Result<(), AppError>) {
+        if let Err(problem) = done {
+            self.problem.get_or_insert(problem);
+        }
     }
 
     /// Ends the files and reports the end of the flight.
@@ -194,6 +233,28 @@ impl Output {
         error::tell(&end.result_line());
         error::tell(&end.flown_line());
         Ok(())
+    }
+}
+
+impl Subscriber<Flight> for Output {
+    fn event(&mut self, event: &Event) {
+        let done = self.write(event);
+        self.keep(done);
+    }
+
+    fn after_tick(&mut self, flight: &Flight) {
+        let done = self.sample(flight.vehicle()).and_then(|()| self.track(flight.vehicle()));
+        self.keep(done);
+    }
+
+    /// A person may be watching the output.
+    fn before_rest(&mut self) {
+        let done = self.flush();
+        self.keep(done);
+    }
+
+    fn goes_on(&self) -> bool {
+        self.problem.is_none()
     }
 }
 

@@ -1,20 +1,14 @@
 //! Carries out the commands of the user interface.
-#![allow(clippy::disallowed_methods, reason = "a late answer is awaited in wall time")]
 
 use std::task::{Context, Poll};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use super::Session;
-use super::late::WaitingInterface;
-use crate::fc::replace_falling_gains;
-use crate::fc::{LIST, Upload, plan_above_home};
-use crate::firmware::cli::Interpreter;
+use super::interface::UploadTo;
+use super::limits::refuse_to_real_craft;
 use crate::flight::forecast;
-use crate::msp::code;
-use crate::plan::AltitudeReference;
-use crate::session::ReplyTo;
 use crate::session::command::{
-    Command, PLACE_IS_EXTERNAL, Seek, TIME_IS_EXTERNAL, TIME_IS_THE_FIRMWARES, UPLOADING, VehicleCopy,
+    Command, PLACE_IS_EXTERNAL, Seek, TIME_IS_EXTERNAL, TIME_IS_THE_FIRMWARES, VehicleCopy,
 };
 use crate::sim::WorldCommand;
 use crate::telemetry::LinkState;
@@ -65,67 +59,49 @@ impl Session {
 
     fn carry_out(&mut self, command: Command, now: Duration) {
         let Some(command) = self.refuse_while_rewound(command) else { return };
-        let Some(command) = self.refuse_to_real_craft(command) else { return };
+        let command = match refuse_to_real_craft(command, self.access()) {
+            Ok(command) => command,
+            Err(notice) => return self.notices(notice),
+        };
         match command {
             Command::Pause(_) | Command::Step(_) | Command::Speed(_) | Command::Seek(_) | Command::FlyOn
                 if self.simulator.is_some() =>
             {
                 self.notice(TIME_IS_EXTERNAL);
             }
-            Command::Pause(_) | Command::Step(_) | Command::Speed(_) if self.remote.is_some() => {
+            Command::Pause(_) | Command::Step(_) | Command::Speed(_) if self.runner.link.is_some() => {
                 self.notice(TIME_IS_THE_FIRMWARES);
             }
             Command::Pause(paused) => {
                 self.run_on = None;
-                self.pacer.set_paused(paused, now);
+                self.runner.pacer.set_paused(paused, now);
             }
             Command::Step(ticks) => self.step(ticks, now),
             Command::Seek(seek) => self.seek(seek, now),
             Command::FlyOn => self.fly_on(now),
-            Command::Speed(speed) => self.pacer.set_speed(speed, now),
+            Command::Speed(speed) => self.runner.pacer.set_speed(speed, now),
             Command::Vehicle(command) => self.command_vehicle(&command),
             Command::StartPilot => self.apply(&VehicleCommand::StartPilot(self.takeoff_m)),
-            Command::Cli { line, reply } => self.run_cli(line, reply),
-            // The lines of two uploads would mix.
-            Command::Upload { reply, .. } if self.upload_under_way().is_some() => {
-                reply.send(Err(UPLOADING.to_owned()));
+            Command::Cli { line, reply } => {
+                let handler = self.endpoints.as_mut().map(|endpoints| &mut endpoints.handler);
+                let (controller, persistence) = (self.vehicle.controller_mut(), &mut self.persistence);
+                let notices = self.interface.run_line(line, reply, controller, persistence, handler);
+                self.notices(notices);
             }
-            Command::Upload { plan, mut settings, reply } => {
-                let reference = self.vehicle.controller().altitude_reference();
-                // The gains were found for the simulated craft. A real one never gets gains that the user did
-                // not request.
+            Command::Upload { plan, settings, reply } => {
                 let is_simulated = !self.access().is_limited();
-                let landing_gains = match reference {
-                    AltitudeReference::SeaLevel { .. } if is_simulated => {
-                        replace_falling_gains(&mut settings)
-                    }
-                    _ => Vec::new(),
-                };
-                match Upload::new(&plan, &settings, reference) {
-                    Ok(mut upload) => {
-                        upload.report_landing_gains(landing_gains);
-                        let progress = upload.send_lines(self.vehicle.controller_mut());
-                        self.report_upload(Box::new(upload), progress, reply, Instant::now());
-                    }
-                    Err(unknown) => reply.send(Err(unknown.to_string())),
-                }
+                let craft = &mut UploadTo { vehicle: &mut self.vehicle, takeoff_m: self.takeoff_m };
+                let notices = self.interface.upload(&plan, settings, is_simulated, reply, craft);
+                self.notices(notices);
             }
-            Command::Download { reply } => {
+            Command::Download { reply } => self.interface.download(reply, self.vehicle.controller_mut()),
+            Command::Save { reply } => {
+                let is_real = self.access().is_limited();
                 let controller = self.vehicle.controller_mut();
-                let reference = controller.altitude_reference();
-                match controller.run_cli(&mut Interpreter::default(), LIST) {
-                    Answer::Now(answer) => {
-                        reply.send(plan_above_home(&answer, reference).map(Box::new));
-                    }
-                    Answer::Later(ticket) => {
-                        let waiting = WaitingInterface::Download { reply };
-                        self.late_answers.expect(ticket, waiting, Instant::now());
-                    }
-                }
+                self.interface.save(is_real, reply, controller, &mut self.persistence);
             }
-            Command::Save { reply } => self.save(reply),
             Command::PermitChanges(connection) => {
-                if let Some(remote) = &mut self.remote {
+                if let Some(remote) = &mut self.runner.link {
                     remote.remote_mut().permit_changes(connection);
                 }
             }
@@ -141,6 +117,7 @@ impl Session {
                 reply.send(copy);
             }
             Command::RecordedFlight(reply) => reply.send(self.recorded_flight()),
+            Command::Subscribe(receiver) => self.events.subscribe(receiver),
             Command::Quit => self.quit = true,
         }
     }
@@ -185,21 +162,6 @@ impl Session {
         }
         if let Some(endpoints) = &mut self.endpoints {
             endpoints.handler.after_restart(false, self.vehicle.controller_mut());
-        }
-    }
-
-    /// Saves as a ground station does over MSP, without a restart. A remote flight controller stores
-    /// its configuration itself.
-    fn save(&mut self, reply: ReplyTo<Result<(), String>>) {
-        let is_real = self.access().is_limited();
-        let controller = self.vehicle.controller_mut();
-        if controller.is_armed() {
-            let way = if is_real { "its transmitter disarms it" } else { "`a` disarms it" };
-            reply.send(Err(format!("Not saved while the craft is armed: {way} on the ground.")));
-        } else if controller.configuration().is_some() {
-            reply.send(self.persistence.save(controller));
-        } else if let Answer::Later(ticket) = controller.run_msp(code::EEPROM_WRITE, &[], None) {
-            self.late_answers.expect(ticket, WaitingInterface::Save { reply }, Instant::now());
         }
     }
 

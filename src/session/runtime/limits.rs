@@ -2,36 +2,29 @@
 
 use tokio::sync::oneshot;
 
-use super::Session;
 use crate::fc::{Access, Denial, Impact, NOTHING_MOVES, NOTHING_SIMULATED};
 use crate::link::Request;
 use crate::link::proto::command_line::LineReply;
 use crate::session::command::{CliOutput, Command};
 use crate::vehicle::VehicleCommand;
 
-impl Session {
-    /// Returns the access to the craft.
-    pub(super) fn access(&self) -> Access {
-        self.remote.as_ref().map_or(Access::Everything, |link| link.remote().access())
-    }
-
-    /// Returns the command if it is allowed. Otherwise answers it with the refusal.
-    pub(super) fn refuse_to_real_craft(&mut self, command: Command) -> Option<Command> {
-        let Err(denial) = self.access().check(impact_of(&command)) else { return Some(command) };
-        let sentence = denial.to_string();
-        match command {
-            Command::Cli { reply, .. } => {
-                let (text, advice) = ("###ERROR: NOT DONE###".to_owned(), Some(sentence));
-                reply.send(CliOutput { text, advice, restarted: false });
-            }
-            Command::Upload { reply, .. } => reply.send(Err(sentence)),
-            Command::Save { reply } | Command::World { reply, .. } => {
-                reply.send(Err(sentence));
-            }
-            _ => self.notice(sentence),
+/// Returns the command if it is allowed. Otherwise answers it.
+///
+/// # Errors
+/// Returns the refusal as a notice, if the command has no answer.
+pub(super) fn refuse_to_real_craft(command: Command, access: Access) -> Result<Command, Option<String>> {
+    let Err(denial) = access.check(impact_of(&command)) else { return Ok(command) };
+    let sentence = denial.to_string();
+    match command {
+        Command::Cli { reply, .. } => {
+            let (text, advice) = ("###ERROR: NOT DONE###".to_owned(), Some(sentence));
+            reply.send(CliOutput { text, advice, restarted: false });
         }
-        None
+        Command::Upload { reply, .. } => reply.send(Err(sentence)),
+        Command::Save { reply } | Command::World { reply, .. } => reply.send(Err(sentence)),
+        _ => return Err(Some(sentence)),
     }
+    Err(None)
 }
 
 /// Returns the impact of a command on a remote craft. Time and forecasts have their own rules.
@@ -51,6 +44,7 @@ fn impact_of(command: &Command) -> Impact {
         | Command::CopyVehicle(_)
         | Command::RecordedFlight(_)
         | Command::PermitChanges(_)
+        | Command::Subscribe(_)
         | Command::Quit => Impact::Reads,
     }
 }

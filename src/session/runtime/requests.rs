@@ -7,13 +7,13 @@ use std::time::{Duration, Instant};
 use super::limits::refuse_request;
 use super::rewind::refuse_changing_request;
 use super::{SLICE, Session};
-use crate::firmware::cli::Interpreter;
 use crate::link::Request;
 use crate::link::proto::fdm::Packet;
 use crate::session::SPEED_RANGE;
 use crate::session::command::REWOUND;
 use crate::session::event::{EventSender, SessionEvent};
-use crate::session::request_handler::Handled;
+use crate::session::request_handler::{Handled, RequestHandler};
+use crate::session::runner::Subscriber;
 use crate::session::simulator::{RC_REPEAT_US, Simulator};
 use crate::signals::RcSource;
 use crate::telemetry::LinkState;
@@ -30,7 +30,7 @@ impl Session {
         let access = self.access();
         let rewound_to = self.timeline.as_ref().and_then(Timeline::shown).map(Vehicle::time);
         self.vehicle.controller_mut().set_rewound(rewound_to.is_some());
-        let time_stands_still = self.pacer.is_paused() || !self.follows_wall_clock();
+        let time_stands_still = self.runner.pacer.is_paused() || !self.follows_wall_clock();
         let Some(endpoints) = &mut self.endpoints else { return 0 };
         let mut flown = 0;
         let until = Instant::now() + REQUEST_TIME;
@@ -51,7 +51,7 @@ impl Session {
             let request = match refuse_request(request, access) {
                 Ok(request) => request,
                 Err(denial) => {
-                    let connection = self.remote.as_ref().map(|link| link.remote().connection());
+                    let connection = self.runner.link.as_ref().map(|link| link.remote().connection());
                     self.refused_over.retain(|(over, _)| *over == connection);
                     if !self.refused_over.contains(&(connection, denial)) {
                         self.refused_over.push((connection, denial));
@@ -88,11 +88,11 @@ impl Session {
                 self.events.notice(&mut self.vehicle, notice);
             }
             if restarted {
-                self.console = Interpreter::default();
+                self.interface.restart_console();
                 self.events.report(&mut self.vehicle, SessionEvent::Restarted);
             }
             if let (Some((datagram, at)), Some(simulator)) = (fdm, &mut self.simulator) {
-                let speed = self.pacer.achieved();
+                let speed = self.runner.pacer.achieved();
                 flown += simulator.receive(
                     datagram,
                     at,
@@ -104,7 +104,7 @@ impl Session {
             }
         }
         if let Some(simulator) = &mut self.simulator {
-            let speed = self.pacer.achieved();
+            let speed = self.runner.pacer.achieved();
             flown += simulator.poll(
                 Instant::now(),
                 may_send && !self.more_waits,
@@ -138,16 +138,21 @@ impl Session {
             );
         }
     }
+}
 
-    /// Repeats RC from sockets. A script sends fifty frames per second of wall time; at a higher speed the
-    /// receiver would detect a loss.
-    pub(super) fn keep_rc_fresh(&mut self) {
-        if let Some(endpoints) = &self.endpoints
-            && self.wanted_speed() > 1.0
-            && self.vehicle.time().0.is_multiple_of(RC_REPEAT_US)
-        {
-            let speed = self.wanted_speed().min(*SPEED_RANGE.end());
-            endpoints.handler.keep_rc_fresh(self.vehicle.controller_mut(), speed, Instant::now());
+/// Repeats RC from sockets. A script sends fifty frames per second of wall time; at a higher speed the receiver would
+/// detect a loss.
+pub(super) struct FreshRc<'a> {
+    pub(super) handler: &'a RequestHandler,
+    /// The wanted multiple of real time.
+    pub(super) speed: f64,
+}
+
+impl<F> Subscriber<F> for FreshRc<'_> {
+    fn before_tick(&mut self, vehicle: &mut Vehicle) {
+        if self.speed > 1.0 && vehicle.time().0.is_multiple_of(RC_REPEAT_US) {
+            let speed = self.speed.min(*SPEED_RANGE.end());
+            self.handler.keep_rc_fresh(vehicle.controller_mut(), speed, Instant::now());
         }
     }
 }

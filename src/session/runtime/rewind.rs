@@ -2,18 +2,21 @@
 
 use std::time::Duration;
 
+use super::interface::output;
 use super::limits::{impact_of_request, refuse};
-use super::{SLICE, Session, console};
+use super::requests::FreshRc;
+use super::{SLICE, Session};
 use crate::fc::Impact;
 use crate::firmware::cli::Interpreter;
 use crate::link::Request;
+use crate::session::Event;
 use crate::session::arming::ArmingWatch;
 use crate::session::command::{
     BEGINNING_LOST, CliOutput, Command, NOT_RECORDED, REWOUND, REWOUND_FOR_CLIENTS, Seek,
 };
 use crate::session::pacer::SPEED_RANGE;
+use crate::session::runner::tick;
 use crate::signals::SimTime;
-use crate::telemetry;
 use crate::timeline::{RecordedFlight, Shown, Timeline, TimelineView};
 use crate::vehicle::{Answer, Vehicle};
 
@@ -58,9 +61,9 @@ impl Session {
     }
 
     /// Begins with a flight that was flown before: sends its events, and shows one of its instants.
-    pub(super) fn begin_with(&mut self, events: Vec<telemetry::Event>, show: SimTime) {
+    pub(super) fn begin_with(&mut self, events: &[Event], show: SimTime) {
         self.events.send_all(events);
-        self.pacer.set_paused(true, Duration::ZERO);
+        self.runner.pacer.set_paused(true, Duration::ZERO);
         if show < self.vehicle.time() {
             self.show(show, Duration::ZERO);
         }
@@ -94,7 +97,7 @@ impl Session {
 
     /// Returns the wanted multiple of real time.
     pub(super) fn wanted_speed(&self) -> f64 {
-        if self.run_on.is_some() { *SPEED_RANGE.end() } else { self.pacer.speed() }
+        if self.run_on.is_some() { *SPEED_RANGE.end() } else { self.runner.pacer.speed() }
     }
 
     /// Returns a command that may be carried out. Refuses control inputs while an earlier instant is shown.
@@ -111,6 +114,7 @@ impl Session {
             | Command::CopyVehicle(_)
             | Command::RecordedFlight(_)
             | Command::PermitChanges(_)
+            | Command::Subscribe(_)
             | Command::Quit => return Some(command),
             Command::Cli { line, reply } if Impact::of_line(&line) == Impact::Reads => {
                 reply.send(self.read_shown(&line));
@@ -135,8 +139,8 @@ impl Session {
         let time_s = copy.time().as_secs_f64();
         match copy.controller_mut().run_cli(&mut Interpreter::default(), line) {
             Answer::Now(mut answer) => {
-                self.host.add_to(&mut answer);
-                let mut output = console::output(line, answer, false);
+                self.interface.host.add_to(&mut answer);
+                let mut output = output(line, answer, false);
                 output
                     .advice
                     .get_or_insert_with(|| format!("As it was at the shown instant, {time_s:.1} s."));
@@ -157,7 +161,7 @@ impl Session {
             && timeline.shown().is_some()
         {
             if due > 0 && timeline.play(due, self.vehicle.time()) == Shown::Newest {
-                self.pacer.set_paused(true, now);
+                self.runner.pacer.set_paused(true, now);
                 self.changed = true;
             }
             return due;
@@ -173,11 +177,10 @@ impl Session {
 
     /// Runs and records one tick of the vehicle that flies.
     fn tick(&mut self) {
-        self.keep_rc_fresh();
-        if let Some(timeline) = &mut self.timeline {
-            timeline.record(&mut self.vehicle);
-        }
-        self.vehicle.tick();
+        let speed = self.wanted_speed();
+        let rc = self.endpoints.as_ref().map(|endpoints| FreshRc { handler: &endpoints.handler, speed });
+        let subscribers = &mut (rc, (&mut self.timeline, &mut self.events));
+        let _no_end = tick(&mut self.vehicle, subscribers);
     }
 
     /// Records the input that arrives while time is paused, if there is much of it.
@@ -212,7 +215,7 @@ impl Session {
     pub(super) fn step(&mut self, ticks: u32, now: Duration) {
         match &mut self.timeline {
             Some(timeline) if timeline.shown().is_some() => {
-                self.pacer.set_paused(true, now);
+                self.runner.pacer.set_paused(true, now);
                 timeline.play(u64::from(ticks), self.vehicle.time());
             }
             _ => (0..ticks).for_each(|_| self.tick()),
@@ -253,7 +256,7 @@ impl Session {
             }
             (None, _) => self.notice("Nothing happened before this instant."),
             (Some(time), Seek::Forward { states_only }) if time >= head && !self.is_rewound() => {
-                self.pacer.set_paused(true, now);
+                self.runner.pacer.set_paused(true, now);
                 self.run_on = Some(RunOn { states_only, since: head.max(time) });
             }
             (Some(time), _) if time >= head && !self.is_rewound() => {
@@ -268,10 +271,10 @@ impl Session {
         let Some(timeline) = &mut self.timeline else { return };
         if !rewound {
             self.refused_while_rewound = false;
-            self.was_paused = self.pacer.is_paused();
+            self.was_paused = self.runner.pacer.is_paused();
         }
         self.run_on = None;
-        self.pacer.set_paused(true, now);
+        self.runner.pacer.set_paused(true, now);
         let first = timeline.first();
         timeline.show(time, self.vehicle.time());
         if let Some(first) = first.filter(|first| time < *first) {
@@ -285,7 +288,7 @@ impl Session {
             && timeline.shown().is_some()
         {
             timeline.leave();
-            self.pacer.set_paused(self.was_paused, now);
+            self.runner.pacer.set_paused(self.was_paused, now);
         } else {
             self.notice("This is the newest instant already.");
         }
@@ -304,13 +307,13 @@ impl Session {
         };
         self.vehicle = vehicle;
         self.persistence.tell(self.vehicle.controller_mut());
-        self.console = Interpreter::default();
+        self.interface.restart_console();
         self.arming = ArmingWatch::default();
         self.events.branch(&mut self.vehicle, branch, left);
         if let Some(endpoints) = &mut self.endpoints {
             endpoints.handler.after_restart(true, self.vehicle.controller_mut());
         }
-        self.pacer.set_paused(false, now);
+        self.runner.pacer.set_paused(false, now);
     }
 }
 

@@ -3,6 +3,7 @@ use tokio::sync::oneshot;
 use super::*;
 use crate::fc::UploadView;
 use crate::fc::{RemoteEnds, UploadReport};
+use crate::firmware::cli::Interpreter;
 use crate::firmware::config::Configuration;
 use crate::firmware::{Firmware, FirmwareOptions};
 use crate::link::FcStream;
@@ -149,7 +150,7 @@ fn a_simulated_craft_that_falls_in_land_gets_gains_to_land_with_and_a_real_one_t
             let mut link = RemoteLink::new(ends, Instant::now());
             let connection = link.remote().connection();
             link.remote_mut().permit_changes(connection);
-            rig.session.remote = Some(link);
+            rig.session.runner.link = Some(link);
         }
         let altitude_reference = AltitudeReference::SeaLevel { home_m: Some(300.0) };
         rig.mailbox().deliver_telemetry(RemoteTelemetry { altitude_reference, ..RemoteTelemetry::default() });
@@ -248,7 +249,7 @@ fn rig_at(speed: f64) -> Rig {
     let config = VehicleConfig { world, firmware, configuration, live: false };
     let mut rig = Rig::with(Vehicle::new(config).unwrap());
     rig.session.usual_speed = speed;
-    rig.session.pacer.set_speed(speed, Duration::ZERO);
+    rig.session.runner.pacer.set_speed(speed, Duration::ZERO);
     rig
 }
 
@@ -268,7 +269,7 @@ impl Rig {
             let landed = self.session.events.marks().all().iter().any(|mark| mark.kind == MarkKind::Disarmed);
             self.session.slow_down_after_flight(Duration::ZERO);
             if landed {
-                return self.session.pacer.speed();
+                return self.session.runner.pacer.speed();
             }
         }
         panic!("it never landed");
@@ -285,13 +286,13 @@ fn after_the_landing_the_speed_falls_back_once_and_one_chosen_later_stays() {
     let mut rig = rig_at(1.0);
     rig.choose_speed(128.0);
     rig.session.slow_down_after_flight(Duration::ZERO);
-    assert!((rig.session.pacer.speed() - 128.0).abs() < 1e-9, "it has not flown yet");
+    assert!((rig.session.runner.pacer.speed() - 128.0).abs() < 1e-9, "it has not flown yet");
     assert!((rig.fly_and_land() - 1.0).abs() < 1e-9);
     rig.choose_speed(16.0);
     rig.session.advance(1000, Duration::ZERO);
     rig.session.flush_events();
     rig.session.slow_down_after_flight(Duration::ZERO);
-    assert!((rig.session.pacer.speed() - 16.0).abs() < 1e-9, "chosen while disarmed");
+    assert!((rig.session.runner.pacer.speed() - 16.0).abs() < 1e-9, "chosen while disarmed");
 }
 
 #[test]
@@ -316,4 +317,25 @@ fn a_session_without_a_screen_keeps_nothing_of_its_flight() {
         Session::new(config, None, mpsc::channel(1).1, mpsc::unbounded_channel().0).timeline.is_some()
     };
     assert_eq!((recorded(true), recorded(false)), (true, false));
+}
+
+#[test]
+fn a_further_subscriber_gets_every_later_event_until_it_leaves() {
+    let (commands, taken) = mpsc::channel(32);
+    let (first, mut all) = mpsc::unbounded_channel();
+    let vehicle = Vehicle::with_remote_controller(WorldConfig::default()).unwrap();
+    let mut session = Session::new(config_of(vehicle, true), None, taken, first);
+    session.notice("before");
+    let (second, mut later) = mpsc::unbounded_channel();
+    commands.try_send(Command::Subscribe(second)).unwrap();
+    session.take_commands(Duration::ZERO, &mut Context::from_waker(Waker::noop()));
+    session.notice("after");
+    let is_notice = |event: &Event, said: &str| event.kind == SessionEvent::Notice(said.to_owned());
+    assert!(later.try_recv().is_ok_and(|event| is_notice(&event, "after")));
+    drop(later);
+    session.notice("alone");
+    let heard: Vec<Event> = std::iter::from_fn(|| all.try_recv().ok()).collect();
+    for said in ["before", "after", "alone"] {
+        assert!(heard.iter().any(|event| is_notice(event, said)), "{said}");
+    }
 }

@@ -1,0 +1,239 @@
+//! The requests of the user interface to the flight controller: its command line, uploads, downloads, saving. A remote
+//! flight controller answers them later, by ticket.
+
+use std::time::Instant;
+
+use crate::fc::{
+    LIST, Upload, UploadProgress, UploadReport, UploadView, plan_above_home, replace_falling_gains,
+};
+use crate::firmware::cli::{CliAction, CliReply, Interpreter, advice};
+use crate::msp::code;
+use crate::plan::{AltitudeReference, FlightPlan};
+use crate::session::command::{CliOutput, UPLOADING};
+use crate::session::host_status::HostStatus;
+use crate::session::late_answers::{LateAnswers, NO_ANSWER, no_answer_line};
+use crate::session::persistence::Persistence;
+use crate::session::request_handler::RequestHandler;
+use crate::session::{ReplyTo, hazards};
+use crate::vehicle::{Answer, FlightController, LateAnswer, Ticket, Vehicle};
+
+/// The way of an answer that can be a refusal, as a sentence.
+type Reply<T> = ReplyTo<Result<T, String>>;
+
+/// The user interface's side of the flight controller.
+#[derive(Debug, Default)]
+pub(super) struct Interface {
+    console: Interpreter,
+    /// The figures that `status` shows besides those of the flight controller.
+    pub(super) host: HostStatus,
+    late_answers: LateAnswers<Waiting>,
+}
+
+/// A request that waits for the answer of a remote flight controller.
+#[derive(Debug)]
+enum Waiting {
+    Line {
+        /// The line that was run.
+        line: String,
+        reply: ReplyTo<CliOutput>,
+    },
+    Download(Reply<Box<FlightPlan>>),
+    /// Receives `Ok` once the configuration is stored.
+    Save(Reply<()>),
+    /// An upload, which continues with the answer.
+    Upload(Box<Upload>, Reply<UploadReport>),
+}
+
+impl Interface {
+    /// Begins a new session of the command line, after a restart of the flight controller.
+    pub(super) fn restart_console(&mut self) {
+        self.console = Interpreter::default();
+    }
+
+    /// Runs a line, and returns notices for the user. `handler` closes the clients' links if the line restarts the
+    /// flight controller.
+    pub(super) fn run_line(
+        &mut self,
+        line: String,
+        reply: ReplyTo<CliOutput>,
+        controller: &mut FlightController,
+        persistence: &mut Persistence,
+        handler: Option<&mut RequestHandler>,
+    ) -> Vec<String> {
+        let mut answer = match controller.run_cli(&mut self.console, &line) {
+            Answer::Now(answer) => answer,
+            Answer::Later(ticket) => {
+                self.late_answers.expect(ticket, Waiting::Line { line, reply }, now());
+                return Vec::new();
+            }
+        };
+        self.host.add_to(&mut answer);
+        let done = persistence.carry_out(&mut answer, controller);
+        if done.restarted.is_some() {
+            self.restart_console();
+            if let Some(handler) = handler {
+                handler.after_restart(true, controller);
+            }
+        }
+        reply.send(output(&line, answer, done.restarted.is_some()));
+        done.notices
+    }
+
+    /// Starts an upload, and returns notices for the user. A craft that is only simulated gets gains with which it
+    /// lands; a real one never gets gains that the user did not request.
+    pub(super) fn upload(
+        &mut self,
+        plan: &FlightPlan,
+        mut settings: Vec<String>,
+        is_simulated: bool,
+        reply: Reply<UploadReport>,
+        craft: &mut UploadTo<'_>,
+    ) -> Vec<String> {
+        // The lines of two uploads would mix.
+        if self.upload_under_way().is_some() {
+            reply.send(Err(UPLOADING.to_owned()));
+            return Vec::new();
+        }
+        let reference = craft.vehicle.controller().altitude_reference();
+        let landing_gains = match reference {
+            AltitudeReference::SeaLevel { .. } if is_simulated => replace_falling_gains(&mut settings),
+            _ => Vec::new(),
+        };
+        match Upload::new(plan, &settings, reference) {
+            Ok(mut upload) => {
+                upload.report_landing_gains(landing_gains);
+                let progress = upload.send_lines(craft.vehicle.controller_mut());
+                self.go_on(Box::new(upload), progress, reply, craft, now())
+            }
+            Err(unknown) => {
+                reply.send(Err(unknown.to_string()));
+                Vec::new()
+            }
+        }
+    }
+
+    /// Returns the progress of the current upload.
+    pub(super) fn upload_under_way(&self) -> Option<UploadView> {
+        self.late_answers.recipients().find_map(|waiting| match waiting {
+            Waiting::Upload(upload, _) => Some(upload.lines_sent()),
+            Waiting::Line { .. } | Waiting::Download(_) | Waiting::Save(_) => None,
+        })
+    }
+
+    /// Reads the plan of the craft as a ground station does.
+    pub(super) fn download(&mut self, reply: Reply<Box<FlightPlan>>, controller: &mut FlightController) {
+        let reference = controller.altitude_reference();
+        match controller.run_cli(&mut Interpreter::default(), LIST) {
+            Answer::Now(answer) => reply.send(plan_above_home(&answer, reference).map(Box::new)),
+            Answer::Later(ticket) => self.late_answers.expect(ticket, Waiting::Download(reply), now()),
+        }
+    }
+
+    /// Saves as a ground station does over MSP, without a restart. A remote flight controller stores its configuration
+    /// itself.
+    pub(super) fn save(
+        &mut self,
+        is_real: bool,
+        reply: Reply<()>,
+        controller: &mut FlightController,
+        persistence: &mut Persistence,
+    ) {
+        if controller.is_armed() {
+            let way = if is_real { "its transmitter disarms it" } else { "`a` disarms it" };
+            reply.send(Err(format!("Not saved while the craft is armed: {way} on the ground.")));
+        } else if controller.configuration().is_some() {
+            reply.send(persistence.save(controller));
+        } else if let Answer::Later(ticket) = controller.run_msp(code::EEPROM_WRITE, &[], None) {
+            self.late_answers.expect(ticket, Waiting::Save(reply), now());
+        }
+    }
+
+    /// Passes on a late answer, and returns notices for the user.
+    ///
+    /// # Errors
+    /// Returns an answer that is not for the user interface.
+    pub(super) fn take_answer(
+        &mut self,
+        ticket: Ticket,
+        answer: LateAnswer,
+        craft: &mut UploadTo<'_>,
+        now: Instant,
+    ) -> Result<Vec<String>, LateAnswer> {
+        match (self.late_answers.take(ticket), answer) {
+            (Some(Waiting::Line { line, reply }), LateAnswer::Cli(said)) => {
+                // It has saved and restarted by itself.
+                let restarted = said.actions.iter().any(|action| matches!(action, CliAction::Restart { .. }));
+                reply.send(output(&line, said, restarted));
+            }
+            (Some(Waiting::Upload(mut upload, reply)), LateAnswer::Cli(said)) => {
+                let progress = upload.take_answer(&said, craft.vehicle.controller_mut());
+                return Ok(self.go_on(upload, progress, reply, craft, now));
+            }
+            (Some(Waiting::Download(reply)), LateAnswer::Cli(said)) => {
+                let reference = craft.vehicle.controller().altitude_reference();
+                reply.send(plan_above_home(&said, reference).map(Box::new));
+            }
+            (Some(Waiting::Save(reply)), LateAnswer::Msp(stored)) => {
+                let refusal = || "Not saved: the flight controller refuses to store now.".to_owned();
+                reply.send(stored.map(drop).ok_or_else(refusal));
+            }
+            (_, answer) => return Err(answer),
+        }
+        Ok(Vec::new())
+    }
+
+    /// Refuses the requests whose answers are overdue.
+    pub(super) fn give_up_overdue(&mut self, now: Instant) {
+        for waiting in self.late_answers.take_overdue(now) {
+            match waiting {
+                Waiting::Line { reply, .. } => {
+                    reply.send(CliOutput { text: no_answer_line(), ..CliOutput::default() });
+                }
+                Waiting::Download(reply) => reply.send(Err(NO_ANSWER.to_owned())),
+                Waiting::Upload(_, reply) => reply.send(Err(NO_ANSWER.to_owned())),
+                Waiting::Save(reply) => reply.send(Err(NO_ANSWER.to_owned())),
+            }
+        }
+    }
+
+    /// Waits for the next answer to an upload, or reports its result. Returns notices for the user.
+    fn go_on(
+        &mut self,
+        upload: Box<Upload>,
+        progress: UploadProgress,
+        reply: Reply<UploadReport>,
+        craft: &mut UploadTo<'_>,
+        now: Instant,
+    ) -> Vec<String> {
+        match progress {
+            UploadProgress::Done(result) => {
+                let hazards =
+                    if result.is_ok() { hazards(craft.vehicle, craft.takeoff_m, None) } else { Vec::new() };
+                reply.send(result);
+                hazards
+            }
+            UploadProgress::Waiting(ticket) => {
+                self.late_answers.expect(ticket, Waiting::Upload(upload, reply), now);
+                Vec::new()
+            }
+        }
+    }
+}
+
+/// The craft of an upload.
+pub(super) struct UploadTo<'a> {
+    pub(super) vehicle: &'a mut Vehicle,
+    /// The altitude to which the scripted pilot climbs, m.
+    pub(super) takeoff_m: f64,
+}
+
+/// Returns the console's output for an answer.
+pub(super) fn output(line: &str, answer: CliReply, restarted: bool) -> CliOutput {
+    let advice = advice(line, &answer);
+    CliOutput { text: answer.text, advice, restarted }
+}
+
+#[allow(clippy::disallowed_methods, reason = "a late answer is awaited in wall time")]
+fn now() -> Instant {
+    Instant::now()
+}
