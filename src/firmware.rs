@@ -109,7 +109,7 @@ impl Firmware {
     }
 
     fn boot(setup: Setup, now: SimTime, outbox: Outbox) -> Self {
-        let (options, parameters) = (setup.options(), setup.parameters());
+        let (options, parameters) = (&setup.options, &setup.parameters);
         Self {
             booted_at: now,
             now,
@@ -127,30 +127,30 @@ impl Firmware {
     /// Runs one step: takes one sensor frame and returns one motor command.
     pub fn step(&mut self, frame: &SensorFrame) -> MotorCommand {
         self.now = frame.time;
-        let due = self.sensing.update(frame, self.setup.parameters(), &mut self.outbox);
-        self.rc.receive_queued(self.setup.parameters(), self.now);
-        if self.rc.is_due(self.now) {
+        let due = self.sensing.update(frame, &self.setup.parameters, &mut self.outbox);
+        self.rc.receive_queued(&self.setup.parameters, self.now);
+        if self.rc.receiver.is_due(self.now) {
             self.update_arming();
         }
         if due.navigation {
             self.update_navigation();
         }
         let rc_frame = self.rc.take_new_frame();
-        let parameters = self.setup.parameters();
-        let switched = self.rc.boxes();
+        let parameters = &self.setup.parameters;
+        let switched = self.rc.boxes;
         let airmode = parameters.airmode || switched.has(boxes::AIR_MODE);
         let step = ControlStep {
             due,
-            armed: self.safety.armed(),
+            armed: self.safety.arming.armed(),
             modes: self.modes,
-            sticks: self.rc.receiver().sticks(),
+            sticks: self.rc.receiver.sticks(),
             rc_frame,
-            airmode: airmode && self.safety.raised(),
+            airmode: airmode && self.safety.arming.raised(),
             anti_gravity: parameters.anti_gravity || switched.has(boxes::ANTI_GRAVITY),
             motor_stop: parameters.motor_stop,
-            failsafe: self.navigation.failsafe().active(),
-            levels_after_crash: self.safety.is_levelling(),
-            headfree_rad: self.safety.headfree_rad(),
+            failsafe: self.navigation.failsafe.active(),
+            levels_after_crash: self.safety.crash.is_levelling(),
+            headfree_rad: self.safety.headfree_rad,
         };
         let motors = self.control.step(&step, self.sensing.estimate());
         self.watch_for_crash();
@@ -164,18 +164,18 @@ impl Firmware {
 
     /// Updates receiver, link, switches and arming. Runs at every RC frame, and at least twenty times a second.
     fn update_arming(&mut self) {
-        let parameters = self.setup.parameters();
-        let failsafe = self.navigation.failsafe();
+        let parameters = &self.setup.parameters;
+        let failsafe = &self.navigation.failsafe;
         let new_frame = self.rc.update(parameters, self.now, failsafe, &mut self.outbox);
         let estimate = self.sensing.estimate();
-        if self.rc.boxes().has(boxes::HEADADJ) {
-            self.safety.set_headfree(estimate.heading_rad);
+        if self.rc.boxes.has(boxes::HEADADJ) {
+            self.safety.headfree_rad = estimate.heading_rad;
         }
         let (uptime, landed) = (self.uptime(), failsafe.landed());
         match self.safety.update(parameters, uptime, (&self.rc, new_frame), estimate, landed) {
             Some(ArmingChange::Armed { assisted }) => self.on_arm(assisted),
             Some(ArmingChange::CalibrateGyro) => {
-                self.sensing.calibrate_gyro();
+                self.sensing.estimator.calibrate_gyro();
                 self.outbox.push(FirmwareEvent::Notice(FirmwareNotice::CalibratingGyro));
             }
             Some(ArmingChange::Disarmed(reason)) => self.on_disarm(reason),
@@ -184,8 +184,8 @@ impl Firmware {
     }
 
     fn on_arm(&mut self, assisted: bool) {
-        let position = stages::trusted_position(self.setup.parameters(), self.sensing.estimate());
-        self.sensing.on_arm(position);
+        let position = stages::trusted_position(&self.setup.parameters, self.sensing.estimate());
+        self.sensing.estimator.on_arm(position);
         self.navigation.reset_control();
         self.outbox.push(FirmwareEvent::Armed);
         if assisted {
@@ -201,8 +201,8 @@ impl Firmware {
     }
 
     fn on_disarm(&mut self, reason: DisarmReason) {
-        self.sensing.on_disarm();
-        self.control.set_demand(Demand::default());
+        self.sensing.estimator.on_disarm();
+        self.control.demand = Demand::default();
         self.navigation.reset_control();
         self.outbox.push(FirmwareEvent::Disarmed(reason));
     }
@@ -211,33 +211,39 @@ impl Firmware {
     fn update_navigation(&mut self) {
         self.keep_calibrations();
         self.sensing.watch_heading(&mut self.outbox);
-        self.sensing.watch_fix(self.setup.parameters(), &mut self.outbox);
-        self.navigation.observe(self.now, &self.sensing, &self.safety, &self.rc, self.control.state());
+        self.sensing.watch_fix(&self.setup.parameters, &mut self.outbox);
+        self.navigation.observe(
+            self.now,
+            &self.sensing,
+            &self.safety,
+            &self.rc,
+            self.control.controller.state(),
+        );
 
-        let (parameters, uptime) = (self.setup.parameters(), self.uptime());
+        let (parameters, uptime) = (&self.setup.parameters, self.uptime());
         match self.navigation.update_failsafe(parameters, uptime, &self.rc, self.modes, &mut self.outbox) {
             Some(FailsafeRequest::Disarm) => self.disarm(DisarmReason::Failsafe),
-            Some(FailsafeRequest::RequireSwitchOff) => self.safety.require_switch_off(),
+            Some(FailsafeRequest::RequireSwitchOff) => self.safety.arming.require_switch_off(),
             None => {}
         }
 
-        let (parameters, stored) = (self.setup.parameters(), &self.setup.configuration().plan);
-        let armed = self.safety.armed();
+        let (parameters, stored) = (&self.setup.parameters, &self.setup.configuration.plan);
+        let armed = self.safety.arming.armed();
         if self.navigation.navigate(parameters, stored, &self.rc, armed, &mut self.outbox) {
             self.disarm(DisarmReason::Landing);
         }
 
-        let (parameters, alt_hold) = (self.setup.parameters(), self.modes.has(Mode::AltHold));
+        let (parameters, alt_hold) = (&self.setup.parameters, self.modes.has(Mode::AltHold));
         if self.navigation.is_impact(parameters, &self.rc, &self.safety, alt_hold) {
             self.disarm(DisarmReason::Landing);
         }
         self.update_modes();
 
-        let (parameters, armed) = (self.setup.parameters(), self.safety.armed());
-        let throttle_stick_us = self.rc.receiver().sticks().throttle_us;
+        let (parameters, armed) = (&self.setup.parameters, self.safety.arming.armed());
+        let throttle_stick_us = self.rc.receiver.sticks().throttle_us;
         let flown =
             self.navigation.demand(parameters, self.modes, armed, throttle_stick_us, &mut self.outbox);
-        self.control.set_demand(flown.demand);
+        self.control.demand = flown.demand;
         if flown.touchdown {
             self.disarm(DisarmReason::Landing);
             self.update_modes();
@@ -247,12 +253,12 @@ impl Firmware {
     /// Applies the results of calibrations that have just ended.
     fn keep_calibrations(&mut self) {
         self.sensing.watch_imu(&mut self.outbox);
-        if let Some(offsets) = self.sensing.take_acc_calibration() {
+        if let Some(offsets) = self.sensing.estimator.take_acc_calibration() {
             self.setup.keep_acc_calibration(offsets);
             self.refresh();
             self.outbox.push(FirmwareEvent::Notice(FirmwareNotice::AccCalibrated));
         }
-        if let Some(result) = self.sensing.take_mag_calibration() {
+        if let Some(result) = self.sensing.estimator.take_mag_calibration() {
             let notice = self.setup.keep_mag_calibration(result);
             self.refresh();
             self.outbox.push(notice);
@@ -270,11 +276,11 @@ impl Firmware {
 
     /// Disarms on a runaway take-off or a crash, judged by the controller's last step.
     fn watch_for_crash(&mut self) {
-        let (parameters, state) = (self.setup.parameters(), self.control.state());
+        let (parameters, state) = (&self.setup.parameters, self.control.controller.state());
         if self.safety.is_runaway(parameters, self.now, &self.rc, state) {
             self.disarm(DisarmReason::RunawayTakeoff);
         }
-        let (parameters, state) = (self.setup.parameters(), self.control.state());
+        let (parameters, state) = (&self.setup.parameters, self.control.controller.state());
         match self.safety.crash(parameters, self.now, state, self.sensing.estimate()) {
             Some(CrashAction::Disarm) => self.disarm(DisarmReason::CrashProtection),
             Some(CrashAction::Level) => {
@@ -287,7 +293,7 @@ impl Firmware {
     /// Updates the typed parameters, and everything tuned by them, from the configuration.
     fn refresh(&mut self) {
         self.setup.refresh();
-        let parameters = self.setup.parameters();
+        let parameters = &self.setup.parameters;
         self.sensing.set_tuning(parameters);
         self.control.set_tuning(&parameters.control);
     }

@@ -20,14 +20,14 @@ impl Firmware {
 
     /// Gives the virtual sticks priority over the other sources of RC, or ends that.
     pub fn take_over_sticks(&mut self, sticks_first: bool) {
-        self.rc.take_over(sticks_first);
+        self.rc.receiver.take_over(sticks_first);
     }
 
     /// Runs one CLI line and carries out its requests to the firmware itself. Storing and restarting are left to the
     /// owner, by the actions in the reply.
     pub fn run_cli(&mut self, session: &mut Interpreter, line: &str) -> CliReply {
         let facts = CliFacts::observe(self);
-        let configuration = self.setup.configuration_mut();
+        let configuration = &mut self.setup.configuration;
         let had_gps = configuration.features.has(Feature::Gps);
         let reply = session.run(line, &mut CliContext { configuration, facts: &facts });
         for action in &reply.actions {
@@ -47,7 +47,7 @@ impl Firmware {
 
     /// Blocks arming until reboot. Called when a command line session is opened on a serial link.
     pub fn cli_opened(&mut self) {
-        self.safety.cli_opened();
+        self.safety.arming.cli_opened();
     }
 
     /// Stops motors that the session started. Called when the session ends.
@@ -57,26 +57,26 @@ impl Firmware {
 
     /// Sets the facts about the stored configuration that commands print.
     pub fn set_storage_facts(&mut self, facts: StorageFacts) {
-        self.setup.set_storage(facts);
+        self.setup.storage = facts;
     }
 
     /// Sets the flag that an earlier instant is shown. Clients cannot change anything then.
     pub fn set_rewound(&mut self, rewound: bool) {
-        self.setup.set_rewound(rewound);
+        self.setup.rewound = rewound;
     }
 
     /// Sets the version and build that the firmware announces.
     pub fn set_build(&mut self, build: BuildInfo) {
-        self.setup.set_build(build);
+        self.setup.build = build;
     }
 
     /// Restarts with this configuration. This ends the flight, but the receiver's sources keep their order.
     pub fn restart(&mut self, configuration: Configuration) {
-        let was_armed = self.safety.armed();
+        let was_armed = self.safety.arming.armed();
         let mut outbox = std::mem::take(&mut self.outbox);
         let setup = self.setup.restarted(configuration, &mut outbox);
         let mut fresh = Self::boot(setup, self.now, outbox);
-        fresh.rc = self.rc.restarted(&fresh.setup.parameters().rx);
+        fresh.rc = self.rc.restarted(&fresh.setup.parameters.rx);
         fresh.safety = self.safety.restarted();
         if was_armed {
             fresh.outbox.push(FirmwareEvent::Disarmed(DisarmReason::System));
@@ -86,7 +86,7 @@ impl Firmware {
 
     /// Restarts with the configuration in memory, stored or not.
     pub fn restart_in_place(&mut self) {
-        let configuration = self.setup.configuration().clone();
+        let configuration = self.setup.configuration.clone();
         self.restart(configuration);
     }
 
@@ -95,7 +95,7 @@ impl Firmware {
     /// # Errors
     /// Returns a refusal if the craft is not armed, its throttle was never raised, or it has no fix or no altitude.
     pub fn return_to_home(&mut self) -> Result<(), Refusal> {
-        let done = self.navigation.return_to_home(self.setup.parameters());
+        let done = self.navigation.return_to_home(&self.setup.parameters);
         self.answer(done)
     }
 
@@ -104,8 +104,8 @@ impl Firmware {
     /// # Errors
     /// Returns the reason if the command is refused. Nothing has changed then.
     pub fn command(&mut self, command: InFlightCommand) -> Result<(), InFlightRefusal> {
-        let stored = &self.setup.configuration().plan;
-        self.navigation.command(command, self.setup.parameters(), stored)
+        let stored = &self.setup.configuration.plan;
+        self.navigation.command(command, &self.setup.parameters, stored)
     }
 
     /// Lands here, regardless of the AUTOPILOT switch.
@@ -132,16 +132,16 @@ impl Firmware {
 
     /// Calibrates the accelerometer. The craft must be level and still. Ignored while armed.
     pub fn calibrate_accelerometer(&mut self) {
-        if !self.safety.armed() {
-            self.sensing.calibrate_accelerometer();
+        if !self.safety.arming.armed() {
+            self.sensing.estimator.calibrate_accelerometer();
         }
     }
 
     /// Calibrates the magnetometer. The pilot must turn the craft about all its axes for 30 s. Ignored while armed or
     /// without a magnetometer.
     pub fn calibrate_magnetometer(&mut self) {
-        if !self.safety.armed() && self.setup.boot().mag {
-            self.sensing.calibrate_magnetometer();
+        if !self.safety.arming.armed() && self.setup.boot.mag {
+            self.sensing.estimator.calibrate_magnetometer();
         }
     }
 }

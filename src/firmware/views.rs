@@ -35,16 +35,16 @@ impl Firmware {
     }
 
     pub fn is_armed(&self) -> bool {
-        self.safety.armed()
+        self.safety.arming.armed()
     }
 
     /// Returns the reason of the last disarming.
     pub fn last_disarm(&self) -> Option<DisarmReason> {
-        self.safety.last_disarm()
+        self.safety.last_disarm
     }
 
     pub fn arming_flags(&self) -> ArmingFlags {
-        self.safety.flags()
+        self.safety.arming.flags()
     }
 
     /// Returns the flags that block arming while disarmed; no flags while armed.
@@ -58,20 +58,20 @@ impl Firmware {
 
     /// Returns the boxes that are switched on.
     pub fn boxes(&self) -> BoxSet {
-        self.rc.boxes()
+        self.rc.boxes
     }
 
     pub fn receiver(&self) -> &Receiver {
-        self.rc.receiver()
+        &self.rc.receiver
     }
 
     /// Returns the results of the controller's last step.
     pub fn control(&self) -> &super::control::ControlState {
-        self.control.state()
+        self.control.controller.state()
     }
 
     pub fn battery(&self) -> &battery::Battery {
-        self.sensing.battery()
+        &self.sensing.battery
     }
 
     pub fn estimate(&self) -> &Estimate {
@@ -90,12 +90,12 @@ impl Firmware {
 
     /// Returns the navigator's telemetry. Its points count from [`Firmware::origin`].
     pub fn nav(&self) -> &NavTelemetry {
-        self.navigation.telemetry()
+        self.navigation.navigator.telemetry()
     }
 
     /// Returns the demands of the navigator's last update, if it flies.
     pub fn nav_demand(&self) -> Option<NavOutput> {
-        self.navigation.output()
+        self.navigation.output
     }
 
     /// Returns the origin of the local frame of estimate and navigator; `None` before the first fix.
@@ -131,32 +131,32 @@ impl Firmware {
 
     /// Returns home, if known.
     pub fn home(&self) -> Option<LatLon> {
-        self.safety.home()
+        self.safety.home
     }
 
     /// Returns `true` if an armed craft should climb but has not left the ground at full throttle.
     pub fn is_too_heavy(&self) -> bool {
-        self.safety.armed() && self.navigation.is_too_heavy()
+        self.safety.arming.armed() && self.navigation.is_too_heavy()
     }
 
     /// Returns `true` if there is a fix.
     pub fn gps_fix(&self) -> bool {
-        self.sensing.fix()
+        self.sensing.fix
     }
 
     /// Returns the configuration in memory.
     pub fn configuration(&self) -> &Configuration {
-        self.setup.configuration()
+        &self.setup.configuration
     }
 
     /// Returns the typed parameters in force.
     pub fn parameters(&self) -> &Parameters {
-        self.setup.parameters()
+        &self.setup.parameters
     }
 
     /// Returns the plan in the craft's memory.
     pub fn stored_plan(&self) -> &FlightPlan {
-        &self.setup.configuration().plan
+        &self.setup.configuration.plan
     }
 
     /// Returns the plan being flown, if any.
@@ -184,7 +184,7 @@ impl Firmware {
         wire_order[3] = inner[channels::YAW];
         let source: Option<RcSource> = self.receiver().sources().in_charge();
         CraftView {
-            armed: Some(self.safety.armed()),
+            armed: Some(self.safety.arming.armed()),
             modes: Some(self.modes),
             arming_blocked_by: Some(self.arming_blocks()),
             gps_fix: Some(self.gps_fix()),
@@ -196,15 +196,15 @@ impl Firmware {
             battery_a: battery.map(|sample| sample.current_a),
             battery_mah: battery.map(|sample| sample.drawn_mah),
             battery_cells: Some(self.battery().cells()).filter(|&cells| cells > 0),
-            throttle_us: Some(self.control.state().throttle_us),
-            motors: Some(self.control.state().motors.0),
+            throttle_us: Some(self.control.controller.state().throttle_us),
+            motors: Some(self.control.controller.state().motors.0),
             channels: Some(wire_order),
             rc_source: source,
             rc_age_s: self.receiver().last_frame().map(|last| self.now.seconds_since(last)),
             rc_link: Some(self.receiver().signal()),
-            failsafe_stage: Some(self.navigation.failsafe().stage()),
+            failsafe_stage: Some(self.navigation.failsafe.stage()),
             failsafe_ahead: self.failsafe_ahead(),
-            commanded: Some(self.navigation.is_commanded()),
+            commanded: Some(self.navigation.orders.is_commanded()),
             mode_ranges: Some(self.mode_ranges()),
         }
     }
@@ -212,7 +212,7 @@ impl Firmware {
     /// Returns the failsafe that starts if the lost link does not come back in time.
     fn failsafe_ahead(&self) -> Option<FailsafeAhead> {
         let receiver = self.receiver();
-        if !self.is_armed() || receiver.signal() || self.navigation.failsafe().active() {
+        if !self.is_armed() || receiver.signal() || self.navigation.failsafe.active() {
             return None;
         }
         let lost_for_s = self.now.seconds_since(receiver.last_frame()?);
@@ -225,7 +225,7 @@ impl Firmware {
     pub fn estimate_view(&self) -> EstimateView {
         let estimate = self.estimate();
         let known = estimate.origin.is_some();
-        let demand = self.control.state().angle_demand_rad;
+        let demand = self.control.controller.state().angle_demand_rad;
         EstimateView {
             n: known.then_some(estimate.pos_ne.x),
             e: known.then_some(estimate.pos_ne.y),

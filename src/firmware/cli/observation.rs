@@ -36,24 +36,25 @@ impl CliFacts {
         let signal = firmware.receiver().signal();
         let rx_hz = if signal { firmware.receiver().sources().rate_hz().round() as u32 } else { 0 };
         let battery = firmware.battery().sample();
-        let [setpoint_hz, throttle_hz] = firmware.control.smoothing_hz().map(|hz| hz.round() as u32);
+        let [setpoint_hz, throttle_hz] =
+            firmware.control.controller.smoothing_hz().map(|hz| hz.round() as u32);
         Self {
-            build: firmware.setup.build().clone(),
+            build: firmware.setup.build.clone(),
             armed: firmware.is_armed(),
             arming_blocks: firmware.arming_blocks(),
             uptime_s: firmware.uptime().0 / 1_000_000,
-            storage: firmware.setup.storage().clone(),
+            storage: firmware.setup.storage.clone(),
             gps: GpsFacts::observe(firmware),
             battery: BatteryFacts {
                 voltage_v: battery.map_or(0.0, |sample| sample.voltage_v),
                 cells: firmware.battery().cells(),
                 state: firmware.battery().state().into(),
             },
-            rewound: firmware.setup.rewound(),
+            rewound: firmware.setup.rewound,
             loops: LoopFacts {
                 cpu_load_percent: 0,
-                cycle_time_us: 1_000_000 / firmware.setup.options().rate_hz.max(1),
-                gyro_hz: firmware.setup.options().rate_hz,
+                cycle_time_us: 1_000_000 / firmware.setup.options.rate_hz.max(1),
+                gyro_hz: firmware.setup.options.rate_hz,
                 rx_hz,
                 system_hz: SYSTEM_HZ,
             },
@@ -62,7 +63,7 @@ impl CliFacts {
             nav: NavFacts {
                 telemetry: firmware.nav().clone(),
                 active_plan: firmware.active_plan().cloned(),
-                refusal: firmware.navigation.last_refusal(),
+                refusal: firmware.navigation.last_refusal,
             },
         }
     }
@@ -84,9 +85,9 @@ impl GpsFacts {
 
 /// Returns the tasks with their nominal rates. A deterministic firmware has no run times to show.
 fn tasks(firmware: &Firmware, rx_hz: u32) -> Vec<TaskFacts> {
-    let rate = firmware.setup.options().rate_hz;
+    let rate = firmware.setup.options.rate_hz;
     let attitude_hz = (1_000_000 / firmware.parameters().estimator.attitude_us.max(1)) as u32;
-    let pid = rate / u32::from(firmware.setup.boot().pid_denominator.max(1));
+    let pid = rate / u32::from(firmware.setup.boot.pid_denominator.max(1));
     [
         (0, "SYSTEM", SYSTEM_HZ),
         (1, "SYSTEM", 1000),

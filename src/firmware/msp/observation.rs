@@ -104,19 +104,19 @@ impl MspFacts {
         let estimate = firmware.estimate();
         let rates = estimate.rates;
         Self {
-            build: firmware.setup.build().clone(),
+            build: firmware.setup.build.clone(),
             armed: firmware.is_armed(),
             modes: firmware.modes(),
             switches: firmware.boxes(),
             arming_blocks: firmware.arming_blocks(),
             reboot_required: firmware.parameters().arming.reboot_required,
-            cycle_time_us: 1_000_000 / firmware.setup.options().rate_hz.max(1),
+            cycle_time_us: 1_000_000 / firmware.setup.options.rate_hz.max(1),
             cpu_load_percent: 0,
-            gyro_hz: firmware.setup.options().rate_hz,
+            gyro_hz: firmware.setup.options.rate_hz,
             has_mag: firmware.configuration().settings.text("mag_hardware") != "NONE",
             specific_force_flu: estimate.force_flu,
             rate_flu: Vector3::new(rates.roll, rates.pitch_down, -rates.yaw),
-            mag_flu: firmware.sensing.mag_flu() - firmware.parameters().estimator.mag_offset_flu,
+            mag_flu: firmware.sensing.mag_flu - firmware.parameters().estimator.mag_offset_flu,
             attitude: estimate.attitude,
             roll_deg: estimate.roll_rad.to_degrees(),
             pitch_deg: -estimate.pitch_down_rad.to_degrees(),
@@ -128,6 +128,7 @@ impl MspFacts {
             channels: *firmware.receiver().channels(),
             motors_us: firmware
                 .control
+                .controller
                 .state()
                 .motors_us
                 .map(|pulse| pulse.round().clamp(0.0, 2500.0) as u16),
@@ -142,7 +143,7 @@ impl MspFacts {
 fn altitude_m(firmware: &Firmware) -> f64 {
     let above_home = firmware.estimate().shown_alt_m;
     match firmware.gps_view() {
-        Some(gps) if !firmware.safety.ever_armed() => gps.alt_amsl_m,
+        Some(gps) if !firmware.safety.arming.ever_armed() => gps.alt_amsl_m,
         _ => above_home,
     }
 }

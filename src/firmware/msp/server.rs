@@ -12,7 +12,7 @@ impl Firmware {
     /// of day are left to the owner, by the action in the outcome. `clock` is the time of day, if it was set.
     pub fn run_msp(&mut self, code: u16, request: &[u8], clock: Option<UtcTime>) -> Outcome {
         let facts = self.msp_facts(clock);
-        let configuration = self.setup.configuration_mut();
+        let configuration = &mut self.setup.configuration;
         let had_gps = configuration.features.has(Feature::Gps);
         let outcome = super::handle(code, request, configuration, &facts);
         let writes = super::table::find(code).is_some_and(|message| message.kind.access == Access::Write);
@@ -33,7 +33,9 @@ impl Firmware {
             Some(MspAction::CalibrateAcc) => self.calibrate_accelerometer(),
             Some(MspAction::CalibrateMag) => self.calibrate_magnetometer(),
             Some(MspAction::RunawayPrevention(on)) => self.setup.allow_runaway_prevention(on),
-            Some(MspAction::HoldHeading(deg)) => self.control.hold_heading(f64::from(deg).to_radians()),
+            Some(MspAction::HoldHeading(deg)) => {
+                self.control.controller.hold_heading(f64::from(deg).to_radians())
+            }
             // Positions come from the simulator, so this one is not used.
             Some(MspAction::RawGps { .. }) => {}
             Some(MspAction::Reboot | MspAction::SaveAndReboot | MspAction::SetClock { .. }) | None => {}

@@ -1,7 +1,7 @@
 //! The controller, driven by the sticks or by the demands that replace them.
 
 use crate::autopilot::io::NavOutput;
-use crate::firmware::control::{ControlInput, ControlState, Controller, LeanDemand, StickMode, Tuning};
+use crate::firmware::control::{ControlInput, Controller, LeanDemand, StickMode, Tuning};
 use crate::firmware::estimate::{DueTasks, Estimate};
 use crate::firmware::rx::Sticks;
 use crate::signals::{MOTORS, MotorCommand, PerMotor};
@@ -64,8 +64,8 @@ const LEVEL: LeanDemand = LeanDemand { roll_rad: 0.0, pitch_down_rad: 0.0 };
 /// The controller and the demands in force.
 #[derive(Debug, Clone)]
 pub(in crate::firmware) struct FlightControl {
-    controller: Controller,
-    demand: Demand,
+    pub controller: Controller,
+    pub demand: Demand,
     motor_test_us: PerMotor,
     step_s: f64,
 }
@@ -86,11 +86,6 @@ impl FlightControl {
         self.controller.set_tuning(*tuning);
     }
 
-    /// Sets the demands that replace the pilot's.
-    pub(in crate::firmware) fn set_demand(&mut self, demand: Demand) {
-        self.demand = demand;
-    }
-
     /// Runs motors on the bench; `None` = all motors. No effect while armed.
     pub(in crate::firmware) fn test_motor(&mut self, motor: Option<u8>, output_us: u16) {
         let pulse = f64::from(output_us);
@@ -107,11 +102,6 @@ impl FlightControl {
     /// Stops the motors that run on the bench.
     pub(in crate::firmware) fn end_motor_test(&mut self) {
         self.motor_test_us = [MOTOR_STOP_US; MOTORS];
-    }
-
-    /// Changes the heading that MAG holds to this one, rad clockwise from north. Does nothing while it holds none.
-    pub(in crate::firmware) fn hold_heading(&mut self, heading_rad: f64) {
-        self.controller.hold_heading(heading_rad);
     }
 
     pub(in crate::firmware) fn step(&mut self, step: &ControlStep<'_>, estimate: &Estimate) -> MotorCommand {
@@ -139,16 +129,6 @@ impl FlightControl {
             motor_test_us: self.motor_test_us,
         };
         self.controller.step(&input, estimate, self.step_s).motors
-    }
-
-    /// Returns the smoothing cutoffs of sticks and throttle in use, Hz; 0 while nothing is smoothed.
-    pub(in crate::firmware) fn smoothing_hz(&self) -> [f64; 2] {
-        self.controller.smoothing_hz()
-    }
-
-    /// Returns the results of the controller's last step.
-    pub(in crate::firmware) fn state(&self) -> &ControlState {
-        self.controller.state()
     }
 }
 

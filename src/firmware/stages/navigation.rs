@@ -18,8 +18,7 @@ use crate::firmware::throttle_takeover::ThrottleTakeover;
 use crate::plan::FlightPlan;
 use crate::signals::SimTime;
 use crate::telemetry::{
-    FirmwareEvent, FirmwareNotice, InFlightCommand, InFlightRefusal, Mode, ModeFlags, NavEvent, NavTelemetry,
-    Refusal,
+    FirmwareEvent, FirmwareNotice, InFlightCommand, InFlightRefusal, Mode, ModeFlags, NavEvent, Refusal,
 };
 
 use super::flight_control::Demand;
@@ -45,19 +44,19 @@ pub(in crate::firmware) struct Flown {
 /// Failsafe, orders, navigator and holds, and their view of the craft.
 #[derive(Debug, Clone)]
 pub(in crate::firmware) struct Navigation {
-    failsafe: Failsafe,
-    orders: Orders,
-    navigator: Navigator,
+    pub failsafe: Failsafe,
+    pub orders: Orders,
+    pub navigator: Navigator,
     holds: Holds,
     throttle_takeover: ThrottleTakeover,
     /// The controllers, used by the navigator or by the holds, whichever flies.
     controllers: FlightControllers,
     inputs: NavInputs,
     /// The navigator's demands while it flies.
-    output: Option<NavOutput>,
+    pub output: Option<NavOutput>,
     updated_at: SimTime,
     /// The reason why the autopilot did not engage. It remains until the autopilot engages or the craft is armed again.
-    last_refusal: Option<Refusal>,
+    pub last_refusal: Option<Refusal>,
     /// The reported reason why position hold only levels the craft.
     only_levelled: Option<FirmwareNotice>,
 }
@@ -90,24 +89,24 @@ impl Navigation {
         control: &ControlState,
     ) {
         let dt = now.seconds_since(std::mem::replace(&mut self.updated_at, now));
-        if safety.armed() && !self.inputs.armed {
+        if safety.arming.armed() && !self.inputs.armed {
             self.last_refusal = None;
         }
         let estimate = sensing.estimate();
-        let receiver = rc.receiver();
+        let receiver = &rc.receiver;
         let stick = |value: f64| if receiver.signal() { value } else { 0.0 };
         let sticks = receiver.sticks();
         self.inputs = NavInputs {
             time: now,
             dt,
-            armed: safety.armed(),
-            fix: sensing.fix() && estimate.position_valid,
+            armed: safety.arming.armed(),
+            fix: sensing.fix && estimate.position_valid,
             altitude_valid: estimate.altitude_valid,
             heading_valid: estimate.heading_valid,
-            throttle_raised: safety.raised(),
+            throttle_raised: safety.arming.raised(),
             failsafe: self.failsafe.active(),
-            battery_low: sensing.battery().is_low(),
-            home: safety.home(),
+            battery_low: sensing.battery.is_low(),
+            home: safety.home,
             origin: estimate.origin.unwrap_or_default(),
             pos_ne: estimate.pos_ne,
             vel_ne: estimate.vel_ne,
@@ -144,13 +143,13 @@ impl Navigation {
     ) -> Option<FailsafeRequest> {
         let inputs = &self.inputs;
         let held = [Mode::Autopilot, Mode::AltHold, Mode::PosHold].into_iter().any(|mode| modes.has(mode));
-        let received = rc.receiver().received_sticks(&parameters.rx);
+        let received = rc.receiver.received_sticks(&parameters.rx);
         let facts = FailsafeFacts {
             now: uptime,
             armed: inputs.armed,
-            switch: rc.boxes().has(boxes::FAILSAFE),
-            link_up: rc.link().up(),
-            signal: rc.receiver().signal(),
+            switch: rc.boxes.has(boxes::FAILSAFE),
+            link_up: rc.link.up(),
+            signal: rc.receiver.signal(),
             throttle_low: received.throttle_us < parameters.arming.min_check_us,
             held,
             stick_percent: received.deflection_percent(),
@@ -174,7 +173,7 @@ impl Navigation {
             }
             FailsafeAction::Disarm => Some(FailsafeRequest::Disarm),
             FailsafeAction::Recovered => {
-                rc.boxes().has(boxes::ARM).then_some(FailsafeRequest::RequireSwitchOff)
+                rc.boxes.has(boxes::ARM).then_some(FailsafeRequest::RequireSwitchOff)
             }
         }
     }
@@ -217,9 +216,9 @@ impl Navigation {
         self.inputs.failsafe = self.failsafe.active();
         let inputs = &self.inputs;
         let facts = OrderFacts {
-            autopilot_switch: rc.boxes().has(boxes::AUTOPILOT),
-            rescue_switch: rc.boxes().has(boxes::GPS_RESCUE) && parameters.arming.rescue_configured,
-            signal: rc.receiver().signal(),
+            autopilot_switch: rc.boxes.has(boxes::AUTOPILOT),
+            rescue_switch: rc.boxes.has(boxes::GPS_RESCUE) && parameters.arming.rescue_configured,
+            signal: rc.receiver.signal(),
             failsafe_active: self.failsafe.active(),
             failsafe_mission: self.failsafe.mission(),
         };
@@ -248,13 +247,13 @@ impl Navigation {
         alt_hold: bool,
     ) -> bool {
         let facts = ImpactFacts {
-            raised: safety.raised(),
-            stick_percent: rc.receiver().sticks().deflection_percent(),
+            raised: safety.arming.raised(),
+            stick_percent: rc.receiver.sticks().deflection_percent(),
             throttle_percent: rc.throttle_percent(),
             alt_hold,
             near_ground: self.inputs.alt_m < f64::from(parameters.nav.landing_altitude_m),
         };
-        safety.armed() && self.controllers.land.is_impact(parameters.landing_disarm_threshold, &facts)
+        safety.arming.armed() && self.controllers.land.is_impact(parameters.landing_disarm_threshold, &facts)
     }
 
     /// Returns the inputs of the flight mode rules.
@@ -267,9 +266,9 @@ impl Navigation {
         let under_failsafe =
             matches!(self.failsafe.mission(), Some(Response::EmergencyLand | Response::KeepLanding));
         ModeFacts {
-            switches: rc.boxes(),
-            armed: safety.armed(),
-            raised: safety.raised(),
+            switches: rc.boxes,
+            armed: safety.arming.armed(),
+            raised: safety.arming.raised(),
             altitude_valid: estimate.altitude_valid,
             failsafe_shown: self.failsafe.shown(),
             failsafe_active: self.failsafe.active(),
@@ -369,11 +368,6 @@ impl Navigation {
         self.orders.take_back(&mut self.navigator);
     }
 
-    /// Returns `true` while such a command is in force.
-    pub(in crate::firmware) fn is_commanded(&self) -> bool {
-        self.orders.is_commanded()
-    }
-
     /// Returns `true` if full throttle does not lift the craft off the ground.
     pub(in crate::firmware) fn is_too_heavy(&self) -> bool {
         self.controllers.land.awaits_lift_off() && self.controllers.altitude.is_at_full_throttle()
@@ -382,15 +376,6 @@ impl Navigation {
     /// Returns the response of stage 2 of the failsafe in the present situation.
     pub(in crate::firmware) fn failsafe_response(&self, parameters: &Parameters) -> Response {
         failsafe_response(&self.navigator, &parameters.nav, parameters.failsafe.procedure, self.inputs.fix)
-    }
-
-    pub(in crate::firmware) fn failsafe(&self) -> &Failsafe {
-        &self.failsafe
-    }
-
-    /// Returns the reason why the autopilot did not engage, even if the switch is off again or the craft is disarmed.
-    pub(in crate::firmware) fn last_refusal(&self) -> Option<Refusal> {
-        self.last_refusal
     }
 
     fn note_refusal(&mut self) {
@@ -405,16 +390,6 @@ impl Navigation {
     /// Returns the neutral position of the throttle stick in ALTHOLD, µs.
     pub(in crate::firmware) fn hover_stick_us(&self, parameters: &Parameters) -> f64 {
         self.controllers.altitude.hover_stick_us(&parameters.nav, parameters.hold.mid_us)
-    }
-
-    /// Returns the navigator's telemetry.
-    pub(in crate::firmware) fn telemetry(&self) -> &NavTelemetry {
-        self.navigator.telemetry()
-    }
-
-    /// Returns the demands of the last update, if the navigator flies.
-    pub(in crate::firmware) fn output(&self) -> Option<NavOutput> {
-        self.output
     }
 
     /// Returns the plan being flown, if any.

@@ -16,11 +16,11 @@ use crate::telemetry::FirmwareEvent;
 pub(in crate::firmware) struct RcInput {
     /// The frames that came since the last step. Only the newest frame of each source counts.
     queued: [Option<RcFrame>; RcSource::COUNT],
-    receiver: Receiver,
-    link: LinkMonitor,
+    pub receiver: Receiver,
+    pub link: LinkMonitor,
     /// `true` if the loss of the link was reported, but not its return yet.
     loss_reported: bool,
-    boxes: BoxSet,
+    pub boxes: BoxSet,
     /// `true` if a frame came that the controller has not used yet.
     new_frame: bool,
 }
@@ -41,7 +41,7 @@ impl RcInput {
     /// Returns the receiver after a restart. The queued frames and the order of the sources stay.
     pub(in crate::firmware) fn restarted(&self, config: &RxConfig) -> Self {
         let mut fresh = Self { queued: self.queued, ..Self::new(config) };
-        fresh.take_over(self.receiver.sources().taken_over());
+        fresh.receiver.take_over(self.receiver.sources().taken_over());
         fresh
     }
 
@@ -55,11 +55,6 @@ impl RcInput {
         self.queued.fill(None);
     }
 
-    /// Gives the virtual sticks priority over the other sources, or ends that.
-    pub(in crate::firmware) fn take_over(&mut self, sticks_first: bool) {
-        self.receiver.take_over(sticks_first);
-    }
-
     /// Passes the frames that came since the last step to the receiver.
     pub(in crate::firmware) fn receive_queued(&mut self, parameters: &Parameters, now: SimTime) {
         for source in RcSource::iter() {
@@ -67,11 +62,6 @@ impl RcInput {
                 self.receiver.receive(&parameters.rx, frame, source, now);
             }
         }
-    }
-
-    /// Returns `true` if an update is due.
-    pub(in crate::firmware) fn is_due(&self, now: SimTime) -> bool {
-        self.receiver.is_due(now)
     }
 
     /// Judges channels, link and switches again. Returns `true` if a new frame came.
@@ -108,19 +98,6 @@ impl RcInput {
     /// Returns `true` if a frame came since the last call.
     pub(in crate::firmware) fn take_new_frame(&mut self) -> bool {
         std::mem::take(&mut self.new_frame)
-    }
-
-    pub(in crate::firmware) fn receiver(&self) -> &Receiver {
-        &self.receiver
-    }
-
-    /// Returns the boxes that are switched on.
-    pub(in crate::firmware) fn boxes(&self) -> BoxSet {
-        self.boxes
-    }
-
-    pub(in crate::firmware) fn link(&self) -> &LinkMonitor {
-        &self.link
     }
 
     /// Returns the throttle stick in use, %.

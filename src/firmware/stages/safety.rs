@@ -8,76 +8,22 @@ use crate::firmware::estimate::Estimate;
 use crate::firmware::parameters::Parameters;
 use crate::geo::LatLon;
 use crate::signals::{RcSource, SimTime};
-use crate::telemetry::{ArmingFlags, DisarmReason};
+use crate::telemetry::DisarmReason;
 
 use super::RcInput;
 
 /// Arming with its watchdogs, and the values recorded at arming.
 #[derive(Debug, Clone, Default)]
 pub(in crate::firmware) struct Safety {
-    arming: Arming,
+    pub arming: Arming,
     runaway: Runaway,
-    crash: CrashDetector,
-    last_disarm: Option<DisarmReason>,
-    home: Option<LatLon>,
-    headfree_rad: f64,
+    pub crash: CrashDetector,
+    pub last_disarm: Option<DisarmReason>,
+    pub home: Option<LatLon>,
+    pub headfree_rad: f64,
 }
 
 impl Safety {
-    /// Returns `true` if the craft is armed.
-    pub(in crate::firmware) fn armed(&self) -> bool {
-        self.arming.armed()
-    }
-
-    /// Returns `true` if the throttle has been raised since arming.
-    pub(in crate::firmware) fn raised(&self) -> bool {
-        self.arming.raised()
-    }
-
-    /// Returns `true` if the craft has been armed since boot.
-    pub(in crate::firmware) fn ever_armed(&self) -> bool {
-        self.arming.ever_armed()
-    }
-
-    pub(in crate::firmware) fn flags(&self) -> ArmingFlags {
-        self.arming.flags()
-    }
-
-    /// Returns the reason of the last disarming.
-    pub(in crate::firmware) fn last_disarm(&self) -> Option<DisarmReason> {
-        self.last_disarm
-    }
-
-    /// Returns the position of arming, if it was known.
-    pub(in crate::firmware) fn home(&self) -> Option<LatLon> {
-        self.home
-    }
-
-    /// Returns the reference heading of HEADFREE, rad clockwise from north.
-    pub(in crate::firmware) fn headfree_rad(&self) -> f64 {
-        self.headfree_rad
-    }
-
-    /// Sets the reference heading of HEADFREE, rad clockwise from north.
-    pub(in crate::firmware) fn set_headfree(&mut self, heading_rad: f64) {
-        self.headfree_rad = heading_rad;
-    }
-
-    /// Returns `true` while the craft is being levelled after a crash, regardless of the sticks.
-    pub(in crate::firmware) fn is_levelling(&self) -> bool {
-        self.crash.is_levelling()
-    }
-
-    /// Blocks arming until reboot. Called when a command line session is opened on a serial link.
-    pub(in crate::firmware) fn cli_opened(&mut self) {
-        self.arming.cli_opened();
-    }
-
-    /// Requires the ARM switch to be turned off first. Called when the failsafe ends with the switch on.
-    pub(in crate::firmware) fn require_switch_off(&mut self) {
-        self.arming.require_switch_off();
-    }
-
     /// Runs one update of arming, with the newest state of the receiver. `uptime` counts from boot. `failsafe_landed`
     /// is `true` if a failsafe ended the last flight and the link has not recovered yet.
     pub(in crate::firmware) fn update(
@@ -88,14 +34,14 @@ impl Safety {
         estimate: &Estimate,
         failsafe_landed: bool,
     ) -> Option<ArmingChange> {
-        let receiver = rc.receiver();
+        let receiver = &rc.receiver;
         let facts = ArmingFacts {
             now: uptime,
             new_frame,
-            boxes: rc.boxes(),
+            boxes: rc.boxes,
             sticks: *receiver.sticks(),
             signal: receiver.signal(),
-            link_good: rc.link().good(),
+            link_good: rc.link.good(),
             from_udp: receiver.sources().in_charge() == Some(RcSource::Udp),
             failsafe_landed,
             tilt_rad: estimate.attitude_valid.then(|| tilt_rad(estimate)),
@@ -128,7 +74,7 @@ impl Safety {
 
     /// Returns the state after a restart, which ends a flight.
     pub(in crate::firmware) fn restarted(&self) -> Self {
-        let last_disarm = self.armed().then_some(DisarmReason::System);
+        let last_disarm = self.arming.armed().then_some(DisarmReason::System);
         Self { last_disarm, ..Self::default() }
     }
 
@@ -145,9 +91,9 @@ impl Safety {
             pid_sum: state.pid_sum.into(),
             rate_dps: state.gyro_dps.into(),
             throttle_percent: rc.throttle_percent(),
-            stick_percent: rc.receiver().sticks().deflection_percent(),
+            stick_percent: rc.receiver.sticks().deflection_percent(),
         };
-        self.armed() && self.runaway.update(&parameters.runaway, &facts)
+        self.arming.armed() && self.runaway.update(&parameters.runaway, &facts)
     }
 
     /// Returns the action for a crash noticed in this step, if the settings require one.

@@ -4,10 +4,9 @@ use nalgebra::Vector3;
 
 use crate::firmware::FirmwareOptions;
 use crate::firmware::battery::Battery;
-use crate::firmware::estimate::{DueTasks, Estimate, Estimator, EstimatorOptions, NotTurned};
+use crate::firmware::estimate::{DueTasks, Estimate, Estimator, EstimatorOptions};
 use crate::firmware::outbox::Outbox;
 use crate::firmware::parameters::Parameters;
-use crate::geo::LatLon;
 use crate::msp::BatteryState;
 use crate::signals::{BatterySample, SensorFrame};
 use crate::telemetry::{BatteryAlarm, FirmwareEvent, FirmwareNotice};
@@ -15,12 +14,12 @@ use crate::telemetry::{BatteryAlarm, FirmwareEvent, FirmwareNotice};
 /// The state of the craft from its sensors.
 #[derive(Debug, Clone)]
 pub(in crate::firmware) struct Sensing {
-    estimator: Estimator,
-    battery: Battery,
+    pub estimator: Estimator,
+    pub battery: Battery,
     imu_frozen: bool,
     /// The newest magnetic field, body forward-left-up, as measured.
-    mag_flu: Vector3<f64>,
-    fix: bool,
+    pub mag_flu: Vector3<f64>,
+    pub fix: bool,
     /// `true` if the magnetometer was reported as doubted.
     heading_doubted: bool,
 }
@@ -104,55 +103,7 @@ impl Sensing {
         });
     }
 
-    /// Returns the offsets of an accelerometer calibration that has just ended.
-    pub(in crate::firmware) fn take_acc_calibration(&mut self) -> Option<[i64; 3]> {
-        self.estimator.take_acc_calibration()
-    }
-
-    /// Returns the result of a magnetometer calibration that has just ended.
-    pub(in crate::firmware) fn take_mag_calibration(&mut self) -> Option<Result<[i64; 3], NotTurned>> {
-        self.estimator.take_mag_calibration()
-    }
-
-    /// Starts a calibration of the gyro. The craft must be at rest.
-    pub(in crate::firmware) fn calibrate_gyro(&mut self) {
-        self.estimator.calibrate_gyro();
-    }
-
-    /// Starts a calibration of the accelerometer. The craft must be level and still.
-    pub(in crate::firmware) fn calibrate_accelerometer(&mut self) {
-        self.estimator.calibrate_accelerometer();
-    }
-
-    /// Starts a calibration of the magnetometer. The pilot must turn the craft about all its axes.
-    pub(in crate::firmware) fn calibrate_magnetometer(&mut self) {
-        self.estimator.calibrate_magnetometer();
-    }
-
-    /// Records that the craft was armed at this position, if it is known.
-    pub(in crate::firmware) fn on_arm(&mut self, position: Option<LatLon>) {
-        self.estimator.on_arm(position);
-    }
-
-    pub(in crate::firmware) fn on_disarm(&mut self) {
-        self.estimator.on_disarm();
-    }
-
     pub(in crate::firmware) fn estimate(&self) -> &Estimate {
         self.estimator.estimate()
-    }
-
-    pub(in crate::firmware) fn battery(&self) -> &Battery {
-        &self.battery
-    }
-
-    /// Returns the newest magnetic field, body forward-left-up, as measured, sensor counts.
-    pub(in crate::firmware) fn mag_flu(&self) -> Vector3<f64> {
-        self.mag_flu
-    }
-
-    /// Returns `true` if there is a fix.
-    pub(in crate::firmware) fn fix(&self) -> bool {
-        self.fix
     }
 }

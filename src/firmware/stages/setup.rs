@@ -12,13 +12,13 @@ use crate::telemetry::{FirmwareEvent, FirmwareNotice};
 /// The configuration in memory, the choices made from it at boot, and the parameters in force.
 #[derive(Debug, Clone)]
 pub(in crate::firmware) struct Setup {
-    options: FirmwareOptions,
-    build: BuildInfo,
-    storage: StorageFacts,
-    rewound: bool,
-    configuration: Configuration,
-    boot: BootChoices,
-    parameters: Parameters,
+    pub options: FirmwareOptions,
+    pub build: BuildInfo,
+    pub storage: StorageFacts,
+    pub rewound: bool,
+    pub configuration: Configuration,
+    pub boot: BootChoices,
+    pub parameters: Parameters,
 }
 
 impl Setup {
@@ -46,58 +46,6 @@ impl Setup {
     pub(in crate::firmware) fn restarted(&self, configuration: Configuration, outbox: &mut Outbox) -> Self {
         let fresh = Self::new(configuration, self.options, outbox);
         Self { build: self.build.clone(), storage: self.storage.clone(), rewound: self.rewound, ..fresh }
-    }
-
-    /// Returns the options that the firmware was created with.
-    pub(in crate::firmware) fn options(&self) -> &FirmwareOptions {
-        &self.options
-    }
-
-    /// Returns the version and build that the firmware announces.
-    pub(in crate::firmware) fn build(&self) -> &BuildInfo {
-        &self.build
-    }
-
-    pub(in crate::firmware) fn set_build(&mut self, build: BuildInfo) {
-        self.build = build;
-    }
-
-    /// Returns the facts about the stored configuration.
-    pub(in crate::firmware) fn storage(&self) -> &StorageFacts {
-        &self.storage
-    }
-
-    pub(in crate::firmware) fn set_storage(&mut self, storage: StorageFacts) {
-        self.storage = storage;
-    }
-
-    /// Returns `true` while an earlier instant is shown. Clients cannot change anything then.
-    pub(in crate::firmware) fn rewound(&self) -> bool {
-        self.rewound
-    }
-
-    pub(in crate::firmware) fn set_rewound(&mut self, rewound: bool) {
-        self.rewound = rewound;
-    }
-
-    /// Returns the configuration in memory.
-    pub(in crate::firmware) fn configuration(&self) -> &Configuration {
-        &self.configuration
-    }
-
-    /// Returns the configuration in memory for changes. Call [`Setup::refresh`] after them to update the parameters.
-    pub(in crate::firmware) fn configuration_mut(&mut self) -> &mut Configuration {
-        &mut self.configuration
-    }
-
-    /// Returns the choices that change only with a restart.
-    pub(in crate::firmware) fn boot(&self) -> &BootChoices {
-        &self.boot
-    }
-
-    /// Returns the typed parameters in force.
-    pub(in crate::firmware) fn parameters(&self) -> &Parameters {
-        &self.parameters
     }
 
     /// Updates the parameters from the configuration.
