@@ -93,98 +93,82 @@ pub enum BatteryFault {
     CellOut,
 }
 
-/// One fault with its value. `Display` shows the value as it is written on the command line.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Fault {
-    RxLoss,
+/// Defines the faults with their values. Each is of the kind of the same name.
+macro_rules! faults {
+    ($($(#[$doc:meta])* $variant:ident $(($($value:ty),+))?;)*) => {
+        /// One fault with its value. `Display` shows the value as it is written on the command line.
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        pub enum Fault {
+            $($(#[$doc])* $variant $(($($value),+))?,)*
+        }
+
+        impl Fault {
+            /// Returns the kind of the fault.
+            pub fn kind(&self) -> FaultKind {
+                match self {
+                    $(Self::$variant { .. } => FaultKind::$variant,)*
+                }
+            }
+        }
+    };
+}
+
+faults! {
+    RxLoss;
     /// This fraction of RC frames is lost at random.
-    RxJitter(f64),
+    RxJitter(f64);
     /// No solution and no satellites.
-    GpsLoss,
+    GpsLoss;
     /// The position is shifted by metres along a bearing (degrees from north). The velocity stays true.
-    GpsGlitch(f64, f64),
+    GpsGlitch(f64, f64);
     /// The same solution is repeated.
-    GpsFreeze,
+    GpsFreeze;
     /// All GPS errors are multiplied by this factor.
-    GpsNoise(f64),
+    GpsNoise(f64);
     /// The pressure drifts by this many Pa/s.
-    BaroDrift(f64),
+    BaroDrift(f64);
     /// One sample per second is off by this many Pa.
-    BaroSpike(f64),
-    MagOff,
+    BaroSpike(f64);
+    MagOff;
     /// The measured heading is off by this many degrees, clockwise positive.
-    MagBias(f64),
+    MagBias(f64);
     /// Step on the gyro's x axis, °/s.
-    GyroBias(f64),
+    GyroBias(f64);
     /// Step on the accelerometer's x axis, m/s².
-    AccBias(f64),
+    AccBias(f64);
     /// The last inertial sample is repeated.
-    ImuFreeze,
+    ImuFreeze;
     /// Thrust and torque of a motor are multiplied by an efficiency, 0…1.
-    Motor(MotorNumber, f64),
+    Motor(MotorNumber, f64);
     /// A motor's command is frozen, 0…1.
-    MotorStuck(MotorNumber, f64),
+    MotorStuck(MotorNumber, f64);
     /// An unbalanced propeller: rotating acceleration of this size at hover speed, m/s².
-    PropImbalance(MotorNumber, f64),
+    PropImbalance(MotorNumber, f64);
     /// Accelerometer vibration at hover speed, m/s² rms per axis.
-    Vibration(f64),
-    Battery(BatteryFault),
+    Vibration(f64);
+    Battery(BatteryFault);
     /// One gust. It lasts four seconds unless a time is given.
-    Gust(Wind),
-    Wind(Wind),
+    Gust(Wind);
+    Wind(Wind);
     /// An impulse, N·s.
-    Push(f64, Direction),
+    Push(f64, Direction);
     /// Moves the craft by metres north, east, up; the velocity stays.
-    Teleport([f64; 3]),
+    Teleport([f64; 3]);
     /// Hangs a weight below the craft, kg.
-    Payload(f64),
+    Payload(f64);
     /// External link: the simulator stops sending.
-    Stall,
+    Stall;
     /// External link: this fraction of packets is lost.
-    FdmLoss(f64),
+    FdmLoss(f64);
     /// External link: packets are late by this many ms.
-    FdmLate(f64),
+    FdmLate(f64);
     /// External link: this fraction of packets comes twice.
-    FdmDup(f64),
+    FdmDup(f64);
     /// External link: packets are late by up to this many ms at random.
-    FdmJitter(f64),
+    FdmJitter(f64);
 }
 
 impl Fault {
-    /// Returns the kind of the fault.
-    pub fn kind(&self) -> FaultKind {
-        match self {
-            Self::RxLoss => FaultKind::RxLoss,
-            Self::RxJitter(_) => FaultKind::RxJitter,
-            Self::GpsLoss => FaultKind::GpsLoss,
-            Self::GpsGlitch(..) => FaultKind::GpsGlitch,
-            Self::GpsFreeze => FaultKind::GpsFreeze,
-            Self::GpsNoise(_) => FaultKind::GpsNoise,
-            Self::BaroDrift(_) => FaultKind::BaroDrift,
-            Self::BaroSpike(_) => FaultKind::BaroSpike,
-            Self::MagOff => FaultKind::MagOff,
-            Self::MagBias(_) => FaultKind::MagBias,
-            Self::GyroBias(_) => FaultKind::GyroBias,
-            Self::AccBias(_) => FaultKind::AccBias,
-            Self::ImuFreeze => FaultKind::ImuFreeze,
-            Self::Motor(..) => FaultKind::Motor,
-            Self::MotorStuck(..) => FaultKind::MotorStuck,
-            Self::PropImbalance(..) => FaultKind::PropImbalance,
-            Self::Vibration(_) => FaultKind::Vibration,
-            Self::Battery(_) => FaultKind::Battery,
-            Self::Gust(_) => FaultKind::Gust,
-            Self::Wind(_) => FaultKind::Wind,
-            Self::Push(..) => FaultKind::Push,
-            Self::Teleport(_) => FaultKind::Teleport,
-            Self::Payload(_) => FaultKind::Payload,
-            Self::Stall => FaultKind::Stall,
-            Self::FdmLoss(_) => FaultKind::FdmLoss,
-            Self::FdmLate(_) => FaultKind::FdmLate,
-            Self::FdmDup(_) => FaultKind::FdmDup,
-            Self::FdmJitter(_) => FaultKind::FdmJitter,
-        }
-    }
-
     /// Returns the name on the command line.
     pub fn name(&self) -> &'static str {
         self.kind().into()

@@ -2,164 +2,77 @@
 
 use strum::IntoEnumIterator as _;
 
-/// A reason why arming is refused. The discriminant is its bit on the wire. `Display` gives its name.
-#[derive(
-    Debug,
-    Clone,
-    Copy,
-    PartialEq,
-    Eq,
-    Hash,
-    strum::Display,
-    strum::EnumCount,
-    strum::EnumIter,
-    strum::IntoStaticStr,
-)]
-#[strum(serialize_all = "SCREAMING_SNAKE_CASE")]
-#[repr(u8)]
-pub enum ArmingFlag {
-    #[strum(to_string = "NOGYRO")]
-    NoGyro = 0,
-    /// A failsafe landing ended the flight, and the link has not recovered yet.
-    Failsafe = 1,
-    #[strum(to_string = "RXLOSS")]
-    RxLoss = 2,
-    /// The link appeared with the ARM switch on.
-    NotDisarmed = 3,
-    /// The FAILSAFE switch is on.
-    #[strum(to_string = "BOXFAILSAFE")]
-    BoxFailsafe = 4,
-    /// Runaway take-off prevention stopped the motors.
-    Runaway = 5,
-    /// Crash detection stopped the motors.
-    Crash = 6,
-    Throttle = 7,
-    /// The craft is tilted, or the attitude is not known yet.
-    Angle = 8,
-    #[strum(to_string = "BOOTGRACE")]
-    BootGrace = 9,
-    /// The PREARM switch is missing.
-    #[strum(to_string = "NOPREARM")]
-    NoPrearm = 10,
-    Load = 11,
-    /// Sensors are being calibrated.
-    #[strum(to_string = "CALIB")]
-    Calibrating = 12,
-    /// A command line session was opened.
-    Cli = 13,
-    /// The on-screen menu is open.
-    Cms = 14,
-    /// A BST device is active.
-    Bst = 15,
-    /// An MSP client requested it (on hardware).
-    Msp = 16,
-    /// The PARALYZE switch was on.
-    Paralyze = 17,
-    /// GPS rescue is configured and cannot work.
-    Gps = 18,
-    /// The GPS RESCUE switch is on.
-    #[strum(to_string = "RESCUE_SW")]
-    RescueSwitch = 19,
-    DshotTelem = 20,
-    /// A change needs a reboot.
-    #[strum(to_string = "REBOOT_REQD")]
-    RebootRequired = 21,
-    #[strum(to_string = "DSHOT_BBANG")]
-    DshotBitbang = 22,
-    /// The accelerometer was never calibrated.
-    #[strum(to_string = "NO_ACC_CAL")]
-    NoAccCal = 23,
-    /// The motor protocol is unusable.
-    #[strum(to_string = "MOTOR_PROTO")]
-    MotorProtocol = 24,
-    /// The crash-flip switch is on.
-    FlipSwitch = 25,
-    /// The ALTHOLD switch is on.
-    #[strum(to_string = "ALT_HOLD_SW")]
-    AltHoldSwitch = 26,
-    /// The POS HOLD switch is on.
-    #[strum(to_string = "POS_HOLD_SW")]
-    PosHoldSwitch = 27,
-    /// The AUTOPILOT switch is on.
-    #[strum(to_string = "AUTOPILOT_SW")]
-    AutopilotSwitch = 28,
-    /// The ARM switch was on while there was another reason.
-    ArmSwitch = 29,
+/// Defines the flags in bit order, each with its name, the cause, and the remedy.
+macro_rules! flags {
+    ($($variant:ident $name:literal $cause:literal $hint:literal;)*) => {
+        /// A reason why arming is refused. The discriminant is its bit on the wire. `Display` gives its name.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        #[derive(strum::Display, strum::EnumCount, strum::EnumIter, strum::IntoStaticStr)]
+        #[repr(u8)]
+        pub enum ArmingFlag {
+            $(#[doc = $cause] #[strum(to_string = $name)] $variant,)*
+        }
+
+        impl ArmingFlag {
+            /// Returns the cause of the flag as a phrase. For flags that are never set here, returns the reason.
+            pub fn cause(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $cause,)*
+                }
+            }
+
+            /// Returns the remedy as a phrase.
+            pub fn hint(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $hint,)*
+                }
+            }
+        }
+    };
 }
 
-impl ArmingFlag {
-    /// Returns the cause of the flag as a phrase. For flags that are never set here, returns the reason.
-    pub fn cause(self) -> &'static str {
-        match self {
-            Self::NoGyro => "never: the simulated gyro is always there",
-            Self::Failsafe => "a failsafe landing ended the flight, until the link is good again",
-            Self::RxLoss => "no valid RC for 150 ms, until it is back for `failsafe_recovery_delay`",
-            Self::NotDisarmed => "the link appeared with ARM on, until ARM goes off",
-            Self::BoxFailsafe => "the FAILSAFE switch is on",
-            Self::Runaway => "runaway take-off prevention disarmed, until ARM goes off",
-            Self::Crash => "crash detection disarmed, until ARM goes off",
-            Self::Throttle => "the throttle is at `min_check` or above",
-            Self::Angle => "tilted more than `small_angle`, or the attitude is not known yet",
-            Self::BootGrace => "`pwr_on_arm_grace` after boot is not over",
-            Self::NoPrearm => "PREARM is bound and not switched on for this arming",
-            Self::Load => "never: simulated time has no overload",
-            Self::Calibrating => "a calibration of gyro, accelerometer or magnetometer runs",
-            Self::Cli => "a CLI session was opened on a link, until reboot",
-            Self::Cms => "never: there is no on-screen menu",
-            Self::Bst => "never: there is no BST device",
-            Self::Msp => "never: in a simulator the configurator may stay connected",
-            Self::Paralyze => "the PARALYZE switch was on, until reboot",
-            Self::Gps => {
-                "GPS rescue is bound or the failsafe procedure, without its satellites, before the first arming"
-            }
-            Self::RescueSwitch => "the GPS RESCUE switch is on",
-            Self::DshotTelem | Self::DshotBitbang => "never: there is no DShot hardware",
-            Self::RebootRequired => "a change in memory needs a restart, until then or taken back",
-            Self::NoAccCal => "never: the simulated accelerometer needs no calibration",
-            Self::MotorProtocol => "`motor_pwm_protocol` was DISABLED at boot",
-            Self::FlipSwitch => "the FLIP OVER AFTER CRASH switch is on",
-            Self::AltHoldSwitch => "the ALTHOLD switch is on",
-            Self::PosHoldSwitch => "the POS HOLD switch is on",
-            Self::AutopilotSwitch => "the AUTOPILOT switch is on",
-            Self::ArmSwitch => {
-                "another flag stood while ARM was on, or a touchdown disarmed; until ARM goes off"
-            }
-        }
-    }
-
-    /// Returns the remedy as a phrase.
-    pub fn hint(self) -> &'static str {
-        match self {
-            Self::NoGyro => "no gyro",
-            Self::Failsafe => "the link was lost: wait until it is good again",
-            Self::RxLoss => "no RC signal: start sending RC",
-            Self::NotDisarmed | Self::ArmSwitch => "switch ARM off, then on",
-            Self::BoxFailsafe => "switch FAILSAFE off",
-            Self::Runaway => "motors or propellers mixed up: switch ARM off",
-            Self::Crash => "switch ARM off",
-            Self::Throttle => "lower the throttle",
-            Self::Angle => "craft tilted, or no attitude yet",
-            Self::BootGrace => "just booted: wait a few seconds",
-            Self::NoPrearm => "switch PREARM on",
-            Self::Load => "CPU overload",
-            Self::Calibrating => "calibrating: wait and keep still",
-            Self::Cli => "a CLI session was opened: type exit or save",
-            Self::Cms => "close the menu",
-            Self::Bst => "disconnect the BST device",
-            Self::Msp => "disconnect the configurator",
-            Self::Paralyze => "PARALYZE was switched on: reboot",
-            Self::Gps => "GPS rescue needs a fix: wait for satellites",
-            Self::RescueSwitch => "switch GPS RESCUE off",
-            Self::DshotTelem | Self::DshotBitbang => "DShot trouble",
-            Self::RebootRequired => "save and reboot",
-            Self::NoAccCal => "calibrate the accelerometer",
-            Self::MotorProtocol => "set motor_pwm_protocol to another value, then save",
-            Self::FlipSwitch => "switch crash flip off",
-            Self::AltHoldSwitch => "switch ALTHOLD off",
-            Self::PosHoldSwitch => "switch POS HOLD off",
-            Self::AutopilotSwitch => "arm first, then switch AUTOPILOT on",
-        }
-    }
+flags! {
+    NoGyro "NOGYRO" "never: the simulated gyro is always there" "no gyro";
+    Failsafe "FAILSAFE" "a failsafe landing ended the flight, until the link is good again"
+        "the link was lost: wait until it is good again";
+    RxLoss "RXLOSS" "no valid RC for 150 ms, until it is back for `failsafe_recovery_delay`"
+        "no RC signal: start sending RC";
+    NotDisarmed "NOT_DISARMED" "the link appeared with ARM on, until ARM goes off" "switch ARM off, then on";
+    BoxFailsafe "BOXFAILSAFE" "the FAILSAFE switch is on" "switch FAILSAFE off";
+    Runaway "RUNAWAY" "runaway take-off prevention disarmed, until ARM goes off"
+        "motors or propellers mixed up: switch ARM off";
+    Crash "CRASH" "crash detection disarmed, until ARM goes off" "switch ARM off";
+    Throttle "THROTTLE" "the throttle is at `min_check` or above" "lower the throttle";
+    Angle "ANGLE" "tilted more than `small_angle`, or the attitude is not known yet"
+        "craft tilted, or no attitude yet";
+    BootGrace "BOOTGRACE" "`pwr_on_arm_grace` after boot is not over" "just booted: wait a few seconds";
+    NoPrearm "NOPREARM" "PREARM is bound and not switched on for this arming" "switch PREARM on";
+    Load "LOAD" "never: simulated time has no overload" "CPU overload";
+    Calibrating "CALIB" "a calibration of gyro, accelerometer or magnetometer runs"
+        "calibrating: wait and keep still";
+    Cli "CLI" "a CLI session was opened on a link, until reboot"
+        "a CLI session was opened: type exit or save";
+    Cms "CMS" "never: there is no on-screen menu" "close the menu";
+    Bst "BST" "never: there is no BST device" "disconnect the BST device";
+    Msp "MSP" "never: in a simulator the configurator may stay connected" "disconnect the configurator";
+    Paralyze "PARALYZE" "the PARALYZE switch was on, until reboot" "PARALYZE was switched on: reboot";
+    Gps "GPS" "GPS rescue is bound or the failsafe procedure, without its satellites, before the first arming"
+        "GPS rescue needs a fix: wait for satellites";
+    RescueSwitch "RESCUE_SW" "the GPS RESCUE switch is on" "switch GPS RESCUE off";
+    DshotTelem "DSHOT_TELEM" "never: there is no DShot hardware" "DShot trouble";
+    RebootRequired "REBOOT_REQD" "a change in memory needs a restart, until then or taken back"
+        "save and reboot";
+    DshotBitbang "DSHOT_BBANG" "never: there is no DShot hardware" "DShot trouble";
+    NoAccCal "NO_ACC_CAL" "never: the simulated accelerometer needs no calibration"
+        "calibrate the accelerometer";
+    MotorProtocol "MOTOR_PROTO" "`motor_pwm_protocol` was DISABLED at boot"
+        "set motor_pwm_protocol to another value, then save";
+    FlipSwitch "FLIP_SWITCH" "the FLIP OVER AFTER CRASH switch is on" "switch crash flip off";
+    AltHoldSwitch "ALT_HOLD_SW" "the ALTHOLD switch is on" "switch ALTHOLD off";
+    PosHoldSwitch "POS_HOLD_SW" "the POS HOLD switch is on" "switch POS HOLD off";
+    AutopilotSwitch "AUTOPILOT_SW" "the AUTOPILOT switch is on" "arm first, then switch AUTOPILOT on";
+    ArmSwitch "ARM_SWITCH" "another flag stood while ARM was on, or a touchdown disarmed; until ARM goes off"
+        "switch ARM off, then on";
 }
 
 /// A set of reasons. The bits are those on the wire.

@@ -13,148 +13,68 @@ pub enum GuardOp {
     Above,
 }
 
-/// The quantity that a guard compares.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::IntoStaticStr)]
-pub enum GuardName {
-    /// A 3-D fix is present, 0 or 1.
-    #[strum(to_string = "fix")]
-    Fix,
-    /// Number of waypoints in the active plan.
-    #[strum(to_string = "plan")]
-    Plan,
-    #[strum(to_string = "fence")]
-    Fence,
-    /// Altitude in the climb before the first leg.
-    #[strum(to_string = "climb")]
-    Climb,
-    /// Time since the craft last came nearer.
-    #[strum(to_string = "no progress")]
-    NoProgress,
-    /// Distance to the waypoint, against the nearest so far.
-    #[strum(to_string = "flyaway")]
-    Flyaway,
-    /// Distance to the waypoint.
-    #[strum(to_string = "arrival")]
-    Arrival,
-    /// Altitude error of a TAKEOFF or a HOLD.
-    #[strum(to_string = "altitude")]
-    Altitude,
-    /// Time within the hold radius of a HOLD without getting nearer to its altitude.
-    #[strum(to_string = "held off altitude")]
-    HeldOffAltitude,
-    /// Distance to a FLYBY.
-    #[strum(to_string = "turn radius")]
-    TurnRadius,
-    /// Distance to a waypoint that was flown past.
-    #[strum(to_string = "overrun")]
-    Overrun,
-    /// Distance to the plane through the waypoint.
-    #[strum(to_string = "plane")]
-    Plane,
-    /// Distance from the waypoint at the crossing of its plane.
-    #[strum(to_string = "beside")]
-    Beside,
-    /// Time in the hold.
-    #[strum(to_string = "hold time")]
-    HoldTime,
-    /// Altitude of a landing.
-    #[strum(to_string = "touchdown altitude")]
-    TouchdownAltitude,
-    /// Ground speed of a landing.
-    #[strum(to_string = "touchdown speed")]
-    TouchdownSpeed,
-    /// Commanded throttle of a landing.
-    #[strum(to_string = "touchdown throttle")]
-    TouchdownThrottle,
-    /// Climb rate of a landing.
-    #[strum(to_string = "touchdown sink")]
-    TouchdownSink,
-    /// Descent since the landing began.
-    #[strum(to_string = "descent")]
-    Descent,
-    /// Commanded throttle below the hover throttle in use.
-    #[strum(to_string = "below hover")]
-    BelowHover,
-    /// Time for which all other conditions of the touchdown have held.
-    #[strum(to_string = "touchdown time")]
-    TouchdownTime,
-    /// Time for which the craft has not moved although it is commanded to descend.
-    #[strum(to_string = "stationary time")]
-    Stationary,
+/// Defines the quantities, each with its name, its unit, and a sentence or two that explain it.
+macro_rules! guards {
+    ($($variant:ident $name:literal $unit:ident $explanation:literal;)*) => {
+        /// The quantity that a guard compares.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::IntoStaticStr)]
+        pub enum GuardName {
+            $(#[doc = $explanation] #[strum(to_string = $name)] $variant,)*
+        }
+
+        impl GuardName {
+            /// Returns the compared quantity and the consequence, in a sentence or two.
+            pub fn explanation(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $explanation,)*
+                }
+            }
+
+            /// Returns the unit of the value and its limit.
+            pub fn unit(self) -> GuardUnit {
+                match self {
+                    $(Self::$variant => GuardUnit::$unit,)*
+                }
+            }
+        }
+    };
 }
 
-impl GuardName {
-    /// Returns the compared quantity and the consequence, in a sentence or two.
-    pub fn explanation(self) -> &'static str {
-        match self {
-            Self::Fix => "A GPS fix with altitude is needed: 1 when there is one.",
-            Self::Plan => "Number of waypoints of the plan: there must be one to fly.",
-            Self::Fence => "Distance from home. Beyond the limit the mission ends.",
-            Self::Climb => {
-                "Altitude reached in the climb before the first leg. The leg begins when it is high enough."
-            }
-            Self::NoProgress => {
-                "Time since the craft last came nearer to the waypoint. The mission is given up at the limit."
-            }
-            Self::Flyaway => {
-                "Distance to the waypoint, against the least so far and a margin. The mission is given up beyond it."
-            }
-            Self::Arrival => "Distance to the waypoint. It is reached within the arrival or hold radius.",
-            Self::Altitude => "Altitude error. A TAKEOFF or a HOLD waits until it is small enough.",
-            Self::HeldOffAltitude => {
-                "Time within the hold radius without getting nearer to the altitude of the HOLD. At the limit it goes on."
-            }
-            Self::TurnRadius => "Distance to a FLYBY. The turn to the next leg begins at its turn radius.",
-            Self::Overrun => {
-                "Distance to a waypoint that was flown past. Beyond the limit the next leg begins."
-            }
-            Self::Plane => {
-                "Distance past the plane through the waypoint, square to the leg. 0 is the waypoint."
-            }
-            Self::Beside => {
-                "Distance from the waypoint where the craft crossed its plane. Nearer than the limit counts as reached."
-            }
-            Self::HoldTime => "Time in the hold. At the limit the mission goes on.",
-            Self::TouchdownAltitude => "Altitude: a landing ends only this low.",
-            Self::TouchdownSpeed => "Ground speed: a landing ends only this slow.",
-            Self::TouchdownThrottle => "Commanded throttle: a craft on the ground needs less than this.",
-            Self::TouchdownSink => "Climb rate: a craft on the ground sinks no more.",
-            Self::Descent => "Way down since the landing began: there must be some.",
-            Self::BelowHover => {
-                "How far the commanded throttle is below the hover throttle: the ground carries the rest."
-            }
-            Self::TouchdownTime => {
-                "Time for which all other guards of the touchdown have held. At the limit the craft disarms."
-            }
-            Self::Stationary => "Time for which the craft has not moved although it is commanded to descend.",
-        }
-    }
-
-    /// Returns the unit of the value and its limit.
-    pub fn unit(self) -> GuardUnit {
-        match self {
-            Self::Fix => GuardUnit::None,
-            Self::Plan => GuardUnit::Waypoints,
-            Self::Fence
-            | Self::Climb
-            | Self::Flyaway
-            | Self::Arrival
-            | Self::Altitude
-            | Self::TurnRadius
-            | Self::Overrun
-            | Self::Plane
-            | Self::Beside
-            | Self::TouchdownAltitude
-            | Self::Descent => GuardUnit::Metres,
-            Self::NoProgress
-            | Self::HeldOffAltitude
-            | Self::HoldTime
-            | Self::TouchdownTime
-            | Self::Stationary => GuardUnit::Seconds,
-            Self::TouchdownSpeed | Self::TouchdownSink => GuardUnit::MetresPerSecond,
-            Self::TouchdownThrottle | Self::BelowHover => GuardUnit::Microseconds,
-        }
-    }
+guards! {
+    Fix "fix" None "A GPS fix with altitude is needed: 1 when there is one.";
+    Plan "plan" Waypoints "Number of waypoints of the plan: there must be one to fly.";
+    Fence "fence" Metres "Distance from home. Beyond the limit the mission ends.";
+    Climb "climb" Metres
+        "Altitude reached in the climb before the first leg. The leg begins when it is high enough.";
+    NoProgress "no progress" Seconds
+        "Time since the craft last came nearer to the waypoint. The mission is given up at the limit.";
+    Flyaway "flyaway" Metres
+        "Distance to the waypoint, against the least so far and a margin. The mission is given up beyond it.";
+    Arrival "arrival" Metres "Distance to the waypoint. It is reached within the arrival or hold radius.";
+    Altitude "altitude" Metres "Altitude error. A TAKEOFF or a HOLD waits until it is small enough.";
+    HeldOffAltitude "held off altitude" Seconds
+        "Time within the hold radius without getting nearer to the altitude of the HOLD. At the limit it goes on.";
+    TurnRadius "turn radius" Metres
+        "Distance to a FLYBY. The turn to the next leg begins at its turn radius.";
+    Overrun "overrun" Metres
+        "Distance to a waypoint that was flown past. Beyond the limit the next leg begins.";
+    Plane "plane" Metres
+        "Distance past the plane through the waypoint, square to the leg. 0 is the waypoint.";
+    Beside "beside" Metres
+        "Distance from the waypoint where the craft crossed its plane. Nearer than the limit counts as reached.";
+    HoldTime "hold time" Seconds "Time in the hold. At the limit the mission goes on.";
+    TouchdownAltitude "touchdown altitude" Metres "Altitude: a landing ends only this low.";
+    TouchdownSpeed "touchdown speed" MetresPerSecond "Ground speed: a landing ends only this slow.";
+    TouchdownThrottle "touchdown throttle" Microseconds
+        "Commanded throttle: a craft on the ground needs less than this.";
+    TouchdownSink "touchdown sink" MetresPerSecond "Climb rate: a craft on the ground sinks no more.";
+    Descent "descent" Metres "Way down since the landing began: there must be some.";
+    BelowHover "below hover" Microseconds
+        "How far the commanded throttle is below the hover throttle: the ground carries the rest.";
+    TouchdownTime "touchdown time" Seconds
+        "Time for which all other guards of the touchdown have held. At the limit the craft disarms.";
+    Stationary "stationary time" Seconds
+        "Time for which the craft has not moved although it is commanded to descend.";
 }
 
 /// The unit of a guard's value and limit.
