@@ -75,7 +75,7 @@ impl Navigator {
 
     /// Returns `true` while a mission, a return home or a landing is flown (COMPLETE in the air counts).
     pub fn is_flying(&self) -> bool {
-        self.state != NavState::Idle && !self.engagement.has_landed()
+        self.state != NavState::Idle && !self.engagement.landed
     }
 
     /// Returns the plan that is flown, empty while nothing is flown.
@@ -163,7 +163,7 @@ impl Navigator {
         if let Some(event) = self.station.update(station.as_ref(), seen.now.dt) {
             self.push(event);
         }
-        let cannot_hold = self.station.reported();
+        let cannot_hold = self.station.reported;
         self.telemetry =
             report::report(self.state, &self.task, &self.steering, cannot_hold, seen, controllers, flown);
         self.report_status();
@@ -176,7 +176,7 @@ impl Navigator {
         telemetry.state = self.state;
         telemetry.engaged = is_flying;
         telemetry.climbing = self.task.climb.is_on();
-        telemetry.refusal = self.engagement.refused().filter(|_| !is_flying);
+        telemetry.refusal = self.engagement.refused.filter(|_| !is_flying);
         telemetry.reason = self.reason;
         telemetry.wp = cursor.index();
         telemetry.next_wp = cursor.next_index();

@@ -1,5 +1,7 @@
 //! The plant's rare switches: `--world NAME=VALUE`.
 
+use std::str::FromStr;
+
 use super::command::in_range;
 use super::config::WorldError;
 use super::sensors::GpsGrade;
@@ -8,7 +10,7 @@ use crate::sim::value_text::{ParseError, number, on_off};
 use crate::text::did_you_mean;
 
 /// The change of the mean wind with height.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::Display)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::Display, strum::EnumString)]
 #[strum(serialize_all = "lowercase")]
 pub enum WindProfile {
     /// The stated speed from 10 m up, less below it (logarithmic law over short grass).
@@ -19,7 +21,7 @@ pub enum WindProfile {
 }
 
 /// The change of air density with height.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::Display)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::Display, strum::EnumString)]
 #[strum(serialize_all = "lowercase")]
 pub enum AirDensity {
     #[default]
@@ -85,49 +87,75 @@ pub struct SwitchInfo {
     pub help: &'static str,
 }
 
-/// All switches, for help and completion.
-pub const SWITCHES: [SwitchInfo; 12] = [
-    SwitchInfo {
-        name: "wind_profile",
-        values: "log, flat",
-        help: "wind grows with height up to 10 m, or is the same everywhere",
-    },
-    SwitchInfo { name: "battery_sag", values: "on, off", help: "battery voltage limits rotor speed" },
-    SwitchInfo {
-        name: "battery_capacity",
-        values: "0.01 to 100",
-        help: "capacity in A·h instead of the airframe's",
-    },
-    SwitchInfo { name: "ground_effect", values: "on, off", help: "rotors gain thrust near the ground" },
-    SwitchInfo {
-        name: "ground",
-        values: "flat, slope,RISE,BEARING (RISE 0 to 40, BEARING 0 to 360)",
-        help: "level ground, or a plane through home that rises by RISE m in 100 m towards BEARING degrees",
-    },
-    SwitchInfo { name: "turbulence_scale", values: "0 to 10", help: "multiplies the turbulence" },
-    SwitchInfo { name: "gust_rise", values: "0.05 to 30", help: "rise and fall time of a gust, s" },
-    SwitchInfo {
-        name: "air_density",
-        values: "isa, reference",
-        help: "standard atmosphere, or 1.225 kg/m³ everywhere",
-    },
-    SwitchInfo {
-        name: "vibration",
-        values: "0 to 50",
-        help: "accelerometer vibration at hover speed, m/s² rms per axis",
-    },
-    SwitchInfo {
-        name: "sensor_bias",
-        values: "on, off",
-        help: "turn-on bias and drift of gyro, accelerometer and barometer",
-    },
-    SwitchInfo { name: "declination", values: "-180 to 180", help: "magnetic declination, degrees east" },
-    SwitchInfo {
-        name: "gps",
-        values: "rtk, open, consumer, urban",
-        help: "how well the GPS measures: centimetres, open sky, single band, among buildings",
-    },
-];
+/// Defines the switches, each with its name, its field, its values, its meaning, and the way to read and write it.
+macro_rules! switches {
+    ($($name:literal $field:ident $values:literal $help:literal = $read:expr, $write:expr;)*) => {
+        /// All switches, for help and completion.
+        pub const SWITCHES: [SwitchInfo; [$($name),*].len()] =
+            [$(SwitchInfo { name: $name, values: $values, help: $help }),*];
+
+        impl Switches {
+            fn assign(&mut self, name: &str, value: &str) -> Result<(), String> {
+                match name {
+                    $($name => self.$field = $read(value)?,)*
+                    _ => {}
+                }
+                Ok(())
+            }
+
+            /// Returns the switches that differ from the default, in the form that [`Self::set`] takes.
+            pub fn changed(&self) -> Vec<String> {
+                let usual = Self::default();
+                let all = [$((self.$field != usual.$field, format!("{}={}", $name, $write(&self.$field)))),*];
+                all.into_iter().filter(|(differs, _)| *differs).map(|(_, text)| text).collect()
+            }
+        }
+    };
+}
+
+switches! {
+    "wind_profile" wind_profile "log, flat"
+        "wind grows with height up to 10 m, or is the same everywhere" = word("wind_profile"), ToString::to_string;
+    "battery_sag" battery_sag "on, off" "battery voltage limits rotor speed" = on_off, on_or_off;
+    "battery_capacity" battery_capacity_ah "0.01 to 100" "capacity in A·h instead of the airframe's"
+        = |value: &str| within(0.01, 100.0)(value).map(Some), |capacity: &Option<f64>| capacity.unwrap_or_default();
+    "ground_effect" ground_effect "on, off" "rotors gain thrust near the ground" = on_off, on_or_off;
+    "ground" ground "flat, slope,RISE,BEARING (RISE 0 to 40, BEARING 0 to 360)"
+        "level ground, or a plane through home that rises by RISE m in 100 m towards BEARING degrees"
+        = Surface::parse, ToString::to_string;
+    "turbulence_scale" turbulence_scale "0 to 10" "multiplies the turbulence"
+        = within(0.0, 10.0), ToString::to_string;
+    "gust_rise" gust_rise_s "0.05 to 30" "rise and fall time of a gust, s"
+        = within(0.05, 30.0), ToString::to_string;
+    "air_density" air_density "isa, reference" "standard atmosphere, or 1.225 kg/m³ everywhere"
+        = word("air_density"), ToString::to_string;
+    "vibration" vibration_mps2 "0 to 50" "accelerometer vibration at hover speed, m/s² rms per axis"
+        = within(0.0, 50.0), ToString::to_string;
+    "sensor_bias" sensor_bias "on, off" "turn-on bias and drift of gyro, accelerometer and barometer"
+        = on_off, on_or_off;
+    "declination" declination_deg "-180 to 180" "magnetic declination, degrees east"
+        = within(-180.0, 180.0), ToString::to_string;
+    "gps" gps "rtk, open, consumer, urban"
+        "how well the GPS measures: centimetres, open sky, single band, among buildings"
+        = word("gps"), ToString::to_string;
+}
+
+fn on_or_off(on: &bool) -> &'static str {
+    if *on { "on" } else { "off" }
+}
+
+/// Returns the reader of a number within bounds.
+fn within(min: f64, max: f64) -> impl Fn(&str) -> Result<f64, String> {
+    move |value| match number("value", value)? {
+        number if (min..=max).contains(&number) => Ok(number),
+        _ => Err(format!("{value} is out of range")),
+    }
+}
+
+/// Returns the reader of a word of the switch `name`.
+fn word<T: FromStr>(name: &str) -> impl Fn(&str) -> Result<T, String> {
+    move |value| value.parse().map_err(|_| format!("{value} is not a value of {name}"))
+}
 
 impl Switches {
     /// Sets one switch from `NAME=VALUE`.
@@ -153,44 +181,6 @@ impl Switches {
         self.assign(name, value).map_err(|problem| error(format!("{problem}; allowed are {}", info.values)))
     }
 
-    /// Returns the switches that differ from the default, in the form that [`Self::set`] takes.
-    pub fn changed(&self) -> Vec<String> {
-        let usual = Self::default();
-        let on_off = |on: bool| if on { "on" } else { "off" };
-        let density = match self.air_density {
-            AirDensity::Isa => "isa",
-            AirDensity::Reference => "reference",
-        };
-        let profile = match self.wind_profile {
-            WindProfile::Log => "log",
-            WindProfile::Flat => "flat",
-        };
-        let all = [
-            (self.wind_profile != usual.wind_profile, format!("wind_profile={profile}")),
-            (self.battery_sag != usual.battery_sag, format!("battery_sag={}", on_off(self.battery_sag))),
-            (
-                self.battery_capacity_ah.is_some(),
-                format!("battery_capacity={}", self.battery_capacity_ah.unwrap_or_default()),
-            ),
-            (
-                self.ground_effect != usual.ground_effect,
-                format!("ground_effect={}", on_off(self.ground_effect)),
-            ),
-            (self.ground != usual.ground, format!("ground={}", self.ground)),
-            (
-                self.turbulence_scale != usual.turbulence_scale,
-                format!("turbulence_scale={}", self.turbulence_scale),
-            ),
-            (self.gust_rise_s != usual.gust_rise_s, format!("gust_rise={}", self.gust_rise_s)),
-            (self.air_density != usual.air_density, format!("air_density={density}")),
-            (self.vibration_mps2 != usual.vibration_mps2, format!("vibration={}", self.vibration_mps2)),
-            (self.sensor_bias != usual.sensor_bias, format!("sensor_bias={}", on_off(self.sensor_bias))),
-            (self.declination_deg != usual.declination_deg, format!("declination={}", self.declination_deg)),
-            (self.gps != usual.gps, format!("gps={}", self.gps)),
-        ];
-        all.into_iter().filter(|(differs, _)| *differs).map(|(_, text)| text).collect()
-    }
-
     /// Checks that all numbers are in the ranges of [`SWITCHES`].
     pub(super) fn check(&self) -> Result<(), WorldError> {
         let (rise_m, bearing_deg) = self.ground.numbers();
@@ -202,42 +192,6 @@ impl Switches {
         in_range("declination", self.declination_deg, -180.0, 180.0)?;
         self.battery_capacity_ah
             .map_or(Ok(()), |capacity| in_range("battery_capacity", capacity, 0.01, 100.0))
-    }
-
-    fn assign(&mut self, name: &str, value: &str) -> Result<(), String> {
-        let range = |min, max| match number("value", value)? {
-            number if (min..=max).contains(&number) => Ok(number),
-            _ => Err(format!("{value} is out of range")),
-        };
-        let unknown = || format!("{value} is not a value of {name}");
-        match name {
-            "wind_profile" => {
-                self.wind_profile = match value {
-                    "log" => WindProfile::Log,
-                    "flat" => WindProfile::Flat,
-                    _ => return Err(unknown()),
-                }
-            }
-            "battery_sag" => self.battery_sag = on_off(value)?,
-            "battery_capacity" => self.battery_capacity_ah = Some(range(0.01, 100.0)?),
-            "ground_effect" => self.ground_effect = on_off(value)?,
-            "ground" => self.ground = Surface::parse(value)?,
-            "turbulence_scale" => self.turbulence_scale = range(0.0, 10.0)?,
-            "gust_rise" => self.gust_rise_s = range(0.05, 30.0)?,
-            "air_density" => {
-                self.air_density = match value {
-                    "isa" => AirDensity::Isa,
-                    "reference" => AirDensity::Reference,
-                    _ => return Err(unknown()),
-                }
-            }
-            "vibration" => self.vibration_mps2 = range(0.0, 50.0)?,
-            "sensor_bias" => self.sensor_bias = on_off(value)?,
-            "gps" => self.gps = value.parse().map_err(|_| unknown())?,
-            "declination" => self.declination_deg = range(-180.0, 180.0)?,
-            _ => return Err(unknown()),
-        }
-        Ok(())
     }
 }
 

@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 pub(super) struct Climb {
     done: bool,
     /// Place where the craft holds while it climbs (north, east, m).
-    at: Option<Vector2<f64>>,
+    pub at: Option<Vector2<f64>>,
 }
 
 impl Climb {
@@ -19,11 +19,6 @@ impl Climb {
     /// Returns `true` while the craft climbs.
     pub(super) fn is_on(&self) -> bool {
         self.at.is_some()
-    }
-
-    /// Returns the place where the craft holds while it climbs.
-    pub(super) fn place(&self) -> Option<Vector2<f64>> {
-        self.at
     }
 
     pub(super) fn begin(&mut self, at: Vector2<f64>) {

@@ -20,13 +20,13 @@ pub(super) enum ArmingEdge {
 pub(super) struct Engagement {
     was_armed: bool,
     /// `true` after a touchdown with disarming. The state reads COMPLETE until the next arming.
-    landed: bool,
+    pub landed: bool,
     fix_since: Option<SimTime>,
     /// Reason why the last mission was given up, until the next one begins or the switch is cycled.
-    given_up: Option<AbortReason>,
+    pub given_up: Option<AbortReason>,
     /// Planned place of the landing that was given up for the lost fix.
-    landing_at: Option<LatLon>,
-    refused: Option<Refusal>,
+    pub landing_at: Option<LatLon>,
+    pub refused: Option<Refusal>,
 }
 
 impl Engagement {
@@ -43,30 +43,10 @@ impl Engagement {
         }
     }
 
-    /// Returns `true` if the craft has touched down since arming.
-    pub(super) fn has_landed(&self) -> bool {
-        self.landed
-    }
-
-    /// Reports that the mission ended on the ground.
-    pub(super) fn land(&mut self) {
-        self.landed = true;
-    }
-
     /// Gives up the mission. `landing_at` is the planned place of its landing, if one was under way.
     pub(super) fn give_up(&mut self, why: AbortReason, landing_at: Option<LatLon>) {
         self.given_up = Some(why);
         self.landing_at = landing_at;
-    }
-
-    /// Returns the reason why the last mission was given up, until something takes its place.
-    pub(super) fn given_up(&self) -> Option<AbortReason> {
-        self.given_up
-    }
-
-    /// Returns the planned place of the landing that was given up for the lost fix.
-    pub(super) fn landing_at(&self) -> Option<LatLon> {
-        self.landing_at
     }
 
     /// Returns the reason why the craft was left to the wind and is not taken over again before the switch is cycled,
@@ -84,11 +64,6 @@ impl Engagement {
     /// Returns `true` if there has been a fix for long enough to fly by it again.
     pub(super) fn has_fix_back(&self, now: &NavInputs) -> bool {
         now.fix && self.fix_since.is_some_and(|since| now.time.seconds_since(since) >= FIX_BACK_S)
-    }
-
-    /// Returns the reason why the switch has no effect, if it has none.
-    pub(super) fn refused(&self) -> Option<Refusal> {
-        self.refused
     }
 
     /// Remembers a refusal. Returns `true` if it is a new one. The estimate of the hover throttle changes all the

@@ -32,7 +32,7 @@ impl Navigator {
         }
         let inputs = &self.inputs.apply(inputs);
         let facts = self.engage_facts(inputs, params, stored);
-        let landing_at = self.engagement.landing_at();
+        let landing_at = self.engagement.landing_at;
         let lost = self.engagement.waits_for_fix(inputs);
         let verdict = if facts.armed && facts.throttle_raised && lost {
             Err(Refusal::Aborted(AbortReason::GpsLost))
@@ -54,12 +54,12 @@ impl Navigator {
 
     /// Returns `true` if a landing that lost its fix waits for it.
     pub fn has_landing_to_resume(&self) -> bool {
-        self.engagement.landing_at().is_some()
+        self.engagement.landing_at.is_some()
     }
 
     /// Returns the reason why the last mission was given up, until something takes its place.
     pub fn given_up(&self) -> Option<AbortReason> {
-        self.engagement.given_up()
+        self.engagement.given_up
     }
 
     /// Returns `true` if there has been a fix for long enough to fly by it again.
@@ -89,7 +89,7 @@ impl Navigator {
     fn engage_facts(&self, inputs: &NavInputs, params: &Params, stored: &FlightPlan) -> EngageFacts {
         let (plan, fence) = EngageFacts::plan_facts(stored, inputs.home, params);
         EngageFacts {
-            armed: inputs.armed && !self.engagement.has_landed(),
+            armed: inputs.armed && !self.engagement.landed,
             throttle_raised: inputs.throttle_raised,
             fix: inputs.fix,
             altitude_valid: inputs.altitude_valid,
@@ -198,7 +198,7 @@ impl Navigator {
     pub fn on_disarm(&mut self) {
         self.task.cursor.forget_flight();
         self.engagement.forget_mission();
-        if self.engagement.has_landed() {
+        if self.engagement.landed {
             return;
         }
         if self.state == NavState::Idle {
@@ -263,7 +263,7 @@ impl Navigator {
 
     fn check_command(&self, inputs: &NavInputs) -> Result<(), Refusal> {
         let facts = EngageFacts {
-            armed: inputs.armed && !self.engagement.has_landed(),
+            armed: inputs.armed && !self.engagement.landed,
             throttle_raised: inputs.throttle_raised || self.is_flying(),
             fix: inputs.fix,
             altitude_valid: inputs.altitude_valid,

@@ -63,7 +63,7 @@ impl Task {
             },
             climb: self.climb.is_on().then(|| (now.alt_m, self.climb_goal_m(params))),
             progress: self.leg.progress.facts(self.progress_distance_m(seen), now.time),
-            held_by_command: self.leg.hold.is_by_command(),
+            held_by_command: self.leg.hold.by_command,
             hold_elapsed_us: self.leg.hold.elapsed_us(now.time),
             touchdown: TouchdownGuards::new(
                 &touchdown_facts(seen, &controllers.altitude),

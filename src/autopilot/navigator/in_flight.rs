@@ -78,7 +78,7 @@ impl Navigator {
     }
 
     fn resume_held(&mut self, inputs: &NavInputs, params: &Params) -> Result<(), InFlightRefusal> {
-        if !self.task.leg.hold.is_by_command() {
+        if !self.task.leg.hold.by_command {
             return Err(InFlightRefusal::NotHeld);
         }
         let index = self.task.cursor.index();

@@ -51,9 +51,9 @@ pub(super) fn report(
         target_alt_m: Some(steering.target_alt_m),
         leg_start: on_leg.then_some(task.leg.start),
         speed_setpoint_mps: Some(controllers.position.speed_setpoint_mps()),
-        pattern_angle_rad: Pattern::of(state).map(|_| task.leg.hold.phase_rad()),
+        pattern_angle_rad: Pattern::of(state).map(|_| task.leg.hold.phase_rad),
         hold_remaining_s: Some(hold_left_s(state, task, now)),
-        held_by_command: task.leg.hold.is_by_command(),
+        held_by_command: task.leg.hold.by_command,
         eta_s: (on_leg && speed >= ETA_MIN_MPS).then(|| seen.distance_m / speed),
         stick_override: seen.stick_override,
         cannot_hold,
@@ -68,7 +68,7 @@ pub(super) fn report(
 fn hold_left_s(state: NavState, task: &Task, now: &NavInputs) -> f64 {
     let hold = &task.leg.hold;
     match state {
-        NavState::Holding if hold.is_by_command() => hold_remaining_s(Seconds::default(), 0),
+        NavState::Holding if hold.by_command => hold_remaining_s(Seconds::default(), 0),
         NavState::Holding | NavState::Orbiting | NavState::Figure8 => {
             let duration = task.cursor.current().unwrap_or_default().duration;
             hold_remaining_s(duration, hold.elapsed_us(now.time))

@@ -125,15 +125,10 @@ pub(super) struct StationMonitor {
     period: Period,
     /// Mean excess of the previous period, m.
     before_m: Option<f64>,
-    reported: Option<CannotHold>,
+    pub reported: Option<CannotHold>,
 }
 
 impl StationMonitor {
-    /// Returns the report that still holds.
-    pub(super) fn reported(&self) -> Option<CannotHold> {
-        self.reported
-    }
-
     /// Takes an update, with the station unless none is kept or something else flies. Returns the event to report
     /// now.
     pub(super) fn update(&mut self, station: Option<&Station>, dt: f64) -> Option<NavEvent> {

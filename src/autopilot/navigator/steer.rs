@@ -57,7 +57,7 @@ impl Task {
             }
             NavState::Holding | NavState::Orbiting | NavState::Figure8 => {
                 if let Some(pattern) = Pattern::of(state) {
-                    let point = pattern.point(self.leg.hold.phase_rad(), params);
+                    let point = pattern.point(self.leg.hold.phase_rad, params);
                     let rate = pattern.rate_rps(speed_mps, params);
                     target.target += point.offset;
                     target.target_velocity = point.tangent * rate;
@@ -85,7 +85,7 @@ impl Task {
 
     /// Returns target and aim on a leg: straight to the waypoint, or along the line to it.
     fn leg_target(&mut self, target: &mut PositionTarget, seen: &Observed) -> PathView {
-        if let Some(at) = self.climb.place() {
+        if let Some(at) = self.climb.at {
             target.target = at;
             target.aim = at;
             return PathView::default();

@@ -47,11 +47,11 @@ impl Navigator {
                 self.enter(NavState::Holding, cause);
             }
             Outcome::Orbit => {
-                self.task.leg.hold.begin_pattern();
+                self.task.leg.hold.phase_rad = 0.0;
                 self.enter(NavState::Orbiting, cause);
             }
             Outcome::Figure8 => {
-                self.task.leg.hold.begin_pattern();
+                self.task.leg.hold.phase_rad = 0.0;
                 self.enter(NavState::Figure8, cause);
             }
             Outcome::Land => {
@@ -62,7 +62,7 @@ impl Navigator {
             Outcome::Complete => self.complete(cause),
             Outcome::Touchdown => {
                 self.task.cursor.forget_mission();
-                self.engagement.land();
+                self.engagement.landed = true;
                 self.enter(NavState::Complete, cause);
                 self.push(NavEvent::Disarm);
             }
@@ -141,7 +141,7 @@ impl Navigator {
     pub(super) fn go_idle(&mut self, cause: impl Into<Cause>) {
         self.enter(NavState::Idle, cause);
         self.steering.release();
-        if self.engagement.landing_at().is_none() {
+        if self.engagement.landing_at.is_none() {
             self.task.cursor.unload();
         }
         self.task.yaw_cap_dps = None;

@@ -44,25 +44,20 @@ pub(super) trait Value: Copy {
     fn from_number(number: i64) -> Self;
 }
 
-impl Value for u8 {
-    const WORDS: &'static [&'static str] = &[];
-    fn to_number(self) -> i64 {
-        i64::from(self)
-    }
-    fn from_number(number: i64) -> Self {
-        Self::try_from(number.max(0)).unwrap_or(Self::MAX)
-    }
+macro_rules! numbers {
+    ($($ty:ty)*) => {$(
+        impl Value for $ty {
+            const WORDS: &'static [&'static str] = &[];
+            fn to_number(self) -> i64 {
+                i64::from(self)
+            }
+            fn from_number(number: i64) -> Self {
+                Self::try_from(number.max(0)).unwrap_or(Self::MAX)
+            }
+        }
+    )*};
 }
-
-impl Value for u16 {
-    const WORDS: &'static [&'static str] = &[];
-    fn to_number(self) -> i64 {
-        i64::from(self)
-    }
-    fn from_number(number: i64) -> Self {
-        Self::try_from(number.max(0)).unwrap_or(Self::MAX)
-    }
-}
+numbers!(u8 u16);
 
 impl Value for bool {
     const WORDS: &'static [&'static str] = &["OFF", "ON"];
@@ -74,32 +69,17 @@ impl Value for bool {
     }
 }
 
-impl Value for YawMode {
-    const WORDS: &'static [&'static str] = Self::VARIANTS;
-    fn to_number(self) -> i64 {
-        self as i64
-    }
-    fn from_number(number: i64) -> Self {
-        u8::try_from(number).ok().and_then(Self::from_repr).unwrap_or_default()
-    }
+macro_rules! enumerations {
+    ($($ty:ty)*) => {$(
+        impl Value for $ty {
+            const WORDS: &'static [&'static str] = Self::VARIANTS;
+            fn to_number(self) -> i64 {
+                self as i64
+            }
+            fn from_number(number: i64) -> Self {
+                u8::try_from(number).ok().and_then(Self::from_repr).unwrap_or_default()
+            }
+        }
+    )*};
 }
-
-impl Value for RxLossPolicy {
-    const WORDS: &'static [&'static str] = Self::VARIANTS;
-    fn to_number(self) -> i64 {
-        self as i64
-    }
-    fn from_number(number: i64) -> Self {
-        u8::try_from(number).ok().and_then(Self::from_repr).unwrap_or_default()
-    }
-}
-
-impl Value for FenceAction {
-    const WORDS: &'static [&'static str] = Self::VARIANTS;
-    fn to_number(self) -> i64 {
-        self as i64
-    }
-    fn from_number(number: i64) -> Self {
-        u8::try_from(number).ok().and_then(Self::from_repr).unwrap_or_default()
-    }
-}
+enumerations!(YawMode RxLossPolicy FenceAction);

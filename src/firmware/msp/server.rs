@@ -34,7 +34,7 @@ impl Firmware {
             Some(MspAction::CalibrateMag) => self.calibrate_magnetometer(),
             Some(MspAction::RunawayPrevention(on)) => self.setup.allow_runaway_prevention(on),
             Some(MspAction::HoldHeading(deg)) => {
-                self.control.controller.hold_heading(f64::from(deg).to_radians())
+                self.control.controller.hold_heading(f64::from(deg).to_radians());
             }
             // Positions come from the simulator, so this one is not used.
             Some(MspAction::RawGps { .. }) => {}
