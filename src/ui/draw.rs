@@ -14,7 +14,7 @@ use super::formatting;
 use super::layout::{self, SMALLEST};
 use super::panel::Panel;
 use super::panel::{self, span};
-use super::popup::frame::popup;
+use super::popup::frame::{key_line, popup};
 use super::popup::{Popup, command_line, go_to, guards, map_menu, palette, what_if};
 use super::shared::Shared;
 use super::text_wrap::wrapped;
@@ -55,42 +55,7 @@ pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
     }
     .filter(|_| state.popups.is_empty());
     for popup in &state.popups {
-        cursor = match popup {
-            Popup::Help { scroll } => {
-                panel::help::draw(shared, *scroll, area, buffer);
-                None
-            }
-            Popup::GoTo(question) => {
-                go_to::draw(shared, question, area, buffer);
-                None
-            }
-            Popup::MapMenu(menu) => {
-                map_menu::draw(&shared.theme, menu, area, buffer);
-                None
-            }
-            Popup::WhatIf { selected } => {
-                what_if::draw(&shared.theme, *selected, area, buffer);
-                None
-            }
-            Popup::Guards { selected } => {
-                guards::draw(shared, *selected, area, buffer);
-                None
-            }
-            Popup::Quit => {
-                quit_question(shared, area, buffer);
-                None
-            }
-            Popup::Permission => {
-                permission::draw(shared, area, buffer);
-                None
-            }
-            Popup::Plots { selected } => {
-                panel::graphs::draw_choice(shared, *selected, area, buffer);
-                None
-            }
-            Popup::CommandLine => command_line::draw(&state.command_line, shared, area, buffer),
-            Popup::Palette(palette) => palette::draw(shared, palette, area, buffer),
-        };
+        cursor = draw_popup(state, popup, area, buffer);
     }
     clean(buffer);
     paint_background(shared, buffer);
@@ -100,6 +65,24 @@ pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
     if let Some(position) = cursor.filter(|&position| area.contains(position)) {
         frame.set_cursor_position(position);
     }
+}
+
+/// Draws a popup. Returns the position of the cursor of its text field.
+fn draw_popup(state: &AppState, popup: &Popup, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+    let shared = &state.shared;
+    match popup {
+        Popup::CommandLine => return command_line::draw(&state.command_line, shared, area, buffer),
+        Popup::Palette(palette) => return palette::draw(shared, palette, area, buffer),
+        Popup::Help { scroll } => panel::help::draw(shared, *scroll, area, buffer),
+        Popup::GoTo(question) => go_to::draw(shared, question, area, buffer),
+        Popup::MapMenu(menu) => map_menu::draw(&shared.theme, menu, area, buffer),
+        Popup::WhatIf { selected } => what_if::draw(&shared.theme, *selected, area, buffer),
+        Popup::Guards { selected } => guards::draw(shared, *selected, area, buffer),
+        Popup::Quit => quit_question(shared, area, buffer),
+        Popup::Permission => permission::draw(shared, area, buffer),
+        Popup::Plots { selected } => panel::graphs::draw_choice(shared, *selected, area, buffer),
+    }
+    None
 }
 
 /// Fills in the colours of cells that have none, for themes that do not rely on the terminal's colours.
@@ -162,11 +145,6 @@ fn quit_question(state: &Shared, area: Rect, buffer: &mut Buffer) {
     let inside = popup(&state.theme, area, (46, 3), "Quit?", buffer);
     let theme = &state.theme;
     panel::row(buffer, inside, 0, theme, Role::Warn, " ▲ The craft is armed and flying ends here.");
-    let answers = Line::from(vec![
-        span(theme, Role::Key, " y"),
-        span(theme, Role::Text, " quit   "),
-        span(theme, Role::Key, "n"),
-        span(theme, Role::Text, " stay"),
-    ]);
-    panel::line(buffer, inside, 2, &answers);
+    let answers = [(" y", " quit   "), ("n", " stay")];
+    panel::line(buffer, inside, 2, &key_line(theme, &answers));
 }

@@ -2,11 +2,10 @@
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
-use ratatui::text::Line;
 
 use super::message::Effect;
-use super::panel::{line, row, span};
-use super::popup::frame::popup;
+use super::panel::{line, row};
+use super::popup::frame::{key_line, popup};
 use super::shared::Shared;
 use super::text_wrap::wrapped;
 use super::theme::Role;
@@ -84,11 +83,6 @@ pub(super) fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {
         let mark = if at == 0 { " ▲ " } else { "   " };
         row(buffer, inside, at, theme, Role::Warn, &format!("{mark}{text}"));
     }
-    let answers = Line::from(vec![
-        span(theme, Role::Key, " y"),
-        span(theme, Role::Text, " go on   "),
-        span(theme, Role::Key, "n"),
-        span(theme, Role::Text, " change nothing"),
-    ]);
-    line(buffer, inside, rows + 1, &answers);
+    let answers = [(" y", " go on   "), ("n", " change nothing")];
+    line(buffer, inside, rows + 1, &key_line(theme, &answers));
 }

@@ -13,6 +13,16 @@ pub(super) use go_to::GoTo;
 pub(super) use map_menu::MapMenu;
 pub use palette::Palette;
 
+/// The result of a key in a popup.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Outcome<T> {
+    /// It stays open.
+    Open,
+    /// It was left without a choice.
+    Left,
+    Chosen(T),
+}
+
 /// A popup over the panels. The last one opened gets the keys first.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Popup {

@@ -319,20 +319,19 @@ fn carry_out(state: &mut AppState, requests: Vec<Request>) -> Vec<Effect> {
 /// Carries out an action that is enabled.
 pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
     match action {
-        Action::Fly => fly(&mut state.shared),
-        Action::Arm => transmitter::arm_key(&mut state.shared),
-        Action::Throttle => transmitter::move_throttle(&mut state.shared),
-        Action::Autopilot => transmitter::toggle_autopilot(&mut state.shared),
-        Action::ReturnHome => transmitter::toggle_return(&mut state.shared),
+        Action::Fly => return fly(&mut state.shared),
+        Action::Arm => return transmitter::arm_key(&mut state.shared),
+        Action::Throttle => return transmitter::move_throttle(&mut state.shared),
+        Action::Autopilot => return transmitter::toggle_autopilot(&mut state.shared),
+        Action::ReturnHome => return transmitter::toggle_return(&mut state.shared),
         Action::GoTo => {
             let vehicle = &state.shared.view.vehicle;
             let current = vehicle.nav.as_ref().map_or(0, |nav| nav.wp);
             let question = vehicle.stored_plan.as_ref().map(|stored| GoTo::new(stored, current));
             state.popups.extend(question.map(Popup::GoTo));
-            Vec::new()
         }
-        Action::HoldHere => vec![VehicleCommand::InFlight(InFlightCommand::HoldHere).into()],
-        Action::Resume => vec![VehicleCommand::InFlight(InFlightCommand::Resume).into()],
+        Action::HoldHere => return vec![VehicleCommand::InFlight(InFlightCommand::HoldHere).into()],
+        Action::Resume => return vec![VehicleCommand::InFlight(InFlightCommand::Resume).into()],
         Action::CutRc => {
             let mut effects: Vec<Effect> = vec![VehicleCommand::CutRc(!state.shared.view.rc_cut).into()];
             // At real time the user can read the countdown of the failsafe.
@@ -342,28 +341,25 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
             {
                 effects.push(Effect::Send(Command::Speed(1.0)));
             }
-            effects
+            return effects;
         }
-        Action::Upload => upload(&mut state.shared),
-        Action::Edit(action) => edit(state, action),
+        Action::Upload => return upload(&mut state.shared),
+        Action::Edit(action) => return edit(state, action),
         Action::ResetCraft => {
             state.shared.track.await_reset();
             state.shared.sticks_sent = None;
-            vec![VehicleCommand::ResetCraft.into()]
+            return vec![VehicleCommand::ResetCraft.into()];
         }
-        Action::LookAhead => forecast::toggle_look_ahead(&mut state.shared),
-        Action::WhatIf => {
-            state.popups.push(Popup::WhatIf { selected: 0 });
-            Vec::new()
-        }
-        Action::Pause => vec![Effect::Send(Command::Pause(!state.shared.view.paused))],
+        Action::LookAhead => return forecast::toggle_look_ahead(&mut state.shared),
+        Action::WhatIf => state.popups.push(Popup::WhatIf { selected: 0 }),
+        Action::Pause => return vec![Effect::Send(Command::Pause(!state.shared.view.paused))],
         Action::Step => {
             let mut effects = Vec::new();
             if !state.shared.view.paused {
                 effects.push(Effect::Send(Command::Pause(true)));
             }
             effects.push(Effect::Send(Command::Step(state.step_ticks)));
-            effects
+            return effects;
         }
         Action::Tick
         | Action::EventBack
@@ -373,34 +369,19 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
         | Action::Earlier
         | Action::Later
         | Action::FlyOn
-        | Action::Newest => timeline::act(&state.shared, action),
-        Action::Slower => speed(&mut state.shared, -1),
-        Action::Faster => speed(&mut state.shared, 1),
-        Action::RealTime => speed(&mut state.shared, 0),
-        Action::Show(panel) => focus(&mut state.shared, panel),
-        Action::Next => focus_neighbour(&mut state.shared, 1),
-        Action::Previous => focus_neighbour(&mut state.shared, -1),
-        Action::Zoom => {
-            state.shared.zoomed = !state.shared.zoomed;
-            Vec::new()
-        }
-        Action::WriteScenario => vec![state.shared.write_scenario(None)],
-        Action::Tutorial => {
-            tutorial::toggle(&mut state.tutorial, &mut state.shared);
-            Vec::new()
-        }
-        Action::Help => {
-            state.popups.push(Popup::Help { scroll: 0 });
-            Vec::new()
-        }
-        Action::CommandLine => {
-            popup::open_command_line(state, "");
-            Vec::new()
-        }
-        Action::Palette => {
-            state.popups.push(Popup::Palette(Palette::default()));
-            Vec::new()
-        }
+        | Action::Newest => return timeline::act(&state.shared, action),
+        Action::Slower => return speed(&mut state.shared, -1),
+        Action::Faster => return speed(&mut state.shared, 1),
+        Action::RealTime => return speed(&mut state.shared, 0),
+        Action::Show(panel) => return focus(&mut state.shared, panel),
+        Action::Next => return focus_neighbour(&mut state.shared, 1),
+        Action::Previous => return focus_neighbour(&mut state.shared, -1),
+        Action::Zoom => state.shared.zoomed = !state.shared.zoomed,
+        Action::WriteScenario => return vec![state.shared.write_scenario(None)],
+        Action::Tutorial => tutorial::toggle(&mut state.tutorial, &mut state.shared),
+        Action::Help => state.popups.push(Popup::Help { scroll: 0 }),
+        Action::CommandLine => popup::open_command_line(state, ""),
+        Action::Palette => state.popups.push(Popup::Palette(Palette::default())),
         Action::Back => {
             // Leave the text first, so that the next keys are not typed.
             let focus_now = state.shared.focus;
@@ -414,33 +395,29 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
             {
                 state.shared.zoomed = false;
             }
-            Vec::new()
         }
-        Action::AllowChanges => {
-            permission::ask(state);
-            Vec::new()
-        }
+        Action::AllowChanges => permission::ask(state),
         // A real craft flies on without this program.
         Action::Quit if state.shared.view.is_armed_now() && state.shared.real_craft().is_none() => {
             state.popups.push(Popup::Quit);
-            Vec::new()
         }
-        Action::Quit => plan_popup::quit(&mut state.shared),
-        Action::Cancel => cancel(state),
-        Action::Suspend => vec![Effect::Suspend],
+        Action::Quit => return plan_popup::quit(&mut state.shared),
+        Action::Cancel => return cancel(state),
+        Action::Suspend => return vec![Effect::Suspend],
         Action::Panel(own) => {
             let panel = match action::spec_of(action).map(|spec| spec.context) {
                 Some(Context::In(panel)) => panel,
                 _ => state.shared.focus,
             };
             let requests = state.panels.of_mut(panel).act(&state.shared, own);
-            carry_out(state, requests)
+            return carry_out(state, requests);
         }
-        Action::ScrollUp => scroll(state, -1),
-        Action::ScrollDown => scroll(state, 1),
-        Action::PageUp => scroll(state, -10),
-        Action::PageDown => scroll(state, 10),
-        Action::Top => scroll(state, isize::MIN),
-        Action::Bottom => scroll(state, isize::MAX),
+        Action::ScrollUp => return scroll(state, -1),
+        Action::ScrollDown => return scroll(state, 1),
+        Action::PageUp => return scroll(state, -10),
+        Action::PageDown => return scroll(state, 10),
+        Action::Top => return scroll(state, isize::MIN),
+        Action::Bottom => return scroll(state, isize::MAX),
     }
+    Vec::new()
 }

@@ -42,12 +42,57 @@ impl CliPanel {
 }
 
 impl Content for CliPanel {
+    /// Returns the title with the current activity.
     fn title(&self, state: &Shared) -> String {
-        title(&self.console, state)
+        let cli = &self.console;
+        let name = state.panel_title(Panel::Cli);
+        match (cli.queued(), cli.waiting, cli.scroll) {
+            (0, false, 0) => name.to_owned(),
+            (0, true, 0) => format!("{name} — running"),
+            (0, _, lines) => format!("{name} — {lines} newer below"),
+            (queued, ..) => format!("{name} — {queued} lines to run, Ctrl-C stops"),
+        }
     }
 
+    /// Draws the inside. Returns the position of the cursor.
     fn draw(&self, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
-        draw(&self.console, state, area, buffer)
+        let cli = &self.console;
+        if area.height < 2 || area.width < 4 {
+            return None;
+        }
+        let theme = &state.theme;
+        let width = usize::from(area.width);
+        let help = help_rows(cli, state, area);
+        let bottom = area.height - 1 - help.len() as u16;
+        for (at, text) in help.iter().enumerate() {
+            row(buffer, area, bottom + 1 + at as u16, theme, Role::Dim, text);
+        }
+
+        // Upwards from the prompt: candidates, then entered lines and answers, as many as fit.
+        let mut rows: Vec<(Role, String)> = Vec::new();
+        let candidates = candidate_rows(&cli.candidates, width);
+        rows.extend(candidates.into_iter().rev().map(|text| (Role::Title, text)));
+        let scroll = cli.scroll.min(last_scroll(cli, state, area));
+        for entry in cli.lines.iter().rev().skip(scroll) {
+            if rows.len() >= usize::from(bottom) {
+                break;
+            }
+            let role = role(entry.0);
+            rows.extend(lines(entry, width).into_iter().rev().map(|text| (role, text)));
+        }
+        if cli.lines.is_empty() && rows.is_empty() {
+            rows.extend(wrapped(WELCOME, width).into_iter().rev().map(|text| (Role::Dim, text)));
+        }
+        // As in a terminal, the prompt follows the text until the panel is full.
+        let prompt_row = bottom.min(rows.len() as u16);
+        for (above, (role, text)) in (1..=prompt_row).zip(&rows) {
+            row(buffer, area, prompt_row - above, theme, *role, text);
+        }
+
+        row(buffer, area, prompt_row, theme, Role::Key, PROMPT);
+        let prompt = PROMPT.len() as u16;
+        let place = Rect::new(area.x + prompt, area.y + prompt_row, area.width - prompt, 1);
+        cli.input.draw(theme, place.intersection(area), buffer)
     }
 
     fn key(&mut self, state: &Shared, event: KeyEvent) -> Vec<Request> {
@@ -79,57 +124,6 @@ impl Content for CliPanel {
         scrolled(&mut self.console.scroll, by.saturating_neg(), last);
         Vec::new()
     }
-}
-
-/// Returns the title with the current activity.
-fn title(cli: &CliState, state: &Shared) -> String {
-    let name = state.panel_title(Panel::Cli);
-    match (cli.queued(), cli.waiting, cli.scroll) {
-        (0, false, 0) => name.to_owned(),
-        (0, true, 0) => format!("{name} — running"),
-        (0, _, lines) => format!("{name} — {lines} newer below"),
-        (queued, ..) => format!("{name} — {queued} lines to run, Ctrl-C stops"),
-    }
-}
-
-/// Draws the inside. Returns the position of the cursor.
-fn draw(cli: &CliState, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
-    if area.height < 2 || area.width < 4 {
-        return None;
-    }
-    let theme = &state.theme;
-    let width = usize::from(area.width);
-    let help = help_rows(cli, state, area);
-    let bottom = area.height - 1 - help.len() as u16;
-    for (at, text) in help.iter().enumerate() {
-        row(buffer, area, bottom + 1 + at as u16, theme, Role::Dim, text);
-    }
-
-    // Upwards from the prompt: candidates, then entered lines and answers, as many as fit.
-    let mut rows: Vec<(Role, String)> = Vec::new();
-    let candidates = candidate_rows(&cli.candidates, width);
-    rows.extend(candidates.into_iter().rev().map(|text| (Role::Title, text)));
-    let scroll = cli.scroll.min(last_scroll(cli, state, area));
-    for entry in cli.lines.iter().rev().skip(scroll) {
-        if rows.len() >= usize::from(bottom) {
-            break;
-        }
-        let role = role(entry.0);
-        rows.extend(lines(entry, width).into_iter().rev().map(|text| (role, text)));
-    }
-    if cli.lines.is_empty() && rows.is_empty() {
-        rows.extend(wrapped(WELCOME, width).into_iter().rev().map(|text| (Role::Dim, text)));
-    }
-    // As in a terminal, the prompt follows the text until the panel is full.
-    let prompt_row = bottom.min(rows.len() as u16);
-    for (above, (role, text)) in (1..=prompt_row).zip(&rows) {
-        row(buffer, area, prompt_row - above, theme, *role, text);
-    }
-
-    row(buffer, area, prompt_row, theme, Role::Key, PROMPT);
-    let prompt = PROMPT.len() as u16;
-    let place = Rect::new(area.x + prompt, area.y + prompt_row, area.width - prompt, 1);
-    cli.input.draw(theme, place.intersection(area), buffer)
 }
 
 /// Returns the greatest scroll position, at which the oldest line is the first on the screen.

@@ -31,8 +31,15 @@ const LEAST_ROWS: u16 = 4;
 pub(super) struct GraphsPanel;
 
 impl Content for GraphsPanel {
+    /// Returns the title with the shown time span and the cursor.
     fn title(&self, state: &Shared) -> String {
-        title(state)
+        let span = state.graphs.span_s();
+        let span = if span < 120.0 { format!("{span:.0} s") } else { format!("{:.0} min", span / 60.0) };
+        let cursor = state
+            .graphs
+            .cursor_s(&state.view)
+            .map_or_else(String::new, |cursor| format!(" — at {}", clock(SimTime::from_secs_f64(cursor))));
+        format!("{} — {span}{cursor}", state.panel_title(Panel::Graphs))
     }
 
     fn draw(&self, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
@@ -63,17 +70,6 @@ impl Content for GraphsPanel {
     fn go_back(&mut self, state: &Shared) -> Option<Vec<Request>> {
         state.graphs.pointed_at().map(|_| vec![Change::NoGraphsCursor.into()])
     }
-}
-
-/// Returns the title with the shown time span and the cursor.
-fn title(state: &Shared) -> String {
-    let span = state.graphs.span_s();
-    let span = if span < 120.0 { format!("{span:.0} s") } else { format!("{:.0} min", span / 60.0) };
-    let cursor = state
-        .graphs
-        .cursor_s(&state.view)
-        .map_or_else(String::new, |cursor| format!(" — at {}", clock(SimTime::from_secs_f64(cursor))));
-    format!("{} — {span}{cursor}", state.panel_title(Panel::Graphs))
 }
 
 fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {

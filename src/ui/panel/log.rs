@@ -29,12 +29,41 @@ pub struct LogPanel {
 }
 
 impl Content for LogPanel {
+    /// Returns the title with the number of lines above the first shown one, the filter and the search.
     fn title(&self, state: &Shared) -> String {
-        title(&self.view, state)
+        let view = &self.view;
+        let mut title = state.panel_title(Panel::Log).to_owned();
+        let newer = match view.scroll {
+            0 => String::new(),
+            newer => format!("{newer} newer above"),
+        };
+        let search = if view.search.is_empty() || view.typing {
+            String::new()
+        } else {
+            format!("/{}", view.search.value())
+        };
+        for part in [view.filter_name(), &search, &newer] {
+            if !part.is_empty() {
+                title.push_str(" — ");
+                title.push_str(part);
+            }
+        }
+        title
     }
 
+    /// Draws the inside. Returns the position of the cursor while a search is typed.
     fn draw(&self, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
-        draw(&self.view, state, area, buffer)
+        let view = &self.view;
+        let theme = &state.theme;
+        let list = list(view, state, area);
+        draw_lines(view, state, list, buffer);
+        if list.height == area.height {
+            return None;
+        }
+        row(buffer, area, list.height, theme, Role::Key, "/");
+        let field =
+            Rect { x: area.x + 1, y: area.y + list.height, width: area.width.checked_sub(1)?, height: 1 };
+        view.search.draw(theme, field.intersection(area), buffer)
     }
 
     fn hints(&self, _: &Shared) -> Vec<Hint> {
@@ -86,27 +115,6 @@ impl Content for LogPanel {
     }
 }
 
-/// Returns the title with the number of lines above the first shown one, the filter and the search.
-fn title(view: &LogView, state: &Shared) -> String {
-    let mut title = state.panel_title(Panel::Log).to_owned();
-    let newer = match view.scroll {
-        0 => String::new(),
-        newer => format!("{newer} newer above"),
-    };
-    let search = if view.search.is_empty() || view.typing {
-        String::new()
-    } else {
-        format!("/{}", view.search.value())
-    };
-    for part in [view.filter_name(), &search, &newer] {
-        if !part.is_empty() {
-            title.push_str(" — ");
-            title.push_str(part);
-        }
-    }
-    title
-}
-
 /// Returns the width of the text.
 fn text_width(area: Rect) -> usize {
     usize::from(area.width).saturating_sub(STAMP)
@@ -123,19 +131,6 @@ fn last_scroll(view: &LogView, state: &Shared, area: Rect) -> usize {
     let rows = view.newest_first(&state.log).rev().map(|entry| wrapped(&entry.text, text_width(area)).len());
     let fitting = fitting(rows, usize::from(list(view, state, area).height));
     view.newest_first(&state.log).count().saturating_sub(fitting)
-}
-
-/// Draws the inside. Returns the position of the cursor while a search is typed.
-fn draw(view: &LogView, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
-    let theme = &state.theme;
-    let list = list(view, state, area);
-    draw_lines(view, state, list, buffer);
-    if list.height == area.height {
-        return None;
-    }
-    row(buffer, area, list.height, theme, Role::Key, "/");
-    let field = Rect { x: area.x + 1, y: area.y + list.height, width: area.width.checked_sub(1)?, height: 1 };
-    view.search.draw(theme, field.intersection(area), buffer)
 }
 
 fn draw_lines(view: &LogView, state: &Shared, area: Rect, buffer: &mut Buffer) {

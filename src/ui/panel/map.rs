@@ -35,8 +35,32 @@ pub(super) struct MapPanel {
 }
 
 impl Content for MapPanel {
+    /// Returns the title with the source of the plan and the map mode.
     fn title(&self, state: &Shared) -> String {
-        title(state)
+        let name = state.panel_title(Panel::Map);
+        let source = match &state.view.vehicle.active_plan {
+            Some(_) => state.view.vehicle.nav.as_ref().map_or(PlanSource::Stored, |nav| nav.source),
+            None => PlanSource::Stored,
+        };
+        let source = match source {
+            PlanSource::Stored => String::new(),
+            injected => format!(" — {injected} plan"),
+        };
+        if state.edits_on_map() {
+            let place =
+                state.map.moving.map(|moving| moving.place).or(state.map.edit.map(|cursor| cursor.place));
+            let moving = state.map.moving.map(|moving| moving.item);
+            let measured =
+                place.and_then(|place| map_edit::measured(state, place, moving)).unwrap_or_default();
+            return format!("{name} — edit · {measured}");
+        }
+        match state.map.mode {
+            MapMode::Fit => format!("{name}{source}"),
+            MapMode::Follow(_) => format!("{name}{source} — follows"),
+            MapMode::Free { .. } => {
+                format!("{name}{source} — {} fits", state.key(Action::Panel(PanelAction::Fit)))
+            }
+        }
     }
 
     fn draw(&self, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
@@ -169,32 +193,6 @@ struct Scene {
     craft: Option<MapPoint>,
     believed: Option<MapPoint>,
     current: Option<usize>,
-}
-
-/// Returns the title with the source of the plan and the map mode.
-fn title(state: &Shared) -> String {
-    let name = state.panel_title(Panel::Map);
-    let source = match &state.view.vehicle.active_plan {
-        Some(_) => state.view.vehicle.nav.as_ref().map_or(PlanSource::Stored, |nav| nav.source),
-        None => PlanSource::Stored,
-    };
-    let source = match source {
-        PlanSource::Stored => String::new(),
-        injected => format!(" — {injected} plan"),
-    };
-    if state.edits_on_map() {
-        let place = state.map.moving.map(|moving| moving.place).or(state.map.edit.map(|cursor| cursor.place));
-        let moving = state.map.moving.map(|moving| moving.item);
-        let measured = place.and_then(|place| map_edit::measured(state, place, moving)).unwrap_or_default();
-        return format!("{name} — edit · {measured}");
-    }
-    match state.map.mode {
-        MapMode::Fit => format!("{name}{source}"),
-        MapMode::Follow(_) => format!("{name}{source} — follows"),
-        MapMode::Free { .. } => {
-            format!("{name}{source} — {} fits", state.key(Action::Panel(PanelAction::Fit)))
-        }
-    }
 }
 
 fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {

@@ -31,12 +31,58 @@ pub(super) struct PlanPanel {
 }
 
 impl Content for PlanPanel {
+    /// Returns the title: the name of the plan, its unsaved edits, and its differences from the craft.
     fn title(&self, state: &Shared) -> String {
-        title(state)
+        let plan = state.editor.plan();
+        let count = state.editor.plans().len();
+        let which =
+            if count > 1 { format!(" {}/{count}", state.editor.current() + 1) } else { String::new() };
+        let unsaved = if plan.is_unsaved() { " ✎ unsaved" } else { "" };
+        let kept = if state.editor.loses_edits { " ✗ edits not kept" } else { "" };
+        let disk = if plan.is_changed_on_disk() { " ▲ changed on disk" } else { "" };
+        // It is temporary, so it is in front, where it is not cut off.
+        if let Some(upload) = state.upload_of(plan.id()) {
+            let uploading = format!("↑ uploading {}/{}", upload.sent, upload.total);
+            return format!(
+                "{}{which} — {uploading} {}{unsaved}",
+                state.panel_title(Panel::Plan),
+                plan.title()
+            );
+        }
+        let craft = match &state.view.vehicle.stored_plan {
+            _ if plan.document().plan.waypoints.is_empty() => String::new(),
+            Some(_) if settings_in_force::has_settings_to_upload(state) => {
+                " ● settings not on the craft".to_owned()
+            }
+            Some(stored) if *stored == plan.document().plan => " ✓ on the craft".to_owned(),
+            Some(stored) => {
+                format!(" ● {} not on the craft", table::differences(&plan.document().plan, stored))
+            }
+            None => " — on the craft?".to_owned(),
+        };
+        format!("{}{which} — {}{unsaved}{kept}{disk}{craft}", state.panel_title(Panel::Plan), plan.title())
     }
 
+    /// Draws the inside. Returns the position of the cursor while a cell is typed.
     fn draw(&self, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
-        draw(state, area, buffer)
+        let theme = &state.theme;
+        if state.plan().waypoints.is_empty() {
+            for (at, text) in nothing_planned(state).iter().enumerate() {
+                row(buffer, area, at as u16, theme, Role::Dim, text);
+            }
+            return None;
+        }
+        let findings = findings::findings(state);
+        let below = below(state, &findings, area);
+        let (table, foot, profile) = divided(area, below.len());
+        let cursor = table::draw(state, &findings, table, buffer);
+        for (at, text) in below.iter().enumerate() {
+            line(buffer, foot, at as u16, text);
+        }
+        if let Some(area) = profile {
+            profile::draw(state, area, buffer);
+        }
+        cursor
     }
 
     fn hints(&self, _: &Shared) -> Vec<Hint> {
@@ -92,33 +138,6 @@ impl Content for PlanPanel {
     }
 }
 
-/// Returns the title: the name of the plan, its unsaved edits, and its differences from the craft.
-fn title(state: &Shared) -> String {
-    let plan = state.editor.plan();
-    let count = state.editor.plans().len();
-    let which = if count > 1 { format!(" {}/{count}", state.editor.current() + 1) } else { String::new() };
-    let unsaved = if plan.is_unsaved() { " ✎ unsaved" } else { "" };
-    let kept = if state.editor.loses_edits { " ✗ edits not kept" } else { "" };
-    let disk = if plan.is_changed_on_disk() { " ▲ changed on disk" } else { "" };
-    // It is temporary, so it is in front, where it is not cut off.
-    if let Some(upload) = state.upload_of(plan.id()) {
-        let uploading = format!("↑ uploading {}/{}", upload.sent, upload.total);
-        return format!("{}{which} — {uploading} {}{unsaved}", state.panel_title(Panel::Plan), plan.title());
-    }
-    let craft = match &state.view.vehicle.stored_plan {
-        _ if plan.document().plan.waypoints.is_empty() => String::new(),
-        Some(_) if settings_in_force::has_settings_to_upload(state) => {
-            " ● settings not on the craft".to_owned()
-        }
-        Some(stored) if *stored == plan.document().plan => " ✓ on the craft".to_owned(),
-        Some(stored) => {
-            format!(" ● {} not on the craft", table::differences(&plan.document().plan, stored))
-        }
-        None => " — on the craft?".to_owned(),
-    };
-    format!("{}{which} — {}{unsaved}{kept}{disk}{craft}", state.panel_title(Panel::Plan), plan.title())
-}
-
 /// An item of the panel under the mouse.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum PlanTarget {
@@ -152,28 +171,6 @@ fn divided(area: Rect, below_rows: usize) -> (Rect, Rect, Option<Rect>) {
     let foot = Rect { y: area.y + table.height, height: below_rows, ..area };
     let bottom = Rect { y: area.y + area.height - profile, height: profile, ..area };
     (table, foot, (profile > 0).then_some(bottom))
-}
-
-/// Draws the inside. Returns the position of the cursor while a cell is typed.
-fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
-    let theme = &state.theme;
-    if state.plan().waypoints.is_empty() {
-        for (at, text) in nothing_planned(state).iter().enumerate() {
-            row(buffer, area, at as u16, theme, Role::Dim, text);
-        }
-        return None;
-    }
-    let findings = findings::findings(state);
-    let below = below(state, &findings, area);
-    let (table, foot, profile) = divided(area, below.len());
-    let cursor = table::draw(state, &findings, table, buffer);
-    for (at, text) in below.iter().enumerate() {
-        line(buffer, foot, at as u16, text);
-    }
-    if let Some(area) = profile {
-        profile::draw(state, area, buffer);
-    }
-    cursor
 }
 
 /// Returns the advice for an empty plan.

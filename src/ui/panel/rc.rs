@@ -30,8 +30,33 @@ pub struct RcPanel {
 }
 
 impl Content for RcPanel {
+    /// Returns the title with the source of the channels and the age of the newest frame.
     fn title(&self, state: &Shared) -> String {
-        title(state)
+        let now_s = state.view.vehicle.time.as_secs_f64();
+        let recording = state.stick_recording.shown(now_s);
+        let name = recording.map_or_else(
+            || state.panel_title(Panel::Rc).to_owned(),
+            |doing| format!("{} {doing}", state.panel_title(Panel::Rc)),
+        );
+        let craft = &state.view.vehicle.craft;
+        let ours = !matches!(craft.rc_source, Some(RcSource::Udp | RcSource::Msp));
+        if state.view.rc_cut && ours {
+            return format!("{name} — CUT, {} restores it", state.key(Action::CutRc));
+        }
+        let age = match craft.rc_age_s {
+            Some(age) if age < 1.0 => format!("{:.0} ms", age * 1000.0),
+            Some(age) => format!("{age:.1} s"),
+            None => "—".to_owned(),
+        };
+        let source = match craft.rc_source {
+            None => return format!("{name} — no frames"),
+            Some(_) if craft.rc_link == Some(false) => return format!("{name} — LOST {age}"),
+            Some(RcSource::Sticks) if state.view.pilot.is_some() => "pilot",
+            Some(RcSource::Sticks) => "keys",
+            Some(RcSource::Udp) => "udp",
+            Some(RcSource::Msp) => "msp",
+        };
+        format!("{name} — {source}, {age}")
     }
 
     fn draw(&self, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
@@ -82,35 +107,6 @@ impl Content for RcPanel {
         let us = value_at(area, self.channel, event.column);
         us.map(|us| Change::Channel(self.channel, us).into()).into_iter().collect()
     }
-}
-
-/// Returns the title with the source of the channels and the age of the newest frame.
-fn title(state: &Shared) -> String {
-    let now_s = state.view.vehicle.time.as_secs_f64();
-    let recording = state.stick_recording.shown(now_s);
-    let name = recording.map_or_else(
-        || state.panel_title(Panel::Rc).to_owned(),
-        |doing| format!("{} {doing}", state.panel_title(Panel::Rc)),
-    );
-    let craft = &state.view.vehicle.craft;
-    let ours = !matches!(craft.rc_source, Some(RcSource::Udp | RcSource::Msp));
-    if state.view.rc_cut && ours {
-        return format!("{name} — CUT, {} restores it", state.key(Action::CutRc));
-    }
-    let age = match craft.rc_age_s {
-        Some(age) if age < 1.0 => format!("{:.0} ms", age * 1000.0),
-        Some(age) => format!("{age:.1} s"),
-        None => "—".to_owned(),
-    };
-    let source = match craft.rc_source {
-        None => return format!("{name} — no frames"),
-        Some(_) if craft.rc_link == Some(false) => return format!("{name} — LOST {age}"),
-        Some(RcSource::Sticks) if state.view.pilot.is_some() => "pilot",
-        Some(RcSource::Sticks) => "keys",
-        Some(RcSource::Udp) => "udp",
-        Some(RcSource::Msp) => "msp",
-    };
-    format!("{name} — {source}, {age}")
 }
 
 /// Returns the area of each visible channel: one column, or two if the panel is low and wide, else scrolled so that the

@@ -45,8 +45,14 @@ pub struct StatePanel {
 }
 
 impl Content for StatePanel {
+    /// Returns the title with the waypoint of the mission.
     fn title(&self, state: &Shared) -> String {
-        title(state)
+        let name = state.panel_title(Panel::State);
+        let Some(nav) = state.view.vehicle.nav.as_ref().filter(|nav| nav.engaged && nav.count > 0) else {
+            return name.to_owned();
+        };
+        let kind = nav.kind.map_or_else(String::new, |kind| format!(" {kind}"));
+        format!("{name} WP{}/{}{kind}", nav.wp, nav.count.saturating_sub(1))
     }
 
     fn draw(&self, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
@@ -70,16 +76,6 @@ impl Content for StatePanel {
         scrolled(&mut self.transitions.scroll, by, last);
         Vec::new()
     }
-}
-
-/// Returns the title with the waypoint of the mission.
-fn title(state: &Shared) -> String {
-    let name = state.panel_title(Panel::State);
-    let Some(nav) = state.view.vehicle.nav.as_ref().filter(|nav| nav.engaged && nav.count > 0) else {
-        return name.to_owned();
-    };
-    let kind = nav.kind.map_or_else(String::new, |kind| format!(" {kind}"));
-    format!("{name} WP{}/{}{kind}", nav.wp, nav.count.saturating_sub(1))
 }
 
 fn draw(own: &Transitions, state: &Shared, area: Rect, buffer: &mut Buffer) {

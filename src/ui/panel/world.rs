@@ -26,12 +26,61 @@ pub struct WorldPanel {
 }
 
 impl Content for WorldPanel {
+    /// Returns the title with the airframe.
     fn title(&self, state: &Shared) -> String {
-        title(state)
+        let name = state.panel_title(Panel::World);
+        match state.view.vehicle.world.airframe.as_str() {
+            "" => name.to_owned(),
+            airframe => format!("{name} — airframe {airframe}"),
+        }
     }
 
+    /// Draws the inside. Returns the position of the cursor while a value is typed.
     fn draw(&self, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
-        draw(&self.knobs, state, area, buffer)
+        let own = &self.knobs;
+        let theme = &state.theme;
+        let rows = usize::from(area.height.checked_sub(1)?);
+        let all = knobs(state);
+        let focused = state.focus == Panel::World;
+        let mut cursor = None;
+        for (at, knob) in all.iter().enumerate().skip(first(own, state, rows)).take(rows) {
+            let is_selected = focused && at == own.selected;
+            let is_default = knob.is_default(&state.view.vehicle.world);
+            let role = match (is_selected, is_default, knob) {
+                (true, ..) => Role::Focus,
+                (false, false, Knob::Fault(_)) => Role::Warn,
+                (false, false, _) => Role::Text,
+                (false, true, Knob::Fault(_)) => Role::Dim,
+                (false, true, _) => Role::Text,
+            };
+            let pointer = if is_selected { '▸' } else { ' ' };
+            let mark = match (is_default, knob) {
+                (true, _) => ' ',
+                (false, Knob::Fault(_)) => '▲',
+                (false, _) => '●',
+            };
+            let line = (at - first(own, state, rows)) as u16;
+            let name = format!("{pointer}{mark} {:<15}", cut(knob.name(), 15));
+            let typed = own.field.as_ref().filter(|_| is_selected);
+            match typed {
+                Some(field) => {
+                    row(buffer, area, line, theme, role, &name);
+                    let width = area.width.saturating_sub(NAME as u16);
+                    let place = Rect::new(area.x + NAME as u16, area.y + line, width, 1);
+                    cursor = field.draw(theme, place.intersection(area), buffer);
+                }
+                None => row(buffer, area, line, theme, role, &format!("{name}{}", knob.value(state))),
+            }
+        }
+        let help = match all.get(own.selected) {
+            Some(knob) if focused => knob.help(state.units),
+            _ => format!(
+                "wind, noise and faults, changed while it flies: {}",
+                state.key(Action::Show(Panel::World))
+            ),
+        };
+        row(buffer, area, area.height - 1, theme, Role::Dim, &help);
+        cursor
     }
 
     fn hints(&self, _: &Shared) -> Vec<Hint> {
@@ -91,15 +140,6 @@ impl Content for WorldPanel {
     }
 }
 
-/// Returns the title with the airframe.
-fn title(state: &Shared) -> String {
-    let name = state.panel_title(Panel::World);
-    match state.view.vehicle.world.airframe.as_str() {
-        "" => name.to_owned(),
-        airframe => format!("{name} — airframe {airframe}"),
-    }
-}
-
 /// Returns the first shown knob, so that the selected one is visible.
 fn first(own: &KnobsState, state: &Shared, rows: usize) -> usize {
     let last = knobs(state).len().saturating_sub(rows);
@@ -112,51 +152,4 @@ fn knob_at(own: &KnobsState, state: &Shared, area: Rect, line: u16) -> Option<us
     let at = usize::from(line.checked_sub(area.y)?);
     let index = first(own, state, rows) + at;
     (at < rows && index < knobs(state).len()).then_some(index)
-}
-
-/// Draws the inside. Returns the position of the cursor while a value is typed.
-fn draw(own: &KnobsState, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
-    let theme = &state.theme;
-    let rows = usize::from(area.height.checked_sub(1)?);
-    let all = knobs(state);
-    let focused = state.focus == Panel::World;
-    let mut cursor = None;
-    for (at, knob) in all.iter().enumerate().skip(first(own, state, rows)).take(rows) {
-        let is_selected = focused && at == own.selected;
-        let is_default = knob.is_default(&state.view.vehicle.world);
-        let role = match (is_selected, is_default, knob) {
-            (true, ..) => Role::Focus,
-            (false, false, Knob::Fault(_)) => Role::Warn,
-            (false, false, _) => Role::Text,
-            (false, true, Knob::Fault(_)) => Role::Dim,
-            (false, true, _) => Role::Text,
-        };
-        let pointer = if is_selected { '▸' } else { ' ' };
-        let mark = match (is_default, knob) {
-            (true, _) => ' ',
-            (false, Knob::Fault(_)) => '▲',
-            (false, _) => '●',
-        };
-        let line = (at - first(own, state, rows)) as u16;
-        let name = format!("{pointer}{mark} {:<15}", cut(knob.name(), 15));
-        let typed = own.field.as_ref().filter(|_| is_selected);
-        match typed {
-            Some(field) => {
-                row(buffer, area, line, theme, role, &name);
-                let width = area.width.saturating_sub(NAME as u16);
-                let place = Rect::new(area.x + NAME as u16, area.y + line, width, 1);
-                cursor = field.draw(theme, place.intersection(area), buffer);
-            }
-            None => row(buffer, area, line, theme, role, &format!("{name}{}", knob.value(state))),
-        }
-    }
-    let help = match all.get(own.selected) {
-        Some(knob) if focused => knob.help(state.units),
-        _ => format!(
-            "wind, noise and faults, changed while it flies: {}",
-            state.key(Action::Show(Panel::World))
-        ),
-    };
-    row(buffer, area, area.height - 1, theme, Role::Dim, &help);
-    cursor
 }

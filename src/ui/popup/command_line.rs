@@ -12,6 +12,7 @@ use crate::ui::formatting::cut;
 use crate::ui::history::History;
 use crate::ui::layout;
 use crate::ui::panel::{line, row, span};
+use crate::ui::popup::Outcome;
 use crate::ui::shared::Shared;
 use crate::ui::text_field::TextField;
 use crate::ui::text_wrap::wrapped;
@@ -28,16 +29,6 @@ pub struct CommandLine {
     /// The typed text.
     pub field: TextField,
     history: History,
-}
-
-/// The effect of a key on the line.
-#[derive(Debug, PartialEq, Eq)]
-pub(in crate::ui) enum Outcome {
-    /// The user is still typing.
-    Typing,
-    /// The entered line, and `true` if it is new in the history.
-    Entered(String, bool),
-    Left,
 }
 
 impl CommandLine {
@@ -63,14 +54,14 @@ impl CommandLine {
 }
 
 /// Handles a key while the line is open.
-pub(in crate::ui) fn key(line: &mut CommandLine, state: &Shared, event: KeyEvent) -> Outcome {
+pub(in crate::ui) fn key(line: &mut CommandLine, state: &Shared, event: KeyEvent) -> Outcome<(String, bool)> {
     match event.code {
         KeyCode::Esc => return Outcome::Left,
         KeyCode::Backspace if line.field.is_empty() => return Outcome::Left,
         KeyCode::Enter => {
             let entered = line.field.take();
             let is_new = line.history.remember(&entered);
-            return Outcome::Entered(entered, is_new);
+            return Outcome::Chosen((entered, is_new));
         }
         KeyCode::Tab => {
             let suggestions = command::suggestions(state, line.field.value());
@@ -88,7 +79,7 @@ pub(in crate::ui) fn key(line: &mut CommandLine, state: &Shared, event: KeyEvent
             line.field.key(event);
         }
     }
-    Outcome::Typing
+    Outcome::Open
 }
 
 /// Draws the line in the last row and the suggestions above it. Returns the position of the cursor.

@@ -28,3 +28,10 @@ pub(in crate::ui) fn popup(
         .render(place, buffer);
     layout::inner(place)
 }
+
+/// Returns a line of keys, each followed by its effect.
+pub(in crate::ui) fn key_line(theme: &Theme, keys: &[(&str, &str)]) -> Line<'static> {
+    let spans =
+        keys.iter().flat_map(|&(key, does)| [span(theme, Role::Key, key), span(theme, Role::Text, does)]);
+    Line::from(spans.collect::<Vec<_>>())
+}

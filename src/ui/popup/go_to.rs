@@ -3,11 +3,11 @@
 use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
-use ratatui::text::Line;
 
 use crate::plan::FlightPlan;
-use crate::ui::panel::{line, row, span};
-use crate::ui::popup::frame::popup;
+use crate::ui::panel::{line, row};
+use crate::ui::popup::Outcome;
+use crate::ui::popup::frame::{key_line, popup};
 use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
 
@@ -26,15 +26,6 @@ pub struct GoTo {
     typed: String,
 }
 
-/// The effect of a key.
-#[derive(Debug)]
-pub(crate) enum Outcome {
-    /// The user is still choosing.
-    Choosing,
-    Left,
-    Chosen(u8),
-}
-
 impl GoTo {
     /// Returns the popup for `plan`. The first waypoint from `current` on is selected.
     pub(crate) fn new(plan: &FlightPlan, current: u8) -> Self {
@@ -49,7 +40,7 @@ impl GoTo {
         self.waypoints.iter().map(|(index, kind)| (*index, kind.as_str()))
     }
 
-    pub(crate) fn key(&mut self, event: KeyEvent) -> Outcome {
+    pub(in crate::ui) fn key(&mut self, event: KeyEvent) -> Outcome<u8> {
         match event.code {
             KeyCode::Up | KeyCode::Char('k') => self.selected = self.selected.saturating_sub(1),
             KeyCode::Down | KeyCode::Char('j') => {
@@ -63,7 +54,7 @@ impl GoTo {
             KeyCode::Esc | KeyCode::Char('G' | 'q') => return Outcome::Left,
             _ => {}
         }
-        Outcome::Choosing
+        Outcome::Open
     }
 
     /// Selects by number. A digit that leads to no waypoint begins a new number.
@@ -91,15 +82,8 @@ pub(crate) fn draw(state: &Shared, question: &GoTo, area: Rect, buffer: &mut Buf
             if first + at == question.selected { ("▸", Role::Selected) } else { (" ", Role::Text) };
         row(buffer, inside, at as u16, theme, role, &format!("{mark} waypoint {index:>2}  {kind}"));
     }
-    let keys = Line::from(vec![
-        span(theme, Role::Key, " ↑ ↓ 0…9"),
-        span(theme, Role::Text, " choose  "),
-        span(theme, Role::Key, "Enter"),
-        span(theme, Role::Text, " go  "),
-        span(theme, Role::Key, "Esc"),
-        span(theme, Role::Text, " close"),
-    ]);
-    line(buffer, inside, shown as u16 + 1, &keys);
+    let keys = [(" ↑ ↓ 0…9", " choose  "), ("Enter", " go  "), ("Esc", " close")];
+    line(buffer, inside, shown as u16 + 1, &key_line(theme, &keys));
 }
 
 #[cfg(test)]
@@ -108,7 +92,7 @@ mod tests {
     use crate::plan::{Waypoint, WaypointType};
     use crossterm::event::KeyModifiers;
 
-    fn press(question: &mut GoTo, code: KeyCode) -> Outcome {
+    fn press(question: &mut GoTo, code: KeyCode) -> Outcome<u8> {
         question.key(KeyEvent::new(code, KeyModifiers::NONE))
     }
 
@@ -120,7 +104,7 @@ mod tests {
         }
         plan.waypoints[1].kind = WaypointType::YawRate;
         let mut question = GoTo::new(&plan, 2);
-        assert!(matches!(press(&mut question, KeyCode::Up), Outcome::Choosing));
+        assert!(matches!(press(&mut question, KeyCode::Up), Outcome::Open));
         assert!(matches!(press(&mut question, KeyCode::Enter), Outcome::Chosen(0)), "1 has no place");
         for (digit, chosen) in [('1', 0), ('2', 12), ('3', 3), ('9', 9)] {
             press(&mut question, KeyCode::Char(digit));

@@ -8,6 +8,7 @@ use ratatui::widgets::{Block, Clear, Widget as _};
 use crate::geo::LatLon;
 use crate::ui::layout;
 use crate::ui::panel::row;
+use crate::ui::popup::Outcome;
 use crate::ui::theme::{Role, Theme};
 
 /// The width of the inside.
@@ -54,22 +55,13 @@ pub struct MapMenu {
     selected: usize,
 }
 
-/// The effect of a key or a click.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::ui) enum Outcome {
-    /// The user is still choosing.
-    Choosing,
-    Left,
-    Chosen(MapChoice),
-}
-
 impl MapMenu {
     /// Returns a menu of these choices.
     pub(in crate::ui) fn new(place: LatLon, at: (u16, u16), choices: Vec<MapChoice>) -> Self {
         Self { place, at, choices, selected: 0 }
     }
 
-    pub(in crate::ui) fn key(&mut self, event: KeyEvent) -> Outcome {
+    pub(in crate::ui) fn key(&mut self, event: KeyEvent) -> Outcome<MapChoice> {
         match event.code {
             KeyCode::Up | KeyCode::Char('k') => self.selected = self.selected.saturating_sub(1),
             KeyCode::Down | KeyCode::Char('j') => {
@@ -84,18 +76,18 @@ impl MapMenu {
             }
             _ => {}
         }
-        Outcome::Choosing
+        Outcome::Open
     }
 
     /// Handles a click on a screen of this size. A click outside closes the menu.
-    pub(in crate::ui) fn click(&self, size: (u16, u16), (column, line): (u16, u16)) -> Outcome {
+    pub(in crate::ui) fn click(&self, size: (u16, u16), (column, line): (u16, u16)) -> Outcome<MapChoice> {
         let inside = layout::inner(self.rect(Rect::new(0, 0, size.0, size.1)));
         let is_inside = (inside.left()..inside.right()).contains(&column)
             && (inside.top()..inside.bottom()).contains(&line);
         if is_inside { self.chosen(usize::from(line - inside.y)) } else { Outcome::Left }
     }
 
-    fn chosen(&self, index: usize) -> Outcome {
+    fn chosen(&self, index: usize) -> Outcome<MapChoice> {
         self.choices.get(index).map_or(Outcome::Left, |choice| Outcome::Chosen(*choice))
     }
 

@@ -10,6 +10,7 @@ use crate::ui::command::{self, Command};
 use crate::ui::formatting::cut;
 use crate::ui::fuzzy;
 use crate::ui::panel::{line, row, span};
+use crate::ui::popup::Outcome;
 use crate::ui::popup::frame::popup;
 use crate::ui::shared::Shared;
 use crate::ui::text_field::TextField;
@@ -40,16 +41,6 @@ pub(in crate::ui) enum Entry {
     Action(&'static Spec),
     /// A command with an argument.
     Command(Command),
-}
-
-/// The effect of a key.
-#[derive(Debug)]
-pub(in crate::ui) enum Outcome {
-    /// The user is still searching.
-    Searching,
-    /// The user chose this row.
-    Chosen(Entry),
-    Left,
 }
 
 impl Entry {
@@ -108,14 +99,14 @@ pub(in crate::ui) fn entries(query: &str) -> Vec<Entry> {
 }
 
 /// Handles a key while the palette is open.
-pub(in crate::ui) fn key(palette: &mut Palette, event: KeyEvent) -> Outcome {
+pub(in crate::ui) fn key(palette: &mut Palette, event: KeyEvent) -> Outcome<Entry> {
     let found = entries(palette.query.value());
     let last = found.len().saturating_sub(1);
     match event.code {
         KeyCode::Esc => return Outcome::Left,
         KeyCode::Enter => match found.get(palette.selected) {
             Some(entry) => return Outcome::Chosen(*entry),
-            None => return Outcome::Searching,
+            None => return Outcome::Open,
         },
         KeyCode::Up => palette.selected = palette.selected.saturating_sub(1),
         KeyCode::Down => palette.selected = (palette.selected + 1).min(last),
@@ -129,7 +120,7 @@ pub(in crate::ui) fn key(palette: &mut Palette, event: KeyEvent) -> Outcome {
             }
         }
     }
-    Outcome::Searching
+    Outcome::Open
 }
 
 /// Draws the palette. Returns the position of the cursor.

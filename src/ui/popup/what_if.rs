@@ -3,28 +3,19 @@
 use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
-use ratatui::text::Line;
 
 use crate::flight::forecast::{WHAT_IFS, WhatIf};
-use crate::ui::popup::frame::popup;
+use crate::ui::popup::Outcome;
+use crate::ui::popup::frame::{key_line, popup};
 use crate::ui::theme::{Role, Theme};
 
-use crate::ui::panel::{line, row, span};
+use crate::ui::panel::{line, row};
 
 /// The width of the inside.
 const WIDTH: u16 = 34;
 
-/// The effect of a key.
-#[derive(Debug)]
-pub(crate) enum Outcome {
-    /// The user is still choosing.
-    Choosing,
-    Left,
-    Chosen(WhatIf),
-}
-
 /// Handles a key for the list; `selected` is the selected row.
-pub(crate) fn key(selected: &mut usize, event: KeyEvent) -> Outcome {
+pub(crate) fn key(selected: &mut usize, event: KeyEvent) -> Outcome<WhatIf> {
     match event.code {
         KeyCode::Up | KeyCode::Char('k') => *selected = selected.saturating_sub(1),
         KeyCode::Down | KeyCode::Char('j') => *selected = (*selected + 1).min(WHAT_IFS.len() - 1),
@@ -34,7 +25,7 @@ pub(crate) fn key(selected: &mut usize, event: KeyEvent) -> Outcome {
         KeyCode::Esc | KeyCode::Char('w' | 'q') => return Outcome::Left,
         _ => {}
     }
-    Outcome::Choosing
+    Outcome::Open
 }
 
 /// Draws the popup; `selected` is the selected row.
@@ -45,13 +36,6 @@ pub(crate) fn draw(theme: &Theme, selected: usize, area: Rect, buffer: &mut Buff
         let (mark, role) = if at == selected { ("▸", Role::Selected) } else { (" ", Role::Text) };
         row(buffer, inside, at as u16, theme, role, &format!("{mark} {}", what_if.title));
     }
-    let keys = Line::from(vec![
-        span(theme, Role::Key, " ↑ ↓"),
-        span(theme, Role::Text, " choose  "),
-        span(theme, Role::Key, "Enter"),
-        span(theme, Role::Text, " fly  "),
-        span(theme, Role::Key, "Esc"),
-        span(theme, Role::Text, " close"),
-    ]);
-    line(buffer, inside, height - 1, &keys);
+    let keys = [(" ↑ ↓", " choose  "), ("Enter", " fly  "), ("Esc", " close")];
+    line(buffer, inside, height - 1, &key_line(theme, &keys));
 }

@@ -1,8 +1,8 @@
 //! Carries out a choice of the menu of a place on the map.
 
+use super::popup::chosen;
 use super::view;
 use crate::geo::LatLon;
-use crate::session::Command;
 use crate::telemetry::InFlightCommand;
 use crate::ui::app_state::AppState;
 use crate::ui::editor::Column;
@@ -12,21 +12,15 @@ use crate::ui::map_point::to_map;
 use crate::ui::map_state::MapItem;
 use crate::ui::message::Effect;
 use crate::ui::panel::Panel;
-use crate::ui::popup::map_menu::{MapChoice, Outcome};
+use crate::ui::popup::Outcome;
+use crate::ui::popup::map_menu::MapChoice;
 use crate::vehicle::VehicleCommand;
 
 /// Carries out the choice of a key or a click.
-pub(super) fn take(state: &mut AppState, place: LatLon, outcome: Outcome) -> Vec<Effect> {
-    let choice = match outcome {
-        Outcome::Choosing => return Vec::new(),
-        Outcome::Left => {
-            state.popups.pop();
-            return Vec::new();
-        }
-        Outcome::Chosen(choice) => choice,
+pub(super) fn take(state: &mut AppState, place: LatLon, outcome: Outcome<MapChoice>) -> Vec<Effect> {
+    let (Some(choice), Some(frame)) = (chosen(&mut state.popups, outcome), origin(&state.shared)) else {
+        return Vec::new();
     };
-    state.popups.pop();
-    let Some(frame) = origin(&state.shared) else { return Vec::new() };
     let place = to_map(&frame, place);
     match choice {
         MapChoice::AddWaypoint => map_edit::add_at(&mut state.shared, place),
@@ -42,7 +36,7 @@ pub(super) fn take(state: &mut AppState, place: LatLon, outcome: Outcome) -> Vec
             state.shared.editor.delete()
         }
         MapChoice::GoTo(index) => {
-            vec![Effect::Send(Command::Vehicle(VehicleCommand::InFlight(InFlightCommand::GoTo(index))))]
+            vec![VehicleCommand::InFlight(InFlightCommand::GoTo(index)).into()]
         }
     }
 }

@@ -3,7 +3,6 @@
 use crossterm::event::{KeyCode, KeyEvent};
 
 use super::{act, map_menu, permission, run_line};
-use crate::session::Command;
 use crate::telemetry::InFlightCommand;
 use crate::ui::action::{self, Action};
 use crate::ui::app_state::AppState;
@@ -14,39 +13,27 @@ use crate::ui::graphs::PLOTS;
 use crate::ui::history::LineField;
 use crate::ui::message::Effect;
 use crate::ui::popup::palette::Entry;
-use crate::ui::popup::{Popup, command_line, go_to, guards, palette, what_if};
+use crate::ui::popup::{Outcome, Popup, command_line, guards, palette, what_if};
 use crate::vehicle::VehicleCommand;
 
 /// Handles a key for the popup opened last; `found` is the action of the key without a popup.
 pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) -> Vec<Effect> {
     match state.popups.last_mut() {
         None => Vec::new(),
-        Some(Popup::GoTo(question)) => match question.key(event) {
-            go_to::Outcome::Choosing => Vec::new(),
-            go_to::Outcome::Left => {
-                state.popups.pop();
-                Vec::new()
-            }
-            go_to::Outcome::Chosen(index) => {
-                state.popups.pop();
-                vec![Effect::Send(Command::Vehicle(VehicleCommand::InFlight(InFlightCommand::GoTo(index))))]
-            }
-        },
+        Some(Popup::GoTo(question)) => {
+            let outcome = question.key(event);
+            let go_to = |index| VehicleCommand::InFlight(InFlightCommand::GoTo(index)).into();
+            chosen(&mut state.popups, outcome).map(go_to).into_iter().collect()
+        }
         Some(Popup::MapMenu(menu)) => {
             let (outcome, place) = (menu.key(event), menu.place);
             map_menu::take(state, place, outcome)
         }
-        Some(Popup::WhatIf { selected }) => match what_if::key(selected, event) {
-            what_if::Outcome::Choosing => Vec::new(),
-            what_if::Outcome::Left => {
-                state.popups.pop();
-                Vec::new()
-            }
-            what_if::Outcome::Chosen(what_if) => {
-                state.popups.pop();
-                forecast::ask_what_if(&mut state.shared, what_if)
-            }
-        },
+        Some(Popup::WhatIf { selected }) => {
+            let outcome = what_if::key(selected, event);
+            let what_if = chosen(&mut state.popups, outcome);
+            what_if.map_or_else(Vec::new, |what_if| forecast::ask_what_if(&mut state.shared, what_if))
+        }
         Some(Popup::Guards { selected }) => {
             let mut chosen = *selected;
             let stays = guards::key(&mut chosen, event);
@@ -80,39 +67,27 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) 
             }
             Vec::new()
         }
-        Some(Popup::CommandLine) => match command_line::key(&mut state.command_line, &state.shared, event) {
-            command_line::Outcome::Typing => Vec::new(),
-            command_line::Outcome::Left => {
-                state.popups.pop();
-                Vec::new()
+        Some(Popup::CommandLine) => {
+            let outcome = command_line::key(&mut state.command_line, &state.shared, event);
+            let Some((line, is_new)) = chosen(&mut state.popups, outcome) else { return Vec::new() };
+            let mut effects = run(state, &line);
+            if is_new {
+                // Before the line's own effects, so that `quit` is kept, too.
+                effects.insert(0, Effect::Files(FileRequest::KeepLine(LineField::Command, line)));
             }
-            command_line::Outcome::Entered(line, is_new) => {
-                state.popups.pop();
-                let mut effects = run(state, &line);
-                if is_new {
-                    // Before the line's own effects, so that `quit` is kept, too.
-                    effects.insert(0, Effect::Files(FileRequest::KeepLine(LineField::Command, line)));
-                }
-                effects
-            }
-        },
-        Some(Popup::Palette(palette)) => match palette::key(palette, event) {
-            palette::Outcome::Searching => Vec::new(),
-            palette::Outcome::Left => {
-                state.popups.pop();
-                Vec::new()
-            }
-            palette::Outcome::Chosen(entry) => {
-                state.popups.pop();
-                match entry {
-                    Entry::Action(spec) => act(state, spec.action),
-                    Entry::Command(command) => {
-                        open_command_line(state, &format!("{} ", command.name));
-                        Vec::new()
-                    }
+            effects
+        }
+        Some(Popup::Palette(palette)) => {
+            let outcome = palette::key(palette, event);
+            match chosen(&mut state.popups, outcome) {
+                None => Vec::new(),
+                Some(Entry::Action(spec)) => act(state, spec.action),
+                Some(Entry::Command(command)) => {
+                    open_command_line(state, &format!("{} ", command.name));
+                    Vec::new()
                 }
             }
-        },
+        }
         Some(Popup::Help { scroll }) => {
             let to = match event.code {
                 KeyCode::Up | KeyCode::Char('k') => Some(scroll.saturating_sub(1)),
@@ -133,6 +108,17 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) 
             }
         }
     }
+}
+
+/// Returns the choice in the popup opened last, which closes unless it stays open.
+pub(super) fn chosen<T>(popups: &mut Vec<Popup>, outcome: Outcome<T>) -> Option<T> {
+    let choice = match outcome {
+        Outcome::Open => return None,
+        Outcome::Left => None,
+        Outcome::Chosen(choice) => Some(choice),
+    };
+    popups.pop();
+    choice
 }
 
 /// Opens the `:` line with this text.
