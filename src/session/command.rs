@@ -12,33 +12,13 @@ use crate::telemetry::{LinkState, LostTime, Snapshot};
 use crate::timeline::{RecordedFlight, TimelineView};
 use crate::vehicle::{Vehicle, VehicleCommand};
 
-/// Refusal to pause, step or accelerate time with an external simulator.
-pub const TIME_IS_EXTERNAL: &str = "The simulator sets the time: pause it or change its speed there.";
-
-/// Refusal to pause, step or accelerate time with a remote flight controller.
-pub const TIME_IS_THE_FIRMWARES: &str =
-    "The remote firmware runs on the wall clock: time cannot be paused, stepped or made faster.";
-
-/// Refusal to put the craft back home with an external simulator.
-pub const PLACE_IS_EXTERNAL: &str =
-    "The simulator places the craft: reset its world there, and the firmware restarts by itself.";
-
-/// Refusal to rewind a flight whose flight controller is remote.
-pub const NOT_RECORDED: &str = "The flight controller runs elsewhere: its time cannot be rewound.";
-
 /// Notice that the recording is not the whole flight.
 pub const BEGINNING_LOST: &str =
     "The recording does not reach back to where this flight began: put the craft back home and fly again.";
 
-/// Refusal of control inputs while an earlier instant is shown.
-pub const REWOUND: &str = "An earlier instant is shown: `b` flies on from here, `e` goes back to the end.";
-
 /// Refusal of changes by clients of the doors while an earlier instant is shown.
 pub const REWOUND_FOR_CLIENTS: &str =
     "An earlier instant is shown on the screen: changes are refused until you leave it there";
-
-/// Refusal of an upload while another one is under way.
-pub const UPLOADING: &str = "another upload is under way: wait until it ends, then upload again";
 
 /// The instant to show.
 #[derive(Debug, Clone, Copy, PartialEq)]

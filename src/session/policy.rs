@@ -3,15 +3,30 @@
 
 use std::fmt;
 
-use super::command::{
-    Command, NOT_RECORDED, PLACE_IS_EXTERNAL, REWOUND, SessionView, TIME_IS_EXTERNAL, TIME_IS_THE_FIRMWARES,
-};
+use super::command::{Command, SessionView};
 use crate::fc::{
     Access, Denial, Impact, NOTHING_MOVES, NOTHING_SIMULATED, RemoteState, RemoteView, UploadView,
 };
 use crate::flight::forecast::{CONTROLLER_IS_REMOTE, PHYSICS_IS_EXTERNAL};
 use crate::telemetry::LinkState;
 use crate::vehicle::VehicleCommand;
+
+/// Refusal to pause, step or accelerate time with an external simulator.
+pub const TIME_IS_EXTERNAL: &str = "The simulator sets the time: pause it or change its speed there.";
+
+/// Refusal to pause, step or accelerate time with a remote flight controller.
+pub const TIME_IS_THE_FIRMWARES: &str =
+    "The remote firmware runs on the wall clock: time cannot be paused, stepped or made faster.";
+
+/// Refusal to put the craft back home with an external simulator.
+pub const PLACE_IS_EXTERNAL: &str =
+    "The simulator places the craft: reset its world there, and the firmware restarts by itself.";
+
+/// Refusal to rewind a flight whose flight controller is remote.
+pub const NOT_RECORDED: &str = "The flight controller runs elsewhere: its time cannot be rewound.";
+
+/// Refusal of control inputs while an earlier instant is shown.
+pub const REWOUND: &str = "An earlier instant is shown: `b` flies on from here, `e` goes back to the end.";
 
 /// The refusal for a flight controller without waypoints.
 const NO_PLANS: &str = "This flight controller has no waypoints: build its firmware with flight plans, \

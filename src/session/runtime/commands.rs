@@ -5,13 +5,12 @@ use std::time::Duration;
 
 use super::Session;
 use super::interface::UploadTo;
-use super::limits::refuse_to_real_craft;
+use super::limits::refuse_command;
 use crate::flight::forecast;
-use crate::session::command::{
-    Command, PLACE_IS_EXTERNAL, Seek, TIME_IS_EXTERNAL, TIME_IS_THE_FIRMWARES, VehicleCopy,
-};
+use crate::session::command::{Command, Seek, VehicleCopy};
+use crate::session::policy::{self, Facts, Intent, RemoteFacts};
+use crate::session::simulator::Simulator;
 use crate::sim::WorldCommand;
-use crate::telemetry::LinkState;
 use crate::vehicle::{Answer, Reply, VehicleCommand, VehicleRefusal};
 
 impl Session {
@@ -58,20 +57,10 @@ impl Session {
     }
 
     fn carry_out(&mut self, command: Command, now: Duration) {
-        let Some(command) = self.refuse_while_rewound(command) else { return };
-        let command = match refuse_to_real_craft(command, self.access()) {
-            Ok(command) => command,
-            Err(notice) => return self.notices(notice),
-        };
+        if let Err(refusal) = policy::check(&self.facts(), Intent::of(&command)) {
+            return self.notices(refuse_command(command, refusal));
+        }
         match command {
-            Command::Pause(_) | Command::Step(_) | Command::Speed(_) | Command::Seek(_) | Command::FlyOn
-                if self.simulator.is_some() =>
-            {
-                self.notice(TIME_IS_EXTERNAL);
-            }
-            Command::Pause(_) | Command::Step(_) | Command::Speed(_) if self.runner.link.is_some() => {
-                self.notice(TIME_IS_THE_FIRMWARES);
-            }
             Command::Pause(paused) => {
                 self.run_on = None;
                 self.runner.pacer.set_paused(paused, now);
@@ -82,6 +71,7 @@ impl Session {
             Command::Speed(speed) => self.runner.pacer.set_speed(speed, now),
             Command::Vehicle(command) => self.command_vehicle(&command),
             Command::StartPilot => self.apply(&VehicleCommand::StartPilot(self.takeoff_m)),
+            Command::Cli { line, reply } if self.is_rewound() => reply.send(self.read_shown(&line)),
             Command::Cli { line, reply } => {
                 let handler = self.endpoints.as_mut().map(|endpoints| &mut endpoints.handler);
                 let (controller, persistence) = (self.vehicle.controller_mut(), &mut self.persistence);
@@ -122,6 +112,19 @@ impl Session {
         }
     }
 
+    /// Returns the facts on which it depends what is allowed now.
+    fn facts(&self) -> Facts {
+        Facts {
+            access: self.access(),
+            remote: self.runner.link.as_ref().map(|link| RemoteFacts::from(&link.remote().view())),
+            simulator: self.simulator.as_ref().map(Simulator::state),
+            upload: self.interface.upload_under_way(),
+            is_piloted: self.vehicle.transmitter().pilot().is_some(),
+            is_recorded: self.timeline.is_some(),
+            is_rewound: self.is_rewound(),
+        }
+    }
+
     fn command_vehicle(&mut self, command: &VehicleCommand) {
         match command {
             VehicleCommand::ResetCraft => return self.reset_craft(),
@@ -149,16 +152,9 @@ impl Session {
     }
 
     fn reset_craft(&mut self) {
-        match &self.simulator {
-            Some(simulator) if simulator.state() == LinkState::Flowing => {
-                self.notice(PLACE_IS_EXTERNAL);
-                return;
-            }
-            Some(_) => {
-                self.vehicle.reset_craft();
-                self.notice("The firmware restarted, disarmed; the simulator places the craft.");
-            }
-            None => self.vehicle.reset_craft(),
+        self.vehicle.reset_craft();
+        if self.simulator.is_some() {
+            self.notice("The firmware restarted, disarmed; the simulator places the craft.");
         }
         if let Some(endpoints) = &mut self.endpoints {
             endpoints.handler.after_restart(false, self.vehicle.controller_mut());

@@ -9,7 +9,7 @@ use crate::fc::{
 use crate::firmware::cli::{CliAction, CliReply, Interpreter, advice};
 use crate::msp::code;
 use crate::plan::{AltitudeReference, FlightPlan};
-use crate::session::command::{CliOutput, UPLOADING};
+use crate::session::command::CliOutput;
 use crate::session::host_status::HostStatus;
 use crate::session::late_answers::{LateAnswers, NO_ANSWER, no_answer_line};
 use crate::session::persistence::Persistence;
@@ -89,11 +89,6 @@ impl Interface {
         reply: Reply<UploadReport>,
         craft: &mut UploadTo<'_>,
     ) -> Vec<String> {
-        // The lines of two uploads would mix.
-        if self.upload_under_way().is_some() {
-            reply.send(Err(UPLOADING.to_owned()));
-            return Vec::new();
-        }
         let reference = craft.vehicle.controller().altitude_reference();
         let landing_gains = match reference {
             AltitudeReference::SeaLevel { .. } if is_simulated => replace_falling_gains(&mut settings),

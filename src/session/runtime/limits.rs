@@ -1,73 +1,29 @@
-//! Refuses actions that are not allowed on a real craft.
+//! Answers refused commands, and refuses requests of clients that are not allowed on a real craft.
 
 use tokio::sync::oneshot;
 
-use crate::fc::{Access, Denial, Impact, NOTHING_MOVES, NOTHING_SIMULATED};
+use crate::fc::{Access, Denial, Impact, NOTHING_MOVES};
 use crate::link::Request;
 use crate::link::proto::command_line::LineReply;
 use crate::session::command::{CliOutput, Command};
-use crate::vehicle::VehicleCommand;
+use crate::session::policy::{REWOUND, Refusal};
 
-/// Returns the command if it is allowed. Otherwise answers it.
-///
-/// # Errors
-/// Returns the refusal as a notice, if the command has no answer.
-pub(super) fn refuse_to_real_craft(command: Command, access: Access) -> Result<Command, Option<String>> {
-    let Err(denial) = access.check(impact_of(&command)) else { return Ok(command) };
-    let sentence = denial.to_string();
+/// Answers a command with the reason for its refusal. Returns the reason as a notice if the command has no answer.
+pub(super) fn refuse_command(command: Command, refusal: Refusal) -> Option<String> {
+    let sentence = refusal.to_string();
     match command {
         Command::Cli { reply, .. } => {
-            let (text, advice) = ("###ERROR: NOT DONE###".to_owned(), Some(sentence));
+            let done = if refusal == Refusal::Now(REWOUND) { "REWOUND" } else { "NOT DONE" };
+            let (text, advice) = (format!("###ERROR: {done}###"), Some(sentence));
             reply.send(CliOutput { text, advice, restarted: false });
         }
         Command::Upload { reply, .. } => reply.send(Err(sentence)),
+        Command::Download { reply } => reply.send(Err(sentence)),
         Command::Save { reply } | Command::World { reply, .. } => reply.send(Err(sentence)),
-        _ => return Err(Some(sentence)),
+        Command::CopyVehicle(reply) => reply.send(Err(sentence)),
+        _ => return Some(sentence),
     }
-    Err(None)
-}
-
-/// Returns the impact of a command on a remote craft. Time and forecasts have their own rules.
-fn impact_of(command: &Command) -> Impact {
-    match command {
-        Command::Cli { line, .. } => Impact::of_line(line),
-        Command::Upload { .. } | Command::Save { .. } => Impact::Changes,
-        Command::Vehicle(command) => impact_on_vehicle(command),
-        Command::StartPilot => Impact::Forbidden(NOTHING_MOVES),
-        Command::World { .. } => Impact::Forbidden(NOTHING_SIMULATED),
-        Command::Pause(_)
-        | Command::Step(_)
-        | Command::Speed(_)
-        | Command::Seek(_)
-        | Command::FlyOn
-        | Command::Download { .. }
-        | Command::CopyVehicle(_)
-        | Command::RecordedFlight(_)
-        | Command::PermitChanges(_)
-        | Command::Subscribe(_)
-        | Command::Quit => Impact::Reads,
-    }
-}
-
-fn impact_on_vehicle(command: &VehicleCommand) -> Impact {
-    match command {
-        VehicleCommand::Line(line) => Impact::of_line(&line.1),
-        VehicleCommand::Message(message) => Impact::of_message(message.code, &message.payload),
-        VehicleCommand::Restart(_) => Impact::Changes,
-        VehicleCommand::CliOpened | VehicleCommand::CliClosed => Impact::Reads,
-        VehicleCommand::ResetCraft | VehicleCommand::World(_) => Impact::Forbidden(NOTHING_SIMULATED),
-        VehicleCommand::Rc(..)
-        | VehicleCommand::SticksFirst(_)
-        | VehicleCommand::ReturnHome
-        | VehicleCommand::InFlight(_)
-        | VehicleCommand::CancelReturn
-        | VehicleCommand::Sticks(_)
-        | VehicleCommand::CutRc(_)
-        | VehicleCommand::HoldChannel(_)
-        | VehicleCommand::ReleaseChannel(_)
-        | VehicleCommand::StartPilot(_)
-        | VehicleCommand::StopPilot => Impact::Forbidden(NOTHING_MOVES),
-    }
+    None
 }
 
 /// Returns the request of a client if it is allowed. Otherwise answers it and returns the refusal.
@@ -121,48 +77,7 @@ mod tests {
     use super::*;
     use crate::link::ClientId;
     use crate::link::proto::command_line::LineSource;
-    use crate::plan::FlightPlan;
-    use crate::session::ReplyTo;
     use crate::signals::RcFrame;
-    use crate::telemetry::InFlightCommand;
-
-    const MOVES: Impact = Impact::Forbidden(NOTHING_MOVES);
-    const SIMULATED: Impact = Impact::Forbidden(NOTHING_SIMULATED);
-
-    #[test]
-    fn commands_of_the_interface_are_held_to_the_rule_too() {
-        fn channel<T: Send + 'static>() -> ReplyTo<T> {
-            ReplyTo::channel().0
-        }
-        let line = |line: &str| Command::Cli { line: line.to_owned(), reply: channel() };
-        for (command, impact) in [
-            (line("get"), Impact::Reads),
-            (line("save"), Impact::Changes),
-            (line("motor 1 1500"), MOVES),
-            (
-                Command::Upload {
-                    plan: Box::new(FlightPlan::default()),
-                    settings: Vec::new(),
-                    reply: channel(),
-                },
-                Impact::Changes,
-            ),
-            (Command::Save { reply: channel() }, Impact::Changes),
-            (Command::Download { reply: channel() }, Impact::Reads),
-            (Command::Vehicle(VehicleCommand::Sticks(RcFrame::SAFE)), MOVES),
-            (Command::Vehicle(VehicleCommand::CutRc(true)), MOVES),
-            (Command::StartPilot, MOVES),
-            (Command::Vehicle(VehicleCommand::ReturnHome), MOVES),
-            (Command::Vehicle(VehicleCommand::CancelReturn), MOVES),
-            (Command::Vehicle(VehicleCommand::InFlight(InFlightCommand::HoldHere)), MOVES),
-            (Command::Vehicle(VehicleCommand::ResetCraft), SIMULATED),
-            (Command::World { line: "wind=5@270".to_owned(), reply: channel() }, SIMULATED),
-            (Command::PermitChanges(1), Impact::Reads),
-            (Command::Quit, Impact::Reads),
-        ] {
-            assert_eq!(impact_of(&command), impact, "{command:?}");
-        }
-    }
 
     #[test]
     fn a_refused_client_is_answered() {

@@ -11,10 +11,9 @@ use crate::firmware::cli::Interpreter;
 use crate::link::Request;
 use crate::session::Event;
 use crate::session::arming::ArmingWatch;
-use crate::session::command::{
-    BEGINNING_LOST, CliOutput, Command, NOT_RECORDED, REWOUND, REWOUND_FOR_CLIENTS, Seek,
-};
+use crate::session::command::{BEGINNING_LOST, CliOutput, REWOUND_FOR_CLIENTS, Seek};
 use crate::session::pacer::SPEED_RANGE;
+use crate::session::policy::{NOT_RECORDED, REWOUND};
 use crate::session::runner::tick;
 use crate::signals::SimTime;
 use crate::timeline::{RecordedFlight, Shown, Timeline, TimelineView};
@@ -100,41 +99,8 @@ impl Session {
         if self.run_on.is_some() { *SPEED_RANGE.end() } else { self.runner.pacer.speed() }
     }
 
-    /// Returns a command that may be carried out. Refuses control inputs while an earlier instant is shown.
-    pub(super) fn refuse_while_rewound(&mut self, command: Command) -> Option<Command> {
-        if !self.is_rewound() {
-            return Some(command);
-        }
-        match command {
-            Command::Pause(_)
-            | Command::Step(_)
-            | Command::Seek(_)
-            | Command::FlyOn
-            | Command::Speed(_)
-            | Command::CopyVehicle(_)
-            | Command::RecordedFlight(_)
-            | Command::PermitChanges(_)
-            | Command::Subscribe(_)
-            | Command::Quit => return Some(command),
-            Command::Cli { line, reply } if Impact::of_line(&line) == Impact::Reads => {
-                reply.send(self.read_shown(&line));
-            }
-            Command::Cli { reply, .. } => {
-                let (text, advice) = ("###ERROR: REWOUND###".to_owned(), Some(REWOUND.to_owned()));
-                reply.send(CliOutput { text, advice, restarted: false });
-            }
-            Command::Upload { reply, .. } => reply.send(Err(REWOUND.to_owned())),
-            Command::World { reply, .. } | Command::Save { reply } => {
-                reply.send(Err(REWOUND.to_owned()));
-            }
-            Command::Download { reply } => reply.send(Err(REWOUND.to_owned())),
-            Command::Vehicle(_) | Command::StartPilot => self.notice(REWOUND),
-        }
-        None
-    }
-
     /// Runs a read-only line on a copy of the vehicle that is shown.
-    fn read_shown(&self, line: &str) -> CliOutput {
+    pub(super) fn read_shown(&self, line: &str) -> CliOutput {
         let mut copy = self.copy_of_shown();
         let time_s = copy.time().as_secs_f64();
         match copy.controller_mut().run_cli(&mut Interpreter::default(), line) {
@@ -223,10 +189,6 @@ impl Session {
     }
 
     pub(super) fn seek(&mut self, seek: Seek, now: Duration) {
-        if self.timeline.is_none() {
-            self.notice(NOT_RECORDED);
-            return;
-        }
         self.flush_events();
         let (shown, head, marks) = (self.shown_vehicle().time(), self.vehicle.time(), self.events.marks());
         let before = |states_only| marks.before(shown, states_only).map(|mark| mark.time);

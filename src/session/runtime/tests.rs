@@ -9,7 +9,7 @@ use crate::firmware::{Firmware, FirmwareOptions};
 use crate::link::FcStream;
 use crate::plan::{Altitude, AltitudeReference, FlightPlan, Waypoint};
 use crate::session::ReplyTo;
-use crate::session::command::{Seek, UPLOADING};
+use crate::session::command::Seek;
 use crate::signals::SimTime;
 use crate::sim::WorldConfig;
 use crate::timeline::MarkKind;
@@ -208,7 +208,8 @@ fn a_craft_that_holds_another_waypoint_than_was_sent_is_found_by_reading_back() 
 fn the_lines_of_two_uploads_do_not_mix() {
     let mut rig = Rig::new();
     let (mut first, mut second) = (rig.upload(3), rig.upload(1));
-    assert_eq!(second.try_recv().unwrap(), Err(UPLOADING.to_owned()));
+    let refusal = second.try_recv().unwrap().unwrap_err();
+    assert!(refusal.starts_with("An upload is under way, line "), "{refusal}");
     while rig.answer(|_, _| {}) > 0 {}
     assert_eq!(first.try_recv().unwrap(), Ok(UploadReport::default()));
     assert_eq!(rig.firmware.stored_plan().waypoints.len(), 3);

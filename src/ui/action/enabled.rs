@@ -132,7 +132,7 @@ pub(in crate::ui) fn is_wrecked(state: &Shared) -> bool {
 mod tests {
     use super::*;
     use crate::session::SessionView;
-    use crate::session::command::REWOUND;
+    use crate::session::policy::REWOUND;
     use crate::timeline::TimelineView;
 
     #[test]

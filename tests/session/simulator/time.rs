@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use betadeck::link::endpoint::{EndpointKind, SimulatorStats};
 use betadeck::session::ReplyTo;
-use betadeck::session::command::{PLACE_IS_EXTERNAL, TIME_IS_EXTERNAL};
+use betadeck::session::policy::{PLACE_IS_EXTERNAL, TIME_IS_EXTERNAL};
 use betadeck::session::{Command, SessionView};
 use betadeck::telemetry::LinkState;
 use betadeck::vehicle::VehicleCommand;
