@@ -2,6 +2,23 @@
 //!
 //! The flight boots, waits for the fix, arms, climbs, engages and flies to the end. Like the core, it has no clock
 //! and no files. The caller gets its events and decides about their use.
+//!
+//! ```
+//! use betadeck::flight::{Flight, FlightOptions, FlightResult, FlightSetup};
+//! use betadeck::plan::builtin::BuiltinPlan;
+//!
+//! let plan = BuiltinPlan::find("land").unwrap().read().unwrap();
+//! let mut setup = FlightSetup { plan: plan.clone(), ..FlightSetup::default() };
+//! setup.stored.plan = plan.plan;
+//! let (vehicle, _notices) = setup.build().unwrap();
+//! let mut flight = Flight::new(vehicle, &FlightOptions::default()).unwrap();
+//! let end = loop {
+//!     if let Some(end) = flight.tick(|event| println!("{event:?}")) {
+//!         break end;
+//!     }
+//! };
+//! assert_eq!(end.verdict.result, FlightResult::Complete);
+//! ```
 
 pub mod forecast;
 mod judge;

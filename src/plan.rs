@@ -1,5 +1,17 @@
 //! Flight plans: pure data and rules, without I/O. Quantities are in SI; the units of files, lines and messages are in
 //! `format::WaypointRecord` only.
+//!
+//! ```
+//! use betadeck::plan::WaypointType;
+//! use betadeck::plan::format::{Format, parse};
+//!
+//! let text = "waypoint insert 0 47.3977000 8.5456000 2000 500 FLYOVER 0 NONE";
+//! let file = parse("field", text, Format::of_text(text)).unwrap();
+//! assert_eq!(file.plan.waypoints[0].kind, WaypointType::Flyover);
+//!
+//! let errors = parse("field", "waypoint insert 0 91.0", Format::CliText).unwrap_err();
+//! println!("{}", errors[0]);
+//! ```
 
 mod altitude_reference;
 pub mod builtin;

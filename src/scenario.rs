@@ -8,6 +8,17 @@
 //! ```
 //!
 //! This module does no I/O: the caller passes a reader for the files that a scenario names.
+//!
+//! ```
+//! use betadeck::scenario::{BuiltinFiles, BuiltinScenario, CaseFlight, Outcome, judge, read};
+//!
+//! let found = BuiltinScenario::find("takeoff").unwrap();
+//! let scenario = read(found.name, found.text, Some(&[1]), &mut BuiltinFiles).unwrap();
+//! let case = &scenario.cases[0];
+//! let flown = CaseFlight::new(case, &case.airs[0]).unwrap().fly();
+//! let (judgements, _measures) = judge(case, &flown);
+//! assert!(judgements.iter().all(|judgement| matches!(judgement.outcome, Outcome::Met(_))));
+//! ```
 
 mod allowance;
 mod case;

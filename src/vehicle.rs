@@ -12,6 +12,20 @@
 //! The flight controller is embedded or remote ([`FlightController`]). The physics is the simulated world or an
 //! external simulator. With the latter, each [`Vehicle::tick_on`] steps the flight controller on the measurements of
 //! that simulator, and [`Vehicle::see`] reports the place of the craft.
+//!
+//! ```
+//! use betadeck::flight::FlightSetup;
+//! use betadeck::signals::SimTime;
+//! use betadeck::vehicle::VehicleCommand;
+//!
+//! let (mut vehicle, _notices) = FlightSetup::default().build().unwrap();
+//! vehicle.apply(&VehicleCommand::CutRc(true));
+//! while vehicle.time() < SimTime::from_secs_f64(1.0) {
+//!     vehicle.tick();
+//! }
+//! vehicle.drain_events(|event| println!("{event:?}"));
+//! assert!(!vehicle.snapshot().craft.is_armed());
+//! ```
 
 mod command;
 mod controller;
