@@ -40,7 +40,7 @@ pub use in_flight::{InFlightCommand, InFlightRefusal};
 pub use link_state::LinkState;
 pub use lost_time::LostTime;
 pub use mode::{Mode, ModeFlags};
-pub use mode_box::ModeBox;
+pub use mode_box::{BoxLevel, ModeBox};
 pub use nav::{FenceAction, L1Mode, NavEvent, NavState, NavTelemetry, PlanSource};
 pub use refusal::{AbortReason, Refusal};
 pub use snapshot::Snapshot;

@@ -6,11 +6,13 @@ use crate::plan::FlightPlan;
 use crate::plan::estimate::TouchdownThrottle;
 use crate::signals::{RC_CHANNELS, RcSource, SimTime};
 use crate::telemetry::snapshot::{CraftView, EstimateView, GpsView, ModeRange, SettingsView};
-use crate::telemetry::{ArmingFlags, DisarmReason, FailsafeAhead, FirmwareEvent, ModeFlags, NavTelemetry};
+use crate::telemetry::{
+    ArmingFlags, DisarmReason, FailsafeAhead, FirmwareEvent, ModeBox, ModeFlags, NavTelemetry,
+};
 
 use super::config::{Configuration, ModeCondition};
 use super::estimate::Estimate;
-use super::modes::{BoxSet, boxes};
+use super::modes::BoxSet;
 use super::parameters::Parameters;
 use super::rx::{Receiver, channels};
 use super::{Firmware, battery};
@@ -284,9 +286,9 @@ impl Firmware {
             .filter(by_channel)
             .filter_map(|condition| {
                 let channel = condition.aux_channel + channels::AUX1 as u8;
-                let entry = boxes::by_id(condition.box_id)?;
+                let mode_box = ModeBox::from_repr(condition.box_id)?;
                 (usize::from(channel) < live).then_some(ModeRange {
-                    mode_box: entry.kind,
+                    mode_box,
                     channel,
                     start_us: condition.start_us,
                     end_us: condition.end_us,

@@ -3,8 +3,7 @@
 
 use std::path::Path;
 
-use betadeck::firmware::modes::boxes::{BOXES, BoxLevel};
-use betadeck::telemetry::{ArmingFlag, DisarmReason};
+use betadeck::telemetry::{ArmingFlag, BoxLevel, DisarmReason, ModeBox};
 use strum::IntoEnumIterator as _;
 
 fn page() -> String {
@@ -20,13 +19,13 @@ fn assert_on_page(table: &str) {
 #[test]
 fn boxes_are_those_of_the_code() {
     let mut table = String::from("| id | box | here |\n| --- | --- | --- |\n");
-    for entry in &BOXES {
-        let level = match entry.level {
+    for entry in ModeBox::iter() {
+        let level = match entry.level() {
             BoxLevel::Full => "works",
             BoxLevel::Flag => "is reported",
             BoxLevel::Name => "is accepted",
         };
-        table += &format!("| {} | {} | {level} |\n", entry.id(), entry.name());
+        table += &format!("| {} | {} | {level} |\n", entry as u8, entry);
     }
     assert_on_page(&table);
 }

@@ -35,20 +35,17 @@ fn rule(guards: impl IntoIterator<Item = Guard>, outcome: Outcome, reason: Trans
     Rule { guards: ArrayVec::from_iter(guards), outcome, reason }
 }
 
+/// Returns the rule that gives the mission up for the reason `why`.
+fn given_up(guard: Guard, outcome: impl Fn(AbortReason) -> Outcome, why: AbortReason) -> Rule {
+    rule([guard], outcome(why), TransitionReason::GivenUp(why))
+}
+
 /// Adds the rules that end a mission from any state.
 pub(super) fn common(state: NavState, facts: &Facts, list: &mut Rules) {
     let fix = Guard::new(GuardName::Fix, f64::from(u8::from(facts.fix)), GuardOp::Below, 1.0);
-    list.push(rule(
-        [fix],
-        Outcome::Abort(AbortReason::GpsLost),
-        TransitionReason::GivenUp(AbortReason::GpsLost),
-    ));
+    list.push(given_up(fix, Outcome::Abort, AbortReason::GpsLost));
     let plan = Guard::new(GuardName::Plan, f64::from(facts.count), GuardOp::Below, 1.0);
-    list.push(rule(
-        [plan],
-        Outcome::Abort(AbortReason::NoPlan),
-        TransitionReason::GivenUp(AbortReason::NoPlan),
-    ));
+    list.push(given_up(plan, Outcome::Abort, AbortReason::NoPlan));
     let fence = fence::FenceFacts { state, ..facts.fence };
     if let Some(outside) = fence::guard(&fence) {
         list.push(rule([outside], Outcome::Fence(fence.action), TransitionReason::Fence));
@@ -87,23 +84,15 @@ fn approaching(facts: &Facts, list: &mut Rules) {
 /// Adds the rules of the progress monitors unless they are paused. A return home that fails ends in a landing, so
 /// that the craft is not left in the air.
 pub(super) fn monitors(facts: &Facts, list: &mut Rules) {
-    let give_up = |why| match facts.fence.source {
+    let outcome = |why| match facts.fence.source {
         PlanSource::Stored => Outcome::Abort(why),
         PlanSource::Rth | PlanSource::Emergency => Outcome::LandHere,
     };
     if let Some(progress) = facts.progress {
         let stalled = Guard::new(GuardName::NoProgress, progress.no_progress_s, GuardOp::AtLeast, STALL_S);
-        list.push(rule(
-            [stalled],
-            give_up(AbortReason::Stalled),
-            TransitionReason::GivenUp(AbortReason::Stalled),
-        ));
+        list.push(given_up(stalled, outcome, AbortReason::Stalled));
         let away = Guard::new(GuardName::Flyaway, progress.distance_m, GuardOp::Above, progress.flyaway_m);
-        list.push(rule(
-            [away],
-            give_up(AbortReason::Flyaway),
-            TransitionReason::GivenUp(AbortReason::Flyaway),
-        ));
+        list.push(given_up(away, outcome, AbortReason::Flyaway));
     }
 }
 
@@ -186,12 +175,8 @@ fn holding(facts: &Facts, list: &mut Rules) {
             HoldPattern::None => hold_time(facts, list),
         },
         Then::Land => {
-            let over = Guard::new(
-                GuardName::HoldTime,
-                hold_s(facts),
-                GuardOp::AtLeast,
-                facts.waypoint.duration.get(),
-            );
+            let duration_s = facts.waypoint.duration.get();
+            let over = Guard::new(GuardName::HoldTime, hold_s(facts), GuardOp::AtLeast, duration_s);
             list.push(rule([over], Outcome::Land, TransitionReason::HoldTime));
         }
         Then::GoOn | Then::Loiter => hold_time(facts, list),

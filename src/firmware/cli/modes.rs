@@ -1,8 +1,8 @@
 //! `aux` and `adjrange`: the switches for modes and adjustments.
 
 use super::super::config::{ADJUSTMENT_RANGES, AdjustmentRange, MODE_CONDITIONS, ModeCondition, ModeLogic};
-use super::super::modes::boxes;
 use super::session::{Session, integer};
+use crate::telemetry::ModeBox;
 
 /// Formats the row of one mode condition.
 pub(super) fn aux_row(at: usize, condition: &ModeCondition) -> String {
@@ -64,7 +64,7 @@ pub(super) fn aux(session: &mut Session<'_>, rest: &str) {
 }
 
 fn known_box(session: &mut Session<'_>, id: i64) -> Option<u8> {
-    let known = u8::try_from(id).ok().filter(|id| boxes::is_known(*id));
+    let known = u8::try_from(id).ok().filter(|id| ModeBox::from_repr(*id).is_some());
     if known.is_none() {
         session.error(format_args!("MODE ID NOT KNOWN: {id}"));
     }

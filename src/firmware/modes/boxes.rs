@@ -1,9 +1,11 @@
 //! The boxes: modes that can be bound to a switch, by permanent id.
 //!
-//! Mode conditions, `aux` lines and protocols carry the permanent id. Protocols list the boxes in the order of
-//! [`BOXES`].
+//! Mode conditions, `aux` lines and protocols carry the permanent id. Protocols list the boxes in the order in which
+//! [`ModeBox`] declares them.
 
-use crate::telemetry::ModeBox;
+use strum::IntoEnumIterator as _;
+
+use crate::telemetry::{BoxLevel, ModeBox};
 
 /// The permanent id of a box.
 pub type BoxId = u8;
@@ -34,111 +36,6 @@ pub const GPS_RESCUE: BoxId = ModeBox::GpsRescue as BoxId;
 pub const STICK_COMMANDS_DISABLE: BoxId = ModeBox::StickCommandsDisable as BoxId;
 pub const AUTOPILOT: BoxId = ModeBox::Autopilot as BoxId;
 
-/// The effect of a box that is switched on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum BoxLevel {
-    /// The box has its full function.
-    Full,
-    /// The switch works and is reported, but has no other effect.
-    Flag,
-    /// The box is only accepted in mode conditions. No protocol lists it.
-    Name,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct BoxInfo {
-    pub kind: ModeBox,
-    /// The effect of the box here.
-    pub level: BoxLevel,
-}
-
-impl BoxInfo {
-    pub fn id(&self) -> BoxId {
-        self.kind as BoxId
-    }
-
-    /// Returns the name as protocols and displays print it.
-    pub fn name(&self) -> &'static str {
-        self.kind.into()
-    }
-}
-
-const fn full(kind: ModeBox) -> BoxInfo {
-    BoxInfo { kind, level: BoxLevel::Full }
-}
-
-const fn flag(kind: ModeBox) -> BoxInfo {
-    BoxInfo { kind, level: BoxLevel::Flag }
-}
-
-const fn name(kind: ModeBox) -> BoxInfo {
-    BoxInfo { kind, level: BoxLevel::Name }
-}
-
-/// All boxes in the order in which protocols list them.
-pub const BOXES: [BoxInfo; 50] = [
-    full(ModeBox::Arm),
-    full(ModeBox::Angle),
-    full(ModeBox::Horizon),
-    full(ModeBox::Mag),
-    full(ModeBox::AltHold),
-    full(ModeBox::HeadFree),
-    name(ModeBox::Chirp),
-    name(ModeBox::PassThru),
-    full(ModeBox::Failsafe),
-    full(ModeBox::PosHold),
-    full(ModeBox::GpsRescue),
-    full(ModeBox::Autopilot),
-    full(ModeBox::AntiGravity),
-    full(ModeBox::HeadAdjust),
-    name(ModeBox::CamStab),
-    flag(ModeBox::Beeper),
-    name(ModeBox::LedLow),
-    flag(ModeBox::Calib),
-    flag(ModeBox::OsdDisable),
-    name(ModeBox::Telemetry),
-    name(ModeBox::Servo1),
-    name(ModeBox::Servo2),
-    name(ModeBox::Servo3),
-    flag(ModeBox::Blackbox),
-    full(ModeBox::AirMode),
-    name(ModeBox::ThreeDDisable),
-    flag(ModeBox::FpvAngleMix),
-    name(ModeBox::BlackboxErase),
-    flag(ModeBox::CameraControl1),
-    flag(ModeBox::CameraControl2),
-    flag(ModeBox::CameraControl3),
-    name(ModeBox::CrashFlip),
-    full(ModeBox::Prearm),
-    flag(ModeBox::GpsBeepSatelliteCount),
-    name(ModeBox::VtxPitMode),
-    full(ModeBox::Paralyze),
-    flag(ModeBox::User1),
-    flag(ModeBox::User2),
-    flag(ModeBox::User3),
-    flag(ModeBox::User4),
-    name(ModeBox::PidAudio),
-    name(ModeBox::AcroTrainer),
-    name(ModeBox::VtxControlDisable),
-    flag(ModeBox::LaunchControl),
-    name(ModeBox::MspOverride),
-    full(ModeBox::StickCommandsDisable),
-    flag(ModeBox::BeeperMute),
-    flag(ModeBox::Ready),
-    name(ModeBox::LapTimerReset),
-    flag(ModeBox::WpCapture),
-];
-
-/// Returns the box with this permanent id.
-pub fn by_id(id: BoxId) -> Option<&'static BoxInfo> {
-    BOXES.iter().find(|entry| entry.id() == id)
-}
-
-/// Returns `true` if a box has this permanent id in any build.
-pub fn is_known(id: BoxId) -> bool {
-    by_id(id).is_some()
-}
-
 /// The equipment that decides which boxes protocols list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Equipment {
@@ -151,15 +48,15 @@ pub struct Equipment {
 }
 
 /// Returns the boxes that protocols list with this equipment, in order.
-pub fn listed(equipment: Equipment) -> impl Iterator<Item = &'static BoxInfo> {
-    BOXES.iter().filter(move |entry| match entry.id() {
+pub fn listed(equipment: Equipment) -> impl Iterator<Item = ModeBox> {
+    ModeBox::iter().filter(move |&entry| match entry as BoxId {
         MAG => equipment.mag,
         POS_HOLD | GPS_RESCUE | AUTOPILOT | 37 => equipment.gps,
         AIR_MODE => !equipment.airmode_feature,
         ANTI_GRAVITY => !equipment.anti_gravity_feature,
         // These need hardware that a simulated craft does not have.
         17 | 40..=43 => false,
-        _ => entry.level != BoxLevel::Name,
+        _ => entry.level() != BoxLevel::Name,
     })
 }
 
@@ -191,7 +88,7 @@ mod tests {
     fn default_list_is_the_one_configurators_know() {
         let ids: Vec<_> =
             listed(Equipment { gps: true, airmode_feature: true, anti_gravity_feature: true, mag: true })
-                .map(super::BoxInfo::id)
+                .map(|entry| entry as BoxId)
                 .collect();
         assert_eq!(
             ids,
@@ -203,20 +100,12 @@ mod tests {
     fn equipment_changes_the_list() {
         let bare: Vec<_> =
             listed(Equipment { gps: false, airmode_feature: false, anti_gravity_feature: false, mag: false })
-                .map(super::BoxInfo::id)
+                .map(|entry| entry as BoxId)
                 .collect();
         for missing in [MAG, POS_HOLD, GPS_RESCUE, AUTOPILOT] {
             assert!(!bare.contains(&missing));
         }
         assert!(bare.contains(&AIR_MODE));
-    }
-
-    #[test]
-    fn permanent_ids_are_unique() {
-        let mut ids: Vec<_> = BOXES.iter().map(super::BoxInfo::id).collect();
-        ids.sort_unstable();
-        ids.dedup();
-        assert_eq!(ids.len(), BOXES.len());
     }
 
     #[test]

@@ -1,18 +1,20 @@
 //! Boxes, mode ranges and adjustment ranges.
 
+use strum::IntoEnumIterator as _;
+
 use super::{Call, MspFacts, Refused};
 use crate::firmware::config::{
     ADJUSTMENT_RANGES, AdjustmentRange, Configuration, Feature, ModeCondition, ModeLogic,
 };
-use crate::firmware::modes::boxes::{self, BoxInfo, Equipment};
+use crate::firmware::modes::boxes::{self, BoxId, Equipment};
 use crate::msp::{ModeLink, ModeSlot, range_step, range_us};
-use crate::telemetry::Mode;
+use crate::telemetry::{Mode, ModeBox};
 
 /// The number of boxes on one page of the lists.
 const PAGE: usize = 32;
 
 /// Returns the boxes that this craft lists, in order. Names, ids and mode bits all use this list.
-fn listed(configuration: &Configuration, facts: &MspFacts) -> impl Iterator<Item = &'static BoxInfo> {
+fn listed(configuration: &Configuration, facts: &MspFacts) -> impl Iterator<Item = ModeBox> {
     boxes::listed(Equipment {
         gps: configuration.features.has(Feature::Gps),
         airmode_feature: configuration.features.has(Feature::AirMode),
@@ -24,7 +26,7 @@ fn listed(configuration: &Configuration, facts: &MspFacts) -> impl Iterator<Item
 pub(super) fn box_names(call: &mut Call<'_>) -> Result<(), Refused> {
     let page = usize::from(call.request.u8());
     for entry in listed(call.configuration, call.facts).skip(page * PAGE).take(PAGE) {
-        call.reply.bytes(entry.name().as_bytes());
+        call.reply.bytes(<&str>::from(entry).as_bytes());
         call.reply.u8(b';');
     }
     Ok(())
@@ -33,7 +35,7 @@ pub(super) fn box_names(call: &mut Call<'_>) -> Result<(), Refused> {
 pub(super) fn box_ids(call: &mut Call<'_>) -> Result<(), Refused> {
     let page = usize::from(call.request.u8());
     for entry in listed(call.configuration, call.facts).skip(page * PAGE).take(PAGE) {
-        call.reply.u8(entry.id());
+        call.reply.u8(entry as BoxId);
     }
     Ok(())
 }
@@ -50,21 +52,12 @@ pub(super) fn mode_bits(configuration: &Configuration, facts: &MspFacts) -> u64 
 }
 
 /// Returns `true` while a flight mode is active; for other boxes, while they are switched on.
-fn is_on(facts: &MspFacts, entry: &BoxInfo) -> bool {
-    let mode = match entry.id() {
-        boxes::ARM => return facts.armed,
-        boxes::ANGLE => Mode::Angle,
-        boxes::HORIZON => Mode::Horizon,
-        boxes::MAG => Mode::Mag,
-        boxes::ALTHOLD => Mode::AltHold,
-        boxes::HEADFREE => Mode::HeadFree,
-        boxes::FAILSAFE => Mode::Failsafe,
-        boxes::POS_HOLD => Mode::PosHold,
-        boxes::GPS_RESCUE => Mode::GpsRescue,
-        boxes::AUTOPILOT => Mode::Autopilot,
-        other => return facts.switches.has(other),
-    };
-    facts.modes.has(mode)
+fn is_on(facts: &MspFacts, entry: ModeBox) -> bool {
+    match Mode::iter().find(|&mode| ModeBox::from(mode) == entry) {
+        Some(Mode::Arm) => facts.armed,
+        Some(mode) => facts.modes.has(mode),
+        None => facts.switches.has(entry as BoxId),
+    }
 }
 
 pub(super) fn mode_ranges(call: &mut Call<'_>) -> Result<(), Refused> {
@@ -95,8 +88,8 @@ pub(super) fn set_mode_range(call: &mut Call<'_>) -> Result<(), Refused> {
         logic: ModeLogic::from_repr(request.u8()).unwrap_or_default(),
         linked: request.u8(),
     };
-    let is_valid = boxes::is_known(condition.box_id)
-        && boxes::is_known(condition.linked)
+    let is_valid = ModeBox::from_repr(condition.box_id).is_some()
+        && ModeBox::from_repr(condition.linked).is_some()
         && condition.aux_channel <= ModeCondition::MAX_AUX;
     match call.configuration.modes.get_mut(slot) {
         Some(place) if is_valid => *place = condition,
