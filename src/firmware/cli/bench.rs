@@ -65,10 +65,7 @@ const SOUNDS: [&str; 10] = [
 /// `play_sound [<index>]`. A simulator has no beeper, so this only prints the name.
 pub(super) fn play_sound(session: &mut Session<'_>, rest: &str) {
     let index = if rest.is_empty() { Some(0) } else { integer(rest) };
-    let Some(index) = index else {
-        session.not_understood();
-        return;
-    };
+    let Some(index) = session.understood(index) else { return };
     match usize::try_from(index).ok().and_then(|at| SOUNDS.get(at)) {
         Some(name) => session.line(format_args!("Playing sound {index}: {name}")),
         None => session.error("ARGUMENT OUT OF RANGE"),

@@ -44,10 +44,7 @@ pub(super) fn diff(session: &mut Session<'_>, rest: &str) {
 }
 
 fn print(session: &mut Session<'_>, rest: &str, changes_only: bool) {
-    let Some(style) = style(rest, changes_only) else {
-        session.not_understood();
-        return;
-    };
+    let Some(style) = session.understood(style(rest, changes_only)) else { return };
     let fresh = Configuration::default();
     match style.part {
         Part::Profile => profile(session, style, Scope::Profile, active(session, Scope::Profile)),

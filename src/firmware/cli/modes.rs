@@ -31,10 +31,7 @@ pub(super) fn aux(session: &mut Session<'_>, rest: &str) {
     let Some(index) = session.bounded(index, "INDEX", 0, MODE_CONDITIONS as i64 - 1) else { return };
     let at = index as usize;
     let numbers: Option<Vec<i64>> = arguments.iter().map(|word| integer(word)).collect();
-    let Some(numbers) = numbers else {
-        session.not_understood();
-        return;
-    };
+    let Some(numbers) = session.understood(numbers) else { return };
     let condition = match numbers.as_slice() {
         [] => None,
         &[mode, channel, start, end] => Some((mode, channel, start, end, 0, 0)),
@@ -105,10 +102,7 @@ pub(super) fn adjrange(session: &mut Session<'_>, rest: &str) {
     let Some(index) = session.bounded(index, "INDEX", 0, ADJUSTMENT_RANGES as i64 - 1) else { return };
     let at = index as usize;
     let numbers: Option<Vec<i64>> = arguments.iter().map(|word| integer(word)).collect();
-    let Some(numbers) = numbers else {
-        session.not_understood();
-        return;
-    };
+    let Some(numbers) = session.understood(numbers) else { return };
     let change = match numbers.as_slice() {
         [] => None,
         &[_, channel, start, end, function, select] => Some((channel, start, end, function, select, 0, 0)),

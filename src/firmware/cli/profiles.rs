@@ -20,10 +20,7 @@ pub(super) fn battery_profile(session: &mut Session<'_>, rest: &str) {
 
 fn select(session: &mut Session<'_>, rest: &str, scope: Scope, title: &str) {
     if !rest.is_empty() {
-        let Some(number) = integer(rest) else {
-            session.not_understood();
-            return;
-        };
+        let Some(number) = session.understood(integer(rest)) else { return };
         let instance = u8::try_from(number).unwrap_or(u8::MAX);
         if !session.configuration.settings.select(scope, instance) {
             session.error(format_args!("{title} OUTSIDE OF [0..{}]", scope.instances() - 1));

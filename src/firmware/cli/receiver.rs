@@ -18,10 +18,7 @@ pub(super) fn map(session: &mut Session<'_>, order: &str) {
             session.wrong_count();
             return;
         }
-        let Some(map) = ChannelMap::parse(order) else {
-            session.not_understood();
-            return;
-        };
+        let Some(map) = session.understood(ChannelMap::parse(order)) else { return };
         session.configuration.channel_map = map;
     }
     let map = session.configuration.channel_map;
@@ -104,10 +101,7 @@ pub(super) fn rxfail(session: &mut Session<'_>, rest: &str) {
             }
             _ => None,
         };
-        let Some(rule) = rule else {
-            session.not_understood();
-            return;
-        };
+        let Some(rule) = session.understood(rule) else { return };
         if let Some(slot) = session.configuration.rx_fail.0.get_mut(at) {
             *slot = rule;
         }

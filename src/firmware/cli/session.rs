@@ -55,6 +55,14 @@ impl Session<'_> {
         self.error("PARSING FAILED");
     }
 
+    /// Returns an argument, or refuses the command if it could not be parsed.
+    pub(super) fn understood<T>(&mut self, argument: Option<T>) -> Option<T> {
+        if argument.is_none() {
+            self.not_understood();
+        }
+        argument
+    }
+
     /// Refuses the command while the craft is armed. The caller returns if this is `true`.
     pub(super) fn refused_while_armed(&mut self) -> bool {
         if self.facts.armed {
