@@ -136,7 +136,7 @@ pub struct ControlState {
     pub setpoint_dps: [f64; 3],
     /// The PID sums before their limits; ±1000 = the full range of the mixer.
     pub pid_sum: [f64; 3],
-    /// The demanded roll and pitch while levelling, rad.
+    /// The demanded roll and pitch (nose down positive) while levelling, rad.
     pub angle_demand_rad: Option<[f64; 2]>,
 }
 
