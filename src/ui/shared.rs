@@ -142,6 +142,12 @@ impl Shared {
         self.notice = Some(Notice { text, severity, at: self.now });
     }
 
+    /// Shows a notice in place of effects.
+    pub(super) fn only_notify(&mut self, severity: Severity, text: impl Into<String>) -> Vec<Effect> {
+        self.notify(severity, text);
+        Vec::new()
+    }
+
     /// Reports a loss in the log, and on the screen until Esc clears it.
     pub(super) fn pin(&mut self, text: String) {
         self.log.push(self.view.vehicle.time, Severity::Fault, text.clone());

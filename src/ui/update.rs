@@ -353,16 +353,9 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
         Action::LookAhead => return forecast::toggle_look_ahead(&mut state.shared),
         Action::WhatIf => state.popups.push(Popup::WhatIf { selected: 0 }),
         Action::Pause => return vec![Effect::Send(Command::Pause(!state.shared.view.paused))],
-        Action::Step => {
-            let mut effects = Vec::new();
-            if !state.shared.view.paused {
-                effects.push(Effect::Send(Command::Pause(true)));
-            }
-            effects.push(Effect::Send(Command::Step(state.step_ticks)));
-            return effects;
-        }
-        Action::Tick
-        | Action::EventBack
+        Action::Step => return timeline::step(&state.shared, state.step_ticks),
+        Action::Tick => return timeline::step(&state.shared, 1),
+        Action::EventBack
         | Action::EventForward
         | Action::StateBack
         | Action::StateForward

@@ -19,92 +19,33 @@ pub struct Command {
     pub complete: fn(&Shared, &str, &str) -> Vec<String>,
 }
 
-const COMMANDS: &[Command] = &[
-    Command {
-        name: "set",
-        argument: "NAME=VALUE",
-        help: "A setting of the craft; without a value: shows it",
-        run: vehicle::set,
-        complete: vehicle::complete_set,
-    },
-    Command {
-        name: "cli",
-        argument: "LINE",
-        help: "A line for the firmware's command line",
-        run: vehicle::cli,
-        complete: vehicle::complete_cli,
-    },
-    Command {
-        name: "open",
-        argument: "FILE",
-        help: "Open a plan file; without a name: choose one",
-        run: plan::open,
-        complete: plan::complete,
-    },
-    Command {
-        name: "save",
-        argument: "FILE",
-        help: "Save the plan in this file; without a name: in its own",
-        run: plan::save,
-        complete: plan::complete,
-    },
-    Command {
-        name: "scenario",
-        argument: "FILE",
-        help: "Write the flight just flown as a scenario in this file; without a name: in one named as the plan",
-        run: plan::scenario,
-        complete: plan::complete,
-    },
-    Command {
-        name: "go-to",
-        argument: "WAYPOINT",
-        help: "Go now to a waypoint of the craft's plan; without a number: choose one",
-        run: flight::go_to,
-        complete: flight::complete_go_to,
-    },
-    Command {
-        name: "what-if",
-        argument: "NAME",
-        help: "How the flight would end with a fault now; without a name: choose one",
-        run: flight::what_if,
-        complete: flight::complete_what_if,
-    },
-    Command {
-        name: "speed",
-        argument: "FACTOR or max",
-        help: "Times real time",
-        run: time::speed,
-        complete: time::complete_speed,
-    },
-    Command {
-        name: "world",
-        argument: "NAME=VALUE",
-        help: "A rare switch of the simulated world",
-        run: world::switch,
-        complete: world::complete_switch,
-    },
-    Command {
-        name: "theme",
-        argument: "NAME",
-        help: "The colours: dark, light, high-contrast, 16, mono",
-        run: display::theme,
-        complete: display::complete_theme,
-    },
-    Command {
-        name: "charset",
-        argument: "unicode or ascii",
-        help: "The characters that the terminal shows",
-        run: display::charset,
-        complete: display::complete_charset,
-    },
-    Command {
-        name: "units",
-        argument: "metric or imperial",
-        help: "The units of what is shown, not of what is stored",
-        run: display::units,
-        complete: display::complete_units,
-    },
-];
+/// Makes the list of commands, a row each: name, argument, help, the function that runs it, and the one that completes its
+/// argument.
+macro_rules! commands {
+    ($($name:literal $argument:literal $help:literal $run:path, $complete:path;)*) => {
+        const COMMANDS: &[Command] =
+            &[$(Command { name: $name, argument: $argument, help: $help, run: $run, complete: $complete }),*];
+    };
+}
+
+commands! {
+    "set" "NAME=VALUE" "A setting of the craft; without a value: shows it" vehicle::set, vehicle::complete_set;
+    "cli" "LINE" "A line for the firmware's command line" vehicle::cli, vehicle::complete_cli;
+    "open" "FILE" "Open a plan file; without a name: choose one" plan::open, plan::complete;
+    "save" "FILE" "Save the plan in this file; without a name: in its own" plan::save, plan::complete;
+    "scenario" "FILE" "Write the flight just flown as a scenario in this file; without a name: in one named as the plan"
+        plan::scenario, plan::complete;
+    "go-to" "WAYPOINT" "Go now to a waypoint of the craft's plan; without a number: choose one"
+        flight::go_to, flight::complete_go_to;
+    "what-if" "NAME" "How the flight would end with a fault now; without a name: choose one"
+        flight::what_if, flight::complete_what_if;
+    "speed" "FACTOR or max" "Times real time" time::speed, time::complete_speed;
+    "world" "NAME=VALUE" "A rare switch of the simulated world" world::switch, world::complete_switch;
+    "theme" "NAME" "The colours: dark, light, high-contrast, 16, mono" display::theme, display::complete_theme;
+    "charset" "unicode or ascii" "The characters that the terminal shows" display::charset, display::complete_charset;
+    "units" "metric or imperial" "The units of what is shown, not of what is stored"
+        display::units, display::complete_units;
+}
 
 /// Returns all commands with an argument: those of the table, and the words that change the world.
 pub fn all() -> impl Iterator<Item = Command> {

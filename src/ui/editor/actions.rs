@@ -70,8 +70,7 @@ pub(in crate::ui) fn nudge(state: &mut Shared, steps: i32) -> Vec<Effect> {
     let kind = state.editor.document().plan.waypoints.get(state.editor.row()).map(|wp| wp.kind);
     match kind {
         Some(kind) if !column.is_used(kind) => {
-            state.notify(Severity::Warn, format!("A {kind} has no {}.", column.name()));
-            Vec::new()
+            state.only_notify(Severity::Warn, format!("A {kind} has no {}.", column.name()))
         }
         _ => state.editor.nudge(steps, state.units),
     }
@@ -108,10 +107,8 @@ pub(in crate::ui) fn next_waypoint(state: &Shared) -> Option<Waypoint> {
 pub(in crate::ui) fn insert(state: &mut Shared) -> Vec<Effect> {
     match next_waypoint(state) {
         Some(waypoint) => insert_waypoint(state, waypoint),
-        None => {
-            state.notify(Severity::Warn, "Home is not known yet: wait for the GPS fix, or paste a waypoint.");
-            Vec::new()
-        }
+        None => state
+            .only_notify(Severity::Warn, "Home is not known yet: wait for the GPS fix, or paste a waypoint."),
     }
 }
 
@@ -140,8 +137,10 @@ pub(in crate::ui) fn copy(state: &mut Shared) -> Vec<Effect> {
 pub(in crate::ui) fn paste_copied(state: &mut Shared) -> Vec<Effect> {
     if !state.editor.has_copy() {
         let copy = state.key(Action::Edit(EditAction::Copy));
-        state.notify(Severity::Warn, format!("Nothing was copied: `{copy}` copies the selected waypoints."));
-        return Vec::new();
+        return state.only_notify(
+            Severity::Warn,
+            format!("Nothing was copied: `{copy}` copies the selected waypoints."),
+        );
     }
     let pasted = state.editor.paste_copied();
     reported(state, pasted)
@@ -159,26 +158,19 @@ pub(in crate::ui) fn paste_text(state: &mut Shared, text: &str) -> Vec<Effect> {
             state.notify(Severity::Good, format!("Pasted {count} waypoints; `{undo}` removes them again."));
             effects
         }
-        Err(sentence) => {
-            state.notify(Severity::Warn, sentence);
-            Vec::new()
-        }
+        Err(sentence) => state.only_notify(Severity::Warn, sentence),
     }
 }
 
 fn reported(state: &mut Shared, done: Result<Vec<Effect>, String>) -> Vec<Effect> {
-    done.unwrap_or_else(|sentence| {
-        state.notify(Severity::Warn, sentence);
-        Vec::new()
-    })
+    done.unwrap_or_else(|sentence| state.only_notify(Severity::Warn, sentence))
 }
 
 pub(in crate::ui) fn undo(state: &mut Shared, redo: bool) -> Vec<Effect> {
     let done = if redo { state.editor.redo() } else { state.editor.undo() };
     let Some((label, effect)) = done else {
         let nothing = if redo { "Nothing to redo." } else { "Nothing to undo." };
-        state.notify(Severity::Info, nothing);
-        return Vec::new();
+        return state.only_notify(Severity::Info, nothing);
     };
     let verb = if redo { "Redone" } else { "Undone" };
     state.notify(Severity::Info, format!("{verb}: {label}."));
@@ -189,14 +181,8 @@ pub(in crate::ui) fn undo(state: &mut Shared, redo: bool) -> Vec<Effect> {
 pub(in crate::ui) fn take_fix(state: &mut Shared) -> Vec<Effect> {
     let found = findings::findings(state);
     match findings::shown(state, &found) {
-        None => {
-            state.notify(Severity::Good, "Nothing is wrong with this plan.");
-            Vec::new()
-        }
-        Some((finding, None)) => {
-            state.notify(Severity::Warn, format!("No edit fixes this: {finding}."));
-            Vec::new()
-        }
+        None => state.only_notify(Severity::Good, "Nothing is wrong with this plan."),
+        Some((finding, None)) => state.only_notify(Severity::Warn, format!("No edit fixes this: {finding}.")),
         Some((_, Some(fix))) => state.editor.replace_document(&fix.title, fix.document),
     }
 }
@@ -205,8 +191,7 @@ pub(in crate::ui) fn open_form(state: &mut Shared, kind: FormKind) -> Vec<Effect
     let document = state.editor.document();
     if kind == FormKind::Bulk && document.plan.waypoints.is_empty() {
         let text = format!("There is no waypoint to change: `{}` inserts one.", insert_key(state));
-        state.notify(Severity::Warn, text);
-        return Vec::new();
+        return state.only_notify(Severity::Warn, text);
     }
     state.editor.popup = Some(EditorPopup::Form(Form::of(kind, document, state.units)));
     state.editor.follow_generator(findings::home(state));
@@ -276,18 +261,15 @@ pub(in crate::ui) fn downloaded(
     result: Result<Box<FlightPlan>, String>,
 ) -> Vec<Effect> {
     let Some(open) = state.editor.plan_of(id) else {
-        state.notify(Severity::Warn, "Not downloaded: the plan that was to receive it is closed.");
-        return Vec::new();
+        return state
+            .only_notify(Severity::Warn, "Not downloaded: the plan that was to receive it is closed.");
     };
     let elsewhere = Some(open.title()).filter(|_| id != state.editor.plan().id());
     match result {
-        Err(sentence) => {
-            state.notify(Severity::Fault, format!("Not downloaded: {}", state.keymap.in_force(&sentence)));
-            Vec::new()
-        }
+        Err(sentence) => state
+            .only_notify(Severity::Fault, format!("Not downloaded: {}", state.keymap.in_force(&sentence))),
         Ok(held) if *held == open.document().plan => {
-            state.notify(Severity::Info, "The craft has the same plan.");
-            Vec::new()
+            state.only_notify(Severity::Info, "The craft has the same plan.")
         }
         Ok(held) => {
             let count = held.waypoints.len();

@@ -21,79 +21,34 @@ pub(in crate::ui) struct Plot {
     pub(in crate::ui) curves: &'static [(Signal, &'static str, Stroke)],
 }
 
-/// All plots, from top to bottom.
-pub(in crate::ui) const PLOTS: [Plot; 12] = [
-    Plot {
-        name: "altitude",
-        least_range: 4.0,
-        curves: &[
-            (Signal::TargetAltitude, "target", Stroke::Dotted),
-            (Signal::Altitude, "truth", Stroke::Dashed),
-            (Signal::EstAltitude, "estimate", Stroke::Solid),
-        ],
-    },
-    Plot {
-        name: "speed",
-        least_range: 2.0,
-        curves: &[
-            (Signal::Wind, "wind", Stroke::Dotted),
-            (Signal::EstClimb, "climb", Stroke::Dashed),
-            (Signal::EstSpeed, "ground", Stroke::Solid),
-        ],
-    },
-    Plot { name: "cross-track", least_range: 2.0, curves: &[(Signal::CrossTrack, "error", Stroke::Solid)] },
-    Plot {
-        name: "roll",
-        least_range: 10.0,
-        curves: &[
-            (Signal::RollSetpoint, "demand", Stroke::Dotted),
-            (Signal::EstRoll, "response", Stroke::Solid),
-        ],
-    },
-    Plot {
-        name: "pitch",
-        least_range: 10.0,
-        curves: &[
-            (Signal::PitchSetpoint, "demand", Stroke::Dotted),
-            (Signal::EstPitch, "response", Stroke::Solid),
-        ],
-    },
-    Plot { name: "throttle", least_range: 50.0, curves: &[(Signal::Throttle, "mixer", Stroke::Solid)] },
-    Plot {
-        name: "motors",
-        least_range: 0.1,
-        curves: &[
-            (Signal::Motor1, "1", Stroke::Solid),
-            (Signal::Motor2, "2", Stroke::Dashed),
-            (Signal::Motor3, "3", Stroke::Dotted),
-            (Signal::Motor4, "4", Stroke::Solid),
-        ],
-    },
-    Plot { name: "heading", least_range: 20.0, curves: &[(Signal::EstHeading, "estimate", Stroke::Solid)] },
-    Plot {
-        name: "distance",
-        least_range: 10.0,
-        curves: &[
-            (Signal::HomeDistance, "home", Stroke::Dashed),
-            (Signal::WpDistance, "waypoint", Stroke::Solid),
-        ],
-    },
-    Plot {
-        name: "position",
-        least_range: 10.0,
-        curves: &[(Signal::East, "east", Stroke::Dashed), (Signal::North, "north", Stroke::Solid)],
-    },
-    Plot {
-        name: "battery",
-        least_range: 1.0,
-        curves: &[(Signal::ReportedBattery, "voltage", Stroke::Solid)],
-    },
-    Plot {
-        name: "current",
-        least_range: 5.0,
-        curves: &[(Signal::ReportedCurrent, "battery", Stroke::Solid)],
-    },
-];
+/// Makes the list of plots, a row each: name, least range, and the signal, name and stroke of each curve.
+macro_rules! plots {
+    ($(#[$meta:meta])* $list:ident: $($name:literal $range:literal [$($signal:ident $curve:literal $stroke:ident),+];)*) => {
+        $(#[$meta])*
+        pub(in crate::ui) const $list: &[Plot] = &[$(Plot {
+            name: $name,
+            least_range: $range,
+            curves: &[$((Signal::$signal, $curve, Stroke::$stroke)),+],
+        }),*];
+    };
+}
+
+plots! {
+    /// All plots, from top to bottom.
+    PLOTS:
+    "altitude" 4.0 [TargetAltitude "target" Dotted, Altitude "truth" Dashed, EstAltitude "estimate" Solid];
+    "speed" 2.0 [Wind "wind" Dotted, EstClimb "climb" Dashed, EstSpeed "ground" Solid];
+    "cross-track" 2.0 [CrossTrack "error" Solid];
+    "roll" 10.0 [RollSetpoint "demand" Dotted, EstRoll "response" Solid];
+    "pitch" 10.0 [PitchSetpoint "demand" Dotted, EstPitch "response" Solid];
+    "throttle" 50.0 [Throttle "mixer" Solid];
+    "motors" 0.1 [Motor1 "1" Solid, Motor2 "2" Dashed, Motor3 "3" Dotted, Motor4 "4" Solid];
+    "heading" 20.0 [EstHeading "estimate" Solid];
+    "distance" 10.0 [HomeDistance "home" Dashed, WpDistance "waypoint" Solid];
+    "position" 10.0 [East "east" Dashed, North "north" Solid];
+    "battery" 1.0 [ReportedBattery "voltage" Solid];
+    "current" 5.0 [ReportedCurrent "battery" Solid];
+}
 
 impl Plot {
     /// Returns the dimension of the values.
@@ -109,7 +64,7 @@ mod tests {
     #[test]
     fn the_curves_of_a_plot_share_a_dimension_and_no_signal_is_drawn_twice() {
         let mut drawn = Vec::new();
-        for plot in &PLOTS {
+        for plot in PLOTS {
             for (signal, name, _) in plot.curves {
                 assert_eq!(signal.info().dimension, plot.dimension(), "{} {name}", plot.name);
                 assert!(!drawn.contains(signal), "{signal:?}");

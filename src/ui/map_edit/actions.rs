@@ -53,8 +53,7 @@ pub(in crate::ui) fn pick(state: &mut Shared) -> Vec<Effect> {
     let Some(cursor) = state.map.edit else {
         let key = state.key(Action::Edit(EditAction::OnMap));
         let text = format!("`{key}` shows a cursor with which waypoints are picked, added and moved.");
-        state.notify(Severity::Info, text);
-        return Vec::new();
+        return state.only_notify(Severity::Info, text);
     };
     if state.map.moving.is_some() {
         return put_down(state);
@@ -104,11 +103,10 @@ pub(in crate::ui) fn put_down(state: &mut Shared) -> Vec<Effect> {
         return Vec::new();
     }
     if moving.of != revision(state) {
-        state.notify(
+        return state.only_notify(
             Severity::Warn,
             "The plan was changed meanwhile, so nothing was moved: pick it up again.",
         );
-        return Vec::new();
     }
     let position = map_edit::position(&frame, moving.place);
     match moving.item {
@@ -141,8 +139,7 @@ pub(in crate::ui) fn add(state: &mut Shared) -> Vec<Effect> {
         toggle(state);
         let key = state.key(Action::Edit(EditAction::AddOnMap));
         let text = format!("Move the cursor with the arrow keys; `{key}` adds a waypoint there.");
-        state.notify(Severity::Info, text);
-        return Vec::new();
+        return state.only_notify(Severity::Info, text);
     };
     add_at(state, cursor.place)
 }
@@ -161,12 +158,10 @@ pub(in crate::ui) fn delete(state: &mut Shared) -> Vec<Effect> {
         let [shows, deletes] =
             [EditAction::OnMap, EditAction::DeleteOnMap].map(|action| state.key(Action::Edit(action)));
         let text = format!("`{shows}` shows a cursor: `{deletes}` deletes the waypoint under it.");
-        state.notify(Severity::Info, text);
-        return Vec::new();
+        return state.only_notify(Severity::Info, text);
     };
     let Some(MapItem::Waypoint(index)) = map_edit::item_at(state, cursor.place, view.scale) else {
-        state.notify(Severity::Info, "No waypoint is here.");
-        return Vec::new();
+        return state.only_notify(Severity::Info, "No waypoint is here.");
     };
     state.map.moving = None;
     state.editor.cancel();

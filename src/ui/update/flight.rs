@@ -52,8 +52,7 @@ pub(super) fn fly(state: &mut Shared) -> Vec<Effect> {
             "There is no plan to fly: `{insert}` in the Plan panel ({panel}) inserts a waypoint, \
              `{open}` opens a file."
         );
-        state.notify(Severity::Warn, text);
-        return Vec::new();
+        return state.only_notify(Severity::Warn, text);
     }
     let limits = settings_in_force::assumptions(state, state.editor.document());
     if let Some(refusal) = findings::refusal(state, state.plan(), &limits) {
@@ -67,8 +66,7 @@ pub(super) fn fly(state: &mut Shared) -> Vec<Effect> {
 fn not_flown(state: &mut Shared, refusal: &Finding) -> Vec<Effect> {
     let by_hand = [Action::Arm, Action::Throttle].map(|action| state.key(action)).join(" and ");
     let text = format!("Not flown, the autopilot would refuse: {}. By hand: {by_hand}.", refusal.reason());
-    state.notify(Severity::Warn, text);
-    Vec::new()
+    state.only_notify(Severity::Warn, text)
 }
 
 /// Uploads the open plan; in flight it asks before the waypoint that is flown to moves far.
@@ -125,11 +123,10 @@ pub(super) fn uploaded(
         Err(sentence) => {
             state.editor.forget_upload(id);
             state.editor.replaced_fence = None;
-            state.notify(
+            state.only_notify(
                 Severity::Fault,
                 format!("Uploading {title} failed: {}", state.keymap.in_force(&sentence)),
-            );
-            Vec::new()
+            )
         }
     }
 }

@@ -14,10 +14,6 @@ const SKIP_S: f64 = 10.0;
 /// Carries out an action of the timeline.
 pub(super) fn act(state: &Shared, action: Action) -> Vec<Effect> {
     let command = match action {
-        Action::Tick => {
-            let pause = (!state.view.paused).then_some(Effect::Send(Command::Pause(true)));
-            return pause.into_iter().chain([Effect::Send(Command::Step(1))]).collect();
-        }
         Action::EventBack => Command::Seek(Seek::Back { states_only: false }),
         Action::EventForward => Command::Seek(Seek::Forward { states_only: false }),
         Action::StateBack if is_wrecked(state) || state.is_disarmed_in_the_air() => {
@@ -32,6 +28,12 @@ pub(super) fn act(state: &Shared, action: Action) -> Vec<Effect> {
         _ => return Vec::new(),
     };
     vec![Effect::Send(command)]
+}
+
+/// Pauses and advances by some ticks.
+pub(super) fn step(state: &Shared, ticks: u32) -> Vec<Effect> {
+    let pause = (!state.view.paused).then_some(Effect::Send(Command::Pause(true)));
+    pause.into_iter().chain([Effect::Send(Command::Step(ticks))]).collect()
 }
 
 /// Handles a click on the timeline, which shows that instant; `None` if the click is elsewhere.
