@@ -119,7 +119,7 @@ impl Start<'_> {
         // A plan that the craft refuses is invalid input.
         upload(self.vehicle.controller_mut(), &self.plan.plan, &[]).map_err(AppError::input)?;
         let options = setup::flight_options(&self.args.mission);
-        self.notices.extend(self.hazards(&self.vehicle));
+        self.notices.extend(self.hazards());
         let Self { args, plan, vehicle, notices, interrupted } = self;
         let mut flight = setup::start_flight(vehicle, &options)?;
         let mut output = Output::open(args, flight.vehicle(), &plan)?;
@@ -143,7 +143,7 @@ impl Start<'_> {
             RemoteRun::prepare(firmware, &mut self.vehicle, &self.plan.plan, options, &mut prelude);
         prelude.check()?;
         let Some(run) = unless_interrupted(prepared)? else { return Ok(None) };
-        for hazard in self.hazards(&self.vehicle) {
+        for hazard in self.hazards() {
             prelude.write(&Event::notice(self.vehicle.time(), hazard))?;
         }
         let flight = setup::start_flight(self.vehicle, &setup::flight_options(&self.args.mission))?;
@@ -151,28 +151,31 @@ impl Start<'_> {
         Ok(Some(Prepared { flight, output, run: Run::Remote(run), interrupted: self.interrupted }))
     }
 
-    fn hazards(&self, vehicle: &Vehicle) -> Vec<String> {
-        hazards(vehicle, self.args.mission.takeoff_m(), Some(self.args.review.max_altitude_m()))
+    fn hazards(&self) -> Vec<String> {
+        hazards(&self.vehicle, self.args.mission.takeoff_m(), Some(self.args.review.max_altitude_m()))
     }
 }
 
 /// Measures the wall time from the engagement, or from the start if there is none.
-struct Stopwatch(Instant, bool);
+struct Stopwatch {
+    since: Instant,
+    is_engaged: bool,
+}
 
 impl Stopwatch {
     fn start() -> Self {
-        Self(Instant::now(), false)
+        Self { since: Instant::now(), is_engaged: false }
     }
 
     fn seconds(&self) -> f64 {
-        self.0.elapsed().as_secs_f64()
+        self.since.elapsed().as_secs_f64()
     }
 }
 
 impl Subscriber<Flight> for Stopwatch {
     fn after_tick(&mut self, flight: &Flight) {
-        if !self.1 && flight.engaged_at().is_some() {
-            *self = Self(Instant::now(), true);
+        if !self.is_engaged && flight.engaged_at().is_some() {
+            *self = Self { since: Instant::now(), is_engaged: true };
         }
     }
 }
