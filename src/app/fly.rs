@@ -60,6 +60,7 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
     let (end, failure) = match flown {
         Ok(end) => (end, None),
         Err(Stopped::Interrupted) => (flight.interrupt("stopped by a signal"), None),
+        // The files stay unfinished, because their end may be what cannot be written.
         Err(Stopped::BySubscriber) => return Err(output.into_problem()),
         // The files end like those of a finished flight.
         Err(Stopped::Failed(sentence)) => {

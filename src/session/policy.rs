@@ -1,4 +1,4 @@
-//! Decides which requests are allowed now. Keys, the palette, the `:` line and the session give the reason for a refusal
+//! Decides which requests of the user are allowed now. Keys, the palette, the `:` line and the session give the reason for a refusal
 //! in its words.
 
 use std::fmt;

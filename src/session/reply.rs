@@ -1,4 +1,4 @@
-//! The way of an answer to the sender of a command.
+//! Delivers the answer to the sender of a command.
 
 use std::fmt;
 
@@ -8,7 +8,7 @@ use tokio::sync::oneshot;
 pub struct ReplyTo<T>(Option<Box<dyn FnOnce(Option<T>) + Send>>);
 
 impl<T> ReplyTo<T> {
-    /// Creates a way that ends in `deliver`, which must not wait: the session calls it.
+    /// Creates a reply that calls `deliver`, which must not wait: the session calls it.
     pub fn new(deliver: impl FnOnce(Option<T>) + Send + 'static) -> Self {
         Self(Some(Box::new(deliver)))
     }
@@ -22,7 +22,7 @@ impl<T> ReplyTo<T> {
 }
 
 impl<T: Send + 'static> ReplyTo<T> {
-    /// Creates a way to a receiver of its own.
+    /// Creates a reply with a receiver of its own.
     pub fn channel() -> (Self, oneshot::Receiver<T>) {
         let (sender, receiver) = oneshot::channel();
         let deliver = |answer: Option<T>| drop(answer.map(|answer| sender.send(answer)));
@@ -51,12 +51,12 @@ mod tests {
     #[test]
     fn an_answer_or_its_absence_is_delivered_once() {
         let (sender, receiver) = std::sync::mpsc::channel();
-        let way = || {
+        let reply = || {
             let sender = sender.clone();
             ReplyTo::new(move |answer: Option<u8>| sender.send(answer).unwrap())
         };
-        way().send(7);
-        drop(way());
+        reply().send(7);
+        drop(reply());
         drop(sender);
         assert_eq!(receiver.iter().collect::<Vec<_>>(), [Some(7), None]);
     }

@@ -1,8 +1,8 @@
 //! The thread that owns the vehicle: takes commands and requests, runs the due ticks, publishes views and events.
 //!
 //! `commands` carries out the commands of the user interface, `requests` those of the links. `interface` passes the
-//! requests of the user interface to the flight controller and returns the answers. `limits` refuses actions that are not
-//! allowed on a real craft. `rewind` shows earlier instants and continues the flight from them.
+//! requests of the user interface to the flight controller and returns the answers. `limits` answers refused
+//! commands, and refuses requests of clients that are not allowed on a real craft. `rewind` shows earlier instants and continues the flight from them.
 #![allow(clippy::disallowed_methods, reason = "this is where wall time meets simulated time")]
 
 mod commands;
@@ -36,7 +36,7 @@ use crate::storage::Store;
 use crate::telemetry::LinkState;
 use crate::timeline::Timeline;
 use crate::vehicle::Vehicle;
-use interface::{Interface, UploadTo};
+use interface::{Interface, Outcome, UploadTo};
 use rewind::RunOn;
 
 /// The interval of published views.
@@ -385,7 +385,7 @@ impl Session {
             self.changed = true;
             let craft = &mut UploadTo { vehicle: &mut self.vehicle, takeoff_m: self.takeoff_m };
             match self.interface.take_answer(ticket, answer, craft, now) {
-                Ok(notices) => self.notices(notices),
+                Ok(outcome) => self.report(outcome),
                 Err(answer) => {
                     if let Some(endpoints) = &mut self.endpoints {
                         endpoints.handler.deliver(ticket, answer);
@@ -427,6 +427,14 @@ impl Session {
 
     fn flush_events(&mut self) {
         self.events.send_events_of(&mut self.vehicle);
+    }
+
+    /// Reports the notices of a request, then its answer.
+    fn report(&mut self, outcome: Outcome) {
+        self.notices(outcome.notices);
+        if let Some(answer) = outcome.answer {
+            answer();
+        }
     }
 
     fn notices(&mut self, texts: impl IntoIterator<Item = String>) {

@@ -51,7 +51,7 @@ fn stick_share(stick: f64, params: &Params) -> f64 {
     beyond.min(1.0).copysign(stick)
 }
 
-/// The controls of an engagement: what the craft keeps, and the heading.
+/// The controls of an engagement: the target to keep, and the heading.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Steering {
     /// Target of the last update, north and east, m.

@@ -1,4 +1,4 @@
-//! What an engagement flies: the active plan with its place, the current leg, and what outlasts a leg.
+//! The task of an engagement: the active plan with its place, the current leg, and the values kept from leg to leg.
 
 use super::climb::Climb;
 use super::cursor::PlanCursor;

@@ -1,4 +1,4 @@
-//! What is flown, and its observers.
+//! The flights that a runner can run, and their observers.
 
 use std::convert::Infallible;
 

@@ -75,14 +75,14 @@ impl Session {
             Command::Cli { line, reply } => {
                 let handler = self.endpoints.as_mut().map(|endpoints| &mut endpoints.handler);
                 let (controller, persistence) = (self.vehicle.controller_mut(), &mut self.persistence);
-                let notices = self.interface.run_line(line, reply, controller, persistence, handler);
-                self.notices(notices);
+                let outcome = self.interface.run_line(line, reply, controller, persistence, handler);
+                self.report(outcome);
             }
             Command::Upload { plan, settings, reply } => {
                 let is_simulated = !self.access().is_limited();
                 let craft = &mut UploadTo { vehicle: &mut self.vehicle, takeoff_m: self.takeoff_m };
-                let notices = self.interface.upload(&plan, settings, is_simulated, reply, craft);
-                self.notices(notices);
+                let outcome = self.interface.upload(&plan, settings, is_simulated, reply, craft);
+                self.report(outcome);
             }
             Command::Download { reply } => self.interface.download(reply, self.vehicle.controller_mut()),
             Command::Save { reply } => {
@@ -112,7 +112,7 @@ impl Session {
         }
     }
 
-    /// Returns the facts on which it depends what is allowed now.
+    /// Returns the facts on which the policy depends.
     fn facts(&self) -> Facts {
         Facts {
             access: self.access(),

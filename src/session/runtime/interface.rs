@@ -17,7 +17,7 @@ use crate::session::request_handler::RequestHandler;
 use crate::session::{ReplyTo, hazards};
 use crate::vehicle::{Answer, FlightController, LateAnswer, Ticket, Vehicle};
 
-/// The way of an answer that can be a refusal, as a sentence.
+/// A reply that can be a refusal, as a sentence.
 type Reply<T> = ReplyTo<Result<T, String>>;
 
 /// The user interface's side of the flight controller.
@@ -50,7 +50,7 @@ impl Interface {
         self.console = Interpreter::default();
     }
 
-    /// Runs a line, and returns notices for the user. `handler` closes the clients' links if the line restarts the
+    /// Runs a line. `handler` closes the clients' links if the line restarts the
     /// flight controller.
     pub(super) fn run_line(
         &mut self,
@@ -59,12 +59,12 @@ impl Interface {
         controller: &mut FlightController,
         persistence: &mut Persistence,
         handler: Option<&mut RequestHandler>,
-    ) -> Vec<String> {
+    ) -> Outcome {
         let mut answer = match controller.run_cli(&mut self.console, &line) {
             Answer::Now(answer) => answer,
             Answer::Later(ticket) => {
                 self.late_answers.expect(ticket, Waiting::Line { line, reply }, now());
-                return Vec::new();
+                return Outcome::default();
             }
         };
         self.host.add_to(&mut answer);
@@ -75,11 +75,11 @@ impl Interface {
                 handler.after_restart(true, controller);
             }
         }
-        reply.send(output(&line, answer, done.restarted.is_some()));
-        done.notices
+        let output = output(&line, answer, done.restarted.is_some());
+        Outcome::new(done.notices, move || reply.send(output))
     }
 
-    /// Starts an upload, and returns notices for the user. A craft that is only simulated gets gains with which it
+    /// Starts an upload. A craft that is only simulated gets gains with which it
     /// lands; a real one never gets gains that the user did not request.
     pub(super) fn upload(
         &mut self,
@@ -88,7 +88,7 @@ impl Interface {
         is_simulated: bool,
         reply: Reply<UploadReport>,
         craft: &mut UploadTo<'_>,
-    ) -> Vec<String> {
+    ) -> Outcome {
         let reference = craft.vehicle.controller().altitude_reference();
         let landing_gains = match reference {
             AltitudeReference::SeaLevel { .. } if is_simulated => replace_falling_gains(&mut settings),
@@ -102,7 +102,7 @@ impl Interface {
             }
             Err(unknown) => {
                 reply.send(Err(unknown.to_string()));
-                Vec::new()
+                Outcome::default()
             }
         }
     }
@@ -143,7 +143,7 @@ impl Interface {
         }
     }
 
-    /// Passes on a late answer, and returns notices for the user.
+    /// Takes a late answer.
     ///
     /// # Errors
     /// Returns an answer that is not for the user interface.
@@ -153,7 +153,7 @@ impl Interface {
         answer: LateAnswer,
         craft: &mut UploadTo<'_>,
         now: Instant,
-    ) -> Result<Vec<String>, LateAnswer> {
+    ) -> Result<Outcome, LateAnswer> {
         match (self.late_answers.take(ticket), answer) {
             (Some(Waiting::Line { line, reply }), LateAnswer::Cli(said)) => {
                 // It has saved and restarted by itself.
@@ -174,7 +174,7 @@ impl Interface {
             }
             (_, answer) => return Err(answer),
         }
-        Ok(Vec::new())
+        Ok(Outcome::default())
     }
 
     /// Refuses the requests whose answers are overdue.
@@ -191,7 +191,7 @@ impl Interface {
         }
     }
 
-    /// Waits for the next answer to an upload, or reports its result. Returns notices for the user.
+    /// Waits for the next answer to an upload, or reports its result.
     fn go_on(
         &mut self,
         upload: Box<Upload>,
@@ -199,19 +199,32 @@ impl Interface {
         reply: Reply<UploadReport>,
         craft: &mut UploadTo<'_>,
         now: Instant,
-    ) -> Vec<String> {
+    ) -> Outcome {
         match progress {
             UploadProgress::Done(result) => {
                 let hazards =
                     if result.is_ok() { hazards(craft.vehicle, craft.takeoff_m, None) } else { Vec::new() };
-                reply.send(result);
-                hazards
+                Outcome::new(hazards, move || reply.send(result))
             }
             UploadProgress::Waiting(ticket) => {
                 self.late_answers.expect(ticket, Waiting::Upload(upload, reply), now);
-                Vec::new()
+                Outcome::default()
             }
         }
+    }
+}
+
+/// The notices of a request for the user, and its answer, which follows them.
+#[derive(Default)]
+pub(super) struct Outcome {
+    pub(super) notices: Vec<String>,
+    /// Sends the answer, if it is known.
+    pub(super) answer: Option<Box<dyn FnOnce()>>,
+}
+
+impl Outcome {
+    fn new(notices: Vec<String>, answer: impl FnOnce() + 'static) -> Self {
+        Self { notices, answer: Some(Box::new(answer)) }
     }
 }
 

@@ -6,8 +6,10 @@ use crate::fc::{RemoteEnds, UploadReport};
 use crate::firmware::cli::Interpreter;
 use crate::firmware::config::Configuration;
 use crate::firmware::{Firmware, FirmwareOptions};
+use crate::flight::FlightSetup;
+use crate::geo::LatLon;
 use crate::link::FcStream;
-use crate::plan::{Altitude, AltitudeReference, FlightPlan, Waypoint};
+use crate::plan::{Altitude, AltitudeReference, FlightPlan, Waypoint, WaypointType};
 use crate::session::ReplyTo;
 use crate::session::command::Seek;
 use crate::signals::SimTime;
@@ -339,4 +341,53 @@ fn a_further_subscriber_gets_every_later_event_until_it_leaves() {
     for said in ["before", "after", "alone"] {
         assert!(heard.iter().any(|event| is_notice(event, said)), "{said}");
     }
+}
+
+#[test]
+fn a_subscriber_of_a_running_session_gets_its_views_and_events() {
+    let (vehicle, _) = FlightSetup::default().build().unwrap();
+    let mut handle = start(config_of(vehicle, true)).unwrap();
+    let runtime = tokio::runtime::Builder::new_current_thread().build().unwrap();
+    runtime.block_on(async {
+        let mut subscription = handle.subscribe().await.unwrap();
+        handle.commands.send(Command::Seek(Seek::Newest)).await.unwrap();
+        let is_answer =
+            |event: &Event| matches!(&event.kind, SessionEvent::Notice(said) if said.contains("newest"));
+        while !subscription.events.recv().await.is_some_and(|event| is_answer(&event)) {}
+        while !handle.events.recv().await.is_some_and(|event| is_answer(&event)) {}
+        subscription.view.changed().await.unwrap();
+        handle.commands.send(Command::Quit).await.unwrap();
+        // The session drops its ends.
+        while subscription.events.recv().await.is_some() {}
+    });
+    assert_eq!(handle.thread.join().unwrap(), None);
+}
+
+#[test]
+fn the_hazards_of_an_uploaded_plan_are_reported_before_the_answer() {
+    let (commands, taken) = mpsc::channel(32);
+    let (events, mut heard) = mpsc::unbounded_channel();
+    let (vehicle, _) = FlightSetup::default().build().unwrap();
+    let home = *vehicle.local_frame().unwrap();
+    let mut session = Session::new(config_of(vehicle, true), None, taken, events);
+    session.flush_events();
+    let mut plan = Box::new(FlightPlan::default());
+    // The leg to the second waypoint is too steep.
+    let position = LatLon::from_degrees(home.lat_deg + 0.0003, home.lon_deg);
+    for (alt_m, kind) in [(80.0, WaypointType::Flyover), (20.0, WaypointType::Land)] {
+        let altitude = Altitude::above_home(alt_m);
+        plan.waypoints.push(Waypoint { position, altitude, kind, ..Waypoint::default() });
+    }
+    let (order, answered) = std::sync::mpsc::channel();
+    let reply = ReplyTo::new(move |_: Option<Result<UploadReport, String>>| {
+        let mut before = 0;
+        while let Ok(event) = heard.try_recv() {
+            before +=
+                usize::from(matches!(event.kind, SessionEvent::Notice(said) if said.starts_with("Caution")));
+        }
+        order.send(before).unwrap();
+    });
+    commands.try_send(Command::Upload { plan, settings: Vec::new(), reply }).unwrap();
+    session.take_commands(Duration::ZERO, &mut Context::from_waker(Waker::noop()));
+    assert!(answered.try_recv().unwrap() > 0, "the notices of the plan come first");
 }

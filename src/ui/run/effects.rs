@@ -4,7 +4,6 @@ use std::io;
 
 use crossterm::clipboard::CopyToClipboard;
 use crossterm::execute;
-use tokio::runtime::Handle;
 use tokio::sync::mpsc;
 
 use super::SessionLink;
@@ -36,13 +35,13 @@ impl Answers {
         self.0.send(msg).ok();
     }
 
-    /// Returns the way of an answer, which becomes a message on arrival.
+    /// Returns a reply that sends its answer as a message.
     fn reply<T>(&self, message: impl FnOnce(Option<T>) -> Msg + Send + 'static) -> ReplyTo<T> {
         let answers = self.clone();
         ReplyTo::new(move |answer| answers.send(message(answer)))
     }
 
-    /// Returns the way of an answer that can be a refusal. `missing` is the refusal in place of a missing answer.
+    /// Returns a reply that can be a refusal. `missing` is the refusal in place of a missing answer.
     fn result<T: 'static>(
         &self,
         missing: &'static str,
@@ -95,14 +94,16 @@ pub(super) fn carry_out(
         Effect::WriteScenario { file, plan } => {
             let failed = "the flight could not be flown again.";
             let written = answers.result(failed, Msg::ScenarioReply);
-            let (threads, write) = (Handle::current(), link.write_scenario);
-            Command::RecordedFlight(ReplyTo::new(move |recorded: Option<Result<Box<RecordedFlight>, _>>| {
-                let recorded = recorded.unwrap_or_else(|| Err(MISSING.to_owned()));
+            let write = link.write_scenario;
+            let (reply, recorded) = ReplyTo::<Result<Box<RecordedFlight>, String>>::channel();
+            tokio::spawn(async move {
+                let recorded = recorded.await.unwrap_or_else(|_| Err(MISSING.to_owned()));
                 // This flies the flight again, which takes a while.
-                threads.spawn_blocking(move || {
+                tokio::task::spawn_blocking(move || {
                     written.send(recorded.and_then(|recorded| write(file, &plan, *recorded)));
                 });
-            }))
+            });
+            Command::RecordedFlight(reply)
         }
         Effect::Forecast(job) => {
             let (forecaster, answers) = (forecaster.clone(), answers.clone());
