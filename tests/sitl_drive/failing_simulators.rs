@@ -8,10 +8,9 @@ use crate::rates::sitl;
 use crate::simulator::{Hand, Simulator};
 use crate::square::{Bounds, Flown};
 
-/// The allowed errors of a flight that goes on after a failure. After one, packets of motors can wait in the simulator's
-/// socket for a while. Commands are then some steps old, and the craft lands harder.
+/// The allowed errors of a flight that goes on after a failure.
 pub(crate) const BOUNDS: Bounds =
-    Bounds { flyover_m: 2.0, hold_m: 2.0, land_m: 1.0, height_m: 3.0, impact_mps: 2.0 };
+    Bounds { flyover_m: 2.0, hold_m: 2.0, land_m: 1.0, height_m: 3.0, impact_mps: 1.5 };
 
 /// The packets that the firmware sends without a state until a simulator counts as silent. The last one comes after a
 /// second.
