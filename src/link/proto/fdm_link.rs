@@ -267,7 +267,7 @@ impl FdmLink {
         });
         received.sensors = Some(Box::new(self.sensors.frame(&state, position.is_some(), elapsed_us)));
         received.ticks = ticks;
-        received.reply = if self.kicks.withhold(now_us) { Reply::Nothing } else { Reply::Both };
+        received.reply = if self.kicks.withhold() { Reply::Nothing } else { Reply::Both };
         received
     }
 
