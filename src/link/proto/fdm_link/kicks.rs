@@ -10,6 +10,9 @@
 //! A simulator that the host stops for a moment can look like one that starves. Two rules keep that from
 //! leaving packets in its socket: the silence that counts as starving grows with the pauses of the simulator,
 //! and a surplus that was given up is checked several times more.
+//!
+//! If a link has lost several packets and no kick was surplus, a silence counts as another loss, because a
+//! check costs a pause.
 
 /// The interval of the kicks before the first packet, and while the simulator refuses them, µs.
 const WAITING_US: u64 = 500_000;
@@ -25,10 +28,8 @@ const CAUSED_US: u64 = 50_000;
 /// The base of the silence after a withheld reply that shows that the simulator starves, µs. Twice the usual
 /// interval is added. A simulator with packets left to read does not pause for that long …
 const STARVED_US: u64 = 30_000;
-/// … unless its steps are irregular: the silence is also at least this many times the longest pause of late …
-const LONGEST_PAUSES: f64 = 1.5;
-/// … of which each packet forgets this share.
-const PAUSE_FORGOTTEN: f64 = 1.0 / 128.0;
+/// … unless its steps are irregular: this many times the usual deviation from the interval is added, too.
+const DEVIATIONS: f64 = 4.0;
 /// A starved simulator answers the late reply within this time, µs …
 const STARVING_ANSWERS_US: u64 = 3_000;
 /// … or, if its steps take long, this many times in a row within [`CAUSED_US`].
@@ -38,6 +39,9 @@ const STARVED_OFTEN: u32 = 3;
 const CHECKED_AFTER: u32 = 50;
 /// … of which there are this many.
 const CHECKS: u32 = 6;
+/// The number of losses in a row that the simulator proved, after which the next silence counts as another
+/// loss. Its packet is only checked with the others.
+const PROVEN_LOSSES: u32 = 3;
 /// The time after which a waiting simulator continues by itself, µs …
 const SIMULATOR_WAITS_US: u64 = 1_000_000;
 /// … at most this many times.
@@ -58,10 +62,14 @@ pub(super) struct Kicks {
     unreachable: bool,
     /// The packets that may be in the simulator's socket in addition to the one that it reads next.
     surplus: u32,
+    /// `true` if some of them are kicks.
+    has_kicks: bool,
     /// Further surplus packets that are unlikely to exist. They are checked later.
     doubtful: u32,
     /// The number of checks of the doubtful packets.
     checks: u32,
+    /// The number of losses that the simulator proved since it last read a surplus packet.
+    proven_losses: u32,
     /// The number of packets until the next check.
     next_check: u32,
     /// The number of withheld replies in a row for which the simulator seemed to starve.
@@ -70,8 +78,8 @@ pub(super) struct Kicks {
     withheld: bool,
     /// The usual interval of the packets, µs.
     interval_us: f64,
-    /// The longest pause of the simulator of late that needed no kick, µs.
-    longest_pause_us: f64,
+    /// The usual deviation from it, µs.
+    deviation_us: f64,
 }
 
 impl Kicks {
@@ -84,13 +92,15 @@ impl Kicks {
             has_answer: true,
             unreachable: false,
             surplus: 0,
+            has_kicks: false,
             doubtful: 0,
             checks: 0,
+            proven_losses: 0,
             next_check: 0,
             starved: 0,
             withheld: false,
             interval_us: INTERVAL_US,
-            longest_pause_us: 0.0,
+            deviation_us: 0.0,
         }
     }
 
@@ -113,8 +123,8 @@ impl Kicks {
     /// may be waiting.
     fn patience_us(&self) -> u64 {
         if self.withheld {
-            let usual_us = STARVED_US as f64 + (2.0 * self.interval_us).min(SIMULATOR_WAITS_US as f64);
-            usual_us.max(LONGEST_PAUSES * self.longest_pause_us) as u64
+            let usual_us = 2.0 * self.interval_us + DEVIATIONS * self.deviation_us;
+            STARVED_US + usual_us.min(SIMULATOR_WAITS_US as f64) as u64
         } else {
             FIRST_US
         }
@@ -151,14 +161,22 @@ impl Kicks {
         self.starved = if withheld && kicks > 0 && since_kick_us <= CAUSED_US { self.starved + 1 } else { 0 };
         if kicks == 0 {
             self.surplus = left + self.misses(now_us);
+            if withheld {
+                self.proven_losses = 0;
+            }
         } else if self.starved >= STARVED_OFTEN || self.starved > 0 && since_kick_us <= STARVING_ANSWERS_US {
-            self.give_up(left + kicks);
+            self.give_up(if self.has_kicks { left + kicks } else { 0 });
         } else if !self.has_answer {
             self.surplus = kicks - 1;
+        } else if since_kick_us <= CAUSED_US && self.proven_losses >= PROVEN_LOSSES {
+            self.surplus = left + kicks - 1;
+            self.check_later(self.doubtful + 1);
         } else {
             self.surplus = left + kicks + std::mem::take(&mut self.doubtful);
+            self.has_kicks = true;
             self.checks = 0;
         }
+        self.has_kicks &= self.surplus > 0;
         self.next_check = self.next_check.saturating_sub(1);
         self.measure_intervals(now_us, kicks);
         self.heard_at_us = Some(now_us);
@@ -166,12 +184,23 @@ impl Kicks {
         self.unreachable = false;
     }
 
-    /// Gives up a surplus of at most this many packets, because the simulator starved.
-    fn give_up(&mut self, most: u32) {
+    /// Gives up the surplus, because the simulator starved. At most `doubtful` packets may exist nevertheless.
+    fn give_up(&mut self, doubtful: u32) {
         self.surplus = 0;
         self.starved = 0;
-        self.doubtful = if self.checks < CHECKS { most } else { 0 };
-        self.next_check = CHECKED_AFTER << self.checks;
+        self.proven_losses += 1;
+        self.doubtful = 0;
+        if self.checks < CHECKS {
+            self.check_later(doubtful);
+        }
+    }
+
+    /// Has this number of doubtful packets checked later.
+    fn check_later(&mut self, doubtful: u32) {
+        if self.doubtful == 0 {
+            self.next_check = CHECKED_AFTER << self.checks;
+        }
+        self.doubtful = doubtful;
     }
 
     /// Returns the number of packets for which the simulator stopped waiting while the firmware stood still
@@ -181,24 +210,27 @@ impl Kicks {
         (silence / SIMULATOR_WAITS_US).min(SIMULATOR_MISSES) as u32
     }
 
-    /// Tracks the usual interval of the packets, which a single long one changes little, and the longest one.
+    /// Tracks the usual interval of the packets, which a single long one changes little, and the deviation from
+    /// it, as a TCP sender does for its time-outs. A silence that ended with a kick may be a loss and is no
+    /// deviation.
     fn measure_intervals(&mut self, now_us: u64, kicks: u32) {
         let Some(heard) = self.heard_at_us else { return };
         let interval_us = now_us.saturating_sub(heard) as f64;
+        if kicks == 0 {
+            // A longer one is a pause of the firmware.
+            let deviation_us = (interval_us.min(FIRST_US as f64) - self.interval_us).abs();
+            self.deviation_us += (deviation_us - self.deviation_us) / 16.0;
+        }
         let longest_us = self.interval_us * 1.25 + 100.0;
         self.interval_us += (interval_us.min(longest_us) - self.interval_us) / 8.0;
-        self.longest_pause_us *= 1.0 - PAUSE_FORGOTTEN;
-        if kicks == 0 {
-            // A longer pause than that is one of the firmware.
-            self.longest_pause_us = self.longest_pause_us.max(interval_us.min(FIRST_US as f64));
-        }
     }
 
     /// Returns `true` if the reply to the newest packet is withheld as surplus.
     pub(super) fn withhold(&mut self) -> bool {
         if self.surplus == 0 && self.doubtful > 0 && self.next_check == 0 {
             self.surplus = std::mem::take(&mut self.doubtful);
-            self.checks += 1;
+            self.has_kicks = true;
+            self.checks = CHECKS.min(self.checks + 1);
         }
         self.withheld = self.surplus > 0;
         self.withheld
@@ -206,6 +238,6 @@ impl Kicks {
 }
 
 #[cfg(test)]
-mod bench;
+mod busy_host;
 #[cfg(test)]
 mod tests;

@@ -3,7 +3,7 @@
 
 use super::Kicks;
 
-/// The length of a step of the bench, µs.
+/// The length of a step of the clock, µs.
 const STEP_US: u64 = 100;
 
 /// The disturbances of a host and its link.
@@ -20,7 +20,7 @@ pub(super) struct Trouble {
 }
 
 #[derive(Debug)]
-pub(super) struct Bench {
+pub(super) struct BusyHost {
     kicks: Kicks,
     trouble: Trouble,
     now_us: u64,
@@ -37,7 +37,7 @@ pub(super) struct Bench {
     dice: u64,
 }
 
-impl Bench {
+impl BusyHost {
     /// Starts a simulator whose steps take `step_us`.
     pub(super) fn new(step_us: u64, seed: u64) -> Self {
         Self {
