@@ -37,6 +37,7 @@ pub use fc_stream::{DEFAULT_BAUD, FcPlace, FcPlaceError, FcStream, StreamEvent};
 pub use impairment::{ImpairedLink, LinkImpairment};
 pub use listeners::{ListenConfig, ListenError, Listeners, RestartSignal};
 pub use request::{ClientId, Request};
+pub use sitl_child::lockstep;
 pub use sitl_child::{ChildConfig, ChildEnd, ChildEvent, LaunchError, SitlChild, launch_firmware};
 pub use sitl_peer::{MotorsInError, SitlPeer, SitlPorts};
 pub use udp::{MotorPort, Sent, StateQueue};

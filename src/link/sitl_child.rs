@@ -6,10 +6,11 @@
 mod events;
 mod group;
 mod launch;
+pub mod lockstep;
+mod output;
 
-use std::io::{BufRead as _, BufReader, Read};
 use std::path::PathBuf;
-use std::process::{Child, ExitStatus};
+use std::process::{Child, ExitStatus, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
@@ -26,11 +27,6 @@ const GRACE: Duration = Duration::from_millis(500);
 const PAUSE: Duration = Duration::from_millis(100);
 /// The pause before a child that crashed is restarted, so that a log can be read.
 const PAUSE_AFTER_CRASH: Duration = Duration::from_secs(1);
-/// The longest line of its output that is reported whole, bytes.
-const LINE_MAX: u64 = 4096;
-/// The beginnings of lines that are not reported: the thousands about its storing, and those of each second
-/// about its flight, which this program shows anyway.
-const NOT_TOLD: [&str; 2] = ["[FLASH_ProgramWord]", "[SITL] t="];
 
 /// The settings to start a SITL executable.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -138,14 +134,14 @@ struct Keeper {
 impl Keeper {
     fn run(self) {
         while !self.is_stopped() {
-            let mut child = match launch::spawn(&self.config) {
+            let mut child = match launch::spawn(&self.config, Stdio::null(), None) {
                 Ok(child) => child,
                 Err(error) => return self.tell(ChildEvent::Failed(error.to_string())),
             };
             self.tell(ChildEvent::Started);
             let readers = [
-                child.stdout.take().map(|output| self.listen(output)),
-                child.stderr.take().map(|output| self.listen(output)),
+                child.stdout.take().map(|out| output::listen(&self.events, out)),
+                child.stderr.take().map(|out| output::listen(&self.events, out)),
             ];
             let ended = self.wait(&mut child);
             read_to_the_end(readers.into_iter().flatten());
@@ -199,22 +195,6 @@ impl Keeper {
         while !self.is_stopped() && now() < until {
             sleep(LOOK);
         }
-    }
-
-    /// Reports the lines of an output until it ends.
-    fn listen(&self, output: impl Read + Send + 'static) -> JoinHandle<()> {
-        let events = Arc::clone(&self.events);
-        std::thread::spawn(move || {
-            let mut output = BufReader::new(output);
-            let mut line = Vec::new();
-            while matches!(output.by_ref().take(LINE_MAX).read_until(b'\n', &mut line), Ok(1..)) {
-                let text = line.trim_ascii_end();
-                if !text.is_empty() && !NOT_TOLD.iter().any(|start| text.starts_with(start.as_bytes())) {
-                    events.add_line(text, now());
-                }
-                line.clear();
-            }
-        })
     }
 }
 

@@ -41,18 +41,36 @@ pub enum LaunchError {
     },
 }
 
+/// The variable by which the launcher gets the library to preload into the executable. The launcher itself runs without it.
+const LIBRARY: &str = "BETADECK_PRELOAD";
+
+/// A library that is preloaded into the executable, with a variable for its settings.
+#[derive(Debug, Clone)]
+pub(super) struct Preload {
+    pub(super) library: PathBuf,
+    pub(super) variable: &'static str,
+    pub(super) settings: String,
+}
+
 /// Starts the executable in its directory, with its output piped.
-pub(super) fn spawn(config: &ChildConfig) -> Result<Child, LaunchError> {
+pub(super) fn spawn(
+    config: &ChildConfig,
+    input: Stdio,
+    preload: Option<&Preload>,
+) -> Result<Child, LaunchError> {
     std::fs::create_dir_all(&config.directory)
         .map_err(|error| LaunchError::Directory { directory: config.directory.clone(), error })?;
     let mut command = Command::new(&config.launcher);
     command.arg(LAUNCH).arg(std::process::id().to_string()).arg(&config.program).args(&config.arguments);
     command.current_dir(&config.directory);
-    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command.stdin(input).stdout(Stdio::piped()).stderr(Stdio::piped());
     for (name, _) in std::env::vars_os() {
         if name.to_str().is_some_and(|name| name.starts_with(OUR_VARIABLES)) {
             command.env_remove(name);
         }
+    }
+    if let Some(Preload { library, variable, settings }) = preload {
+        command.env(LIBRARY, library).env(variable, settings);
     }
     #[cfg(unix)]
     // The terminal's interrupt is meant for this program, which ends the child itself.
@@ -85,10 +103,15 @@ fn exec_with_parent(parent: i32, program: &Path, arguments: &[OsString]) -> u8 {
         }
     }
     let _ = parent;
+    let mut command = Command::new(program);
+    command.args(arguments).env_remove(LIBRARY);
+    if let Some(library) = std::env::var_os(LIBRARY) {
+        command.env("LD_PRELOAD", library);
+    }
     #[cfg(unix)]
-    let error = std::os::unix::process::CommandExt::exec(Command::new(program).args(arguments));
+    let error = std::os::unix::process::CommandExt::exec(&mut command);
     #[cfg(not(unix))]
-    let error = match Command::new(program).args(arguments).status() {
+    let error = match command.status() {
         Ok(status) => return status.code().unwrap_or(NOT_EXECUTABLE) as u8,
         Err(error) => error,
     };

@@ -1,0 +1,244 @@
+//! An unmodified SITL executable in simulated time. A library that is preloaded into it gives it its clock and the packets
+//! of the simulator, so that it computes one step for each [`Grant`] and then waits. Its clock, its motors and its answers
+//! depend on what it was given only, and not on the machine.
+//!
+//! ```text
+//! this program ── Grant: state, RC, serial data to take in ──▶ library ── clock, select, recvfrom ──▶ executable
+//!              ◀─ Report: motors, serial data sent ──────────         ◀── nanosleep, sendto ───────
+//!              ── TCP: the bytes of MSP and CLI, both ways ─────────────────────────────────────▶
+//! ```
+
+mod frames;
+mod library;
+mod process;
+
+use std::io::{self, ErrorKind, Read as _, Write as _};
+use std::net::{Ipv4Addr, TcpStream};
+use std::sync::Arc;
+use std::time::Duration;
+
+pub use frames::{FDM_BYTES, MOTOR_BYTES, RC_BYTES};
+use frames::{Grant, Report, SerialTotals};
+use library::LoadedLibrary;
+pub use library::{NoLockstep, check_lockstep};
+pub use process::NoReport;
+use process::Process;
+
+use super::events::Events;
+use super::launch::{LaunchError, Preload};
+use super::{ChildConfig, ChildEvent, now};
+
+/// The variable with the settings of the library.
+const SETTINGS: &str = "BETADECK_LOCKSTEP";
+/// The simulated time that is granted in advance for the boot. The executable waits for nothing during it.
+const BOOT: Duration = Duration::from_secs(3);
+/// The steps between two turns of the thread of the serial ports while there is nothing to send to it. Its data are then
+/// at most this much older. Each turn costs two changes of the thread.
+const SERIAL_EVERY: u32 = 5;
+/// The longest wait for bytes that the executable has sent.
+const BYTES_WITHIN: Duration = Duration::from_secs(5);
+
+/// The ports for which the executable asks. It gets others, which the system chooses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct LockstepPorts {
+    pub fdm: u16,
+    pub rc: u16,
+    pub motors: u16,
+    pub tcp: u16,
+}
+
+/// The settings of an executable in lockstep.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LockstepConfig {
+    pub child: ChildConfig,
+    pub ports: LockstepPorts,
+    /// The length of a step.
+    pub step: Duration,
+}
+
+/// The packets for one step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StepInput {
+    pub fdm: [u8; FDM_BYTES],
+    pub rc: Option<[u8; RC_BYTES]>,
+}
+
+/// An executable in lockstep. It ends when this is dropped.
+#[derive(Debug)]
+pub struct Lockstep {
+    config: LockstepConfig,
+    preload: Preload,
+    _library: LoadedLibrary,
+    events: Arc<Events>,
+    process: Process,
+    serial: Option<Serial>,
+    /// The totals over all connections to this process.
+    totals: SerialTotals,
+    /// The bytes read from this process over all connections.
+    read: u64,
+    newest: Option<Report>,
+    /// The number of times that the process has replaced itself.
+    run: u32,
+    /// `true` if the thread of the serial ports has something to take in.
+    has_news: bool,
+    steps: u32,
+}
+
+/// The connection to the first serial port.
+#[derive(Debug)]
+struct Serial {
+    stream: TcpStream,
+    /// Bytes that the connection has not taken yet.
+    waiting: Vec<u8>,
+}
+
+impl Lockstep {
+    /// Starts an executable.
+    ///
+    /// # Errors
+    /// Returns an error if the system cannot start it.
+    pub fn start(config: LockstepConfig) -> Result<Self, LaunchError> {
+        let library = LoadedLibrary::new()
+            .map_err(|error| LaunchError::Start { program: config.child.program.clone(), error })?;
+        let LockstepPorts { fdm, rc, motors, tcp } = config.ports;
+        let (step_ns, boot_ns) = (config.step.as_nanos(), BOOT.as_nanos());
+        let settings = format!("{fdm},{rc},{motors},{tcp},{step_ns},{boot_ns}");
+        let preload = Preload { library: library.path(), variable: SETTINGS, settings };
+        let events = Arc::new(Events::default());
+        let process = Process::start(&config.child, &preload, &events)?;
+        Ok(Self {
+            config,
+            preload,
+            _library: library,
+            events,
+            process,
+            serial: None,
+            totals: SerialTotals::default(),
+            read: 0,
+            newest: None,
+            run: 0,
+            has_news: false,
+            steps: 0,
+        })
+    }
+
+    /// Starts the executable again after its end.
+    ///
+    /// # Errors
+    /// Returns an error if the system cannot start it.
+    pub fn restart(&mut self) -> Result<(), LaunchError> {
+        self.process = Process::start(&self.config.child, &self.preload, &self.events)?;
+        self.run = 0;
+        self.forget_process();
+        Ok(())
+    }
+
+    /// Forgets what belongs to a process that has ended.
+    fn forget_process(&mut self) {
+        (self.serial, self.newest, self.has_news) = (None, None, false);
+        (self.totals, self.read) = (SerialTotals::default(), 0);
+    }
+
+    /// Waits until the executable has used up its time, for a short time at most. Returns its newest motor packet, if it
+    /// has sent one since the last report.
+    ///
+    /// # Errors
+    /// Returns the reason why it has not.
+    pub fn wait(&mut self) -> Result<Option<[u8; MOTOR_BYTES]>, NoReport> {
+        let report = self.process.wait()?;
+        if self.run != report.run {
+            self.run = report.run;
+            self.forget_process();
+            self.newest = Some(report);
+            return Err(NoReport::Replaced);
+        }
+        let motors = (report.motor_packets > 0).then_some(report.motors);
+        self.newest = Some(report);
+        Ok(motors)
+    }
+
+    /// Lets the executable compute one step. Call [`Self::wait`] next.
+    pub fn step(&mut self, input: StepInput) {
+        self.steps = self.steps.wrapping_add(1);
+        self.write_waiting();
+        let serves = std::mem::take(&mut self.has_news)
+            || self.serial.is_some() && self.steps.is_multiple_of(SERIAL_EVERY);
+        let serial = serves.then_some(self.totals);
+        self.process.grant(&Grant { fdm: input.fdm, rc: input.rc, serial });
+    }
+
+    /// Connects to its first serial port. Returns `false` if it does not listen yet.
+    ///
+    /// # Errors
+    /// Returns the system's error.
+    pub fn connect(&mut self) -> io::Result<bool> {
+        let Some(port) = self.newest.as_ref().map(|report| report.ports[0]).filter(|port| *port != 0) else {
+            return Ok(false);
+        };
+        let stream = TcpStream::connect((Ipv4Addr::LOCALHOST, port))?;
+        stream.set_nodelay(true)?;
+        stream.set_read_timeout(Some(BYTES_WITHIN))?;
+        self.totals.connections += 1;
+        self.has_news = true;
+        self.serial = Some(Serial { stream, waiting: Vec::new() });
+        Ok(true)
+    }
+
+    /// Ends the connection to its serial port.
+    pub fn disconnect(&mut self) {
+        if self.serial.take().is_some() {
+            self.totals.closed += 1;
+            self.has_news = true;
+        }
+    }
+
+    /// Returns the number of its process.
+    pub fn id(&self) -> u32 {
+        self.process.id()
+    }
+
+    /// Sends bytes over the serial port. The executable takes them in with the next step.
+    pub fn send(&mut self, bytes: &[u8]) {
+        if let Some(serial) = &mut self.serial {
+            serial.waiting.extend_from_slice(bytes);
+        }
+    }
+
+    /// Returns the bytes that the executable has sent over the serial port up to its last report.
+    ///
+    /// # Errors
+    /// Returns an error if the connection has ended.
+    pub fn received(&mut self) -> io::Result<Vec<u8>> {
+        let (Some(serial), Some(report)) = (&mut self.serial, &self.newest) else { return Ok(Vec::new()) };
+        let mut bytes = vec![0; usize::try_from(report.sent.saturating_sub(self.read)).unwrap_or(0)];
+        serial.stream.read_exact(&mut bytes)?;
+        self.read = report.sent;
+        Ok(bytes)
+    }
+
+    /// Returns the next event of the process.
+    pub fn take_event(&mut self) -> Option<ChildEvent> {
+        self.events.take(now())
+    }
+
+    /// Writes the waiting bytes as far as the connection takes them.
+    fn write_waiting(&mut self) {
+        let Some(serial) = self.serial.as_mut().filter(|serial| !serial.waiting.is_empty()) else { return };
+        if serial.stream.set_nonblocking(true).is_err() {
+            return;
+        }
+        while !serial.waiting.is_empty() {
+            match serial.stream.write(&serial.waiting) {
+                Ok(0) => break,
+                Ok(written) => {
+                    self.totals.bytes += written as u64;
+                    self.has_news = true;
+                    serial.waiting.drain(..written);
+                }
+                Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                Err(_) => break,
+            }
+        }
+        drop(serial.stream.set_nonblocking(false));
+    }
+}

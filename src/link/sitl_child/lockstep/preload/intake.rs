@@ -1,0 +1,83 @@
+//! The threads that take in the packets of the simulator: states and RC.
+
+use core::cell::UnsafeCell;
+use core::sync::atomic::Ordering::SeqCst;
+use core::sync::atomic::{AtomicI32, AtomicU16, AtomicU32, AtomicUsize};
+
+use super::frames::FDM_BYTES;
+use super::libc::{wait_until, wake};
+
+/// The states of a thread that takes in packets.
+const BUSY: u32 = 0;
+const IDLE: u32 = 1;
+const HAS_PACKET: u32 = 2;
+
+/// A thread of the executable that takes in the packets of one UDP port.
+pub(crate) struct Intake {
+    /// The UDP port for which the executable asks.
+    pub(crate) port: AtomicU16,
+    /// Its socket; −1 = not yet.
+    pub(crate) fd: AtomicI32,
+    /// [`BUSY`], [`IDLE`] or [`HAS_PACKET`].
+    state: AtomicU32,
+    packet: UnsafeCell<[u8; FDM_BYTES]>,
+    size: AtomicUsize,
+}
+
+// SAFETY: the main thread writes the packet in the state IDLE, the intake's thread reads it in the state HAS_PACKET.
+unsafe impl Sync for Intake {}
+
+impl Intake {
+    const fn new() -> Self {
+        Self {
+            port: AtomicU16::new(0),
+            fd: AtomicI32::new(-1),
+            state: AtomicU32::new(BUSY),
+            packet: UnsafeCell::new([0; FDM_BYTES]),
+            size: AtomicUsize::new(0),
+        }
+    }
+
+    fn set(&self, state: u32) {
+        self.state.store(state, SeqCst);
+        wake(&self.state);
+    }
+
+    /// Hands a packet to the thread, and returns when it waits for the next one.
+    pub(crate) fn deliver(&self, packet: &[u8]) {
+        wait_until(&self.state, IDLE);
+        // SAFETY: the thread does not touch the packet while it is idle.
+        let place = unsafe { &mut *self.packet.get() };
+        place[..packet.len()].copy_from_slice(packet);
+        self.size.store(packet.len(), SeqCst);
+        self.set(HAS_PACKET);
+        wait_until(&self.state, IDLE);
+    }
+
+    /// Waits for a packet. A thread that waits has taken in the one before.
+    pub(crate) fn wait(&self) {
+        if self.state.load(SeqCst) == BUSY {
+            self.set(IDLE);
+        }
+        wait_until(&self.state, HAS_PACKET);
+    }
+
+    /// Copies the packet to `to`, which has `size` bytes. Returns its size, or `None` if there is none.
+    ///
+    /// # Safety
+    /// `to` points to `size` writable bytes.
+    pub(crate) unsafe fn take(&self, to: *mut u8, size: usize) -> Option<usize> {
+        if self.state.load(SeqCst) != HAS_PACKET {
+            return None;
+        }
+        let size = size.min(self.size.load(SeqCst));
+        // SAFETY: the main thread does not touch the packet in this state, and the caller vouches for `to`.
+        unsafe { core::ptr::copy_nonoverlapping(self.packet.get().cast::<u8>(), to, size) };
+        // The thread is idle again when it waits for the next packet.
+        self.state.store(BUSY, SeqCst);
+        Some(size)
+    }
+}
+
+pub(crate) static FDM: Intake = Intake::new();
+pub(crate) static RC: Intake = Intake::new();

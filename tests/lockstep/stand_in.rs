@@ -1,0 +1,212 @@
+//! A stand-in for the public executable with its threads and its system calls: a main thread that reads the clock and
+//! sleeps for 50 µs, a thread each for states and RC that waits with `select`, and a thread for the serial port whose loop
+//! is a `select` of 10 ms. This test program starts itself as the stand-in.
+//!
+//! For each state its main loop folds the state, the newest RC packet and its clock into a number, which is its motor
+//! packet. It answers each line on the serial port with the line, the time and that number.
+#![allow(unsafe_code, reason = "it makes the system calls of a C program")]
+
+use std::ffi::{CStr, c_char};
+use std::io::{ErrorKind, Read as _, Write as _};
+use std::net::{TcpListener, TcpStream, UdpSocket};
+use std::os::fd::AsRawFd as _;
+use std::os::unix::process::CommandExt as _;
+use std::process::Command;
+use std::sync::Mutex;
+
+/// The file in its folder with its ports: states, RC, motors, serial.
+pub(crate) const PORTS_FILE: &str = "ports.txt";
+/// The argument that makes this test program the stand-in.
+pub(crate) const ARGUMENT: &str = "stand-in";
+
+#[repr(C)]
+#[derive(Default)]
+struct Time {
+    s: i64,
+    fraction: i64,
+}
+
+unsafe extern "C" {
+    fn clock_gettime(id: i32, time: *mut Time) -> i32;
+    fn nanosleep(length: *const Time, left: *mut Time) -> i32;
+    fn select(
+        count: i32,
+        readable: *mut [u64; 16],
+        writable: *mut [u64; 16],
+        failed: *mut [u64; 16],
+        timeout: *mut Time,
+    ) -> i32;
+    fn recvfrom(
+        fd: i32,
+        bytes: *mut u8,
+        size: usize,
+        flags: i32,
+        from: *mut u8,
+        from_size: *mut u32,
+    ) -> isize;
+}
+
+/// Returns the monotonic clock, ns.
+fn clock_ns() -> u64 {
+    let mut time = Time::default();
+    // SAFETY: the time is writable.
+    unsafe { clock_gettime(1, &raw mut time) };
+    time.s as u64 * 1_000_000_000 + time.fraction as u64
+}
+
+fn sleep_50_us() {
+    let length = Time { s: 0, fraction: 50_000 };
+    // SAFETY: the length is readable.
+    unsafe { nanosleep(&raw const length, std::ptr::null_mut()) };
+}
+
+/// Waits until one of the descriptors is readable, or writable if it is the last and `writes`. Returns those that are.
+fn wait(descriptors: &[i32], writes: bool, timeout_us: i64) -> Vec<i32> {
+    let (mut readable, mut writable) = ([0_u64; 16], [0_u64; 16]);
+    let set = |set: &mut [u64; 16], fd: i32| set[fd as usize / 64] |= 1 << (fd % 64);
+    descriptors.iter().for_each(|fd| set(&mut readable, *fd));
+    if let Some(last) = descriptors.last().filter(|_| writes) {
+        set(&mut writable, *last);
+    }
+    let count = descriptors.iter().max().map_or(0, |fd| fd + 1);
+    let mut timeout = Time { s: 0, fraction: timeout_us };
+    // SAFETY: the sets and the time are writable.
+    let ready = unsafe {
+        select(count, &raw mut readable, &raw mut writable, std::ptr::null_mut(), &raw mut timeout)
+    };
+    let is_ready =
+        |fd: &i32| (readable[*fd as usize / 64] | writable[*fd as usize / 64]) >> (fd % 64) & 1 == 1;
+    if ready > 0 { descriptors.iter().copied().filter(is_ready).collect() } else { Vec::new() }
+}
+
+/// The newest packet of a port, and the number of packets.
+struct Newest<const N: usize>(Mutex<([u8; N], u64)>);
+
+/// Receives packets of a size, as the thread of a port does.
+fn take_packets<const N: usize>(socket: &UdpSocket, newest: &Newest<N>) {
+    let fd = socket.as_raw_fd();
+    loop {
+        if wait(&[fd], false, 100_000).is_empty() {
+            continue;
+        }
+        let mut bytes = [0; N];
+        let (mut from, mut from_size) = ([0_u8; 16], 16);
+        // SAFETY: the bytes and the address are writable.
+        let size = unsafe { recvfrom(fd, bytes.as_mut_ptr(), N, 0, from.as_mut_ptr(), &raw mut from_size) };
+        if size == N as isize {
+            let mut newest = newest.0.lock().unwrap();
+            *newest = (bytes, newest.1 + 1);
+        }
+    }
+}
+
+/// The bytes between the thread of the serial port and the main thread.
+#[derive(Default)]
+struct Serial {
+    received: Mutex<Vec<u8>>,
+    to_send: Mutex<Vec<u8>>,
+}
+
+/// Serves one client of the serial port after the other.
+fn serve(listener: &TcpListener, serial: &Serial) {
+    let mut client: Option<TcpStream> = None;
+    let mut unsent = Vec::new();
+    loop {
+        unsent.append(&mut serial.to_send.lock().unwrap());
+        let descriptors: Vec<i32> = std::iter::once(listener.as_raw_fd())
+            .chain(client.as_ref().map(|client| client.as_raw_fd()))
+            .collect();
+        let ready = wait(&descriptors, client.is_some() && !unsent.is_empty(), 10_000);
+        if ready.contains(&listener.as_raw_fd()) {
+            let (stream, _) = listener.accept().unwrap();
+            stream.set_nonblocking(true).unwrap();
+            client = Some(stream);
+            continue;
+        }
+        let Some(stream) = client.as_mut().filter(|client| ready.contains(&client.as_raw_fd())) else {
+            continue;
+        };
+        let mut bytes = [0; 64];
+        match stream.read(&mut bytes) {
+            Ok(0) => client = None,
+            Ok(size) => serial.received.lock().unwrap().extend_from_slice(&bytes[..size]),
+            Err(error) if error.kind() == ErrorKind::WouldBlock => {
+                let sent = stream.write(&unsent).unwrap();
+                unsent.drain(..sent);
+            }
+            Err(_) => client = None,
+        }
+    }
+}
+
+/// Runs before the main function of this test program, because the test harness gives each test a thread of its own, and
+/// a SITL executable lives on the main thread.
+#[used]
+#[unsafe(link_section = ".init_array")]
+static BEFORE_MAIN: extern "C" fn(i32, *const *const c_char) = before_main;
+
+extern "C" fn before_main(count: i32, arguments: *const *const c_char) {
+    // SAFETY: the C library passes as many arguments as it counts, each with a zero at its end.
+    let is_stand_in =
+        count == 2 && unsafe { CStr::from_ptr(*arguments.add(1)) }.to_bytes() == ARGUMENT.as_bytes();
+    if is_stand_in {
+        run();
+    }
+}
+
+fn run() {
+    let ports = std::fs::read_to_string(PORTS_FILE).unwrap();
+    let port = |at: usize| ports.split(',').nth(at).unwrap().parse::<u16>().unwrap();
+    let bind = |at: usize| UdpSocket::bind(("0.0.0.0", port(at))).unwrap();
+    let (states_in, rc_in) = (bind(0), bind(1));
+    let listener = TcpListener::bind(("0.0.0.0", port(3))).unwrap();
+    let motors_out = UdpSocket::bind(("0.0.0.0", 0)).unwrap();
+    let (state, rc, serial) =
+        (Newest(Mutex::new(([0_u8; 144], 0))), Newest(Mutex::new(([0_u8; 40], 0))), Serial::default());
+    std::thread::scope(|scope| {
+        scope.spawn(|| take_packets(&states_in, &state));
+        scope.spawn(|| take_packets(&rc_in, &rc));
+        scope.spawn(|| serve(&listener, &serial));
+        let (started_ns, mut states, mut number, mut line) = (clock_ns(), 0, 0_u64, Vec::new());
+        loop {
+            let now_ns = clock_ns();
+            let (state, count) = *state.0.lock().unwrap();
+            if count == std::mem::replace(&mut states, count) {
+                sleep_50_us();
+                continue;
+            }
+            let (rc, _) = *rc.0.lock().unwrap();
+            for byte in state.iter().chain(&rc).chain(&now_ns.to_le_bytes()) {
+                number = (number ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
+            }
+            let mut packet = [0; 16];
+            packet[..8].copy_from_slice(&number.to_le_bytes());
+            packet[8..].copy_from_slice(&(now_ns - started_ns).to_le_bytes());
+            motors_out.send_to(&packet, ("127.0.0.1", port(2))).unwrap();
+            for byte in std::mem::take(&mut *serial.received.lock().unwrap()) {
+                if byte != b'\n' {
+                    line.push(byte);
+                    continue;
+                }
+                let text = String::from_utf8(std::mem::take(&mut line)).unwrap();
+                match text.as_str() {
+                    "save" => std::process::exit(0),
+                    "exec" => drop(Command::new(std::env::current_exe().unwrap()).arg(ARGUMENT).exec()),
+                    "start" => {
+                        let started = Command::new("/usr/bin/env").output().unwrap();
+                        let variables = String::from_utf8(started.stdout).unwrap();
+                        let is_inherited = variables.contains("BETADECK") || variables.contains("LD_PRELOAD");
+                        println!("a program inherits lockstep: {is_inherited}");
+                    }
+                    "crash" => std::process::abort(),
+                    "hang" => loop {
+                        std::hint::spin_loop();
+                    },
+                    _ => {}
+                }
+                let answer = format!("{text} at {} µs, {number:x}\n", (now_ns - started_ns) / 1000);
+                serial.to_send.lock().unwrap().extend_from_slice(answer.as_bytes());
+            }
+        }
+    });
+}

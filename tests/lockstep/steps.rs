@@ -1,0 +1,186 @@
+//! Steps, serial bytes, restarts and the ends of a process.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use betadeck::link::ChildEnd;
+use betadeck::link::lockstep::NoReport;
+
+use super::child::Flight;
+
+/// Runs a part of a test while two threads take all processor time.
+fn beside_busy_loops<T>(run: impl FnOnce() -> T) -> T {
+    let stop = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        for _ in 0..2 {
+            scope.spawn(|| {
+                while !stop.load(Ordering::Relaxed) {
+                    std::hint::spin_loop();
+                }
+            });
+        }
+        let result = run();
+        stop.store(true, Ordering::Relaxed);
+        result
+    })
+}
+
+#[test]
+fn each_step_gets_one_motor_packet() {
+    let mut flight = Flight::start();
+    flight.run(2000).unwrap();
+    let steps: Vec<u64> = flight.log.iter().map(|(step, _)| *step).collect();
+    assert!(steps == (1..=2000).collect::<Vec<u64>>(), "{} packets", steps.len());
+}
+
+#[test]
+fn the_same_input_gives_the_same_motors_and_answers_however_busy_the_machine_is() {
+    let first = Flight::start().with_lines();
+    assert_eq!(first.iter().filter(|(_, bytes)| bytes.len() == 16).count(), 2000);
+    assert_eq!(first.iter().filter(|(_, bytes)| bytes.starts_with(b"line ")).count(), 20);
+    for run in 0..4 {
+        let flight = || Flight::start().with_lines();
+        let other = if run % 2 == 0 { flight() } else { beside_busy_loops(flight) };
+        assert!(first == other, "run {run} differs");
+    }
+}
+
+#[test]
+fn another_input_gives_other_motors() {
+    let mut one = Flight::start();
+    let mut other = Flight::start();
+    one.run(10).unwrap();
+    other.grant();
+    other.wait().unwrap();
+    other.lockstep.step(betadeck::link::lockstep::StepInput { fdm: [1; 144], rc: None });
+    other.wait().unwrap();
+    assert_eq!(one.log[0], other.log[0]);
+    assert_ne!(one.log[1].1, other.log[1].1);
+}
+
+#[test]
+fn several_executables_that_ask_for_the_same_ports_fly_at_once() {
+    let alone = Flight::start().with_lines();
+    let together: Vec<_> = std::thread::scope(|scope| {
+        let flights: Vec<_> = (0..4).map(|_| scope.spawn(|| Flight::start().with_lines())).collect();
+        flights.into_iter().map(|flight| flight.join().unwrap()).collect()
+    });
+    assert!(together.iter().all(|log| *log == alone));
+}
+
+#[test]
+fn an_executable_that_restarts_gets_the_same_clock_again() {
+    let mut flight = Flight::start();
+    flight.run(20).unwrap();
+    let first = flight.log.clone();
+    assert!(flight.lockstep.connect().unwrap());
+    flight.lockstep.send(b"save\n");
+    assert_eq!(flight.run(100), Err(NoReport::Ended(ChildEnd::Code(0))));
+    flight.begin_again();
+    flight.lockstep.restart().unwrap();
+    flight.wait().unwrap();
+    flight.run(20).unwrap();
+    assert!(flight.log == first);
+    assert!(flight.lockstep.connect().unwrap());
+    flight.lockstep.send(b"again\n");
+    flight.run(20).unwrap();
+    assert!(flight.take_text().starts_with("again at 30"), "it answers after its restart");
+}
+
+#[test]
+fn a_client_may_disconnect_and_connect_again() {
+    let mut flight = Flight::start();
+    for client in ["one", "two", "three"] {
+        assert!(flight.lockstep.connect().unwrap());
+        flight.lockstep.send(format!("{client}\n").as_bytes());
+        flight.run(20).unwrap();
+        assert!(flight.take_text().starts_with(client));
+        flight.lockstep.disconnect();
+        flight.run(20).unwrap();
+    }
+}
+
+#[test]
+fn much_data_at_once_arrives_whole() {
+    let mut flight = Flight::start();
+    assert!(flight.lockstep.connect().unwrap());
+    let lines: String = (0..3000).map(|line| format!("line number {line}\n")).collect();
+    flight.lockstep.send(lines.as_bytes());
+    flight.run(3000).unwrap();
+    let text = flight.take_text();
+    assert_eq!(text.lines().count(), 3000);
+    assert!(
+        text.lines().enumerate().all(|(line, text)| text.starts_with(&format!("line number {line} at ")))
+    );
+}
+
+#[test]
+fn a_crash_is_reported_with_its_signal() {
+    let mut flight = Flight::start();
+    assert!(flight.lockstep.connect().unwrap());
+    flight.lockstep.send(b"crash\n");
+    assert_eq!(flight.run(100), Err(NoReport::Ended(ChildEnd::Signal(6))));
+}
+
+#[test]
+fn an_executable_that_computes_without_an_end_is_reported_as_hung() {
+    let mut flight = Flight::start();
+    assert!(flight.lockstep.connect().unwrap());
+    flight.lockstep.send(b"hang\n");
+    assert_eq!(flight.run(100), Err(NoReport::Hung));
+}
+
+#[test]
+fn an_executable_that_the_host_stops_is_waited_for_and_computes_the_same() {
+    use rustix::process::{Pid, Signal, kill_process};
+    let undisturbed = Flight::start().with_lines();
+    let mut flight = Flight::start();
+    let pid = Pid::from_raw(flight.lockstep.id() as i32).unwrap();
+    flight.lockstep.connect().unwrap();
+    for line in 0..20 {
+        flight.lockstep.send(format!("line {line}\n").as_bytes());
+        if line == 7 {
+            kill_process(pid, Signal::STOP).unwrap();
+            flight.grant();
+            assert_eq!(flight.lockstep.wait(), Err(NoReport::Stopped));
+            kill_process(pid, Signal::CONT).unwrap();
+            flight.wait().unwrap();
+            flight.run(99).unwrap();
+        } else {
+            flight.run(100).unwrap();
+        }
+    }
+    assert!(flight.log == undisturbed);
+}
+
+#[test]
+fn programs_that_it_starts_inherit_nothing() {
+    let mut flight = Flight::start();
+    assert!(flight.lockstep.connect().unwrap());
+    flight.lockstep.send(b"start\n");
+    flight.run(100).unwrap();
+    let line = flight.wait_for_line("a program inherits lockstep");
+    assert!(line.ends_with("false"), "{line}");
+}
+
+#[test]
+fn an_executable_that_replaces_itself_stays_in_lockstep() {
+    let mut flight = Flight::start();
+    flight.run(20).unwrap();
+    let first = flight.log.clone();
+    for run in 0..3 {
+        assert!(flight.lockstep.connect().unwrap());
+        flight.lockstep.send(b"exec\n");
+        assert_eq!(flight.run(100), Err(NoReport::Replaced), "run {run}");
+        flight.begin_again();
+        flight.run(20).unwrap();
+        assert!(flight.log == first, "run {run}");
+    }
+}
+
+#[test]
+fn it_ends_with_its_owner() {
+    let flight = Flight::start();
+    let id = flight.lockstep.id();
+    drop(flight);
+    assert!(!std::path::Path::new(&format!("/proc/{id}")).exists());
+}
