@@ -260,4 +260,29 @@ mod tests {
         };
         assert!(land.is_impact(10.0, &landing));
     }
+
+    #[test]
+    fn a_descent_counts_from_its_highest_point() {
+        let mut land = LandDetector::default();
+        assert_eq!(land.descended_m(3.0), 0.0, "no descent has begun");
+        land.begin_descent(20.0, 0.0);
+        land.follow_altitude(22.0);
+        land.follow_altitude(15.0);
+        assert_eq!(land.descended_m(15.0), 7.0);
+        land.end_descent();
+        assert_eq!(land.descended_m(15.0), 0.0);
+    }
+
+    #[test]
+    fn a_craft_has_landed_once_the_conditions_have_held_for_the_whole_time() {
+        let mut land = LandDetector::default();
+        land.begin_descent(1.0, 0.0);
+        land.time_touchdown(true, SimTime::from_secs_f64(10.0));
+        land.time_touchdown(true, SimTime::from_secs_f64(10.9));
+        assert!(!land.has_landed(10));
+        land.time_touchdown(true, SimTime::from_secs_f64(11.1));
+        assert!(land.has_landed(10));
+        land.time_touchdown(false, SimTime::from_secs_f64(11.2));
+        assert!(!land.has_landed(10));
+    }
 }

@@ -314,4 +314,11 @@ mod tests {
         assert_eq!(active(&clock), ["gps-loss", "stall"], "a fault without an end goes on");
         assert!(!clock.link_faults().loss.is_normal() && clock.link_faults().stall);
     }
+
+    #[test]
+    fn a_clock_knows_the_seed_of_its_world() {
+        for seed in [0, 1, 7, u64::MAX] {
+            assert_eq!(Clock::of_external(1000, seed, Vec::new()).map(|clock| clock.seed()), Ok(seed));
+        }
+    }
 }

@@ -165,3 +165,29 @@ impl StationMonitor {
         Some(NavEvent::CannotHold { on: true, deviation })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_excess_is_the_sum_of_both_distances_beyond_the_bounds() {
+        let station = |distance_m, vertical_m| Station {
+            distance_m,
+            radius_m: 20.0,
+            vertical_m,
+            lean_binds: false,
+            throttle_binds: false,
+            battery_low: false,
+        };
+        for (distance_m, vertical_m, excess_m) in
+            [(19.0, 2.0, 0.0), (25.0, 0.0, 5.0), (0.0, -7.0, 4.0), (25.0, 7.0, 9.0)]
+        {
+            assert_eq!(
+                station(distance_m, vertical_m).excess_m(),
+                excess_m,
+                "{distance_m} m, {vertical_m} m"
+            );
+        }
+    }
+}

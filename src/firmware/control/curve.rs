@@ -154,6 +154,8 @@ mod tests {
             (curve(RatesType::Betaflight, 220.0, 0.0, 0.0), 1.0, 200.0 * (2.2 + 14.54 * 0.2)),
             (curve(RatesType::Raceflight, 37.0, 80.0, 50.0), 1.0, 370.0 * 1.8),
             (curve(RatesType::Kiss, 100.0, 70.0, 0.0), 0.5, 100.0 / 0.65),
+            // (0.125·0.4 + 0.5·0.6)·200/(1 − 0.35).
+            (curve(RatesType::Kiss, 100.0, 70.0, 40.0), 0.5, 70.0 / 0.65),
             (curve(RatesType::Quick, 100.0, 67.0, 0.0), 1.0, 670.0),
             (curve(RatesType::Quick, 100.0, 67.0, 0.0), 0.0, 0.0),
         ];

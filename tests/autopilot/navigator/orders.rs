@@ -6,7 +6,7 @@ use betadeck::plan::WaypointType::{Flyover, Hold};
 use betadeck::telemetry::{AbortReason, NavEvent, NavState, PlanSource, Refusal, TransitionReason};
 use nalgebra::Vector2;
 
-use crate::flight::{Flight, guide, inputs, waypoint, worst};
+use crate::flight::{Flight, guide, inputs, plan, waypoint, worst};
 
 #[test]
 fn return_home_flies_straight_and_lands() {
@@ -103,4 +103,15 @@ fn an_order_during_the_climb_ends_the_climb() {
     });
     assert_eq!(climbs.collect::<Vec<_>>(), [true, false]);
     assert!(!flight.nav.telemetry().climbing);
+}
+
+#[test]
+fn a_mission_that_is_reset_without_a_fix_does_not_start() {
+    let stored = plan(&[waypoint(Flyover, 100.0, 0.0, 20.0, 5.0)]);
+    let mut nav = Navigator::new();
+    let lost = NavInputs { fix: false, ..inputs() };
+    assert_eq!(nav.reset(&lost, &Params::default(), &stored), Err(Refusal::NoFix));
+    assert_eq!(nav.state(), NavState::Idle);
+    assert_eq!(nav.reset(&inputs(), &Params::default(), &stored), Ok(()));
+    assert_ne!(nav.state(), NavState::Idle);
 }

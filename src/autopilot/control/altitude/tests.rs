@@ -70,3 +70,56 @@ fn a_landing_that_waits_on_the_ground_does_not_forget_the_hover_throttle() {
     assert!(throttle < 1400.0, "{throttle} µs");
     assert!((controller.hover_us() - 1500.0).abs() < 5.0, "{} µs", controller.hover_us());
 }
+
+#[test]
+fn the_damping_grows_beyond_five_metres_a_second() {
+    let params = Params { altitude_p: 0, altitude_d: 100, altitude_f: 0, ..Params::default() };
+    let throttle = |climb_mps: f64| {
+        let terms = ThrottleTerms {
+            error_cm: 0.0,
+            integral_us: 0.0,
+            setpoint_rate_cms: 0.0,
+            climb_rate_cms: 100.0 * climb_mps,
+            hover_us: 1500.0,
+            cos_tilt: 1.0,
+        };
+        terms.throttle_us(&params) - 1500.0
+    };
+    assert!((throttle(4.0) + 400.0).abs() < 1e-9);
+    assert!((throttle(5.0) + 500.0).abs() < 1e-9);
+    // At twice that rate the factor is (3·2 − 2)/2.
+    assert!((throttle(10.0) + 2000.0).abs() < 1e-9);
+    assert!((throttle(-10.0) - 2000.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_target_is_a_climb_only_above_the_craft() {
+    for (target, climbs) in [
+        (AltitudeTarget::Altitude(20.0), false),
+        (AltitudeTarget::Altitude(20.2), false),
+        (AltitudeTarget::Altitude(20.4), true),
+        (AltitudeTarget::Altitude(10.0), false),
+        (AltitudeTarget::Rate(0.1), true),
+        (AltitudeTarget::Rate(0.0), false),
+        (AltitudeTarget::Rate(-1.0), false),
+    ] {
+        assert_eq!(target.climbs(20.0), climbs, "{target:?}");
+    }
+}
+
+#[test]
+fn the_acceleration_of_the_setpoint_is_filtered() {
+    let params = Params::default();
+    let hovering = level_craft(20.0, 1500.0);
+    let mut controller = AltitudeController::default();
+    controller.engage(&hovering, &params);
+    controller.update(&hovering, AltitudeTarget::Altitude(20.0), &params, DT);
+    let before = controller.setpoint_accel;
+    let rate = controller.setpoint_rate;
+    controller.update(&hovering, AltitudeTarget::Altitude(60.0), &params, DT);
+    let accel = (controller.setpoint_rate - rate) / DT;
+    assert!(accel > 0.1, "{accel} m/s²");
+    // A first-order filter with a time constant of 0.1 s.
+    let expected = before + (accel - before) * DT / (0.1 + DT);
+    assert!((controller.setpoint_accel - expected).abs() < 1e-9, "{} m/s²", controller.setpoint_accel);
+}

@@ -417,4 +417,36 @@ mod tests {
             assert!((DescentRate::Failsafe.at(altitude, &params) - rate).abs() < 1e-9, "{altitude}");
         }
     }
+
+    #[test]
+    fn a_rescue_without_a_fix_brakes_from_its_rate_to_that_of_a_landing() {
+        let params = Params::default();
+        let slow = params.descent_rate_mps();
+        let rate = |altitude_m| DescentRate::Rescue(5.0).at(altitude_m, &params);
+        assert_eq!(rate(1000.0), 5.0);
+        assert!((rate(RESCUE_LAST_METRES_M) - slow).abs() < 1e-9);
+        assert!((rate(0.0) - slow).abs() < 1e-9);
+        // v² = v₀² + 2·a·s.
+        let expected = (slow * slow + 2.0 * RESCUE_BRAKE_MPS2 * 3.0).sqrt();
+        assert!((rate(RESCUE_LAST_METRES_M + 3.0) - expected).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_craft_has_stopped_only_at_its_setpoint_and_without_climb() {
+        let at = |alt_m, climb_mps| NavInputs { alt_m, climb_mps, ..NavInputs::hovering() };
+        for (rate, alt_m, climb_mps, expected) in [
+            (0.0, 20.0, 0.0, true),
+            (0.0, 20.2, -0.1, true),
+            (0.0, 19.0, 0.0, false),
+            (0.0, 20.5, 0.0, false),
+            (0.0, 20.0, 0.5, false),
+            (1.0, 20.0, 0.0, false),
+        ] {
+            assert_eq!(
+                has_stopped(20.0, rate, &at(alt_m, climb_mps)),
+                expected,
+                "{rate} {alt_m} {climb_mps}"
+            );
+        }
+    }
 }
