@@ -5,11 +5,12 @@
 //! For each state its main loop folds the state, the newest RC packet and its clock into a number, which is its motor
 //! packet. It answers each line on the serial port with the line, the time and that number.
 #![allow(unsafe_code, reason = "it makes the system calls of a C program")]
+#![allow(clippy::print_stdout, reason = "the tests read what it prints")]
 
 use std::ffi::{CStr, c_char};
 use std::io::{ErrorKind, Read as _, Write as _};
 use std::net::{TcpListener, TcpStream, UdpSocket};
-use std::os::fd::AsRawFd as _;
+use std::os::fd::AsRawFd;
 use std::os::unix::process::CommandExt as _;
 use std::process::Command;
 use std::sync::Mutex;
@@ -113,9 +114,8 @@ fn serve(listener: &TcpListener, serial: &Serial) {
     let mut unsent = Vec::new();
     loop {
         unsent.append(&mut serial.to_send.lock().unwrap());
-        let descriptors: Vec<i32> = std::iter::once(listener.as_raw_fd())
-            .chain(client.as_ref().map(|client| client.as_raw_fd()))
-            .collect();
+        let descriptors: Vec<i32> =
+            std::iter::once(listener.as_raw_fd()).chain(client.as_ref().map(AsRawFd::as_raw_fd)).collect();
         let ready = wait(&descriptors, client.is_some() && !unsent.is_empty(), 10_000);
         if ready.contains(&listener.as_raw_fd()) {
             let (stream, _) = listener.accept().unwrap();
