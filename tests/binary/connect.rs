@@ -202,7 +202,8 @@ fn programs_at_a_door_read_but_change_only_what_is_permitted() {
     dialogue.hear("Go on?");
     dialogue.say("yes");
     dialogue.hear("Changes are permitted until the connection ends.");
-    assert!(framed_line(door, "set ap_max_angle = 40").contains("set to 40"));
+    let said = framed_line(door, "set ap_max_angle = 40");
+    assert!(said.contains("set to 40"), "{said}");
     let channels: Vec<u8> = [1500_u16; 8].iter().flat_map(|us| us.to_le_bytes()).collect();
     for moving in [200, 211, 214] {
         assert!(msp(&mut client, moving, &channels).0, "{moving}");

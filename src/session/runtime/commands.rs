@@ -6,6 +6,7 @@ use std::time::Duration;
 use super::Session;
 use super::interface::UploadTo;
 use super::limits::refuse_command;
+use crate::fc::Access;
 use crate::flight::forecast;
 use crate::session::command::{Command, Seek, VehicleCopy};
 use crate::session::policy::{self, Facts, Intent, RemoteFacts};
@@ -93,6 +94,10 @@ impl Session {
             Command::PermitChanges(connection) => {
                 if let Some(remote) = &mut self.runner.link {
                     remote.remote_mut().permit_changes(connection);
+                }
+                // Permission for an earlier connection has no effect.
+                if self.access() != Access::Reading {
+                    self.notice("Changes are permitted until the connection ends.");
                 }
             }
             Command::World { line, reply } => {

@@ -34,9 +34,6 @@ pub(super) fn permit(state: &mut AppState) -> Vec<Effect> {
     let mut effects = vec![Effect::Send(Command::PermitChanges(connection))];
     effects.append(&mut state.permission.held);
     state.permission.permitted = Some(connection);
-    if effects.len() == 1 {
-        state.shared.notify(Severity::Info, "Changes are permitted until the connection ends.");
-    }
     effects
 }
 
