@@ -6,7 +6,7 @@
 //! the observer makes snapshots and events from them. `upload` and `provision` write a plan and settings.
 //!
 //! [`RemoteLink`] moves the data between this machine, the sockets and the vehicle, and `feed` gives a SITL
-//! executable the states of the simulated craft.
+//! executable the states of the simulated craft. `stepped` does both for an executable in simulated time.
 
 mod asked;
 pub mod client;
@@ -28,6 +28,7 @@ mod rescue;
 mod self_check;
 mod setup;
 mod starter;
+mod stepped;
 pub mod telemetry;
 #[cfg(test)]
 mod tests;

@@ -18,6 +18,7 @@ use super::setup;
 use crate::args::{CheckArgs, FlightArgs, PhysicsArgs};
 use crate::report::check::{Compared, Summary};
 use crate::scenario::Draft;
+use crate::signals::fdm::FirmwareClock;
 use load::Loaded;
 pub(super) use load::load_one;
 use output::Output;
@@ -40,8 +41,9 @@ pub(super) fn run(args: &CheckArgs) -> Result<u8, AppError> {
     let firmware = firmware::choose(&args.firmware, beside, &mut notices)?;
     notices.extend(args.firmware_ports.idle_options(firmware.is_some()));
     notices.iter().for_each(|notice| error::tell(notice));
-    if firmware.is_some() && args.jobs.is_some_and(|jobs| jobs > 1) {
-        error::tell("--jobs has no effect: a remote firmware flies one flight at a time.");
+    let is_alone = firmware.as_ref().is_some_and(|firmware| firmware.clock == FirmwareClock::Real);
+    if is_alone && args.jobs.is_some_and(|jobs| jobs > 1) {
+        error::tell("--jobs has no effect: a firmware on the wall clock flies one flight at a time.");
     }
     let interrupted = interrupt_flag()?;
     if args.watch {
@@ -74,12 +76,21 @@ fn fly(
     let stop = AtomicBool::new(false);
     let mut results = Results::new(Output::open(args, loaded)?, jobs.len(), args.fail_fast, &stop);
     let started = run::Stopwatch::start();
+    let is_stopped = || interrupted.load(Ordering::Relaxed) || stop.load(Ordering::Relaxed);
+    let threads = run::threads(args);
     let trouble = match firmware {
         None => {
-            run::all(loaded, &jobs, args, interrupted, &stop, |flight, done| results.flight(flight, done))?;
+            let mut repetitions = run::Repetitions::default();
+            let fly = |_, job| run::one(loaded, job, &is_stopped);
+            run::all(&jobs, threads, &is_stopped, fly, |flight, done| {
+                results.flight(repetitions.compare(flight), done);
+            })?;
             None
         }
-        Some(firmware) => remote::all(loaded, &jobs, firmware, interrupted, &mut results),
+        Some(firmware) => {
+            let run = remote::Run { loaded, firmware, interrupted };
+            run.all(&jobs, threads, &is_stopped, &mut results)?
+        }
     };
     let (mut output, flights) = results.finish()?;
     let is_interrupted = interrupted.load(Ordering::Relaxed);

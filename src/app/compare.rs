@@ -87,9 +87,9 @@ fn compared(args: &CompareArgs, notices: &mut Vec<String>) -> Result<[Compared; 
     let physics = PhysicsArgs::default();
     let beside = Beside { ports: (&args.firmware_ports).into(), flight: &args.flight, physics: &physics };
     let [first, second] = names(choices);
-    let one = |name: String, chosen: &Chosen| -> Result<Compared, AppError> {
+    let mut one = |name: String, chosen: &Chosen| -> Result<Compared, AppError> {
         let times = args.flights_of(&chosen.choice).map_err(AppError::input)?;
-        Ok(Compared { name, firmware: chosen.check(&args.link, beside)?, times })
+        Ok(Compared { name, firmware: chosen.check(&args.link, beside, notices)?, times })
     };
     let [a, b] = &chosen;
     Ok([one(first, a)?, one(second, b)?])

@@ -3,6 +3,7 @@
 mod executable;
 mod folder;
 pub(super) mod link;
+pub(super) mod processor;
 pub(super) mod reported;
 pub(super) mod run;
 
@@ -16,7 +17,8 @@ use crate::args::{
     FirmwarePortArgs, FlightArgs, PhysicsArgs, UdpPorts,
 };
 use crate::fc::ProvisionLines;
-use crate::signals::fdm::{Dialect, MotorOrder, Stamps};
+use crate::link::lockstep::check_lockstep;
+use crate::signals::fdm::{Dialect, FirmwareClock, MotorOrder, Stamps};
 
 /// The launcher's file in the working directory.
 const LAUNCHER_FILE: &str = "config.txt";
@@ -29,7 +31,9 @@ pub(super) struct RemoteFirmware {
     pub(super) arguments: Vec<String>,
     /// The ports and the format of its packets.
     pub(super) ports: FirmwarePorts,
-    /// The time stamps of the packets to it.
+    /// The clock on which it runs.
+    pub(super) clock: FirmwareClock,
+    /// The time stamps of the packets to it on the wall clock.
     pub(super) stamps: Stamps,
     /// Command lines to set it up. The user's lines are those of `--settings` and those that a flight adds.
     pub(super) lines: ProvisionLines,
@@ -38,6 +42,14 @@ pub(super) struct RemoteFirmware {
 }
 
 impl RemoteFirmware {
+    /// Returns the multiple of real time at which flights without a screen are flown, if the user asks for no other.
+    pub(super) fn usual_speed(&self) -> f64 {
+        match self.clock {
+            FirmwareClock::Sim => f64::INFINITY,
+            FirmwareClock::Real => 1.0,
+        }
+    }
+
     /// Returns the same firmware with a plan's settings added to the usual lines, and those of `--set` after the
     /// user's lines.
     pub(super) fn with_settings(&self, plan: &[String], set: &[String]) -> Self {
@@ -127,7 +139,7 @@ pub(super) fn choose(
         None => Chosen::by_launcher(args.link.betaloop.as_deref(), notices)?,
     };
     notices.extend(args.link.idle_options(&chosen.choice));
-    chosen.check(&args.link, beside)
+    chosen.check(&args.link, beside, notices)
 }
 
 /// A choice of the firmware.
@@ -159,8 +171,9 @@ impl Chosen {
         &self,
         link: &FirmwareLinkArgs,
         beside: Beside<'_>,
+        notices: &mut Vec<String>,
     ) -> Result<Option<RemoteFirmware>, AppError> {
-        check(&self.choice, link, beside).map_err(|error| match &self.file {
+        check(&self.choice, link, beside, notices).map_err(|error| match &self.file {
             None => error,
             Some(file) => {
                 let message = format!(
@@ -178,17 +191,25 @@ fn check(
     choice: &FirmwareChoice,
     link: &FirmwareLinkArgs,
     beside: Beside<'_>,
+    notices: &mut Vec<String>,
 ) -> Result<Option<RemoteFirmware>, AppError> {
-    choice.check(link, beside.flight, beside.physics).map_err(AppError::input)?;
-    let executable = match choice {
-        FirmwareChoice::Embedded => return Ok(None),
-        FirmwareChoice::Attach => None,
-        FirmwareChoice::Executable(path) => Some(executable::find(&from_home(path))?),
+    let (executable, clock) = match choice {
+        FirmwareChoice::Embedded | FirmwareChoice::Attach => (None, FirmwareClock::Real),
+        FirmwareChoice::Executable(path) => {
+            let found = executable::find(&from_home(path))?;
+            let clock = clock_of(&found, link.clock, notices);
+            (Some(found), clock)
+        }
     };
+    choice.check(link, beside.flight, beside.physics, clock).map_err(AppError::input)?;
+    if !choice.is_remote() {
+        return Ok(None);
+    }
     Ok(Some(RemoteFirmware {
         arguments: if executable.is_some() { link.firmware_arg.clone() } else { Vec::new() },
         executable,
         ports: beside.ports.check()?,
+        clock,
         stamps: link.stamps(),
         lines: ProvisionLines {
             usual: Vec::new(),
@@ -199,6 +220,26 @@ fn check(
         },
         may_write: link.yes,
     }))
+}
+
+/// Returns the clock on which an executable can run. Says why if it cannot run in simulated time.
+fn clock_of(executable: &Path, wanted: Option<FirmwareClock>, notices: &mut Vec<String>) -> FirmwareClock {
+    if wanted == Some(FirmwareClock::Real) {
+        return FirmwareClock::Real;
+    }
+    match check_lockstep(executable) {
+        Ok(()) => FirmwareClock::Sim,
+        Err(why) => {
+            let name = executable.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            notices.push(on_the_wall_clock(&name, &why.to_string()));
+            FirmwareClock::Real
+        }
+    }
+}
+
+/// Returns the notice that an executable does not run in simulated time, for this reason.
+fn on_the_wall_clock(name: &str, why: &str) -> String {
+    format!("{name} runs on the wall clock, in real time: {why} (--clock real chooses that).")
 }
 
 /// Returns the executable named in a launcher's file.

@@ -13,7 +13,7 @@ use super::firmware::{self, Beside, RemoteFirmware};
 use super::interrupt::interrupt_flag;
 use super::setup;
 use crate::args::{FlyArgs, PhysicsArgs, Speed};
-use crate::fc::upload;
+use crate::fc::{RemoteLink, upload};
 use crate::flight::setup::{BootLines, PhysicsSource};
 use crate::flight::{Flight, FlightResult};
 use crate::plan::format::PlanFile;
@@ -73,6 +73,7 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
         truth: end.truth,
         flown_s: end.flown_s,
         wall_s: watch.seconds(),
+        hash: run.runner().link().and_then(RemoteLink::motor_hash),
     };
     let finished = output.finish(end.time, &end_record);
     match failure {
@@ -129,7 +130,7 @@ impl Start<'_> {
         Ok(Prepared { flight, output, run, interrupted })
     }
 
-    /// Prepares a flight with a remote firmware, in real time; `None` if a signal came before the flight began.
+    /// Prepares a flight with a remote firmware; `None` if a signal came before the flight began.
     fn remote(mut self, firmware: &RemoteFirmware) -> Result<Option<Prepared>, AppError> {
         let mut prelude = Prelude::new(self.args);
         for event in first_events(&mut self.vehicle, std::mem::take(&mut self.notices)) {
@@ -137,8 +138,9 @@ impl Start<'_> {
         }
         let options = RunOptions {
             state: self.args.flight.state_dir.as_deref(),
-            speed: self.args.flight.speed.map_or(1.0, |Speed(speed)| speed),
+            speed: self.args.flight.speed.map(|Speed(speed)| speed),
             interrupted: Arc::clone(&self.interrupted),
+            processor: None,
         };
         let prepared =
             RemoteRun::prepare(firmware, &mut self.vehicle, &self.plan.plan, options, &mut prelude);

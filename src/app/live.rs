@@ -59,7 +59,7 @@ pub(super) async fn start(
     let state = setup::store_directory(args.flight)?;
     let opened =
         args.firmware.map(|firmware| link::open(firmware, &vehicle, state.as_deref())).transpose()?;
-    notices.extend(opened.as_ref().and_then(OpenLink::notice));
+    notices.extend(opened.iter().flat_map(OpenLink::notices));
     let (remote, directory) = opened.map(|opened| (opened.link, opened.directory)).unzip();
     first_events.extend(notices.into_iter().map(SessionEvent::Notice));
     let config = SessionConfig {

@@ -7,11 +7,12 @@ use super::{FirmwareArgs, FirmwarePortArgs, PlanArg, help};
 use crate::scenario::MAX_FLIGHTS;
 
 /// The options for a remote firmware. They conflict with options that fly only the embedded firmware, or do not fly.
-const FIRMWARE_OPTIONS: [&str; 9] = [
+const FIRMWARE_OPTIONS: [&str; 10] = [
     "firmware",
     "firmware_arg",
     "betaloop",
     "yes",
+    "clock",
     "fdm_stamps",
     "tcp_port",
     "udp_ports",

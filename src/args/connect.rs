@@ -46,6 +46,7 @@ impl ConnectArgs {
             ("--fdm-mirror", physics.simulator.fdm_mirror.is_some()),
             ("--motor-order", physics.simulator.motor_order.is_some()),
             ("--firmware-arg", !firmware.firmware_arg.is_empty()),
+            ("--clock", firmware.clock.is_some()),
             ("--fdm-stamps", firmware.fdm_stamps.is_some()),
             ("--yes", firmware.yes),
             ("--udp-ports", doors.udp_ports.is_some()),

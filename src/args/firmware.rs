@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use super::physics::{FdmDialect, PhysicsArgs};
 use super::{FlightArgs, Speed, UdpPorts};
-use crate::signals::fdm::{MotorOrder, Stamps};
+use crate::signals::fdm::{FirmwareClock, MotorOrder, Stamps};
 
 /// A choice of the firmware.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -38,7 +38,7 @@ impl FirmwareChoice {
         *self != Self::Embedded
     }
 
-    /// Checks that these options can be used with it.
+    /// Checks that these options can be used with it on this clock.
     ///
     /// # Errors
     /// Returns a sentence with the reason and a suggestion.
@@ -47,6 +47,7 @@ impl FirmwareChoice {
         link: &FirmwareLinkArgs,
         flight: &FlightArgs,
         physics: &PhysicsArgs,
+        clock: FirmwareClock,
     ) -> Result<(), String> {
         if !self.is_remote() {
             return Ok(());
@@ -60,14 +61,16 @@ impl FirmwareChoice {
         }
         match flight.speed {
             None | Some(Speed(1.0)) => Ok(()),
+            Some(_) if clock == FirmwareClock::Sim => Ok(()),
             Some(Speed(speed)) if link.stamps() == Stamps::Sim && speed.is_finite() => Ok(()),
             Some(Speed(speed)) if link.stamps() == Stamps::Sim => Err(format!(
-                "--speed {} needs the embedded firmware, because nothing paces a remote one then: write a factor",
+                "--speed {} needs simulated time, because nothing paces a SITL on the wall clock: write a factor",
                 speed_text(speed)
             )),
             Some(Speed(speed)) => Err(format!(
-                "--speed {} needs the embedded firmware: the clock of a SITL is the wall clock, so it flies only at 1; \
-                 leave --speed out, or add --fdm-stamps sim for a build whose clock follows the packets",
+                "--speed {} needs simulated time: this SITL runs on the wall clock, so it flies only at 1; leave --speed \
+                 out, let betadeck start the executable with --clock sim, or add --fdm-stamps sim for a build whose \
+                 clock follows the packets",
                 speed_text(speed)
             )),
         }
@@ -84,9 +87,8 @@ pub struct FirmwareArgs {
     /// Firmware: embedded, the path of a SITL executable, or attach: one that is running [default: embedded]
     ///
     /// An executable is started in a folder of its own below the state directory, gets the state of the embedded
-    /// physics and ends with this program. It flies in real time and has the TCP and UDP ports to itself: --tcp-port
-    /// and --udp-ports name its ports, --fdm-dialect and --motor-order the format of its packets. The websocket door
-    /// stays.
+    /// physics and ends with this program. It flies in simulated time (--clock). --tcp-port and --udp-ports name its
+    /// ports, --fdm-dialect and --motor-order the format of its packets. The websocket door stays.
     #[arg(long, value_name = "WHICH", help_heading = "Firmware")]
     pub firmware: Option<FirmwareChoice>,
 
@@ -110,10 +112,18 @@ pub struct FirmwareLinkArgs {
     #[arg(long, help_heading = "Firmware")]
     pub yes: bool,
 
-    /// Stamps of the packets to it: constant, or sim: simulated time, for a patched build [default: constant]
+    /// Clock of an executable: sim or real [default: sim on Linux, else real]
     ///
-    /// The clock of a stock SITL jumps when stamps advance unevenly, so it gets the same stamp in every packet and runs
-    /// on the wall clock. A build whose clock follows the stamps flies at any --speed.
+    /// In simulated time an unmodified executable computes step by step with the craft: flights are repeatable, and as
+    /// fast as the machine allows in fly, check and compare. A small library is preloaded into it for that. On the wall
+    /// clock it flies in real time. A static executable, a script and one for another C library do so in any case.
+    #[arg(long, value_name = "CLOCK", help_heading = "Firmware")]
+    pub clock: Option<FirmwareClock>,
+
+    /// Stamps of its packets with --clock real: constant, or sim for a patched build [default: constant]
+    ///
+    /// On the wall clock, the clock of a stock SITL jumps when stamps advance unevenly, so it gets the same stamp in
+    /// every packet. A build whose clock follows the stamps flies at any --speed.
     #[arg(long, value_name = "STAMPS", help_heading = "Firmware")]
     pub fdm_stamps: Option<Stamps>,
 }
@@ -127,11 +137,18 @@ impl FirmwareLinkArgs {
     /// Returns a sentence about options that were given but have no effect with this firmware.
     pub fn idle_options(&self, firmware: &FirmwareChoice) -> Option<String> {
         let arguments = ("--firmware-arg", !self.firmware_arg.is_empty());
+        let stamps = ("--fdm-stamps", self.fdm_stamps.is_some());
         let (given, why) = match firmware {
-            FirmwareChoice::Executable(_) => return None,
-            FirmwareChoice::Attach => (vec![arguments], "the firmware is running already"),
+            FirmwareChoice::Executable(_) if self.clock == Some(FirmwareClock::Real) => return None,
+            FirmwareChoice::Executable(_) => {
+                (vec![stamps], "the firmware runs in simulated time (--clock real)")
+            }
+            FirmwareChoice::Attach => {
+                let clock = ("--clock sim", self.clock == Some(FirmwareClock::Sim));
+                (vec![arguments, clock], "the firmware is running already")
+            }
             FirmwareChoice::Embedded => (
-                vec![arguments, ("--yes", self.yes), ("--fdm-stamps", self.fdm_stamps.is_some())],
+                vec![arguments, ("--yes", self.yes), ("--clock", self.clock.is_some()), stamps],
                 "the firmware is embedded (--firmware PATH)",
             ),
         };
@@ -181,7 +198,7 @@ mod tests {
     fn refusal(speed: Option<f64>, stamps: Option<Stamps>) -> Option<String> {
         let flight = FlightArgs { speed: speed.map(Speed), ..FlightArgs::default() };
         let link = FirmwareLinkArgs { fdm_stamps: stamps, ..FirmwareLinkArgs::default() };
-        FirmwareChoice::Attach.check(&link, &flight, &PhysicsArgs::default()).err()
+        FirmwareChoice::Attach.check(&link, &flight, &PhysicsArgs::default(), FirmwareClock::Real).err()
     }
 
     #[test]
@@ -197,7 +214,7 @@ mod tests {
         assert_eq!(refusal(None, None), None);
         assert_eq!(refusal(Some(1.0), None), None);
         let sentence = refusal(Some(4.0), None).unwrap();
-        assert!(sentence.starts_with("--speed 4 needs the embedded firmware: the clock"), "{sentence}");
+        assert!(sentence.starts_with("--speed 4 needs simulated time: this SITL"), "{sentence}");
         assert!(refusal(Some(f64::INFINITY), None).unwrap().contains("--fdm-stamps sim"));
         assert_eq!(refusal(Some(4.0), Some(Stamps::Sim)), None);
         assert!(refusal(Some(f64::INFINITY), Some(Stamps::Sim)).unwrap().contains("write a factor"));
@@ -207,7 +224,8 @@ mod tests {
     fn firmware_and_physics_cannot_both_be_remote() {
         let physics = PhysicsArgs { physics: Some(PhysicsChoice::External), ..PhysicsArgs::default() };
         let check = |firmware: FirmwareChoice| {
-            firmware.check(&FirmwareLinkArgs::default(), &FlightArgs::default(), &physics)
+            let (link, flight) = (FirmwareLinkArgs::default(), FlightArgs::default());
+            firmware.check(&link, &flight, &physics, FirmwareClock::Sim)
         };
         assert_eq!(check(FirmwareChoice::Embedded), Ok(()));
         assert!(

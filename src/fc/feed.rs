@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::RemoteNotice;
-use super::self_check::{AtRest, SelfCheck, finding};
+use super::self_check::SelfCheck;
 use crate::link::SitlPeer;
 use crate::link::proto::sitl_feed::FeedState;
 use crate::signals::MotorCommand;
@@ -87,21 +87,7 @@ impl Feed {
         trusts_mag: bool,
         now: Duration,
     ) -> Option<RemoteNotice> {
-        if !self.self_check.is_due(is_ready && self.motors == FeedState::Answering, now) {
-            return None;
-        }
-        let snapshot = vehicle.snapshot();
-        let truth = snapshot.truth.filter(|truth| truth.on_ground && !truth.crashed)?;
-        if snapshot.craft.armed != Some(false) {
-            return None;
-        }
-        let at_rest = AtRest {
-            sent: self.peer.dialect(),
-            truth,
-            reported: snapshot.estimate,
-            trusts_mag,
-            place: snapshot.craft.gps.map(|gps| gps.position),
-        };
-        finding(&at_rest).map(RemoteNotice::Lost)
+        let answers = is_ready && self.motors == FeedState::Answering;
+        self.self_check.look(self.peer.dialect(), vehicle, answers, trusts_mag, now)
     }
 }

@@ -43,6 +43,8 @@ pub struct Craft {
     pub is_fed: bool,
     /// `true` if this program started it.
     pub is_child: bool,
+    /// `true` if it runs in simulated time, step by step with the craft.
+    pub is_in_steps: bool,
 }
 
 /// Something that happened.
@@ -225,6 +227,7 @@ impl Remote {
             opens_cli: self.opens_cli(),
             in_cli: self.client.is_in_cli(),
             connection: self.connection(),
+            is_in_steps: self.craft.is_in_steps,
         }
     }
 

@@ -8,7 +8,8 @@
 //!                    └◀─ answers, telemetry ──────┘
 //! ```
 //!
-//! Nothing here blocks: [`RemoteLink::exchange`] is called between two steps.
+//! [`RemoteLink::exchange`] is called between two steps and does not block. In simulated time it waits for the step of the
+//! executable, for a short time at most.
 
 use std::task::{Context, Poll};
 use std::time::{Duration, Instant};
@@ -16,9 +17,13 @@ use std::time::{Duration, Instant};
 use super::feed::Feed;
 use super::observer::Simulated;
 use super::remote::{Craft, Event, Input};
+use super::self_check::SelfCheck;
+use super::stepped::{StepEvent, Stepped};
 use super::{Remote, RemoteNotice, RemoteState, rescue};
 use crate::geo::LocalFrame;
 use crate::link::endpoint::EndpointStatus;
+use crate::link::lockstep::Lockstep;
+use crate::link::proto::sitl_feed::FeedConfig;
 use crate::link::{ChildEvent, FcStream, SitlChild, SitlPeer, StreamEvent};
 use crate::storage::state_file;
 use crate::vehicle::Vehicle;
@@ -53,11 +58,19 @@ pub struct RemoteEnds {
 #[derive(Debug)]
 pub struct RemoteLink {
     remote: Remote,
-    stream: FcStream,
-    feed: Option<Feed>,
-    child: Option<SitlChild>,
+    ends: Ends,
     started: Instant,
     notices: Vec<RemoteNotice>,
+}
+
+/// The ends of the link, by the clock of the flight controller.
+#[derive(Debug)]
+#[allow(clippy::large_enum_variant, reason = "there is one of them")]
+enum Ends {
+    /// It runs on the wall clock.
+    Wall { stream: FcStream, feed: Option<Feed>, child: Option<SitlChild> },
+    /// It runs in simulated time, step by step with the craft.
+    Steps(Stepped),
 }
 
 impl RemoteLink {
@@ -70,12 +83,23 @@ impl RemoteLink {
             bytes_per_s: stream.bytes_per_s,
             is_fed: peer.is_some(),
             is_child: child.is_some(),
+            is_in_steps: false,
         };
         Self {
             remote: Remote::new(craft, Duration::ZERO),
-            stream,
-            feed: peer.map(Feed::new),
-            child,
+            ends: Ends::Wall { stream, feed: peer.map(Feed::new), child },
+            started: now,
+            notices: Vec::new(),
+        }
+    }
+
+    /// Creates a link to an executable that has booted in simulated time.
+    pub fn in_steps(name: String, lockstep: Lockstep, feed: FeedConfig, now: Instant) -> Self {
+        let place = format!("the serial port of process {}", lockstep.id());
+        let craft = Craft { name, place, bytes_per_s: None, is_fed: true, is_child: true, is_in_steps: true };
+        Self {
+            remote: Remote::new(craft, Duration::ZERO),
+            ends: Ends::Steps(Stepped::new(lockstep, feed)),
             started: now,
             notices: Vec::new(),
         }
@@ -93,18 +117,61 @@ impl RemoteLink {
 
     /// Returns `true` if this program feeds it with the states of the craft, at the rate of the steps.
     pub fn is_fed(&self) -> bool {
-        self.feed.is_some()
+        self.feed().is_some() || self.is_in_steps()
+    }
+
+    /// Returns `true` if it runs in simulated time: an exchange is due after each step.
+    pub fn is_in_steps(&self) -> bool {
+        matches!(self.ends, Ends::Steps(_))
+    }
+
+    /// Returns a hash over the motor packets of an executable in simulated time and the times of their steps.
+    pub fn motor_hash(&self) -> Option<u64> {
+        match &self.ends {
+            Ends::Wall { .. } => None,
+            Ends::Steps(steps) => Some(steps.motor_hash()),
+        }
+    }
+
+    /// Returns `true` while the craft must wait for the step of an executable in simulated time.
+    pub fn is_busy(&self) -> bool {
+        matches!(&self.ends, Ends::Steps(steps) if steps.is_busy())
+    }
+
+    fn feed(&self) -> Option<&Feed> {
+        match &self.ends {
+            Ends::Wall { feed, .. } => feed.as_ref(),
+            Ends::Steps(_) => None,
+        }
+    }
+
+    fn feed_mut(&mut self) -> Option<&mut Feed> {
+        match &mut self.ends {
+            Ends::Wall { feed, .. } => feed.as_mut(),
+            Ends::Steps(_) => None,
+        }
     }
 
     /// Returns the maximum number of steps of `step_us` at `speed` times real time that may be flown before
     /// the next exchange.
     pub fn most_steps(&self, step_us: u64, speed: f64, now: Instant) -> u64 {
-        self.feed.as_ref().map_or(u64::MAX, |feed| feed.most_steps(step_us, speed, now))
+        match &self.ends {
+            Ends::Wall { feed, .. } => {
+                feed.as_ref().map_or(u64::MAX, |feed| feed.most_steps(step_us, speed, now))
+            }
+            Ends::Steps(steps) => {
+                if steps.is_busy() {
+                    0
+                } else {
+                    u64::MAX
+                }
+            }
+        }
     }
 
     /// Returns its status as an endpoint.
     pub fn status(&self, now: Instant) -> Option<EndpointStatus> {
-        self.feed.as_ref().map(|feed| feed.peer.status(now))
+        self.feed().map(|feed| feed.peer.status(now))
     }
 
     /// Returns the time until an exchange is due even if nothing arrives; `None` if none is.
@@ -122,6 +189,10 @@ impl RemoteLink {
         context: Option<&mut Context<'_>>,
         now: Instant,
     ) -> Vec<RemoteNotice> {
+        if self.is_in_steps() {
+            self.exchange_step(vehicle, now);
+            return std::mem::take(&mut self.notices);
+        }
         let since = self.since(now);
         self.follow_program(vehicle, since);
         self.read_stream(context, since);
@@ -129,12 +200,67 @@ impl RemoteLink {
         self.empty_mailbox(vehicle, now);
         self.remote.handle_timeout(since);
         while let Some(output) = self.remote.poll_transmit() {
-            // A full queue means that the stream carries nothing any more. The client gives the request up.
-            drop(self.stream.to.try_send(output));
+            if let Ends::Wall { stream, .. } = &self.ends {
+                // A full queue means that the stream carries nothing any more. The client gives the request up.
+                drop(stream.to.try_send(output));
+            }
         }
         self.take_events(vehicle);
         self.observe(vehicle, since);
         std::mem::take(&mut self.notices)
+    }
+
+    /// Runs the executable's step for the vehicle's newest one, if there is one.
+    fn exchange_step(&mut self, vehicle: &mut Vehicle, now: Instant) {
+        let Ends::Steps(steps) = &mut self.ends else { return };
+        let since = steps.elapsed();
+        if !steps.is_busy() {
+            if let Some(mailbox) = vehicle.controller_mut().remote_mut() {
+                steps.take_frames(mailbox);
+                while let Some((ticket, request)) = mailbox.take_request() {
+                    self.remote.handle(Input::Requested(ticket, request), since);
+                }
+            }
+            self.remote.handle_timeout(since);
+            while let Some(output) = self.remote.poll_transmit() {
+                steps.send(&output);
+            }
+        }
+        steps.run(vehicle.controller_mut().remote_mut(), now);
+        let since = steps.elapsed();
+        if steps.sends_motors {
+            self.remote.handle(Input::SentMotors, since);
+        }
+        while let Some(event) = self.step_event() {
+            match event {
+                StepEvent::Connected => self.remote.handle(Input::Connected, since),
+                StepEvent::Received(bytes) => self.remote.handle(Input::Received(&bytes), since),
+                StepEvent::Ended { how, is_reboot } => {
+                    self.remote.handle(Input::Ended { how: &how, is_reboot }, since);
+                    self.remote.handle(Input::Lost("it restarts"), since);
+                }
+                StepEvent::NotStarted(reason) => self.remote.handle(Input::NotStarted(&reason), since),
+                StepEvent::Notice(notice) => self.notices.push(notice),
+            }
+        }
+        self.follow_program(vehicle, since);
+        self.take_events(vehicle);
+        self.observe(vehicle, since);
+    }
+
+    fn step_event(&mut self) -> Option<StepEvent> {
+        match &mut self.ends {
+            Ends::Steps(steps) => steps.poll_event(),
+            Ends::Wall { .. } => None,
+        }
+    }
+
+    /// Returns the time of the protocol: that of the steps, or wall time.
+    pub fn protocol_time(&self, now: Instant) -> Duration {
+        match &self.ends {
+            Ends::Steps(steps) => steps.elapsed(),
+            Ends::Wall { .. } => self.since(now),
+        }
     }
 
     fn since(&self, now: Instant) -> Duration {
@@ -144,7 +270,11 @@ impl RemoteLink {
     /// Reports the events of its program.
     fn follow_program(&mut self, vehicle: &mut Vehicle, since: Duration) {
         for _ in 0..MOST_EVENTS {
-            let Some(event) = self.child.as_mut().and_then(SitlChild::take_event) else { return };
+            let event = match &mut self.ends {
+                Ends::Wall { child, .. } => child.as_mut().and_then(SitlChild::take_event),
+                Ends::Steps(steps) => steps.take_output(),
+            };
+            let Some(event) = event else { return };
             match event {
                 ChildEvent::Started => {}
                 ChildEvent::Line(line) => self.notices.push(RemoteNotice::Output(line)),
@@ -164,17 +294,18 @@ impl RemoteLink {
 
     /// Reads the data that has arrived over the serial port.
     fn read_stream(&mut self, mut context: Option<&mut Context<'_>>, since: Duration) {
+        let Ends::Wall { stream, .. } = &mut self.ends else { return };
         let mut read = 0;
         for _ in 0..MOST_READ {
             if read >= MOST_BYTES {
                 break;
             }
             let event = match &mut context {
-                Some(context) => match self.stream.from.poll_recv(context) {
+                Some(context) => match stream.from.poll_recv(context) {
                     Poll::Ready(event) => event,
                     Poll::Pending => None,
                 },
-                None => self.stream.from.try_recv().ok(),
+                None => stream.from.try_recv().ok(),
             };
             match event {
                 None => return,
@@ -196,7 +327,8 @@ impl RemoteLink {
     fn empty_mailbox(&mut self, vehicle: &mut Vehicle, now: Instant) {
         let since = self.since(now);
         let Some(mailbox) = vehicle.controller_mut().remote_mut() else { return };
-        match &mut self.feed {
+        let Ends::Wall { feed, .. } = &mut self.ends else { return };
+        match feed {
             Some(feed) => {
                 self.notices.extend(feed.exchange(mailbox, now));
                 if feed.has_motors() {
@@ -221,28 +353,30 @@ impl RemoteLink {
                     }
                 }
                 Event::Restarted(notice) => {
-                    if let Some(feed) = &mut self.feed {
+                    if let Some(feed) = self.feed_mut() {
                         feed.peer.went_down();
                     }
                     vehicle.remote_restarted();
                     self.notices.push(RemoteNotice::Restarted(notice));
                 }
                 Event::CameUp => {
-                    if let Some(feed) = &mut self.feed {
+                    if let Some(feed) = self.feed_mut() {
                         feed.peer.came_up();
                     }
                 }
                 Event::WentDown => {
-                    if let Some(feed) = &mut self.feed {
+                    if let Some(feed) = self.feed_mut() {
                         feed.peer.went_down();
                     }
                 }
-                Event::BecameReady => {
-                    if let Some(feed) = &mut self.feed {
-                        feed.became_ready();
-                    }
-                }
-                Event::GivenUp => self.child = None,
+                Event::BecameReady => match &mut self.ends {
+                    Ends::Wall { feed, .. } => feed.iter_mut().for_each(Feed::became_ready),
+                    Ends::Steps(steps) => steps.self_check = SelfCheck::default(),
+                },
+                Event::GivenUp => match &mut self.ends {
+                    Ends::Wall { child, .. } => *child = None,
+                    Ends::Steps(steps) => steps.give_up(),
+                },
                 Event::Configured(file, words) => {
                     if let Err(error) = state_file::replace(&file, words.as_bytes()) {
                         let place = file.display();
@@ -259,17 +393,25 @@ impl RemoteLink {
     /// Delivers the observations and handles their consequences.
     fn observe(&mut self, vehicle: &mut Vehicle, since: Duration) {
         let observer = self.remote.observer();
-        if let Some(feed) = &mut self.feed {
-            let is_ready = self.remote.state() == RemoteState::Ready;
-            self.notices.extend(feed.check_at_rest(vehicle, is_ready, observer.trusts_mag(), since));
-        }
+        let is_fed = self.is_fed();
+        let is_ready = self.remote.state() == RemoteState::Ready;
+        let trusts_mag = observer.trusts_mag();
+        self.notices.extend(match &mut self.ends {
+            Ends::Wall { feed, .. } => {
+                feed.as_mut().and_then(|feed| feed.check_at_rest(vehicle, is_ready, trusts_mag, since))
+            }
+            Ends::Steps(steps) => {
+                let dialect = steps.feed().dialect();
+                steps.self_check.look(dialect, vehicle, is_ready && steps.sends_motors, trusts_mag, since)
+            }
+        });
         if let Some(seen) = observer.first_fix()
-            && !vehicle.local_frame().is_some_and(|frame| self.feed.is_some() || is_near(frame, &seen))
+            && !vehicle.local_frame().is_some_and(|frame| is_fed || is_near(frame, &seen))
         {
             vehicle.set_origin(seen);
         }
         let frame = vehicle.local_frame().copied();
-        let simulated = self.feed.is_some().then(|| Simulated {
+        let simulated = is_fed.then(|| Simulated {
             home_m: frame.map(|frame| frame.alt_amsl_m),
             commanded: rescue::is_on(observer, &vehicle.transmitter().sticks().channels),
         });

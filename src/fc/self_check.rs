@@ -4,10 +4,12 @@ use std::time::Duration;
 
 use nalgebra::Vector3;
 
+use super::RemoteNotice;
 use crate::geo::{LatLon, distance_bearing};
 use crate::link::proto::fdm::{Gravity, State};
 use crate::signals::fdm::Dialect;
 use crate::telemetry::snapshot::{EstimateView, TruthView};
+use crate::vehicle::Vehicle;
 
 /// The greatest error of roll and pitch, degrees.
 const LEAN_DEG: f64 = 2.0;
@@ -34,8 +36,35 @@ pub(super) enum SelfCheck {
 }
 
 impl SelfCheck {
+    /// Checks once, some time after the executable begins to answer, that it shows the craft at rest correctly.
+    pub(super) fn look(
+        &mut self,
+        sent: Dialect,
+        vehicle: &Vehicle,
+        answers: bool,
+        trusts_mag: bool,
+        now: Duration,
+    ) -> Option<RemoteNotice> {
+        if !self.is_due(answers, now) {
+            return None;
+        }
+        let snapshot = vehicle.snapshot();
+        let truth = snapshot.truth.filter(|truth| truth.on_ground && !truth.crashed)?;
+        if snapshot.craft.armed != Some(false) {
+            return None;
+        }
+        let at_rest = AtRest {
+            sent,
+            truth,
+            reported: snapshot.estimate,
+            trusts_mag,
+            place: snapshot.craft.gps.map(|gps| gps.position),
+        };
+        finding(&at_rest).map(RemoteNotice::Lost)
+    }
+
     /// Returns `true` once, when the check is due.
-    pub(super) fn is_due(&mut self, answers: bool, now: Duration) -> bool {
+    fn is_due(&mut self, answers: bool, now: Duration) -> bool {
         match *self {
             Self::Waiting if answers => *self = Self::At(now + SETTLED),
             Self::At(_) if !answers => *self = Self::Waiting,
@@ -51,21 +80,21 @@ impl SelfCheck {
 
 /// The values that an executable reports for a craft at rest.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct AtRest {
+struct AtRest {
     /// The dialect of the packets.
-    pub(super) sent: Dialect,
+    sent: Dialect,
     /// The true state of the craft.
-    pub(super) truth: TruthView,
+    truth: TruthView,
     /// The executable's estimate of the craft.
-    pub(super) reported: EstimateView,
+    reported: EstimateView,
     /// `true` if its heading comes from the magnetometer and is therefore known at rest.
-    pub(super) trusts_mag: bool,
+    trusts_mag: bool,
     /// The position reported by its GPS.
-    pub(super) place: Option<LatLon>,
+    place: Option<LatLon>,
 }
 
 /// Returns the error as a sentence; `None` if everything is correct.
-pub(super) fn finding(at_rest: &AtRest) -> Option<String> {
+fn finding(at_rest: &AtRest) -> Option<String> {
     let AtRest { sent, truth, reported, trusts_mag, place } = *at_rest;
     let (Some(roll), Some(pitch), Some(heading)) =
         (reported.roll_deg, reported.pitch_deg, reported.heading_deg)

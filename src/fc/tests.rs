@@ -268,6 +268,7 @@ fn the_timeout_is_when_something_is_due() {
         bytes_per_s: None,
         is_fed: false,
         is_child: false,
+        is_in_steps: false,
     };
     let (mut board, mut now) = (Board::at(FIELD), Duration::ZERO);
     let mut remote = Remote::new(craft, now);

@@ -37,6 +37,8 @@ pub struct RemoteView {
     pub in_cli: bool,
     /// The number of the current connection. A permission applies to one connection.
     pub connection: u32,
+    /// `true` if it runs in simulated time, so that time can be paused and made faster.
+    pub is_in_steps: bool,
 }
 
 /// A notice about a remote flight controller. `Display` gives a sentence.

@@ -15,6 +15,8 @@ pub struct End {
     pub flown_s: f64,
     /// Seconds of wall time for that part.
     pub wall_s: f64,
+    /// A hash over the motor packets of a firmware in simulated time. Two equal flights have the same one.
+    pub hash: Option<u64>,
 }
 
 impl End {
@@ -49,6 +51,7 @@ mod tests {
             truth: FlightTruth::default(),
             flown_s: 312.4,
             wall_s: 0.21,
+            hash: None,
         };
         assert_eq!(end.flown_line(), "flown 312.4 s in 0.21 s (1488x real time)");
         assert_eq!(end.result_line(), "complete: landed and disarmed");

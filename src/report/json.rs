@@ -38,6 +38,8 @@ pub fn end_line(time: SimTime, end: &End) -> String {
         flown_s: Milli,
         wall_s: Milli,
         speed_ratio: Decimals<1>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        hash: Option<String>,
     }
     let fields = Fields {
         result: &end.result,
@@ -46,6 +48,7 @@ pub fn end_line(time: SimTime, end: &End) -> String {
         flown_s: Decimals(end.flown_s),
         wall_s: Decimals(end.wall_s),
         speed_ratio: Decimals(end.speed_ratio()),
+        hash: end.hash.map(|hash| format!("{hash:016x}")),
     };
     line(time, "end", &fields)
 }
@@ -77,6 +80,7 @@ mod tests {
             truth: FlightTruth { battery_used_pct: Some(4.25), ..FlightTruth::default() },
             flown_s: 12.3456,
             wall_s: 0.5,
+            hash: None,
         };
         assert_eq!(
             end_line(SimTime(20_000_000), &end),

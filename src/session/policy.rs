@@ -65,12 +65,14 @@ pub struct RemoteFacts {
     has_plans: bool,
     /// `true` if a line would have to open its command line, which is itself a change.
     opens_cli: bool,
+    /// `true` if its time is that of the session.
+    is_in_steps: bool,
 }
 
 impl From<&RemoteView> for RemoteFacts {
     fn from(remote: &RemoteView) -> Self {
-        let &RemoteView { has_plans, opens_cli, .. } = remote;
-        Self { is_ready: remote.state == RemoteState::Ready, has_plans, opens_cli }
+        let &RemoteView { has_plans, opens_cli, is_in_steps, .. } = remote;
+        Self { is_ready: remote.state == RemoteState::Ready, has_plans, opens_cli, is_in_steps }
     }
 }
 
@@ -233,7 +235,9 @@ const RULES: [Rule; 11] = [
     (TIME_IS_EXTERNAL, |facts, intent| {
         matches!(intent, Intent::Time | Intent::Recording) && facts.simulator.is_some()
     }),
-    (TIME_IS_THE_FIRMWARES, |facts, intent| intent == Intent::Time && facts.remote.is_some()),
+    (TIME_IS_THE_FIRMWARES, |facts, intent| {
+        intent == Intent::Time && facts.remote.is_some_and(|remote| !remote.is_in_steps)
+    }),
     (NOT_RECORDED, |facts, intent| intent == Intent::Recording && !facts.is_recorded),
     (REWOUND, |facts, intent| facts.is_rewound && intent.needs_newest()),
     (PLACE_IS_EXTERNAL, |facts, intent| {

@@ -1,7 +1,7 @@
 //! The runner of flights: paced or free, with an embedded or a remote flight controller, observed by subscribers.
 //!
 //! A round has three parts: the due ticks, the exchange with a remote flight controller, and a rest until the next tick
-//! is due. Headless flights run with [`Runner::fly`]. The session runs its own rounds, because users and clients act
+//! is due. A flight controller in simulated time exchanges after each tick. Headless flights run with [`Runner::fly`]. The session runs its own rounds, because users and clients act
 //! between them.
 #![allow(clippy::disallowed_methods, reason = "this is where wall time meets simulated time")]
 
@@ -63,6 +63,11 @@ impl Runner {
         self.link.as_ref()
     }
 
+    /// Returns the time of the link's protocol, for its deadlines: simulated time, or wall time.
+    pub fn protocol_time(&self) -> Duration {
+        self.link.as_ref().map_or_else(|| self.elapsed(), |link| link.protocol_time(Instant::now()))
+    }
+
     /// Returns the wall time since the runner was created.
     pub fn elapsed(&self) -> Duration {
         self.started.elapsed()
@@ -79,6 +84,13 @@ impl Runner {
     /// program feeds gets its states at the rate of the steps.
     pub(super) fn rest(&self, now: Duration, longest: Duration) -> Duration {
         let Some(link) = &self.link else { return longest };
+        if link.is_in_steps() {
+            return match self.pacer.next_due() {
+                Some(due) => due.saturating_sub(now).min(longest),
+                None if self.pacer.is_paused() => longest,
+                None => Duration::ZERO,
+            };
+        }
         match self.pacer.next_due() {
             Some(_) if link.is_fed() && self.pacer.is_behind() => EXCHANGE_PAUSE,
             Some(due) if link.is_fed() => due.saturating_sub(now),
@@ -114,6 +126,7 @@ impl Runner {
         is_stopped: impl Fn() -> bool,
     ) -> Result<Option<F::End>, Stopped> {
         let due = self.due(self.elapsed());
+        let is_in_steps = self.link.as_ref().is_some_and(RemoteLink::is_in_steps);
         for _ in 0..due {
             let end = tick(flight, subscriber);
             if !subscriber.goes_on() {
@@ -122,11 +135,19 @@ impl Runner {
             if end.is_some() {
                 return Ok(end);
             }
+            if is_in_steps {
+                self.exchange(flight, subscriber)?;
+                if self.link.as_ref().is_some_and(RemoteLink::is_busy) {
+                    break;
+                }
+            }
         }
         if is_stopped() {
             return Err(Stopped::Interrupted);
         }
-        self.exchange(flight, subscriber)?;
+        if !is_in_steps || due == 0 {
+            self.exchange(flight, subscriber)?;
+        }
         if self.link.is_some() || due < self.slice {
             subscriber.before_rest();
             std::thread::sleep(self.rest(self.elapsed(), LONGEST_REST));

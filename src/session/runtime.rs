@@ -261,7 +261,9 @@ impl Session {
             self.record_flood();
             let due = if self.follows_wall_clock() { self.runner.due(now) } else { 0 };
             let ticks = flown + self.advance(due, now);
-            self.exchange_with_remote(&mut context);
+            if !self.is_in_steps() || ticks == 0 {
+                self.exchange_with_remote(Some(&mut context));
+            }
             let after = start.elapsed();
             self.runner.pacer.ran(ticks, after);
             self.count_lost_time(after);
@@ -310,7 +312,12 @@ impl Session {
 
     /// Returns `true` if the session sets the time, rather than an external simulator or a remote firmware.
     fn sets_time(&self) -> bool {
-        self.simulator.is_none() && self.runner.link.is_none()
+        self.simulator.is_none() && (self.runner.link.is_none() || self.is_in_steps())
+    }
+
+    /// Returns `true` if a remote firmware runs step by step with the craft.
+    fn is_in_steps(&self) -> bool {
+        self.runner.link.as_ref().is_some_and(RemoteLink::is_in_steps)
     }
 
     /// Returns `true` while time follows the wall clock: without an external simulator, or until it sends its
@@ -358,9 +365,9 @@ impl Session {
     }
 
     /// Sends the vehicle's data for its remote flight controller, and takes the data from it.
-    fn exchange_with_remote(&mut self, context: &mut Context<'_>) {
+    fn exchange_with_remote(&mut self, context: Option<&mut Context<'_>>) {
         let Some(link) = &mut self.runner.link else { return };
-        for notice in link.exchange(&mut self.vehicle, Some(context), Instant::now()) {
+        for notice in link.exchange(&mut self.vehicle, context, Instant::now()) {
             self.changed = true;
             if let RemoteNotice::Failed(sentence) = &notice
                 && link.is_fed()

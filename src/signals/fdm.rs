@@ -40,6 +40,16 @@ pub enum MotorOrder {
     Legacy,
 }
 
+/// The clock of a SITL executable.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumString)]
+#[strum(serialize_all = "lowercase")]
+pub enum FirmwareClock {
+    /// Simulated time, step by step with the craft.
+    Sim,
+    /// The wall clock.
+    Real,
+}
+
 /// The kind of stamps in the packets to a SITL executable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, strum::Display, strum::EnumString)]
 #[strum(serialize_all = "lowercase")]

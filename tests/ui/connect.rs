@@ -21,6 +21,7 @@ fn remote() -> RemoteView {
         opens_cli: false,
         in_cli: false,
         connection: 1,
+        is_in_steps: false,
     }
 }
 

@@ -1,11 +1,11 @@
-//! Flies the cases with a remote firmware: one after the other, in real time, each with a new start.
+//! Flies the cases with a remote firmware, each with a new start.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::Loaded;
 use super::results::Results;
-use super::run::{self, Job, Stopwatch};
+use super::run::{self, Job, Repetitions, Stopwatch};
 use crate::app::firmware::run::{OnEvent, RemoteRun, RunOptions, Stopped};
 use crate::app::firmware::{RemoteFirmware, reported};
 use crate::app::{AppError, error, setup};
@@ -13,6 +13,7 @@ use crate::fc::Unset;
 use crate::report::check::CheckedFlight;
 use crate::scenario::{self, Air, Case, CaseFlight};
 use crate::session::Event;
+use crate::signals::fdm::FirmwareClock;
 
 /// The message if flights cannot be prepared repeatedly.
 const NO_MORE: &str = "Two flights in a row could not be prepared: the others are not tried.";
@@ -33,80 +34,115 @@ pub(super) fn refuse_many(firmware: &RemoteFirmware, flights: usize, watch: bool
     )))
 }
 
-/// Flies all jobs. A flight that cannot be prepared has failed, and the run goes on. Two such flights in a row, with
-/// a cause in the environment, end the run. Returns the exit code if there was such a problem.
-pub(super) fn all(
-    loaded: &Loaded,
-    jobs: &[Job],
-    firmware: &RemoteFirmware,
-    interrupted: &Arc<AtomicBool>,
-    results: &mut Results<'_>,
-) -> Option<u8> {
-    let (mut trouble, mut is_in_trouble) = (None, false);
-    for (index, job) in jobs.iter().enumerate() {
-        let (Some((case, air)), Some(unflown)) = (job.of(loaded), job.not_flown_yet(loaded)) else {
-            continue;
-        };
-        let was_in_trouble = is_in_trouble;
-        let flight = match scenario::skip(case) {
-            Some(judgements) => CheckedFlight { judgements, ..unflown },
-            None => match fly(case, air, unflown.clone(), firmware, interrupted, results) {
-                Ok(flight) => {
-                    is_in_trouble = false;
-                    flight
-                }
-                // Interrupted in the air: there is no result.
-                Err(Stopped::Interrupted | Stopped::BySubscriber) => return trouble,
-                Err(Stopped::Failed(AppError { code, message })) => {
-                    is_in_trouble = code >= error::ENVIRONMENT;
-                    trouble = trouble.max(is_in_trouble.then_some(code));
-                    CheckedFlight { problem: Some(message), ..unflown }
-                }
-            },
-        };
-        results.flight(flight, index + 1);
-        if interrupted.load(Ordering::Relaxed) || results.is_stopped() {
-            return trouble;
-        }
-        if was_in_trouble && is_in_trouble && index + 1 < jobs.len() {
-            results.tell(NO_MORE);
-            return trouble;
-        }
-    }
-    trouble
+/// The flights of a run with a remote firmware.
+#[derive(Clone, Copy)]
+pub(super) struct Run<'a> {
+    pub(super) loaded: &'a Loaded,
+    pub(super) firmware: &'a RemoteFirmware,
+    pub(super) interrupted: &'a Arc<AtomicBool>,
 }
 
-/// Flies and judges one flight.
-fn fly(
-    case: &Case,
-    air: &Air,
-    checked: CheckedFlight,
-    firmware: &RemoteFirmware,
-    interrupted: &Arc<AtomicBool>,
-    results: &mut Results<'_>,
-) -> Result<CheckedFlight, Stopped> {
-    let started = Stopwatch::start();
-    let mut setup = case.setup_in(air);
-    setup.remote_controller = true;
-    let plan = setup.plan.plan.clone();
-    let mut firmware = firmware.with_settings(&setup.plan.settings, &[]);
-    let of_case = setup.boot_lines.iter().flat_map(|lines| lines.text.lines());
-    firmware.lines.of_user.extend(of_case.map(str::to_owned));
-    let mut vehicle = setup::build(setup, &mut Vec::new())?;
-    let options = RunOptions { state: None, speed: 1.0, interrupted: Arc::clone(interrupted) };
-    let mut tell = OnEvent(|event: &Event| {
-        if let Some(sentence) = reported::sentence(event) {
-            results.tell(&sentence);
+/// A flight that is over.
+struct Done {
+    flight: CheckedFlight,
+    /// The messages about the firmware during the flight.
+    reported: Vec<String>,
+    /// The exit code of a problem with the environment.
+    trouble: Option<u8>,
+}
+
+impl Run<'_> {
+    /// Flies all jobs: several at once in simulated time, one after the other on the wall clock. A flight that cannot be
+    /// prepared has failed, and the run goes on. Two such flights in a row, with a cause in the environment, end the run.
+    /// Returns the exit code if there was such a problem.
+    pub(super) fn all(
+        self,
+        jobs: &[Job],
+        threads: usize,
+        is_stopped: &(impl Fn() -> bool + Sync),
+        results: &mut Results<'_>,
+    ) -> Result<Option<u8>, AppError> {
+        let is_repeatable = self.firmware.clock == FirmwareClock::Sim;
+        let threads = if is_repeatable { threads } else { 1 };
+        let (mut trouble, mut is_in_trouble) = (None, false);
+        let mut repetitions = Repetitions::default();
+        let gives_up = AtomicBool::new(false);
+        let ends = || is_stopped() || gives_up.load(Ordering::Relaxed);
+        run::all(
+            jobs,
+            threads,
+            &ends,
+            |thread, job| self.one(job, thread),
+            |done: Done, count| {
+                done.reported.iter().for_each(|sentence| results.tell(sentence));
+                let was_in_trouble = std::mem::replace(&mut is_in_trouble, done.trouble.is_some());
+                trouble = trouble.max(done.trouble);
+                let flight = if is_repeatable { repetitions.compare(done.flight) } else { done.flight };
+                results.flight(flight, count);
+                if was_in_trouble
+                    && is_in_trouble
+                    && count < jobs.len()
+                    && !gives_up.swap(true, Ordering::Relaxed)
+                {
+                    results.tell(NO_MORE);
+                }
+            },
+        )?;
+        Ok(trouble)
+    }
+
+    /// Flies and judges one flight; `None` if it was interrupted in the air.
+    fn one(self, job: Job, thread: usize) -> Option<Done> {
+        let ((case, air), unflown) = (job.of(self.loaded)?, job.not_flown_yet(self.loaded)?);
+        let mut reported = Vec::new();
+        if let Some(judgements) = scenario::skip(case) {
+            return Some(Done { flight: CheckedFlight { judgements, ..unflown }, reported, trouble: None });
         }
-    });
-    let mut remote = RemoteRun::prepare(&firmware, &mut vehicle, &plan, options, &mut tell)?;
-    let problem = remote.unset().and_then(|unset| not_as_wanted(case, unset));
-    let mut flight = match CaseFlight::of_vehicle(case, vehicle) {
-        Ok(flight) => flight,
-        Err(problem) => return Ok(CheckedFlight { problem: Some(problem), ..checked }),
-    };
-    remote.fly(&mut flight, &mut tell)?;
-    Ok(CheckedFlight { problem, ..run::judged(checked, case, flight.finish(), &started) })
+        let (flight, trouble) = match self.fly(case, air, unflown.clone(), thread, &mut reported) {
+            Ok(flight) => (flight, None),
+            Err(Stopped::Interrupted | Stopped::BySubscriber) => return None,
+            Err(Stopped::Failed(AppError { code, message })) => {
+                let trouble = (code >= error::ENVIRONMENT).then_some(code);
+                (CheckedFlight { problem: Some(message), ..unflown }, trouble)
+            }
+        };
+        Some(Done { flight, reported, trouble })
+    }
+
+    fn fly(
+        self,
+        case: &Case,
+        air: &Air,
+        checked: CheckedFlight,
+        thread: usize,
+        reported: &mut Vec<String>,
+    ) -> Result<CheckedFlight, Stopped> {
+        let started = Stopwatch::start();
+        let mut setup = case.setup_in(air);
+        setup.remote_controller = true;
+        let plan = setup.plan.plan.clone();
+        let mut firmware = self.firmware.with_settings(&setup.plan.settings, &[]);
+        let of_case = setup.boot_lines.iter().flat_map(|lines| lines.text.lines());
+        firmware.lines.of_user.extend(of_case.map(str::to_owned));
+        let mut vehicle = setup::build(setup, &mut Vec::new())?;
+        let options = RunOptions {
+            state: None,
+            speed: None,
+            interrupted: Arc::clone(self.interrupted),
+            processor: Some(thread),
+        };
+        let mut tell = OnEvent(|event: &Event| reported.extend(reported::sentence(event)));
+        let mut remote = RemoteRun::prepare(&firmware, &mut vehicle, &plan, options, &mut tell)?;
+        let problem = remote.unset().and_then(|unset| not_as_wanted(case, unset));
+        let mut flight = match CaseFlight::of_vehicle(case, vehicle) {
+            Ok(flight) => flight,
+            Err(problem) => return Ok(CheckedFlight { problem: Some(problem), ..checked }),
+        };
+        remote.fly(&mut flight, &mut tell)?;
+        let judged = run::judged(checked, case, flight.finish(), &started);
+        let hash = remote.motor_hash().unwrap_or(judged.hash);
+        Ok(CheckedFlight { problem, hash, ..judged })
+    }
 }
 
 /// Returns the reason why the flight does not match the case: no line was set, or not all lines of the case itself.

@@ -43,11 +43,6 @@ impl<'a> Results<'a> {
         self.output.tell(sentence);
     }
 
-    /// Returns `true` if there are no further flights.
-    pub(super) fn is_stopped(&self) -> bool {
-        self.stop.load(Ordering::Relaxed)
-    }
-
     /// Returns the flights, and the output for their summary.
     ///
     /// # Errors

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
 use std::time::Instant;
 
@@ -93,30 +93,33 @@ pub(super) fn is_wanted(scenario: &Scenario, case: &Case, args: &CheckArgs) -> b
     args.filter.as_ref().is_none_or(|text| format!("{} {}", scenario.name, case.name).contains(text.as_str()))
 }
 
-/// Flies all jobs. `reported` gets each result in the order of the jobs, with the number of finished flights.
-pub(super) fn all(
-    loaded: &Loaded,
-    jobs: &[Job],
-    args: &CheckArgs,
-    interrupted: &AtomicBool,
-    stop: &AtomicBool,
-    mut reported: impl FnMut(CheckedFlight, usize),
-) -> Result<(), AppError> {
-    let threads = args.jobs.map_or_else(
+/// Returns the number of flights at once, which the user may choose.
+pub(super) fn threads(args: &CheckArgs) -> usize {
+    args.jobs.map_or_else(
         || std::thread::available_parallelism().map_or(1, std::num::NonZero::get),
         |jobs| jobs as usize,
-    );
+    )
+}
+
+/// Flies all jobs with `fly`, which gets the number of its thread, on `threads` threads. `reported` gets each result in the
+/// order of the jobs, with the number of finished flights; a flight that was interrupted has none.
+pub(super) fn all<T: Send>(
+    jobs: &[Job],
+    threads: usize,
+    is_stopped: &(impl Fn() -> bool + Sync),
+    fly: impl Fn(usize, Job) -> Option<T> + Sync,
+    mut reported: impl FnMut(T, usize),
+) -> Result<(), AppError> {
     let next = AtomicUsize::new(0);
     let (results, arrived) = mpsc::channel();
-    let is_stopped = || interrupted.load(Ordering::Relaxed) || stop.load(Ordering::Relaxed);
     std::thread::scope(|scope| {
-        for _ in 0..threads.min(jobs.len()) {
-            let (results, next, is_stopped) = (results.clone(), &next, &is_stopped);
+        for thread in 0..threads.min(jobs.len()) {
+            let (results, next, fly) = (results.clone(), &next, &fly);
             scope.spawn(move || {
                 while !is_stopped() {
                     let index = next.fetch_add(1, Ordering::Relaxed);
                     let Some(job) = jobs.get(index) else { return };
-                    let flown = catch_unwind(AssertUnwindSafe(|| one(loaded, *job, &is_stopped)));
+                    let flown = catch_unwind(AssertUnwindSafe(|| fly(thread, *job)));
                     if results.send((index, flown)).is_err() {
                         return;
                     }
@@ -126,7 +129,6 @@ pub(super) fn all(
         drop(results);
         let mut early = BTreeMap::new();
         let (mut reported_up_to, mut arrived_count) = (0, 0);
-        let mut repetitions = Repetitions::default();
         for (index, flown) in arrived {
             arrived_count += 1;
             early.insert(index, flown);
@@ -134,9 +136,8 @@ pub(super) fn all(
                 reported_up_to += 1;
                 match flown {
                     Err(_) => return Err(AppError::internal("a flight panicked")),
-                    // Interrupted in the air: there is no result.
                     Ok(None) => {}
-                    Ok(Some(flown)) => reported(repetitions.compare(flown), arrived_count),
+                    Ok(Some(flown)) => reported(flown, arrived_count),
                 }
             }
         }
@@ -145,7 +146,7 @@ pub(super) fn all(
 }
 
 /// Flies and judges one flight; `None` if it was interrupted.
-fn one(loaded: &Loaded, job: Job, is_stopped: &impl Fn() -> bool) -> Option<CheckedFlight> {
+pub(super) fn one(loaded: &Loaded, job: Job, is_stopped: &impl Fn() -> bool) -> Option<CheckedFlight> {
     let (case, air) = job.of(loaded)?;
     let started = Stopwatch::start();
     let mut checked = job.not_flown_yet(loaded)?;
@@ -207,13 +208,13 @@ impl Job {
 
 /// The result of the first repetition of a flight.
 #[derive(Debug, Default)]
-struct Repetitions {
+pub(super) struct Repetitions {
     first: Option<(u64, Vec<scenario::Judgement>)>,
 }
 
 impl Repetitions {
     /// Adds a problem to a repetition that differs from the first.
-    fn compare(&mut self, mut flight: CheckedFlight) -> CheckedFlight {
+    pub(super) fn compare(&mut self, mut flight: CheckedFlight) -> CheckedFlight {
         if flight.repetition == 0 {
             self.first = Some((flight.hash, flight.judgements.clone()));
         } else if let Some((hash, judgements)) = &self.first

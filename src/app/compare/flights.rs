@@ -27,8 +27,8 @@ pub(super) struct Flights {
     route: Route,
     /// Settings that are applied last.
     set: Vec<String>,
-    /// The speed of a remote firmware, as a multiple of real time.
-    speed: f64,
+    /// The requested speed of a remote firmware, as a multiple of real time.
+    speed: Option<f64>,
     interrupted: Arc<AtomicBool>,
 }
 
@@ -71,7 +71,7 @@ impl Flights {
             setup,
             options: setup::flight_options(&args.mission),
             set: args.mission.set.clone(),
-            speed: args.flight.speed.map_or(1.0, |Speed(speed)| speed),
+            speed: args.flight.speed.map(|Speed(speed)| speed),
             interrupted: interrupt_flag()?,
         })
     }
@@ -110,8 +110,12 @@ impl Flights {
         let setup = FlightSetup { remote_controller: true, ..self.setup.clone() };
         let mut vehicle = setup::build(setup, &mut Vec::new())?;
         let firmware = firmware.with_settings(&self.plan.settings, &self.set);
-        let options =
-            RunOptions { state: None, speed: self.speed, interrupted: Arc::clone(&self.interrupted) };
+        let options = RunOptions {
+            state: None,
+            speed: self.speed,
+            interrupted: Arc::clone(&self.interrupted),
+            processor: None,
+        };
         // Every flight starts without a configuration, so this is not reported.
         let mut tell = OnEvent(|event: &Event| {
             if matches!(event.kind, SessionEvent::Remote(_)) {

@@ -3,15 +3,17 @@
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener, UdpSocket};
 use std::path::{Path, PathBuf};
-use std::time::{Instant, SystemTime};
+use std::time::{Duration, Instant, SystemTime};
 
-use super::RemoteFirmware;
 use super::folder::FirmwareFolder;
+use super::{FirmwarePorts, RemoteFirmware, on_the_wall_clock};
 use crate::app::AppError;
 use crate::args::UdpPorts;
 use crate::fc::{Provision, RemoteEnds, RemoteLink, starter_lines};
+use crate::link::lockstep::{Lockstep, LockstepConfig, LockstepPorts, NoReport};
 use crate::link::proto::sitl_feed::FeedConfig;
 use crate::link::{ChildConfig, FcPlace, FcStream, SitlChild, SitlPeer, SitlPorts};
+use crate::signals::fdm::FirmwareClock;
 use crate::storage::state_file;
 use crate::vehicle::Vehicle;
 
@@ -25,6 +27,8 @@ const STORED: &str = "eeprom.bin";
 const PROVISIONED: &str = "provisioned";
 /// The longest text of that file, bytes.
 const LONGEST_NOTE: u64 = 64 << 10;
+/// The wall time within which an executable that can run in simulated time has booted, even on a busy machine.
+const BOOTS_WITHIN: Duration = Duration::from_secs(10);
 
 #[derive(Debug)]
 pub(in crate::app) struct OpenLink {
@@ -36,11 +40,18 @@ pub(in crate::app) struct OpenLink {
     pub(in crate::app) stored_in: Option<PathBuf>,
     /// Its directory, if that exists only as long as this program.
     pub(in crate::app) directory: Option<FirmwareFolder>,
+    /// The reason why it does not run in simulated time, although it could, as a sentence.
+    not_in_steps: Option<String>,
 }
 
 impl OpenLink {
+    /// Returns the sentences for the user about the start.
+    pub(in crate::app) fn notices(&self) -> impl Iterator<Item = String> {
+        self.not_in_steps.clone().into_iter().chain(self.place_notice())
+    }
+
     /// Returns the place of the firmware's configuration, as a sentence.
-    pub(in crate::app) fn notice(&self) -> Option<String> {
+    fn place_notice(&self) -> Option<String> {
         let place = self.stored_in.as_ref()?.display();
         Some(match (&self.directory, self.is_fresh) {
             (Some(_), _) => {
@@ -78,12 +89,13 @@ pub(in crate::app) fn open(
         motor_order: ports.motor_order,
         home: home.ok_or_else(|| AppError::internal("a remote firmware needs the embedded physics"))?,
     };
-    let now = Instant::now();
-    let peer = SitlPeer::open(feed, SitlPorts { ip, raw, motors, fdm, rc }, now)
-        .map_err(|error| AppError::environment(error.to_string()))?;
-    let (mut directory, mut is_fresh, mut child, mut stored_in, mut note) = (None, false, None, None, None);
+    let (mut directory, mut is_fresh, mut stored_in, mut note) = (None, false, None, None);
+    let (mut child, mut lockstep, mut not_in_steps) = (None, None, None);
+    let name = firmware.executable.as_ref().and_then(|program| program.file_name()).map_or_else(
+        || format!("the firmware at port {}", ports.tcp),
+        |name| name.to_string_lossy().into_owned(),
+    );
     if let Some(program) = &firmware.executable {
-        check_free(SocketAddr::new(ip, ports.tcp), &[fdm, rc])?;
         let place = match state {
             Some(state) => state.join(DIRECTORY),
             None => {
@@ -96,15 +108,31 @@ pub(in crate::app) fn open(
         is_fresh = !place.join(STORED).exists();
         stored_in = Some(place.clone());
         note = Some((place.join(PROVISIONED), identity(program)));
-        child = Some(start(program.clone(), firmware.arguments.clone(), place)?);
+        let config = child_config(program.clone(), firmware.arguments.clone(), place)?;
+        if firmware.clock == FirmwareClock::Sim {
+            match boot(&config, firmware, Duration::from_micros(vehicle.step_us()))? {
+                Ok(booted) => lockstep = Some(booted),
+                Err(why) => not_in_steps = Some(on_the_wall_clock(&name, why)),
+            }
+        }
+        child = lockstep.is_none().then_some(config);
     }
-    let name = firmware.executable.as_ref().and_then(|program| program.file_name()).map_or_else(
-        || format!("the firmware at port {}", ports.tcp),
-        |name| name.to_string_lossy().into_owned(),
-    );
-    let stream = FcStream::open(FcPlace::Tcp { host: ip.to_string(), port: ports.tcp });
-    let ends = RemoteEnds { name, stream, peer: Some(peer), child };
-    let mut link = RemoteLink::new(ends, now);
+    let now = Instant::now();
+    let mut link = match lockstep {
+        Some(lockstep) => RemoteLink::in_steps(name, lockstep, feed, now),
+        None => {
+            let peer = SitlPeer::open(feed, SitlPorts { ip, raw, motors, fdm, rc }, now)
+                .map_err(|error| AppError::environment(error.to_string()))?;
+            if child.is_some() {
+                check_free(SocketAddr::new(ip, ports.tcp), &[fdm, rc])?;
+            }
+            let child = child.map(SitlChild::start).transpose();
+            let child =
+                child.map_err(|error| AppError::environment(format!("cannot start a thread: {error}")))?;
+            let stream = FcStream::open(FcPlace::Tcp { host: ip.to_string(), port: ports.tcp });
+            RemoteLink::new(RemoteEnds { name, stream, peer: Some(peer), child }, now)
+        }
+    };
     let lines = starter_lines(&firmware.lines, is_fresh).map_err(AppError::internal)?;
     let is_set = |(file, words): &(PathBuf, String)| matches!(state_file::read(file, LONGEST_NOTE), Ok(Some(noted)) if noted == words.as_bytes());
     match note {
@@ -120,7 +148,7 @@ pub(in crate::app) fn open(
             link.remote_mut().provision(provision.noted_in(note.0, note.1));
         }
     }
-    Ok(OpenLink { link, is_fresh, stored_in, directory })
+    Ok(OpenLink { link, is_fresh, stored_in, directory, not_in_steps })
 }
 
 /// Returns a text that differs between executables and between builds of the same one.
@@ -130,11 +158,44 @@ fn identity(program: &Path) -> String {
     format!("{}\n{}\n", program.display(), since.unwrap_or_default().as_nanos())
 }
 
-fn start(program: PathBuf, arguments: Vec<String>, directory: PathBuf) -> Result<SitlChild, AppError> {
+fn child_config(
+    program: PathBuf,
+    arguments: Vec<String>,
+    directory: PathBuf,
+) -> Result<ChildConfig, AppError> {
     let launcher = std::env::current_exe()
         .map_err(|error| AppError::environment(format!("cannot find this program: {error}")))?;
-    SitlChild::start(ChildConfig { program, arguments, directory, launcher })
-        .map_err(|error| AppError::environment(format!("cannot start a thread: {error}")))
+    Ok(ChildConfig { program, arguments, directory, launcher })
+}
+
+/// Boots an executable in simulated time. Returns the reason, as part of a sentence, if it must run on the wall clock.
+///
+/// # Errors
+/// Returns an error if it cannot be started, or ends at once.
+fn boot(
+    config: &ChildConfig,
+    firmware: &RemoteFirmware,
+    step: Duration,
+) -> Result<Result<Lockstep, &'static str>, AppError> {
+    let FirmwarePorts { tcp, udp: UdpPorts { motors, fdm, rc, .. }, .. } = firmware.ports;
+    let ports = LockstepPorts { fdm, rc, motors, tcp };
+    let mut lockstep = Lockstep::start(LockstepConfig { child: config.clone(), ports, step })
+        .map_err(|error| AppError::environment(error.to_string()))?;
+    let started = Instant::now();
+    loop {
+        match lockstep.wait() {
+            Ok(_) if lockstep.listens() => return Ok(Ok(lockstep)),
+            Ok(_) => return Ok(Err("it has opened no serial port of the number of --tcp-port")),
+            Err(NoReport::Replaced) => {}
+            Err(NoReport::Stopped) if started.elapsed() < BOOTS_WITHIN => {}
+            Err(NoReport::Stopped | NoReport::Hung) => {
+                return Ok(Err("it does not wait for its clock as a SITL of Betaflight does"));
+            }
+            Err(NoReport::Ended(end)) => {
+                return Err(AppError::environment(lockstep.why_ended(end)));
+            }
+        }
+    }
 }
 
 /// Checks that the ports are free. The executable continues without a port that is taken, and would then receive

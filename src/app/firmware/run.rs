@@ -9,11 +9,13 @@ use tokio::runtime::Runtime;
 use super::RemoteFirmware;
 use super::folder::FirmwareFolder;
 use super::link::{self, OpenLink};
+use super::processor;
 use crate::app::{AppError, runtime};
 use crate::fc::{Patience, Remote, RemoteLink, RemoteState, Unready, Unset, Upload, UploadProgress};
 use crate::firmware::cli::CliReply;
 use crate::plan::{AltitudeError, FlightPlan};
 use crate::session::{self, Event, Flying, Runner, Subscriber};
+use crate::signals::fdm::FirmwareClock;
 use crate::vehicle::{LateAnswer, Ticket, Vehicle};
 
 /// A remote firmware in operation. It ends on drop.
@@ -72,8 +74,11 @@ pub(in crate::app) fn unless_interrupted<T>(result: Result<T, Stopped>) -> Resul
 pub(in crate::app) struct RunOptions<'a> {
     /// The place of the firmware's configuration; `None` = it is not kept.
     pub(in crate::app) state: Option<&'a Path>,
-    pub(in crate::app) speed: f64,
+    /// The requested multiple of real time.
+    pub(in crate::app) speed: Option<f64>,
     pub(in crate::app) interrupted: Arc<AtomicBool>,
+    /// The number of the processor for a flight in simulated time; `None` = the present one.
+    pub(in crate::app) processor: Option<usize>,
 }
 
 /// A subscriber that passes each event to a function.
@@ -95,17 +100,25 @@ impl RemoteRun {
         options: RunOptions<'_>,
         subscriber: &mut impl Subscriber<Vehicle>,
     ) -> Result<Self, Stopped> {
+        if firmware.clock == FirmwareClock::Sim {
+            processor::keep_to_one(options.processor);
+        }
         let runtime = runtime::with_threads(1)?;
         let opened = {
             let _inside = runtime.enter();
             link::open(firmware, vehicle, options.state)?
         };
-        if let Some(notice) = opened.notice() {
+        for notice in opened.notices() {
             subscriber.event(&Event::notice(vehicle.time(), notice));
         }
         let OpenLink { link, directory, .. } = opened;
+        let speed = match (link.is_in_steps(), firmware.clock) {
+            // It was meant for simulated time, and flies in real time.
+            (false, FirmwareClock::Sim) => 1.0,
+            _ => options.speed.unwrap_or(firmware.usual_speed()),
+        };
         let mut run = Self {
-            runner: Runner::new(vehicle.step_us(), options.speed, Some(link)),
+            runner: Runner::new(vehicle.step_us(), speed, Some(link)),
             interrupted: options.interrupted,
             tcp: firmware.ports.tcp,
             is_attached: firmware.executable.is_none(),
@@ -137,6 +150,11 @@ impl RemoteRun {
         Ok(self.runner.fly(flight, subscriber, || interrupted.load(Ordering::Relaxed))?)
     }
 
+    /// Returns the hash over the motor packets of a firmware in simulated time.
+    pub(in crate::app) fn motor_hash(&self) -> Option<u64> {
+        self.runner.link()?.motor_hash()
+    }
+
     fn remote(&self) -> Option<&Remote> {
         self.runner.link().map(RemoteLink::remote)
     }
@@ -147,11 +165,11 @@ impl RemoteRun {
         vehicle: &mut Vehicle,
         subscriber: &mut impl Subscriber<Vehicle>,
     ) -> Result<(), Stopped> {
-        let mut patience = Patience::new(self.runner.elapsed());
+        let mut patience = Patience::new(self.runner.protocol_time());
         while self.remote().is_some_and(|remote| remote.state() != RemoteState::Ready) {
             self.wait(vehicle, subscriber)?;
             let Some(remote) = self.remote() else { break };
-            let now = self.runner.elapsed();
+            let now = self.runner.protocol_time();
             if let Some(why) = patience.look(remote.answers(), remote.connection(), now) {
                 let (name, tcp, is_attached) = (&remote.craft().name, self.tcp, self.is_attached);
                 let unready = Unready { name, tcp, is_attached, why };

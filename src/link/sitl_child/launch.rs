@@ -3,6 +3,7 @@
 //! killed.
 
 use std::ffi::OsString;
+use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -43,6 +44,10 @@ pub enum LaunchError {
 
 /// The variable by which the launcher gets the library to preload into the executable. The launcher itself runs without it.
 const LIBRARY: &str = "BETADECK_PRELOAD";
+/// The variable by which the launcher gets the path of a pipe that the executable inherits …
+const PIPE: &str = "BETADECK_PIPE";
+/// … and the variable to whose value it adds a comma and the descriptor.
+const SETTINGS: &str = "BETADECK_SETTINGS";
 
 /// A library that is preloaded into the executable, with a variable for its settings.
 #[derive(Debug, Clone)]
@@ -56,7 +61,7 @@ pub(super) struct Preload {
 pub(super) fn spawn(
     config: &ChildConfig,
     input: Stdio,
-    preload: Option<&Preload>,
+    preload: Option<(&Preload, &str)>,
 ) -> Result<Child, LaunchError> {
     std::fs::create_dir_all(&config.directory)
         .map_err(|error| LaunchError::Directory { directory: config.directory.clone(), error })?;
@@ -69,8 +74,8 @@ pub(super) fn spawn(
             command.env_remove(name);
         }
     }
-    if let Some(Preload { library, variable, settings }) = preload {
-        command.env(LIBRARY, library).env(variable, settings);
+    if let Some((Preload { library, variable, settings }, pipe)) = preload {
+        command.env(LIBRARY, library).env(PIPE, pipe).env(SETTINGS, variable).env(variable, settings);
     }
     #[cfg(unix)]
     // The terminal's interrupt is meant for this program, which ends the child itself.
@@ -104,10 +109,18 @@ fn exec_with_parent(parent: i32, program: &Path, arguments: &[OsString]) -> u8 {
     }
     let _ = parent;
     let mut command = Command::new(program);
-    command.args(arguments).env_remove(LIBRARY);
+    command.args(arguments);
+    [LIBRARY, PIPE, SETTINGS].iter().for_each(|name| _ = command.env_remove(name));
     if let Some(library) = std::env::var_os(LIBRARY) {
         command.env("LD_PRELOAD", library);
     }
+    let _pipe = match inherited_pipe(&mut command) {
+        Ok(pipe) => pipe,
+        Err(error) => {
+            eprintln!("betadeck: cannot reach the program that starts the firmware: {error}");
+            return NOT_EXECUTABLE as u8;
+        }
+    };
     #[cfg(unix)]
     let error = std::os::unix::process::CommandExt::exec(&mut command);
     #[cfg(not(unix))]
@@ -117,6 +130,22 @@ fn exec_with_parent(parent: i32, program: &Path, arguments: &[OsString]) -> u8 {
     };
     eprintln!("betadeck: cannot start {}: {error}", program.display());
     (if error.kind() == io::ErrorKind::NotFound { NOT_FOUND } else { NOT_EXECUTABLE }) as u8
+}
+
+/// Opens the pipe that the executable inherits, if there is one, and adds its descriptor to the settings.
+fn inherited_pipe(command: &mut Command) -> io::Result<Option<File>> {
+    #[cfg(target_os = "linux")]
+    if let (Some(path), Some(name)) = (std::env::var_os(PIPE), std::env::var_os(SETTINGS)) {
+        use std::os::fd::AsRawFd as _;
+        let pipe = File::options().write(true).open(path)?;
+        rustix::io::fcntl_setfd(&pipe, rustix::io::FdFlags::empty())?;
+        let mut settings = std::env::var_os(&name).unwrap_or_default();
+        settings.push(format!(",{}", pipe.as_raw_fd()));
+        command.env(name, settings);
+        return Ok(Some(pipe));
+    }
+    let _ = command;
+    Ok(None)
 }
 
 /// Returns the error that an exit code of the launcher means; `None` if the code is the executable's own.

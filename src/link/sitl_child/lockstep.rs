@@ -25,8 +25,8 @@ pub use process::NoReport;
 use process::Process;
 
 use super::events::Events;
-use super::launch::{LaunchError, Preload};
-use super::{ChildConfig, ChildEvent, now};
+use super::launch::{self, LaunchError, Preload};
+use super::{ChildConfig, ChildEnd, ChildEvent, now};
 
 /// The variable with the settings of the library.
 const SETTINGS: &str = "BETADECK_LOCKSTEP";
@@ -184,12 +184,35 @@ impl Lockstep {
         Ok(true)
     }
 
+    /// Returns `true` if its first serial port listens.
+    pub fn listens(&self) -> bool {
+        self.newest.as_ref().is_some_and(|report| report.ports[0] != 0)
+    }
+
+    /// Returns the sentence about a process that ended before it answered, without a full stop.
+    pub fn why_ended(&self, end: ChildEnd) -> String {
+        let child = &self.config.child;
+        let of_launcher = match end {
+            ChildEnd::Code(code) => launch::error_of_code(code, child),
+            ChildEnd::Signal(_) => None,
+        };
+        of_launcher.unwrap_or_else(|| {
+            let name = child.program.file_name().unwrap_or_default().to_string_lossy();
+            format!("{name} ended {end} before it answered: is it a SITL executable of Betaflight?")
+        })
+    }
+
     /// Ends the connection to its serial port.
     pub fn disconnect(&mut self) {
         if self.serial.take().is_some() {
             self.totals.closed += 1;
             self.has_news = true;
         }
+    }
+
+    /// Returns the length of a step.
+    pub fn step_length(&self) -> Duration {
+        self.config.step
     }
 
     /// Returns the number of its process.

@@ -6,7 +6,7 @@ use super::interface::output;
 use super::limits::{impact_of_request, refuse};
 use super::requests::FreshRc;
 use super::{SLICE, Session};
-use crate::fc::Impact;
+use crate::fc::{Impact, RemoteLink};
 use crate::firmware::cli::Interpreter;
 use crate::link::Request;
 use crate::session::Event;
@@ -135,8 +135,15 @@ impl Session {
         if let Some(run_on) = self.run_on {
             return self.run_on(run_on);
         }
-        for _ in 0..due {
+        let is_in_steps = self.is_in_steps();
+        for flown in 0..due {
             self.tick();
+            if is_in_steps {
+                self.exchange_with_remote(None);
+                if self.quit || self.runner.link.as_ref().is_some_and(RemoteLink::is_busy) {
+                    return flown + 1;
+                }
+            }
         }
         due
     }

@@ -1,8 +1,7 @@
-//! The process of an executable in lockstep, and the socket pair that carries grants and reports.
+//! The process of an executable in lockstep, and the pipes that carry grants and reports.
 
-use std::io::{ErrorKind, Read as _, Write as _};
-use std::os::fd::OwnedFd;
-use std::os::unix::net::UnixStream;
+use std::io::{ErrorKind, PipeReader, PipeWriter, Read as _, Write as _};
+use std::os::fd::AsRawFd as _;
 use std::process::{Child, Stdio};
 use std::sync::Arc;
 use std::time::Duration;
@@ -21,7 +20,10 @@ const HUNG_AFTER: Duration = Duration::from_secs(2);
 #[derive(Debug)]
 pub(super) struct Process {
     child: Child,
-    socket: UnixStream,
+    grants: PipeWriter,
+    reports: PipeReader,
+    /// The end of the executable, until it has opened its own. The end of the process then closes the pipe.
+    reports_end: Option<PipeWriter>,
     /// The part of a report that has arrived.
     bytes: [u8; REPORT_BYTES],
     arrived: usize,
@@ -49,15 +51,24 @@ impl Process {
         events: &Arc<Events>,
     ) -> Result<Self, LaunchError> {
         let failed = |error| LaunchError::Start { program: config.program.clone(), error };
-        let (socket, other) = UnixStream::pair().map_err(failed)?;
-        socket.set_read_timeout(Some(LOOK)).map_err(failed)?;
-        let mut child = launch::spawn(config, Stdio::from(OwnedFd::from(other)), Some(preload))?;
+        let (grants_end, grants) = std::io::pipe().map_err(failed)?;
+        let (reports, reports_end) = std::io::pipe().map_err(failed)?;
+        let pipe = format!("/proc/{}/fd/{}", std::process::id(), reports_end.as_raw_fd());
+        let mut child = launch::spawn(config, Stdio::from(grants_end), Some((preload, &pipe)))?;
         // The threads end with the output.
         let _readers = [
             child.stdout.take().map(|out| output::listen(events, out)),
             child.stderr.take().map(|out| output::listen(events, out)),
         ];
-        Ok(Self { child, socket, bytes: [0; REPORT_BYTES], arrived: 0, used: None })
+        Ok(Self {
+            child,
+            grants,
+            reports,
+            reports_end: Some(reports_end),
+            bytes: [0; REPORT_BYTES],
+            arrived: 0,
+            used: None,
+        })
     }
 
     /// Returns the number of the process.
@@ -67,7 +78,7 @@ impl Process {
 
     /// Sends a grant. A process that has ended takes none; the wait for its report says so.
     pub(super) fn grant(&mut self, grant: &Grant) {
-        drop(self.socket.write_all(&grant.to_bytes()));
+        drop(self.grants.write_all(&grant.to_bytes()));
     }
 
     /// Waits until the executable waits for the next grant, for a short time at most.
@@ -76,29 +87,39 @@ impl Process {
     /// Returns the reason why there is no report.
     pub(super) fn wait(&mut self) -> Result<Report, NoReport> {
         loop {
-            match self.socket.read(&mut self.bytes[self.arrived..]) {
+            if !is_readable(&self.reports) {
+                return Err(self.no_report());
+            }
+            match self.reports.read(&mut self.bytes[self.arrived..]) {
                 Ok(0) => return Err(NoReport::Ended(self.end())),
                 Ok(read) => {
                     self.arrived += read;
                     if self.arrived == REPORT_BYTES {
                         self.arrived = 0;
                         self.used = None;
+                        self.reports_end = None;
                         return Ok(Report::from_bytes(&self.bytes));
                     }
                 }
                 Err(error) if error.kind() == ErrorKind::Interrupted => {}
-                Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {
-                    let now_used = processor_time(self.child.id());
-                    let used = *self.used.get_or_insert(now_used);
-                    let is_hung = now_used.saturating_sub(used) >= HUNG_AFTER;
-                    return Err(if is_hung { NoReport::Hung } else { NoReport::Stopped });
-                }
                 Err(_) => return Err(NoReport::Ended(self.end())),
             }
         }
     }
 
-    /// Waits for the end of a process that has closed its socket, and returns it.
+    /// Returns the reason why no report has come for some time.
+    fn no_report(&mut self) -> NoReport {
+        // Until the first report this program has an end of the pipe, too, so that the pipe stays open.
+        if self.reports_end.is_some() && group::has_ended(&mut self.child).unwrap_or(true) {
+            return NoReport::Ended(self.end());
+        }
+        let now_used = processor_time(self.child.id());
+        let used = *self.used.get_or_insert(now_used);
+        let is_hung = now_used.saturating_sub(used) >= HUNG_AFTER;
+        if is_hung { NoReport::Hung } else { NoReport::Stopped }
+    }
+
+    /// Waits for the end of a process that has closed its pipe, and returns it.
     fn end(&mut self) -> ChildEnd {
         group::reap(&mut self.child).map_or(ChildEnd::Code(-1), ChildEnd::from)
     }
@@ -108,6 +129,14 @@ impl Drop for Process {
     fn drop(&mut self) {
         drop(group::reap(&mut self.child));
     }
+}
+
+/// Waits until something can be read, for a short time at most.
+fn is_readable(pipe: &PipeReader) -> bool {
+    use rustix::event::{PollFd, PollFlags, Timespec, poll};
+    let longest = Timespec { tv_sec: 0, tv_nsec: LOOK.as_nanos() as i64 };
+    // The end of the other side counts as readable. An interrupted wait is like one that ended early.
+    poll(&mut [PollFd::new(pipe, PollFlags::IN)], Some(&longest)).is_ok_and(|ready| ready > 0)
 }
 
 /// Returns the processor time that a process has used; zero if the system does not say.

@@ -7,7 +7,7 @@ use core::sync::atomic::Ordering::SeqCst;
 use super::libc::{
     CLOCK_PROCESS, CLOCK_REALTIME, CLOCK_REALTIME_COARSE, TIMER_ABSOLUTE, Timespec, Timeval, real,
 };
-use super::parent::{report, take_grant};
+use super::parent::end_step;
 use super::{is_active, is_main_thread};
 
 /// The clock at the start, ns. It is not 0, because a program may take that for "not set".
@@ -25,8 +25,7 @@ pub(crate) static STEP_NS: AtomicU64 = AtomicU64::new(0);
 /// Advances the clock of the main thread to `until_ns`, step by step as far as the parent allows it.
 fn sleep_until(until_ns: u64) {
     while HORIZON_NS.load(SeqCst) < until_ns {
-        report();
-        take_grant();
+        end_step();
         HORIZON_NS.fetch_add(STEP_NS.load(SeqCst), SeqCst);
     }
     NOW_NS.fetch_max(until_ns, SeqCst);

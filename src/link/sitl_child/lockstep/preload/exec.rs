@@ -6,7 +6,8 @@ use core::sync::atomic::AtomicI32;
 use core::sync::atomic::Ordering::SeqCst;
 
 use super::libc::{SET_DESCRIPTOR_FLAGS, fcntl, getenv, getpid, real, setenv};
-use super::{PARENT, PRELOAD, RUN, SETTINGS, is_active};
+use super::parent::{GRANTS, REPORTS};
+use super::{PRELOAD, RUN, SETTINGS, is_active};
 
 /// The longest text that is kept, with its zero.
 const LONGEST: usize = 512;
@@ -52,7 +53,7 @@ pub(crate) fn keep(settings: &CStr) {
             LIBRARY.set(CStr::from_ptr(library).to_bytes());
         }
     }
-    // The descriptor and the number of the run are added anew.
+    // The descriptors and the number of the run are added at the restart.
     let ends =
         settings.to_bytes().iter().enumerate().filter(|(_, byte)| **byte == b',').map(|(index, _)| index);
     let end = ends.clone().nth(5).unwrap_or(settings.to_bytes().len());
@@ -68,7 +69,8 @@ fn stay_in_lockstep() {
     let mut text = [0; LONGEST + 32];
     let mut end = START_SETTINGS.get().iter().position(|byte| *byte == 0).unwrap_or(0);
     text[..end].copy_from_slice(&START_SETTINGS.get()[..end]);
-    for number in [PARENT.load(SeqCst) as u32, RUN.load(SeqCst) + 1] {
+    let pipes = [&REPORTS, &GRANTS].map(|pipe| pipe.load(SeqCst));
+    for number in [pipes[0] as u32, pipes[1] as u32, RUN.load(SeqCst) + 1] {
         text[end] = b',';
         end += 1;
         let digits = number.checked_ilog10().unwrap_or(0);
@@ -79,7 +81,9 @@ fn stay_in_lockstep() {
     }
     // SAFETY: the texts end with a zero.
     unsafe {
-        fcntl(PARENT.load(SeqCst), SET_DESCRIPTOR_FLAGS, 0);
+        for pipe in pipes {
+            fcntl(pipe, SET_DESCRIPTOR_FLAGS, 0);
+        }
         setenv(SETTINGS.as_ptr(), text.as_ptr().cast(), 1);
         setenv(PRELOAD.as_ptr(), LIBRARY.get().as_ptr().cast(), 1);
     }

@@ -5,7 +5,9 @@ use core::sync::atomic::Ordering::SeqCst;
 use core::sync::atomic::{AtomicI32, AtomicU16, AtomicU32, AtomicUsize};
 
 use super::frames::FDM_BYTES;
-use super::libc::{wait_until, wake};
+use super::libc::{wait_for_change, wait_until, wake};
+use super::parent::next_state;
+use super::threads::is_ending;
 
 /// The states of a thread that takes in packets.
 const BUSY: u32 = 0;
@@ -24,7 +26,8 @@ pub(crate) struct Intake {
     size: AtomicUsize,
 }
 
-// SAFETY: the main thread writes the packet in the state IDLE, the intake's thread reads it in the state HAS_PACKET.
+// SAFETY: only one thread writes the packet, in the state IDLE or on the intake's own thread, which reads it in the state
+// HAS_PACKET.
 unsafe impl Sync for Intake {}
 
 impl Intake {
@@ -46,20 +49,42 @@ impl Intake {
     /// Hands a packet to the thread, and returns when it waits for the next one.
     pub(crate) fn deliver(&self, packet: &[u8]) {
         wait_until(&self.state, IDLE);
-        // SAFETY: the thread does not touch the packet while it is idle.
+        self.put(packet);
+        wait_until(&self.state, IDLE);
+    }
+
+    fn put(&self, packet: &[u8]) {
+        // SAFETY: the thread does not touch the packet while it is idle, and a thread may do so itself.
         let place = unsafe { &mut *self.packet.get() };
         place[..packet.len()].copy_from_slice(packet);
         self.size.store(packet.len(), SeqCst);
         self.set(HAS_PACKET);
-        wait_until(&self.state, IDLE);
     }
 
-    /// Waits for a packet. A thread that waits has taken in the one before.
-    pub(crate) fn wait(&self) {
+    /// Waits on the thread of the states for the state of the next grant. Returns `false` if the thread must end.
+    pub(crate) fn wait_for_state(&self) -> bool {
+        if self.state.load(SeqCst) != HAS_PACKET {
+            let Some(state) = next_state() else { return false };
+            self.put(&state);
+        }
+        true
+    }
+
+    /// Wakes its thread, so that it looks for the end.
+    pub(crate) fn wake(&self) {
+        wake(&self.state);
+    }
+
+    /// Waits for a packet of another thread. A thread that waits has taken in the one before. Returns `false` if the thread
+    /// must end.
+    pub(crate) fn wait(&self) -> bool {
         if self.state.load(SeqCst) == BUSY {
             self.set(IDLE);
         }
-        wait_until(&self.state, HAS_PACKET);
+        while self.state.load(SeqCst) == IDLE && !is_ending() {
+            wait_for_change(&self.state, IDLE);
+        }
+        !is_ending()
     }
 
     /// Copies the packet to `to`, which has `size` bytes. Returns its size, or `None` if there is none.
@@ -71,7 +96,7 @@ impl Intake {
             return None;
         }
         let size = size.min(self.size.load(SeqCst));
-        // SAFETY: the main thread does not touch the packet in this state, and the caller vouches for `to`.
+        // SAFETY: no other thread touches the packet in this state, and the caller vouches for `to`.
         unsafe { core::ptr::copy_nonoverlapping(self.packet.get().cast::<u8>(), to, size) };
         // The thread is idle again when it waits for the next packet.
         self.state.store(BUSY, SeqCst);

@@ -2,9 +2,9 @@
 //! library, so that exactly one thread runs at a time and every step begins with a message of the parent:
 //!
 //! ```text
-//! parent ──Grant──▶ main thread ──▶ RC thread, serial thread, state thread take their data in, one after the other
+//! parent ──Grant──▶ state thread: RC thread and serial thread take their data in, then the state thread its own
 //!                   main thread runs until its clock has advanced by a step
-//! parent ◀─Report── main thread waits
+//! parent ◀─Report── main thread waits, and the state thread for the next grant
 //! ```
 //!
 //! * The clock is a number. A sleep of the main thread advances it at once, up to the *horizon*; at the horizon the thread
@@ -16,7 +16,7 @@
 //!   until it has taken in what the parent has sent and written what it has.
 //!
 //! `build.rs` compiles this file on its own. It uses `core` and the C library only, opens no file but `/dev/null`, and no
-//! socket. Linux on 64-bit processors.
+//! socket: the two pipes to the parent are inherited. Linux on 64-bit processors.
 #![no_std]
 
 mod clock;
@@ -28,10 +28,11 @@ mod libc;
 mod parent;
 mod serial;
 mod sockets;
+mod threads;
 
 use core::ffi::{CStr, c_int};
 use core::sync::atomic::Ordering::SeqCst;
-use core::sync::atomic::{AtomicI32, AtomicU32, AtomicUsize};
+use core::sync::atomic::{AtomicU32, AtomicUsize};
 
 use clock::{HORIZON_NS, START_NS, STEP_NS};
 use intake::{FDM, RC};
@@ -39,17 +40,15 @@ use libc::{
     _exit, CLOSED_ON_EXEC, DUPLICATE_CLOSED_ON_EXEC, READ_WRITE, SET_DESCRIPTOR_FLAGS, close, dup2, fcntl,
     getenv, open, pthread_self, unsetenv,
 };
-use parent::MOTORS;
+use parent::{GRANTS, MOTORS, REPORTS};
 use serial::SERIAL;
 
 /// The variable with the ports of the executable and the length of a step:
-/// `fdm,rc,motors,serial,step_ns,boot_ns`. After a restart by `exec`, the descriptor of the parent and the number of the
-/// run follow.
+/// `fdm,rc,motors,serial,step_ns,boot_ns,reports`, where `reports` is the descriptor of the pipe for the reports. After a
+/// restart by `exec`, the descriptor of the pipe with the grants and the number of the run follow.
 pub(crate) const SETTINGS: &CStr = c"BETADECK_LOCKSTEP";
 pub(crate) const PRELOAD: &CStr = c"LD_PRELOAD";
 
-/// The descriptor of the parent; −1 = the library does nothing.
-pub(crate) static PARENT: AtomicI32 = AtomicI32::new(-1);
 /// The number of the restarts by `exec`.
 pub(crate) static RUN: AtomicU32 = AtomicU32::new(0);
 static MAIN_THREAD: AtomicUsize = AtomicUsize::new(0);
@@ -57,7 +56,7 @@ static MAIN_THREAD: AtomicUsize = AtomicUsize::new(0);
 #[unsafe(link_section = ".init_array")]
 static AT_START: extern "C" fn() = start;
 
-/// Reads the settings and takes over standard input, at which the parent is.
+/// Reads the settings and takes over standard input, which is the pipe with the grants.
 extern "C" fn start() {
     // SAFETY: the name ends with a zero, and the value, if any, too.
     let settings = unsafe {
@@ -67,13 +66,13 @@ extern "C" fn start() {
         }
         CStr::from_ptr(text)
     };
-    let mut numbers = [0_u64; 8];
+    let mut numbers = [0_u64; 9];
     for (number, text) in numbers.iter_mut().zip(settings.to_bytes().split(|byte| *byte == b',')) {
         for digit in text {
             *number = number.wrapping_mul(10).wrapping_add(u64::from(digit.wrapping_sub(b'0')));
         }
     }
-    let [fdm, rc, motors, serial, step_ns, boot_ns, parent, run] = numbers;
+    let [fdm, rc, motors, serial, step_ns, boot_ns, reports, grants, run] = numbers;
     exec::keep(settings);
     RUN.store(run as u32, SeqCst);
     FDM.port.store(fdm as u16, SeqCst);
@@ -83,27 +82,29 @@ extern "C" fn start() {
     STEP_NS.store(step_ns, SeqCst);
     HORIZON_NS.store(START_NS + boot_ns, SeqCst);
     // SAFETY: descriptors are numbers, and the paths end with a zero. Programs that the executable starts inherit neither
-    // the library nor the descriptor.
+    // the library nor the pipes.
     unsafe {
         MAIN_THREAD.store(pthread_self(), SeqCst);
-        let parent = if parent > 0 {
-            fcntl(parent as c_int, SET_DESCRIPTOR_FLAGS, CLOSED_ON_EXEC);
-            parent as c_int
+        fcntl(reports as c_int, SET_DESCRIPTOR_FLAGS, CLOSED_ON_EXEC);
+        REPORTS.store(reports as c_int, SeqCst);
+        let grants = if grants > 0 {
+            fcntl(grants as c_int, SET_DESCRIPTOR_FLAGS, CLOSED_ON_EXEC);
+            grants as c_int
         } else {
-            let parent = fcntl(0, DUPLICATE_CLOSED_ON_EXEC, 100);
+            let grants = fcntl(0, DUPLICATE_CLOSED_ON_EXEC, 100);
             let empty = open(c"/dev/null".as_ptr(), READ_WRITE);
             dup2(empty, 0);
             close(empty);
-            parent
+            grants
         };
         unsetenv(PRELOAD.as_ptr());
         unsetenv(SETTINGS.as_ptr());
-        PARENT.store(parent, SeqCst);
+        GRANTS.store(grants, SeqCst);
     }
 }
 
 pub(crate) fn is_active() -> bool {
-    PARENT.load(SeqCst) >= 0
+    GRANTS.load(SeqCst) >= 0
 }
 
 pub(crate) fn is_main_thread() -> bool {

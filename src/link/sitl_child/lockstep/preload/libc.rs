@@ -40,8 +40,8 @@ pub(crate) const DUPLICATE_CLOSED_ON_EXEC: c_int = 1030;
 pub(crate) const SET_DESCRIPTOR_FLAGS: c_int = 2;
 pub(crate) const CLOSED_ON_EXEC: c_int = 1;
 pub(crate) const READ_WRITE: c_int = 2;
-pub(crate) const FUTEX_WAIT_PRIVATE: c_int = 128;
-pub(crate) const FUTEX_WAKE_PRIVATE: c_int = 129;
+const FUTEX_WAIT_PRIVATE: c_int = 128;
+const FUTEX_WAKE_PRIVATE: c_int = 129;
 #[cfg(target_arch = "x86_64")]
 pub(crate) const SYS_FUTEX: c_long = 202;
 #[cfg(target_arch = "aarch64")]
@@ -64,6 +64,9 @@ unsafe extern "C" {
     pub(crate) fn write(fd: c_int, bytes: *const c_void, size: usize) -> isize;
     pub(crate) fn syscall(number: c_long, ...) -> c_long;
     pub(crate) fn pthread_self() -> usize;
+    pub(crate) fn pthread_kill(thread: usize, signal: c_int) -> c_int;
+    pub(crate) fn signal(number: c_int, handler: usize) -> usize;
+    pub(crate) fn siginterrupt(number: c_int, interrupts: c_int) -> c_int;
     pub(crate) fn getpid() -> c_int;
     pub(crate) fn getsockname(fd: c_int, address: *mut Address, size: *mut u32) -> c_int;
     pub(crate) fn __errno_location() -> *mut c_int;

@@ -4,13 +4,14 @@ use core::ffi::{c_int, c_void};
 use core::sync::atomic::Ordering::SeqCst;
 
 use super::frames::{MOTOR_BYTES, SERIAL_PORTS};
-use super::intake::{FDM, RC};
+use super::intake::{FDM, Intake, RC};
 use super::libc::{
     __errno_location, Address, DESCRIPTORS, FAMILY_INTERNET, LOOPBACK, Set, TRY_AGAIN, Timeval, WORD_BITS,
     real, wait_for_change, wake,
 };
 use super::parent::MOTORS;
 use super::serial::SERIAL;
+use super::threads::is_ending;
 use super::{is_active, is_main_thread};
 
 fn contains(set: *const Set, fd: c_int) -> bool {
@@ -62,15 +63,22 @@ pub unsafe extern "C" fn select(
     if !is_active() || is_main_thread() {
         return real!(select: fn(c_int, *mut Set, *mut Set, *mut Set, *mut Timeval) -> c_int; count, readable, writable, failed, timeout);
     }
-    for intake in [&FDM, &RC] {
+    let waits_for = |intake: &Intake| {
         let fd = intake.fd.load(SeqCst);
-        if fd >= 0 && count == fd + 1 && contains(readable, fd) {
-            intake.wait();
-            return 1;
-        }
+        fd >= 0 && count == fd + 1 && contains(readable, fd)
+    };
+    if waits_for(&FDM) {
+        return c_int::from(FDM.wait_for_state());
+    }
+    if waits_for(&RC) {
+        return c_int::from(RC.wait());
     }
     let sets = [readable, writable, failed].map(|set| Watched::new(set, count));
     loop {
+        if is_ending() {
+            sets.iter().for_each(|set| set.put(&[0; DESCRIPTORS / WORD_BITS]));
+            return 0;
+        }
         let wanted = SERIAL.wanted.load(SeqCst);
         if SERIAL.done.load(SeqCst) == wanted {
             wait_for_change(&SERIAL.wanted, wanted);

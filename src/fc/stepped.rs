@@ -1,0 +1,222 @@
+//! A SITL executable in simulated time: each step of the craft is one step of the executable.
+
+use std::collections::VecDeque;
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
+use std::time::{Duration, Instant};
+
+use super::RemoteNotice;
+use super::self_check::SelfCheck;
+use crate::link::ChildEvent;
+use crate::link::lockstep::{Lockstep, NoReport, StepInput};
+use crate::link::proto::rc;
+use crate::link::proto::sitl_feed::{FeedConfig, SitlFeed};
+use crate::signals::MotorCommand;
+use crate::vehicle::{FrameOut, RemoteController};
+
+/// The wall time without a report after which the user is informed.
+const NOTABLE_WAIT: Duration = Duration::from_secs(1);
+
+/// An executable that computes one step for each step of the craft.
+#[derive(Debug)]
+pub(super) struct Stepped {
+    /// `None` once it is given up.
+    lockstep: Option<Lockstep>,
+    feed: SitlFeed,
+    pub(super) self_check: SelfCheck,
+    step: Duration,
+    /// The time of the steps so far, which is the time of the protocol.
+    elapsed: Duration,
+    is_connected: bool,
+    /// `true` while it computes a step, or boots.
+    is_busy: bool,
+    /// `true` if the motors of its newest step have arrived.
+    pub(super) sends_motors: bool,
+    /// Covers its motor packets and their steps.
+    motor_hash: DefaultHasher,
+    /// The beginning of a wait for a report, and whether the user was informed.
+    waits: Option<(Instant, bool)>,
+    /// The inputs of the next step.
+    next: Option<StepInput>,
+    /// Ends and restarts that were not passed on yet.
+    ends: VecDeque<StepEvent>,
+}
+
+/// Something that happened in a step.
+#[derive(Debug)]
+pub(super) enum StepEvent {
+    Connected,
+    Received(Vec<u8>),
+    /// The process has ended in this way, as part of a sentence, and starts again.
+    Ended {
+        how: String,
+        is_reboot: bool,
+    },
+    /// It cannot be started, for this reason.
+    NotStarted(String),
+    Notice(RemoteNotice),
+}
+
+impl Stepped {
+    /// Takes over an executable that has booted.
+    pub(super) fn new(lockstep: Lockstep, feed: FeedConfig) -> Self {
+        Self {
+            step: lockstep.step_length(),
+            lockstep: Some(lockstep),
+            feed: SitlFeed::new(feed),
+            self_check: SelfCheck::default(),
+            elapsed: Duration::ZERO,
+            is_connected: false,
+            is_busy: false,
+            sends_motors: false,
+            motor_hash: DefaultHasher::new(),
+            waits: None,
+            next: None,
+            ends: VecDeque::new(),
+        }
+    }
+
+    /// Returns the simulated time since the link began.
+    pub(super) fn elapsed(&self) -> Duration {
+        self.elapsed
+    }
+
+    /// Returns `true` while the craft must wait for it.
+    pub(super) fn is_busy(&self) -> bool {
+        self.is_busy
+    }
+
+    /// Returns a hash over its motor packets so far and the times of their steps.
+    pub(super) fn motor_hash(&self) -> u64 {
+        self.motor_hash.finish()
+    }
+
+    /// Returns the feed, for its dialect.
+    pub(super) fn feed(&self) -> &SitlFeed {
+        &self.feed
+    }
+
+    /// Ends the process for good.
+    pub(super) fn give_up(&mut self) {
+        (self.lockstep, self.is_busy) = (None, false);
+    }
+
+    /// Takes the frames of the vehicle's newest step. Only the newest frame of each kind counts.
+    pub(super) fn take_frames(&mut self, mailbox: &mut RemoteController) {
+        let (mut fdm, mut rc) = (None, None);
+        let now_us = self.elapsed.as_micros() as u64;
+        while let Some(frame) = mailbox.take_frame() {
+            match frame {
+                FrameOut::Rc(frame, _) => rc = Some(rc::encode(self.elapsed.as_secs_f64(), &frame)),
+                FrameOut::Sensors(frame) => {
+                    self.feed.sense(&frame);
+                    fdm = Some(self.feed.packet(now_us).to_bytes());
+                }
+            }
+        }
+        if let Some(fdm) = fdm {
+            self.feed.sent(now_us);
+            self.next = Some(StepInput { fdm, rc });
+        }
+    }
+
+    /// Sends bytes over the serial port with the next step.
+    pub(super) fn send(&mut self, bytes: &[u8]) {
+        if let Some(lockstep) = &mut self.lockstep {
+            lockstep.send(bytes);
+        }
+    }
+
+    /// Lets the executable compute the next step, if its inputs are there, and waits for its report, for a short time at
+    /// most.
+    pub(super) fn run(&mut self, mailbox: Option<&mut RemoteController>, now: Instant) {
+        let Some(lockstep) = &mut self.lockstep else { return };
+        if !self.is_busy {
+            let Some(input) = self.next.take() else { return self.connect() };
+            lockstep.step(input);
+            self.is_busy = true;
+            self.elapsed += self.step;
+        }
+        match lockstep.wait() {
+            Ok(motors) => {
+                self.is_busy = false;
+                if self.waits.take().is_some_and(|(_, is_reported)| is_reported) {
+                    let sentence = "The firmware's process runs again.".to_owned();
+                    self.ends.push_back(StepEvent::Notice(RemoteNotice::Reported(sentence)));
+                }
+                let now_us = self.elapsed.as_micros() as u64;
+                if let Some(packet) = motors {
+                    (now_us, packet).hash(&mut self.motor_hash);
+                }
+                if let Some(motors) = motors.and_then(|packet| self.feed.answered(&packet, now_us)) {
+                    self.sends_motors = true;
+                    mailbox.into_iter().for_each(|mailbox| mailbox.deliver_motors(motors));
+                }
+                match lockstep.received() {
+                    Ok(bytes) if bytes.is_empty() => {}
+                    Ok(bytes) => self.ends.push_back(StepEvent::Received(bytes)),
+                    Err(_) => self.is_connected = false,
+                }
+                self.connect();
+            }
+            Err(NoReport::Stopped) => self.note_wait(now),
+            Err(NoReport::Ended(end)) => self.restart(end.to_string(), end.is_reboot(), mailbox),
+            Err(NoReport::Hung) => {
+                let how = "because it computed for 2 s without an end of its step".to_owned();
+                self.restart(how, false, mailbox);
+            }
+            // The new image of the process boots already.
+            Err(NoReport::Replaced) => self.begin_run(String::new(), true, mailbox),
+        }
+    }
+
+    /// Returns the oldest event.
+    pub(super) fn poll_event(&mut self) -> Option<StepEvent> {
+        self.ends.pop_front()
+    }
+
+    /// Returns the next event of the process's output.
+    pub(super) fn take_output(&mut self) -> Option<ChildEvent> {
+        self.lockstep.as_mut()?.take_event()
+    }
+
+    fn connect(&mut self) {
+        if !self.is_connected
+            && let Some(lockstep) = &mut self.lockstep
+            && lockstep.connect().unwrap_or(false)
+        {
+            self.is_connected = true;
+            self.ends.push_back(StepEvent::Connected);
+        }
+    }
+
+    /// Informs the user once of a process that does not run.
+    fn note_wait(&mut self, now: Instant) {
+        let (since, is_reported) = self.waits.get_or_insert((now, false));
+        if !*is_reported && now.saturating_duration_since(*since) >= NOTABLE_WAIT {
+            *is_reported = true;
+            let sentence = "The firmware's process does not run (stopped, at a breakpoint, or the machine is busy): the \
+                            flight waits for it."
+                .to_owned();
+            self.ends.push_back(StepEvent::Notice(RemoteNotice::Lost(sentence)));
+        }
+    }
+
+    fn restart(&mut self, how: String, is_reboot: bool, mailbox: Option<&mut RemoteController>) {
+        let Some(lockstep) = &mut self.lockstep else { return };
+        let restarted = lockstep.restart();
+        self.begin_run(how, is_reboot, mailbox);
+        if let Err(error) = restarted {
+            self.ends.push_back(StepEvent::NotStarted(error.to_string()));
+            self.give_up();
+        }
+    }
+
+    /// Begins another run of the executable, which boots.
+    fn begin_run(&mut self, how: String, is_reboot: bool, mailbox: Option<&mut RemoteController>) {
+        self.ends.push_back(StepEvent::Ended { how, is_reboot });
+        self.feed.restart();
+        self.self_check = SelfCheck::default();
+        (self.is_connected, self.is_busy, self.next, self.waits) = (false, true, None, None);
+        mailbox.into_iter().for_each(|mailbox| mailbox.deliver_motors(MotorCommand::default()));
+    }
+}
