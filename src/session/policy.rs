@@ -305,7 +305,7 @@ mod tests {
         is_rewound: false,
     };
     const REMOTE: Facts = Facts {
-        remote: Some(RemoteFacts { is_ready: true, has_plans: true, opens_cli: false }),
+        remote: Some(RemoteFacts { is_ready: true, has_plans: true, opens_cli: false, is_in_steps: false }),
         is_recorded: false,
         ..EMBEDDED
     };
@@ -360,8 +360,11 @@ mod tests {
             (Intent::Forecast, CONTROLLER_IS_REMOTE),
         ];
         assert_eq!(refused(&REMOTE), table(&always));
+        let in_steps = REMOTE.remote.map(|remote| RemoteFacts { is_in_steps: true, ..remote });
+        // In simulated time the session sets its time.
+        assert_eq!(refused(&Facts { remote: in_steps, ..REMOTE }), table(&always[1..]));
         let remote = |is_ready, has_plans| Facts {
-            remote: Some(RemoteFacts { is_ready, has_plans, opens_cli: false }),
+            remote: Some(RemoteFacts { is_ready, has_plans, opens_cli: false, is_in_steps: false }),
             ..REMOTE
         };
         assert_eq!(check(&remote(false, false), Intent::Fly), Err(Refusal::Now(NOT_KNOWN_YET)));
@@ -391,7 +394,7 @@ mod tests {
             assert_eq!(check(&reading, intent).unwrap_err().to_string(), NOT_PERMITTED);
         }
         assert_eq!(refused(&reading).len(), never.len() + unpermitted.len());
-        let opens = RemoteFacts { is_ready: true, has_plans: true, opens_cli: true };
+        let opens = RemoteFacts { is_ready: true, has_plans: true, opens_cli: true, is_in_steps: false };
         let opening = Facts { remote: Some(opens), ..reading };
         for intent in [Intent::Download, Intent::Line(Impact::Reads)] {
             assert_eq!(check(&opening, intent), Err(Refusal::Access(Denial::NotPermitted)));

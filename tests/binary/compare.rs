@@ -38,7 +38,10 @@ fn compare_in_vain(sandbox: &Sandbox, plan: &str) -> Ran {
     let udp = udp.map(|socket| socket.local_addr().expect("bound").port().to_string()).join(",");
     let udp = format!("--udp-ports={udp}");
     let outputs = ["--svg", "tracks.svg", "--json", "differences.json"];
-    sandbox.run(&[&["compare", plan, "--firmware", PROGRAM, &tcp, &udp][..], &outputs, &QUICKLY].concat())
+    sandbox.run(
+        &[&["compare", plan, "--clock=real", "--firmware", PROGRAM, &tcp, &udp][..], &outputs, &QUICKLY]
+            .concat(),
+    )
 }
 
 #[test]

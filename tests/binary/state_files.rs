@@ -195,7 +195,7 @@ fn the_folder_of_a_firmware_whose_program_was_killed_is_removed_at_the_next_star
     let sandbox = Sandbox::new();
     std::fs::create_dir(sandbox.path("tmp")).expect("a directory");
     let ports = free_ports();
-    let line = ["fly", "land", "--firmware", "/bin/sleep", "--firmware-arg", "100"];
+    let line = ["fly", "land", "--clock=real", "--firmware", "/bin/sleep", "--firmware-arg", "100"];
     let line = [&line[..], &[ports[0].as_str(), ports[1].as_str()]].concat();
     let mut killed = with_temporary_files(&sandbox, &line).spawn().expect("it runs");
     until("the folder of the firmware", || !temporary(&sandbox).is_empty());

@@ -14,6 +14,7 @@ use std::os::fd::AsRawFd;
 use std::os::unix::process::CommandExt as _;
 use std::process::Command;
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The file in its folder with its ports: states, RC, motors, serial.
 pub(crate) const PORTS_FILE: &str = "ports.txt";
@@ -80,13 +81,16 @@ fn wait(descriptors: &[i32], writes: bool, timeout_us: i64) -> Vec<i32> {
     if ready > 0 { descriptors.iter().copied().filter(is_ready).collect() } else { Vec::new() }
 }
 
+/// `true` once its threads must end.
+static STOPS: AtomicBool = AtomicBool::new(false);
+
 /// The newest packet of a port, and the number of packets.
 struct Newest<const N: usize>(Mutex<([u8; N], u64)>);
 
 /// Receives packets of a size, as the thread of a port does.
 fn take_packets<const N: usize>(socket: &UdpSocket, newest: &Newest<N>) {
     let fd = socket.as_raw_fd();
-    loop {
+    while !STOPS.load(Ordering::SeqCst) {
         if wait(&[fd], false, 100_000).is_empty() {
             continue;
         }
@@ -112,7 +116,7 @@ struct Serial {
 fn serve(listener: &TcpListener, serial: &Serial) {
     let mut client: Option<TcpStream> = None;
     let mut unsent = Vec::new();
-    loop {
+    while !STOPS.load(Ordering::SeqCst) {
         unsent.append(&mut serial.to_send.lock().unwrap());
         let descriptors: Vec<i32> =
             std::iter::once(listener.as_raw_fd()).chain(client.as_ref().map(AsRawFd::as_raw_fd)).collect();
@@ -164,9 +168,11 @@ fn run() {
     let (state, rc, serial) =
         (Newest(Mutex::new(([0_u8; 144], 0))), Newest(Mutex::new(([0_u8; 40], 0))), Serial::default());
     std::thread::scope(|scope| {
-        scope.spawn(|| take_packets(&states_in, &state));
-        scope.spawn(|| take_packets(&rc_in, &rc));
-        scope.spawn(|| serve(&listener, &serial));
+        let mut threads = vec![
+            scope.spawn(|| serve(&listener, &serial)),
+            scope.spawn(|| take_packets(&states_in, &state)),
+            scope.spawn(|| take_packets(&rc_in, &rc)),
+        ];
         let (started_ns, mut states, mut number, mut line) = (clock_ns(), 0, 0_u64, Vec::new());
         loop {
             let now_ns = clock_ns();
@@ -191,6 +197,12 @@ fn run() {
                 let text = String::from_utf8(std::mem::take(&mut line)).unwrap();
                 match text.as_str() {
                     "save" => std::process::exit(0),
+                    "join" => {
+                        // Upstream waits for its threads before it replaces itself.
+                        STOPS.store(true, Ordering::SeqCst);
+                        threads.drain(..).for_each(|thread| thread.join().unwrap());
+                        drop(Command::new(std::env::current_exe().unwrap()).arg(ARGUMENT).exec());
+                    }
                     "exec" => drop(Command::new(std::env::current_exe().unwrap()).arg(ARGUMENT).exec()),
                     "start" => {
                         let started = Command::new("/usr/bin/env").output().unwrap();

@@ -167,9 +167,9 @@ fn an_executable_that_replaces_itself_stays_in_lockstep() {
     let mut flight = Flight::start();
     flight.run(20).unwrap();
     let first = flight.log.clone();
-    for run in 0..3 {
+    for (run, line) in ["exec\n", "join\n", "join\n", "exec\n"].iter().enumerate() {
         assert!(flight.lockstep.connect().unwrap());
-        flight.lockstep.send(b"exec\n");
+        flight.lockstep.send(line.as_bytes());
         assert_eq!(flight.run(100), Err(NoReport::Replaced), "run {run}");
         flight.begin_again();
         flight.run(20).unwrap();

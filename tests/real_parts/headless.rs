@@ -44,7 +44,7 @@ from = \"boot\"
 fn start(command: &[&str]) -> Program {
     let [udp, tcp] = port_options(free_ports());
     let mut arguments = command.to_vec();
-    arguments.extend(["--firmware", env!("CARGO_BIN_EXE_betadeck"), &udp, &tcp]);
+    arguments.extend(["--clock=real", "--firmware", env!("CARGO_BIN_EXE_betadeck"), &udp, &tcp]);
     for argument in ["sitl", &udp, &tcp, "--ws-port=0"] {
         arguments.extend(["--firmware-arg", argument]);
     }
@@ -64,7 +64,7 @@ fn start_stand_in(command: &[&str], ports: Ports, named: Ports, trouble: Trouble
     let variable = format!("{VARIABLE}={}", process::variable(ports, trouble));
     let program = program.display().to_string();
     let mut all = command.to_vec();
-    all.extend(["--firmware", "/usr/bin/env", &udp, &tcp]);
+    all.extend(["--clock=real", "--firmware", "/usr/bin/env", &udp, &tcp]);
     for argument in [&variable[..], &program].into_iter().chain(arguments) {
         all.extend(["--firmware-arg", argument]);
     }
@@ -155,6 +155,27 @@ fn what_cannot_fly_is_reported_before_anything_starts() {
         assert_eq!(program.end(), code, "{arguments:?}");
         let said = program.seen().join("\n");
         assert!(said.contains(part), "{arguments:?}: {said}");
+    }
+}
+
+#[test]
+fn an_executable_that_cannot_run_in_simulated_time_flies_on_the_wall_clock_and_it_is_said_why() {
+    let [udp, tcp] = port_options(free_ports());
+    let sleeper = ["fly", "square", "--firmware", "/bin/sleep", "--firmware-arg", "100", &udp, &tcp];
+    let directory = tempfile::tempdir().unwrap();
+    let script = write(directory.path(), "script", "#!/bin/sh\nexec sleep 100\n");
+    std::fs::set_permissions(&script, std::os::unix::fs::PermissionsExt::from_mode(0o755)).unwrap();
+    let [other_udp, other_tcp] = port_options(free_ports());
+    let script = ["fly", "square", "--firmware", &script, &other_udp, &other_tcp];
+    for (arguments, why) in [
+        (&sleeper[..], "it has opened no serial port of the number of --tcp-port"),
+        (&script, "it is a script or another kind of file"),
+    ] {
+        let mut program = Program::start(arguments);
+        assert_eq!(program.end(), 3, "{arguments:?}");
+        let said = program.seen().join("\n");
+        assert!(said.contains("runs on the wall clock, in real time:") && said.contains(why), "{said}");
+        assert!(said.contains("has not answered"), "{said}");
     }
 }
 

@@ -187,6 +187,26 @@ impl Flight {
 }
 
 #[test]
+fn the_public_executable_flies_the_square_in_simulated_time_and_each_time_the_same() {
+    let Some(program) = std::env::var_os(VARIABLE) else {
+        eprintln!("skipped: {VARIABLE} names no SITL executable");
+        return;
+    };
+    let fly = || {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_betadeck"));
+        let flown =
+            command.args(["fly", "square", "--json", "-", "--firmware"]).arg(&program).output().unwrap();
+        assert_eq!(flown.status.code(), Some(0), "{flown:?}");
+        let lines = String::from_utf8(flown.stdout).unwrap();
+        let (events, end) = lines.trim_end().rsplit_once('\n').unwrap();
+        let end: serde_json::Value = serde_json::from_str(end).unwrap();
+        (events.to_owned(), end["hash"].as_str().unwrap().to_owned())
+    };
+    let first = fly();
+    assert!(first == fly(), "two flights differ");
+}
+
+#[test]
 fn the_public_executable_sees_the_worked_attitudes_keeps_time_and_holds_a_hover() {
     let Some(program) = std::env::var_os(VARIABLE) else {
         eprintln!("skipped: {VARIABLE} names no SITL executable");

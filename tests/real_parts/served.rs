@@ -29,7 +29,7 @@ impl Served {
     fn drop_in(ports: Ports, more: &[&str]) -> Self {
         let Ports { raw, motors, fdm, rc, tcp } = ports;
         let (udp, tcp) = (format!("--udp-ports={raw},{motors},{fdm},{rc}"), format!("--tcp-port={tcp}"));
-        let mut firmware = vec!["--firmware", env!("CARGO_BIN_EXE_betadeck")];
+        let mut firmware = vec!["--clock=real", "--firmware", env!("CARGO_BIN_EXE_betadeck")];
         for argument in ["sitl", &udp, &tcp, "--ws-port=0"] {
             firmware.extend(["--firmware-arg", argument]);
         }
@@ -47,7 +47,7 @@ impl Served {
         let (program, arguments) = process::command();
         let variable = format!("{VARIABLE}={}", process::variable(ports, trouble));
         let program = program.display().to_string();
-        let mut firmware = [kept, &["--firmware", "/usr/bin/env"]].concat();
+        let mut firmware = [kept, &["--clock=real", "--firmware", "/usr/bin/env"]].concat();
         for argument in [&variable[..], &program].into_iter().chain(arguments) {
             firmware.extend(["--firmware-arg", argument]);
         }
@@ -230,7 +230,7 @@ fn one_that_serves_another_client_says_why_it_is_lost_and_says_it_once() {
 #[test]
 fn a_firmware_that_prints_without_end_does_not_stop_the_program() {
     let ports = free_ports();
-    let (code, said) = Served::start(ports, &["--fresh", "--firmware", "/usr/bin/yes"]).end();
+    let (code, said) = Served::start(ports, &["--fresh", "--clock=real", "--firmware", "/usr/bin/yes"]).end();
     assert_eq!(code, 3, "{said}");
     assert!(said.contains("has not answered for 10 s") && said.contains("were not shown"), "{said}");
     let lines = said.lines().filter(|line| line.contains("[firmware] y") || line.contains("\"y\"")).count();
