@@ -3,9 +3,7 @@
 use std::str::FromStr;
 
 use super::{FlightArgs, help, value};
-use crate::signals::fdm::Dialect;
-use crate::signals::fdm::Mirror;
-use crate::signals::fdm::MotorOrder;
+use crate::signals::fdm::{Dialect, Mirror, MotorOrder};
 use crate::sim::ScheduledFault;
 
 /// A choice of the physics.

@@ -9,7 +9,8 @@
 //! ```
 
 mod rules;
-mod table;
+#[cfg(test)]
+mod tests;
 
 use arrayvec::ArrayVec;
 
@@ -20,7 +21,6 @@ use crate::plan::{HoldPattern, Seconds, WaypointType};
 use crate::telemetry::{AbortReason, FenceAction, Guard, GuardName, NavState, PlanSource, TransitionReason};
 
 pub use rules::rules;
-pub use table::transition_table;
 
 /// The time without progress after which a mission is given up, s.
 pub const STALL_S: f64 = 30.0;
@@ -189,27 +189,6 @@ impl Outcome {
             Self::Orbit => NavState::Orbiting,
             Self::Figure8 => NavState::Figure8,
             Self::Complete | Self::Touchdown => NavState::Complete,
-        }
-    }
-
-    /// Describes the side effects in a few words. Empty if there are none.
-    pub fn effect(self) -> &'static str {
-        match self {
-            Self::Abort(AbortReason::GpsLost) => "mission off, reason GPS_LOST",
-            Self::Abort(AbortReason::NoPlan) => "mission off, reason NO_PLAN",
-            Self::Abort(AbortReason::Stalled) => "mission off until the switch is cycled, reason STALLED",
-            Self::Abort(AbortReason::Flyaway) => "mission off until the switch is cycled, reason FLYAWAY",
-            Self::LandHere | Self::Fence(FenceAction::Land) => "active plan: LAND here",
-            Self::Fence(FenceAction::Rth) => "active plan: FLYOVER home, LAND home",
-            Self::Climbed => "climb over, the leg starts here",
-            Self::Missed => "the waypoint becomes a stop",
-            Self::Hold => "the hold clock starts",
-            Self::Orbit | Self::Figure8 => "phase 0, centre = waypoint",
-            Self::Land => "descent from the current altitude",
-            Self::Next => "advance to the next positional waypoint",
-            Self::Complete => "target and altitude held",
-            Self::Touchdown => "disarm, reason LANDING",
-            Self::Arrive => "",
         }
     }
 }

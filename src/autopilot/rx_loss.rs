@@ -1,7 +1,6 @@
 //! Decides on the reaction of a mission to a lost receiver, when stage 2 of the failsafe begins.
 
-use crate::telemetry::NavState;
-use crate::telemetry::RxLossPolicy;
+use crate::telemetry::{NavState, RxLossPolicy};
 
 /// Facts for the decision.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -57,30 +57,6 @@ pub struct ArmingConfig {
     pub reboot_required: bool,
 }
 
-impl Default for ArmingConfig {
-    fn default() -> Self {
-        Self {
-            min_check_us: 1050.0,
-            small_angle_rad: None,
-            boot_grace_s: 5.0,
-            prearm_allow_rearm: false,
-            has_arm_condition: true,
-            has_prearm_condition: false,
-            rescue_configured: false,
-            rescue_min_sats: 8,
-            rescue_allow_without_fix: false,
-            full_yaw: 400.0,
-            stick_arming: false,
-            auto_disarm_s: None,
-            raised_throttle_us: 1287.5,
-            assist: false,
-            calibrate_gyro_first: false,
-            motors_disabled: false,
-            reboot_required: false,
-        }
-    }
-}
-
 /// The inputs of the arming logic.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ArmingFacts {

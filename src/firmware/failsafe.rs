@@ -83,19 +83,6 @@ pub struct FailsafeConfig {
     pub procedure: Procedure,
 }
 
-impl Default for FailsafeConfig {
-    fn default() -> Self {
-        Self {
-            start_s: 5.0,
-            landing_time_s: 60.0,
-            throttle_low_s: 10.0,
-            stick_threshold_percent: 30.0,
-            switch_mode: SwitchMode::Stage1,
-            procedure: Procedure::Drop,
-        }
-    }
-}
-
 /// The status of the navigator's mission.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MissionStatus {

@@ -88,9 +88,6 @@ impl LegSpeed {
 pub struct Seconds(f64);
 
 impl Seconds {
-    /// The longest time, s.
-    pub const MOST_S: f64 = 6553.5;
-
     /// Returns the nearest time that a record can hold.
     pub fn new(seconds: f64) -> Self {
         Self::from_ds((seconds * 10.0).round() as u16)

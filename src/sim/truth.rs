@@ -7,7 +7,7 @@ use crate::signals::SimTime;
 use super::airframe::ROTORS;
 
 /// The true state of the craft at one instant: world ENU with home on the ground as origin, body FLU.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Truth {
     pub time: SimTime,
     /// Centre of mass, m; on the ground z is the height of the centre of mass above the legs.
@@ -92,22 +92,7 @@ mod tests {
 
     #[test]
     fn angles_come_back_from_the_attitude() {
-        let truth = |q| Truth {
-            time: SimTime::ZERO,
-            pos_enu: Vector3::zeros(),
-            vel_enu: Vector3::zeros(),
-            attitude: q,
-            rate_flu: Vector3::zeros(),
-            rotor_speeds: [0.0; ROTORS],
-            motor_command: [0.0; ROTORS],
-            specific_force_flu: Vector3::zeros(),
-            wind_enu: Vector3::zeros(),
-            battery: BatteryTruth::default(),
-            ground_m: 0.0,
-            on_ground: false,
-            crashed: false,
-            diverged: false,
-        };
+        let truth = |attitude| Truth { attitude, ..Truth::default() };
         let craft = truth(attitude(200.0, -12.0, 7.0));
         assert!((craft.heading_deg() - 200.0).abs() < 1e-9);
         assert!((craft.pitch_deg() + 12.0).abs() < 1e-9);

@@ -4,8 +4,7 @@ use std::time::Duration;
 
 use crate::session::Command;
 use crate::signals::{RcFrame, RcSource};
-use crate::telemetry::snapshot::ModeRange;
-use crate::telemetry::snapshot::SettingsView;
+use crate::telemetry::snapshot::{ModeRange, SettingsView};
 use crate::telemetry::switch::Switch;
 use crate::telemetry::{Mode, ModeBox, switch};
 use crate::vehicle::VehicleCommand;

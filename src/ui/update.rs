@@ -9,8 +9,7 @@ use crate::vehicle::VehicleCommand;
 use super::action::{self, Action, Context, EditAction};
 use super::app_state::AppState;
 use super::command;
-use super::editor::actions as plan;
-use super::editor::{FormKind, findings};
+use super::editor::{FormKind, actions as plan, findings};
 use super::event_log::Severity;
 use super::forecast;
 use super::formatting::within;
@@ -66,62 +65,46 @@ pub fn update(state: &mut AppState, msg: Msg) -> Vec<Effect> {
 
 fn take(state: &mut AppState, msg: Msg) -> Vec<Effect> {
     match msg {
-        Msg::Clock(now) => {
-            state.shared.now = now;
-            Vec::new()
-        }
-        Msg::Key(event) if event.kind == KeyEventKind::Release => Vec::new(),
-        Msg::Key(event) => key(state, event),
-        Msg::Mouse(event) => mouse::update(state, event),
-        Msg::Paste(text) => paste(state, &text),
-        Msg::Resize(columns, rows) => {
-            state.shared.size = (columns, rows);
-            Vec::new()
-        }
+        Msg::Clock(now) => state.shared.now = now,
+        Msg::Key(event) if event.kind == KeyEventKind::Release => {}
+        Msg::Key(event) => return key(state, event),
+        Msg::Mouse(event) => return mouse::update(state, event),
+        Msg::Paste(text) => return paste(state, &text),
+        Msg::Resize(columns, rows) => state.shared.size = (columns, rows),
         Msg::View(view) => {
             take_view(state, view);
-            if state.shared.is_rewound() {
-                return Vec::new();
+            if !state.shared.is_rewound() {
+                state.shared.graphs.record(&state.shared.view.vehicle);
+                return advance(&mut state.shared);
             }
-            state.shared.graphs.record(&state.shared.view.vehicle);
-            advance(&mut state.shared)
         }
-        Msg::Event(event) => {
-            state.take_event(&event);
-            Vec::new()
-        }
+        Msg::Event(event) => state.take_event(&event),
         Msg::CliReply(output) => {
             if let Some((severity, text)) = state.panels.cli.console.answer(output.as_ref()) {
                 state.shared.notify(severity, text);
             }
             state.shared.forecast.settings_changed();
-            state.panels.cli.console.next_effect().into_iter().collect()
+            return state.panels.cli.console.next_effect().into_iter().collect();
         }
-        Msg::WorldReply { line, result } => {
-            match result {
-                // The log gets the faults from the craft itself.
-                Ok(()) => state.shared.say(Severity::Good, format!("World: {line}.")),
-                Err(sentence) => {
-                    let sentence = state.shared.keymap.in_force(&sentence);
-                    state.shared.notify(Severity::Fault, sentence);
-                }
-            }
-            Vec::new()
+        // The log gets the faults from the craft itself.
+        Msg::WorldReply { line, result: Ok(()) } => {
+            state.shared.say(Severity::Good, format!("World: {line}."));
         }
-        Msg::UploadReply { id, count, result } => uploaded(&mut state.shared, id, count, result),
-        Msg::Forecast(reply) => {
-            forecast::take_answer(&mut state.shared, reply);
-            Vec::new()
+        Msg::WorldReply { result: Err(sentence), .. } => {
+            let sentence = state.shared.keymap.in_force(&sentence);
+            state.shared.notify(Severity::Fault, sentence);
         }
-        Msg::DownloadReply { id, result } => plan::downloaded(&mut state.shared, id, result),
+        Msg::UploadReply { id, count, result } => return uploaded(&mut state.shared, id, count, result),
+        Msg::Forecast(reply) => forecast::take_answer(&mut state.shared, reply),
+        Msg::DownloadReply { id, result } => return plan::downloaded(&mut state.shared, id, result),
         Msg::ScenarioReply(result) => plan::scenario_written(&mut state.shared, result),
         Msg::SaveReply(result) => plan::saved_to_flash(&mut state.shared, result),
-        Msg::Files(reply) => plan_popup::answered(&mut state.shared, reply),
+        Msg::Files(reply) => return plan_popup::answered(&mut state.shared, reply),
         Msg::Busy => {
             state.shared.notify(Severity::Warn, "The simulator does not keep up: the last key was dropped.");
-            Vec::new()
         }
     }
+    Vec::new()
 }
 
 fn take_view(state: &mut AppState, view: SessionView) {

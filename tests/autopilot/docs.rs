@@ -1,25 +1,13 @@
-//! Compares `docs/autopilot.md` with the code: the transition table, and one row for each parameter.
-#![allow(
-    clippy::unwrap_used,
-    clippy::print_stdout,
-    reason = "a test may stop at a surprise and say what it measured"
-)]
+//! Compares `docs/autopilot.md` with the code: one row for each parameter.
+#![allow(clippy::unwrap_used, reason = "a test may stop at a surprise")]
 
 use std::path::Path;
 
 use betadeck::autopilot::Params;
-use betadeck::autopilot::machine::transition_table;
 use betadeck::autopilot::params::Field;
 
 fn page() -> String {
     std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/autopilot.md")).unwrap()
-}
-
-#[test]
-fn the_transition_table_is_the_one_of_the_code() {
-    let table = transition_table();
-    println!("{table}");
-    assert!(page().contains(&table), "replace the table in docs/autopilot.md by the one printed above");
 }
 
 fn value(field: &Field, code: i64) -> String {

@@ -17,10 +17,6 @@ impl BumplessTransfer {
         *self = if offset.is_finite() { Self { offset, left_s: FADE_S } } else { Self::default() };
     }
 
-    pub fn clear(&mut self) {
-        *self = Self::default();
-    }
-
     /// Returns the demand `new` plus the rest of the difference, and fades the difference by `dt` seconds.
     pub fn apply(&mut self, new: f64, dt: f64) -> f64 {
         let out = new + self.offset * (self.left_s / FADE_S);

@@ -2,6 +2,30 @@ use strum::IntoEnumIterator as _;
 
 use super::*;
 
+impl Default for ArmingConfig {
+    fn default() -> Self {
+        Self {
+            min_check_us: 1050.0,
+            small_angle_rad: None,
+            boot_grace_s: 5.0,
+            prearm_allow_rearm: false,
+            has_arm_condition: true,
+            has_prearm_condition: false,
+            rescue_configured: false,
+            rescue_min_sats: 8,
+            rescue_allow_without_fix: false,
+            full_yaw: 400.0,
+            stick_arming: false,
+            auto_disarm_s: None,
+            raised_throttle_us: 1287.5,
+            assist: false,
+            calibrate_gyro_first: false,
+            motors_disabled: false,
+            reboot_required: false,
+        }
+    }
+}
+
 /// Returns the facts of a craft that may be armed: no flag set, ARM off.
 fn ready() -> ArmingFacts {
     ArmingFacts {

@@ -4,6 +4,19 @@ const DROP: Response = Response::Procedure(Procedure::Drop);
 const AUTO_LAND: Response = Response::Procedure(Procedure::AutoLand);
 const RESCUE: Response = Response::Procedure(Procedure::GpsRescue);
 
+impl Default for FailsafeConfig {
+    fn default() -> Self {
+        Self {
+            start_s: 5.0,
+            landing_time_s: 60.0,
+            throttle_low_s: 10.0,
+            stick_threshold_percent: 30.0,
+            switch_mode: SwitchMode::Stage1,
+            procedure: Procedure::Drop,
+        }
+    }
+}
+
 /// Returns the facts of an armed craft in the air, with the link up and the mission flying, ten seconds after boot.
 fn flying() -> FailsafeFacts {
     FailsafeFacts {

@@ -36,10 +36,9 @@ pub(super) fn reboot(call: &mut Call<'_>) -> Result<(), Refused> {
 
 /// Sets only runaway prevention. A simulator never lets a client block arming, so that the craft can fly with a
 /// configurator connected.
-pub(super) fn set_arming_disabled(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn set_arming_disabled(call: &mut Call<'_>) {
     call.request.u8();
     call.action = Some(MspAction::RunawayPrevention(call.request.u8() == 0));
-    Ok(())
 }
 
 pub(super) fn set_raw_rc(call: &mut Call<'_>) -> Result<(), Refused> {
@@ -57,7 +56,7 @@ pub(super) fn set_raw_rc(call: &mut Call<'_>) -> Result<(), Refused> {
     Ok(())
 }
 
-pub(super) fn set_raw_gps(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn set_raw_gps(call: &mut Call<'_>) {
     let request = &mut call.request;
     call.action = Some(MspAction::RawGps {
         fix: request.u8() != 0,
@@ -66,45 +65,40 @@ pub(super) fn set_raw_gps(call: &mut Call<'_>) -> Result<(), Refused> {
         alt_amsl_m: request.u16(),
         speed_cms: request.u16(),
     });
-    Ok(())
 }
 
 /// Starts an accelerometer calibration. While armed, it is acknowledged and ignored.
-pub(super) fn calibrate_acc(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn calibrate_acc(call: &mut Call<'_>) {
     call.action = (!call.facts.armed).then_some(MspAction::CalibrateAcc);
-    Ok(())
 }
 
 /// Starts a magnetometer calibration. While armed, it is acknowledged and ignored.
-pub(super) fn calibrate_mag(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn calibrate_mag(call: &mut Call<'_>) {
     call.action = (!call.facts.armed).then_some(MspAction::CalibrateMag);
-    Ok(())
 }
 
-pub(super) fn reset_conf(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn reset_conf(call: &mut Call<'_>) {
     let possible = !call.facts.armed;
     call.reply.u8(u8::from(possible));
     if possible {
         call.configuration.reset();
         call.action = Some(MspAction::SaveAndReboot);
     }
-    Ok(())
 }
 
-pub(super) fn select_setting(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn select_setting(call: &mut Call<'_>) {
     let wanted = call.request.u8();
     let (scope, index) = if wanted & SELECT_RATES != 0 {
         (Scope::RateProfile, wanted & !SELECT_RATES)
     } else if wanted & SELECT_BATTERY != 0 {
         (Scope::BatteryProfile, wanted & !SELECT_BATTERY)
     } else if call.facts.armed {
-        return Ok(());
+        return;
     } else {
         (Scope::Profile, wanted)
     };
     let index = if index < scope.instances() { index } else { 0 };
     call.configuration.settings.select(scope, index);
-    Ok(())
 }
 
 pub(super) fn copy_profile(call: &mut Call<'_>) -> Result<(), Refused> {
@@ -136,9 +130,8 @@ pub(super) fn reset_pid_profile(call: &mut Call<'_>) -> Result<(), Refused> {
     Ok(())
 }
 
-pub(super) fn set_heading(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn set_heading(call: &mut Call<'_>) {
     call.action = Some(MspAction::HoldHeading(call.request.i16()));
-    Ok(())
 }
 
 pub(super) fn set_motor(call: &mut Call<'_>) -> Result<(), Refused> {
@@ -152,14 +145,12 @@ pub(super) fn set_motor(call: &mut Call<'_>) -> Result<(), Refused> {
     Ok(())
 }
 
-pub(super) fn set_passthrough(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn set_passthrough(call: &mut Call<'_>) {
     call.reply.u8(0);
-    Ok(())
 }
 
-pub(super) fn set_rtc(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn set_rtc(call: &mut Call<'_>) {
     call.action = Some(MspAction::SetClock { unix_s: call.request.u32(), millis: call.request.u16() });
-    Ok(())
 }
 
 pub(super) fn eeprom_write(call: &mut Call<'_>) -> Result<(), Refused> {

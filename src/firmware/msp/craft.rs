@@ -22,21 +22,18 @@ const PORT_SETTINGS: [(&str, u32); 6] = [
     ("blackbox_uart", FUNCTION_BLACKBOX),
 ];
 
-pub(super) fn features(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn features(call: &mut Call<'_>) {
     call.reply.u32(call.configuration.features.0);
-    Ok(())
 }
 
-pub(super) fn set_features(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn set_features(call: &mut Call<'_>) {
     call.configuration.features = Features(call.request.u32());
-    Ok(())
 }
 
-pub(super) fn mixer(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn mixer(call: &mut Call<'_>) {
     let reversed = call.setting("yaw_motors_reversed");
     call.reply.u8(call.configuration.mixer as u8);
     call.reply.u8(reversed);
-    Ok(())
 }
 
 pub(super) fn set_mixer(call: &mut Call<'_>) -> Result<(), Refused> {
@@ -99,13 +96,12 @@ pub(super) const SET_MOTOR: &[Field] =
 
 const REORDERING: &str = "motor_output_reordering";
 
-pub(super) fn motor_reordering(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn motor_reordering(call: &mut Call<'_>) {
     let order = call.configuration.settings.array(REORDERING);
     call.reply.u8(order.len() as i64);
     for &output in order {
         call.reply.u8(output);
     }
-    Ok(())
 }
 
 pub(super) fn set_motor_reordering(call: &mut Call<'_>) -> Result<(), Refused> {
@@ -136,16 +132,15 @@ fn baud_index(baud: u32) -> u8 {
     BAUD_RATES.iter().position(|&rate| rate == baud).unwrap_or(0) as u8
 }
 
-pub(super) fn serial_config(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn serial_config(call: &mut Call<'_>) {
     for (id, functions, bauds) in ports(call) {
         call.reply.u8(id);
         call.reply.u16(functions);
         call.reply.bytes(&bauds);
     }
-    Ok(())
 }
 
-pub(super) fn common_serial_config(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn common_serial_config(call: &mut Call<'_>) {
     let ports = ports(call);
     call.reply.u8(ports.len() as i64);
     for (id, functions, bauds) in ports {
@@ -153,7 +148,6 @@ pub(super) fn common_serial_config(call: &mut Call<'_>) -> Result<(), Refused> {
         call.reply.u32(functions);
         call.reply.bytes(&bauds);
     }
-    Ok(())
 }
 
 /// The fields of the flight recorder that can be disabled, by bit.
@@ -177,7 +171,7 @@ const BLACKBOX_FIELDS: [(u32, &str); 14] = [
 /// The control loops between two complete records at the slowest sample rate.
 const P_INTERVAL: i64 = 32;
 
-pub(super) fn blackbox(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn blackbox(call: &mut Call<'_>) {
     let (device, rate) = (call.setting("blackbox_device"), call.setting("blackbox_sample_rate"));
     let fields = BLACKBOX_FIELDS.iter().filter(|(_, name)| call.setting(name) != 0);
     let disabled = fields.fold(0_u32, |mask, (bit, _)| mask | 1 << bit);
@@ -188,10 +182,9 @@ pub(super) fn blackbox(call: &mut Call<'_>) -> Result<(), Refused> {
     call.reply.u16(P_INTERVAL >> rate);
     call.reply.u8(rate);
     call.reply.u32(disabled);
-    Ok(())
 }
 
-pub(super) fn set_blackbox(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn set_blackbox(call: &mut Call<'_>) {
     let device = i64::from(call.request.u8());
     call.request.u8();
     let denominator = call.request.u8();
@@ -208,10 +201,7 @@ pub(super) fn set_blackbox(call: &mut Call<'_>) -> Result<(), Refused> {
             call.set(name, i64::from(disabled >> bit & 1));
         }
     }
-    Ok(())
 }
 
 /// `OSD_CANVAS`: empty, because there is no OSD.
-pub(super) fn nothing(_call: &mut Call<'_>) -> Result<(), Refused> {
-    Ok(())
-}
+pub(super) const NOTHING: &[Field] = &[];

@@ -1,6 +1,6 @@
 //! The identity of the flight controller.
 
-use super::{Call, Refused};
+use super::Call;
 use crate::msp::{
     ApiVersion, BETAFLIGHT, BoardInfo, BuildInfo, FLIGHT_PLAN_OPTION, FcVersion, PROCESSOR_NAMED,
 };
@@ -21,23 +21,20 @@ const BUILD_OPTIONS: [u16; 6] = [
     8_235,  // PWM_OUTPUT
 ];
 
-pub(super) fn api_version(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn api_version(call: &mut Call<'_>) {
     API.encode(&mut call.reply);
-    Ok(())
 }
 
-pub(super) fn fc_variant(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn fc_variant(call: &mut Call<'_>) {
     call.reply.bytes(BETAFLIGHT);
-    Ok(())
 }
 
-pub(super) fn fc_version(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn fc_version(call: &mut Call<'_>) {
     let text = Some(call.facts.build.version.clone());
     FcVersion { numbers: VERSION, text }.encode(&mut call.reply);
-    Ok(())
 }
 
-pub(super) fn board_info(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn board_info(call: &mut Call<'_>) {
     let board = BoardInfo {
         identifier: TARGET.to_owned(),
         target: Some(TARGET.to_owned()),
@@ -47,26 +44,22 @@ pub(super) fn board_info(call: &mut Call<'_>) -> Result<(), Refused> {
         gyro_hz: Some(call.facts.gyro_hz.try_into().unwrap_or(u16::MAX)),
     };
     board.encode(&mut call.reply);
-    Ok(())
 }
 
-pub(super) fn build_info(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn build_info(call: &mut Call<'_>) {
     let build = call.facts.build.clone();
     let options = Some(BUILD_OPTIONS.to_vec());
     BuildInfo { date: build.date, time: build.time, revision: build.revision, options }
         .encode(&mut call.reply);
-    Ok(())
 }
 
-pub(super) fn uid(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn uid(call: &mut Call<'_>) {
     for part in 0_u8..3 {
         call.reply.u32(part);
     }
-    Ok(())
 }
 
-pub(super) fn mcu_info(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn mcu_info(call: &mut Call<'_>) {
     call.reply.u8(PROCESSOR_NAMED);
     call.reply.prefixed("SIMULATOR");
-    Ok(())
 }

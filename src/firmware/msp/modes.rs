@@ -23,21 +23,19 @@ fn listed(configuration: &Configuration, facts: &MspFacts) -> impl Iterator<Item
     })
 }
 
-pub(super) fn box_names(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn box_names(call: &mut Call<'_>) {
     let page = usize::from(call.request.u8());
     for entry in listed(call.configuration, call.facts).skip(page * PAGE).take(PAGE) {
         call.reply.bytes(<&str>::from(entry).as_bytes());
         call.reply.u8(b';');
     }
-    Ok(())
 }
 
-pub(super) fn box_ids(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn box_ids(call: &mut Call<'_>) {
     let page = usize::from(call.request.u8());
     for entry in listed(call.configuration, call.facts).skip(page * PAGE).take(PAGE) {
         call.reply.u8(entry as BoxId);
     }
-    Ok(())
 }
 
 /// Returns the state of the listed boxes, bit i for the i-th box.
@@ -60,21 +58,19 @@ fn is_on(facts: &MspFacts, entry: ModeBox) -> bool {
     }
 }
 
-pub(super) fn mode_ranges(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn mode_ranges(call: &mut Call<'_>) {
     for &ModeCondition { box_id, aux_channel, start_us, end_us, .. } in &call.configuration.modes {
         ModeSlot { box_id, aux_channel, start_us, end_us }.encode(&mut call.reply);
     }
-    Ok(())
 }
 
-pub(super) fn mode_ranges_extra(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn mode_ranges_extra(call: &mut Call<'_>) {
     let link = |condition: &ModeCondition| ModeLink {
         box_id: condition.box_id,
         logic: condition.logic as u8,
         linked: condition.linked,
     };
     ModeLink::encode_all(call.configuration.modes.iter().map(link), &mut call.reply);
-    Ok(())
 }
 
 pub(super) fn set_mode_range(call: &mut Call<'_>) -> Result<(), Refused> {
@@ -98,7 +94,7 @@ pub(super) fn set_mode_range(call: &mut Call<'_>) -> Result<(), Refused> {
     Ok(())
 }
 
-pub(super) fn adjustment_ranges(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn adjustment_ranges(call: &mut Call<'_>) {
     for range in &call.configuration.adjustments {
         call.reply.u8(0);
         call.reply.u8(range.aux_channel);
@@ -109,7 +105,6 @@ pub(super) fn adjustment_ranges(call: &mut Call<'_>) -> Result<(), Refused> {
         call.reply.u16(range.center);
         call.reply.u16(range.scale);
     }
-    Ok(())
 }
 
 pub(super) fn set_adjustment_range(call: &mut Call<'_>) -> Result<(), Refused> {

@@ -35,7 +35,7 @@ fn voltage_source(call: &Call<'_>) -> i64 {
     }
 }
 
-pub(super) fn battery_config(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn battery_config(call: &mut Call<'_>) {
     let cells = [MIN_CELL, MAX_CELL, WARNING_CELL].map(|name| call.setting(name));
     let (capacity, voltage, current) =
         (call.setting("bat_capacity"), voltage_source(call), call.setting("current_meter"));
@@ -48,7 +48,6 @@ pub(super) fn battery_config(call: &mut Call<'_>) -> Result<(), Refused> {
     for cell in cells {
         call.reply.u16(cell);
     }
-    Ok(())
 }
 
 pub(super) fn set_battery_config(call: &mut Call<'_>) -> Result<(), Refused> {
@@ -75,36 +74,32 @@ pub(super) fn set_battery_config(call: &mut Call<'_>) -> Result<(), Refused> {
     Ok(())
 }
 
-pub(super) fn voltage_meter_config(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn voltage_meter_config(call: &mut Call<'_>) {
     call.reply.bytes(&[1, VOLTAGE_SUBFRAME, METER_MEASURED, 0]);
     super::layout::read(VOLTAGE_FIELDS, &call.configuration.settings, &mut call.reply);
-    Ok(())
 }
 
-pub(super) fn set_voltage_meter_config(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn set_voltage_meter_config(call: &mut Call<'_>) {
     if call.request.u8() == METER_MEASURED {
         super::layout::write(VOLTAGE_FIELDS, &mut call.configuration.settings, &mut call.request);
     }
-    Ok(())
 }
 
-pub(super) fn current_meter_config(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn current_meter_config(call: &mut Call<'_>) {
     let settings = &call.configuration.settings;
     call.reply.bytes(&[2, CURRENT_SUBFRAME, METER_MEASURED, CURRENT_ADC]);
     super::layout::read(CURRENT_MEASURED, settings, &mut call.reply);
     call.reply.bytes(&[CURRENT_SUBFRAME, METER_VIRTUAL, 0]);
     super::layout::read(CURRENT_VIRTUAL, settings, &mut call.reply);
-    Ok(())
 }
 
-pub(super) fn set_current_meter_config(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn set_current_meter_config(call: &mut Call<'_>) {
     let fields = match call.request.u8() {
         METER_MEASURED => CURRENT_MEASURED,
         METER_VIRTUAL => CURRENT_VIRTUAL,
-        _ => return Ok(()),
+        _ => return,
     };
     super::layout::write(fields, &mut call.configuration.settings, &mut call.request);
-    Ok(())
 }
 
 /// The numbers of a battery profile in wire order, without the profile's index: setting, size in bytes.

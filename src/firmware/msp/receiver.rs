@@ -55,9 +55,8 @@ pub(super) const FAILSAFE: &[Field] = &[
 pub(super) const DEADBAND: &[Field] =
     &[u8("deadband"), u8("yaw_deadband"), u8("pos_hold_deadband"), u16("3d_deadband_throttle")];
 
-pub(super) fn rx_map(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn rx_map(call: &mut Call<'_>) {
     call.reply.bytes(&call.configuration.channel_map.0);
-    Ok(())
 }
 
 /// Sets the channel map. Refused while armed, as on the command line: the sticks would change places in flight.
@@ -72,7 +71,7 @@ pub(super) fn set_rx_map(call: &mut Call<'_>) -> Result<(), Refused> {
     Ok(())
 }
 
-pub(super) fn rxfail(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn rxfail(call: &mut Call<'_>) {
     let lowest = call.setting("rx_min_usec");
     let rules = call.configuration.rx_fail.0;
     for (channel, rule) in rules.iter().enumerate().take(RC_CHANNELS) {
@@ -83,7 +82,6 @@ pub(super) fn rxfail(call: &mut Call<'_>) -> Result<(), Refused> {
         call.reply.u8(rule.mode as u8);
         call.reply.u16(pulse);
     }
-    Ok(())
 }
 
 pub(super) fn set_rxfail(call: &mut Call<'_>) -> Result<(), Refused> {

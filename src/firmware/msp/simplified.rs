@@ -3,8 +3,8 @@
 //! Each gain is its default times the master multiplier times the sliders of its term. The pitch sliders apply to pitch
 //! only. Each low-pass frequency is its default times the filter's multiplier. 100 means 1.0.
 
+use super::Call;
 use super::layout::{self, Field, u8};
-use super::{Call, Refused};
 use crate::firmware::settings::{Kind, Settings, find};
 use crate::msp::{PaddedReader, Writer};
 
@@ -209,16 +209,15 @@ impl Filter {
     }
 }
 
-pub(super) fn tuning(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn tuning(call: &mut Call<'_>) {
     let settings = &call.configuration.settings;
     layout::read(&SLIDERS.map(u8), settings, &mut call.reply);
     call.reply.zeros(SPARE);
     DTERM.read(settings, &mut call.reply);
     GYRO.read(settings, &mut call.reply);
-    Ok(())
 }
 
-pub(super) fn set_tuning(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn set_tuning(call: &mut Call<'_>) {
     let settings = &mut call.configuration.settings;
     let fields: [Field; 9] = SLIDERS.map(u8);
     layout::write(&fields, settings, &mut call.request);
@@ -234,10 +233,9 @@ pub(super) fn set_tuning(call: &mut Call<'_>) -> Result<(), Refused> {
     }
     DTERM.write(settings, &mut call.request);
     GYRO.write(settings, &mut call.request);
-    Ok(())
 }
 
-pub(super) fn calculate_pid(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn calculate_pid(call: &mut Call<'_>) {
     let sliders = Sliders::new([(); 9].map(|()| i64::from(call.request.u8())));
     for axis in 0..AXES.len() {
         let gains = if sliders.governs(axis) {
@@ -250,20 +248,17 @@ pub(super) fn calculate_pid(call: &mut Call<'_>) -> Result<(), Refused> {
         }
         call.reply.u16(gains.f);
     }
-    Ok(())
 }
 
-pub(super) fn calculate_gyro(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn calculate_gyro(call: &mut Call<'_>) {
     GYRO.calculate(call);
-    Ok(())
 }
 
-pub(super) fn calculate_dterm(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn calculate_dterm(call: &mut Call<'_>) {
     DTERM.calculate(call);
-    Ok(())
 }
 
-pub(super) fn validate(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn validate(call: &mut Call<'_>) {
     let settings = &call.configuration.settings;
     let sliders = Sliders::stored(settings);
     let gains = (0..AXES.len())
@@ -273,5 +268,4 @@ pub(super) fn validate(call: &mut Call<'_>) -> Result<(), Refused> {
     for part in explained {
         call.reply.u8(u8::from(part));
     }
-    Ok(())
 }

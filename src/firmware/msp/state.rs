@@ -1,6 +1,6 @@
 //! The present measurements and state of the craft.
 
-use super::{Call, MspFacts, Refused, UtcTime, modes};
+use super::{Call, MspFacts, UtcTime, modes};
 use crate::firmware::config::Feature;
 use crate::firmware::settings::Scope;
 use crate::geo::GRAVITY;
@@ -13,14 +13,12 @@ const COUNTS_PER_G: f64 = 256.0;
 const METER_MEASURED: u8 = 10;
 const METER_VIRTUAL: u8 = 80;
 
-pub(super) fn status(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn status(call: &mut Call<'_>) {
     present_status(call).encode(false, &mut call.reply);
-    Ok(())
 }
 
-pub(super) fn status_ex(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn status_ex(call: &mut Call<'_>) {
     present_status(call).encode(true, &mut call.reply);
-    Ok(())
 }
 
 fn present_status(call: &Call<'_>) -> Status {
@@ -51,7 +49,7 @@ fn present_status(call: &Call<'_>) -> Status {
     }
 }
 
-pub(super) fn raw_imu(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn raw_imu(call: &mut Call<'_>) {
     let facts = call.facts;
     for axis in facts.specific_force_flu.iter() {
         call.reply.i16(steps(*axis, COUNTS_PER_G / GRAVITY));
@@ -62,112 +60,96 @@ pub(super) fn raw_imu(call: &mut Call<'_>) -> Result<(), Refused> {
     for axis in facts.mag_flu.iter() {
         call.reply.i16(steps(*axis, 1.0));
     }
-    Ok(())
 }
 
-pub(super) fn attitude(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn attitude(call: &mut Call<'_>) {
     let &MspFacts { roll_deg, pitch_deg, heading_deg, .. } = call.facts;
     Attitude { roll_deg, pitch_deg, heading_deg }.encode(&mut call.reply);
-    Ok(())
 }
 
-pub(super) fn attitude_quaternion(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn attitude_quaternion(call: &mut Call<'_>) {
     let to_nwu = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), -std::f64::consts::FRAC_PI_2);
     let q = to_nwu * call.facts.attitude;
     for part in [q.w, q.i, q.j, q.k] {
         call.reply.i16(steps(part, f64::from(i16::MAX)));
     }
-    Ok(())
 }
 
-pub(super) fn altitude(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn altitude(call: &mut Call<'_>) {
     let &MspFacts { altitude_m, climb_mps, .. } = call.facts;
     Altitude { alt_m: altitude_m, climb_mps: Some(climb_mps) }.encode(&mut call.reply);
-    Ok(())
 }
 
-pub(super) fn sonar_altitude(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn sonar_altitude(call: &mut Call<'_>) {
     call.reply.i32(0);
-    Ok(())
 }
 
 fn battery(call: &Call<'_>) -> BatteryReading {
     call.facts.battery.unwrap_or_default()
 }
 
-pub(super) fn analog(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn analog(call: &mut Call<'_>) {
     let battery = battery(call);
     call.reply.u8(steps(battery.voltage_v, 10.0));
     call.reply.u16(steps(battery.drawn_mah, 1.0));
     call.reply.u16(call.facts.rssi);
     call.reply.i16(steps(battery.current_a, 100.0));
     call.reply.u16(steps(battery.voltage_v, 100.0));
-    Ok(())
 }
 
-pub(super) fn battery_state(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn battery_state(call: &mut Call<'_>) {
     let capacity_mah = call.setting("bat_capacity").try_into().unwrap_or(u16::MAX);
     BatteryReading { capacity_mah, ..battery(call) }.encode(&mut call.reply);
-    Ok(())
 }
 
-pub(super) fn voltage_meters(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn voltage_meters(call: &mut Call<'_>) {
     let battery = battery(call);
     call.reply.u8(METER_MEASURED);
     call.reply.u8(steps(battery.voltage_v, 10.0));
-    Ok(())
 }
 
-pub(super) fn current_meters(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn current_meters(call: &mut Call<'_>) {
     let battery = battery(call);
     for id in [METER_MEASURED, METER_VIRTUAL] {
         call.reply.u8(id);
         call.reply.u16(steps(battery.drawn_mah, 1.0));
         call.reply.u16(steps(battery.current_a, 1000.0));
     }
-    Ok(())
 }
 
-pub(super) fn rc(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn rc(call: &mut Call<'_>) {
     Channels(call.facts.channels).encode(&mut call.reply);
-    Ok(())
 }
 
-pub(super) fn motor(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn motor(call: &mut Call<'_>) {
     Motors(call.facts.motors_us).encode(&mut call.reply);
-    Ok(())
 }
 
-pub(super) fn motor_telemetry(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn motor_telemetry(call: &mut Call<'_>) {
     // No ESC reports anything, so rpm, errors, temperature, voltage, current and charge are 0.
     let motors = call.facts.motors_us.len();
     call.reply.u8(motors as i64);
     call.reply.zeros(13 * motors);
-    Ok(())
 }
 
-pub(super) fn debug(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn debug(call: &mut Call<'_>) {
     call.reply.zeros(16);
-    Ok(())
 }
 
-pub(super) fn raw_gps(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn raw_gps(call: &mut Call<'_>) {
     call.facts.gps.encode(&mut call.reply);
-    Ok(())
 }
 
-pub(super) fn comp_gps(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn comp_gps(call: &mut Call<'_>) {
     call.facts.home.encode(&mut call.reply);
-    Ok(())
 }
 
 /// Reports zero satellites, because single satellites are not simulated.
-pub(super) fn satellites(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn satellites(call: &mut Call<'_>) {
     call.reply.u8(0);
-    Ok(())
 }
 
-pub(super) fn rtc(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn rtc(call: &mut Call<'_>) {
     if let Some(clock) = call.facts.clock {
         let (year, month, day) = civil_date(clock);
         let second = clock.unix_s % 86_400;
@@ -177,7 +159,6 @@ pub(super) fn rtc(call: &mut Call<'_>) -> Result<(), Refused> {
         }
         call.reply.u16(clock.millis);
     }
-    Ok(())
 }
 
 /// Returns year, month and day in the Gregorian calendar, by years that begin in March (Hinnant, "chrono-compatible
@@ -195,30 +176,25 @@ fn civil_date(clock: UtcTime) -> (u32, u32, u32) {
     (era * 400 + year_of_era + u32::from(month <= 2), month, day)
 }
 
-pub(super) fn tx_info(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn tx_info(call: &mut Call<'_>) {
     call.reply.u8(0);
     call.reply.u8(u8::from(call.facts.clock.is_some()));
-    Ok(())
 }
 
 /// Reports neither flash nor card.
-pub(super) fn dataflash_summary(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn dataflash_summary(call: &mut Call<'_>) {
     call.reply.zeros(13);
-    Ok(())
 }
 
-pub(super) fn sdcard_summary(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn sdcard_summary(call: &mut Call<'_>) {
     call.reply.zeros(11);
-    Ok(())
 }
 
 /// Replies with the positions in the lines of the command line's `sensor_hardware`; 255 = not built in.
-pub(super) fn sensors_active(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn sensors_active(call: &mut Call<'_>) {
     call.reply.bytes(&[0x1b, 0x1a, 0x0d, 0x00, 0xff, 0xff]);
-    Ok(())
 }
 
-pub(super) fn gyros_active(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn gyros_active(call: &mut Call<'_>) {
     call.reply.bytes(&[1, 0x1b]);
-    Ok(())
 }

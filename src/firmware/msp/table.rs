@@ -10,7 +10,9 @@ use crate::msp::code::{self, MessageKind};
 /// The way in which a message is answered.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Handler {
-    Code(fn(&mut Call<'_>) -> Result<(), Refused>),
+    Answer(fn(&mut Call<'_>)),
+    /// Checks the request before it answers.
+    Check(fn(&mut Call<'_>) -> Result<(), Refused>),
     /// Replies with the values of settings.
     Get(&'static [Field]),
     /// Sets settings, unless the payload is shorter than this.
@@ -20,7 +22,8 @@ pub(super) enum Handler {
 impl Handler {
     pub(super) fn run(&self, call: &mut Call<'_>) -> Result<(), Refused> {
         match *self {
-            Self::Code(code) => return code(call),
+            Self::Answer(answer) => answer(call),
+            Self::Check(check) => return check(call),
             Self::Get(fields) => layout::read(fields, &call.configuration.settings, &mut call.reply),
             Self::Set(_, shortest) if call.request.remaining() < shortest => return Err(Refused),
             Self::Set(fields, _) => {
@@ -42,8 +45,12 @@ const fn row(code: u16, handler: Handler) -> Message {
     Message { kind: code::row(code), handler }
 }
 
-const fn answer(code: u16, handler: fn(&mut Call<'_>) -> Result<(), Refused>) -> Message {
-    row(code, Handler::Code(handler))
+const fn answer(code: u16, handler: fn(&mut Call<'_>)) -> Message {
+    row(code, Handler::Answer(handler))
+}
+
+const fn check(code: u16, handler: fn(&mut Call<'_>) -> Result<(), Refused>) -> Message {
+    row(code, Handler::Check(handler))
 }
 
 const fn get(code: u16, fields: &'static [Field]) -> Message {
@@ -72,11 +79,11 @@ pub static MESSAGES: &[Message] = &[
     answer(code::BOARD_INFO, identity::board_info),
     answer(code::BUILD_INFO, identity::build_info),
     answer(code::NAME, text::name),
-    answer(code::SET_NAME, text::set_name),
+    check(code::SET_NAME, text::set_name),
     answer(code::BATTERY_CONFIG, power::battery_config),
-    answer(code::SET_BATTERY_CONFIG, power::set_battery_config),
+    check(code::SET_BATTERY_CONFIG, power::set_battery_config),
     answer(code::MODE_RANGES, modes::mode_ranges),
-    answer(code::SET_MODE_RANGE, modes::set_mode_range),
+    check(code::SET_MODE_RANGE, modes::set_mode_range),
     answer(code::FEATURE_CONFIG, craft::features),
     answer(code::SET_FEATURE_CONFIG, craft::set_features),
     get(code::BOARD_ALIGNMENT_CONFIG, craft::BOARD_ALIGNMENT),
@@ -84,13 +91,13 @@ pub static MESSAGES: &[Message] = &[
     answer(code::CURRENT_METER_CONFIG, power::current_meter_config),
     answer(code::SET_CURRENT_METER_CONFIG, power::set_current_meter_config),
     answer(code::MIXER_CONFIG, craft::mixer),
-    answer(code::SET_MIXER_CONFIG, craft::set_mixer),
+    check(code::SET_MIXER_CONFIG, craft::set_mixer),
     get(code::RX_CONFIG, receiver::RX),
     set(code::SET_RX_CONFIG, receiver::RX),
     get(code::RSSI_CONFIG, power::RSSI),
     set(code::SET_RSSI_CONFIG, power::RSSI),
     answer(code::ADJUSTMENT_RANGES, modes::adjustment_ranges),
-    answer(code::SET_ADJUSTMENT_RANGE, modes::set_adjustment_range),
+    check(code::SET_ADJUSTMENT_RANGE, modes::set_adjustment_range),
     answer(code::CF_SERIAL_CONFIG, craft::serial_config),
     answer(code::VOLTAGE_METER_CONFIG, power::voltage_meter_config),
     answer(code::SET_VOLTAGE_METER_CONFIG, power::set_voltage_meter_config),
@@ -100,13 +107,13 @@ pub static MESSAGES: &[Message] = &[
     get(code::ARMING_CONFIG, craft::ARMING),
     set(code::SET_ARMING_CONFIG, craft::ARMING),
     answer(code::RX_MAP, receiver::rx_map),
-    answer(code::SET_RX_MAP, receiver::set_rx_map),
-    answer(code::REBOOT, commands::reboot),
+    check(code::SET_RX_MAP, receiver::set_rx_map),
+    check(code::REBOOT, commands::reboot),
     answer(code::DATAFLASH_SUMMARY, state::dataflash_summary),
     get(code::FAILSAFE_CONFIG, receiver::FAILSAFE),
     set(code::SET_FAILSAFE_CONFIG, receiver::FAILSAFE),
     answer(code::RXFAIL_CONFIG, receiver::rxfail),
-    answer(code::SET_RXFAIL_CONFIG, receiver::set_rxfail),
+    check(code::SET_RXFAIL_CONFIG, receiver::set_rxfail),
     answer(code::SDCARD_SUMMARY, state::sdcard_summary),
     answer(code::BLACKBOX_CONFIG, craft::blackbox),
     answer(code::SET_BLACKBOX_CONFIG, craft::set_blackbox),
@@ -116,7 +123,7 @@ pub static MESSAGES: &[Message] = &[
     answer(code::FILTER_CONFIG, tuning::filters),
     answer(code::SET_FILTER_CONFIG, tuning::set_filters),
     get(code::PID_ADVANCED, tuning::PID_ADVANCED),
-    answer(code::SET_PID_ADVANCED, tuning::set_pid_advanced),
+    check(code::SET_PID_ADVANCED, tuning::set_pid_advanced),
     get(code::SENSOR_CONFIG, craft::SENSORS),
     set(code::SET_SENSOR_CONFIG, craft::SENSORS),
     answer(code::SET_ARMING_DISABLED, commands::set_arming_disabled),
@@ -156,10 +163,10 @@ pub static MESSAGES: &[Message] = &[
     answer(code::UID, identity::uid),
     answer(code::GPSSVINFO, state::satellites),
     answer(code::ATTITUDE_QUATERNION, state::attitude_quaternion),
-    answer(code::COPY_PROFILE, commands::copy_profile),
+    check(code::COPY_PROFILE, commands::copy_profile),
     answer(code::TX_INFO, state::tx_info),
-    answer(code::OSD_CANVAS, craft::nothing),
-    answer(code::SET_RAW_RC, commands::set_raw_rc),
+    get(code::OSD_CANVAS, craft::NOTHING),
+    check(code::SET_RAW_RC, commands::set_raw_rc),
     answer(code::SET_RAW_GPS, commands::set_raw_gps),
     set(code::SET_PID, tuning::PID),
     set_from(code::SET_RC_TUNING, tuning::RATES, tuning::RATES_MIN),
@@ -168,35 +175,35 @@ pub static MESSAGES: &[Message] = &[
     answer(code::RESET_CONF, commands::reset_conf),
     answer(code::SELECT_SETTING, commands::select_setting),
     answer(code::SET_HEADING, commands::set_heading),
-    answer(code::SET_MOTOR, commands::set_motor),
+    check(code::SET_MOTOR, commands::set_motor),
     set(code::SET_MOTOR_3D_CONFIG, craft::MOTOR_3D),
     set(code::SET_RC_DEADBAND, receiver::DEADBAND),
-    answer(code::SET_RESET_CURR_PID, commands::reset_pid_profile),
+    check(code::SET_RESET_CURR_PID, commands::reset_pid_profile),
     set(code::SET_SENSOR_ALIGNMENT, craft::SET_ALIGNMENT),
     set(code::SET_MOTOR_CONFIG, craft::SET_MOTOR),
     set(code::SET_GPS_CONFIG, gps::GPS),
     set(code::SET_COMPASS_CONFIG, gps::COMPASS),
     set(code::SET_GPS_RESCUE, gps::RESCUE),
     set(code::SET_GPS_RESCUE_PIDS, gps::RESCUE_PIDS),
-    answer(code::MULTIPLE_MSP, multiple::multiple),
+    check(code::MULTIPLE_MSP, multiple::multiple),
     answer(code::MODE_RANGES_EXTRA, modes::mode_ranges_extra),
     set(code::SET_ACC_TRIM, craft::ACC_TRIM),
     get(code::ACC_TRIM, craft::ACC_TRIM),
     answer(code::SET_PASSTHROUGH, commands::set_passthrough),
     answer(code::SET_RTC, commands::set_rtc),
     answer(code::RTC, state::rtc),
-    answer(code::EEPROM_WRITE, commands::eeprom_write),
+    check(code::EEPROM_WRITE, commands::eeprom_write),
     answer(code::DEBUG, state::debug),
     answer(code::COMMON_SERIAL_CONFIG, craft::common_serial_config),
     answer(code::MOTOR_OUTPUT_REORDERING, craft::motor_reordering),
-    answer(code::SET_MOTOR_OUTPUT_REORDERING, craft::set_motor_reordering),
-    answer(code::GET_TEXT, text::get_text),
-    answer(code::SET_TEXT, text::set_text),
+    check(code::SET_MOTOR_OUTPUT_REORDERING, craft::set_motor_reordering),
+    check(code::GET_TEXT, text::get_text),
+    check(code::SET_TEXT, text::set_text),
     answer(code::SENSOR_CONFIG_ACTIVE, state::sensors_active),
     answer(code::MCU_INFO, identity::mcu_info),
     answer(code::GYRO_SENSOR_ACTIVE, state::gyros_active),
-    answer(code::BATTERY_PROFILE, power::battery_profile),
-    answer(code::SET_BATTERY_PROFILE, power::set_battery_profile),
-    answer(code::CLI_SETTING, setting::setting),
-    answer(code::CLI_SETTING_INFO, setting::setting_info),
+    check(code::BATTERY_PROFILE, power::battery_profile),
+    check(code::SET_BATTERY_PROFILE, power::set_battery_profile),
+    check(code::CLI_SETTING, setting::setting),
+    check(code::CLI_SETTING_INFO, setting::setting_info),
 ];

@@ -22,10 +22,9 @@ fn setting_of(kind: u8) -> Option<(&'static str, usize)> {
 
 const PILOT: u8 = 1;
 
-pub(super) fn name(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn name(call: &mut Call<'_>) {
     let name = call.configuration.settings.text("craft_name");
     call.reply.bytes(name.as_bytes());
-    Ok(())
 }
 
 pub(super) fn set_name(call: &mut Call<'_>) -> Result<(), Refused> {

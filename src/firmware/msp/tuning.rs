@@ -22,9 +22,8 @@ pub(super) const PID: &[Field] = &[
     byte(0),
 ];
 
-pub(super) fn pid_names(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn pid_names(call: &mut Call<'_>) {
     call.reply.bytes(b"ROLL;PITCH;YAW;LEVEL;MAG;");
-    Ok(())
 }
 
 /// `PID_CONTROLLER`: there is only one.
@@ -135,17 +134,15 @@ const FILTERS: &[Field] = &[
     byte(0),
 ];
 
-pub(super) fn filters(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn filters(call: &mut Call<'_>) {
     let first = call.setting("gyro_lpf1_static_hz") & 0xff;
     call.reply.u8(first);
     layout::read(FILTERS, &call.configuration.settings, &mut call.reply);
-    Ok(())
 }
 
-pub(super) fn set_filters(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn set_filters(call: &mut Call<'_>) {
     call.request.u8();
     layout::write(FILTERS, &mut call.configuration.settings, &mut call.request);
-    Ok(())
 }
 
 /// The length of the shortest `RC_TUNING`, bytes.
@@ -197,8 +194,7 @@ pub(super) const ADVANCED: &[Field] = &[
     u8("debug_mode"),
 ];
 
-pub(super) fn advanced(call: &mut Call<'_>) -> Result<(), Refused> {
+pub(super) fn advanced(call: &mut Call<'_>) {
     layout::read(ADVANCED, &call.configuration.settings, &mut call.reply);
     call.reply.u8(DEBUG_MODES);
-    Ok(())
 }

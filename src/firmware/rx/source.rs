@@ -87,11 +87,6 @@ impl Sources {
         self.in_charge
     }
 
-    /// Returns the age of a source's newest frame, s.
-    pub fn age_s(&self, source: RcSource, now: SimTime) -> Option<f64> {
-        self.seat(source).map(|seat| now.seconds_since(seat.received))
-    }
-
     /// Returns the frames a second of the source in charge; 0 until it is measured.
     pub fn rate_hz(&self) -> f64 {
         self.in_charge.and_then(|source| self.seat(source)).map_or(0.0, |seat| seat.rate_hz)

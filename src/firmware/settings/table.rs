@@ -33,6 +33,12 @@ pub(super) struct Group {
     pub settings: &'static [Setting],
 }
 
+impl Group {
+    const fn new(title: &'static str, scope: Scope, settings: &'static [Setting]) -> Self {
+        Self { title, scope, settings }
+    }
+}
+
 /// All groups in table order.
 pub(super) const GROUPS: [&Group; 33] = [
     &sensors::GYRO,

@@ -8,7 +8,6 @@ use super::{Bound, Comparison, Condition, Function, Instant, Number, Place};
 use crate::scenario::flag::Flag;
 use crate::scenario::happening::Happening;
 use crate::scenario::trace::{Sample, Trace};
-use crate::signals::SimTime;
 use crate::telemetry::quantity::Dimension;
 use crate::telemetry::signal::Signal;
 
@@ -83,11 +82,6 @@ impl<'a> Evaluator<'a> {
         let found = Search::new(instant).finish(self);
         self.found.borrow_mut().insert(key, found);
         found
-    }
-
-    /// Returns the time of an instant, at the earliest the time of boot.
-    pub fn time(&self, instant: &Instant) -> Option<SimTime> {
-        self.instant(instant).map(|us| SimTime(us.max(0) as u64))
     }
 
     /// Returns a number at a sample; NaN = unknown.

@@ -17,7 +17,7 @@ use crate::sim::sensors::Sensors;
 use crate::sim::surface::Surface;
 use crate::sim::switches::Switches;
 use crate::sim::touchdown::TouchdownDetector;
-use crate::sim::truth::{BatteryTruth, Truth, level_attitude};
+use crate::sim::truth::{Truth, level_attitude};
 
 use super::World;
 
@@ -122,20 +122,6 @@ pub(super) fn full_battery(airframe: &Airframe, switches: &Switches) -> Battery 
 }
 
 fn truth_at_boot(state: &BodyState) -> Truth {
-    Truth {
-        time: SimTime::ZERO,
-        pos_enu: state.pos_enu,
-        vel_enu: state.vel_enu,
-        attitude: state.attitude,
-        rate_flu: state.rate_flu,
-        rotor_speeds: [0.0; ROTORS],
-        motor_command: [0.0; ROTORS],
-        specific_force_flu: Vector3::zeros(),
-        wind_enu: Vector3::zeros(),
-        battery: BatteryTruth::default(),
-        ground_m: 0.0,
-        on_ground: true,
-        crashed: false,
-        diverged: false,
-    }
+    let BodyState { pos_enu, vel_enu, attitude, rate_flu } = *state;
+    Truth { pos_enu, vel_enu, attitude, rate_flu, on_ground: true, ..Truth::default() }
 }

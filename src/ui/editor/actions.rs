@@ -7,9 +7,8 @@ use crate::geo::{GroundPlane, LatLon, distance_bearing};
 use crate::plan::edit::PlanDocument;
 use crate::plan::{Altitude, FlightPlan, HoldPattern, Seconds, Waypoint, WaypointType};
 use crate::ui::action::{Action, EditAction};
-use crate::ui::editor::findings;
 use crate::ui::editor::{
-    Browser, Column, EditorPopup, FileRequest, Form, FormKind, PlanId, Purpose, Question,
+    Browser, Column, EditorPopup, FileRequest, Form, FormKind, PlanId, Purpose, Question, findings,
 };
 use crate::ui::event_log::Severity;
 use crate::ui::message::Effect;
@@ -316,7 +315,7 @@ pub(in crate::ui) fn place_waypoint(state: &mut Shared, index: usize, position: 
 }
 
 /// Reports that the craft saved its configuration, or the reason for a failure.
-pub(in crate::ui) fn saved_to_flash(state: &mut Shared, result: Result<(), String>) -> Vec<Effect> {
+pub(in crate::ui) fn saved_to_flash(state: &mut Shared, result: Result<(), String>) {
     match result {
         Ok(()) => {
             let stored = state.view.vehicle.stored_plan.as_ref().map_or(0, |plan| plan.waypoints.len());
@@ -325,10 +324,9 @@ pub(in crate::ui) fn saved_to_flash(state: &mut Shared, result: Result<(), Strin
         }
         Err(sentence) => state.notify(Severity::Fault, state.keymap.in_force(&sentence)),
     }
-    Vec::new()
 }
 
-pub(in crate::ui) fn scenario_written(state: &mut Shared, result: Result<String, String>) -> Vec<Effect> {
+pub(in crate::ui) fn scenario_written(state: &mut Shared, result: Result<String, String>) {
     match result {
         Ok(sentence) => state.notify(Severity::Good, sentence),
         Err(sentence) => {
@@ -336,5 +334,4 @@ pub(in crate::ui) fn scenario_written(state: &mut Shared, result: Result<String,
             state.notify(Severity::Fault, format!("No scenario was written: {sentence}"));
         }
     }
-    Vec::new()
 }

@@ -3,8 +3,7 @@
 use crate::plan::Waypoint;
 use crate::plan::format::HomePosition;
 use crate::ui::action::{Action, EditAction};
-use crate::ui::editor::PlanId;
-use crate::ui::editor::actions as plan;
+use crate::ui::editor::{PlanId, actions as plan};
 use crate::ui::event_log::Severity;
 use crate::ui::map_edit;
 use crate::ui::map_point::MapPoint;

@@ -7,13 +7,12 @@ use ratatui::layout::{Position, Rect};
 use crate::signals::{RC_CHANNELS, RcSource};
 use crate::telemetry::snapshot::{CraftView, ModeRange};
 use crate::ui::action::{Action, PanelAction};
-use crate::ui::drawing;
 use crate::ui::formatting::cut;
 use crate::ui::message::{Change, Request};
 use crate::ui::panel::{Content, Hint, Panel};
 use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
-use crate::ui::transmitter;
+use crate::ui::{drawing, transmitter};
 
 use super::row;
 

@@ -3,13 +3,10 @@
 use crossterm::event::{MouseButton, MouseEvent, MouseEventKind};
 
 use crate::ui::app_state::AppState;
-use crate::ui::layout;
 use crate::ui::message::{Effect, Request};
-use crate::ui::notice;
 use crate::ui::panel::Panel;
-use crate::ui::panel_bar;
 use crate::ui::popup::Popup;
-use crate::ui::tutorial;
+use crate::ui::{layout, notice, panel_bar, tutorial};
 
 use super::view::focus;
 use super::{carry_out, map_menu, timeline};

@@ -6,10 +6,9 @@ use crossterm::event::{KeyCode, KeyEvent};
 
 use super::flight::upload_now;
 use crate::ui::action::{Action, EditAction};
-use crate::ui::editor::actions as plan;
-use crate::ui::editor::findings;
 use crate::ui::editor::{
     Browser, BrowserKey, EditorPopup, FileReply, FileRequest, Form, FormKey, PlanId, Purpose, Question,
+    actions as plan, findings,
 };
 use crate::ui::event_log::Severity;
 use crate::ui::message::Effect;

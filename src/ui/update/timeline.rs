@@ -3,10 +3,9 @@
 use crate::session::command::Seek;
 use crate::session::{Command, SessionView};
 use crate::ui::action::{Action, is_wrecked};
-use crate::ui::layout;
 use crate::ui::message::Effect;
 use crate::ui::shared::Shared;
-use crate::ui::timeline;
+use crate::ui::{layout, timeline};
 
 /// The time that one press of the keys for earlier and later skips, s.
 const SKIP_S: f64 = 10.0;

@@ -1,11 +1,10 @@
 //! Moves the window of the map.
 
 use super::Viewport;
-use crate::ui::layout;
-use crate::ui::map_point;
 use crate::ui::map_state::MapMode;
 use crate::ui::panel::Panel;
 use crate::ui::shared::Shared;
+use crate::ui::{layout, map_point};
 
 /// The factor of a zoom step of the map.
 pub(in crate::ui) const ZOOM_STEP: f64 = 1.5;

@@ -8,8 +8,7 @@ use crate::autopilot::params::{Effect, Field};
 /// The number of settings in this group. The parameters after them belong to other groups.
 const COUNT: usize = Params::FIELDS.len() - Params::SHARED;
 
-pub(super) const AUTOPILOT: Group =
-    Group { title: "Autopilot", scope: Scope::Master, settings: &settings_of_parameters() };
+pub(super) const AUTOPILOT: Group = Group::new("Autopilot", Scope::Master, &settings_of_parameters());
 
 const fn settings_of_parameters() -> [Setting; COUNT] {
     let mut all = [setting_of(&Params::FIELDS[0]); COUNT];

@@ -6,14 +6,13 @@ use ratatui::widgets::canvas::{Context, Line as CanvasLine};
 use crate::plan::{Approach, HoldPattern, Waypoint};
 use crate::telemetry::NavTelemetry;
 use crate::telemetry::snapshot::SettingsView;
-use crate::ui::forecast;
-use crate::ui::map_edit;
 use crate::ui::map_point::origin::origin;
 use crate::ui::map_point::{MapPoint, to_map};
 use crate::ui::map_state::{MapItem, Moving};
 use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
 use crate::ui::track::TrackPoint;
+use crate::ui::{forecast, map_edit};
 
 use super::track_line::TrackLine;
 use super::{PlacedWaypoint, Scene};

@@ -6,12 +6,10 @@ use crate::flight::forecast::ForecastKind;
 use crate::text::printable;
 use crate::ui::action::{ACTIONS, Context};
 use crate::ui::app_state::AppState;
-use crate::ui::command;
-use crate::ui::forecast;
 use crate::ui::message::{Effect, Msg};
 use crate::ui::popup::Popup;
-use crate::ui::prompt;
 use crate::ui::update::{self, run_line, update};
+use crate::ui::{command, forecast, prompt};
 
 /// The output, and the question written last.
 #[derive(Debug)]

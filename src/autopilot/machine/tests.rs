@@ -1,4 +1,4 @@
-//! The transition table, printed from the rules themselves.
+//! Compares the transition table of `docs/autopilot.md` with the rules: it is printed from them.
 
 use std::fmt::Write as _;
 
@@ -10,7 +10,30 @@ use crate::autopilot::guidance::PlaneCrossing;
 use crate::autopilot::land_detector::{GroundFacts, TouchdownFacts, TouchdownGuards};
 use crate::autopilot::params::Params;
 use crate::plan::{HoldPattern, Seconds, WaypointType};
-use crate::telemetry::{FenceAction, Guard, NavState, PlanSource};
+use crate::telemetry::{AbortReason, FenceAction, Guard, NavState, PlanSource};
+
+impl Outcome {
+    /// Describes the side effects in a few words. Empty if there are none.
+    fn effect(self) -> &'static str {
+        match self {
+            Self::Abort(AbortReason::GpsLost) => "mission off, reason GPS_LOST",
+            Self::Abort(AbortReason::NoPlan) => "mission off, reason NO_PLAN",
+            Self::Abort(AbortReason::Stalled) => "mission off until the switch is cycled, reason STALLED",
+            Self::Abort(AbortReason::Flyaway) => "mission off until the switch is cycled, reason FLYAWAY",
+            Self::LandHere | Self::Fence(FenceAction::Land) => "active plan: LAND here",
+            Self::Fence(FenceAction::Rth) => "active plan: FLYOVER home, LAND home",
+            Self::Climbed => "climb over, the leg starts here",
+            Self::Missed => "the waypoint becomes a stop",
+            Self::Hold => "the hold clock starts",
+            Self::Orbit | Self::Figure8 => "phase 0, centre = waypoint",
+            Self::Land => "descent from the current altitude",
+            Self::Next => "advance to the next positional waypoint",
+            Self::Complete => "target and altitude held",
+            Self::Touchdown => "disarm, reason LANDING",
+            Self::Arrive => "",
+        }
+    }
+}
 
 /// A situation of the machine, in words, and the rules that apply to it.
 struct Situation {
@@ -146,7 +169,7 @@ fn condition(guards: &[Guard]) -> String {
 
 /// Returns every transition as a Markdown table, with the default parameters as limits, in the order in which the
 /// rules of a state are tried.
-pub fn transition_table() -> String {
+fn transition_table() -> String {
     let mut table =
         "| from | waypoint | condition | to | effect |\n| --- | --- | --- | --- | --- |\n".to_owned();
     for Situation { state, waypoint, rules } in
@@ -160,4 +183,11 @@ pub fn transition_table() -> String {
         }
     }
     table
+}
+
+#[test]
+fn the_transition_table_is_the_one_of_the_code() {
+    let table = transition_table();
+    let page = include_str!("../../../docs/autopilot.md");
+    assert!(page.contains(&table), "replace the table in docs/autopilot.md by this one:\n{table}");
 }
