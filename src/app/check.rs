@@ -24,8 +24,26 @@ pub(super) use load::load_one;
 use output::Output;
 use results::Results;
 
+/// The exit code at which `git bisect run` skips a commit.
+const SKIP_COMMIT: u8 = 125;
+
 /// Flies and judges. The exit code is 0 if every expectation was met.
 pub(super) fn run(args: &CheckArgs) -> Result<u8, AppError> {
+    let ended = run_all(args);
+    if !args.bisect {
+        return ended;
+    }
+    match ended {
+        Ok(code) if code >= error::ENVIRONMENT && code != error::INTERRUPTED => Ok(SKIP_COMMIT),
+        Err(AppError { code, message }) if code >= error::ENVIRONMENT => {
+            error::tell(&message);
+            Ok(SKIP_COMMIT)
+        }
+        ended => ended,
+    }
+}
+
+fn run_all(args: &CheckArgs) -> Result<u8, AppError> {
     if args.list {
         return list(args);
     }

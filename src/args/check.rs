@@ -63,6 +63,12 @@ pub struct CheckArgs {
     #[arg(long, help_heading = "How")]
     pub fail_fast: bool,
 
+    /// Ends with 125 if the firmware cannot be flown, for `git bisect run` over builds of it
+    ///
+    /// `git bisect run` skips a commit at this exit code. 0 and 1 are a good and a bad commit, as without this option.
+    #[arg(long, conflicts_with_all = ["list", "new", "watch"], help_heading = "How")]
+    pub bisect: bool,
+
     /// Flies again after every change of one of the files, until Ctrl-C
     #[arg(long, conflicts_with_all = ["list", "new"], help_heading = "How")]
     pub watch: bool,

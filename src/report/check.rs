@@ -56,6 +56,8 @@ pub struct CheckedFlight {
     pub hash: u64,
     /// The knowledge that the flight controller gave.
     pub reported: Insight,
+    /// `true` if a remote flight controller flew, so that the flight cannot be opened in the screen.
+    pub is_remote: bool,
 }
 
 impl CheckedFlight {
@@ -112,14 +114,18 @@ impl CheckedFlight {
         time.as_secs_f64() - self.engaged_at.map_or(0.0, SimTime::as_secs_f64)
     }
 
-    /// Returns the command that opens an instant of the flight in the screen.
-    pub fn open_command(&self, time: SimTime) -> String {
+    /// Returns the command that opens an instant of the flight in the screen; `None` for a remote flight controller, whose
+    /// flights are not recorded.
+    pub fn open_command(&self, time: SimTime) -> Option<String> {
+        if self.is_remote {
+            return None;
+        }
         let case =
             if self.case.is_empty() { String::new() } else { format!(" --case {}", shell_word(&self.case)) };
         let seed = if self.tells_seed() { format!(" --seed {}", self.seed) } else { String::new() };
         let boot = if self.engaged_at.is_some() { "" } else { "boot+" };
         let file = if self.file == STANDARD_INPUT { "FILE".to_owned() } else { shell_word(&self.file) };
-        format!("betadeck open {file}{case}{seed} --at {boot}{:.2}", self.seconds(time))
+        Some(format!("betadeck open {file}{case}{seed} --at {boot}{:.2}", self.seconds(time)))
     }
 }
 
@@ -198,9 +204,10 @@ impl Summary {
         Self { flights, compared, wanted, left_out, wall_s }
     }
 
-    /// Returns `true` if all requested flights were flown and no expectation failed.
+    /// Returns `true` if all requested flights were flown, something was judged and no expectation failed.
     pub fn passed(&self) -> bool {
         self.flights.len() == self.wanted
+            && !self.is_skipped()
             && self.flights.iter().all(CheckedFlight::passed)
             && !self.compared.iter().any(|compared| compared.judgement.outcome.is_failure())
     }

@@ -2,7 +2,9 @@
 //! model) implements them.
 
 /// The meaning of the numbers in a simulator's state datagram.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumString, strum::IntoStaticStr)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumString, strum::IntoStaticStr,
+)]
 #[strum(serialize_all = "kebab-case")]
 pub enum Dialect {
     /// The dialect that a current SITL executable decodes correctly: rates (ωx, −ωy, +ωz), negated specific

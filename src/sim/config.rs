@@ -73,16 +73,7 @@ pub fn step_us(rate_hz: u32) -> Result<u64, WorldError> {
 }
 
 #[derive(
-    Debug,
-    Clone,
-    Copy,
-    PartialEq,
-    Eq,
-    Default,
-    Hash,
-    strum::Display,
-    strum::EnumString,
-    strum::VariantNames
+    Debug, Clone, Copy, PartialEq, Eq, Default, Hash, strum::Display, strum::EnumString, strum::VariantNames,
 )]
 #[strum(serialize_all = "lowercase")]
 pub enum Noise {

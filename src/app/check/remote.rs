@@ -74,16 +74,17 @@ impl Run<'_> {
             &ends,
             |thread, job| self.one(job, thread),
             |done: Done, count| {
+                // A flight that began before the run was given up is not reported.
+                if gives_up.load(Ordering::Relaxed) {
+                    return;
+                }
                 done.reported.iter().for_each(|sentence| results.tell(sentence));
                 let was_in_trouble = std::mem::replace(&mut is_in_trouble, done.trouble.is_some());
                 trouble = trouble.max(done.trouble);
                 let flight = if is_repeatable { repetitions.compare(done.flight) } else { done.flight };
                 results.flight(flight, count);
-                if was_in_trouble
-                    && is_in_trouble
-                    && count < jobs.len()
-                    && !gives_up.swap(true, Ordering::Relaxed)
-                {
+                if was_in_trouble && is_in_trouble && count < jobs.len() {
+                    gives_up.store(true, Ordering::Relaxed);
                     results.tell(NO_MORE);
                 }
             },
@@ -93,7 +94,8 @@ impl Run<'_> {
 
     /// Flies and judges one flight; `None` if it was interrupted in the air.
     fn one(self, job: Job, thread: usize) -> Option<Done> {
-        let ((case, air), unflown) = (job.of(self.loaded)?, job.not_flown_yet(self.loaded)?);
+        let (case, air) = job.of(self.loaded)?;
+        let unflown = CheckedFlight { is_remote: true, ..job.not_flown_yet(self.loaded)? };
         let mut reported = Vec::new();
         if let Some(judgements) = scenario::skip(case) {
             return Some(Done { flight: CheckedFlight { judgements, ..unflown }, reported, trouble: None });

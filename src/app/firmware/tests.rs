@@ -36,7 +36,11 @@ fn the_launchers_file_names_the_executable_and_what_is_not_used_is_reported() {
     assert!(notices[0].contains("Keys not used: World; the embedded physics flies"), "{notices:?}");
 
     let fast = FlightArgs { speed: Some(Speed(4.0)), ..FlightArgs::default() };
-    let error = choice(&betaloop(file), &fast, &FirmwarePortArgs::default()).0.expect_err("too fast");
+    let mut real = betaloop(file);
+    let in_steps = choice(&real, &fast, &FirmwarePortArgs::default()).0.expect("found").expect("remote");
+    assert_eq!(in_steps.clock, FirmwareClock::Sim);
+    real.link.clock = Some(FirmwareClock::Real);
+    let error = choice(&real, &fast, &FirmwarePortArgs::default()).0.expect_err("too fast");
     assert_eq!(error.code, 2);
     assert!(error.message.contains("--firmware embedded flies the embedded one)"), "{error}");
 }

@@ -99,8 +99,10 @@ fn expectation(judgement: &Judgement, flight: Option<&CheckedFlight>) -> Value {
             object.insert("sentence".to_owned(), json!(sentence));
             object.insert("guard".to_owned(), json!(guard));
             object.insert("t".to_owned(), json!(at.map(SimTime::as_secs_f64)));
-            if let (Some(at), Some(flight)) = (at, flight) {
-                object.insert("open".to_owned(), json!(flight.open_command(*at)));
+            if let (Some(at), Some(flight)) = (at, flight)
+                && let Some(open) = flight.open_command(*at)
+            {
+                object.insert("open".to_owned(), json!(open));
             }
         }
         Outcome::NeverJudged(why) => {

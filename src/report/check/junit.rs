@@ -78,7 +78,7 @@ fn testcase(flight: &CheckedFlight) -> String {
     let mut lines: Vec<String> = flight.problem.iter().cloned().collect();
     lines.extend(flight.failures().map(complaint));
     let open = flight.open_command(flight.ended_at);
-    failure(&head, &lines, &open)
+    failure(&head, &lines, open.as_deref())
 }
 
 fn comparison(compared: &Compared) -> String {
@@ -98,13 +98,13 @@ fn comparison(compared: &Compared) -> String {
         }
         Outcome::Failed { .. } | Outcome::NeverJudged(_) => {}
     }
-    failure(&head, &[complaint(&compared.judgement)], "")
+    failure(&head, &[complaint(&compared.judgement)], None)
 }
 
-fn failure(head: &str, lines: &[String], open: &str) -> String {
+fn failure(head: &str, lines: &[String], open: Option<&str>) -> String {
     let message = lines.first().map_or("", String::as_str);
     let mut body = lines.join("\n");
-    if !open.is_empty() {
+    if let Some(open) = open {
         body.push_str(&format!("\n{open}"));
     }
     format!(

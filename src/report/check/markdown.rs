@@ -5,7 +5,7 @@ use crate::scenario::Outcome;
 
 pub fn markdown(summary: &Summary) -> String {
     let word = match summary.passed() {
-        true if summary.is_skipped() => "– Nothing was judged",
+        _ if summary.is_skipped() => "– Nothing was judged",
         true => "✅ All flights passed",
         false => "❌ Some flights failed",
     };
@@ -69,7 +69,7 @@ pub fn markdown(summary: &Summary) -> String {
         for judgement in flight.failures() {
             text.push_str(&format!("  - {}\n", line(&complaint(judgement))));
             if let Outcome::Failed { at: Some(at), .. } = judgement.outcome {
-                text.push_str(&format!("    {}\n", code(&flight.open_command(at))));
+                text.extend(flight.open_command(at).map(|open| format!("    {}\n", code(&open))));
             }
         }
     }

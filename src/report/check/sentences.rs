@@ -39,7 +39,7 @@ pub fn flight_lines(flight: &CheckedFlight) -> Vec<String> {
     for judgement in flight.failures() {
         lines.push(format!("    line {}: {}", judgement.line, complaint(judgement)));
         if let Outcome::Failed { at: Some(at), .. } = judgement.outcome {
-            lines.push(format!("      {}", flight.open_command(at)));
+            lines.extend(flight.open_command(at).map(|open| format!("      {open}")));
         }
     }
     lines

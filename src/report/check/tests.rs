@@ -112,7 +112,7 @@ fn the_command_that_opens_a_flight_can_be_pasted_into_a_shell() {
         ("a;b$(x).toml", "pilot's", r"betadeck open 'a;b$(x).toml' --case 'pilot'\''s' --at boot+2.00"),
         (STANDARD_INPUT, "wind 5@270", "betadeck open FILE --case 'wind 5@270' --at boot+2.00"),
     ] {
-        assert_eq!(failed_flight(file, case).open_command(SimTime(2_000_000)), command);
+        assert_eq!(failed_flight(file, case).open_command(SimTime(2_000_000)).as_deref(), Some(command));
     }
 }
 
@@ -120,7 +120,9 @@ fn the_command_that_opens_a_flight_can_be_pasted_into_a_shell() {
 fn a_seed_that_was_asked_for_is_in_the_title_and_in_the_command_that_opens_the_flight() {
     let flight = CheckedFlight { seed_is_given: true, ..failed_flight("a.toml", "") };
     assert_eq!(flight.title(), "square · seed 7");
-    assert_eq!(flight.open_command(SimTime::ZERO), "betadeck open a.toml --seed 7 --at boot+0.00");
+    let command = flight.open_command(SimTime::ZERO);
+    assert_eq!(command.as_deref(), Some("betadeck open a.toml --seed 7 --at boot+0.00"));
+    assert_eq!(CheckedFlight { is_remote: true, ..flight }.open_command(SimTime::ZERO), None);
 }
 
 #[test]

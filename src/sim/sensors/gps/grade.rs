@@ -2,7 +2,9 @@
 //! figures.
 
 /// The quality of GPS solutions with real noise.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::Display, strum::EnumString, strum::VariantNames)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Default, strum::Display, strum::EnumString, strum::VariantNames,
+)]
 #[strum(serialize_all = "lowercase")]
 pub enum GpsGrade {
     /// A receiver with carrier-phase corrections, integers fixed.
