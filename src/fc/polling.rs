@@ -54,6 +54,10 @@ const PLAN: [(Poll, u64); 12] = [
     (Poll::Message(code::MODE_RANGES_EXTRA), 5000),
 ];
 
+/// The periods of the polls that show states and modes, for a flight controller in simulated time, ms. They are so short
+/// that a state of one update of the navigator is seen.
+const IN_STEPS: [(Poll, u64); 2] = [(Poll::Message(code::STATUS_EX), 20), (Poll::Mission, 20)];
+
 /// The schedule of the polls.
 #[derive(Debug, Clone)]
 pub struct Schedule {
@@ -84,6 +88,16 @@ impl Entry {
 }
 
 impl Schedule {
+    /// Returns the same schedule for a flight controller in simulated time, whose link loses nothing.
+    pub fn in_steps(mut self) -> Self {
+        for (poll, ms) in IN_STEPS {
+            if let Some(entry) = self.entries.iter_mut().find(|entry| entry.poll == poll) {
+                entry.period = Duration::from_millis(ms);
+            }
+        }
+        self
+    }
+
     /// Creates a schedule for a link with this capacity in bytes per second; `None` if it exceeds every need.
     pub fn new(bytes_per_s: Option<u32>) -> Self {
         let entries = PLAN.map(|(poll, ms)| Entry {
@@ -207,6 +221,15 @@ mod tests {
         }
         let at_rest = asked(Schedule::new(None), 20, 2, false);
         assert_eq!(count(&at_rest, Poll::Mission), 5);
+    }
+
+    #[test]
+    fn in_simulated_time_states_and_modes_are_asked_for_each_update_or_two() {
+        let counts = asked(Schedule::new(None).in_steps(), 20, 2, true);
+        for (poll, _) in IN_STEPS {
+            assert!(count(&counts, poll) >= 450, "{poll:?}: {}", count(&counts, poll));
+        }
+        assert!(PLAN.iter().all(|(poll, _)| count(&counts, *poll) >= 2), "{counts:?}");
     }
 
     #[test]

@@ -109,8 +109,9 @@ pub struct Remote {
 impl Remote {
     /// Begins at `now`, which counts from any fixed instant. A program that is a child of this one starts now.
     pub fn new(craft: Craft, now: Duration) -> Self {
+        let schedule = Schedule::new(craft.bytes_per_s);
         Self {
-            schedule: Schedule::new(craft.bytes_per_s),
+            schedule: if craft.is_in_steps { schedule.in_steps() } else { schedule },
             first_answer: FirstAnswer::new(craft.is_child.then_some(now)),
             craft,
             client: FcClient::default(),

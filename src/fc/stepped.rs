@@ -164,8 +164,12 @@ impl Stepped {
                 let how = "because it computed for 2 s without an end of its step".to_owned();
                 self.restart(how, false, mailbox);
             }
-            // The new image of the process boots already.
-            Err(NoReport::Replaced) => self.begin_run(String::new(), true, mailbox),
+            Err(NoReport::Replaced) => {
+                self.begin_run(String::new(), true, mailbox);
+                // The new image of the process has booted already.
+                self.is_busy = false;
+                self.connect();
+            }
         }
     }
 

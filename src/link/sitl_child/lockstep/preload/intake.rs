@@ -41,15 +41,11 @@ impl Intake {
         }
     }
 
-    fn set(&self, state: u32) {
-        self.state.store(state, SeqCst);
-        wake(&self.state);
-    }
-
     /// Hands a packet to the thread, and returns when it waits for the next one.
     pub(crate) fn deliver(&self, packet: &[u8]) {
         wait_until(&self.state, IDLE);
         self.put(packet);
+        wake(&self.state);
         wait_until(&self.state, IDLE);
     }
 
@@ -58,7 +54,7 @@ impl Intake {
         let place = unsafe { &mut *self.packet.get() };
         place[..packet.len()].copy_from_slice(packet);
         self.size.store(packet.len(), SeqCst);
-        self.set(HAS_PACKET);
+        self.state.store(HAS_PACKET, SeqCst);
     }
 
     /// Waits on the thread of the states for the state of the next grant. Returns `false` if the thread must end.
@@ -79,7 +75,8 @@ impl Intake {
     /// must end.
     pub(crate) fn wait(&self) -> bool {
         if self.state.load(SeqCst) == BUSY {
-            self.set(IDLE);
+            self.state.store(IDLE, SeqCst);
+            wake(&self.state);
         }
         while self.state.load(SeqCst) == IDLE && !is_ending() {
             wait_for_change(&self.state, IDLE);
