@@ -37,8 +37,8 @@ pub(super) struct Stepped {
     waits: Option<(Instant, bool)>,
     /// The inputs of the next step.
     next: Option<StepInput>,
-    /// Ends and restarts that were not passed on yet.
-    ends: VecDeque<StepEvent>,
+    /// Events that were not passed on yet.
+    events: VecDeque<StepEvent>,
 }
 
 /// Something that happened in a step.
@@ -71,7 +71,7 @@ impl Stepped {
             motor_hash: DefaultHasher::new(),
             waits: None,
             next: None,
-            ends: VecDeque::new(),
+            events: VecDeque::new(),
         }
     }
 
@@ -141,7 +141,7 @@ impl Stepped {
                 self.is_busy = false;
                 if self.waits.take().is_some_and(|(_, is_reported)| is_reported) {
                     let sentence = "The firmware's process runs again.".to_owned();
-                    self.ends.push_back(StepEvent::Notice(RemoteNotice::Reported(sentence)));
+                    self.events.push_back(StepEvent::Notice(RemoteNotice::Reported(sentence)));
                 }
                 let now_us = self.elapsed.as_micros() as u64;
                 if let Some(packet) = motors {
@@ -153,7 +153,7 @@ impl Stepped {
                 }
                 match lockstep.received() {
                     Ok(bytes) if bytes.is_empty() => {}
-                    Ok(bytes) => self.ends.push_back(StepEvent::Received(bytes)),
+                    Ok(bytes) => self.events.push_back(StepEvent::Received(bytes)),
                     Err(_) => self.is_connected = false,
                 }
                 self.connect();
@@ -175,7 +175,7 @@ impl Stepped {
 
     /// Returns the oldest event.
     pub(super) fn poll_event(&mut self) -> Option<StepEvent> {
-        self.ends.pop_front()
+        self.events.pop_front()
     }
 
     /// Returns the next event of the process's output.
@@ -189,7 +189,7 @@ impl Stepped {
             && lockstep.connect().unwrap_or(false)
         {
             self.is_connected = true;
-            self.ends.push_back(StepEvent::Connected);
+            self.events.push_back(StepEvent::Connected);
         }
     }
 
@@ -201,7 +201,7 @@ impl Stepped {
             let sentence = "The firmware's process does not run (stopped, at a breakpoint, or the machine is busy): the \
                             flight waits for it."
                 .to_owned();
-            self.ends.push_back(StepEvent::Notice(RemoteNotice::Lost(sentence)));
+            self.events.push_back(StepEvent::Notice(RemoteNotice::Lost(sentence)));
         }
     }
 
@@ -210,14 +210,14 @@ impl Stepped {
         let restarted = lockstep.restart();
         self.begin_run(how, is_reboot, mailbox);
         if let Err(error) = restarted {
-            self.ends.push_back(StepEvent::NotStarted(error.to_string()));
+            self.events.push_back(StepEvent::NotStarted(error.to_string()));
             self.give_up();
         }
     }
 
     /// Begins another run of the executable, which boots.
     fn begin_run(&mut self, how: String, is_reboot: bool, mailbox: Option<&mut RemoteController>) {
-        self.ends.push_back(StepEvent::Ended { how, is_reboot });
+        self.events.push_back(StepEvent::Ended { how, is_reboot });
         self.feed.restart();
         self.self_check = SelfCheck::default();
         (self.is_connected, self.is_busy, self.next, self.waits) = (false, true, None, None);

@@ -61,8 +61,9 @@ impl Remote {
                 Life::Lost { connection: connection.closed() }
             }
             Life::Identifying { mut connection, .. } | Life::Ready { mut connection } => {
-                // A connection that closes at once is reported only once.
-                if connection.reported_loss.as_deref() != Some(reason) {
+                // A connection that closes at once is reported only once. In simulated time only a restart closes it, which
+                // is reported as such.
+                if !self.craft.is_in_steps && connection.reported_loss.as_deref() != Some(reason) {
                     let notice = format!("The connection to {name} is lost: {reason}; reconnecting.");
                     self.notice(RemoteNotice::Lost(notice));
                     connection.reported_loss = Some(reason.to_owned());
