@@ -321,4 +321,27 @@ mod tests {
             assert_eq!(Clock::of_external(1000, seed, Vec::new()).map(|clock| clock.seed()), Ok(seed));
         }
     }
+
+    #[test]
+    fn a_fault_of_one_flight_ends_with_it_and_comes_back_in_the_next() {
+        let faults = ["gps-loss@0.1", "rx-loss@boot+0.1"].map(|fault| fault.parse().unwrap());
+        let mut clock = external(faults.to_vec()).unwrap();
+        let pass = |clock: &mut Clock, steps: u32| {
+            for _ in 0..steps {
+                clock.pass();
+            }
+            (clock.gps_lost(), clock.rx_lost())
+        };
+        clock.set_engaged(clock.time());
+        assert_eq!(pass(&mut clock, 200), (true, true));
+        clock.wait_for_next_flight();
+        assert_eq!(pass(&mut clock, 200), (false, true), "only the fault that counts from boot stays");
+        let told = std::iter::from_fn(|| clock.take_event()).filter(
+            |event| matches!(event.kind, WorldEventKind::Fault { fault, on: false } if fault.name() == "gps-loss"),
+        );
+        assert_eq!(told.count(), 1);
+        clock.set_engaged(clock.time());
+        assert_eq!(pass(&mut clock, 50), (false, true));
+        assert_eq!(pass(&mut clock, 100), (true, true));
+    }
 }

@@ -309,4 +309,21 @@ mod tests {
         let rocking_rad = craft.run(0.1);
         assert!(rocking_rad < 0.1 * twist_rad, "the legs damp it: {rocking_rad}");
     }
+
+    #[test]
+    fn a_craft_high_up_is_no_nearer_to_the_ground_than_its_clearance() {
+        for airframe in [Airframe::iris(), Airframe::five_inch()] {
+            let ground = Ground::new(&airframe);
+            for height_m in [1.0, 10.0, 100.0] {
+                for roll_rad in [0.0, 0.5, PI] {
+                    let contact = ground.contact(&at(height_m, roll_rad));
+                    assert!(!contact.any_leg && !contact.all_legs && !contact.hull);
+                    let below_m = height_m - contact.clearance_m;
+                    assert!((0.0..1.0).contains(&below_m), "{} at {height_m} m: {below_m}", airframe.name);
+                }
+                let level = ground.contact(&at(height_m, 0.0)).clearance_m;
+                assert!(level <= height_m - airframe.standing_height_m() + 1e-9, "{level}");
+            }
+        }
+    }
 }

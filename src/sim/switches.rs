@@ -262,4 +262,17 @@ mod tests {
              slope,RISE,BEARING (RISE 0 to 40, BEARING 0 to 360)"
         );
     }
+
+    #[test]
+    fn a_ground_that_no_text_could_describe_is_refused() {
+        let on = |rise_m, bearing_deg| {
+            Switches { ground: Surface::Slope(Slope::new(rise_m, bearing_deg)), ..Switches::default() }
+                .check()
+        };
+        assert_eq!(on(8.0, 90.0), Ok(()));
+        for (rise_m, bearing_deg) in [(41.0, 90.0), (-1.0, 90.0), (f64::NAN, 90.0), (8.0, 361.0), (8.0, -1.0)]
+        {
+            assert!(on(rise_m, bearing_deg).is_err(), "{rise_m} m towards {bearing_deg}°");
+        }
+    }
 }

@@ -157,6 +157,23 @@ fn orbit() {
     });
 }
 
+#[test]
+fn a_figure_8_goes_round_both_of_its_circles() {
+    let mut hold = waypoint(Hold, 60.0, 0.0, 20.0, 5.0);
+    hold.pattern = HoldPattern::Figure8;
+    let mut flight = Flight::new(guide(), &[hold], 20.0).launch();
+    let width = f64::from(flight.params.hold_figure8_width) / 100.0;
+    assert!(flight.until(60.0, |f| f.nav.state() == NavState::Figure8));
+    let began = flight.t();
+    flight.run(300.0);
+    let place = flight.place(0);
+    let (most, least) = flight
+        .since(began)
+        .map(|s| s.pos.y - place.y)
+        .fold((f64::NEG_INFINITY, f64::INFINITY), |(most, least), east| (most.max(east), least.min(east)));
+    assert!(most > 0.8 * width && least < -0.8 * width, "{least} to {most} m of {width} m");
+}
+
 fn corner(kind: WaypointType) -> [Waypoint; 2] {
     [waypoint(kind, 60.0, 0.0, 20.0, 5.0), waypoint(Flyover, 60.0, 120.0, 20.0, 5.0)]
 }

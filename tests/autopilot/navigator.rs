@@ -13,6 +13,7 @@ mod losses;
 mod monitors;
 mod orders;
 mod pilot;
+mod reports;
 mod states;
 mod vectors;
 mod windup;

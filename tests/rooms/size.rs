@@ -16,7 +16,7 @@ const MANY_FILES: usize = 60;
 fn is_shell(file: &SourceFile) -> bool {
     match file.room().as_str() {
         "link" => !file.name.starts_with("link/proto"),
-        "fc" => ["fc/feed.rs", "fc/remote_link.rs"].contains(&file.name.as_str()),
+        "fc" => ["fc/feed.rs", "fc/remote_link.rs", "fc/stepped.rs"].contains(&file.name.as_str()),
         "ui" => ["ui/run.rs", "ui/terminal.rs", "ui/files_link.rs"].contains(&file.name.as_str()),
         "app" | "args" | "session" | "storage" => true,
         _ => false,

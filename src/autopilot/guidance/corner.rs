@@ -75,6 +75,17 @@ mod tests {
         assert!((turn_radius_m(5.0, 25_f64.to_radians()) - 5.47).abs() < 0.01);
     }
 
+    #[test]
+    fn the_plane_is_at_the_waypoint_wherever_that_is() {
+        let (start, waypoint) = (Vector2::new(100.0, -50.0), Vector2::new(300.0, -50.0));
+        let step = |from: f64, to: f64| {
+            plane_crossing(start, waypoint, Vector2::new(from, -48.0), Vector2::new(to, -48.0))
+        };
+        assert_eq!(step(290.0, 295.0), PlaneCrossing::Before { to_go_m: 5.0 });
+        assert_eq!(step(299.0, 303.0), PlaneCrossing::Crossed { lateral_m: 2.0 });
+        assert_eq!(step(303.0, 307.0), PlaneCrossing::Behind);
+    }
+
     proptest! {
         #[test]
         fn a_step_crosses_once_however_it_is_cut(

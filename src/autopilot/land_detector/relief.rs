@@ -132,3 +132,27 @@ impl ThrottleRelief {
         self.relief_us >= STANDS_US
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_craft_that_rests_on_the_ground_is_flown_level_step_by_step() {
+        let params = Params::default();
+        let now = NavInputs { alt_m: 0.5, ..NavInputs::hovering() };
+        let facts = DescentFacts::new(&now, &params, (-5.0, 1300.0), params.descent_rate_mps());
+        let mut relief = ThrottleRelief::default();
+        relief.begin(0.0);
+        assert_eq!(relief.lean_share(), 1.0);
+        let (mut before, mut steps) = (1.0, 0);
+        while relief.lean_share() > 0.0 {
+            relief.update(&facts, 0.01);
+            let share = relief.lean_share();
+            assert!((0.0..before).contains(&share), "{share} after {before}");
+            (before, steps) = (share, steps + 1);
+        }
+        assert!((50..100).contains(&steps), "80 µs take two thirds of a second: {steps}");
+        assert!(!relief.stands(), "level before it is certain");
+    }
+}

@@ -190,4 +190,31 @@ mod tests {
             );
         }
     }
+
+    /// Returns the updates until the report about a craft whose distance beyond its bounds is `excess_m` at a time,
+    /// s. Half a second passes between two updates.
+    fn reported_after_s(excess_m: impl Fn(f64) -> f64) -> Option<f64> {
+        let mut monitor = StationMonitor::default();
+        (1..=200).map(|step| 0.5 * f64::from(step)).find(|&seconds| {
+            let station = Station {
+                distance_m: 20.0 + excess_m(seconds),
+                radius_m: 20.0,
+                vertical_m: 0.0,
+                lean_binds: true,
+                throttle_binds: false,
+                battery_low: false,
+            };
+            monitor.update(Some(&station), 0.5).is_some()
+        })
+    }
+
+    #[test]
+    fn a_craft_that_stays_away_is_reported_after_two_periods_and_one_that_returns_is_not() {
+        assert_eq!(reported_after_s(|_| 30.0), Some(10.0));
+        assert_eq!(reported_after_s(|seconds| 5.0 + seconds), Some(10.0));
+        assert_eq!(reported_after_s(|seconds| 60.0 - 0.5 * seconds), None);
+        // It comes closer for 20 s, then no longer.
+        let stays = reported_after_s(|seconds| 60.0 - 2.0 * seconds.min(20.0));
+        assert!(stays.is_some_and(|seconds| (25.0..=35.0).contains(&seconds)), "{stays:?}");
+    }
 }

@@ -373,4 +373,52 @@ mod tests {
             assert_eq!(damping(0.0, tpa_on_p), 0.0);
         }
     }
+
+    #[test]
+    fn d_needs_a_base_or_a_maximum() {
+        // The answer to a craft that turns ever faster, without P and I.
+        let damping = |base: f64, most: f64| {
+            let mut tuning = Tuning::default();
+            tuning.rate.d_max = DMax { most: [most; 3], readiness: 1.0, setpoint_share: 0.0 };
+            for gains in &mut tuning.rate.gains {
+                (gains.p, gains.i, gains.d) = (0.0, 0.0, base);
+            }
+            let derived = Derived::new(&tuning, 0.001);
+            let mut rate_loop = RateLoop::default();
+            let steps =
+                (0..100).map(|step| rate_loop.step(&demand(0.0, f64::from(step)), &tuning.rate, &derived));
+            steps.last().unwrap_or_default()[0]
+        };
+        assert!(damping(0.01, 0.0) < -1.0, "without a maximum the base damps");
+        assert!(damping(0.0, 0.01) < -1.0, "without a base D rises to its maximum");
+        assert_eq!(damping(0.0, 0.0), 0.0);
+    }
+
+    #[test]
+    fn feedforward_fades_in_with_the_stick_up_to_the_transition() {
+        // The answer to a setpoint that has just moved, without P, I and D.
+        let push = |deflection: f64, transition: f64| {
+            let mut tuning = Tuning::default();
+            tuning.rate.feedforward_transition = transition;
+            tuning.rate.d_max.most = [0.0; 3];
+            for gains in &mut tuning.rate.gains {
+                (gains.p, gains.i, gains.d, gains.f) = (0.0, 0.0, 0.0, 0.01);
+            }
+            let derived = Derived::new(&tuning, 0.001);
+            let moved = RateDemand { deflection: [deflection; 3], ..demand(10.0, 0.0) };
+            RateLoop::default().step(&moved, &tuning.rate, &derived)[0]
+        };
+        // 10 °/s in a millisecond.
+        for (deflection, transition, share) in [
+            (0.0, 0.0, 1.0),
+            (1.0, 0.0, 1.0),
+            (0.0, 0.5, 0.0),
+            (0.25, 0.5, 0.5),
+            (0.5, 0.5, 1.0),
+            (1.0, 0.5, 1.0),
+        ] {
+            let pushed = push(deflection, transition);
+            assert!((pushed - 100.0 * share).abs() < 1e-9, "{deflection} of {transition}: {pushed}");
+        }
+    }
 }

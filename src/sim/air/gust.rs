@@ -170,4 +170,18 @@ mod tests {
         gusts.advance(SimTime::from_secs_f64(4.0), WEST, 1.0);
         assert!(!gusts.is_blowing());
     }
+
+    #[test]
+    fn a_gust_blows_for_its_whole_length_and_no_longer() {
+        for (rise_s, total_s) in [(2.0, 10.0), (0.5, 2.0), (3.0, 4.0)] {
+            let mut gusts = Gusts::new(1, 0.0);
+            gusts.blow(WEST, rise_s, total_s, SimTime::ZERO);
+            let blows_at = |gusts: &mut Gusts, seconds: f64| {
+                gusts.advance(SimTime::from_secs_f64(seconds), WEST, 1.0);
+                gusts.is_blowing()
+            };
+            assert!(blows_at(&mut gusts, total_s - 0.01), "{rise_s} of {total_s} s");
+            assert!(!blows_at(&mut gusts, total_s + 0.01), "{rise_s} of {total_s} s");
+        }
+    }
 }

@@ -201,4 +201,33 @@ mod tests {
         assert_eq!(keys(|a| a.leg_damping = 100.0), ["c_n_Ns_per_m_per_point"]);
         assert_eq!(keys(|a| a.battery.resistance_ohm = 0.0), ["battery.resistance_ohm"]);
     }
+
+    #[test]
+    fn the_stiffest_legs_depend_on_the_mass_or_the_inertia_that_they_move_most() {
+        // Half the distances between the legs, their depth, the mass, and the inertia per newton per metre and leg, of
+        // which the largest counts.
+        for (x, y, z, mass_kg, per_unit) in [
+            (0.1, 0.1, 0.1, 0.2, 4.0 / 0.2),
+            (0.1, 0.4, 0.2, 1.0, 4.0 * (0.16 + 0.04) / 0.04),
+            (0.4, 0.1, 0.2, 1.0, 4.0 * (0.16 + 0.04) / 0.04),
+            (0.4, 0.3, 0.1, 1.0, 4.0 * (0.16 + 0.09) / 0.04),
+        ] {
+            let mut airframe = Airframe::iris();
+            airframe.mass_kg = mass_kg;
+            airframe.inertia_kgm2 = Vector3::repeat(0.04);
+            airframe.legs_m.clear();
+            for (x, y) in [(x, y), (x, -y), (-x, y), (-x, -y)] {
+                airframe.legs_m.push(Vector3::new(x, y, -z));
+            }
+            let stiffest = (1.2_f64 / 0.0025).powi(2) / per_unit;
+            let strongest = 1.5 / 0.0025 / per_unit;
+            (airframe.leg_stiffness, airframe.leg_damping) = (0.999 * stiffest, 0.999 * strongest);
+            assert_eq!(findings(&airframe), [], "{x}, {y}, {z}");
+            (airframe.leg_stiffness, airframe.leg_damping) = (1.001 * stiffest, 1.001 * strongest);
+            let found = findings(&airframe);
+            assert_eq!(found.len(), 2, "{x}, {y}, {z}: {found:?}");
+            assert!(found[0].text.contains(&format!("at most {stiffest:.0} N/m")), "{found:?}");
+            assert!(found[1].text.contains(&format!("at most {strongest:.1} N·s/m")), "{found:?}");
+        }
+    }
 }

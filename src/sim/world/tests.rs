@@ -7,6 +7,7 @@ use crate::sim::command::WorldCommand;
 use crate::sim::config::{Noise, Wind, WorldConfig, WorldError};
 use crate::sim::event::WorldEvent;
 use crate::sim::fault::{Fault, FaultStart, ScheduledFault};
+use crate::sim::switches::AirDensity;
 use crate::telemetry::{FaultKind, Turbulence};
 
 fn ideal() -> WorldConfig {
@@ -77,6 +78,34 @@ fn ideal_gps_has_a_fix_from_three_seconds_on() {
     assert_eq!(fixes.len(), 6);
     assert_eq!((gps.sats, gps.position.lat_e7, gps.position.lon_e7), (12, 404_635_000, -795_182_000));
     assert_eq!(gps.alt_amsl_cm, 30_020);
+}
+
+#[test]
+fn back_at_home_the_sensors_have_forgotten_where_the_craft_was() {
+    // Only real sensors are late.
+    let mut world = World::new(WorldConfig::default()).unwrap();
+    run(&mut world, 60.0, [0.0; 4]);
+    let at_home = world.truth().pos_enu;
+    let home_pa = world.sensors().pressure_pa.unwrap();
+    world.apply(WorldCommand::FaultOn(Fault::Teleport([200.0, 0.0, 40.0]), None)).unwrap();
+    // A position is sent 10 ms after the reset.
+    run(&mut world, 1.19, [0.0; 4]);
+    world.reset_to_home();
+    assert!((world.truth().pos_enu - at_home).norm() < 1e-3);
+    let mut positions = 0;
+    for _ in 0..500 {
+        world.step(&MotorCommand::default());
+        let frame = world.sensors();
+        if let Some(gps) = frame.gps {
+            assert!(gps.fix);
+            let north_m = f64::from(gps.position.lat_e7 - 404_635_000) * 0.0111;
+            assert!(north_m.abs() < 50.0, "{north_m} m at {:?}", frame.time);
+            positions += 1;
+        }
+        let lost_pa = frame.pressure_pa.map_or(0.0, |now_pa| home_pa - now_pa);
+        assert!(lost_pa.abs() < 100.0, "{lost_pa} Pa at {:?}", frame.time);
+    }
+    assert!(positions >= 2);
 }
 
 #[test]
@@ -201,6 +230,26 @@ fn payload_makes_it_heavier_until_it_is_dropped() {
     world.apply(WorldCommand::FaultOff(payload.key())).unwrap();
     run(&mut world, 0.002, [hover; 4]);
     assert!((world.truth().specific_force_flu.z - 9.806_65 * 0.97).abs() < 0.1);
+}
+
+#[test]
+fn thin_air_and_payload_lower_the_thrust_over_weight() {
+    let world = |air_density| {
+        let switches = Switches { air_density, ..Switches::default() };
+        World::new(WorldConfig { switches, ..ideal() }).unwrap()
+    };
+    let mut at_reference = world(AirDensity::Reference);
+    let unladen = Airframe::iris().thrust_to_weight();
+    assert!((at_reference.thrust_to_weight() - unladen).abs() < 1e-9, "{}", at_reference.thrust_to_weight());
+    let at_home = world(Switches::default().air_density).thrust_to_weight() / unladen;
+    assert!((0.95..0.99).contains(&at_home), "300 m above the sea: {at_home}");
+    let payload = Fault::Payload(Airframe::iris().mass_kg);
+    at_reference.apply(WorldCommand::FaultOn(payload, None)).unwrap();
+    assert!(
+        (at_reference.thrust_to_weight() - 0.5 * unladen).abs() < 1e-9,
+        "{}",
+        at_reference.thrust_to_weight()
+    );
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use betadeck::autopilot::control::FlightControllers;
 use betadeck::autopilot::fence::pre_flight;
+use betadeck::autopilot::io::NavInputs;
 use betadeck::autopilot::machine::{Facts, transition};
 use betadeck::autopilot::{Navigator, Params};
 use betadeck::plan::WaypointType::{Flyover, Hold};
@@ -83,9 +84,8 @@ fn exactly_on_the_fence_is_inside() {
     }
 }
 
-/// Returns a flight whose mission was given up because the craft was carried away. The craft is then beyond
-/// the fence.
-fn carried_away(params: Params) -> Flight {
+/// Returns a flight whose mission was given up because the craft was carried away, almost to a fence at 100 m.
+fn given_up(params: Params) -> Flight {
     let mut flight = Flight::new(params, &[waypoint(Hold, 60.0, 0.0, 30.0, 5.0)], 30.0).launch();
     flight.run(1.0);
     flight.plant.pos.x = -25.0;
@@ -97,6 +97,12 @@ fn carried_away(params: Params) -> Flight {
     flight.plant.pos.x = -99.0;
     flight.run(0.1);
     assert_eq!(flight.nav.state(), NavState::Idle);
+    flight
+}
+
+/// Returns a flight whose mission was given up and whose craft is then beyond the fence.
+fn carried_away(params: Params) -> Flight {
+    let mut flight = given_up(params);
     flight.plant.pos.x = -101.0;
     flight.tick();
     flight
@@ -119,4 +125,22 @@ fn the_fence_stays_up_after_a_mission_was_given_up() {
     assert_eq!((home.nav.state(), home.nav.source()), (NavState::Approaching, PlanSource::Rth));
     let free = carried_away(Params { max_distance_from_home: 0, ..fenced });
     assert_eq!(free.nav.state(), NavState::Idle);
+}
+
+#[test]
+fn the_fence_of_a_given_up_mission_leaves_a_craft_alone_that_it_could_not_lead() {
+    let fenced = Params { max_distance_from_home: 100, ..guide() };
+    let breaks: [fn(&mut NavInputs); 4] = [
+        |inputs| inputs.armed = false,
+        |inputs| inputs.fix = false,
+        |inputs| inputs.altitude_valid = false,
+        |inputs| inputs.failsafe = true,
+    ];
+    for break_it in breaks {
+        let mut flight = given_up(fenced);
+        break_it(&mut flight.inputs);
+        flight.plant.pos.x = -101.0;
+        flight.tick();
+        assert_eq!(flight.nav.state(), NavState::Idle, "{:?}", flight.inputs);
+    }
 }

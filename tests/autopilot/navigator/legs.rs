@@ -56,6 +56,16 @@ fn takeoff_climbs_over_its_place() {
 }
 
 #[test]
+fn a_takeoff_is_reached_at_its_altitude_only() {
+    for (from_m, to_m) in [(1.5, 30.0), (30.0, 10.0)] {
+        let waypoints = [waypoint(Takeoff, 0.0, 0.0, to_m, 0.0), waypoint(Hold, 30.0, 0.0, to_m, 5.0)];
+        let mut flight = Flight::new(guide(), &waypoints, from_m).launch();
+        assert!(flight.until(60.0, |f| f.nav.state() != NavState::Approaching));
+        assert!((flight.plant.alt - to_m).abs() < 2.5, "{} m of {to_m} m", flight.plant.alt);
+    }
+}
+
+#[test]
 fn a_missed_flyover_is_come_back_to() {
     let params = Params { waypoint_arrival_radius: 100, ..guide() };
     let waypoints = [waypoint(Flyover, 60.0, 0.0, 20.0, 5.0), waypoint(Flyover, 60.0, 60.0, 20.0, 5.0)];

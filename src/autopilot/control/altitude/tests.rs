@@ -123,3 +123,39 @@ fn the_acceleration_of_the_setpoint_is_filtered() {
     let expected = before + (accel - before) * DT / (0.1 + DT);
     assert!((controller.setpoint_accel - expected).abs() < 1e-9, "{} m/s²", controller.setpoint_accel);
 }
+
+#[test]
+fn the_setpoint_brakes_in_time_for_its_target() {
+    let params = Params::default();
+    for (target_m, sign) in [(35.0, 1.0), (10.0, -1.0)] {
+        let mut controller = AltitudeController::default();
+        controller.engage(&level_craft(20.0, 1500.0), &params);
+        for _ in 0..3000 {
+            let before_m = controller.setpoint_m();
+            let now = level_craft(before_m, 1500.0);
+            controller.update(&now, AltitudeTarget::Altitude(target_m), &params, DT);
+            let left_m = sign * (target_m - before_m);
+            let speed_mps = sign * (controller.setpoint_m() - before_m) / DT;
+            let fastest_mps = (2.0 * SETPOINT_BRAKE * left_m.max(0.0)).sqrt() + 0.2;
+            assert!(
+                left_m > -0.02 && speed_mps < fastest_mps,
+                "{speed_mps} m/s {left_m} m before {target_m} m"
+            );
+        }
+        assert!((controller.setpoint_m() - target_m).abs() < 1e-9, "{} m", controller.setpoint_m());
+    }
+}
+
+#[test]
+fn a_small_lasting_error_moves_the_hover_throttle_and_a_large_one_does_not() {
+    let params = Params { altitude_i: 100, ..Params::default() };
+    let hovering = level_craft(20.0, 1500.0);
+    for (above_m, moves) in [(0.5, true), (-0.5, true), (10.0, false)] {
+        let mut controller = AltitudeController::default();
+        controller.engage(&hovering, &params);
+        throttle_us(&mut controller, &hovering, AltitudeTarget::Altitude(20.0 + above_m), &params, 20.0);
+        let moved_us = (controller.hover_us() - 1500.0) * above_m.signum();
+        assert_eq!(moved_us > 10.0, moves, "{above_m} m: {moved_us} µs");
+        assert!(moves || moved_us.abs() < 5.0, "{above_m} m: {moved_us} µs");
+    }
+}

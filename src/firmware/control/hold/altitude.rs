@@ -347,7 +347,7 @@ mod tests {
         let tuning = HoldTuning::default();
         let params = Params::default();
         for hover_us in [1275.0, 1500.0] {
-            let stick = sink_stick_us(1.0, hover_us, &params, &tuning).unwrap();
+            let stick = tuning.sink_stick_us(1.0, hover_us, &params).unwrap();
             let rate = climb_share(stick, hover_us, &tuning) * params.climb_rate_mps();
             assert!((rate + 1.0).abs() < 1e-9, "{hover_us}: {stick} {rate}");
         }
@@ -447,6 +447,21 @@ mod tests {
                 expected,
                 "{rate} {alt_m} {climb_mps}"
             );
+        }
+    }
+
+    #[test]
+    fn a_hold_that_begins_in_a_climb_comes_to_rest_above_and_one_in_a_hover_stays_there() {
+        for (climb_mps, rises) in [(0.0, false), (3.0, true)] {
+            let (params, tuning) = (Params::default(), HoldTuning::default());
+            let now = NavInputs { alt_m: 20.0, climb_mps, ..NavInputs::hovering() };
+            let (mut hold, mut controllers) = (AltitudeHold::default(), FlightControllers::default());
+            for _ in 0..1000 {
+                hold.update(AltitudeOrder::Keep, &now, &params, &tuning, &mut controllers);
+            }
+            let setpoint_m = controllers.altitude.setpoint_m();
+            assert_eq!(setpoint_m > 20.5, rises, "{climb_mps} m/s: {setpoint_m} m");
+            assert!(rises || (setpoint_m - 20.0).abs() < 1e-9, "{setpoint_m} m");
         }
     }
 }
