@@ -92,7 +92,7 @@ fn an_end() -> End {
         truth: FlightTruth { waypoints: vec![waypoint], parked: None, battery_used_pct: Some(3.0) },
         flown_s: 1.0,
         wall_s: 1.0,
-        hash: None,
+        hash: Some(1),
     }
 }
 
