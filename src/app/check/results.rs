@@ -26,8 +26,11 @@ impl<'a> Results<'a> {
         Self { output, flights: Vec::new(), wanted, fail_fast, stop, problem: None }
     }
 
-    /// Adds a flight, the `done`th that is over.
+    /// Adds a flight, the `done`th that is over. After a stop there are none: one that was already under way does not count.
     pub(super) fn flight(&mut self, flight: CheckedFlight, done: usize) {
+        if self.stop.load(Ordering::Relaxed) {
+            return;
+        }
         if let Err(error) = self.output.flight(&flight, done, self.wanted) {
             self.problem.get_or_insert(error);
             self.stop.store(true, Ordering::Relaxed);
