@@ -336,10 +336,10 @@ mod tests {
         assert_eq!(pass(&mut clock, 200), (true, true));
         clock.wait_for_next_flight();
         assert_eq!(pass(&mut clock, 200), (false, true), "only the fault that counts from boot stays");
-        let told = std::iter::from_fn(|| clock.take_event()).filter(
+        let reported = std::iter::from_fn(|| clock.take_event()).filter(
             |event| matches!(event.kind, WorldEventKind::Fault { fault, on: false } if fault.name() == "gps-loss"),
         );
-        assert_eq!(told.count(), 1);
+        assert_eq!(reported.count(), 1);
         clock.set_engaged(clock.time());
         assert_eq!(pass(&mut clock, 50), (false, true));
         assert_eq!(pass(&mut clock, 100), (true, true));

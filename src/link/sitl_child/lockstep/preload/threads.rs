@@ -48,7 +48,7 @@ pub unsafe extern "C" fn pthread_join(thread: usize, result: *mut *mut c_void) -
         siginterrupt(SIGNAL, 1);
     }
     loop {
-        // What comes before a thread waits wakes nothing, so it is repeated.
+        // A wake-up before the thread waits has no effect, so it is repeated.
         wake(&SERIAL.wanted);
         RC.wake();
         let waiting = WAITING.load(SeqCst);
