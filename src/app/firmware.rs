@@ -198,6 +198,7 @@ fn check(
         FirmwareChoice::Executable(path) => {
             let found = executable::find(&from_home(path))?;
             let clock = clock_of(&found, link.clock, notices);
+            notices.extend(link.idle_on_clock(clock));
             (Some(found), clock)
         }
     };

@@ -134,15 +134,18 @@ impl FirmwareLinkArgs {
         self.fdm_stamps.unwrap_or_default()
     }
 
+    /// Returns a sentence about an option that was given but has no effect on this clock of an executable.
+    pub fn idle_on_clock(&self, clock: FirmwareClock) -> Option<String> {
+        let stamps = [("--fdm-stamps", self.fdm_stamps.is_some() && clock == FirmwareClock::Sim)];
+        super::physics::without_effect(&stamps, "the firmware runs in simulated time (--clock real)")
+    }
+
     /// Returns a sentence about options that were given but have no effect with this firmware.
     pub fn idle_options(&self, firmware: &FirmwareChoice) -> Option<String> {
         let arguments = ("--firmware-arg", !self.firmware_arg.is_empty());
         let stamps = ("--fdm-stamps", self.fdm_stamps.is_some());
         let (given, why) = match firmware {
-            FirmwareChoice::Executable(_) if self.clock == Some(FirmwareClock::Real) => return None,
-            FirmwareChoice::Executable(_) => {
-                (vec![stamps], "the firmware runs in simulated time (--clock real)")
-            }
+            FirmwareChoice::Executable(_) => return None,
             FirmwareChoice::Attach => {
                 let clock = ("--clock sim", self.clock == Some(FirmwareClock::Sim));
                 (vec![arguments, clock], "the firmware is running already")
@@ -249,6 +252,9 @@ mod tests {
             "--firmware-arg has no effect: the firmware is running already."
         );
         assert_eq!(link.idle_options(&FirmwareChoice::Executable("x".into())), None);
+        let stamps = FirmwareLinkArgs { fdm_stamps: Some(Stamps::Sim), ..FirmwareLinkArgs::default() };
+        assert!(stamps.idle_on_clock(FirmwareClock::Sim).unwrap().starts_with("--fdm-stamps has no effect"));
+        assert_eq!(stamps.idle_on_clock(FirmwareClock::Real), None, "also for a script");
         let ports = FirmwarePortArgs { tcp_port: Some(1), ..FirmwarePortArgs::default() };
         assert!(ports.idle_options(false).unwrap().starts_with("--tcp-port has no effect"));
         assert_eq!(ports.idle_options(true), None);
