@@ -89,6 +89,14 @@ impl CliReply {
     }
 }
 
+/// A line that was refused, with its reply.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("the craft refused `{line}`: {reply}")]
+pub struct RefusedLine {
+    pub line: String,
+    pub reply: String,
+}
+
 /// An action that a command requests from the owner of the firmware.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CliAction {

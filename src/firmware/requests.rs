@@ -1,10 +1,13 @@
 //! Requests that the owner of the firmware can make: command line, plans, return home, restart.
 
+use crate::plan::{FlightPlan, record_lines};
 use crate::signals::{RcFrame, RcSource};
 use crate::telemetry::{DisarmReason, FirmwareEvent, InFlightCommand, InFlightRefusal, NavEvent, Refusal};
 
 use super::Firmware;
-use super::cli::{BuildInfo, CliAction, CliContext, CliFacts, CliReply, Interpreter, StorageFacts};
+use super::cli::{
+    BuildInfo, CliAction, CliContext, CliFacts, CliReply, Interpreter, RefusedLine, StorageFacts,
+};
 use super::config::{Configuration, Feature};
 
 impl Firmware {
@@ -43,6 +46,36 @@ impl Firmware {
         }
         self.refresh();
         reply
+    }
+
+    /// Stores settings and a plan as the `set` and `waypoint` lines of a ground station do, and returns the replies to
+    /// them.
+    ///
+    /// # Errors
+    /// Returns the first refusal. The lines before it keep their effect.
+    pub fn upload(&mut self, plan: &FlightPlan, settings: &[String]) -> Result<Vec<String>, RefusedLine> {
+        let mut session = Interpreter::default();
+        let mut replies = Vec::new();
+        for setting in settings {
+            let line = format!("set {setting}");
+            let CliReply { text, failed, .. } = self.run_cli(&mut session, &line);
+            let reply = text.trim().to_owned();
+            if failed {
+                return Err(RefusedLine { line, reply });
+            }
+            replies.push(reply);
+        }
+        let (records, facts) = (plan.records(), CliFacts::observe(self));
+        let context = &mut CliContext { configuration: &mut self.setup.configuration, facts: &facts };
+        let CliReply { text, failed, .. } = session.store_plan(&records, context);
+        self.refresh();
+        let mut stored: Vec<String> = text.lines().map(str::to_owned).collect();
+        if failed && let Some(reply) = stored.pop() {
+            let line = record_lines(records).nth(stored.len()).unwrap_or_default();
+            return Err(RefusedLine { line, reply });
+        }
+        replies.append(&mut stored);
+        Ok(replies)
     }
 
     /// Blocks arming until reboot. Called when a command line session is opened on a serial link.

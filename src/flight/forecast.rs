@@ -18,8 +18,8 @@ pub use what_if::{WHAT_IFS, WhatIf};
 
 use super::{Flight, FlightEnd, FlightOptions, Verdict};
 use crate::firmware::Firmware;
-use crate::firmware::cli::Interpreter;
-use crate::plan::{FlightPlan, upload_lines};
+use crate::firmware::cli::RefusedLine;
+use crate::plan::FlightPlan;
 use crate::signals::SimTime;
 use crate::sim::WorldCommand;
 use crate::telemetry::{AbortReason, Refusal};
@@ -60,13 +60,9 @@ impl ForecastRun {
             return Err("No waypoints, so there is nothing to fly.".to_owned());
         }
         let Some(firmware) = vehicle.embedded_mut() else { return Err(CONTROLLER_IS_REMOTE.to_owned()) };
-        let mut console = Interpreter::default();
-        for line in upload_lines(plan.records(), settings) {
-            let reply = firmware.run_cli(&mut console, &line);
-            if reply.failed {
-                return Err(format!("The craft refuses `{line}`: {}", reply.text.trim()));
-            }
-        }
+        firmware
+            .upload(plan, settings)
+            .map_err(|RefusedLine { line, reply }| format!("The craft refuses `{line}`: {reply}"))?;
         change(&mut vehicle, WorldCommand::ClearFaults)?;
         vehicle.transmitter_mut().inputs_mut().clear();
         vehicle.transmitter_mut().set_cut(false);

@@ -12,3 +12,4 @@ mod msp_requests;
 mod msp_server;
 mod states;
 mod stick_flight;
+mod uploads;

@@ -4,10 +4,11 @@ use super::super::settings::Scope;
 use super::command_table::by_name;
 use super::foreign::{is_foreign_command, keep_command};
 use super::session::Session;
-use super::{CliContext, CliReply, MAX_LINE};
+use super::{CliContext, CliReply, MAX_LINE, waypoint};
+use crate::plan::format::Records;
 
 /// The kind of client that uses the interpreter. It changes a few answers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub enum CliMode {
     /// A person or a script at a prompt.
     #[default]
@@ -74,19 +75,31 @@ impl Interpreter {
         let rest = rest.trim();
         let command = by_name(word);
         let keeps_foreign = self.batch != Batch::Closed || self.mode == CliMode::File;
-        let mut session = Session {
-            command: command.map_or("input", |command| command.name),
-            interpreter: self,
-            configuration: context.configuration,
-            facts: context.facts,
-            reply: CliReply::default(),
-        };
+        let mut session = self.begin(command.map_or("input", |command| command.name), context);
         match command {
             Some(command) => (command.run)(&mut session, rest),
             None if keeps_foreign && is_foreign_command(word) => keep_command(&mut session, word, line),
             None => unknown(&mut session, line),
         }
         session.reply
+    }
+
+    /// Stores a plan as `waypoint clear` and `waypoint insert` lines do. The reply has one line for each of them, up to
+    /// the first that is refused.
+    pub fn store_plan(&mut self, records: &Records, context: &mut CliContext<'_>) -> CliReply {
+        let mut session = self.begin("waypoint", context);
+        waypoint::store(&mut session, records);
+        session.reply
+    }
+
+    fn begin<'a>(&'a mut self, command: &'static str, context: &'a mut CliContext<'_>) -> Session<'a> {
+        Session {
+            command,
+            interpreter: self,
+            configuration: context.configuration,
+            facts: context.facts,
+            reply: CliReply::default(),
+        }
     }
 
     pub(super) fn note_failure(&mut self) {

@@ -7,7 +7,7 @@ use strum::IntoEnumIterator as _;
 use super::CliAction;
 use super::session::{Session, integer};
 use crate::geo::{Degrees7, LatLon};
-use crate::plan::format::WaypointRecord;
+use crate::plan::format::{Records, WaypointRecord};
 use crate::plan::{HoldPattern, MAX_WAYPOINTS, WaypointType, plan_lines};
 use crate::telemetry::{NavState, Refusal};
 
@@ -20,15 +20,29 @@ pub(super) fn waypoint(session: &mut Session<'_>, rest: &str) {
         "list" | "status" | "clear" if !arguments.is_empty() => session.wrong_count(),
         "list" => list(session),
         "status" => status(session),
-        "clear" => {
-            session.configuration.plan.waypoints.clear();
-            session.line("Waypoints cleared");
-            session.act(CliAction::PlanChanged);
-        }
+        "clear" => clear(session),
         "insert" => edit(session, arguments, Edit::Insert),
         "update" => edit(session, arguments, Edit::Update),
         "remove" => remove(session, arguments),
         _ => session.error("INVALID OPERATION. USE: list, status, insert, update, remove, clear"),
+    }
+}
+
+fn clear(session: &mut Session<'_>) {
+    session.configuration.plan.waypoints.clear();
+    session.line("Waypoints cleared");
+    session.act(CliAction::PlanChanged);
+}
+
+/// Stores a plan as `waypoint clear` and `waypoint insert` do, up to the first waypoint that is refused.
+pub(super) fn store(session: &mut Session<'_>, records: &Records) {
+    clear(session);
+    for (index, record) in records.iter().enumerate() {
+        if let Err(text) = check_place(record.position) {
+            session.error(text);
+            return;
+        }
+        put(session, Edit::Insert, index, *record);
     }
 }
 
@@ -82,6 +96,11 @@ fn edit(session: &mut Session<'_>, arguments: &[&str], edit: Edit) {
             return;
         }
     };
+    put(session, edit, index, record);
+}
+
+/// Stores a waypoint. There is room for it, and the index is in range.
+fn put(session: &mut Session<'_>, edit: Edit, index: usize, record: WaypointRecord) {
     let waypoints = &mut session.configuration.plan.waypoints;
     let word = match edit {
         Edit::Insert => {
@@ -115,13 +134,19 @@ fn read(fields: [&str; 7]) -> Result<WaypointRecord, String> {
         format!("INVALID TYPE. USE: {}", types.join(", "))
     })?;
     let pattern = HoldPattern::from_str(pattern).map_err(|_| "INVALID PATTERN. USE: NONE, ORBIT, FIGURE8")?;
-    if !LatLon::new(lat_e7, 0).is_on_globe() {
-        return Err("LATITUDE OUT OF RANGE. USE: -90.0 to 90.0".to_owned());
+    let position = LatLon::new(lat_e7, lon_e7);
+    check_place(position)?;
+    Ok(WaypointRecord { position, alt_cm, speed, duration_ds, kind, pattern })
+}
+
+fn check_place(position: LatLon) -> Result<(), &'static str> {
+    if !LatLon::new(position.lat_e7, 0).is_on_globe() {
+        return Err("LATITUDE OUT OF RANGE. USE: -90.0 to 90.0");
     }
-    if !LatLon::new(0, lon_e7).is_on_globe() {
-        return Err("LONGITUDE OUT OF RANGE. USE: -180.0 to 180.0".to_owned());
+    if !LatLon::new(0, position.lon_e7).is_on_globe() {
+        return Err("LONGITUDE OUT OF RANGE. USE: -180.0 to 180.0");
     }
-    Ok(WaypointRecord { position: LatLon::new(lat_e7, lon_e7), alt_cm, speed, duration_ds, kind, pattern })
+    Ok(())
 }
 
 /// Parses decimal degrees as degrees × 10⁷. Decimals beyond the seventh are cut, not rounded.

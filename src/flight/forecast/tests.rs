@@ -1,4 +1,5 @@
 use super::*;
+use crate::firmware::cli::Interpreter;
 use crate::flight::FlightSetup;
 use crate::plan::Seconds;
 use crate::plan::builtin::BuiltinPlan;
