@@ -36,7 +36,7 @@ mod view;
 use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;
 
-pub use command::{Message, Reply, VehicleCommand, VehicleRefusal};
+pub use command::{CliLine, CliSession, Message, PlanUpload, Reply, VehicleCommand, VehicleRefusal};
 pub use controller::{
     Answer, EmbeddedController, FlightController, FrameOut, LateAnswer, RemoteController, RemoteRequest,
     RemoteTelemetry, Ticket,

@@ -8,11 +8,10 @@ use std::time::{Duration, Instant};
 use tokio::sync::mpsc;
 
 use super::*;
-use crate::firmware::cli::Interpreter;
 use crate::link::{FcStream, StreamEvent};
 use crate::plan::AltitudeReference;
 use crate::telemetry::DisarmReason;
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Vehicle, VehicleCommand};
 use board::{Board, Place};
 use remote::{Craft, Input};
 
@@ -187,7 +186,7 @@ fn what_a_line_sets_is_known_soon_after() {
     bench.run(3.0);
     assert!((radius_m(&bench) - 5.0).abs() < 1e-9, "nothing says that it changed");
     let line = "set ap_waypoint_arrival_radius = 700";
-    bench.vehicle.controller_mut().run_cli(&mut Interpreter::default(), line);
+    bench.vehicle.apply(&VehicleCommand::single_line(line));
     bench.run(3.0);
     assert!((radius_m(&bench) - 7.0).abs() < 1e-9);
     assert_eq!(bench.link.remote().state(), RemoteState::Ready);
@@ -252,10 +251,10 @@ fn a_return_home_can_be_taken_back_as_long_as_its_switch_is_on() {
     assert_eq!(is_on(&bench), None, "no switch was reported");
     bench.run(5.0);
     assert_eq!(is_on(&bench), Some(false));
-    bench.vehicle.controller_mut().return_to_home().unwrap();
+    bench.vehicle.apply(&VehicleCommand::ReturnHome);
     bench.run(0.1);
     assert_eq!(is_on(&bench), Some(true));
-    bench.vehicle.controller_mut().cancel_command();
+    bench.vehicle.apply(&VehicleCommand::CancelReturn);
     bench.run(0.1);
     assert_eq!(is_on(&bench), Some(false));
 }

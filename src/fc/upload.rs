@@ -1,11 +1,11 @@
-//! Uploads a plan through the command line, as a ground station does, and reads it back. Downloads a
-//! plan in the same way.
+//! Uploads a plan: to an embedded flight controller as a plan, to a remote one through the command line, as a
+//! ground station does, and reads it back. Downloads a plan in the same way.
 
 use super::landing_gains::landing_gains_reported;
-use crate::firmware::cli::{CliReply, Interpreter};
+use crate::firmware::cli::{CliReply, RefusedLine};
 use crate::plan::format::{self, Format};
 use crate::plan::{AltitudeError, AltitudeReference, CraftPlan, FlightPlan, upload_lines};
-use crate::vehicle::{Answer, FlightController, Ticket};
+use crate::vehicle::{Answer, FlightController, PlanUpload, Ticket, Vehicle, VehicleCommand};
 
 /// Stores `settings` and `plan` in an embedded flight controller.
 ///
@@ -17,16 +17,9 @@ pub fn upload(
     plan: &FlightPlan,
     settings: &[String],
 ) -> Result<UploadReport, String> {
-    const IN_A_SESSION_ONLY: &str = "a remote flight controller accepts a plan only in a session";
-    if controller.embedded().is_none() {
-        return Err(IN_A_SESSION_ONLY.to_owned());
-    }
-    let reference = controller.altitude_reference();
-    let mut upload = Upload::new(plan, settings, reference).map_err(|unknown| unknown.to_string())?;
-    match upload.send_lines(controller) {
-        UploadProgress::Done(result) => result,
-        UploadProgress::Waiting(_) => Err(IN_A_SESSION_ONLY.to_owned()),
-    }
+    let upload = PlanUpload { plan: plan.clone(), settings: settings.to_vec() };
+    controller.upload(&upload).map_err(|refusal| refusal.to_string())?;
+    Ok(UploadReport::default())
 }
 
 /// The result of an upload.
@@ -98,7 +91,10 @@ pub fn plan_above_home(reply: &CliReply, reference: AltitudeReference) -> Result
     reference.plan_of_craft(&plan).map_err(|unknown| unknown.to_string())
 }
 
-/// An upload in progress.
+/// The refusal of lines to an embedded flight controller.
+const NOT_REMOTE: &str = "only a remote flight controller gets a plan as lines";
+
+/// An upload to a remote flight controller in progress.
 #[derive(Debug)]
 pub struct Upload {
     /// The plan that the craft must store.
@@ -109,7 +105,6 @@ pub struct Upload {
     total: usize,
     /// The last line sent.
     sent: String,
-    interpreter: Interpreter,
 }
 
 /// The progress of an upload, in lines of the command line.
@@ -149,7 +144,6 @@ impl Upload {
             total: lines.len(),
             lines: lines.into_iter(),
             sent: String::new(),
-            interpreter: Interpreter::default(),
         })
     }
 
@@ -163,31 +157,27 @@ impl Upload {
         UploadView { sent: self.total - self.lines.len(), total: self.total }
     }
 
-    /// Sends lines until one is refused or its answer comes later.
-    pub fn send_lines(&mut self, controller: &mut FlightController) -> UploadProgress {
-        while let Some(line) = self.lines.next() {
-            self.sent = line;
-            match controller.run_cli(&mut self.interpreter, &self.sent) {
-                Answer::Now(reply) if self.is_last() => return self.read_back(&reply),
-                Answer::Now(reply) if reply.failed => return self.refused(&reply),
-                Answer::Now(_) => {}
-                Answer::Later(ticket) => return UploadProgress::Waiting(ticket),
-            }
+    /// Sends the next line.
+    pub fn send_line(&mut self, vehicle: &mut Vehicle) -> UploadProgress {
+        let Some(line) = self.lines.next() else { return UploadProgress::Done(Ok(self.report.clone())) };
+        self.sent = line;
+        match vehicle.apply(&VehicleCommand::single_line(&self.sent)) {
+            Answer::Later(ticket) => UploadProgress::Waiting(ticket),
+            Answer::Now(_) => UploadProgress::Done(Err(NOT_REMOTE.to_owned())),
         }
-        UploadProgress::Done(Ok(self.report.clone()))
     }
 
     /// Takes the answer to the last line and continues.
-    pub fn take_answer(&mut self, reply: &CliReply, controller: &mut FlightController) -> UploadProgress {
+    pub fn take_answer(&mut self, reply: &CliReply, vehicle: &mut Vehicle) -> UploadProgress {
         match reply.failed {
             _ if self.is_last() => self.read_back(reply),
             // Another version has other settings. The plan can be flown all the same.
             true if let Some(setting) = self.sent.strip_prefix("set ") => {
                 self.report.refused.push(format!("{setting} ({})", complaint(&reply.text)));
-                self.send_lines(controller)
+                self.send_line(vehicle)
             }
             true => self.refused(reply),
-            false => self.send_lines(controller),
+            false => self.send_line(vehicle),
         }
     }
 
@@ -218,7 +208,8 @@ impl Upload {
     }
 
     fn refused(&self, reply: &CliReply) -> UploadProgress {
-        UploadProgress::Done(Err(format!("the craft refused `{}`: {}", self.sent, reply.text.trim())))
+        let refused = RefusedLine { line: self.sent.clone(), reply: reply.text.trim().to_owned() };
+        UploadProgress::Done(Err(refused.to_string()))
     }
 }
 
@@ -237,8 +228,8 @@ mod tests {
     use crate::vehicle::RemoteRequest;
 
     /// Returns the new requests to the remote flight controller.
-    fn asked(controller: &mut FlightController) -> Vec<String> {
-        let mailbox = controller.remote_mut().unwrap();
+    fn asked(vehicle: &mut Vehicle) -> Vec<String> {
+        let mailbox = vehicle.controller_mut().remote_mut().unwrap();
         std::iter::from_fn(|| mailbox.take_request())
             .map(|(_, request)| match request {
                 RemoteRequest::Cli(line) => line,
@@ -250,10 +241,10 @@ mod tests {
     #[test]
     fn a_setting_that_another_version_does_not_take_is_reported_and_the_plan_uploaded() {
         let plan = FlightPlan { waypoints: std::iter::once(Waypoint::default()).collect() };
-        let mut controller = FlightController::Remote(Box::default());
+        let mut vehicle = Vehicle::elsewhere().unwrap();
         let settings = ["ap_position_cutoff = 5".to_owned()];
         let mut upload = Upload::new(&plan, &settings, AltitudeReference::Home).unwrap();
-        let mut progress = upload.send_lines(&mut controller);
+        let mut progress = upload.send_line(&mut vehicle);
         let text = "###ERROR IN set: INVALID VALUE###\r\nAllowed range: 10 - 50\r\n".to_owned();
         let list: String = plan_lines(&plan).map(|line| line + "\r\n").collect();
         for reply in [
@@ -263,7 +254,7 @@ mod tests {
             CliReply { text: list, ..CliReply::default() },
         ] {
             assert!(matches!(progress, UploadProgress::Waiting(_)), "{progress:?}");
-            progress = upload.take_answer(&reply, &mut controller);
+            progress = upload.take_answer(&reply, &mut vehicle);
         }
         let UploadProgress::Done(Ok(report)) = progress else { panic!("{progress:?}") };
         assert_eq!(
@@ -291,22 +282,22 @@ mod tests {
             [&taken, &refused, &taken, &held],
             [&taken, &taken, &taken, &lost],
         ] {
-            let mut controller = FlightController::Remote(Box::default());
+            let mut vehicle = Vehicle::elsewhere().unwrap();
             let settings = ["ap_max_angle = 33".to_owned()];
             let mut upload = Upload::new(&plan, &settings, AltitudeReference::Home).unwrap();
-            let mut progress = upload.send_lines(&mut controller);
+            let mut progress = upload.send_line(&mut vehicle);
             for (line, answer) in std::iter::zip(lines, answers) {
                 assert!(matches!(progress, UploadProgress::Waiting(_)), "{progress:?}");
-                let asked = asked(&mut controller);
+                let asked = asked(&mut vehicle);
                 assert!(asked.len() == 1 && asked[0].starts_with(line), "{asked:?}");
-                progress = upload.take_answer(answer, &mut controller);
+                progress = upload.take_answer(answer, &mut vehicle);
                 if answer.failed {
                     break;
                 }
             }
             let UploadProgress::Done(result) = progress else { panic!("{progress:?}") };
             assert_eq!(result.is_ok(), !answers[1].failed && !answers[3].text.is_empty(), "{result:?}");
-            assert!(asked(&mut controller).is_empty());
+            assert!(asked(&mut vehicle).is_empty());
         }
     }
 }

@@ -113,15 +113,13 @@ fn parse(name: &str, text: &str) -> Result<Scenario, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::firmware::cli::Interpreter;
     use crate::flight::FlightSetup;
     use crate::plan::builtin::BuiltinPlan;
-    use crate::plan::upload_lines;
     use crate::signals::SimTime;
     use crate::sim::WorldCommand;
     use crate::telemetry::InFlightCommand;
     use crate::timeline::{RecordedFlight, Timeline};
-    use crate::vehicle::{Vehicle, VehicleConfig};
+    use crate::vehicle::{Vehicle, VehicleCommand, VehicleConfig};
 
     #[test]
     fn a_plan_becomes_a_scenario_that_passes() {
@@ -174,10 +172,7 @@ mod tests {
     }
 
     fn upload(plan: &PlanFile, vehicle: &mut Vehicle) {
-        let mut session = Interpreter::default();
-        for line in upload_lines(plan.plan.records(), &plan.settings) {
-            let _reported = vehicle.controller_mut().run_cli(&mut session, &line);
-        }
+        let _reported = vehicle.apply(&VehicleCommand::upload(plan.plan.clone(), plan.settings.clone()));
     }
 
     /// Flies a written scenario in the same way as `check`.
@@ -225,7 +220,9 @@ mod tests {
             2000 => upload(&short, vehicle),
             2001 => vehicle.start_pilot(5.0).unwrap(),
             22_000 => upload(&long, vehicle),
-            23_000 => vehicle.controller_mut().command(InFlightCommand::GoTo(2)).unwrap(),
+            23_000 => {
+                let _done = vehicle.apply(&VehicleCommand::InFlight(InFlightCommand::GoTo(2)));
+            }
             _ => {}
         };
         let (flight, _) = first_flight(happen, 80);

@@ -6,7 +6,7 @@ use crate::plan::{FlightPlan, MAX_WAYPOINTS};
 use crate::signals::{RC_CHANNELS, RcFrame};
 use crate::sim::WorldCommand;
 use crate::telemetry::{InFlightCommand, Mode};
-use crate::vehicle::VehicleCommand;
+use crate::vehicle::{CliSession, VehicleCommand};
 
 /// An input and its instant.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,9 +41,6 @@ pub enum Action {
     CutRc(Option<f64>),
     /// Restores the transmitter.
     RestoreRc,
-    /// A line on the command line.
-    Cli(String),
-    Upload(Box<FlightPlan>),
 }
 
 /// The forms of an input, for messages and the reference: the syntax and the effect.
@@ -112,8 +109,11 @@ pub(super) fn read_action(text: &str, plans: PlanReader<'_>) -> Result<Action, S
                 .ok_or_else(|| whole("the duration is not understood".to_owned(), "write for 3 s"))?,
         ),
         ("rc", ["restore"]) => Action::RestoreRc,
-        ("cli", [_, ..]) => Action::Cli(rest.to_owned()),
-        ("upload", [_, ..]) => Action::Upload(Box::new(plans(rest).map_err(|problem| whole(problem, ""))?)),
+        ("cli", [_, ..]) => Action::Vehicle(VehicleCommand::line(CliSession::Console, rest)),
+        ("upload", [_, ..]) => {
+            let plan = plans(rest).map_err(|problem| whole(problem, ""))?;
+            Action::Vehicle(VehicleCommand::upload(plan, Vec::new()))
+        }
         ("return", ["home"]) => Action::Vehicle(VehicleCommand::ReturnHome),
         ("cancel", ["return"]) => Action::Vehicle(VehicleCommand::CancelReturn),
         ("go", ["on"]) => Action::Vehicle(VehicleCommand::InFlight(InFlightCommand::Resume)),
@@ -149,7 +149,7 @@ pub(super) fn waypoints_after(text: &str, plans: PlanReader<'_>) -> Option<usize
     let words: Vec<&str> = text.split_whitespace().collect();
     match words.as_slice() {
         ["upload", ..] => match read_action(text, plans) {
-            Ok(Action::Upload(plan)) => Some(plan.waypoints.len()),
+            Ok(Action::Vehicle(VehicleCommand::Upload(upload))) => Some(upload.plan.waypoints.len()),
             _ => None,
         },
         ["cli", "waypoint", "insert", index, ..] => {

@@ -321,13 +321,15 @@ fn action(action: &Action, switches: &Switches) -> Insight {
             VehicleCommand::ReturnHome
             | VehicleCommand::CancelReturn
             | VehicleCommand::InFlight(_)
+            | VehicleCommand::BeginCli(..)
+            | VehicleCommand::EndCli(_)
+            | VehicleCommand::EndAllCli
             | VehicleCommand::Line(_)
+            | VehicleCommand::Upload(_)
             | VehicleCommand::Message(_)
             | VehicleCommand::CliOpened
             | VehicleCommand::CliClosed
             | VehicleCommand::Restart(_),
-        )
-        | Action::Cli(_)
-        | Action::Upload(_) => Insight::Inner,
+        ) => Insight::Inner,
     }
 }

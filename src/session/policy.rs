@@ -142,12 +142,17 @@ impl Intent {
 
     fn of_vehicle(command: &VehicleCommand) -> Self {
         match command {
-            VehicleCommand::Line(line) => Self::Line(Impact::of_line(&line.1)),
+            VehicleCommand::Line(line) => Self::Line(Impact::of_line(&line.line)),
             VehicleCommand::Message(message) => {
                 Self::Line(Impact::of_message(message.code, &message.payload))
             }
             VehicleCommand::Restart(_) => Self::Line(Impact::Changes),
-            VehicleCommand::CliOpened | VehicleCommand::CliClosed => Self::Read,
+            VehicleCommand::Upload(_) => Self::Upload,
+            VehicleCommand::BeginCli(..)
+            | VehicleCommand::EndCli(_)
+            | VehicleCommand::EndAllCli
+            | VehicleCommand::CliOpened
+            | VehicleCommand::CliClosed => Self::Read,
             VehicleCommand::ResetCraft => Self::Reset,
             VehicleCommand::World(_) => Self::World,
             VehicleCommand::InFlight(_) => Self::Order,

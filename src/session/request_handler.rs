@@ -9,12 +9,14 @@ use tokio::sync::oneshot;
 use super::host_status::HostStatus;
 use super::late_answers::{LateAnswers, no_answer_line};
 use super::persistence::Persistence;
-use crate::firmware::cli::{COMMANDS, CliAction, CliMode, CliReply, Interpreter, complete};
+use crate::firmware::cli::{COMMANDS, CliAction, CliMode, CliReply, complete};
 use crate::firmware::msp::{MspAction, Outcome, UtcTime};
 use crate::link::proto::command_line::{AfterLine, Completion, LineReply, LineSource};
 use crate::link::{ClientId, Request, RestartSignal};
 use crate::signals::{RcFrame, RcSource};
-use crate::vehicle::{Answer, FlightController, LateAnswer, Ticket};
+use crate::vehicle::{
+    Answer, CliSession, FlightController, LateAnswer, Message, Reply, Ticket, Vehicle, VehicleCommand,
+};
 
 /// The wall time for which a frame from a script counts as fresh.
 const RC_FRESH: Duration = Duration::from_millis(150);
@@ -37,14 +39,6 @@ struct ReceivedRc {
     at: Instant,
 }
 
-/// The command line of one client while it is open.
-#[derive(Debug)]
-struct CliSession {
-    interpreter: Interpreter,
-    /// `true` for a person, which blocks arming.
-    interactive: bool,
-}
-
 /// A client that waits for the answer of a remote flight controller.
 #[derive(Debug)]
 enum WaitingClient {
@@ -62,7 +56,8 @@ pub struct RequestHandler {
     clock: Option<(UtcTime, Instant)>,
     udp: Option<ReceivedRc>,
     msp: Option<ReceivedRc>,
-    cli_sessions: BTreeMap<ClientId, CliSession>,
+    /// The clients at a command line, with `true` for a person, which blocks arming.
+    cli_sessions: BTreeMap<ClientId, bool>,
     /// The last client whose command line turned motors on the bench.
     bench: Option<ClientId>,
     reported_altitude_units: bool,
@@ -94,58 +89,64 @@ impl RequestHandler {
     pub fn handle(
         &mut self,
         request: Request,
-        controller: &mut FlightController,
+        vehicle: &mut Vehicle,
         persistence: &mut Persistence,
         now: Instant,
     ) -> Handled {
         let mut handled = Handled::default();
         match request {
             Request::Msp { code, payload, reply, .. } => {
-                match controller.run_msp(code, &payload, self.clock_at(now)) {
-                    Answer::Now(outcome) => {
-                        let payload =
-                            self.act_on_message(outcome, controller, persistence, now, &mut handled);
+                let message = Message { code, payload, clock: self.clock_at(now) };
+                match vehicle.apply(&message.into()) {
+                    Answer::Now(Reply::Message(outcome)) => {
+                        let payload = self.act_on_message(outcome, vehicle, persistence, now, &mut handled);
                         answer(reply, payload);
                     }
+                    Answer::Now(_) => {}
                     Answer::Later(ticket) => {
                         self.late_answers.expect(ticket, WaitingClient::Message(reply), now);
                     }
                 }
             }
             Request::EnterCli { client, interactive, reply } => {
-                let admitted = !controller.is_armed();
+                let admitted = !vehicle.controller().is_armed();
                 if admitted {
-                    self.enter_cli(client, interactive, controller);
+                    self.enter_cli(client, interactive, vehicle);
                 }
                 answer(reply, admitted);
             }
             Request::Cli { client, line, source, reply } => {
-                match self.run_line(client, source, &line, controller) {
-                    Answer::Now(mut said) => {
+                let session = self.session_of(client, source);
+                match vehicle.apply(&VehicleCommand::line(session, line)) {
+                    Answer::Now(Reply::Line(mut said)) => {
                         self.host.add_to(&mut said);
-                        self.act_on_line(client, &mut said, controller, persistence, &mut handled);
+                        self.act_on_line(client, &mut said, vehicle, persistence, &mut handled);
                         answer(reply, said.into());
                     }
+                    Answer::Now(_) => {}
                     Answer::Later(ticket) => {
                         self.late_answers.expect(ticket, WaitingClient::Line(reply), now);
                     }
                 }
             }
-            Request::Ignored { word, .. } => handled.notices.extend(ignored_in_flight(&word, controller)),
+            Request::Ignored { word, .. } => {
+                handled.notices.extend(ignored_in_flight(&word, vehicle.controller()));
+            }
             Request::Complete { line, reply } => answer(reply, completion(&line)),
             Request::LeftCli { client } => {
                 self.cli_sessions.remove(&client);
+                vehicle.apply(&VehicleCommand::EndCli(CliSession::Client(client.0)));
                 // Motors that another client turns keep turning.
                 if self.bench.take_if(|bench| *bench == client).is_some() {
-                    controller.cli_closed();
+                    vehicle.apply(&VehicleCommand::CliClosed);
                 }
             }
             // The command line was opened before the craft was armed. A restart in flight would make it fall.
-            Request::Restart { .. } if controller.armed() != Some(false) => {}
-            Request::Restart { .. } => self.restart(true, controller, persistence, &mut handled),
+            Request::Restart { .. } if vehicle.controller().armed() != Some(false) => {}
+            Request::Restart { .. } => self.restart(true, vehicle, persistence, &mut handled),
             Request::Rc { frame, at, .. } => {
                 self.udp = Some(ReceivedRc { frame, at });
-                controller.receive_rc(&frame, RcSource::Udp);
+                vehicle.apply(&VehicleCommand::Rc(frame, RcSource::Udp));
             }
             Request::Fdm { datagram, at, .. } => handled.fdm = Some((datagram, at)),
             Request::Notice(text) => handled.notices.push(text),
@@ -176,31 +177,23 @@ impl RequestHandler {
         }
     }
 
-    fn enter_cli(&mut self, client: ClientId, interactive: bool, controller: &mut FlightController) {
+    fn enter_cli(&mut self, client: ClientId, interactive: bool, vehicle: &mut Vehicle) {
         let mode = if interactive { CliMode::Interactive } else { CliMode::Framed };
-        self.cli_sessions.insert(client, CliSession { interpreter: Interpreter::new(mode), interactive });
+        self.cli_sessions.insert(client, interactive);
+        vehicle.apply(&VehicleCommand::BeginCli(CliSession::Client(client.0), mode));
         if interactive {
-            controller.cli_opened();
+            vehicle.apply(&VehicleCommand::CliOpened);
         }
     }
 
-    /// Runs a line in the client's session. A message is a session of its own, and so is a line that was in
+    /// Returns the session of a client's line. A message is a session of its own, and so is a line that was in
     /// progress when a restart ended the client's session.
-    fn run_line(
-        &mut self,
-        client: ClientId,
-        source: LineSource,
-        line: &str,
-        controller: &mut FlightController,
-    ) -> Answer<CliReply> {
-        let (mode, session) = match source {
-            LineSource::Prompt => (CliMode::Interactive, self.cli_sessions.get_mut(&client)),
-            LineSource::Framed => (CliMode::Framed, self.cli_sessions.get_mut(&client)),
-            LineSource::Message => (CliMode::Message, None),
-        };
-        match session {
-            Some(session) => controller.run_cli(&mut session.interpreter, line),
-            None => controller.run_cli(&mut Interpreter::new(mode), line),
+    fn session_of(&self, client: ClientId, source: LineSource) -> CliSession {
+        match source {
+            LineSource::Message => CliSession::Single(CliMode::Message),
+            _ if self.cli_sessions.contains_key(&client) => CliSession::Client(client.0),
+            LineSource::Prompt => CliSession::Single(CliMode::Interactive),
+            LineSource::Framed => CliSession::Single(CliMode::Framed),
         }
     }
 
@@ -209,25 +202,25 @@ impl RequestHandler {
     fn act_on_message(
         &mut self,
         outcome: Outcome,
-        controller: &mut FlightController,
+        vehicle: &mut Vehicle,
         persistence: &mut Persistence,
         now: Instant,
         handled: &mut Handled,
     ) -> Option<Vec<u8>> {
         match outcome.action {
             Some(MspAction::Save) => {
-                if let Err(notice) = persistence.save(controller) {
+                if let Err(notice) = persistence.save(vehicle.controller_mut()) {
                     handled.notices.push(notice);
                     return None;
                 }
             }
-            Some(MspAction::Reboot) => self.restart(true, controller, persistence, handled),
+            Some(MspAction::Reboot) => self.restart(true, vehicle, persistence, handled),
             Some(MspAction::SaveAndReboot) => {
-                if let Err(notice) = persistence.save(controller) {
+                if let Err(notice) = persistence.save(vehicle.controller_mut()) {
                     handled.notices.push(notice);
                     return None;
                 }
-                self.restart(true, controller, persistence, handled);
+                self.restart(true, vehicle, persistence, handled);
             }
             Some(MspAction::SetClock { unix_s, millis }) => {
                 self.clock = Some((UtcTime { unix_s, millis }, now));
@@ -255,7 +248,7 @@ impl RequestHandler {
         &mut self,
         client: ClientId,
         said: &mut CliReply,
-        controller: &mut FlightController,
+        vehicle: &mut Vehicle,
         persistence: &mut Persistence,
         handled: &mut Handled,
     ) {
@@ -269,35 +262,36 @@ impl RequestHandler {
                 CliAction::Save | CliAction::Restart { .. } | CliAction::PlanChanged | CliAction::Leave => {}
             }
         }
-        let done = persistence.carry_out(said, controller);
+        let done = persistence.carry_out(said, vehicle.controller_mut());
         handled.notices.extend(done.notices);
         if let Some(close_links) = done.restarted {
             handled.restarted = true;
-            self.after_restart(close_links, controller);
+            self.after_restart(close_links, vehicle);
         }
     }
 
     fn restart(
         &mut self,
         close_links: bool,
-        controller: &mut FlightController,
+        vehicle: &mut Vehicle,
         persistence: &mut Persistence,
         handled: &mut Handled,
     ) {
-        handled.notices.extend(persistence.restart(controller));
+        handled.notices.extend(persistence.restart(vehicle.controller_mut()));
         handled.restarted = true;
-        self.after_restart(close_links, controller);
+        self.after_restart(close_links, vehicle);
     }
 
     /// Updates the clients' sessions after a restart of the flight controller. Closes the links. If the links
     /// stay open, clients at a command line block arming as before.
-    pub fn after_restart(&mut self, close_links: bool, controller: &mut FlightController) {
+    pub fn after_restart(&mut self, close_links: bool, vehicle: &mut Vehicle) {
         (self.udp, self.msp, self.bench) = (None, None, None);
         if close_links {
             self.cli_sessions.clear();
+            vehicle.apply(&VehicleCommand::EndAllCli);
             self.restart_signal.send();
-        } else if self.cli_sessions.values().any(|session| session.interactive) {
-            controller.cli_opened();
+        } else if self.cli_sessions.values().any(|interactive| *interactive) {
+            vehicle.apply(&VehicleCommand::CliOpened);
         }
     }
 
@@ -305,7 +299,7 @@ impl RequestHandler {
     /// script sends 50 frames per second of wall time, and the flight controller would detect a loss. Call
     /// this about every 20 ms of simulated time.
     /// time.
-    pub fn keep_rc_fresh(&self, controller: &mut FlightController, speed: f64, now: Instant) {
+    pub fn keep_rc_fresh(&self, vehicle: &mut Vehicle, speed: f64, now: Instant) {
         if speed <= 1.0 {
             return;
         }
@@ -315,7 +309,7 @@ impl RequestHandler {
             if let Some(ReceivedRc { frame, at }) = heard
                 && now.saturating_duration_since(at) < still_fresh
             {
-                controller.receive_rc(&frame, source);
+                vehicle.apply(&VehicleCommand::Rc(frame, source));
             }
         }
     }

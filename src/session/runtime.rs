@@ -379,7 +379,7 @@ impl Session {
             self.events.report(&mut self.vehicle, SessionEvent::Remote(notice));
             if restarted {
                 if let Some(endpoints) = &mut self.endpoints {
-                    endpoints.handler.after_restart(true, self.vehicle.controller_mut());
+                    endpoints.handler.after_restart(true, &mut self.vehicle);
                 }
                 self.events.report(&mut self.vehicle, SessionEvent::Restarted);
             }

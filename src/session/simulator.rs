@@ -166,7 +166,7 @@ impl Simulator {
             let mut frame = *sensors;
             for _ in 0..ticks {
                 if vehicle.time().0.is_multiple_of(RC_REPEAT_US) {
-                    handler.keep_rc_fresh(vehicle.controller_mut(), speed, at);
+                    handler.keep_rc_fresh(vehicle, speed, at);
                 }
                 vehicle.tick_on(&frame);
                 // Inputs are held; a sample is new only once.
@@ -182,7 +182,7 @@ impl Simulator {
         self.report_return(at, vehicle, events);
         if received.kind == (PacketKind::Resync { restarted: true }) {
             vehicle.reset_craft();
-            handler.after_restart(false, vehicle.controller_mut());
+            handler.after_restart(false, vehicle);
         }
         for notice in received.notices {
             self.changed = true;

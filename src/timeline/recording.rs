@@ -240,7 +240,7 @@ impl Recording {
 mod tests {
     use super::*;
     use crate::signals::{RcFrame, RcSource};
-    use crate::vehicle::{Vehicle, VehicleConfig};
+    use crate::vehicle::{CliSession, VehicleConfig};
 
     const BOUNDS: Bounds = Bounds {
         interval_us: 10_000,
@@ -272,7 +272,7 @@ mod tests {
             for us in 0..frames_at(tick) {
                 let mut frame = RcFrame::SAFE;
                 frame.channels[0] += us;
-                vehicle.controller_mut().receive_rc(&frame, RcSource::Udp);
+                vehicle.apply(&VehicleCommand::Rc(frame, RcSource::Udp));
             }
             recording.record(&mut vehicle);
             vehicle.tick();
@@ -338,10 +338,9 @@ mod tests {
         let mut vehicle = Vehicle::new(config()).unwrap();
         assert!(vehicle.keep_inputs(true));
         let mut recording = Recording::new(BOUNDS);
-        let mut session = crate::firmware::cli::Interpreter::default();
         let line = "x".repeat(10_000);
         for _ in 0..100 {
-            let _reported = vehicle.controller_mut().run_cli(&mut session, &line);
+            let _reported = vehicle.apply(&VehicleCommand::line(CliSession::Console, &line));
             assert!(vehicle.input_bytes() > line.len());
             recording.record(&mut vehicle);
             // The limit until the next key frame.

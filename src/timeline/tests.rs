@@ -1,16 +1,15 @@
 //! A flight and its replay are the same to the last bit, whatever the inputs.
 
 use super::*;
-use crate::firmware::cli::Interpreter;
+use crate::firmware::cli::CliMode;
 use crate::firmware::config::Configuration;
 use crate::firmware::{FirmwareOptions, msp};
 use crate::msp::{Access, code};
 use crate::plan::builtin::{BuiltinPlan, DEMO};
-use crate::plan::upload_lines;
 use crate::signals::{RcFrame, RcSource};
 use crate::sim::{WorldCommand, WorldConfig};
 use crate::telemetry::{InFlightCommand, Turbulence};
-use crate::vehicle::{Answer, FlightController, Reply, VehicleCommand, VehicleConfig};
+use crate::vehicle::{Answer, CliSession, FlightController, Message, Reply, VehicleCommand, VehicleConfig};
 
 /// Key frames every two seconds, so that a short flight has many.
 const BOUNDS: Bounds = Bounds {
@@ -38,8 +37,14 @@ fn vehicle() -> Vehicle {
     Vehicle::new(config).unwrap()
 }
 
-fn line(vehicle: &mut Vehicle, session: &mut Interpreter, line: &str) {
-    let _reported = vehicle.controller_mut().run_cli(session, line);
+const CLIENT: CliSession = CliSession::Client(7);
+
+fn line(vehicle: &mut Vehicle, session: CliSession, line: &str) {
+    let _reported = vehicle.apply(&VehicleCommand::line(session, line));
+}
+
+fn message(vehicle: &mut Vehicle, code: u16, payload: &[u8]) {
+    let _reported = vehicle.apply(&Message::of(code, payload.to_vec()).into());
 }
 
 /// Applies the inputs before a tick of the flight.
@@ -53,21 +58,24 @@ fn move_stick(vehicle: &mut Vehicle, channel: usize, value_us: u16) {
     done(vehicle, &VehicleCommand::Sticks(sticks));
 }
 
-fn happen(tick: u64, vehicle: &mut Vehicle, session: &mut Interpreter) {
+fn happen(tick: u64, vehicle: &mut Vehicle) {
     let world = |vehicle: &mut Vehicle, line: &str| {
         vehicle.change_world(WorldCommand::parse(line).unwrap()).unwrap();
     };
     match tick {
         500 => {
             let demo = BuiltinPlan::find(DEMO).unwrap().read().unwrap();
-            for text in upload_lines(demo.plan.records(), &demo.settings) {
-                line(vehicle, session, &text);
-            }
+            let _reported = vehicle.apply(&VehicleCommand::upload(demo.plan, demo.settings));
         }
-        900 => line(vehicle, session, "batch start"),
-        950 => line(vehicle, session, "set ap_max_angle = 33"),
-        1000 => line(vehicle, session, "batch end"),
-        1003 => vehicle.controller_mut().cli_opened(),
+        880 => done(vehicle, &VehicleCommand::BeginCli(CLIENT, CliMode::Framed)),
+        900 => line(vehicle, CliSession::Console, "batch start"),
+        910 => line(vehicle, CLIENT, "batch start"),
+        920 => line(vehicle, CLIENT, "nonsense"),
+        950 => line(vehicle, CliSession::Console, "set ap_max_angle = 33"),
+        1000 => line(vehicle, CliSession::Console, "batch end"),
+        1400 => done(vehicle, &VehicleCommand::EndCli(CLIENT)),
+        20_100 => done(vehicle, &VehicleCommand::EndAllCli),
+        1003 => done(vehicle, &VehicleCommand::CliOpened),
         1200 => {
             let kept = vehicle.controller().configuration().cloned().unwrap();
             vehicle.controller_mut().restart(|| kept);
@@ -75,8 +83,8 @@ fn happen(tick: u64, vehicle: &mut Vehicle, session: &mut Interpreter) {
         1300 => world(vehicle, "wind=4@270"),
         // The pilot waits for the fix first.
         1500 => vehicle.start_pilot(3.0).unwrap(),
-        15_300 => vehicle.controller_mut().command(InFlightCommand::HoldHere).unwrap(),
-        15_800 => vehicle.controller_mut().command(InFlightCommand::GoTo(2)).unwrap(),
+        15_300 => done(vehicle, &VehicleCommand::InFlight(InFlightCommand::HoldHere)),
+        15_800 => done(vehicle, &VehicleCommand::InFlight(InFlightCommand::GoTo(2))),
         16_000 => world(vehicle, "fault=gps-loss,2"),
         17_000 => {
             done(vehicle, &VehicleCommand::StopPilot);
@@ -85,27 +93,24 @@ fn happen(tick: u64, vehicle: &mut Vehicle, session: &mut Interpreter) {
         17_500 => done(vehicle, &VehicleCommand::CutRc(true)),
         18_100 => {
             done(vehicle, &VehicleCommand::CutRc(false));
-            vehicle.controller_mut().take_over_sticks(true);
+            done(vehicle, &VehicleCommand::SticksFirst(true));
         }
         18_700 => {
-            let _refused = vehicle.controller_mut().return_to_home();
+            let _refused = vehicle.apply(&VehicleCommand::ReturnHome);
         }
-        19_200 => vehicle.controller_mut().cancel_command(),
-        19_500 => {
-            let name = b"replayed";
-            let _reported = vehicle.controller_mut().run_msp(code::SET_NAME, name, None);
-        }
+        19_200 => done(vehicle, &VehicleCommand::CancelReturn),
+        19_500 => message(vehicle, code::SET_NAME, b"replayed"),
         20_000 => vehicle.reset_craft(),
         20_500..22_000 if tick.is_multiple_of(7) => {
             let mut frame = RcFrame::SAFE;
             frame.channels[3] = 1500 + (tick % 90) as u16;
-            vehicle.controller_mut().receive_rc(&frame, RcSource::Udp);
+            done(vehicle, &VehicleCommand::Rc(frame, RcSource::Udp));
         }
         22_000..23_000 if tick.is_multiple_of(10) => {
             let frame: Vec<u8> = (0..8).flat_map(|n| (1400 + n + (tick % 50) as u16).to_le_bytes()).collect();
-            let _reported = vehicle.controller_mut().run_msp(code::SET_RAW_RC, &frame, None);
+            message(vehicle, code::SET_RAW_RC, &frame);
             // This message only asks.
-            let _reported = vehicle.controller_mut().run_msp(code::STATUS, &[], None);
+            message(vehicle, code::STATUS, &[]);
         }
         _ => {}
     }
@@ -115,14 +120,13 @@ fn happen(tick: u64, vehicle: &mut Vehicle, session: &mut Interpreter) {
 fn flight() -> (Timeline, Vehicle, Vec<(SimTime, String)>) {
     let mut vehicle = vehicle();
     let mut timeline = Timeline::within(BOUNDS, &mut vehicle).unwrap();
-    let mut session = Interpreter::default();
     let mut pictures = Vec::new();
     for tick in 0..24_000 {
         // Before the inputs of this instant.
         if tick % 1487 == 3 || matches!(tick, 1 | 1001 | 1201 | 2000 | 17_001 | 20_000 | 20_001) {
             pictures.push((vehicle.time(), picture(&vehicle)));
         }
-        happen(tick, &mut vehicle, &mut session);
+        happen(tick, &mut vehicle);
         timeline.record(&mut vehicle);
         vehicle.tick();
         vehicle.drain_events(drop);
@@ -239,10 +243,10 @@ fn what_runs_elsewhere_is_not_recorded() {
 fn messages_that_only_ask_are_no_inputs() {
     let mut vehicle = vehicle();
     assert!(vehicle.keep_inputs(true));
-    for message in msp::MESSAGES.iter().filter(|message| message.kind.access != Access::Write) {
+    for kind in msp::MESSAGES.iter().map(|message| message.kind).filter(|kind| kind.access != Access::Write) {
         let before = picture(&vehicle);
-        let _reported = vehicle.controller_mut().run_msp(message.kind.code, &[0; 8], None);
-        assert!(!vehicle.has_inputs(), "{}", message.kind.name);
-        assert!(picture(&vehicle) == before, "{} changes something", message.kind.name);
+        message(&mut vehicle, kind.code, &[0; 8]);
+        assert!(!vehicle.has_inputs(), "{}", kind.name);
+        assert!(picture(&vehicle) == before, "{} changes something", kind.name);
     }
 }

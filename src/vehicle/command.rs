@@ -1,10 +1,11 @@
 //! The commands to a vehicle, as data: everything that changes it between two ticks.
 
 use super::{Answer, Vehicle};
-use crate::firmware::cli::{CliReply, Interpreter};
+use crate::firmware::cli::{CliMode, CliReply, RefusedLine};
 use crate::firmware::config::Configuration;
 use crate::firmware::msp::{Outcome, UtcTime};
 use crate::pilot::StickInput;
+use crate::plan::FlightPlan;
 use crate::signals::{RcFrame, RcSource};
 use crate::sim::{WorldCommand, WorldError};
 use crate::telemetry::{InFlightCommand, InFlightRefusal, Mode, Refusal};
@@ -16,8 +17,16 @@ pub enum VehicleCommand {
     Rc(RcFrame, RcSource),
     /// `true` gives the virtual sticks precedence over the other sources of RC, `false` ends that.
     SticksFirst(bool),
-    /// A CLI line, with the session that ran it in its state before.
-    Line(Box<(Interpreter, String)>),
+    /// Begin a session of the command line, or begin it again.
+    BeginCli(CliSession, CliMode),
+    /// End a session of the command line.
+    EndCli(CliSession),
+    /// End all sessions of the command line.
+    EndAllCli,
+    /// A CLI line.
+    Line(Box<CliLine>),
+    /// Store a plan in an embedded flight controller. A remote one gets it as lines.
+    Upload(Box<PlanUpload>),
     /// An MSP message.
     Message(Box<Message>),
     /// A person opened a command line.
@@ -50,12 +59,51 @@ pub enum VehicleCommand {
     ResetCraft,
 }
 
+/// The session of the command line that runs a line. A session that was not begun is at a prompt.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum CliSession {
+    /// The session of the screen, or of a scenario.
+    Console,
+    /// The session of the client with this number.
+    Client(u64),
+    /// The line is a session of its own.
+    Single(CliMode),
+}
+
+/// A CLI line and its session.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CliLine {
+    pub session: CliSession,
+    pub line: String,
+}
+
+/// A plan and the settings that are stored before it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlanUpload {
+    pub plan: FlightPlan,
+    /// Settings as `name = value`.
+    pub settings: Vec<String>,
+}
+
 /// An MSP message with the data for its answer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Message {
     pub code: u16,
     pub payload: Vec<u8>,
     pub clock: Option<UtcTime>,
+}
+
+impl Message {
+    /// Returns a message that needs no time of day.
+    pub fn of(code: u16, payload: Vec<u8>) -> Self {
+        Self { code, payload, clock: None }
+    }
+}
+
+impl From<Message> for VehicleCommand {
+    fn from(message: Message) -> Self {
+        Self::Message(Box::new(message))
+    }
 }
 
 /// The answer to a command.
@@ -68,6 +116,8 @@ pub enum Reply {
     Line(CliReply),
     /// The answer to an MSP message.
     Message(Outcome),
+    /// The plan is stored. These are the answers to the lines of the upload.
+    Uploaded(Vec<String>),
 }
 
 /// The reason why a vehicle does not carry out a command.
@@ -82,6 +132,11 @@ pub enum VehicleRefusal {
     /// No channel switches the mode that the scripted pilot needs.
     #[error("no channel switches {0}")]
     Pilot(Mode),
+    /// The lines before this one keep their effect.
+    #[error(transparent)]
+    Upload(RefusedLine),
+    #[error("a remote flight controller accepts a plan only in a session")]
+    UploadToRemote,
 }
 
 impl From<Result<(), VehicleRefusal>> for Reply {
@@ -91,10 +146,29 @@ impl From<Result<(), VehicleRefusal>> for Reply {
 }
 
 impl VehicleCommand {
+    /// Returns the command that runs a CLI line.
+    pub fn line(session: CliSession, line: impl Into<String>) -> Self {
+        Self::Line(Box::new(CliLine { session, line: line.into() }))
+    }
+
+    /// Returns the command that runs a CLI line in a session of its own at a prompt.
+    pub fn single_line(line: impl Into<String>) -> Self {
+        Self::line(CliSession::Single(CliMode::Interactive), line)
+    }
+
+    /// Returns the command that stores a plan after its settings (`name = value`).
+    pub fn upload(plan: FlightPlan, settings: Vec<String>) -> Self {
+        Self::Upload(Box::new(PlanUpload { plan, settings }))
+    }
+
     /// Returns the approximate memory of the command, bytes.
     pub fn bytes(&self) -> usize {
         let heap = match self {
-            Self::Line(line) => size_of_val(&**line) + line.1.len(),
+            Self::Line(line) => size_of_val(&**line) + line.line.len(),
+            Self::Upload(upload) => {
+                let of_text = |text: &String| size_of::<String>() + text.len();
+                size_of_val(&**upload) + upload.settings.iter().map(of_text).sum::<usize>()
+            }
             Self::Message(message) => size_of::<Message>() + message.payload.len(),
             // Its tables are on the heap.
             Self::Restart(configuration) => 4 * size_of_val(&**configuration),
@@ -112,13 +186,17 @@ impl Vehicle {
         match command {
             VehicleCommand::Rc(frame, source) => self.controller.receive_rc(frame, *source),
             VehicleCommand::SticksFirst(first) => self.controller.take_over_sticks(*first),
-            VehicleCommand::Line(line) => {
-                let (session, line) = &**line;
-                return self.controller.run_cli(&mut session.clone(), line).map(Reply::Line);
-            }
+            VehicleCommand::BeginCli(session, mode) => self.controller.begin_cli(*session, *mode),
+            VehicleCommand::EndCli(session) => self.controller.end_cli(*session),
+            VehicleCommand::EndAllCli => self.controller.end_all_cli(),
+            VehicleCommand::Line(line) => return self.controller.run_cli(line).map(Reply::Line),
             VehicleCommand::Message(message) => {
-                let Message { code, payload, clock } = &**message;
-                return self.controller.run_msp(*code, payload, *clock).map(Reply::Message);
+                return self.controller.run_msp(message).map(Reply::Message);
+            }
+            VehicleCommand::Upload(upload) => {
+                return Answer::Now(
+                    self.controller.upload(upload).map_or_else(Reply::Refused, Reply::Uploaded),
+                );
             }
             VehicleCommand::CliOpened => self.controller.cli_opened(),
             VehicleCommand::CliClosed => self.controller.cli_closed(),

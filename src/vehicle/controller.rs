@@ -7,10 +7,11 @@ pub use embedded::EmbeddedController;
 pub use remote::{FrameOut, RemoteController, RemoteRequest, RemoteTelemetry};
 
 use super::input_log::InputLog;
+use super::{CliLine, CliSession, Message, PlanUpload, VehicleRefusal};
 use crate::firmware::Firmware;
-use crate::firmware::cli::{BuildInfo, CliReply, Interpreter, StorageFacts};
+use crate::firmware::cli::{BuildInfo, CliMode, CliReply, StorageFacts};
 use crate::firmware::config::Configuration;
-use crate::firmware::msp::{Outcome, UtcTime};
+use crate::firmware::msp::Outcome;
 use crate::pilot::PilotFacts;
 use crate::plan::{AltitudeReference, FlightPlan};
 use crate::signals::{MotorCommand, RcFrame, RcSource, SensorFrame, SimTime};
@@ -75,7 +76,7 @@ impl FlightController {
     }
 
     /// Takes an RC frame for the next step. Only the newest frame of each source counts.
-    pub fn receive_rc(&mut self, frame: &RcFrame, source: RcSource) {
+    pub(super) fn receive_rc(&mut self, frame: &RcFrame, source: RcSource) {
         match self {
             Self::Embedded(embedded) => embedded.receive_rc(frame, source),
             Self::Remote(remote) => remote.receive_rc(frame, source),
@@ -92,7 +93,7 @@ impl FlightController {
 
     /// Gives the virtual sticks precedence over the other sources of RC, or ends that. A remote flight controller has
     /// its own rule.
-    pub fn take_over_sticks(&mut self, sticks_first: bool) {
+    pub(super) fn take_over_sticks(&mut self, sticks_first: bool) {
         if let Self::Embedded(embedded) = self {
             embedded.take_over_sticks(sticks_first);
         }
@@ -111,23 +112,54 @@ impl FlightController {
         }
     }
 
-    /// Runs a CLI line. `session` is the state of an embedded controller's command line. The reply says if the owner
-    /// of an embedded controller must store the configuration or restart.
-    pub fn run_cli(&mut self, session: &mut Interpreter, line: &str) -> Answer<CliReply> {
-        match self {
-            Self::Embedded(embedded) => Answer::Now(embedded.run_cli(session, line)),
-            Self::Remote(remote) => Answer::Later(remote.ask(RemoteRequest::Cli(line.to_owned()))),
+    /// Begins a session of an embedded controller's command line. A remote one has its own sessions.
+    pub(super) fn begin_cli(&mut self, session: CliSession, mode: CliMode) {
+        if let Self::Embedded(embedded) = self {
+            embedded.begin_cli(session, mode);
         }
     }
 
-    /// Answers an MSP message. `clock` is the time of day, if it was set. The outcome says if the owner of an
-    /// embedded controller must store the configuration or restart.
-    pub fn run_msp(&mut self, code: u16, payload: &[u8], clock: Option<UtcTime>) -> Answer<Outcome> {
+    pub(super) fn end_cli(&mut self, session: CliSession) {
+        if let Self::Embedded(embedded) = self {
+            embedded.end_cli(session);
+        }
+    }
+
+    pub(super) fn end_all_cli(&mut self) {
+        if let Self::Embedded(embedded) = self {
+            embedded.end_all_cli();
+        }
+    }
+
+    /// Runs a CLI line. The reply says if the owner of an embedded controller must store the configuration or
+    /// restart.
+    pub(super) fn run_cli(&mut self, line: &CliLine) -> Answer<CliReply> {
         match self {
-            Self::Embedded(embedded) => Answer::Now(embedded.run_msp(code, payload, clock)),
+            Self::Embedded(embedded) => Answer::Now(embedded.run_cli(line)),
+            Self::Remote(remote) => Answer::Later(remote.ask(RemoteRequest::Cli(line.line.clone()))),
+        }
+    }
+
+    /// Answers an MSP message. The outcome says if the owner of an embedded controller must store the configuration
+    /// or restart.
+    pub(super) fn run_msp(&mut self, message: &Message) -> Answer<Outcome> {
+        match self {
+            Self::Embedded(embedded) => Answer::Now(embedded.run_msp(message)),
             Self::Remote(remote) => {
-                Answer::Later(remote.ask(RemoteRequest::Msp { code, payload: payload.to_vec() }))
+                let (code, payload) = (message.code, message.payload.clone());
+                Answer::Later(remote.ask(RemoteRequest::Msp { code, payload }))
             }
+        }
+    }
+
+    /// Stores a plan and its settings in an embedded controller, and returns the answers to the lines of the upload.
+    ///
+    /// # Errors
+    /// Fails with the first refusal. The lines before it keep their effect. A remote controller answers too late.
+    pub fn upload(&mut self, upload: &PlanUpload) -> Result<Vec<String>, VehicleRefusal> {
+        match self {
+            Self::Embedded(embedded) => embedded.upload(upload).map_err(VehicleRefusal::Upload),
+            Self::Remote(_) => Err(VehicleRefusal::UploadToRemote),
         }
     }
 
@@ -141,14 +173,14 @@ impl FlightController {
 
     /// Reports that a person opened the command line. An embedded controller does not arm until it restarts; a remote
     /// one has its own rule.
-    pub fn cli_opened(&mut self) {
+    pub(super) fn cli_opened(&mut self) {
         if let Self::Embedded(embedded) = self {
             embedded.cli_opened();
         }
     }
 
     /// Reports that the command line was left. Motors that it turned stop. A remote controller has its own rule.
-    pub fn cli_closed(&mut self) {
+    pub(super) fn cli_closed(&mut self) {
         if let Self::Embedded(embedded) = self {
             embedded.cli_closed();
         }
@@ -203,7 +235,7 @@ impl FlightController {
     ///
     /// # Errors
     /// Fails with the reason why an embedded controller does not.
-    pub fn return_to_home(&mut self) -> Result<(), Refusal> {
+    pub(super) fn return_to_home(&mut self) -> Result<(), Refusal> {
         match self {
             Self::Embedded(embedded) => embedded.return_to_home(),
             Self::Remote(remote) => {
@@ -217,7 +249,7 @@ impl FlightController {
     ///
     /// # Errors
     /// Fails with the reason. Nothing has changed then.
-    pub fn command(&mut self, command: InFlightCommand) -> Result<(), InFlightRefusal> {
+    pub(super) fn command(&mut self, command: InFlightCommand) -> Result<(), InFlightRefusal> {
         match self {
             Self::Embedded(embedded) => embedded.command(command),
             Self::Remote(_) => Err(InFlightRefusal::Remote),
@@ -225,7 +257,7 @@ impl FlightController {
     }
 
     /// Cancels [`Self::return_to_home`].
-    pub fn cancel_command(&mut self) {
+    pub(super) fn cancel_command(&mut self) {
         match self {
             Self::Embedded(embedded) => embedded.cancel_command(),
             Self::Remote(remote) => {

@@ -1,6 +1,7 @@
 //! Tests of the vehicle.
 
 use super::*;
+use crate::firmware::cli::CliMode;
 use crate::geo::LatLon;
 use crate::pilot::StickInput;
 use crate::sim::Fault;
@@ -23,6 +24,38 @@ fn run(vehicle: &mut Vehicle, until_s: f64) {
     while vehicle.time().as_secs_f64() < until_s {
         vehicle.tick();
     }
+}
+
+/// Runs a CLI line. Returns `true` if it is refused.
+fn is_refused(vehicle: &mut Vehicle, session: CliSession, line: &str) -> bool {
+    match vehicle.apply(&VehicleCommand::line(session, line)) {
+        Answer::Now(Reply::Line(said)) => said.failed,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_session_of_the_command_line_keeps_its_state_until_it_ends() {
+    let mut vehicle = vehicle();
+    let client = CliSession::Client(1);
+    for session in [client, CliSession::Console] {
+        assert!(!is_refused(&mut vehicle, session, "batch start"));
+    }
+    assert!(is_refused(&mut vehicle, client, "nonsense"));
+    assert!(!is_refused(&mut vehicle, CliSession::Console, "batch end"), "the other batch has not failed");
+    assert!(is_refused(&mut vehicle.clone(), client, "batch end"), "a copy continues");
+    for end in [
+        VehicleCommand::EndCli(client),
+        VehicleCommand::BeginCli(client, CliMode::Framed),
+        VehicleCommand::EndAllCli,
+    ] {
+        let mut vehicle = vehicle.clone();
+        vehicle.apply(&end);
+        assert!(!is_refused(&mut vehicle, client, "batch end"), "{end:?}");
+    }
+    let single = CliSession::Single(CliMode::Interactive);
+    assert!(!is_refused(&mut vehicle, single, "batch start") && is_refused(&mut vehicle, single, "nonsense"));
+    assert!(!is_refused(&mut vehicle, single, "batch end"), "each line is a session of its own");
 }
 
 #[test]

@@ -17,9 +17,10 @@ use betadeck::link::proto::command_line::{AfterLine, LineReply, LineSource};
 use betadeck::link::{ClientId, ListenConfig, Listeners, Request};
 use betadeck::session::{Handled, Persistence, RequestHandler};
 use betadeck::signals::{MotorCommand, RcFrame, RcSource, SensorFrame, SimTime};
+use betadeck::sim::WorldConfig;
 use betadeck::storage::Store;
 use betadeck::telemetry::{ArmingFlag, FirmwareEvent};
-use betadeck::vehicle::FlightController;
+use betadeck::vehicle::{Vehicle, VehicleConfig};
 use tokio::sync::{mpsc, oneshot};
 
 const TICK: Duration = Duration::from_millis(1);
@@ -28,7 +29,7 @@ const LOOK: u64 = 20;
 
 /// A firmware on a bench, with a request handler and a wall clock of its own.
 struct Bench {
-    controller: FlightController,
+    vehicle: Vehicle,
     persistence: Persistence,
     handler: RequestHandler,
     ticks: u64,
@@ -51,11 +52,12 @@ impl Bench {
     async fn with(configuration: Configuration) -> Self {
         let closed = ListenConfig { tcp_port: None, ws_port: None, rc_port: None, ..ListenConfig::default() };
         let (doors, _) = Listeners::open(&closed, mpsc::channel(1).0).await;
-        let options = FirmwareOptions { arm_assist: true, ..FirmwareOptions::default() };
-        let mut controller = FlightController::from(Firmware::new(configuration, options));
+        let firmware = FirmwareOptions { arm_assist: true, ..FirmwareOptions::default() };
+        let config = VehicleConfig { world: WorldConfig::default(), firmware, configuration, live: true };
+        let mut vehicle = Vehicle::new(config).unwrap();
         Self {
-            persistence: Persistence::new(Store::in_memory(), &mut controller, true),
-            controller,
+            persistence: Persistence::new(Store::in_memory(), vehicle.controller_mut(), true),
+            vehicle,
             handler: RequestHandler::new(doors.restart_signal()),
             ticks: 0,
             wall: Instant::now(),
@@ -70,23 +72,23 @@ impl Bench {
         let folder = directory.path().join("state");
         let mut bench = Self::new().await;
         let store = Store::open(&folder, false).unwrap();
-        bench.persistence = Persistence::new(store, &mut bench.controller, true);
+        bench.persistence = Persistence::new(store, bench.vehicle.controller_mut(), true);
         std::fs::remove_dir_all(&folder).unwrap();
         std::fs::write(&folder, "").unwrap();
         bench
     }
 
     fn firmware(&self) -> &Firmware {
-        self.controller.embedded().unwrap()
+        self.vehicle.embedded().unwrap()
     }
 
     fn firmware_mut(&mut self) -> &mut Firmware {
-        self.controller.embedded_mut().unwrap()
+        self.vehicle.embedded_mut().unwrap()
     }
 
     fn tick(&mut self, speed: f64) {
         if self.ticks.is_multiple_of(LOOK) {
-            self.handler.keep_rc_fresh(&mut self.controller, speed, self.wall);
+            self.handler.keep_rc_fresh(&mut self.vehicle, speed, self.wall);
         }
         let sensors = SensorFrame { time: SimTime(self.ticks * 1000), ..SensorFrame::default() };
         self.motors = self.firmware_mut().step(&sensors);
@@ -111,7 +113,7 @@ impl Bench {
     }
 
     fn handle(&mut self, request: Request) -> Handled {
-        self.handler.handle(request, &mut self.controller, &mut self.persistence, self.wall)
+        self.handler.handle(request, &mut self.vehicle, &mut self.persistence, self.wall)
     }
 
     fn receive_udp(&mut self, frame: RcFrame) {
@@ -321,7 +323,7 @@ async fn a_second_craft_on_the_same_store_does_not_save() {
     let first = Store::open(directory.path(), false).unwrap();
     let mut bench = Bench::new().await;
     let second = Store::open(directory.path(), false).unwrap();
-    bench.persistence = Persistence::new(second, &mut bench.controller, true);
+    bench.persistence = Persistence::new(second, bench.vehicle.controller_mut(), true);
     assert!(bench.enter(1, true));
     let reply = bench.line(1, LineSource::Prompt, "save");
     assert!(

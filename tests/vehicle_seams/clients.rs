@@ -42,8 +42,7 @@ impl Links {
     }
 
     fn handle(&mut self, request: Request) -> Handled {
-        let controller = self.rig.vehicle.controller_mut();
-        self.handler.handle(request, controller, &mut self.persistence, self.now)
+        self.handler.handle(request, &mut self.rig.vehicle, &mut self.persistence, self.now)
     }
 
     fn message(&mut self, code: u16) -> oneshot::Receiver<Option<Vec<u8>>> {

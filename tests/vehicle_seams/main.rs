@@ -3,14 +3,13 @@
 #![allow(clippy::unwrap_used, reason = "a test may stop")]
 
 use betadeck::firmware::FirmwareOptions;
-use betadeck::firmware::cli::Interpreter;
 use betadeck::firmware::config::Configuration;
 use betadeck::report::json;
 use betadeck::session::SessionView;
 use betadeck::sim::{WorldCommand, WorldConfig};
 use betadeck::telemetry::Snapshot;
 use betadeck::ui::{AppState, Msg, draw, update};
-use betadeck::vehicle::{Answer, FrameOut, LateAnswer, Vehicle, VehicleConfig};
+use betadeck::vehicle::{Answer, FrameOut, LateAnswer, Vehicle, VehicleCommand, VehicleConfig};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 
@@ -101,7 +100,7 @@ fn a_copy_of_the_vehicle_goes_on_identically() {
 #[test]
 fn a_command_line_is_answered_later_by_its_ticket() {
     let mut rig = Rig::new();
-    let mut ask = |line: &str| match rig.vehicle.controller_mut().run_cli(&mut Interpreter::default(), line) {
+    let mut ask = |line: &str| match rig.vehicle.apply(&VehicleCommand::single_line(line)) {
         Answer::Later(ticket) => ticket,
         Answer::Now(reply) => panic!("{reply:?}"),
     };

@@ -204,7 +204,7 @@ impl RemoteRun {
                 AltitudeError::HomeUnknown => unknown.to_string(),
             })
         })?;
-        let mut progress = upload.send_lines(vehicle.controller_mut());
+        let mut progress = upload.send_line(vehicle);
         loop {
             let waits_for = match progress {
                 UploadProgress::Done(result) => {
@@ -217,7 +217,7 @@ impl RemoteRun {
                 UploadProgress::Waiting(ticket) => ticket,
             };
             let said = self.answer(vehicle, waits_for, subscriber)?;
-            progress = upload.take_answer(&said, vehicle.controller_mut());
+            progress = upload.take_answer(&said, vehicle);
         }
     }
 

@@ -58,7 +58,7 @@ impl Past {
         let until = vehicle.time().min(flight.until);
         let (plan, inputs_before) = begun.unwrap_or_else(|| (stored_plan(&vehicle), next));
         // A later `defaults` would empty a plan stored at boot, and a scenario cannot begin with a refused plan.
-        let is_reset = |(_, input): &(SimTime, VehicleCommand)| matches!(input, VehicleCommand::Line(line) if is_defaults(&line.1));
+        let is_reset = |(_, input): &(SimTime, VehicleCommand)| matches!(input, VehicleCommand::Line(line) if is_defaults(&line.line));
         let is_refused = !plan.waypoints.is_empty() && check_plan(&plan).is_err();
         if is_refused || flight.inputs.iter().take(inputs_before).any(is_reset) {
             return Self { plan: stored_plan(&flight.start), inputs_before: 0, until };
@@ -66,10 +66,9 @@ impl Past {
         Self { plan, inputs_before, until }
     }
 
-    /// Returns `true` if the input with this number is already part of the plan.
-    pub(super) fn is_in_plan(&self, number: usize, input: &VehicleCommand) -> bool {
-        let makes_plan = |line: &str| line.split_whitespace().next() == Some("waypoint");
-        number < self.inputs_before && matches!(input, VehicleCommand::Line(line) if makes_plan(&line.1))
+    /// Returns `true` if this sentence of the input with this number is already part of the plan.
+    pub(super) fn is_in_plan(&self, number: usize, sentence: &str) -> bool {
+        number < self.inputs_before && sentence.split_whitespace().take(2).eq(["cli", "waypoint"])
     }
 }
 

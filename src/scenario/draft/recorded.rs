@@ -3,15 +3,15 @@
 use super::Draft;
 use super::past::Past;
 use super::toml_text::{after_boot, quoted};
-use crate::firmware::cli::Interpreter;
 use crate::geo::LatLon;
 use crate::pilot::{RcTransmitter, channel_name};
 use crate::plan::format::{HomePosition, setting_line};
+use crate::plan::upload_lines;
 use crate::signals::{RcFrame, SimTime};
 use crate::sim::WorldCommand;
 use crate::telemetry::InFlightCommand;
 use crate::timeline::RecordedFlight;
-use crate::vehicle::{Answer, Vehicle, VehicleCommand};
+use crate::vehicle::{Answer, Reply, Vehicle, VehicleCommand};
 
 /// Lines of `diff all` that set nothing on the craft, or that the scenario gives in another place.
 const PASSED_OVER: [&str; 11] = [
@@ -103,12 +103,10 @@ impl Draft {
             draft.takeoff_m = pilot.takeoff_m();
         }
         for (number, (at, input)) in inputs.iter().enumerate() {
-            if past.is_in_plan(number, input) {
-                continue;
-            }
-            let what = sentences(input, &mut hands)?;
+            let what = sentences(input, &mut hands)?.into_iter();
             let at = after_boot(since(*at, start_at));
-            draft.inputs.extend(what.into_iter().map(|what| (at.clone(), what)));
+            let later = what.filter(|what| !past.is_in_plan(number, what));
+            draft.inputs.extend(later.map(|what| (at.clone(), what)));
         }
         draft.ends = Some(since(past.until, start_at));
         Ok(draft)
@@ -122,14 +120,11 @@ fn since(at: SimTime, start_at: SimTime) -> SimTime {
 
 /// Returns the settings and the other lines of the craft, as the command line reports them.
 fn configuration(vehicle: &mut Vehicle) -> Result<(Vec<String>, Vec<String>), String> {
-    let reply = match vehicle.controller_mut().run_cli(&mut Interpreter::default(), "diff all") {
-        Answer::Now(reply) => reply.text,
-        Answer::Later(_) => {
-            return Err("the flight controller runs elsewhere: its flight cannot be repeated".to_owned());
-        }
+    let Answer::Now(Reply::Line(reply)) = vehicle.apply(&VehicleCommand::single_line("diff all")) else {
+        return Err("the flight controller runs elsewhere: its flight cannot be repeated".to_owned());
     };
     let (mut settings, mut lines) = (Vec::new(), Vec::new());
-    for line in reply.lines().map(str::trim) {
+    for line in reply.text.lines().map(str::trim) {
         let first = line.split_whitespace().next().unwrap_or("#");
         if PASSED_OVER.iter().any(|word| first == *word || *word == "#" && first.starts_with('#')) {
             continue;
@@ -152,11 +147,18 @@ fn sentences(input: &VehicleCommand, hands: &mut Hands) -> Result<Vec<String>, S
         VehicleCommand::Message(_) => {
             Err("a client changed the craft over MSP: a scenario cannot repeat that".to_owned())
         }
-        VehicleCommand::SticksFirst(_) | VehicleCommand::CliOpened | VehicleCommand::CliClosed => {
-            Ok(Vec::new())
+        VehicleCommand::SticksFirst(_)
+        | VehicleCommand::BeginCli(..)
+        | VehicleCommand::EndCli(_)
+        | VehicleCommand::EndAllCli
+        | VehicleCommand::CliOpened
+        | VehicleCommand::CliClosed => Ok(Vec::new()),
+        VehicleCommand::Upload(upload) => {
+            let lines = upload_lines(upload.plan.records(), &upload.settings);
+            Ok(lines.map(|line| format!("cli {line}")).collect())
         }
         VehicleCommand::Line(line) => {
-            let text = line.1.trim();
+            let text = line.line.trim();
             let reads = text.is_empty()
                 || READING.iter().any(|word| {
                     text == *word

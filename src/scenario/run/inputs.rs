@@ -1,8 +1,7 @@
 //! The inputs of a case, carried out at their instants.
 
-use crate::firmware::cli::Interpreter;
+use crate::firmware::cli::RefusedLine;
 use crate::pilot::StickInput;
-use crate::plan::plan_lines;
 use crate::scenario::expression::{Evaluator, Search};
 use crate::scenario::happening::{EventName, Happening};
 use crate::scenario::input::{Action, TimedInput};
@@ -18,7 +17,6 @@ pub(super) struct Inputs<'a> {
     waiting: Vec<Waiting<'a>>,
     /// The time at which the transmitter is restored.
     restore_at: Option<SimTime>,
-    command_line: Interpreter,
 }
 
 /// An input that waits for its instant.
@@ -35,7 +33,7 @@ impl<'a> Inputs<'a> {
             .iter()
             .map(|input| Waiting { input, search: Search::new(&input.at), due_us: None })
             .collect();
-        Self { waiting, restore_at: None, command_line: Interpreter::default() }
+        Self { waiting, restore_at: None }
     }
 
     /// Checks which instants have come.
@@ -105,24 +103,7 @@ impl<'a> Inputs<'a> {
                 self.restore_at = None;
                 apply(vehicle, &VehicleCommand::CutRc(false))
             }
-            Action::Cli(line) => self.type_line(line, vehicle),
-            Action::Upload(plan) => {
-                let lines: Vec<String> = plan_lines(plan).collect();
-                lines.iter().flat_map(|line| self.type_line(line, vehicle)).collect()
-            }
         }
-    }
-
-    fn type_line(&mut self, line: &str, vehicle: &mut Vehicle) -> Vec<(EventName, String)> {
-        let Answer::Now(reply) = vehicle.controller_mut().run_cli(&mut self.command_line, line) else {
-            return Vec::new();
-        };
-        let text = reply.text.trim().to_owned();
-        let mut said = vec![(EventName::Reply, text.clone())];
-        if reply.failed {
-            said.push((EventName::Refusal, format!("the craft refused `{line}`: {text}")));
-        }
-        said
     }
 }
 
@@ -132,10 +113,22 @@ impl Waiting<'_> {
     }
 }
 
-/// Carries out a command and returns the reply.
+/// Carries out a command and returns the replies.
 fn apply(vehicle: &mut Vehicle, command: &VehicleCommand) -> Vec<(EventName, String)> {
-    match vehicle.apply(command) {
-        Answer::Now(Reply::Refused(refusal)) => vec![(EventName::Refusal, refusal.to_string())],
+    match (command, vehicle.apply(command)) {
+        (_, Answer::Now(Reply::Refused(refusal))) => vec![(EventName::Refusal, refusal.to_string())],
+        (_, Answer::Now(Reply::Uploaded(replies))) => {
+            replies.into_iter().map(|reply| (EventName::Reply, reply)).collect()
+        }
+        (VehicleCommand::Line(line), Answer::Now(Reply::Line(answer))) => {
+            let reply = answer.text.trim().to_owned();
+            let mut said = vec![(EventName::Reply, reply.clone())];
+            if answer.failed {
+                let refused = RefusedLine { line: line.line.clone(), reply };
+                said.push((EventName::Refusal, refused.to_string()));
+            }
+            said
+        }
         _ => Vec::new(),
     }
 }

@@ -75,8 +75,8 @@ impl Session {
             Command::Cli { line, reply } if self.is_rewound() => reply.send(self.read_shown(&line)),
             Command::Cli { line, reply } => {
                 let handler = self.endpoints.as_mut().map(|endpoints| &mut endpoints.handler);
-                let (controller, persistence) = (self.vehicle.controller_mut(), &mut self.persistence);
-                let outcome = self.interface.run_line(line, reply, controller, persistence, handler);
+                let (vehicle, persistence) = (&mut self.vehicle, &mut self.persistence);
+                let outcome = self.interface.run_line(line, reply, vehicle, persistence, handler);
                 self.report(outcome);
             }
             Command::Upload { plan, settings, reply } => {
@@ -85,11 +85,10 @@ impl Session {
                 let outcome = self.interface.upload(&plan, settings, is_simulated, reply, craft);
                 self.report(outcome);
             }
-            Command::Download { reply } => self.interface.download(reply, self.vehicle.controller_mut()),
+            Command::Download { reply } => self.interface.download(reply, &mut self.vehicle),
             Command::Save { reply } => {
                 let is_real = self.access().is_limited();
-                let controller = self.vehicle.controller_mut();
-                self.interface.save(is_real, reply, controller, &mut self.persistence);
+                self.interface.save(is_real, reply, &mut self.vehicle, &mut self.persistence);
             }
             Command::PermitChanges(connection) => {
                 if let Some(remote) = &mut self.runner.link {
@@ -152,7 +151,10 @@ impl Session {
             VehicleRefusal::Pilot(mode) => {
                 format!("The scripted pilot needs a switch for {mode}: assign one with the CLI command aux.")
             }
-            VehicleRefusal::World(_) | VehicleRefusal::InFlight(_) => refusal.to_string(),
+            VehicleRefusal::World(_)
+            | VehicleRefusal::InFlight(_)
+            | VehicleRefusal::Upload(_)
+            | VehicleRefusal::UploadToRemote => refusal.to_string(),
         });
     }
 
@@ -162,7 +164,7 @@ impl Session {
             self.notice("The firmware restarted, disarmed; the simulator places the craft.");
         }
         if let Some(endpoints) = &mut self.endpoints {
-            endpoints.handler.after_restart(false, self.vehicle.controller_mut());
+            endpoints.handler.after_restart(false, &mut self.vehicle);
         }
     }
 

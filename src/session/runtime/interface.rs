@@ -6,7 +6,7 @@ use std::time::Instant;
 use crate::fc::{
     LIST, Upload, UploadProgress, UploadReport, UploadView, plan_above_home, replace_falling_gains,
 };
-use crate::firmware::cli::{CliAction, CliReply, Interpreter, advice};
+use crate::firmware::cli::{CliAction, CliReply, advice};
 use crate::msp::code;
 use crate::plan::{AltitudeReference, FlightPlan};
 use crate::session::command::CliOutput;
@@ -15,7 +15,9 @@ use crate::session::late_answers::{LateAnswers, NO_ANSWER, no_answer_line};
 use crate::session::persistence::Persistence;
 use crate::session::request_handler::RequestHandler;
 use crate::session::{ReplyTo, hazards};
-use crate::vehicle::{Answer, FlightController, LateAnswer, Ticket, Vehicle};
+use crate::vehicle::{
+    Answer, CliSession, LateAnswer, Message, Reply as VehicleReply, Ticket, Vehicle, VehicleCommand,
+};
 
 /// A reply that can be a refusal, as a sentence.
 type Reply<T> = ReplyTo<Result<T, String>>;
@@ -23,7 +25,6 @@ type Reply<T> = ReplyTo<Result<T, String>>;
 /// The user interface's side of the flight controller.
 #[derive(Debug, Default)]
 pub(super) struct Interface {
-    console: Interpreter,
     /// The figures that `status` shows besides those of the flight controller.
     pub(super) host: HostStatus,
     late_answers: LateAnswers<Waiting>,
@@ -45,34 +46,30 @@ enum Waiting {
 }
 
 impl Interface {
-    /// Begins a new session of the command line, after a restart of the flight controller.
-    pub(super) fn restart_console(&mut self) {
-        self.console = Interpreter::default();
-    }
-
     /// Runs a line. `handler` closes the clients' links if the line restarts the
     /// flight controller.
     pub(super) fn run_line(
         &mut self,
         line: String,
         reply: ReplyTo<CliOutput>,
-        controller: &mut FlightController,
+        vehicle: &mut Vehicle,
         persistence: &mut Persistence,
         handler: Option<&mut RequestHandler>,
     ) -> Outcome {
-        let mut answer = match controller.run_cli(&mut self.console, &line) {
-            Answer::Now(answer) => answer,
+        let mut answer = match vehicle.apply(&VehicleCommand::line(CliSession::Console, &line)) {
+            Answer::Now(VehicleReply::Line(answer)) => answer,
+            Answer::Now(_) => return Outcome::default(),
             Answer::Later(ticket) => {
                 self.late_answers.expect(ticket, Waiting::Line { line, reply }, now());
                 return Outcome::default();
             }
         };
         self.host.add_to(&mut answer);
-        let done = persistence.carry_out(&mut answer, controller);
+        let done = persistence.carry_out(&mut answer, vehicle.controller_mut());
         if done.restarted.is_some() {
-            self.restart_console();
+            restart_console(vehicle);
             if let Some(handler) = handler {
-                handler.after_restart(true, controller);
+                handler.after_restart(true, vehicle);
             }
         }
         let output = output(&line, answer, done.restarted.is_some());
@@ -89,6 +86,13 @@ impl Interface {
         reply: Reply<UploadReport>,
         craft: &mut UploadTo<'_>,
     ) -> Outcome {
+        if craft.vehicle.embedded().is_some() {
+            let result = match craft.vehicle.apply(&VehicleCommand::upload(plan.clone(), settings)) {
+                Answer::Now(VehicleReply::Refused(refusal)) => Err(refusal.to_string()),
+                _ => Ok(UploadReport::default()),
+            };
+            return uploaded(result, reply, craft);
+        }
         let reference = craft.vehicle.controller().altitude_reference();
         let landing_gains = match reference {
             AltitudeReference::SeaLevel { .. } if is_simulated => replace_falling_gains(&mut settings),
@@ -97,7 +101,7 @@ impl Interface {
         match Upload::new(plan, &settings, reference) {
             Ok(mut upload) => {
                 upload.report_landing_gains(landing_gains);
-                let progress = upload.send_lines(craft.vehicle.controller_mut());
+                let progress = upload.send_line(craft.vehicle);
                 self.go_on(Box::new(upload), progress, reply, craft, now())
             }
             Err(unknown) => {
@@ -116,10 +120,13 @@ impl Interface {
     }
 
     /// Reads the plan of the craft as a ground station does.
-    pub(super) fn download(&mut self, reply: Reply<Box<FlightPlan>>, controller: &mut FlightController) {
-        let reference = controller.altitude_reference();
-        match controller.run_cli(&mut Interpreter::default(), LIST) {
-            Answer::Now(answer) => reply.send(plan_above_home(&answer, reference).map(Box::new)),
+    pub(super) fn download(&mut self, reply: Reply<Box<FlightPlan>>, vehicle: &mut Vehicle) {
+        let reference = vehicle.controller().altitude_reference();
+        match vehicle.apply(&VehicleCommand::single_line(LIST)) {
+            Answer::Now(VehicleReply::Line(answer)) => {
+                reply.send(plan_above_home(&answer, reference).map(Box::new));
+            }
+            Answer::Now(_) => {}
             Answer::Later(ticket) => self.late_answers.expect(ticket, Waiting::Download(reply), now()),
         }
     }
@@ -130,15 +137,17 @@ impl Interface {
         &mut self,
         is_real: bool,
         reply: Reply<()>,
-        controller: &mut FlightController,
+        vehicle: &mut Vehicle,
         persistence: &mut Persistence,
     ) {
-        if controller.is_armed() {
+        if vehicle.controller().is_armed() {
             let way = if is_real { "its transmitter disarms it" } else { "`a` disarms it" };
             reply.send(Err(format!("Not saved while the craft is armed: {way} on the ground.")));
-        } else if controller.configuration().is_some() {
-            reply.send(persistence.save(controller));
-        } else if let Answer::Later(ticket) = controller.run_msp(code::EEPROM_WRITE, &[], None) {
+        } else if vehicle.embedded().is_some() {
+            reply.send(persistence.save(vehicle.controller_mut()));
+        } else if let Answer::Later(ticket) =
+            vehicle.apply(&Message::of(code::EEPROM_WRITE, Vec::new()).into())
+        {
             self.late_answers.expect(ticket, Waiting::Save(reply), now());
         }
     }
@@ -161,7 +170,7 @@ impl Interface {
                 reply.send(output(&line, said, restarted));
             }
             (Some(Waiting::Upload(mut upload, reply)), LateAnswer::Cli(said)) => {
-                let progress = upload.take_answer(&said, craft.vehicle.controller_mut());
+                let progress = upload.take_answer(&said, craft.vehicle);
                 return Ok(self.go_on(upload, progress, reply, craft, now));
             }
             (Some(Waiting::Download(reply)), LateAnswer::Cli(said)) => {
@@ -201,11 +210,7 @@ impl Interface {
         now: Instant,
     ) -> Outcome {
         match progress {
-            UploadProgress::Done(result) => {
-                let hazards =
-                    if result.is_ok() { hazards(craft.vehicle, craft.takeoff_m, None) } else { Vec::new() };
-                Outcome::new(hazards, move || reply.send(result))
-            }
+            UploadProgress::Done(result) => uploaded(result, reply, craft),
             UploadProgress::Waiting(ticket) => {
                 self.late_answers.expect(ticket, Waiting::Upload(upload, reply), now);
                 Outcome::default()
@@ -233,6 +238,21 @@ pub(super) struct UploadTo<'a> {
     pub(super) vehicle: &'a mut Vehicle,
     /// The altitude to which the scripted pilot climbs, m.
     pub(super) takeoff_m: f64,
+}
+
+/// Reports the result of an upload, after the hazards of the plan.
+fn uploaded(
+    result: Result<UploadReport, String>,
+    reply: Reply<UploadReport>,
+    craft: &UploadTo<'_>,
+) -> Outcome {
+    let hazards = if result.is_ok() { hazards(craft.vehicle, craft.takeoff_m, None) } else { Vec::new() };
+    Outcome::new(hazards, move || reply.send(result))
+}
+
+/// Begins a new session of the command line, after a restart of the flight controller.
+pub(super) fn restart_console(vehicle: &mut Vehicle) {
+    vehicle.apply(&VehicleCommand::EndCli(CliSession::Console));
 }
 
 /// Returns the console's output for an answer.

@@ -4,6 +4,7 @@
 use std::task::{Context, Poll};
 use std::time::{Duration, Instant};
 
+use super::interface::restart_console;
 use super::limits::refuse_request;
 use super::rewind::refuse_changing_request;
 use super::{SLICE, Session};
@@ -81,14 +82,14 @@ impl Session {
                 &mut self.vehicle,
                 &mut self.events,
             );
-            let controller = self.vehicle.controller_mut();
+            let (vehicle, persistence) = (&mut self.vehicle, &mut self.persistence);
             let Handled { notices, restarted, fdm } =
-                endpoints.handler.handle(request, controller, &mut self.persistence, Instant::now());
+                endpoints.handler.handle(request, vehicle, persistence, Instant::now());
             for notice in notices {
                 self.events.notice(&mut self.vehicle, notice);
             }
             if restarted {
-                self.interface.restart_console();
+                restart_console(&mut self.vehicle);
                 self.events.report(&mut self.vehicle, SessionEvent::Restarted);
             }
             if let (Some((datagram, at)), Some(simulator)) = (fdm, &mut self.simulator) {
@@ -152,7 +153,7 @@ impl<F> Subscriber<F> for FreshRc<'_> {
     fn before_tick(&mut self, vehicle: &mut Vehicle) {
         if self.speed > 1.0 && vehicle.time().0.is_multiple_of(RC_REPEAT_US) {
             let speed = self.speed.min(*SPEED_RANGE.end());
-            self.handler.keep_rc_fresh(vehicle.controller_mut(), speed, Instant::now());
+            self.handler.keep_rc_fresh(vehicle, speed, Instant::now());
         }
     }
 }

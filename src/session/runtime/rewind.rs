@@ -7,7 +7,6 @@ use super::limits::{impact_of_request, refuse};
 use super::requests::FreshRc;
 use super::{SLICE, Session};
 use crate::fc::{Impact, RemoteLink};
-use crate::firmware::cli::Interpreter;
 use crate::link::Request;
 use crate::session::Event;
 use crate::session::arming::ArmingWatch;
@@ -17,7 +16,7 @@ use crate::session::policy::{NOT_RECORDED, REWOUND};
 use crate::session::runner::tick;
 use crate::signals::SimTime;
 use crate::timeline::{RecordedFlight, Shown, Timeline, TimelineView};
-use crate::vehicle::{Answer, Vehicle};
+use crate::vehicle::{Answer, Reply, Vehicle, VehicleCommand};
 
 /// The longest time that the flight continues until an event, µs.
 const RUN_ON_US: u64 = 600_000_000;
@@ -103,8 +102,8 @@ impl Session {
     pub(super) fn read_shown(&self, line: &str) -> CliOutput {
         let mut copy = self.copy_of_shown();
         let time_s = copy.time().as_secs_f64();
-        match copy.controller_mut().run_cli(&mut Interpreter::default(), line) {
-            Answer::Now(mut answer) => {
+        match copy.apply(&VehicleCommand::single_line(line)) {
+            Answer::Now(Reply::Line(mut answer)) => {
                 self.interface.host.add_to(&mut answer);
                 let mut output = output(line, answer, false);
                 output
@@ -113,7 +112,7 @@ impl Session {
                 output
             }
             // A remote flight controller is not recorded, so no earlier instant of it is shown.
-            Answer::Later(_) => CliOutput {
+            _ => CliOutput {
                 text: "###ERROR: REWOUND###".to_owned(),
                 advice: Some(REWOUND.to_owned()),
                 restarted: false,
@@ -276,11 +275,11 @@ impl Session {
         };
         self.vehicle = vehicle;
         self.persistence.tell(self.vehicle.controller_mut());
-        self.interface.restart_console();
+        self.vehicle.apply(&VehicleCommand::EndAllCli);
         self.arming = ArmingWatch::default();
         self.events.branch(&mut self.vehicle, branch, left);
         if let Some(endpoints) = &mut self.endpoints {
-            endpoints.handler.after_restart(true, self.vehicle.controller_mut());
+            endpoints.handler.after_restart(true, &mut self.vehicle);
         }
         self.runner.pacer.set_paused(false, now);
     }

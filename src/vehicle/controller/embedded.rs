@@ -1,25 +1,28 @@
 //! A flight controller in this program, with its inputs since the last step.
 
+use std::collections::BTreeMap;
+
 use crate::firmware::Firmware;
-use crate::firmware::cli::{CliReply, Interpreter};
+use crate::firmware::cli::{CliMode, CliReply, Interpreter, RefusedLine};
 use crate::firmware::config::Configuration;
-use crate::firmware::msp::{MESSAGES, MspAction, Outcome, UtcTime};
+use crate::firmware::msp::{MESSAGES, MspAction, Outcome};
 use crate::msp::Access;
 use crate::signals::{RcFrame, RcSource};
 use crate::telemetry::{InFlightCommand, InFlightRefusal, Refusal};
 use crate::vehicle::input_log::InputLog;
-use crate::vehicle::{Message, VehicleCommand};
+use crate::vehicle::{CliLine, CliSession, Message, PlanUpload, VehicleCommand};
 
-/// The firmware and the inputs since the last step.
+/// The firmware, the sessions of its command line, and the inputs since the last step.
 #[derive(Debug, Clone)]
 pub struct EmbeddedController {
     pub(super) firmware: Firmware,
+    cli_sessions: BTreeMap<CliSession, Interpreter>,
     pub(super) inputs: InputLog,
 }
 
 impl EmbeddedController {
     pub(super) fn new(firmware: Firmware) -> Self {
-        Self { firmware, inputs: InputLog::default() }
+        Self { firmware, cli_sessions: BTreeMap::new(), inputs: InputLog::default() }
     }
 
     pub(super) fn receive_rc(&mut self, frame: &RcFrame, source: RcSource) {
@@ -35,20 +38,46 @@ impl EmbeddedController {
         self.firmware.take_over_sticks(sticks_first);
     }
 
-    /// Lines that only ask are inputs too, since each makes the parameters follow the settings again.
-    pub(super) fn run_cli(&mut self, session: &mut Interpreter, line: &str) -> CliReply {
-        self.inputs.note(|| VehicleCommand::Line(Box::new((session.clone(), line.to_owned()))));
-        self.firmware.run_cli(session, line)
+    pub(super) fn begin_cli(&mut self, session: CliSession, mode: CliMode) {
+        self.inputs.note(|| VehicleCommand::BeginCli(session, mode));
+        self.cli_sessions.insert(session, Interpreter::new(mode));
     }
 
-    pub(super) fn run_msp(&mut self, code: u16, payload: &[u8], clock: Option<UtcTime>) -> Outcome {
-        let outcome = self.firmware.run_msp(code, payload, clock);
+    pub(super) fn end_cli(&mut self, session: CliSession) {
+        if self.cli_sessions.remove(&session).is_some() {
+            self.inputs.note(|| VehicleCommand::EndCli(session));
+        }
+    }
+
+    pub(super) fn end_all_cli(&mut self) {
+        if !std::mem::take(&mut self.cli_sessions).is_empty() {
+            self.inputs.note(|| VehicleCommand::EndAllCli);
+        }
+    }
+
+    /// Lines that only ask are inputs too, since each makes the parameters follow the settings again.
+    pub(super) fn run_cli(&mut self, command: &CliLine) -> CliReply {
+        self.inputs.note(|| VehicleCommand::Line(Box::new(command.clone())));
+        let CliLine { session, line } = command;
+        match session {
+            CliSession::Single(mode) => self.firmware.run_cli(&mut Interpreter::new(*mode), line),
+            CliSession::Console | CliSession::Client(_) => {
+                self.firmware.run_cli(self.cli_sessions.entry(*session).or_default(), line)
+            }
+        }
+    }
+
+    pub(super) fn upload(&mut self, upload: &PlanUpload) -> Result<Vec<String>, RefusedLine> {
+        self.inputs.note(|| VehicleCommand::Upload(Box::new(upload.clone())));
+        self.firmware.upload(&upload.plan, &upload.settings)
+    }
+
+    pub(super) fn run_msp(&mut self, message: &Message) -> Outcome {
+        let Message { code, payload, clock } = message;
+        let outcome = self.firmware.run_msp(*code, payload, *clock);
         match outcome.action {
             Some(MspAction::RawRc(frame)) => self.inputs.note(|| VehicleCommand::Rc(frame, RcSource::Msp)),
-            _ if writes(code) => {
-                let message = || Message { code, payload: payload.to_vec(), clock };
-                self.inputs.note(|| VehicleCommand::Message(Box::new(message())));
-            }
+            _ if writes(*code) => self.inputs.note(|| VehicleCommand::Message(Box::new(message.clone()))),
             _ => {}
         }
         outcome
