@@ -8,9 +8,10 @@ use crate::firmware::settings::{Scope, Value, find};
 const VOLTAGE_SUBFRAME: u8 = 5;
 /// The size of one current meter's subframe, bytes.
 const CURRENT_SUBFRAME: u8 = 6;
-const METER_MEASURED: u8 = 10;
+/// The meters that measure the battery.
+pub(super) const METER_MEASURED: u8 = 10;
 /// The current meter that computes from the throttle.
-const METER_VIRTUAL: u8 = 80;
+pub(super) const METER_VIRTUAL: u8 = 80;
 /// The type of a current meter with a converter.
 const CURRENT_ADC: u8 = 1;
 const MAX_CELLS: u8 = 24;

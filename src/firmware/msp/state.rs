@@ -1,5 +1,6 @@
 //! The present measurements and state of the craft.
 
+use super::power::{METER_MEASURED, METER_VIRTUAL};
 use super::{Call, MspFacts, UtcTime, modes};
 use crate::firmware::config::Feature;
 use crate::firmware::settings::Scope;
@@ -9,9 +10,6 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 /// The accelerometer counts of 1 g.
 const COUNTS_PER_G: f64 = 256.0;
-/// The meters of the battery: the measured one and the computed one.
-const METER_MEASURED: u8 = 10;
-const METER_VIRTUAL: u8 = 80;
 
 pub(super) fn status(call: &mut Call<'_>) {
     present_status(call).encode(false, &mut call.reply);
