@@ -13,8 +13,8 @@ pub mod client;
 mod feed;
 mod first_answer;
 mod identify;
-mod landing_gains;
 mod life;
+mod master_settings;
 mod observer;
 mod patience;
 mod permission;
@@ -35,7 +35,7 @@ mod tests;
 mod upload;
 mod view;
 
-pub use landing_gains::replace_falling_gains;
+pub use master_settings::replace_settings;
 pub use observer::{Observer, Simulated};
 pub use patience::{NotReady, Patience, Unready};
 pub use permission::{Access, Denial, Impact, NOT_PERMITTED, NOTHING_MOVES, NOTHING_SIMULATED};

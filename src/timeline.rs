@@ -3,6 +3,9 @@
 //! `recording` keeps frozen vehicles and the inputs between them, `replay` flies from one of them to an earlier
 //! instant, `marks` keeps the times of events. While an earlier instant is shown, the flying vehicle waits.
 //!
+//! The flight of a remote flight controller cannot be flown again. Of it only the frozen vehicles are kept, ten a second,
+//! and an instant is shown as the next of them shows it.
+//!
 //! Nothing here reads a clock. The owner of the vehicle decides when to record and which instant to show.
 
 mod idle;
@@ -31,6 +34,8 @@ pub struct Timeline {
     replay: Option<Replay>,
     branch: u32,
     branched_at: SimTime,
+    /// `true` if the vehicle cannot be flown again.
+    is_pictures: bool,
 }
 
 /// The result of a replay.
@@ -43,17 +48,27 @@ pub enum Shown {
 }
 
 impl Timeline {
-    /// Records `vehicle` from now on. Returns `None` if it cannot be flown again, because its time or its flight
-    /// controller is not under the control of this program.
+    /// Records `vehicle` from now on: for replays, or as pictures if its flight controller is remote. Returns `None` if
+    /// its world is not simulated by this program.
     pub fn new(vehicle: &mut Vehicle) -> Option<Self> {
-        Self::within(Bounds::default(), vehicle)
+        let is_remote = vehicle.embedded().is_none();
+        Self::within(if is_remote { Bounds::of_pictures() } else { Bounds::default() }, vehicle)
     }
 
     fn within(bounds: Bounds, vehicle: &mut Vehicle) -> Option<Self> {
-        if !vehicle.keep_inputs(true) {
-            return None;
-        }
-        Some(Self { recording: Recording::new(bounds), replay: None, branch: 0, branched_at: SimTime::ZERO })
+        let flies_again = vehicle.keep_inputs(true);
+        (flies_again || vehicle.truth().is_some()).then(|| Self {
+            recording: Recording::new(bounds),
+            replay: None,
+            branch: 0,
+            branched_at: SimTime::ZERO,
+            is_pictures: !flies_again,
+        })
+    }
+
+    /// Returns `true` if only pictures are kept, so that the flight cannot be continued from an earlier instant.
+    pub fn is_pictures(&self) -> bool {
+        self.is_pictures
     }
 
     /// Records the inputs since the previous tick. Call it right before each tick, and when there were many inputs
@@ -94,6 +109,10 @@ impl Timeline {
             self.replay = None;
             return Shown::Newest;
         }
+        if self.is_pictures {
+            self.replay = self.recording.first_from(time).map(|picture| Replay::still(picture, time));
+            return if self.replay.is_some() { Shown::Earlier } else { Shown::Newest };
+        }
         // A short step forwards continues from the shown instant. Anything else starts from a frozen vehicle.
         let oldest = self.recording.first_input();
         let shown =
@@ -111,7 +130,7 @@ impl Timeline {
     /// Advances the replay by some ticks, at most to `head`.
     pub fn play(&mut self, ticks: u64, head: SimTime) -> Shown {
         let Some(replay) = &self.replay else { return Shown::Newest };
-        let to = SimTime(replay.time().0 + ticks * replay.vehicle().step_us());
+        let to = SimTime(replay.at().0 + ticks * replay.vehicle().step_us());
         self.show(to, head)
     }
 
@@ -121,9 +140,9 @@ impl Timeline {
     }
 
     /// Makes the shown vehicle the flying one, on a new branch. Forgets the recording after it. Returns `None` if no
-    /// earlier instant is shown.
+    /// earlier instant is shown, or if the vehicle cannot be flown again.
     pub fn fly_on(&mut self) -> Option<Vehicle> {
-        let replay = self.replay.take()?;
+        let replay = self.replay.take_if(|_| !self.is_pictures)?;
         self.recording.forget_after(&replay);
         self.branch += 1;
         self.branched_at = replay.time();

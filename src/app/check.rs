@@ -4,6 +4,7 @@ mod load;
 mod output;
 mod progress;
 mod remote;
+pub(super) use remote::prepare;
 mod results;
 mod run;
 mod watch;

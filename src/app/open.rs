@@ -1,11 +1,15 @@
-//! `betadeck open`: the screen at an instant of a scenario's flight, which is flown first.
+//! `betadeck open`: the screen at an instant of a scenario's flight, which is flown first, by the embedded firmware or by a
+//! remote one.
 
 use super::check;
-use super::error::AppError;
+use super::error::{self, AppError};
+use super::firmware::run::{OnEvent, Stopped, unless_interrupted};
+use super::firmware::{self, Beside, RemoteFirmware, reported};
+use super::interrupt::interrupt_flag;
 use super::live::LiveArgs;
 use super::tui::{self, Screen};
 use crate::args::{DoorArgs, FlightArgs, Instant, OpenArgs, PhysicsArgs, ReviewArgs};
-use crate::scenario::{Air, Case, CaseFlight, Scenario};
+use crate::scenario::{self, Air, Case, CaseFlight, Scenario};
 use crate::session::{Event, FlownBefore, Runner, SessionView, Subscriber};
 use crate::signals::SimTime;
 use crate::storage::Store;
@@ -40,25 +44,33 @@ pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
     tui::require_terminal(false)?;
     let scenario = check::load_one(&args.scenario, args.seed)?;
     let (case, air) = choose(&scenario, args)?;
-    let mut flight = CaseFlight::new(case, &air).map_err(AppError::input)?;
-    let timeline = Timeline::new(flight.vehicle_mut())
-        .ok_or_else(|| AppError::internal("the flight of a scenario is not recorded"))?;
-    let mut recorded = (timeline, Recorded::default());
-    let mut runner = Runner::new(flight.vehicle().step_us(), f64::INFINITY, None);
-    runner
-        .fly(&mut flight, &mut recorded, || false)
-        .map_err(|_| AppError::internal("the flight of a scenario stopped"))?;
-    let (timeline, Recorded { events, past }) = recorded;
+    let mut notices = Vec::new();
+    let beside = Beside {
+        ports: (&args.firmware_ports).into(),
+        flight: &FlightArgs::default(),
+        physics: &PhysicsArgs::default(),
+    };
+    let firmware = firmware::choose(&args.firmware, beside, &mut notices)?;
+    notices.extend(args.firmware_ports.idle_options(firmware.is_some()));
+    let flown = match &firmware {
+        None => fly(case, &air)?,
+        Some(firmware) => match unless_interrupted(fly_remote(case, &air, firmware))? {
+            Some(flown) => flown,
+            None => return Ok(error::INTERRUPTED),
+        },
+    };
+    let Flown { flight, timeline, recorded: Recorded { events, past } } = flown;
     let show = instant(args.at, flight.trace().engaged_at, flight.vehicle().time())?;
     let name = if case.name.is_empty() {
         scenario.name.clone()
     } else {
         format!("{}, {}", scenario.name, case.name)
     };
-    let notices = vec![format!(
-        "Scenario {name}, seed {}, was flown to its end: `,` and `<` go back, Space plays it, `b` flies on from here.",
+    let flies_on = if firmware.is_none() { ", `b` flies on from here" } else { "" };
+    notices.push(format!(
+        "Scenario {name}, seed {}, was flown to its end: `,` and `<` go back, Space plays it{flies_on}.",
         air.seed
-    )];
+    ));
     let doors = DoorArgs { no_ports: true, ..DoorArgs::default() };
     let (physics, flight_args) = (PhysicsArgs::default(), FlightArgs::default());
     let screen = Screen {
@@ -83,6 +95,50 @@ pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
         },
     };
     tui::show(screen, keymap)
+}
+
+/// A flight that is over, with its record.
+struct Flown<'a> {
+    flight: CaseFlight<'a>,
+    timeline: Timeline,
+    recorded: Recorded,
+}
+
+fn recording(flight: &mut CaseFlight<'_>) -> Result<(Timeline, Recorded), AppError> {
+    let timeline = Timeline::new(flight.vehicle_mut());
+    let timeline = timeline.ok_or_else(|| AppError::internal("the flight of a scenario is not recorded"))?;
+    Ok((timeline, Recorded::default()))
+}
+
+/// Flies with the embedded firmware.
+fn fly<'a>(case: &'a Case, air: &Air) -> Result<Flown<'a>, AppError> {
+    let mut flight = CaseFlight::new(case, air).map_err(AppError::input)?;
+    let mut subscribers = recording(&mut flight)?;
+    let mut runner = Runner::new(flight.vehicle().step_us(), f64::INFINITY, None);
+    runner
+        .fly(&mut flight, &mut subscribers, || false)
+        .map_err(|_| AppError::internal("the flight of a scenario stopped"))?;
+    let (timeline, recorded) = subscribers;
+    Ok(Flown { flight, timeline, recorded })
+}
+
+/// Flies with a remote firmware, as `check` does. An executable ends with the flight.
+fn fly_remote<'a>(case: &'a Case, air: &Air, firmware: &RemoteFirmware) -> Result<Flown<'a>, Stopped> {
+    if scenario::skip(case).is_some() {
+        return Err(AppError::input(
+            "only the embedded firmware can fly this case: its inputs or its end need knowledge that no other gives",
+        )
+        .into());
+    }
+    error::tell("The firmware flies the case first.");
+    let mut tell =
+        OnEvent(|event: &Event| reported::sentence(event).iter().for_each(|said| error::tell(said)));
+    let (mut remote, vehicle) = check::prepare(firmware, case, air, &interrupt_flag()?, 0, &mut tell)?;
+    let mut flight = CaseFlight::of_vehicle(case, vehicle).map_err(AppError::input)?;
+    let mut subscribers = recording(&mut flight)?;
+    remote.fly(&mut flight, &mut subscribers)?;
+    let (timeline, recorded) = subscribers;
+    Ok(Flown { flight, timeline, recorded })
 }
 
 /// Returns the requested case and air.

@@ -1,5 +1,6 @@
 //! The options of `open`.
 
+use super::firmware::{FirmwareArgs, FirmwarePortArgs};
 use super::{DisplayArgs, value};
 
 /// The options of `open`.
@@ -20,6 +21,14 @@ pub struct OpenArgs {
     /// The seed [default: the case's first]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = value::seed)]
     pub seed: Option<u64>,
+
+    /// The choice of the firmware.
+    #[command(flatten)]
+    pub firmware: FirmwareArgs,
+
+    /// The ports of the firmware.
+    #[command(flatten)]
+    pub firmware_ports: FirmwarePortArgs,
 
     /// The screen.
     #[command(flatten)]

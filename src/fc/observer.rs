@@ -218,9 +218,8 @@ impl Observer {
         self.settings.waypoints_from_home()
     }
 
-    /// Returns `true` if its altitude loop has no limit in LAND, as in upstream's master, whose altitudes are
-    /// above sea level.
-    pub(super) fn falls_in_land(&self) -> bool {
+    /// Returns `true` if it is a build of upstream's master, whose altitudes are above sea level.
+    pub(super) fn is_master(&self) -> bool {
         self.settings.report_altitude_reference() && !self.counts_from_home()
     }
 

@@ -56,7 +56,7 @@ const PLAN: [(Poll, u64); 12] = [
 
 /// The periods of the polls that show states and modes, for a flight controller in simulated time, ms. They are so short
 /// that a state of one update of the navigator is seen.
-const IN_STEPS: [(Poll, u64); 2] = [(Poll::Message(code::STATUS_EX), 20), (Poll::Mission, 20)];
+const IN_STEPS: [(Poll, u64); 2] = [(Poll::Message(code::STATUS_EX), 10), (Poll::Mission, 10)];
 
 /// The schedule of the polls.
 #[derive(Debug, Clone)]

@@ -47,7 +47,7 @@ pub struct Provision {
     report: ProvisionReport,
     restarted: bool,
     /// The settings that replace the guide's.
-    landing_gains: Vec<String>,
+    replaced: Vec<String>,
     /// The lines for a flight controller whose configuration was never changed, until that is known.
     when_bare: Option<ProvisionLines>,
     was_bare: bool,
@@ -95,7 +95,7 @@ impl Provision {
             held: Held::default(),
             report: ProvisionReport::default(),
             restarted: false,
-            landing_gains: Vec::new(),
+            replaced: Vec::new(),
             when_bare: None,
             was_bare: false,
             note: None,
@@ -118,8 +118,8 @@ impl Provision {
     }
 
     /// Adapts the lines to a flight controller that falls in LAND with the guide's altitude gains.
-    pub(super) fn replace_falling_gains(&mut self) {
-        let replaced = self.lines.replace_falling_gains();
+    pub(super) fn replace_settings(&mut self) {
+        let replaced = self.lines.replace_settings();
         if replaced.is_empty() {
             return;
         }
@@ -127,7 +127,7 @@ impl Provision {
         let is_wished = |setting: &String| {
             self.wishes.iter().any(|wish| wish.line().strip_prefix("set ") == Some(setting.as_str()))
         };
-        self.landing_gains = replaced.into_iter().filter(is_wished).collect();
+        self.replaced = replaced.into_iter().filter(is_wished).collect();
     }
 
     /// Returns the next request; `None` while an answer or a restart is pending, and at the end.
@@ -249,7 +249,7 @@ impl Provision {
             return self.begin();
         }
         self.report.unknown = self.held.unknown(&self.wishes);
-        self.report.landing_gains.clone_from(&self.landing_gains);
+        self.report.replaced.clone_from(&self.replaced);
         self.report.differences = self.held.differences(&self.wishes);
         let Phase::Look { written, .. } = self.phase else { return };
         let must_write = !self.report.differences.is_empty() || self.wishes.iter().any(Wish::cannot_be_read);

@@ -331,7 +331,7 @@ impl Remote {
             Life::Identifying { identification, .. } => match identification.next() {
                 Some(question) => Some((Purpose::Identity(question), question.ask())),
                 None => {
-                    let ask = self.setup.next(self.observer.falls_in_land());
+                    let ask = self.setup.next(self.observer.is_master());
                     self.finish_setup();
                     ask.map(|ask| (Purpose::Provision, ask))
                 }

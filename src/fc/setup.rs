@@ -44,10 +44,10 @@ impl Setup {
     }
 
     /// Returns the next request.
-    pub(super) fn next(&mut self, falls_in_land: bool) -> Option<Ask> {
+    pub(super) fn next(&mut self, is_master: bool) -> Option<Ask> {
         let provision = self.running.as_mut()?;
-        if falls_in_land {
-            provision.replace_falling_gains();
+        if is_master {
+            provision.replace_settings();
         }
         provision.next()
     }

@@ -1,7 +1,7 @@
 //! Uploads a plan: to an embedded flight controller as a plan, to a remote one through the command line, as a
 //! ground station does, and reads it back. Downloads a plan in the same way.
 
-use super::landing_gains::landing_gains_reported;
+use super::master_settings::replaced_reported;
 use crate::firmware::cli::{CliReply, RefusedLine};
 use crate::plan::format::{self, Format};
 use crate::plan::{AltitudeError, AltitudeReference, CraftPlan, FlightPlan, upload_lines};
@@ -28,7 +28,7 @@ pub struct UploadReport {
     /// The value added to every altitude, m, because the craft's altitudes are not above home.
     pub added_m: f64,
     /// The settings that replaced the guide's, because the craft falls in LAND with them.
-    pub landing_gains: Vec<String>,
+    pub replaced: Vec<String>,
     /// The settings of the plan that a remote firmware does not know or accept, with its answer.
     pub refused: Vec<String>,
 }
@@ -51,12 +51,8 @@ impl UploadReport {
                 self.refused.join("; ")
             )
         });
-        let sentences: Vec<String> = self
-            .conversion()
-            .into_iter()
-            .chain(landing_gains_reported(&self.landing_gains))
-            .chain(refused)
-            .collect();
+        let sentences: Vec<String> =
+            self.conversion().into_iter().chain(replaced_reported(&self.replaced)).chain(refused).collect();
         (!sentences.is_empty()).then(|| sentences.join(" "))
     }
 }
@@ -148,8 +144,8 @@ impl Upload {
     }
 
     /// Adds these settings, which replace the guide's, to the report.
-    pub fn report_landing_gains(&mut self, settings: Vec<String>) {
-        self.report.landing_gains = settings;
+    pub fn report_replaced(&mut self, settings: Vec<String>) {
+        self.report.replaced = settings;
     }
 
     /// Returns the number of lines sent and the total. Both include the line that reads the plan back.

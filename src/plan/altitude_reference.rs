@@ -1,8 +1,8 @@
 //! The reference of a craft for the altitudes of its waypoints. Plans in betadeck use home.
 
-use super::FlightPlan;
 use super::format::Records;
 use super::quantity::to_cm;
+use super::{FlightPlan, WaypointType};
 
 /// The reference of a craft for the altitudes of its waypoints.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -17,6 +17,11 @@ pub enum AltitudeReference {
         home_m: Option<f64>,
     },
 }
+
+/// The duration of a HOLD that never ends, ds.
+const NO_END: u16 = 0;
+/// The longest duration, ds: 109 minutes.
+const LONGEST: u16 = u16::MAX;
 
 /// The reason why altitudes cannot be converted. `Display` is a sentence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -47,12 +52,15 @@ impl AltitudeReference {
         }
     }
 
-    /// Converts a plan to the reference of the craft.
+    /// Converts a plan to the reference of the craft. Firmware whose altitudes count from sea level ends a HOLD of duration
+    /// 0 at once, so it gets the longest duration for a HOLD without an end.
     ///
     /// # Errors
     /// Returns an error if the reference is unknown.
     pub fn plan_for_craft(self, plan: &FlightPlan) -> Result<CraftPlan, AltitudeError> {
-        Ok(raised(plan.records(), to_cm(self.added_m()?)))
+        let mut plan = raised(plan.records(), to_cm(self.added_m()?));
+        self.replace_durations(&mut plan.records, NO_END, LONGEST);
+        Ok(plan)
     }
 
     /// Converts a plan of the craft to altitudes above home.
@@ -60,8 +68,20 @@ impl AltitudeReference {
     /// # Errors
     /// Returns an error if the reference is unknown.
     pub fn plan_of_craft(self, plan: &CraftPlan) -> Result<FlightPlan, AltitudeError> {
-        let CraftPlan { records } = raised(plan.records.clone(), -to_cm(self.added_m()?));
+        let CraftPlan { mut records } = raised(plan.records.clone(), -to_cm(self.added_m()?));
+        self.replace_durations(&mut records, LONGEST, NO_END);
         Ok(FlightPlan::from_records(&records))
+    }
+
+    fn replace_durations(self, records: &mut Records, from: u16, to: u16) {
+        if !matches!(self, Self::SeaLevel { .. }) {
+            return;
+        }
+        for record in records.iter_mut().filter(|record| record.kind == WaypointType::Hold) {
+            if record.duration_ds == from {
+                record.duration_ds = to;
+            }
+        }
     }
 }
 
@@ -84,7 +104,28 @@ fn raised(mut records: Records, by_cm: i32) -> CraftPlan {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::quantity::Seconds;
     use crate::plan::{Altitude, Waypoint, WaypointType};
+
+    #[test]
+    fn a_hold_without_an_end_stays_one_on_firmware_that_ends_a_hold_of_0() {
+        let hold = |seconds| Waypoint {
+            kind: WaypointType::Hold,
+            duration: Seconds::new(seconds),
+            ..Waypoint::default()
+        };
+        let plan =
+            FlightPlan { waypoints: [hold(0.0), hold(60.0), Waypoint::default()].into_iter().collect() };
+        for (reference, duration_ds) in [
+            (AltitudeReference::Home, [0, 600, 0]),
+            (AltitudeReference::SeaLevel { home_m: Some(300.0) }, [u16::MAX, 600, 0]),
+        ] {
+            let held = reference.plan_for_craft(&plan).unwrap();
+            let durations: Vec<u16> = held.records.iter().map(|record| record.duration_ds).collect();
+            assert_eq!(durations, duration_ds);
+            assert_eq!(reference.plan_of_craft(&held).unwrap(), plan);
+        }
+    }
 
     #[test]
     fn altitudes_that_mean_something_are_converted_there_and_back() {

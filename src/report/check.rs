@@ -56,8 +56,11 @@ pub struct CheckedFlight {
     pub hash: u64,
     /// The knowledge that the flight controller gave.
     pub reported: Insight,
-    /// `true` if a remote flight controller flew, so that the flight cannot be opened in the screen.
+    /// `true` if a remote flight controller flew.
     pub is_remote: bool,
+    /// The options of `betadeck open` for a remote flight controller, with a blank before each; `None` if it cannot be
+    /// opened.
+    pub firmware_options: Option<String>,
 }
 
 impl CheckedFlight {
@@ -114,23 +117,24 @@ impl CheckedFlight {
         time.as_secs_f64() - self.engaged_at.map_or(0.0, SimTime::as_secs_f64)
     }
 
-    /// Returns the command that opens an instant of the flight in the screen; `None` for a remote flight controller, whose
-    /// flights are not recorded.
+    /// Returns the command that opens an instant of the flight in the screen; `None` for a remote flight controller that
+    /// cannot be started in the same way.
     pub fn open_command(&self, time: SimTime) -> Option<String> {
-        if self.is_remote {
-            return None;
-        }
+        let firmware = match (self.is_remote, &self.firmware_options) {
+            (false, _) => "",
+            (true, options) => options.as_deref()?,
+        };
         let case =
             if self.case.is_empty() { String::new() } else { format!(" --case {}", shell_word(&self.case)) };
         let seed = if self.tells_seed() { format!(" --seed {}", self.seed) } else { String::new() };
         let boot = if self.engaged_at.is_some() { "" } else { "boot+" };
         let file = if self.file == STANDARD_INPUT { "FILE".to_owned() } else { shell_word(&self.file) };
-        Some(format!("betadeck open {file}{case}{seed} --at {boot}{:.2}", self.seconds(time)))
+        Some(format!("betadeck open {file}{case}{seed} --at {boot}{:.2}{firmware}", self.seconds(time)))
     }
 }
 
 /// Returns a text as one shell word, with quotes if needed.
-fn shell_word(text: &str) -> String {
+pub fn shell_word(text: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "_./,:@%+=-".contains(c);
     if !text.is_empty() && text.chars().all(is_plain) {
         return text.to_owned();

@@ -6,7 +6,7 @@ use super::input::TimedInput;
 use crate::flight::{FlightOptions, FlightSetup};
 use crate::sim::{Noise, Wind};
 use crate::telemetry::quantity::Dimension;
-use crate::telemetry::{NavState, PlanSource, Turbulence};
+use crate::telemetry::{FirmwareProfile, NavState, PlanSource, Turbulence};
 
 /// The keys of the command lines that are written in the scenario itself.
 pub(super) const OWN_LINES: [&str; 2] = ["settings", "lines"];
@@ -149,6 +149,8 @@ pub struct Expectation {
     pub label: String,
     /// Line in the file, from 1.
     pub line: usize,
+    /// The kind of firmware for which it holds; `None` = all.
+    pub firmware: Option<FirmwareProfile>,
     /// The part of the flight in which it is judged.
     pub window: Window,
     pub expected: Expected,
@@ -183,6 +185,13 @@ pub enum Expected {
     At(Instant, Condition),
     /// The condition holds for measures and parameters.
     That(Condition),
+}
+
+impl Expectation {
+    /// Returns `true` if it holds for this kind of firmware. A firmware of an unknown kind must meet what holds for all.
+    pub fn holds_for(&self, firmware: Option<FirmwareProfile>) -> bool {
+        self.firmware.is_none_or(|own| Some(own) == firmware)
+    }
 }
 
 /// A step of an expected order of states.

@@ -203,11 +203,7 @@ fn read_case(base: &str, all: &[String], layers: &Layers<'_, '_>, reader: &mut R
     let ends = layers.value("ends").and_then(|value| read_awaited(value, &scope, reader));
     let measures = measure::read(layers, &belongs, &mut scope, reader);
     let mut expectations = expect::read(layers, &belongs, &scope, &allowance, reader);
-    let says_result =
-        expectations.iter().any(|expected| matches!(expected.expected, super::case::Expected::Result(_)));
-    if !says_result {
-        expectations.insert(0, expect::usual_result(ends.is_some()));
-    }
+    expect::add_usual_result(&mut expectations, ends.is_some());
     let time_limit_s = reader.number_in(layers.value("time_limit_s"), 1.0, 1e6, "s").unwrap_or(TIME_LIMIT_S);
     let sample_hz = reader.number_in(layers.value("sample_hz"), 0.1, 1000.0, "Hz").unwrap_or(SAMPLE_HZ);
     if time_limit_s * sample_hz > MAX_SAMPLES {

@@ -33,6 +33,7 @@ pub fn judge(case: &Case, flown: &Flown) -> (Vec<Judgement>, Vec<(String, f64)>)
     let mut judgements: Vec<Judgement> = case
         .expectations
         .iter()
+        .filter(|expectation| expectation.holds_for(flown.firmware))
         .map(|expectation| {
             // Without reports the inputs were not carried out. Such a flight cannot be judged.
             let outcome = match needs.expectation(expectation).max(needed_to_fly) {

@@ -11,7 +11,7 @@ use super::sampling::sample;
 use super::trace::Trace;
 use crate::flight::{Flight, FlightEnd, FlightOptions, FlightResult};
 use crate::signals::SimTime;
-use crate::telemetry::Event;
+use crate::telemetry::{Event, FirmwareProfile};
 use crate::vehicle::Vehicle;
 use inputs::Inputs;
 use log::Log;
@@ -28,6 +28,8 @@ pub struct Flown {
     pub ended_at: SimTime,
     /// The knowledge that the flight controller gave.
     pub reported: Insight,
+    /// The kind of its firmware, if it is known.
+    pub firmware: Option<FirmwareProfile>,
 }
 
 /// A flight of a case in progress.
@@ -230,11 +232,12 @@ impl<'a> CaseFlight<'a> {
         if self.trace.samples.last().is_some_and(|sample| sample.time < self.flight.vehicle().time()) {
             self.sample();
         }
+        let firmware = self.flight.vehicle().controller().profile();
         let end = self.end.unwrap_or_else(|| self.flight.interrupt("the scenario ended the flight"));
         let (result, reason) = match self.stopped {
             Some((word, reason)) => (word.to_owned(), reason),
             None => (end.verdict.result.to_string(), end.verdict.reason),
         };
-        Flown { trace: self.trace, result, reason, ended_at: end.time, reported: self.reported }
+        Flown { trace: self.trace, result, reason, ended_at: end.time, reported: self.reported, firmware }
     }
 }

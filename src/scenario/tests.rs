@@ -5,6 +5,7 @@ mod bounds;
 
 use super::*;
 use crate::plan::format::{PlanError, PlanFile, report};
+use crate::telemetry::FirmwareProfile;
 
 /// A reader that finds no files.
 struct NoFiles;
@@ -435,6 +436,35 @@ fn what_a_flight_controller_does_not_tell_is_skipped_and_the_rest_judged() {
             assert!(is_right, "{expectation} of {reported:?}: {outcome:?}");
         }
     }
+}
+
+#[test]
+fn an_expectation_for_one_kind_of_firmware_is_judged_for_no_other() {
+    let text = format!(
+        "{STANDING}[[expect]]\nfirmware = 'master'\nresult = 'landed'\n\
+         [[expect]]\nfirmware = 'guide'\nalways = 'altitude < 1 m'\nfrom = 'boot'\n\
+         [[expect]]\nalways = 'on_ground'\nfrom = 'boot'\n"
+    );
+    let scenario = scenario(&text);
+    let case = &scenario.cases[0];
+    let mut flown = CaseFlight::new(case, &case.airs[0]).unwrap().fly();
+    assert_eq!(flown.firmware, Some(FirmwareProfile::Guide));
+    let mut judged = |firmware| -> Vec<(String, bool)> {
+        flown.firmware = firmware;
+        judge(case, &flown).0.into_iter().map(|one| (one.label, one.outcome.is_met())).collect()
+    };
+    let met = |label: &str| (label.to_owned(), true);
+    let usual = "result stopped or complete or landed";
+    let guide = [met(usual), met("always altitude < 1 m, from boot"), met("always on_ground, from boot")];
+    assert_eq!(judged(Some(FirmwareProfile::Guide)), guide);
+    let master = [("result landed".to_owned(), false), met("always on_ground, from boot")];
+    assert_eq!(judged(Some(FirmwareProfile::Master)), master);
+    assert_eq!(judged(None), [met("always on_ground, from boot")]);
+    let unknown = format!("{STANDING}[[expect]]\nfirmware = 'mastr'\nalways = 'on_ground'\n");
+    assert_eq!(
+        problems(&unknown),
+        ["test.toml:10:12: mastr is not a kind of firmware; did you mean master?"]
+    );
 }
 
 #[test]

@@ -25,6 +25,14 @@ pub const PLACE_IS_EXTERNAL: &str =
 /// Refusal to rewind a flight whose flight controller is remote.
 pub const NOT_RECORDED: &str = "The flight controller runs elsewhere: its time cannot be rewound.";
 
+/// Refusal to continue or store the flight of a remote firmware.
+pub const NOT_FLOWN_AGAIN: &str =
+    "The flight of a remote firmware is recorded as pictures: it can be looked at, not flown again.";
+
+/// Refusal of everything but the recording after the flight of a firmware that has ended.
+pub const FIRMWARE_ENDED: &str =
+    "The flight is over and its firmware has ended: `,` and `<` go back, Space plays the recording.";
+
 /// Refusal of control inputs while an earlier instant is shown.
 pub const REWOUND: &str = "An earlier instant is shown: `b` flies on from here, `e` goes back to the end.";
 
@@ -53,6 +61,10 @@ pub struct Facts {
     pub is_piloted: bool,
     /// `true` if the flight is recorded.
     pub is_recorded: bool,
+    /// `true` if it is recorded as pictures, which cannot be flown again.
+    pub is_pictures: bool,
+    /// `true` if the flight controller is a remote firmware that has ended for good.
+    pub has_ended: bool,
     /// `true` while an earlier instant is shown.
     pub is_rewound: bool,
 }
@@ -85,6 +97,9 @@ impl From<&SessionView> for Facts {
             upload: view.upload,
             is_piloted: view.pilot.is_some(),
             is_recorded: view.timeline.is_some(),
+            is_pictures: view.timeline.as_ref().is_some_and(|timeline| timeline.is_pictures),
+            has_ended: view.remote.is_none()
+                && view.timeline.as_ref().is_some_and(|timeline| timeline.is_pictures),
             is_rewound: view.is_rewound(),
         }
     }
@@ -97,8 +112,10 @@ pub enum Intent {
     Read,
     /// Pauses, steps or accelerates time.
     Time,
-    /// Shows another instant of the recording, or flies on from it.
+    /// Shows another instant of the recording.
     Recording,
+    /// Flies on from an earlier instant.
+    FlyOn,
     /// Starts the scripted pilot, or stops it.
     Fly,
     /// Moves a switch or a stick, or makes the craft fly elsewhere.
@@ -124,7 +141,8 @@ impl Intent {
     pub fn of(command: &Command) -> Self {
         match command {
             Command::Pause(_) | Command::Step(_) | Command::Speed(_) => Self::Time,
-            Command::Seek(_) | Command::FlyOn => Self::Recording,
+            Command::Seek(_) => Self::Recording,
+            Command::FlyOn => Self::FlyOn,
             Command::Vehicle(command) => Self::of_vehicle(command),
             Command::StartPilot => Self::Fly,
             Command::Cli { line, .. } => Self::Line(Impact::of_line(line)),
@@ -173,7 +191,7 @@ impl Intent {
     fn impact(self, facts: &Facts) -> Impact {
         let opens_cli = facts.remote.is_some_and(|remote| remote.opens_cli);
         match self {
-            Self::Read | Self::Time | Self::Recording | Self::Forecast => Impact::Reads,
+            Self::Read | Self::Time | Self::Recording | Self::FlyOn | Self::Forecast => Impact::Reads,
             Self::Download => Impact::Reads.or_changes(opens_cli),
             Self::Line(impact) => impact.or_changes(opens_cli),
             Self::Upload | Self::Save => Impact::Changes,
@@ -185,7 +203,7 @@ impl Intent {
     /// Returns `true` if it needs the vehicle that flies, which waits while an earlier instant is shown.
     fn needs_newest(self) -> bool {
         match self {
-            Self::Read | Self::Time | Self::Recording | Self::Forecast => false,
+            Self::Read | Self::Time | Self::Recording | Self::FlyOn | Self::Forecast => false,
             Self::Line(impact) => impact != Impact::Reads,
             Self::Fly
             | Self::Move
@@ -227,7 +245,11 @@ impl fmt::Display for Refusal {
 type Rule = (&'static str, fn(&Facts, Intent) -> bool);
 
 /// The rules for a craft whose access allows the request. The first that applies refuses it.
-const RULES: [Rule; 11] = [
+const RULES: [Rule; 13] = [
+    (FIRMWARE_ENDED, |facts, intent| {
+        let looks = matches!(intent, Intent::Read | Intent::Recording | Intent::FlyOn);
+        facts.has_ended && !looks && !(facts.is_rewound && intent == Intent::Time)
+    }),
     (NO_ORDERS, |facts, intent| intent == Intent::Order && facts.remote.is_some()),
     (NOT_KNOWN_YET, |facts, intent| {
         intent == Intent::Fly && facts.remote.is_some_and(|remote| !remote.is_ready)
@@ -238,12 +260,13 @@ const RULES: [Rule; 11] = [
             && facts.remote.is_some_and(|remote| remote.is_ready && !remote.has_plans)
     }),
     (TIME_IS_EXTERNAL, |facts, intent| {
-        matches!(intent, Intent::Time | Intent::Recording) && facts.simulator.is_some()
+        matches!(intent, Intent::Time | Intent::Recording | Intent::FlyOn) && facts.simulator.is_some()
     }),
     (TIME_IS_THE_FIRMWARES, |facts, intent| {
         intent == Intent::Time && facts.remote.is_some_and(|remote| !remote.is_in_steps)
     }),
-    (NOT_RECORDED, |facts, intent| intent == Intent::Recording && !facts.is_recorded),
+    (NOT_RECORDED, |facts, intent| matches!(intent, Intent::Recording | Intent::FlyOn) && !facts.is_recorded),
+    (NOT_FLOWN_AGAIN, |facts, intent| intent == Intent::FlyOn && facts.is_pictures),
     (REWOUND, |facts, intent| facts.is_rewound && intent.needs_newest()),
     (PLACE_IS_EXTERNAL, |facts, intent| {
         intent == Intent::Reset && facts.simulator == Some(LinkState::Flowing)
@@ -282,10 +305,11 @@ mod tests {
     use crate::signals::RcFrame;
     use crate::telemetry::InFlightCommand;
 
-    const ALL: [Intent; 15] = [
+    const ALL: [Intent; 16] = [
         Intent::Read,
         Intent::Time,
         Intent::Recording,
+        Intent::FlyOn,
         Intent::Fly,
         Intent::Move,
         Intent::Order,
@@ -307,6 +331,8 @@ mod tests {
         upload: None,
         is_piloted: false,
         is_recorded: true,
+        is_pictures: false,
+        has_ended: false,
         is_rewound: false,
     };
     const REMOTE: Facts = Facts {
@@ -340,7 +366,18 @@ mod tests {
                 intent
             })
             .collect();
-        assert_eq!(refused, [&ALL[3..11], &ALL[12..14]].concat());
+        assert_eq!(refused, [&ALL[4..12], &ALL[13..15]].concat());
+    }
+
+    #[test]
+    fn of_a_flight_whose_firmware_has_ended_only_the_recording_is_left() {
+        let ended = Facts { is_pictures: true, has_ended: true, ..EMBEDDED };
+        for (is_rewound, time) in [(false, Err(Refusal::Now(FIRMWARE_ENDED))), (true, Ok(()))] {
+            let ended = Facts { is_rewound, ..ended };
+            assert_eq!(check(&ended, Intent::Time), time);
+            assert_eq!(check(&ended, Intent::Recording), Ok(()));
+            assert_eq!(check(&ended, Intent::Fly), Err(Refusal::Now(FIRMWARE_ENDED)));
+        }
     }
 
     #[test]
@@ -349,6 +386,7 @@ mod tests {
         let time = [
             (Intent::Time, TIME_IS_EXTERNAL),
             (Intent::Recording, TIME_IS_EXTERNAL),
+            (Intent::FlyOn, TIME_IS_EXTERNAL),
             (Intent::Forecast, PHYSICS_IS_EXTERNAL),
         ];
         assert_eq!(refused(&silent), table(&time));
@@ -361,6 +399,7 @@ mod tests {
         let always = [
             (Intent::Time, TIME_IS_THE_FIRMWARES),
             (Intent::Recording, NOT_RECORDED),
+            (Intent::FlyOn, NOT_RECORDED),
             (Intent::Order, NO_ORDERS),
             (Intent::Forecast, CONTROLLER_IS_REMOTE),
         ];
@@ -368,6 +407,10 @@ mod tests {
         let in_steps = REMOTE.remote.map(|remote| RemoteFacts { is_in_steps: true, ..remote });
         // In simulated time the session sets its time.
         assert_eq!(refused(&Facts { remote: in_steps, ..REMOTE }), table(&always[1..]));
+        // Its flight is recorded as pictures.
+        let pictures = Facts { remote: in_steps, is_recorded: true, is_pictures: true, ..REMOTE };
+        assert_eq!(check(&pictures, Intent::Recording), Ok(()));
+        assert_eq!(check(&pictures, Intent::FlyOn), Err(Refusal::Now(NOT_FLOWN_AGAIN)));
         let remote = |is_ready, has_plans| Facts {
             remote: Some(RemoteFacts { is_ready, has_plans, opens_cli: false, is_in_steps: false }),
             ..REMOTE
@@ -385,6 +428,7 @@ mod tests {
         let never = [
             (Intent::Time, TIME_IS_THE_FIRMWARES),
             (Intent::Recording, NOT_RECORDED),
+            (Intent::FlyOn, NOT_RECORDED),
             (Intent::Fly, NOTHING_MOVES),
             (Intent::Move, NOTHING_MOVES),
             (Intent::Order, NOTHING_MOVES),

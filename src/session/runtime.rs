@@ -196,6 +196,11 @@ impl Wake for ThreadWaker {
     }
 }
 
+/// Returns `true` if the vehicle can wait while an earlier instant is shown: its time is that of the session.
+fn can_wait(config: &SessionConfig) -> bool {
+    config.vehicle.embedded().is_some() || config.remote.as_ref().is_some_and(RemoteLink::is_in_steps)
+}
+
 impl Session {
     fn new(
         mut config: SessionConfig,
@@ -207,7 +212,9 @@ impl Session {
         let incoming = ImpairedLink::new(Stream::Link.rng(config.vehicle.clock().seed()));
         let (timeline, flown) = match flown {
             Some(flown) => (Some(flown.timeline), Some((flown.events, flown.show))),
-            None if config.is_recorded && simulator.is_none() => (Timeline::new(&mut config.vehicle), None),
+            None if config.is_recorded && simulator.is_none() && can_wait(&config) => {
+                (Timeline::new(&mut config.vehicle), None)
+            }
             None => (None, None),
         };
         let persistence =

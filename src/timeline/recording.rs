@@ -50,6 +50,21 @@ impl Default for Bounds {
     }
 }
 
+impl Bounds {
+    /// Returns bounds for pictures of a vehicle that cannot be flown again: ten a second for five minutes, and one a second
+    /// for an hour.
+    pub(super) fn of_pictures() -> Self {
+        const SECOND_US: u64 = 1_000_000;
+        Self {
+            interval_us: SECOND_US / 10,
+            dense_us: 300 * SECOND_US,
+            sparse_interval_us: SECOND_US,
+            key_frames: 6500,
+            ..Self::default()
+        }
+    }
+}
+
 #[derive(Debug)]
 pub(super) struct KeyFrame {
     vehicle: Box<Vehicle>,
@@ -147,6 +162,11 @@ impl Recording {
     pub(super) fn latest_before(&self, time: SimTime) -> Option<&KeyFrame> {
         let after = self.key_frames.partition_point(|frame| frame.time() < time);
         self.key_frames.get(after.saturating_sub(1))
+    }
+
+    /// Returns the oldest key frame at or after `time`.
+    pub(super) fn first_from(&self, time: SimTime) -> Option<&KeyFrame> {
+        self.key_frames.get(self.key_frames.partition_point(|frame| frame.time() < time))
     }
 
     /// Returns the input with this number, if it came at `time` or before.

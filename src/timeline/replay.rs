@@ -8,6 +8,8 @@ use crate::vehicle::Vehicle;
 #[derive(Debug)]
 pub(super) struct Replay {
     vehicle: Vehicle,
+    /// The instant of a still picture, which the vehicle shows at or after it.
+    still_at: Option<SimTime>,
     /// Number of the first input that it has not taken.
     next_input: u64,
 }
@@ -15,7 +17,17 @@ pub(super) struct Replay {
 impl Replay {
     /// Returns a replay from a frozen vehicle.
     pub(super) fn new(start: &KeyFrame) -> Self {
-        Self { vehicle: start.vehicle().clone(), next_input: start.next_input() }
+        Self { vehicle: start.vehicle().clone(), still_at: None, next_input: start.next_input() }
+    }
+
+    /// Returns a still picture for an instant.
+    pub(super) fn still(picture: &KeyFrame, at: SimTime) -> Self {
+        Self { still_at: Some(at), ..Self::new(picture) }
+    }
+
+    /// Returns the instant that is shown.
+    pub(super) fn at(&self) -> SimTime {
+        self.still_at.unwrap_or(self.time())
     }
 
     pub(super) fn time(&self) -> SimTime {

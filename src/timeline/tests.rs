@@ -236,7 +236,29 @@ fn what_runs_elsewhere_is_not_recorded() {
     assert!(Timeline::new(&mut Vehicle::with_external_physics(config).unwrap()).is_none());
     let mut remote = Vehicle::with_remote_controller(WorldConfig::default()).unwrap();
     assert!(matches!(remote.controller(), FlightController::Remote(_)));
-    assert!(Timeline::new(&mut remote).is_none());
+    assert!(Timeline::new(&mut remote).unwrap().is_pictures());
+    assert!(Timeline::new(&mut Vehicle::elsewhere().unwrap()).is_none());
+}
+
+#[test]
+fn the_flight_of_a_remote_firmware_can_be_looked_at_and_not_flown_again() {
+    let mut vehicle = Vehicle::with_remote_controller(WorldConfig::default()).unwrap();
+    let mut timeline = Timeline::new(&mut vehicle).unwrap();
+    while vehicle.time() < SimTime(3_000_000) {
+        timeline.record(&mut vehicle);
+        vehicle.tick();
+    }
+    let head = vehicle.time();
+    assert_eq!(timeline.show(SimTime(1_234_000), head), Shown::Earlier);
+    assert_eq!(timeline.shown().unwrap().time(), SimTime(1_300_000), "the next picture");
+    // Playing goes on from the instant, not from the picture.
+    for (ticks, time) in [(50, 1_300_000), (20, 1_400_000), (1000, 2_400_000)] {
+        assert_eq!(timeline.play(ticks, head), Shown::Earlier);
+        assert_eq!(timeline.shown().unwrap().time(), SimTime(time));
+    }
+    assert!(timeline.fly_on().is_none());
+    assert!(timeline.shown().is_some(), "the instant is still shown");
+    assert_eq!(timeline.play(10_000, head), Shown::Newest);
 }
 
 #[test]

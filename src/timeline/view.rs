@@ -16,6 +16,8 @@ pub struct TimelineView {
     pub head_is_armed: bool,
     /// `true` while an earlier instant is shown and the flight waits.
     pub rewound: bool,
+    /// `true` if the flight is recorded as pictures, so that it cannot be continued from an earlier instant.
+    pub is_pictures: bool,
     /// Number of times that the flight was continued from an earlier instant.
     pub branch: u32,
     /// Instant from which it was last continued.

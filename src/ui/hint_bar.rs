@@ -55,9 +55,11 @@ fn hint_actions(own: &[Hint], state: &Shared) -> Vec<Hint> {
     let craft = &state.view.vehicle.craft;
     let mut hints: Vec<Hint> = Vec::new();
     if state.is_rewound() {
+        if state.flies_again() {
+            hints.push((&[Action::FlyOn], "fly on"));
+        }
         hints.extend([
-            (&[Action::FlyOn] as &[_], "fly on"),
-            (&[Action::Newest], "end"),
+            (&[Action::Newest] as &[_], "end"),
             (&[Action::EventBack, Action::EventForward], "event"),
             (&[Action::Earlier, Action::Later], "10 s"),
             (&[Action::Pause], if state.view.paused { "play" } else { "stop" }),

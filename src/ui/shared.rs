@@ -230,6 +230,11 @@ impl Shared {
         self.view.is_rewound()
     }
 
+    /// Returns `true` if the flight is recorded and can be continued from an earlier instant.
+    pub fn flies_again(&self) -> bool {
+        self.view.timeline.as_ref().is_some_and(|timeline| !timeline.is_pictures)
+    }
+
     /// Returns `true` if `time` is after the shown earlier instant.
     pub(super) fn is_later_than_shown(&self, time: SimTime) -> bool {
         self.is_rewound() && time > self.view.vehicle.time

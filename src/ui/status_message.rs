@@ -40,8 +40,12 @@ pub fn current(state: &Shared) -> Option<StatusMessage> {
     let key = |action| state.key(action);
     if let Some(rewound_s) = state.rewound_s() {
         let condition = format!("Rewound by {rewound_s:.1} s: the flight waits.");
-        let action =
-            format!("{} flies on from here, {} goes to the end", key(Action::FlyOn), key(Action::Newest));
+        let flies_on = if state.flies_again() {
+            format!("{} flies on from here, ", key(Action::FlyOn))
+        } else {
+            String::new()
+        };
+        let action = format!("{flies_on}{} goes to the end", key(Action::Newest));
         return message(Severity::Info, condition, action);
     }
     if let Some(reported) = state.view.remote.as_ref().and_then(|outside| remote::current(state, outside)) {
@@ -208,7 +212,7 @@ fn disarmed_in_the_air(state: &Shared) -> Option<StatusMessage> {
 
 /// Returns the keys that undo a mishap, if the flight is recorded.
 fn way_back(state: &Shared) -> String {
-    if state.view.timeline.is_none() {
+    if !state.flies_again() {
         return String::new();
     }
     format!("{}, then {} takes it back; ", state.key(Action::StateBack), state.key(Action::FlyOn))

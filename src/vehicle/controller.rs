@@ -17,7 +17,8 @@ use crate::plan::{AltitudeReference, FlightPlan};
 use crate::signals::{MotorCommand, RcFrame, RcSource, SensorFrame, SimTime};
 use crate::telemetry::snapshot::{CraftView, EstimateView, ModeRange, SettingsView};
 use crate::telemetry::{
-    DisarmReason, FirmwareEvent, InFlightCommand, InFlightRefusal, Mode, ModeFlags, NavTelemetry, Refusal,
+    DisarmReason, FirmwareEvent, FirmwareProfile, InFlightCommand, InFlightRefusal, Mode, ModeFlags,
+    NavTelemetry, Refusal,
 };
 
 /// The identity of a request to a remote flight controller until its answer comes.
@@ -368,6 +369,16 @@ impl FlightController {
         match self {
             Self::Embedded(_) => AltitudeReference::Home,
             Self::Remote(remote) => remote.telemetry().altitude_reference,
+        }
+    }
+
+    /// Returns the kind of the firmware; `None` if it has not reported its settings. The reference of the altitudes
+    /// tells the kinds apart.
+    pub fn profile(&self) -> Option<FirmwareProfile> {
+        match self.altitude_reference() {
+            AltitudeReference::Unreported => None,
+            AltitudeReference::Home => Some(FirmwareProfile::Guide),
+            AltitudeReference::SeaLevel { .. } => Some(FirmwareProfile::Master),
         }
     }
 

@@ -12,7 +12,7 @@ use vt100::{MouseProtocolMode, Parser};
 use crate::support::Sandbox;
 
 /// The time after which an expected event counts as missing.
-const NEVER: Duration = Duration::from_secs(60);
+const NEVER: Duration = Duration::from_secs(600);
 
 /// A running program and its screen. It is killed when dropped.
 pub(crate) struct Terminal {

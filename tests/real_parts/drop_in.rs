@@ -75,6 +75,12 @@ impl Link {
             std::thread::sleep(Duration::from_millis(2));
             while self.motors.recv(&mut [0; 100]).is_ok() {}
         }
+        self.motors.set_nonblocking(false).unwrap();
+        // A drop-in that was late has caught up after some steps, and its late answers are here.
+        (0..50).for_each(|_| self.step());
+        std::thread::sleep(Duration::from_millis(20));
+        self.motors.set_nonblocking(true).unwrap();
+        while self.motors.recv(&mut [0; 100]).is_ok() {}
         self.pulses();
         self.motors.set_nonblocking(false).unwrap();
     }

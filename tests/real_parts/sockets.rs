@@ -47,8 +47,8 @@ fn feed(peer: &mut SitlPeer, seconds: f64) -> u64 {
     sent
 }
 
-/// The number of attempts, each of a second or less, within which even a busy machine keeps up once.
-const ROUNDS: u32 = 60;
+/// The number of attempts, each of a tenth of a second or less, within which even a busy machine keeps up once.
+const ROUNDS: u32 = 600;
 
 #[test]
 fn an_executable_is_answered_for_nearly_every_packet_and_its_clock_is_the_walls() {
@@ -57,10 +57,10 @@ fn an_executable_is_answered_for_nearly_every_packet_and_its_clock_is_the_walls(
     let mut peer = open(stand_in.ports, true);
     let kept_up = (0..ROUNDS).any(|_| {
         let before = stand_in.seen();
-        feed(&mut peer, 1.0);
+        feed(&mut peer, 0.1);
         let seen = stand_in.seen();
         let (packets, answered) = (seen.packets - before.packets, seen.answered - before.answered);
-        packets > 100 && answered as f64 >= 0.95 * packets as f64
+        packets > 20 && answered as f64 >= 0.95 * packets as f64
     });
     let seen = stand_in.seen();
     assert!(kept_up, "{seen:?}");

@@ -10,10 +10,11 @@ use crate::app::firmware::run::{OnEvent, RemoteRun, RunOptions, Stopped};
 use crate::app::firmware::{RemoteFirmware, reported};
 use crate::app::{AppError, error, setup};
 use crate::fc::Unset;
-use crate::report::check::CheckedFlight;
+use crate::report::check::{CheckedFlight, shell_word};
 use crate::scenario::{self, Air, Case, CaseFlight};
-use crate::session::Event;
+use crate::session::{Event, Subscriber};
 use crate::signals::fdm::FirmwareClock;
+use crate::vehicle::Vehicle;
 
 /// The message if flights cannot be prepared repeatedly.
 const NO_MORE: &str = "Two flights in a row could not be prepared: the others are not tried.";
@@ -95,7 +96,11 @@ impl Run<'_> {
     /// Flies and judges one flight; `None` if it was interrupted in the air.
     fn one(self, job: Job, thread: usize) -> Option<Done> {
         let (case, air) = job.of(self.loaded)?;
-        let unflown = CheckedFlight { is_remote: true, ..job.not_flown_yet(self.loaded)? };
+        let unflown = CheckedFlight {
+            is_remote: true,
+            firmware_options: options_to_open(self.firmware),
+            ..job.not_flown_yet(self.loaded)?
+        };
         let mut reported = Vec::new();
         if let Some(judgements) = scenario::skip(case) {
             return Some(Done { flight: CheckedFlight { judgements, ..unflown }, reported, trouble: None });
@@ -120,21 +125,8 @@ impl Run<'_> {
         reported: &mut Vec<String>,
     ) -> Result<CheckedFlight, Stopped> {
         let started = Stopwatch::start();
-        let mut setup = case.setup_in(air);
-        setup.remote_controller = true;
-        let plan = setup.plan.plan.clone();
-        let mut firmware = self.firmware.with_settings(&setup.plan.settings, &[]);
-        let of_case = setup.boot_lines.iter().flat_map(|lines| lines.text.lines());
-        firmware.lines.of_user.extend(of_case.map(str::to_owned));
-        let mut vehicle = setup::build(setup, &mut Vec::new())?;
-        let options = RunOptions {
-            state: None,
-            speed: None,
-            interrupted: Arc::clone(self.interrupted),
-            processor: Some(thread),
-        };
         let mut tell = OnEvent(|event: &Event| reported.extend(reported::sentence(event)));
-        let mut remote = RemoteRun::prepare(&firmware, &mut vehicle, &plan, options, &mut tell)?;
+        let (mut remote, vehicle) = prepare(self.firmware, case, air, self.interrupted, thread, &mut tell)?;
         let problem = remote.unset().and_then(|unset| not_as_wanted(case, unset));
         let mut flight = match CaseFlight::of_vehicle(case, vehicle) {
             Ok(flight) => flight,
@@ -145,6 +137,45 @@ impl Run<'_> {
         let hash = remote.motor_hash().unwrap_or(judged.hash);
         Ok(CheckedFlight { problem, hash, ..judged })
     }
+}
+
+/// Starts the firmware for the flight of a case and sets it up. `thread` is the number of the flight among those at once.
+///
+/// # Errors
+/// Returns the reason why it cannot be flown.
+pub(in crate::app) fn prepare(
+    firmware: &RemoteFirmware,
+    case: &Case,
+    air: &Air,
+    interrupted: &Arc<AtomicBool>,
+    thread: usize,
+    subscriber: &mut impl Subscriber<Vehicle>,
+) -> Result<(RemoteRun, Vehicle), Stopped> {
+    let mut setup = case.setup_in(air);
+    setup.remote_controller = true;
+    let plan = setup.plan.plan.clone();
+    let mut firmware = firmware.with_settings(&setup.plan.settings, &[]);
+    let of_case = setup.boot_lines.iter().flat_map(|lines| lines.text.lines());
+    firmware.lines.usual.extend(of_case.map(str::to_owned));
+    let mut vehicle = setup::build(setup, &mut Vec::new())?;
+    let interrupted = Arc::clone(interrupted);
+    let options = RunOptions { state: None, speed: None, interrupted, processor: Some(thread) };
+    let remote = RemoteRun::prepare(&firmware, &mut vehicle, &plan, options, subscriber)?;
+    Ok((remote, vehicle))
+}
+
+/// Returns the options of `betadeck open` that fly with the same firmware, as text with a blank before each; `None` if it is
+/// not started by this program, or if the user's own lines configure it.
+fn options_to_open(firmware: &RemoteFirmware) -> Option<String> {
+    let executable = firmware.executable.as_ref().filter(|_| firmware.lines.of_user.is_empty())?;
+    let mut options = format!(" --firmware {}", shell_word(&executable.display().to_string()));
+    for argument in &firmware.arguments {
+        options.push_str(&format!(" --firmware-arg {}", shell_word(argument)));
+    }
+    if firmware.clock == FirmwareClock::Real {
+        options.push_str(" --clock real");
+    }
+    Some(options)
 }
 
 /// Returns the reason why the flight does not match the case: no line was set, or not all lines of the case itself.

@@ -61,7 +61,7 @@ impl EventObserver {
             }
         }
         if let Some(nav) = nav.filter(|_| self.armed) {
-            self.navigate(nav, plan, &mut events);
+            self.navigate(craft, nav, plan, &mut events);
         }
         events
     }
@@ -108,7 +108,13 @@ impl EventObserver {
         events.push(FirmwareEvent::Disarmed(reason));
     }
 
-    fn navigate(&mut self, nav: &NavTelemetry, plan: Option<&FlightPlan>, events: &mut Vec<FirmwareEvent>) {
+    fn navigate(
+        &mut self,
+        craft: &CraftView,
+        nav: &NavTelemetry,
+        plan: Option<&FlightPlan>,
+        events: &mut Vec<FirmwareEvent>,
+    ) {
         let (from, wp) = (self.state, self.wp);
         if (nav.state, nav.wp) == (from, wp) {
             return;
@@ -120,14 +126,24 @@ impl EventObserver {
             return;
         }
         let starts = matches!(from, NavState::Idle | NavState::Complete) && nav.state != NavState::Idle;
+        // The same applies to the engagement: a mission begins with its mode.
+        if starts && craft.modes.is_some_and(|modes| !modes.has(Mode::Autopilot)) {
+            return;
+        }
         if starts {
             if let Some(plan) = plan {
                 let plan = Box::new(plan.clone());
                 events.push(FirmwareEvent::Nav(NavEvent::Plan { source: PlanSource::Stored, plan }));
             }
             self.enter(NavState::Approaching, nav.wp, TransitionReason::Reset, plan, events);
-        } else if nav.wp != wp && from == NavState::Approaching && nav.state != NavState::Idle {
-            self.enter(NavState::Arrived, wp, TransitionReason::Arrival, plan, events);
+        }
+        // Some firmware does not report the arrival. An approach ends with it.
+        let approaches = (self.state, self.wp) == (nav.state, nav.wp);
+        if self.state == NavState::Approaching
+            && !approaches
+            && !matches!(nav.state, NavState::Idle | NavState::Arrived)
+        {
+            self.enter(NavState::Arrived, self.wp, TransitionReason::Arrival, plan, events);
         }
         if nav.wp != self.wp && nav.state != NavState::Idle {
             self.enter(NavState::Approaching, nav.wp, TransitionReason::Advance, plan, events);
@@ -218,10 +234,33 @@ mod tests {
             "IDLE APPROACHING 0 reset",
             "APPROACHING ARRIVED 0 arrival",
             "ARRIVED APPROACHING 1 advance",
-            "APPROACHING COMPLETE 1 advance",
+            "APPROACHING ARRIVED 1 arrival",
+            "ARRIVED COMPLETE 1 advance",
             "COMPLETE IDLE 0 disengage",
         ];
         assert_eq!(words, expected);
+    }
+
+    #[test]
+    fn a_mission_begins_with_its_mode() {
+        let mut observer = EventObserver::default();
+        let mut words = Vec::new();
+        for autopilot in [false, false, true, true] {
+            let mut modes = ModeFlags::default();
+            modes.set(Mode::Autopilot, autopilot);
+            let craft = CraftView { armed: Some(true), modes: Some(modes), ..CraftView::default() };
+            let nav = NavTelemetry { state: NavState::Approaching, ..NavTelemetry::default() };
+            for event in observer.follow(&craft, Some(&nav), None) {
+                match event {
+                    FirmwareEvent::Nav(NavEvent::State { to, .. }) => words.push(to.to_string()),
+                    FirmwareEvent::Mode(modes) if modes.has(Mode::Autopilot) => {
+                        words.push("AUTOPILOT".to_owned());
+                    }
+                    _ => {}
+                }
+            }
+        }
+        assert_eq!(words, ["AUTOPILOT", "APPROACHING"]);
     }
 
     #[test]
@@ -239,9 +278,11 @@ mod tests {
             "armed",
             "plan",
             "IDLE APPROACHING 2 reset",
-            "APPROACHING HOLDING 2 hold",
+            "APPROACHING ARRIVED 2 arrival",
+            "ARRIVED HOLDING 2 hold",
             "HOLDING APPROACHING 3 advance",
-            "APPROACHING LANDING 3 land",
+            "APPROACHING ARRIVED 3 arrival",
+            "ARRIVED LANDING 3 land",
             "LANDING COMPLETE 3 touchdown",
             "disarmed LANDING",
         ];

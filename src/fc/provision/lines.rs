@@ -1,6 +1,6 @@
 //! The command lines that configure a flight controller.
 
-use crate::fc::landing_gains::landing_gain;
+use crate::fc::master_settings::replacement;
 
 /// The prefix of a setting's line.
 const SET: &str = "set ";
@@ -26,10 +26,10 @@ impl ProvisionLines {
     }
 
     /// Replaces the gains of the guide that make some firmware fall in LAND. Returns the replacements.
-    pub(super) fn replace_falling_gains(&mut self) -> Vec<String> {
+    pub(super) fn replace_settings(&mut self) -> Vec<String> {
         let mut replaced = Vec::new();
         for line in &mut self.usual {
-            if let Some(setting) = line.strip_prefix(SET).and_then(landing_gain) {
+            if let Some(setting) = line.strip_prefix(SET).and_then(replacement) {
                 *line = format!("{SET}{setting}");
                 if !replaced.contains(&setting) {
                     replaced.push(setting);

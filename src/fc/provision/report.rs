@@ -1,6 +1,6 @@
 //! The report on the configuration of a flight controller.
 
-use crate::fc::landing_gains::landing_gains_reported;
+use crate::fc::master_settings::replaced_reported;
 
 /// The result of the configuration.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -16,7 +16,7 @@ pub(in crate::fc) struct ProvisionReport {
     /// The differences from the wanted settings.
     pub(super) differences: Vec<Difference>,
     /// The settings that replace the guide's, so that the craft lands safely.
-    pub(super) landing_gains: Vec<String>,
+    pub(super) replaced: Vec<String>,
     /// `true` if there are differences and writing was not allowed.
     pub(super) may_not_write: bool,
 }
@@ -99,7 +99,7 @@ impl ProvisionReport {
                 "The firmware's configuration was never changed: it is set up like a fresh one.".to_owned(),
             );
         }
-        sentences.extend(landing_gains_reported(&self.landing_gains).filter(|_| !self.may_not_write));
+        sentences.extend(replaced_reported(&self.replaced).filter(|_| !self.may_not_write));
         if self.written > 0 && self.is_as_wanted() {
             sentences.push(format!(
                 "The firmware accepted {} lines of settings, and they read back as written.",

@@ -165,19 +165,20 @@ fn a_save_that_is_refused_ends_it_and_a_lost_answer_too() {
 }
 
 #[test]
-fn a_firmware_that_falls_in_land_gets_other_gains_than_the_guides_and_the_user_has_the_last_word() {
+fn master_gets_other_settings_than_the_guides_and_the_user_has_the_last_word() {
     let mut craft = Craft::new();
     let usual: Vec<String> = GUIDE.lines().map(str::to_owned).collect();
     let of_user = vec!["set ap_altitude_d = 20".to_owned()];
     let mut provision = Provision::new(ProvisionLines { usual, of_user }, true);
-    provision.replace_falling_gains();
+    provision.replace_settings();
     craft.run(&mut provision);
     let report = provision.result().unwrap().unwrap();
     let parameters = craft.firmware.parameters();
     assert_eq!((parameters.nav.altitude_p, parameters.nav.altitude_d), (2, 20));
     let reported = report.sentences().join(" ");
     assert!(
-        reported.contains("falls in LAND") && reported.contains("gets ap_altitude_p = 2 instead"),
+        reported.contains("falls in LAND")
+            && reported.contains("gets ap_position_cutoff = 30, ap_altitude_p = 2 instead"),
         "{reported}"
     );
 }

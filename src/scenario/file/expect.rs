@@ -1,6 +1,6 @@
 //! `[[expect]]`: the expectations of a flight.
 
-use strum::IntoEnumIterator as _;
+use strum::{EnumCount as _, IntoEnumIterator as _};
 
 use super::keys::EXPECT_KEYS;
 use super::measure::window;
@@ -13,6 +13,7 @@ use crate::scenario::expression::{
     read_span_from,
 };
 use crate::scenario::happening::{Pattern, RESULTS};
+use crate::telemetry::FirmwareProfile;
 
 /// The kinds of expectation; each table has one of these keys.
 const KINDS: [&str; 13] = [
@@ -52,15 +53,47 @@ pub(super) fn read(
     expectations
 }
 
-/// Returns the default expectation for the result, for a scenario that gives none.
-pub(super) fn usual_result(ends: bool) -> Expectation {
+/// Adds the default expectation for the result, for each kind of firmware without one.
+pub(super) fn add_usual_result(expectations: &mut Vec<Expectation>, ends: bool) {
+    let without: Vec<FirmwareProfile> = FirmwareProfile::iter()
+        .filter(|&kind| {
+            !expectations.iter().any(|expectation| {
+                expectation.holds_for(Some(kind)) && matches!(expectation.expected, Expected::Result(_))
+            })
+        })
+        .collect();
+    if without.len() == FirmwareProfile::COUNT {
+        expectations.insert(0, usual_result(ends, None));
+        return;
+    }
+    for kind in without {
+        expectations.insert(0, usual_result(ends, Some(kind)));
+    }
+}
+
+fn usual_result(ends: bool, firmware: Option<FirmwareProfile>) -> Expectation {
     let words: &[&str] = if ends { &["stopped", "complete", "landed"] } else { &["complete"] };
     Expectation {
         label: format!("result {}", words.join(" or ")),
         line: 1,
+        firmware,
         window: Window::default(),
         expected: Expected::Result(words.iter().map(|&word| word.to_owned()).collect()),
     }
+}
+
+/// Reads the kind of firmware for which an expectation holds.
+fn read_firmware(table: &TomlTable<'_, '_>, reader: &mut Reader<'_, '_>) -> Option<FirmwareProfile> {
+    let value = table.get("firmware")?;
+    let word = reader.text(value)?;
+    let kind = word.parse().ok();
+    if kind.is_none() {
+        let allowed: Vec<&str> = FirmwareProfile::iter().map(Into::into).collect();
+        let guess = crate::text::did_you_mean::suffix(&word, allowed.iter().copied());
+        let message = format!("{word} is not a kind of firmware{guess}");
+        reader.problem(value.span(), message, format!("allowed: {}", allowed.join(", ")));
+    }
+    kind
 }
 
 fn read_one(
@@ -84,7 +117,8 @@ fn read_one(
     let window = window(table, scope, reader);
     let expected = read_expected(kind, value, table, scope, reader)?.widened(allowance);
     let label = reader.string(table, "name").unwrap_or_else(|| label(kind, value, table, reader));
-    Some(Expectation { label, line: reader.line(value.span()), window, expected })
+    let firmware = read_firmware(table, reader);
+    Some(Expectation { label, line: reader.line(value.span()), firmware, window, expected })
 }
 
 /// Returns the label of an expectation: `always altitude in 19..21 m, from ARRIVED 0`.

@@ -91,6 +91,7 @@ pub(super) const MEASURE_KEYS: &[&str] =
 pub(super) const EXPECT_KEYS: &[&str] = &[
     "name",
     "cases",
+    "firmware",
     "exact",
     "from",
     "until",

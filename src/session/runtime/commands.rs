@@ -12,6 +12,7 @@ use crate::session::command::{Command, Seek, VehicleCopy};
 use crate::session::policy::{self, Facts, Intent, RemoteFacts};
 use crate::session::simulator::Simulator;
 use crate::sim::WorldCommand;
+use crate::timeline::Timeline;
 use crate::vehicle::{Answer, Reply, VehicleCommand, VehicleRefusal};
 
 impl Session {
@@ -118,6 +119,7 @@ impl Session {
 
     /// Returns the facts on which the policy depends.
     fn facts(&self) -> Facts {
+        let is_pictures = self.timeline.as_ref().is_some_and(Timeline::is_pictures);
         Facts {
             access: self.access(),
             remote: self.runner.link.as_ref().map(|link| RemoteFacts::from(&link.remote().view())),
@@ -125,6 +127,8 @@ impl Session {
             upload: self.interface.upload_under_way(),
             is_piloted: self.vehicle.transmitter().pilot().is_some(),
             is_recorded: self.timeline.is_some(),
+            is_pictures,
+            has_ended: is_pictures && self.runner.link.is_none(),
             is_rewound: self.is_rewound(),
         }
     }

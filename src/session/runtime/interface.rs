@@ -3,9 +3,7 @@
 
 use std::time::Instant;
 
-use crate::fc::{
-    LIST, Upload, UploadProgress, UploadReport, UploadView, plan_above_home, replace_falling_gains,
-};
+use crate::fc::{LIST, Upload, UploadProgress, UploadReport, UploadView, plan_above_home, replace_settings};
 use crate::firmware::cli::{CliAction, CliReply, advice};
 use crate::msp::code;
 use crate::plan::{AltitudeReference, FlightPlan};
@@ -94,13 +92,13 @@ impl Interface {
             return uploaded(result, reply, craft);
         }
         let reference = craft.vehicle.controller().altitude_reference();
-        let landing_gains = match reference {
-            AltitudeReference::SeaLevel { .. } if is_simulated => replace_falling_gains(&mut settings),
+        let replaced = match reference {
+            AltitudeReference::SeaLevel { .. } if is_simulated => replace_settings(&mut settings),
             _ => Vec::new(),
         };
         match Upload::new(plan, &settings, reference) {
             Ok(mut upload) => {
-                upload.report_landing_gains(landing_gains);
+                upload.report_replaced(replaced);
                 let progress = upload.send_line(craft.vehicle);
                 self.go_on(Box::new(upload), progress, reply, craft, now())
             }

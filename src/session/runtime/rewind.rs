@@ -12,7 +12,7 @@ use crate::session::Event;
 use crate::session::arming::ArmingWatch;
 use crate::session::command::{BEGINNING_LOST, CliOutput, REWOUND_FOR_CLIENTS, Seek};
 use crate::session::pacer::SPEED_RANGE;
-use crate::session::policy::{NOT_RECORDED, REWOUND};
+use crate::session::policy::{NOT_FLOWN_AGAIN, NOT_RECORDED, REWOUND};
 use crate::session::runner::tick;
 use crate::signals::SimTime;
 use crate::timeline::{RecordedFlight, Shown, Timeline, TimelineView};
@@ -71,6 +71,9 @@ impl Session {
     pub(super) fn recorded_flight(&mut self) -> Result<Box<RecordedFlight>, String> {
         let (shown, head) = (self.shown_vehicle().time(), self.vehicle.time());
         let timeline = self.timeline.as_mut().ok_or(NOT_RECORDED)?;
+        if timeline.is_pictures() {
+            return Err(NOT_FLOWN_AGAIN.to_owned());
+        }
         timeline.record(&mut self.vehicle);
         let is_rewound = timeline.shown().is_some();
         let until = if is_rewound { timeline.flight_ends(shown).unwrap_or(head) } else { head };
@@ -86,6 +89,7 @@ impl Session {
             head,
             head_is_armed: self.vehicle.controller().is_armed(),
             rewound: timeline.shown().is_some(),
+            is_pictures: timeline.is_pictures(),
             branch: timeline.branch(),
             branched_at: timeline.branched_at(),
             folds: timeline.folds(&marks),

@@ -142,7 +142,7 @@ fn an_upload_waits_for_a_slow_line_and_fails_in_a_sentence_where_nobody_answers(
 }
 
 #[test]
-fn a_simulated_craft_that_falls_in_land_gets_gains_to_land_with_and_a_real_one_those_of_its_plan() {
+fn a_simulated_craft_that_is_master_gets_gains_to_land_with_and_a_real_one_those_of_its_plan() {
     for (is_real, altitude_p) in [(false, 2), (true, 50)] {
         let mut rig = Rig::new();
         if is_real {
@@ -160,7 +160,7 @@ fn a_simulated_craft_that_falls_in_land_gets_gains_to_land_with_and_a_real_one_t
         while rig.answer(|_, _| {}) > 0 {}
         let report = result.try_recv().unwrap().unwrap();
         assert_eq!(
-            (report.landing_gains.is_empty(), i64::from(rig.firmware.parameters().nav.altitude_p)),
+            (report.replaced.is_empty(), i64::from(rig.firmware.parameters().nav.altitude_p)),
             (is_real, altitude_p)
         );
     }

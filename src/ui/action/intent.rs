@@ -17,8 +17,8 @@ pub(super) fn intent_of(state: &Shared, action: Action) -> Intent {
         | Action::StateForward
         | Action::Earlier
         | Action::Later
-        | Action::FlyOn
         | Action::Newest => Intent::Recording,
+        Action::FlyOn => Intent::FlyOn,
         Action::Fly => Intent::Fly,
         Action::Arm | Action::Throttle | Action::Autopilot | Action::ReturnHome | Action::CutRc => {
             Intent::Move
