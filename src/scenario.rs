@@ -45,7 +45,7 @@ pub use input::{Action, FORMS, TimedInput};
 pub use insight::Insight;
 pub use judge::{Judgement, Margin, Outcome, compare, judge, skip};
 pub use library::{BuiltinFiles, BuiltinScenario, SCENARIOS};
-pub use run::{CaseFlight, Flown};
+pub use run::{CaseFlight, FlightHash, Flown};
 pub use trace::{NearestGuard, Sample, Stay, Trace};
 
 #[cfg(test)]

@@ -39,13 +39,13 @@ pub const MAX_FLIGHTS: usize = 10_000;
 const TIME_LIMIT_S: f64 = 600.0;
 /// The default time for which the record goes on after the end, s. Consequences of the end, such as the disarm,
 /// belong to the flight.
-const WATCH_S: f64 = 0.5;
+pub(super) const WATCH_S: f64 = 0.5;
 /// The most samples of a flight: some 400 MB.
 const MAX_SAMPLES: f64 = 2e6;
 /// The most names of cases in a message.
 const SHOWN_CASES: usize = 20;
 /// The default number of samples a second.
-const SAMPLE_HZ: f64 = 100.0;
+pub(super) const SAMPLE_HZ: f64 = 100.0;
 
 /// A reader for the files that a scenario names; names are relative to the place of the scenario.
 pub trait Files {

@@ -1,20 +1,22 @@
 //! The flight of a case: a headless flight, its inputs at their instants, and the record.
 
+mod flight_hash;
 mod inputs;
 mod log;
+mod recorder;
 
 use super::case::{Air, Case};
 use super::expression::{Evaluator, Search};
 use super::happening::{EventName, Happening};
 use super::insight::Insight;
-use super::sampling::sample;
 use super::trace::Trace;
 use crate::flight::{Flight, FlightEnd, FlightOptions, FlightResult};
 use crate::signals::SimTime;
 use crate::telemetry::{Event, FirmwareProfile};
 use crate::vehicle::Vehicle;
+pub use flight_hash::FlightHash;
 use inputs::Inputs;
-use log::Log;
+use recorder::Recorder;
 
 /// A finished flight of a case.
 #[derive(Debug, Clone)]
@@ -38,16 +40,11 @@ pub struct CaseFlight<'a> {
     case: &'a Case,
     flight: Flight,
     inputs: Inputs<'a>,
-    log: Log,
-    trace: Trace,
+    recorder: Recorder,
     ends: Option<Search<'a>>,
     end: Option<FlightEnd>,
     /// The word for the result and the reason, if the scenario ended the flight.
     stopped: Option<(&'static str, String)>,
-    reported: Insight,
-    sample_us: u64,
-    /// The altitude at the start of the flight, m.
-    start_m: f64,
     is_over: bool,
 }
 
@@ -68,9 +65,7 @@ impl<'a> CaseFlight<'a> {
     /// # Errors
     /// Returns a sentence if a mode that the pilot needs has no switch.
     pub fn of_vehicle(case: &'a Case, vehicle: Vehicle) -> Result<Self, String> {
-        let reported = if vehicle.embedded().is_some() { Insight::Inner } else { Insight::Telemetry };
-        let start_m = vehicle.truth_view().map_or(0.0, |truth| truth.alt);
-        let trace = Trace::new(case.setup.plan.plan.clone(), vehicle.local_frame().copied());
+        let recorder = Recorder::new(&vehicle, case.setup.plan.plan.clone(), case.sample_hz);
         // The time limit of the scenario applies.
         let options = FlightOptions { timeout: SimTime(u64::MAX), ..case.options };
         let flight = if case.pilot {
@@ -80,20 +75,14 @@ impl<'a> CaseFlight<'a> {
         } else {
             Flight::go_on(vehicle, &options)
         };
-        let step_us = flight.vehicle().step_us();
-        let sample_us = ((1e6 / case.sample_hz).round() as u64).div_ceil(step_us).max(1) * step_us;
         Ok(Self {
             case,
             flight,
             inputs: Inputs::new(&case.inputs),
-            log: Log::default(),
-            trace,
+            recorder,
             ends: case.ends.as_ref().map(Search::new),
             end: None,
             stopped: None,
-            reported,
-            sample_us,
-            start_m,
             is_over: false,
         })
     }
@@ -114,7 +103,7 @@ impl<'a> CaseFlight<'a> {
 
     /// Returns the record so far.
     pub fn trace(&self) -> &Trace {
-        &self.trace
+        &self.recorder.trace
     }
 
     /// Flies to the end.
@@ -134,58 +123,29 @@ impl<'a> CaseFlight<'a> {
     /// Carries out the inputs that are due before the next tick.
     pub fn prepare(&mut self) {
         if self.inputs.is_due(self.flight.vehicle().time()) {
-            let (trace, names) = (&mut self.trace, self.case.parameters.as_slice());
+            let (trace, names) = (&mut self.recorder.trace, self.case.parameters.as_slice());
             self.inputs.carry_out(self.flight.vehicle_mut(), trace, names);
         }
     }
 
     /// Flies one tick and reports its events to `report`.
     pub fn tick(&mut self, mut report: impl FnMut(Event)) {
-        let (log, trace) = (&mut self.log, &mut self.trace);
-        let before = trace.happenings.len();
+        let recorder = &mut self.recorder;
         let end = self.flight.tick(|event| {
-            log.note(&event, trace);
+            recorder.note(&event);
             report(event);
         });
-        let now = self.flight.vehicle().time();
-        trace.engaged_at = self.flight.engaged_at().or(trace.engaged_at);
         if let Some(end) = end
             && self.end.is_none()
         {
-            self.note_end(end);
+            self.recorder.note_end(&end);
+            self.end = Some(end);
         }
-        let has_news = self.trace.happenings.len() != before;
-        let is_sample = now.0.is_multiple_of(self.sample_us);
-        if is_sample {
-            self.sample();
-        }
-        if has_news || is_sample {
+        if self.recorder.after_tick(&self.flight) {
             let names = self.case.parameters.as_slice();
-            self.inputs.look(&Evaluator::new(&self.trace, names));
-            self.check_end(now);
+            self.inputs.look(&Evaluator::new(&self.recorder.trace, names));
+            self.check_end(self.flight.vehicle().time());
         }
-    }
-
-    fn sample(&mut self) {
-        let vehicle = self.flight.vehicle();
-        let sample = sample(vehicle, self.trace.engaged_at, self.start_m);
-        if vehicle.controller().nav().is_some() {
-            self.reported = self.reported.max(Insight::Mission);
-        }
-        if let Some(nav) = vehicle.controller().nav()
-            && nav.engaged
-        {
-            self.trace.note_guards(sample.time, nav.state, nav.wp, &nav.guards);
-        }
-        self.trace.samples.push(sample);
-    }
-
-    fn note_end(&mut self, end: FlightEnd) {
-        let word = end.verdict.result.to_string();
-        self.trace
-            .happenings
-            .push(Happening::event(end.time, EventName::End, &[&word]).saying(&end.verdict.reason));
-        self.end = Some(end);
     }
 
     /// Ends the record if it is time.
@@ -197,13 +157,13 @@ impl<'a> CaseFlight<'a> {
         }
         let names = self.case.parameters.as_slice();
         if let Some(search) = &mut self.ends
-            && let Some(due) = search.advance(&Evaluator::new(&self.trace, names))
+            && let Some(due) = search.advance(&Evaluator::new(&self.recorder.trace, names))
             && now.0 as i64 >= due
         {
             self.is_over = true;
             self.stop("stopped", "the scenario ended the flight");
         }
-        if !self.is_over && self.trace.seconds(now) >= self.case.time_limit_s {
+        if !self.is_over && self.recorder.trace.seconds(now) >= self.case.time_limit_s {
             self.is_over = true;
             let limit = self.case.time_limit_s;
             let doing = match (self.end.is_some(), self.ends.is_some()) {
@@ -211,7 +171,7 @@ impl<'a> CaseFlight<'a> {
                 (true, false) => "still watched",
                 (false, false) => "not over",
             };
-            let after = if self.trace.engaged_at.is_some() { "the engagement" } else { "boot" };
+            let after = if self.recorder.trace.engaged_at.is_some() { "the engagement" } else { "boot" };
             self.stop("timeout", &format!("{doing} {limit} s after {after}"));
         }
     }
@@ -222,22 +182,20 @@ impl<'a> CaseFlight<'a> {
         }
         if self.end.is_none() {
             let now = self.flight.vehicle().time();
-            self.trace.happenings.push(Happening::event(now, EventName::End, &[word]).saying(reason));
+            self.recorder.trace.happenings.push(Happening::event(now, EventName::End, &[word]).saying(reason));
         }
     }
 
     /// Returns the finished flight.
     pub fn finish(mut self) -> Flown {
-        // The last happenings need a sample.
-        if self.trace.samples.last().is_some_and(|sample| sample.time < self.flight.vehicle().time()) {
-            self.sample();
-        }
+        self.recorder.finish(&self.flight);
         let firmware = self.flight.vehicle().controller().profile();
         let end = self.end.unwrap_or_else(|| self.flight.interrupt("the scenario ended the flight"));
         let (result, reason) = match self.stopped {
             Some((word, reason)) => (word.to_owned(), reason),
             None => (end.verdict.result.to_string(), end.verdict.reason),
         };
-        Flown { trace: self.trace, result, reason, ended_at: end.time, reported: self.reported, firmware }
+        let Recorder { trace, reported, .. } = self.recorder;
+        Flown { trace, result, reason, ended_at: end.time, reported, firmware }
     }
 }

@@ -188,18 +188,33 @@ impl Trace {
     /// Returns a number that is equal for two flights whose samples and happenings are the same to the last bit. It
     /// is compared only within one run, because processors differ.
     pub fn hash(&self) -> u64 {
-        let mut hasher = DefaultHasher::new();
-        for sample in &self.samples {
-            sample.time.0.hash(&mut hasher);
-            let values = sample.values.iter().take(HASHED_SIGNALS).chain(sample.target_ne);
-            values.for_each(|value| value.to_bits().hash(&mut hasher));
-            (sample.flags, sample.state, sample.wp, sample.source, sample.modes).hash(&mut hasher);
+        let mut hasher = TraceHasher::default();
+        self.samples.iter().for_each(|sample| hasher.sample(sample));
+        hasher.finish(&self.happenings)
+    }
+}
+
+/// The hash of a record in progress. It needs no sample twice.
+#[derive(Debug, Default)]
+pub(super) struct TraceHasher(DefaultHasher);
+
+impl TraceHasher {
+    /// Adds the next sample.
+    pub(super) fn sample(&mut self, sample: &Sample) {
+        let hasher = &mut self.0;
+        sample.time.0.hash(hasher);
+        let values = sample.values.iter().take(HASHED_SIGNALS).chain(sample.target_ne);
+        values.for_each(|value| value.to_bits().hash(hasher));
+        (sample.flags, sample.state, sample.wp, sample.source, sample.modes).hash(hasher);
+    }
+
+    /// Returns the hash of the samples and of all happenings.
+    pub(super) fn finish(mut self, happenings: &[Happening]) -> u64 {
+        for happening in happenings {
+            happening.time.0.hash(&mut self.0);
+            happening.to_string().hash(&mut self.0);
         }
-        for happening in &self.happenings {
-            happening.time.0.hash(&mut hasher);
-            happening.to_string().hash(&mut hasher);
-        }
-        hasher.finish()
+        self.0.finish()
     }
 }
 
