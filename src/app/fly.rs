@@ -2,6 +2,7 @@
 #![allow(clippy::disallowed_methods, reason = "measures the wall time of the flight")]
 
 mod output;
+mod watched;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -13,15 +14,17 @@ use super::firmware::{self, Beside, RemoteFirmware};
 use super::interrupt::interrupt_flag;
 use super::setup;
 use crate::args::{FlyArgs, PhysicsArgs, Speed};
-use crate::fc::{RemoteLink, upload};
+use crate::fc::upload;
+use crate::flight::FlightResult;
 use crate::flight::setup::{BootLines, PhysicsSource};
-use crate::flight::{Flight, FlightResult};
 use crate::plan::format::PlanFile;
 use crate::report::End;
-use crate::session::{Event, Runner, Stopped, Subscriber, hazards};
+use crate::scenario::FlightHash;
+use crate::session::{Event, Flying as _, Runner, Stopped, Subscriber, hazards};
 use crate::storage::Store;
 use crate::vehicle::Vehicle;
 use output::{Output, Prelude};
+use watched::WatchedFlight;
 
 /// Flies and reports. The exit code is 0 if the mission completed.
 pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
@@ -57,14 +60,19 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
     let mut watch = Stopwatch::start();
     let flown =
         run.runner().fly(&mut flight, &mut (&mut output, &mut watch), || interrupted.load(Ordering::Relaxed));
+    let flown = match (flown, flight.end()) {
+        // Only the hash is missing.
+        (Err(Stopped::Interrupted | Stopped::Failed(_)), Some(end)) => Ok(end.clone()),
+        (flown, _) => flown,
+    };
     let (end, failure) = match flown {
         Ok(end) => (end, None),
-        Err(Stopped::Interrupted) => (flight.interrupt("stopped by a signal"), None),
+        Err(Stopped::Interrupted) => (flight.flight().interrupt("stopped by a signal"), None),
         // The files stay unfinished, because their end may be what cannot be written.
         Err(Stopped::BySubscriber) => return Err(output.into_problem()),
         // The files end like those of a finished flight.
         Err(Stopped::Failed(sentence)) => {
-            (flight.interrupt(&sentence), Some(AppError::environment(sentence)))
+            (flight.flight().interrupt(&sentence), Some(AppError::environment(sentence)))
         }
     };
     let end_record = End {
@@ -73,7 +81,7 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
         truth: end.truth,
         flown_s: end.flown_s,
         wall_s: watch.seconds(),
-        hash: run.runner().link().and_then(RemoteLink::motor_hash),
+        hash: flight.hash().and_then(|of_record| run.hash(of_record)),
     };
     let finished = output.finish(end.time, &end_record);
     match failure {
@@ -94,7 +102,7 @@ struct Start<'a> {
 
 /// A flight at its first tick.
 struct Prepared {
-    flight: Flight,
+    flight: WatchedFlight,
     output: Output,
     run: Run,
     interrupted: Arc<AtomicBool>,
@@ -113,6 +121,14 @@ impl Run {
             Self::Remote(run) => run.runner(),
         }
     }
+
+    /// Returns the hash of the flight with this record; `None` on the wall clock, where no flight is repeatable.
+    fn hash(&self, of_record: u64) -> Option<u64> {
+        match self {
+            Self::Embedded(_) => Some(of_record),
+            Self::Remote(run) => run.motor_hash(),
+        }
+    }
 }
 
 impl Start<'_> {
@@ -122,11 +138,13 @@ impl Start<'_> {
         upload(self.vehicle.controller_mut(), &self.plan.plan, &[]).map_err(AppError::input)?;
         let options = setup::flight_options(&self.args.mission);
         self.notices.extend(self.hazards());
+        let hash = self.hash();
         let Self { args, plan, vehicle, notices, interrupted } = self;
-        let mut flight = setup::start_flight(vehicle, &options)?;
+        let mut flight = WatchedFlight::new(setup::start_flight(vehicle, &options)?, hash);
         let mut output = Output::open(args, flight.vehicle(), &plan)?;
         first_events(flight.vehicle_mut(), notices).iter().try_for_each(|event| output.write(event))?;
-        let run = Run::Embedded(Runner::new(flight.vehicle().step_us(), args.speed(), None));
+        let step_us = flight.vehicle().step_us();
+        let run = Run::Embedded(Runner::new(step_us, args.speed(), None));
         Ok(Prepared { flight, output, run, interrupted })
     }
 
@@ -149,9 +167,16 @@ impl Start<'_> {
         for hazard in self.hazards() {
             prelude.write(&Event::notice(self.vehicle.time(), hazard))?;
         }
+        let hash = run.motor_hash().and_then(|_| self.hash());
         let flight = setup::start_flight(self.vehicle, &setup::flight_options(&self.args.mission))?;
         let output = prelude.open(flight.vehicle(), &self.plan)?;
+        let flight = WatchedFlight::new(flight, hash);
         Ok(Some(Prepared { flight, output, run: Run::Remote(run), interrupted: self.interrupted }))
+    }
+
+    /// Begins the hash of the flight, if something prints it.
+    fn hash(&self) -> Option<FlightHash> {
+        self.args.json.as_ref().map(|_| FlightHash::new(&self.vehicle, self.plan.plan.clone()))
     }
 
     fn hazards(&self) -> Vec<String> {
@@ -159,26 +184,30 @@ impl Start<'_> {
     }
 }
 
-/// Measures the wall time from the engagement, or from the start if there is none.
+/// Measures the wall time from the engagement, or from the start if there is none, to the end.
 struct Stopwatch {
     since: Instant,
     is_engaged: bool,
+    ended_s: Option<f64>,
 }
 
 impl Stopwatch {
     fn start() -> Self {
-        Self { since: Instant::now(), is_engaged: false }
+        Self { since: Instant::now(), is_engaged: false, ended_s: None }
     }
 
     fn seconds(&self) -> f64 {
-        self.since.elapsed().as_secs_f64()
+        self.ended_s.unwrap_or_else(|| self.since.elapsed().as_secs_f64())
     }
 }
 
-impl Subscriber<Flight> for Stopwatch {
-    fn after_tick(&mut self, flight: &Flight) {
-        if !self.is_engaged && flight.engaged_at().is_some() {
-            *self = Self { since: Instant::now(), is_engaged: true };
+impl Subscriber<WatchedFlight> for Stopwatch {
+    fn after_tick(&mut self, flight: &WatchedFlight) {
+        if !self.is_engaged && flight.flight().engaged_at().is_some() {
+            *self = Self { since: Instant::now(), is_engaged: true, ended_s: None };
+        }
+        if flight.end().is_some() {
+            self.ended_s.get_or_insert_with(|| self.since.elapsed().as_secs_f64());
         }
     }
 }

@@ -15,7 +15,8 @@ pub struct End {
     pub flown_s: f64,
     /// Seconds of wall time for that part.
     pub wall_s: f64,
-    /// A hash over the motor packets of a firmware in simulated time. Two equal flights have the same one.
+    /// A hash over the record of the flight, or over the motor packets of a remote firmware in simulated time. Two equal
+    /// flights have the same one. `None` for an interrupted flight and on the wall clock.
     pub hash: Option<u64>,
 }
 

@@ -182,7 +182,10 @@ impl<'a> CaseFlight<'a> {
         }
         if self.end.is_none() {
             let now = self.flight.vehicle().time();
-            self.recorder.trace.happenings.push(Happening::event(now, EventName::End, &[word]).saying(reason));
+            self.recorder
+                .trace
+                .happenings
+                .push(Happening::event(now, EventName::End, &[word]).saying(reason));
         }
     }
 

@@ -162,13 +162,36 @@ fn the_same_seed_gives_the_same_bytes_and_another_seed_does_not() {
         let text = sandbox.read(&name);
         let (head, end) = text.trim_end().rsplit_once('\n').expect("lines");
         let (kept, clock) = end.split_once(",\"wall_s\":").expect("a wall time");
-        assert!(clock.contains(",\"speed_ratio\":") && clock.matches(':').count() == 1, "{clock}");
-        format!("{head}\n{kept}\n{}", sandbox.read(&track))
+        let (ratio, hash) = clock.split_once(",\"hash\":").expect("a hash");
+        assert!(ratio.contains(",\"speed_ratio\":") && ratio.matches(':').count() == 1, "{clock}");
+        format!("{head}\n{kept}\n{hash}\n{}", sandbox.read(&track))
     };
     let (first, again, other) = (run("1"), run("1"), run("2"));
     assert!(first.len() > 1_000_000);
     assert!(first == again, "two flights with the same seed differ");
     assert!(first != other, "another seed changes nothing");
+}
+
+#[test]
+fn the_hash_is_that_of_a_scenario_with_the_same_flight() {
+    let sandbox = Sandbox::new();
+    for (plan, options, tables) in [
+        ("square", &["--wind=4@200", "--gust=1"][..], "[air]\nwind = \"4@200\"\ngust_mps = 1"),
+        (
+            "hold-orbit",
+            &["--set=ap_max_angle=20", "--takeoff=15"],
+            "[craft]\nsettings = [\"ap_max_angle = 20\"]\ntakeoff_m = 15",
+        ),
+        ("flyover", &["--noise=none", "--rate=400"], "[air]\nnoise = \"none\"\n[craft]\nrate_hz = 400"),
+    ] {
+        let scenario = format!("format = 1\nseeds = 3\n[plan]\nbuiltin = \"{plan}\"\n{tables}\n");
+        sandbox.write("same.toml", &scenario);
+        let flown = sandbox.fly(&[&[plan, "--seed=3"], options].concat());
+        let checked = sandbox.run(&["check", "same.toml", "--json", "-"]).exits(0);
+        let line = checked.out.lines().next().expect("a flight");
+        let flight: serde_json::Value = serde_json::from_str(line).expect("JSON");
+        assert_eq!(flown.first("end").text("hash"), flight["hash"], "{plan}: {line}");
+    }
 }
 
 #[test]

@@ -204,6 +204,15 @@ fn the_public_executable_flies_the_square_in_simulated_time_and_each_time_the_sa
     };
     let first = fly();
     assert!(first == fly(), "two flights differ");
+
+    let directory = tempfile::tempdir().unwrap();
+    let scenario = directory.path().join("square.toml");
+    std::fs::write(&scenario, "format = 1\n[plan]\nbuiltin = \"square\"\n").unwrap();
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_betadeck"));
+    let checked = command.arg("check").arg(&scenario).args(["--json", "-", "--firmware"]).arg(&program);
+    let lines = String::from_utf8(checked.output().unwrap().stdout).unwrap();
+    let flight: serde_json::Value = serde_json::from_str(lines.lines().next().unwrap()).unwrap();
+    assert_eq!(flight["hash"], first.1.as_str(), "check and fly differ: {flight}");
 }
 
 #[test]

@@ -3,16 +3,16 @@
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
+use super::watched::WatchedFlight;
 use crate::app::error::{self, AppError};
 use crate::app::firmware::reported;
 use crate::app::output_file::{self, StreamedOutput};
 use crate::app::patient_output::PatientOutput;
 use crate::app::setup;
 use crate::args::{FlyArgs, OutputFile};
-use crate::flight::Flight;
 use crate::plan::format::PlanFile;
 use crate::report::{End, GpxHeader, GpxPoint, GpxWriter, UtcSeconds, json, sentence, truth};
-use crate::session::{Event, Subscriber};
+use crate::session::{Event, Flying as _, Subscriber};
 use crate::signals::SimTime;
 use crate::text::printable;
 use crate::vehicle::Vehicle;
@@ -100,6 +100,8 @@ pub(super) struct Output {
     /// The interval of the samples, µs; `None` = no samples.
     sample_every_us: Option<u64>,
     gpx: Option<GpxWriter<StreamedOutput>>,
+    /// `true` after the end of the flight: only its end remains to be reported.
+    is_over: bool,
     /// The first error. The flight stops.
     problem: Option<AppError>,
 }
@@ -145,7 +147,7 @@ impl Output {
         };
         let samples_hz = args.samples.filter(|hz| *hz > 0.0);
         let sample_every_us = samples_hz.map(|hz| ((1e6 / hz).round() as u64).max(1));
-        Ok(Self { lines: Some(lines), json, sample_every_us, gpx, problem: None })
+        Ok(Self { lines: Some(lines), json, sample_every_us, gpx, is_over: false, problem: None })
     }
 
     /// Returns the error that stopped the flight.
@@ -236,15 +238,21 @@ impl Output {
     }
 }
 
-impl Subscriber<Flight> for Output {
+impl Subscriber<WatchedFlight> for Output {
     fn event(&mut self, event: &Event) {
-        let done = self.write(event);
-        self.keep(done);
+        if !self.is_over {
+            let done = self.write(event);
+            self.keep(done);
+        }
     }
 
-    fn after_tick(&mut self, flight: &Flight) {
-        let done = self.sample(flight.vehicle()).and_then(|()| self.track(flight.vehicle()));
-        self.keep(done);
+    fn after_tick(&mut self, flight: &WatchedFlight) {
+        if !self.is_over {
+            let vehicle = flight.vehicle();
+            let done = self.sample(vehicle).and_then(|()| self.track(vehicle));
+            self.keep(done);
+        }
+        self.is_over = flight.end().is_some();
     }
 
     /// A person may be watching the output.
