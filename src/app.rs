@@ -21,6 +21,7 @@ mod line_history;
 mod live;
 mod open;
 mod output_file;
+mod parallel;
 mod patient_output;
 mod plan;
 mod plan_files;

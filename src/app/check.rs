@@ -15,7 +15,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::error::{self, AppError};
 use super::firmware::{self, Beside, RemoteFirmware};
 use super::interrupt::interrupt_flag;
-use super::setup;
+use super::{parallel, setup};
 use crate::args::{CheckArgs, FlightArgs, PhysicsArgs};
 use crate::report::check::{Compared, Summary};
 use crate::scenario::Draft;
@@ -96,12 +96,12 @@ fn fly(
     let mut results = Results::new(Output::open(args, loaded)?, jobs.len(), args.fail_fast, &stop);
     let started = run::Stopwatch::start();
     let is_stopped = || interrupted.load(Ordering::Relaxed) || stop.load(Ordering::Relaxed);
-    let threads = run::threads(args);
+    let threads = parallel::threads(args.jobs);
     let trouble = match firmware {
         None => {
             let mut repetitions = run::Repetitions::default();
             let fly = |_, job| run::one(loaded, job, &is_stopped);
-            run::all(&jobs, threads, &is_stopped, fly, |flight, done| {
+            parallel::all(&jobs, threads, &is_stopped, fly, |flight, done| {
                 results.flight(repetitions.compare(flight), done);
             })?;
             None

@@ -8,7 +8,7 @@ use super::results::Results;
 use super::run::{self, Job, Repetitions, Stopwatch};
 use crate::app::firmware::run::{OnEvent, RemoteRun, RunOptions, Stopped};
 use crate::app::firmware::{RemoteFirmware, reported};
-use crate::app::{AppError, error, setup};
+use crate::app::{AppError, error, parallel, setup};
 use crate::fc::Unset;
 use crate::report::check::{CheckedFlight, shell_word};
 use crate::scenario::{self, Air, Case, CaseFlight};
@@ -69,7 +69,7 @@ impl Run<'_> {
         let mut repetitions = Repetitions::default();
         let gives_up = AtomicBool::new(false);
         let ends = || is_stopped() || gives_up.load(Ordering::Relaxed);
-        run::all(
+        parallel::all(
             jobs,
             threads,
             &ends,

@@ -1,10 +1,6 @@
-//! Flies the cases on several threads and passes on the results in their order.
-#![allow(clippy::disallowed_methods, reason = "measures the wall time of flights, on threads of its own")]
+//! The flights of a run of `check`, and their results.
+#![allow(clippy::disallowed_methods, reason = "measures the wall time of flights")]
 
-use std::collections::BTreeMap;
-use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::mpsc;
 use std::time::Instant;
 
 use super::{Comparisons, Loaded};
@@ -91,58 +87,6 @@ pub(super) fn jobs(loaded: &Loaded, args: &CheckArgs) -> Vec<Job> {
 /// Returns `true` if the case passes the filter.
 pub(super) fn is_wanted(scenario: &Scenario, case: &Case, args: &CheckArgs) -> bool {
     args.filter.as_ref().is_none_or(|text| format!("{} {}", scenario.name, case.name).contains(text.as_str()))
-}
-
-/// Returns the number of flights at once, which the user may choose.
-pub(super) fn threads(args: &CheckArgs) -> usize {
-    args.jobs.map_or_else(
-        || std::thread::available_parallelism().map_or(1, std::num::NonZero::get),
-        |jobs| jobs as usize,
-    )
-}
-
-/// Flies all jobs with `fly`, which gets the number of its thread, on `threads` threads. `reported` gets each result in the
-/// order of the jobs, with the number of finished flights; a flight that was interrupted has none.
-pub(super) fn all<T: Send>(
-    jobs: &[Job],
-    threads: usize,
-    is_stopped: &(impl Fn() -> bool + Sync),
-    fly: impl Fn(usize, Job) -> Option<T> + Sync,
-    mut reported: impl FnMut(T, usize),
-) -> Result<(), AppError> {
-    let next = AtomicUsize::new(0);
-    let (results, arrived) = mpsc::channel();
-    std::thread::scope(|scope| {
-        for thread in 0..threads.min(jobs.len()) {
-            let (results, next, fly) = (results.clone(), &next, &fly);
-            scope.spawn(move || {
-                while !is_stopped() {
-                    let index = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(job) = jobs.get(index) else { return };
-                    let flown = catch_unwind(AssertUnwindSafe(|| fly(thread, *job)));
-                    if results.send((index, flown)).is_err() {
-                        return;
-                    }
-                }
-            });
-        }
-        drop(results);
-        let mut early = BTreeMap::new();
-        let (mut reported_up_to, mut arrived_count) = (0, 0);
-        for (index, flown) in arrived {
-            arrived_count += 1;
-            early.insert(index, flown);
-            while let Some(flown) = early.remove(&reported_up_to) {
-                reported_up_to += 1;
-                match flown {
-                    Err(_) => return Err(AppError::internal("a flight panicked")),
-                    Ok(None) => {}
-                    Ok(Some(flown)) => reported(flown, arrived_count),
-                }
-            }
-        }
-        Ok(())
-    })
 }
 
 /// Flies and judges one flight; `None` if it was interrupted.
