@@ -62,7 +62,7 @@ fn run_all(args: &CheckArgs) -> Result<u8, AppError> {
     notices.iter().for_each(|notice| error::tell(notice));
     let is_alone = firmware.as_ref().is_some_and(|firmware| firmware.clock == FirmwareClock::Real);
     if is_alone && args.jobs.is_some_and(|jobs| jobs > 1) {
-        error::tell("--jobs has no effect: a firmware on the wall clock flies one flight at a time.");
+        error::tell(parallel::JOBS_HAVE_NO_EFFECT);
     }
     let interrupted = interrupt_flag()?;
     if args.watch {

@@ -1,14 +1,20 @@
-//! `betadeck compare`: the same plan, air and seed on two firmwares.
+//! `betadeck compare`: the same plan in the same air on two firmwares.
 
 mod flights;
+mod jobs;
 mod outputs;
 mod recorder;
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use super::error::{self, AppError};
 use super::firmware::{Beside, Chosen, RemoteFirmware};
+use super::parallel;
 use crate::args::{CompareArgs, FirmwareChoice, FlightArgs, PhysicsArgs};
 use crate::report::compare::{Comparison, Side};
-use flights::Flights;
+use crate::signals::fdm::FirmwareClock;
+use flights::{Flights, Flown};
+use jobs::Job;
 use outputs::Outputs;
 
 /// A firmware in the comparison.
@@ -18,8 +24,15 @@ struct Compared {
     name: String,
     /// `None` = the embedded firmware.
     firmware: Option<RemoteFirmware>,
-    /// The number of flights.
+    /// The number of flights with one seed.
     times: u32,
+}
+
+impl Compared {
+    /// Returns `true` if no two of its flights are the same.
+    fn is_on_wall_clock(&self) -> bool {
+        self.firmware.as_ref().is_some_and(|firmware| firmware.clock == FirmwareClock::Real)
+    }
 }
 
 /// Flies and compares. The exit code is 0 if all flights completed.
@@ -33,18 +46,26 @@ pub(super) fn run(args: &CompareArgs) -> Result<u8, AppError> {
             "--speed has no effect: the embedded firmware is flown as fast as the machine allows.".to_owned(),
         );
     }
+    let is_alone = compared.iter().any(Compared::is_on_wall_clock);
+    if is_alone && args.jobs.is_some_and(|jobs| jobs > 1) {
+        notices.push(parallel::JOBS_HAVE_NO_EFFECT.to_owned());
+    }
     let flights = Flights::new(args, &compared, &mut notices)?;
+    let seeds = jobs::seeds(args, flights.world(), &mut notices);
+    let jobs = jobs::jobs(args, &compared, &seeds)?;
     let outputs = Outputs::prepare(args)?;
     notices.iter().for_each(|notice| error::tell(notice));
     let mut sides = compared.each_ref().map(|one| Side {
         name: one.name.clone(),
-        repeatable: one.firmware.is_none(),
+        repeatable: !one.is_on_wall_clock(),
         flights: Vec::new(),
     });
-    let flown = fly(&flights, &compared, &mut sides);
+    let threads = if is_alone { 1 } else { parallel::threads(args.jobs) };
+    let flown = fly(args, &flights, &compared, &jobs, threads, &mut sides);
     let has_flown = sides.iter().any(|side| !side.flights.is_empty());
     let all_complete = sides.iter().flat_map(|side| &side.flights).all(|flight| flight.result == "complete");
-    let comparison = Comparison::new(flights.plan_name(), &conditions(&args.flight), flights.route(), sides);
+    let conditions = conditions(&args.flight, &seeds);
+    let comparison = Comparison::new(flights.plan_name(), &conditions, flights.route(), sides);
     if !matches!(flown, Ok(true)) && has_flown {
         error::tell(&format!("Not everything was flown. So far:\n\n{}", comparison.text()));
     }
@@ -55,20 +76,56 @@ pub(super) fn run(args: &CompareArgs) -> Result<u8, AppError> {
     Ok(if all_complete { 0 } else { error::FAILED })
 }
 
-/// Flies each firmware the requested number of times. Returns `false` after an interrupt; earlier flights are kept.
-fn fly(flights: &Flights, compared: &[Compared; 2], sides: &mut [Side; 2]) -> Result<bool, AppError> {
-    for (one, side) in compared.iter().zip(sides) {
-        for time in 1..=one.times {
-            let Some(track) = flights.fly(one.firmware.as_ref())? else { return Ok(false) };
-            let times = one.times;
-            error::tell(&format!(
-                "{}, flight {time} of {times}: {}: {}",
-                one.name, track.result, track.reason
-            ));
-            side.flights.push(track);
-        }
+/// Flies all jobs on this many threads. Returns `false` after an interrupt. Earlier flights are kept then, and after an
+/// error.
+fn fly(
+    args: &CompareArgs,
+    flights: &Flights,
+    compared: &[Compared; 2],
+    jobs: &[Job],
+    threads: usize,
+    sides: &mut [Side; 2],
+) -> Result<bool, AppError> {
+    let failed = AtomicBool::new(false);
+    let is_stopped = || flights.is_interrupted() || failed.load(Ordering::Relaxed);
+    let mut failure = None;
+    let mut flown = 0;
+    // The messages of the first flight of each firmware. Most others have the same ones.
+    let mut usual = [Vec::new(), Vec::new()];
+    parallel::all(
+        jobs,
+        threads,
+        &is_stopped,
+        |thread, job| {
+            let done = flights.fly(compared.get(job.side)?, job.seed, thread, threads == 1);
+            if done.is_err() {
+                failed.store(true, Ordering::Relaxed);
+            }
+            done.map(|track| track.map(|flown| (job, flown))).transpose()
+        },
+        |done: Result<(Job, Flown), AppError>, _| match done {
+            // Flights after one that failed are not reported, because their number differs from run to run.
+            _ if failure.is_some() => {}
+            Err(error) => failure = Some(error),
+            Ok((job, Flown { track, reported })) => {
+                let Some((one, side)) = compared.get(job.side).zip(sides.get_mut(job.side)) else { return };
+                let Some(usual) = usual.get_mut(job.side) else { return };
+                let news = reported.iter().filter(|sentence| !usual.contains(*sentence));
+                news.for_each(|sentence| error::tell(sentence));
+                if side.flights.is_empty() {
+                    *usual = reported;
+                }
+                let (name, title) = (&one.name, job.title(args));
+                error::tell(&format!("{name}, {title}: {}: {}", track.result, track.reason));
+                side.flights.push(track);
+                flown += 1;
+            }
+        },
+    )?;
+    match failure {
+        Some(failure) => Err(failure),
+        None => Ok(flown == jobs.len()),
     }
-    Ok(true)
 }
 
 /// Returns the two firmwares, checked.
@@ -88,8 +145,12 @@ fn compared(args: &CompareArgs, notices: &mut Vec<String>) -> Result<[Compared; 
     let beside = Beside { ports: (&args.firmware_ports).into(), flight: &args.flight, physics: &physics };
     let [first, second] = names(choices);
     let mut one = |name: String, chosen: &Chosen| -> Result<Compared, AppError> {
-        let times = args.flights_of(&chosen.choice).map_err(AppError::input)?;
-        Ok(Compared { name, firmware: chosen.check(&args.link, beside, notices)?, times })
+        // The options are checked before the executable is looked for.
+        args.flights_of(&chosen.choice, FirmwareClock::Real).map_err(AppError::input)?;
+        let firmware = chosen.check(&args.link, beside, notices)?;
+        let clock = firmware.as_ref().map_or(FirmwareClock::Real, |firmware| firmware.clock);
+        let times = args.flights_of(&chosen.choice, clock).map_err(AppError::input)?;
+        Ok(Compared { name, firmware, times })
     };
     let [a, b] = &chosen;
     Ok([one(first, a)?, one(second, b)?])
@@ -130,12 +191,16 @@ fn names(choices: [&FirmwareChoice; 2]) -> [String; 2] {
     }
 }
 
-/// Returns the air and the seed, for people.
-fn conditions(flight: &FlightArgs) -> String {
+/// Returns the air and the seeds, for people.
+fn conditions(flight: &FlightArgs, seeds: &[u64]) -> String {
     let mut reported = vec![flight.wind.map_or_else(|| "calm".to_owned(), |wind| format!("wind {wind}"))];
     reported.extend(flight.gust.map(|gust| format!("gusts {gust} m/s")));
     reported.extend(flight.turbulence.map(|level| format!("turbulence {level}")));
     reported.extend(flight.noise.map(|noise| format!("noise {noise}")));
-    reported.push(format!("seed {}", flight.seed.unwrap_or(1)));
+    reported.push(match seeds {
+        [first, .., last] => format!("seeds {first}..{last}"),
+        [seed] => format!("seed {seed}"),
+        [] => String::new(),
+    });
     reported.join(", ")
 }

@@ -8,6 +8,10 @@ use std::sync::mpsc;
 
 use super::AppError;
 
+/// The notice about `--jobs` for a firmware on the wall clock.
+pub(super) const JOBS_HAVE_NO_EFFECT: &str =
+    "--jobs has no effect: a firmware on the wall clock flies one flight at a time.";
+
 /// Returns the number of flights at once: the one of `--jobs`, or one a processor.
 pub(super) fn threads(jobs: Option<u32>) -> usize {
     jobs.map_or_else(

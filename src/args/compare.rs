@@ -6,6 +6,7 @@ use super::firmware::{FirmwareChoice, FirmwareLinkArgs, FirmwarePortArgs};
 use super::plan_arg::PlanArg;
 use super::value::{self, OutputFile};
 use super::{FlightArgs, MissionArgs, help};
+use crate::signals::fdm::FirmwareClock;
 
 /// The longest flight of a comparison, s. Its whole track is kept.
 const LONGEST_S: f64 = 7200.0;
@@ -35,7 +36,15 @@ pub struct CompareArgs {
     #[command(flatten)]
     pub firmware_ports: FirmwarePortArgs,
 
-    /// Flights of each remote firmware, which are never quite the same [default: 3; attach: 1]
+    /// Flies each firmware with these seeds, such as 1..20, and marks what is beyond their spread [default: --seed]
+    #[arg(long, value_name = "A..B", value_parser = value::seeds, conflicts_with_all = ["seed", "repeat"], help_heading = "Flight")]
+    pub seeds: Option<value::Seeds>,
+
+    /// Number of flights at the same time [default: one a processor; on the wall clock: 1]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256), help_heading = "Flight")]
+    pub jobs: Option<u32>,
+
+    /// Flights of each firmware on the wall clock, which are never quite the same [default: 3; attach: 1]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100), help_heading = "Flight")]
     pub repeat: Option<u32>,
 
@@ -57,16 +66,18 @@ pub struct CompareArgs {
 }
 
 impl CompareArgs {
-    /// Returns the number of flights of a firmware. The embedded one flies the same each time. A firmware that is
-    /// already running cannot be made to forget the previous flight.
+    /// Returns the number of flights of a firmware with one seed. The embedded one, and an executable in simulated time,
+    /// fly the same each time. A firmware that is already running cannot be made to forget the previous flight.
     ///
     /// # Errors
     /// Returns the reason why it cannot be flown the requested number of times.
-    pub fn flights_of(&self, firmware: &FirmwareChoice) -> Result<u32, String> {
-        match (firmware, self.repeat) {
-            (FirmwareChoice::Embedded, _) | (FirmwareChoice::Attach, None | Some(1)) => Ok(1),
-            (FirmwareChoice::Executable(_), times) => Ok(times.unwrap_or(3)),
-            (FirmwareChoice::Attach, Some(times)) => Err(format!(
+    pub fn flights_of(&self, firmware: &FirmwareChoice, clock: FirmwareClock) -> Result<u32, String> {
+        match (firmware, clock, self.repeat) {
+            (FirmwareChoice::Embedded, _, _)
+            | (FirmwareChoice::Attach, _, None | Some(1))
+            | (FirmwareChoice::Executable(_), FirmwareClock::Sim, _) => Ok(1),
+            (FirmwareChoice::Executable(_), FirmwareClock::Real, times) => Ok(times.unwrap_or(3)),
+            (FirmwareChoice::Attach, _, Some(times)) => Err(format!(
                 "--repeat {times}: a firmware that is running already (--firmware attach) is not restarted for each \
                  flight, so it flies once; write --repeat 1, or name its executable"
             )),

@@ -29,7 +29,7 @@ use measure::measures;
 pub struct Side {
     /// The name of the firmware.
     pub name: String,
-    /// `true` if all flights are equal to the last bit, so that one flight is enough.
+    /// `true` if all flights with one seed are equal to the last bit.
     pub repeatable: bool,
     pub flights: Vec<Track>,
 }
@@ -50,23 +50,22 @@ pub struct Comparison {
 struct Row {
     measure: Measure,
     sides: [Option<Statistics>; 2],
-}
-
-impl Row {
-    /// Returns the second value less the first.
-    fn difference(&self) -> Option<Statistics> {
-        let [first, second] = self.sides;
-        Some(second?.less(first?))
-    }
+    /// The second median less the first.
+    difference: Option<f64>,
+    /// `true` if the difference is greater than the spread of either firmware; `None` if a spread is unknown.
+    is_beyond: Option<bool>,
 }
 
 /// Distances between tracks: root mean square of the distance to the nearest point of the other track, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Apart {
-    /// Each flight of one firmware against each flight of the other.
+    /// The flights of both firmwares with the same seed.
     between: Option<Statistics>,
-    /// The flights of each firmware against each other.
+    /// Each flight of a firmware and its next one.
     among: [Option<Statistics>; 2],
+    /// `true` if the median between the firmwares is greater than each distance among the flights of either; `None` if
+    /// these are unknown.
+    is_beyond: Option<bool>,
 }
 
 impl Comparison {
@@ -82,7 +81,7 @@ impl Comparison {
             Statistics::of(values)
         };
         let rows = Measure::all(&route)
-            .map(|measure| Row { measure, sides: measured.each_ref().map(|side| of(side, measure)) })
+            .map(|measure| Row::new(measure, measured.each_ref().map(|side| of(side, measure)), &sides))
             .filter(|row| row.sides.iter().any(Option::is_some))
             .collect();
         let apart = Apart::new(&sides);
@@ -104,20 +103,43 @@ impl Comparison {
     }
 }
 
+impl Row {
+    fn new(measure: Measure, of_sides: [Option<Statistics>; 2], sides: &[Side; 2]) -> Self {
+        let [first, second] = of_sides;
+        let difference = first.zip(second).map(|(first, second)| second.median - first.median);
+        let spreads = of_sides.map(|of_side| of_side.filter(|found| found.count > 1).map(Statistics::spread));
+        Self { measure, sides: of_sides, difference, is_beyond: is_beyond(difference, spreads, sides) }
+    }
+}
+
 impl Apart {
     fn new(sides: &[Side; 2]) -> Self {
         let [first, second] = sides;
-        let between = first
-            .flights
-            .iter()
-            .flat_map(|one| second.flights.iter().filter_map(move |other| distance::rms_m(one, other)));
+        let between = Statistics::of(first.flights.iter().flat_map(|one| {
+            let same_air = second.flights.iter().filter(|other| other.seed == one.seed);
+            same_air.filter_map(|other| distance::rms_m(one, other))
+        }));
         let among = sides.each_ref().map(|side| {
-            let flights = &side.flights;
-            let pairs = flights.iter().enumerate().flat_map(|(index, one)| {
-                flights.iter().skip(index + 1).filter_map(move |other| distance::rms_m(one, other))
-            });
-            Statistics::of(pairs)
+            let pairs = side.flights.iter().zip(side.flights.iter().skip(1));
+            Statistics::of(pairs.filter_map(|(one, next)| distance::rms_m(one, next)))
         });
-        Self { between: Statistics::of(between), among }
+        let greatest = among.map(|among| among.map(|among| among.max));
+        let is_beyond = is_beyond(between.map(|between| between.median), greatest, sides);
+        Self { between, among, is_beyond }
     }
+}
+
+/// Returns `true` if a difference is greater than both spreads; `None` if that cannot be known. The spread of a firmware
+/// that flew once is zero if it would fly the same again, but not if neither firmware flew more often.
+fn is_beyond(difference: Option<f64>, spreads: [Option<f64>; 2], sides: &[Side; 2]) -> Option<bool> {
+    if sides.iter().all(|side| side.flights.len() == 1) {
+        return None;
+    }
+    let [first, second] = sides;
+    let known = |spread: Option<f64>, side: &Side| {
+        spread.or((side.repeatable && side.flights.len() == 1).then_some(0.0))
+    };
+    let [one, other] = spreads;
+    let greater = known(one, first)?.max(known(other, second)?);
+    Some(difference?.abs() > greater)
 }

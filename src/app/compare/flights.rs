@@ -4,11 +4,12 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::Compared;
+use super::jobs::seeds_on_wall_clock;
 use super::recorder::Recorder;
 use crate::app::firmware::run::{OnEvent, RemoteRun, RunOptions, Stopped, unless_interrupted};
 use crate::app::firmware::{RemoteFirmware, reported};
 use crate::app::interrupt::interrupt_flag;
-use crate::app::{AppError, setup};
+use crate::app::{AppError, error, setup};
 use crate::args::{CompareArgs, Speed};
 use crate::fc::{guide_settings, upload};
 use crate::firmware::config::Configuration;
@@ -17,6 +18,7 @@ use crate::flight::{FlightOptions, FlightSetup};
 use crate::plan::format::PlanFile;
 use crate::report::compare::{Route, Track};
 use crate::session::{Event, Runner, SessionEvent};
+use crate::sim::WorldConfig;
 
 /// The common start of all flights.
 #[derive(Debug)]
@@ -29,6 +31,8 @@ pub(super) struct Flights {
     set: Vec<String>,
     /// The requested speed of a remote firmware, as a multiple of real time.
     speed: Option<f64>,
+    /// `true` if each firmware flies several seeds.
+    has_seeds: bool,
     interrupted: Arc<AtomicBool>,
 }
 
@@ -72,6 +76,7 @@ impl Flights {
             options: setup::flight_options(&args.mission),
             set: args.mission.set.clone(),
             speed: args.flight.speed.map(|Speed(speed)| speed),
+            has_seeds: args.seeds.is_some(),
             interrupted: interrupt_flag()?,
         })
     }
@@ -86,46 +91,89 @@ impl Flights {
         self.route.clone()
     }
 
-    /// Flies once; `None` after an interrupt.
-    pub(super) fn fly(&self, firmware: Option<&RemoteFirmware>) -> Result<Option<Track>, AppError> {
-        match firmware {
-            None => self.fly_embedded(),
-            Some(firmware) => unless_interrupted(self.fly_remote(firmware)),
-        }
+    /// Returns the world without the seed of a flight.
+    pub(super) fn world(&self) -> &WorldConfig {
+        &self.setup.world
     }
 
-    fn fly_embedded(&self) -> Result<Option<Track>, AppError> {
-        let mut vehicle = setup::build(self.setup.clone(), &mut Vec::new())?;
+    /// Returns `true` if the user wants no more flights.
+    pub(super) fn is_interrupted(&self) -> bool {
+        self.interrupted.load(Ordering::Relaxed)
+    }
+
+    /// Flies once; `None` after an interrupt. Messages about the firmware are printed at once if `at_once`.
+    pub(super) fn fly(
+        &self,
+        compared: &Compared,
+        seed: u64,
+        thread: usize,
+        at_once: bool,
+    ) -> Result<Option<Flown>, AppError> {
+        let mut setup = self.setup.clone();
+        setup.world.seed = seed;
+        let Some(firmware) = &compared.firmware else { return self.fly_embedded(setup) };
+        let mut reported = Vec::new();
+        let mut tell = |sentence: String| match at_once {
+            true => error::tell(&sentence),
+            false => reported.push(sentence),
+        };
+        let flown = unless_interrupted(self.fly_remote(setup, compared, firmware, thread, &mut tell))?;
+        Ok(flown.map(|track| Flown { track, reported }))
+    }
+
+    fn fly_embedded(&self, setup: FlightSetup) -> Result<Option<Flown>, AppError> {
+        let seed = setup.world.seed;
+        let mut vehicle = setup::build(setup, &mut Vec::new())?;
         upload(vehicle.controller_mut(), &self.plan.plan, &[]).map_err(AppError::input)?;
-        let mut recorder = Recorder::new(&vehicle);
+        let mut recorder = Recorder::new(&vehicle, seed);
         let mut flight = setup::start_flight(vehicle, &self.options)?;
         let mut runner = Runner::new(flight.vehicle().step_us(), f64::INFINITY, None);
-        let end = runner.fly(&mut flight, &mut recorder, || self.interrupted.load(Ordering::Relaxed));
-        Ok(end.ok().map(|end| recorder.finish(&flight, end)))
+        let end = runner.fly(&mut flight, &mut recorder, || self.is_interrupted());
+        Ok(end.ok().map(|end| Flown { track: recorder.finish(&flight, end), reported: Vec::new() }))
     }
 
     /// Flies a remote firmware. An executable is restarted for each flight in an empty directory, because only that
     /// makes it forget the previous flight.
-    fn fly_remote(&self, firmware: &RemoteFirmware) -> Result<Track, Stopped> {
-        let setup = FlightSetup { remote_controller: true, ..self.setup.clone() };
+    fn fly_remote(
+        &self,
+        setup: FlightSetup,
+        compared: &Compared,
+        firmware: &RemoteFirmware,
+        thread: usize,
+        tell: &mut impl FnMut(String),
+    ) -> Result<Track, Stopped> {
+        let seed = setup.world.seed;
+        let setup = FlightSetup { remote_controller: true, ..setup };
         let mut vehicle = setup::build(setup, &mut Vec::new())?;
         let firmware = firmware.with_settings(&self.plan.settings, &self.set);
         let options = RunOptions {
             state: None,
             speed: self.speed,
             interrupted: Arc::clone(&self.interrupted),
-            processor: None,
+            processor: Some(thread),
         };
         // Every flight starts without a configuration, so this is not reported.
         let mut tell = OnEvent(|event: &Event| {
             if matches!(event.kind, SessionEvent::Remote(_)) {
-                reported::tell(event);
+                reported::sentence(event).into_iter().for_each(&mut *tell);
             }
         });
         let mut run = RemoteRun::prepare(&firmware, &mut vehicle, &self.plan.plan, options, &mut tell)?;
-        let mut recorder = Recorder::new(&vehicle);
+        // It was meant for simulated time.
+        if self.has_seeds && run.motor_hash().is_none() {
+            return Err(seeds_on_wall_clock(&compared.name).into());
+        }
+        let mut recorder = Recorder::new(&vehicle, seed);
         let mut flight = setup::start_flight(vehicle, &self.options)?;
         let end = run.fly(&mut flight, &mut (&mut recorder, &mut tell))?;
         Ok(recorder.finish(&flight, end))
     }
+}
+
+/// A flight that is over.
+#[derive(Debug)]
+pub(super) struct Flown {
+    pub(super) track: Track,
+    /// Messages about the firmware during the flight that were not printed.
+    pub(super) reported: Vec<String>,
 }

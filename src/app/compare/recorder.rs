@@ -27,11 +27,11 @@ pub(super) struct Recorder {
 }
 
 impl Recorder {
-    /// Creates a recorder for a craft on the ground at home.
-    pub(super) fn new(vehicle: &Vehicle) -> Self {
+    /// Creates a recorder for a craft on the ground at home, in the air of this seed.
+    pub(super) fn new(vehicle: &Vehicle, seed: u64) -> Self {
         let standing_m = place(vehicle).map_or(0.0, |(_, alt_m)| alt_m);
         Self {
-            track: Track::default(),
+            track: Track { seed, ..Track::default() },
             standing_m,
             switched_at: None,
             was_switching: false,
@@ -43,7 +43,7 @@ impl Recorder {
     pub(super) fn finish(self, flight: &Flight, end: FlightEnd) -> Track {
         let Some(engaged_at) = flight.engaged_at() else {
             let result = end.verdict.result.to_string();
-            return Track { result, reason: end.verdict.reason, ..Track::default() };
+            return Track { seed: self.track.seed, result, reason: end.verdict.reason, ..Track::default() };
         };
         let begin = self.switched_at.unwrap_or(engaged_at);
         Track {

@@ -25,6 +25,7 @@ struct Firmware<'a> {
 
 #[derive(Serialize)]
 struct Flight<'a> {
+    seed: u64,
     result: &'a str,
     reason: &'a str,
     flown_s: Option<Milli>,
@@ -37,14 +38,17 @@ struct Line {
     wp: Option<u8>,
     a: Option<Value>,
     b: Option<Value>,
-    difference: Option<Value>,
+    difference: Option<Milli>,
+    beyond_spread: Option<bool>,
 }
 
 #[derive(Serialize)]
 struct Value {
-    mean: Milli,
-    spread: Option<Milli>,
-    flights: usize,
+    median: Milli,
+    min: Milli,
+    max: Milli,
+    /// The number of flights, or of pairs of flights.
+    count: usize,
 }
 
 #[derive(Serialize)]
@@ -52,17 +56,24 @@ struct Apart {
     between: Option<Value>,
     a: Option<Value>,
     b: Option<Value>,
+    beyond_spread: Option<bool>,
 }
 
 /// Returns the object in one line.
 pub(super) fn object(comparison: &Comparison) -> String {
-    let [a, b] = comparison.apart.among.map(|side| side.map(Value::from));
+    let apart = comparison.apart;
+    let [a, b] = apart.among.map(|side| side.map(Value::from));
     let object = Object {
         plan: &comparison.plan,
         conditions: &comparison.conditions,
         firmware: comparison.sides.each_ref().map(Firmware::from),
         measures: comparison.rows.iter().map(Line::from).collect(),
-        tracks_apart_rms_m: Apart { between: comparison.apart.between.map(Value::from), a, b },
+        tracks_apart_rms_m: Apart {
+            between: apart.between.map(Value::from),
+            a,
+            b,
+            beyond_spread: apart.is_beyond,
+        },
     };
     // Numbers and texts always serialise.
     serde_json::to_string(&object).unwrap_or_default()
@@ -77,7 +88,8 @@ impl<'a> From<&'a Side> for Firmware<'a> {
 
 impl<'a> From<&'a Track> for Flight<'a> {
     fn from(track: &'a Track) -> Self {
-        Self { result: &track.result, reason: &track.reason, flown_s: track.flown_s.map(Milli::from) }
+        let flown_s = track.flown_s.map(Milli::from);
+        Self { seed: track.seed, result: &track.result, reason: &track.reason, flown_s }
     }
 }
 
@@ -85,12 +97,14 @@ impl From<&Row> for Line {
     fn from(row: &Row) -> Self {
         let (measure, wp) = row.measure.key();
         let [a, b] = row.sides.map(|side| side.map(Value::from));
-        Self { measure, wp, a, b, difference: row.difference().map(Value::from) }
+        let difference = row.difference.map(Milli::from);
+        Self { measure, wp, a, b, difference, beyond_spread: row.is_beyond }
     }
 }
 
 impl From<Statistics> for Value {
     fn from(value: Statistics) -> Self {
-        Self { mean: value.mean.into(), spread: value.spread.map(Milli::from), flights: value.count }
+        let Statistics { median, min, max, count } = value;
+        Self { median: median.into(), min: min.into(), max: max.into(), count }
     }
 }

@@ -1,11 +1,12 @@
-//! Mean and spread of a few values.
+//! The middle and the spread of a few values.
 
-/// Mean and spread of the values of several flights.
+/// The median and the spread of the values of several flights.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Statistics {
-    pub mean: f64,
-    /// The standard deviation; `None` for a single value.
-    pub spread: Option<f64>,
+    /// The middle value, or the mean of the two in the middle.
+    pub median: f64,
+    pub min: f64,
+    pub max: f64,
     /// The number of values.
     pub count: usize,
 }
@@ -13,24 +14,17 @@ pub struct Statistics {
 impl Statistics {
     /// Returns the statistics of these values; `None` if there are no values.
     pub(super) fn of(values: impl Iterator<Item = f64>) -> Option<Self> {
-        let values: Vec<f64> = values.collect();
+        let mut values: Vec<f64> = values.collect();
+        values.sort_by(f64::total_cmp);
+        let (min, max) = (*values.first()?, *values.last()?);
         let count = values.len();
-        if count == 0 {
-            return None;
-        }
-        let mean = values.iter().sum::<f64>() / count as f64;
-        let squares = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>();
-        let spread = (count > 1).then(|| (squares / (count - 1) as f64).sqrt());
-        Some(Self { mean, spread, count })
+        let (low, high) = (*values.get((count - 1) / 2)?, *values.get(count / 2)?);
+        Some(Self { median: f64::midpoint(low, high), min, max, count })
     }
 
-    /// Returns these statistics less `other`. The spreads of the two are independent.
-    pub(super) fn less(self, other: Self) -> Self {
-        let spread = match (self.spread, other.spread) {
-            (Some(one), Some(two)) => Some(one.hypot(two)),
-            (one, two) => one.or(two),
-        };
-        Self { mean: self.mean - other.mean, spread, count: self.count.min(other.count) }
+    /// Returns the greatest value less the least.
+    pub(super) fn spread(self) -> f64 {
+        self.max - self.min
     }
 }
 
@@ -38,16 +32,15 @@ impl Statistics {
 mod tests {
     use super::*;
 
+    fn of(values: &[f64]) -> Option<Statistics> {
+        Statistics::of(values.iter().copied())
+    }
+
     #[test]
-    fn mean_and_standard_deviation() {
-        let three = Statistics::of([1.0, 2.0, 6.0].into_iter()).unwrap();
-        assert!((three.mean - 3.0).abs() < 1e-12 && (three.spread.unwrap() - 7.0_f64.sqrt()).abs() < 1e-12);
-        let one = Statistics::of([4.0].into_iter()).unwrap();
-        assert_eq!((one.mean, one.spread, one.count), (4.0, None, 1));
-        assert_eq!(Statistics::of([].into_iter()), None);
-        let less = three.less(one);
-        assert!((less.mean + 1.0).abs() < 1e-12 && less.spread == three.spread);
-        let both = three.less(three);
-        assert!((both.spread.unwrap() - 14.0_f64.sqrt()).abs() < 1e-12);
+    fn median_and_spread() {
+        assert_eq!(of(&[6.0, 1.0, 2.0]), Some(Statistics { median: 2.0, min: 1.0, max: 6.0, count: 3 }));
+        assert_eq!(of(&[6.0, 1.0, 2.0, 3.0]).map(|four| (four.median, four.spread())), Some((2.5, 5.0)));
+        assert_eq!(of(&[4.0]), Some(Statistics { median: 4.0, min: 4.0, max: 4.0, count: 1 }));
+        assert_eq!(of(&[]), None);
     }
 }

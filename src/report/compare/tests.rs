@@ -161,12 +161,46 @@ fn the_json_has_the_same_numbers() {
         .find(|line| line["measure"] == "overshoot_m" && line["wp"] == 0)
         .unwrap();
     let near = |value: &serde_json::Value, expected| assert_near(value.as_f64().unwrap(), expected, 0.01);
-    near(&overshoot["a"]["mean"], 0.0);
-    assert_eq!(overshoot["a"]["spread"], serde_json::Value::Null);
-    near(&overshoot["b"]["mean"], 3.0);
-    near(&overshoot["difference"]["spread"], 2.0_f64.sqrt());
-    let between = json["tracks_apart_rms_m"]["between"]["mean"].as_f64().unwrap();
+    near(&overshoot["a"]["median"], 0.0);
+    near(&overshoot["b"]["median"], 3.0);
+    near(&overshoot["b"]["min"], 2.0);
+    near(&overshoot["b"]["max"], 4.0);
+    near(&overshoot["difference"], 3.0);
+    assert_eq!(overshoot["beyond_spread"], true);
+    let between = json["tracks_apart_rms_m"]["between"]["median"].as_f64().unwrap();
     assert!((1.0..4.0).contains(&between), "{between}");
+}
+
+/// Returns the mark of the overshoot at waypoint 0, for flights with these overshoots and seeds counted from 1.
+fn mark(overshoots: [&[f64]; 2], repeatable: bool) -> Option<bool> {
+    let route = route(&[(100.0, 0.0, Flyover), (100.0, 100.0, Flyover), (0.0, 0.0, Land)]);
+    let flight = |(index, by): (usize, &f64)| {
+        let places = [(0.0, 0.0), (100.0 + by, 0.0), (100.0 + by, 100.0), (0.0, 0.0)];
+        Track { seed: index as u64 + 1, ..track(&places) }
+    };
+    let sides = overshoots.map(|of_side| Side {
+        name: "x".to_owned(),
+        repeatable,
+        flights: of_side.iter().enumerate().map(flight).collect(),
+    });
+    let comparison = Comparison::new("square", "calm", route, sides);
+    let row = comparison.rows.iter().find(|row| row.measure == Measure::Overshoot(0)).unwrap();
+    row.is_beyond
+}
+
+#[test]
+fn a_difference_is_marked_if_it_is_greater_than_the_spread_of_both() {
+    assert_eq!(mark([&[2.0, 3.0, 4.0], &[5.5, 6.0, 6.5]], true), Some(true));
+    assert_eq!(mark([&[2.0, 3.0, 4.0], &[4.0, 4.5, 5.0]], true), Some(false), "less than the spread of A");
+    assert_eq!(mark([&[2.0, 2.0, 2.0], &[0.0, 4.0, 5.0]], true), Some(false), "less than the spread of B");
+    assert_eq!(mark([&[2.0, 3.0], &[2.0, 3.0]], true), Some(false));
+}
+
+#[test]
+fn without_a_spread_nothing_is_marked() {
+    assert_eq!(mark([&[2.0], &[9.0]], true), None, "other seeds may differ");
+    assert_eq!(mark([&[2.0], &[9.0, 10.0]], false), None, "A may fly differently the next time");
+    assert_eq!(mark([&[2.0], &[9.0, 10.0]], true), Some(true), "A flies the same the next time");
 }
 
 #[test]

@@ -21,27 +21,43 @@ pub(super) fn table(comparison: &Comparison) -> String {
     ];
     for row in &comparison.rows {
         let [a, b] = row.sides.map(|side| side.map_or_else(|| UNKNOWN.to_owned(), plain));
-        let difference = row.difference().map_or_else(|| UNKNOWN.to_owned(), signed);
+        let difference = row.difference.map_or_else(|| UNKNOWN.to_owned(), signed);
+        let difference = marked(difference, row.is_beyond);
         lines.push([row.measure.title(), row.measure.unit().to_owned(), a, b, difference]);
     }
     let apart = &comparison.apart;
     let [a, b] = apart.among.map(|side| side.map(plain).unwrap_or_default());
-    let between = apart.between.map_or_else(|| UNKNOWN.to_owned(), plain);
+    let between = marked(apart.between.map_or_else(|| UNKNOWN.to_owned(), plain), apart.is_beyond);
     lines.push(["tracks apart, RMS".to_owned(), "m".to_owned(), a, b, between]);
     text.push_str(&aligned(&lines));
     for (letter, side) in ["A", "B"].iter().zip([first, second]) {
+        let first = side.flights.first().map_or(0, |flight| flight.seed);
+        let of_several = side.flights.iter().any(|flight| flight.seed != first);
         for flight in side.flights.iter().filter(|flight| flight.result != "complete") {
-            let _ = writeln!(text, "{letter}: {}: {}", flight.result, flight.reason);
+            let of_seed = if of_several { format!(", seed {}", flight.seed) } else { String::new() };
+            let _ = writeln!(text, "{letter}{of_seed}: {}: {}", flight.result, flight.reason);
         }
     }
     text.push_str(
         "\nMeasured from truth. Tracks apart: from each point of one track to the nearest of the other, both ways; \
-         below\nA and B among the flights of that firmware.",
+         below\nA and B among the flights of that firmware.\n",
     );
     if comparison.sides.iter().any(|side| side.flights.len() > 1) {
-        text.push_str(" After ±: the standard deviation.");
+        text.push_str(
+            "Of several flights: the median, and in parentheses the least and the greatest value. B − A is the \
+             difference\nof the medians. ",
+        );
+        let is_beyond: Vec<bool> =
+            comparison.rows.iter().filter_map(|row| row.is_beyond).chain(apart.is_beyond).collect();
+        text.push_str(match is_beyond.iter().any(|is_beyond| *is_beyond) {
+            true => {
+                "*: it is greater than the spread, from the least to the greatest value, of A and of B; tracks\nare \
+                 farther apart than any two flights compared below A or below B.\n"
+            }
+            false if is_beyond.is_empty() => "The spread of one of them is unknown.\n",
+            false => "None is greater than the spread, from the least to the greatest value, of A and of B.\n",
+        });
     }
-    text.push('\n');
     text
 }
 
@@ -72,19 +88,29 @@ fn results(side: &Side) -> String {
     reported.collect::<Vec<_>>().join(", ")
 }
 
-/// Returns a value with its spread: `12.34 ± 0.05`.
+/// Returns the median with the spread: `12.34 (12.30..12.41)`.
 fn plain(value: Statistics) -> String {
-    format!("{}{}", rounded(value.mean), spread(value))
+    let median = rounded(value.median);
+    match value.count {
+        1 => median,
+        _ => format!("{median} ({}..{})", rounded(value.min), rounded(value.max)),
+    }
 }
 
-/// Returns a value with its sign and its spread: `+0.12 ± 0.05`.
-fn signed(value: Statistics) -> String {
-    let sign = if rounded(value.mean).starts_with('-') { "" } else { "+" };
-    format!("{sign}{}{}", rounded(value.mean), spread(value))
+/// Returns a value with its sign: `+0.12`.
+fn signed(value: f64) -> String {
+    let text = rounded(value);
+    if text.starts_with('-') { text } else { format!("+{text}") }
 }
 
-fn spread(value: Statistics) -> String {
-    value.spread.map_or_else(String::new, |spread| format!(" ± {}", rounded(spread)))
+/// Returns the difference with a mark if it is greater than the spread, and with its width in any case.
+fn marked(difference: String, is_beyond: Option<bool>) -> String {
+    difference
+        + match is_beyond {
+            Some(true) => " *",
+            Some(false) => "  ",
+            None => "",
+        }
 }
 
 /// Rounds to the hundredth, without `-0.00`.

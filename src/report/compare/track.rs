@@ -5,6 +5,8 @@ use nalgebra::{Vector2, Vector3};
 /// A flight of the plan from its engagement on, the instant at which the pilot switched the autopilot on.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Track {
+    /// The seed of its air and its sensors.
+    pub seed: u64,
     /// The positions of the craft, at equal intervals.
     pub samples: Vec<TrackSample>,
     /// The last touchdown: seconds after the engagement, and the place, m north and east of home.
