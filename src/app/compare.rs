@@ -29,6 +29,11 @@ struct Compared {
 }
 
 impl Compared {
+    /// Returns `true` if betadeck does not start it.
+    fn is_attached(&self) -> bool {
+        self.firmware.as_ref().is_some_and(|firmware| firmware.executable.is_none())
+    }
+
     /// Returns `true` if no two of its flights are the same.
     fn is_on_wall_clock(&self) -> bool {
         self.firmware.as_ref().is_some_and(|firmware| firmware.clock == FirmwareClock::Real)

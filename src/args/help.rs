@@ -19,9 +19,10 @@ Each option can also be set in the configuration file (wind = \"5@270\") and in 
 
 /// The end of the help of `compare`.
 pub(super) const COMPARE: &str = "\
-Everything is measured from truth, in the same way for both. The embedded firmware flies as fast as the machine allows
-and once, because each of its flights is the same. A remote firmware flies in real time. Each flight starts from
-defaults, an executable in an empty folder each time. attach uses a running firmware as it is, and once.
+Everything is measured from truth, in the same way for both. The embedded firmware, and an executable in simulated time,
+fly as fast as the machine allows: once, because each of their flights is the same, or with each of --seeds. A firmware
+on the wall clock flies --repeat times. Each flight starts from defaults, an executable in an empty folder each time.
+attach uses a running firmware as it is, and once.
 
 Exit codes: 0 every flight completed, 1 one did not, 2 wrong usage or input, 3 file or port trouble,
 4 internal error, 130 interrupted.

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::*;
+use crate::signals::fdm::FirmwareClock;
 
 fn parse_line(line: &str, layers: &Layers) -> Result<Cli, clap::Error> {
     parse(line.split(' ').map(OsString::from), layers)
@@ -101,15 +102,19 @@ fn compare_takes_one_or_two_firmwares() {
         &none,
     );
     assert_eq!(two.firmware, [FirmwareChoice::Embedded, FirmwareChoice::Executable("./x.elf".into())]);
-    let times = |args: &CompareArgs| {
-        args.firmware.iter().map(|firmware| args.flights_of(firmware)).collect::<Result<Vec<u32>, _>>()
+    let times = |args: &CompareArgs, clock| {
+        let of_each = args.firmware.iter().map(|firmware| args.flights_of(firmware, clock));
+        of_each.collect::<Result<Vec<u32>, _>>()
     };
-    assert_eq!((times(&two), two.mission.set.len()), (Ok(vec![1, 3]), 1));
+    assert_eq!((times(&two, FirmwareClock::Real), two.mission.set.len()), (Ok(vec![1, 3]), 1));
+    assert_eq!(times(&two, FirmwareClock::Sim), Ok(vec![1, 1]));
     let of_launcher = compare("betadeck compare square --betaloop config.txt", &none);
     assert!(of_launcher.firmware.is_empty() && of_launcher.link.betaloop.is_some());
     let file = layers(&[], "seed = 9\ntakeoff = 5");
     let layered = compare("betadeck compare square --firmware ./x.elf --repeat 5", &file);
-    assert_eq!((layered.flight.seed, times(&layered)), (Some(9), Ok(vec![5])));
+    assert_eq!((layered.flight.seed, times(&layered, FirmwareClock::Real)), (Some(9), Ok(vec![5])));
+    let seeds = compare("betadeck compare square --firmware ./x.elf --seeds 2..4", &file);
+    assert_eq!((seeds.flight.seed, seeds.seeds.map(|seeds| seeds.0)), (None, Some(vec![2, 3, 4])));
     assert!(
         (layered.mission.takeoff_m() - 5.0).abs() < 1e-9
             && (layered.mission.timeout_s() - 1800.0).abs() < 1e-9
@@ -119,7 +124,7 @@ fn compare_takes_one_or_two_firmwares() {
 #[test]
 fn a_firmware_that_runs_already_is_compared_by_one_flight() {
     let times = |line: &str| match parse_line(line, &Layers::default()).unwrap().command {
-        Some(Command::Compare(compare)) => compare.flights_of(&compare.firmware[0]),
+        Some(Command::Compare(compare)) => compare.flights_of(&compare.firmware[0], FirmwareClock::Real),
         other => panic!("{other:?}"),
     };
     assert_eq!(times("betadeck compare square --firmware attach"), Ok(1));

@@ -129,6 +129,9 @@ impl Apart {
     }
 }
 
+/// The smallest difference that the table shows. A smaller one is never marked.
+const SMALLEST: f64 = 0.005;
+
 /// Returns `true` if a difference is greater than both spreads; `None` if that cannot be known. The spread of a firmware
 /// that flew once is zero if it would fly the same again, but not if neither firmware flew more often.
 fn is_beyond(difference: Option<f64>, spreads: [Option<f64>; 2], sides: &[Side; 2]) -> Option<bool> {
@@ -141,5 +144,5 @@ fn is_beyond(difference: Option<f64>, spreads: [Option<f64>; 2], sides: &[Side; 
     };
     let [one, other] = spreads;
     let greater = known(one, first)?.max(known(other, second)?);
-    Some(difference?.abs() > greater)
+    Some(difference?.abs() > greater.max(SMALLEST))
 }

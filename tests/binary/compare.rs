@@ -98,6 +98,51 @@ fn a_comparison_replaces_files_as_a_whole_and_writes_to_pipes() {
 }
 
 #[test]
+fn several_seeds_give_the_same_comparison_on_any_number_of_threads() {
+    let sandbox = Sandbox::new();
+    sandbox.write("hop.toml", HOP);
+    let both = ["compare", "hop.toml", "--firmware", "embedded", "--firmware", "embedded", "--json", "-"];
+    let run = |seeds: &str, jobs: &str| {
+        let options = ["--takeoff=4", "--rate=400", "--gust=2", "--seeds", seeds, "--jobs", jobs];
+        sandbox.run(&[&both[..], &options].concat()).exits(0)
+    };
+    let (one, four) = (run("3..6", "1"), run("3..6", "4"));
+    assert_eq!((&one.out, &one.err), (&four.out, &four.err));
+    let flown: Vec<&str> =
+        one.err.lines().filter_map(|line| line.split_once(": complete").map(|(flight, _)| flight)).collect();
+    let expected: Vec<String> =
+        (0..2).flat_map(|_| (3..7).map(|seed| format!("embedded, seed {seed}"))).collect();
+    assert_eq!(flown, expected);
+
+    let json: serde_json::Value = serde_json::from_str(&one.out).expect("JSON");
+    assert_eq!(json["conditions"], "calm, gusts 2 m/s, seeds 3..6");
+    let flights = json["firmware"][1]["flights"].as_array().expect("flights");
+    assert_eq!(
+        flights.iter().map(|flight| flight["seed"].as_u64()).collect::<Vec<_>>(),
+        [3, 4, 5, 6].map(Some)
+    );
+    let flown_s =
+        json["measures"].as_array().expect("measures").iter().find(|line| line["measure"] == "flown_s");
+    let flown_s = flown_s.expect("the duration");
+    let number = |key: &str| flown_s["a"][key].as_f64().expect("a number");
+    assert!(number("min") < number("median") && number("median") < number("max"), "{flown_s}");
+    assert_eq!((&flown_s["difference"], &flown_s["beyond_spread"]), (&0.0.into(), &false.into()));
+    // One seed gives no spread.
+    let alone: serde_json::Value = serde_json::from_str(&run("3..3", "2").out).expect("JSON");
+    assert_eq!(alone["measures"][0]["beyond_spread"], serde_json::Value::Null);
+}
+
+#[test]
+fn without_randomness_one_seed_is_flown_and_a_notice_says_so() {
+    let sandbox = Sandbox::new();
+    sandbox.write("hop.toml", HOP);
+    let both = ["compare", "hop.toml", "--firmware", "embedded", "--firmware", "embedded", "--seeds=2..9"];
+    let ran = sandbox.run(&[&both[..], &QUICKLY].concat()).exits(0);
+    assert!(ran.err.contains("Only seed 2 is flown:") && !ran.err.contains("seed 3"), "{}", ran.err);
+    assert!(ran.out.contains("A: embedded, one flight"), "{}", ran.out);
+}
+
+#[test]
 fn in_the_folder_of_the_launcher_no_option_names_the_firmware() {
     let sandbox = Sandbox::new();
     sandbox.run(&["compare", "square"]).exits(2);
@@ -133,6 +178,10 @@ fn what_cannot_be_compared_is_refused() {
         (&["--firmware", "attach", "--firmware", PROGRAM], "would need the same ports"),
         (&["--firmware", PROGRAM, "--state-dir", "."], "each flight starts from defaults"),
         (&["--firmware", "embedded"], "name the firmware to compare with"),
+        (&["--firmware", "attach", "--seeds", "1..3"], "write --repeat 1"),
+        (&["--firmware", PROGRAM, "--clock=real", "--seeds", "1..3"], "use --repeat N"),
+        (&["--firmware=embedded", "--firmware=embedded", "--repeat=3"], "with --seeds 1..3"),
+        (&["--firmware=embedded", "--firmware=embedded", "--seeds=1..6000"], "10000 are allowed"),
     ] {
         let ran = sandbox.run(&[&["compare", "square"], options].concat()).exits(2);
         assert!(ran.err.contains(part), "{options:?}: {}", ran.err);

@@ -126,13 +126,13 @@ fn a_plan_is_flown_to_its_landing_and_compared_with_the_embedded_firmware() {
         let all = compared["measures"].as_array().unwrap();
         let found =
             all.iter().find(|line| line["measure"] == name).unwrap_or_else(|| panic!("{name} in {compared}"));
-        found[side]["mean"].as_f64().unwrap()
+        found[side]["median"].as_f64().unwrap()
     };
     for side in ["a", "b"] {
         assert!((2.0..60.0).contains(&measure("flown_s", side)), "{compared}");
         assert!(measure("touchdown_distance_m", side) < 5.0, "{compared}");
     }
-    let apart = compared["tracks_apart_rms_m"]["between"]["mean"].as_f64().unwrap();
+    let apart = compared["tracks_apart_rms_m"]["between"]["median"].as_f64().unwrap();
     assert!(apart < 5.0, "{compared}");
     let svg = std::fs::read_to_string(svg).unwrap();
     assert!(svg.contains("A: embedded</text>") && svg.contains("B: betadeck</text>"), "{svg}");

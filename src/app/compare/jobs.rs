@@ -41,7 +41,7 @@ pub(super) fn jobs(
     let all = compared.iter().map(times).fold(0, usize::saturating_add);
     if all > MAX_FLIGHTS {
         return Err(AppError::input(format!(
-            "the comparison has {all} flights, and {MAX_FLIGHTS} are allowed: choose fewer --seeds"
+            "the comparison has {all} flights, and {MAX_FLIGHTS} are allowed: choose fewer with --seeds A..B"
         )));
     }
     let mut jobs = Vec::with_capacity(all);
@@ -55,6 +55,10 @@ pub(super) fn jobs(
 /// Refuses other seeds for a firmware on the wall clock, and repetitions of flights that are the same each time.
 fn check_option(args: &CompareArgs, compared: &[Compared; 2]) -> Result<(), AppError> {
     match (&args.seeds, args.repeat, compared.iter().find(|one| one.is_on_wall_clock())) {
+        (Some(_), _, Some(one)) if one.is_attached() => Err(AppError::input(
+            "--seeds: a firmware that is running already (--firmware attach) is not restarted for each flight, so it \
+             flies once; write --repeat 1, or name its executable",
+        )),
         (Some(_), _, Some(one)) => Err(seeds_on_wall_clock(&one.name)),
         (_, Some(times), None) => Err(AppError::input(format!(
             "--repeat {times}: each of these flights is the same every time; fly other seeds with --seeds 1..{times}"
@@ -66,7 +70,7 @@ fn check_option(args: &CompareArgs, compared: &[Compared; 2]) -> Result<(), AppE
 /// Returns the error for several seeds of a firmware on the wall clock.
 pub(super) fn seeds_on_wall_clock(name: &str) -> AppError {
     AppError::input(format!(
-        "--seeds: {name} flies on the wall clock, where even flights with one seed differ; use --repeat N"
+        "--seeds: {name} flies on the wall clock, where no two flights are the same; use --repeat N"
     ))
 }
 
