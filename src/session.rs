@@ -3,6 +3,7 @@
 mod arming;
 pub mod command;
 mod event;
+mod fly_again;
 mod forecaster;
 mod hazards;
 mod host_status;
@@ -21,6 +22,7 @@ pub mod sitl;
 
 pub use command::{Command, Seek, SessionView};
 pub use event::{EndpointAddresses, Event, SessionEvent};
+pub use fly_again::{FlownAgain, FlyAgain};
 pub use forecaster::{ForecastJob, ForecastReply, ForecastRequest, Forecaster};
 pub use hazards::hazards;
 pub use links::{Links, MotorTargets, MotorsError};

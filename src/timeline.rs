@@ -139,13 +139,25 @@ impl Timeline {
         self.replay = None;
     }
 
+    /// Continues from the shown instant of a flight that is kept as pictures, on a new branch, with another vehicle that has
+    /// flown so far. Forgets the recording after it. Returns the vehicle of the picture; `None` if no earlier instant is shown.
+    pub fn continue_pictures(&mut self) -> Option<Vehicle> {
+        let replay = self.replay.take_if(|_| self.is_pictures)?;
+        self.branch_from(&replay);
+        Some(replay.into_vehicle())
+    }
+
+    fn branch_from(&mut self, replay: &Replay) {
+        self.recording.forget_after(replay);
+        self.branch += 1;
+        self.branched_at = replay.time();
+    }
+
     /// Makes the shown vehicle the flying one, on a new branch. Forgets the recording after it. Returns `None` if no
     /// earlier instant is shown, or if the vehicle cannot be flown again.
     pub fn fly_on(&mut self) -> Option<Vehicle> {
         let replay = self.replay.take_if(|_| !self.is_pictures)?;
-        self.recording.forget_after(&replay);
-        self.branch += 1;
-        self.branched_at = replay.time();
+        self.branch_from(&replay);
         let mut vehicle = replay.into_vehicle();
         vehicle.keep_inputs(true);
         // The events were reported when they happened.

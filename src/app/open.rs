@@ -1,6 +1,9 @@
 //! `betadeck open`: the screen at an instant of a scenario's flight, which is flown first, by the embedded firmware or by a
 //! remote one.
 
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
 use super::check;
 use super::error::{self, AppError};
 use super::firmware::run::{OnEvent, Stopped, unless_interrupted};
@@ -10,7 +13,7 @@ use super::live::LiveArgs;
 use super::tui::{self, Screen};
 use crate::args::{DoorArgs, FlightArgs, Instant, OpenArgs, PhysicsArgs, ReviewArgs};
 use crate::scenario::{self, Air, Case, CaseFlight, Scenario};
-use crate::session::{Event, FlownBefore, Runner, SessionView, Subscriber};
+use crate::session::{Event, FlownAgain, FlownBefore, FlyAgain, Runner, SessionView, Subscriber};
 use crate::signals::SimTime;
 use crate::storage::Store;
 use crate::text::did_you_mean;
@@ -60,15 +63,18 @@ pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
         },
     };
     let Flown { flight, timeline, recorded: Recorded { events, past } } = flown;
+    let again = firmware.filter(|firmware| firmware.executable.is_some()).map(|firmware| {
+        let case = case.clone();
+        FlyAgain::new(move |until| fly_again(&case, &air, &firmware, until))
+    });
     let show = instant(args.at, flight.trace().engaged_at, flight.vehicle().time())?;
     let name = if case.name.is_empty() {
         scenario.name.clone()
     } else {
         format!("{}, {}", scenario.name, case.name)
     };
-    let flies_on = if firmware.is_none() { ", `b` flies on from here" } else { "" };
     notices.push(format!(
-        "Scenario {name}, seed {}, was flown to its end: `,` and `<` go back, Space plays it{flies_on}.",
+        "Scenario {name}, seed {}, was flown to its end: `,` and `<` go back, Space plays it, `b` flies on from here.",
         air.seed
     ));
     let doors = DoorArgs { no_ports: true, ..DoorArgs::default() };
@@ -80,7 +86,7 @@ pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
         store: Store::in_memory(),
         directory: None,
         was_used: true,
-        flown: Some((FlownBefore { timeline, events, show }, past)),
+        flown: Some((FlownBefore { timeline, events, show, again }, past)),
         notices,
         review: ReviewArgs::default(),
         plain: false,
@@ -139,6 +145,28 @@ fn fly_remote<'a>(case: &'a Case, air: &Air, firmware: &RemoteFirmware) -> Resul
     remote.fly(&mut flight, &mut subscribers)?;
     let (timeline, recorded) = subscribers;
     Ok(Flown { flight, timeline, recorded })
+}
+
+/// Flies the case again with the firmware, up to an instant.
+fn fly_again(
+    case: &Case,
+    air: &Air,
+    firmware: &RemoteFirmware,
+    until: SimTime,
+) -> Result<FlownAgain, String> {
+    let fly = || -> Result<FlownAgain, Stopped> {
+        let interrupted = Arc::new(AtomicBool::new(false));
+        let (mut remote, vehicle) = check::prepare(firmware, case, air, &interrupted, 0, &mut ())?;
+        let mut flight = CaseFlight::of_vehicle(case, vehicle).map_err(AppError::input)?;
+        remote.fly_until(&mut flight, until, &mut ())?;
+        let (link, keeps) = remote.into_parts();
+        let link = link.ok_or_else(|| AppError::internal("the firmware has no link"))?;
+        Ok(FlownAgain { vehicle: flight.into_vehicle(), link, keeps })
+    };
+    fly().map_err(|stopped| match stopped {
+        Stopped::Failed(AppError { message, .. }) => message,
+        Stopped::Interrupted | Stopped::BySubscriber => "The flight was interrupted.".to_owned(),
+    })
 }
 
 /// Returns the requested case and air.

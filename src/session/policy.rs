@@ -61,8 +61,8 @@ pub struct Facts {
     pub is_piloted: bool,
     /// `true` if the flight is recorded.
     pub is_recorded: bool,
-    /// `true` if it is recorded as pictures, which cannot be flown again.
-    pub is_pictures: bool,
+    /// `true` if the flight cannot be continued from an earlier instant.
+    pub cannot_continue: bool,
     /// `true` if the flight controller is a remote firmware that has ended for good.
     pub has_ended: bool,
     /// `true` while an earlier instant is shown.
@@ -97,7 +97,7 @@ impl From<&SessionView> for Facts {
             upload: view.upload,
             is_piloted: view.pilot.is_some(),
             is_recorded: view.timeline.is_some(),
-            is_pictures: view.timeline.as_ref().is_some_and(|timeline| timeline.is_pictures),
+            cannot_continue: view.timeline.as_ref().is_some_and(|timeline| timeline.cannot_continue),
             has_ended: view.remote.is_none()
                 && view.timeline.as_ref().is_some_and(|timeline| timeline.is_pictures),
             is_rewound: view.is_rewound(),
@@ -266,7 +266,7 @@ const RULES: [Rule; 13] = [
         intent == Intent::Time && facts.remote.is_some_and(|remote| !remote.is_in_steps)
     }),
     (NOT_RECORDED, |facts, intent| matches!(intent, Intent::Recording | Intent::FlyOn) && !facts.is_recorded),
-    (NOT_FLOWN_AGAIN, |facts, intent| intent == Intent::FlyOn && facts.is_pictures),
+    (NOT_FLOWN_AGAIN, |facts, intent| intent == Intent::FlyOn && facts.cannot_continue),
     (REWOUND, |facts, intent| facts.is_rewound && intent.needs_newest()),
     (PLACE_IS_EXTERNAL, |facts, intent| {
         intent == Intent::Reset && facts.simulator == Some(LinkState::Flowing)
@@ -331,7 +331,7 @@ mod tests {
         upload: None,
         is_piloted: false,
         is_recorded: true,
-        is_pictures: false,
+        cannot_continue: false,
         has_ended: false,
         is_rewound: false,
     };
@@ -371,7 +371,7 @@ mod tests {
 
     #[test]
     fn of_a_flight_whose_firmware_has_ended_only_the_recording_is_left() {
-        let ended = Facts { is_pictures: true, has_ended: true, ..EMBEDDED };
+        let ended = Facts { cannot_continue: true, has_ended: true, ..EMBEDDED };
         for (is_rewound, time) in [(false, Err(Refusal::Now(FIRMWARE_ENDED))), (true, Ok(()))] {
             let ended = Facts { is_rewound, ..ended };
             assert_eq!(check(&ended, Intent::Time), time);
@@ -408,7 +408,7 @@ mod tests {
         // In simulated time the session sets its time.
         assert_eq!(refused(&Facts { remote: in_steps, ..REMOTE }), table(&always[1..]));
         // Its flight is recorded as pictures.
-        let pictures = Facts { remote: in_steps, is_recorded: true, is_pictures: true, ..REMOTE };
+        let pictures = Facts { remote: in_steps, is_recorded: true, cannot_continue: true, ..REMOTE };
         assert_eq!(check(&pictures, Intent::Recording), Ok(()));
         assert_eq!(check(&pictures, Intent::FlyOn), Err(Refusal::Now(NOT_FLOWN_AGAIN)));
         let remote = |is_ready, has_plans| Facts {

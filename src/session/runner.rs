@@ -12,6 +12,7 @@ use std::time::{Duration, Instant};
 use super::event::{Event, SessionEvent};
 use super::pacer::Pacer;
 use crate::fc::{EXCHANGE_PAUSE, RemoteLink, RemoteNotice};
+use crate::signals::SimTime;
 
 pub(super) use subscriber::tick;
 pub use subscriber::{Flying, Subscriber};
@@ -56,6 +57,11 @@ impl Runner {
     /// Returns the same runner with at most `slice` ticks in a round.
     pub(super) fn with_slice(self, slice: u64) -> Self {
         Self { slice, ..self }
+    }
+
+    /// Returns the link to the remote flight controller, if there is one, for another runner.
+    pub fn into_link(self) -> Option<RemoteLink> {
+        self.link
     }
 
     /// Returns the link to the remote flight controller, if there is one.
@@ -113,6 +119,28 @@ impl Runner {
                 return Ok(end);
             }
         }
+    }
+
+    /// Flies until the vehicle has this time. Returns the end if the flight ended before.
+    ///
+    /// # Errors
+    /// Returns the reason why the flight did not get so far.
+    pub fn fly_until<F: Flying>(
+        &mut self,
+        flight: &mut F,
+        until: SimTime,
+        subscriber: &mut impl Subscriber<F>,
+        is_stopped: impl Fn() -> bool,
+    ) -> Result<Option<F::End>, Stopped> {
+        let slice = self.slice;
+        let mut end = None;
+        while end.is_none() && flight.vehicle().time() < until {
+            let left_us = until.0 - flight.vehicle().time().0;
+            self.slice = slice.min(left_us.div_ceil(self.step_us));
+            end = self.round(flight, subscriber, &is_stopped)?;
+        }
+        self.slice = slice;
+        Ok(end)
     }
 
     /// Runs one round. Returns the end if the flight is over.

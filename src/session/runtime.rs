@@ -11,6 +11,7 @@ mod limits;
 mod requests;
 mod rewind;
 
+use std::any::Any;
 use std::sync::Arc;
 use std::task::{Context, Wake, Waker};
 use std::thread::Thread;
@@ -21,6 +22,7 @@ use tokio::sync::{mpsc, watch};
 use super::arming::ArmingWatch;
 use super::command::{Command, SessionView};
 use super::event::{Event, EventSender, SessionEvent};
+use super::fly_again::{FlyAgain, FlyingAgain};
 use super::host_status::HostStatus;
 use super::persistence::Persistence;
 use super::real_time::RealTime;
@@ -91,6 +93,8 @@ pub struct FlownBefore {
     pub events: Vec<Event>,
     /// The instant to show.
     pub show: SimTime,
+    /// Flies it again, if it was flown by a remote firmware that has ended.
+    pub again: Option<FlyAgain>,
 }
 
 /// The caller's ends of a running session.
@@ -168,6 +172,11 @@ struct Session {
     real_time: RealTime,
     /// The recording, unless the flight cannot be rewound.
     timeline: Option<Timeline>,
+    /// Flies the flight of a remote firmware that has ended again.
+    again: Option<FlyAgain>,
+    flying_again: Option<FlyingAgain>,
+    /// What the firmware of a flight flown again needs, declared after the runner with its link.
+    keeps: Option<Box<dyn Any + Send>>,
     /// The target up to which the flight continues as fast as possible.
     run_on: Option<RunOn>,
     /// `true` if time was already paused when the earlier instant was shown.
@@ -210,8 +219,12 @@ impl Session {
     ) -> Self {
         let simulator = config.endpoints.as_mut().and_then(|endpoints| endpoints.simulator.take());
         let incoming = ImpairedLink::new(Stream::Link.rng(config.vehicle.clock().seed()));
+        let mut again = None;
         let (timeline, flown) = match flown {
-            Some(flown) => (Some(flown.timeline), Some((flown.events, flown.show))),
+            Some(flown) => {
+                again = flown.again;
+                (Some(flown.timeline), Some((flown.events, flown.show)))
+            }
             None if config.is_recorded && simulator.is_none() && can_wait(&config) => {
                 (Timeline::new(&mut config.vehicle), None)
             }
@@ -234,6 +247,9 @@ impl Session {
             interface: Interface::default(),
             real_time: RealTime::default(),
             timeline,
+            again,
+            flying_again: None,
+            keeps: None,
             run_on: None,
             was_paused: false,
             rc_received: false,
@@ -263,6 +279,7 @@ impl Session {
         while !self.quit {
             self.take_commands(start.elapsed(), &mut context);
             self.take_late_answers(Instant::now());
+            self.take_flown_again(start.elapsed());
             let flown = self.handle_requests(&mut context);
             let now = start.elapsed();
             self.record_flood();

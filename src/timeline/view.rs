@@ -16,8 +16,10 @@ pub struct TimelineView {
     pub head_is_armed: bool,
     /// `true` while an earlier instant is shown and the flight waits.
     pub rewound: bool,
-    /// `true` if the flight is recorded as pictures, so that it cannot be continued from an earlier instant.
+    /// `true` if the flight is recorded as pictures.
     pub is_pictures: bool,
+    /// `true` if the flight cannot be continued from an earlier instant.
+    pub cannot_continue: bool,
     /// Number of times that the flight was continued from an earlier instant.
     pub branch: u32,
     /// Instant from which it was last continued.

@@ -232,7 +232,7 @@ impl Shared {
 
     /// Returns `true` if the flight is recorded and can be continued from an earlier instant.
     pub fn flies_again(&self) -> bool {
-        self.view.timeline.as_ref().is_some_and(|timeline| !timeline.is_pictures)
+        self.view.timeline.as_ref().is_some_and(|timeline| !timeline.cannot_continue)
     }
 
     /// Returns `true` if `time` is after the shown earlier instant.

@@ -1,5 +1,6 @@
 //! Prepares a remote firmware for a headless flight: starts it, waits for its setup, and uploads the plan.
 
+use std::any::Any;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,6 +16,7 @@ use crate::fc::{Patience, Remote, RemoteLink, RemoteState, Unready, Unset, Uploa
 use crate::firmware::cli::CliReply;
 use crate::plan::{AltitudeError, FlightPlan};
 use crate::session::{self, Event, Flying, Runner, Subscriber};
+use crate::signals::SimTime;
 use crate::signals::fdm::FirmwareClock;
 use crate::vehicle::{LateAnswer, Ticket, Vehicle};
 
@@ -148,6 +150,23 @@ impl RemoteRun {
     ) -> Result<F::End, Stopped> {
         let interrupted = &self.interrupted;
         Ok(self.runner.fly(flight, subscriber, || interrupted.load(Ordering::Relaxed))?)
+    }
+
+    /// Flies until the vehicle has this time, or to the end of the flight.
+    pub(in crate::app) fn fly_until<F: Flying>(
+        &mut self,
+        flight: &mut F,
+        until: SimTime,
+        subscriber: &mut impl Subscriber<F>,
+    ) -> Result<(), Stopped> {
+        let interrupted = &self.interrupted;
+        self.runner.fly_until(flight, until, subscriber, || interrupted.load(Ordering::Relaxed))?;
+        Ok(())
+    }
+
+    /// Returns the link to the firmware, and what the firmware needs until it ends.
+    pub(in crate::app) fn into_parts(self) -> (Option<RemoteLink>, Box<dyn Any + Send>) {
+        (self.runner.into_link(), Box::new((self._directory, self._runtime)))
     }
 
     /// Returns the hash over the motor packets of a firmware in simulated time.

@@ -127,7 +127,7 @@ impl Session {
             upload: self.interface.upload_under_way(),
             is_piloted: self.vehicle.transmitter().pilot().is_some(),
             is_recorded: self.timeline.is_some(),
-            is_pictures,
+            cannot_continue: is_pictures && self.again.is_none(),
             has_ended: is_pictures && self.runner.link.is_none(),
             is_rewound: self.is_rewound(),
         }

@@ -11,9 +11,10 @@ use crate::link::Request;
 use crate::session::Event;
 use crate::session::arming::ArmingWatch;
 use crate::session::command::{BEGINNING_LOST, CliOutput, REWOUND_FOR_CLIENTS, Seek};
+use crate::session::fly_again::{FlownAgain, FlyingAgain};
 use crate::session::pacer::SPEED_RANGE;
 use crate::session::policy::{NOT_FLOWN_AGAIN, NOT_RECORDED, REWOUND};
-use crate::session::runner::tick;
+use crate::session::runner::{Runner, tick};
 use crate::signals::SimTime;
 use crate::timeline::{RecordedFlight, Shown, Timeline, TimelineView};
 use crate::vehicle::{Answer, Reply, Vehicle, VehicleCommand};
@@ -27,6 +28,9 @@ const MISHAP_LEAD_US: u64 = 2_000_000;
 
 /// The amount of input that may arrive while time is paused before it is recorded, bytes.
 const FLOOD_BYTES: usize = 1 << 20;
+
+/// The notice if the newest instant is shown.
+const NOTHING_EARLIER: &str = "The newest instant is shown: `,` and `<` go back to one to fly on from.";
 
 /// The condition until which the flight continues as fast as possible.
 #[derive(Debug, Clone, Copy)]
@@ -90,6 +94,7 @@ impl Session {
             head_is_armed: self.vehicle.controller().is_armed(),
             rewound: timeline.shown().is_some(),
             is_pictures: timeline.is_pictures(),
+            cannot_continue: timeline.is_pictures() && self.again.is_none(),
             branch: timeline.branch(),
             branched_at: timeline.branched_at(),
             folds: timeline.folds(&marks),
@@ -266,18 +271,77 @@ impl Session {
         }
     }
 
+    /// Begins to fly the flight of a firmware that has ended again, up to the instant that is shown.
+    fn fly_again(&mut self) {
+        let Some(until) = self.timeline.as_ref().and_then(Timeline::shown).map(Vehicle::time) else {
+            self.notice(NOTHING_EARLIER);
+            return;
+        };
+        let Some(again) = self.again.as_ref().filter(|_| self.flying_again.is_none()) else {
+            self.notice("The firmware flies again already: wait until it is at the instant that was shown.");
+            return;
+        };
+        match again.start(until) {
+            Ok(flying) => {
+                self.flying_again = Some(flying);
+                let until_s = until.as_secs_f64();
+                self.notice(format!(
+                    "The firmware boots, and flies the same inputs again up to {until_s:.1} s."
+                ));
+            }
+            Err(error) => self.notice(format!("The flight cannot be flown again: {error}.")),
+        }
+    }
+
+    /// Continues from the end of a flight that was flown again, once it is there.
+    pub(super) fn take_flown_again(&mut self, now: Duration) {
+        let Some(result) = self.flying_again.as_ref().and_then(FlyingAgain::result) else { return };
+        self.flying_again = None;
+        self.changed = true;
+        let FlownAgain { vehicle, link, keeps } = match result {
+            Ok(flown) => flown,
+            Err(sentence) => return self.notice(sentence),
+        };
+        let left = self.vehicle.time();
+        let Some((seen, branch)) = self
+            .timeline
+            .as_mut()
+            .and_then(|timeline| Some((timeline.continue_pictures()?, timeline.branch())))
+        else {
+            return self.notice("The recording was left meanwhile: go back to an instant to fly on from.");
+        };
+        let apart_m = apart_m(&seen, &vehicle);
+        self.runner = Runner::new(vehicle.step_us(), self.usual_speed, Some(link)).with_slice(SLICE);
+        self.keeps = Some(keeps);
+        self.vehicle = vehicle;
+        self.continue_on(branch, left, now);
+        if apart_m > 0.0 {
+            self.notice(format!(
+                "The firmware did not fly the same again: it is {apart_m:.3} m from the place that was shown."
+            ));
+        }
+    }
+
     /// Continues the flight from the earlier instant that is shown. The clients of the links are
     /// disconnected, as by a restart, because their data about the craft is no longer true.
     pub(super) fn fly_on(&mut self, now: Duration) {
         self.flush_events();
+        if self.timeline.as_ref().is_some_and(Timeline::is_pictures) {
+            return self.fly_again();
+        }
         let left = self.vehicle.time();
         let Some((vehicle, branch)) =
             self.timeline.as_mut().and_then(|timeline| Some((timeline.fly_on()?, timeline.branch())))
         else {
-            self.notice("The newest instant is shown: `,` and `<` go back to one to fly on from.");
+            self.notice(NOTHING_EARLIER);
             return;
         };
         self.vehicle = vehicle;
+        self.continue_on(branch, left, now);
+    }
+
+    /// Continues with the vehicle of a new branch. `left` is the instant at which the flight was left.
+    fn continue_on(&mut self, branch: u32, left: SimTime, now: Duration) {
         self.persistence.tell(self.vehicle.controller_mut());
         self.vehicle.apply(&VehicleCommand::EndAllCli);
         self.arming = ArmingWatch::default();
@@ -286,6 +350,14 @@ impl Session {
             endpoints.handler.after_restart(true, &mut self.vehicle);
         }
         self.runner.pacer.set_paused(false, now);
+    }
+}
+
+/// Returns the distance between two vehicles, m.
+fn apart_m(one: &Vehicle, other: &Vehicle) -> f64 {
+    match (one.truth(), other.truth()) {
+        (Some(one), Some(other)) => (one.pos_enu - other.pos_enu).norm(),
+        _ => 0.0,
     }
 }
 

@@ -10,8 +10,8 @@ use crate::flight::FlightSetup;
 use crate::geo::LatLon;
 use crate::link::FcStream;
 use crate::plan::{Altitude, AltitudeReference, FlightPlan, Waypoint, WaypointType};
-use crate::session::ReplyTo;
 use crate::session::command::Seek;
+use crate::session::{FlownAgain, ReplyTo};
 use crate::signals::SimTime;
 use crate::sim::WorldConfig;
 use crate::timeline::MarkKind;
@@ -320,6 +320,73 @@ fn a_session_without_a_screen_keeps_nothing_of_its_flight() {
         Session::new(config, None, mpsc::channel(1).1, mpsc::unbounded_channel().0).timeline.is_some()
     };
     assert_eq!((recorded(true), recorded(false)), (true, false));
+}
+
+/// A session after a flight of three seconds with a firmware that has ended. `again` flies it again.
+fn after_a_flight(
+    again: impl Fn(SimTime) -> Result<FlownAgain, String> + Send + Sync + 'static,
+) -> (Session, mpsc::UnboundedReceiver<Event>) {
+    let mut vehicle = flown_until(SimTime::ZERO);
+    let mut timeline = Timeline::new(&mut vehicle).unwrap();
+    while vehicle.time() < SimTime(3_000_000) {
+        timeline.record(&mut vehicle);
+        vehicle.tick();
+    }
+    let again = Some(FlyAgain::new(again));
+    let flown = FlownBefore { timeline, events: Vec::new(), show: SimTime(1_000_000), again };
+    let (events, reported) = mpsc::unbounded_channel();
+    (Session::new(config_of(vehicle, true), Some(flown), mpsc::channel(1).1, events), reported)
+}
+
+fn flown_until(time: SimTime) -> Vehicle {
+    let mut vehicle = Vehicle::with_remote_controller(WorldConfig::default()).unwrap();
+    while vehicle.time() < time {
+        vehicle.tick();
+    }
+    vehicle
+}
+
+/// Flies on, and waits until the flight was flown again.
+fn fly_on(session: &mut Session) {
+    session.fly_on(Duration::ZERO);
+    while session.flying_again.is_some() {
+        std::thread::park_timeout(Duration::from_millis(10));
+        session.take_flown_again(Duration::ZERO);
+    }
+    session.flush_events();
+}
+
+#[test]
+fn the_flight_of_a_firmware_that_has_ended_is_flown_again_to_the_instant_that_is_shown() {
+    let link = || {
+        let (to, from) = (mpsc::channel(1).0, mpsc::channel(1).1);
+        let stream = FcStream { to, from, place: "tcp:here:1".to_owned(), bytes_per_s: None };
+        RemoteLink::new(
+            RemoteEnds { name: "the board".to_owned(), stream, peer: None, child: None },
+            Instant::now(),
+        )
+    };
+    let (mut session, mut events) = after_a_flight(move |until| {
+        Ok(FlownAgain { vehicle: flown_until(until), link: link(), keeps: Box::new(()) })
+    });
+    let shown = session.shown_vehicle().time();
+    assert!(shown >= SimTime(1_000_000) && shown < session.vehicle.time());
+    fly_on(&mut session);
+    assert!(!session.is_rewound() && session.runner.link.is_some());
+    assert_eq!(session.vehicle.time(), shown);
+    let timeline = session.timeline_view().unwrap();
+    assert_eq!((timeline.branch, timeline.branched_at), (1, shown));
+    let differs = |event: Event| format!("{event:?}").contains("did not fly the same");
+    assert!(!std::iter::from_fn(|| events.try_recv().ok()).any(differs));
+}
+
+#[test]
+fn a_flight_that_cannot_be_flown_again_stays_shown() {
+    let (mut session, mut events) = after_a_flight(|_| Err("It is gone.".to_owned()));
+    fly_on(&mut session);
+    assert!(session.is_rewound() && session.runner.link.is_none());
+    let is_reason = |event: Event| event.kind == SessionEvent::Notice("It is gone.".to_owned());
+    assert!(std::iter::from_fn(|| events.try_recv().ok()).any(is_reason));
 }
 
 #[test]

@@ -1,0 +1,76 @@
+//! A finished flight of a remote firmware, flown again from boot to an instant.
+
+use std::any::Any;
+use std::fmt;
+use std::sync::{Arc, mpsc};
+
+use crate::fc::RemoteLink;
+use crate::signals::SimTime;
+use crate::vehicle::Vehicle;
+
+/// The vehicle at an instant of a flight that was flown again, with the firmware that flies it.
+pub struct FlownAgain {
+    pub vehicle: Vehicle,
+    pub link: RemoteLink,
+    /// What the firmware needs until it ends, such as its folder.
+    pub keeps: Box<dyn Any + Send>,
+}
+
+impl fmt::Debug for FlownAgain {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("FlownAgain").field("vehicle", &self.vehicle).finish_non_exhaustive()
+    }
+}
+
+type Fly = dyn Fn(SimTime) -> Result<FlownAgain, String> + Send + Sync;
+
+/// Flies a finished flight again, with the same inputs, to an instant.
+#[derive(Clone)]
+pub struct FlyAgain(Arc<Fly>);
+
+impl FlyAgain {
+    /// Returns a value that flies by `fly`, which returns a sentence if it fails.
+    pub fn new(fly: impl Fn(SimTime) -> Result<FlownAgain, String> + Send + Sync + 'static) -> Self {
+        Self(Arc::new(fly))
+    }
+
+    /// Starts the flight on a thread of its own. The present thread is unparked at its end.
+    pub(super) fn start(&self, until: SimTime) -> std::io::Result<FlyingAgain> {
+        let (done, result) = mpsc::channel();
+        let (fly, waiting) = (Arc::clone(&self.0), std::thread::current());
+        std::thread::Builder::new().name("fly-again".to_owned()).spawn(move || {
+            let (kept, gone) = mpsc::channel::<()>();
+            let flown = fly(until).map(|flown| FlownAgain { keeps: Box::new((flown.keeps, kept)), ..flown });
+            drop(done.send(flown));
+            waiting.unpark();
+            // A child process ends with the thread that started it, so the thread waits until nothing needs the child.
+            let _gone = gone.recv();
+        })?;
+        Ok(FlyingAgain { result })
+    }
+}
+
+impl fmt::Debug for FlyAgain {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("FlyAgain")
+    }
+}
+
+/// A flight that is flown again at the moment.
+#[derive(Debug)]
+pub(super) struct FlyingAgain {
+    result: mpsc::Receiver<Result<FlownAgain, String>>,
+}
+
+impl FlyingAgain {
+    /// Returns the result; `None` while the flight goes on.
+    pub(super) fn result(&self) -> Option<Result<FlownAgain, String>> {
+        match self.result.try_recv() {
+            Ok(result) => Some(result),
+            Err(mpsc::TryRecvError::Empty) => None,
+            Err(mpsc::TryRecvError::Disconnected) => {
+                Some(Err("The flight could not be flown again: its thread has ended.".to_owned()))
+            }
+        }
+    }
+}
