@@ -10,6 +10,7 @@ use tokio_util::sync::CancellationToken;
 use super::AppError;
 use super::live::LiveArgs;
 use crate::args::{DoorArgs, FlightArgs, PhysicsArgs};
+use crate::fc::RemoteLink;
 use crate::link::endpoint::EndpointKind;
 use crate::link::proto::fdm_link::FdmLinkConfig;
 use crate::link::{ExternalSimulator, ListenConfig, Listeners};
@@ -37,16 +38,18 @@ pub(super) struct Opened {
 }
 
 /// Opens the doors of the options; with `--no-ports` only those for an external simulator. A door that cannot be
-/// opened is reported, and the others work.
+/// opened is reported, and the others work. `link` is the one to a remote firmware.
 ///
 /// # Errors
 /// Returns an error if there is no socket for the motors of an external simulator.
 pub(super) async fn open(
     LiveArgs { doors: args, connect, firmware, physics, flight, .. }: LiveArgs<'_>,
+    link: Option<&RemoteLink>,
 ) -> Result<Option<Opened>, AppError> {
     let wanted = |port: u16| (!args.no_ports).then_some(port);
-    // Ports of a remote firmware are not ours.
-    let own = |port: u16| wanted(port).filter(|_| firmware.is_none());
+    // Ports of a firmware on the wall clock are not ours. One in simulated time uses others, which the system chose.
+    let on_wall_clock = firmware.filter(|_| !link.is_some_and(RemoteLink::is_in_steps));
+    let own = |port: u16| wanted(port).filter(|_| on_wall_clock.is_none());
     let fdm_port = physics.is_external().then_some(args.udp_ports().fdm);
     let (tcp_port, ws_port, rc_port) = match connect {
         // For a real craft, only the requested doors are open, and no door for RC.
@@ -61,7 +64,7 @@ pub(super) async fn open(
     let links = Links::open(&config).await;
     let doors = &links.doors;
     let mut notices: Vec<String> = doors.problems().map(|problem| format!("{problem}.")).collect();
-    if let Some(firmware) = firmware {
+    if let Some(firmware) = on_wall_clock {
         let (tcp, rc) = (firmware.ports.tcp, firmware.ports.udp.rc);
         notices.push(format!(
             "TCP {tcp} and UDP {rc} belong to the firmware: this program keeps its TCP and RC doors closed."
@@ -171,12 +174,12 @@ mod tests {
             flight: &flight,
             has_screen: false,
         };
-        assert!(open(of(&embedded)).await.unwrap().is_none());
+        assert!(open(of(&embedded), None).await.unwrap().is_none());
         let place = "tcp:localhost:1".parse().unwrap();
         let closed = LiveArgs { doors: &DoorArgs::default(), connect: Some(&place), ..of(&embedded) };
-        assert!(open(closed).await.unwrap().is_none(), "a craft outside has the doors that are asked for");
+        assert!(open(closed, None).await.unwrap().is_none(), "a craft outside has the doors that are asked for");
         let external = PhysicsArgs { physics: Some(PhysicsChoice::External), ..PhysicsArgs::default() };
-        let opened = open(of(&external)).await.unwrap().unwrap();
+        let opened = open(of(&external), None).await.unwrap().unwrap();
         let views = opened.endpoints.status.borrow().clone();
         assert_eq!(views.iter().map(|door| door.kind.to_string()).collect::<Vec<_>>(), ["udp fdm"]);
         assert!(opened.endpoints.simulator.is_some());

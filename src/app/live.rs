@@ -42,13 +42,16 @@ pub(super) fn ended_by_itself() -> AppError {
 /// remote firmware.
 pub(super) async fn start(
     args: LiveArgs<'_>,
-    vehicle: Vehicle,
+    mut vehicle: Vehicle,
     store: Store,
     mut notices: Vec<String>,
     flown: Option<FlownBefore>,
 ) -> Result<(Handle, Option<OpenDoors>, Option<FirmwareFolder>), AppError> {
+    let state = setup::store_directory(args.flight)?;
+    let opened =
+        args.firmware.map(|firmware| link::open(firmware, &vehicle, state.as_deref())).transpose()?;
     let mut first_events = Vec::new();
-    let (doors, endpoints) = match doors::open(args).await? {
+    let (doors, endpoints) = match doors::open(args, opened.as_ref().map(|opened| &opened.link)).await? {
         Some(opened) => {
             notices.extend(opened.notices);
             first_events.push(SessionEvent::Endpoints(opened.addresses));
@@ -56,10 +59,13 @@ pub(super) async fn start(
         }
         None => (None, None),
     };
-    let state = setup::store_directory(args.flight)?;
-    let opened =
-        args.firmware.map(|firmware| link::open(firmware, &vehicle, state.as_deref())).transpose()?;
     notices.extend(opened.iter().flat_map(OpenLink::notices));
+    if !args.has_screen {
+        // RC comes only through the doors. Virtual sticks at rest would hide the loss of a script, or disturb one that
+        // sends to a firmware on the wall clock. One in simulated time gets them until the first frame of a script.
+        let gets_sticks = opened.as_ref().is_some_and(|opened| opened.link.is_in_steps());
+        vehicle.transmitter_mut().set_cut(!gets_sticks);
+    }
     let (remote, directory) = opened.map(|opened| (opened.link, opened.directory)).unzip();
     first_events.extend(notices.into_iter().map(SessionEvent::Notice));
     let config = SessionConfig {

@@ -28,9 +28,7 @@ pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
     let no_plan = PlanFile::default();
     let mut setup = setup::for_session(&args.flight, &args.physics, &args.doors, no_plan, stored)?;
     setup.remote_controller = firmware.is_some();
-    let mut vehicle = setup::build(setup, &mut notices)?;
-    // RC comes only through the doors. Virtual sticks at rest would hide the loss of a script.
-    vehicle.transmitter_mut().set_cut(true);
+    let vehicle = setup::build(setup, &mut notices)?;
     let mut output = open_output(args)?;
     let runtime = runtime::with_threads(1)?;
     runtime.block_on(async {

@@ -183,6 +183,7 @@ impl Observer {
             stored_plan,
             altitude_reference,
             last_disarm: self.events.last_disarm(),
+            takes_rc: simulated.is_some(),
         });
     }
 

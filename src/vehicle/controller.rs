@@ -92,24 +92,28 @@ impl FlightController {
         }
     }
 
-    /// Gives the virtual sticks precedence over the other sources of RC, or ends that. A remote flight controller has
-    /// its own rule.
+    /// Gives the virtual sticks precedence over the other sources of RC, or ends that.
     pub(super) fn take_over_sticks(&mut self, sticks_first: bool) {
-        if let Self::Embedded(embedded) = self {
-            embedded.take_over_sticks(sticks_first);
+        match self {
+            Self::Embedded(embedded) => embedded.take_over_sticks(sticks_first),
+            Self::Remote(remote) => remote.take_over_sticks(sticks_first),
         }
     }
 
     /// Returns `true` if the virtual sticks take precedence over the other sources of RC.
     pub fn sticks_taken_over(&self) -> bool {
-        self.embedded().is_some_and(|firmware| firmware.receiver().sources().taken_over())
+        match self {
+            Self::Embedded(embedded) => embedded.firmware.receiver().sources(),
+            Self::Remote(remote) => remote.sources(),
+        }
+        .taken_over()
     }
 
     /// Returns the source of RC that is in use, or `None` before the first frame.
     pub fn rc_source(&self) -> Option<RcSource> {
         match self {
             Self::Embedded(embedded) => embedded.firmware.receiver().sources().in_charge(),
-            Self::Remote(remote) => remote.telemetry().craft.rc_source,
+            Self::Remote(remote) => remote.rc_source(),
         }
     }
 
@@ -394,11 +398,7 @@ impl FlightController {
     pub fn craft_view(&self) -> CraftView {
         match self {
             Self::Embedded(embedded) => embedded.firmware.craft_view(),
-            Self::Remote(remote) => {
-                let CraftView { motors, .. } = remote.telemetry().craft;
-                let motors = remote.delivered_motors().map(|command| command.0).or(motors);
-                CraftView { motors, ..remote.telemetry().craft.clone() }
-            }
+            Self::Remote(remote) => remote.craft_view(),
         }
     }
 

@@ -133,10 +133,11 @@ impl Session {
             for command in [VehicleCommand::CutRc(true), VehicleCommand::StopPilot] {
                 let _done = self.vehicle.apply(&command);
             }
-            self.events.notice(
-                &mut self.vehicle,
-                "RC now comes from another program: the virtual sticks are cut, `x` takes them back.",
-            );
+            // Without a recording there is no screen, and no key.
+            let way_back = if self.timeline.is_some() { ", `x` takes them back" } else { "" };
+            let notice =
+                format!("RC now comes from another program: the virtual sticks are cut{way_back}.");
+            self.events.notice(&mut self.vehicle, notice);
         }
     }
 }

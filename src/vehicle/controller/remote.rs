@@ -8,6 +8,7 @@ use std::collections::VecDeque;
 use strum::{EnumCount as _, IntoEnumIterator as _};
 
 use super::{LateAnswer, Ticket};
+use crate::firmware::rx::Sources;
 use crate::pilot::PilotFacts;
 use crate::plan::{AltitudeReference, FlightPlan};
 use crate::signals::{MotorCommand, RcFrame, RcSource, SensorFrame, SimTime};
@@ -61,6 +62,8 @@ pub struct RemoteTelemetry {
     pub altitude_reference: AltitudeReference,
     /// Reason of the last disarm, as far as known.
     pub last_disarm: Option<DisarmReason>,
+    /// `true` if it gets its RC from this program. A real craft has a transmitter of its own.
+    pub takes_rc: bool,
 }
 
 #[derive(Debug, Clone)]
@@ -69,6 +72,12 @@ pub struct RemoteController {
     requests: VecDeque<(Ticket, RemoteRequest)>,
     next_ticket: u64,
     rc: [Option<RcFrame>; RcSource::COUNT],
+    /// Selects the source whose frames are sent. The flight controller sees only one transmitter.
+    sources: Sources,
+    /// The time of the newest frame that was sent.
+    rc_sent: Option<SimTime>,
+    /// The time of the newest step.
+    now: SimTime,
     /// `None` until the first delivery.
     motors: Option<MotorCommand>,
     telemetry: RemoteTelemetry,
@@ -83,6 +92,9 @@ impl Default for RemoteController {
             requests: VecDeque::new(),
             next_ticket: 0,
             rc: [None; RcSource::COUNT],
+            sources: Sources::default(),
+            rc_sent: None,
+            now: SimTime::default(),
             motors: None,
             telemetry: RemoteTelemetry::default(),
             events: VecDeque::new(),
@@ -122,8 +134,12 @@ impl RemoteController {
     }
 
     pub(super) fn step(&mut self, frame: &SensorFrame) -> MotorCommand {
+        self.now = frame.time;
         for source in RcSource::iter() {
-            if let Some(rc) = self.rc[source as usize].take() {
+            if let Some(rc) = self.rc[source as usize].take()
+                && let Some(rc) = self.sources.receive(rc, source, self.now)
+            {
+                self.rc_sent = Some(self.now);
                 self.put(FrameOut::Rc(rc, source));
             }
         }
@@ -144,6 +160,36 @@ impl RemoteController {
 
     pub(super) fn lose_rc(&mut self) {
         self.rc.fill(None);
+    }
+
+    pub(super) fn take_over_sticks(&mut self, sticks_first: bool) {
+        self.sources.take_over(sticks_first);
+    }
+
+    pub(super) fn sources(&self) -> &Sources {
+        &self.sources
+    }
+
+    /// Returns the source of its RC, if that is this program.
+    pub(super) fn rc_source(&self) -> Option<RcSource> {
+        self.sources.in_charge().filter(|_| self.telemetry.takes_rc)
+    }
+
+    /// Returns the age of the newest RC frame from this program, s.
+    fn rc_age_s(&self) -> Option<f64> {
+        self.rc_sent.filter(|_| self.telemetry.takes_rc).map(|sent| self.now.seconds_since(sent))
+    }
+
+    /// Returns modes, arming, receiver and battery as reported, with the motors and the RC that this program exchanges
+    /// with it.
+    pub(super) fn craft_view(&self) -> CraftView {
+        let reported = &self.telemetry.craft;
+        CraftView {
+            motors: self.motors.map(|command| command.0).or(reported.motors),
+            rc_source: self.rc_source(),
+            rc_age_s: self.rc_age_s(),
+            ..reported.clone()
+        }
     }
 
     pub(super) fn ask(&mut self, request: RemoteRequest) -> Ticket {
@@ -180,11 +226,6 @@ impl RemoteController {
     /// Returns the motor command in force.
     pub(super) fn motors(&self) -> MotorCommand {
         self.motors.unwrap_or_default()
-    }
-
-    /// Returns the last delivered motor command.
-    pub(super) fn delivered_motors(&self) -> Option<MotorCommand> {
-        self.motors
     }
 
     /// Returns the facts that a pilot sees. Without telemetry there is no fix, so that a scripted pilot waits.
