@@ -177,7 +177,10 @@ mod tests {
         assert!(open(of(&embedded), None).await.unwrap().is_none());
         let place = "tcp:localhost:1".parse().unwrap();
         let closed = LiveArgs { doors: &DoorArgs::default(), connect: Some(&place), ..of(&embedded) };
-        assert!(open(closed, None).await.unwrap().is_none(), "a craft outside has the doors that are asked for");
+        assert!(
+            open(closed, None).await.unwrap().is_none(),
+            "a craft outside has the doors that are asked for"
+        );
         let external = PhysicsArgs { physics: Some(PhysicsChoice::External), ..PhysicsArgs::default() };
         let opened = open(of(&external), None).await.unwrap().unwrap();
         let views = opened.endpoints.status.borrow().clone();

@@ -12,6 +12,8 @@ use crate::vehicle::Ticket;
 pub(super) enum Purpose {
     /// A line for a part of this program. `true` if it may change something.
     Line(Ticket, bool),
+    /// A line at the prompt, for a client of the doors. `true` if it may change something.
+    Typed(Ticket, bool),
     /// The line that shows the plan, for a part of this program.
     Plan(Ticket),
     /// A message for a part of this program. `true` if it may change something.

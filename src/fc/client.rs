@@ -41,6 +41,8 @@ const MAX_QUEUE: usize = 256;
 const STX: u8 = 0x02;
 /// Ends a command line that an earlier client left open. Releases that support the word do not restart.
 const LEAVE_CLI: &[u8] = b"\nexit noreboot\n";
+/// Leaves the prompt. Releases that do not support the word restart.
+const LEAVE_PROMPT: &str = "exit noreboot";
 
 #[derive(Debug)]
 pub struct FcClient {
@@ -277,6 +279,15 @@ impl FcClient {
             }
             Ask::Line(line) | Ask::MessageLine(line) if line_text::is_empty(&line) => {
                 Some(line_text::answer(String::new(), false))
+            }
+            Ask::LeavePrompt if !self.in_prompt => Some(line_text::answer(String::new(), false)),
+            Ask::LeavePrompt => self.start_prompt(id, LEAVE_PROMPT.to_owned(), now),
+            Ask::Typed(line) => {
+                let line = line_text::printable(&line);
+                if self.armed && !self.in_prompt {
+                    return self.fall_back(id, &line, now);
+                }
+                self.start_prompt(id, line, now)
             }
             Ask::MessageLine(line) => self.start_message(id, &line_text::printable(&line), now),
             Ask::Line(line) => {

@@ -30,6 +30,9 @@ use crate::geo::LocalFrame;
 use crate::msp::code;
 use crate::vehicle::{LateAnswer, RemoteController, RemoteRequest, Ticket};
 
+/// The maximum number of messages that wait for a connection. Further messages are refused.
+const MAX_HELD: usize = 256;
+
 /// The flight controller at the other end.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Craft {
@@ -103,6 +106,8 @@ pub struct Remote {
     observer: Observer,
     permission: Permission,
     setup: Setup,
+    /// The messages that wait for the connection to a child that boots.
+    held: Vec<(Ticket, RemoteRequest)>,
     events: VecDeque<Event>,
 }
 
@@ -121,6 +126,7 @@ impl Remote {
             observer: Observer::default(),
             permission: Permission::default(),
             setup: Setup::default(),
+            held: Vec::new(),
             events: VecDeque::new(),
         }
     }
@@ -281,7 +287,17 @@ impl Remote {
     /// Sends a request of another part of this program.
     fn request(&mut self, ticket: Ticket, request: RemoteRequest) {
         match request {
-            RemoteRequest::Cli(line) => {
+            RemoteRequest::Msp { .. } if self.holds_messages() && self.held.len() < MAX_HELD => {
+                self.held.push((ticket, request));
+            }
+            // The prompt of a real craft opens only with permission, which the client asks for by itself.
+            RemoteRequest::Typed(line) if self.craft.is_fed => {
+                let changes = Impact::of_line(&line) > Impact::Reads;
+                self.ask(Purpose::Typed(ticket, changes), Ask::Typed(line));
+            }
+            RemoteRequest::LeavePrompt if self.craft.is_fed => self.ask(Purpose::Nothing, Ask::LeavePrompt),
+            RemoteRequest::LeavePrompt => {}
+            RemoteRequest::Cli(line) | RemoteRequest::Typed(line) => {
                 let changes = Impact::of_line(&line) > Impact::Reads;
                 let purpose =
                     if line == LIST { Purpose::Plan(ticket) } else { Purpose::Line(ticket, changes) };
@@ -296,6 +312,19 @@ impl Remote {
             RemoteRequest::Restart => {
                 self.ask(Purpose::Nothing, Ask::Msp { code: code::REBOOT, payload: Vec::new() });
             }
+        }
+    }
+
+    /// Returns `true` if messages wait until there is a connection. A child listens only once it has booted, and a client
+    /// of the doors must not take the wait for a refusal.
+    fn holds_messages(&self) -> bool {
+        self.craft.is_child && matches!(self.life, Life::Connecting | Life::Lost { .. })
+    }
+
+    /// Sends the messages that have waited for the connection, or refuses them if there is none.
+    fn release_messages(&mut self) {
+        for (ticket, request) in std::mem::take(&mut self.held) {
+            self.request(ticket, request);
         }
     }
 

@@ -17,3 +17,13 @@ pub(super) fn cli_reply(answer: Answer) -> CliReply {
         Answer::Msp(_) => CliReply::default(),
     }
 }
+
+/// Converts the answer to a line at the prompt, which is still open if `open`.
+pub(super) fn typed_reply(answer: Answer, open: bool) -> CliReply {
+    let action = match &answer {
+        Answer::Line { restarted: true, .. } => Some(CliAction::Restart { close_links: true }),
+        Answer::Line { .. } if !open => Some(CliAction::Leave),
+        _ => None,
+    };
+    CliReply { actions: action.into_iter().collect(), ..cli_reply(answer) }
+}

@@ -9,11 +9,12 @@ use tokio::sync::mpsc;
 
 use super::*;
 use crate::link::{FcStream, StreamEvent};
+use crate::msp::code;
 use crate::plan::AltitudeReference;
 use crate::telemetry::DisarmReason;
-use crate::vehicle::{Vehicle, VehicleCommand};
+use crate::vehicle::{LateAnswer, Message, Vehicle, VehicleCommand};
 use board::{Board, Place};
-use remote::{Craft, Input};
+use remote::{Craft, Event, Input};
 
 const TICK: Duration = Duration::from_millis(10);
 const SECOND: Duration = Duration::from_secs(1);
@@ -296,4 +297,54 @@ fn the_timeout_is_when_something_is_due() {
     let lost = std::iter::repeat_with(|| (step(&mut remote, &mut board), remote.state()));
     let (lost, _) = lost.take(100).find(|(_, state)| *state == RemoteState::Lost).unwrap();
     assert!((2..8).contains(&(lost - silent).as_secs()), "{:?}", lost - silent);
+}
+
+#[test]
+fn a_message_to_a_child_that_boots_waits_for_its_connection() {
+    let craft = |is_child| Craft {
+        name: "the child".to_owned(),
+        place: "tcp:here:1".to_owned(),
+        bytes_per_s: None,
+        is_fed: true,
+        is_child,
+        is_in_steps: false,
+    };
+    let request = |vehicle: &mut Vehicle| {
+        let message = Message { code: code::API_VERSION, payload: Vec::new(), clock: None };
+        vehicle.apply(&message.into());
+        let (ticket, request) = vehicle.controller_mut().remote_mut().unwrap().take_request().unwrap();
+        Input::Requested(ticket, request)
+    };
+    let answers = |remote: &mut Remote| {
+        let events = std::iter::from_fn(|| remote.poll_event());
+        events
+            .filter_map(|event| if let Event::Answered(_, answer) = event { Some(answer) } else { None })
+            .collect()
+    };
+    let now = Duration::ZERO;
+    let (mut vehicle, mut board) = (Vehicle::elsewhere().unwrap(), Board::at(FIELD));
+    let mut remote = Remote::new(craft(true), now);
+    remote.handle(request(&mut vehicle), now);
+    let nothing: Vec<LateAnswer> = Vec::new();
+    assert_eq!(answers(&mut remote), nothing, "it boots");
+    remote.handle(Input::Connected, now);
+    for _ in 0..3 {
+        remote.handle_timeout(now);
+        while let Some(bytes) = remote.poll_transmit() {
+            remote.handle(Input::Received(&board.answer(&bytes)), now);
+        }
+    }
+    assert_eq!(answers(&mut remote), [LateAnswer::Msp(Some(vec![0, 1, 49]))]);
+
+    remote.handle(request(&mut vehicle), now);
+    remote.handle_timeout(now);
+    remote.handle(Input::Lost("it restarts"), now);
+    assert_eq!(answers(&mut remote), nothing, "the end of the client's link is the answer");
+    remote.handle(request(&mut vehicle), now);
+    remote.handle(Input::NotStarted("it is gone"), now);
+    assert_eq!(answers(&mut remote), [LateAnswer::Msp(None)], "it never boots");
+
+    let mut attached = Remote::new(craft(false), now);
+    attached.handle(request(&mut vehicle), now);
+    assert_eq!(answers(&mut attached), [LateAnswer::Msp(None)], "nobody may ever start it");
 }

@@ -36,7 +36,10 @@ impl ArmingWatch {
             return None;
         }
         let with_hint = |flag: ArmingFlag| format!("{flag} ({})", flag.hint());
-        let causes: Vec<String> = craft.arming_flags().causes().iter().map(with_hint).collect();
+        let flags = craft.arming_flags();
+        // A firmware without arm assist blocks a switch that it has never seen off, without any other cause.
+        let causes = if flags.causes().is_empty() { flags } else { flags.causes() };
+        let causes: Vec<String> = causes.iter().map(with_hint).collect();
         if causes.is_empty() {
             return None;
         }
@@ -81,6 +84,16 @@ mod tests {
         assert_eq!(watch.check(&off), None);
         assert_eq!(watch.check(&blocked(22.0)), None);
         assert!(watch.check(&blocked(23.0)).is_some());
+    }
+
+    #[test]
+    fn a_switch_that_was_never_off_is_reported_although_nothing_else_blocks() {
+        let mut watch = ArmingWatch::default();
+        let blocked = |seconds| vehicle(seconds, &[ArmingFlag::NotDisarmed, ArmingFlag::ArmSwitch]);
+        assert_eq!(watch.check(&blocked(10.0)), None);
+        let reported = watch.check(&blocked(11.0)).expect("a sentence");
+        assert!(reported.contains("NOT_DISARMED (switch ARM off, then on)"), "{reported}");
+        assert_eq!(watch.check(&blocked(20.0)), None);
     }
 
     #[test]

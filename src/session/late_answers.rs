@@ -44,6 +44,11 @@ impl<R> LateAnswers<R> {
         self.0.values().map(|(_, recipient)| recipient)
     }
 
+    /// Forgets the recipients for which `keeps` is false.
+    pub(super) fn retain(&mut self, keeps: impl Fn(&R) -> bool) {
+        self.0.retain(|_, (_, recipient)| keeps(recipient));
+    }
+
     /// Returns the recipients that have waited too long.
     pub(super) fn take_overdue(&mut self, now: Instant) -> Vec<R> {
         let overdue = |_: &Ticket, (asked, _): &mut (Instant, R)| {

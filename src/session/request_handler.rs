@@ -287,6 +287,8 @@ impl RequestHandler {
     pub fn after_restart(&mut self, close_links: bool, vehicle: &mut Vehicle) {
         (self.udp, self.msp, self.bench) = (None, None, None);
         if close_links {
+            // The end of the link is the answer. A line that caused the restart still gets its own.
+            self.late_answers.retain(|waiting| !matches!(waiting, WaitingClient::Message(_)));
             self.cli_sessions.clear();
             vehicle.apply(&VehicleCommand::EndAllCli);
             self.restart_signal.send();

@@ -117,22 +117,25 @@ impl FlightController {
         }
     }
 
-    /// Begins a session of an embedded controller's command line. A remote one has its own sessions.
+    /// Begins a session of the command line.
     pub(super) fn begin_cli(&mut self, session: CliSession, mode: CliMode) {
-        if let Self::Embedded(embedded) = self {
-            embedded.begin_cli(session, mode);
+        match self {
+            Self::Embedded(embedded) => embedded.begin_cli(session, mode),
+            Self::Remote(remote) => remote.begin_cli(session, mode),
         }
     }
 
     pub(super) fn end_cli(&mut self, session: CliSession) {
-        if let Self::Embedded(embedded) = self {
-            embedded.end_cli(session);
+        match self {
+            Self::Embedded(embedded) => embedded.end_cli(session),
+            Self::Remote(remote) => remote.end_cli(session),
         }
     }
 
     pub(super) fn end_all_cli(&mut self) {
-        if let Self::Embedded(embedded) = self {
-            embedded.end_all_cli();
+        match self {
+            Self::Embedded(embedded) => embedded.end_all_cli(),
+            Self::Remote(remote) => remote.end_all_cli(),
         }
     }
 
@@ -141,7 +144,7 @@ impl FlightController {
     pub(super) fn run_cli(&mut self, line: &CliLine) -> Answer<CliReply> {
         match self {
             Self::Embedded(embedded) => Answer::Now(embedded.run_cli(line)),
-            Self::Remote(remote) => Answer::Later(remote.ask(RemoteRequest::Cli(line.line.clone()))),
+            Self::Remote(remote) => Answer::Later(remote.run_cli(line)),
         }
     }
 

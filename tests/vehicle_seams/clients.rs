@@ -99,6 +99,42 @@ async fn what_a_client_sets_is_set_there_and_stored_there() {
 }
 
 #[tokio::test]
+async fn a_line_of_a_person_is_typed_at_the_prompt_until_the_person_leaves() {
+    let mut links = Links::new().await;
+    let enter = |interactive| {
+        let (reply, _admitted) = oneshot::channel();
+        Request::EnterCli { client: CLIENT, interactive, reply }
+    };
+    let _by_message = links.line("get ap_max_angle");
+    links.handle(enter(false));
+    let _framed = links.line("get ap_max_angle");
+    links.handle(Request::LeftCli { client: CLIENT });
+    links.exchange();
+    assert_eq!(links.rig.stand_in.typed, [] as [&str; 0]);
+    links.handle(enter(true));
+    let _typed = links.line("nonsense");
+    links.handle(Request::LeftCli { client: CLIENT });
+    links.exchange();
+    assert_eq!(links.rig.stand_in.typed, ["nonsense", ""]);
+    // A restart closes the prompt.
+    links.handle(enter(true));
+    links.handler.after_restart(true, &mut links.rig.vehicle);
+    links.handle(Request::LeftCli { client: CLIENT });
+    links.exchange();
+    assert_eq!(links.rig.stand_in.typed, ["nonsense", ""]);
+}
+
+#[tokio::test]
+async fn a_restart_ends_the_wait_for_a_message_but_not_for_the_line_that_caused_it() {
+    let mut links = Links::new().await;
+    let (mut message, mut line) = (links.message(API_VERSION), links.line("save"));
+    links.handler.after_restart(true, &mut links.rig.vehicle);
+    assert_eq!(message.try_recv(), Err(oneshot::error::TryRecvError::Closed));
+    links.exchange();
+    assert!(!line.try_recv().unwrap().refused);
+}
+
+#[tokio::test]
 async fn a_client_of_a_silent_flight_controller_gets_an_error() {
     let mut links = Links::new().await;
     let mut version = links.message(API_VERSION);

@@ -6,10 +6,13 @@ use betadeck::firmware::FirmwareOptions;
 use betadeck::firmware::config::Configuration;
 use betadeck::report::json;
 use betadeck::session::SessionView;
+use betadeck::signals::{RcFrame, RcSource};
 use betadeck::sim::{WorldCommand, WorldConfig};
 use betadeck::telemetry::Snapshot;
 use betadeck::ui::{AppState, Msg, draw, update};
-use betadeck::vehicle::{Answer, FrameOut, LateAnswer, Vehicle, VehicleCommand, VehicleConfig};
+use betadeck::vehicle::{
+    Answer, FrameOut, LateAnswer, RemoteTelemetry, Vehicle, VehicleCommand, VehicleConfig,
+};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 
@@ -95,6 +98,43 @@ fn a_copy_of_the_vehicle_goes_on_identically() {
     rig.run(2.0);
     copy.run(2.0);
     assert_eq!(rig.vehicle.snapshot(), copy.vehicle.snapshot());
+}
+
+#[test]
+fn a_remote_flight_controller_hears_one_transmitter_at_a_time() {
+    let mut rig = Rig::new();
+    let sources = |rig: &mut Rig, script: Option<u16>, frames: u32| {
+        let mut seen = Vec::new();
+        for _ in 0..frames {
+            if let Some(roll_us) = script {
+                let mut frame = RcFrame::SAFE;
+                frame.channels[0] = roll_us;
+                rig.vehicle.apply(&VehicleCommand::Rc(frame, RcSource::Udp));
+            }
+            for _ in 0..20 {
+                rig.vehicle.tick();
+                let mailbox = rig.vehicle.controller_mut().remote_mut().unwrap();
+                while let Some(frame) = mailbox.take_frame() {
+                    if let FrameOut::Rc(frame, source) = frame {
+                        seen.push((source, frame.channels[0]));
+                    }
+                }
+            }
+        }
+        seen
+    };
+    assert_eq!(sources(&mut rig, None, 3), [(RcSource::Sticks, 1500); 3]);
+    assert_eq!(sources(&mut rig, Some(1600), 20), [(RcSource::Udp, 1600); 20]);
+    assert_eq!(rig.vehicle.controller().rc_source(), None, "it has not reported that it takes RC from here");
+    let reported = RemoteTelemetry { takes_rc: true, ..RemoteTelemetry::default() };
+    rig.vehicle.controller_mut().remote_mut().unwrap().deliver_telemetry(reported);
+    assert_eq!(rig.vehicle.snapshot().craft.rc_source, Some(RcSource::Udp));
+    assert!(rig.vehicle.snapshot().craft.rc_age_s.unwrap() < 0.1);
+    rig.vehicle.apply(&VehicleCommand::SticksFirst(true));
+    assert_eq!(sources(&mut rig, Some(1600), 3).last(), Some(&(RcSource::Sticks, 1500)));
+    rig.vehicle.apply(&VehicleCommand::SticksFirst(false));
+    let after = sources(&mut rig, None, 30);
+    assert_eq!(after.last(), Some(&(RcSource::Sticks, 1500)), "the script is gone");
 }
 
 #[test]

@@ -19,6 +19,8 @@ pub(super) struct StandIn {
     pub(super) firmware: Firmware,
     /// The number of requests to restart.
     pub(super) restarts: usize,
+    /// The lines at its prompt, and an empty one when the prompt is left.
+    pub(super) typed: Vec<String>,
     console: Interpreter,
     motors: VecDeque<MotorCommand>,
     answers: VecDeque<(usize, Ticket, LateAnswer)>,
@@ -32,6 +34,7 @@ impl StandIn {
         Self {
             firmware: Firmware::new(configuration, FirmwareOptions::default()),
             restarts: 0,
+            typed: Vec::new(),
             console: Interpreter::default(),
             motors: VecDeque::new(),
             answers: VecDeque::new(),
@@ -53,6 +56,14 @@ impl StandIn {
         }
         while let Some((ticket, request)) = mailbox.take_request() {
             let answer = match request {
+                RemoteRequest::Typed(line) => {
+                    self.typed.push(line.clone());
+                    LateAnswer::Cli(self.firmware.run_cli(&mut self.console, &line))
+                }
+                RemoteRequest::LeavePrompt => {
+                    self.typed.push(String::new());
+                    continue;
+                }
                 RemoteRequest::Cli(line) => LateAnswer::Cli(self.firmware.run_cli(&mut self.console, &line)),
                 RemoteRequest::Msp { code, payload } => {
                     LateAnswer::Msp(self.firmware.run_msp(code, &payload, None).reply)

@@ -13,6 +13,10 @@ pub enum Ask {
     },
     /// A command line, sent as [`CliAccess`] says; by MSP message while the command line does not open.
     Line(String),
+    /// A command line at the prompt, as it is typed by a person. The prompt stays open, and MSP waits for its end.
+    Typed(String),
+    /// Leaves the prompt, if it is open. Needs no answer.
+    LeavePrompt,
     /// A command line by MSP message only, which works in flight and disturbs nothing.
     MessageLine(String),
 }

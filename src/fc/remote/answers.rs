@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::{Event, Life, Purpose, Question, Remote, RemoteNotice};
 use crate::fc::client::{Answer, Unanswered};
 use crate::fc::polling::Poll;
-use crate::fc::reply::cli_reply;
+use crate::fc::reply::{cli_reply, typed_reply};
 use crate::msp::code;
 use crate::vehicle::LateAnswer;
 
@@ -30,18 +30,24 @@ impl Remote {
                 self.permission.line_answered(&answer);
                 self.report_to_client();
             }
-            if let (Purpose::Line(_, true), Answer::Line { .. })
+            if let (Purpose::Line(_, true) | Purpose::Typed(_, true), Answer::Line { .. })
             | (Purpose::Message(_, true), Answer::Msp(Some(_))) = (purpose, &answer)
             {
                 self.outdate_settings(now);
             }
             match purpose {
                 Purpose::Line(ticket, _) => self.answer(ticket, LateAnswer::Cli(cli_reply(answer))),
+                Purpose::Typed(ticket, _) => {
+                    self.answer(ticket, LateAnswer::Cli(typed_reply(answer, self.client.is_in_cli())));
+                }
                 Purpose::Plan(ticket) => {
                     // An upload ends with it: the plan has changed.
                     self.observer.learn(Question::Plan, &answer);
                     self.answer(ticket, LateAnswer::Cli(cli_reply(answer)));
                 }
+                // A child that restarts closes the clients' links, which is their answer.
+                Purpose::Message(..)
+                    if self.craft.is_child && answer == Answer::NotAnswered(Unanswered::LinkLost) => {}
                 Purpose::Message(ticket, _) => {
                     let payload = if let Answer::Msp(payload) = answer { payload } else { None };
                     self.answer(ticket, LateAnswer::Msp(payload));

@@ -15,6 +15,7 @@ impl Remote {
             life => life.end(),
         };
         self.meet(Connection::after(before, now));
+        self.release_messages();
         self.events.push_back(Event::CameUp);
     }
 
@@ -100,6 +101,7 @@ impl Remote {
         let identification =
             self.life.identification_mut().map_or_else(Identification::default, |asked| *asked);
         self.life = Life::Unusable { why, connection: self.life.end(), identification };
+        self.release_messages();
     }
 
     /// Forgets the data of a real craft once it has been silent for some seconds. When it answers again, it

@@ -135,8 +135,7 @@ impl Session {
             }
             // Without a recording there is no screen, and no key.
             let way_back = if self.timeline.is_some() { ", `x` takes them back" } else { "" };
-            let notice =
-                format!("RC now comes from another program: the virtual sticks are cut{way_back}.");
+            let notice = format!("RC now comes from another program: the virtual sticks are cut{way_back}.");
             self.events.notice(&mut self.vehicle, notice);
         }
     }

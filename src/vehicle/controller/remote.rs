@@ -3,17 +3,19 @@
 //! The vehicle puts frames and requests into it. The code that communicates with the remote flight controller takes
 //! them out and delivers motor commands, telemetry, events and answers.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 
 use strum::{EnumCount as _, IntoEnumIterator as _};
 
 use super::{LateAnswer, Ticket};
+use crate::firmware::cli::CliMode;
 use crate::firmware::rx::Sources;
 use crate::pilot::PilotFacts;
 use crate::plan::{AltitudeReference, FlightPlan};
 use crate::signals::{MotorCommand, RcFrame, RcSource, SensorFrame, SimTime};
 use crate::telemetry::snapshot::{CraftView, EstimateView, SettingsView};
 use crate::telemetry::{DisarmReason, FirmwareEvent, Mode, NavTelemetry};
+use crate::vehicle::{CliLine, CliSession};
 
 /// The maximum number of waiting frames. Beyond it the oldest frame is dropped, since old measurements are of no use.
 const MAX_FRAMES: usize = 1024;
@@ -35,6 +37,10 @@ pub enum FrameOut {
 pub enum RemoteRequest {
     /// Run a CLI line; answered by [`LateAnswer::Cli`].
     Cli(String),
+    /// Run a CLI line at its prompt, as it is typed by a person; answered by [`LateAnswer::Cli`].
+    Typed(String),
+    /// Leave the prompt, if it is open.
+    LeavePrompt,
     /// An MSP message; answered by [`LateAnswer::Msp`].
     Msp {
         code: u16,
@@ -71,6 +77,8 @@ pub struct RemoteController {
     frames: VecDeque<FrameOut>,
     requests: VecDeque<(Ticket, RemoteRequest)>,
     next_ticket: u64,
+    /// The sessions of persons at a prompt.
+    prompts: BTreeSet<CliSession>,
     rc: [Option<RcFrame>; RcSource::COUNT],
     /// Selects the source whose frames are sent. The flight controller sees only one transmitter.
     sources: Sources,
@@ -91,6 +99,7 @@ impl Default for RemoteController {
             frames: VecDeque::with_capacity(MAX_FRAMES),
             requests: VecDeque::new(),
             next_ticket: 0,
+            prompts: BTreeSet::new(),
             rc: [None; RcSource::COUNT],
             sources: Sources::default(),
             rc_sent: None,
@@ -197,6 +206,30 @@ impl RemoteController {
         self.next_ticket += 1;
         self.requests.push_back((ticket, request));
         ticket
+    }
+
+    /// Begins a session of its command line. The prompt opens with the first line.
+    pub(super) fn begin_cli(&mut self, session: CliSession, mode: CliMode) {
+        if mode == CliMode::Interactive {
+            self.prompts.insert(session);
+        }
+    }
+
+    pub(super) fn end_cli(&mut self, session: CliSession) {
+        if self.prompts.remove(&session) && self.prompts.is_empty() {
+            self.ask(RemoteRequest::LeavePrompt);
+        }
+    }
+
+    /// Ends all sessions after a restart, which closes the prompt.
+    pub(super) fn end_all_cli(&mut self) {
+        self.prompts.clear();
+    }
+
+    pub(super) fn run_cli(&mut self, line: &CliLine) -> Ticket {
+        let is_at_prompt = self.prompts.contains(&line.session);
+        let line = line.line.clone();
+        self.ask(if is_at_prompt { RemoteRequest::Typed(line) } else { RemoteRequest::Cli(line) })
     }
 
     /// Requests a restart.

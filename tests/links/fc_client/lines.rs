@@ -103,6 +103,24 @@ fn msp_rests_at_the_prompt_until_the_flight_controller_restarts() {
 }
 
 #[test]
+fn a_typed_line_is_answered_by_the_prompt_itself_which_can_be_left() {
+    let mut bench = Bench::new(Manners::default());
+    assert_eq!(
+        bench.ask(Ask::LeavePrompt),
+        Answer::Line { text: String::new(), failed: false, restarted: false }
+    );
+    let unknown = bench.ask(Ask::Typed("nonsense".to_owned()));
+    let text = "###ERROR IN input: UNKNOWN COMMAND, TRY 'HELP'###".to_owned();
+    assert_eq!(unknown, Answer::Line { text, failed: true, restarted: false });
+    assert!(bench.client.is_in_cli());
+    let Answer::Line { text, .. } = bench.ask(Ask::Typed("get ap_max_angle".to_owned())) else { panic!() };
+    assert!(text.starts_with("ap_max_angle = ") && text.ends_with("\r\n"), "{text:?}");
+    bench.ask(Ask::LeavePrompt);
+    assert!(!bench.client.is_in_cli());
+    assert!(bench.msp(STATUS_EX).is_some());
+}
+
+#[test]
 fn a_command_line_that_does_not_open_is_reported() {
     let shut = Manners { cli_is_shut: true, no_message_lines: true, ..Manners::default() };
     for access in [CliAccess::Framed, CliAccess::Interactive] {
