@@ -4,6 +4,16 @@
 #![allow(clippy::disallowed_methods, reason = "other processes live by the wall clock")]
 
 mod child;
+#[path = "../port_support/free_port.rs"]
+mod free_port;
 mod library;
+#[allow(dead_code, reason = "shared with the tests of the doors")]
+#[path = "../doors/msp.rs"]
+mod msp;
+#[allow(dead_code, reason = "shared with the tests of the doors")]
+#[path = "../doors/program.rs"]
+mod program;
+mod serial_port;
+mod served;
 mod stand_in;
 mod steps;

@@ -3,7 +3,8 @@
 //! is a `select` of 10 ms. This test program starts itself as the stand-in.
 //!
 //! For each state its main loop folds the state, the newest RC packet and its clock into a number, which is its motor
-//! packet. It answers each line on the serial port with the line, the time and that number.
+//! packet. It answers each line on the serial port with the line, the time and that number. `serial_port` answers MSP and
+//! the command line.
 #![allow(unsafe_code, reason = "it makes the system calls of a C program")]
 #![allow(clippy::print_stdout, reason = "the tests read what it prints")]
 
@@ -15,6 +16,8 @@ use std::os::unix::process::CommandExt as _;
 use std::process::Command;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::serial_port::{Effect, SerialPort};
 
 /// The file in its folder with its ports: states, RC, motors, serial.
 pub(crate) const PORTS_FILE: &str = "ports.txt";
@@ -173,7 +176,8 @@ fn run() {
             scope.spawn(|| take_packets(&states_in, &state)),
             scope.spawn(|| take_packets(&rc_in, &rc)),
         ];
-        let (started_ns, mut states, mut number, mut line) = (clock_ns(), 0, 0_u64, Vec::new());
+        let (started_ns, mut states, mut number, mut terminal) =
+            (clock_ns(), 0, 0_u64, SerialPort::default());
         loop {
             let now_ns = clock_ns();
             let (state, count) = *state.0.lock().unwrap();
@@ -190,11 +194,15 @@ fn run() {
             packet[8..].copy_from_slice(&(now_ns - started_ns).to_le_bytes());
             motors_out.send_to(&packet, ("127.0.0.1", port(2))).unwrap();
             for byte in std::mem::take(&mut *serial.received.lock().unwrap()) {
-                if byte != b'\n' {
-                    line.push(byte);
-                    continue;
-                }
-                let text = String::from_utf8(std::mem::take(&mut line)).unwrap();
+                let text = match terminal.take(byte, &rc) {
+                    None => continue,
+                    Some(Effect::Send(bytes)) => {
+                        serial.to_send.lock().unwrap().extend(bytes);
+                        continue;
+                    }
+                    Some(Effect::Save) => std::process::exit(0),
+                    Some(Effect::Line(line)) => line,
+                };
                 match text.as_str() {
                     "save" => std::process::exit(0),
                     "join" => {
