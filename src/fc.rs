@@ -42,6 +42,7 @@ pub use permission::{Access, Denial, Impact, NOT_PERMITTED, NOTHING_MOVES, NOTHI
 pub use provision::{Provision, ProvisionLines, Unset, UnsetLine};
 pub use remote::Remote;
 pub use remote_link::{EXCHANGE_PAUSE, RemoteEnds, RemoteLink};
+pub use rescue::NO_RETURN_SWITCH;
 pub use starter::{guide_settings, starter_lines};
 pub use upload::{
     LIST, Upload, UploadProgress, UploadReport, UploadView, plan_above_home, plan_of_list, upload,

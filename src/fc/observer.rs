@@ -1,6 +1,7 @@
 //! The data that a remote flight controller has reported, and the conclusions from it.
 
 mod events;
+mod leg;
 mod mission;
 mod settings;
 
@@ -16,6 +17,7 @@ use crate::telemetry::Mode;
 use crate::telemetry::snapshot::{CraftView, ModeRange};
 use crate::vehicle::{RemoteController, RemoteTelemetry};
 use events::EventObserver;
+use leg::LegObserver;
 use settings::Settings;
 
 /// The variation of the GPS altitude at rest that still counts as the same place, m.
@@ -30,6 +32,7 @@ pub struct Observer {
     /// The plan as the flight controller stores it.
     stored_plan: Option<CraftPlan>,
     mission: Option<Mission>,
+    leg: LegObserver,
     /// The first position of the craft. It is the origin of drawings when no world gives a starting place.
     first_fix: Option<Origin>,
     /// The altitude above mean sea level of a craft that is known to be disarmed, m. Arming makes it the
@@ -65,6 +68,7 @@ impl Observer {
     pub(super) fn forget(&mut self) {
         self.observation = Observation::default();
         self.mission = None;
+        self.leg = LegObserver::default();
         self.standing_alt_m = None;
         self.awaits_switches = false;
         self.changed = true;
@@ -170,15 +174,24 @@ impl Observer {
         let commanded = simulated.and_then(|simulated| simulated.commanded);
         let craft = CraftView { commanded, ..self.observation.craft_view() };
         let engaged = self.observation.is_active(Mode::Autopilot);
-        let reported =
+        let mut reported =
             self.mission.as_ref().map(|reported| mission::nav(reported, engaged, stored_plan.as_ref()));
+        if let Some(nav) = &mut reported {
+            nav.home_distance_m = self.observation.home_distance_m();
+            self.leg.follow(nav, stored_plan.as_ref(), self.observation.position());
+        }
         for event in self.events.follow(&craft, reported.as_ref(), stored_plan.as_ref()) {
             mailbox.deliver_event(event);
         }
+        let mut estimate = self.observation.estimate_view(origin);
+        if simulated.is_some() && !self.observation.altitude_has_settled() {
+            (estimate.alt, estimate.climb_mps) = (None, None);
+        }
+        let armed = craft.armed;
         mailbox.deliver_telemetry(RemoteTelemetry {
-            estimate: self.observation.estimate_view(origin),
+            estimate,
             craft,
-            nav: reported.map(|nav| self.events.completed(nav)),
+            nav: reported.map(|nav| self.events.completed(nav, armed)),
             settings: self.settings.view(),
             stored_plan,
             altitude_reference,
@@ -276,6 +289,8 @@ fn origin_of(frame: &LocalFrame) -> Origin {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::msp::code;
+    use crate::vehicle::Vehicle;
 
     #[test]
     fn a_mission_that_is_given_up_is_reported_once_with_its_cause() {
@@ -286,5 +301,31 @@ mod tests {
         let reported = "The firmware aborted its mission: MAG FAULT.".to_owned();
         assert_eq!(observer.take_mission(&aborted), Some(reported));
         assert_eq!(observer.take_mission(&aborted), None);
+    }
+
+    #[test]
+    fn the_altitude_of_a_simulated_craft_is_unknown_until_its_estimate_has_settled() {
+        let mut vehicle = Vehicle::elsewhere().unwrap();
+        let mut observer = Observer::default();
+        let mut report = |observer: &mut Observer, alt_m: f64, climb_mps: f64, simulated| {
+            let mut payload = ((alt_m * 100.0) as i32).to_le_bytes().to_vec();
+            payload.extend(((climb_mps * 100.0) as i16).to_le_bytes());
+            observer.take_message(code::ALTITUDE, &payload);
+            observer.deliver(vehicle.controller_mut().remote_mut().unwrap(), None, simulated);
+            let estimate = vehicle.snapshot().estimate;
+            (estimate.alt, estimate.climb_mps)
+        };
+        let simulated = Some(Simulated { home_m: None, commanded: None });
+        for (alt_m, climb_mps) in [(47.0, 77.0), (308.0, 259.0), (313.0, 0.0), (309.0, -4.0)] {
+            assert_eq!(report(&mut observer, alt_m, climb_mps, simulated), (None, None));
+        }
+        for _ in 0..9 {
+            assert_eq!(report(&mut observer, 300.0, 0.5, simulated), (None, None));
+        }
+        assert_eq!(report(&mut observer, 300.0, 0.0, simulated), (Some(300.0), Some(0.0)));
+        assert_eq!(report(&mut observer, 310.0, 20.0, simulated), (Some(310.0), Some(20.0)), "it flies");
+        observer.restarted();
+        assert_eq!(report(&mut observer, 47.0, 77.0, simulated), (None, None));
+        assert_eq!(report(&mut observer, 47.0, 77.0, None), (Some(47.0), Some(77.0)), "a real craft");
     }
 }

@@ -25,7 +25,9 @@ use super::observer::{Observer, Simulated};
 use super::permission::Permission;
 use super::polling::Schedule;
 use super::setup::Setup;
-use super::{Access, Impact, LIST, Provision, RemoteNotice, RemoteState, RemoteView, Unset, rescue};
+use super::{
+    Access, Impact, LIST, NO_RETURN_SWITCH, Provision, RemoteNotice, RemoteState, RemoteView, Unset, rescue,
+};
 use crate::geo::LocalFrame;
 use crate::msp::code;
 use crate::vehicle::{LateAnswer, RemoteController, RemoteRequest, Ticket};
@@ -321,6 +323,11 @@ impl Remote {
         self.craft.is_child && matches!(self.life, Life::Connecting | Life::Lost { .. })
     }
 
+    /// Returns `true` if a lost connection means that a child restarts.
+    fn restarts(&self) -> bool {
+        self.craft.is_child && !matches!(self.life, Life::Unusable { .. })
+    }
+
     /// Sends the messages that have waited for the connection, or refuses them if there is none.
     fn release_messages(&mut self) {
         for (ticket, request) in std::mem::take(&mut self.held) {
@@ -335,7 +342,7 @@ impl Remote {
                 self.events.push_back(Event::Switched(channel, pulse_us));
                 self.observer.deliver_again();
             }
-            None => self.notice(RemoteNotice::Reported(rescue::NO_SWITCH.to_owned())),
+            None => self.notice(RemoteNotice::Reported(NO_RETURN_SWITCH.to_owned())),
         }
     }
 

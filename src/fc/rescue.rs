@@ -6,7 +6,7 @@ use crate::telemetry::Mode;
 use crate::telemetry::switch::{self, Switch};
 
 /// The message if no switch makes it fly home.
-pub(super) const NO_SWITCH: &str = "This firmware flies home only by a switch, and GPS RESCUE has none: assign one with the CLI command aux.";
+pub const NO_RETURN_SWITCH: &str = "This firmware flies home only by a switch, and GPS RESCUE has none: assign one with the CLI command aux.";
 
 /// Returns the channel of the switch that makes it fly home, and its pulse (µs) when it is on or off.
 pub(super) fn position(observer: &Observer, on: bool) -> Option<(usize, u16)> {

@@ -6,6 +6,9 @@ use crate::firmware::config::Configuration;
 use crate::firmware::{Firmware, FirmwareOptions};
 use crate::plan::builtin::{BuiltinPlan, DEMO};
 
+/// GPS RESCUE on AUX4. The embedded firmware flies home by a command, a remote one by this switch only.
+const RESCUE: &str = "aux 5 46 3 1700 2100 0 0";
+
 /// The end of a row of `aux` that binds no switch.
 const UNUSED: &str = "900 900 0 0";
 
@@ -34,13 +37,14 @@ pub fn guide_settings() -> Result<Vec<String>, &'static str> {
     Ok(plan.settings)
 }
 
-/// Returns the rows of `aux` that the embedded firmware gets at its first boot.
+/// Returns the rows of `aux` that the embedded firmware gets at its first boot, and one for the return home.
 fn starter_modes() -> Vec<String> {
     let mut configuration = Configuration::default();
     configuration.starter_modes();
     let mut firmware = Firmware::new(configuration, FirmwareOptions::default());
     let rows = firmware.run_cli(&mut Interpreter::default(), "aux").text;
-    rows.lines().filter(|row| row.starts_with("aux") && !row.ends_with(UNUSED)).map(str::to_owned).collect()
+    let bound = rows.lines().filter(|row| row.starts_with("aux") && !row.ends_with(UNUSED));
+    bound.chain([RESCUE]).map(str::to_owned).collect()
 }
 
 #[cfg(test)]
@@ -65,7 +69,8 @@ mod tests {
                 "aux 1 56 1 1700 2100 0 0",
                 "aux 2 1 2 1700 2100 0 0",
                 "aux 3 3 2 1700 2100 0 0",
-                "aux 4 11 2 1700 2100 0 0"
+                "aux 4 11 2 1700 2100 0 0",
+                "aux 5 46 3 1700 2100 0 0"
             ]
         );
         let bound = ProvisionLines { usual: Vec::new(), of_user: vec!["aux 0 0 3 1700 2100 0 0".to_owned()] };

@@ -319,7 +319,7 @@ fn a_message_to_a_child_that_boots_waits_for_its_connection() {
         let events = std::iter::from_fn(|| remote.poll_event());
         events
             .filter_map(|event| if let Event::Answered(_, answer) = event { Some(answer) } else { None })
-            .collect()
+            .collect::<Vec<_>>()
     };
     let now = Duration::ZERO;
     let (mut vehicle, mut board) = (Vehicle::elsewhere().unwrap(), Board::at(FIELD));

@@ -174,6 +174,15 @@ pub fn current(state: &Shared) -> Option<StatusMessage> {
         let condition = format!("The autopilot would refuse: {}.", refusal.reason());
         return message(Severity::Warn, condition, format!("{plan} edits the plan, {upload} uploads it"));
     }
+    if transmitter::switch(state, Mode::Arm).is_err() {
+        let action = match craft.mode_ranges {
+            None => "wait for an answer".to_owned(),
+            Some(_) => {
+                format!("`aux 0 0 0 1700 2100` in the CLI ({}) assigns one", key(Action::Show(Panel::Cli)))
+            }
+        };
+        return message(Severity::Warn, "No switch arms the craft.", action);
+    }
     let by_hand = [Action::Arm, Action::Throttle, Action::Autopilot].map(key).join(", ");
     message(Severity::Good, "Ready.", format!("{} flies the plan; by hand: {by_hand}", key(Action::Fly)))
 }

@@ -5,7 +5,8 @@ use crate::fixture;
 use betadeck::fc::{Access, NOTHING_MOVES, NOTHING_SIMULATED, RemoteState, RemoteView};
 use betadeck::session::Command;
 use betadeck::session::command::CliOutput;
-use betadeck::telemetry::ArmingFlag;
+use betadeck::telemetry::snapshot::ModeRange;
+use betadeck::telemetry::{ArmingFlag, Mode};
 use betadeck::ui::action::{self, Action, PanelAction};
 use betadeck::ui::{AppState, Effect, Msg, Panel, draw, update};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
@@ -285,4 +286,38 @@ fn a_plan_that_the_remote_firmware_has_not_reported_is_not_flown_unseen() {
     update(&mut state, Msg::View(view));
     let effects = press(&mut state, KeyCode::Char('F'));
     assert!(effects.iter().any(|effect| matches!(effect, Effect::Upload { .. })), "{effects:?}");
+}
+
+/// Returns the screen of a child that is simulated here, with the switches of these modes.
+fn child(armed: bool, modes: &[Mode]) -> AppState {
+    let mut state = connected(|remote| remote.access = Access::Everything);
+    let mut view = state.shared.view.clone();
+    let craft = &mut std::sync::Arc::make_mut(&mut view.vehicle).craft;
+    let range = |(at, mode): (usize, &Mode)| ModeRange {
+        mode_box: (*mode).into(),
+        channel: 4 + at as u8,
+        start_us: 1700,
+        end_us: 2100,
+    };
+    craft.mode_ranges = Some(modes.iter().enumerate().map(range).collect());
+    craft.armed = Some(armed);
+    craft.arming_blocked_by = Some(std::iter::empty::<ArmingFlag>().collect());
+    update(&mut state, Msg::View(view));
+    state
+}
+
+#[test]
+fn a_child_is_ready_only_with_a_switch_that_arms_it() {
+    let shown = text(&child(false, &[Mode::Arm, Mode::Autopilot]));
+    assert!(shown.contains("Ready."), "{shown}");
+    let shown = text(&child(false, &[Mode::Autopilot]));
+    assert!(shown.contains("No switch arms") && !shown.contains("Ready."), "{shown}");
+}
+
+#[test]
+fn a_child_is_brought_home_only_with_a_switch_for_it() {
+    let can_return = |modes: &[Mode]| action::enabled(&child(true, modes).shared, Action::ReturnHome);
+    let why = can_return(&[Mode::Arm, Mode::Autopilot]).unwrap_err();
+    assert!(why.contains("GPS RESCUE"), "{why}");
+    assert_eq!(can_return(&[Mode::Arm, Mode::Autopilot, Mode::GpsRescue]), Ok(()));
 }

@@ -71,13 +71,16 @@ impl EventObserver {
         self.last_disarm
     }
 
-    /// Keeps a mission that ended by its landing complete. A disarmed flight controller no longer reports a
-    /// mission.
-    pub(super) fn completed(&self, nav: NavTelemetry) -> NavTelemetry {
-        if self.armed || self.state != NavState::Complete {
-            return nav;
+    /// Replaces the report of a disarmed flight controller, whose mission is over: complete if it ended by its landing.
+    /// The report may be older than the disarming.
+    pub(super) fn completed(&self, nav: NavTelemetry, armed: Option<bool>) -> NavTelemetry {
+        match (armed, self.state) {
+            (Some(false), NavState::Complete) => {
+                NavTelemetry { state: NavState::Complete, wp: self.wp, next_wp: self.wp, ..at_rest(nav) }
+            }
+            (Some(false), _) => at_rest(nav),
+            _ => nav,
         }
-        NavTelemetry { state: NavState::Complete, wp: self.wp, next_wp: self.wp, ..nav }
     }
 
     fn disarm(&mut self, craft: &CraftView, plan: Option<&FlightPlan>, events: &mut Vec<FirmwareEvent>) {
@@ -186,6 +189,12 @@ impl EventObserver {
     }
 }
 
+/// Returns a report without a mission.
+fn at_rest(nav: NavTelemetry) -> NavTelemetry {
+    let NavTelemetry { reason, count, home_distance_m, .. } = nav;
+    NavTelemetry { reason, count, home_distance_m, ..NavTelemetry::default() }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -287,7 +296,7 @@ mod tests {
             "disarmed LANDING",
         ];
         assert_eq!(words, expected);
-        let nav = observer.completed(NavTelemetry::default());
+        let nav = observer.completed(NavTelemetry::default(), Some(false));
         assert_eq!((nav.state, nav.wp), (Complete, 3));
         assert_eq!(observer.last_disarm(), Some(DisarmReason::Landing));
     }
@@ -362,5 +371,22 @@ mod tests {
     fn a_craft_that_disarms_in_flight_ends_its_mission_without_an_invented_reason() {
         let (words, _) = reported(&[(true, NavState::Approaching, 0), (false, NavState::Approaching, 0)]);
         assert_eq!(words[3..], ["APPROACHING IDLE 0 disarm", "disarmed UNKNOWN"]);
+    }
+
+    #[test]
+    fn a_disarmed_craft_flies_no_mission_whatever_an_older_report_says() {
+        let (_, observer) = reported(&[(true, NavState::Approaching, 1), (false, NavState::Approaching, 1)]);
+        let report = NavTelemetry {
+            state: NavState::Approaching,
+            engaged: true,
+            wp: 1,
+            count: 4,
+            distance_m: Some(50.0),
+            eta_s: Some(9.0),
+            ..NavTelemetry::default()
+        };
+        let shown = observer.completed(report.clone(), Some(false));
+        assert_eq!(shown, NavTelemetry { count: 4, ..NavTelemetry::default() });
+        assert_eq!(observer.completed(report.clone(), None), report, "arming is unknown");
     }
 }

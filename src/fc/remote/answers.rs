@@ -47,7 +47,7 @@ impl Remote {
                 }
                 // A child that restarts closes the clients' links, which is their answer.
                 Purpose::Message(..)
-                    if self.craft.is_child && answer == Answer::NotAnswered(Unanswered::LinkLost) => {}
+                    if answer == Answer::NotAnswered(Unanswered::LinkLost) && self.restarts() => {}
                 Purpose::Message(ticket, _) => {
                     let payload = if let Answer::Msp(payload) = answer { payload } else { None };
                     self.answer(ticket, LateAnswer::Msp(payload));

@@ -15,6 +15,11 @@ pub struct Origin {
     pub alt_amsl_m: f64,
 }
 
+/// The vertical speed below which an altitude at rest is steady, m/s.
+const STEADY_MPS: f64 = 1.0;
+/// The number of steady reports in a row after which the estimate of the altitude has settled.
+const STEADY_REPORTS: u8 = 10;
+
 /// The newest values of every message.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Observation {
@@ -24,6 +29,8 @@ pub struct Observation {
     status: Option<Status>,
     attitude: Option<Attitude>,
     altitude: Option<Altitude>,
+    /// The number of steady reports of the altitude in a row, up to [`STEADY_REPORTS`], which is then kept.
+    steady_reports: u8,
     gps: Option<RawGps>,
     home_vector: Option<HomeVector>,
     home: Option<LatLon>,
@@ -41,7 +48,7 @@ impl Observation {
             code::MODE_RANGES_EXTRA => keep(&mut self.range_links, Some(Some(payload.to_vec()))),
             code::STATUS_EX => self.take_status(Status::decode(payload)),
             code::ATTITUDE => keep(&mut self.attitude, Attitude::decode(payload).map(Some)),
-            code::ALTITUDE => keep(&mut self.altitude, Altitude::decode(payload).map(Some)),
+            code::ALTITUDE => self.take_altitude(Altitude::decode(payload)),
             code::RAW_GPS => keep(&mut self.gps, RawGps::decode(payload).map(Some)),
             code::COMP_GPS => keep(&mut self.home_vector, HomeVector::decode(payload).map(Some)),
             code::BATTERY_STATE => keep(&mut self.battery, BatteryReading::decode(payload).map(Some)),
@@ -56,11 +63,31 @@ impl Observation {
         }
     }
 
+    fn take_altitude(&mut self, altitude: Option<Altitude>) -> bool {
+        let is_steady = altitude
+            .as_ref()
+            .is_some_and(|altitude| altitude.climb_mps.is_none_or(|climb| climb.abs() < STEADY_MPS));
+        if !self.altitude_has_settled() {
+            self.steady_reports = if is_steady { self.steady_reports + 1 } else { 0 };
+        }
+        keep(&mut self.altitude, altitude.map(Some))
+    }
+
+    /// Returns `true` once the altitude is more than the start of an estimate: it was steady for some time, or the craft was
+    /// armed. The estimator of a simulated craft begins at sea level, and climbs to the altitude of the GPS at more than
+    /// 200 m/s.
+    pub fn altitude_has_settled(&self) -> bool {
+        self.steady_reports >= STEADY_REPORTS
+    }
+
     /// Takes a status. Home is the position at which the craft is armed. For a craft that already flew, it is
     /// the point that the flight controller's home vector gives.
     fn take_status(&mut self, status: Option<Status>) -> bool {
         let before = self.armed();
         let is_read = keep(&mut self.status, status.map(Some));
+        if self.armed() == Some(true) {
+            self.steady_reports = STEADY_REPORTS;
+        }
         if before == Some(false) && self.armed() == Some(true) {
             self.home = self.gps.filter(|gps| gps.fix).map(|gps| gps.position);
         }
@@ -133,6 +160,16 @@ impl Observation {
             mode_ranges: self.mode_ranges(),
             ..CraftView::default()
         }
+    }
+
+    /// Returns the distance from home, m; `None` before the first arming, which sets home.
+    pub fn home_distance_m(&self) -> Option<f64> {
+        self.home_vector.filter(|_| self.home.is_some()).map(|vector| vector.distance_m)
+    }
+
+    /// Returns the position of the craft.
+    pub fn position(&self) -> Option<LatLon> {
+        self.gps.filter(|gps| gps.fix).map(|gps| gps.position)
     }
 
     /// Returns the flight controller's estimate of the craft's motion. Positions are relative to `origin` and

@@ -1,6 +1,6 @@
 //! Decides which actions are possible now, and gives the reason for each refusal.
 
-use crate::fc::{Access, Denial, RemoteState};
+use crate::fc::{Access, Denial, NO_RETURN_SWITCH, RemoteState};
 use crate::session::policy::{self, Facts, NOT_KNOWN_YET, Refusal};
 use crate::telemetry::{Mode, NavState};
 use crate::ui::shared::Shared;
@@ -62,6 +62,11 @@ fn can_do(state: &Shared, action: Action) -> Result<(), String> {
         Action::ReturnHome if craft.armed == Some(false) => {
             let fly = state.key(Action::Fly);
             Err(format!("Nothing to bring home: the craft is disarmed. `{fly}` flies the plan."))
+        }
+        Action::ReturnHome
+            if state.view.remote.is_some() && transmitter::switch(state, Mode::GpsRescue).is_err() =>
+        {
+            Err(or_not_known_yet(state, NO_RETURN_SWITCH.to_owned()))
         }
         Action::ReturnHome if craft.home.is_none() => {
             Err("Home is unknown: it is the place of arming with a GPS fix.".to_owned())
