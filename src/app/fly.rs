@@ -58,6 +58,7 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
         return Ok(error::INTERRUPTED);
     };
     let mut watch = Stopwatch::start();
+    run.runner().begin_flight();
     let flown =
         run.runner().fly(&mut flight, &mut (&mut output, &mut watch), || interrupted.load(Ordering::Relaxed));
     let flown = match (flown, flight.end()) {
@@ -77,7 +78,7 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
     };
     let end_record = End {
         result: end.verdict.result.to_string(),
-        reason: end.verdict.reason,
+        reason: end.verdict.reason + &run.runner().disturbance(),
         truth: end.truth,
         flown_s: end.flown_s,
         wall_s: watch.seconds(),

@@ -24,6 +24,9 @@ const REMOTE_SLICE: u64 = 50;
 /// The longest rest of a paced flight.
 const LONGEST_REST: Duration = Duration::from_millis(1);
 
+/// The lost real time from which a flight counts as disturbed: the motors did not follow the craft.
+const DISTURBING: Duration = Duration::from_millis(500);
+
 /// Relates the time of a vehicle to the wall clock, and owns the link to its remote flight controller.
 #[derive(Debug)]
 pub struct Runner {
@@ -72,6 +75,19 @@ impl Runner {
     /// Returns the time of the link's protocol, for its deadlines: simulated time, or wall time.
     pub fn protocol_time(&self) -> Duration {
         self.link.as_ref().map_or_else(|| self.elapsed(), |link| link.protocol_time(Instant::now()))
+    }
+
+    /// Begins to count the real time that a flight loses.
+    pub fn begin_flight(&mut self) {
+        self.pacer.take_lost();
+    }
+
+    /// Returns the addition to the verdict of a flight that a stalled machine or firmware has disturbed; an empty text for
+    /// any other flight. Simulated time loses nothing.
+    pub fn disturbance(&mut self) -> String {
+        let is_on_wall_clock = self.link.as_ref().is_some_and(|link| !link.is_in_steps());
+        let lost = self.pacer.take_lost();
+        if is_on_wall_clock { disturbed_by(lost) } else { String::new() }
     }
 
     /// Returns the wall time since the runner was created.
@@ -199,6 +215,15 @@ impl Runner {
         }
         Ok(())
     }
+}
+
+/// Returns the addition to the verdict of a flight on the wall clock that has lost this much time.
+fn disturbed_by(lost: Duration) -> String {
+    if lost < DISTURBING {
+        return String::new();
+    }
+    let lost_s = lost.as_secs_f64();
+    format!("; disturbed: the machine or the firmware stalled, and {lost_s:.1} s of real time were lost")
 }
 
 #[cfg(test)]

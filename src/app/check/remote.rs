@@ -132,8 +132,11 @@ impl Run<'_> {
             Ok(flight) => flight,
             Err(problem) => return Ok(CheckedFlight { problem: Some(problem), ..checked }),
         };
+        remote.runner().begin_flight();
         remote.fly(&mut flight, &mut tell)?;
-        let judged = run::judged(checked, case, flight.finish(), &started);
+        let mut flown = flight.finish();
+        flown.reason += &remote.runner().disturbance();
+        let judged = run::judged(checked, case, flown, &started);
         let hash = remote.motor_hash().unwrap_or(judged.hash);
         Ok(CheckedFlight { problem, hash, ..judged })
     }

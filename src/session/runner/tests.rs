@@ -88,3 +88,10 @@ fn a_flight_ends_soon_after_the_user_asks() {
     assert_eq!(stopped, Err(Stopped::Interrupted));
     assert_eq!(flight.vehicle().time().0, 3 * FREE_SLICE * flight.vehicle().step_us());
 }
+
+#[test]
+fn a_flight_that_lost_real_time_is_marked() {
+    assert_eq!(disturbed_by(Duration::from_millis(499)), "");
+    let marked = disturbed_by(Duration::from_millis(1300));
+    assert_eq!(marked, "; disturbed: the machine or the firmware stalled, and 1.3 s of real time were lost");
+}
