@@ -88,7 +88,8 @@ pub struct FirmwareArgs {
     ///
     /// An executable is started in a folder of its own below the state directory, gets the state of the embedded
     /// physics and ends with this program. It flies in simulated time (--clock). --tcp-port and --udp-ports name its
-    /// ports, --fdm-dialect and --motor-order the format of its packets. The websocket door stays.
+    /// ports, --fdm-dialect and --motor-order the format of its packets. In simulated time all doors stay, on the wall
+    /// clock only the websocket.
     #[arg(long, value_name = "WHICH", help_heading = "Firmware")]
     pub firmware: Option<FirmwareChoice>,
 

@@ -187,6 +187,9 @@ impl Observer {
         if simulated.is_some() && !self.observation.altitude_has_settled() {
             (estimate.alt, estimate.climb_mps) = (None, None);
         }
+        if simulated.is_some() && !self.observation.altitude_agrees_with_gps(origin) {
+            estimate.alt = None;
+        }
         let armed = craft.armed;
         mailbox.deliver_telemetry(RemoteTelemetry {
             estimate,
@@ -303,6 +306,9 @@ mod tests {
         assert_eq!(observer.take_mission(&aborted), None);
     }
 
+    /// The number of reports after which a steady altitude is believed.
+    const STEADY: usize = 10;
+
     #[test]
     fn the_altitude_of_a_simulated_craft_is_unknown_until_its_estimate_has_settled() {
         let mut vehicle = Vehicle::elsewhere().unwrap();
@@ -327,5 +333,29 @@ mod tests {
         observer.restarted();
         assert_eq!(report(&mut observer, 47.0, 77.0, simulated), (None, None));
         assert_eq!(report(&mut observer, 47.0, 77.0, None), (Some(47.0), Some(77.0)), "a real craft");
+    }
+
+    #[test]
+    fn the_altitude_of_a_disarmed_craft_is_unknown_if_it_contradicts_the_gps() {
+        let mut vehicle = Vehicle::elsewhere().unwrap();
+        let mut observer = Observer::default();
+        let home = LocalFrame::new(47.0, 8.0, 300.0);
+        observer.take_message(code::BOXIDS, &[0]);
+        let mut reported = |armed: bool, alt_m: i32, gps_m: u16| {
+            let status = [&[0; 6][..], &u32::from(armed).to_le_bytes(), &[0; 17]].concat();
+            observer.take_message(code::STATUS_EX, &status);
+            let gps = [&[2, 12][..], &[0; 8], &gps_m.to_le_bytes(), &[0; 6]].concat();
+            observer.take_message(code::RAW_GPS, &gps);
+            for _ in 0..STEADY {
+                observer.take_message(code::ALTITUDE, &[&(alt_m * 100).to_le_bytes()[..], &[0; 2]].concat());
+            }
+            let simulated = Some(Simulated { home_m: Some(300.0), commanded: None });
+            observer.deliver(vehicle.controller_mut().remote_mut().unwrap(), Some(&home), simulated);
+            vehicle.snapshot().estimate.alt
+        };
+        assert_eq!(reported(false, 300, 300), Some(0.0), "above sea level, before the first arming");
+        assert_eq!(reported(true, 53, 340), Some(53.0), "in flight it is what the firmware flies by");
+        assert_eq!(reported(false, -6, 347), None, "it was disarmed in the air, and counts from there");
+        assert_eq!(reported(false, 2, 301), Some(2.0), "landed");
     }
 }

@@ -26,7 +26,7 @@ use crate::link::lockstep::Lockstep;
 use crate::link::proto::sitl_feed::FeedConfig;
 use crate::link::{ChildEvent, FcStream, SitlChild, SitlPeer, StreamEvent};
 use crate::storage::state_file;
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Vehicle, VehicleCommand};
 
 /// The wall time before the next question to a flight controller that is not ready.
 const QUESTION_PAUSE: Duration = Duration::from_millis(5);
@@ -384,6 +384,8 @@ impl RemoteLink {
                     }
                 }
                 Event::Switched(channel, pulse_us) => {
+                    // The scripted pilot would move the switch back.
+                    vehicle.apply(&VehicleCommand::StopPilot);
                     vehicle.transmitter_mut().sticks_mut().channels[channel] = pulse_us;
                 }
             }

@@ -20,6 +20,9 @@ const STEADY_MPS: f64 = 1.0;
 /// The number of steady reports in a row after which the estimate of the altitude has settled.
 const STEADY_REPORTS: u8 = 10;
 
+/// The difference from the altitude of the GPS from which an altitude at rest is wrong, m.
+const CONTRADICTION_M: f64 = 10.0;
+
 /// The newest values of every message.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Observation {
@@ -188,6 +191,17 @@ impl Observation {
             heading_deg: self.attitude.map(|attitude| attitude.heading_deg),
             ..EstimateView::default()
         }
+    }
+
+    /// Returns `false` if the altitude of a disarmed craft contradicts that of its GPS. A flight controller that is disarmed in
+    /// the air may begin to count there.
+    pub fn altitude_agrees_with_gps(&self, origin: Option<Origin>) -> bool {
+        let (Some(altitude), Some(gps), Some(origin)) = (&self.altitude, self.gps, origin) else {
+            return true;
+        };
+        let of_gps_m = gps.alt_amsl_m - origin.alt_amsl_m;
+        let differs = (self.above_origin(altitude.alt_m, Some(origin)) - of_gps_m).abs() > CONTRADICTION_M;
+        !(gps.fix && self.armed() == Some(false) && differs)
     }
 
     /// Returns an altitude above the origin. Before its first arming a flight controller reports the altitude
