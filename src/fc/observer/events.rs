@@ -76,9 +76,9 @@ impl EventObserver {
     pub(super) fn completed(&self, nav: NavTelemetry, armed: Option<bool>) -> NavTelemetry {
         match (armed, self.state) {
             (Some(false), NavState::Complete) => {
-                NavTelemetry { state: NavState::Complete, wp: self.wp, next_wp: self.wp, ..at_rest(nav) }
+                NavTelemetry { state: NavState::Complete, wp: self.wp, next_wp: self.wp, ..at_rest(&nav) }
             }
-            (Some(false), _) => at_rest(nav),
+            (Some(false), _) => at_rest(&nav),
             _ => nav,
         }
     }
@@ -190,8 +190,8 @@ impl EventObserver {
 }
 
 /// Returns a report without a mission.
-fn at_rest(nav: NavTelemetry) -> NavTelemetry {
-    let NavTelemetry { reason, count, home_distance_m, .. } = nav;
+fn at_rest(nav: &NavTelemetry) -> NavTelemetry {
+    let &NavTelemetry { reason, count, home_distance_m, .. } = nav;
     NavTelemetry { reason, count, home_distance_m, ..NavTelemetry::default() }
 }
 
