@@ -213,6 +213,16 @@ fn the_public_executable_flies_the_square_in_simulated_time_and_each_time_the_sa
     let lines = String::from_utf8(checked.output().unwrap().stdout).unwrap();
     let flight: serde_json::Value = serde_json::from_str(lines.lines().next().unwrap()).unwrap();
     assert_eq!(flight["hash"], first.1.as_str(), "check and fly differ: {flight}");
+
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_betadeck"));
+    command.args(["compare", "square", "--seeds", "1..2", "--json", "-"]);
+    let compared = command.arg("--firmware").arg(&program).arg("--firmware").arg(&program).output().unwrap();
+    assert_eq!(compared.status.code(), Some(0), "{compared:?}");
+    let compared: serde_json::Value = serde_json::from_slice(&compared.stdout).unwrap();
+    for measure in compared["measures"].as_array().unwrap() {
+        assert_eq!((&measure["difference"], &measure["beyond_spread"]), (&0.0.into(), &false.into()));
+    }
+    assert_eq!(compared["tracks_apart_rms_m"]["between"]["max"], 0.0, "a firmware differs from itself");
 }
 
 #[test]
