@@ -15,7 +15,7 @@ use std::os::fd::AsRawFd;
 use std::os::unix::process::CommandExt as _;
 use std::process::Command;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 use super::serial_port::{Effect, SerialPort};
 
@@ -82,6 +82,15 @@ fn wait(descriptors: &[i32], writes: bool, timeout_us: i64) -> Vec<i32> {
     let is_ready =
         |fd: &i32| (readable[*fd as usize / 64] | writable[*fd as usize / 64]) >> (fd % 64) & 1 == 1;
     if ready > 0 { descriptors.iter().copied().filter(is_ready).collect() } else { Vec::new() }
+}
+
+/// The number of threads that have begun.
+static BEGUN: AtomicU32 = AtomicU32::new(0);
+
+/// Begins as a thread that the machine lets run late.
+fn begin_late() {
+    std::thread::sleep(std::time::Duration::from_millis(10));
+    BEGUN.fetch_add(1, Ordering::SeqCst);
 }
 
 /// `true` once its threads must end.
@@ -172,10 +181,24 @@ fn run() {
         (Newest(Mutex::new(([0_u8; 144], 0))), Newest(Mutex::new(([0_u8; 40], 0))), Serial::default());
     std::thread::scope(|scope| {
         let mut threads = vec![
-            scope.spawn(|| serve(&listener, &serial)),
-            scope.spawn(|| take_packets(&states_in, &state)),
-            scope.spawn(|| take_packets(&rc_in, &rc)),
+            scope.spawn(|| {
+                begin_late();
+                serve(&listener, &serial);
+            }),
+            scope.spawn(|| {
+                begin_late();
+                take_packets(&states_in, &state);
+            }),
+            scope.spawn(|| {
+                begin_late();
+                take_packets(&rc_in, &rc);
+            }),
         ];
+        // The threads of the executable share data with its main thread, which must not go on before them.
+        if BEGUN.load(Ordering::SeqCst) != 3 {
+            println!("a thread has not come to wait for its turn");
+            std::process::exit(9);
+        }
         let (started_ns, mut states, mut number, mut terminal) =
             (clock_ns(), 0, 0_u64, SerialPort::default());
         loop {

@@ -11,7 +11,7 @@ use super::libc::{
 };
 use super::parent::MOTORS;
 use super::serial::SERIAL;
-use super::threads::is_ending;
+use super::threads::{is_ending, note_wait_for_turn};
 use super::{is_active, is_main_thread};
 
 fn contains(set: *const Set, fd: c_int) -> bool {
@@ -63,6 +63,7 @@ pub unsafe extern "C" fn select(
     if !is_active() || is_main_thread() {
         return real!(select: fn(c_int, *mut Set, *mut Set, *mut Set, *mut Timeval) -> c_int; count, readable, writable, failed, timeout);
     }
+    note_wait_for_turn();
     let waits_for = |intake: &Intake| {
         let fd = intake.fd.load(SeqCst);
         fd >= 0 && count == fd + 1 && contains(readable, fd)

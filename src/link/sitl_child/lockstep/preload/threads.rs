@@ -1,8 +1,9 @@
-//! The end of the executable's threads: before it restarts, its main thread waits for the others, which wait for their turn.
+//! The beginning and the end of the executable's threads. The main thread goes on once a thread that it has created waits for
+//! its turn, and before a restart it waits for the end of the others.
 
 use core::ffi::{c_int, c_void};
 use core::sync::atomic::Ordering::SeqCst;
-use core::sync::atomic::{AtomicBool, AtomicUsize};
+use core::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize};
 
 use super::intake::RC;
 use super::is_main_thread;
@@ -14,10 +15,48 @@ const SIGNAL: c_int = 23;
 const TIMED_OUT: c_int = 110;
 const MILLISECOND_NS: i64 = 1_000_000;
 const SECOND_NS: i64 = 1_000_000_000;
+/// The number of looks for the first wait of another thread, and the pause between them, ns. A thread that never waits for
+/// a turn costs this time.
+const LOOKS: u32 = 5000;
+const LOOK_NS: i64 = 50_000;
 
 static IS_ENDING: AtomicBool = AtomicBool::new(false);
 /// The thread that waits for a grant; 0 = none.
 static WAITING: AtomicUsize = AtomicUsize::new(0);
+
+/// The number of times that threads came to wait for their turn.
+static WAITS: AtomicU32 = AtomicU32::new(0);
+
+/// Records that a thread comes to wait for its turn.
+pub(crate) fn note_wait_for_turn() {
+    WAITS.fetch_add(1, SeqCst);
+}
+
+/// Replaces the function of this name: the main thread goes on once the new thread waits for its turn. Upstream's thread of
+/// the serial ports walks through their list while the main thread adds to it: a port that is not listening yet is lost.
+///
+/// # Safety
+/// As for the C library's function.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn pthread_create(
+    thread: *mut usize,
+    attributes: *const c_void,
+    start: *const c_void,
+    argument: *mut c_void,
+) -> c_int {
+    let before = WAITS.load(SeqCst);
+    let result = real!(pthread_create: fn(*mut usize, *const c_void, *const c_void, *mut c_void) -> c_int; thread, attributes, start, argument);
+    if result == 0 && is_main_thread() {
+        for _ in 0..LOOKS {
+            if WAITS.load(SeqCst) != before {
+                break;
+            }
+            let pause = Timespec { s: 0, ns: LOOK_NS };
+            real!(nanosleep: fn(*const Timespec, *mut Timespec) -> c_int; &raw const pause, core::ptr::null_mut());
+        }
+    }
+    result
+}
 
 /// Returns `true` once the main thread waits for the end of the others. No thread waits for its turn any more.
 pub(crate) fn is_ending() -> bool {
