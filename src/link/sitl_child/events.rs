@@ -35,6 +35,11 @@ impl Events {
         self.lock().add_line(line, now);
     }
 
+    /// Counts further lines as omitted.
+    pub(super) fn omit(&self, lines: u64) {
+        self.lock().not_shown += lines;
+    }
+
     /// Adds a change of the child's state.
     pub(super) fn add(&self, event: ChildEvent) {
         let mut queue = self.lock();

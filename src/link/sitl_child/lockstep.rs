@@ -14,8 +14,7 @@ mod process;
 
 use std::io::{self, ErrorKind, Read as _, Write as _};
 use std::net::{Ipv4Addr, TcpStream};
-use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 pub use frames::{FDM_BYTES, MOTOR_BYTES, RC_BYTES};
 use frames::{Grant, Report, SerialTotals};
@@ -35,6 +34,8 @@ const BOOT: Duration = Duration::from_secs(3);
 /// The steps between two turns of the thread of the serial ports while there is nothing to send to it. Its data are then
 /// at most this much older. Each turn costs two changes of the thread.
 const SERIAL_EVERY: u32 = 5;
+/// The steps between two reports of the lines that the executable prints.
+const OUTPUT_EVERY: u32 = 20;
 /// The longest wait for bytes that the executable has sent.
 const BYTES_WITHIN: Duration = Duration::from_secs(5);
 
@@ -69,7 +70,9 @@ pub struct Lockstep {
     config: LockstepConfig,
     preload: Preload,
     _library: LoadedLibrary,
-    events: Arc<Events>,
+    events: Events,
+    /// The start, from which simulated time counts for the number of lines that are shown.
+    started: Instant,
     process: Process,
     serial: Option<Serial>,
     /// The totals over all connections to this process.
@@ -104,13 +107,14 @@ impl Lockstep {
         let (step_ns, boot_ns) = (config.step.as_nanos(), BOOT.as_nanos());
         let settings = format!("{fdm},{rc},{motors},{tcp},{step_ns},{boot_ns}");
         let preload = Preload { library: library.path(), variable: SETTINGS, settings };
-        let events = Arc::new(Events::default());
-        let process = Process::start(&config.child, &preload, &events)?;
+        let events = Events::default();
+        let process = Process::start(&config.child, &preload)?;
         Ok(Self {
             config,
             preload,
             _library: library,
             events,
+            started: now(),
             process,
             serial: None,
             totals: SerialTotals::default(),
@@ -127,7 +131,8 @@ impl Lockstep {
     /// # Errors
     /// Returns an error if the system cannot start it.
     pub fn restart(&mut self) -> Result<(), LaunchError> {
-        self.process = Process::start(&self.config.child, &self.preload, &self.events)?;
+        self.process.finish_output(&self.events, self.now());
+        self.process = Process::start(&self.config.child, &self.preload)?;
         self.run = 0;
         self.forget_process();
         Ok(())
@@ -145,7 +150,18 @@ impl Lockstep {
     /// # Errors
     /// Returns the reason why it has not.
     pub fn wait(&mut self) -> Result<Option<[u8; MOTOR_BYTES]>, NoReport> {
-        let report = self.process.wait()?;
+        let report = match self.process.wait() {
+            Ok(report) => report,
+            Err(reason) => {
+                if matches!(reason, NoReport::Ended(_)) {
+                    self.process.finish_output(&self.events, self.now());
+                }
+                return Err(reason);
+            }
+        };
+        if self.steps.is_multiple_of(OUTPUT_EVERY) {
+            self.process.report_output(&self.events, self.now());
+        }
         if self.run != report.run {
             self.run = report.run;
             self.forget_process();
@@ -241,7 +257,12 @@ impl Lockstep {
 
     /// Returns the next event of the process.
     pub fn take_event(&mut self) -> Option<ChildEvent> {
-        self.events.take(now())
+        self.events.take(self.now())
+    }
+
+    /// Returns the simulated time, counted from the start.
+    fn now(&self) -> Instant {
+        self.started + self.config.step * self.steps
     }
 
     /// Writes the waiting bytes as far as the connection takes them.

@@ -3,13 +3,13 @@
 use std::io::{ErrorKind, PipeReader, PipeWriter, Read as _, Write as _};
 use std::os::fd::AsRawFd as _;
 use std::process::{Child, Stdio};
-use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use super::frames::{Grant, REPORT_BYTES, Report};
 use crate::link::sitl_child::events::Events;
 use crate::link::sitl_child::launch::{self, LaunchError, Preload};
-use crate::link::sitl_child::{ChildConfig, ChildEnd, group, output};
+use crate::link::sitl_child::output::SteppedOutput;
+use crate::link::sitl_child::{ChildConfig, ChildEnd, group};
 
 /// The interval at which a wait for a report looks at the process.
 const LOOK: Duration = Duration::from_millis(50);
@@ -20,6 +20,7 @@ const HUNG_AFTER: Duration = Duration::from_secs(2);
 #[derive(Debug)]
 pub(super) struct Process {
     child: Child,
+    output: SteppedOutput,
     grants: PipeWriter,
     reports: PipeReader,
     /// The end of the executable, until it has opened its own. The end of the process then closes the pipe.
@@ -45,23 +46,16 @@ pub enum NoReport {
 }
 
 impl Process {
-    pub(super) fn start(
-        config: &ChildConfig,
-        preload: &Preload,
-        events: &Arc<Events>,
-    ) -> Result<Self, LaunchError> {
+    pub(super) fn start(config: &ChildConfig, preload: &Preload) -> Result<Self, LaunchError> {
         let failed = |error| LaunchError::Start { program: config.program.clone(), error };
         let (grants_end, grants) = std::io::pipe().map_err(failed)?;
         let (reports, reports_end) = std::io::pipe().map_err(failed)?;
         let pipe = format!("/proc/{}/fd/{}", std::process::id(), reports_end.as_raw_fd());
         let mut child = launch::spawn(config, Stdio::from(grants_end), Some((preload, &pipe)))?;
-        // The threads end with the output.
-        let _readers = [
-            child.stdout.take().map(|out| output::listen(events, out)),
-            child.stderr.take().map(|out| output::listen(events, out)),
-        ];
+        let output = SteppedOutput::of(&mut child).map_err(failed)?;
         Ok(Self {
             child,
+            output,
             grants,
             reports,
             reports_end: Some(reports_end),
@@ -88,6 +82,8 @@ impl Process {
     pub(super) fn wait(&mut self) -> Result<Report, NoReport> {
         loop {
             if !is_readable(&self.reports) {
+                // A child that has printed much waits until somebody reads it.
+                self.output.read();
                 return Err(self.no_report());
             }
             match self.reports.read(&mut self.bytes[self.arrived..]) {
@@ -105,6 +101,17 @@ impl Process {
                 Err(_) => return Err(NoReport::Ended(self.end())),
             }
         }
+    }
+
+    /// Reports the lines that it has printed up to the last report.
+    pub(super) fn report_output(&mut self, events: &Events, now: Instant) {
+        self.output.read();
+        self.output.report(events, now);
+    }
+
+    /// Reports the last lines of a process that has ended.
+    pub(super) fn finish_output(&mut self, events: &Events, now: Instant) {
+        self.output.finish(events, now);
     }
 
     /// Returns the reason why no report has come for some time.
