@@ -301,7 +301,9 @@ fn child(armed: bool, modes: &[Mode]) -> AppState {
     };
     craft.mode_ranges = Some(modes.iter().enumerate().map(range).collect());
     craft.armed = Some(armed);
-    craft.home = Some(betadeck::geo::LatLon::default());
+    if armed {
+        craft.home = Some(betadeck::geo::LatLon::default());
+    }
     craft.arming_blocked_by = Some(std::iter::empty::<ArmingFlag>().collect());
     update(&mut state, Msg::View(view));
     state
