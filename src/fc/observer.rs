@@ -172,15 +172,16 @@ impl Observer {
         let stored_plan =
             self.stored_plan.as_ref().and_then(|plan| altitude_reference.plan_of_craft(plan).ok());
         let commanded = simulated.and_then(|simulated| simulated.commanded);
+        // A return home may be a mission of its own, to which the stored plan does not belong.
+        let flown_plan = stored_plan.as_ref().filter(|_| commanded != Some(true));
         let craft = CraftView { commanded, ..self.observation.craft_view() };
         let engaged = self.observation.is_active(Mode::Autopilot);
-        let mut reported =
-            self.mission.as_ref().map(|reported| mission::nav(reported, engaged, stored_plan.as_ref()));
+        let mut reported = self.mission.as_ref().map(|reported| mission::nav(reported, engaged, flown_plan));
         if let Some(nav) = &mut reported {
             nav.home_distance_m = self.observation.home_distance_m();
-            self.leg.follow(nav, stored_plan.as_ref(), self.observation.position());
+            self.leg.follow(nav, flown_plan, self.observation.position());
         }
-        for event in self.events.follow(&craft, reported.as_ref(), stored_plan.as_ref()) {
+        for event in self.events.follow(&craft, reported.as_ref(), flown_plan) {
             mailbox.deliver_event(event);
         }
         let mut estimate = self.observation.estimate_view(origin);

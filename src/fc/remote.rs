@@ -339,6 +339,9 @@ impl Remote {
     fn switch_rescue(&mut self, on: bool) {
         match rescue::position(&self.observer, on) {
             Some((channel, pulse_us)) => {
+                if on && let Some((channel, pulse_us)) = rescue::autopilot_off(&self.observer) {
+                    self.events.push_back(Event::Switched(channel, pulse_us));
+                }
                 self.events.push_back(Event::Switched(channel, pulse_us));
                 self.observer.deliver_again();
             }

@@ -14,6 +14,13 @@ pub(super) fn position(observer: &Observer, on: bool) -> Option<(usize, u16)> {
     Some((channel, if on { on_us } else { off_us }))
 }
 
+/// Returns the channel of the switch for AUTOPILOT, and its pulse (µs) when it is off. The return home must not compete with the
+/// mission.
+pub(super) fn autopilot_off(observer: &Observer) -> Option<(usize, u16)> {
+    let Switch { channel, off_us, .. } = Switch::of(Mode::Autopilot, &observer.mode_ranges())?;
+    Some((channel, off_us))
+}
+
 /// Returns `true` while the switch that makes it fly home is on; `None` without such a switch.
 pub(super) fn is_on(observer: &Observer, channels: &[u16; RC_CHANNELS]) -> Option<bool> {
     let mut ranges = observer.mode_ranges();
