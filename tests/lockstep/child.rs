@@ -93,6 +93,25 @@ impl Flight {
         self.log
     }
 
+    /// Connects to the serial port, makes the process print a line every 33 steps, and returns the lines with the steps at
+    /// which they came.
+    pub(crate) fn with_prints(mut self) -> Vec<(u64, String)> {
+        assert!(self.lockstep.connect().unwrap());
+        let mut lines = Vec::new();
+        for _ in 0..10 {
+            self.lockstep.send(b"print\n");
+            for _ in 0..33 {
+                self.run(1).unwrap();
+                while let Some(event) = self.lockstep.take_event() {
+                    if let ChildEvent::Line(line) = event {
+                        lines.push((self.step, line));
+                    }
+                }
+            }
+        }
+        lines
+    }
+
     /// Returns the text of the serial port so far, and forgets it.
     pub(crate) fn take_text(&mut self) -> String {
         let log = std::mem::take(&mut self.log);
@@ -108,7 +127,8 @@ impl Flight {
             match self.lockstep.take_event() {
                 Some(ChildEvent::Line(line)) if line.contains(text) => return line,
                 Some(_) => {}
-                None => std::thread::yield_now(),
+                // Lines come between steps.
+                None => drop(self.run(1)),
             }
         }
     }

@@ -241,6 +241,7 @@ fn run() {
                         let is_inherited = variables.contains("BETADECK") || variables.contains("LD_PRELOAD");
                         println!("a program inherits lockstep: {is_inherited}");
                     }
+                    "print" => println!("printed at {} µs", (now_ns - started_ns) / 1000),
                     "crash" => std::process::abort(),
                     "hang" => loop {
                         std::hint::spin_loop();

@@ -45,6 +45,15 @@ fn the_same_input_gives_the_same_motors_and_answers_however_busy_the_machine_is(
 }
 
 #[test]
+fn what_it_prints_comes_at_the_same_step_however_busy_the_machine_is() {
+    let first = Flight::start().with_prints();
+    assert!(first.iter().filter(|(_, line)| line.starts_with("printed at ")).count() >= 9, "{first:?}");
+    for _ in 0..3 {
+        assert_eq!(beside_busy_loops(|| Flight::start().with_prints()), first);
+    }
+}
+
+#[test]
 fn another_input_gives_other_motors() {
     let mut one = Flight::start();
     let mut other = Flight::start();

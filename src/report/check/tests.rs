@@ -122,7 +122,11 @@ fn a_seed_that_was_asked_for_is_in_the_title_and_in_the_command_that_opens_the_f
     assert_eq!(flight.title(), "square · seed 7");
     let command = flight.open_command(SimTime::ZERO);
     assert_eq!(command.as_deref(), Some("betadeck open a.toml --seed 7 --at boot+0.00"));
-    assert_eq!(CheckedFlight { is_remote: true, ..flight }.open_command(SimTime::ZERO), None);
+    let remote = CheckedFlight { is_remote: true, ..flight };
+    assert_eq!(remote.open_command(SimTime::ZERO), None);
+    let started = CheckedFlight { firmware_options: Some(" --firmware my.elf".to_owned()), ..remote };
+    let command = started.open_command(SimTime::ZERO);
+    assert_eq!(command.as_deref(), Some("betadeck open a.toml --seed 7 --at boot+0.00 --firmware my.elf"));
 }
 
 #[test]
