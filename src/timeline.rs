@@ -3,8 +3,8 @@
 //! `recording` keeps frozen vehicles and the inputs between them, `replay` flies from one of them to an earlier
 //! instant, `marks` keeps the times of events. While an earlier instant is shown, the flying vehicle waits.
 //!
-//! The flight of a remote flight controller cannot be flown again. Of it only the frozen vehicles are kept, ten a second,
-//! and an instant is shown as the next of them shows it.
+//! A remote flight controller cannot be cloned. Of its flight only the frozen vehicles are kept, ten a second, and an instant is
+//! shown as the next of them shows it.
 //!
 //! Nothing here reads a clock. The owner of the vehicle decides when to record and which instant to show.
 
@@ -66,7 +66,7 @@ impl Timeline {
         })
     }
 
-    /// Returns `true` if only pictures are kept, so that the flight cannot be continued from an earlier instant.
+    /// Returns `true` if only pictures are kept: another vehicle must fly so far to continue from an earlier instant.
     pub fn is_pictures(&self) -> bool {
         self.is_pictures
     }

@@ -89,6 +89,11 @@ impl FirmwarePorts {
         }
     }
 
+    /// Returns `true` if no option has changed them.
+    pub(super) fn are_usual(self) -> bool {
+        self == Self::new(None, None, None, None)
+    }
+
     /// Refuses port 0, because no remote firmware listens on a port chosen by the system.
     fn check(self) -> Result<Self, AppError> {
         let UdpPorts { raw, motors, fdm, rc } = self.udp;

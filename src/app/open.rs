@@ -12,9 +12,11 @@ use super::interrupt::interrupt_flag;
 use super::live::LiveArgs;
 use super::tui::{self, Screen};
 use crate::args::{DoorArgs, FlightArgs, Instant, OpenArgs, PhysicsArgs, ReviewArgs};
+use crate::fc::RemoteLink;
 use crate::scenario::{self, Air, Case, CaseFlight, Scenario};
 use crate::session::{Event, FlownAgain, FlownBefore, FlyAgain, Runner, SessionView, Subscriber};
 use crate::signals::SimTime;
+use crate::signals::fdm::FirmwareClock;
 use crate::storage::Store;
 use crate::text::did_you_mean;
 use crate::timeline::Timeline;
@@ -57,13 +59,15 @@ pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
     notices.extend(args.firmware_ports.idle_options(firmware.is_some()));
     let flown = match &firmware {
         None => fly(case, &air)?,
-        Some(firmware) => match unless_interrupted(fly_remote(case, &air, firmware))? {
+        Some(firmware) => match unless_interrupted(on_its_own_thread(|| fly_remote(case, &air, firmware)))? {
             Some(flown) => flown,
             None => return Ok(error::INTERRUPTED),
         },
     };
     let Flown { flight, timeline, recorded: Recorded { events, past } } = flown;
-    let again = firmware.filter(|firmware| firmware.executable.is_some()).map(|firmware| {
+    let is_repeatable =
+        |firmware: &RemoteFirmware| firmware.executable.is_some() && firmware.clock == FirmwareClock::Sim;
+    let again = firmware.filter(is_repeatable).map(|firmware| {
         let case = case.clone();
         FlyAgain::new(move |until| fly_again(&case, &air, &firmware, until))
     });
@@ -128,6 +132,12 @@ fn fly<'a>(case: &'a Case, air: &Air) -> Result<Flown<'a>, AppError> {
     Ok(Flown { flight, timeline, recorded })
 }
 
+/// Runs a flight on a thread, which the flight may keep to one processor.
+fn on_its_own_thread<T: Send>(fly: impl FnOnce() -> Result<T, Stopped> + Send) -> Result<T, Stopped> {
+    let flown = std::thread::scope(|scope| scope.spawn(fly).join());
+    flown.unwrap_or_else(|_| Err(AppError::internal("a flight panicked").into()))
+}
+
 /// Flies with a remote firmware, as `check` does. An executable ends with the flight.
 fn fly_remote<'a>(case: &'a Case, air: &Air, firmware: &RemoteFirmware) -> Result<Flown<'a>, Stopped> {
     if scenario::skip(case).is_some() {
@@ -160,7 +170,11 @@ fn fly_again(
         let mut flight = CaseFlight::of_vehicle(case, vehicle).map_err(AppError::input)?;
         remote.fly_until(&mut flight, until, &mut ())?;
         let (link, keeps) = remote.into_parts();
-        let link = link.ok_or_else(|| AppError::internal("the firmware has no link"))?;
+        let link = link.filter(RemoteLink::is_in_steps).ok_or_else(|| {
+            AppError::environment(
+                "the firmware does not run in simulated time, so it cannot fly the same again",
+            )
+        })?;
         Ok(FlownAgain { vehicle: flight.into_vehicle(), link, keeps })
     };
     fly().map_err(|stopped| match stopped {

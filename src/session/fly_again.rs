@@ -46,7 +46,7 @@ impl FlyAgain {
             // A child process ends with the thread that started it, so the thread waits until nothing needs the child.
             let _gone = gone.recv();
         })?;
-        Ok(FlyingAgain { result })
+        Ok(FlyingAgain { until, result })
     }
 }
 
@@ -59,18 +59,20 @@ impl fmt::Debug for FlyAgain {
 /// A flight that is flown again at the moment.
 #[derive(Debug)]
 pub(super) struct FlyingAgain {
+    until: SimTime,
     result: mpsc::Receiver<Result<FlownAgain, String>>,
 }
 
 impl FlyingAgain {
-    /// Returns the result; `None` while the flight goes on.
-    pub(super) fn result(&self) -> Option<Result<FlownAgain, String>> {
-        match self.result.try_recv() {
-            Ok(result) => Some(result),
-            Err(mpsc::TryRecvError::Empty) => None,
+    /// Returns the instant and the result; `None` while the flight goes on.
+    pub(super) fn result(&self) -> Option<(SimTime, Result<FlownAgain, String>)> {
+        let result = match self.result.try_recv() {
+            Ok(result) => result,
+            Err(mpsc::TryRecvError::Empty) => return None,
             Err(mpsc::TryRecvError::Disconnected) => {
-                Some(Err("The flight could not be flown again: its thread has ended.".to_owned()))
+                Err("The flight could not be flown again: its thread has ended.".to_owned())
             }
-        }
+        };
+        Some((self.until, result))
     }
 }

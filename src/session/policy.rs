@@ -23,7 +23,7 @@ pub const PLACE_IS_EXTERNAL: &str =
     "The simulator places the craft: reset its world there, and the firmware restarts by itself.";
 
 /// Refusal to rewind a flight whose flight controller is remote.
-pub const NOT_RECORDED: &str = "The flight controller runs elsewhere: its time cannot be rewound.";
+pub const NOT_RECORDED: &str = "The flight controller runs on the wall clock: its time cannot be rewound.";
 
 /// Refusal to continue or store the flight of a remote firmware.
 pub const NOT_FLOWN_AGAIN: &str =

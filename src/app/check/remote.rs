@@ -13,7 +13,7 @@ use crate::fc::Unset;
 use crate::report::check::{CheckedFlight, shell_word};
 use crate::scenario::{self, Air, Case, CaseFlight};
 use crate::session::{Event, Subscriber};
-use crate::signals::fdm::FirmwareClock;
+use crate::signals::fdm::{FirmwareClock, Stamps};
 use crate::vehicle::Vehicle;
 
 /// The message if flights cannot be prepared repeatedly.
@@ -168,9 +168,12 @@ pub(in crate::app) fn prepare(
 }
 
 /// Returns the options of `betadeck open` that fly with the same firmware, as text with a blank before each; `None` if it is
-/// not started by this program, or if the user's own lines configure it.
+/// not started by this program, or if the user's own lines, ports or formats are needed.
 fn options_to_open(firmware: &RemoteFirmware) -> Option<String> {
-    let executable = firmware.executable.as_ref().filter(|_| firmware.lines.of_user.is_empty())?;
+    let is_usual = firmware.lines.of_user.is_empty()
+        && firmware.ports.are_usual()
+        && firmware.stamps == Stamps::default();
+    let executable = firmware.executable.as_ref().filter(|_| is_usual)?;
     let mut options = format!(" --firmware {}", shell_word(&executable.display().to_string()));
     for argument in &firmware.arguments {
         options.push_str(&format!(" --firmware-arg {}", shell_word(argument)));

@@ -16,6 +16,8 @@ const LINE_MAX: u64 = 4096;
 /// about its flight, which this program shows anyway.
 const NOT_REPORTED: [&str; 2] = ["[FLASH_ProgramWord]", "[SITL] t="];
 
+/// The most reads of an output at a time.
+const READS_MAX: usize = 32;
 /// The most lines that wait for their step. Further ones are counted.
 const WAITING_MAX: usize = 1000;
 
@@ -62,7 +64,8 @@ impl SteppedOutput {
     pub(super) fn read(&mut self) {
         for Pipe { end, line } in &mut self.pipes {
             let mut bytes = [0; 4096];
-            loop {
+            // A child that prints without an end must not hold this thread.
+            for _ in 0..READS_MAX {
                 let read = match rustix::io::read(&*end, &mut bytes) {
                     Ok(0) => break,
                     Ok(read) => read,

@@ -13,7 +13,7 @@ use crate::session::arming::ArmingWatch;
 use crate::session::command::{BEGINNING_LOST, CliOutput, REWOUND_FOR_CLIENTS, Seek};
 use crate::session::fly_again::{FlownAgain, FlyingAgain};
 use crate::session::pacer::SPEED_RANGE;
-use crate::session::policy::{NOT_FLOWN_AGAIN, NOT_RECORDED, REWOUND};
+use crate::session::policy::{NOT_FLOWN_AGAIN, NOT_RECORDED};
 use crate::session::runner::{Runner, tick};
 use crate::signals::SimTime;
 use crate::timeline::{RecordedFlight, Shown, Timeline, TimelineView};
@@ -28,6 +28,13 @@ const MISHAP_LEAD_US: u64 = 2_000_000;
 
 /// The amount of input that may arrive while time is paused before it is recorded, bytes.
 const FLOOD_BYTES: usize = 1 << 20;
+
+/// The advice for a line while a picture is shown.
+const PICTURE_RUNS_NO_LINE: &str =
+    "An earlier instant of a remote firmware is shown, which runs no line: `e` goes back to the end.";
+
+/// The reason why a flight over a remote firmware is not written as a scenario.
+const INPUTS_NOT_KEPT: &str = "The flight of a remote firmware is recorded as pictures, without its inputs.";
 
 /// The notice if the newest instant is shown.
 const NOTHING_EARLIER: &str = "The newest instant is shown: `,` and `<` go back to one to fly on from.";
@@ -76,7 +83,7 @@ impl Session {
         let (shown, head) = (self.shown_vehicle().time(), self.vehicle.time());
         let timeline = self.timeline.as_mut().ok_or(NOT_RECORDED)?;
         if timeline.is_pictures() {
-            return Err(NOT_FLOWN_AGAIN.to_owned());
+            return Err(INPUTS_NOT_KEPT.to_owned());
         }
         timeline.record(&mut self.vehicle);
         let is_rewound = timeline.shown().is_some();
@@ -120,10 +127,10 @@ impl Session {
                     .get_or_insert_with(|| format!("As it was at the shown instant, {time_s:.1} s."));
                 output
             }
-            // A remote flight controller is not recorded, so no earlier instant of it is shown.
+            // A picture of a remote flight controller cannot run a line.
             _ => CliOutput {
                 text: "###ERROR: REWOUND###".to_owned(),
-                advice: Some(REWOUND.to_owned()),
+                advice: Some(PICTURE_RUNS_NO_LINE.to_owned()),
                 restarted: false,
             },
         }
@@ -143,17 +150,28 @@ impl Session {
         if let Some(run_on) = self.run_on {
             return self.run_on(run_on);
         }
-        let is_in_steps = self.is_in_steps();
-        for flown in 0..due {
-            self.tick();
-            if is_in_steps {
-                self.exchange_with_remote(None);
-                if self.quit || self.runner.link.as_ref().is_some_and(RemoteLink::is_busy) {
-                    return flown + 1;
-                }
+        for flown in 1..=due {
+            if !self.tick_in_step() {
+                return flown;
             }
         }
         due
+    }
+
+    /// Runs and records one tick, and lets an executable in simulated time compute its step. Returns `false` if no other tick
+    /// may follow now.
+    fn tick_in_step(&mut self) -> bool {
+        self.tick();
+        if !self.is_in_steps() {
+            return true;
+        }
+        self.exchange_with_remote(None);
+        !self.quit && !self.is_link_busy()
+    }
+
+    /// Returns `true` while an executable in simulated time is at its step.
+    fn is_link_busy(&self) -> bool {
+        self.runner.link.as_ref().is_some_and(RemoteLink::is_busy)
     }
 
     /// Runs and records one tick of the vehicle that flies.
@@ -175,8 +193,11 @@ impl Session {
 
     /// Continues the flight for one slice, or until an event.
     fn run_on(&mut self, run_on: RunOn) -> u64 {
+        if self.is_link_busy() {
+            return 0;
+        }
         for flown in 1..=SLICE {
-            self.tick();
+            let goes_on = self.tick_in_step();
             self.flush_events();
             let happened = self.events.marks().after(run_on.since, run_on.states_only).is_some();
             let too_long = self.vehicle.time().0 > run_on.since.0 + RUN_ON_US;
@@ -186,6 +207,9 @@ impl Session {
                 if too_long {
                     self.notice("Nothing happened for ten minutes.");
                 }
+                return flown;
+            }
+            if !goes_on {
                 return flown;
             }
         }
@@ -199,7 +223,13 @@ impl Session {
                 self.runner.pacer.set_paused(true, now);
                 timeline.play(u64::from(ticks), self.vehicle.time());
             }
-            _ => (0..ticks).for_each(|_| self.tick()),
+            _ => {
+                for _ in 0..ticks {
+                    if self.is_link_busy() || !self.tick_in_step() {
+                        break;
+                    }
+                }
+            }
         }
     }
 
@@ -277,10 +307,24 @@ impl Session {
             self.notice(NOTHING_EARLIER);
             return;
         };
-        let Some(again) = self.again.as_ref().filter(|_| self.flying_again.is_none()) else {
+        if self.flying_again.is_some() {
             self.notice("The firmware flies again already: wait until it is at the instant that was shown.");
             return;
+        }
+        let Some(again) = &self.again else {
+            self.notice(NOT_FLOWN_AGAIN);
+            return;
         };
+        // Only the inputs of the scenario are flown again.
+        if let Some(timeline) = self.timeline.as_ref().filter(|timeline| timeline.branch() > 0)
+            && until > timeline.branched_at()
+        {
+            let branched_s = timeline.branched_at().as_secs_f64();
+            self.notice(format!(
+                "The firmware flies again only what the scenario does, up to {branched_s:.1} s: you flew on from there."
+            ));
+            return;
+        }
         match again.start(until) {
             Ok(flying) => {
                 self.flying_again = Some(flying);
@@ -295,19 +339,22 @@ impl Session {
 
     /// Continues from the end of a flight that was flown again, once it is there.
     pub(super) fn take_flown_again(&mut self, now: Duration) {
-        let Some(result) = self.flying_again.as_ref().and_then(FlyingAgain::result) else { return };
+        let Some((until, result)) = self.flying_again.as_ref().and_then(FlyingAgain::result) else { return };
         self.flying_again = None;
         self.changed = true;
-        let FlownAgain { vehicle, link, keeps } = match result {
+        // Dropped in reverse order: the link before what its firmware needs.
+        let FlownAgain { keeps, link, vehicle } = match result {
             Ok(flown) => flown,
             Err(sentence) => return self.notice(sentence),
         };
         let left = self.vehicle.time();
-        let Some((seen, branch)) = self
-            .timeline
-            .as_mut()
-            .and_then(|timeline| Some((timeline.continue_pictures()?, timeline.branch())))
-        else {
+        // Another instant may be shown meanwhile.
+        let branch_at = |timeline: &mut Timeline| {
+            timeline.shown()?;
+            timeline.show(until, left);
+            Some((timeline.continue_pictures()?, timeline.branch()))
+        };
+        let Some((seen, branch)) = self.timeline.as_mut().and_then(branch_at) else {
             return self.notice("The recording was left meanwhile: go back to an instant to fly on from.");
         };
         let apart_m = apart_m(&seen, &vehicle);

@@ -82,7 +82,7 @@ impl Process {
     pub(super) fn wait(&mut self) -> Result<Report, NoReport> {
         loop {
             if !is_readable(&self.reports) {
-                // A child that has printed much waits until somebody reads it.
+                // A child that has printed much cannot go on until this is read.
                 self.output.read();
                 return Err(self.no_report());
             }
