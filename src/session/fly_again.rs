@@ -12,7 +12,7 @@ use crate::vehicle::Vehicle;
 pub struct FlownAgain {
     pub vehicle: Vehicle,
     pub link: RemoteLink,
-    /// What the firmware needs until it ends, such as its folder.
+    /// The folder and the runtime of the firmware. They must outlive `link`.
     pub keeps: Box<dyn Any + Send>,
 }
 

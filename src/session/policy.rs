@@ -25,7 +25,7 @@ pub const PLACE_IS_EXTERNAL: &str =
 /// Refusal to rewind a flight whose flight controller is remote.
 pub const NOT_RECORDED: &str = "The flight controller runs on the wall clock: its time cannot be rewound.";
 
-/// Refusal to continue or store the flight of a remote firmware.
+/// Refusal to continue the flight of a remote firmware from an earlier instant.
 pub const NOT_FLOWN_AGAIN: &str =
     "The flight of a remote firmware is recorded as pictures: it can be looked at, not flown again.";
 

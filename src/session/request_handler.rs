@@ -300,7 +300,6 @@ impl RequestHandler {
     /// Keeps RC from sockets alive while simulated time runs `speed` times faster than the wall clock. A
     /// script sends 50 frames per second of wall time, and the flight controller would detect a loss. Call
     /// this about every 20 ms of simulated time.
-    /// time.
     pub fn keep_rc_fresh(&self, vehicle: &mut Vehicle, speed: f64, now: Instant) {
         if speed <= 1.0 {
             return;

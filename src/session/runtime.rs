@@ -175,7 +175,8 @@ struct Session {
     /// Flies the flight of a remote firmware that has ended again.
     again: Option<FlyAgain>,
     flying_again: Option<FlyingAgain>,
-    /// What the firmware of a flight flown again needs, declared after the runner with its link.
+    /// The folder and the runtime of a firmware that flew again. Declared after the runner, so that its link is dropped
+    /// first.
     keeps: Option<Box<dyn Any + Send>>,
     /// The target up to which the flight continues as fast as possible.
     run_on: Option<RunOn>,

@@ -159,7 +159,7 @@ impl Flights {
             }
         });
         let mut run = RemoteRun::prepare(&firmware, &mut vehicle, &self.plan.plan, options, &mut tell)?;
-        // It was meant for simulated time.
+        // The executable was to run in simulated time, and cannot.
         if self.has_seeds && run.motor_hash().is_none() {
             return Err(seeds_on_wall_clock(&compared.name).into());
         }

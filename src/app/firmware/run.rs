@@ -115,7 +115,7 @@ impl RemoteRun {
         }
         let OpenLink { link, directory, .. } = opened;
         let speed = match (link.is_in_steps(), firmware.clock) {
-            // It was meant for simulated time, and flies in real time.
+            // The executable was to run in simulated time, and cannot.
             (false, FirmwareClock::Sim) => 1.0,
             _ => options.speed.unwrap_or(firmware.usual_speed()),
         };
@@ -164,7 +164,7 @@ impl RemoteRun {
         Ok(())
     }
 
-    /// Returns the link to the firmware, and what the firmware needs until it ends.
+    /// Returns the link to the firmware, and its folder and runtime, which must outlive the link.
     pub(in crate::app) fn into_parts(self) -> (Option<RemoteLink>, Box<dyn Any + Send>) {
         (self.runner.into_link(), Box::new((self._directory, self._runtime)))
     }

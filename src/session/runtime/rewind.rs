@@ -342,7 +342,7 @@ impl Session {
         let Some((until, result)) = self.flying_again.as_ref().and_then(FlyingAgain::result) else { return };
         self.flying_again = None;
         self.changed = true;
-        // Dropped in reverse order: the link before what its firmware needs.
+        // Dropped in reverse order: the link before the folder of its firmware.
         let FlownAgain { keeps, link, vehicle } = match result {
             Ok(flown) => flown,
             Err(sentence) => return self.notice(sentence),
