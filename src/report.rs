@@ -4,6 +4,7 @@
 
 pub mod check;
 pub mod compare;
+pub mod conversion;
 pub mod end;
 pub mod gpx;
 pub mod json;

@@ -1,20 +1,32 @@
-//! `betadeck convert`: converts a plan to another format.
+//! `betadeck convert`: converts a plan to another format, and reports each part that differs there.
 
 use std::fs::{File, OpenOptions};
 use std::io::{ErrorKind, Write as _};
 use std::path::Path;
 
-use super::error::{self, AppError};
+use strum::IntoEnumIterator as _;
+
+use super::error::{self, AppError, USAGE};
 use super::output_file::KeptFiles;
 use super::setup;
 use crate::args::{ConvertArgs, OutputFile, PlanArg};
-use crate::plan::format;
+use crate::flight::setup::check_setting;
+use crate::plan::format::loss::Severity;
+use crate::plan::format::{self, Format, PlanFile, ReadOptions};
+use crate::report::conversion::Conversion;
 
-/// Converts, and reports the parts that the target format cannot hold.
+/// The exit code of a plan that changed, with `--strict`.
+const CHANGED: u8 = 1;
+
+/// Converts, and reports the differences.
 pub(super) fn run(args: &ConvertArgs) -> Result<u8, AppError> {
+    if args.list {
+        return error::print(&list());
+    }
     let source = args.source().map_err(|error| AppError::input(error.to_string()))?;
     let target = args.target().map_err(AppError::input)?;
-    let file = setup::read_plan(&source)?;
+    let options = ReadOptions { check: check_setting, ..args.read_options() };
+    let (format, file) = setup::read_plan_with(&source, &options)?;
     if file.plan.waypoints.is_empty() {
         let name = source.display_name();
         return Err(AppError::input(format!("{name} has no waypoints: there is nothing to convert")));
@@ -22,9 +34,13 @@ pub(super) fn run(args: &ConvertArgs) -> Result<u8, AppError> {
     for note in &file.notes {
         error::tell(&note.to_string());
     }
-    let written = format::write(&file, target);
-    match &args.output {
-        OutputFile::Stdout => error::write_stdout(written.text.as_bytes()).map(drop)?,
+    let file = PlanFile { home: file.home.or(options.home), ..file };
+    let written = format::write_with(&file, target, &args.write_options());
+    let is_refused = written.is_refused();
+    let output = args.output();
+    match &output {
+        _ if is_refused => {}
+        OutputFile::Stdout => error::write_stdout(&written.contents).map(drop)?,
         OutputFile::File(path) => {
             let mut kept = KeptFiles::default();
             if let PlanArg::File(input, _) = &source {
@@ -32,17 +48,43 @@ pub(super) fn run(args: &ConvertArgs) -> Result<u8, AppError> {
             }
             setup::keep_own_files(&mut kept);
             kept.claim("the output", path)?;
-            write(path, &written.text, args.force)?;
+            write(path, &written.contents, args.force)?;
         }
     }
-    for loss in &written.lost {
-        error::tell(&format!("not carried: {loss}"));
+    let conversion = Conversion::new(format, &file, target, written.losses);
+    if !args.json {
+        conversion.lines().iter().for_each(|line| error::tell(line));
+    } else if output == OutputFile::Stdout && !is_refused {
+        // Standard output has the plan.
+        error::tell(&conversion.json());
+    } else {
+        error::print(&format!("{}\n", conversion.json()))?;
     }
-    Ok(0)
+    Ok(match conversion.worst() {
+        _ if is_refused => USAGE,
+        Some(worst) if args.strict && worst > Severity::Info => CHANGED,
+        _ => 0,
+    })
+}
+
+/// Returns the table of the formats.
+fn list() -> String {
+    let row = |name: &str, endings: &str, ways: &str, title: &str, carries: &str| {
+        format!("{name:<9} {endings:<18} {ways:<11} {title}: {carries}\n")
+    };
+    let mut text = String::new();
+    for format in Format::iter() {
+        let info = format.info();
+        let endings: Vec<String> =
+            info.endings.iter().chain(info.also).map(|ending| format!(".{ending}")).collect();
+        let ways = if info.writes { "read, write" } else { "read" };
+        text.push_str(&row(&format.to_string(), &endings.join(" "), ways, info.title, info.carries));
+    }
+    text
 }
 
 /// Writes the file. An existing file may be the work of the user, so it is replaced only on request.
-fn write(path: &Path, text: &str, force: bool) -> Result<(), AppError> {
+fn write(path: &Path, contents: &[u8], force: bool) -> Result<(), AppError> {
     let problem = |error| AppError::environment(format!("cannot write {}: {error}", path.display()));
     let file = match OpenOptions::new().write(true).create_new(true).open(path) {
         Err(error) if error.kind() == ErrorKind::AlreadyExists => {
@@ -58,5 +100,5 @@ fn write(path: &Path, text: &str, force: bool) -> Result<(), AppError> {
         }
         opened => opened,
     };
-    file.and_then(|mut file| file.write_all(text.as_bytes())).map_err(problem)
+    file.and_then(|mut file| file.write_all(contents)).map_err(problem)
 }

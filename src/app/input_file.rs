@@ -12,10 +12,18 @@ use rustix::fs::{Mode, OFlags};
 use super::AppError;
 use crate::args::is_descriptor;
 
+/// The name of standard input in messages.
+const STDIN: &str = "standard input";
 /// The largest plan or settings file, bytes.
 const MAX_FILE: u64 = 4 << 20;
 /// The largest file for a syntax tree, bytes. The tree takes a hundred times as much memory.
 const MAX_TREE: u64 = 512 << 10;
+
+/// Reads a plan file.
+pub(super) fn read_plan(path: &Path) -> Result<Vec<u8>, AppError> {
+    let name = path.display().to_string();
+    read_bytes(open(path, &name, MAX_FILE)?, &name, MAX_FILE)
+}
 
 /// Reads a text file of reasonable size.
 pub(super) fn read(path: &Path) -> Result<String, AppError> {
@@ -41,8 +49,12 @@ pub(super) fn read_if_there(path: &Path) -> Result<Option<String>, AppError> {
     }
 }
 
-pub(super) fn read_stdin() -> Result<String, AppError> {
-    read_text(std::io::stdin().lock(), "standard input", MAX_FILE)
+pub(super) fn read_stdin() -> Result<Vec<u8>, AppError> {
+    read_bytes(std::io::stdin().lock(), STDIN, MAX_FILE)
+}
+
+pub(super) fn read_stdin_text() -> Result<String, AppError> {
+    read_text(std::io::stdin().lock(), STDIN, MAX_FILE)
 }
 
 fn open(path: &Path, name: &str, most: u64) -> Result<File, AppError> {
@@ -96,6 +108,11 @@ fn is_of_system(_: &File) -> bool {
 }
 
 fn read_text(source: impl Read, name: &str, most: u64) -> Result<String, AppError> {
+    let bytes = read_bytes(source, name, most)?;
+    String::from_utf8(bytes).map_err(|_| AppError::input(format!("{name} is not a text file (UTF-8)")))
+}
+
+fn read_bytes(source: impl Read, name: &str, most: u64) -> Result<Vec<u8>, AppError> {
     let mut bytes = Vec::new();
     source
         .take(most + 1)
@@ -104,7 +121,7 @@ fn read_text(source: impl Read, name: &str, most: u64) -> Result<String, AppErro
     if bytes.len() as u64 > most {
         return Err(too_large(name, most));
     }
-    String::from_utf8(bytes).map_err(|_| AppError::input(format!("{name} is not a text file (UTF-8)")))
+    Ok(bytes)
 }
 
 fn too_large(name: &str, most: u64) -> AppError {

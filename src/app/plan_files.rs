@@ -82,7 +82,7 @@ impl PlanFiles {
         }
         let mut seen = path.as_deref().map_or(Content::Missing, Content::of);
         let is_other = path.as_deref().is_some_and(|path| !seen.is_document(path, &document));
-        if is_other && matches!(seen, Content::Text(_)) {
+        if is_other && matches!(seen, Content::Bytes(_)) {
             // Another program changed the file after the document was read.
             seen = Content::Missing;
         }

@@ -13,7 +13,7 @@ use crate::firmware::config::Configuration;
 use crate::flight::setup::{BootLines, PhysicsSource, check_setting};
 use crate::flight::{Flight, FlightOptions, FlightSetup};
 use crate::plan::builtin::BuiltinPlan;
-use crate::plan::format::{self, PlanFile, SettingPart};
+use crate::plan::format::{self, Format, PlanFile, ReadOptions, SettingPart};
 use crate::plan::review::Finding;
 use crate::plan::validate::check_plan;
 use crate::report::UtcSeconds;
@@ -24,14 +24,23 @@ use crate::vehicle::Vehicle;
 
 /// Reads a plan from its source.
 pub(super) fn read_plan(plan: &PlanArg) -> Result<PlanFile, AppError> {
+    let options = ReadOptions { check: check_setting, ..ReadOptions::default() };
+    read_plan_with(plan, &options).map(|(_, file)| file)
+}
+
+/// Reads a plan from its source, with the choices of the user. Returns also its format.
+pub(super) fn read_plan_with(plan: &PlanArg, options: &ReadOptions) -> Result<(Format, PlanFile), AppError> {
     let name = plan.display_name();
-    let text = match plan {
-        PlanArg::Builtin(BuiltinPlan { text, .. }) => (*text).to_owned(),
+    let contents = match plan {
+        PlanArg::Builtin(BuiltinPlan { text, .. }) => text.as_bytes().to_vec(),
         PlanArg::Stdin(_) => input_file::read_stdin()?,
-        PlanArg::File(path, _) => input_file::read(path)?,
+        PlanArg::File(path, _) => input_file::read_plan(path)?,
     };
-    format::parse_checked(&name, &text, plan.format(&text), check_setting)
-        .map_err(|errors| AppError::input(format::report(&errors).trim_end().to_owned()))
+    let (format, finding) = plan.format(&contents);
+    let mut file = format::read(&name, &contents, format, options)
+        .map_err(|errors| AppError::input(format::report(&errors).trim_end().to_owned()))?;
+    file.losses.findings.splice(0..0, finding);
+    Ok((format, file))
 }
 
 /// Returns the start of a flight with this plan, from the options that all flying commands share.

@@ -5,15 +5,16 @@ use std::str::FromStr;
 
 use crate::plan::builtin::{BuiltinPlan, PLANS};
 use crate::plan::format::Format;
+use crate::plan::format::loss::Finding;
 
 /// The source of a plan.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PlanArg {
     /// A plan of the executable.
     Builtin(BuiltinPlan),
-    /// Standard input in a format; `None` = the format of the text.
+    /// Standard input in a format; `None` = the format of the contents.
     Stdin(Option<Format>),
-    /// A file or a pipe in a format; `None` = the format of the text.
+    /// A file or a pipe in a format; `None` = the format of the contents.
     File(PathBuf, Option<Format>),
 }
 
@@ -46,10 +47,7 @@ impl FromStr for PlanArg {
         if let Some(plan) = BuiltinPlan::find(text) {
             return Ok(Self::Builtin(plan));
         }
-        if let Some(format) = Format::from_file_name(text) {
-            return Ok(Self::File(text.into(), Some(format)));
-        }
-        if is_descriptor(Path::new(text)) {
+        if Format::is_plan_name(text) || is_descriptor(Path::new(text)) {
             return Ok(Self::File(text.into(), None));
         }
         let guess = BuiltinPlan::suggest(text);
@@ -58,11 +56,14 @@ impl FromStr for PlanArg {
 }
 
 impl PlanArg {
-    /// Returns the format of `text`, which was read from this source.
-    pub fn format(&self, text: &str) -> Format {
+    /// Returns the format of `contents`, which were read from this source, and a finding if the ending of the file
+    /// names another one.
+    pub fn format(&self, contents: &[u8]) -> (Format, Option<Finding>) {
         match self {
-            Self::Builtin(_) => Format::Toml,
-            Self::Stdin(format) | Self::File(_, format) => format.unwrap_or_else(|| Format::of_text(text)),
+            Self::Builtin(_) => (Format::Toml, None),
+            Self::Stdin(Some(format)) | Self::File(_, Some(format)) => (*format, None),
+            Self::Stdin(None) => (Format::of_contents(contents), None),
+            Self::File(path, None) => Format::detect(&path.to_string_lossy(), contents),
         }
     }
 
@@ -92,9 +93,9 @@ mod tests {
     fn names_files_and_standard_input() {
         assert!(matches!("square".parse(), Ok(PlanArg::Builtin(plan)) if plan.name == "square"));
         assert_eq!("-".parse(), Ok(PlanArg::Stdin(None)));
-        assert_eq!(PlanArg::Stdin(None).format("name = 'x'"), Format::Toml);
-        assert_eq!(PlanArg::Stdin(Some(Format::CliText)).format("name = 'x'"), Format::CliText);
-        assert_eq!("./square.txt".parse(), Ok(PlanArg::File("./square.txt".into(), Some(Format::CliText))));
+        assert_eq!(PlanArg::Stdin(None).format(b"name = 'x'").0, Format::Toml);
+        assert_eq!(PlanArg::Stdin(Some(Format::CliText)).format(b"name = 'x'").0, Format::CliText);
+        assert_eq!("./square.txt".parse(), Ok(PlanArg::File("./square.txt".into(), None)));
         assert_eq!("square.txt".parse::<PlanArg>().unwrap().display_name(), "square.txt");
     }
 
@@ -110,7 +111,7 @@ mod tests {
         ] {
             assert_eq!(path.parse() == Ok(PlanArg::File(path.into(), None)), is, "{path}");
         }
-        assert_eq!(PlanArg::File("/dev/fd/63".into(), None).format("name = 'x'"), Format::Toml);
+        assert_eq!(PlanArg::File("/dev/fd/63".into(), None).format(b"name = 'x'").0, Format::Toml);
     }
 
     #[test]

@@ -207,11 +207,19 @@ pub(super) fn seeds(text: &str) -> Result<Seeds, String> {
         .map_err(|problem| format!("{problem}; write 1..20, both included"))
 }
 
+/// Reads an altitude above home, m.
+pub(super) fn altitude(text: &str) -> Result<f64, String> {
+    bounded(text, -20_000.0, 20_000.0, "m")
+}
+
+/// Reads a distance from a line, m.
+pub(super) fn spacing(text: &str) -> Result<f64, String> {
+    bounded(text, 0.0, 100_000.0, "m")
+}
+
 /// Reads a plan format.
 pub(super) fn format(text: &str) -> Result<Format, String> {
-    text.trim_start_matches('.')
-        .parse()
-        .map_err(|_| format!("allowed are toml and txt ({})", Format::endings()))
+    text.trim_start_matches('.').parse().map_err(|_| format!("allowed are {}", Format::names(false)))
 }
 
 #[cfg(test)]

@@ -1,83 +1,46 @@
-//! Plan files: one submodule for each file format. Each converts pure text ↔ [`PlanFile`].
+//! Plan files: one submodule for each file format. Each converts text or bytes ↔ [`PlanFile`].
 //!
 //! * [`Format::Toml`] is the project's own format. It holds all of a [`PlanFile`], with units in the key names.
 //! * [`Format::CliText`] is Betaflight CLI text: the `waypoint` lines of a hand-written list or of a whole `diff all`.
+//! * The others are formats of other programs. [`kind`] has their table, [`loss`] the report of what differs there.
 //!
-//! A reader reports every problem of a file with its place and changes nothing. A writer reports the parts that it
-//! lost.
+//! A reader reports every problem of a file with its place and changes nothing. Readers and writers report each part
+//! that the other side cannot hold.
 
+mod bounds;
 mod cli_text;
+mod encoding;
 mod field;
 mod home;
+mod json;
+mod kind;
+pub mod loss;
 mod native_read;
 mod native_write;
 mod note;
+mod options;
 mod problem;
 mod record;
 mod setting;
 mod table;
 mod toml_table;
+mod xml;
 
-use strum::IntoEnumIterator as _;
+use std::borrow::Cow;
 
 use super::FlightPlan;
+use loss::{LossReport, Severity};
 
 pub use field::degrees_e7;
 pub use home::{HomeError, HomePosition};
+pub use kind::{Format, FormatInfo};
 pub use note::{Note, NoteKind};
+pub use options::{ReadOptions, WriteOptions};
 pub use problem::{PlanError, Problems, report};
 pub use record::{Records, WaypointRecord};
 pub use setting::{SettingCheck, SettingFault, SettingPart, setting_line};
 pub use table::table;
 pub use toml_table::{TomlTable, Value};
-
-/// A file format for plans. `Display` and `FromStr` use the names of `convert --from` and `--to`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumString, strum::EnumIter)]
-#[strum(ascii_case_insensitive)]
-pub enum Format {
-    /// The project's own format, `*.toml`.
-    #[strum(serialize = "toml")]
-    Toml,
-    /// Betaflight CLI text, `*.txt`.
-    #[strum(serialize = "txt")]
-    CliText,
-}
-
-impl Format {
-    /// Returns the format for a file name, by its ending.
-    pub fn from_file_name(name: &str) -> Option<Self> {
-        let (stem, ending) = name.rsplit_once('.')?;
-        if stem.is_empty() || ending.contains(['/', '\\']) {
-            return None;
-        }
-        ending.parse().ok()
-    }
-
-    /// Returns the format of a text without a file name. The text is TOML if its first line that is not a comment
-    /// begins a table or gives a key of a plan file; otherwise it is CLI text.
-    pub fn of_text(text: &str) -> Self {
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let first = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#'));
-        let is_toml = first.is_some_and(|line| {
-            let key = line.split_once('=').map_or("", |(key, _)| key.trim());
-            line.starts_with('[') || native_read::FILE_KEYS.contains(&key)
-        });
-        if is_toml { Self::Toml } else { Self::CliText }
-    }
-
-    /// Returns the format in words.
-    pub fn title(self) -> &'static str {
-        match self {
-            Self::Toml => "betadeck plan",
-            Self::CliText => "Betaflight CLI text",
-        }
-    }
-
-    /// Returns the known file endings for messages: `.toml, .txt`.
-    pub fn endings() -> String {
-        Self::iter().map(|format| format!(".{format}")).collect::<Vec<_>>().join(", ")
-    }
-}
 
 /// A plan and the other contents of its file.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -93,18 +56,34 @@ pub struct PlanFile {
     pub plan: FlightPlan,
     /// The lines that the reader skipped.
     pub notes: Vec<Note>,
+    /// The differences between the file and this plan.
+    pub losses: LossReport,
 }
 
-/// A written file and the parts of the plan that it lost.
+/// A written file and its differences from the plan.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Written {
-    /// The text of the file.
-    pub text: String,
-    /// One sentence for each part that the format cannot hold.
-    pub lost: Vec<String>,
+    /// The bytes of the file; empty if the plan is refused.
+    pub contents: Vec<u8>,
+    pub losses: LossReport,
 }
 
-/// Reads a plan file with any settings: see [`parse_checked`].
+impl Written {
+    /// Returns the contents as text.
+    pub fn text(&self) -> Cow<'_, str> {
+        String::from_utf8_lossy(&self.contents)
+    }
+
+    /// Returns `true` if the format cannot take the plan at all. The findings give the reason.
+    pub fn is_refused(&self) -> bool {
+        self.losses.worst() == Some(Severity::Refused)
+    }
+}
+
+/// The largest TOML plan, bytes. The syntax tree takes a hundred times as much memory.
+const MAX_TOML: usize = 512 << 10;
+
+/// Reads a plan file with any settings: see [`read`].
 ///
 /// # Errors
 ///
@@ -113,13 +92,7 @@ pub fn parse(name: &str, text: &str, format: Format) -> Result<PlanFile, Vec<Pla
     parse_checked(name, text, format, |_, _| Ok(()))
 }
 
-/// The largest TOML plan, bytes. The syntax tree takes a hundred times as much memory.
-const MAX_TOML: usize = 512 << 10;
-
-/// Reads a plan file and checks its settings with `check`.
-///
-/// `name` is the file's name as the user gave it. It begins the error messages, and it names a plan that has no name of
-/// its own.
+/// Reads a plan file and checks its settings with `check`: see [`read`].
 ///
 /// # Errors
 ///
@@ -130,17 +103,30 @@ pub fn parse_checked(
     format: Format,
     check: SettingCheck,
 ) -> Result<PlanFile, Vec<PlanError>> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    read(name, text.as_bytes(), format, &ReadOptions { check, ..ReadOptions::default() })
+}
+
+/// Reads a plan file.
+///
+/// `name` is the file's name as the user gave it. It begins the error messages, and it names a plan that has no name of
+/// its own.
+///
+/// # Errors
+///
+/// Returns all problems of the file, in the order of their places.
+pub fn read(
+    name: &str,
+    contents: &[u8],
+    format: Format,
+    options: &ReadOptions,
+) -> Result<PlanFile, Vec<PlanError>> {
+    let text = encoding::decode(contents).map_err(|message| {
+        let mut problems = Problems::new(name, "");
+        problems.add(0..0, message, "a plan is a text file");
+        problems.into_errors()
+    })?;
+    let text = text.as_ref();
     let mut problems = Problems::new(name, text);
-    if format == Format::CliText
-        && let Some(other) = foreign_format(text)
-    {
-        let message = format!("this is {other}, which is not a plan that can be read");
-        let hint =
-            format!("plans are {}; the waypoint lines of a CLI can be pasted into them", Format::endings());
-        problems.add(0..0, message, hint);
-        return Err(problems.into_errors());
-    }
     let mut file = match format {
         Format::Toml if text.len() > MAX_TOML => {
             let message =
@@ -148,7 +134,7 @@ pub fn parse_checked(
             problems.add(0..0, message, "a plan has at most 30 waypoints: is this the right file?");
             PlanFile::default()
         }
-        Format::Toml => native_read::read(text, check, &mut problems),
+        Format::Toml => native_read::read(text, options.check, &mut problems),
         Format::CliText => cli_text::read(text, &mut problems),
     };
     let errors = problems.into_errors();
@@ -158,26 +144,26 @@ pub fn parse_checked(
     if file.name.is_empty() {
         file.name = stem(name);
     }
+    if file.losses.items > 0 {
+        file.losses.waypoints = file.plan.waypoints.len();
+    }
     Ok(file)
 }
 
-/// Returns the format of a text that begins like neither a plan nor a command line.
-fn foreign_format(text: &str) -> Option<&'static str> {
-    let text = text.trim_start();
-    match text.chars().next()? {
-        '{' => Some("JSON, such as a QGroundControl plan"),
-        '<' => Some("XML, such as a GPX or KML file"),
-        _ if text.starts_with("QGC WPL") => Some("a waypoint file of QGroundControl or Mission Planner"),
-        _ => None,
-    }
+/// Writes a plan file in its canonical form: see [`write_with`].
+pub fn write(file: &PlanFile, format: Format) -> Written {
+    write_with(file, format, &WriteOptions::default())
 }
 
-/// Writes a plan file in its canonical form. Reading it gives the same plan, and writing that plan gives the same text.
-pub fn write(file: &PlanFile, format: Format) -> Written {
-    match format {
+/// Writes a plan file in its canonical form. Reading it gives the same plan but for the fields of the findings, and
+/// writing that plan gives the same bytes.
+pub fn write_with(file: &PlanFile, format: Format, _options: &WriteOptions) -> Written {
+    let mut written = match format {
         Format::Toml => native_write::write(file),
         Format::CliText => cli_text::write(file),
-    }
+    };
+    written.losses.waypoints = file.plan.waypoints.len();
+    written
 }
 
 /// Returns the file's name without folders and ending; `plan` for standard input.
@@ -190,41 +176,6 @@ fn stem(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn endings_choose_the_format() {
-        assert_eq!(Format::from_file_name("a/b.TOML"), Some(Format::Toml));
-        assert_eq!(Format::from_file_name("b.txt"), Some(Format::CliText));
-        assert_eq!(Format::from_file_name("-"), None);
-        assert_eq!(Format::from_file_name("square"), None);
-        assert_eq!(Format::from_file_name("dir.txt/square"), None);
-        assert_eq!(Format::from_file_name(".txt"), None);
-        assert_eq!(Format::endings(), ".toml, .txt");
-    }
-
-    #[test]
-    fn a_nameless_text_shows_its_format() {
-        for text in ["name = \"x\"", "\u{feff}# mine\n\n[[waypoint]]", "waypoint = [{type='LAND'}]"] {
-            assert_eq!(Format::of_text(text), Format::Toml, "{text}");
-        }
-        for text in ["", "# dump\nbatch start", "waypoint insert 0 1 2", "set name = x", "=", "x = 1"] {
-            assert_eq!(Format::of_text(text), Format::CliText, "{text}");
-        }
-    }
-
-    #[test]
-    fn a_plan_of_another_program_is_not_taken_for_an_empty_one() {
-        for (text, is) in [
-            ("{\n \"fileType\": \"Plan\"\n}", "this is JSON"),
-            ("\u{feff}\n <?xml version=\"1.0\"?>", "this is XML"),
-            ("QGC WPL 110\n0 1 0 16", "this is a waypoint file"),
-        ] {
-            let format = Format::of_text(text);
-            let errors = parse("-", text, format).unwrap_err();
-            let reported = report(&errors);
-            assert!(reported.contains(is) && reported.contains(".toml, .txt"), "{reported}");
-        }
-    }
 
     #[test]
     fn stem_names_a_nameless_plan() {

@@ -37,7 +37,7 @@ prop_compose! {
         let home = home.map(|(position, amsl)| HomePosition { position, amsl_m: amsl.map(f64::from) });
         let mut plan = FlightPlan::default();
         plan.waypoints.extend(waypoints.into_iter().map(Waypoint::from));
-        PlanFile { name, description, home, settings, plan, notes: Vec::new() }
+        PlanFile { name, description, home, settings, plan, ..PlanFile::default() }
     }
 }
 
@@ -62,10 +62,10 @@ proptest! {
     #[test]
     fn toml_carries_everything(file in plan_file()) {
         let written = write(&file, Format::Toml);
-        prop_assert!(written.lost.is_empty());
-        let back = read(&written.text, Format::Toml);
+        prop_assert!(written.losses.findings.is_empty());
+        let back = read(&written.text(), Format::Toml);
         prop_assert_eq!(&back, &file);
-        prop_assert_eq!(write(&back, Format::Toml).text, written.text);
+        prop_assert_eq!(write(&back, Format::Toml).contents, written.contents);
     }
 
     #[test]
@@ -76,18 +76,17 @@ proptest! {
     #[test]
     fn text_carries_the_waypoints(file in plan_file()) {
         let written = write(&file, Format::CliText);
-        let back = read(&written.text, Format::CliText);
+        let back = read(&written.text(), Format::CliText);
         prop_assert_eq!(&back.plan, &file.plan);
-        prop_assert_eq!(write(&back, Format::CliText), betadeck::plan::format::Written {
-            text: written.text,
-            lost: vec![],
-        });
+        let again = write(&back, Format::CliText);
+        prop_assert_eq!(again.contents, written.contents);
+        prop_assert!(again.losses.findings.is_empty());
     }
 
     #[test]
     fn crlf_and_lf_read_the_same(file in plan_file()) {
         for format in [Format::Toml, Format::CliText] {
-            let text = write(&file, format).text;
+            let text = write(&file, format).text().into_owned();
             prop_assert_eq!(read(&text.replace('\n', "\r\n"), format), read(&text, format));
         }
     }

@@ -46,7 +46,7 @@ fn every_plan_is_listed_in_the_readme() {
 fn every_toml_plan_is_canonical_and_built_in() {
     for (name, text, format, file) in plans() {
         if format == Format::Toml {
-            assert_eq!(write(&file, format).text, text, "{name} is not in canonical form");
+            assert_eq!(write(&file, format).text(), text, "{name} is not in canonical form");
             let plan = BuiltinPlan::find(&file.name).unwrap_or_else(|| panic!("{name} is not built in"));
             assert_eq!(plan.text, text);
             assert_eq!(format!("{}.toml", file.name), name);

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::app::{AppError, input_file};
 use crate::args::{CheckArgs, MOST_FLIGHTS};
 use crate::flight::setup::check_setting;
-use crate::plan::format::{self, Format, PlanFile};
+use crate::plan::format::{self, Format, PlanFile, ReadOptions};
 use crate::report::check::STANDARD_INPUT;
 use crate::scenario::{self, BuiltinFiles, BuiltinScenario, Files, SCENARIOS, Scenario, read_at_most};
 
@@ -136,7 +136,7 @@ fn read(
             read_at_most(max_flights, builtin.name, builtin.text, seeds, &mut BuiltinFiles)
         }
         Source::Stdin => {
-            let text = input_file::read_stdin()?;
+            let text = input_file::read_stdin_text()?;
             let mut beside = Beside { place: PathBuf::new(), read };
             read_at_most(max_flights, STANDARD_INPUT, &text, seeds, &mut beside)
         }
@@ -159,9 +159,12 @@ struct Beside<'f> {
 
 impl Files for Beside<'_> {
     fn plan(&mut self, name: &str) -> Result<PlanFile, String> {
-        let text = self.text(name)?;
-        let format = Format::from_file_name(name).unwrap_or_else(|| Format::of_text(&text));
-        format::parse_checked(name, &text, format, check_setting)
+        let path = self.place.join(name);
+        let contents = input_file::read_plan(&path).map_err(|error| error.message)?;
+        self.read.push(path);
+        let (format, _) = Format::detect(name, &contents);
+        let options = ReadOptions { check: check_setting, ..ReadOptions::default() };
+        format::read(name, &contents, format, &options)
             .map_err(|errors| format::report(&errors).trim_end().to_owned())
     }
 

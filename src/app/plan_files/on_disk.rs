@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::app::{input_file, output_file};
 use crate::flight::setup::check_setting;
 use crate::plan::edit::PlanDocument;
-use crate::plan::format::{self, Format, PlanFile};
+use crate::plan::format::{self, Format, PlanFile, ReadOptions};
 use crate::storage::link_target;
 use crate::ui::editor::{Entry, Listing};
 
@@ -15,7 +15,7 @@ use crate::ui::editor::{Entry, Listing};
 pub(super) enum Content {
     /// There is no file, or it was not read.
     Missing,
-    Text(String),
+    Bytes(Vec<u8>),
     /// A file that cannot be read as a plan, with the reason.
     Unreadable(String),
 }
@@ -28,8 +28,8 @@ impl Content {
             Err(error) => Self::Unreadable(error.to_string()),
             // A pipe gives its contents only to the first reader.
             Ok(there) if !there.is_file() => Self::Unreadable("not a file".to_owned()),
-            Ok(_) => match input_file::read(path) {
-                Ok(text) => Self::Text(text),
+            Ok(_) => match input_file::read_plan(path) {
+                Ok(bytes) => Self::Bytes(bytes),
                 Err(error) => Self::Unreadable(error.to_string()),
             },
         }
@@ -42,41 +42,44 @@ impl Content {
 
     /// Returns `true` if this is the same text as before.
     pub(super) fn is_known_as(&self, seen: &Self) -> bool {
-        matches!(self, Self::Text(_)) && self == seen
+        matches!(self, Self::Bytes(_)) && self == seen
     }
 
     /// Returns `true` if it is exactly the output of [`write`] for a document.
     pub(super) fn is_written(&self, path: &Path, document: &PlanDocument) -> bool {
-        let Self::Text(text) = self else { return false };
+        let Self::Bytes(bytes) = self else { return false };
         Format::from_file_name(&path.display().to_string())
-            .is_some_and(|format| *text == format::write(&PlanFile::from(document.clone()), format).text)
+            .is_some_and(|format| *bytes == format::write(&PlanFile::from(document.clone()), format).contents)
     }
 
     /// Returns `true` if it is this document, written here or by another program.
     pub(super) fn is_document(&self, path: &Path, document: &PlanDocument) -> bool {
-        let Self::Text(text) = self else { return false };
-        self.is_written(path, document) || parse(path, text).is_ok_and(|(there, _)| there == *document)
+        let Self::Bytes(bytes) = self else { return false };
+        self.is_written(path, document) || parse(path, bytes).is_ok_and(|(there, _)| there == *document)
     }
 }
 
 /// Reads a plan. Returns also sentences about the skipped parts, and the contents.
 pub(super) fn read(path: &Path) -> Result<(PlanDocument, Vec<String>, Content), String> {
-    let text = input_file::read(path).map_err(|error| format!("{error}."))?;
-    let (document, notes) = parse(path, &text)?;
-    Ok((document, notes, Content::Text(text)))
+    let bytes = input_file::read_plan(path).map_err(|error| format!("{error}."))?;
+    let (document, notes) = parse(path, &bytes)?;
+    Ok((document, notes, Content::Bytes(bytes)))
 }
 
-fn parse(path: &Path, text: &str) -> Result<(PlanDocument, Vec<String>), String> {
+fn parse(path: &Path, contents: &[u8]) -> Result<(PlanDocument, Vec<String>), String> {
     let name = path.display().to_string();
-    let format = Format::from_file_name(&name).unwrap_or_else(|| Format::of_text(text));
-    let mut file = format::parse_checked(&name, text, format, check_setting).map_err(|errors| {
+    let (format, finding) = Format::detect(&name, contents);
+    let options = ReadOptions { check: check_setting, ..ReadOptions::default() };
+    let mut file = format::read(&name, contents, format, &options).map_err(|errors| {
         let more = match errors.len() - 1 {
             0 => String::new(),
             more => format!(" ({more} more problems: `betadeck plan show` lists them)"),
         };
         errors.first().map_or_else(|| format!("{name} is not a plan."), |error| format!("{error}{more}"))
     })?;
-    let notes = std::mem::take(&mut file.notes).iter().map(ToString::to_string).collect();
+    let skipped = std::mem::take(&mut file.notes);
+    let found = finding.iter().chain(&file.losses.findings);
+    let notes = skipped.iter().map(ToString::to_string).chain(found.map(ToString::to_string)).collect();
     Ok((file.into(), notes))
 }
 
@@ -88,6 +91,11 @@ pub(super) fn write(path: &Path, document: PlanDocument) -> Result<(Vec<String>,
         return Err(format!("The ending of {name} does not give the format: name it {}.", Format::endings()));
     };
     let written = format::write(&PlanFile::from(document), format);
+    if written.is_refused() {
+        let why =
+            written.losses.findings.iter().map(|finding| finding.why.as_str()).collect::<Vec<_>>().join("; ");
+        return Err(format!("{name} cannot hold this plan: {why}."));
+    }
     let target = link_target(path);
     // The permissions of the directory would allow a replacement.
     if target.metadata().is_ok_and(|there| there.permissions().readonly()) {
@@ -95,9 +103,10 @@ pub(super) fn write(path: &Path, document: PlanDocument) -> Result<(Vec<String>,
             "{name} is write-protected: save under another name, or allow it with chmod u+w."
         ));
     }
-    output_file::replace(&target, written.text.as_bytes())
+    output_file::replace(&target, &written.contents)
         .map_err(|error| format!("Cannot write {name}: {error}."))?;
-    Ok((written.lost, Content::Text(written.text)))
+    let lost = written.losses.findings.iter().map(ToString::to_string).collect();
+    Ok((lost, Content::Bytes(written.contents)))
 }
 
 /// Returns the directories and plan files of a directory.
@@ -110,7 +119,7 @@ pub(super) fn list(directory: &Path) -> Result<Listing, String> {
         .filter_map(|entry| {
             let name = entry.file_name().into_string().ok()?;
             let is_directory = entry.path().is_dir();
-            let is_plan = Format::from_file_name(&name).is_some();
+            let is_plan = Format::is_plan_name(&name);
             (!name.starts_with('.') && (is_directory || is_plan)).then_some(Entry { name, is_directory })
         })
         .collect();

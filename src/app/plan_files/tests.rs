@@ -105,7 +105,7 @@ fn a_file_that_another_program_changed_comes_as_an_edit() {
     edit(&mut files, &mut opened, document(2));
     save(&mut files, &mut opened, &path, false);
     drop(files);
-    let theirs = crate::plan::format::write(&document(9).into(), crate::plan::format::Format::Toml).text;
+    let theirs = crate::plan::format::write(&document(9).into(), crate::plan::format::Format::Toml).contents;
     std::fs::write(&path, theirs).unwrap();
 
     let mut files = PlanFiles::new(Some(directory.path()));
@@ -175,7 +175,8 @@ fn a_journal_that_is_a_pipe_or_nonsense_does_not_hold_the_program_up() {
 
 /// Writes a plan like another program.
 fn write_theirs(path: &Path, alt_cm: i32) {
-    let theirs = crate::plan::format::write(&document(alt_cm).into(), crate::plan::format::Format::Toml).text;
+    let theirs =
+        crate::plan::format::write(&document(alt_cm).into(), crate::plan::format::Format::Toml).contents;
     std::fs::write(path, theirs).unwrap();
 }
 

@@ -19,7 +19,7 @@ pub struct PlanDocument {
 
 impl From<PlanFile> for PlanDocument {
     fn from(file: PlanFile) -> Self {
-        let PlanFile { name, description, home, settings, plan, notes: _ } = file;
+        let PlanFile { name, description, home, settings, plan, notes: _, losses: _ } = file;
         Self { name, description, home, settings, plan }
     }
 }
@@ -27,6 +27,6 @@ impl From<PlanFile> for PlanDocument {
 impl From<PlanDocument> for PlanFile {
     fn from(document: PlanDocument) -> Self {
         let PlanDocument { name, description, home, settings, plan } = document;
-        Self { name, description, home, settings, plan, notes: Vec::new() }
+        Self { name, description, home, settings, plan, ..PlanFile::default() }
     }
 }

@@ -34,7 +34,7 @@ pub enum JournalLine {
 impl JournalLine {
     /// Returns the first line for a document.
     pub fn opened(document: &PlanDocument, file: Option<String>, saved: bool) -> Self {
-        let text = format::write(&PlanFile::from(document.clone()), Format::Toml).text;
+        let text = format::write(&PlanFile::from(document.clone()), Format::Toml).text().into_owned();
         Self::Opened { file, text, saved }
     }
 

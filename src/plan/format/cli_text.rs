@@ -6,6 +6,7 @@
 use std::ops::Range;
 
 use super::field::{self, FieldError};
+use super::loss::{Finding, LossReport, Severity};
 use super::{Note, NoteKind, PlanFile, Problems, WaypointRecord, Written};
 use crate::geo::LatLon;
 use crate::plan::{FlightPlan, MAX_WAYPOINTS, Waypoint, plan_lines};
@@ -237,21 +238,23 @@ fn words(line: &str, start: usize) -> Vec<Word<'_>> {
 
 /// Writes the output of `waypoint list`: text that can be pasted into the CLI.
 pub(super) fn write(file: &PlanFile) -> Written {
-    let text = plan_lines(&file.plan).map(|line| line + "\n").collect();
-    let mut lost = Vec::new();
+    let text: String = plan_lines(&file.plan).map(|line| line + "\n").collect();
+    let mut losses = LossReport { items: file.plan.waypoints.len(), ..LossReport::default() };
     if !file.description.is_empty() {
-        lost.push("the description".to_owned());
+        let why = "CLI text carries waypoints only";
+        losses.add(Finding::new(Severity::Info, "description", why));
     }
     if let Some(home) = file.home {
-        lost.push(format!("the home position: fly with --home {home}"));
+        let why = "CLI text carries waypoints only: fly with --home";
+        losses.add(Finding::new(Severity::Lost, "home", why).values(home.to_string(), ""));
     }
     if !file.settings.is_empty() {
-        lost.push(format!(
-            "{} settings: type them as `set` lines in the CLI or fly with --settings",
-            file.settings.len()
-        ));
+        let why =
+            "CLI text carries waypoints only: type them as `set` lines in the CLI or fly with --settings";
+        let finding = Finding::new(Severity::Lost, "settings", why);
+        losses.add(finding.values(file.settings.len().to_string(), ""));
     }
-    Written { text, lost }
+    Written { contents: text.into_bytes(), losses }
 }
 
 #[cfg(test)]
@@ -279,7 +282,8 @@ mod tests {
         assert_eq!(file.name, "plan");
         assert_eq!(file.plan.records()[1].alt_cm, -150);
         assert_eq!(file.plan.waypoints[1].pattern, HoldPattern::Figure8);
-        assert_eq!(write(&file, Format::CliText), Written { text: TWO.to_owned(), lost: vec![] });
+        let written = write(&file, Format::CliText);
+        assert_eq!((written.text().as_ref(), written.losses.findings.len()), (TWO, 0));
     }
 
     #[test]
@@ -377,8 +381,8 @@ mod tests {
             settings: vec!["ap_max_angle = 25".to_owned()],
             ..PlanFile::default()
         };
-        let lost = write(&file, Format::CliText).lost;
-        assert_eq!(lost.len(), 3);
-        assert!(lost[1].contains("--home 40.0000000,-79.0000000,300"));
+        let losses = write(&file, Format::CliText).losses;
+        assert_eq!(losses.counts(), "2 lost, 1 info");
+        assert!(losses.findings[1].to_string().contains("home: 40.0000000,-79.0000000,300: CLI text"));
     }
 }

@@ -46,7 +46,7 @@ pub(super) fn read(text: &str, check: SettingCheck, problems: &mut Problems<'_>)
             .map(|value| read_settings(value, text, check, problems))
             .unwrap_or_default(),
         plan: file.get("waypoint").map(|value| read_waypoints(value, problems)).unwrap_or_default(),
-        notes: Vec::new(),
+        ..PlanFile::default()
     }
 }
 
@@ -291,7 +291,7 @@ pattern = "FIGURE8"
         assert_eq!((hold.alt_cm, hold.speed, hold.duration_ds), (-50, 525, 305));
         assert_eq!(file.plan.waypoints[1].yaw_rate_dps, 45);
         assert_eq!(file.settings, ["ap_max_angle = 25"]);
-        assert_eq!(write(&file, Format::Toml).text, SMALL);
+        assert_eq!(write(&file, Format::Toml).text(), SMALL);
     }
 
     #[test]

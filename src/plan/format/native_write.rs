@@ -4,6 +4,7 @@ use crate::geo::Degrees7;
 use crate::plan::{HoldPattern, TimeUse};
 use crate::text::printable::is_printable;
 
+use super::loss::LossReport;
 use super::{PlanFile, WaypointRecord, Written};
 
 /// Writes a plan as TOML. Leaves out values that are the default for the type of their record.
@@ -30,7 +31,8 @@ pub(super) fn write(file: &PlanFile) -> Written {
     for record in file.plan.records() {
         write_waypoint(record, &mut text);
     }
-    Written { text, lost: Vec::new() }
+    let losses = LossReport { items: file.plan.waypoints.len(), ..LossReport::default() };
+    Written { contents: text.into_bytes(), losses }
 }
 
 fn write_waypoint(record: WaypointRecord, text: &mut String) {

@@ -83,6 +83,11 @@ impl<'a> Problems<'a> {
         Self { file, text, lines, errors: Vec::new(), unlisted: 0 }
     }
 
+    /// Returns the line of a byte of the text, from 1.
+    pub fn line_at(&self, at: usize) -> usize {
+        self.lines.partition_point(|&begin| begin <= at).max(1)
+    }
+
     /// Adds a problem at a byte range of the text. A range that is not on character boundaries is widened.
     pub fn add(&mut self, span: Range<usize>, message: impl Into<String>, hint: impl Into<String>) {
         if self.errors.len() == MOST_LISTED {
@@ -90,7 +95,7 @@ impl<'a> Problems<'a> {
             return;
         }
         let start = floor_boundary(self.text, span.start);
-        let line = self.lines.partition_point(|&begin| begin <= start).max(1);
+        let line = self.line_at(start);
         let line_start = self.lines[line - 1];
         let line_end = self.lines.get(line).map_or(self.text.len(), |&next| next - 1);
         let end = floor_boundary(self.text, span.end.min(line_end)).max(start);

@@ -16,7 +16,7 @@ pub(super) fn to_text(waypoints: &[Waypoint]) -> String {
 /// Returns the reason in one sentence if there are no waypoints.
 pub(super) fn from_text(text: &str) -> Result<PlanFile, String> {
     let text = text.replace("\r\n", "\n").replace('\r', "\n");
-    let format = Format::of_text(&text);
+    let format = Format::of_contents(text.as_bytes());
     let text = if format == Format::CliText { renumbered(&text) } else { text };
     let file = format::parse("the pasted text", &text, format).map_err(|errors| {
         // Only the first line of the error: the marker below it needs rows of its own.

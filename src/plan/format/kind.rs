@@ -1,0 +1,154 @@
+//! The table of the plan formats: names, endings, what each carries, and how a file shows its format.
+
+use strum::IntoEnumIterator as _;
+
+use super::loss::{Finding, Severity};
+use super::native_read;
+
+/// A file format for plans. `Display` and `FromStr` use the names of `convert --from` and `--to`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumString, strum::EnumIter)]
+#[strum(ascii_case_insensitive)]
+pub enum Format {
+    /// The project's own format.
+    #[strum(serialize = "toml")]
+    Toml,
+    /// Betaflight CLI text.
+    #[strum(serialize = "txt")]
+    CliText,
+}
+
+/// The row of a format.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FormatInfo {
+    /// The format in words.
+    pub title: &'static str,
+    /// The endings that give this format when a file is written.
+    pub endings: &'static [&'static str],
+    /// Further endings of files that may be in this format. Their contents decide.
+    pub also: &'static [&'static str],
+    /// `true` if plans are written in it, too.
+    pub writes: bool,
+    /// What it carries of a plan, for `convert --list`.
+    pub carries: &'static str,
+}
+
+impl Format {
+    /// Returns the row of the format.
+    pub const fn info(self) -> FormatInfo {
+        match self {
+            Self::Toml => FormatInfo {
+                title: "betadeck plan",
+                endings: &["toml"],
+                also: &[],
+                writes: true,
+                carries: "everything",
+            },
+            Self::CliText => FormatInfo {
+                title: "Betaflight CLI text",
+                endings: &["txt"],
+                also: &[],
+                writes: true,
+                carries: "the waypoints; not name, home and settings",
+            },
+        }
+    }
+
+    /// Returns the format in words.
+    pub fn title(self) -> &'static str {
+        self.info().title
+    }
+
+    /// Returns the format that a file of this name is written in, by its ending.
+    pub fn from_file_name(name: &str) -> Option<Self> {
+        let ending = ending(name)?;
+        Self::iter().find(|format| has(format.info().endings, ending))
+    }
+
+    /// Returns `true` if a file of this name may be a plan.
+    pub fn is_plan_name(name: &str) -> bool {
+        ending(name).is_some_and(|ending| {
+            Self::iter().any(|format| has(format.info().endings, ending) || has(format.info().also, ending))
+        })
+    }
+
+    /// Returns the format of a file. If the ending and the contents differ, the contents decide, with a finding.
+    pub fn detect(name: &str, contents: &[u8]) -> (Self, Option<Finding>) {
+        let of_contents = Self::of_contents(contents);
+        let Some(ending) = ending(name) else { return (of_contents, None) };
+        let by_name = Self::from_file_name(name);
+        let info = of_contents.info();
+        match by_name {
+            Some(by_name) if by_name == of_contents => (of_contents, None),
+            // A text without a mark of its own may be a plan of the ending, with a fault in its first line.
+            Some(by_name) if of_contents == Self::CliText => (by_name, None),
+            _ if has(info.endings, ending) || has(info.also, ending) => (of_contents, None),
+            None => (of_contents, None),
+            Some(by_name) => {
+                let why = "the ending of the file and its contents differ, the contents decide";
+                let finding = Finding::new(Severity::Assumed, "format", why);
+                (of_contents, Some(finding.values(by_name.title(), of_contents.title())))
+            }
+        }
+    }
+
+    /// Returns the format of contents without a file name. A text is TOML if its first line that is not a comment
+    /// begins a table or gives a key of a plan file. A text without the mark of any format is CLI text.
+    pub fn of_contents(contents: &[u8]) -> Self {
+        let Ok(text) = super::encoding::decode(contents) else { return Self::CliText };
+        let first = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#'));
+        let is_toml = first.is_some_and(|line| {
+            let key = line.split_once('=').map_or("", |(key, _)| key.trim());
+            line.starts_with('[') || native_read::FILE_KEYS.contains(&key)
+        });
+        if is_toml { Self::Toml } else { Self::CliText }
+    }
+
+    /// Returns the endings that can be written, for messages: `.toml, .txt`.
+    pub fn endings() -> String {
+        let endings =
+            Self::iter().filter(|format| format.info().writes).flat_map(|format| format.info().endings);
+        endings.map(|ending| format!(".{ending}")).collect::<Vec<_>>().join(", ")
+    }
+
+    /// Returns the names of the formats for messages: `toml, txt`. With `written`, of those that can be written.
+    pub fn names(written: bool) -> String {
+        let formats = Self::iter().filter(|format| format.info().writes || !written);
+        formats.map(|format| format.to_string()).collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// Returns the ending of a file name without its dot.
+fn ending(name: &str) -> Option<&str> {
+    let (stem, ending) = name.rsplit_once('.')?;
+    (!stem.is_empty() && !ending.contains(['/', '\\'])).then_some(ending)
+}
+
+fn has(endings: &[&str], ending: &str) -> bool {
+    endings.iter().any(|known| known.eq_ignore_ascii_case(ending))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn endings_choose_the_format() {
+        assert_eq!(Format::from_file_name("a/b.TOML"), Some(Format::Toml));
+        assert_eq!(Format::from_file_name("b.txt"), Some(Format::CliText));
+        assert_eq!(Format::from_file_name("-"), None);
+        assert_eq!(Format::from_file_name("square"), None);
+        assert_eq!(Format::from_file_name("dir.txt/square"), None);
+        assert_eq!(Format::from_file_name(".txt"), None);
+        assert!(Format::endings().starts_with(".toml, .txt"));
+    }
+
+    #[test]
+    fn a_nameless_text_shows_its_format() {
+        for text in ["name = \"x\"", "\u{feff}# mine\n\n[[waypoint]]", "waypoint = [{type='LAND'}]"] {
+            assert_eq!(Format::of_contents(text.as_bytes()), Format::Toml, "{text}");
+        }
+        for text in ["", "# dump\nbatch start", "waypoint insert 0 1 2", "set name = x", "=", "x = 1"] {
+            assert_eq!(Format::of_contents(text.as_bytes()), Format::CliText, "{text}");
+        }
+    }
+}
