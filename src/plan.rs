@@ -19,6 +19,7 @@ mod capability;
 mod cli_lines;
 pub mod edit;
 pub mod estimate;
+pub mod feature;
 pub mod format;
 pub mod generate;
 mod leg_time;
