@@ -17,6 +17,7 @@ mod altitude_reference;
 pub mod builtin;
 mod capability;
 mod cli_lines;
+pub mod differences;
 pub mod edit;
 pub mod estimate;
 pub mod feature;

@@ -22,7 +22,7 @@ pub(super) fn run(args: &TuiArgs, place: &FcPlace, keymap: Keymap) -> Result<u8,
         // The plan of the craft is downloaded.
         None => PlanFile { name: "new".to_owned(), ..PlanFile::default() },
     };
-    let mut notices: Vec<String> = plan.notes.iter().map(ToString::to_string).collect();
+    let mut notices = plan.notices();
     notices.extend(ConnectArgs::idle_options(&args.doors, &args.firmware.link, &args.physics, &args.flight));
     let screen = Screen {
         plan,

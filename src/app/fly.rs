@@ -31,7 +31,7 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
     output::claim(args)?;
     let plan = setup::read_plan(&args.plan)?;
     setup::refuse_unflyable(&plan)?;
-    let mut notices: Vec<String> = plan.notes.iter().map(ToString::to_string).collect();
+    let mut notices = plan.notices();
     let physics = PhysicsArgs::default();
     let beside = Beside { ports: (&args.firmware_ports).into(), flight: &args.flight, physics: &physics };
     let firmware = firmware::choose(&args.firmware, beside, &mut notices)?

@@ -18,7 +18,8 @@ use tokio::sync::watch;
 
 use super::line_history::LineHistory;
 use crate::plan::edit::{History, Journal, JournalLine, PlanDocument};
-use crate::ui::editor::{FileReply, FileRequest, Opened, PlanId};
+use crate::plan::format::loss::LossReport;
+use crate::ui::editor::{Conversion, ConversionLosses, FileReply, FileRequest, Opened, PlanId};
 use journal_file::{Found, JournalFile};
 use on_disk::Content;
 
@@ -56,6 +57,17 @@ struct OpenFile {
     journal: Option<JournalFile>,
     /// `true` if a line could not be written. The file must then be rewritten before the next line counts.
     is_behind: bool,
+    /// The differences that the user accepted at the last save.
+    accepted: Vec<String>,
+}
+
+/// The consent of the user to a save.
+#[derive(Debug, Clone, Copy)]
+struct Consent {
+    /// Replaces other contents of the file.
+    replace: bool,
+    /// Writes a file that differs from the plan.
+    losses: bool,
 }
 
 impl PlanFiles {
@@ -109,7 +121,7 @@ impl PlanFiles {
         let (journal, mut history) = self.whole_part(found);
         let mut seen = path.as_deref().map_or(Content::Missing, Content::of);
         let newer = path.as_deref().filter(|_| has_saved).and_then(|path| on_disk::read(path).ok());
-        if let Some((document, _, content)) = newer {
+        if let Some(on_disk::Read { document, content, .. }) = newer {
             history.commit(SAVED_LATER, document);
             history.mark_saved();
             seen = content;
@@ -172,13 +184,13 @@ impl PlanFiles {
 
     fn carry_out(&mut self, request: FileRequest) -> Vec<FileReply> {
         match request {
-            FileRequest::Open(path) => {
-                let opened = self.open(&path);
+            FileRequest::Open { path, accepted } => {
+                let opened = self.open(&path, accepted);
                 let lost = self.take_losses().into_iter().map(FileReply::EditsLost);
                 std::iter::once(opened).chain(lost).collect()
             }
-            FileRequest::Save { id, path, document, revision, replace } => {
-                self.save(id, path, *document, revision, replace)
+            FileRequest::Save { id, path, document, revision, replace, accepted } => {
+                self.save(id, path, (*document, revision), Consent { replace, losses: accepted })
             }
             FileRequest::List(directory) => vec![self.list(directory)],
             FileRequest::Journal(id, line) => self.append(id, &line).into_iter().collect(),
@@ -189,7 +201,9 @@ impl PlanFiles {
             FileRequest::Begin(id, document) => {
                 let kept = Journal { file: None, history: History::new(*document, false) };
                 let (path, seen, journal) = (None, Content::Missing, None);
-                let file = OpenFile { path, seen, reported: false, kept, journal, is_behind: false };
+                let accepted = Vec::new();
+                let file =
+                    OpenFile { path, seen, reported: false, kept, journal, is_behind: false, accepted };
                 self.open.insert(id, file);
                 Vec::new()
             }
@@ -203,15 +217,19 @@ impl PlanFiles {
         }
     }
 
-    fn open(&mut self, path: &Path) -> FileReply {
+    fn open(&mut self, path: &Path, accepted: bool) -> FileReply {
         let path = match std::path::absolute(path) {
             Ok(path) => path,
             Err(error) => return FileReply::Failed(format!("Cannot open {}: {error}.", path.display())),
         };
-        let (document, notes, seen) = match on_disk::read(&path) {
+        let on_disk::Read { document, mut notes, losses, content: seen } = match on_disk::read(&path) {
             Ok(read) => read,
             Err(sentence) => return FileReply::Failed(sentence),
         };
+        if !losses.is_lossless() && !accepted {
+            return lossy(Conversion::Open(path), &losses);
+        }
+        notes.extend(losses.findings.iter().map(ToString::to_string));
         if let Some(parent) = path.parent() {
             self.directory = parent.to_owned();
         }
@@ -322,7 +340,8 @@ impl PlanFiles {
         // The journal is rewritten without the part that was cut short.
         let mut journal = journal;
         let is_behind = journal.as_mut().is_some_and(|journal| journal.rewrite(&kept).is_err());
-        let file = OpenFile { path: path.clone(), seen, reported: false, kept, journal, is_behind };
+        let accepted = Vec::new();
+        let file = OpenFile { path: path.clone(), seen, reported: false, kept, journal, is_behind, accepted };
         self.open.insert(id, file);
         Opened { id, file: path, history, notes, recovered: false }
     }
@@ -331,9 +350,8 @@ impl PlanFiles {
         &mut self,
         id: PlanId,
         path: PathBuf,
-        document: PlanDocument,
-        revision: usize,
-        replace: bool,
+        (document, revision): (PlanDocument, usize),
+        consent: Consent,
     ) -> Vec<FileReply> {
         let Some(file) = self.open.get_mut(&id) else {
             return vec![FileReply::Failed("This plan is no longer open.".to_owned())];
@@ -342,13 +360,23 @@ impl PlanFiles {
         // The file is read again just before it is replaced.
         let there = Content::of(&path);
         let is_known = is_own && there.is_known_as(&file.seen);
-        if there.is_there() && !is_known && !replace {
+        if there.is_there() && !is_known && !consent.replace {
             return vec![FileReply::Occupied { id, path, changed: is_own }];
         }
-        let (lost, seen) = match on_disk::write(&path, document) {
+        let written = match on_disk::converted(&path, document) {
             Ok(written) => written,
             Err(sentence) => return vec![FileReply::Failed(sentence)],
         };
+        let lost: Vec<String> = written.losses.findings.iter().map(ToString::to_string).collect();
+        if !written.losses.is_lossless() && !consent.losses && file.accepted != lost {
+            let replace = consent.replace;
+            return vec![lossy(Conversion::Save { id, path, replace }, &written.losses)];
+        }
+        if let Err(sentence) = on_disk::write(&path, &written.contents) {
+            return vec![FileReply::Failed(sentence)];
+        }
+        file.accepted.clone_from(&lost);
+        let seen = Content::Bytes(written.contents);
         file.seen = seen;
         file.reported = false;
         file.path = Some(path.clone());
@@ -402,6 +430,12 @@ impl PlanFiles {
         }
         changed
     }
+}
+
+/// Returns the reply that asks the user to accept differences.
+fn lossy(conversion: Conversion, losses: &LossReport) -> FileReply {
+    let lines = losses.findings.iter().map(ToString::to_string).collect();
+    FileReply::Losses(Box::new(ConversionLosses { conversion, lines, summary: losses.counts() }))
 }
 
 /// Returns notes about a journal that lost at most its last edit.

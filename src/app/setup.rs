@@ -149,7 +149,7 @@ pub(super) fn start_flight(vehicle: Vehicle, options: &FlightOptions) -> Result<
 /// Refuses a plan that no craft flies with any settings, so that nobody waits for it.
 pub(super) fn refuse_unflyable(plan: &PlanFile) -> Result<(), AppError> {
     check_plan(&plan.plan).map_err(|fault| {
-        plan.notes.iter().for_each(|note| error::tell(&note.to_string()));
+        plan.notices().iter().for_each(|notice| error::tell(notice));
         AppError::input(format!("{}: {}", plan.name, Finding::Fault(fault)))
     })
 }

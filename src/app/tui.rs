@@ -68,7 +68,7 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
             BuiltinPlan::find(DEMO).ok_or_else(|| AppError::internal("the demo plan is missing"))?,
         ))?,
     };
-    let mut notices: Vec<String> = plan.notes.iter().map(ToString::to_string).collect();
+    let mut notices = plan.notices();
     let mut store = setup::open_store(&args.flight)?;
     notices.extend(setup::storage_notice(&store));
     let beside =

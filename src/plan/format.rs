@@ -60,6 +60,14 @@ pub struct PlanFile {
     pub losses: LossReport,
 }
 
+impl PlanFile {
+    /// Returns sentences about the skipped parts of the file and the differences between it and this plan.
+    pub fn notices(&self) -> Vec<String> {
+        let differences = self.losses.findings.iter().map(ToString::to_string);
+        self.notes.iter().map(ToString::to_string).chain(differences).collect()
+    }
+}
+
 /// A written file and its differences from the plan.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Written {

@@ -21,12 +21,12 @@ pub(super) mod settings_in_force;
 pub(super) use browser::BrowserKey;
 pub use browser::{Browser, Purpose};
 pub use column::Column;
-pub use files::{Entry, FileReply, FileRequest, Listing, Opened};
+pub use files::{Conversion, ConversionLosses, Entry, FileReply, FileRequest, Listing, Opened};
 pub(super) use form::FormKey;
 pub use form::{Form, FormField, FormKind};
 use form_edits::GeneratorFoot;
 pub use open_plan::{OpenPlan, PlanId};
-pub use popup::EditorPopup;
+pub use popup::{EditorPopup, LossList};
 pub use question::Question;
 
 use super::message::Effect;

@@ -8,7 +8,7 @@ use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 use super::app_state::AppState;
 use super::command;
-use super::editor::{EditorPopup, OpenPlan, Question};
+use super::editor::{ConversionLosses, EditorPopup, OpenPlan, Question};
 use super::message::{Effect, Msg};
 use super::permission;
 use super::popup::Popup;
@@ -38,6 +38,7 @@ pub(super) fn question(state: &AppState) -> Option<Vec<String>> {
         Some(EditorPopup::Form(open)) => return Some(form::question(state, open)),
         Some(EditorPopup::Browser(browser)) => return file::question(browser),
         Some(EditorPopup::Question(question)) => return Some(decision(state, question)),
+        Some(EditorPopup::Losses(open)) => return Some(differences(&open.losses)),
         None => {}
     }
     match state.popups.last()? {
@@ -62,6 +63,17 @@ pub(super) fn question(state: &AppState) -> Option<Vec<String>> {
     }
 }
 
+fn differences(losses: &ConversionLosses) -> Vec<String> {
+    let ConversionLosses { conversion, lines, summary } = losses;
+    let title = format!("{}: {summary}.", conversion.title());
+    let question = format!("{} {}.", conversion.question(), yes_or_no(losses));
+    [title].into_iter().chain(lines.iter().cloned()).chain([question]).collect()
+}
+
+fn yes_or_no(losses: &ConversionLosses) -> String {
+    format!("y {}, n leave it", losses.conversion.action())
+}
+
 /// Handles a line as the answer to the question.
 ///
 /// # Errors
@@ -83,6 +95,14 @@ pub(super) fn answer(state: &mut AppState, line: &str) -> Result<Answered, Strin
                 Some((key, _)) => *key,
                 None if line.is_empty() => 'n',
                 None => return Err(format!("Answer {}.", choices(question))),
+            };
+            return Ok(press(state, KeyCode::Char(key)).into());
+        }
+        Some(EditorPopup::Losses(open)) => {
+            let key = match line {
+                "y" | "yes" => 'y',
+                "" | "n" | "no" => 'n',
+                _ => return Err(format!("Answer {}.", yes_or_no(&open.losses))),
             };
             return Ok(press(state, KeyCode::Char(key)).into());
         }

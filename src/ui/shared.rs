@@ -148,6 +148,11 @@ impl Shared {
         Vec::new()
     }
 
+    /// Adds a line to the log only.
+    pub(super) fn log_only(&mut self, severity: Severity, text: impl Into<String>) {
+        self.log.push(self.view.vehicle.time, severity, text.into());
+    }
+
     /// Reports a loss in the log, and on the screen until Esc clears it.
     pub(super) fn pin(&mut self, text: String) {
         self.log.push(self.view.vehicle.time, Severity::Fault, text.clone());

@@ -1,7 +1,7 @@
 //! The plan editor by keys, mouse and paste: messages in, screen and effects out.
 
 use betadeck::plan::{Altitude, FlightPlan, Seconds, WaypointType};
-use betadeck::ui::editor::{Entry, FileReply, FileRequest, Listing};
+use betadeck::ui::editor::{Conversion, ConversionLosses, Entry, FileReply, FileRequest, Listing};
 use betadeck::ui::{Effect, Msg, update};
 use crossterm::event::{KeyCode, KeyModifiers, MouseEventKind};
 
@@ -214,6 +214,32 @@ fn a_new_plan_is_saved_under_a_name_and_nothing_is_replaced_unasked() {
 }
 
 #[test]
+fn a_file_that_cannot_hold_the_plan_is_written_after_the_losses_were_read() {
+    let mut state = state((80, 24));
+    let FileRequest::Save { id, .. } = save_of(keys(&mut state, "2 + S down enter")) else { unreachable!() };
+    let lines: Vec<String> =
+        (0..40).map(|n| format!("lost     WP {n} pattern: FIGURE8 → HOLD: none")).collect();
+    let path: std::path::PathBuf = "/plans/a.mission".into();
+    let conversion = Conversion::Save { id, path: path.clone(), replace: true };
+    let losses = ConversionLosses { conversion, lines, summary: "40 lost".to_owned() };
+    update(&mut state, Msg::Files(FileReply::Losses(Box::new(losses.clone()))));
+    let seen = screen(&state);
+    assert!(seen.contains("Save a.mission? 40 lost.") && seen.contains("WP 0 pattern"), "{seen}");
+    keys(&mut state, "down down");
+    let seen = screen(&state);
+    assert!(!seen.contains("WP 1 pattern") && seen.contains("WP 2 pattern"), "{seen}");
+    assert!(keys(&mut state, "n").is_empty());
+    update(&mut state, Msg::Files(FileReply::Losses(Box::new(losses.clone()))));
+    let asked = save_of(keys(&mut state, "y"));
+    assert!(matches!(asked, FileRequest::Save { replace: true, accepted: true, .. }), "{asked:?}");
+    let open = ConversionLosses { conversion: Conversion::Open(path), ..losses };
+    update(&mut state, Msg::Files(FileReply::Losses(Box::new(open))));
+    assert!(screen(&state).contains("Open a.mission? 40 lost."));
+    let effects = keys(&mut state, "enter");
+    assert!(matches!(&effects[..], [Effect::Files(FileRequest::Open { accepted: true, .. })]), "{effects:?}");
+}
+
+#[test]
 fn quitting_asks_for_every_unsaved_plan() {
     let mut state = state((80, 24));
     keys(&mut state, "2 + n i");
@@ -346,7 +372,10 @@ fn plans_are_opened_and_saved_by_name() {
         }
         requests(keys(&mut state, "enter"))
     };
-    assert_eq!(line("open plans/orbit.toml"), [FileRequest::Open("plans/orbit.toml".into())]);
+    assert_eq!(
+        line("open plans/orbit.toml"),
+        [FileRequest::Open { path: "plans/orbit.toml".into(), accepted: false }]
+    );
     assert!(
         matches!(&line("save /tmp/a.txt")[..], [FileRequest::Save { path, .. }] if path.ends_with("a.txt"))
     );
@@ -464,7 +493,7 @@ fn text_is_pasted_into_the_fields_of_forms_and_of_the_file_browser() {
     keys(&mut state, "2 o");
     update(&mut state, Msg::Paste("/plans/mine.toml\n".to_owned()));
     let effects = keys(&mut state, "enter");
-    let asked = |effect: &Effect| matches!(effect, Effect::Files(FileRequest::Open(path)) if path.ends_with("mine.toml"));
+    let asked = |effect: &Effect| matches!(effect, Effect::Files(FileRequest::Open { path, .. }) if path.ends_with("mine.toml"));
     assert!(effects.iter().any(asked), "{effects:?}");
     keys(&mut state, "E");
     update(&mut state, Msg::Paste(" of mine\nand more".to_owned()));

@@ -48,7 +48,7 @@ impl Flights {
             compared.iter().flat_map(|one| &one.firmware).any(|firmware| firmware.executable.is_some());
         let plan = setup::read_plan(&args.plan)?;
         setup::refuse_unflyable(&plan)?;
-        notices.extend(plan.notes.iter().map(ToString::to_string));
+        notices.extend(plan.notices());
         let mut setup =
             setup::from_args(&args.flight, PhysicsSource::Embedded, plan.clone(), Configuration::default())?;
         // An executable starts without a configuration and gets the guide's settings, so the embedded one gets them,

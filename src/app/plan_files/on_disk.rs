@@ -6,7 +6,8 @@ use std::path::Path;
 use crate::app::{input_file, output_file};
 use crate::flight::setup::check_setting;
 use crate::plan::edit::PlanDocument;
-use crate::plan::format::{self, Format, PlanFile, ReadOptions};
+use crate::plan::format::loss::LossReport;
+use crate::plan::format::{self, Format, PlanFile, ReadOptions, Written};
 use crate::storage::link_target;
 use crate::ui::editor::{Entry, Listing};
 
@@ -55,18 +56,31 @@ impl Content {
     /// Returns `true` if it is this document, written here or by another program.
     pub(super) fn is_document(&self, path: &Path, document: &PlanDocument) -> bool {
         let Self::Bytes(bytes) = self else { return false };
-        self.is_written(path, document) || parse(path, bytes).is_ok_and(|(there, _)| there == *document)
+        self.is_written(path, document)
+            || parse(path, bytes).is_ok_and(|there| PlanDocument::from(there) == *document)
     }
 }
 
-/// Reads a plan. Returns also sentences about the skipped parts, and the contents.
-pub(super) fn read(path: &Path) -> Result<(PlanDocument, Vec<String>, Content), String> {
-    let bytes = input_file::read_plan(path).map_err(|error| format!("{error}."))?;
-    let (document, notes) = parse(path, &bytes)?;
-    Ok((document, notes, Content::Bytes(bytes)))
+/// A plan that was read from its file.
+#[derive(Debug)]
+pub(super) struct Read {
+    pub(super) document: PlanDocument,
+    /// Sentences about the skipped parts.
+    pub(super) notes: Vec<String>,
+    pub(super) losses: LossReport,
+    pub(super) content: Content,
 }
 
-fn parse(path: &Path, contents: &[u8]) -> Result<(PlanDocument, Vec<String>), String> {
+/// Reads a plan.
+pub(super) fn read(path: &Path) -> Result<Read, String> {
+    let contents = input_file::read_plan(path).map_err(|error| format!("{error}."))?;
+    let mut file = parse(path, &contents)?;
+    let notes = std::mem::take(&mut file.notes).iter().map(ToString::to_string).collect();
+    let losses = std::mem::take(&mut file.losses);
+    Ok(Read { document: file.into(), notes, losses, content: Content::Bytes(contents) })
+}
+
+fn parse(path: &Path, contents: &[u8]) -> Result<PlanFile, String> {
     let name = path.display().to_string();
     let (format, finding) = Format::detect(&name, contents);
     let options = ReadOptions { check: check_setting, ..ReadOptions::default() };
@@ -77,25 +91,27 @@ fn parse(path: &Path, contents: &[u8]) -> Result<(PlanDocument, Vec<String>), St
         };
         errors.first().map_or_else(|| format!("{name} is not a plan."), |error| format!("{error}{more}"))
     })?;
-    let skipped = std::mem::take(&mut file.notes);
-    let found = finding.iter().chain(&file.losses.findings);
-    let notes = skipped.iter().map(ToString::to_string).chain(found.map(ToString::to_string)).collect();
-    Ok((file.into(), notes))
+    file.losses.findings.splice(0..0, finding);
+    Ok(file)
 }
 
-/// Writes a plan and replaces the file as a whole. Returns sentences about the parts that the format cannot hold, and
-/// the written contents.
-pub(super) fn write(path: &Path, document: PlanDocument) -> Result<(Vec<String>, Content), String> {
-    let name = path.display().to_string();
-    let Some(format) = Format::from_file_name(&name) else {
-        return Err(format!("The ending of {name} does not give the format: name it {}.", Format::endings()));
-    };
+/// Returns the file of a plan in the format of its ending.
+pub(super) fn converted(path: &Path, document: PlanDocument) -> Result<Written, String> {
+    let name = path.display();
+    let format = Format::from_file_name(&path.to_string_lossy()).ok_or_else(|| {
+        format!("The ending of {name} does not give the format: name it {}.", Format::endings())
+    })?;
     let written = format::write(&PlanFile::from(document), format);
     if written.is_refused() {
-        let why =
-            written.losses.findings.iter().map(|finding| finding.why.as_str()).collect::<Vec<_>>().join("; ");
-        return Err(format!("{name} cannot hold this plan: {why}."));
+        let why: Vec<&str> = written.losses.findings.iter().map(|finding| finding.why.as_str()).collect();
+        return Err(format!("{name} cannot hold this plan: {}.", why.join("; ")));
     }
+    Ok(written)
+}
+
+/// Replaces a file as a whole.
+pub(super) fn write(path: &Path, contents: &[u8]) -> Result<(), String> {
+    let name = path.display();
     let target = link_target(path);
     // The permissions of the directory would allow a replacement.
     if target.metadata().is_ok_and(|there| there.permissions().readonly()) {
@@ -103,10 +119,7 @@ pub(super) fn write(path: &Path, document: PlanDocument) -> Result<(Vec<String>,
             "{name} is write-protected: save under another name, or allow it with chmod u+w."
         ));
     }
-    output_file::replace(&target, &written.contents)
-        .map_err(|error| format!("Cannot write {name}: {error}."))?;
-    let lost = written.losses.findings.iter().map(ToString::to_string).collect();
-    Ok((lost, Content::Bytes(written.contents)))
+    output_file::replace(&target, contents).map_err(|error| format!("Cannot write {name}: {error}."))
 }
 
 /// Returns the directories and plan files of a directory.

@@ -20,7 +20,8 @@ fn edit(files: &mut PlanFiles, opened: &mut Opened, after: PlanDocument) {
 fn save(files: &mut PlanFiles, opened: &mut Opened, path: &Path, replace: bool) -> FileReply {
     let document = Box::new(opened.history.document().clone());
     let revision = opened.history.at();
-    let request = FileRequest::Save { id: opened.id, path: path.to_owned(), document, revision, replace };
+    let (id, path) = (opened.id, path.to_owned());
+    let request = FileRequest::Save { id, path, document, revision, replace, accepted: false };
     let reply = files.carry_out(request).remove(0);
     if matches!(reply, FileReply::Saved { .. }) {
         opened.history.mark_saved();
@@ -29,7 +30,7 @@ fn save(files: &mut PlanFiles, opened: &mut Opened, path: &Path, replace: bool) 
 }
 
 fn open(files: &mut PlanFiles, path: &Path) -> Opened {
-    match files.carry_out(FileRequest::Open(path.to_owned())).remove(0) {
+    match files.carry_out(FileRequest::Open { path: path.to_owned(), accepted: false }).remove(0) {
         FileReply::Opened(opened) => *opened,
         other => panic!("{other:?}"),
     }
@@ -53,6 +54,35 @@ fn edits_survive_a_program_that_is_gone_and_undo_reaches_back_beyond_it() {
     again.history.undo();
     assert_eq!(again.history.document(), &document(2));
     assert!(files.recovered().is_empty(), "it is open already");
+}
+
+#[test]
+fn a_lossy_save_asks_once_and_again_when_more_is_lost() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("plan.txt");
+    let mut files = PlanFiles::new(Some(directory.path()));
+    let with_home = PlanDocument { home: "40,-79,300".parse().ok(), ..document(1) };
+    let mut opened = files.start_with(None, with_home.clone());
+    let asked = save(&mut files, &mut opened, &path, false);
+    let FileReply::Losses(losses) = asked else { panic!("{asked:?}") };
+    assert_eq!((losses.lines.len(), losses.summary.as_str()), (1, "1 lost"));
+    assert!(!path.exists(), "nothing is written before the answer");
+    let accept = |document: &PlanDocument| FileRequest::Save {
+        id: opened.id,
+        path: path.clone(),
+        document: Box::new(document.clone()),
+        revision: 0,
+        replace: false,
+        accepted: true,
+    };
+    assert!(matches!(files.carry_out(accept(&with_home)).remove(0), FileReply::Saved { .. }));
+    edit(&mut files, &mut opened, PlanDocument { plan: document(2).plan, ..with_home.clone() });
+    assert!(
+        matches!(save(&mut files, &mut opened, &path, false), FileReply::Saved { .. }),
+        "the same losses"
+    );
+    edit(&mut files, &mut opened, PlanDocument { settings: vec!["a = 1".to_owned()], ..with_home });
+    assert!(matches!(save(&mut files, &mut opened, &path, false), FileReply::Losses(_)), "more is lost");
 }
 
 #[test]
@@ -124,7 +154,9 @@ fn what_is_wrong_is_one_sentence() {
     let bad = directory.path().join("bad.toml");
     std::fs::write(&bad, "name = 3\n[[waypoint]]\ntype = \"LAMD\"\n").unwrap();
     for path in [bad, directory.path().join("missing.toml"), directory.path().to_owned()] {
-        let FileReply::Failed(sentence) = files.carry_out(FileRequest::Open(path)).remove(0) else {
+        let FileReply::Failed(sentence) =
+            files.carry_out(FileRequest::Open { path, accepted: false }).remove(0)
+        else {
             panic!()
         };
         assert!(!sentence.is_empty());
@@ -292,7 +324,7 @@ fn a_change_of_the_same_length_within_a_clock_tick_is_seen() {
     assert_eq!(files.changed(), [opened.id]);
     let reply = save(&mut files, &mut opened, &path, false);
     assert!(matches!(reply, FileReply::Occupied { changed: true, .. }), "{reply:?}");
-    assert_eq!(on_disk::read(&path).unwrap().0, document(9), "theirs is still there");
+    assert_eq!(on_disk::read(&path).unwrap().document, document(9), "theirs is still there");
     let mut again = open(&mut files, &path);
     assert_eq!(again.history.document(), &document(9));
     again.history.undo();

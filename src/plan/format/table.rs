@@ -36,8 +36,8 @@ pub fn table(file: &PlanFile, home: LatLon, assumptions: &Assumptions) -> String
     for finding in review(&file.plan, home, assumptions) {
         text.push_str(&format!("{finding}\n"));
     }
-    for note in &file.notes {
-        text.push_str(&format!("{note}\n"));
+    for notice in file.notices() {
+        text.push_str(&format!("{notice}\n"));
     }
     text
 }

@@ -9,7 +9,7 @@ pub(super) fn open(_: &mut Shared, _: &str, file: &str) -> Result<Vec<Request>, 
     if file.is_empty() {
         return Ok(vec![Request::Act(Action::Edit(EditAction::Open))]);
     }
-    Ok(vec![Effect::Files(FileRequest::Open(file.into())).into()])
+    Ok(vec![Effect::Files(FileRequest::Open { path: file.into(), accepted: false }).into()])
 }
 
 pub(super) fn save(state: &mut Shared, _: &str, file: &str) -> Result<Vec<Request>, String> {
@@ -17,7 +17,7 @@ pub(super) fn save(state: &mut Shared, _: &str, file: &str) -> Result<Vec<Reques
         return Ok(vec![Request::Act(Action::Edit(EditAction::Save))]);
     }
     let path = std::path::absolute(file).map_err(|error| format!("{file}: {error}."))?;
-    Ok(vec![state.editor.write(state.editor.plan().id(), path, false).into()])
+    Ok(vec![state.editor.write(state.editor.plan().id(), path, false, false).into()])
 }
 
 pub(super) fn scenario(state: &mut Shared, _: &str, file: &str) -> Result<Vec<Request>, String> {

@@ -4,6 +4,7 @@ use crossterm::event::{KeyCode, KeyEvent};
 use nalgebra::Vector2;
 
 use crate::geo::{GroundPlane, LatLon, distance_bearing};
+use crate::plan::differences::differences;
 use crate::plan::edit::PlanDocument;
 use crate::plan::{Altitude, FlightPlan, HoldPattern, Seconds, Waypoint, WaypointType};
 use crate::ui::action::{Action, EditAction};
@@ -207,7 +208,7 @@ pub(in crate::ui) fn open_browser(state: &mut Shared) -> Vec<Effect> {
 pub(in crate::ui) fn save(state: &mut Shared) -> Vec<Effect> {
     let plan = state.editor.plan();
     match plan.file().map(std::path::Path::to_owned) {
-        Some(path) => vec![state.editor.write(state.editor.plan().id(), path, false)],
+        Some(path) => vec![state.editor.write(state.editor.plan().id(), path, false, false)],
         None => save_as(state),
     }
 }
@@ -286,20 +287,24 @@ pub(in crate::ui) fn downloaded(
 
 /// Reports that somebody else changed the plan in the craft: the App, a script, a line of the CLI.
 pub(in crate::ui) fn craft_plan_changed(state: &mut Shared, before: &FlightPlan, now: &FlightPlan) {
-    let (a, b) = (&before.waypoints, &now.waypoints);
-    let mut differs: Vec<String> = std::iter::zip(a, b)
-        .enumerate()
-        .filter(|(_, (a, b))| a != b)
-        .map(|(index, _)| format!("WP{index}"))
-        .collect();
-    match b.len() as i64 - a.len() as i64 {
+    let differs = differences(before, now);
+    // A client inserts the waypoints of a plan one after another, so a list of these says nothing.
+    for difference in differs.iter().filter(|difference| difference.field != "waypoint") {
+        state.log_only(Severity::Warn, format!("Changed in the craft: {difference}."));
+    }
+    let mut waypoints: Vec<usize> = differs.iter().map(|difference| difference.waypoint).collect();
+    waypoints.dedup();
+    let common = before.waypoints.len().min(now.waypoints.len());
+    let mut parts: Vec<String> =
+        waypoints.iter().filter(|&&index| index < common).map(|index| format!("WP{index}")).collect();
+    match now.waypoints.len() as i64 - before.waypoints.len() as i64 {
         0 => {}
-        more @ 1.. => differs.push(format!("{more} more")),
-        fewer => differs.push(format!("{} fewer", -fewer)),
+        more @ 1.. => parts.push(format!("{more} more")),
+        fewer => parts.push(format!("{} fewer", -fewer)),
     }
     let text = format!(
         "The plan in the craft was changed: {}. `{}` loads it into the editor.",
-        differs.join(", "),
+        parts.join(", "),
         state.key(Action::Edit(EditAction::Download))
     );
     state.notify(Severity::Warn, text);

@@ -9,7 +9,11 @@ use crate::ui::history::LineField;
 #[derive(Debug, Clone, PartialEq)]
 pub enum FileRequest {
     /// Read a plan, with the history from its journal.
-    Open(PathBuf),
+    Open {
+        path: PathBuf,
+        /// `true` if the user has accepted the differences between the file and the plan.
+        accepted: bool,
+    },
     Save {
         id: PlanId,
         path: PathBuf,
@@ -19,6 +23,8 @@ pub enum FileRequest {
         /// Replace any content of the file. Otherwise only content that this plan has read or written there is
         /// replaced.
         replace: bool,
+        /// `true` if the user has accepted the differences between the plan and the file.
+        accepted: bool,
     },
     /// List a directory for the file browser; `None` for the one in which a plan was opened last.
     List(Option<PathBuf>),
@@ -41,13 +47,15 @@ pub enum FileRequest {
 pub enum FileReply {
     /// A plan was read.
     Opened(Box<Opened>),
+    /// The file and the plan would differ, so nothing was done.
+    Losses(Box<ConversionLosses>),
     /// A plan was written.
     Saved {
         id: PlanId,
         path: PathBuf,
         /// The written revision.
         revision: usize,
-        /// The parts that the format could not carry, one sentence each.
+        /// The differences between the plan and the file, one line each.
         lost: Vec<String>,
     },
     /// The file has other content, so it was not written.
@@ -68,6 +76,52 @@ pub enum FileReply {
     KeptAgain,
     /// Edits of an earlier run could not be read. One or two sentences name them and where they are kept.
     EditsLost(String),
+}
+
+/// The differences between a file and a plan, before the user accepts them.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ConversionLosses {
+    /// The request that is sent again with `accepted`.
+    pub conversion: Conversion,
+    /// One line for each difference.
+    pub lines: Vec<String>,
+    /// The numbers of differences.
+    pub summary: String,
+}
+
+/// A conversion between a file and a plan.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Conversion {
+    Open(PathBuf),
+    Save { id: PlanId, path: PathBuf, replace: bool },
+}
+
+impl Conversion {
+    /// Returns the heading of the list of differences.
+    pub(in crate::ui) fn title(&self) -> &'static str {
+        match self {
+            Self::Open(_) => "The plan would differ from the file",
+            Self::Save { .. } => "The file would differ from the plan",
+        }
+    }
+
+    /// Returns the question with the name of the file.
+    pub(in crate::ui) fn question(&self) -> String {
+        let (verb, path) = match self {
+            Self::Open(path) => ("Open", path),
+            Self::Save { path, .. } => ("Save", path),
+        };
+        let name = path.file_name().unwrap_or(path.as_os_str());
+        format!("{verb} {}?", name.to_string_lossy())
+    }
+
+    /// Returns the effect of the answer yes.
+    pub(in crate::ui) fn action(&self) -> &'static str {
+        match self {
+            Self::Open(_) => "open it",
+            Self::Save { .. } => "save it",
+        }
+    }
 }
 
 /// A plan that was read.

@@ -25,7 +25,7 @@ impl Editor {
     }
 
     /// Returns the request to write a plan to a file.
-    pub(in crate::ui) fn write(&self, id: PlanId, path: PathBuf, replace: bool) -> Effect {
+    pub(in crate::ui) fn write(&self, id: PlanId, path: PathBuf, replace: bool, accepted: bool) -> Effect {
         let plan = self.plan_of(id).unwrap_or_else(|| self.plan());
         Effect::Files(FileRequest::Save {
             id,
@@ -33,6 +33,7 @@ impl Editor {
             document: Box::new(plan.document().clone()),
             revision: plan.history().at(),
             replace,
+            accepted,
         })
     }
 

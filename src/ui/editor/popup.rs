@@ -1,6 +1,7 @@
 //! The popups of the editor.
 
 use super::browser::Browser;
+use super::files::ConversionLosses;
 use super::form::{Form, FormKind};
 use super::question::Question;
 
@@ -10,6 +11,15 @@ pub enum EditorPopup {
     Form(Form),
     Browser(Browser),
     Question(Question),
+    Losses(LossList),
+}
+
+/// The differences between a file and a plan, which the user accepts or not.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LossList {
+    pub losses: ConversionLosses,
+    /// The first shown line.
+    pub scroll: usize,
 }
 
 impl EditorPopup {
@@ -27,7 +37,7 @@ impl EditorPopup {
                 browser.at = None;
                 true
             }
-            Self::Question(_) => false,
+            Self::Question(_) | Self::Losses(_) => false,
         }
     }
 }

@@ -5,7 +5,9 @@ use ratatui::layout::{Position, Rect};
 use ratatui::text::Line;
 
 use super::{line, row, span};
-use crate::ui::editor::{Browser, EditorPopup, Form, FormField, FormKind, OpenPlan, Purpose, Question};
+use crate::ui::editor::{
+    Browser, ConversionLosses, EditorPopup, Form, FormField, FormKind, LossList, OpenPlan, Purpose, Question,
+};
 use crate::ui::popup::frame::popup;
 use crate::ui::shared::Shared;
 use crate::ui::text_wrap::wrapped;
@@ -25,6 +27,10 @@ pub(crate) fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Po
         EditorPopup::Browser(open) => browser(state, open, area, buffer),
         EditorPopup::Question(asked) => {
             question(state, asked, area, buffer);
+            None
+        }
+        EditorPopup::Losses(list) => {
+            losses(state, list, area, buffer);
             None
         }
     }
@@ -99,7 +105,7 @@ fn browser(state: &Shared, browser: &Browser, area: Rect, buffer: &mut Buffer) -
     let visible = browser.visible();
     let first = browser.at.unwrap_or(0).saturating_sub(rows.saturating_sub(1));
     if visible.is_empty() {
-        row(buffer, inside, 2, theme, Role::Dim, " No plan (.toml, .txt) and no directory here.");
+        row(buffer, inside, 2, theme, Role::Dim, " No plan and no directory here.");
     }
     for (at, entry) in visible.iter().enumerate().skip(first).take(rows) {
         let here = browser.at == Some(at);
@@ -136,6 +142,27 @@ fn question(state: &Shared, question: &Question, area: Rect, buffer: &mut Buffer
         question.answers().iter().map(|(key, what)| (key.to_string(), *what)).collect();
     let answers: Vec<(&str, &str)> = answers.iter().map(|(key, what)| (key.as_str(), *what)).collect();
     line(buffer, inside, lines.len() as u16 + 1, &keys(state, &answers));
+}
+
+fn losses(state: &Shared, list: &LossList, area: Rect, buffer: &mut Buffer) {
+    let theme = &state.theme;
+    let ConversionLosses { conversion, lines, summary } = &list.losses;
+    let width = area.width.saturating_sub(4).min(100);
+    let columns = usize::from(width.saturating_sub(4));
+    let lines: Vec<String> = lines.iter().skip(list.scroll).flat_map(|line| wrapped(line, columns)).collect();
+    let most = area.height.saturating_sub(4).saturating_sub(5).max(1);
+    let shown = (lines.len() as u16).min(most);
+    let inside = popup(theme, area, (width, shown + 4), conversion.title(), buffer);
+    let head = format!(" {} {summary}.", conversion.question());
+    row(buffer, inside, 0, theme, Role::Warn, &head);
+    for (at, line) in lines.iter().take(usize::from(shown)).enumerate() {
+        row(buffer, inside, 2 + at as u16, theme, Role::Text, &format!(" {line}"));
+    }
+    let mut answers = vec![("y", conversion.action()), ("n", "leave it")];
+    if list.scroll > 0 || lines.len() > usize::from(shown) {
+        answers.push(("↑ ↓", "more"));
+    }
+    line(buffer, inside, inside.height.saturating_sub(1), &keys(state, &answers));
 }
 
 fn keys(state: &Shared, keys: &[(&str, &str)]) -> Line<'static> {

@@ -96,7 +96,7 @@ fn files_are_chosen_by_number_or_name_once_the_directory_was_read() {
         update(&mut state, Msg::Files(FileReply::Listed(listing())));
         assert_eq!(asked(&state)[..3], ["Open which plan of /plans?", "1 deep/", "2 orbit.toml"]);
         let effects = answer(&mut state, line).unwrap().effects;
-        let [Effect::Files(FileRequest::Open(path))] = &effects[..] else { panic!("{effects:?}") };
+        let [Effect::Files(FileRequest::Open { path, .. })] = &effects[..] else { panic!("{effects:?}") };
         assert_eq!(path.to_str(), Some(wanted));
         assert_eq!(question(&state), None);
     }

@@ -131,7 +131,7 @@ fn is_question(effect: &Effect) -> bool {
         | Effect::WriteScenario { .. }
         | Effect::SaveToFlash => true,
         Effect::Files(request) => {
-            matches!(request, FileRequest::Open(_) | FileRequest::Save { .. } | FileRequest::List(_))
+            matches!(request, FileRequest::Open { .. } | FileRequest::Save { .. } | FileRequest::List(_))
         }
         Effect::Forecast(job) => job.request.kind() != ForecastKind::PlanEstimate,
         Effect::Send(_) | Effect::Copy(_) | Effect::Suspend | Effect::Quit => false,

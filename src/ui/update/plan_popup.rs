@@ -7,12 +7,15 @@ use crossterm::event::{KeyCode, KeyEvent};
 use super::flight::upload_now;
 use crate::ui::action::{Action, EditAction};
 use crate::ui::editor::{
-    Browser, BrowserKey, EditorPopup, FileReply, FileRequest, Form, FormKey, PlanId, Purpose, Question,
-    actions as plan, findings,
+    Browser, BrowserKey, Conversion, EditorPopup, FileReply, FileRequest, Form, FormKey, LossList, PlanId,
+    Purpose, Question, actions as plan, findings,
 };
 use crate::ui::event_log::Severity;
 use crate::ui::message::Effect;
 use crate::ui::shared::Shared;
+
+/// The lines of differences that a page key scrolls.
+const PAGE: usize = 8;
 
 /// Handles a key while a popup of the editor is open.
 pub(super) fn key(state: &mut Shared, event: KeyEvent) -> Vec<Effect> {
@@ -20,6 +23,7 @@ pub(super) fn key(state: &mut Shared, event: KeyEvent) -> Vec<Effect> {
         Some(EditorPopup::Form(form)) => form_key(state, form, event),
         Some(EditorPopup::Browser(browser)) => browser_key(state, browser, event),
         Some(EditorPopup::Question(question)) => question_key(state, question, event),
+        Some(EditorPopup::Losses(list)) => losses_key(state, list, event),
         None => Vec::new(),
     }
 }
@@ -51,8 +55,8 @@ fn browser_key(state: &mut Shared, mut browser: Browser, event: KeyEvent) -> Vec
         }
         BrowserKey::Chosen(path) => {
             return match browser.purpose {
-                Purpose::Open => vec![Effect::Files(FileRequest::Open(path))],
-                Purpose::Save(id) => vec![state.editor.write(id, path, false)],
+                Purpose::Open => vec![Effect::Files(FileRequest::Open { path, accepted: false })],
+                Purpose::Save(id) => vec![state.editor.write(id, path, false, false)],
             };
         }
         BrowserKey::Edited | BrowserKey::List(_) => {}
@@ -75,8 +79,10 @@ fn question_key(state: &mut Shared, question: Question, event: KeyEvent) -> Vec<
             state.editor.quitting = false;
             Vec::new()
         }
-        (Question::Replace { id, path, .. }, 'y') => vec![state.editor.write(id, path, true)],
-        (Question::Replace { path, changed: true, .. }, 'r') => vec![Effect::Files(FileRequest::Open(path))],
+        (Question::Replace { id, path, .. }, 'y') => vec![state.editor.write(id, path, true, false)],
+        (Question::Replace { path, changed: true, .. }, 'r') => {
+            vec![Effect::Files(FileRequest::Open { path, accepted: false })]
+        }
         (Question::Replace { .. }, 'o') => plan::save_as(state),
         (Question::MovesTarget { id, .. }, 'y') => {
             state.editor.show_plan(id);
@@ -103,6 +109,29 @@ fn question_key(state: &mut Shared, question: Question, event: KeyEvent) -> Vec<
             Vec::new()
         }
     }
+}
+
+fn losses_key(state: &mut Shared, mut list: LossList, event: KeyEvent) -> Vec<Effect> {
+    let last = list.losses.lines.len().saturating_sub(1);
+    match event.code {
+        KeyCode::Enter | KeyCode::Char('y' | 'Y') => {
+            return vec![match list.losses.conversion {
+                Conversion::Open(path) => Effect::Files(FileRequest::Open { path, accepted: true }),
+                Conversion::Save { id, path, replace } => state.editor.write(id, path, replace, true),
+            }];
+        }
+        KeyCode::Esc | KeyCode::Char('n' | 'N') => {
+            state.editor.quitting = false;
+            return Vec::new();
+        }
+        KeyCode::Down | KeyCode::Char('j') => list.scroll = (list.scroll + 1).min(last),
+        KeyCode::Up | KeyCode::Char('k') => list.scroll = list.scroll.saturating_sub(1),
+        KeyCode::PageDown => list.scroll = (list.scroll + PAGE).min(last),
+        KeyCode::PageUp => list.scroll = list.scroll.saturating_sub(PAGE),
+        _ => {}
+    }
+    state.editor.popup = Some(EditorPopup::Losses(list));
+    Vec::new()
 }
 
 fn save_plan(state: &mut Shared, id: PlanId) -> Vec<Effect> {
@@ -144,13 +173,17 @@ pub(super) fn answered(state: &mut Shared, reply: FileReply) -> Vec<Effect> {
                 state.notify(Severity::Good, reported);
             }
         }
+        FileReply::Losses(losses) => {
+            state.editor.popup = Some(EditorPopup::Losses(LossList { losses: *losses, scroll: 0 }));
+        }
         FileReply::Saved { id, path, revision, lost } => {
             let name = shown(&path);
             state.editor.saved(id, path, revision);
-            state.notify(Severity::Good, format!("Saved {name}."));
-            for sentence in lost {
-                state.notify(Severity::Warn, sentence);
+            let differs = if lost.is_empty() { "" } else { " The log has its differences." };
+            for line in lost {
+                state.log_only(Severity::Warn, line);
             }
+            state.notify(Severity::Good, format!("Saved {name}.{differs}"));
             if std::mem::take(&mut state.editor.quitting) {
                 return quit(state);
             }

@@ -1,0 +1,106 @@
+//! The differences between two plans, waypoint by waypoint and field by field.
+
+use std::fmt;
+
+use super::format::WaypointRecord;
+use super::{FlightPlan, HoldPattern};
+use crate::geo::Degrees7;
+
+/// A difference of one field. `Display` gives `WP3 altitude: 50 m → 15.24 m`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Difference {
+    /// The waypoint, from 0.
+    pub waypoint: usize,
+    /// The field; `waypoint` if the other plan does not have it.
+    pub field: &'static str,
+    pub from: String,
+    pub to: String,
+}
+
+impl fmt::Display for Difference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { waypoint, field, from, to } = self;
+        write!(f, "WP{waypoint} {field}: {from} → {to}")
+    }
+}
+
+/// Returns the differences of the plan `to` from the plan `from`, in the order of the waypoints.
+pub fn differences(from: &FlightPlan, to: &FlightPlan) -> Vec<Difference> {
+    let (from, to) = (from.records(), to.records());
+    let of_both = std::iter::zip(&from, &to).enumerate();
+    let mut found: Vec<Difference> = of_both.flat_map(|(index, (a, b))| of_waypoint(index, a, b)).collect();
+    let field = "waypoint";
+    found.extend(from.iter().enumerate().skip(to.len()).map(|(waypoint, record)| Difference {
+        waypoint,
+        field,
+        from: record.kind.to_string(),
+        to: "none".to_owned(),
+    }));
+    found.extend(to.iter().enumerate().skip(from.len()).map(|(waypoint, record)| Difference {
+        waypoint,
+        field,
+        from: "none".to_owned(),
+        to: record.kind.to_string(),
+    }));
+    found
+}
+
+fn of_waypoint(waypoint: usize, a: &WaypointRecord, b: &WaypointRecord) -> Vec<Difference> {
+    let fields: [(&'static str, fn(&WaypointRecord) -> String); 6] = [
+        ("type", |record| record.kind.to_string()),
+        ("position", |record| {
+            format!("{},{}", Degrees7(record.position.lat_e7), Degrees7(record.position.lon_e7))
+        }),
+        ("altitude", |record| format!("{} m", f64::from(record.alt_cm) / 100.0)),
+        ("speed", |record| match (record.kind.has_yaw_rate(), record.speed) {
+            (true, rate) => format!("{rate} deg/s"),
+            (false, 0) => "default".to_owned(),
+            (false, speed) => format!("{} m/s", f64::from(speed) / 100.0),
+        }),
+        ("duration", |record| format!("{} s", f64::from(record.duration_ds) / 10.0)),
+        ("pattern", |record| match record.pattern {
+            HoldPattern::None => "none".to_owned(),
+            pattern => pattern.to_string(),
+        }),
+    ];
+    fields
+        .into_iter()
+        .map(|(field, value)| Difference { waypoint, field, from: value(a), to: value(b) })
+        .filter(|difference| difference.from != difference.to)
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::format::{Format, parse};
+    use super::*;
+
+    fn plan(lines: &str) -> FlightPlan {
+        parse("p.txt", lines, Format::CliText).unwrap().plan
+    }
+
+    fn lines(from: &FlightPlan, to: &FlightPlan) -> Vec<String> {
+        differences(from, to).iter().map(ToString::to_string).collect()
+    }
+
+    #[test]
+    fn each_field_that_differs_is_named_with_both_values() {
+        let ours = plan(
+            "waypoint insert 0 40.0 -79.0 5000 0 FLYOVER 0 NONE\n\
+             waypoint insert 1 40.0 -79.0 5000 500 HOLD 300 ORBIT",
+        );
+        let theirs = plan("waypoint insert 0 40.0000001 -79.0 4999 250 FLYBY 0 NONE");
+        assert_eq!(
+            lines(&ours, &theirs),
+            [
+                "WP0 type: FLYOVER → FLYBY",
+                "WP0 position: 40.0000000,-79.0000000 → 40.0000001,-79.0000000",
+                "WP0 altitude: 50 m → 49.99 m",
+                "WP0 speed: default → 2.5 m/s",
+                "WP1 waypoint: HOLD → none",
+            ]
+        );
+        assert_eq!(lines(&theirs, &ours).last().map(String::as_str), Some("WP1 waypoint: none → HOLD"));
+        assert_eq!(lines(&ours, &ours), [""; 0]);
+    }
+}
