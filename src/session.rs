@@ -22,7 +22,7 @@ pub mod sitl;
 
 pub use command::{Command, Seek, SessionView};
 pub use event::{EndpointAddresses, Event, SessionEvent};
-pub use fly_again::{FlownAgain, FlyAgain};
+pub use fly_again::{FlownAgain, FlyAgain, Progress};
 pub use forecaster::{ForecastJob, ForecastReply, ForecastRequest, Forecaster};
 pub use hazards::hazards;
 pub use links::{Links, MotorTargets, MotorsError};

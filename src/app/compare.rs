@@ -55,6 +55,12 @@ pub(super) fn run(args: &CompareArgs) -> Result<u8, AppError> {
     if is_alone && args.jobs.is_some_and(|jobs| jobs > 1) {
         notices.push(parallel::JOBS_HAVE_NO_EFFECT.to_owned());
     }
+    if let Some(times) = args.repeat.filter(|&times| times > 1 && !is_alone) {
+        notices.push(format!(
+            "--repeat {times} has no effect: each of these flights is the same every time; fly other seeds with --seeds \
+             1..{times}."
+        ));
+    }
     let flights = Flights::new(args, &compared, &mut notices)?;
     let seeds = jobs::seeds(args, flights.world(), &mut notices);
     let jobs = jobs::jobs(args, &compared, &seeds)?;

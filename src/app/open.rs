@@ -1,9 +1,6 @@
 //! `betadeck open`: the screen at an instant of a scenario's flight, which is flown first, by the embedded firmware or by a
 //! remote one.
 
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
-
 use super::check;
 use super::error::{self, AppError};
 use super::firmware::run::{OnEvent, Stopped, unless_interrupted};
@@ -14,7 +11,7 @@ use super::tui::{self, Screen};
 use crate::args::{DoorArgs, FlightArgs, Instant, OpenArgs, PhysicsArgs, ReviewArgs};
 use crate::fc::RemoteLink;
 use crate::scenario::{self, Air, Case, CaseFlight, Scenario};
-use crate::session::{Event, FlownAgain, FlownBefore, FlyAgain, Runner, SessionView, Subscriber};
+use crate::session::{Event, FlownAgain, FlownBefore, FlyAgain, Progress, Runner, SessionView, Subscriber};
 use crate::signals::SimTime;
 use crate::signals::fdm::FirmwareClock;
 use crate::storage::Store;
@@ -69,7 +66,7 @@ pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
         |firmware: &RemoteFirmware| firmware.executable.is_some() && firmware.clock == FirmwareClock::Sim;
     let again = firmware.filter(is_repeatable).map(|firmware| {
         let case = case.clone();
-        FlyAgain::new(move |until| fly_again(&case, &air, &firmware, until))
+        FlyAgain::new(move |until, progress| fly_again(&case, &air, &firmware, until, progress))
     });
     let show = instant(args.at, flight.trace().engaged_at, flight.vehicle().time())?;
     let name = if case.name.is_empty() {
@@ -157,18 +154,27 @@ fn fly_remote<'a>(case: &'a Case, air: &Air, firmware: &RemoteFirmware) -> Resul
     Ok(Flown { flight, timeline, recorded })
 }
 
+/// Records how far a flight has come.
+struct Reached<'p>(&'p Progress);
+
+impl Subscriber<CaseFlight<'_>> for Reached<'_> {
+    fn after_tick(&mut self, flight: &CaseFlight<'_>) {
+        self.0.reach(flight.vehicle().time());
+    }
+}
+
 /// Flies the case again with the firmware, up to an instant.
 fn fly_again(
     case: &Case,
     air: &Air,
     firmware: &RemoteFirmware,
     until: SimTime,
+    progress: &Progress,
 ) -> Result<FlownAgain, String> {
     let fly = || -> Result<FlownAgain, Stopped> {
-        let interrupted = Arc::new(AtomicBool::new(false));
-        let (mut remote, vehicle) = check::prepare(firmware, case, air, &interrupted, 0, &mut ())?;
+        let (mut remote, vehicle) = check::prepare(firmware, case, air, &progress.stopped(), 0, &mut ())?;
         let mut flight = CaseFlight::of_vehicle(case, vehicle).map_err(AppError::input)?;
-        remote.fly_until(&mut flight, until, &mut ())?;
+        remote.fly_until(&mut flight, until, &mut Reached(progress))?;
         let (link, keeps) = remote.into_parts();
         let link = link.filter(RemoteLink::is_in_steps).ok_or_else(|| {
             AppError::environment(

@@ -2,6 +2,7 @@
 
 use std::any::Any;
 use std::fmt;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, mpsc};
 
 use crate::fc::RemoteLink;
@@ -22,7 +23,26 @@ impl fmt::Debug for FlownAgain {
     }
 }
 
-type Fly = dyn Fn(SimTime) -> Result<FlownAgain, String> + Send + Sync;
+/// The progress of a flight that is flown again.
+#[derive(Debug, Default)]
+pub struct Progress {
+    reached_us: AtomicU64,
+    stopped: Arc<AtomicBool>,
+}
+
+impl Progress {
+    /// Records the instant that the flight has reached.
+    pub fn reach(&self, time: SimTime) {
+        self.reached_us.store(time.0, Ordering::Relaxed);
+    }
+
+    /// Returns the flag that is set when the result is no longer wanted.
+    pub fn stopped(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.stopped)
+    }
+}
+
+type Fly = dyn Fn(SimTime, &Progress) -> Result<FlownAgain, String> + Send + Sync;
 
 /// Flies a finished flight again, with the same inputs, to an instant.
 #[derive(Clone)]
@@ -30,7 +50,9 @@ pub struct FlyAgain(Arc<Fly>);
 
 impl FlyAgain {
     /// Returns a value that flies by `fly`, which returns a sentence if it fails.
-    pub fn new(fly: impl Fn(SimTime) -> Result<FlownAgain, String> + Send + Sync + 'static) -> Self {
+    pub fn new(
+        fly: impl Fn(SimTime, &Progress) -> Result<FlownAgain, String> + Send + Sync + 'static,
+    ) -> Self {
         Self(Arc::new(fly))
     }
 
@@ -38,15 +60,18 @@ impl FlyAgain {
     pub(super) fn start(&self, until: SimTime) -> std::io::Result<FlyingAgain> {
         let (done, result) = mpsc::channel();
         let (fly, waiting) = (Arc::clone(&self.0), std::thread::current());
+        let progress = Arc::new(Progress::default());
+        let followed = Arc::clone(&progress);
         std::thread::Builder::new().name("fly-again".to_owned()).spawn(move || {
             let (kept, gone) = mpsc::channel::<()>();
-            let flown = fly(until).map(|flown| FlownAgain { keeps: Box::new((flown.keeps, kept)), ..flown });
+            let flown = fly(until, &followed)
+                .map(|flown| FlownAgain { keeps: Box::new((flown.keeps, kept)), ..flown });
             drop(done.send(flown));
             waiting.unpark();
             // A child process ends with the thread that started it, so the thread waits until nothing needs the child.
             let _gone = gone.recv();
         })?;
-        Ok(FlyingAgain { until, result })
+        Ok(FlyingAgain { until, progress, result })
     }
 }
 
@@ -60,10 +85,22 @@ impl fmt::Debug for FlyAgain {
 #[derive(Debug)]
 pub(super) struct FlyingAgain {
     until: SimTime,
+    progress: Arc<Progress>,
     result: mpsc::Receiver<Result<FlownAgain, String>>,
 }
 
+impl Drop for FlyingAgain {
+    fn drop(&mut self) {
+        self.progress.stopped.store(true, Ordering::Relaxed);
+    }
+}
+
 impl FlyingAgain {
+    /// Returns the instant that the flight has reached, and the one that it goes to.
+    pub(super) fn progress(&self) -> (SimTime, SimTime) {
+        (SimTime(self.progress.reached_us.load(Ordering::Relaxed)), self.until)
+    }
+
     /// Returns the instant and the result; `None` while the flight goes on.
     pub(super) fn result(&self) -> Option<(SimTime, Result<FlownAgain, String>)> {
         let result = match self.result.try_recv() {

@@ -20,6 +20,9 @@ pub struct TimelineView {
     pub is_pictures: bool,
     /// `true` if the flight cannot be continued from an earlier instant.
     pub cannot_continue: bool,
+    /// While a firmware that has ended flies the flight again: the instant that it has reached, and the one that it goes
+    /// to.
+    pub flying_again: Option<(SimTime, SimTime)>,
     /// Number of times that the flight was continued from an earlier instant.
     pub branch: u32,
     /// Instant from which it was last continued.

@@ -38,6 +38,12 @@ pub fn current(state: &Shared) -> Option<StatusMessage> {
     let vehicle = &state.view.vehicle;
     let craft = &vehicle.craft;
     let key = |action| state.key(action);
+    let flying_again = state.view.timeline.as_ref().and_then(|timeline| timeline.flying_again);
+    if let Some((reached, until)) = flying_again {
+        let (reached_s, until_s) = (reached.as_secs_f64(), until.as_secs_f64());
+        let condition = format!("The firmware flies again: {reached_s:.0} of {until_s:.0} s.");
+        return message(Severity::Info, condition, format!("{} stops it", key(Action::FlyOn)));
+    }
     if let Some(rewound_s) = state.rewound_s() {
         let condition = format!("Rewound by {rewound_s:.1} s: the flight waits.");
         let flies_on = if state.flies_again() {

@@ -166,7 +166,9 @@ impl Flights {
         let mut recorder = Recorder::new(&vehicle, seed);
         let mut flight = setup::start_flight(vehicle, &self.options)?;
         let end = run.fly(&mut flight, &mut (&mut recorder, &mut tell))?;
-        Ok(recorder.finish(&flight, end))
+        let mut track = recorder.finish(&flight, end);
+        track.reason += &run.runner().disturbance();
+        Ok(track)
     }
 }
 

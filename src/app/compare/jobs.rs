@@ -52,17 +52,14 @@ pub(super) fn jobs(
     Ok(jobs)
 }
 
-/// Refuses other seeds for a firmware on the wall clock, and repetitions of flights that are the same each time.
+/// Refuses other seeds for a firmware on the wall clock.
 fn check_option(args: &CompareArgs, compared: &[Compared; 2]) -> Result<(), AppError> {
-    match (&args.seeds, args.repeat, compared.iter().find(|one| one.is_on_wall_clock())) {
-        (Some(_), _, Some(one)) if one.is_attached() => Err(AppError::input(
+    match (&args.seeds, compared.iter().find(|one| one.is_on_wall_clock())) {
+        (Some(_), Some(one)) if one.is_attached() => Err(AppError::input(
             "--seeds: a firmware that is running already (--firmware attach) is not restarted for each flight, so it \
              flies once; write --repeat 1, or name its executable",
         )),
-        (Some(_), _, Some(one)) => Err(seeds_on_wall_clock(&one.name)),
-        (_, Some(times), None) => Err(AppError::input(format!(
-            "--repeat {times}: each of these flights is the same every time; fly other seeds with --seeds 1..{times}"
-        ))),
+        (Some(_), Some(one)) => Err(seeds_on_wall_clock(&one.name)),
         _ => Ok(()),
     }
 }

@@ -102,6 +102,7 @@ impl Session {
             rewound: timeline.shown().is_some(),
             is_pictures: timeline.is_pictures(),
             cannot_continue: timeline.is_pictures() && self.again.is_none(),
+            flying_again: self.flying_again.as_ref().map(FlyingAgain::progress),
             branch: timeline.branch(),
             branched_at: timeline.branched_at(),
             folds: timeline.folds(&marks),
@@ -307,8 +308,9 @@ impl Session {
             self.notice(NOTHING_EARLIER);
             return;
         };
-        if self.flying_again.is_some() {
-            self.notice("The firmware flies again already: wait until it is at the instant that was shown.");
+        if self.flying_again.take().is_some() {
+            self.changed = true;
+            self.notice("Stopped: the flight is not flown again.");
             return;
         }
         let Some(again) = &self.again else {
@@ -339,7 +341,10 @@ impl Session {
 
     /// Continues from the end of a flight that was flown again, once it is there.
     pub(super) fn take_flown_again(&mut self, now: Duration) {
-        let Some((until, result)) = self.flying_again.as_ref().and_then(FlyingAgain::result) else { return };
+        let Some((until, result)) = self.flying_again.as_ref().and_then(FlyingAgain::result) else {
+            self.changed |= self.flying_again.is_some();
+            return;
+        };
         self.flying_again = None;
         self.changed = true;
         // Dropped in reverse order: the link before the folder of its firmware.

@@ -10,6 +10,7 @@ use crate::flight::FlightSetup;
 use crate::geo::LatLon;
 use crate::link::FcStream;
 use crate::plan::{Altitude, AltitudeReference, FlightPlan, Waypoint, WaypointType};
+use crate::session::Progress;
 use crate::session::command::Seek;
 use crate::session::{FlownAgain, ReplyTo};
 use crate::signals::SimTime;
@@ -324,7 +325,7 @@ fn a_session_without_a_screen_keeps_nothing_of_its_flight() {
 
 /// A session after a flight of three seconds with a firmware that has ended. `again` flies it again.
 fn after_a_flight(
-    again: impl Fn(SimTime) -> Result<FlownAgain, String> + Send + Sync + 'static,
+    again: impl Fn(SimTime, &Progress) -> Result<FlownAgain, String> + Send + Sync + 'static,
 ) -> (Session, mpsc::UnboundedReceiver<Event>) {
     let mut vehicle = flown_until(SimTime::ZERO);
     let mut timeline = Timeline::new(&mut vehicle).unwrap();
@@ -366,7 +367,7 @@ fn the_flight_of_a_firmware_that_has_ended_is_flown_again_to_the_instant_that_is
             Instant::now(),
         )
     };
-    let (mut session, mut events) = after_a_flight(move |until| {
+    let (mut session, mut events) = after_a_flight(move |until, _| {
         Ok(FlownAgain { vehicle: flown_until(until), link: link(), keeps: Box::new(()) })
     });
     let shown = session.shown_vehicle().time();
@@ -382,11 +383,35 @@ fn the_flight_of_a_firmware_that_has_ended_is_flown_again_to_the_instant_that_is
 
 #[test]
 fn a_flight_that_cannot_be_flown_again_stays_shown() {
-    let (mut session, mut events) = after_a_flight(|_| Err("It is gone.".to_owned()));
+    let (mut session, mut events) = after_a_flight(|_, _| Err("It is gone.".to_owned()));
     fly_on(&mut session);
     assert!(session.is_rewound() && session.runner.link.is_none());
     let is_reason = |event: Event| event.kind == SessionEvent::Notice("It is gone.".to_owned());
     assert!(std::iter::from_fn(|| events.try_recv().ok()).any(is_reason));
+}
+
+#[test]
+fn a_flight_that_is_flown_again_shows_its_progress_and_can_be_stopped() {
+    let (mut session, mut events) = after_a_flight(|until, progress| {
+        progress.reach(SimTime(until.0 / 2));
+        while !progress.stopped().load(std::sync::atomic::Ordering::Relaxed) {
+            std::thread::yield_now();
+        }
+        Err("It was stopped.".to_owned())
+    });
+    session.fly_on(Duration::ZERO);
+    let progress = |session: &Session| session.timeline_view().unwrap().flying_again;
+    let until = session.shown_vehicle().time();
+    while progress(&session) != Some((SimTime(until.0 / 2), until)) {
+        std::thread::yield_now();
+        session.take_flown_again(Duration::ZERO);
+    }
+    session.fly_on(Duration::ZERO);
+    assert_eq!((progress(&session), session.is_rewound()), (None, true));
+    session.take_flown_again(Duration::ZERO);
+    session.flush_events();
+    let is_notice = |event: Event| format!("{event:?}").contains("Stopped: the flight is not flown again.");
+    assert!(std::iter::from_fn(|| events.try_recv().ok()).any(is_notice));
 }
 
 #[test]
