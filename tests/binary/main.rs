@@ -10,6 +10,7 @@ mod connect;
 mod docs;
 #[cfg(unix)]
 mod editor;
+mod exchange;
 mod first_walk;
 mod fly;
 #[cfg(unix)]
