@@ -2,14 +2,24 @@
 
 use super::bounds::MAX_ITEMS;
 use super::loss::{Finding, LossReport, Place, Severity};
-use super::mission_item::{self, ABOVE_SEA, MissionItem, Mission, NO_PLACE};
+use super::mission_item::{self, ABOVE_SEA, Mission, MissionItem, NO_PLACE};
 use super::{HomePosition, PlanFile, Problems, ReadOptions, bounds, home};
 use crate::plan::estimate::Assumptions;
 use crate::plan::{FlightPlan, MAX_WAYPOINTS};
 
 /// The columns.
 const COLUMNS: [&str; 12] = [
-    "Index", "Name", "Latitude", "Longitude", "Altitude", "Type", "Command", "Frame", "Param1", "Param2", "Param3",
+    "Index",
+    "Name",
+    "Latitude",
+    "Longitude",
+    "Altitude",
+    "Type",
+    "Command",
+    "Frame",
+    "Param1",
+    "Param2",
+    "Param3",
     "Param4",
 ];
 
@@ -30,12 +40,21 @@ pub(super) fn read(text: &str, options: &ReadOptions, problems: &mut Problems<'_
         .flexible(true)
         .trim(csv::Trim::All)
         .from_reader(text.as_bytes());
-    let mut table = Table { delimiter, columns: [None; COLUMNS.len()], home: None, items: Vec::new(), places: Vec::new() };
+    let mut table = Table {
+        delimiter,
+        columns: [None; COLUMNS.len()],
+        home: None,
+        items: Vec::new(),
+        places: Vec::new(),
+    };
     let mut losses = LossReport::default();
     let mut record = csv::StringRecord::new();
     let mut is_first = true;
     while reader.read_record(&mut record).unwrap_or(false) {
+        // The position may be that of the line end before.
         let at = record.position().map_or(0, |position| position.byte() as usize);
+        let rest = text.get(at..).unwrap_or_default();
+        let at = at + (rest.len() - rest.trim_start().len());
         if std::mem::take(&mut is_first) {
             table.header(&record, at, problems);
             continue;
@@ -65,7 +84,7 @@ pub(super) fn read(text: &str, options: &ReadOptions, problems: &mut Problems<'_
         flat: options.flat,
     };
     let mapping = mission.map();
-    for fault in &mapping.faults {
+    for fault in mapping.faults.iter().chain(&mapping.too_many()) {
         let at = table.places[fault.item];
         problems.add(at..line_end(text, at), fault.message.clone(), fault.hint.clone());
     }
@@ -98,7 +117,11 @@ impl Table {
         for (name, column) in COLUMNS.iter().zip(self.columns) {
             if column.is_none() && !matches!(*name, "Name" | "Type") {
                 let hint = COLUMNS.join(",");
-                problems.add(at..at + 1, format!("the table has no column {name}"), format!("columns: {hint}"));
+                problems.add(
+                    at..at + 1,
+                    format!("the table has no column {name}"),
+                    format!("columns: {hint}"),
+                );
             }
         }
     }
@@ -134,7 +157,9 @@ impl Table {
             return;
         }
         let whole = |value: Option<f64>| {
-            value.filter(|value| value.fract() == 0.0 && (0.0..=65535.0).contains(value)).map(|value| value as u16)
+            value
+                .filter(|value| value.fract() == 0.0 && (0.0..=65535.0).contains(value))
+                .map(|value| value as u16)
         };
         let Some(index) = whole(index) else {
             problems.add(at..at + length, "the row has no index", "the index is a number from 0");
@@ -142,13 +167,19 @@ impl Table {
         };
         if index == 0 {
             self.home = read_home(lat_deg, lon_deg, altitude_m)
-                .map_err(|message| problems.add(at..at + length, format!("row 0: {message}"), "row 0 is the home"))
+                .map_err(|message| {
+                    problems.add(at..at + length, format!("row 0: {message}"), "row 0 is the home")
+                })
                 .ok()
                 .flatten();
             return;
         }
         let Some(command) = whole(command) else {
-            problems.add(at..at + length, "the row has no command number", "the command is a number of MAVLink");
+            problems.add(
+                at..at + length,
+                "the row has no command number",
+                "the command is a number of MAVLink",
+            );
             return;
         };
         // The altitude is above sea level in any frame.
@@ -163,12 +194,16 @@ impl Table {
             lon_deg,
             altitude_m,
             autocontinue: true,
-            place: record.position().map(|position| Place::Line { line: position.line() as usize }),
+            place: Some(Place::Line { line: problems.line_at(at) }),
         });
     }
 }
 
-fn read_home(lat: Option<f64>, lon: Option<f64>, metres: Option<f64>) -> Result<Option<HomePosition>, String> {
+fn read_home(
+    lat: Option<f64>,
+    lon: Option<f64>,
+    metres: Option<f64>,
+) -> Result<Option<HomePosition>, String> {
     let (Some(lat), Some(lon)) = (lat, lon) else { return Ok(None) };
     let (position, _) = bounds::position(lat, lon)?;
     let amsl_m = metres.map(|metres| home::amsl_m(&metres.to_string())).transpose()?;
@@ -217,7 +252,9 @@ mod tests {
     fn wrong_tables_give_sentences() {
         assert!(fault(&TABLE.replace("Param4", "P4")).contains("no column Param4"));
         assert_eq!(fault(&TABLE.replace(",178,", ",176,")), "x.csv:4:1: item 2: command 176 is unknown");
-        assert!(fault(&TABLE.replace("40.4640000", "94.4640000")).contains("latitude 94.464 is out of range"));
+        assert!(
+            fault(&TABLE.replace("40.4640000", "94.4640000")).contains("latitude 94.464 is out of range")
+        );
         assert!(fault(&TABLE.replace("40.4640000", "40,4640000")).contains("has 13 fields"));
         assert!(fault(&TABLE.replace(',', ";").replace("40.4640000", "\"40,46\"")).contains("decimal comma"));
         assert!(fault(&TABLE.replace("310", "inf")).contains("Altitude inf is not a number"));

@@ -12,7 +12,7 @@ mod write;
 use serde_json::Value;
 
 use super::loss::{Finding, LossReport, Severity};
-use super::mission_item::{self, MissionItem, Mission};
+use super::mission_item::{self, Mission, MissionItem};
 use super::setting::{SettingFault, setting_line};
 use super::{HomePosition, PlanFile, Problems, ReadOptions, bounds, home, json};
 use crate::plan::estimate::Assumptions;
@@ -44,7 +44,12 @@ pub fn qgc_fences(text: &str) -> Vec<Feature> {
     if problems.is_empty() { fences.features } else { Vec::new() }
 }
 
-fn read_file(value: &Value, options: &ReadOptions, source: &mut Source<'_, '_>, file: &mut PlanFile) -> Option<()> {
+fn read_file(
+    value: &Value,
+    options: &ReadOptions,
+    source: &mut Source<'_, '_>,
+    file: &mut PlanFile,
+) -> Option<()> {
     check_kind(value, source)?;
     let mission = &value["mission"];
     let Some(list) = mission["items"].as_array() else {
@@ -64,6 +69,9 @@ fn read_file(value: &Value, options: &ReadOptions, source: &mut Source<'_, '_>, 
     let fences = fence::read(value, file.home, source);
     take_fence(fences.home_radius_m, private.is_some(), options, file);
     report_vehicle(mission, &mut file.losses);
+    if !source.is_clean() {
+        return None;
+    }
     let assumptions = Assumptions::from_settings(&file.settings);
     let mission = Mission {
         items: &items,
@@ -76,20 +84,28 @@ fn read_file(value: &Value, options: &ReadOptions, source: &mut Source<'_, '_>, 
     for fault in &mapping.faults {
         source.fault(&pointer(&items[fault.item]), fault.message.clone(), fault.hint.clone());
     }
+    let too_many = mapping.too_many();
     let restored = private::restore(mapping, private, &mission);
     file.losses.findings.extend(restored.findings);
     file.losses.items = items.len();
-    let count = restored.waypoints.len();
-    if count > MAX_WAYPOINTS && source.is_clean() {
-        let hint = format!("a plan holds at most {MAX_WAYPOINTS} waypoints");
-        source.fault("/mission/items", format!("the file has {count} waypoints"), hint);
+    if restored.waypoints.len() > MAX_WAYPOINTS && source.is_clean() {
+        match too_many {
+            Some(fault) => source.fault(&pointer(&items[fault.item]), fault.message, fault.hint),
+            None => {
+                let message = format!("the file has {} waypoints", restored.waypoints.len());
+                source.fault(
+                    "/mission/items",
+                    message,
+                    format!("a plan holds at most {MAX_WAYPOINTS} waypoints"),
+                );
+            }
+        }
     }
     file.plan = FlightPlan { waypoints: restored.waypoints.into_iter().take(MAX_WAYPOINTS).collect() };
     fences.report(&file.plan, &mut file.losses);
     report_rally_points(value, &mut file.losses);
     Some(())
 }
-
 
 fn pointer(item: &MissionItem) -> String {
     item.place.as_ref().map(ToString::to_string).unwrap_or_default()
@@ -122,7 +138,11 @@ fn check_kind(value: &Value, source: &mut Source<'_, '_>) -> Option<()> {
     }
     let version = &value["mission"]["version"];
     if !version.is_null() && version.as_f64() != Some(1.0) && version.as_f64() != Some(2.0) {
-        source.fault("/mission/version", format!("version {version} of a mission is unknown"), "allowed: 1 and 2");
+        source.fault(
+            "/mission/version",
+            format!("version {version} of a mission is unknown"),
+            "allowed: 1 and 2",
+        );
         return None;
     }
     Some(())
@@ -201,7 +221,8 @@ fn take_fence(radius_m: Option<f64>, is_ours: bool, options: &ReadOptions, file:
         }
         None => "another program removed the circle around home",
     };
-    let is_fence = |line: &String| line.split(' ').next().is_some_and(|name| name.eq_ignore_ascii_case(FENCE_SETTING));
+    let is_fence =
+        |line: &String| line.split(' ').next().is_some_and(|name| name.eq_ignore_ascii_case(FENCE_SETTING));
     file.settings.retain(|line| !is_fence(line));
     file.settings.extend(whole_m.map(|metres| format!("{FENCE_SETTING} = {metres}")));
     if is_ours {

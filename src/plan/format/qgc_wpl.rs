@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::bounds::{self, MAX_ITEMS};
 use super::loss::{Finding, LossReport, Place, Severity};
-use super::mission_item::{self, MissionItem, Mission, Sent, send, written_position};
+use super::mission_item::{self, Mission, MissionItem, Sent, send, written_position};
 use super::{HomePosition, PlanFile, Problems, ReadOptions, Written, home};
 use crate::geo::{Degrees7, LatLon};
 use crate::plan::estimate::Assumptions;
@@ -68,7 +68,7 @@ pub(super) fn read(text: &str, options: &ReadOptions, problems: &mut Problems<'_
         flat: options.flat,
     };
     let mapping = mission.map();
-    for fault in &mapping.faults {
+    for fault in mapping.faults.iter().chain(&mapping.too_many()) {
         problems.add(spans[fault.item].clone(), fault.message.clone(), fault.hint.clone());
     }
     losses.items = items.len();
@@ -118,9 +118,10 @@ fn check_header(line: &str) -> Result<(), (String, String)> {
         ["QGC", "WPL", "PB", version] => {
             Err((format!("QGC WPL PB {version} is a format of another program, which is not read"), hint))
         }
-        ["QGC", "WPL", version] => {
-            Err((format!("QGC WPL {version} is an old format with other command numbers, which is not read"), hint))
-        }
+        ["QGC", "WPL", version] => Err((
+            format!("QGC WPL {version} is an old format with other command numbers, which is not read"),
+            hint,
+        )),
         _ => Err(("this is not a waypoint file".to_owned(), hint)),
     }
 }
@@ -176,9 +177,7 @@ fn parse(field: &str, may_be_nan: bool) -> Result<f64, (&'static str, &'static s
     match field.parse::<f64>() {
         Ok(number) if number.is_finite() || (may_be_nan && number.is_nan()) => Ok(number),
         Ok(_) => Err(("is not a finite number", "")),
-        Err(_) if field.contains(',') => {
-            Err(("has a decimal comma", "write numbers with a decimal point"))
-        }
+        Err(_) if field.contains(',') => Err(("has a decimal comma", "write numbers with a decimal point")),
         Err(_) => Err(("is not a number", "")),
     }
 }

@@ -17,7 +17,9 @@ const fn row(severity: Severity, field: &'static str, why: &'static str) -> Opti
 /// Returns the row of a command that is left out; `None` if the command is flown or unknown.
 pub(super) const fn left_out(command: u16) -> Option<LeftOut> {
     match command {
-        80 | 195..=197 | 201 => row(Severity::Lost, "nose direction", "a region of interest: ap_yaw_mode decides"),
+        80 | 195..=197 | 201 => {
+            row(Severity::Lost, "nose direction", "a region of interest: ap_yaw_mode decides")
+        }
         114 | 115 => row(Severity::Lost, "nose direction", "a plan has no heading: ap_yaw_mode decides"),
         112 => row(Severity::Info, "condition", "it delays commands that a plan does not have"),
         181..=184 => row(Severity::Lost, "servo or relay", "the autopilot switches no outputs"),

@@ -47,7 +47,11 @@ pub(super) fn order(items: &[MissionItem]) -> Result<Order, Fault> {
         }
         let target = items.iter().position(|other| other.number as f64 == item.param(1));
         let target = target.ok_or_else(|| {
-            fault(format!("the jump of item {} goes to item {}, which is not there", item.number, item.param(1)))
+            fault(format!(
+                "the jump of item {} goes to item {}, which is not there",
+                item.number,
+                item.param(1)
+            ))
         })?;
         // Saturates: a larger count ends at the limit of the steps.
         let repeats_left = left[at].get_or_insert(repeats.round() as usize);
@@ -64,7 +68,9 @@ pub(super) fn order(items: &[MissionItem]) -> Result<Order, Fault> {
         let mut finding = Finding::new(Severity::Changed, "jump", why).item(item.number);
         finding.place = item.place.clone();
         let from = format!("to item {}, {}", item.param(1), amount(item.param(2), "times"));
-        order.findings.push(finding.values(from, if left[at].is_some() { "unrolled" } else { "never reached" }));
+        order
+            .findings
+            .push(finding.values(from, if left[at].is_some() { "unrolled" } else { "never reached" }));
     }
     Ok(order)
 }

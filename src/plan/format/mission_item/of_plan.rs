@@ -148,7 +148,8 @@ impl Walk<'_> {
         let plain = Assumptions::default().orbit_rate_rps(flown);
         let read = Seconds::new((turns * std::f64::consts::TAU / plain).clamp(0.1, 6553.5));
         if !self.private && read != flown.duration {
-            let why = "an item has the number of turns, and the settings that give their time are not in the file";
+            let why =
+                "an item has the number of turns, and the settings that give their time are not in the file";
             let (from, to) = (amount(flown.duration.get(), "s"), amount(read.get(), "s"));
             self.note(index, Severity::Changed, "duration", why, &from, &to);
         }

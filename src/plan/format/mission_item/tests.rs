@@ -41,7 +41,8 @@ fn map_with(items: &[MissionItem], assumptions: &Assumptions) -> Mapping {
 fn map(items: &[MissionItem]) -> (Vec<String>, Vec<String>) {
     let mapping = map_with(items, &Assumptions::default());
     let waypoints = mapping.waypoints.iter().map(|(waypoint, _)| words(waypoint)).collect();
-    let faults = mapping.faults.iter().map(|fault| format!("fault {}", fault.message));
+    let too_many = mapping.too_many();
+    let faults = mapping.faults.iter().chain(&too_many).map(|fault| format!("fault {}", fault.message));
     (waypoints, mapping.findings.iter().map(ToString::to_string).chain(faults).collect())
 }
 
@@ -57,7 +58,8 @@ fn words(waypoint: &Waypoint) -> String {
 fn check(items: &[MissionItem], waypoints: &[&str], findings: &[&str]) {
     let (found, said) = map(items);
     assert_eq!(found, waypoints);
-    let begin: Vec<bool> = said.iter().zip(findings).map(|(said, expected)| said.contains(expected)).collect();
+    let begin: Vec<bool> =
+        said.iter().zip(findings).map(|(said, expected)| said.contains(expected)).collect();
     assert!(said.len() == findings.len() && !begin.contains(&false), "{said:#?}\n{findings:#?}");
 }
 
@@ -68,23 +70,51 @@ fn waypoints_say_how_they_are_passed() {
     check(&[at(1, 16, [12.0, 5.0, 3.0, NAN])], &["HOLD NONE 50 0 12"], &[]);
     check(&[at(1, 16, [0.0, 5.0, 3.0, NAN])], &["FLYBY 50 0 0"], &[]);
     check(&[at(1, 16, [0.0, 5.0, 0.0, NAN])], &["FLYOVER 50 0 0"], &[]);
-    check(&[at(1, 16, [0.0, 2.0, 0.0, NAN])], &["FLYOVER 50 0 0"], &["info     WP 0 (item 1, line 3) acceptance radius: 2 m → 5 m"]);
-    check(&[at(1, 16, [0.0; 4]), at(2, 16, [NAN; 4])], &["FLYBY 50 0 0"; 2], &["assumed  waypoint type: 2 items → FLYBY"]);
+    check(
+        &[at(1, 16, [0.0, 2.0, 0.0, NAN])],
+        &["FLYOVER 50 0 0"],
+        &["info     WP 0 (item 1, line 3) acceptance radius: 2 m → 5 m"],
+    );
+    check(
+        &[at(1, 16, [0.0; 4]), at(2, 16, [NAN; 4])],
+        &["FLYBY 50 0 0"; 2],
+        &["assumed  waypoint type: 2 items → FLYBY"],
+    );
     check(&[at(1, 16, [-1.0, 0.0, 0.0, 0.0])], &[], &["fault item 1: a stay of -1 s is out of range"]);
     check(&[at(1, 82, [0.0, 0.0, 1.0, 0.0])], &["FLYBY 50 0 0"], &["lost     WP 0 (item 1, line 3) spline"]);
-    check(&[at(1, 16, [9000.0, 0.0, 0.0, 0.0])], &["HOLD NONE 50 0 6553.5"], &["changed  WP 0 (item 1, line 3) duration: 9000 s → 6553.5 s"]);
+    check(
+        &[at(1, 16, [9000.0, 0.0, 0.0, 0.0])],
+        &["HOLD NONE 50 0 6553.5"],
+        &["changed  WP 0 (item 1, line 3) duration: 9000 s → 6553.5 s"],
+    );
 }
 
 #[test]
 fn loiters_are_holds() {
     check(&[at(1, 17, [0.0; 4])], &["HOLD NONE 50 0 0"], &[]);
     check(&[at(1, 17, [0.0, 0.0, 10.0, NAN])], &["HOLD ORBIT 50 0 0"], &[]);
-    check(&[at(1, 17, [0.0, 0.0, -25.0, NAN])], &["HOLD ORBIT 50 0 0"], &["changed  WP 0 (item 1, line 3) radius: 25 m → 10 m", "lost     WP 0 (item 1, line 3) direction"]);
+    check(
+        &[at(1, 17, [0.0, 0.0, -25.0, NAN])],
+        &["HOLD ORBIT 50 0 0"],
+        &["changed  WP 0 (item 1, line 3) radius: 25 m → 10 m", "lost     WP 0 (item 1, line 3) direction"],
+    );
     check(&[at(1, 18, [0.25, 0.0, 10.0, NAN])], &["HOLD ORBIT 50 0 30"], &[]);
-    check(&[at(1, 18, [0.3337, 0.0, 0.0, NAN])], &["HOLD ORBIT 50 0 40"], &["changed  WP 0 (item 1, line 3) duration: 40.04 s → 40 s"]);
-    check(&[at(1, 19, [30.0, 0.0, 50.0, NAN])], &["HOLD NONE 50 0 30"], &["info     WP 0 (item 1, line 3) radius: 50 m"]);
+    check(
+        &[at(1, 18, [0.3337, 0.0, 0.0, NAN])],
+        &["HOLD ORBIT 50 0 40"],
+        &["changed  WP 0 (item 1, line 3) duration: 40.04 s → 40 s"],
+    );
+    check(
+        &[at(1, 19, [30.0, 0.0, 50.0, NAN])],
+        &["HOLD NONE 50 0 30"],
+        &["info     WP 0 (item 1, line 3) radius: 50 m"],
+    );
     check(&[at(1, 19, [0.0; 4])], &["HOLD NONE 50 0 0.1"], &[]);
-    check(&[at(1, 31, [0.0; 4]), at(2, 19, [1.0, 0.0, 0.0, 0.0])], &["FLYOVER 50 0 0", "TAKEOFF 50 0 0", "HOLD NONE 50 0 1"], &["changed  WP 0 (item 1, line 3) loiter to altitude: 1 item → 2 waypoints"]);
+    check(
+        &[at(1, 31, [0.0; 4]), at(2, 19, [1.0, 0.0, 0.0, 0.0])],
+        &["FLYOVER 50 0 0", "TAKEOFF 50 0 0", "HOLD NONE 50 0 1"],
+        &["changed  WP 0 (item 1, line 3) loiter to altitude: 1 item → 2 waypoints"],
+    );
 }
 
 #[test]
@@ -95,9 +125,17 @@ fn landings_returns_and_take_offs() {
     check(&[before.clone(), ground.clone()], &["FLYOVER 50 0 0", "LAND 50 0 0"], &[changed]);
     check(&[before.clone(), at(2, 21, [0.0; 4])], &["FLYOVER 50 0 0", "LAND 50 0 0"], &[]);
     let vtol = MissionItem { command: 85, ..ground.clone() };
-    check(&[before.clone(), vtol], &["FLYOVER 50 0 0", "LAND 50 0 0"], &["lost     WP 1 (item 2, line 4) transition", changed]);
+    check(
+        &[before.clone(), vtol],
+        &["FLYOVER 50 0 0", "LAND 50 0 0"],
+        &["lost     WP 1 (item 2, line 4) transition", changed],
+    );
     let payload = MissionItem { command: 94, ..ground };
-    check(&[before.clone(), payload], &["FLYOVER 50 0 0", "LAND 50 0 0"], &["lost     WP 1 (item 2, line 4) payload", changed]);
+    check(
+        &[before.clone(), payload],
+        &["FLYOVER 50 0 0", "LAND 50 0 0"],
+        &["lost     WP 1 (item 2, line 4) payload", changed],
+    );
     let back = item(2, 20, NO_PLACE, [0.0; 4], (0.0, 0.0, 0.0));
     let two = "changed  WP 1 (item 2, line 4) return: 1 item → 2 waypoints";
     check(&[before.clone(), back.clone()], &["FLYOVER 50 0 0", "FLYOVER 50 0 0", "LAND 50 0 0"], &[two]);
@@ -107,7 +145,11 @@ fn landings_returns_and_take_offs() {
         &["FLYOVER 50 0 0", "FLYOVER 50 0 0", "LAND 50 0 0"],
         &[two, "lost     item 3, line 5 items after the return: 1 items"],
     );
-    check(&[at(1, 22, [15.0, 0.0, 0.0, NAN])], &["TAKEOFF 50 0 0"], &["info     WP 0 (item 1, line 3) pitch: 15 deg"]);
+    check(
+        &[at(1, 22, [15.0, 0.0, 0.0, NAN])],
+        &["TAKEOFF 50 0 0"],
+        &["info     WP 0 (item 1, line 3) pitch: 15 deg"],
+    );
     check(&[at(1, 84, [0.0; 4])], &["TAKEOFF 50 0 0"], &["lost     WP 0 (item 1, line 3) transition"]);
     // Without a position it is that of the craft.
     let here = item(2, 21, ABOVE_HOME, [0.0; 4], (0.0, 0.0, 50.0));
@@ -119,7 +161,11 @@ fn landings_returns_and_take_offs() {
 
 #[test]
 fn altitudes_speeds_delays_and_yaw() {
-    check(&[at(1, 30, [2.0, 0.0, 0.0, 0.0])], &["ALT_CHANGE 50 0 0"], &["info     WP 0 (item 1, line 3) direction: descend"]);
+    check(
+        &[at(1, 30, [2.0, 0.0, 0.0, 0.0])],
+        &["ALT_CHANGE 50 0 0"],
+        &["info     WP 0 (item 1, line 3) direction: descend"],
+    );
     let pass = |number| at(number, 16, [0.0, 5.0, 0.0, 0.0]);
     let speed = |number, of, mps| at(number, 178, [of, mps, -1.0, 0.0]);
     check(
@@ -128,11 +174,27 @@ fn altitudes_speeds_delays_and_yaw() {
         &[],
     );
     check(&[speed(1, 0.0, 3.0), pass(2)], &["FLYOVER 50 3 0"], &["assumed  item 1, line 3 speed: 3 m/s"]);
-    check(&[speed(1, 1.0, 9.0), pass(2)], &["FLYOVER 50 9 0"], &["changed  item 1, line 3 speed: 9 m/s → 5 m/s"]);
-    check(&[speed(1, 2.0, 3.0), pass(2)], &["FLYOVER 50 0 0"], &["lost     item 1, line 3 climb or descent speed"]);
+    check(
+        &[speed(1, 1.0, 9.0), pass(2)],
+        &["FLYOVER 50 9 0"],
+        &["changed  item 1, line 3 speed: 9 m/s → 5 m/s"],
+    );
+    check(
+        &[speed(1, 2.0, 3.0), pass(2)],
+        &["FLYOVER 50 0 0"],
+        &["lost     item 1, line 3 climb or descent speed"],
+    );
     check(&[speed(1, 1.0, 1e9)], &[], &["fault item 1: speed 1000000000 m/s is out of range"]);
-    check(&[pass(1), at(2, 93, [7.0, 0.0, 0.0, 0.0])], &["FLYOVER 50 0 0", "HOLD NONE 50 0 7"], &["assumed  WP 1 (item 2, line 4) delay: 7 s → HOLD"]);
-    check(&[pass(1), at(2, 93, [-1.0, 12.0, 0.0, 0.0])], &["FLYOVER 50 0 0"], &["fault item 2: a delay until a time of day"]);
+    check(
+        &[pass(1), at(2, 93, [7.0, 0.0, 0.0, 0.0])],
+        &["FLYOVER 50 0 0", "HOLD NONE 50 0 7"],
+        &["assumed  WP 1 (item 2, line 4) delay: 7 s → HOLD"],
+    );
+    check(
+        &[pass(1), at(2, 93, [-1.0, 12.0, 0.0, 0.0])],
+        &["FLYOVER 50 0 0"],
+        &["fault item 2: a delay until a time of day"],
+    );
     check(&[at(1, 93, [7.0, 0.0, 0.0, 0.0])], &[], &["lost     WP 0 (item 1, line 3) delay"]);
     check(&[at(1, 213, [0.0, 45.0, 0.0, 0.0])], &["YAW_RATE 0 0 0 45"], &[]);
     check(&[at(1, 16, [0.0, 5.0, 0.0, 90.0])], &["FLYOVER 50 0 0"], &["lost     heading: 1 item"]);
@@ -143,7 +205,8 @@ fn altitudes_speeds_delays_and_yaw() {
 #[test]
 fn other_commands_are_counted_or_refused() {
     let commands = [203, 203, 1000, 183, 201, 115, 112, 189, 5001, 5100, 211];
-    let items: Vec<_> = commands.iter().enumerate().map(|(at, &c)| item(at, c, 0, [0.0; 4], (0.0, 0.0, 0.0))).collect();
+    let items: Vec<_> =
+        commands.iter().enumerate().map(|(at, &c)| item(at, c, 0, [0.0; 4], (0.0, 0.0, 0.0))).collect();
     check(
         &items,
         &[],
@@ -190,7 +253,11 @@ fn frames_give_the_reference() {
         let said = map(&[item(1, 16, ABOVE_HOME, [0.0; 4], (lat, lon, alt))]).1;
         assert!(said[0].contains(why), "{said:?}");
     }
-    check(&[item(1, 17, 3, [0.0; 4], (1.0, 359.0, 1.0))], &["HOLD NONE 1 0 0"], &["changed  WP 0 (item 1, line 3) longitude: 359 → -1"]);
+    check(
+        &[item(1, 17, 3, [0.0; 4], (1.0, 359.0, 1.0))],
+        &["HOLD NONE 1 0 0"],
+        &["changed  WP 0 (item 1, line 3) longitude: 359 → -1"],
+    );
 }
 
 #[test]
@@ -199,24 +266,40 @@ fn jumps_are_unrolled() {
     let jump = |number, to, times| at(number, 177, [to, times, 0.0, 0.0]);
     check(
         &[pass(1, 1.0), pass(2, 2.0), jump(3, 1.0, 2.0), pass(4, 4.0)],
-        &["FLYOVER 1 0 0", "FLYOVER 2 0 0", "FLYOVER 1 0 0", "FLYOVER 2 0 0", "FLYOVER 1 0 0", "FLYOVER 2 0 0", "FLYOVER 4 0 0"],
+        &[
+            "FLYOVER 1 0 0",
+            "FLYOVER 2 0 0",
+            "FLYOVER 1 0 0",
+            "FLYOVER 2 0 0",
+            "FLYOVER 1 0 0",
+            "FLYOVER 2 0 0",
+            "FLYOVER 4 0 0",
+        ],
         &["changed  item 3, line 5 jump: to item 1, 2 times → unrolled"],
     );
     check(&[pass(1, 1.0), jump(2, 1.0, -1.0)], &[], &["fault the jump of item 2 repeats without an end"]);
-    check(&[pass(1, 1.0), jump(2, 7.0, 1.0)], &[], &["fault the jump of item 2 goes to item 7, which is not there"]);
+    check(
+        &[pass(1, 1.0), jump(2, 7.0, 1.0)],
+        &[],
+        &["fault the jump of item 2 goes to item 7, which is not there"],
+    );
     let said = map(&[pass(1, 1.0), jump(2, 1.0, 40.0)]).1;
     assert!(said[1].starts_with("fault with its jumps the mission has 41 waypoints"), "{said:?}");
     check(&[jump(1, 1.0, 1e300)], &[], &["fault the jumps give more than 10000 items"]);
-    check(&[jump(1, 3.0, 1.0), pass(2, 2.0), pass(3, 3.0)], &["FLYOVER 3 0 0"], &["changed  item 1, line 3 jump"]);
+    check(
+        &[jump(1, 3.0, 1.0), pass(2, 2.0), pass(3, 3.0)],
+        &["FLYOVER 3 0 0"],
+        &["changed  item 1, line 3 jump"],
+    );
 }
 
 #[test]
 fn many_waypoints_are_one_fault() {
     let items: Vec<_> = (1..=40).map(|number| at(number, 17, [0.0; 4])).collect();
     let mapping = map_with(&items, &Assumptions::default());
-    assert_eq!(mapping.faults.len(), 1);
-    assert_eq!(mapping.faults[0].message, "waypoint 30 does not fit: the file has 40");
-    assert_eq!(mapping.faults[0].item, 30);
+    let fault = mapping.too_many().unwrap();
+    assert_eq!(fault.message, "waypoint 30 does not fit: the file has 40");
+    assert_eq!((fault.item, mapping.faults.len()), (30, 0));
 }
 
 /// Returns the items of a plan as `COMMAND p1 p2 p3 ALT`, and the findings.
@@ -271,7 +354,11 @@ fn each_type_becomes_its_items() {
         (
             &[delay, waypoint(Flyover, 10.0, 0.0), waypoint(Flyover, 10.0, 0.0)],
             &["178 1 2.03 -1 0", "16 0 5 0 10", "178 1 5 -1 0", "16 0 5 0 10"],
-            &["changed  WP 0 type: DELAY of 40 s → a speed", "changed  WP 1 speed: default → 2.03 m/s", "changed  WP 2 speed: default → 5 m/s"],
+            &[
+                "changed  WP 0 type: DELAY of 40 s → a speed",
+                "changed  WP 1 speed: default → 2.03 m/s",
+                "changed  WP 2 speed: default → 5 m/s",
+            ],
         ),
         (&[rate], &["213 0 45 0 0"], &["lost     WP 0 yaw rate: 45 deg/s"]),
     ];
@@ -286,7 +373,10 @@ fn each_type_becomes_its_items() {
     let (_, said) = sent(&[orbit(30.0)], &["ap_max_turn_rate = 6"]);
     assert!(said[0].starts_with("changed  WP 0 duration: 30 s → 60 s"), "{said:?}");
     let (items, said) = sent(&[orbit(30.0)], &["ap_max_turn_rate = 0"]);
-    assert!(items == ["19 30 0 0 50"] && said[0].starts_with("lost     WP 0 pattern: ORBIT → NONE"), "{said:?}");
+    assert!(
+        items == ["19 30 0 0 50"] && said[0].starts_with("lost     WP 0 pattern: ORBIT → NONE"),
+        "{said:?}"
+    );
     let high = sent(&[waypoint(Flyover, 30_000.0, 0.0)], &[]).1;
     assert!(high[0].starts_with("refused  WP 0 altitude: 30000 m"), "{high:?}");
     let zero = Waypoint { position: LatLon::default(), ..waypoint(Flyover, 50.0, 0.0) };
@@ -338,7 +428,11 @@ pub(in crate::plan::format) fn used(waypoint: Waypoint) -> Waypoint {
     Waypoint {
         position: if uses.place { waypoint.position } else { LatLon::default() },
         altitude: if uses.altitude { waypoint.altitude } else { Altitude::default() },
-        duration: if uses.time == crate::plan::TimeUse::Unused { Default::default() } else { waypoint.duration },
+        duration: if uses.time == crate::plan::TimeUse::Unused {
+            Default::default()
+        } else {
+            waypoint.duration
+        },
         pattern: if uses.pattern { waypoint.pattern } else { HoldPattern::None },
         speed: if waypoint.kind.is_positional() { waypoint.speed } else { Default::default() },
         ..waypoint

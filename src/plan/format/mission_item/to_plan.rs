@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use super::{MissionItem, amount, command, jump, metres};
 use crate::geo::LatLon;
 use crate::plan::estimate::Assumptions;
+use crate::plan::format::HomePosition;
 use crate::plan::format::bounds;
 use crate::plan::format::loss::{Finding, Severity};
-use crate::plan::format::HomePosition;
 use crate::plan::{Altitude, HoldPattern, LegSpeed, MAX_WAYPOINTS, Seconds, Waypoint, WaypointType};
 
 /// The longest time of a waypoint, s.
@@ -36,6 +36,21 @@ pub(in crate::plan::format) struct Mapping {
     pub(in crate::plan::format) waypoints: Vec<(Waypoint, usize)>,
     pub(in crate::plan::format) findings: Vec<Finding>,
     pub(in crate::plan::format) faults: Vec<Fault>,
+    /// The index of the first jump that is flown.
+    jump: Option<usize>,
+}
+
+impl Mapping {
+    /// Returns the fault of a mission with too many waypoints.
+    pub(in crate::plan::format) fn too_many(&self) -> Option<Fault> {
+        let count = self.waypoints.len();
+        let &(_, first) = self.waypoints.get(MAX_WAYPOINTS)?;
+        let (item, message) = match self.jump {
+            Some(jump) => (jump, format!("with its jumps the mission has {count} waypoints")),
+            None => (first, format!("waypoint {MAX_WAYPOINTS} does not fit: the file has {count}")),
+        };
+        Some(Fault { item, message, hint: format!("a plan holds at most {MAX_WAYPOINTS} waypoints") })
+    }
 }
 
 /// An item that cannot be taken.
@@ -56,7 +71,7 @@ impl Mission<'_> {
         };
         let mut walk = Walk {
             mission: self,
-            mapping: Mapping { findings: order.findings, ..Mapping::default() },
+            mapping: Mapping { findings: order.findings, jump: order.jump, ..Mapping::default() },
             speed: LegSpeed::default(),
             place: None,
             altitude: None,
@@ -72,7 +87,7 @@ impl Mission<'_> {
                 break;
             }
         }
-        walk.finish(order.jump)
+        walk.finish()
     }
 }
 
@@ -215,12 +230,16 @@ impl<'m> Walk<'m> {
             self.note(item, Severity::Info, "radius", why, &amount(item.param(3).abs(), "m"), "");
         }
         let duration = self.duration(item, item.param(1))?;
-        self.push(index, Waypoint { position, altitude, duration, kind: WaypointType::Hold, ..Waypoint::default() });
+        self.push(
+            index,
+            Waypoint { position, altitude, duration, kind: WaypointType::Hold, ..Waypoint::default() },
+        );
         Ok(())
     }
 
     fn return_home(&mut self, index: usize, item: &'m MissionItem) -> Result<(), String> {
-        let home = self.mission.home.ok_or("a return needs the home, and there is none: add --home LAT,LON")?;
+        let home =
+            self.mission.home.ok_or("a return needs the home, and there is none: add --home LAT,LON")?;
         let why = "a plan flies home and lands there, at the altitude of the waypoint before";
         self.note(item, Severity::Changed, "return", why, "1 item", "2 waypoints");
         let (position, altitude) = (home.position, self.level());
@@ -296,7 +315,10 @@ impl<'m> Walk<'m> {
         let why = "a delay in a file means that the craft waits, as it does elsewhere";
         self.note(item, Severity::Assumed, "delay", why, &amount(seconds, "s"), "HOLD");
         let duration = self.duration(item, seconds)?;
-        self.push(index, Waypoint { position, altitude, duration, kind: WaypointType::Hold, ..Waypoint::default() });
+        self.push(
+            index,
+            Waypoint { position, altitude, duration, kind: WaypointType::Hold, ..Waypoint::default() },
+        );
         Ok(())
     }
 
@@ -378,7 +400,14 @@ impl<'m> Walk<'m> {
         let (position, wrapped) = bounds::position(lat, lon)?;
         if wrapped {
             let why = "a longitude is within 180 degrees";
-            self.note(item, Severity::Changed, "longitude", why, &lon.to_string(), &position.lon_deg().to_string());
+            self.note(
+                item,
+                Severity::Changed,
+                "longitude",
+                why,
+                &lon.to_string(),
+                &position.lon_deg().to_string(),
+            );
         }
         Ok(position)
     }
@@ -425,11 +454,13 @@ impl<'m> Walk<'m> {
         self.mapping.findings.push(finding.values(format!("{} items", rest.len()), ""));
     }
 
-    /// Adds the findings of the whole file and checks the size.
-    fn finish(mut self, jump: Option<usize>) -> Mapping {
+    /// Adds the findings of the whole file.
+    fn finish(mut self) -> Mapping {
         let mut add = |severity, field: String, count: usize, to: String, why: &str| {
             let items = if count == 1 { "item" } else { "items" };
-            self.mapping.findings.push(Finding::new(severity, field, why).values(format!("{count} {items}"), to));
+            self.mapping
+                .findings
+                .push(Finding::new(severity, field, why).values(format!("{count} {items}"), to));
         };
         if self.plain > 0 {
             let why = "the items do not say how they are passed";
@@ -444,15 +475,6 @@ impl<'m> Walk<'m> {
             if let Some(row) = command::left_out(number) {
                 add(row.severity, format!("{} (command {number})", row.field), count, String::new(), row.why);
             }
-        }
-        let count = self.mapping.waypoints.len();
-        if let Some(&(_, first)) = self.mapping.waypoints.get(MAX_WAYPOINTS) {
-            let (item, message) = match jump {
-                Some(jump) => (jump, format!("with its jumps the mission has {count} waypoints")),
-                None => (first, format!("waypoint {MAX_WAYPOINTS} does not fit: the file has {count}")),
-            };
-            let hint = format!("a plan holds at most {MAX_WAYPOINTS} waypoints");
-            self.mapping.faults.push(Fault { item, message, hint });
         }
         self.mapping
     }

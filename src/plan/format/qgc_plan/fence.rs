@@ -38,7 +38,9 @@ pub(super) fn read(value: &Value, home: Option<HomePosition>, source: &mut Sourc
     let list = |key: &str| fence[key].as_array().map_or(&[][..], Vec::as_slice);
     for (index, value) in list("circles").iter().enumerate().take(MAX_ITEMS) {
         let pointer = format!("/geoFence/circles/{index}");
-        let Some((center, radius_m)) = circle(&value["circle"], &format!("{pointer}/circle"), source) else { continue };
+        let Some((center, radius_m)) = circle(&value["circle"], &format!("{pointer}/circle"), source) else {
+            continue;
+        };
         let zone = zone(value);
         let at_home = home.is_some_and(|home| distance_bearing(home.position, center).0 <= AT_HOME_M);
         if at_home && zone == Zone::Inclusion && radius_m >= 1.0 {
@@ -98,7 +100,11 @@ fn polygon(value: &Value, pointer: &str, source: &mut Source<'_, '_>) -> Option<
         corners.pop();
     }
     if corners.len() < 3 {
-        source.fault(pointer, format!("a polygon of {} points is no area", corners.len()), "write at least 3 points");
+        source.fault(
+            pointer,
+            format!("a polygon of {} points is no area", corners.len()),
+            "write at least 3 points",
+        );
         return None;
     }
     Some(corners)
@@ -130,7 +136,8 @@ impl Fences {
             let why = "this craft will not keep to it";
             losses.add(Finding::new(Severity::Lost, feature.name.clone(), why).values(side, ""));
             for (index, waypoint) in plan.waypoints.iter().enumerate() {
-                let is_wrong = (feature.zone == Some(Zone::Exclusion)) == contains(feature, waypoint.position);
+                let is_wrong =
+                    (feature.zone == Some(Zone::Exclusion)) == contains(feature, waypoint.position);
                 if waypoint.kind.uses_position() && is_wrong {
                     let why = format!("the waypoint is {wrong} the {}", feature.name);
                     losses.add(Finding::new(Severity::Lost, "fence", why).at(index));

@@ -8,14 +8,24 @@ use super::super::mission_item::MissionItem;
 use super::source::Source;
 
 /// The seven parameters of an item by name.
-const PARAMS: [&str; 7] = ["parameter 1", "parameter 2", "parameter 3", "parameter 4", "latitude", "longitude", "altitude"];
+const PARAMS: [&str; 7] =
+    ["parameter 1", "parameter 2", "parameter 3", "parameter 4", "latitude", "longitude", "altitude"];
 
 /// Reads the items of `/mission/items`.
-pub(super) fn read(list: &[Value], source: &mut Source<'_, '_>, items: &mut Vec<MissionItem>, losses: &mut LossReport) {
+pub(super) fn read(
+    list: &[Value],
+    source: &mut Source<'_, '_>,
+    items: &mut Vec<MissionItem>,
+    losses: &mut LossReport,
+) {
     for (index, value) in list.iter().enumerate() {
         if items.len() > MAX_ITEMS || list.len() > MAX_ITEMS {
             let count = list.len().max(items.len());
-            source.fault("/mission/items", format!("the mission has {count} items, at most {MAX_ITEMS} are read"), "");
+            source.fault(
+                "/mission/items",
+                format!("the mission has {count} items, at most {MAX_ITEMS} are read"),
+                "",
+            );
             return;
         }
         if source.is_full() {
@@ -30,7 +40,11 @@ pub(super) fn read(list: &[Value], source: &mut Source<'_, '_>, items: &mut Vec<
                 format!("{other} is not a type of item"),
                 "allowed: SimpleItem, ComplexItem, missionItem",
             ),
-            None => source.fault(&pointer, "the item has no type", "allowed: SimpleItem, ComplexItem, missionItem"),
+            None => source.fault(
+                &pointer,
+                "the item has no type",
+                "allowed: SimpleItem, ComplexItem, missionItem",
+            ),
         }
     }
 }
@@ -119,7 +133,8 @@ fn complex(
         return;
     };
     if items.len() + list.len() > MAX_ITEMS {
-        let message = format!("the mission has {} items, at most {MAX_ITEMS} are read", items.len() + list.len());
+        let message =
+            format!("the mission has {} items, at most {MAX_ITEMS} are read", items.len() + list.len());
         source.fault(pointer, message, "");
         return;
     }

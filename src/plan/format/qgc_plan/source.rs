@@ -18,8 +18,7 @@ impl<'s, 'p> Source<'s, 'p> {
     /// Adds a problem at the value of a pointer.
     pub(super) fn fault(&mut self, pointer: &str, message: impl Into<String>, hint: impl Into<String>) {
         // A problem that is only counted needs no place.
-        let span =
-            if self.problems.is_full() { 0..0 } else { json_place::span(self.text, pointer) };
+        let span = if self.problems.is_full() { 0..0 } else { json_place::span(self.text, pointer) };
         self.problems.add(span, message, hint);
     }
 

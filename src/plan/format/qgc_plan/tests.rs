@@ -61,20 +61,25 @@ fn the_example_is_read() {
     assert_eq!((file.losses.items, file.losses.waypoints), (4, 3));
     assert_eq!(
         findings(&file),
-        ["changed  WP 2 (item 4, /mission/items/3) altitude: 0 m → 50 m: the altitude of a MAVLink LAND is that of \
-          the ground"]
+        [
+            "changed  WP 2 (item 4, /mission/items/3) altitude: 0 m → 50 m: the altitude of a MAVLink LAND is that of \
+          the ground"
+        ]
     );
 }
 
 #[test]
 fn a_plan_is_written_like_the_example() {
     let file = read_text(EXAMPLE);
-    let written: serde_json::Value = serde_json::from_slice(&write_file(&file, Format::QgcPlan).contents).unwrap();
+    let written: serde_json::Value =
+        serde_json::from_slice(&write_file(&file, Format::QgcPlan).contents).unwrap();
     let example: serde_json::Value = serde_json::from_str(EXAMPLE).unwrap();
     for key in ["fileType", "version", "groundStation", "geoFence", "rallyPoints"] {
         assert_eq!(written[key], example[key], "{key}");
     }
-    for key in ["version", "firmwareType", "vehicleType", "globalPlanAltitudeMode", "plannedHomePosition", "items"] {
+    for key in
+        ["version", "firmwareType", "vehicleType", "globalPlanAltitudeMode", "plannedHomePosition", "items"]
+    {
         assert_eq!(written["mission"][key], example["mission"][key], "{key}");
     }
     assert_eq!(written["mission"]["hoverSpeed"], json!(5));
@@ -120,7 +125,10 @@ fn altitudes_follow_frame_and_mode() {
     let file = super::super::read("x", no_home.as_bytes(), Format::QgcPlan, &options).unwrap();
     assert_eq!(file.home.unwrap().to_string(), "40.4635000,-79.5182000,300");
     let ground = edited(&[("/mission/items/0/frame", json!(10))]);
-    assert!(findings(&read_text(&ground))[0].starts_with("assumed  WP 0 (item 1, /mission/items/0) altitude reference"));
+    assert!(
+        findings(&read_text(&ground))[0]
+            .starts_with("assumed  WP 0 (item 1, /mission/items/0) altitude reference")
+    );
     let flat = ReadOptions { flat: true, ..ReadOptions::default() };
     let file = super::super::read("x", ground.as_bytes(), Format::QgcPlan, &flat).unwrap();
     assert_eq!(file.losses.findings.len(), 1);
@@ -147,10 +155,8 @@ fn surveys_are_expanded_and_other_complex_items_refused() {
 
 #[test]
 fn fences_and_rally_points_are_reported() {
-    let circle = |lat: f64, radius: f64, inclusion: bool| {
-        json!({"version":1,"inclusion":inclusion,"circle":{"center":[lat,-79.5182],"radius":radius}})
-    };
-    let square = json!([[40.45,-79.53],[40.45,-79.50],[40.47,-79.50],[40.47,-79.53],[40.45,-79.53]]);
+    let circle = |lat: f64, radius: f64, inclusion: bool| json!({"version":1,"inclusion":inclusion,"circle":{"center":[lat,-79.5182],"radius":radius}});
+    let square = json!([[40.45, -79.53], [40.45, -79.50], [40.47, -79.50], [40.47, -79.53], [40.45, -79.53]]);
     let text = edited(&[
         ("/geoFence/circles", json!([circle(40.463_501, 300.7, true), circle(40.464, 90.0, false)])),
         ("/geoFence/polygons", json!([{"version":1,"inclusion":true,"polygon":square}])),
@@ -175,7 +181,10 @@ fn fences_and_rally_points_are_reported() {
     }
     assert_eq!(said.len(), 9, "{said:#?}");
     let features = qgc_fences(&text);
-    assert_eq!(features.iter().map(|feature| feature.zone).collect::<Vec<_>>(), [Some(Zone::Exclusion), Some(Zone::Inclusion)]);
+    assert_eq!(
+        features.iter().map(|feature| feature.zone).collect::<Vec<_>>(),
+        [Some(Zone::Exclusion), Some(Zone::Inclusion)]
+    );
     assert_eq!(features.iter().map(|feature| feature.vertices().count()).collect::<Vec<_>>(), [72, 4]);
     assert!(qgc_fences(EXAMPLE).is_empty() && qgc_fences("{").is_empty());
 }
@@ -233,10 +242,17 @@ fn private_data_are_used_for_items_that_nobody_edited() {
     let mut value: serde_json::Value = serde_json::from_str(&text).unwrap();
     value["mission"]["items"][2]["params"][4] = json!(40.4611);
     let moved = read_text(&value.to_string());
-    assert_eq!(findings(&moved), ["assumed  betadeck: another program edited items: their private data are not used"]);
-    let patterns: Vec<_> = moved.plan.waypoints.iter().map(|waypoint| (waypoint.kind, waypoint.pattern)).collect();
+    assert_eq!(
+        findings(&moved),
+        ["assumed  betadeck: another program edited items: their private data are not used"]
+    );
+    let patterns: Vec<_> =
+        moved.plan.waypoints.iter().map(|waypoint| (waypoint.kind, waypoint.pattern)).collect();
     let (hold, land) = (WaypointType::Hold, WaypointType::Land);
-    assert_eq!(patterns, [(hold, HoldPattern::Figure8), (hold, HoldPattern::None), (land, HoldPattern::None)]);
+    assert_eq!(
+        patterns,
+        [(hold, HoldPattern::Figure8), (hold, HoldPattern::None), (land, HoldPattern::None)]
+    );
     assert_eq!(moved.plan.waypoints[1].position.lat_e7, 404_611_000);
     // It removes the first item, and the circle.
     value["mission"]["items"].as_array_mut().unwrap().remove(0);
@@ -248,7 +264,11 @@ fn private_data_are_used_for_items_that_nobody_edited() {
     for private in [json!(7), json!({"version": 2}), json!({"version": 1, "waypoints": 5})] {
         value["betadeck"] = private;
         let dropped = read_text(&value.to_string());
-        assert!(findings(&dropped)[0].starts_with("assumed  betadeck: the private data"), "{:?}", findings(&dropped));
+        assert!(
+            findings(&dropped)[0].starts_with("assumed  betadeck: the private data"),
+            "{:?}",
+            findings(&dropped)
+        );
     }
 }
 

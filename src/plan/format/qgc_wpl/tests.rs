@@ -34,7 +34,9 @@ fn the_example_reads_and_prints_unchanged() {
     let said: Vec<_> = file.losses.findings.iter().map(ToString::to_string).collect();
     assert_eq!(
         said,
-        ["changed  WP 3 (item 4, line 6) altitude: 0 m → 50 m: the altitude of a MAVLink LAND is that of the ground"]
+        [
+            "changed  WP 3 (item 4, line 6) altitude: 0 m → 50 m: the altitude of a MAVLink LAND is that of the ground"
+        ]
     );
     let written = write_file(&file, Format::QgcWpl);
     assert_eq!(written.text(), EXAMPLE);
@@ -75,7 +77,10 @@ fn wrong_files_give_one_sentence_with_its_place() {
         ("QGC WPL PB 110\n", "x:1:1: QGC WPL PB 110 is a format of another program"),
         ("", "x:1:1: the text is empty"),
         ("hello", "x:1:1: this is not a waypoint file"),
-        (&line("1 0 3 5001 4 0 0 0 1 2 0 1\n2 0 3 5100 0 0 0 0 1 2 0 1"), "x:3:1: this is a fence, not a plan"),
+        (
+            &line("1 0 3 5001 4 0 0 0 1 2 0 1\n2 0 3 5100 0 0 0 0 1 2 0 1"),
+            "x:3:1: this is a fence, not a plan",
+        ),
         (&line("1 0 3 5100 0 0 0 0 1 2 0 1"), "x:3:1: this is a list of rally points, not a plan"),
         (&line("1 0 3 16 0 0 0 0 1 2 50"), "x:3:1: the line has 11 fields"),
         (&line("1 0 3 16 0 0 0 0 1 2 50 1 7"), "x:3:1: the line has 13 fields"),
@@ -100,7 +105,9 @@ fn wrong_files_give_one_sentence_with_its_place() {
 
 #[test]
 fn numbers_have_no_exponent() {
-    for (value, text) in [(0.0, "0"), (1e-9, "0"), (0.25, "0.25"), (1e9, "1000000000"), (30.0, "30"), (-1.0, "-1")] {
+    for (value, text) in
+        [(0.0, "0"), (1e-9, "0"), (0.25, "0.25"), (1e9, "1000000000"), (30.0, "30"), (-1.0, "-1")]
+    {
         assert_eq!(short(value), text);
     }
 }
@@ -160,7 +167,10 @@ proptest! {
                     check_fields(&written.losses, &file.plan.waypoints, &back.plan.waypoints)?;
                 }
                 let again = write_file(&back, Format::QgcWpl);
-                prop_assert_eq!(again.text(), written.text());
+                // The radii follow the settings, which are not in the file.
+                if file.settings.is_empty() {
+                    prop_assert_eq!(again.text(), written.text());
+                }
                 let twice = parse("law", &again.text(), Format::QgcWpl).unwrap();
                 prop_assert_eq!(&twice.plan, &back.plan);
                 prop_assert_eq!(twice.home, back.home);
