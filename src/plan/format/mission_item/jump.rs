@@ -67,7 +67,11 @@ pub(super) fn order(items: &[MissionItem]) -> Result<Order, Fault> {
         let why = "a plan has no jumps: the items are there as often as they are flown";
         let mut finding = Finding::new(Severity::Changed, "jump", why).item(item.number);
         finding.place = item.place.clone();
-        let from = format!("to item {}, {}", item.param(1), amount(item.param(2), "times"));
+        let from = format!(
+            "to item {}, {}",
+            item.param(1),
+            amount(item.param(2), if item.param(2) == 1.0 { "time" } else { "times" })
+        );
         order
             .findings
             .push(finding.values(from, if left[at].is_some() { "unrolled" } else { "never reached" }));

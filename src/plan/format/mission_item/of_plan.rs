@@ -87,7 +87,8 @@ impl Walk<'_> {
             WaypointType::Flyby => {
                 let leg = self.begin(index, waypoint);
                 self.flybys += 1;
-                let radius_m = self.assumptions.turn_radius_m(self.assumptions.leg_speed_mps(waypoint));
+                let radius_m =
+                    self.assumptions.turn_radius_m(self.assumptions.leg_speed_mps(&self.as_read(waypoint)));
                 self.add(WAYPOINT, [0.0, 0.0, rounded(radius_m)], leg);
             }
             WaypointType::Hold => self.hold(index, waypoint),
@@ -123,8 +124,7 @@ impl Walk<'_> {
         let seconds = waypoint.duration.get();
         let is_endless = waypoint.duration.is_zero();
         let radius_m = rounded(self.assumptions.orbit_radius_m.max(0.1));
-        // The reader knows the speed of the items only.
-        let flown = Waypoint { speed: self.speed.unwrap_or_default(), ..*waypoint };
+        let flown = self.as_read(waypoint);
         let rate = self.assumptions.orbit_rate_rps(&flown);
         match waypoint.pattern {
             HoldPattern::Orbit if is_endless => self.add(LOITER_UNLIMITED, [0.0, 0.0, radius_m], leg),
@@ -141,6 +141,11 @@ impl Walk<'_> {
                 self.stay(seconds, leg);
             }
         }
+    }
+
+    /// Returns the waypoint with the speed that the items give it.
+    fn as_read(&self, waypoint: &Waypoint) -> Waypoint {
+        Waypoint { speed: self.speed.unwrap_or_default(), ..*waypoint }
     }
 
     /// Reports a time that is another one without the settings of the plan.

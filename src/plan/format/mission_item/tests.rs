@@ -143,7 +143,7 @@ fn landings_returns_and_take_offs() {
     check(
         &[before.clone(), back, more],
         &["FLYOVER 50 0 0", "FLYOVER 50 0 0", "LAND 50 0 0"],
-        &[two, "lost     item 3, line 5 items after the return: 1 items"],
+        &[two, "lost     item 3, line 5 items after the return: 1 item"],
     );
     check(
         &[at(1, 22, [15.0, 0.0, 0.0, NAN])],
@@ -241,13 +241,12 @@ fn frames_give_the_reference() {
     for frame in [1, 2, 4, 7, 8, 9, 12, 21] {
         assert!(altitude(frame).1[0].starts_with(&format!("fault item 1: frame {frame}")), "{frame}");
     }
-    let places: [(f64, f64, f64, &str); 6] = [
+    let places: [(f64, f64, f64, &str); 5] = [
         (91.0, 0.0, 1.0, "latitude 91 is out of range"),
         (0.0, 400.0, 1.0, "longitude 400 is out of range"),
         (NAN, 1.0, 1.0, "latitude NaN is out of range"),
         (1.0, 1.0, f64::INFINITY, "altitude inf is out of range"),
         (1.0, 1.0, 20_001.0, "altitude 20001 is out of range"),
-        (0.0, 0.0, 1.0, "it has no position"),
     ];
     for (lat, lon, alt, why) in places {
         let said = map(&[item(1, 16, ABOVE_HOME, [0.0; 4], (lat, lon, alt))]).1;
@@ -258,6 +257,28 @@ fn frames_give_the_reference() {
         &["HOLD NONE 1 0 0"],
         &["changed  WP 0 (item 1, line 3) longitude: 359 → -1"],
     );
+}
+
+#[test]
+fn an_item_without_a_position_is_where_the_craft_is() {
+    let nowhere = |number, command, alt| item(number, command, 3, [1.0, 0.0, 10.0, 0.0], (0.0, 0.0, alt));
+    let items = [at(1, 16, [0.0, 5.0, 0.0, 0.0]), nowhere(2, 18, 0.0), nowhere(3, 17, 7.0)];
+    check(
+        &items,
+        &["FLYOVER 50 0 0", "HOLD ORBIT 50 0 120", "HOLD ORBIT 7 0 0"],
+        &[
+            "assumed  WP 1 (item 2, line 4) position: 40.4640000,-79.5175000, 50 m",
+            "assumed  WP 2 (item 3, line 5)",
+        ],
+    );
+    let mission = Mission {
+        items: &items[1..],
+        home: None,
+        assumptions: &Assumptions::default(),
+        waypoint_as: WaypointType::Flyby,
+        flat: false,
+    };
+    assert!(mission.map().faults[0].message.contains("it has no position, and there is none before it"));
 }
 
 #[test]

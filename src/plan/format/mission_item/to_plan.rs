@@ -168,7 +168,7 @@ impl<'m> Walk<'m> {
     }
 
     fn pass(&mut self, index: usize, item: &'m MissionItem) -> Result<(), String> {
-        let (position, altitude) = (self.position(item)?, self.altitude(item)?);
+        let (position, altitude) = self.point(item)?;
         let [stay_s, accepted_m, passed_m] = [1, 2, 3].map(|number| item.param(number));
         let mut waypoint = Waypoint { position, altitude, ..Waypoint::default() };
         if stay_s != 0.0 {
@@ -194,7 +194,7 @@ impl<'m> Walk<'m> {
 
     /// A stay without an end, or for a number of turns.
     fn loiter(&mut self, index: usize, item: &'m MissionItem, turns: Option<f64>) -> Result<(), String> {
-        let (position, altitude) = (self.position(item)?, self.altitude(item)?);
+        let (position, altitude) = self.point(item)?;
         let radius_m = item.param(3);
         let circles = turns.is_some() || radius_m != 0.0;
         let pattern = if circles { HoldPattern::Orbit } else { HoldPattern::None };
@@ -395,7 +395,6 @@ impl<'m> Walk<'m> {
     }
 
     fn position(&mut self, item: &MissionItem) -> Result<LatLon, String> {
-        item.reference()?;
         let (lat, lon) = item.degrees().ok_or("it has no position")?;
         let (position, wrapped) = bounds::position(lat, lon)?;
         if wrapped {
@@ -412,8 +411,31 @@ impl<'m> Walk<'m> {
         Ok(position)
     }
 
+    /// Returns the position and the altitude of a point. Without a position it is that of the craft, as in ArduPilot,
+    /// and so is an altitude of 0.
+    fn point(&mut self, item: &MissionItem) -> Result<(LatLon, Altitude), String> {
+        let position = self.here(item)?;
+        let mut altitude = self.altitude(item)?;
+        if item.degrees().is_none() {
+            if item.altitude_m == Some(0.0) {
+                altitude = self.level();
+            }
+            let why = "an item without a position is at the place of the waypoint before";
+            self.note(
+                item,
+                Severity::Assumed,
+                "position",
+                why,
+                "",
+                &format!("{position}, {}", metres(altitude)),
+            );
+        }
+        Ok((position, altitude))
+    }
+
     /// Returns the position. Without one the item is at the place of the craft.
     fn here(&mut self, item: &MissionItem) -> Result<LatLon, String> {
+        item.reference()?;
         if item.degrees().is_some() {
             return self.position(item);
         }
@@ -451,16 +473,13 @@ impl<'m> Walk<'m> {
         let why = "the mission ends with the return";
         let mut finding = Finding::new(Severity::Lost, "items after the return", why).item(item.number);
         finding.place = item.place.clone();
-        self.mapping.findings.push(finding.values(format!("{} items", rest.len()), ""));
+        self.mapping.findings.push(finding.values(counted(rest.len()), ""));
     }
 
     /// Adds the findings of the whole file.
     fn finish(mut self) -> Mapping {
         let mut add = |severity, field: String, count: usize, to: String, why: &str| {
-            let items = if count == 1 { "item" } else { "items" };
-            self.mapping
-                .findings
-                .push(Finding::new(severity, field, why).values(format!("{count} {items}"), to));
+            self.mapping.findings.push(Finding::new(severity, field, why).values(counted(count), to));
         };
         if self.plain > 0 {
             let why = "the items do not say how they are passed";
@@ -478,4 +497,8 @@ impl<'m> Walk<'m> {
         }
         self.mapping
     }
+}
+
+fn counted(items: usize) -> String {
+    if items == 1 { "1 item".to_owned() } else { format!("{items} items") }
 }
