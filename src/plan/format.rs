@@ -13,13 +13,18 @@ mod encoding;
 mod field;
 mod home;
 mod json;
+mod json_place;
 mod kind;
 pub mod loss;
+mod mission_item;
 mod native_read;
 mod native_write;
 mod note;
 mod options;
 mod problem;
+mod qgc_csv;
+mod qgc_plan;
+mod qgc_wpl;
 mod record;
 mod setting;
 mod table;
@@ -37,6 +42,7 @@ pub use kind::{Format, FormatInfo};
 pub use note::{Note, NoteKind};
 pub use options::{ReadOptions, WriteOptions};
 pub use problem::{PlanError, Problems, report};
+pub use qgc_plan::qgc_fences;
 pub use record::{Records, WaypointRecord};
 pub use setting::{SettingCheck, SettingFault, SettingPart, setting_line};
 pub use table::table;
@@ -144,6 +150,9 @@ pub fn read(
         }
         Format::Toml => native_read::read(text, options.check, &mut problems),
         Format::CliText => cli_text::read(text, &mut problems),
+        Format::QgcPlan => qgc_plan::read(text, options, &mut problems),
+        Format::QgcWpl => qgc_wpl::read(text, options, &mut problems),
+        Format::QgcCsv => qgc_csv::read(text, options, &mut problems),
     };
     let errors = problems.into_errors();
     if !errors.is_empty() {
@@ -169,9 +178,20 @@ pub fn write_with(file: &PlanFile, format: Format, _options: &WriteOptions) -> W
     let mut written = match format {
         Format::Toml => native_write::write(file),
         Format::CliText => cli_text::write(file),
+        Format::QgcPlan => qgc_plan::write(file),
+        Format::QgcWpl => qgc_wpl::write(file),
+        Format::QgcCsv => only_read(format),
     };
     written.losses.waypoints = file.plan.waypoints.len();
     written
+}
+
+/// Returns the refusal of a format that is not written.
+fn only_read(format: Format) -> Written {
+    let why = format!("a {} is only read: write one of {}", format.title(), Format::names(true));
+    let mut losses = LossReport::default();
+    losses.add(loss::Finding::new(Severity::Refused, "format", why));
+    Written { losses, ..Written::default() }
 }
 
 /// Returns the file's name without folders and ending; `plan` for standard input.

@@ -1,5 +1,6 @@
 //! Plan files and the store.
 
+mod foreign_qgc;
 mod formats;
 mod killed;
 mod plans;

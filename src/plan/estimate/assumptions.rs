@@ -1,5 +1,6 @@
 //! The facts about the craft that estimates and reviews use.
 
+use crate::geo::GRAVITY;
 use crate::plan::Waypoint;
 use crate::plan::setpoint::{AltitudeSetpoint, SetpointLimits};
 
@@ -15,6 +16,8 @@ const HOLD_ALTITUDE_M: f64 = 2.0;
 const MEASURED_M: f64 = 1.0;
 /// The time for which a HOLD waits for an altitude that cannot be reached, s.
 const HELD_OFF_S: f64 = 10.0;
+/// The largest turn radius, m.
+const WIDEST_TURN_M: f64 = 1000.0;
 
 /// The facts about the craft for estimates and reviews, most of them from its settings.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -183,6 +186,26 @@ impl Assumptions {
         }
     }
 
+    /// Returns the distance before a FLYBY at which the craft begins its turn at this speed, m.
+    pub(in crate::plan) fn turn_radius_m(&self, speed_mps: f64) -> f64 {
+        let tangent = self.max_angle_deg.to_radians().tan();
+        if !(0.1..).contains(&tangent) {
+            return WIDEST_TURN_M;
+        }
+        (speed_mps.max(SLOWEST_MPS).powi(2) / (GRAVITY * tangent)).clamp(0.5, WIDEST_TURN_M)
+    }
+
+    /// Returns the rate of an ORBIT at this waypoint, radians/s: the setting, limited by the speed of the leg and by half
+    /// of the maximum lean.
+    pub(in crate::plan) fn orbit_rate_rps(&self, waypoint: &Waypoint) -> f64 {
+        let lean = self.max_angle_deg.clamp(5.0, 80.0).to_radians();
+        let radius_m = self.orbit_radius_m.max(0.1);
+        self.turn_rate_dps
+            .to_radians()
+            .min(self.leg_speed_mps(waypoint) / radius_m)
+            .min((0.5 * GRAVITY * lean.tan() / radius_m).sqrt())
+    }
+
     /// Returns the slowest speed of a leg of this length after a DELAY, m/s.
     pub(in crate::plan) fn delayed_mps(&self, length_m: f64, delay_s: f64) -> f64 {
         (length_m / delay_s).max(SLOWEST_DELAYED_MPS)
@@ -208,6 +231,19 @@ impl Assumptions {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn turns_and_orbits_follow_the_settings() {
+        let assumptions = Assumptions::from_settings(&["ap_max_angle = 25".to_owned()]);
+        assert!((assumptions.turn_radius_m(5.0) - 5.47).abs() < 0.01, "{}", assumptions.turn_radius_m(5.0));
+        assert!((assumptions.turn_radius_m(0.0) - 0.5).abs() < 1e-9);
+        let level = Assumptions { max_angle_deg: 0.0, ..assumptions };
+        assert!((level.turn_radius_m(1.0) - WIDEST_TURN_M).abs() < 1e-9);
+        let rate = assumptions.orbit_rate_rps(&Waypoint::default()).to_degrees();
+        assert!((rate - 3.0).abs() < 1e-9, "{rate}");
+        let fast = Assumptions { turn_rate_dps: 100.0, ..assumptions };
+        assert!((fast.orbit_rate_rps(&Waypoint::default()) - 0.478).abs() < 0.001);
+    }
 
     #[test]
     fn settings_change_the_assumptions() {

@@ -3,7 +3,7 @@
 use strum::IntoEnumIterator as _;
 
 use super::loss::{Finding, Severity};
-use super::native_read;
+use super::{native_read, qgc_csv, qgc_wpl};
 
 /// A file format for plans. `Display` and `FromStr` use the names of `convert --from` and `--to`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumString, strum::EnumIter)]
@@ -15,6 +15,15 @@ pub enum Format {
     /// Betaflight CLI text.
     #[strum(serialize = "txt")]
     CliText,
+    /// QGroundControl's JSON.
+    #[strum(serialize = "plan")]
+    QgcPlan,
+    /// QGroundControl's and Mission Planner's text, version 110.
+    #[strum(serialize = "wpl")]
+    QgcWpl,
+    /// QGroundControl's table.
+    #[strum(serialize = "qgc-csv")]
+    QgcCsv,
 }
 
 /// The row of a format.
@@ -49,6 +58,27 @@ impl Format {
                 also: &[],
                 writes: true,
                 carries: "the waypoints; not name, home and settings",
+            },
+            Self::QgcPlan => FormatInfo {
+                title: "QGroundControl plan",
+                endings: &["plan"],
+                also: &["json"],
+                writes: true,
+                carries: "everything for betadeck; others do not know settings, FIGURE8 and YAW_RATE",
+            },
+            Self::QgcWpl => FormatInfo {
+                title: "MAVLink waypoint file",
+                endings: &["waypoints"],
+                also: &["txt", "mission"],
+                writes: true,
+                carries: "home and the waypoints as items; not name, settings, FIGURE8 and the altitude of LAND",
+            },
+            Self::QgcCsv => FormatInfo {
+                title: "QGroundControl table",
+                endings: &[],
+                also: &["csv"],
+                writes: false,
+                carries: "home and the waypoints as items",
             },
         }
     }
@@ -95,6 +125,9 @@ impl Format {
     /// begins a table or gives a key of a plan file. A text without the mark of any format is CLI text.
     pub fn of_contents(contents: &[u8]) -> Self {
         let Ok(text) = super::encoding::decode(contents) else { return Self::CliText };
+        if let Some(format) = of_mark(text.trim_start()) {
+            return format;
+        }
         let first = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#'));
         let is_toml = first.is_some_and(|line| {
             let key = line.split_once('=').map_or("", |(key, _)| key.trim());
@@ -114,6 +147,19 @@ impl Format {
     pub fn names(written: bool) -> String {
         let formats = Self::iter().filter(|format| format.info().writes || !written);
         formats.map(|format| format.to_string()).collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// Returns the format of a text that begins with the mark of one.
+fn of_mark(text: &str) -> Option<Format> {
+    if text.starts_with(qgc_wpl::MARK) {
+        Some(Format::QgcWpl)
+    } else if text.starts_with('{') && text.contains("\"fileType\"") {
+        Some(Format::QgcPlan)
+    } else if qgc_csv::is_header(text.lines().next().unwrap_or_default()) {
+        Some(Format::QgcCsv)
+    } else {
+        None
     }
 }
 

@@ -256,13 +256,8 @@ impl Walk<'_> {
 
     /// Returns the place on the circle after so many seconds, m from the middle.
     fn on_the_orbit(&self, waypoint: &Waypoint, seconds: f64) -> Vector2<f64> {
-        let Assumptions { orbit_radius_m, turn_rate_dps, max_angle_deg, .. } = *self.assumptions;
-        let lean = max_angle_deg.clamp(5.0, 80.0).to_radians();
-        let radius_m = orbit_radius_m.max(0.1);
-        let rate = turn_rate_dps
-            .to_radians()
-            .min(self.assumptions.leg_speed_mps(waypoint) / radius_m)
-            .min((0.5 * GRAVITY * lean.tan() / radius_m).sqrt());
+        let radius_m = self.assumptions.orbit_radius_m.max(0.1);
+        let rate = self.assumptions.orbit_rate_rps(waypoint);
         let (east, north) = (rate * seconds).sin_cos();
         Vector2::new(north, east) * radius_m
     }
