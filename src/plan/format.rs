@@ -11,11 +11,17 @@ mod bounds;
 mod cli_text;
 mod encoding;
 mod field;
+mod geojson;
+mod gpx;
 mod home;
 mod json;
 mod kind;
+mod kml;
 pub mod loss;
+mod map_choice;
+mod map_data;
 mod map_file;
+mod map_plan;
 mod native_read;
 mod native_write;
 mod note;
@@ -24,6 +30,7 @@ mod problem;
 mod record;
 mod setting;
 mod table;
+mod thinned;
 mod toml_table;
 mod xml;
 
@@ -122,11 +129,16 @@ pub fn read(
     format: Format,
     options: &ReadOptions,
 ) -> Result<PlanFile, Vec<PlanError>> {
-    let text = encoding::decode(contents).map_err(|message| {
+    let refused = |message: String| {
         let mut problems = Problems::new(name, "");
-        problems.add(0..0, message, "a plan is a text file");
+        problems.add(0..0, message, format!("a {} file is expected", format.title()));
         problems.into_errors()
-    })?;
+    };
+    let unpacked = match format {
+        Format::Kmz => Cow::Owned(map_file::unpacked_plan(contents).map_err(refused)?),
+        _ => Cow::Borrowed(contents),
+    };
+    let text = encoding::decode(&unpacked).map_err(refused)?;
     let text = text.as_ref();
     let mut problems = Problems::new(name, text);
     let mut file = match format {
@@ -138,6 +150,9 @@ pub fn read(
         }
         Format::Toml => native_read::read(text, options.check, &mut problems),
         Format::CliText => cli_text::read(text, &mut problems),
+        Format::Kml | Format::Kmz => kml::read(text, options, &mut problems),
+        Format::Gpx => gpx::read(text, options, &mut problems),
+        Format::GeoJson => geojson::read(text, options, &mut problems),
     };
     let errors = problems.into_errors();
     if !errors.is_empty() {
@@ -159,10 +174,14 @@ pub fn write(file: &PlanFile, format: Format) -> Written {
 
 /// Writes a plan file in its canonical form. Reading it gives the same plan but for the fields of the findings, and
 /// writing that plan gives the same bytes.
-pub fn write_with(file: &PlanFile, format: Format, _options: &WriteOptions) -> Written {
+pub fn write_with(file: &PlanFile, format: Format, options: &WriteOptions) -> Written {
     let mut written = match format {
         Format::Toml => native_write::write(file),
         Format::CliText => cli_text::write(file),
+        Format::Kml => kml::write(file, options),
+        Format::Kmz => kml::write_archive(file, options),
+        Format::Gpx => gpx::write(file),
+        Format::GeoJson => geojson::write(file),
     };
     written.losses.waypoints = file.plan.waypoints.len();
     written

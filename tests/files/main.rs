@@ -2,5 +2,6 @@
 
 mod formats;
 mod killed;
+mod maps;
 mod plans;
 mod storage;

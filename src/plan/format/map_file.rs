@@ -6,7 +6,7 @@ mod coordinates;
 mod geojson;
 mod gpx;
 mod kml;
-mod kmz;
+pub(super) mod kmz;
 mod positions;
 
 use super::bounds::MAX_ITEMS;
@@ -14,11 +14,13 @@ use super::encoding;
 use super::{PlanError, Problems};
 use crate::plan::feature::{Feature, Shape, Zone};
 
-pub(super) use collector::{Altitudes, Collector, Detail, Kind, Limits, MapFeature, Piece, Properties};
-pub(super) use kmz::unpacked;
+pub(super) use collector::{Altitudes, Collector, Kind, Limits, MapFeature, Piece, Properties, Skipped};
+pub(super) use geojson::is_geojson;
 
-/// The largest text of a map in a KMZ, bytes.
-pub(super) const MAX_UNPACKED: usize = 64 << 20;
+/// The largest text of a backdrop in a KMZ, bytes.
+const MAX_UNPACKED: usize = 64 << 20;
+/// The largest text of a plan in a KMZ, bytes.
+const MAX_PLAN: usize = 8 << 20;
 
 /// The most problems of a map that are listed. A map of 64 MiB with a fault in each vertex has one fault for people.
 const MOST_PROBLEMS: usize = 10;
@@ -64,6 +66,15 @@ impl MapKind {
             Self::GeoJson => geojson::read(text, collector),
         }
     }
+}
+
+/// Returns the contents of a file of a plan: those of the document if it is an archive.
+///
+/// # Errors
+///
+/// Returns the reason why the archive cannot be read.
+pub(super) fn unpacked_plan(contents: &[u8]) -> Result<Vec<u8>, String> {
+    kmz::unpacked(contents, MAX_PLAN)
 }
 
 /// Returns the local name of the first element of an XML text, or that in its document type. Does not read further.

@@ -189,6 +189,30 @@ fn element(tag: &BytesStart<'_>, span: Range<usize>) -> Result<Element, String> 
     Ok(Element { name, attributes, span })
 }
 
+/// Returns the part of a text that a document can hold and that [`Parts::text`] returns.
+pub(super) fn carried(text: &str) -> String {
+    let is_allowed =
+        |c: &char| !matches!(c, '\u{fffe}' | '\u{ffff}') && (!c.is_control() || "\t\n\r".contains(*c));
+    text.chars().filter(is_allowed).collect::<String>().trim().to_owned()
+}
+
+/// Returns a text for the inside of elements and attributes.
+pub(super) fn escaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in carried(text).chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            // A reader turns a plain one into a line end.
+            '\r' => out.push_str("&#13;"),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

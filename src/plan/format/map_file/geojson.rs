@@ -14,6 +14,31 @@ use crate::plan::format::loss::Place;
 /// The names of WGS 84 in a `crs` member.
 const WGS_84: &[&str] = &["CRS84", "CRS84h", "EPSG::4326", "EPSG:4326", "EPSG::4979", "EPSG:4979", "WGS84"];
 
+/// The types of objects that are a file.
+const TYPES: &[&str] = &[
+    "FeatureCollection",
+    "Feature",
+    "Point",
+    "MultiPoint",
+    "LineString",
+    "MultiLineString",
+    "Polygon",
+    "MultiPolygon",
+    "GeometryCollection",
+];
+
+/// Returns `true` if a text is GeoJSON: it has an object with a type of GeoJSON, and it is no plan of QGroundControl.
+pub(in crate::plan::format) fn is_geojson(text: &str) -> bool {
+    let is_type = |at: usize| {
+        let value = text[at..].trim_start().strip_prefix(':').map(str::trim_start);
+        let word = value.and_then(|value| value.strip_prefix('"')?.split('"').next());
+        word.is_some_and(|word| TYPES.contains(&word))
+    };
+    text.trim_start().starts_with('{')
+        && !text.contains("\"fileType\"")
+        && text.match_indices("\"type\"").any(|(at, key)| is_type(at + key.len()))
+}
+
 /// Reads a text.
 pub(super) fn read(text: &str, collector: &mut Collector<'_, '_>) {
     let mut reader = serde_json::Deserializer::from_str(text);
