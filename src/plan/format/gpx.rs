@@ -5,7 +5,7 @@ use super::map_choice::{Choice, points};
 use super::map_data::{self, HOME, VERSION, metres, own_type};
 use super::map_file::{Kind, MapFeature, MapKind};
 use super::map_plan::{Builder, Map, Spot};
-use super::xml::escaped;
+use super::xml::{carried, escaped};
 use super::{PlanFile, Problems, ReadOptions, Written};
 use crate::geo::{Degrees7, LatLon};
 use crate::plan::feature::Shape;
@@ -75,7 +75,7 @@ pub(super) fn write(file: &PlanFile) -> Written {
         xmlns:b=\"urn:betadeck:1\">\n"
         .to_owned();
     text.push_str(&format!("  <metadata>\n    <name>{}</name>\n", escaped(&file.name)));
-    if !file.description.is_empty() {
+    if !carried(&file.description).is_empty() {
         text.push_str(&format!("    <desc>{}</desc>\n", escaped(&file.description)));
     }
     let settings = file.settings.iter().map(|line| ("setting", line.clone()));

@@ -5,7 +5,7 @@ use super::map_choice::{Choice, points};
 use super::map_data::{self, HOME, VERSION, metres, own_type};
 use super::map_file::{MapFeature, MapKind, kmz};
 use super::map_plan::{Builder, Map, Spot};
-use super::xml::escaped;
+use super::xml::{carried, escaped};
 use super::{PlanFile, Problems, ReadOptions, WriteOptions, Written};
 use crate::geo::{Degrees7, LatLon};
 use crate::plan::Waypoint;
@@ -133,7 +133,7 @@ fn document(file: &PlanFile, options: &WriteOptions) -> Result<(String, LossRepo
         <kml xmlns=\"http://www.opengis.net/kml/2.2\">\n<Document>\n"
         .to_owned();
     text.push_str(&format!("  <name>{}</name>\n", escaped(&file.name)));
-    if !file.description.is_empty() {
+    if !carried(&file.description).is_empty() {
         text.push_str(&format!("  <description>{}</description>\n", escaped(&file.description)));
     }
     text.push_str(&look_at(file));
