@@ -1,4 +1,4 @@
-//! Reports of a flight: JSON lines, sentences, a GPX track.
+//! Reports of a flight: JSON lines, sentences, tracks.
 //!
 //! This module turns events and snapshots into text; the caller decides where the text goes.
 
@@ -10,8 +10,10 @@ pub mod gpx;
 pub mod json;
 mod number;
 pub mod sentence;
+pub mod track;
 pub mod truth;
 mod xml;
 
 pub use end::End;
 pub use gpx::{GpxHeader, GpxPoint, GpxWriter, UtcSeconds};
+pub use track::{Track, TrackPoint};

@@ -27,6 +27,18 @@ pub struct FlyArgs {
     #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
     pub gpx: Option<PathBuf>,
 
+    /// Writes the track as KML, with lines in the colours of the autopilot's states
+    #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
+    pub kml: Option<PathBuf>,
+
+    /// Writes the track as GeoJSON, with a line for each state of the autopilot
+    #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
+    pub geojson: Option<PathBuf>,
+
+    /// Points a second of simulated time in the KML and GeoJSON tracks [default: 1]
+    #[arg(long, value_name = "HZ", value_parser = value::track_rate, help_heading = "Output")]
+    pub track_hz: Option<f64>,
+
     /// The flight and the judgement of the plan.
     #[command(flatten)]
     pub mission: MissionArgs,
@@ -75,12 +87,20 @@ impl FlyArgs {
         self.flight.speed.map_or(f64::INFINITY, |Speed(speed)| speed)
     }
 
+    /// Returns the interval of the points of the KML and GeoJSON tracks, µs.
+    pub fn track_every_us(&self) -> u64 {
+        ((1e6 / self.track_hz.unwrap_or(1.0)).round() as u64).max(1)
+    }
+
     /// Checks the combination of the typed options.
     pub(super) fn check(&self) -> Result<(), String> {
         if self.samples.is_some_and(|hz| hz > 0.0) && self.json.is_none() {
             return Err(
                 "--samples needs --json: samples are JSON lines; add --json FILE or --json -".to_owned()
             );
+        }
+        if self.track_hz.is_some() && self.kml.is_none() && self.geojson.is_none() {
+            return Err("--track-hz needs a track: add --kml FILE or --geojson FILE".to_owned());
         }
         Ok(())
     }

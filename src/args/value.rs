@@ -123,6 +123,11 @@ pub(super) fn samples(text: &str) -> Result<f64, String> {
     bounded(text, 0.0, 1000.0, "Hz")
 }
 
+/// Reads the number of points of a track a second.
+pub(super) fn track_rate(text: &str) -> Result<f64, String> {
+    bounded(text, 0.01, 50.0, "Hz")
+}
+
 /// Reads the number of steps a second.
 pub(super) fn rate(text: &str) -> Result<u32, String> {
     let rate = text.parse().map_err(|_| format!("{text} is not a whole number of Hz"))?;

@@ -11,11 +11,18 @@ mod bounds;
 mod cli_text;
 mod encoding;
 mod field;
+mod geojson;
+mod gpx;
 mod home;
 mod json;
 mod json_place;
 mod kind;
+mod kml;
 pub mod loss;
+mod map_choice;
+mod map_data;
+mod map_file;
+mod map_plan;
 mod mission_item;
 mod native_read;
 mod native_write;
@@ -28,6 +35,7 @@ mod qgc_wpl;
 mod record;
 mod setting;
 mod table;
+mod thinned;
 mod toml_table;
 mod xml;
 
@@ -39,6 +47,7 @@ use loss::{LossReport, Severity};
 pub use field::degrees_e7;
 pub use home::{HomeError, HomePosition};
 pub use kind::{Format, FormatInfo};
+pub use map_file::read_features;
 pub use note::{Note, NoteKind};
 pub use options::{ReadOptions, WriteOptions};
 pub use problem::{PlanError, Problems, report};
@@ -134,11 +143,16 @@ pub fn read(
     format: Format,
     options: &ReadOptions,
 ) -> Result<PlanFile, Vec<PlanError>> {
-    let text = encoding::decode(contents).map_err(|message| {
+    let refused = |message: String| {
         let mut problems = Problems::new(name, "");
-        problems.add(0..0, message, "a plan is a text file");
+        problems.add(0..0, message, format!("a {} file is expected", format.title()));
         problems.into_errors()
-    })?;
+    };
+    let unpacked = match format {
+        Format::Kmz => Cow::Owned(map_file::unpacked_plan(contents).map_err(refused)?),
+        _ => Cow::Borrowed(contents),
+    };
+    let text = encoding::decode(&unpacked).map_err(refused)?;
     let text = text.as_ref();
     let mut problems = Problems::new(name, text);
     let mut file = match format {
@@ -153,6 +167,9 @@ pub fn read(
         Format::QgcPlan => qgc_plan::read(text, options, &mut problems),
         Format::QgcWpl => qgc_wpl::read(text, options, &mut problems),
         Format::QgcCsv => qgc_csv::read(text, options, &mut problems),
+        Format::Kml | Format::Kmz => kml::read(text, options, &mut problems),
+        Format::Gpx => gpx::read(text, options, &mut problems),
+        Format::GeoJson => geojson::read(text, options, &mut problems),
     };
     let errors = problems.into_errors();
     if !errors.is_empty() {
@@ -174,13 +191,17 @@ pub fn write(file: &PlanFile, format: Format) -> Written {
 
 /// Writes a plan file in its canonical form. Reading it gives the same plan but for the fields of the findings, and
 /// writing that plan gives the same bytes.
-pub fn write_with(file: &PlanFile, format: Format, _options: &WriteOptions) -> Written {
+pub fn write_with(file: &PlanFile, format: Format, options: &WriteOptions) -> Written {
     let mut written = match format {
         Format::Toml => native_write::write(file),
         Format::CliText => cli_text::write(file),
         Format::QgcPlan => qgc_plan::write(file),
         Format::QgcWpl => qgc_wpl::write(file),
         Format::QgcCsv => only_read(format),
+        Format::Kml => kml::write(file, options),
+        Format::Kmz => kml::write_archive(file, options),
+        Format::Gpx => gpx::write(file),
+        Format::GeoJson => geojson::write(file),
     };
     written.losses.waypoints = file.plan.waypoints.len();
     written

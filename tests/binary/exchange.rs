@@ -50,7 +50,8 @@ fn a_plan_of_another_program_is_flown_as_it_is() {
     let piped = sandbox.run_with(&["plan", "show", "-"], PLAN);
     assert_eq!(piped.code, Some(0), "{}", piped.err);
     assert!(piped.out.contains("HOLD ORBIT"), "{}", piped.out);
-    sandbox.write("test.toml", "[plan]\nfile = 'theirs.plan'\n[[expect]]\nfinally = \"result = 'complete'\"\n");
+    sandbox
+        .write("test.toml", "[plan]\nfile = 'theirs.plan'\n[[expect]]\nfinally = \"result = 'complete'\"\n");
     let shown = sandbox.run(&["check", "test.toml"]);
     assert_ne!(shown.code, Some(2), "{}", shown.err);
 }
@@ -66,7 +67,10 @@ fn the_report_names_each_difference_and_strict_makes_it_the_exit_code() {
     assert_eq!((ran.code, ran.err.contains("nothing is lost")), (Some(0), true), "{}", ran.err);
     let ran = sandbox.run(&["convert", "square", "square.txt", "--force", "--json"]);
     let report: serde_json::Value = serde_json::from_str(&ran.out).expect("one object");
-    assert_eq!((&report["format"], &report["from"], &report["to"]), (&1.into(), &"toml".into(), &"txt".into()));
+    assert_eq!(
+        (&report["format"], &report["from"], &report["to"]),
+        (&1.into(), &"toml".into(), &"txt".into())
+    );
     assert_eq!(report["findings"][0]["severity"], "info");
     assert!(report["summary"]["lost"].as_u64() >= Some(1), "{report}");
 }

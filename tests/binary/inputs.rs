@@ -194,6 +194,22 @@ fn json_and_gpx_go_to_the_files_and_nothing_else_is_written() {
 }
 
 #[test]
+fn tracks_of_equal_flights_are_equal() {
+    let sandbox = Sandbox::new();
+    let fly = |name: &str| {
+        let [kml, geojson] = [format!("{name}.kml"), format!("{name}.geojson")];
+        let options = ["fly", "land", "--kml", &kml, "--geojson", &geojson, "--track-hz", "2"];
+        sandbox.run(&options).exits(0);
+        (sandbox.read(&kml), sandbox.read(&geojson))
+    };
+    let (kml, geojson) = fly("a");
+    assert!(kml.matches("<gx:coord>").count() > 60, "{kml}");
+    assert_eq!(kml.matches("<gx:coord>").count(), kml.matches("<when>").count());
+    assert!(kml.contains("<styleUrl>#LANDING</styleUrl>") && geojson.contains("\"name\":\"LANDING\""));
+    assert_eq!(fly("b"), (kml, geojson));
+}
+
+#[test]
 fn without_json_events_are_sentences_and_the_summary_goes_to_standard_error() {
     let ran = Sandbox::new().run(&["fly", "land"]).exits(0);
     for sentence in ["Booted", "GPS fix", "Armed.", "LANDING → COMPLETE", "Disarmed: landed."] {

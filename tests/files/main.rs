@@ -3,5 +3,6 @@
 mod foreign_qgc;
 mod formats;
 mod killed;
+mod maps;
 mod plans;
 mod storage;

@@ -3,6 +3,7 @@
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
+use super::track_files::{self, TrackFiles};
 use super::watched::WatchedFlight;
 use crate::app::error::{self, AppError};
 use crate::app::firmware::reported;
@@ -11,7 +12,7 @@ use crate::app::patient_output::PatientOutput;
 use crate::app::setup;
 use crate::args::{FlyArgs, OutputFile};
 use crate::plan::format::PlanFile;
-use crate::report::{End, GpxHeader, GpxPoint, GpxWriter, UtcSeconds, json, sentence, truth};
+use crate::report::{End, GpxHeader, GpxPoint, GpxWriter, Track, UtcSeconds, json, sentence, truth};
 use crate::session::{Event, Flying as _, Subscriber};
 use crate::signals::SimTime;
 use crate::text::printable;
@@ -79,6 +80,12 @@ pub(super) fn claim(args: &FlyArgs) -> Result<(), AppError> {
     if let Some(path) = &args.gpx {
         kept.claim("--gpx", path)?;
     }
+    if let Some(path) = &args.kml {
+        kept.claim("--kml", path)?;
+    }
+    if let Some(path) = &args.geojson {
+        kept.claim("--geojson", path)?;
+    }
     files(args).for_each(output_file::remove_results);
     Ok(())
 }
@@ -89,7 +96,7 @@ fn files(args: &FlyArgs) -> impl Iterator<Item = &Path> {
         Some(OutputFile::File(path)) => Some(path.as_path()),
         Some(OutputFile::Stdout) | None => None,
     };
-    json.into_iter().chain(args.gpx.as_deref())
+    json.into_iter().chain(args.gpx.as_deref()).chain(args.kml.as_deref()).chain(args.geojson.as_deref())
 }
 
 /// The outputs of the flight.
@@ -100,6 +107,7 @@ pub(super) struct Output {
     /// The interval of the samples, µs; `None` = no samples.
     sample_every_us: Option<u64>,
     gpx: Option<GpxWriter<StreamedOutput>>,
+    track: Option<TrackFiles>,
     /// `true` after the end of the flight: only its end remains to be reported.
     is_over: bool,
     /// The first error. The flight stops.
@@ -131,23 +139,23 @@ impl Output {
             Some(OutputFile::File(path)) => Lines::File(StreamedOutput::begin(path)?),
         };
         let json = args.json.is_some();
+        let header = || GpxHeader {
+            creator: "betadeck (simulated)".to_owned(),
+            track: plan.name.clone(),
+            home_amsl_m: vehicle.local_frame().map_or(0.0, |frame| frame.alt_amsl_m),
+            boot: UtcSeconds::SIMULATED_BOOT,
+        };
         let gpx = match &args.gpx {
             None => None,
             Some(path) => {
-                let home_amsl_m = vehicle.local_frame().map_or(0.0, |frame| frame.alt_amsl_m);
-                let header = GpxHeader {
-                    creator: "betadeck (simulated)".to_owned(),
-                    track: plan.name.clone(),
-                    home_amsl_m,
-                    boot: UtcSeconds::SIMULATED_BOOT,
-                };
                 let file = StreamedOutput::begin(path)?;
-                Some(GpxWriter::new(file, header, &plan.plan).map_err(write_failed)?)
+                Some(GpxWriter::new(file, header(), &plan.plan).map_err(write_failed)?)
             }
         };
+        let track = TrackFiles::open(args, || Track::new(header(), plan.plan.clone()))?;
         let samples_hz = args.samples.filter(|hz| *hz > 0.0);
         let sample_every_us = samples_hz.map(|hz| ((1e6 / hz).round() as u64).max(1));
-        Ok(Self { lines: Some(lines), json, sample_every_us, gpx, is_over: false, problem: None })
+        Ok(Self { lines: Some(lines), json, sample_every_us, gpx, track, is_over: false, problem: None })
     }
 
     /// Returns the error that stopped the flight.
@@ -197,15 +205,16 @@ impl Output {
         }
     }
 
-    /// Writes a point of the track at each full second.
+    /// Records a point of the tracks if one is due.
     fn track(&mut self, vehicle: &Vehicle) -> Result<(), AppError> {
+        if let Some(track) = &mut self.track {
+            track.offer(vehicle);
+        }
         let Some(gpx) = &mut self.gpx else { return Ok(()) };
         if !vehicle.time().0.is_multiple_of(1_000_000) {
             return Ok(());
         }
-        let (Some(truth), Some(frame)) = (vehicle.truth(), vehicle.local_frame()) else { return Ok(()) };
-        let (lat_deg, lon_deg, amsl_m) = frame.to_geodetic(truth.pos_enu);
-        let alt_m = amsl_m - frame.alt_amsl_m;
+        let Some((lat_deg, lon_deg, alt_m)) = track_files::place(vehicle) else { return Ok(()) };
         gpx.offer(&GpxPoint { time: vehicle.time(), lat_deg, lon_deg, alt_m }).map_err(write_failed)
     }
 
@@ -231,6 +240,9 @@ impl Output {
         }
         if let Some(gpx) = self.gpx.take() {
             gpx.finish().map_err(write_failed)?.finish()?;
+        }
+        if let Some(track) = self.track.take() {
+            track.finish()?;
         }
         error::tell(&end.result_line());
         error::tell(&end.flown_line());
@@ -267,6 +279,6 @@ impl Subscriber<WatchedFlight> for Output {
 }
 
 #[expect(clippy::needless_pass_by_value, reason = "a map_err argument")]
-fn write_failed(error: std::io::Error) -> AppError {
+pub(super) fn write_failed(error: std::io::Error) -> AppError {
     AppError::environment(format!("cannot write the output: {error}"))
 }

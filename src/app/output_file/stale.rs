@@ -10,7 +10,7 @@ use crate::storage;
 /// The most bytes of a file that are read.
 const LOOKED_AT: u64 = 1 << 20;
 /// The options for files of results.
-const OPTIONS: [&str; 4] = ["--json", "--junit", "--markdown", "--gpx"];
+const OPTIONS: [&str; 6] = ["--json", "--junit", "--markdown", "--gpx", "--kml", "--geojson"];
 /// The commands that write these results.
 const COMMANDS: [&str; 2] = ["fly", "check"];
 
@@ -62,6 +62,8 @@ fn holds_results(path: &Path) -> bool {
     let summaries = ["### – Nothing was judged", "### ✅ All flights passed", "### ❌ Some flights failed"];
     second.starts_with("<testsuites name=\"betadeck\"")
         || second.starts_with("<gpx version=\"1.1\" creator=\"betadeck")
+        || second.starts_with("<!-- betadeck (simulated) -->")
+        || first.starts_with("{\"type\":\"FeatureCollection\",\"generator\":\"betadeck (simulated)\"")
         || summaries.contains(&first)
         || is_event()
 }
@@ -82,6 +84,14 @@ mod tests {
                 "<?xml?>\n<gpx version=\"1.1\" creator=\"betadeck (simulated)\" xmlns=\"x\">\n",
                 true,
             ),
+            ("track.kml", "<?xml?>\n<!-- betadeck (simulated) -->\n<kml>\n", true),
+            (
+                "track.geojson",
+                "{\"type\":\"FeatureCollection\",\"generator\":\"betadeck (simulated)\",\"features\":[\n",
+                true,
+            ),
+            ("plan.kml", "<?xml?>\n<kml>\n", false),
+            ("plan.geojson", "{\"type\":\"FeatureCollection\",\n", false),
             ("run.md", "### ✅ All flights passed\n\n1 of 1\n", true),
             ("other.xml", "<?xml version=\"1.0\"?>\n<testsuites name=\"cargo\">\n", false),
             ("other.json", "{\"name\":\"plan\"}\n", false),

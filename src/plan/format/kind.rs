@@ -3,7 +3,9 @@
 use strum::IntoEnumIterator as _;
 
 use super::loss::{Finding, Severity};
-use super::{native_read, qgc_csv, qgc_wpl};
+use super::map_file::{MapKind, is_geojson, kmz};
+use super::native_read;
+use super::{qgc_csv, qgc_wpl};
 
 /// A file format for plans. `Display` and `FromStr` use the names of `convert --from` and `--to`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumString, strum::EnumIter)]
@@ -24,6 +26,15 @@ pub enum Format {
     /// QGroundControl's table.
     #[strum(serialize = "qgc-csv")]
     QgcCsv,
+    #[strum(serialize = "kml")]
+    Kml,
+    /// KML in a ZIP archive.
+    #[strum(serialize = "kmz")]
+    Kmz,
+    #[strum(serialize = "gpx")]
+    Gpx,
+    #[strum(serialize = "geojson")]
+    GeoJson,
 }
 
 /// The row of a format.
@@ -80,6 +91,34 @@ impl Format {
                 writes: false,
                 carries: "home and the waypoints as items",
             },
+            Self::Kml => FormatInfo {
+                title: "KML",
+                endings: &["kml"],
+                also: &["xml"],
+                writes: true,
+                carries: "everything; other programs see points, the path and the fence",
+            },
+            Self::Kmz => FormatInfo {
+                title: "KMZ (packed KML)",
+                endings: &["kmz"],
+                also: &[],
+                writes: true,
+                carries: "everything; other programs see points, the path and the fence",
+            },
+            Self::Gpx => FormatInfo {
+                title: "GPX",
+                endings: &["gpx"],
+                also: &["xml"],
+                writes: true,
+                carries: "everything; other programs see a route, with altitudes if that of home is known",
+            },
+            Self::GeoJson => FormatInfo {
+                title: "GeoJSON",
+                endings: &["geojson"],
+                also: &["json"],
+                writes: true,
+                carries: "everything; other programs see points, the path and the fence",
+            },
         }
     }
 
@@ -124,9 +163,18 @@ impl Format {
     /// Returns the format of contents without a file name. A text is TOML if its first line that is not a comment
     /// begins a table or gives a key of a plan file. A text without the mark of any format is CLI text.
     pub fn of_contents(contents: &[u8]) -> Self {
+        if kmz::is_archive(contents) {
+            return Self::Kmz;
+        }
         let Ok(text) = super::encoding::decode(contents) else { return Self::CliText };
         if let Some(format) = of_mark(text.trim_start()) {
             return format;
+        }
+        match MapKind::of_text(&text) {
+            Some(MapKind::Kml) => return Self::Kml,
+            Some(MapKind::Gpx) => return Self::Gpx,
+            Some(MapKind::GeoJson) if is_geojson(&text) => return Self::GeoJson,
+            Some(MapKind::GeoJson) | None => {}
         }
         let first = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#'));
         let is_toml = first.is_some_and(|line| {
@@ -196,5 +244,27 @@ mod tests {
         for text in ["", "# dump\nbatch start", "waypoint insert 0 1 2", "set name = x", "=", "x = 1"] {
             assert_eq!(Format::of_contents(text.as_bytes()), Format::CliText, "{text}");
         }
+    }
+
+    #[test]
+    fn maps_show_their_format() {
+        for (text, format) in [
+            ("<?xml version='1.0'?>\n<kml xmlns='x'>", Format::Kml),
+            ("\u{feff}<gpx version='1.1'>", Format::Gpx),
+            ("PK\u{3}\u{4}", Format::Kmz),
+            (" { \"type\" : \"Feature\" }", Format::GeoJson),
+            ("{\"features\":[{\"type\":\"Feature\"}]}", Format::GeoJson),
+            ("{\"fileType\":\"Plan\",\"type\":\"Feature\"}", Format::CliText),
+            ("{\"type\":\"SimpleItem\"}", Format::CliText),
+            ("<html>", Format::CliText),
+        ] {
+            assert_eq!(Format::of_contents(text.as_bytes()), format, "{text}");
+        }
+        assert_eq!(Format::detect("a.json", b"{\"type\":\"Point\"}"), (Format::GeoJson, None));
+        let (format, finding) = Format::detect("a.kml", b"PK\x03\x04");
+        assert_eq!(
+            (format, finding.map(|finding| finding.to)),
+            (Format::Kmz, Some("KMZ (packed KML)".to_owned()))
+        );
     }
 }

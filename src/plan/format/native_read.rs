@@ -167,20 +167,20 @@ fn read_waypoint(table: &TomlTable<'_, '_>, problems: &mut Problems<'_>) -> Wayp
     record.into()
 }
 
-fn altitude_cm(text: &str) -> Result<i32, FieldError> {
+pub(super) fn altitude_cm(text: &str) -> Result<i32, FieldError> {
     let value = scaled("alt_m", text, 100.0, f64::from(i32::MIN), f64::from(i32::MAX), "m above home")?;
     Ok(value as i32)
 }
 
-fn speed_cms(text: &str) -> Result<u16, FieldError> {
+pub(super) fn speed_cms(text: &str) -> Result<u16, FieldError> {
     Ok(scaled("speed_mps", text, 100.0, 0.0, f64::from(u16::MAX), "m/s (0 = default)")? as u16)
 }
 
-fn yaw_rate(text: &str) -> Result<u16, FieldError> {
+pub(super) fn yaw_rate(text: &str) -> Result<u16, FieldError> {
     Ok(scaled("yaw_rate_dps", text, 1.0, 0.0, f64::from(u16::MAX), "deg/s (0 = no cap)")? as u16)
 }
 
-fn duration_ds(text: &str) -> Result<u16, FieldError> {
+pub(super) fn duration_ds(text: &str) -> Result<u16, FieldError> {
     Ok(scaled("duration_s", text, 10.0, 0.0, f64::from(u16::MAX), "s")? as u16)
 }
 

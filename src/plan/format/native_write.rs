@@ -60,7 +60,7 @@ fn write_waypoint(record: WaypointRecord, text: &mut String) {
 }
 
 /// Returns `value` × 10^−`decimals` without trailing zeros: 5000 at 2 → `50`, −150 at 2 → `-1.5`.
-fn scaled(value: i64, decimals: u32) -> String {
+pub(super) fn scaled(value: i64, decimals: u32) -> String {
     let unit = 10_u64.pow(decimals);
     let size = value.unsigned_abs();
     let sign = if value < 0 { "-" } else { "" };
