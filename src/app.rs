@@ -31,6 +31,7 @@ mod serve;
 mod setup;
 mod sitl;
 mod stop_signal;
+mod terrain;
 mod tui;
 mod usage;
 
@@ -131,7 +132,9 @@ fn dispatch(cli: Cli, keymap: Keymap) -> Result<u8, AppError> {
         Some(Command::Sitl(args)) => sitl::run(&args),
         Some(Command::Serve(args)) => serve::run(&args),
         Some(Command::Plan(PlanCommand::List)) => plan::list(),
-        Some(Command::Plan(PlanCommand::Show { plan, review })) => plan::show(&plan, review),
+        Some(Command::Plan(PlanCommand::Show { plan, review, terrain })) => {
+            plan::show(&plan, review, &terrain)
+        }
         Some(Command::Convert(args)) => convert::run(&args),
         Some(Command::Config(command)) => config::run(command),
         Some(Command::Doctor) => doctor::run(),

@@ -15,6 +15,7 @@ use super::runtime;
 use super::scenario_file;
 use super::setup;
 use super::stop_signal;
+use super::terrain::with_terrain;
 use crate::args::{CharsetChoice, DisplayArgs, PlanArg, ReviewArgs, ThemeChoice, TuiArgs, UnitsChoice};
 use crate::firmware::cli;
 use crate::flight::setup::check_setting;
@@ -79,6 +80,7 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
     // The plan's settings go to the craft with the upload.
     let on_the_ground = PlanFile { settings: Vec::new(), ..plan.clone() };
     let mut setup = setup::for_session(&args.flight, &args.physics, &args.doors, on_the_ground, stored)?;
+    setup = with_terrain(setup, &args.flight.terrain, &mut notices)?;
     setup.remote_controller = firmware.is_some();
     let vehicle = setup::build(setup, &mut notices)?;
     let screen = Screen {

@@ -1,8 +1,8 @@
 //! `.hgt` tiles (SRTM): big-endian 16-bit metres in a square, rows from the north, edges shared with the neighbours.
 
+use super::TileError;
 use super::grid::{Grid, Samples};
 use super::square::Square;
-use super::TileError;
 
 /// The sides of `.hgt` tiles, samples: one and three arc seconds.
 pub const HGT_SIDES: [usize; 2] = [3601, 1201];

@@ -58,7 +58,8 @@ pub fn squares_of(places: &[LatLon]) -> BTreeSet<Square> {
     for pair in places.windows(2) {
         let lat = i64::from(pair[1].lat_e7) - i64::from(pair[0].lat_e7);
         let turn = 360 * i64::from(DEGREE_E7);
-        let lon = (i64::from(pair[1].lon_e7) - i64::from(pair[0].lon_e7) + turn / 2).rem_euclid(turn) - turn / 2;
+        let lon =
+            (i64::from(pair[1].lon_e7) - i64::from(pair[0].lon_e7) + turn / 2).rem_euclid(turn) - turn / 2;
         let looks = lat.abs().max(lon.abs()) / LOOK_E7;
         for look in 1..=looks {
             let lat_e7 = i64::from(pair[0].lat_e7) + lat * look / (looks + 1);
@@ -89,7 +90,8 @@ mod tests {
     #[test]
     fn a_line_needs_every_square_it_crosses() {
         let at = LatLon::from_degrees;
-        let names = |places: &[LatLon]| squares_of(places).into_iter().map(Square::hgt_name).collect::<Vec<_>>();
+        let names =
+            |places: &[LatLon]| squares_of(places).into_iter().map(Square::hgt_name).collect::<Vec<_>>();
         assert_eq!(names(&[at(40.5, -79.5)]), ["N40W080.hgt"]);
         assert_eq!(names(&[at(40.5, -79.5), at(40.5, -77.5)]), ["N40W080.hgt", "N40W079.hgt", "N40W078.hgt"]);
         assert_eq!(names(&[at(0.5, 179.5), at(0.5, -179.5)]), ["N00W180.hgt", "N00E179.hgt"]);
