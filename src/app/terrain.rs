@@ -39,6 +39,11 @@ impl TerrainFiles {
         Ok(Self { directories })
     }
 
+    /// Returns `true` if there is a directory.
+    pub(super) fn is_somewhere(&self) -> bool {
+        !self.directories.is_empty()
+    }
+
     /// Reads the tiles under a plan that is flown from this home. Adds a sentence for each one that is missing or
     /// cannot be read to `notices`. Returns `None` if there are none.
     pub(super) fn read(
