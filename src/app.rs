@@ -1,4 +1,8 @@
 //! The program: from arguments to the tasks of one mode.
+//!
+//! One file a mode, with its parts in the layer of its name: `check` flies scenarios, `compare` two firmwares, `fly` one
+//! plan. `firmware` starts or finds a remote firmware, `output_file` replaces files as a whole, and `plan_files` reads,
+//! writes and watches plan files. `terrain` reads the elevation tiles that a plan needs.
 
 mod check;
 mod compare;
