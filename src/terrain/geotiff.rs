@@ -24,8 +24,8 @@ pub fn decode(bytes: &[u8], square: Square) -> Result<Grid, TileError> {
     let mut limits = Limits::default();
     limits.decoding_buffer_size = MAX_IMAGE;
     limits.intermediate_buffer_size = MAX_IMAGE;
-    let mut image = Decoder::new(Cursor::new(bytes)).map_err(problem)?.with_limits(limits);
-    let (cols, rows) = image.dimensions().map_err(problem)?;
+    let mut image = Decoder::new(Cursor::new(bytes)).map_err(|error| problem(&error))?.with_limits(limits);
+    let (cols, rows) = image.dimensions().map_err(|error| problem(&error))?;
     let (cols, rows) = (cols as usize, rows as usize);
     if rows > MAX_SIDE || cols > MAX_SIDE {
         return Err(TileError::TooLarge(rows, cols));
@@ -33,8 +33,8 @@ pub fn decode(bytes: &[u8], square: Square) -> Result<Grid, TileError> {
     if rows < 2 || cols < 2 {
         return Err(TileError::Tiff(format!("{rows} × {cols} samples are no grid")));
     }
-    let scale = image.get_tag_f64_vec(Tag::ModelPixelScaleTag).map_err(problem)?;
-    let tie = image.get_tag_f64_vec(Tag::ModelTiepointTag).map_err(problem)?;
+    let scale = image.get_tag_f64_vec(Tag::ModelPixelScaleTag).map_err(|error| problem(&error))?;
+    let tie = image.get_tag_f64_vec(Tag::ModelTiepointTag).map_err(|error| problem(&error))?;
     let &[lon_step_deg, lat_step_deg, ..] = &scale[..] else {
         return Err(TileError::Tiff("its scale is missing".to_owned()));
     };
@@ -50,7 +50,7 @@ pub fn decode(bytes: &[u8], square: Square) -> Result<Grid, TileError> {
     let void = image.get_tag_ascii_string(Tag::GdalNodata).ok();
     let void: Option<f64> =
         void.and_then(|text| text.trim_matches(|c: char| c == '\0' || c.is_whitespace()).parse().ok());
-    let samples = samples(image.read_image().map_err(problem)?, void)?;
+    let samples = samples(image.read_image().map_err(|error| problem(&error))?, void)?;
     let grid = Grid { rows, cols, north_deg, west_deg, lat_step_deg, lon_step_deg, samples };
     let count = match &grid.samples {
         Samples::Metres(metres) => metres.len(),
@@ -62,7 +62,7 @@ pub fn decode(bytes: &[u8], square: Square) -> Result<Grid, TileError> {
     if is_on(&grid, square) { Ok(grid) } else { Err(TileError::Elsewhere) }
 }
 
-fn problem(error: tiff::TiffError) -> TileError {
+fn problem(error: &tiff::TiffError) -> TileError {
     TileError::Tiff(error.to_string())
 }
 

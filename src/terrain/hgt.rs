@@ -67,7 +67,7 @@ mod tests {
         assert_eq!(near.elevation(LatLon::from_degrees(40.05, -79.95)), Some(50.0));
         let unknown = tiles(&[[void; 3]; 3]);
         assert_eq!(unknown.elevation(LatLon::from_degrees(40.5, -79.5)), None);
-        let mut bytes = vec![0x80_u8, 0].repeat(81);
+        let mut bytes = [0x80_u8, 0].repeat(81);
         bytes[..2].copy_from_slice(&7_i16.to_be_bytes());
         let mut far = Tiles::default();
         far.insert(SQUARE, decode(&bytes, SQUARE, &[9]).unwrap());
