@@ -1,4 +1,8 @@
 //! The program: from arguments to the tasks of one mode.
+//!
+//! One file a mode, with its parts in the layer of its name: `check` flies scenarios, `compare` two firmwares, `fly` one
+//! plan. `firmware` starts or finds a remote firmware, `output_file` replaces files as a whole, and `plan_files` reads,
+//! writes and watches plan files. `terrain` reads the elevation tiles that a plan needs.
 
 mod check;
 mod compare;
@@ -31,6 +35,7 @@ mod serve;
 mod setup;
 mod sitl;
 mod stop_signal;
+mod terrain;
 mod tui;
 mod usage;
 
@@ -131,7 +136,9 @@ fn dispatch(cli: Cli, keymap: Keymap) -> Result<u8, AppError> {
         Some(Command::Sitl(args)) => sitl::run(&args),
         Some(Command::Serve(args)) => serve::run(&args),
         Some(Command::Plan(PlanCommand::List)) => plan::list(),
-        Some(Command::Plan(PlanCommand::Show { plan, review })) => plan::show(&plan, review),
+        Some(Command::Plan(PlanCommand::Show { plan, review, terrain })) => {
+            plan::show(&plan, review, &terrain)
+        }
         Some(Command::Convert(args)) => convert::run(&args),
         Some(Command::Config(command)) => config::run(command),
         Some(Command::Doctor) => doctor::run(),

@@ -22,6 +22,7 @@ mod open;
 mod physics;
 mod plan_arg;
 mod review;
+mod terrain;
 mod value;
 
 use std::ffi::OsString;
@@ -49,6 +50,7 @@ pub use open::OpenArgs;
 pub use physics::{FdmDialect, PhysicsArgs, PhysicsChoice, SimulatorArgs};
 pub use plan_arg::{PlanArg, PlanArgError, is_descriptor};
 pub use review::ReviewArgs;
+pub use terrain::TerrainArgs;
 pub use value::{AttitudeChoice, Instant, OnOff, OutputFile, Seeds, Speed};
 
 /// Flies the Betaflight waypoint autopilot in a simulated quadcopter
@@ -225,6 +227,10 @@ pub enum PlanCommand {
         /// The limits for warnings about waypoints.
         #[command(flatten)]
         review: ReviewArgs,
+
+        /// The elevation tiles.
+        #[command(flatten)]
+        terrain: TerrainArgs,
     },
 }
 

@@ -40,6 +40,8 @@ pub mod sim;
 pub mod storage;
 pub mod telemetry;
 #[doc(hidden)]
+pub mod terrain;
+#[doc(hidden)]
 pub mod text;
 #[doc(hidden)]
 pub mod timeline;

@@ -34,6 +34,7 @@ mod endurance;
 mod event;
 mod fault;
 mod ground;
+mod landform;
 mod motors;
 mod plant;
 mod random;

@@ -18,7 +18,7 @@
 //!   [`command`] takes an argument and returns requests, which `update` carries out.
 //! * `panel` has one file per panel, `popup` the windows over them, `keymap` the keys of the configuration file.
 //!   `transmitter` is the user's virtual RC transmitter, `stick_recording` records its sticks, `forecast` holds the
-//!   results of flights flown ahead of time, `graphs` the history of the graphs' signals, `map_point` the places on the
+//!   results of flights flown ahead of time, `graphs` the history of the graphs' signals, `ground` the elevation tiles, `map_point` the places on the
 //!   map, `viewport` its window, `map_edit` the edits on it, and `timeline` the timeline of the recording.
 //! * [`run`] is the shell around it: it waits for the terminal, the session and the clock, and carries out the effects.
 //!
@@ -48,6 +48,7 @@ mod forecast;
 mod formatting;
 mod fuzzy;
 mod graphs;
+mod ground;
 mod hint_bar;
 mod history;
 pub mod keymap;
@@ -83,7 +84,7 @@ mod update;
 mod viewport;
 
 pub use app_state::AppState;
-pub use config::UiConfig;
+pub use config::{GroundConfig, UiConfig};
 pub use console::CliHelp;
 pub use draw::draw;
 pub use editor::OpenPlan;

@@ -53,6 +53,7 @@ impl DemoFlight {
             theme: Theme::default(),
             units: Units::default(),
             max_altitude_m: betadeck::plan::estimate::MAX_ALTITUDE_M,
+            ground: betadeck::ui::GroundConfig::default(),
             keymap: Keymap::default(),
             cli: CliHelp { complete: |line| cli::complete(line).lines(line), ..CliHelp::default() },
             sentence: |event| sentence::text(&event.kind).unwrap_or_default(),

@@ -35,6 +35,7 @@ pub(super) fn run(args: &TuiArgs, place: &FcPlace, keymap: Keymap) -> Result<u8,
         flown: None,
         notices,
         review: args.review,
+        tiles: None,
         plain: args.plain,
         display: &args.display,
         live: LiveArgs {

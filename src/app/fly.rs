@@ -14,6 +14,7 @@ use super::firmware::run::{RemoteRun, RunOptions, unless_interrupted};
 use super::firmware::{self, Beside, RemoteFirmware};
 use super::interrupt::interrupt_flag;
 use super::setup;
+use super::terrain::with_terrain;
 use crate::args::{FlyArgs, PhysicsArgs, Speed};
 use crate::fc::upload;
 use crate::flight::FlightResult;
@@ -45,6 +46,7 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
     let mut store = open_store(args)?;
     let stored = setup::stored(&mut store, &mut notices);
     let mut setup = setup::from_args(&args.flight, PhysicsSource::Embedded, plan.clone(), stored)?;
+    setup = with_terrain(setup, &args.flight.terrain, &mut notices)?;
     setup.world.faults = args.faults().collect();
     setup.boot_lines.push(BootLines::settings("--set", &args.mission.set));
     setup.stick_inputs.clone_from(&args.stick);

@@ -16,6 +16,8 @@ use crate::args::is_descriptor;
 const STDIN: &str = "standard input";
 /// The largest plan or settings file, bytes.
 const MAX_FILE: u64 = 4 << 20;
+/// The largest elevation tile, bytes.
+const MAX_TILE: u64 = 64 << 20;
 /// The largest file for a syntax tree, bytes. The tree takes a hundred times as much memory.
 const MAX_TREE: u64 = 512 << 10;
 
@@ -23,6 +25,12 @@ const MAX_TREE: u64 = 512 << 10;
 pub(super) fn read_plan(path: &Path) -> Result<Vec<u8>, AppError> {
     let name = path.display().to_string();
     read_bytes(open(path, &name, MAX_FILE)?, &name, MAX_FILE)
+}
+
+/// Reads an elevation tile.
+pub(super) fn read_tile(path: &Path) -> Result<Vec<u8>, AppError> {
+    let name = path.display().to_string();
+    read_bytes(open(path, &name, MAX_TILE)?, &name, MAX_TILE)
 }
 
 /// Reads a text file of reasonable size.
@@ -125,8 +133,9 @@ fn read_bytes(source: impl Read, name: &str, most: u64) -> Result<Vec<u8>, AppEr
 }
 
 fn too_large(name: &str, most: u64) -> AppError {
+    let what = if most == MAX_TILE { "no elevation tile" } else { "neither a plan nor settings" };
     let most = if most < 1 << 20 { format!("{} KiB", most >> 10) } else { format!("{} MiB", most >> 20) };
-    AppError::input(format!("{name} is larger than {most}: that is neither a plan nor settings"))
+    AppError::input(format!("{name} is larger than {most}: that is {what}"))
 }
 
 #[cfg(test)]

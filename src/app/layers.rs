@@ -21,11 +21,18 @@ pub(super) struct Directories {
     pub config: std::path::PathBuf,
     /// The folder of the stored configuration of the craft.
     pub state: std::path::PathBuf,
+    /// The folder of the user's own data.
+    pub data: std::path::PathBuf,
 }
 
 impl Directories {
     pub(super) fn config_file(&self) -> std::path::PathBuf {
         self.config.join("config.toml")
+    }
+
+    /// Returns the folder of elevation tiles, which may be missing.
+    pub(super) fn terrain(&self) -> std::path::PathBuf {
+        self.data.join("terrain")
     }
 }
 
@@ -36,6 +43,7 @@ pub(super) fn directories() -> Result<Directories, AppError> {
     Ok(Directories {
         config: strategy.config_dir().join(FOLDER),
         state: strategy.state_dir().unwrap_or_else(|| strategy.data_dir()).join(FOLDER),
+        data: strategy.data_dir().join(FOLDER),
     })
 }
 

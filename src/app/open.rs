@@ -90,6 +90,7 @@ pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
         flown: Some((FlownBefore { timeline, events, show, again }, past)),
         notices,
         review: ReviewArgs::default(),
+        tiles: None,
         plain: false,
         display: &args.display,
         live: LiveArgs {

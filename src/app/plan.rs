@@ -2,14 +2,16 @@
 
 use super::error::{self, AppError};
 use super::setup;
-use crate::args::{PlanArg, ReviewArgs};
+use super::terrain::TerrainFiles;
+use crate::args::{PlanArg, ReviewArgs, TerrainArgs};
 use crate::flight::FlightSetup;
 use crate::geo::LatLon;
 use crate::plan::builtin::PLANS;
 use crate::plan::estimate::Assumptions;
 use crate::plan::format;
-use crate::plan::review::{Finding, review};
+use crate::plan::review::{Clearances, Finding, clearances, review};
 use crate::sim::density_ratio;
+use crate::terrain::Relief;
 
 /// Prints the built-in plans, one on each line.
 pub(super) fn list() -> Result<u8, AppError> {
@@ -28,7 +30,7 @@ pub(super) fn list() -> Result<u8, AppError> {
 }
 
 /// Prints the plan; a plan that the craft would refuse is invalid input.
-pub(super) fn show(plan: &PlanArg, limits: ReviewArgs) -> Result<u8, AppError> {
+pub(super) fn show(plan: &PlanArg, limits: ReviewArgs, terrain: &TerrainArgs) -> Result<u8, AppError> {
     let file = setup::read_plan(plan)?;
     let setup = FlightSetup { plan: file.clone(), ..FlightSetup::default() };
     let (home, notice) = setup.boot_home();
@@ -43,7 +45,35 @@ pub(super) fn show(plan: &PlanArg, limits: ReviewArgs) -> Result<u8, AppError> {
     if let Some(notice) = notice {
         text.push_str(&format!("{notice}\n"));
     }
+    let mut notices = Vec::new();
+    let tiles = TerrainFiles::new(terrain)?.read(home, &file.plan, &mut notices);
+    if let Some(relief) = tiles.and_then(|tiles| Relief::new(tiles, home)) {
+        text.push_str(&ground(&clearances(&file.plan, &assumptions, &relief, limits.clearance_m())));
+    }
+    for notice in notices {
+        text.push_str(&format!("{notice}\n"));
+    }
     error::print(&text)?;
     let refused = review(&file.plan, home, &assumptions).iter().any(Finding::is_refusal);
     Ok(if refused { error::USAGE } else { 0 })
+}
+
+/// Returns the clearance of a plan above the ground as lines.
+fn ground(found: &Clearances) -> String {
+    let mut text = String::new();
+    if let Some((clearance_m, index, along_m)) = found.lowest {
+        text.push_str(&format!(
+            "lowest clearance above the ground: {clearance_m:.0} m, {along_m:.0} m along the leg to waypoint {index} \
+             (tiles err by 5 to 10 m, more on slopes, and hold roofs and trees only partly)\n"
+        ));
+    }
+    for finding in &found.findings {
+        text.push_str(&format!("{finding}\n"));
+    }
+    if !found.unknown.is_empty() {
+        let legs: Vec<String> = found.unknown.iter().map(ToString::to_string).collect();
+        let noun = if legs.len() == 1 { "waypoint" } else { "waypoints" };
+        text.push_str(&format!("the ground on the way to {noun} {} is unknown\n", legs.join(", ")));
+    }
+    text
 }

@@ -10,6 +10,7 @@ mod set_aside;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::Duration;
 
@@ -17,9 +18,12 @@ use tokio::sync::mpsc::UnboundedSender;
 use tokio::sync::watch;
 
 use super::line_history::LineHistory;
+use super::terrain::TerrainFiles;
 use crate::plan::edit::{History, Journal, JournalLine, PlanDocument};
 use crate::plan::format::loss::LossReport;
+use crate::terrain::Tiles;
 use crate::ui::editor::{Conversion, ConversionLosses, FileReply, FileRequest, Opened, PlanId};
+
 use journal_file::{Found, JournalFile};
 use on_disk::Content;
 
@@ -43,6 +47,8 @@ pub(super) struct PlanFiles {
     /// The losses of journals, as sentences that were not reported yet.
     lost: Vec<String>,
     lines: LineHistory,
+    ground: TerrainFiles,
+    tiles: Arc<Tiles>,
 }
 
 #[derive(Debug)]
@@ -83,7 +89,14 @@ impl PlanFiles {
             reported: false,
             lost: Vec::new(),
             lines: LineHistory::new(state),
+            ground: TerrainFiles::default(),
+            tiles: Arc::default(),
         }
+    }
+
+    /// Reads elevation tiles from these directories; `tiles` were read before.
+    pub(super) fn read_ground(&mut self, ground: TerrainFiles, tiles: Arc<Tiles>) {
+        (self.ground, self.tiles) = (ground, tiles);
     }
 
     /// Adds the plan with which the program starts, with the history in its journal.
@@ -197,6 +210,15 @@ impl PlanFiles {
             FileRequest::KeepLine(field, line) => {
                 self.lines.append(field, &line);
                 Vec::new()
+            }
+            FileRequest::Ground { home, plan } => {
+                let mut problems = Vec::new();
+                let more = self.ground.read_more(&self.tiles, home, &plan, &mut problems);
+                let tiles = more.map(Arc::new);
+                if let Some(tiles) = &tiles {
+                    self.tiles = Arc::clone(tiles);
+                }
+                vec![FileReply::Ground { tiles, problems }]
             }
             FileRequest::Begin(id, document) => {
                 let kept = Journal { file: None, history: History::new(*document, false) };

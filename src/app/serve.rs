@@ -9,6 +9,7 @@ use super::output_file;
 use super::runtime;
 use super::setup;
 use super::stop_signal;
+use super::terrain::with_terrain;
 use crate::args::{OutputFile, ServeArgs};
 use crate::plan::format::PlanFile;
 use crate::report::{json, sentence};
@@ -27,6 +28,7 @@ pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
     let stored = setup::stored(&mut store, &mut notices);
     let no_plan = PlanFile::default();
     let mut setup = setup::for_session(&args.flight, &args.physics, &args.doors, no_plan, stored)?;
+    setup = with_terrain(setup, &args.flight.terrain, &mut notices)?;
     setup.remote_controller = firmware.is_some();
     let vehicle = setup::build(setup, &mut notices)?;
     let mut output = open_output(args)?;

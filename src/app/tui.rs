@@ -3,6 +3,7 @@
 
 use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use super::connect;
 use super::error::{self, AppError};
@@ -15,6 +16,7 @@ use super::runtime;
 use super::scenario_file;
 use super::setup;
 use super::stop_signal;
+use super::terrain::{TerrainFiles, with_terrain};
 use crate::args::{CharsetChoice, DisplayArgs, PlanArg, ReviewArgs, ThemeChoice, TuiArgs, UnitsChoice};
 use crate::firmware::cli;
 use crate::flight::setup::check_setting;
@@ -23,11 +25,13 @@ use crate::plan::format::PlanFile;
 use crate::report::sentence;
 use crate::session::{FlownBefore, SessionView};
 use crate::storage::Store;
+use crate::terrain::Tiles;
 use crate::ui::editor::FileReply;
 use crate::ui::keymap::Keymap;
 use crate::ui::theme::{Charset, Palette};
 use crate::ui::{
-    self, CliHelp, Ending, EnteredLines, FilesLink, OpenPlan, SessionLink, Theme, Tui, UiConfig, Units,
+    self, CliHelp, Ending, EnteredLines, FilesLink, GroundConfig, OpenPlan, SessionLink, Theme, Tui,
+    UiConfig, Units,
 };
 use crate::vehicle::Vehicle;
 
@@ -49,6 +53,8 @@ pub(super) struct Screen<'a> {
     pub(super) notices: Vec<String>,
     /// The limits for warnings about waypoints.
     pub(super) review: ReviewArgs,
+    /// The elevation tiles that were read.
+    pub(super) tiles: Option<Arc<Tiles>>,
     /// `true` for sentences instead of a screen.
     pub(super) plain: bool,
     pub(super) display: &'a DisplayArgs,
@@ -79,6 +85,9 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
     // The plan's settings go to the craft with the upload.
     let on_the_ground = PlanFile { settings: Vec::new(), ..plan.clone() };
     let mut setup = setup::for_session(&args.flight, &args.physics, &args.doors, on_the_ground, stored)?;
+    // The screen asks for the missing tiles again, and names them.
+    setup = with_terrain(setup, &args.flight.terrain, &mut Vec::new())?;
+    let tiles = setup.world.terrain.clone();
     setup.remote_controller = firmware.is_some();
     let vehicle = setup::build(setup, &mut notices)?;
     let screen = Screen {
@@ -91,6 +100,7 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
         flown: None,
         notices,
         review: args.review,
+        tiles,
         plain: args.plain,
         display: &args.display,
         live: LiveArgs {
@@ -120,6 +130,9 @@ pub(super) fn require_terminal(plain: bool) -> Result<(), AppError> {
 pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
     let mut notices = screen.notices;
     let mut files = PlanFiles::new(screen.directory.as_deref());
+    let ground = TerrainFiles::new(&screen.live.flight.terrain)?;
+    let has_ground = ground.is_somewhere();
+    files.read_ground(ground, screen.tiles.clone().unwrap_or_default());
     let opened = files.start_with(screen.path, screen.plan.into());
     notices.extend(opened.notes);
     if opened.recovered {
@@ -134,6 +147,11 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
         theme: theme(screen.display),
         units: units(screen.display),
         max_altitude_m: screen.review.max_altitude_m(),
+        ground: GroundConfig {
+            clearance_m: screen.review.clearance_m(),
+            tiles: screen.tiles,
+            can_read: has_ground,
+        },
         keymap,
         cli: CliHelp {
             complete: |line| cli::complete(line).lines(line),

@@ -7,6 +7,7 @@ use crate::sim::{self, Noise, Switches, Wind};
 use crate::telemetry::Turbulence;
 
 use super::help;
+use super::terrain::TerrainArgs;
 use super::value::{self, AttitudeChoice, OnOff, Speed};
 
 /// The options that all flying commands share; `None` = the command's default.
@@ -69,6 +70,10 @@ pub struct FlightArgs {
     /// A rare switch of the simulated world, such as battery_sag=on; repeatable
     #[arg(long, value_name = "NAME=VALUE", value_parser = value::world_switch, long_help = help::world_switches(), help_heading = "Air")]
     pub world: Vec<String>,
+
+    /// The elevation tiles.
+    #[command(flatten)]
+    pub terrain: TerrainArgs,
 
     /// Seed of all randomness [default: 1]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = value::seed, help_heading = "Time")]

@@ -98,6 +98,11 @@ pub(super) fn max_altitude(text: &str) -> Result<f64, String> {
     bounded(text, 1.0, 10_000.0, "m")
 }
 
+/// Reads the clearance above the ground below which a leg gets a warning, m.
+pub(super) fn clearance(text: &str) -> Result<f64, String> {
+    bounded(text, 0.0, 1000.0, "m")
+}
+
 /// Reads the height of the pilot's climb, m.
 pub(super) fn takeoff(text: &str) -> Result<f64, String> {
     bounded(text, 0.0, 500.0, "m")

@@ -3,7 +3,7 @@
 use crate::autopilot::io::NavOutput;
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
-use crate::plan::estimate::TouchdownThrottle;
+use crate::plan::estimate::{ReturnFlight, ReturnMode, TouchdownThrottle};
 use crate::signals::{RC_CHANNELS, RcSource, SimTime};
 use crate::telemetry::snapshot::{CraftView, EstimateView, GpsView, ModeRange, SettingsView};
 use crate::telemetry::{
@@ -13,7 +13,7 @@ use crate::telemetry::{
 use super::config::{Configuration, ModeCondition};
 use super::estimate::Estimate;
 use super::modes::BoxSet;
-use super::parameters::Parameters;
+use super::parameters::{Parameters, RescueAltitude};
 use super::rx::{Receiver, channels};
 use super::{Firmware, battery};
 
@@ -260,6 +260,7 @@ impl Firmware {
             min_nav_alt_m: f64::from(nav.min_nav_altitude_m),
             buildup_deg: f64::from(nav.velocity_buildup_max_pitch),
             position_p: f64::from(nav.position_p),
+            return_flight: self.return_flight(),
             touchdown_throttle: TouchdownThrottle {
                 hover_us: f64::from(nav.hover_throttle),
                 threshold_us: f64::from(nav.landing_throttle_threshold),
@@ -269,6 +270,16 @@ impl Firmware {
             raised_stick_us: self.raised_stick_us(),
             sink_stick_us: self.sink_stick_us(),
         }
+    }
+
+    fn return_flight(&self) -> ReturnFlight {
+        let rescue = &self.parameters().rescue;
+        let mode = match rescue.altitude {
+            RescueAltitude::HighestOfFlight => ReturnMode::Highest,
+            RescueAltitude::Fixed => ReturnMode::Fixed,
+            RescueAltitude::Present => ReturnMode::Present,
+        };
+        ReturnFlight { mode, climb_m: rescue.initial_climb_m, fixed_m: rescue.return_alt_m }
     }
 
     /// Returns the time of the newest step.

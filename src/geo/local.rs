@@ -41,6 +41,11 @@ impl LocalFrame {
         }
     }
 
+    /// Returns the metres in a degree of latitude and in a degree of longitude.
+    pub fn metres_per_deg(&self) -> (f64, f64) {
+        (self.metres_per_deg_lat, self.metres_per_deg_lon)
+    }
+
     /// Returns latitude (deg, ±90), longitude (deg, −180…180) and altitude (m AMSL) of a point given in metres east,
     /// north, up.
     pub fn to_geodetic(&self, enu: Vector3<f64>) -> (f64, f64, f64) {

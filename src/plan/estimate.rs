@@ -2,12 +2,14 @@
 //! the craft waits. It ignores wind, acceleration over ground and the shorter corners of FLYBY.
 
 mod assumptions;
+mod return_flight;
 
 use crate::geo::{LatLon, distance_bearing};
 
 use super::setpoint::AltitudeSetpoint;
 use super::{FlightPlan, Modifier, Then, Waypoint};
 pub use assumptions::{Assumptions, MAX_ALTITUDE_M, SettingSource, TouchdownThrottle};
+pub use return_flight::{ReturnFlight, ReturnMode};
 
 /// A craft that reaches a LAND at least this far above its altitude first approaches it vertically, m. That approach
 /// ends within `NEAR_M` of the altitude.

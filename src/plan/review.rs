@@ -1,6 +1,7 @@
 //! The review of a plan before a flight: reasons for which the craft refuses it, and unexpected behaviour in flight.
 
 mod altitude;
+mod clearance;
 mod steep;
 
 use std::fmt;
@@ -11,6 +12,9 @@ use super::estimate::{Assumptions, SettingSource, TouchdownThrottle, estimate};
 use super::validate::{PlanFault, check_plan};
 use super::{FlightPlan, Modifier, Then, Waypoint, WaypointType};
 pub(crate) use altitude::{LegAltitude, legs as leg_altitudes};
+pub use clearance::{
+    Before, CLEARANCE_M, Clearances, FlownPlace, LowClearance, Raise, Way, clearances, low_in_flight,
+};
 pub use steep::{Remedy, SteepLeg};
 
 /// A finding in a plan.
@@ -83,6 +87,8 @@ pub enum Finding {
     },
     /// The leg is too steep for its speed: the craft passes the waypoint at a wrong altitude.
     SteepLeg(SteepLeg),
+    /// A leg or a way home comes too close to the ground of the elevation tiles.
+    LowClearance(LowClearance),
     /// The throttle condition of a touchdown can never be met.
     NoTouchdownThrottle(TouchdownThrottle),
 }
@@ -120,6 +126,7 @@ impl Finding {
                 | Self::AboveLimit { .. }
                 | Self::FarAboveOthers { .. }
                 | Self::SteepLeg(_)
+                | Self::LowClearance(_)
                 | Self::NoTouchdownThrottle(_)
         )
     }
@@ -175,6 +182,7 @@ impl fmt::Display for Finding {
                 "waypoint {index} is {alt_m:.0} m above home, far above the others ({usual_m:.0} m)"
             ),
             Self::SteepLeg(leg) => leg.fmt(f),
+            Self::LowClearance(low) => low.fmt(f),
             Self::NoTouchdownThrottle(TouchdownThrottle { hover_us, threshold_us, min_us }) => write!(
                 f,
                 "ap_landing_throttle_threshold = {threshold_us} can never be met, because ap_hover_throttle \

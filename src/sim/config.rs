@@ -1,5 +1,7 @@
 //! The configuration of a world at boot, with the parsers of the command-line values.
 
+use std::sync::Arc;
+
 use strum::VariantNames;
 
 use super::airframe::Airframe;
@@ -7,6 +9,7 @@ use super::fault::ScheduledFault;
 use super::switches::Switches;
 use super::value_text::ParseError;
 use crate::telemetry::Turbulence;
+use crate::terrain::Tiles;
 use crate::text::did_you_mean;
 
 mod error;
@@ -38,6 +41,8 @@ pub struct WorldConfig {
     pub switches: Switches,
     /// Scheduled faults.
     pub faults: Vec<ScheduledFault>,
+    /// Elevation tiles for the ground `terrain`.
+    pub terrain: Option<Arc<Tiles>>,
 }
 
 impl Default for WorldConfig {
@@ -54,6 +59,7 @@ impl Default for WorldConfig {
             turbulence: Turbulence::None,
             switches: Switches::default(),
             faults: Vec::new(),
+            terrain: None,
         }
     }
 }

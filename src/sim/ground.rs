@@ -12,7 +12,8 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 
 use super::airframe::{Airframe, MAX_LEGS, ROTORS};
 use super::body::{BodyState, Loads};
-use super::surface::{Surface, TangentPlane};
+use super::landform::Landform;
+use super::surface::TangentPlane;
 
 /// The maximum number of contact points: legs first, then the hull.
 const MAX_POINTS: usize = MAX_LEGS + ROTORS;
@@ -36,7 +37,7 @@ pub struct Ground {
     friction: f64,
     full_friction_mps: f64,
     reach: f64,
-    surface: Surface,
+    landform: Landform,
 }
 
 /// The points that are on the ground.
@@ -74,18 +75,16 @@ impl Ground {
             friction: airframe.friction,
             full_friction_mps: airframe.friction_full_mps,
             reach,
-            surface: Surface::Flat,
+            landform: Landform::FLAT,
         }
     }
 
-    /// Sets the shape of the ground.
-    pub(super) fn set_surface(&mut self, surface: Surface) {
-        self.surface = surface;
+    pub(super) fn set_landform(&mut self, landform: Landform) {
+        self.landform = landform;
     }
 
-    /// Returns the shape of the ground.
-    pub fn surface(&self) -> &Surface {
-        &self.surface
+    pub fn landform(&self) -> &Landform {
+        &self.landform
     }
 
     /// Returns the distance of the centre of mass from the ground above which no contact is possible, m.
@@ -103,7 +102,7 @@ impl Ground {
         anchors: &ContactAnchors,
     ) -> Loads {
         let rate_enu = r * rate;
-        let plane = self.surface.tangent_at(pos);
+        let plane = self.landform.tangent_at(pos);
         let mut force = Vector3::zeros();
         let mut torque = Vector3::zeros();
         for (arm, anchor) in self.points.iter().zip(anchors) {
@@ -125,7 +124,7 @@ impl Ground {
 
     /// Latches points that have come to rest, and frees those that are pulled too hard or have left the ground.
     pub(super) fn update_anchors(&self, state: &BodyState, anchors: &mut ContactAnchors) {
-        let plane = self.surface.tangent_at(&state.pos_enu);
+        let plane = self.landform.tangent_at(&state.pos_enu);
         if plane.distance_m(&state.pos_enu) >= self.reach {
             return;
         }
@@ -148,7 +147,7 @@ impl Ground {
 
     /// Returns the ground contact in a state.
     pub fn contact(&self, state: &BodyState) -> GroundContact {
-        let plane = self.surface.tangent_at(&state.pos_enu);
+        let plane = self.landform.tangent_at(&state.pos_enu);
         let centre_m = plane.distance_m(&state.pos_enu);
         if centre_m >= 2.0 * self.reach {
             return GroundContact {

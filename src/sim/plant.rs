@@ -19,8 +19,8 @@ use crate::geo::GRAVITY;
 use super::airframe::{Airframe, ROTORS};
 use super::body::{AirSample, BodyState, Loads, Slope, Stage, rotation};
 use super::ground::{ContactAnchors, Ground};
+use super::landform::Landform;
 use super::motors::{Motors, RotorSweep};
-use super::surface::Surface;
 
 /// The constants of the equations of motion, computed for one step size.
 #[derive(Debug, Clone)]
@@ -90,8 +90,8 @@ impl Plant {
     }
 
     /// Sets the shape of the ground.
-    pub(super) fn set_surface(&mut self, surface: Surface) {
-        self.ground.set_surface(surface);
+    pub(super) fn set_landform(&mut self, landform: Landform) {
+        self.ground.set_landform(landform);
     }
 
     /// Hangs a point mass (kg) `depth_m` below the centre of mass. It replaces any earlier one. The model keeps the
@@ -205,7 +205,7 @@ impl Plant {
     ) -> Loads {
         let va = r.tr_mul(&(stage.vel - air.wind_enu));
         let rho = air.density_ratio;
-        let plane = self.ground.surface().tangent_at(&stage.pos);
+        let plane = self.ground.landform().tangent_at(&stage.pos);
         let height_m = plane.distance_m(&stage.pos);
         let boost = self.ground_effect(height_m, &r.tr_mul(plane.normal()));
         // The sums over the rotors of thrust, speed and their moments.

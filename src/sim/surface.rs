@@ -13,6 +13,8 @@ pub enum Surface {
     #[default]
     Flat,
     Slope(Slope),
+    /// The relief of elevation tiles: see [`Landform`](super::landform::Landform).
+    Terrain,
 }
 
 /// A plane through home that rises towards a bearing.
@@ -45,11 +47,12 @@ impl Slope {
 }
 
 impl Surface {
-    /// Reads `flat` or `slope,RISE,BEARING`.
+    /// Reads `flat`, `slope,RISE,BEARING` or `terrain`.
     pub(super) fn parse(text: &str) -> Result<Self, String> {
         let parts: Vec<&str> = text.split(',').map(str::trim).collect();
         match parts[..] {
             ["flat"] => Ok(Self::Flat),
+            ["terrain"] => Ok(Self::Terrain),
             ["slope", rise, bearing] => {
                 let (rise_m, bearing_deg) = (number("rise", rise)?, number("bearing", bearing)?);
                 if !(0.0..=MAX_RISE_M).contains(&rise_m) {
@@ -65,10 +68,10 @@ impl Surface {
         }
     }
 
-    /// Returns the height of the ground at a place east and north of home, m.
+    /// Returns the height of the ground at a place east and north of home, m; that of tiles is not known here.
     pub fn elevation_m(&self, place: &Vector2<f64>) -> f64 {
         match self {
-            Self::Flat => 0.0,
+            Self::Flat | Self::Terrain => 0.0,
             Self::Slope(slope) => slope.gradient.dot(place),
         }
     }
@@ -77,7 +80,7 @@ impl Surface {
     /// is a plane.
     pub fn tangent_at(&self, _point: &Vector3<f64>) -> TangentPlane {
         let normal = match self {
-            Self::Flat => Vector3::z(),
+            Self::Flat | Self::Terrain => Vector3::z(),
             Self::Slope(slope) => slope.normal,
         };
         TangentPlane { point: Vector3::zeros(), normal }
@@ -86,7 +89,7 @@ impl Surface {
     /// Returns rise and bearing, for a check that [`Self::parse`] would take them.
     pub(super) fn numbers(&self) -> (f64, f64) {
         match self {
-            Self::Flat => (0.0, 0.0),
+            Self::Flat | Self::Terrain => (0.0, 0.0),
             Self::Slope(slope) => (slope.rise_m, slope.bearing_deg),
         }
     }
@@ -97,6 +100,7 @@ impl std::fmt::Display for Surface {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Flat => f.write_str("flat"),
+            Self::Terrain => f.write_str("terrain"),
             Self::Slope(slope) => write!(f, "slope,{},{}", slope.rise_m, slope.bearing_deg),
         }
     }
@@ -105,6 +109,11 @@ impl std::fmt::Display for Surface {
 impl TangentPlane {
     /// Level ground at height zero.
     pub const LEVEL: Self = Self { point: Vector3::new(0.0, 0.0, 0.0), normal: Vector3::new(0.0, 0.0, 1.0) };
+
+    /// Returns the plane through a point that rises by `gradient` metres in a metre east and north.
+    pub(super) fn new(point: Vector3<f64>, gradient: &Vector2<f64>) -> Self {
+        Self { point, normal: Vector3::new(-gradient.x, -gradient.y, 1.0).normalize() }
+    }
 
     /// Returns the unit vector that points up from the plane.
     pub fn normal(&self) -> &Vector3<f64> {

@@ -120,8 +120,8 @@ switches! {
     "battery_capacity" battery_capacity_ah "0.01 to 100" "capacity in A·h instead of the airframe's"
         = |value: &str| within(0.01, 100.0)(value).map(Some), |capacity: &Option<f64>| capacity.unwrap_or_default();
     "ground_effect" ground_effect "on, off" "rotors gain thrust near the ground" = on_off, on_or_off;
-    "ground" ground "flat, slope,RISE,BEARING (RISE 0 to 40, BEARING 0 to 360)"
-        "level ground, or a plane through home that rises by RISE m in 100 m towards BEARING degrees"
+    "ground" ground "flat, slope,RISE,BEARING (RISE 0 to 40, BEARING 0 to 360), terrain"
+        "level ground, a plane through home that rises by RISE m in 100 m towards BEARING degrees, or the elevation tiles"
         = Surface::parse, ToString::to_string;
     "turbulence_scale" turbulence_scale "0 to 10" "multiplies the turbulence"
         = within(0.0, 10.0), ToString::to_string;
@@ -259,7 +259,7 @@ mod tests {
         assert_eq!(
             error("ground=slope,41,90"),
             "world switch \"ground=slope,41,90\": the rise 41 is out of range; allowed are flat, \
-             slope,RISE,BEARING (RISE 0 to 40, BEARING 0 to 360)"
+             slope,RISE,BEARING (RISE 0 to 40, BEARING 0 to 360), terrain"
         );
     }
 

@@ -11,6 +11,7 @@ use super::body::{AirSample, BodyState, Loads};
 use super::clock::{Clock, FaultHost};
 use super::event::WorldEventKind;
 use super::ground::{ContactAnchors, GroundContact};
+use super::landform::LocalRelief;
 use super::plant::Plant;
 use super::sensors::{SensorInputs, Sensors};
 use super::switches::Switches;
@@ -36,6 +37,7 @@ pub struct World {
     start: BodyState,
     heading_deg: f64,
     switches: Switches,
+    relief: Option<LocalRelief>,
     step_s: f64,
     clock: Clock,
     // The craft.
@@ -119,7 +121,7 @@ impl World {
 
     /// Advances air and battery, every 10 ms.
     fn slow_tick(&mut self) {
-        let ground_m = self.switches.ground.elevation_m(&self.body.pos_enu.xy());
+        let ground_m = self.plant.ground().landform().elevation_m(&self.body.pos_enu.xy());
         self.air.tick(self.clock.time, self.body.pos_enu.z, ground_m, self.body.vel_enu, &self.switches);
         let load = self.plant.efficiency().map(|efficiency| efficiency * self.air_now.density_ratio);
         let power = motor_power_w(&self.airframe, &self.rotors, &load);
@@ -165,7 +167,7 @@ impl World {
             drawn_wh: self.battery.drawn_wh,
             capacity_mah: self.battery.capacity_mah(),
         };
-        truth.ground_m = self.switches.ground.elevation_m(&self.body.pos_enu.xy());
+        truth.ground_m = self.plant.ground().landform().elevation_m(&self.body.pos_enu.xy());
         truth.on_ground = self.contact.any_leg;
         truth.crashed = self.crashed;
         truth.diverged = self.diverged;

@@ -6,7 +6,7 @@
 use nalgebra::Vector2;
 
 use crate::geo::{GRAVITY, LatLon};
-use crate::plan::estimate::{Assumptions, TouchdownThrottle};
+use crate::plan::estimate::{Assumptions, ReturnFlight, TouchdownThrottle};
 use crate::plan::{FlightPlan, Waypoint};
 use crate::signals::{PerMotor, RC_CHANNELS, RcSource, SimTime};
 use crate::telemetry::{
@@ -277,6 +277,8 @@ pub struct SettingsView {
     pub buildup_deg: f64,
     /// `ap_position_p`.
     pub position_p: f64,
+    /// The altitude of a GPS rescue.
+    pub return_flight: ReturnFlight,
     /// The throttle condition of a touchdown.
     pub touchdown_throttle: TouchdownThrottle,
     /// The rest position of the throttle stick in ALTHOLD, µs.
@@ -305,6 +307,7 @@ impl SettingsView {
             max_angle_deg: self.max_angle_deg,
             buildup_deg: self.buildup_deg,
             position_p: self.position_p,
+            return_flight: self.return_flight,
             ..Assumptions::default()
         }
     }

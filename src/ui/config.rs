@@ -1,5 +1,7 @@
 //! The configuration of the user interface at start.
 
+use std::sync::Arc;
+
 use super::console::CliHelp;
 use super::editor::OpenPlan;
 use super::history::EnteredLines;
@@ -7,6 +9,7 @@ use super::keymap::Keymap;
 use super::theme::Theme;
 use super::units::Units;
 use crate::session::Event;
+use crate::terrain::Tiles;
 
 /// The configuration of the user interface at start.
 #[derive(Debug, Clone)]
@@ -16,6 +19,8 @@ pub struct UiConfig {
     pub units: Units,
     /// Altitude above home above which a waypoint gets a warning, m.
     pub max_altitude_m: f64,
+    /// The ground.
+    pub ground: GroundConfig,
     pub keymap: Keymap,
     /// Completion and help of the CLI panel.
     pub cli: CliHelp,
@@ -31,6 +36,16 @@ pub struct UiConfig {
     pub is_first_start: bool,
 }
 
+/// The elevation tiles at start.
+#[derive(Debug, Clone, Default)]
+pub struct GroundConfig {
+    /// Clearance above the ground below which a leg gets a warning, m.
+    pub clearance_m: f64,
+    pub tiles: Option<Arc<Tiles>>,
+    /// `true` if more of them can be read.
+    pub can_read: bool,
+}
+
 #[cfg(test)]
 impl UiConfig {
     pub(super) fn bare() -> Self {
@@ -41,6 +56,7 @@ impl UiConfig {
             theme: Theme::default(),
             units: Units::default(),
             max_altitude_m: crate::plan::estimate::MAX_ALTITUDE_M,
+            ground: GroundConfig::default(),
             keymap: Keymap::default(),
             cli: CliHelp::default(),
             sentence: |_| String::new(),

@@ -16,6 +16,7 @@ use super::editor::{Editor, PlanId};
 use super::event_log::{LogState, Severity};
 use super::forecast::ForecastState;
 use super::graphs::GraphsState;
+use super::ground::GroundState;
 use super::keymap::Keymap;
 use super::layout::Slots;
 use super::map_state::MapState;
@@ -47,6 +48,8 @@ pub struct Shared {
     pub units: Units,
     /// Altitude above home above which a waypoint gets a warning, m.
     pub max_altitude_m: f64,
+    /// The ground.
+    pub ground: GroundState,
     /// Completion and help of the CLI panel.
     pub cli_help: CliHelp,
     pub keymap: Keymap,
@@ -97,6 +100,7 @@ impl Shared {
             theme: config.theme,
             units: config.units,
             max_altitude_m: config.max_altitude_m,
+            ground: GroundState::new(config.ground),
             cli_help: config.cli,
             keymap: config.keymap,
             editor: Editor::new(config.plan),

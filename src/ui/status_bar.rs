@@ -10,6 +10,7 @@ use crate::telemetry::{LinkState, Mode, NavState, NavTelemetry};
 
 use super::drawing;
 use super::formatting::{clock, clock_ms, compass, cut, factor, fixed, signed};
+use super::ground;
 use super::panel::span;
 use super::shared::Shared;
 use super::theme::Role;
@@ -153,6 +154,8 @@ fn mission(state: &Shared, room: usize) -> Vec<Span<'static>> {
     let speed = |value: Option<f64>| value.map(|speed| units.speed(speed));
     let estimate = &vehicle.estimate;
     let leg = engaged.map_or_else(Vec::new, |nav| leg(nav, units));
+    let agl = ground::agl_m(state)
+        .map(|agl_m| (3, "  agl", fixed(Some(units.length(agl_m)), 6, 1), format!(" {m}")));
     // Rank (a low one is kept longest), label, value, unit.
     let craft = [
         (2, "", fixed(speed(estimate.ground_speed_mps), 5, 1), format!(" {mps}")),
@@ -165,7 +168,7 @@ fn mission(state: &Shared, room: usize) -> Vec<Span<'static>> {
         span(theme, role, format!(" ◆ {name:<11} ")),
         span(theme, Role::Text, format!("{:<columns$}", cut(&target, columns))),
     ];
-    let parts: Vec<_> = leg.into_iter().chain(craft).collect();
+    let parts: Vec<_> = leg.into_iter().chain(craft).chain(agl).collect();
     let width =
         |(_, label, value, unit): &(u8, &str, String, String)| label.width() + value.width() + unit.width();
     let fits = |most: u8| parts.iter().filter(|part| part.0 <= most).map(width).sum::<usize>();

@@ -13,6 +13,7 @@ use super::editor::{FormKind, actions as plan, findings};
 use super::event_log::Severity;
 use super::forecast;
 use super::formatting::within;
+use super::ground;
 use super::keymap::KeyPress;
 use super::map_edit::actions as map_edit;
 use super::map_point;
@@ -55,6 +56,7 @@ pub fn update(state: &mut AppState, msg: Msg) -> Vec<Effect> {
     if is_followed {
         tutorial::follow(&mut state.tutorial, &mut state.shared);
         effects.extend(forecast::follow_plan(&mut state.shared));
+        effects.extend(ground::follow_plan(&mut state.shared));
         state.shared.editor.follow_generator(findings::home(&state.shared));
     }
     if is_picture {

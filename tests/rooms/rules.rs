@@ -4,7 +4,7 @@ use crate::paths::{Named, named, tokens};
 use crate::source::{SourceFile, files};
 
 /// Rooms that are pure: no file, no socket, no thread, no clock, no global state.
-const PURE: [&str; 14] = [
+const PURE: [&str; 15] = [
     "autopilot",
     "fc",
     "firmware",
@@ -16,6 +16,7 @@ const PURE: [&str; 14] = [
     "signals",
     "sim",
     "telemetry",
+    "terrain",
     "text",
     "timeline",
     "vehicle",

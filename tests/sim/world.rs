@@ -6,6 +6,7 @@ mod faults;
 mod gps_grades;
 mod sensors;
 mod slope;
+mod terrain;
 
 use betadeck::signals::MotorCommand;
 use betadeck::sim::{Fault, Noise, World, WorldCommand, WorldConfig, WorldEventKind};

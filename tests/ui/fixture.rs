@@ -85,6 +85,7 @@ pub(crate) fn state_after(
         theme,
         units: Units::default(),
         max_altitude_m: betadeck::plan::estimate::MAX_ALTITUDE_M,
+        ground: betadeck::ui::GroundConfig::default(),
         keymap: Keymap::default(),
         cli: CliHelp {
             complete: |line| {
@@ -260,6 +261,7 @@ pub(crate) fn view(flight: &SimpleFlight) -> SessionView {
         min_nav_alt_m: 5.0,
         buildup_deg: 8.0,
         position_p: 30.0,
+        return_flight: betadeck::plan::estimate::ReturnFlight::default(),
         touchdown_throttle: betadeck::plan::estimate::TouchdownThrottle::default(),
         hover_stick_us: 1500,
         raised_stick_us: 1300,

@@ -21,4 +21,5 @@ mod remapped;
 mod rewind;
 mod screens;
 mod session_rig;
+mod terrain;
 mod uploads;

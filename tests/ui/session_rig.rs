@@ -64,6 +64,7 @@ impl Rig {
             theme: Theme::default(),
             units: Units::default(),
             max_altitude_m: betadeck::plan::estimate::MAX_ALTITUDE_M,
+            ground: betadeck::ui::GroundConfig::default(),
             keymap: Keymap::default(),
             cli: CliHelp::default(),
             sentence: |event| sentence::text(&event.kind).unwrap_or_default(),

@@ -9,6 +9,7 @@ use super::recorder::Recorder;
 use crate::app::firmware::run::{OnEvent, RemoteRun, RunOptions, Stopped, unless_interrupted};
 use crate::app::firmware::{RemoteFirmware, reported};
 use crate::app::interrupt::interrupt_flag;
+use crate::app::terrain::with_terrain;
 use crate::app::{AppError, error, setup};
 use crate::args::{CompareArgs, Speed};
 use crate::fc::{guide_settings, upload};
@@ -51,6 +52,7 @@ impl Flights {
         notices.extend(plan.notices());
         let mut setup =
             setup::from_args(&args.flight, PhysicsSource::Embedded, plan.clone(), Configuration::default())?;
+        setup = with_terrain(setup, &args.flight.terrain, notices)?;
         // An executable starts without a configuration and gets the guide's settings, so the embedded one gets them,
         // too.
         if executable_flies {

@@ -1,5 +1,5 @@
 use super::*;
-use crate::plan::estimate::TouchdownThrottle;
+use crate::plan::estimate::{ReturnFlight, ReturnMode, TouchdownThrottle};
 use crate::plan::{Altitude, Waypoint, WaypointType};
 use crate::signals::SimTime;
 use crate::telemetry::{GuardName, GuardOp};
@@ -19,6 +19,7 @@ const SETTINGS: SettingsView = SettingsView {
     min_nav_alt_m: 5.0,
     buildup_deg: 8.0,
     position_p: 30.0,
+    return_flight: ReturnFlight { mode: ReturnMode::Highest, climb_m: 10.0, fixed_m: 30.0 },
     touchdown_throttle: TouchdownThrottle { hover_us: 1275.0, threshold_us: 100.0, min_us: 1100.0 },
     hover_stick_us: 1500,
     raised_stick_us: 1300,

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use super::PlanDocument;
 use crate::geo::{GroundPlane, LatLon, distance_bearing};
-use crate::plan::review::{Finding, Remedy, SteepLeg};
+use crate::plan::review::{Before, Finding, LowClearance, Raise, Remedy, SteepLeg};
 use crate::plan::validate::{PlanFault, WaypointFault};
 use crate::plan::{Altitude, HoldPattern, LegSpeed, Seconds, Then, Waypoint, WaypointType};
 
@@ -36,6 +36,7 @@ pub fn waypoint_of(finding: &Finding) -> Option<usize> {
         | Finding::NothingToModify { index, .. }
         | Finding::SpeedLimited { index, .. }
         | Finding::SteepLeg(SteepLeg { index, .. })
+        | Finding::LowClearance(LowClearance { index, .. })
         | Finding::AboveLimit { index, .. }
         | Finding::FarAboveOthers { index, .. }
         | Finding::BelowGround { index, .. } => Some(*index),
@@ -106,6 +107,7 @@ pub fn fix(document: &PlanDocument, finding: &Finding, home: LatLon) -> Option<F
             waypoints.try_insert(before.map_or(0, |before| before + 1), hold).ok()?;
             format!("reach {alt_m:.0} m in a HOLD before WP{index}")
         }
+        Finding::LowClearance(LowClearance { raise, .. }) => raised(&mut fixed, raise)?,
         Finding::StaysInTheAir => {
             let last = *waypoints.iter().rev().find(|wp| wp.kind.uses_position())?;
             let land = Waypoint {
@@ -137,6 +139,35 @@ pub fn fix(document: &PlanDocument, finding: &Finding, home: LatLon) -> Option<F
         | Finding::OutlastsBattery { .. } => return None,
     };
     Some(Fix { title, document: fixed })
+}
+
+/// Raises the plan above the ground, and returns the title of the edit.
+fn raised(document: &mut PlanDocument, Raise { to_m, waypoint, before }: Raise) -> Option<String> {
+    let Some(index) = waypoint else {
+        document.settings.retain(|line| !line.starts_with("gps_rescue_return_alt"));
+        document.settings.push(format!("gps_rescue_return_alt = {to_m:.0}"));
+        return Some(format!("set gps_rescue_return_alt to {to_m:.0} m"));
+    };
+    let waypoints = &mut document.plan.waypoints;
+    let mut raise = |index: usize| {
+        let altitude = &mut waypoints.get_mut(index)?.altitude;
+        *altitude = Altitude::above_home(altitude.above_home_m().max(to_m));
+        Some(())
+    };
+    raise(index)?;
+    match before {
+        Before::Nothing => Some(format!("raise WP{index} to {to_m:.0} m")),
+        Before::Waypoint(before) => {
+            raise(before)?;
+            Some(format!("raise WP{before} and WP{index} to {to_m:.0} m"))
+        }
+        Before::Takeoff => {
+            let altitude = Altitude::above_home(to_m);
+            let takeoff = Waypoint { kind: WaypointType::Takeoff, altitude, ..Waypoint::default() };
+            waypoints.try_insert(0, takeoff).ok()?;
+            Some(format!("climb to {to_m:.0} m in a TAKEOFF first"))
+        }
+    }
 }
 
 /// Returns a longitude wrapped to ±180° by whole turns.

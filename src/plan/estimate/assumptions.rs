@@ -1,5 +1,6 @@
 //! The facts about the craft that estimates and reviews use.
 
+use super::ReturnFlight;
 use crate::geo::GRAVITY;
 use crate::plan::Waypoint;
 use crate::plan::setpoint::{AltitudeSetpoint, SetpointLimits};
@@ -58,6 +59,8 @@ pub struct Assumptions {
     pub buildup_deg: f64,
     /// `ap_position_p`.
     pub position_p: f64,
+    /// The altitude of a GPS rescue.
+    pub return_flight: ReturnFlight,
 }
 
 /// The source of a setting when the craft and the plan differ.
@@ -118,12 +121,13 @@ impl Default for Assumptions {
             max_angle_deg: 50.0,
             buildup_deg: 8.0,
             position_p: 30.0,
+            return_flight: ReturnFlight::default(),
         }
     }
 }
 
 impl Assumptions {
-    /// The settings that change the assumptions.
+    /// The settings that change the estimate. Those of GPS rescue change the assumptions, too.
     pub const SETTINGS: [&str; 16] = [
         "ap_max_velocity",
         "alt_hold_climb_rate",
@@ -152,6 +156,7 @@ impl Assumptions {
     pub fn with_settings<L: AsRef<str>>(self, lines: &[L]) -> Self {
         let mut assumptions = self;
         for (name, value) in lines.iter().filter_map(|line| line.as_ref().split_once('=')) {
+            assumptions.return_flight.set(&name.trim().to_ascii_lowercase(), value.trim());
             let Ok(value) = value.trim().parse::<u16>() else { continue };
             let value = f64::from(value);
             match name.trim().to_ascii_lowercase().as_str() {

@@ -39,6 +39,11 @@ pub enum WorldError {
     /// More faults than the world can keep.
     #[error("there can be at most {0} faults, waiting and active ones together")]
     TooManyFaults(usize),
+    /// The ground of elevation tiles without a tile.
+    #[error(
+        "ground=terrain needs an elevation tile that knows the height of home: name the directory of the tiles with --terrain DIR"
+    )]
+    NoTerrain,
     /// A fault or a switch with a value that is not allowed.
     #[error(transparent)]
     Value(#[from] ParseError),

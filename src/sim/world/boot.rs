@@ -1,7 +1,10 @@
 //! A world at boot: the checked configuration, a craft on its legs, a full battery.
 
+use std::sync::Arc;
+
 use nalgebra::{UnitQuaternion, Vector2, Vector3};
 
+use crate::geo::LatLon;
 use crate::signals::{SensorFrame, SimTime};
 use crate::sim::air::Air;
 use crate::sim::airframe::{Airframe, ROTORS};
@@ -12,12 +15,14 @@ use crate::sim::command::{check_wind, in_range};
 use crate::sim::config::{Wind, WorldConfig, WorldError};
 use crate::sim::fault::FaultLink;
 use crate::sim::ground::NO_ANCHORS;
+use crate::sim::landform::{Landform, LocalRelief};
 use crate::sim::plant::Plant;
 use crate::sim::sensors::Sensors;
 use crate::sim::surface::Surface;
 use crate::sim::switches::Switches;
 use crate::sim::touchdown::TouchdownDetector;
 use crate::sim::truth::{Truth, level_attitude};
+use crate::terrain::Relief;
 
 use super::World;
 
@@ -30,10 +35,12 @@ impl World {
         check(&config)?;
         let clock = Clock::new(config.rate_hz, config.seed, FaultLink::Embedded, config.faults.clone())?;
         let step_s = clock.step_us() as f64 * 1e-6;
-        let (heading_deg, surface) = (config.home.heading_deg, config.switches.ground);
-        let start = standing(&config.airframe, &surface, &Vector2::zeros(), heading_deg);
+        let heading_deg = config.home.heading_deg;
+        let relief = relief(&config);
+        let landform = Landform::new(config.switches.ground, relief.as_ref())?;
+        let start = standing(&config.airframe, &landform, &Vector2::zeros(), heading_deg);
         let mut plant = Plant::new(&config.airframe, step_s);
-        plant.set_surface(surface);
+        plant.set_landform(landform);
         let air = Air::new(&config, start.pos_enu.z);
         let air_now = air.sample(SimTime::ZERO);
         let mut anchors = NO_ANCHORS;
@@ -50,6 +57,7 @@ impl World {
             start,
             heading_deg,
             switches,
+            relief,
             step_s,
             clock,
             plant,
@@ -88,19 +96,26 @@ fn check(config: &WorldConfig) -> Result<(), WorldError> {
     config.switches.check()
 }
 
+/// Returns the relief around home, if there are tiles that know its height.
+fn relief(config: &WorldConfig) -> Option<LocalRelief> {
+    let home = LatLon::from_degrees(config.home.lat_deg, config.home.lon_deg);
+    let relief = Relief::new(Arc::clone(config.terrain.as_ref()?), home)?;
+    Some(LocalRelief::new(relief, &config.home))
+}
+
 /// Returns a craft on its legs at a place east and north of home, m.
 pub(super) fn standing(
     airframe: &Airframe,
-    surface: &Surface,
+    landform: &Landform,
     place: &Vector2<f64>,
     heading_deg: f64,
 ) -> BodyState {
-    let plane = surface.tangent_at(&Vector3::new(place.x, place.y, surface.elevation_m(place)));
+    let plane = landform.tangent_at(&Vector3::new(place.x, place.y, landform.elevation_m(place)));
     let up_m = airframe.standing_height_m() / plane.normal().z;
     let level = level_attitude(heading_deg);
-    let attitude = match surface {
+    let attitude = match landform.surface() {
         Surface::Flat => level,
-        Surface::Slope(_) => {
+        Surface::Slope(_) | Surface::Terrain => {
             // A shortest rotation between two vectors that point up always exists.
             UnitQuaternion::rotation_between(&Vector3::z(), plane.normal()).unwrap_or_default() * level
         }

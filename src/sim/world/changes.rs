@@ -10,6 +10,7 @@ use crate::sim::command::WorldCommand;
 use crate::sim::config::{Wind, WorldError};
 use crate::sim::fault::{ActiveFault, Fault};
 use crate::sim::ground::NO_ANCHORS;
+use crate::sim::landform::Landform;
 use crate::sim::touchdown::TouchdownDetector;
 
 use super::boot::standing;
@@ -35,9 +36,12 @@ impl World {
             WorldCommand::SetTurbulence(level) => self.air.set_turbulence(level),
             WorldCommand::SetNoise(noise) => self.sensors.noise = noise,
             WorldCommand::SetSwitch(switch) => {
-                self.switches.set(&switch)?;
+                let mut switches = self.switches;
+                switches.set(&switch)?;
+                let landform = Landform::new(switches.ground, self.relief.as_ref())?;
+                self.switches = switches;
                 self.set_ground_effect();
-                self.set_ground();
+                self.set_ground(landform);
                 self.sensors.gps.set_grade(self.switches.gps);
             }
             WorldCommand::SetGpsRate(rate) => self.sensors.gps.set_rate(rate),
@@ -64,20 +68,20 @@ impl World {
     }
 
     /// Updates the plant for the shape of the ground. A craft on the ground is then on the new ground.
-    fn set_ground(&mut self) {
-        let surface = self.switches.ground;
-        if *self.plant.ground().surface() == surface {
+    fn set_ground(&mut self, landform: Landform) {
+        if self.plant.ground().landform().surface() == landform.surface() {
             return;
         }
         let stands = self.plant.ground().contact(&self.body).all_legs && !self.crashed;
-        self.plant.set_surface(surface);
-        self.start = standing(&self.airframe, &surface, &Vector2::zeros(), self.heading_deg);
+        self.start = standing(&self.airframe, &landform, &Vector2::zeros(), self.heading_deg);
         if stands {
             let place = self.body.pos_enu.xy();
-            self.body = standing(&self.airframe, &surface, &place, self.truth.heading_deg());
+            self.body = standing(&self.airframe, &landform, &place, self.truth.heading_deg());
+            self.plant.set_landform(landform);
             self.anchors = NO_ANCHORS;
             self.plant.ground().update_anchors(&self.body, &mut self.anchors);
         } else {
+            self.plant.set_landform(landform);
             self.lift_out_of_the_ground();
         }
     }

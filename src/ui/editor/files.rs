@@ -1,9 +1,13 @@
 //! The editor's requests to the file system, and the replies. Requests are carried out in order.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use super::open_plan::PlanId;
+use crate::geo::LatLon;
+use crate::plan::FlightPlan;
 use crate::plan::edit::{History, JournalLine, PlanDocument};
+use crate::terrain::Tiles;
 use crate::ui::history::LineField;
 
 #[derive(Debug, Clone, PartialEq)]
@@ -33,6 +37,8 @@ pub enum FileRequest {
     Journal(PlanId, JournalLine),
     /// Keep a line entered in a text field, so that it can be recalled after a restart.
     KeepLine(LineField, String),
+    /// Read the elevation tiles under a plan and its way home.
+    Ground { home: LatLon, plan: Box<FlightPlan> },
     /// Begin the journal of a new plan.
     Begin(PlanId, Box<PlanDocument>),
     /// Close a plan. Its journal is removed if its edits are given up.
@@ -68,6 +74,11 @@ pub enum FileReply {
     /// Somebody else changed or removed the file of a plan.
     Changed(PlanId),
     Listed(Listing),
+    /// More elevation tiles were read, if there are any; the problems, one sentence each.
+    Ground {
+        tiles: Option<Arc<Tiles>>,
+        problems: Vec<String>,
+    },
     /// The request failed; the reason in one sentence.
     Failed(String),
     /// Edits cannot be kept from now on; the reason in one sentence.

@@ -1,10 +1,12 @@
 //! The findings about the open plan with the craft's settings, and the edits that fix them.
 
+use nalgebra::Vector3;
+
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
 use crate::plan::edit::fix::{Fix, fix, waypoint_of};
 use crate::plan::estimate::Assumptions;
-use crate::plan::review::{Finding, review};
+use crate::plan::review::{Finding, FlownPlace, clearances, low_in_flight, review};
 use crate::ui::editor::settings_in_force;
 use crate::ui::map_point::origin::origin;
 use crate::ui::shared::Shared;
@@ -26,13 +28,32 @@ pub(crate) fn findings(state: &Shared) -> Vec<Finding> {
         Some(home) if !document.plan.waypoints.is_empty() => {
             let differs = settings_in_force::differing(state, document).into_iter();
             let differs = differs.map(|setting| Finding::CraftDiffers { setting });
-            let mut findings = review(&document.plan, home, &settings_in_force::assumptions(state, document));
+            let assumptions = settings_in_force::assumptions(state, document);
+            let mut findings = review(&document.plan, home, &assumptions);
             let refusals = findings.iter().take_while(|finding| finding.is_refusal()).count();
             findings.splice(refusals..refusals, differs);
+            findings.extend(low(state, home, &assumptions));
             findings
         }
         _ => Vec::new(),
     }
+}
+
+/// Returns the legs and the ways home that come too close to the ground, as planned and as flown in the estimate.
+fn low(state: &Shared, home: LatLon, assumptions: &Assumptions) -> Vec<Finding> {
+    let Some(relief) = state.ground.relief(home) else { return Vec::new() };
+    let (plan, margin_m) = (state.plan(), state.ground.clearance_m);
+    let mut findings = clearances(plan, assumptions, &relief, margin_m).findings;
+    if let Some((estimate, frame)) = state.forecast.estimate().zip(origin(state)) {
+        let path = estimate.path.iter().map(|point| {
+            let (lat_deg, lon_deg, _) = frame.to_geodetic(Vector3::new(point.e, point.n, 0.0));
+            let place = LatLon::from_degrees(lat_deg, lon_deg);
+            FlownPlace { place, along_m: point.along_m, alt_m: point.alt }
+        });
+        let flown = low_in_flight(plan, assumptions, &relief, margin_m, path, &findings);
+        findings.extend(flown);
+    }
+    findings
 }
 
 /// Returns the finding for which the autopilot would refuse a plan in the air.

@@ -151,7 +151,11 @@ fn is_answer(msg: &Msg) -> bool {
         Msg::Forecast(reply) => reply.kind != ForecastKind::PlanEstimate,
         Msg::Files(reply) => !matches!(
             reply,
-            FileReply::Changed(_) | FileReply::NotKept(_) | FileReply::KeptAgain | FileReply::EditsLost(_)
+            FileReply::Changed(_)
+                | FileReply::NotKept(_)
+                | FileReply::KeptAgain
+                | FileReply::EditsLost(_)
+                | FileReply::Ground { .. }
         ),
         Msg::Clock(_)
         | Msg::Key(_)

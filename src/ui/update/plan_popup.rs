@@ -11,6 +11,7 @@ use crate::ui::editor::{
     Purpose, Question, actions as plan, findings,
 };
 use crate::ui::event_log::Severity;
+use crate::ui::ground;
 use crate::ui::message::Effect;
 use crate::ui::shared::Shared;
 
@@ -212,6 +213,7 @@ pub(super) fn answered(state: &mut Shared, reply: FileReply) -> Vec<Effect> {
             state.editor.loses_edits = false;
             state.notify(Severity::Good, "Edits are kept again.");
         }
+        FileReply::Ground { tiles, problems } => ground::read(state, tiles, problems),
         FileReply::EditsLost(text) => state.pin(text),
         FileReply::Failed(sentence) => {
             state.editor.quitting = false;

@@ -10,15 +10,18 @@ use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
 
 mod flown;
+mod ground_line;
 
 use flown::{FlownPoint, flown};
+use ground_line::{GroundPoint, ground_line};
 
 /// The width of the scale on the left.
 const SCALE: u16 = 6;
-/// The marks of the three lines.
+/// The marks of the lines.
 const PLANNED: (&str, Role) = ("·", Role::Text);
 const ESTIMATED: (&str, Role) = ("˙", Role::Predicted);
 const FLOWN: (&str, Role) = ("•", Role::Track);
+const GROUND: (&str, Role) = ("▁", Role::Dim);
 
 /// A point of the profile: metres flown, metres above home, index of the waypoint.
 struct Point {
@@ -59,12 +62,23 @@ struct Axes {
 }
 
 impl Axes {
+    /// Returns the scales for the open plan; `None` if there is nothing to show, or no room.
+    fn of_plan(state: &Shared, points: &[Point], area: Rect) -> Option<Self> {
+        let flown = flown(state, points);
+        Self::of(points, &flown, &ground_line(state, points, &flown), area)
+    }
+
     /// Returns `None` if there is nothing to show, or no room.
-    fn of(points: &[Point], flown: &[FlownPoint], area: Rect) -> Option<Self> {
+    fn of(points: &[Point], flown: &[FlownPoint], ground: &[GroundPoint], area: Rect) -> Option<Self> {
         let has_room = area.width > SCALE + 8 && area.height > 3;
         let length_m = points.last().filter(|_| has_room)?.along_m.max(1.0);
-        let altitudes =
-            || points.iter().map(|point| point.alt_m).chain(flown.iter().map(|point| point.alt_m));
+        let altitudes = || {
+            points
+                .iter()
+                .map(|point| point.alt_m)
+                .chain(flown.iter().map(|point| point.alt_m))
+                .chain(ground.iter().map(|point| point.alt_m))
+        };
         let high_m = altitudes().fold(1.0, f64::max);
         let low_m = altitudes().fold(0.0, f64::min);
         Some(Self { area, length_m, low_m, high_m })
@@ -87,7 +101,7 @@ impl Axes {
 /// Returns the waypoint whose number is at a cell.
 pub(super) fn waypoint_at(state: &Shared, area: Rect, (column, row): (u16, u16)) -> Option<usize> {
     let points = points(state);
-    let axes = Axes::of(&points, &flown(state, &points), area)?;
+    let axes = Axes::of_plan(state, &points, area)?;
     let here =
         |point: &&Point| axes.row(point.alt_m) == row && axes.column(point.along_m).abs_diff(column) <= 1;
     points.iter().rev().find(here).map(|point| point.index)
@@ -96,7 +110,7 @@ pub(super) fn waypoint_at(state: &Shared, area: Rect, (column, row): (u16, u16))
 /// Returns the height of a row of the profile, m.
 pub(super) fn metres_per_row(state: &Shared, area: Rect) -> Option<f64> {
     let points = points(state);
-    Axes::of(&points, &flown(state, &points), area).map(|axes| axes.metres_per_row())
+    Axes::of_plan(state, &points, area).map(|axes| axes.metres_per_row())
 }
 
 /// Draws the profile: a rule with its legend, then the altitudes, the waypoint under the cursor marked.
@@ -104,8 +118,9 @@ pub(super) fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let points = points(state);
     let flown = flown(state, &points);
-    legend(state, !flown.is_empty(), area, buffer);
-    let Some(axes) = Axes::of(&points, &flown, area) else { return };
+    let ground = ground_line(state, &points, &flown);
+    legend(state, !flown.is_empty(), !ground.is_empty(), area, buffer);
+    let Some(axes) = Axes::of(&points, &flown, &ground, area) else { return };
     for (alt_m, mark) in [(axes.high_m, '┤'), (axes.low_m, '┼')] {
         let text = format!("{:>4.0} {mark}", state.units.length(alt_m));
         drawing::text(buffer, area.x, axes.row(alt_m), text, theme.style(Role::Dim));
@@ -115,6 +130,9 @@ pub(super) fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {
             cell.set_symbol(symbol).set_style(theme.style(role));
         }
     };
+    for point in &ground {
+        put(axes.column(point.along_m.min(axes.length_m)), point.alt_m, GROUND);
+    }
     // The estimated altitudes, below the plan itself.
     for point in state.forecast.estimate().iter().flat_map(|forecast| &forecast.path) {
         if point.along_m >= 0.0 && point.alt.is_finite() {
@@ -143,7 +161,7 @@ pub(super) fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {
 }
 
 /// Draws the rule above the profile: the unit, and the meaning of the marks.
-fn legend(state: &Shared, has_flown: bool, area: Rect, buffer: &mut Buffer) {
+fn legend(state: &Shared, has_flown: bool, has_ground: bool, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let rule = "─".repeat(usize::from(area.width));
     drawing::text(buffer, area.x, area.y, rule, theme.style(Role::Dim));
@@ -157,6 +175,7 @@ fn legend(state: &Shared, has_flown: bool, area: Rect, buffer: &mut Buffer) {
         (true, PLANNED, "plan"),
         (state.forecast.estimate().is_some(), ESTIMATED, "flown estimate"),
         (has_flown, FLOWN, "flown"),
+        (has_ground, GROUND, "ground"),
     ];
     for (_, (mark, role), name) in lines.into_iter().filter(|(is_there, ..)| *is_there) {
         write(&format!(" {mark}"), role);

@@ -14,6 +14,7 @@ const NEAR_ALT_M: f64 = 0.05;
 pub(super) struct FlownPoint {
     pub(super) along_m: f64,
     pub(super) alt_m: f64,
+    pub(super) place: MapPoint,
 }
 
 /// Returns the flown part of the open plan up to the shown instant; empty if the craft's plan has other places.
@@ -54,7 +55,7 @@ pub(super) fn flown(state: &Shared, points: &[Point]) -> Vec<FlownPoint> {
             along_m - last.along_m <= near_m && (place.alt_m - last.alt_m).abs() <= NEAR_ALT_M
         };
         if !seen.last().is_some_and(is_near) {
-            seen.push(FlownPoint { along_m, alt_m: place.alt_m });
+            seen.push(FlownPoint { along_m, alt_m: place.alt_m, place: MapPoint::new(place.n, place.e) });
         }
     }
     seen

@@ -1,0 +1,81 @@
+//! The ground under the open plan and under the craft.
+
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+
+use crate::geo::{LatLon, LocalFrame};
+use crate::plan::FlightPlan;
+use crate::terrain::{Relief, Tiles};
+use crate::ui::editor::{FileRequest, findings};
+use crate::ui::event_log::Severity;
+use crate::ui::map_point::origin::origin;
+use crate::ui::map_point::{MapPoint, craft};
+use crate::ui::message::Effect;
+use crate::ui::shared::Shared;
+
+/// Requests the tiles of the open plan if its places have changed.
+pub(in crate::ui) fn follow_plan(state: &mut Shared) -> Option<Effect> {
+    if !state.ground.can_read {
+        return None;
+    }
+    let home = findings::home(state)?;
+    let is_asked =
+        |(asked_home, asked): &(LatLon, FlightPlan)| *asked_home == home && *asked == *state.plan();
+    if state.ground.asked.as_ref().is_some_and(is_asked) {
+        return None;
+    }
+    let plan = state.plan().clone();
+    state.ground.asked = Some((home, plan.clone()));
+    Some(Effect::Files(FileRequest::Ground { home, plan: Box::new(plan) }))
+}
+
+/// Takes tiles that were read.
+pub(in crate::ui) fn read(state: &mut Shared, tiles: Option<Arc<Tiles>>, problems: Vec<String>) {
+    if tiles.is_some() {
+        state.ground.tiles = tiles;
+    }
+    for problem in problems {
+        state.notify(Severity::Warn, problem);
+    }
+}
+
+/// Returns the ground as seen from the home of the open plan.
+pub(in crate::ui) fn relief(state: &Shared) -> Option<Relief> {
+    state.ground.relief(findings::home(state)?)
+}
+
+/// Returns the height of the ground above home at a place on the map, m.
+pub(in crate::ui) fn above_home_m(relief: &Relief, frame: &LocalFrame, place: MapPoint) -> Option<f64> {
+    let (lat_deg, lon_deg, _) = frame.to_geodetic(Vector3::new(place.e, place.n, 0.0));
+    relief.spot(lat_deg, lon_deg).map(|(height_m, _)| height_m)
+}
+
+/// Returns the height of the craft above the ground below it, m.
+pub(in crate::ui) fn agl_m(state: &Shared) -> Option<f64> {
+    let altitude_m = state.view.vehicle.estimate.alt?;
+    Some(altitude_m - above_home_m(&relief(state)?, &origin(state)?, craft(&state.view)?)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::Waypoint;
+    use crate::session::SessionView;
+
+    #[test]
+    fn the_tiles_of_other_places_are_requested_once() {
+        let mut state = Shared::bare((80, 24), SessionView::default());
+        let land = Waypoint { position: LatLon::new(405_000_000, -795_000_000), ..Waypoint::default() };
+        state.editor.insert("a plan", &[land]).expect("a place for a waypoint");
+        assert!(follow_plan(&mut state).is_none(), "there is no directory of tiles");
+        state.ground.can_read = true;
+        let Some(Effect::Files(FileRequest::Ground { home, plan })) = follow_plan(&mut state) else {
+            panic!("no request")
+        };
+        assert_eq!((home, &*plan), (land.position, state.plan()));
+        assert!(follow_plan(&mut state).is_none());
+        state.editor.insert("another place", &[Waypoint::default()]).expect("a place for a waypoint");
+        assert!(follow_plan(&mut state).is_some());
+    }
+}
