@@ -1,5 +1,6 @@
 //! The program: from arguments to the tasks of one mode.
 
+mod backdrop_file;
 mod check;
 mod compare;
 mod config;
@@ -131,7 +132,9 @@ fn dispatch(cli: Cli, keymap: Keymap) -> Result<u8, AppError> {
         Some(Command::Sitl(args)) => sitl::run(&args),
         Some(Command::Serve(args)) => serve::run(&args),
         Some(Command::Plan(PlanCommand::List)) => plan::list(),
-        Some(Command::Plan(PlanCommand::Show { plan, review })) => plan::show(&plan, review),
+        Some(Command::Plan(PlanCommand::Show { plan, review, backdrop })) => {
+            plan::show(&plan, review, &backdrop)
+        }
         Some(Command::Convert(args)) => convert::run(&args),
         Some(Command::Config(command)) => config::run(command),
         Some(Command::Doctor) => doctor::run(),

@@ -16,6 +16,8 @@ use crate::args::is_descriptor;
 const STDIN: &str = "standard input";
 /// The largest plan or settings file, bytes.
 const MAX_FILE: u64 = 4 << 20;
+/// The largest map, bytes.
+const MAX_MAP: u64 = 64 << 20;
 /// The largest file for a syntax tree, bytes. The tree takes a hundred times as much memory.
 const MAX_TREE: u64 = 512 << 10;
 
@@ -23,6 +25,12 @@ const MAX_TREE: u64 = 512 << 10;
 pub(super) fn read_plan(path: &Path) -> Result<Vec<u8>, AppError> {
     let name = path.display().to_string();
     read_bytes(open(path, &name, MAX_FILE)?, &name, MAX_FILE)
+}
+
+/// Reads a map for a backdrop.
+pub(super) fn read_map(path: &Path) -> Result<Vec<u8>, AppError> {
+    let name = path.display().to_string();
+    read_bytes(open(path, &name, MAX_MAP)?, &name, MAX_MAP)
 }
 
 /// Reads a text file of reasonable size.

@@ -1,14 +1,14 @@
 //! `betadeck plan`: the built-in plans by name, and a plan as a table with distances, times and findings.
 
 use super::error::{self, AppError};
-use super::setup;
-use crate::args::{PlanArg, ReviewArgs};
+use super::{backdrop_file, setup};
+use crate::args::{BackdropArgs, PlanArg, ReviewArgs};
 use crate::flight::FlightSetup;
 use crate::geo::LatLon;
 use crate::plan::builtin::PLANS;
 use crate::plan::estimate::Assumptions;
 use crate::plan::format;
-use crate::plan::review::{Finding, review};
+use crate::plan::review::{Finding, review, zone_findings};
 use crate::sim::density_ratio;
 
 /// Prints the built-in plans, one on each line.
@@ -28,8 +28,13 @@ pub(super) fn list() -> Result<u8, AppError> {
 }
 
 /// Prints the plan; a plan that the craft would refuse is invalid input.
-pub(super) fn show(plan: &PlanArg, limits: ReviewArgs) -> Result<u8, AppError> {
+pub(super) fn show(plan: &PlanArg, limits: ReviewArgs, maps: &BackdropArgs) -> Result<u8, AppError> {
     let file = setup::read_plan(plan)?;
+    let mut zones = Vec::new();
+    for path in &maps.backdrop {
+        zones
+            .extend(backdrop_file::read_features(path)?.into_iter().filter(|feature| feature.zone.is_some()));
+    }
     let setup = FlightSetup { plan: file.clone(), ..FlightSetup::default() };
     let (home, notice) = setup.boot_home();
     let density = density_ratio(home.alt_amsl_m);
@@ -40,6 +45,9 @@ pub(super) fn show(plan: &PlanArg, limits: ReviewArgs) -> Result<u8, AppError> {
     };
     let home = LatLon::from_degrees(home.lat_deg, home.lon_deg);
     let mut text = format::table(&file, home, &assumptions);
+    for finding in zone_findings(&file.plan, home, &zones) {
+        text.push_str(&format!("{finding}\n"));
+    }
     if let Some(notice) = notice {
         text.push_str(&format!("{notice}\n"));
     }

@@ -4,6 +4,8 @@
 //! at most the edit of the last key. A journal belongs to the program that has locked it.
 #![allow(clippy::disallowed_methods, reason = "the shell of the editor lives on wall-clock time")]
 
+mod backdrop_requests;
+mod backdrops;
 mod journal_file;
 mod on_disk;
 mod set_aside;
@@ -19,6 +21,7 @@ use tokio::sync::watch;
 use super::line_history::LineHistory;
 use crate::plan::edit::{History, Journal, JournalLine, PlanDocument};
 use crate::ui::editor::{FileReply, FileRequest, Opened, PlanId};
+use backdrops::Backdrops;
 use journal_file::{Found, JournalFile};
 use on_disk::Content;
 
@@ -42,6 +45,7 @@ pub(super) struct PlanFiles {
     /// The losses of journals, as sentences that were not reported yet.
     lost: Vec<String>,
     lines: LineHistory,
+    backdrops: Backdrops,
 }
 
 #[derive(Debug)]
@@ -56,6 +60,8 @@ struct OpenFile {
     journal: Option<JournalFile>,
     /// `true` if a line could not be written. The file must then be rewritten before the next line counts.
     is_behind: bool,
+    /// The files under the plan on the map, and the number of their vertices.
+    backdrop: Vec<(PathBuf, usize)>,
 }
 
 impl PlanFiles {
@@ -71,6 +77,7 @@ impl PlanFiles {
             reported: false,
             lost: Vec::new(),
             lines: LineHistory::new(state),
+            backdrops: Backdrops::new(state),
         }
     }
 
@@ -174,11 +181,23 @@ impl PlanFiles {
         match request {
             FileRequest::Open(path) => {
                 let opened = self.open(&path);
+                let backdrop = match &opened {
+                    FileReply::Opened(opened) => self.remembered_backdrop(opened.id),
+                    _ => Vec::new(),
+                };
                 let lost = self.take_losses().into_iter().map(FileReply::EditsLost);
-                std::iter::once(opened).chain(lost).collect()
+                std::iter::once(opened).chain(backdrop).chain(lost).collect()
             }
             FileRequest::Save { id, path, document, revision, replace } => {
                 self.save(id, path, *document, revision, replace)
+            }
+            FileRequest::Backdrop(id, path) => vec![self.read_backdrop(id, &path, true)],
+            FileRequest::NoBackdrop(id) => {
+                if let Some(file) = self.open.get_mut(&id) {
+                    file.backdrop.clear();
+                }
+                self.keep_backdrop(id);
+                Vec::new()
             }
             FileRequest::List(directory) => vec![self.list(directory)],
             FileRequest::Journal(id, line) => self.append(id, &line).into_iter().collect(),
@@ -189,7 +208,9 @@ impl PlanFiles {
             FileRequest::Begin(id, document) => {
                 let kept = Journal { file: None, history: History::new(*document, false) };
                 let (path, seen, journal) = (None, Content::Missing, None);
-                let file = OpenFile { path, seen, reported: false, kept, journal, is_behind: false };
+                let backdrop = Vec::new();
+                let file =
+                    OpenFile { path, seen, reported: false, kept, journal, is_behind: false, backdrop };
                 self.open.insert(id, file);
                 Vec::new()
             }
@@ -322,7 +343,8 @@ impl PlanFiles {
         // The journal is rewritten without the part that was cut short.
         let mut journal = journal;
         let is_behind = journal.as_mut().is_some_and(|journal| journal.rewrite(&kept).is_err());
-        let file = OpenFile { path: path.clone(), seen, reported: false, kept, journal, is_behind };
+        let backdrop = Vec::new();
+        let file = OpenFile { path: path.clone(), seen, reported: false, kept, journal, is_behind, backdrop };
         self.open.insert(id, file);
         Opened { id, file: path, history, notes, recovered: false }
     }
@@ -354,6 +376,9 @@ impl PlanFiles {
         file.path = Some(path.clone());
         if let Some(parent) = path.parent() {
             self.directory = parent.to_owned();
+        }
+        if !is_own {
+            self.keep_backdrop(id);
         }
         let kept = self.append(id, &JournalLine::Saved(path.display().to_string()));
         [FileReply::Saved { id, path, revision, lost }].into_iter().chain(kept).collect()

@@ -2,16 +2,19 @@
 
 mod altitude;
 mod steep;
+mod zones;
 
 use std::fmt;
 
 use crate::geo::{LatLon, distance_bearing};
 
 use super::estimate::{Assumptions, SettingSource, TouchdownThrottle, estimate};
+use super::feature::Zone;
 use super::validate::{PlanFault, check_plan};
 use super::{FlightPlan, Modifier, Then, Waypoint, WaypointType};
 pub(crate) use altitude::{LegAltitude, legs as leg_altitudes};
 pub use steep::{Remedy, SteepLeg};
+pub use zones::{ZonePart, zone_findings, zones_on_path};
 
 /// A finding in a plan.
 #[derive(Debug, Clone, PartialEq)]
@@ -85,6 +88,22 @@ pub enum Finding {
     SteepLeg(SteepLeg),
     /// The throttle condition of a touchdown can never be met.
     NoTouchdownThrottle(TouchdownThrottle),
+    /// A waypoint or a leg is where a zone of the map forbids it.
+    AgainstZone {
+        index: usize,
+        part: ZonePart,
+        zone: Zone,
+        /// The name of the zone; may be empty.
+        name: String,
+    },
+    /// The flown estimate goes where a zone of the map forbids it.
+    FlownAgainstZone {
+        zone: Zone,
+        /// The name of the zone; may be empty.
+        name: String,
+        /// Distance along the plan at the border, m.
+        along_m: f64,
+    },
 }
 
 impl Finding {
@@ -121,6 +140,8 @@ impl Finding {
                 | Self::FarAboveOthers { .. }
                 | Self::SteepLeg(_)
                 | Self::NoTouchdownThrottle(_)
+                | Self::AgainstZone { .. }
+                | Self::FlownAgainstZone { .. }
         )
     }
 }
@@ -181,6 +202,8 @@ impl fmt::Display for Finding {
                  ({hover_us}) minus this is not above ap_throttle_min ({min_us}): a touchdown is detected late or not \
                  at all"
             ),
+            Self::AgainstZone { index, part, zone, name } => zones::write_part(f, *index, *part, *zone, name),
+            Self::FlownAgainstZone { zone, name, along_m } => zones::write_flown(f, *zone, name, *along_m),
         }
     }
 }

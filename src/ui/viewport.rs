@@ -95,6 +95,16 @@ impl Viewport {
         inside.then(|| (self.area.x + column as u16, self.area.y + row as u16))
     }
 
+    /// Returns column and row of a place, in dots of lines from the middle of the top left dot. A cell has two columns and
+    /// four rows of dots.
+    pub(super) fn dot(&self, place: MapPoint) -> (f64, f64) {
+        let [west, east] = self.east_bounds();
+        let [south, north] = self.north_bounds();
+        let (columns, rows) =
+            (f64::from(self.area.width) * 2.0 - 1.0, f64::from(self.area.height) * 4.0 - 1.0);
+        ((place.e - west) / (east - west) * columns, (north - place.n) / (north - south) * rows)
+    }
+
     /// Returns the place under the middle of a screen cell.
     pub(super) fn place(&self, column: u16, row: u16) -> MapPoint {
         let dc = f64::from(column) + 0.5 - f64::from(self.area.x) - f64::from(self.area.width) / 2.0;

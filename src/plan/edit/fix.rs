@@ -38,11 +38,13 @@ pub fn waypoint_of(finding: &Finding) -> Option<usize> {
         | Finding::SteepLeg(SteepLeg { index, .. })
         | Finding::AboveLimit { index, .. }
         | Finding::FarAboveOthers { index, .. }
+        | Finding::AgainstZone { index, .. }
         | Finding::BelowGround { index, .. } => Some(*index),
         Finding::Fault(PlanFault::Empty | PlanFault::Corrupt(_))
         | Finding::StaysInTheAir
         | Finding::OutlastsBattery { .. }
         | Finding::CraftDiffers { .. }
+        | Finding::FlownAgainstZone { .. }
         | Finding::NoTouchdownThrottle(_) => None,
     }
 }
@@ -131,8 +133,10 @@ pub fn fix(document: &PlanDocument, finding: &Finding, home: LatLon) -> Option<F
             fixed.settings.push("ap_landing_throttle_threshold = 100".to_owned());
             "set the threshold to 100".to_owned()
         }
-        // An upload resolves it, not an edit.
+        // An upload resolves it, not an edit, and the way around a zone is the pilot's choice.
         Finding::CraftDiffers { .. }
+        | Finding::AgainstZone { .. }
+        | Finding::FlownAgainstZone { .. }
         | Finding::Fault(PlanFault::Empty | PlanFault::Corrupt(_))
         | Finding::OutlastsBattery { .. } => return None,
     };

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::open_plan::PlanId;
 use crate::plan::edit::{History, JournalLine, PlanDocument};
+use crate::ui::backdrop::BackdropLayer;
 use crate::ui::history::LineField;
 
 #[derive(Debug, Clone, PartialEq)]
@@ -20,6 +21,10 @@ pub enum FileRequest {
         /// replaced.
         replace: bool,
     },
+    /// Read a file and put it under a plan on the map. It is remembered with the file of the plan.
+    Backdrop(PlanId, PathBuf),
+    /// Forget the files under a plan.
+    NoBackdrop(PlanId),
     /// List a directory for the file browser; `None` for the one in which a plan was opened last.
     List(Option<PathBuf>),
     /// Keep an edit, an undo or a redo in the journal, so that it survives the program. The first line of a journal is
@@ -60,6 +65,13 @@ pub enum FileReply {
     /// Somebody else changed or removed the file of a plan.
     Changed(PlanId),
     Listed(Listing),
+    /// A file for the backdrop of a plan was read.
+    Backdrop {
+        id: PlanId,
+        layer: BackdropLayer,
+        /// `true` if the user has just chosen it, `false` if it was remembered.
+        is_new: bool,
+    },
     /// The request failed; the reason in one sentence.
     Failed(String),
     /// Edits cannot be kept from now on; the reason in one sentence.

@@ -29,6 +29,7 @@ pub(crate) fn findings(state: &Shared) -> Vec<Finding> {
             let mut findings = review(&document.plan, home, &settings_in_force::assumptions(state, document));
             let refusals = findings.iter().take_while(|finding| finding.is_refusal()).count();
             findings.splice(refusals..refusals, differs);
+            findings.extend(state.editor.zones.findings().iter().cloned());
             findings
         }
         _ => Vec::new(),

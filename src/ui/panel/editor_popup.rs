@@ -88,6 +88,7 @@ fn browser(state: &Shared, browser: &Browser, area: Rect, buffer: &mut Buffer) -
     let title = match browser.purpose {
         Purpose::Open => "Open a plan",
         Purpose::Save(_) => "Save as",
+        Purpose::Backdrop(_) => "Show a file under the plan",
     };
     let inside = popup(theme, area, (WIDTH, area.height.saturating_sub(6).min(22)), title, buffer);
     let directory = browser.listing.directory.display().to_string();
@@ -99,7 +100,11 @@ fn browser(state: &Shared, browser: &Browser, area: Rect, buffer: &mut Buffer) -
     let visible = browser.visible();
     let first = browser.at.unwrap_or(0).saturating_sub(rows.saturating_sub(1));
     if visible.is_empty() {
-        row(buffer, inside, 2, theme, Role::Dim, " No plan (.toml, .txt) and no directory here.");
+        let text = match browser.purpose {
+            Purpose::Backdrop(_) => " No map (.geojson, .kml, .kmz, .gpx) and no directory here.",
+            Purpose::Open | Purpose::Save(_) => " No plan (.toml, .txt) and no directory here.",
+        };
+        row(buffer, inside, 2, theme, Role::Dim, text);
     }
     for (at, entry) in visible.iter().enumerate().skip(first).take(rows) {
         let here = browser.at == Some(at);
@@ -107,7 +112,11 @@ fn browser(state: &Shared, browser: &Browser, area: Rect, buffer: &mut Buffer) -
         let slash = if entry.is_directory { "/" } else { "" };
         row(buffer, inside, 2 + (at - first) as u16, theme, role, &format!("{mark}{}{slash}", entry.name));
     }
-    let action = if browser.purpose == Purpose::Open { "open" } else { "save" };
+    let action = match browser.purpose {
+        Purpose::Open => "open",
+        Purpose::Save(_) => "save",
+        Purpose::Backdrop(_) => "show",
+    };
     let keys =
         keys(state, &[("Enter", action), ("↑ ↓", "choose"), ("←", "directory above"), ("Esc", "close")]);
     line(buffer, inside, inside.height.saturating_sub(1), &keys);

@@ -10,7 +10,7 @@ use crate::geo::LocalFrame;
 use crate::plan::{FlightPlan, Waypoint, WaypointType};
 use crate::telemetry::PlanSource;
 use crate::ui::action::{self, Action, EditAction, PanelAction};
-use crate::ui::map_edit;
+use crate::ui::map_edit::{self, measure};
 use crate::ui::map_point::origin::origin;
 use crate::ui::map_point::{self, MapPoint, to_map};
 use crate::ui::map_state::{MapItem, MapMode, Moving};
@@ -22,9 +22,13 @@ use crate::ui::shared::Shared;
 use crate::ui::viewport::Viewport;
 use crate::ui::viewport::moves::{self, ZOOM_STEP};
 
+mod backdrop;
+mod grid;
 mod labels;
 mod lines;
 mod marks;
+mod off_screen;
+mod raster;
 mod track_line;
 
 /// The mouse on the map; the window and the edit are shared.
@@ -46,6 +50,12 @@ impl Content for MapPanel {
             PlanSource::Stored => String::new(),
             injected => format!(" — {injected} plan"),
         };
+        if state.map.measure.is_some() {
+            let point = state.key(Action::Edit(EditAction::Pick));
+            let measured =
+                measure::measured(state).unwrap_or_else(|| format!("{point} sets the first point"));
+            return format!("{name} — measure · {measured}");
+        }
         if state.edits_on_map() {
             let place =
                 state.map.moving.map(|moving| moving.place).or(state.map.edit.map(|cursor| cursor.place));
@@ -69,6 +79,14 @@ impl Content for MapPanel {
     }
 
     fn hints(&self, state: &Shared) -> Vec<Hint> {
+        if let Some(tool) = &state.map.measure {
+            let is_second = tool.from.is_some() && tool.to.is_none();
+            let point = if is_second { "second point" } else { "first point" };
+            return vec![
+                (&[Action::Edit(EditAction::Pick)], point),
+                (&[Action::Panel(PanelAction::Measure)], "done"),
+            ];
+        }
         if state.map.edit.is_some() {
             let pick = if state.map.moving.is_some() { "put down" } else { "pick" };
             return vec![
@@ -86,6 +104,9 @@ impl Content for MapPanel {
             (&[Action::Panel(PanelAction::ZoomIn), Action::Panel(PanelAction::ZoomOut)], "zoom"),
             (&[Action::Panel(PanelAction::Follow)], "follow"),
             (&[Action::Panel(PanelAction::Fit)], "fit"),
+            (&[Action::Panel(PanelAction::Measure)], "measure"),
+            (&[Action::Panel(PanelAction::Grid)], "grid"),
+            (&[Action::Panel(PanelAction::Backdrop)], "backdrop"),
         ]
     }
 
@@ -99,6 +120,9 @@ impl Content for MapPanel {
             PanelAction::ZoomOut => moves::zoomed(state, ZOOM_STEP).map(Change::MapWindow),
             PanelAction::Follow => moves::following(state).map(Change::MapWindow),
             PanelAction::Fit => Some(Change::MapWindow(MapMode::Fit)),
+            PanelAction::Measure => Some(Change::Measure),
+            PanelAction::Grid => Some(Change::MapGrid),
+            PanelAction::Backdrop => Some(Change::ChooseBackdrop),
             _ => None,
         };
         change.map(Request::Change).into_iter().collect()
@@ -119,6 +143,9 @@ impl Content for MapPanel {
     fn press(&mut self, state: &Shared, area: Rect, event: &MouseEvent) -> Vec<Request> {
         let view = Viewport::of(state, area);
         let place = view.place(event.column, event.row);
+        if state.map.measure.is_some() {
+            return vec![Change::MeasurePoint(place).into()];
+        }
         if event.modifiers.contains(KeyModifiers::CONTROL) {
             return vec![Change::AddWaypoint(place).into()];
         }
@@ -136,6 +163,9 @@ impl Content for MapPanel {
 
     fn drag(&mut self, state: &Shared, area: Rect, event: &MouseEvent) -> Vec<Request> {
         let view = Viewport::of(state, area);
+        if state.map.measure.is_some() {
+            return vec![Change::MeasureTo(view.place(event.column, event.row)).into()];
+        }
         if state.map.moving.is_some() {
             // The window stays still meanwhile.
             let still = MapMode::Free { n: view.centre.n, e: view.centre.e, scale: view.scale };
@@ -168,9 +198,11 @@ impl Content for MapPanel {
                 let can_go = action::enabled(state, Action::GoTo).is_ok() && state.plan_is_on_craft();
                 let go_to = u8::try_from(index).ok().filter(|_| can_go).map(MapChoice::GoTo);
                 let edits = [MapChoice::EditWaypoint(index), MapChoice::DeleteWaypoint(index)];
-                edits.into_iter().chain(go_to).collect()
+                edits.into_iter().chain(go_to).chain([MapChoice::Measure]).collect()
             }
-            _ => vec![MapChoice::AddWaypoint, MapChoice::SetHome, MapChoice::SetFence],
+            _ => {
+                vec![MapChoice::AddWaypoint, MapChoice::SetHome, MapChoice::SetFence, MapChoice::Measure]
+            }
         };
         Some(Popup::MapMenu(MapMenu::new(map_edit::position(&frame, place), at, choices)))
     }
@@ -200,6 +232,7 @@ fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {
         return;
     }
     let scene = scene(state, area);
+    backdrop::paint(state, &scene.view, buffer);
     Canvas::default()
         .marker(state.theme.marker())
         .x_bounds(scene.view.east_bounds())

@@ -131,7 +131,13 @@ fn is_question(effect: &Effect) -> bool {
         | Effect::WriteScenario { .. }
         | Effect::SaveToFlash => true,
         Effect::Files(request) => {
-            matches!(request, FileRequest::Open(_) | FileRequest::Save { .. } | FileRequest::List(_))
+            matches!(
+                request,
+                FileRequest::Open(_)
+                    | FileRequest::Save { .. }
+                    | FileRequest::List(_)
+                    | FileRequest::Backdrop(..)
+            )
         }
         Effect::Forecast(job) => job.request.kind() != ForecastKind::PlanEstimate,
         Effect::Send(_) | Effect::Copy(_) | Effect::Suspend | Effect::Quit => false,
@@ -151,7 +157,11 @@ fn is_answer(msg: &Msg) -> bool {
         Msg::Forecast(reply) => reply.kind != ForecastKind::PlanEstimate,
         Msg::Files(reply) => !matches!(
             reply,
-            FileReply::Changed(_) | FileReply::NotKept(_) | FileReply::KeptAgain | FileReply::EditsLost(_)
+            FileReply::Changed(_)
+                | FileReply::NotKept(_)
+                | FileReply::KeptAgain
+                | FileReply::EditsLost(_)
+                | FileReply::Backdrop { is_new: false, .. }
         ),
         Msg::Clock(_)
         | Msg::Key(_)

@@ -6,7 +6,7 @@ use unicode_width::UnicodeWidthStr as _;
 use crate::ui::drawing;
 use crate::ui::map_point::MapPoint;
 use crate::ui::text_wrap::wrapped;
-use crate::ui::theme::{Role, Theme};
+use crate::ui::theme::{Palette, Role, Theme};
 use crate::ui::viewport::Viewport;
 
 /// The greatest number of lines at the top.
@@ -84,6 +84,23 @@ impl<'a> Labels<'a> {
                 self.put(column as u16, row as u16, text, role);
                 return;
             }
+        }
+    }
+
+    /// Writes a text from a place to the right, if its cells hold nothing but the backdrop.
+    pub(super) fn on_free_ground(&mut self, place: MapPoint, text: &str, role: Role) {
+        let Some((column, row)) = self.view.screen_cell(place) else { return };
+        let width = text.width();
+        let is_ground = |column: u16| {
+            let Some(cell) = self.buffer.cell((column, row)) else { return false };
+            // Without colours the lines of plan and track look the same.
+            let faint = [Role::Backdrop, Role::Zone].map(|role| self.theme.colour(role));
+            cell.symbol() == " " || self.theme.palette != Palette::Mono && faint.contains(&cell.fg)
+        };
+        if self.is_free(i32::from(column), i32::from(row), width)
+            && (column..column + width as u16).all(is_ground)
+        {
+            self.put(column, row, text, role);
         }
     }
 

@@ -150,6 +150,11 @@ pub(super) fn paint(state: &Shared, scene: &Scene, context: &mut Context<'_>) {
             painter.line(MapPoint::new(last.n, last.e), craft);
         }
     });
+    layer(Role::Focus, &mut |painter| {
+        if let Some((from, to)) = state.map.measure.as_ref().and_then(map_edit::measure::ends) {
+            painter.dashed(from, to);
+        }
+    });
     layer(Role::Target, &mut |painter| {
         if let Some((from, to)) = current_leg(state, scene) {
             painter.dashed(from, to);
