@@ -42,6 +42,8 @@ pub(super) struct PlacedName {
     pub(super) text: String,
     pub(super) position: LatLon,
     pub(super) zone: Option<Zone>,
+    /// `true` for the name of a point.
+    pub(super) is_point: bool,
 }
 
 impl BackdropLayer {
@@ -115,7 +117,8 @@ fn placed_name(feature: &Feature) -> Option<PlacedName> {
         Shape::Line(line) => line.get(line.len() / 2)?.position,
         Shape::Area(rings) => middle(rings.first()?)?,
     };
-    Some(PlacedName { text, position, zone: feature.zone })
+    let is_point = matches!(feature.shape, Shape::Point(_));
+    Some(PlacedName { text, position, zone: feature.zone, is_point })
 }
 
 /// Returns the middle of the rectangle around a ring.

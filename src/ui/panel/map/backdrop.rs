@@ -93,8 +93,13 @@ pub(super) fn write_names(state: &Shared, labels: &mut Labels<'_>) {
             None => Role::Backdrop,
         };
         let place = to_map(&frame, name.position);
-        // In the middle of an area, beside a point or a line that ends there.
-        let left = MapPoint::new(place.n, place.e - text.width() as f64 / 2.0 * view.scale);
-        labels.on_free_ground(left, &text, role);
+        let width = text.width() as i32;
+        // Beside a point, else over the middle or near it.
+        let offsets = if name.is_point {
+            vec![(1, 0), (-width, 0), (1, -1), (1, 1), (-width, -1), (-width, 1)]
+        } else {
+            [0, -1, 1, -2, 2, -3, 3].map(|down| (-width / 2, down)).to_vec()
+        };
+        labels.on_free_ground(place, &text, &offsets, role);
     }
 }

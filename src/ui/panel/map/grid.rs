@@ -98,11 +98,11 @@ pub(super) fn write(frame: &LocalFrame, labels: &mut Labels<'_>) {
     let text = |line: &GridLine| format!("{:.*}°", grid.decimals, line.degrees);
     for line in &grid.parallels {
         let edge = MapPoint::new(line.place.n, west + 0.5 * view.scale);
-        labels.on_free_ground(edge, &text(line), Role::Dim);
+        labels.on_free_ground(edge, &text(line), &[(0, 0)], Role::Dim);
     }
     for line in &grid.meridians {
         let edge = MapPoint::new(south + 3.0 * view.scale, line.place.e);
-        labels.on_free_ground(edge, &text(line), Role::Dim);
+        labels.on_free_ground(edge, &text(line), &[(0, 0), (1, 0)], Role::Dim);
     }
 }
 

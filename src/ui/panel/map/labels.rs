@@ -87,21 +87,26 @@ impl<'a> Labels<'a> {
         }
     }
 
-    /// Writes a text from a place to the right, if its cells hold nothing but the backdrop.
-    pub(super) fn on_free_ground(&mut self, place: MapPoint, text: &str, role: Role) {
+    /// Writes a text where its cells hold nothing but the backdrop: at the first offset, in columns and rows from a
+    /// place, that has room.
+    pub(super) fn on_free_ground(&mut self, place: MapPoint, text: &str, offsets: &[(i32, i32)], role: Role) {
         let Some((column, row)) = self.view.screen_cell(place) else { return };
         let width = text.width();
-        let is_ground = |column: u16| {
-            let Some(cell) = self.buffer.cell((column, row)) else { return false };
-            // Without colours the lines of plan and track look the same.
-            let faint = [Role::Backdrop, Role::Zone].map(|role| self.theme.colour(role));
-            cell.symbol() == " " || self.theme.palette != Palette::Mono && faint.contains(&cell.fg)
-        };
-        if self.is_free(i32::from(column), i32::from(row), width)
-            && (column..column + width as u16).all(is_ground)
-        {
-            self.put(column, row, text, role);
+        let at = offsets.iter().map(|(right, down)| (i32::from(column) + right, i32::from(row) + down));
+        let free = at.into_iter().find(|&(column, row)| {
+            let cells = column..column + width as i32;
+            self.is_free(column, row, width) && cells.into_iter().all(|column| self.is_ground(column, row))
+        });
+        if let Some((column, row)) = free {
+            self.put(column as u16, row as u16, text, role);
         }
+    }
+
+    fn is_ground(&self, column: i32, row: i32) -> bool {
+        let Some(cell) = self.buffer.cell((column as u16, row as u16)) else { return false };
+        // Without colours the lines of plan and track look the same.
+        let faint = [Role::Backdrop, Role::Zone].map(|role| self.theme.colour(role));
+        cell.symbol() == " " || self.theme.palette != Palette::Mono && faint.contains(&cell.fg)
     }
 
     /// Writes a line in the middle.
