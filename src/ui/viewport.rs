@@ -31,6 +31,8 @@ impl Viewport {
     /// Returns the window of the map in these cells.
     pub(super) fn of(state: &Shared, area: Rect) -> Self {
         match state.map.mode {
+            // The whole preview, whatever was shown before.
+            _ if state.editor.is_generating() => Self::fit(state, area),
             MapMode::Fit => Self::fit(state, area),
             MapMode::Follow(scale) => {
                 let centre = craft(&state.view).unwrap_or_default();
@@ -52,7 +54,9 @@ impl Viewport {
             let plans = [state.shown_plan(), state.plan()];
             let waypoints =
                 plans.into_iter().flat_map(|plan| &plan.waypoints).filter(|wp| wp.kind.uses_position());
-            waypoints.map(|wp| wp.position).chain(home).map(|position| to_map(frame, position))
+            let preview = state.editor.preview().map_or(&[][..], |(plans, _)| plans).iter().flatten();
+            let waypoints = waypoints.chain(preview).map(|wp| wp.position);
+            waypoints.chain(home).map(|position| to_map(frame, position))
         });
         let mut low = MapPoint::default();
         let mut high = MapPoint::default();

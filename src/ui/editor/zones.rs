@@ -16,7 +16,7 @@ use crate::ui::shared::Shared;
 
 /// The findings about zones, and their input.
 #[derive(Debug, Default)]
-pub struct ZoneReview {
+pub(crate) struct ZoneReview {
     basis: Option<Basis>,
     findings: Vec<Finding>,
 }

@@ -6,7 +6,8 @@ use ratatui::text::Line;
 
 use super::{line, row, span};
 use crate::ui::editor::{Browser, EditorPopup, Form, FormField, FormKind, OpenPlan, Purpose, Question};
-use crate::ui::popup::frame::popup;
+use crate::ui::layout;
+use crate::ui::popup::frame::{framed, popup};
 use crate::ui::shared::Shared;
 use crate::ui::text_wrap::wrapped;
 use crate::ui::theme::Role;
@@ -14,8 +15,11 @@ use crate::ui::theme::Role;
 /// The columns of a form: labels, values, hints.
 const LABEL: u16 = 14;
 const VALUE: u16 = 30;
-/// The least width of a value.
-const NARROW: u16 = 16;
+/// The columns of labels in a form beside the map.
+const NARROW_LABEL: u16 = 12;
+/// The least width of a typed value, and of a choice.
+const NARROW: u16 = 9;
+const NARROW_CHOICE: u16 = 21;
 const WIDTH: u16 = 72;
 
 /// Draws the open popup. Returns the position of the cursor.
@@ -42,10 +46,18 @@ fn form(state: &Shared, form: &Form, area: Rect, buffer: &mut Buffer) -> Option<
         Ok(text) => (Role::Dim, text.clone()),
         Err(problem) => (Role::Fault, format!("✗ {problem}")),
     };
-    let foot = wrapped(&text, usize::from(WIDTH));
+    let beside = layout::divided(state, (area.width, area.height)).and_then(|screen| screen.form);
+    let (label, width) = match beside {
+        Some(place) => (NARROW_LABEL, layout::inner(place).width),
+        None => (LABEL, WIDTH),
+    };
+    let foot = wrapped(&text, usize::from(width));
     let height = form.fields.len() as u16 + foot.len() as u16 + 2;
-    let inside = popup(theme, area, (WIDTH, height), title, buffer);
-    let rows = inside.height.saturating_sub(foot.len() as u16 + 2);
+    let inside = match beside {
+        Some(place) => framed(theme, place, title, buffer),
+        None => popup(theme, area, (WIDTH, height), title, buffer),
+    };
+    let rows = inside.height.saturating_sub(foot.len() as u16 + 2).min(form.fields.len() as u16);
     let first = (form.at as u16 + 1).saturating_sub(rows);
     let mut cursor = None;
     for (at, field) in form.fields.iter().enumerate().skip(usize::from(first)).take(usize::from(rows)) {
@@ -53,8 +65,8 @@ fn form(state: &Shared, form: &Form, area: Rect, buffer: &mut Buffer) -> Option<
         let here = at == form.at;
         let role = if here { Role::Focus } else { Role::Text };
         row(buffer, inside, y, theme, role, &format!("{} {}", if here { "▸" } else { " " }, field.label));
-        let place =
-            Rect { x: inside.x + LABEL, y: inside.y + y, width: value_width(field, inside.width), height: 1 };
+        let width = value_width(field, inside.width.saturating_sub(label));
+        let place = Rect { x: inside.x + label, y: inside.y + y, width, height: 1 };
         if field.choices.is_empty() {
             let position = field.text.draw(theme, place.intersection(inside), buffer);
             cursor = if here { position } else { cursor };
@@ -64,7 +76,7 @@ fn form(state: &Shared, form: &Form, area: Rect, buffer: &mut Buffer) -> Option<
         }
         let hint = Rect {
             x: place.x + place.width,
-            width: inside.width.saturating_sub(LABEL + place.width),
+            width: inside.width.saturating_sub(label + place.width),
             ..place
         };
         row(buffer, hint, 0, theme, Role::Dim, &format!(" {}", field.hint));
@@ -80,7 +92,8 @@ fn form(state: &Shared, form: &Form, area: Rect, buffer: &mut Buffer) -> Option<
 /// Returns the width of a value. A narrow form shortens it so that the hint after it stays whole.
 fn value_width(field: &FormField, columns: u16) -> u16 {
     let hint = field.hint.chars().count() as u16 + 1;
-    VALUE.min(columns.saturating_sub(LABEL + hint).max(NARROW)).min(columns.saturating_sub(LABEL))
+    let narrow = if field.choices.is_empty() { NARROW } else { NARROW_CHOICE };
+    VALUE.min(columns.saturating_sub(hint).max(narrow)).min(columns)
 }
 
 fn browser(state: &Shared, browser: &Browser, area: Rect, buffer: &mut Buffer) -> Option<Position> {

@@ -7,7 +7,7 @@ use ratatui::widgets::Widget as _;
 use ratatui::widgets::canvas::Canvas;
 
 use crate::geo::LocalFrame;
-use crate::plan::{FlightPlan, Waypoint, WaypointType};
+use crate::plan::{Waypoint, WaypointType};
 use crate::telemetry::PlanSource;
 use crate::ui::action::{self, Action, EditAction, PanelAction};
 use crate::ui::map_edit::{self, measure};
@@ -225,6 +225,8 @@ struct Scene {
     craft: Option<MapPoint>,
     believed: Option<MapPoint>,
     current: Option<usize>,
+    /// The plans that the open generator form would give.
+    preview: Vec<Vec<PlacedWaypoint>>,
 }
 
 fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {
@@ -252,7 +254,12 @@ fn scene(state: &Shared, area: Rect) -> Scene {
     let planned_home = map_edit::home(state).unwrap_or(craft_home);
     // While editing, the map shows home of the edited plan and the fence around it.
     let mut home = if state.edits_on_map() { planned_home } else { craft_home };
-    let mut spots = frame.map_or_else(Vec::new, |frame| spots(plan, &frame, home));
+    let mut spots = frame.map_or_else(Vec::new, |frame| spots_of(&plan.waypoints, 0, &frame, home));
+    let (preview, first) = state.editor.preview().unwrap_or_default();
+    let preview = frame
+        .iter()
+        .flat_map(|frame| preview.iter().map(move |waypoints| spots_of(waypoints, first, frame, home)));
+    let preview = preview.collect();
     match state.map.moving {
         Some(Moving { item: MapItem::Waypoint(index), place, .. }) => {
             for spot in spots.iter_mut().filter(|spot| spot.index == index) {
@@ -271,13 +278,14 @@ fn scene(state: &Shared, area: Rect) -> Scene {
         planned_home: (planned_home.distance(home) > 1.0 && !state.edits_on_map()).then_some(planned_home),
         craft: map_point::craft(&state.view),
         believed: believed.filter(|place| place.n.is_finite() && place.e.is_finite()),
+        preview,
         current: vehicle.nav.as_ref().filter(|nav| nav.engaged).map(|nav| usize::from(nav.wp)),
     }
 }
 
 /// Returns the positional waypoints. A TAKEOFF is at home, whatever position its record has.
-fn spots(plan: &FlightPlan, frame: &LocalFrame, home: MapPoint) -> Vec<PlacedWaypoint> {
-    let positional = plan.waypoints.iter().enumerate().filter(|(_, wp)| wp.kind.is_positional());
+fn spots_of(waypoints: &[Waypoint], first: usize, frame: &LocalFrame, home: MapPoint) -> Vec<PlacedWaypoint> {
+    let positional = (first..).zip(waypoints).filter(|(_, wp)| wp.kind.is_positional());
     positional
         .map(|(index, wp)| {
             let place = if wp.kind == WaypointType::Takeoff { home } else { to_map(frame, wp.position) };

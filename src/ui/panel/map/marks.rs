@@ -22,7 +22,8 @@ pub(super) fn write(state: &Shared, scene: &Scene, buffer: &mut Buffer) {
     let vehicle = &state.view.vehicle;
     let mut labels = Labels::new(theme, scene.view, buffer);
     frame_notes(state, &mut labels);
-    let ghost_line = forecast::ghost(state).map(|ghost| format!("··· {}", ghost.line));
+    let ghost = forecast::ghost(state).filter(|_| scene.preview.is_empty());
+    let ghost_line = ghost.map(|ghost| format!("··· {}", ghost.line));
     if let Some(line) = &ghost_line {
         labels.top(line, Role::Predicted);
     }
@@ -66,6 +67,13 @@ pub(super) fn write(state: &Shared, scene: &Scene, buffer: &mut Buffer) {
         if let (Some((_, to)), Some(text)) = (measure::ends(tool), measure::measured(state)) {
             labels.beside(to, &format!(" {text}"), &text, Role::Focus);
         }
+    }
+    for spot in scene.preview.iter().flatten() {
+        labels.mark(spot.place, glyph(spot.wp.kind), Role::Predicted);
+    }
+    for spot in scene.preview.iter().flatten() {
+        let number = spot.index.to_string();
+        labels.beside(spot.place, &number, &number, Role::Predicted);
     }
     // The label of the current waypoint is placed first.
     let mut order: Vec<&PlacedWaypoint> = scene.spots.iter().collect();
