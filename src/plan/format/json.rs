@@ -11,18 +11,20 @@ use super::Problems;
 pub(super) fn parse(text: &str, problems: &mut Problems<'_>) -> Option<Value> {
     let mut reader = serde_json::Deserializer::from_str(text);
     let parsed = Strict.deserialize(&mut reader).and_then(|value| reader.end().map(|()| value));
-    parsed
-        .map_err(|error| {
-            let line_start = match error.line() {
-                0 | 1 => 0,
-                line => text.match_indices('\n').nth(line - 2).map_or(0, |(at, _)| at + 1),
-            };
-            let at = (line_start + error.column().saturating_sub(1)).min(text.len());
-            let message = error.to_string();
-            let message = message.split(" at line ").next().unwrap_or_default().to_owned();
-            problems.add(at..at + 1, message, "this is not valid JSON");
-        })
-        .ok()
+    parsed.map_err(|error| add_fault(text, &error, problems)).ok()
+}
+
+/// Adds the fault that the parser found in a text.
+pub(super) fn add_fault(text: &str, error: &serde_json::Error, problems: &mut Problems<'_>) {
+    let line_start = match error.line() {
+        0 | 1 => 0,
+        line => text.match_indices('\n').nth(line - 2).map_or(0, |(at, _)| at + 1),
+    };
+    let at = (line_start + error.column().saturating_sub(1)).min(text.len());
+    let message = error.to_string();
+    let message = message.rsplit_once(" at line ").map_or(message.as_str(), |(message, _)| message);
+    let hint = if error.is_data() { "" } else { "this is not valid JSON" };
+    problems.add(at..at + 1, message, hint);
 }
 
 /// Reads any value, and refuses a key that is there twice.

@@ -8,6 +8,9 @@ use crate::text::source_snippet::{SourceSnippet, shortened, source_snippet};
 /// The most problems of a file that are listed; the others are counted.
 const MOST_LISTED: usize = 100;
 
+/// The size of a block of the text whose line ends are counted together.
+const BLOCK: usize = 4096;
+
 /// A problem of a file. `Display` is the whole report: `FILE:LINE:COLUMN: MESSAGE`, the line, and carets under the
 /// place with the allowed values.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -70,8 +73,8 @@ pub fn report(errors: &[PlanError]) -> String {
 pub struct Problems<'a> {
     file: &'a str,
     text: &'a str,
-    /// The beginning of each line.
-    lines: Vec<usize>,
+    /// The number of line ends before each block of the text. A list of all lines could take more memory than the text.
+    line_ends: Vec<u32>,
     errors: Vec<(usize, PlanError)>,
     unlisted: usize,
 }
@@ -79,13 +82,33 @@ pub struct Problems<'a> {
 impl<'a> Problems<'a> {
     /// Creates a collection without problems; all spans refer to `text`.
     pub fn new(file: &'a str, text: &'a str) -> Self {
-        let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
-        Self { file, text, lines, errors: Vec::new(), unlisted: 0 }
+        let counts = text.as_bytes().chunks(BLOCK).scan(0, |count, block| {
+            let before = *count;
+            *count += line_ends(block) as u32;
+            Some(before)
+        });
+        Self { file, text, line_ends: counts.collect(), errors: Vec::new(), unlisted: 0 }
     }
 
     /// Returns the line of a byte of the text, from 1.
     pub fn line_at(&self, at: usize) -> usize {
-        self.lines.partition_point(|&begin| begin <= at).max(1)
+        let at = at.min(self.text.len());
+        let block = (at / BLOCK).min(self.line_ends.len().saturating_sub(1));
+        let before = self.line_ends.get(block).map_or(0, |&count| count as usize);
+        before + line_ends(&self.text.as_bytes()[block * BLOCK..at]) + 1
+    }
+
+    /// Returns the first byte of a line, from 1, or the end of the text.
+    fn line_start(&self, line: usize) -> usize {
+        let ends = line.saturating_sub(1);
+        if ends == 0 {
+            return 0;
+        }
+        let block = self.line_ends.partition_point(|&count| (count as usize) < ends).saturating_sub(1);
+        let before = self.line_ends.get(block).map_or(0, |&count| count as usize);
+        let from = block * BLOCK;
+        let mut found = self.text.as_bytes()[from..].iter().enumerate().filter(|&(_, &byte)| byte == b'\n');
+        found.nth(ends - before - 1).map_or(self.text.len(), |(at, _)| from + at + 1)
     }
 
     /// Adds a problem at a byte range of the text. A range that is not on character boundaries is widened.
@@ -96,8 +119,8 @@ impl<'a> Problems<'a> {
         }
         let start = floor_boundary(self.text, span.start);
         let line = self.line_at(start);
-        let line_start = self.lines[line - 1];
-        let line_end = self.lines.get(line).map_or(self.text.len(), |&next| next - 1);
+        let line_start = self.text[..start].rfind('\n').map_or(0, |at| at + 1);
+        let line_end = self.text[start..].find('\n').map_or(self.text.len(), |at| start + at);
         let end = floor_boundary(self.text, span.end.min(line_end)).max(start);
         let column = self.text[line_start..start].chars().count() + 1;
         let source = source_snippet(self.text[line_start..line_end].trim_end_matches('\r'), column);
@@ -124,8 +147,7 @@ impl<'a> Problems<'a> {
         message: impl Into<String>,
         hint: impl Into<String>,
     ) {
-        let at = |line: usize| self.lines.get(line).copied().unwrap_or(self.text.len());
-        let (start, end) = (at(line.saturating_sub(1)), at(line));
+        let (start, end) = (self.line_start(line), self.line_start(line + 1));
         let (text, part) = (&self.text[start..end], part.as_ref());
         let code = text.split('#').next().unwrap_or(text);
         let span = code.rfind(part).map_or_else(
@@ -158,6 +180,10 @@ impl<'a> Problems<'a> {
         }
         self.errors.into_iter().map(|(_, error)| error).collect()
     }
+}
+
+fn line_ends(bytes: &[u8]) -> usize {
+    bytes.iter().filter(|&&byte| byte == b'\n').count()
 }
 
 fn floor_boundary(text: &str, index: usize) -> usize {
@@ -196,6 +222,19 @@ mod tests {
         let errors = problems.into_errors();
         let places: Vec<_> = errors.iter().map(|e| (e.line, e.column, e.width)).collect();
         assert_eq!(places, [(2, 3, 11), (2, 9, 1), (3, 1, 5), (3, 6, 1)]);
+    }
+
+    #[test]
+    fn lines_are_found_in_every_block() {
+        let text: String = (0..5000).map(|at| format!("{at}\n")).collect();
+        let problems = Problems::new("f", &text);
+        for line in [1, 2, 700, 1200, 1201, 4999, 5000] {
+            let start = problems.line_start(line);
+            assert!(text[start..].starts_with(&format!("{}\n", line - 1)), "{line}");
+            assert_eq!(problems.line_at(start), line);
+        }
+        assert_eq!((problems.line_start(5001), problems.line_start(9999)), (text.len(), text.len()));
+        assert_eq!(problems.line_at(text.len() + 5), 5001);
     }
 
     #[test]

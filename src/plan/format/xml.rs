@@ -1,5 +1,6 @@
 //! XML of other programs as a sequence of elements and texts: no document type, bounded depth, local names.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use quick_xml::events::{BytesStart, Event};
@@ -37,6 +38,14 @@ impl Element {
     }
 }
 
+/// A part of a document whose text is still that of the document.
+enum Borrowed<'t> {
+    Start(Element),
+    /// The text, and its place in the document.
+    Text(Cow<'t, str>, usize),
+    End,
+}
+
 /// The reader of a document.
 pub(super) struct Parts<'t> {
     reader: Reader<&'t [u8]>,
@@ -61,9 +70,32 @@ impl<'t> Parts<'t> {
 
     /// Returns the next part. Returns `None` at the end, and after a fault, which it adds to `problems`.
     pub(super) fn next(&mut self, problems: &mut Problems<'_>) -> Option<Part> {
+        self.next_borrowed(problems).map(|part| match part {
+            Borrowed::Start(element) => Part::Start(element),
+            Borrowed::Text(text, _) => Part::Text(text.into_owned()),
+            Borrowed::End => Part::End,
+        })
+    }
+
+    /// Passes the text of the element that began last to `take`, piece by piece with their places, without a copy of
+    /// it. Skips the elements in it, and reads its end.
+    pub(super) fn texts(&mut self, problems: &mut Problems<'_>, mut take: impl FnMut(&str, usize)) {
+        let mut open = 1;
+        while open > 0 {
+            match self.next_borrowed(problems) {
+                Some(Borrowed::Start(_)) => open += 1,
+                Some(Borrowed::End) => open -= 1,
+                Some(Borrowed::Text(text, at)) if open == 1 => take(&text, at),
+                Some(Borrowed::Text(..)) => {}
+                None => return,
+            }
+        }
+    }
+
+    fn next_borrowed(&mut self, problems: &mut Problems<'_>) -> Option<Borrowed<'t>> {
         if std::mem::take(&mut self.is_empty) {
             self.depth -= 1;
-            return Some(Part::End);
+            return Some(Borrowed::End);
         }
         while !self.is_over {
             let start = self.position();
@@ -82,15 +114,7 @@ impl<'t> Parts<'t> {
 
     /// Skips the rest of the element that began last, with all elements in it.
     pub(super) fn skip(&mut self, problems: &mut Problems<'_>) {
-        let mut open = 1;
-        while open > 0 {
-            match self.next(problems) {
-                Some(Part::Start(_)) => open += 1,
-                Some(Part::End) => open -= 1,
-                Some(Part::Text(_)) => {}
-                None => return,
-            }
-        }
+        self.texts(problems, |_, _| {});
     }
 
     /// Returns the text of the element that began last, without the texts of elements in it, and reads its end.
@@ -105,30 +129,30 @@ impl<'t> Parts<'t> {
         }
     }
 
-    fn step(&mut self, start: usize) -> Result<Option<Part>, String> {
+    fn step(&mut self, start: usize) -> Result<Option<Borrowed<'t>>, String> {
         let event = self.reader.read_event().map_err(|error| error.to_string())?;
         let part = match event {
             Event::Start(tag) => {
                 self.depth += 1;
-                Some(Part::Start(element(&tag, start..self.position())?))
+                Some(Borrowed::Start(element(&tag, start..self.position())?))
             }
             Event::Empty(tag) => {
                 self.depth += 1;
                 self.is_empty = true;
-                Some(Part::Start(element(&tag, start..self.position())?))
+                Some(Borrowed::Start(element(&tag, start..self.position())?))
             }
             Event::End(_) => {
                 self.depth -= 1;
-                Some(Part::End)
+                Some(Borrowed::End)
             }
-            Event::Text(text) => some_text(text.xml10_content().into_owned()),
-            Event::CData(text) => some_text(text.xml10_content().into_owned()),
+            Event::Text(text) => some_text(text.xml10_content(), start),
+            Event::CData(text) => some_text(text.xml10_content(), start),
             Event::GeneralRef(entity) => {
                 let name = entity.xml10_content().into_owned();
                 let character = entity.resolve_char_ref().map_err(|error| error.to_string())?;
                 let known = || quick_xml::escape::resolve_xml_entity(&name).map(str::to_owned);
                 let text = character.map(String::from).or_else(known);
-                Some(Part::Text(text.ok_or_else(|| format!("the entity &{name}; is not known"))?))
+                some_text(Cow::Owned(text.ok_or_else(|| format!("the entity &{name}; is not known"))?), start)
             }
             Event::DocType(_) => {
                 return Err("a document type is not allowed: it can define entities without end".to_owned());
@@ -147,8 +171,8 @@ impl<'t> Parts<'t> {
     }
 }
 
-fn some_text(text: String) -> Option<Part> {
-    (!text.is_empty()).then_some(Part::Text(text))
+fn some_text(text: Cow<'_, str>, at: usize) -> Option<Borrowed<'_>> {
+    (!text.is_empty()).then_some(Borrowed::Text(text, at))
 }
 
 fn element(tag: &BytesStart<'_>, span: Range<usize>) -> Result<Element, String> {
