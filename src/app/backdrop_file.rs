@@ -4,13 +4,14 @@ use std::path::{Path, PathBuf};
 
 use super::{AppError, input_file};
 use crate::plan::feature::Feature;
+use crate::plan::format;
 use crate::ui::backdrop::{BackdropLayer, MAX_VERTICES};
 
 /// Reads the shapes of a file.
 pub(super) fn read_features(path: &Path) -> Result<Vec<Feature>, AppError> {
     let name = path.display().to_string();
     let bytes = input_file::read_map(path)?;
-    stub(&name, &bytes).map_err(|errors| {
+    format::read_features(&name, &bytes).map_err(|errors| {
         AppError::input(match errors.first() {
             Some(first) => first.headline(),
             None => format!("{name} is not a map"),
@@ -49,8 +50,4 @@ pub(super) fn read_all(paths: &[PathBuf]) -> Result<Vec<BackdropLayer>, AppError
         layers.push(read(&path, before)?);
     }
     Ok(layers)
-}
-
-fn stub(_: &str, _: &[u8]) -> Result<Vec<Feature>, Vec<crate::plan::format::PlanError>> {
-    Ok(Vec::new())
 }

@@ -230,3 +230,36 @@ fn arrows_at_the_edge_lead_to_craft_and_home() {
     let seen = screen(&state);
     assert!(seen.contains("→") && seen.contains("5000 m"), "{seen}");
 }
+
+#[test]
+fn the_generator_shows_its_result_on_the_map_beside_its_form() {
+    let seen = SIZES.map(|size| {
+        let mut state = state_with_fix(size);
+        keys(&mut state, "2 P right right right");
+        let seen = screen(&state);
+        assert!(
+            seen.contains("Generate a pattern") && seen.contains("▸ shape") && seen.contains("survey"),
+            "{seen}"
+        );
+        seen
+    });
+    insta::assert_snapshot!("generator_preview", seen.join("\n"));
+    let mut state = state_with_fix((120, 40));
+    keys(&mut state, "2 P down 5 0 0");
+    let wide = screen(&state);
+    keys(&mut state, "esc");
+    assert!(!screen(&state).contains("Generate a pattern"));
+    assert_ne!(wide, screen(&state));
+}
+
+#[test]
+fn the_zoomed_plan_table_has_the_legs() {
+    let seen = SIZES.map(|size| {
+        let mut state = state_with_fix(size);
+        keys(&mut state, "2 z down");
+        screen(&state)
+    });
+    assert!(seen[2].contains("leg m") && seen[2].contains("bearing"), "{}", seen[2]);
+    assert!(seen[1].contains("leg to WP1:"), "{}", seen[1]);
+    insta::assert_snapshot!("zoomed_plan_with_legs", seen.join("\n"));
+}
