@@ -1,4 +1,8 @@
 //! The program: from arguments to the tasks of one mode.
+//!
+//! Each command has a file of its own. Those with parts of their own are `check`, `compare` and `fly`. `firmware` starts
+//! and reaches a flight controller outside of this program. `plan_files` reads, writes and watches the files of the
+//! screen, `output_file` writes the files of the commands without a screen.
 
 mod backdrop_file;
 mod check;

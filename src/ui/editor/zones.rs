@@ -3,14 +3,15 @@
 
 use std::path::PathBuf;
 
+use nalgebra::Vector3;
+
+use crate::flight::forecast::PathPoint;
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
 use crate::plan::feature::Feature;
 use crate::plan::review::{Finding, zone_findings, zones_on_path};
 use crate::ui::backdrop::BackdropLayer;
 use crate::ui::editor::{PlanId, findings};
-use crate::ui::map_edit;
-use crate::ui::map_point::MapPoint;
 use crate::ui::map_point::origin::origin;
 use crate::ui::shared::Shared;
 
@@ -63,8 +64,11 @@ pub(in crate::ui) fn follow(state: &mut Shared) {
     let zones: Vec<Feature> = open.backdrop().iter().flat_map(BackdropLayer::zones).cloned().collect();
     let mut found = zone_findings(&basis.plan, home, &zones);
     if let (Some((_, path)), Some(frame)) = (flown, origin(state)) {
-        let place = |n: f64, e: f64| map_edit::position(&frame, MapPoint::new(n, e));
-        let positions: Vec<LatLon> = path.iter().map(|point| place(point.n, point.e)).collect();
+        let position = |point: &PathPoint| {
+            let (lat, lon, _) = frame.to_geodetic(Vector3::new(point.e, point.n, 0.0));
+            LatLon::from_degrees(lat, lon)
+        };
+        let positions: Vec<LatLon> = path.iter().map(position).collect();
         found.extend(zones_on_path(&positions, &zones).into_iter().map(|(zone, name, at)| {
             Finding::FlownAgainstZone { zone, name, along_m: path.get(at).map_or(0.0, |point| point.along_m) }
         }));

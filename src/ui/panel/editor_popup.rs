@@ -6,7 +6,6 @@ use ratatui::text::Line;
 
 use super::{line, row, span};
 use crate::ui::editor::{Browser, EditorPopup, Form, FormField, FormKind, OpenPlan, Purpose, Question};
-use crate::ui::layout;
 use crate::ui::popup::frame::{framed, popup};
 use crate::ui::shared::Shared;
 use crate::ui::text_wrap::wrapped;
@@ -22,10 +21,15 @@ const NARROW: u16 = 9;
 const NARROW_CHOICE: u16 = 21;
 const WIDTH: u16 = 72;
 
-/// Draws the open popup. Returns the position of the cursor.
-pub(crate) fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+/// Draws the open popup in the middle, or a form at its place beside the map. Returns the position of the cursor.
+pub(crate) fn draw(
+    state: &Shared,
+    area: Rect,
+    beside: Option<Rect>,
+    buffer: &mut Buffer,
+) -> Option<Position> {
     match state.editor.popup.as_ref()? {
-        EditorPopup::Form(open) => form(state, open, area, buffer),
+        EditorPopup::Form(open) => form(state, open, area, beside, buffer),
         EditorPopup::Browser(open) => browser(state, open, area, buffer),
         EditorPopup::Question(asked) => {
             question(state, asked, area, buffer);
@@ -34,7 +38,13 @@ pub(crate) fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Po
     }
 }
 
-fn form(state: &Shared, form: &Form, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+fn form(
+    state: &Shared,
+    form: &Form,
+    area: Rect,
+    beside: Option<Rect>,
+    buffer: &mut Buffer,
+) -> Option<Position> {
     let theme = &state.theme;
     let title = match form.kind {
         FormKind::Bulk => "Change waypoints",
@@ -46,9 +56,8 @@ fn form(state: &Shared, form: &Form, area: Rect, buffer: &mut Buffer) -> Option<
         Ok(text) => (Role::Dim, text.clone()),
         Err(problem) => (Role::Fault, format!("✗ {problem}")),
     };
-    let beside = layout::divided(state, (area.width, area.height)).and_then(|screen| screen.form);
     let (label, width) = match beside {
-        Some(place) => (NARROW_LABEL, layout::inner(place).width),
+        Some(place) => (NARROW_LABEL, place.width.saturating_sub(2)),
         None => (LABEL, WIDTH),
     };
     let foot = wrapped(&text, usize::from(width));

@@ -126,7 +126,7 @@ mod tests {
                 let area = Rect::new(0, 0, 120, 40);
                 let view = Viewport { area, centre: MapPoint::new(3.0, -2.0), scale };
                 let grid = Grid::of(&frame, &view);
-                assert!(grid.parallels.len() <= 20 && grid.meridians.len() <= 20, "{lat} {scale}");
+                assert!(grid.parallels.len() <= 20 && grid.meridians.len() <= 40, "{lat} {scale}");
                 for line in &grid.parallels {
                     let (_, row) = view.cell(line.place);
                     assert!((-1.0..=41.0).contains(&row), "{lat} {scale} {row}");
