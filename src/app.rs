@@ -4,6 +4,7 @@
 //! plan. `firmware` starts or finds a remote firmware, `output_file` replaces files as a whole, and `plan_files` reads,
 //! writes and watches plan files. `terrain` reads the elevation tiles that a plan needs.
 
+mod backdrop_file;
 mod check;
 mod compare;
 mod config;
@@ -136,8 +137,8 @@ fn dispatch(cli: Cli, keymap: Keymap) -> Result<u8, AppError> {
         Some(Command::Sitl(args)) => sitl::run(&args),
         Some(Command::Serve(args)) => serve::run(&args),
         Some(Command::Plan(PlanCommand::List)) => plan::list(),
-        Some(Command::Plan(PlanCommand::Show { plan, review, terrain })) => {
-            plan::show(&plan, review, &terrain)
+        Some(Command::Plan(PlanCommand::Show { plan, review, backdrop, terrain })) => {
+            plan::show(&plan, review, &backdrop, &terrain)
         }
         Some(Command::Convert(args)) => convert::run(&args),
         Some(Command::Config(command)) => config::run(command),

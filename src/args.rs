@@ -3,6 +3,7 @@
 //! A value comes from the first of these sources: the command line, the environment (`BETADECK_…`), the configuration
 //! file, the default. This module only turns texts into values: it reads no file, no environment and no clock.
 
+mod backdrop;
 mod betaloop;
 mod check;
 mod compare;
@@ -32,6 +33,7 @@ use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 
 use crate::text::did_you_mean;
 
+pub use backdrop::BackdropArgs;
 pub use betaloop::{Betaloop, BetaloopError};
 pub use check::{CheckArgs, MOST_FLIGHTS};
 pub use compare::CompareArgs;
@@ -95,6 +97,10 @@ pub struct TuiArgs {
     /// The screen.
     #[command(flatten)]
     pub display: DisplayArgs,
+
+    /// The backdrop.
+    #[command(flatten)]
+    pub backdrop: BackdropArgs,
 
     /// The doors.
     #[command(flatten)]
@@ -231,6 +237,9 @@ pub enum PlanCommand {
         /// The elevation tiles.
         #[command(flatten)]
         terrain: TerrainArgs,
+        /// The zones.
+        #[command(flatten)]
+        backdrop: BackdropArgs,
     },
 }
 

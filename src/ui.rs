@@ -18,8 +18,9 @@
 //!   [`command`] takes an argument and returns requests, which `update` carries out.
 //! * `panel` has one file per panel, `popup` the windows over them, `keymap` the keys of the configuration file.
 //!   `transmitter` is the user's virtual RC transmitter, `stick_recording` records its sticks, `forecast` holds the
-//!   results of flights flown ahead of time, `graphs` the history of the graphs' signals, `ground` the elevation tiles, `map_point` the places on the
-//!   map, `viewport` its window, `map_edit` the edits on it, and `timeline` the timeline of the recording.
+//!   results of flights flown ahead of time, `graphs` the history of the graphs' signals, `ground` the elevation tiles,
+//!   `map_point` the places on the map, `viewport` its window, `map_edit` the edits on it, `backdrop` the files under it,
+//!   and `timeline` the timeline of the recording.
 //! * [`run`] is the shell around it: it waits for the terminal, the session and the clock, and carries out the effects.
 //!
 //! `editor` holds the open plans. `update` handles messages, one file per subject. `prompt` asks the questions of the
@@ -35,6 +36,7 @@ pub mod action;
 mod app_state;
 mod arming_hint;
 mod ascii;
+pub mod backdrop;
 pub mod command;
 mod completion;
 mod config;

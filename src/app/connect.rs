@@ -4,6 +4,7 @@
 use std::time::Instant;
 
 use super::AppError;
+use super::backdrop_file;
 use super::live::LiveArgs;
 use super::setup;
 use super::tui::{self, Screen};
@@ -27,6 +28,7 @@ pub(super) fn run(args: &TuiArgs, place: &FcPlace, keymap: Keymap) -> Result<u8,
     let screen = Screen {
         plan,
         path: args.plan.as_ref().and_then(PlanArg::path),
+        backdrop: backdrop_file::read_all(&args.backdrop.backdrop)?,
         vehicle: Vehicle::elsewhere().map_err(AppError::internal)?,
         // The craft keeps its configuration itself.
         store: Store::in_memory(),

@@ -18,6 +18,8 @@ const STDIN: &str = "standard input";
 const MAX_FILE: u64 = 4 << 20;
 /// The largest elevation tile, bytes.
 const MAX_TILE: u64 = 64 << 20;
+/// The largest map, bytes.
+const MAX_MAP: u64 = 64 << 20;
 /// The largest file for a syntax tree, bytes. The tree takes a hundred times as much memory.
 const MAX_TREE: u64 = 512 << 10;
 
@@ -31,6 +33,12 @@ pub(super) fn read_plan(path: &Path) -> Result<Vec<u8>, AppError> {
 pub(super) fn read_tile(path: &Path) -> Result<Vec<u8>, AppError> {
     let name = path.display().to_string();
     read_bytes(open(path, &name, MAX_TILE)?, &name, MAX_TILE)
+}
+
+/// Reads a map for a backdrop.
+pub(super) fn read_map(path: &Path) -> Result<Vec<u8>, AppError> {
+    let name = path.display().to_string();
+    read_bytes(open(path, &name, MAX_MAP)?, &name, MAX_MAP)
 }
 
 /// Reads a text file of reasonable size.

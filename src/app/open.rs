@@ -83,6 +83,7 @@ pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
     let screen = Screen {
         plan: case.setup.plan.clone(),
         path: None,
+        backdrop: Vec::new(),
         vehicle: flight.into_vehicle(),
         store: Store::in_memory(),
         directory: None,

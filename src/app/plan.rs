@@ -1,15 +1,15 @@
 //! `betadeck plan`: the built-in plans by name, and a plan as a table with distances, times and findings.
 
 use super::error::{self, AppError};
-use super::setup;
 use super::terrain::TerrainFiles;
-use crate::args::{PlanArg, ReviewArgs, TerrainArgs};
+use super::{backdrop_file, setup};
+use crate::args::{BackdropArgs, PlanArg, ReviewArgs, TerrainArgs};
 use crate::flight::FlightSetup;
 use crate::geo::LatLon;
 use crate::plan::builtin::PLANS;
 use crate::plan::estimate::Assumptions;
 use crate::plan::format;
-use crate::plan::review::{Clearances, Finding, clearances, review};
+use crate::plan::review::{Clearances, Finding, clearances, review, zone_findings};
 use crate::sim::density_ratio;
 use crate::terrain::Relief;
 
@@ -30,8 +30,18 @@ pub(super) fn list() -> Result<u8, AppError> {
 }
 
 /// Prints the plan; a plan that the craft would refuse is invalid input.
-pub(super) fn show(plan: &PlanArg, limits: ReviewArgs, terrain: &TerrainArgs) -> Result<u8, AppError> {
+pub(super) fn show(
+    plan: &PlanArg,
+    limits: ReviewArgs,
+    maps: &BackdropArgs,
+    terrain: &TerrainArgs,
+) -> Result<u8, AppError> {
     let file = setup::read_plan(plan)?;
+    let mut zones = Vec::new();
+    for path in &maps.backdrop {
+        zones
+            .extend(backdrop_file::read_features(path)?.into_iter().filter(|feature| feature.zone.is_some()));
+    }
     let setup = FlightSetup { plan: file.clone(), ..FlightSetup::default() };
     let (home, notice) = setup.boot_home();
     let density = density_ratio(home.alt_amsl_m);
@@ -42,6 +52,9 @@ pub(super) fn show(plan: &PlanArg, limits: ReviewArgs, terrain: &TerrainArgs) ->
     };
     let home = LatLon::from_degrees(home.lat_deg, home.lon_deg);
     let mut text = format::table(&file, home, &assumptions);
+    for finding in zone_findings(&file.plan, home, &zones) {
+        text.push_str(&format!("{finding}\n"));
+    }
     if let Some(notice) = notice {
         text.push_str(&format!("{notice}\n"));
     }

@@ -4,6 +4,8 @@
 //! at most the edit of the last key. A journal belongs to the program that has locked it.
 #![allow(clippy::disallowed_methods, reason = "the shell of the editor lives on wall-clock time")]
 
+mod backdrop_requests;
+mod backdrops;
 mod journal_file;
 mod on_disk;
 mod set_aside;
@@ -23,7 +25,7 @@ use crate::plan::edit::{History, Journal, JournalLine, PlanDocument};
 use crate::plan::format::loss::LossReport;
 use crate::terrain::Tiles;
 use crate::ui::editor::{Conversion, ConversionLosses, FileReply, FileRequest, Opened, PlanId};
-
+use backdrops::Backdrops;
 use journal_file::{Found, JournalFile};
 use on_disk::Content;
 
@@ -49,6 +51,7 @@ pub(super) struct PlanFiles {
     lines: LineHistory,
     ground: TerrainFiles,
     tiles: Arc<Tiles>,
+    backdrops: Backdrops,
 }
 
 #[derive(Debug)]
@@ -65,6 +68,8 @@ struct OpenFile {
     is_behind: bool,
     /// The differences that the user accepted at the last save.
     accepted: Vec<String>,
+    /// The files under the plan on the map, and the number of their vertices.
+    backdrop: Vec<(PathBuf, usize)>,
 }
 
 /// The consent of the user to a save.
@@ -74,6 +79,17 @@ struct Consent {
     replace: bool,
     /// Writes a file that differs from the plan.
     losses: bool,
+}
+
+impl OpenFile {
+    fn new(
+        (path, seen): (Option<PathBuf>, Content),
+        (kept, journal): (Journal, Option<JournalFile>),
+        is_behind: bool,
+    ) -> Self {
+        let (accepted, backdrop) = (Vec::new(), Vec::new());
+        Self { path, seen, reported: false, kept, journal, is_behind, accepted, backdrop }
+    }
 }
 
 impl PlanFiles {
@@ -91,6 +107,7 @@ impl PlanFiles {
             lines: LineHistory::new(state),
             ground: TerrainFiles::default(),
             tiles: Arc::default(),
+            backdrops: Backdrops::new(state),
         }
     }
 
@@ -199,11 +216,23 @@ impl PlanFiles {
         match request {
             FileRequest::Open { path, accepted } => {
                 let opened = self.open(&path, accepted);
+                let backdrop = match &opened {
+                    FileReply::Opened(opened) => self.remembered_backdrop(opened.id),
+                    _ => Vec::new(),
+                };
                 let lost = self.take_losses().into_iter().map(FileReply::EditsLost);
-                std::iter::once(opened).chain(lost).collect()
+                std::iter::once(opened).chain(backdrop).chain(lost).collect()
             }
             FileRequest::Save { id, path, document, revision, replace, accepted } => {
                 self.save(id, path, (*document, revision), Consent { replace, losses: accepted })
+            }
+            FileRequest::Backdrop(id, path) => vec![self.read_backdrop(id, &path, true)],
+            FileRequest::NoBackdrop(id) => {
+                if let Some(file) = self.open.get_mut(&id) {
+                    file.backdrop.clear();
+                }
+                self.keep_backdrop(id);
+                Vec::new()
             }
             FileRequest::List(directory) => vec![self.list(directory)],
             FileRequest::Journal(id, line) => self.append(id, &line).into_iter().collect(),
@@ -223,9 +252,7 @@ impl PlanFiles {
             FileRequest::Begin(id, document) => {
                 let kept = Journal { file: None, history: History::new(*document, false) };
                 let (path, seen, journal) = (None, Content::Missing, None);
-                let accepted = Vec::new();
-                let file =
-                    OpenFile { path, seen, reported: false, kept, journal, is_behind: false, accepted };
+                let file = OpenFile::new((path, seen), (kept, journal), false);
                 self.open.insert(id, file);
                 Vec::new()
             }
@@ -362,8 +389,7 @@ impl PlanFiles {
         // The journal is rewritten without the part that was cut short.
         let mut journal = journal;
         let is_behind = journal.as_mut().is_some_and(|journal| journal.rewrite(&kept).is_err());
-        let accepted = Vec::new();
-        let file = OpenFile { path: path.clone(), seen, reported: false, kept, journal, is_behind, accepted };
+        let file = OpenFile::new((path.clone(), seen), (kept, journal), is_behind);
         self.open.insert(id, file);
         Opened { id, file: path, history, notes, recovered: false }
     }
@@ -404,6 +430,9 @@ impl PlanFiles {
         file.path = Some(path.clone());
         if let Some(parent) = path.parent() {
             self.directory = parent.to_owned();
+        }
+        if !is_own {
+            self.keep_backdrop(id);
         }
         let kept = self.append(id, &JournalLine::Saved(path.display().to_string()));
         [FileReply::Saved { id, path, revision, lost }].into_iter().chain(kept).collect()

@@ -5,7 +5,6 @@ use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::connect;
 use super::error::{self, AppError};
 use super::firmware::{self, Beside};
 use super::input_lines;
@@ -17,6 +16,7 @@ use super::scenario_file;
 use super::setup;
 use super::stop_signal;
 use super::terrain::{TerrainFiles, with_terrain};
+use super::{backdrop_file, connect};
 use crate::args::{CharsetChoice, DisplayArgs, PlanArg, ReviewArgs, ThemeChoice, TuiArgs, UnitsChoice};
 use crate::firmware::cli;
 use crate::flight::setup::check_setting;
@@ -26,6 +26,7 @@ use crate::report::sentence;
 use crate::session::{FlownBefore, SessionView};
 use crate::storage::Store;
 use crate::terrain::Tiles;
+use crate::ui::backdrop::BackdropLayer;
 use crate::ui::editor::FileReply;
 use crate::ui::keymap::Keymap;
 use crate::ui::theme::{Charset, Palette};
@@ -40,6 +41,8 @@ pub(super) struct Screen<'a> {
     /// The first open plan.
     pub(super) plan: PlanFile,
     pub(super) path: Option<&'a Path>,
+    /// The files under the first plan; none = the remembered ones.
+    pub(super) backdrop: Vec<BackdropLayer>,
     pub(super) vehicle: Vehicle,
     /// The store for `save`.
     pub(super) store: Store,
@@ -68,6 +71,7 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
     if let Some(place) = &args.connect.connect {
         return connect::run(args, place, keymap);
     }
+    let backdrop = backdrop_file::read_all(&args.backdrop.backdrop)?;
     let plan = match &args.plan {
         Some(plan) => setup::read_plan(plan)?,
         None => setup::read_plan(&PlanArg::Builtin(
@@ -93,6 +97,7 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
     let screen = Screen {
         plan,
         path: args.plan.as_ref().and_then(PlanArg::path),
+        backdrop,
         vehicle,
         store,
         directory: setup::store_directory(&args.flight)?,
@@ -138,7 +143,11 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
     if opened.recovered {
         notices.push("Unsaved edits of this plan were restored: `u` undoes them.".to_owned());
     }
+    let mut backdrop = files.begin_with_backdrop(opened.id, screen.backdrop);
     let recovered = files.recovered();
+    for opened in &recovered {
+        backdrop.extend(files.begin_with_backdrop(opened.id, Vec::new()));
+    }
     let history = LineHistory::new(screen.directory.as_deref());
     notices.extend(history.problems());
     let entered = history.read();
@@ -173,6 +182,9 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
     }
     for opened in recovered {
         answers.send(FileReply::Opened(Box::new(opened))).ok();
+    }
+    for reply in backdrop {
+        answers.send(reply).ok();
     }
     let files_thread = std::thread::Builder::new()
         .name("plan-files".to_owned())

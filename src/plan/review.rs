@@ -3,12 +3,14 @@
 mod altitude;
 mod clearance;
 mod steep;
+mod zones;
 
 use std::fmt;
 
 use crate::geo::{LatLon, distance_bearing};
 
 use super::estimate::{Assumptions, SettingSource, TouchdownThrottle, estimate};
+use super::feature::Zone;
 use super::validate::{PlanFault, check_plan};
 use super::{FlightPlan, Modifier, Then, Waypoint, WaypointType};
 pub(crate) use altitude::{LegAltitude, legs as leg_altitudes};
@@ -16,6 +18,7 @@ pub use clearance::{
     Before, CLEARANCE_M, Clearances, FlownPlace, LowClearance, Raise, Way, clearances, low_in_flight,
 };
 pub use steep::{Remedy, SteepLeg};
+pub use zones::{ZonePart, zone_findings, zones_on_path};
 
 /// A finding in a plan.
 #[derive(Debug, Clone, PartialEq)]
@@ -91,6 +94,22 @@ pub enum Finding {
     LowClearance(LowClearance),
     /// The throttle condition of a touchdown can never be met.
     NoTouchdownThrottle(TouchdownThrottle),
+    /// A waypoint or a leg is where a zone of the map forbids it.
+    AgainstZone {
+        index: usize,
+        part: ZonePart,
+        zone: Zone,
+        /// The name of the zone; may be empty.
+        name: String,
+    },
+    /// The flown estimate goes where a zone of the map forbids it.
+    FlownAgainstZone {
+        zone: Zone,
+        /// The name of the zone; may be empty.
+        name: String,
+        /// Distance along the plan at the border, m.
+        along_m: f64,
+    },
 }
 
 impl Finding {
@@ -128,6 +147,8 @@ impl Finding {
                 | Self::SteepLeg(_)
                 | Self::LowClearance(_)
                 | Self::NoTouchdownThrottle(_)
+                | Self::AgainstZone { .. }
+                | Self::FlownAgainstZone { .. }
         )
     }
 }
@@ -189,6 +210,8 @@ impl fmt::Display for Finding {
                  ({hover_us}) minus this is not above ap_throttle_min ({min_us}): a touchdown is detected late or not \
                  at all"
             ),
+            Self::AgainstZone { index, part, zone, name } => zones::write_part(f, *index, *part, *zone, name),
+            Self::FlownAgainstZone { zone, name, along_m } => zones::write_flown(f, *zone, name, *along_m),
         }
     }
 }

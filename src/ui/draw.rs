@@ -26,7 +26,9 @@ pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
     let shared = &state.shared;
     let area = frame.area();
     let buffer = frame.buffer_mut();
-    let cursor = match layout::divided(shared, (area.width, area.height)) {
+    let screen = layout::divided(shared, (area.width, area.height));
+    let beside = screen.as_ref().and_then(|screen| screen.form);
+    let cursor = match screen {
         Some(screen) => {
             status_bar::draw(shared, screen.status, buffer);
             let mut cursor = None;
@@ -49,7 +51,7 @@ pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
         }
     };
     let mut cursor = match shared.editor.popup {
-        Some(_) => panel::editor_popup::draw(shared, area, buffer),
+        Some(_) => panel::editor_popup::draw(shared, area, beside, buffer),
         None => cursor,
     }
     .filter(|_| state.popups.is_empty());

@@ -17,6 +17,7 @@ mod plans;
 mod popup;
 mod question;
 pub(super) mod settings_in_force;
+pub(super) mod zones;
 
 pub(super) use browser::BrowserKey;
 pub use browser::{Browser, Purpose};
@@ -28,6 +29,7 @@ use form_edits::GeneratorFoot;
 pub use open_plan::{OpenPlan, PlanId};
 pub use popup::{EditorPopup, LossList};
 pub use question::Question;
+use zones::ZoneReview;
 
 use super::message::Effect;
 use super::text_field::TextField;
@@ -64,6 +66,8 @@ pub struct Editor {
     pub(super) loses_edits: bool,
     /// The result that the open generator form would give.
     generator: Option<GeneratorFoot>,
+    /// The findings about the zones of the backdrop.
+    zones: ZoneReview,
 }
 
 /// A plan as it was uploaded to the craft.
@@ -105,6 +109,7 @@ impl Editor {
             quitting: false,
             loses_edits: false,
             generator: None,
+            zones: ZoneReview::default(),
         }
     }
 

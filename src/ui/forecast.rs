@@ -10,7 +10,7 @@ mod requests;
 
 use std::time::Duration;
 
-use crate::flight::forecast::{Forecast, WhatIf};
+use crate::flight::forecast::{Forecast, PathPoint, WhatIf};
 use crate::session::{ForecastJob, ForecastRequest};
 use crate::signals::SimTime;
 
@@ -98,6 +98,12 @@ impl ForecastState {
     /// Returns `true` while a newer estimate is on its way.
     pub fn is_estimating(&self) -> bool {
         self.estimate.waiting
+    }
+
+    /// Returns the revision and the path of the flown estimate of the open plan, unless a newer one is on its way.
+    pub(super) fn flown_path(&self) -> Option<(u64, &[PathPoint])> {
+        let forecast = self.estimate.forecast().filter(|_| !self.estimate.waiting)?;
+        Some((self.estimate.revision, &forecast.path))
     }
 
     /// Returns the reason for a missing estimate, as a sentence.

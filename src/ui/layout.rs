@@ -12,6 +12,8 @@
 //!
 //! World takes the place of RC when it is shown, Graphs the place of the log.
 //!
+//! While the form of the generator is open, the map fills the screen beside it and shows the result.
+//!
 //! Two status lines are at the top, one hint line at the bottom. The timeline is above the hints, on a tall screen or
 //! while an earlier instant is shown.
 
@@ -34,10 +36,16 @@ pub struct Screen {
     /// The line of the timeline, if it is shown.
     pub timeline: Option<Rect>,
     pub hints: Rect,
+    /// The place of the generator's form, beside the map.
+    pub form: Option<Rect>,
 }
 
 /// The number of rows from which the timeline is always shown.
 const TIMELINE_ROWS: u16 = 34;
+
+/// The width of the generator's form, and the least width of the map beside it.
+const FORM_COLUMNS: u16 = 42;
+const MAP_COLUMNS: u16 = 24;
 
 impl Screen {
     /// Returns the area of a panel, if it is visible.
@@ -74,7 +82,13 @@ pub fn divided(state: &Shared, (width, height): (u16, u16)) -> Option<Screen> {
     let has_timeline = state.view.timeline.is_some() && (state.is_rewound() || height >= TIMELINE_ROWS);
     let timeline = has_timeline.then(|| Rect::new(0, height - 2, width, 1));
     let body = Rect::new(0, 2, width, height - 3 - u16::from(has_timeline));
-    let panels = if state.zoomed || width < 80 || height < 24 {
+    let form = state.editor.is_generating().then(|| {
+        let form = FORM_COLUMNS.min(width - MAP_COLUMNS);
+        columns(body, [width - form, form])
+    });
+    let panels = if let Some([map, _]) = form {
+        vec![(Panel::Map, map)]
+    } else if state.zoomed || width < 80 || height < 24 {
         vec![(state.focus, body)]
     } else if width >= 180 && height >= 48 {
         large(body, state.slots)
@@ -84,7 +98,8 @@ pub fn divided(state: &Shared, (width, height): (u16, u16)) -> Option<Screen> {
         small(body, state.slots)
     };
     let hints = Rect::new(0, height - 1, width, 1);
-    Some(Screen { status: Rect::new(0, 0, width, 2), panels, timeline, hints })
+    let form = form.map(|[_, form]| form);
+    Some(Screen { status: Rect::new(0, 0, width, 2), panels, timeline, hints, form })
 }
 
 fn small(body: Rect, slots: Slots) -> Vec<(Panel, Rect)> {

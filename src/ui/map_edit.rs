@@ -1,6 +1,7 @@
 //! Edits on the map: waypoints, home and the fence, by a cursor or by the mouse.
 
 pub(super) mod actions;
+pub(super) mod measure;
 
 use super::editor::settings_in_force;
 use super::formatting::compass;

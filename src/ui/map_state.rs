@@ -30,6 +30,21 @@ pub struct MapState {
     pub(super) edit: Option<MapCursor>,
     /// The item being moved.
     pub(super) moving: Option<Moving>,
+    /// The measure tool, while it is used.
+    pub(super) measure: Option<Measure>,
+    /// `true` to show the grid of coordinates.
+    pub(super) grid: bool,
+}
+
+/// A line whose length and bearing are measured.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Measure {
+    /// The place of the cursor, m.
+    pub cursor: MapPoint,
+    /// The first point, m.
+    pub from: Option<MapPoint>,
+    /// The second point, m; `None` while the cursor is its place.
+    pub to: Option<MapPoint>,
 }
 
 /// An item of the plan that has a place.

@@ -103,6 +103,18 @@ pub enum Change {
     DragTo(MapPoint),
     /// Put down the item picked up.
     PutDown,
+    /// Begin to measure on the map, or end it.
+    Measure,
+    /// Set a point of the measured line.
+    MeasurePoint(MapPoint),
+    /// Move the second point of the measured line.
+    MeasureTo(MapPoint),
+    /// Show or hide the grid of coordinates.
+    MapGrid,
+    /// Choose a file for the backdrop of the open plan.
+    ChooseBackdrop,
+    /// Remove the backdrop of the open plan.
+    NoBackdrop,
     /// Add a waypoint at a place of the map.
     AddWaypoint(MapPoint),
     /// Move the cursor of the plan by rows.

@@ -29,6 +29,10 @@ pub enum Role {
     Predicted,
     Craft,
     Fence,
+    /// The lines of the backdrop and of the grid.
+    Backdrop,
+    /// A no-fly zone, or the zone that the flight must not leave.
+    Zone,
     /// A key that can be pressed.
     Key,
     Selected,
@@ -134,12 +138,13 @@ impl Theme {
             Palette::Mono => Color::Reset,
             Palette::Ansi16 => match role {
                 Role::Text | Role::Selected => Color::Reset,
-                Role::Dim => Color::DarkGray,
+                Role::Dim | Role::Backdrop => Color::DarkGray,
                 Role::Title => Color::Gray,
                 Role::Focus | Role::Key => Color::LightCyan,
                 Role::Ok | Role::Track => Color::LightGreen,
                 Role::Warn | Role::Fence => Color::LightYellow,
                 Role::Fault => Color::LightRed,
+                Role::Zone => Color::Red,
                 Role::Active => Color::LightYellow,
                 Role::Target => Color::LightMagenta,
                 Role::Craft => Color::White,
@@ -148,6 +153,8 @@ impl Theme {
             Palette::Light => match role {
                 Role::Text | Role::Selected => Color::Rgb(32, 35, 40),
                 Role::Dim => Color::Rgb(104, 108, 116),
+                Role::Backdrop => Color::Rgb(166, 168, 172),
+                Role::Zone => Color::Rgb(196, 110, 84),
                 Role::Title => Color::Rgb(62, 68, 78),
                 Role::Focus | Role::Key => Color::Rgb(0, 92, 160),
                 Role::Ok => Color::Rgb(0, 110, 80),
@@ -163,6 +170,8 @@ impl Theme {
             Palette::HighContrast => match role {
                 Role::Text | Role::Selected | Role::Craft | Role::Title => Color::Rgb(255, 255, 255),
                 Role::Dim => Color::Rgb(190, 190, 190),
+                Role::Backdrop => Color::Rgb(128, 128, 128),
+                Role::Zone => Color::Rgb(255, 110, 90),
                 Role::Focus | Role::Key => Color::Rgb(120, 210, 255),
                 Role::Ok | Role::Track => Color::Rgb(0, 240, 170),
                 Role::Warn | Role::Fence => Color::Rgb(255, 190, 40),
@@ -174,6 +183,8 @@ impl Theme {
             Palette::Dark => match role {
                 Role::Text | Role::Selected => Color::Reset,
                 Role::Dim => Color::Rgb(120, 124, 133),
+                Role::Backdrop => Color::Rgb(82, 86, 95),
+                Role::Zone => Color::Rgb(158, 74, 54),
                 Role::Title => Color::Rgb(190, 196, 206),
                 Role::Focus | Role::Key => Color::Rgb(86, 180, 233),
                 Role::Ok => Color::Rgb(0, 186, 136),
@@ -197,7 +208,7 @@ impl Theme {
             Role::Fault | Role::Focus | Role::Key | Role::Craft | Role::Target => {
                 style.add_modifier(Modifier::BOLD)
             }
-            Role::Dim if self.palette == Palette::Mono => style.add_modifier(Modifier::DIM),
+            Role::Dim | Role::Backdrop if self.palette == Palette::Mono => style.add_modifier(Modifier::DIM),
             Role::Text
             | Role::Dim
             | Role::Title
@@ -205,6 +216,8 @@ impl Theme {
             | Role::Warn
             | Role::Track
             | Role::Predicted
+            | Role::Backdrop
+            | Role::Zone
             | Role::Fence => style,
         }
     }

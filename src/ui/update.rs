@@ -9,7 +9,7 @@ use crate::vehicle::VehicleCommand;
 use super::action::{self, Action, Context, EditAction};
 use super::app_state::AppState;
 use super::command;
-use super::editor::{FormKind, actions as plan, findings};
+use super::editor::{FormKind, actions as plan, findings, zones};
 use super::event_log::Severity;
 use super::forecast;
 use super::formatting::within;
@@ -58,6 +58,7 @@ pub fn update(state: &mut AppState, msg: Msg) -> Vec<Effect> {
         effects.extend(forecast::follow_plan(&mut state.shared));
         effects.extend(ground::follow_plan(&mut state.shared));
         state.shared.editor.follow_generator(findings::home(&state.shared));
+        zones::follow(&mut state.shared);
     }
     if is_picture {
         effects.extend(forecast::repeat(&mut state.shared));

@@ -31,6 +31,8 @@ impl Viewport {
     /// Returns the window of the map in these cells.
     pub(super) fn of(state: &Shared, area: Rect) -> Self {
         match state.map.mode {
+            // The whole preview, whatever was shown before.
+            _ if state.editor.is_generating() => Self::fit(state, area),
             MapMode::Fit => Self::fit(state, area),
             MapMode::Follow(scale) => {
                 let centre = craft(&state.view).unwrap_or_default();
@@ -52,7 +54,9 @@ impl Viewport {
             let plans = [state.shown_plan(), state.plan()];
             let waypoints =
                 plans.into_iter().flat_map(|plan| &plan.waypoints).filter(|wp| wp.kind.uses_position());
-            waypoints.map(|wp| wp.position).chain(home).map(|position| to_map(frame, position))
+            let preview = state.editor.preview().map_or(&[][..], |(plans, _)| plans).iter().flatten();
+            let waypoints = waypoints.chain(preview).map(|wp| wp.position);
+            waypoints.chain(home).map(|position| to_map(frame, position))
         });
         let mut low = MapPoint::default();
         let mut high = MapPoint::default();
@@ -93,6 +97,16 @@ impl Viewport {
             && column < f64::from(self.area.width)
             && row < f64::from(self.area.height);
         inside.then(|| (self.area.x + column as u16, self.area.y + row as u16))
+    }
+
+    /// Returns column and row of a place, in dots of lines from the middle of the top left dot. A cell has two columns and
+    /// four rows of dots.
+    pub(super) fn dot(&self, place: MapPoint) -> (f64, f64) {
+        let [west, east] = self.east_bounds();
+        let [south, north] = self.north_bounds();
+        let (columns, rows) =
+            (f64::from(self.area.width) * 2.0 - 1.0, f64::from(self.area.height) * 4.0 - 1.0);
+        ((place.e - west) / (east - west) * columns, (north - place.n) / (north - south) * rows)
     }
 
     /// Returns the place under the middle of a screen cell.

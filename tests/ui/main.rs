@@ -13,6 +13,7 @@ mod in_flight;
 mod keys;
 mod live_settings;
 mod map_edit;
+mod map_tools;
 mod mistyped;
 mod orientation;
 mod panels;

@@ -29,6 +29,8 @@ pub struct LegTime {
     pub wp: u8,
     /// From the start of its leg to the start of the next, s.
     pub time_s: f64,
+    /// Charge drawn when the craft is done with it since the battery was full, %.
+    pub battery_used_pct: f64,
 }
 
 /// The state of a leg in flight.
@@ -84,16 +86,17 @@ impl Observer {
             self.path.push(point);
         }
         if nav.engaged && nav.source == PlanSource::Stored {
-            self.note_leg(nav, passed_s);
+            self.note_leg(nav, passed_s, battery_used_pct(vehicle));
         }
     }
 
-    fn note_leg(&mut self, nav: &NavTelemetry, passed_s: f64) {
+    fn note_leg(&mut self, nav: &NavTelemetry, passed_s: f64, battery_used_pct: f64) {
         if let Some(leg) = self.legs.last_mut().filter(|leg| leg.wp == nav.wp) {
             leg.time_s += passed_s;
+            leg.battery_used_pct = battery_used_pct;
         } else if self.legs.len() < MAX_WAYPOINTS {
             // A craft that was sent back flies a waypoint again. The list stays as long as a plan can be.
-            self.legs.push(LegTime { wp: nav.wp, time_s: passed_s });
+            self.legs.push(LegTime { wp: nav.wp, time_s: passed_s, battery_used_pct });
         }
         // Only when the craft follows a line. On a direct flight to a point there is no cross-track error.
         if let Some(xte_m) = nav.xte_m.filter(|_| nav.l1_mode == Some(L1Mode::Track)).map(f64::abs) {
@@ -136,14 +139,12 @@ impl Observer {
         if let Some(point) = place(vehicle, along_m) {
             self.path.push(point);
         }
-        let battery = vehicle.truth().map(|truth| truth.battery).unwrap_or_default();
-        let used_pct = 100.0 * battery.drawn_mah / battery.capacity_mah;
         Forecast {
             kind: ended.kind,
             end: ended.end,
             reason: ended.reason.trim_end_matches('.').to_owned(),
             time_s: ended.time_s,
-            battery_used_pct: if used_pct.is_finite() { used_pct.clamp(0.0, 100.0) } else { 0.0 },
+            battery_used_pct: battery_used_pct(vehicle),
             worst_xte: self.worst_xte,
             fence_margin_m: self.fence_margin_m,
             legs: self.legs.clone(),
@@ -151,6 +152,13 @@ impl Observer {
             path: self.path.points(),
         }
     }
+}
+
+/// Returns the charge drawn since the battery was full, %.
+fn battery_used_pct(vehicle: &Vehicle) -> f64 {
+    let battery = vehicle.truth().map(|truth| truth.battery).unwrap_or_default();
+    let used_pct = 100.0 * battery.drawn_mah / battery.capacity_mah;
+    if used_pct.is_finite() { used_pct.clamp(0.0, 100.0) } else { 0.0 }
 }
 
 /// Returns the true place of the craft.

@@ -59,6 +59,7 @@ fn an_estimate_agrees_with_the_flight_of_the_same_plan() {
     let used_pct = flown.truth.battery_used_pct.unwrap();
     assert!((forecast.battery_used_pct - used_pct).abs() < 0.1, "{} {used_pct}", forecast.battery_used_pct);
     assert_eq!(forecast.legs.iter().map(|leg| leg.wp).collect::<Vec<_>>(), [0, 1, 2, 3]);
+    assert!(forecast.legs.iter().is_sorted_by(|a, b| a.battery_used_pct < b.battery_used_pct));
     assert!((forecast.legs.iter().map(|leg| leg.time_s).sum::<f64>() - forecast.time_s).abs() < 2.0);
     // At 5 m/s the craft flies straight over waypoint 0 and overshoots the corner.
     let worst = forecast.worst_xte.unwrap();

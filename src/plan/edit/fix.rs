@@ -39,11 +39,13 @@ pub fn waypoint_of(finding: &Finding) -> Option<usize> {
         | Finding::LowClearance(LowClearance { index, .. })
         | Finding::AboveLimit { index, .. }
         | Finding::FarAboveOthers { index, .. }
+        | Finding::AgainstZone { index, .. }
         | Finding::BelowGround { index, .. } => Some(*index),
         Finding::Fault(PlanFault::Empty | PlanFault::Corrupt(_))
         | Finding::StaysInTheAir
         | Finding::OutlastsBattery { .. }
         | Finding::CraftDiffers { .. }
+        | Finding::FlownAgainstZone { .. }
         | Finding::NoTouchdownThrottle(_) => None,
     }
 }
@@ -133,8 +135,10 @@ pub fn fix(document: &PlanDocument, finding: &Finding, home: LatLon) -> Option<F
             fixed.settings.push("ap_landing_throttle_threshold = 100".to_owned());
             "set the threshold to 100".to_owned()
         }
-        // An upload resolves it, not an edit.
+        // An upload resolves it, not an edit, and the way around a zone is the pilot's choice.
         Finding::CraftDiffers { .. }
+        | Finding::AgainstZone { .. }
+        | Finding::FlownAgainstZone { .. }
         | Finding::Fault(PlanFault::Empty | PlanFault::Corrupt(_))
         | Finding::OutlastsBattery { .. } => return None,
     };

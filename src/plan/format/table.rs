@@ -9,7 +9,8 @@ use crate::text::printable;
 use super::PlanFile;
 
 /// Titles of the columns; the numbers are right-aligned.
-const TITLES: [&str; 10] = ["#", "type", "lat", "lon", "alt", "speed", "leg", "bearing", "stay", "done"];
+const TITLES: [&str; 11] =
+    ["#", "type", "lat", "lon", "alt", "speed", "leg", "bearing", "stay", "done", "battery"];
 
 /// Columns that hold text.
 const LEFT: [usize; 1] = [1];
@@ -30,8 +31,12 @@ pub fn table(file: &PlanFile, home: LatLon, assumptions: &Assumptions) -> String
     }
     text.push('\n');
     let rows = file.plan.waypoints.iter().zip(&estimate.legs).enumerate();
-    let rows: Vec<[String; 10]> = rows.map(|(index, (waypoint, leg))| row(index, waypoint, leg)).collect();
-    push_rows(&rows, &mut text);
+    let endurance_s = assumptions.endurance_s;
+    let rows: Vec<[String; 11]> =
+        rows.map(|(index, (waypoint, leg))| row(index, waypoint, leg, endurance_s)).collect();
+    // Without an airframe the battery is unknown.
+    let count = if endurance_s.is_some() { TITLES.len() } else { TITLES.len() - 1 };
+    push_rows(&rows, count, &mut text);
     text.push_str(&format!("\n{}\n", total(&estimate)));
     for finding in review(&file.plan, home, assumptions) {
         text.push_str(&format!("{finding}\n"));
@@ -42,7 +47,7 @@ pub fn table(file: &PlanFile, home: LatLon, assumptions: &Assumptions) -> String
     text
 }
 
-fn row(index: usize, waypoint: &Waypoint, leg: &LegEstimate) -> [String; 10] {
+fn row(index: usize, waypoint: &Waypoint, leg: &LegEstimate, endurance_s: Option<f64>) -> [String; 11] {
     let uses = waypoint.kind.capability();
     let kind = match waypoint.pattern {
         pattern if uses.pattern && pattern != HoldPattern::None => format!("{} {pattern}", waypoint.kind),
@@ -66,6 +71,11 @@ fn row(index: usize, waypoint: &Waypoint, leg: &LegEstimate) -> [String; 10] {
         Some(seconds) => clock(seconds),
         None => "never".to_owned(),
     };
+    // As if the craft hovered all the time.
+    let used = leg.done_s.zip(endurance_s).filter(|_| waypoint.kind.is_positional());
+    let used = used.map_or_else(String::new, |(done_s, endurance_s)| {
+        format!("{:.0} %", (100.0 * done_s / endurance_s).min(100.0))
+    });
     [
         index.to_string(),
         kind,
@@ -77,17 +87,19 @@ fn row(index: usize, waypoint: &Waypoint, leg: &LegEstimate) -> [String; 10] {
         leg.bearing_deg.map_or_else(String::new, |bearing| format!("{:.0}°", bearing.round() % 360.0)),
         stay,
         done,
+        used,
     ]
 }
 
-fn push_rows(rows: &[[String; 10]], text: &mut String) {
+/// Appends the first `count` columns.
+fn push_rows(rows: &[[String; 11]], count: usize, text: &mut String) {
     let titles = TITLES.map(str::to_owned);
     let all = || std::iter::once(&titles).chain(rows);
-    let widths: [usize; 10] =
+    let widths: [usize; 11] =
         std::array::from_fn(|column| all().map(|row| row[column].chars().count()).max().unwrap_or(0));
     for row in all() {
         let mut line = String::new();
-        for (column, (cell, width)) in row.iter().zip(widths).enumerate() {
+        for (column, (cell, width)) in row.iter().zip(widths).take(count).enumerate() {
             let cell =
                 if LEFT.contains(&column) { format!("{cell:<width$}") } else { format!("{cell:>width$}") };
             line.push_str(&cell);

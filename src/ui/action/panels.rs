@@ -23,6 +23,9 @@ actions! {
         ZoomOut MAP "map.zoom-out" "zoom out" "Zoom out" ["-"];
         Follow MAP "map.follow" "follow" "Keep the craft in the middle" ["f"];
         Fit MAP "map.fit" "fit" "Show the whole plan" ["0"];
+        Measure MAP "map.measure" "measure" "Measure between two points (Enter or a click sets them), or end it" ["m"];
+        Grid MAP "map.grid" "grid" "Show or hide the grid of coordinates" ["#"];
+        Backdrop MAP "map.backdrop" "backdrop" "Show a file with fields, roads or zones under the plan" ["B"];
     }
     OTHERS {
         ChannelUp RC "rc.up" "channel above" "Select the channel above" ["up", "k"];

@@ -1,9 +1,12 @@
 //! Commands that write or open files. Without a name they do the same as their keys.
 
-use crate::ui::action::{Action, EditAction};
+use crate::ui::action::{Action, EditAction, PanelAction};
 use crate::ui::editor::FileRequest;
-use crate::ui::message::{Effect, Request};
+use crate::ui::message::{Change, Effect, Request};
 use crate::ui::shared::Shared;
+
+/// The argument that removes the backdrop.
+const OFF: &str = "off";
 
 pub(super) fn open(_: &mut Shared, _: &str, file: &str) -> Result<Vec<Request>, String> {
     if file.is_empty() {
@@ -27,6 +30,22 @@ pub(super) fn scenario(state: &mut Shared, _: &str, file: &str) -> Result<Vec<Re
         Some(std::path::absolute(file).map_err(|error| format!("{file}: {error}."))?)
     };
     Ok(vec![state.write_scenario(path).into()])
+}
+
+/// Runs `backdrop FILE` and `backdrop off`.
+pub(super) fn backdrop(state: &mut Shared, _: &str, file: &str) -> Result<Vec<Request>, String> {
+    if file.is_empty() {
+        return Ok(vec![Request::Act(Action::Panel(PanelAction::Backdrop))]);
+    }
+    if file == OFF {
+        return Ok(vec![Change::NoBackdrop.into()]);
+    }
+    let path = std::path::absolute(file).map_err(|error| format!("{file}: {error}."))?;
+    Ok(vec![Effect::Files(FileRequest::Backdrop(state.editor.plan().id(), path)).into()])
+}
+
+pub(super) fn complete_backdrop(_: &Shared, _: &str, typed: &str) -> Vec<String> {
+    if OFF.starts_with(typed) { vec![OFF.to_owned()] } else { Vec::new() }
 }
 
 /// Returns nothing: file names are not completed here. `:open` alone lists the files.

@@ -204,6 +204,25 @@ pub(in crate::ui) fn open_browser(state: &mut Shared) -> Vec<Effect> {
     vec![Effect::Files(FileRequest::List(beside))]
 }
 
+/// Opens the browser for a file to put under the plan on the map.
+pub(in crate::ui) fn choose_backdrop(state: &mut Shared) -> Vec<Effect> {
+    let plan = state.editor.plan();
+    let (id, shown) = (plan.id(), plan.backdrop().last().map(|layer| layer.path.as_path()));
+    let beside = shown.or(plan.file()).and_then(std::path::Path::parent).map(std::path::Path::to_owned);
+    state.editor.popup = Some(EditorPopup::Browser(Browser::new(Purpose::Backdrop(id), "")));
+    vec![Effect::Files(FileRequest::List(beside))]
+}
+
+pub(in crate::ui) fn remove_backdrop(state: &mut Shared) -> Vec<Effect> {
+    match state.editor.remove_backdrop() {
+        Some(effect) => {
+            state.notify(Severity::Info, "Nothing is under the plan any more.");
+            vec![effect]
+        }
+        None => state.only_notify(Severity::Info, "Nothing is under the plan."),
+    }
+}
+
 /// Saves the plan in its file. Asks for a name if it has none.
 pub(in crate::ui) fn save(state: &mut Shared) -> Vec<Effect> {
     let plan = state.editor.plan();

@@ -6,6 +6,8 @@ use crossterm::event::{KeyCode, KeyEvent};
 
 use super::files::{Entry, Listing};
 use super::open_plan::PlanId;
+use crate::plan::format::Format;
+use crate::ui::backdrop::BackdropLayer;
 use crate::ui::text_field::TextField;
 
 /// The purpose of the chosen file.
@@ -15,6 +17,23 @@ pub enum Purpose {
     Open,
     /// To save a plan.
     Save(PlanId),
+    /// To put a file under a plan on the map.
+    Backdrop(PlanId),
+}
+
+impl Purpose {
+    /// Returns `true` if an existing file is chosen.
+    fn opens(self) -> bool {
+        !matches!(self, Self::Save(_))
+    }
+
+    /// Returns `true` if a file of this name can be chosen from the list.
+    pub(in crate::ui) fn takes(self, name: &str) -> bool {
+        match self {
+            Self::Open | Self::Save(_) => Format::is_plan_name(name),
+            Self::Backdrop(_) => BackdropLayer::is_map_name(name),
+        }
+    }
 }
 
 /// An open browser.
@@ -47,7 +66,7 @@ impl Browser {
     /// Returns the entries that match the typed text; all of them while saving.
     pub fn visible(&self) -> Vec<&Entry> {
         let typed = self.text.value().to_lowercase();
-        let filters = self.purpose == Purpose::Open && !typed.contains('/');
+        let filters = self.purpose.opens() && !typed.contains('/');
         let fits = |entry: &&Entry| !filters || entry.name.to_lowercase().contains(&typed);
         self.listing.entries.iter().filter(fits).collect()
     }
@@ -67,7 +86,7 @@ impl Browser {
                 let typed = self.text.value();
                 // While saving, the user has typed a name: it is completed, never replaced.
                 let completes = |entry: &&&Entry| {
-                    self.purpose == Purpose::Open || !typed.is_empty() && entry.name.starts_with(typed)
+                    self.purpose.opens() || !typed.is_empty() && entry.name.starts_with(typed)
                 };
                 if let Some(name) = self.visible().iter().find(completes).map(|entry| entry.name.clone()) {
                     self.text = TextField::new(name);
@@ -93,9 +112,7 @@ impl Browser {
         let typed = self.text.value().trim().to_owned();
         // A filter that leaves one entry selects it, unless the text is the exact name of that entry.
         let only = match visible[..] {
-            [only] if self.purpose == Purpose::Open && !typed.is_empty() => {
-                Some(0).filter(|_| only.name != typed)
-            }
+            [only] if self.purpose.opens() && !typed.is_empty() => Some(0).filter(|_| only.name != typed),
             _ => None,
         };
         if let Some(entry) = self.at.or(only).and_then(|at| visible.get(at).copied()) {
@@ -118,7 +135,7 @@ impl Browser {
     }
 
     fn list(&mut self, path: PathBuf) -> BrowserKey {
-        if self.purpose == Purpose::Open {
+        if self.purpose.opens() {
             self.text = TextField::default();
         }
         self.at = None;

@@ -8,6 +8,7 @@ use crate::geo::LatLon;
 use crate::plan::FlightPlan;
 use crate::plan::edit::{History, JournalLine, PlanDocument};
 use crate::terrain::Tiles;
+use crate::ui::backdrop::BackdropLayer;
 use crate::ui::history::LineField;
 
 #[derive(Debug, Clone, PartialEq)]
@@ -30,6 +31,10 @@ pub enum FileRequest {
         /// `true` if the user has accepted the differences between the plan and the file.
         accepted: bool,
     },
+    /// Read a file and put it under a plan on the map. It is remembered with the file of the plan.
+    Backdrop(PlanId, PathBuf),
+    /// Forget the files under a plan.
+    NoBackdrop(PlanId),
     /// List a directory for the file browser; `None` for the one in which a plan was opened last.
     List(Option<PathBuf>),
     /// Keep an edit, an undo or a redo in the journal, so that it survives the program. The first line of a journal is
@@ -78,6 +83,13 @@ pub enum FileReply {
     Ground {
         tiles: Option<Arc<Tiles>>,
         problems: Vec<String>,
+    },
+    /// A file for the backdrop of a plan was read.
+    Backdrop {
+        id: PlanId,
+        layer: BackdropLayer,
+        /// `true` if the user has just chosen it, `false` if it was remembered.
+        is_new: bool,
     },
     /// The request failed; the reason in one sentence.
     Failed(String),

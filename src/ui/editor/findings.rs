@@ -33,6 +33,7 @@ pub(crate) fn findings(state: &Shared) -> Vec<Finding> {
             let refusals = findings.iter().take_while(|finding| finding.is_refusal()).count();
             findings.splice(refusals..refusals, differs);
             findings.extend(low(state, home, &assumptions));
+            findings.extend(state.editor.zones.findings().iter().cloned());
             findings
         }
         _ => Vec::new(),

@@ -2,10 +2,10 @@
 
 use super::{Editor, EditorPopup, Form, FormField, FormKind, forms, which};
 use crate::geo::LatLon;
-use crate::plan::MAX_WAYPOINTS;
 use crate::plan::edit::PlanDocument;
 use crate::plan::edit::transform::middle;
 use crate::plan::format::SettingCheck;
+use crate::plan::{MAX_WAYPOINTS, Waypoint};
 use crate::ui::message::Effect;
 
 /// The result that the generator form would give, and its input.
@@ -16,6 +16,10 @@ pub(super) struct GeneratorFoot {
     /// The number of waypoints already in the plan.
     taken: usize,
     reported: Result<String, String>,
+    /// The plans that it would give.
+    plans: Vec<Vec<Waypoint>>,
+    /// The number of the waypoint with which they begin.
+    first: usize,
 }
 
 impl Editor {
@@ -32,8 +36,24 @@ impl Editor {
         if self.generator.as_ref().is_some_and(is_reported) {
             return;
         }
-        let reported = self.generated(form, home).map(|generated| generated.reported);
-        self.generator = Some(GeneratorFoot { fields: form.fields.clone(), middle, taken, reported });
+        let (plans, reported) = match self.generated(form, home) {
+            Ok(generated) => (generated.plans, Ok(generated.reported)),
+            Err(problem) => (Vec::new(), Err(problem)),
+        };
+        let first = if form.appends() { taken } else { 0 };
+        let fields = form.fields.clone();
+        self.generator = Some(GeneratorFoot { fields, middle, taken, reported, plans, first });
+    }
+
+    /// Returns `true` while the form of the generator is open.
+    pub(in crate::ui) fn is_generating(&self) -> bool {
+        self.popup.as_ref().is_some_and(EditorPopup::generates)
+    }
+
+    /// Returns the plans that the open generator form would give, and the number of the first waypoint.
+    pub(in crate::ui) fn preview(&self) -> Option<(&[Vec<Waypoint>], usize)> {
+        let foot = self.generator.as_ref().filter(|_| self.is_generating())?;
+        Some((&foot.plans, foot.first))
     }
 
     /// Applies the values of a form. Returns the effects and a sentence about the result.

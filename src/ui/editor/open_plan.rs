@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::plan::edit::{History, JournalLine, PlanDocument};
+use crate::ui::backdrop::BackdropLayer;
 
 /// Identifies an open plan in requests to the files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
@@ -17,13 +18,15 @@ pub struct OpenPlan {
     /// `true` if the file has other content than was last read or written.
     changed_on_disk: bool,
     opened_with: Vec<String>,
+    /// The files under the plan on the map.
+    backdrop: Vec<BackdropLayer>,
 }
 
 impl OpenPlan {
     /// Returns a plan with its history, as the files provided it.
     pub fn new(id: PlanId, file: Option<PathBuf>, history: History) -> Self {
         let opened_with = history.document().settings.clone();
-        Self { id, file, history, changed_on_disk: false, opened_with }
+        Self { id, file, history, changed_on_disk: false, opened_with, backdrop: Vec::new() }
     }
 
     pub fn id(&self) -> PlanId {
@@ -42,6 +45,15 @@ impl OpenPlan {
     /// Returns the settings that the plan had when it was opened.
     pub(super) fn settings_at_opening(&self) -> &[String] {
         &self.opened_with
+    }
+
+    /// Returns the files under the plan on the map.
+    pub fn backdrop(&self) -> &[BackdropLayer] {
+        &self.backdrop
+    }
+
+    pub(super) fn backdrop_mut(&mut self) -> &mut Vec<BackdropLayer> {
+        &mut self.backdrop
     }
 
     /// Returns its file, if it has one.

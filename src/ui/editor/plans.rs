@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::{Editor, FileRequest, OpenPlan, Opened, PlanId};
 use crate::plan::FlightPlan;
 use crate::plan::edit::{History, PlanDocument};
+use crate::ui::backdrop::BackdropLayer;
 use crate::ui::message::Effect;
 
 /// The first identifier of plans made here. Plans opened from files have lower ones.
@@ -49,9 +50,10 @@ impl Editor {
 
     /// Shows a plan that was read. It replaces an open plan with the same identifier.
     pub(in crate::ui) fn opened(&mut self, opened: Opened) {
-        let plan = OpenPlan::new(opened.id, opened.file, opened.history);
+        let mut plan = OpenPlan::new(opened.id, opened.file, opened.history);
         match self.plans.iter().position(|other| other.id() == plan.id()) {
             Some(index) => {
+                *plan.backdrop_mut() = std::mem::take(self.plans[index].backdrop_mut());
                 self.plans[index] = plan;
                 self.show(index);
             }
@@ -116,6 +118,22 @@ impl Editor {
         let plan = self.plan_of_mut(id)?;
         plan.set_changed_on_disk(true);
         Some(plan.title())
+    }
+
+    /// Puts a file under a plan on the map, in place of one of the same name. Returns `false` if the plan was closed.
+    pub(in crate::ui) fn add_backdrop(&mut self, id: PlanId, layer: BackdropLayer) -> bool {
+        let Some(plan) = self.plan_of_mut(id) else { return false };
+        let layers = plan.backdrop_mut();
+        layers.retain(|other| other.path != layer.path);
+        layers.push(layer);
+        true
+    }
+
+    /// Removes the backdrop of the shown plan. Returns the request to forget it, if there was one.
+    pub(in crate::ui) fn remove_backdrop(&mut self) -> Option<Effect> {
+        let plan = self.plan_mut();
+        let had = !std::mem::take(plan.backdrop_mut()).is_empty();
+        had.then(|| Effect::Files(FileRequest::NoBackdrop(plan.id())))
     }
 
     fn plan_of_mut(&mut self, id: PlanId) -> Option<&mut OpenPlan> {

@@ -6,6 +6,7 @@ use crate::ui::action::{Action, EditAction};
 use crate::ui::editor::{PlanId, actions as plan};
 use crate::ui::event_log::Severity;
 use crate::ui::map_edit;
+use crate::ui::map_edit::measure;
 use crate::ui::map_point::MapPoint;
 use crate::ui::map_point::origin::origin;
 use crate::ui::map_state::{MapCursor, MapItem, MapMode, Moving};
@@ -19,6 +20,7 @@ const WIDEST_FENCE_M: f64 = 10_000.0;
 /// Shows or hides the cursor.
 pub(in crate::ui) fn toggle(state: &mut Shared) -> Vec<Effect> {
     state.map.moving = None;
+    state.map.measure = None;
     if state.map.edit.take().is_some() {
         return Vec::new();
     }
@@ -31,6 +33,9 @@ pub(in crate::ui) fn toggle(state: &mut Shared) -> Vec<Effect> {
 
 /// Handles an arrow key: moves the cursor by a cell if there is one, else the map.
 pub(in crate::ui) fn arrow(state: &mut Shared, columns: f64, rows: f64) {
+    if measure::arrow(state, columns, rows) {
+        return;
+    }
     let (Some(cursor), Some(view)) = (state.map.edit, view::viewport(state)) else {
         view::pan(state, columns, rows);
         return;
@@ -49,6 +54,10 @@ pub(in crate::ui) fn arrow(state: &mut Shared, columns: f64, rows: f64) {
 
 /// Picks up the item at the cursor, or puts down the item picked up before.
 pub(in crate::ui) fn pick(state: &mut Shared) -> Vec<Effect> {
+    if state.map.measure.is_some() {
+        measure::set_point(state, None);
+        return Vec::new();
+    }
     let Some(cursor) = state.map.edit else {
         let key = state.key(Action::Edit(EditAction::OnMap));
         let text = format!("`{key}` shows a cursor with which waypoints are picked, added and moved.");
@@ -82,9 +91,9 @@ fn revision(state: &Shared) -> (PlanId, usize) {
     (plan.id(), plan.history().at())
 }
 
-/// Drops the picked-up item at its old place, else hides the cursor. Returns `true` if there was either.
+/// Ends measuring, else drops the picked-up item at its old place, else hides the cursor. Returns `true` if there was any.
 pub(in crate::ui) fn leave(state: &mut Shared) -> bool {
-    state.map.moving.take().is_some() || state.map.edit.take().is_some()
+    state.map.measure.take().is_some() || state.map.moving.take().is_some() || state.map.edit.take().is_some()
 }
 
 /// Puts an item at a place, as one edit.

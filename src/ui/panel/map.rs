@@ -7,10 +7,10 @@ use ratatui::widgets::Widget as _;
 use ratatui::widgets::canvas::Canvas;
 
 use crate::geo::LocalFrame;
-use crate::plan::{FlightPlan, Waypoint, WaypointType};
+use crate::plan::{Waypoint, WaypointType};
 use crate::telemetry::PlanSource;
 use crate::ui::action::{self, Action, EditAction, PanelAction};
-use crate::ui::map_edit;
+use crate::ui::map_edit::{self, measure};
 use crate::ui::map_point::origin::origin;
 use crate::ui::map_point::{self, MapPoint, to_map};
 use crate::ui::map_state::{MapItem, MapMode, Moving};
@@ -22,9 +22,13 @@ use crate::ui::shared::Shared;
 use crate::ui::viewport::Viewport;
 use crate::ui::viewport::moves::{self, ZOOM_STEP};
 
+mod backdrop;
+mod grid;
 mod labels;
 mod lines;
 mod marks;
+mod off_screen;
+mod raster;
 mod track_line;
 
 /// The mouse on the map; the window and the edit are shared.
@@ -46,6 +50,12 @@ impl Content for MapPanel {
             PlanSource::Stored => String::new(),
             injected => format!(" — {injected} plan"),
         };
+        if state.map.measure.is_some() {
+            let point = state.key(Action::Edit(EditAction::Pick));
+            let measured =
+                measure::measured(state).unwrap_or_else(|| format!("{point} sets the first point"));
+            return format!("{name} — measure · {measured}");
+        }
         if state.edits_on_map() {
             let place =
                 state.map.moving.map(|moving| moving.place).or(state.map.edit.map(|cursor| cursor.place));
@@ -69,6 +79,14 @@ impl Content for MapPanel {
     }
 
     fn hints(&self, state: &Shared) -> Vec<Hint> {
+        if let Some(tool) = &state.map.measure {
+            let is_second = tool.from.is_some() && tool.to.is_none();
+            let point = if is_second { "second point" } else { "first point" };
+            return vec![
+                (&[Action::Edit(EditAction::Pick)], point),
+                (&[Action::Panel(PanelAction::Measure)], "done"),
+            ];
+        }
         if state.map.edit.is_some() {
             let pick = if state.map.moving.is_some() { "put down" } else { "pick" };
             return vec![
@@ -86,6 +104,9 @@ impl Content for MapPanel {
             (&[Action::Panel(PanelAction::ZoomIn), Action::Panel(PanelAction::ZoomOut)], "zoom"),
             (&[Action::Panel(PanelAction::Follow)], "follow"),
             (&[Action::Panel(PanelAction::Fit)], "fit"),
+            (&[Action::Panel(PanelAction::Measure)], "measure"),
+            (&[Action::Panel(PanelAction::Grid)], "grid"),
+            (&[Action::Panel(PanelAction::Backdrop)], "backdrop"),
         ]
     }
 
@@ -99,6 +120,9 @@ impl Content for MapPanel {
             PanelAction::ZoomOut => moves::zoomed(state, ZOOM_STEP).map(Change::MapWindow),
             PanelAction::Follow => moves::following(state).map(Change::MapWindow),
             PanelAction::Fit => Some(Change::MapWindow(MapMode::Fit)),
+            PanelAction::Measure => Some(Change::Measure),
+            PanelAction::Grid => Some(Change::MapGrid),
+            PanelAction::Backdrop => Some(Change::ChooseBackdrop),
             _ => None,
         };
         change.map(Request::Change).into_iter().collect()
@@ -119,6 +143,9 @@ impl Content for MapPanel {
     fn press(&mut self, state: &Shared, area: Rect, event: &MouseEvent) -> Vec<Request> {
         let view = Viewport::of(state, area);
         let place = view.place(event.column, event.row);
+        if state.map.measure.is_some() {
+            return vec![Change::MeasurePoint(place).into()];
+        }
         if event.modifiers.contains(KeyModifiers::CONTROL) {
             return vec![Change::AddWaypoint(place).into()];
         }
@@ -136,6 +163,9 @@ impl Content for MapPanel {
 
     fn drag(&mut self, state: &Shared, area: Rect, event: &MouseEvent) -> Vec<Request> {
         let view = Viewport::of(state, area);
+        if state.map.measure.is_some() {
+            return vec![Change::MeasureTo(view.place(event.column, event.row)).into()];
+        }
         if state.map.moving.is_some() {
             // The window stays still meanwhile.
             let still = MapMode::Free { n: view.centre.n, e: view.centre.e, scale: view.scale };
@@ -168,9 +198,11 @@ impl Content for MapPanel {
                 let can_go = action::enabled(state, Action::GoTo).is_ok() && state.plan_is_on_craft();
                 let go_to = u8::try_from(index).ok().filter(|_| can_go).map(MapChoice::GoTo);
                 let edits = [MapChoice::EditWaypoint(index), MapChoice::DeleteWaypoint(index)];
-                edits.into_iter().chain(go_to).collect()
+                edits.into_iter().chain(go_to).chain([MapChoice::Measure]).collect()
             }
-            _ => vec![MapChoice::AddWaypoint, MapChoice::SetHome, MapChoice::SetFence],
+            _ => {
+                vec![MapChoice::AddWaypoint, MapChoice::SetHome, MapChoice::SetFence, MapChoice::Measure]
+            }
         };
         Some(Popup::MapMenu(MapMenu::new(map_edit::position(&frame, place), at, choices)))
     }
@@ -193,6 +225,8 @@ struct Scene {
     craft: Option<MapPoint>,
     believed: Option<MapPoint>,
     current: Option<usize>,
+    /// The plans that the open generator form would give.
+    preview: Vec<Vec<PlacedWaypoint>>,
 }
 
 fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {
@@ -200,6 +234,7 @@ fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {
         return;
     }
     let scene = scene(state, area);
+    backdrop::paint(state, &scene.view, buffer);
     Canvas::default()
         .marker(state.theme.marker())
         .x_bounds(scene.view.east_bounds())
@@ -219,7 +254,12 @@ fn scene(state: &Shared, area: Rect) -> Scene {
     let planned_home = map_edit::home(state).unwrap_or(craft_home);
     // While editing, the map shows home of the edited plan and the fence around it.
     let mut home = if state.edits_on_map() { planned_home } else { craft_home };
-    let mut spots = frame.map_or_else(Vec::new, |frame| spots(plan, &frame, home));
+    let mut spots = frame.map_or_else(Vec::new, |frame| spots_of(&plan.waypoints, 0, &frame, home));
+    let (preview, first) = state.editor.preview().unwrap_or_default();
+    let preview = frame
+        .iter()
+        .flat_map(|frame| preview.iter().map(move |waypoints| spots_of(waypoints, first, frame, home)));
+    let preview = preview.collect();
     match state.map.moving {
         Some(Moving { item: MapItem::Waypoint(index), place, .. }) => {
             for spot in spots.iter_mut().filter(|spot| spot.index == index) {
@@ -238,13 +278,14 @@ fn scene(state: &Shared, area: Rect) -> Scene {
         planned_home: (planned_home.distance(home) > 1.0 && !state.edits_on_map()).then_some(planned_home),
         craft: map_point::craft(&state.view),
         believed: believed.filter(|place| place.n.is_finite() && place.e.is_finite()),
+        preview,
         current: vehicle.nav.as_ref().filter(|nav| nav.engaged).map(|nav| usize::from(nav.wp)),
     }
 }
 
 /// Returns the positional waypoints. A TAKEOFF is at home, whatever position its record has.
-fn spots(plan: &FlightPlan, frame: &LocalFrame, home: MapPoint) -> Vec<PlacedWaypoint> {
-    let positional = plan.waypoints.iter().enumerate().filter(|(_, wp)| wp.kind.is_positional());
+fn spots_of(waypoints: &[Waypoint], first: usize, frame: &LocalFrame, home: MapPoint) -> Vec<PlacedWaypoint> {
+    let positional = (first..).zip(waypoints).filter(|(_, wp)| wp.kind.is_positional());
     positional
         .map(|(index, wp)| {
             let place = if wp.kind == WaypointType::Takeoff { home } else { to_map(frame, wp.position) };

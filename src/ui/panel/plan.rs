@@ -1,5 +1,6 @@
 //! 2 Plan: the waypoints of the open plan, edited in place, with their findings and the altitude profile below.
 
+mod legs;
 mod profile;
 mod table;
 
@@ -14,6 +15,7 @@ use crate::plan::review::Finding;
 use crate::ui::action::{Action, EditAction};
 use crate::ui::editor::{Column, findings, settings_in_force};
 use crate::ui::forecast;
+use crate::ui::formatting::cut;
 use crate::ui::message::{Change, Request};
 use crate::ui::panel::{Content, Hint, Panel};
 use crate::ui::shared::Shared;
@@ -190,6 +192,11 @@ fn nothing_planned(state: &Shared) -> [String; 3] {
 fn below(state: &Shared, findings: &[Finding], area: Rect) -> Vec<Line<'static>> {
     let mut lines = said_below(state, findings, usize::from(area.width));
     if state.editor.field().is_none() {
+        // A table that fills the screen shows the legs, in columns if there is room.
+        if state.zoomed && !table::has_legs(state, area.width) {
+            let text = legs::line(state).map(|text| cut(&text, usize::from(area.width)));
+            lines.extend(text.map(|text| Line::from(span(&state.theme, Role::Dim, text))));
+        }
         lines.extend(forecast::estimate_lines(state, area.width));
     }
     lines

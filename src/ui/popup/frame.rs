@@ -21,6 +21,11 @@ pub(in crate::ui) fn popup(
     let height = (size.1 + 2).min(area.height);
     let place =
         Rect::new(area.x + (area.width - width) / 2, area.y + (area.height - height) / 2, width, height);
+    framed(theme, place, title, buffer)
+}
+
+/// Draws an empty frame. Returns the inside.
+pub(in crate::ui) fn framed(theme: &Theme, place: Rect, title: &str, buffer: &mut Buffer) -> Rect {
     Clear.render(place, buffer);
     Block::bordered()
         .border_style(theme.style(Role::Focus))

@@ -26,6 +26,8 @@ pub(in crate::ui) enum MapChoice {
     /// Show the waypoint at the place in the plan table.
     EditWaypoint(usize),
     DeleteWaypoint(usize),
+    /// Measure from there.
+    Measure,
     /// Fly to the waypoint now.
     GoTo(u8),
 }
@@ -39,6 +41,7 @@ impl MapChoice {
             Self::SetFence => ('f', "fence through here".to_owned()),
             Self::EditWaypoint(index) => ('e', format!("edit WP{index} in the table")),
             Self::DeleteWaypoint(index) => ('d', format!("delete WP{index}")),
+            Self::Measure => ('m', "measure from here".to_owned()),
             Self::GoTo(index) => ('g', format!("go to WP{index} now")),
         }
     }

@@ -16,6 +16,7 @@ pub(super) fn question(browser: &Browser) -> Option<Vec<String>> {
     let what = match browser.purpose {
         Purpose::Open => "Open which plan of",
         Purpose::Save(_) => "Save as which file in",
+        Purpose::Backdrop(_) => "Show which map of",
     };
     let entries = (1..).zip(&browser.listing.entries).map(|(number, entry)| {
         let slash = if entry.is_directory { "/" } else { "" };

@@ -131,7 +131,13 @@ fn is_question(effect: &Effect) -> bool {
         | Effect::WriteScenario { .. }
         | Effect::SaveToFlash => true,
         Effect::Files(request) => {
-            matches!(request, FileRequest::Open { .. } | FileRequest::Save { .. } | FileRequest::List(_))
+            matches!(
+                request,
+                FileRequest::Open { .. }
+                    | FileRequest::Save { .. }
+                    | FileRequest::List(_)
+                    | FileRequest::Backdrop(..)
+            )
         }
         Effect::Forecast(job) => job.request.kind() != ForecastKind::PlanEstimate,
         Effect::Send(_) | Effect::Copy(_) | Effect::Suspend | Effect::Quit => false,
@@ -156,6 +162,7 @@ fn is_answer(msg: &Msg) -> bool {
                 | FileReply::KeptAgain
                 | FileReply::EditsLost(_)
                 | FileReply::Ground { .. }
+                | FileReply::Backdrop { is_new: false, .. }
         ),
         Msg::Clock(_)
         | Msg::Key(_)

@@ -1,6 +1,8 @@
 //! Changes the state that all panels share, as a panel requests it.
 
+use crate::ui::editor::actions as plan;
 use crate::ui::map_edit::actions as map_edit;
+use crate::ui::map_edit::measure;
 use crate::ui::message::{Change, Effect};
 use crate::ui::shared::Shared;
 use crate::ui::stick_recording::keys::{toggle_playing, toggle_recording};
@@ -21,6 +23,12 @@ pub(super) fn change(state: &mut Shared, change: Change) -> Vec<Effect> {
             }
         }
         Change::PutDown => return map_edit::put_down(state),
+        Change::Measure => measure::toggle(state),
+        Change::MeasurePoint(place) => measure::set_point(state, Some(place)),
+        Change::MeasureTo(place) => measure::drag_to(state, place),
+        Change::MapGrid => state.map.grid = !state.map.grid,
+        Change::ChooseBackdrop => return plan::choose_backdrop(state),
+        Change::NoBackdrop => return plan::remove_backdrop(state),
         Change::AddWaypoint(place) => return map_edit::add_at(state, place),
         Change::PlanRows(rows) => state.editor.move_cursor(rows, 0),
         Change::PlanCell(row, column) => state.editor.go_to_cell(row, column),

@@ -7,6 +7,7 @@ use crate::telemetry::InFlightCommand;
 use crate::ui::app_state::AppState;
 use crate::ui::editor::Column;
 use crate::ui::map_edit::actions as map_edit;
+use crate::ui::map_edit::measure;
 use crate::ui::map_point::origin::origin;
 use crate::ui::map_point::to_map;
 use crate::ui::map_state::MapItem;
@@ -34,6 +35,10 @@ pub(super) fn take(state: &mut AppState, place: LatLon, outcome: Outcome<MapChoi
             state.shared.editor.cancel();
             state.shared.editor.go_to_row(index);
             state.shared.editor.delete()
+        }
+        MapChoice::Measure => {
+            measure::begin_at(&mut state.shared, place);
+            Vec::new()
         }
         MapChoice::GoTo(index) => {
             vec![VehicleCommand::InFlight(InFlightCommand::GoTo(index)).into()]

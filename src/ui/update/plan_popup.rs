@@ -58,6 +58,7 @@ fn browser_key(state: &mut Shared, mut browser: Browser, event: KeyEvent) -> Vec
             return match browser.purpose {
                 Purpose::Open => vec![Effect::Files(FileRequest::Open { path, accepted: false })],
                 Purpose::Save(id) => vec![state.editor.write(id, path, false, false)],
+                Purpose::Backdrop(id) => vec![Effect::Files(FileRequest::Backdrop(id, path))],
             };
         }
         BrowserKey::Edited | BrowserKey::List(_) => {}
@@ -199,8 +200,17 @@ pub(super) fn answered(state: &mut Shared, reply: FileReply) -> Vec<Effect> {
                 state.notify(Severity::Warn, text);
             }
         }
-        FileReply::Listed(listing) => {
+        FileReply::Backdrop { id, layer, is_new } => {
+            let (name, vertices) = (shown(&layer.path), layer.vertices());
+            if state.editor.add_backdrop(id, layer) && is_new {
+                let noun = if vertices == 1 { "vertex" } else { "vertices" };
+                state.notify(Severity::Good, format!("{name} is under the plan: {vertices} {noun}."));
+            }
+        }
+        FileReply::Listed(mut listing) => {
             if let Some(EditorPopup::Browser(browser)) = &mut state.editor.popup {
+                let purpose = browser.purpose;
+                listing.entries.retain(|entry| entry.is_directory || purpose.takes(&entry.name));
                 browser.listing = listing;
                 browser.at = None;
             }

@@ -35,7 +35,8 @@ pub(in crate::ui) fn zoomed(state: &Shared, factor: f64) -> Option<MapMode> {
     Some(match state.map.mode {
         MapMode::Follow(scale) => MapMode::Follow(scale * factor),
         MapMode::Fit | MapMode::Free { .. } => {
-            let cursor = state.map.edit.map(|cursor| cursor.place);
+            let measured = state.map.measure.map(|measure| measure.cursor);
+            let cursor = state.map.edit.map(|cursor| cursor.place).or(measured);
             let place = cursor.or_else(|| map_point::craft(&state.view));
             let place = place.filter(|&place| view.screen_cell(place).is_some());
             view.zoomed(factor, place.unwrap_or(view.centre))

@@ -6,7 +6,7 @@ use unicode_width::UnicodeWidthStr as _;
 use crate::ui::drawing;
 use crate::ui::map_point::MapPoint;
 use crate::ui::text_wrap::wrapped;
-use crate::ui::theme::{Role, Theme};
+use crate::ui::theme::{Palette, Role, Theme};
 use crate::ui::viewport::Viewport;
 
 /// The greatest number of lines at the top.
@@ -85,6 +85,28 @@ impl<'a> Labels<'a> {
                 return;
             }
         }
+    }
+
+    /// Writes a text where its cells hold nothing but the backdrop: at the first offset, in columns and rows from a
+    /// place, that has room.
+    pub(super) fn on_free_ground(&mut self, place: MapPoint, text: &str, offsets: &[(i32, i32)], role: Role) {
+        let Some((column, row)) = self.view.screen_cell(place) else { return };
+        let width = text.width();
+        let at = offsets.iter().map(|(right, down)| (i32::from(column) + right, i32::from(row) + down));
+        let free = at.into_iter().find(|&(column, row)| {
+            let cells = column..column + width as i32;
+            self.is_free(column, row, width) && cells.into_iter().all(|column| self.is_ground(column, row))
+        });
+        if let Some((column, row)) = free {
+            self.put(column as u16, row as u16, text, role);
+        }
+    }
+
+    fn is_ground(&self, column: i32, row: i32) -> bool {
+        let Some(cell) = self.buffer.cell((column as u16, row as u16)) else { return false };
+        // Without colours the lines of plan and track look the same.
+        let faint = [Role::Backdrop, Role::Zone].map(|role| self.theme.colour(role));
+        cell.symbol() == " " || self.theme.palette != Palette::Mono && faint.contains(&cell.fg)
     }
 
     /// Writes a line in the middle.

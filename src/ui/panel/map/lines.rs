@@ -126,13 +126,21 @@ pub(super) fn paint(state: &Shared, scene: &Scene, context: &mut Context<'_>) {
         }
     });
     layer(Role::Dim, &mut |painter| {
-        legs(scene, painter);
+        legs(scene.home, &scene.spots, painter);
         for (at, spot) in scene.spots.iter().enumerate() {
             figure(state, scene, at, spot, painter);
         }
     });
     layer(Role::Predicted, &mut |painter| {
-        if let Some(ghost) = forecast::ghost(state) {
+        let home_or_last = if state.editor.preview().is_some_and(|(_, first)| first > 0) {
+            scene.spots.last().map_or(scene.home, |spot| spot.place)
+        } else {
+            scene.home
+        };
+        for (number, spots) in scene.preview.iter().enumerate() {
+            legs(if number == 0 { home_or_last } else { scene.home }, spots, painter);
+        }
+        if let Some(ghost) = forecast::ghost(state).filter(|_| scene.preview.is_empty()) {
             painter.dotted(ghost.path.iter().map(|point| MapPoint::new(point.n, point.e)));
         }
     });
@@ -150,6 +158,11 @@ pub(super) fn paint(state: &Shared, scene: &Scene, context: &mut Context<'_>) {
             painter.line(MapPoint::new(last.n, last.e), craft);
         }
     });
+    layer(Role::Focus, &mut |painter| {
+        if let Some((from, to)) = state.map.measure.as_ref().and_then(map_edit::measure::ends) {
+            painter.dashed(from, to);
+        }
+    });
     layer(Role::Target, &mut |painter| {
         if let Some((from, to)) = current_leg(state, scene) {
             painter.dashed(from, to);
@@ -157,10 +170,9 @@ pub(super) fn paint(state: &Shared, scene: &Scene, context: &mut Context<'_>) {
     });
 }
 
-/// Draws the legs in flight order, from home.
-fn legs(scene: &Scene, painter: &mut LinePainter<'_, '_>) {
-    let mut from = scene.home;
-    for spot in &scene.spots {
+/// Draws the legs in flight order, from a place on.
+fn legs(mut from: MapPoint, spots: &[PlacedWaypoint], painter: &mut LinePainter<'_, '_>) {
+    for spot in spots {
         painter.dashed(from, spot.place);
         from = spot.place;
     }

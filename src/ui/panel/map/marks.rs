@@ -4,13 +4,14 @@ use ratatui::buffer::Buffer;
 
 use crate::plan::WaypointType;
 use crate::ui::forecast;
+use crate::ui::map_edit::measure;
 use crate::ui::map_point::MapPoint;
 use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
 use crate::ui::viewport::round_length;
 
 use super::labels::Labels;
-use super::{PlacedWaypoint, Scene};
+use super::{PlacedWaypoint, Scene, backdrop, off_screen};
 
 /// Eight directions, clockwise from north.
 const ARROWS: [&str; 8] = ["↑", "↗", "→", "↘", "↓", "↙", "←", "↖"];
@@ -21,7 +22,8 @@ pub(super) fn write(state: &Shared, scene: &Scene, buffer: &mut Buffer) {
     let vehicle = &state.view.vehicle;
     let mut labels = Labels::new(theme, scene.view, buffer);
     frame_notes(state, &mut labels);
-    let ghost_line = forecast::ghost(state).map(|ghost| format!("··· {}", ghost.line));
+    let ghost = forecast::ghost(state).filter(|_| scene.preview.is_empty());
+    let ghost_line = ghost.map(|ghost| format!("··· {}", ghost.line));
     if let Some(line) = &ghost_line {
         labels.top(line, Role::Predicted);
     }
@@ -57,6 +59,22 @@ pub(super) fn write(state: &Shared, scene: &Scene, buffer: &mut Buffer) {
     if let Some(cursor) = state.map.edit {
         labels.mark(cursor.place, "┼", Role::Focus);
     }
+    if let Some(tool) = &state.map.measure {
+        labels.mark(tool.cursor, "┼", Role::Focus);
+        for place in [tool.from, tool.to].into_iter().flatten() {
+            labels.mark(place, "×", Role::Focus);
+        }
+        if let (Some((_, to)), Some(text)) = (measure::ends(tool), measure::measured(state)) {
+            labels.beside(to, &format!(" {text}"), &text, Role::Focus);
+        }
+    }
+    for spot in scene.preview.iter().flatten() {
+        labels.mark(spot.place, glyph(spot.wp.kind), Role::Predicted);
+    }
+    for spot in scene.preview.iter().flatten() {
+        let number = spot.index.to_string();
+        labels.beside(spot.place, &number, &number, Role::Predicted);
+    }
     // The label of the current waypoint is placed first.
     let mut order: Vec<&PlacedWaypoint> = scene.spots.iter().collect();
     order.sort_by_key(|spot| Some(spot.index) != scene.current);
@@ -71,6 +89,8 @@ pub(super) fn write(state: &Shared, scene: &Scene, buffer: &mut Buffer) {
     if let Some(place) = scene.planned_home {
         labels.beside(place, "home of the plan", "plan", Role::Dim);
     }
+    off_screen::write(state, scene, home_known, &mut labels);
+    backdrop::write_names(state, &mut labels);
     if scene.craft.is_none() && scene.spots.is_empty() {
         labels.middle("No position yet: waiting for GPS.", Role::Dim);
     }
@@ -93,7 +113,7 @@ fn glyph(kind: WaypointType) -> &'static str {
 }
 
 /// Returns the arrow nearest to a heading.
-fn arrow(heading_deg: f64) -> &'static str {
+pub(super) fn arrow(heading_deg: f64) -> &'static str {
     let eighth = (heading_deg / 45.0).round().rem_euclid(8.0);
     ARROWS.get(eighth as usize).copied().unwrap_or("↑")
 }

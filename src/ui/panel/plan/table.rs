@@ -16,6 +16,8 @@ use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
 use crate::ui::units::Units;
 
+use super::legs;
+
 /// The width from which all columns have room.
 const WIDE: u16 = 75;
 /// The width of mark and number before the first column.
@@ -59,6 +61,17 @@ fn columns(state: &Shared, width: u16) -> Vec<(Column, String, u16, u16)> {
             (shown, head, at - width, width)
         })
         .collect()
+}
+
+/// Returns the first cell of the columns about legs, if there is room for them.
+fn legs_at(state: &Shared, width: u16) -> Option<u16> {
+    let end = columns(state, width).last().map_or(NUMBER, |(_, _, x, width)| x + width);
+    (width >= WIDE && end + legs::WIDTHS.iter().sum::<u16>() <= width).then_some(end)
+}
+
+/// Returns `true` if the table has the columns about legs.
+pub(super) fn has_legs(state: &Shared, width: u16) -> bool {
+    legs_at(state, width).is_some()
 }
 
 /// Returns the number of waypoints that differ between two plans.
@@ -134,6 +147,15 @@ pub(super) fn draw(
             theme.style(Role::Title),
         );
     }
+    let legs = legs_at(state, area.width).map(|x| (x, legs::rows(state)));
+    let write_legs = |y: u16, cells: &[String; 4], role: Role, buffer: &mut Buffer| {
+        let Some(mut x) = legs.as_ref().map(|(x, _)| *x) else { return };
+        for (cell, width) in cells.iter().zip(legs::WIDTHS) {
+            drawing::text(buffer, area.x + x, y, aligned(cell, width, false), theme.style(role));
+            x += width;
+        }
+    };
+    write_legs(area.y, &legs::heads(state), Role::Title, buffer);
     let rows = usize::from(area.height.saturating_sub(1));
     let focused = state.focus == Panel::Plan;
     let cursor_row = state.editor.row();
@@ -145,6 +167,9 @@ pub(super) fn draw(
         let (mark, role) = mark(state, findings, index, wp);
         let role = if selected { Role::Selected } else { role };
         row(buffer, Rect { y, height: 1, ..area }, 0, theme, role, &format!("{mark}{index:>2} "));
+        if let Some(cells) = legs.as_ref().and_then(|(_, rows)| rows.get(index)) {
+            write_legs(y, cells, if selected { Role::Selected } else { Role::Dim }, buffer);
+        }
         for &(column, _, x, width) in &columns {
             let left = matches!(column, Column::Type | Column::Pattern);
             let here = focused && index == cursor_row && column == state.editor.column();

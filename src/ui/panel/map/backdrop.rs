@@ -1,0 +1,105 @@
+//! Draws the backdrop of the open plan and the coordinate grid, under everything else.
+
+use ratatui::buffer::Buffer;
+use unicode_width::UnicodeWidthStr as _;
+
+use crate::geo::{LatLon, LocalFrame};
+use crate::plan::feature::Zone;
+use crate::ui::backdrop::{BackdropLayer, Window};
+use crate::ui::formatting::cut;
+use crate::ui::map_edit;
+use crate::ui::map_point::origin::origin;
+use crate::ui::map_point::{MapPoint, to_map};
+use crate::ui::shared::Shared;
+use crate::ui::theme::Role;
+use crate::ui::viewport::Viewport;
+
+use super::grid;
+use super::labels::Labels;
+use super::raster::Raster;
+
+/// The most columns of a name.
+const NAME_COLUMNS: usize = 24;
+/// The most names for which room is looked for.
+const MOST_NAMES: usize = 256;
+
+/// Draws the grid, the lines, and the zones over them.
+pub(super) fn paint(state: &Shared, view: &Viewport, buffer: &mut Buffer) {
+    let layers = state.editor.plan().backdrop();
+    if layers.is_empty() && !state.map.grid {
+        return;
+    }
+    let Some(frame) = origin(state) else { return };
+    let theme = &state.theme;
+    if state.map.grid {
+        let mut raster = Raster::new(view.area);
+        grid::paint(&frame, view, &mut raster);
+        raster.write(theme.style(Role::Backdrop), theme.charset, buffer);
+    }
+    for (of_zones, role) in [(false, Role::Backdrop), (true, Role::Zone)] {
+        let mut raster = Raster::new(view.area);
+        for layer in layers {
+            lines(layer, of_zones, &frame, view, &mut raster);
+        }
+        raster.write(theme.style(role), theme.charset, buffer);
+    }
+}
+
+fn lines(layer: &BackdropLayer, of_zones: bool, frame: &LocalFrame, view: &Viewport, raster: &mut Raster) {
+    let half_turn_m = 2.0 * to_map(frame, LatLon::from_degrees(frame.lat_deg, frame.lon_deg + 90.0)).e.abs();
+    for run in layer.lines(of_zones).runs(view.scale / 2.0, window(frame, view)) {
+        let mut from: Option<MapPoint> = None;
+        for &position in run {
+            let place = to_map(frame, position);
+            // A longer step goes around the other side of the globe.
+            let start = from.filter(|from| (place.e - from.e).abs() < half_turn_m);
+            if start.is_some() || run.len() == 1 {
+                raster.line(view.dot(start.unwrap_or(place)), view.dot(place));
+            }
+            from = Some(place);
+        }
+    }
+}
+
+/// Returns the window of the map on the globe, with a margin of a cell.
+fn window(frame: &LocalFrame, view: &Viewport) -> Window {
+    let metres_per_degree = to_map(frame, LatLon::from_degrees(frame.lat_deg + 0.5, frame.lon_deg + 0.5));
+    let half = |bounds: [f64; 2], per_half_degree: f64| {
+        ((bounds[1] - bounds[0]) / 2.0 + 2.0 * view.scale) / per_half_degree.abs().max(1e-6) * 0.5e7
+    };
+    Window {
+        centre: map_edit::position(frame, view.centre),
+        half_lat_e7: half(view.north_bounds(), metres_per_degree.n),
+        half_lon_e7: half(view.east_bounds(), metres_per_degree.e),
+    }
+}
+
+/// Writes the names for which there is room, those of zones first, and those of the grid.
+pub(super) fn write_names(state: &Shared, labels: &mut Labels<'_>) {
+    let Some(frame) = origin(state) else { return };
+    let view = *labels.view();
+    if state.map.grid {
+        grid::write(&frame, labels);
+    }
+    let window = window(&frame, &view);
+    let all = || state.editor.plan().backdrop().iter().flat_map(BackdropLayer::names);
+    let seen = |of_zones: bool| {
+        all().filter(move |name| name.zone.is_some() == of_zones && window.shows(name.position))
+    };
+    for name in seen(true).chain(seen(false)).take(MOST_NAMES) {
+        let text = cut(&name.text, NAME_COLUMNS);
+        let role = match name.zone {
+            Some(Zone::Exclusion | Zone::Inclusion) => Role::Zone,
+            None => Role::Backdrop,
+        };
+        let place = to_map(&frame, name.position);
+        let width = text.width() as i32;
+        // Beside a point, else over the middle or near it.
+        let offsets = if name.is_point {
+            vec![(1, 0), (-width, 0), (1, -1), (1, 1), (-width, -1), (-width, 1)]
+        } else {
+            [0, -1, 1, -2, 2, -3, 3].map(|down| (-width / 2, down)).to_vec()
+        };
+        labels.on_free_ground(place, &text, &offsets, role);
+    }
+}

@@ -1,0 +1,67 @@
+//! Arrows at the edge of the map to craft and home outside of it.
+
+use crate::ui::map_point::MapPoint;
+use crate::ui::shared::Shared;
+use crate::ui::theme::Role;
+use crate::ui::viewport::Viewport;
+
+use super::Scene;
+use super::labels::Labels;
+use super::marks::arrow;
+
+/// Writes an arrow for each of them, with the distance from the middle of the map.
+pub(super) fn write(state: &Shared, scene: &Scene, is_home_known: bool, labels: &mut Labels<'_>) {
+    let view = *labels.view();
+    let home = is_home_known.then_some(scene.home);
+    for (place, name, role) in [(scene.craft, "craft", Role::Craft), (home, "home", Role::Title)] {
+        let Some(place) = place.filter(|&place| view.screen_cell(place).is_none()) else { continue };
+        let Some(edge) = edge(&view, place) else { continue };
+        let (north, east) = (place.n - view.centre.n, place.e - view.centre.e);
+        let distance = state.units.length_text(north.hypot(east), 0);
+        labels.mark(edge, arrow(east.atan2(north).to_degrees()), role);
+        labels.beside(edge, &format!("{name} {distance}"), &distance, role);
+    }
+}
+
+/// Returns the place at the edge in the direction of another place. The bottom line is left free.
+fn edge(view: &Viewport, place: MapPoint) -> Option<MapPoint> {
+    let (width, height) = (f64::from(view.area.width), f64::from(view.area.height));
+    let middle = (width / 2.0, height / 2.0);
+    let (column, row) = view.cell(place);
+    let (across, down) = (column - middle.0, row - middle.1);
+    let reach = |way: f64, back: f64, on: f64| if way < 0.0 { back / -way } else { on / way };
+    let share = reach(across, middle.0 - 0.5, width - 0.5 - middle.0).min(reach(
+        down,
+        middle.1 - 0.5,
+        height - 1.5 - middle.1,
+    ));
+    if !share.is_finite() || share < 0.0 {
+        return None;
+    }
+    let cell =
+        |middle: f64, way: f64, cells: f64| (middle + way * share.min(1.0)).clamp(0.0, cells - 1.0) as u16;
+    let (column, row) = (cell(middle.0, across, width), cell(middle.1, down, height - 1.0));
+    Some(view.place(view.area.x + column, view.area.y + row))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use ratatui::layout::Rect;
+
+    proptest! {
+        #[test]
+        fn the_edge_is_in_the_window_and_above_its_last_line(
+            n in -1e6..1e6_f64, e in -1e6..1e6_f64, width in 8_u16..200, height in 4_u16..60,
+        ) {
+            let area = Rect::new(2, 3, width, height);
+            let view = Viewport { area, centre: MapPoint::new(5.0, -3.0), scale: 0.5 };
+            prop_assume!(view.screen_cell(MapPoint::new(n, e)).is_none());
+            let (column, row) = edge(&view, MapPoint::new(n, e)).and_then(|edge| view.screen_cell(edge)).unwrap();
+            prop_assert!(row < area.bottom() - 1);
+            let at_side = column == area.left() || column == area.right() - 1;
+            prop_assert!(at_side || row == area.top() || row == area.bottom() - 2, "{column} {row}");
+        }
+    }
+}

@@ -1,0 +1,172 @@
+//! The dots of the backdrop: one bit each, in the cells of the map.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::Style;
+
+use crate::ui::theme::Charset;
+
+/// The dots of a cell in columns and rows.
+const COLUMNS: usize = 2;
+const ROWS: usize = 4;
+/// The bits of a Braille character, from the top left by rows.
+const BITS: [[u8; COLUMNS]; ROWS] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
+/// The most dots that are set, so that a hostile file cannot stop the screen. They fill a window of 200x60 ten times.
+const MOST_DOTS: usize = 1_000_000;
+
+/// The dots of a window.
+pub(super) struct Raster {
+    area: Rect,
+    cells: Vec<u8>,
+    left: usize,
+}
+
+impl Raster {
+    pub(super) fn new(area: Rect) -> Self {
+        let cells = vec![0; usize::from(area.width) * usize::from(area.height)];
+        Self { area, cells, left: MOST_DOTS }
+    }
+
+    /// Returns the number of dots in a row and in a column.
+    fn size(&self) -> (usize, usize) {
+        (usize::from(self.area.width) * COLUMNS, usize::from(self.area.height) * ROWS)
+    }
+
+    /// Sets the dots of a line between two places, in dots from the middle of the top left dot.
+    pub(super) fn line(&mut self, from: (f64, f64), to: (f64, f64)) {
+        let (width, height) = self.size();
+        if self.left == 0 || width == 0 || height == 0 {
+            return;
+        }
+        let limits = ((width - 1) as f64, (height - 1) as f64);
+        let Some((from, to)) = clipped(from, to, limits) else { return };
+        let (x, y) = (from.0.round() as i32, from.1.round() as i32);
+        let (dx, dy) = (to.0.round() as i32 - x, to.1.round() as i32 - y);
+        let steps = dx.abs().max(dy.abs());
+        for step in 0..=steps {
+            // The nearest dot; halves are away from the start.
+            let along =
+                |by: i32| if steps == 0 { 0 } else { (2 * by * step + steps * by.signum()) / (2 * steps) };
+            self.set((x + along(dx)) as usize, (y + along(dy)) as usize);
+        }
+        self.left = self.left.saturating_sub(steps as usize + 1);
+    }
+
+    fn set(&mut self, x: usize, y: usize) {
+        let cell = y / ROWS * usize::from(self.area.width) + x / COLUMNS;
+        if let Some(cell) = self.cells.get_mut(cell) {
+            *cell |= BITS[y % ROWS][x % COLUMNS];
+        }
+    }
+
+    /// Writes the cells that have dots.
+    pub(super) fn write(&self, style: Style, charset: Charset, buffer: &mut Buffer) {
+        let width = usize::from(self.area.width);
+        for (index, &bits) in self.cells.iter().enumerate().filter(|(_, bits)| **bits != 0) {
+            let place = (self.area.x + (index % width) as u16, self.area.y + (index / width) as u16);
+            let Some(cell) = buffer.cell_mut(place) else { continue };
+            let symbol = match charset {
+                Charset::Unicode => char::from_u32(0x2800 + u32::from(bits)).unwrap_or(' '),
+                Charset::Ascii => '.',
+            };
+            cell.set_char(symbol).set_style(style);
+        }
+    }
+}
+
+/// Returns the part of a line from (0, 0) to `limits`, by the method of Liang and Barsky. `None` if it is outside.
+fn clipped(from: (f64, f64), to: (f64, f64), limits: (f64, f64)) -> Option<((f64, f64), (f64, f64))> {
+    let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+    if !(dx.is_finite() && dy.is_finite() && from.0.is_finite() && from.1.is_finite()) {
+        return None;
+    }
+    let (mut enters, mut leaves) = (0.0_f64, 1.0_f64);
+    for (direction, inside) in
+        [(-dx, from.0), (dx, limits.0 - from.0), (-dy, from.1), (dy, limits.1 - from.1)]
+    {
+        if direction == 0.0 {
+            if inside < 0.0 {
+                return None;
+            }
+        } else if direction < 0.0 {
+            enters = enters.max(inside / direction);
+        } else {
+            leaves = leaves.min(inside / direction);
+        }
+    }
+    let at = |t: f64| ((from.0 + t * dx).clamp(0.0, limits.0), (from.1 + t * dy).clamp(0.0, limits.1));
+    (enters <= leaves).then(|| (at(enters), at(leaves)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn dots(raster: &Raster) -> usize {
+        raster.cells.iter().map(|bits| bits.count_ones() as usize).sum()
+    }
+
+    #[test]
+    fn a_line_across_the_window_has_a_dot_in_every_column() {
+        let mut raster = Raster::new(Rect::new(3, 2, 10, 5));
+        raster.line((-50.0, 10.0), (70.0, 10.0));
+        assert_eq!(dots(&raster), 20);
+        raster.line((-50.0, 30.0), (70.0, 30.0));
+        assert_eq!(dots(&raster), 20, "below the window");
+        raster.line((f64::NAN, 1.0), (2.0, f64::INFINITY));
+        assert_eq!(dots(&raster), 20);
+        let mut buffer = Buffer::empty(Rect::new(0, 0, 20, 10));
+        raster.write(Style::new(), Charset::Ascii, &mut buffer);
+        let row: String = (0..20).map(|x| buffer[(x, 4)].symbol()).collect();
+        assert_eq!(row, "   ..........       ");
+    }
+
+    #[test]
+    fn an_empty_window_takes_lines() {
+        let mut raster = Raster::new(Rect::new(0, 0, 0, 4));
+        raster.line((0.0, 0.0), (5.0, 5.0));
+        assert_eq!(dots(&raster), 0);
+    }
+
+    proptest! {
+        #[test]
+        fn a_clipped_line_is_the_part_inside(
+            from in (-300.0..300.0_f64, -300.0..300.0_f64), to in (-300.0..300.0_f64, -300.0..300.0_f64),
+            limits in (1.0..200.0_f64, 1.0..200.0_f64),
+        ) {
+            let is_inside = |(x, y): (f64, f64)| (0.0..=limits.0).contains(&x) && (0.0..=limits.1).contains(&y);
+            let sample = |t: f64| (from.0 + t * (to.0 - from.0), from.1 + t * (to.1 - from.1));
+            match clipped(from, to, limits) {
+                None => prop_assert!((0..=100).all(|step| !is_inside(sample(f64::from(step) / 100.0)))),
+                Some((a, b)) => {
+                    prop_assert!(is_inside(a) && is_inside(b));
+                    let length = (to.0 - from.0).hypot(to.1 - from.1).max(1e-9);
+                    for place in [a, b] {
+                        let off = (to.0 - from.0) * (place.1 - from.1) - (to.1 - from.1) * (place.0 - from.0);
+                        prop_assert!((off / length).abs() < 1e-6);
+                    }
+                    // All samples inside are between the two ends.
+                    let along = |(x, y): (f64, f64)| {
+                        ((x - from.0) * (to.0 - from.0) + (y - from.1) * (to.1 - from.1)) / length
+                    };
+                    for step in 0..=100 {
+                        let place = sample(f64::from(step) / 100.0);
+                        let between = along(a) - 1e-6 <= along(place) && along(place) <= along(b) + 1e-6;
+                        prop_assert!(!is_inside(place) || between);
+                    }
+                }
+            }
+        }
+
+        #[test]
+        fn the_dots_of_a_line_are_next_to_each_other(
+            from in (0.0..79.0_f64, 0.0..79.0_f64), to in (0.0..79.0_f64, 0.0..79.0_f64),
+        ) {
+            let mut raster = Raster::new(Rect::new(0, 0, 40, 20));
+            raster.line(from, to);
+            let (dx, dy) = ((to.0.round() - from.0.round()).abs(), (to.1.round() - from.1.round()).abs());
+            prop_assert_eq!(dots(&raster), dx.max(dy) as usize + 1);
+        }
+    }
+}
