@@ -9,15 +9,22 @@
 
 mod bounds;
 mod cli_text;
+mod csv_plan;
+mod csv_table;
 mod encoding;
 mod field;
 mod home;
+mod inav;
 mod json;
 mod kind;
+#[cfg(test)]
+mod law;
+mod litchi;
 pub mod loss;
 mod native_read;
 mod native_write;
 mod note;
+mod number;
 mod options;
 mod problem;
 mod record;
@@ -72,6 +79,13 @@ impl Written {
     /// Returns the contents as text.
     pub fn text(&self) -> Cow<'_, str> {
         String::from_utf8_lossy(&self.contents)
+    }
+
+    /// Creates a refusal of the whole plan.
+    fn refused(why: impl Into<String>) -> Self {
+        let mut losses = LossReport::default();
+        losses.add(loss::Finding::new(Severity::Refused, "format", why));
+        Self { contents: Vec::new(), losses }
     }
 
     /// Returns `true` if the format cannot take the plan at all. The findings give the reason.
@@ -136,6 +150,10 @@ pub fn read(
         }
         Format::Toml => native_read::read(text, options.check, &mut problems),
         Format::CliText => cli_text::read(text, &mut problems),
+        Format::MwXml => inav::mw_xml::read(text, options, &mut problems),
+        Format::InavCli => inav::cli::read(text, options, &mut problems),
+        Format::Litchi => litchi::read(text, options, &mut problems),
+        Format::Csv => csv_plan::read(text, options, &mut problems),
     };
     let errors = problems.into_errors();
     if !errors.is_empty() {
@@ -161,6 +179,10 @@ pub fn write_with(file: &PlanFile, format: Format, _options: &WriteOptions) -> W
     let mut written = match format {
         Format::Toml => native_write::write(file),
         Format::CliText => cli_text::write(file),
+        Format::MwXml => inav::mw_xml::write(file),
+        Format::InavCli => inav::cli::write(file),
+        Format::Csv => csv_plan::write(file),
+        Format::Litchi => Written::refused(format!("{} files are only read", format.title())),
     };
     written.losses.waypoints = file.plan.waypoints.len();
     written

@@ -37,6 +37,23 @@ impl Element {
     }
 }
 
+/// Returns the local name of the root element of a text that begins like XML.
+pub(super) fn root(text: &str) -> Option<&str> {
+    let mut rest = text.trim_start();
+    loop {
+        let end = match rest.strip_prefix('<')? {
+            tag if tag.starts_with('?') => "?>",
+            tag if tag.starts_with("!--") => "-->",
+            tag if tag.starts_with('!') => ">",
+            tag => {
+                let name = tag.split(|c: char| c.is_whitespace() || c == '/' || c == '>').next()?;
+                return Some(name.rsplit_once(':').map_or(name, |(_, local)| local));
+            }
+        };
+        rest = rest.split_once(end)?.1.trim_start();
+    }
+}
+
 /// The reader of a document.
 pub(super) struct Parts<'t> {
     reader: Reader<&'t [u8]>,
@@ -206,6 +223,16 @@ mod tests {
         assert!(parts(&format!("<a{many}/>")).1[0].contains("more than 64 attributes"));
         for cut in ["<a>", "<a", "<a></b>", "<a b='1' b='2'/>"] {
             assert_eq!(parts(cut).1.len(), 1, "{cut}");
+        }
+    }
+
+    #[test]
+    fn the_root_shows_the_format() {
+        let text = "\n<?xml version='1.0'?>\n<!-- a <b> --><!DOCTYPE c>\n<k:mission x='1'/>";
+        assert_eq!(root(text), Some("mission"));
+        assert_eq!(root("<a>"), Some("a"));
+        for none in ["", "a", "<", "<?xml", "<!-- a", "name = '<a>'"] {
+            assert_eq!(root(none).filter(|name| !name.is_empty()), None, "{none}");
         }
     }
 
