@@ -94,6 +94,16 @@ fn every_problem_has_its_place_and_value() {
 }
 
 #[test]
+fn a_message_is_one_line() {
+    let text = "type,lat_deg,lon_deg,alt_m\n\"a\r\nb\",1,2,3\n";
+    assert!(
+        headlines(text)[0].starts_with("a.csv:2:2: a  b is not a waypoint type"),
+        "{:?}",
+        headlines(text)
+    );
+}
+
+#[test]
 fn rounded_values_are_named() {
     let file = read_text("type,lat_deg,lon_deg,alt_m,duration_s\nHOLD,1,181,3,0.01\n");
     let findings: Vec<String> = file.losses.findings.iter().map(ToString::to_string).collect();
