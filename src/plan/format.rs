@@ -9,15 +9,21 @@
 
 mod bounds;
 mod cli_text;
+mod csv_plan;
+mod csv_table;
 mod encoding;
 mod field;
 mod geojson;
 mod gpx;
 mod home;
+mod inav;
 mod json;
 mod json_place;
 mod kind;
 mod kml;
+#[cfg(test)]
+mod law;
+mod litchi;
 pub mod loss;
 mod map_choice;
 mod map_data;
@@ -27,6 +33,7 @@ mod mission_item;
 mod native_read;
 mod native_write;
 mod note;
+mod number;
 mod options;
 mod problem;
 mod qgc_csv;
@@ -95,6 +102,13 @@ impl Written {
     /// Returns the contents as text.
     pub fn text(&self) -> Cow<'_, str> {
         String::from_utf8_lossy(&self.contents)
+    }
+
+    /// Creates a refusal of the whole plan.
+    fn refused(why: impl Into<String>) -> Self {
+        let mut losses = LossReport::default();
+        losses.add(loss::Finding::new(Severity::Refused, "format", why));
+        Self { contents: Vec::new(), losses }
     }
 
     /// Returns `true` if the format cannot take the plan at all. The findings give the reason.
@@ -170,6 +184,10 @@ pub fn read(
         Format::Kml | Format::Kmz => kml::read(text, options, &mut problems),
         Format::Gpx => gpx::read(text, options, &mut problems),
         Format::GeoJson => geojson::read(text, options, &mut problems),
+        Format::MwXml => inav::mw_xml::read(text, options, &mut problems),
+        Format::InavCli => inav::cli::read(text, options, &mut problems),
+        Format::Litchi => litchi::read(text, options, &mut problems),
+        Format::Csv => csv_plan::read(text, options, &mut problems),
     };
     let errors = problems.into_errors();
     if !errors.is_empty() {
@@ -197,22 +215,19 @@ pub fn write_with(file: &PlanFile, format: Format, options: &WriteOptions) -> Wr
         Format::CliText => cli_text::write(file),
         Format::QgcPlan => qgc_plan::write(file),
         Format::QgcWpl => qgc_wpl::write(file),
-        Format::QgcCsv => only_read(format),
         Format::Kml => kml::write(file, options),
         Format::Kmz => kml::write_archive(file, options),
         Format::Gpx => gpx::write(file),
         Format::GeoJson => geojson::write(file),
+        Format::MwXml => inav::mw_xml::write(file),
+        Format::InavCli => inav::cli::write(file),
+        Format::Csv => csv_plan::write(file),
+        Format::QgcCsv | Format::Litchi => {
+            Written::refused(format!("{} files are only read", format.title()))
+        }
     };
     written.losses.waypoints = file.plan.waypoints.len();
     written
-}
-
-/// Returns the refusal of a format that is not written.
-fn only_read(format: Format) -> Written {
-    let why = format!("a {} is only read: write one of {}", format.title(), Format::names(true));
-    let mut losses = LossReport::default();
-    losses.add(loss::Finding::new(Severity::Refused, "format", why));
-    Written { losses, ..Written::default() }
 }
 
 /// Returns the file's name without folders and ending; `plan` for standard input.

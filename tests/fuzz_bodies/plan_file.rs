@@ -19,6 +19,10 @@ pub fn run(data: &[u8]) {
 fn assert_good(file: &PlanFile) {
     for format in Format::iter() {
         let written = write(file, format);
+        if written.is_refused() {
+            assert!(written.contents.is_empty());
+            continue;
+        }
         let back = parse("fuzz", &written.text(), format)
             .unwrap_or_else(|errors| panic!("{}\n{}", report(&errors), written.text()));
         assert_eq!(back.plan, file.plan, "{}", written.text());

@@ -3,9 +3,8 @@
 use strum::IntoEnumIterator as _;
 
 use super::loss::{Finding, Severity};
-use super::map_file::{MapKind, is_geojson, kmz};
-use super::native_read;
-use super::{qgc_csv, qgc_wpl};
+use super::map_file::{MapKind, is_geojson, kmz, root_element};
+use super::{csv_plan, inav, litchi, native_read, qgc_csv, qgc_wpl};
 
 /// A file format for plans. `Display` and `FromStr` use the names of `convert --from` and `--to`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumString, strum::EnumIter)]
@@ -35,6 +34,18 @@ pub enum Format {
     Gpx,
     #[strum(serialize = "geojson")]
     GeoJson,
+    /// Missions of INAV as XML.
+    #[strum(serialize = "mw-xml")]
+    MwXml,
+    /// Missions of INAV as CLI text.
+    #[strum(serialize = "inav")]
+    InavCli,
+    /// Missions of Litchi.
+    #[strum(serialize = "litchi")]
+    Litchi,
+    /// The waypoints as a table.
+    #[strum(serialize = "csv")]
+    Csv,
 }
 
 /// The row of a format.
@@ -119,6 +130,34 @@ impl Format {
                 writes: true,
                 carries: "everything; other programs see points, the path and the fence",
             },
+            Self::MwXml => FormatInfo {
+                title: "MW-XML mission (INAV, mwp)",
+                endings: &["mission"],
+                also: &["xml"],
+                writes: true,
+                carries: "points, holds, landings and home; the rest as private data",
+            },
+            Self::InavCli => FormatInfo {
+                title: "INAV CLI text",
+                endings: &[],
+                also: &["txt"],
+                writes: true,
+                carries: "points, holds and landings; the rest as private data",
+            },
+            Self::Litchi => FormatInfo {
+                title: "Litchi mission",
+                endings: &[],
+                also: &["csv"],
+                writes: false,
+                carries: "points and timed holds",
+            },
+            Self::Csv => FormatInfo {
+                title: "table of waypoints",
+                endings: &["csv"],
+                also: &[],
+                writes: true,
+                carries: "the waypoints; not name, home and settings",
+            },
         }
     }
 
@@ -181,7 +220,14 @@ impl Format {
             let key = line.split_once('=').map_or("", |(key, _)| key.trim());
             line.starts_with('[') || native_read::FILE_KEYS.contains(&key)
         });
-        if is_toml { Self::Toml } else { Self::CliText }
+        match text.as_ref() {
+            _ if is_toml => Self::Toml,
+            text if root_element(text).is_some_and(inav::mw_xml::is_root) => Self::MwXml,
+            text if litchi::is_header(text) => Self::Litchi,
+            text if csv_plan::is_header(text) => Self::Csv,
+            text if inav::cli::is_mission(text) => Self::InavCli,
+            _ => Self::CliText,
+        }
     }
 
     /// Returns the endings that can be written, for messages: `.toml, .txt`.
@@ -234,12 +280,25 @@ mod tests {
         assert_eq!(Format::from_file_name("dir.txt/square"), None);
         assert_eq!(Format::from_file_name(".txt"), None);
         assert!(Format::endings().starts_with(".toml, .txt"));
+        assert_eq!(Format::from_file_name("a.mission"), Some(Format::MwXml));
+        assert_eq!(Format::from_file_name("a.csv"), Some(Format::Csv));
     }
 
     #[test]
     fn a_nameless_text_shows_its_format() {
         for text in ["name = \"x\"", "\u{feff}# mine\n\n[[waypoint]]", "waypoint = [{type='LAND'}]"] {
             assert_eq!(Format::of_contents(text.as_bytes()), Format::Toml, "{text}");
+        }
+        let litchi = "latitude,longitude,altitude(m),heading(deg)\n1,2,3,4";
+        for (text, format, name) in [
+            ("<?xml version='1.0'?>\n<mission/>", Format::MwXml, "a.mission"),
+            ("<MISSION>", Format::MwXml, "a.xml"),
+            ("# INAV/MATEK\nfeature GPS\n# wp 0 valid\n", Format::InavCli, "a.txt"),
+            ("wp 0 1 404640000 -795175000 5000 0 0 0 165\n", Format::InavCli, "a.txt"),
+            (litchi, Format::Litchi, "a.csv"),
+            ("type;lat_deg;lon_deg;alt_m\r\n", Format::Csv, "a.csv"),
+        ] {
+            assert_eq!(Format::detect(name, text.as_bytes()), (format, None), "{text}");
         }
         for text in ["", "# dump\nbatch start", "waypoint insert 0 1 2", "set name = x", "=", "x = 1"] {
             assert_eq!(Format::of_contents(text.as_bytes()), Format::CliText, "{text}");

@@ -130,7 +130,8 @@ impl<'a> Problems<'a> {
             line,
             column,
             width: self.text[start..end].trim_end().chars().count().min(shown).max(1),
-            message: shortened(message.into()),
+            // Values of a file may have line ends; a message is one line.
+            message: shortened(message.into().replace(['\n', '\r'], " ")),
             hint: hint.into(),
             source,
             unlisted: 0,
