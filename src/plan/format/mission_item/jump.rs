@@ -1,6 +1,6 @@
 //! DO_JUMP: the order in which items are flown.
 
-use super::to_plan::Fault;
+use super::mapping::Fault;
 use super::{MissionItem, amount};
 use crate::plan::format::bounds::MAX_ITEMS;
 use crate::plan::format::loss::{Finding, Severity};
