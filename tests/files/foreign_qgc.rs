@@ -9,14 +9,15 @@ use betadeck::plan::format::{Format, PlanFile, ReadOptions, qgc_fences, read, re
 /// Reads a file, writes it again in both formats and reads that.
 fn import(name: &str, format: Format) -> (PlanFile, Vec<String>) {
     let path = Path::new("tests/exchange/qgc").join(name);
-    let contents = std::fs::read(&path).unwrap();
+    let contents = std::fs::read(&path).unwrap_or_else(|error| panic!("{name}: {error}"));
     let (found, finding) = Format::detect(name, &contents);
     assert_eq!((found, finding), (format, None), "{name}");
     let file = read(name, &contents, found, &ReadOptions::default())
         .unwrap_or_else(|errors| panic!("{}", report(&errors)));
     for format in [Format::QgcPlan, Format::QgcWpl] {
         let written = write(&file, format);
-        let back = read("back", &written.contents, format, &ReadOptions::default()).unwrap();
+        let back = read("back", &written.contents, format, &ReadOptions::default())
+            .unwrap_or_else(|errors| panic!("{}", report(&errors)));
         let lost = written.losses.findings.iter().any(|finding| finding.waypoint.is_some());
         assert!(lost || back.plan == file.plan, "{name} as {format}: {:?}", written.losses);
     }

@@ -1,17 +1,19 @@
 //! The items of MAVLink missions as plain data, and both ways between items and waypoints.
 //!
-//! `to_plan` gives items their meaning, `jump` unrolls their jumps, `of_plan` makes items of a plan, and `command` is
+//! `to_plan` gives items their meaning as a `mapping`, `jump` unrolls their jumps, `of_plan` makes items of a plan, and `command` is
 //! the table of the commands without a place in a plan. The readers and writers of the files are the users.
 
 mod command;
 mod jump;
+mod mapping;
 mod of_plan;
 #[cfg(test)]
 pub(super) mod tests;
 mod to_plan;
 
+pub(super) use mapping::Mapping;
 pub(super) use of_plan::{Sent, send};
-pub(super) use to_plan::{Mapping, Mission};
+pub(super) use to_plan::Mission;
 
 use super::bounds::Reference;
 use super::loss::Place;

@@ -166,12 +166,12 @@ impl Table {
             return;
         };
         if index == 0 {
-            self.home = read_home(lat_deg, lon_deg, altitude_m)
-                .map_err(|message| {
-                    problems.add(at..at + length, format!("row 0: {message}"), "row 0 is the home")
-                })
-                .ok()
-                .flatten();
+            match read_home(lat_deg, lon_deg, altitude_m) {
+                Ok(home) => self.home = home,
+                Err(message) => {
+                    problems.add(at..at + length, format!("row 0: {message}"), "row 0 is the home");
+                }
+            }
             return;
         }
         let Some(command) = whole(command) else {

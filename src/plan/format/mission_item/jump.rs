@@ -1,13 +1,15 @@
 //! DO_JUMP: the order in which items are flown.
 
-use super::to_plan::Fault;
+use std::collections::BTreeMap;
+
+use super::mapping::Fault;
 use super::{MissionItem, amount};
 use crate::plan::format::bounds::MAX_ITEMS;
 use crate::plan::format::loss::{Finding, Severity};
 
 /// The command of a jump.
 const JUMP: u16 = 177;
-/// A target of 10 000 items that jump needs no more steps than this.
+/// The most items that are flown or jump, one after another.
 const MOST_STEPS: usize = 2 * MAX_ITEMS;
 
 /// The order of the items.
@@ -28,6 +30,9 @@ pub(super) struct Order {
 pub(super) fn order(items: &[MissionItem]) -> Result<Order, Fault> {
     let mut order = Order::default();
     let mut left: Vec<Option<usize>> = vec![None; items.len()];
+    // Of items with the same number the first one is the target.
+    let targets: BTreeMap<usize, usize> =
+        items.iter().enumerate().rev().map(|(at, item)| (item.number, at)).collect();
     let mut at = 0;
     let mut steps = 0;
     while let Some(item) = items.get(at) {
@@ -45,7 +50,9 @@ pub(super) fn order(items: &[MissionItem]) -> Result<Order, Fault> {
         if steps > MOST_STEPS {
             return Err(fault(format!("the jumps give more than {MAX_ITEMS} items")));
         }
-        let target = items.iter().position(|other| other.number as f64 == item.param(1));
+        let number = Some(item.param(1)).filter(|number| number.fract() == 0.0 && *number >= 0.0);
+        // Saturates: no item has such a number.
+        let target = number.and_then(|number| targets.get(&(number as usize)).copied());
         let target = target.ok_or_else(|| {
             fault(format!(
                 "the jump of item {} goes to item {}, which is not there",

@@ -2,13 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use super::mapping::{Fault, Mapping};
 use super::{MissionItem, amount, command, jump, metres};
 use crate::geo::LatLon;
 use crate::plan::estimate::Assumptions;
 use crate::plan::format::HomePosition;
 use crate::plan::format::bounds;
 use crate::plan::format::loss::{Finding, Severity};
-use crate::plan::{Altitude, HoldPattern, LegSpeed, MAX_WAYPOINTS, Seconds, Waypoint, WaypointType};
+use crate::plan::{Altitude, HoldPattern, LegSpeed, Seconds, Waypoint, WaypointType};
 
 /// The longest time of a waypoint, s.
 const LONGEST_S: f64 = 6553.5;
@@ -27,39 +28,6 @@ pub(in crate::plan::format) struct Mission<'a> {
     pub(in crate::plan::format) waypoint_as: WaypointType,
     /// An altitude above ground is one above home.
     pub(in crate::plan::format) flat: bool,
-}
-
-/// The waypoints of a mission.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub(in crate::plan::format) struct Mapping {
-    /// Each waypoint, with the index of its item.
-    pub(in crate::plan::format) waypoints: Vec<(Waypoint, usize)>,
-    pub(in crate::plan::format) findings: Vec<Finding>,
-    pub(in crate::plan::format) faults: Vec<Fault>,
-    /// The index of the first jump that is flown.
-    jump: Option<usize>,
-}
-
-impl Mapping {
-    /// Returns the fault of a mission with too many waypoints.
-    pub(in crate::plan::format) fn too_many(&self) -> Option<Fault> {
-        let count = self.waypoints.len();
-        let &(_, first) = self.waypoints.get(MAX_WAYPOINTS)?;
-        let (item, message) = match self.jump {
-            Some(jump) => (jump, format!("with its jumps the mission has {count} waypoints")),
-            None => (first, format!("waypoint {MAX_WAYPOINTS} does not fit: the file has {count}")),
-        };
-        Some(Fault { item, message, hint: format!("a plan holds at most {MAX_WAYPOINTS} waypoints") })
-    }
-}
-
-/// An item that cannot be taken.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(in crate::plan::format) struct Fault {
-    /// The index of the item.
-    pub(in crate::plan::format) item: usize,
-    pub(in crate::plan::format) message: String,
-    pub(in crate::plan::format) hint: String,
 }
 
 impl Mission<'_> {
