@@ -1,7 +1,9 @@
 //! Plan files, in every format.
 
 use betadeck::plan::estimate::{Assumptions, estimate};
-use betadeck::plan::format::{Format, PlanError, PlanFile, parse, report, table, write};
+use betadeck::plan::format::{
+    Format, PlanError, PlanFile, ReadOptions, parse, read, read_features, report, table, write,
+};
 use betadeck::plan::review::review;
 use strum::IntoEnumIterator as _;
 
@@ -14,12 +16,18 @@ pub fn run(data: &[u8]) {
             Err(errors) => assert_places(&errors, text),
         }
     }
+    match read_features("fuzz", data) {
+        Ok(features) => {
+            assert!(features.iter().flat_map(|feature| feature.vertices()).all(|v| v.position.is_on_globe()));
+        }
+        Err(errors) => assert_places(&errors, text),
+    }
 }
 
 fn assert_good(file: &PlanFile) {
     for format in Format::iter() {
         let written = write(file, format);
-        let back = parse("fuzz", &written.text(), format)
+        let back = read("fuzz", &written.contents, format, &ReadOptions::default())
             .unwrap_or_else(|errors| panic!("{}\n{}", report(&errors), written.text()));
         assert_eq!(back.plan, file.plan, "{}", written.text());
         assert_eq!(write(&back, format).contents, written.contents);

@@ -25,6 +25,8 @@ pub(super) fn read(text: &str, options: &ReadOptions, problems: &mut Problems<'_
     match builder.choose() {
         Choice::Line(line) => builder.line(&line),
         Choice::Refused => return PlanFile::default(),
+        // Our own plan without waypoints.
+        Choice::None if builder.is_own_file() => {}
         Choice::None => {
             builder.refuse_nothing();
             return PlanFile::default();

@@ -130,7 +130,8 @@ impl<'a> Problems<'a> {
             line,
             column,
             width: self.text[start..end].trim_end().chars().count().min(shown).max(1),
-            message: shortened(message.into()),
+            // A name in a file may have line ends.
+            message: shortened(message.into().replace(['\n', '\r'], " ")),
             hint: hint.into(),
             source,
             unlisted: 0,
