@@ -61,7 +61,7 @@ proptest! {
     #[test]
     fn maps_carry_everything_but_what_the_findings_name(file in plan_file(), absolute in any::<bool>()) {
         for format in MAPS {
-            let options = WriteOptions { absolute, ..WriteOptions::default() };
+            let options = WriteOptions { absolute };
             let written = write_with(&file, format, &options);
             if written.is_refused() {
                 prop_assert!(absolute && file.home.and_then(|home| home.amsl_m).is_none());

@@ -36,7 +36,8 @@ pub(super) fn read(text: &str, options: &ReadOptions, problems: &mut Problems<'_
 }
 
 fn is_waypoint(feature: &MapFeature) -> bool {
-    feature.properties.get("featureType") == Some("waypoint")
+    // Other programs keep our properties when they convert a KML file.
+    feature.properties.get("featureType") == Some("waypoint") || own_type(&feature.properties).is_some()
 }
 
 /// Reads the features that are waypoints, or else all points, in the order of their numbers.

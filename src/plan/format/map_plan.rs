@@ -199,6 +199,9 @@ impl<'m, 'p, 'a> Builder<'m, 'p, 'a> {
 
     /// Returns the altitude of a point above home, if it says it.
     fn shown_altitude(&self, spot: &Spot<'_>) -> Option<f64> {
+        if let Some(text) = spot.properties.get("altitudeRelative") {
+            return text.parse().ok().filter(|&metres| altitude_m(metres).is_ok());
+        }
         let (vertex, altitudes) = spot.vertex?;
         let metres = Some(f64::from(vertex.altitude_m)).filter(|metres| metres.is_finite())?;
         match altitudes {

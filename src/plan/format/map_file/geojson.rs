@@ -6,7 +6,7 @@ use std::fmt;
 
 use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 
-use super::collector::{Collector, MapFeature, Piece, Properties};
+use super::collector::{Altitudes, Collector, MapFeature, Piece, Properties};
 use super::positions::{Positions, PositionsSeed};
 use crate::plan::format::json;
 use crate::plan::format::loss::Place;
@@ -57,7 +57,11 @@ pub(super) fn read(text: &str, collector: &mut Collector<'_, '_>) {
 /// Passes a feature on.
 fn give(object: Object, collector: &mut Collector<'_, '_>, index: Option<usize>) -> Result<(), String> {
     let place = index.map(|index| Place::Pointer { pointer: format!("/features/{index}") });
-    let Object { properties, name, pieces, .. } = object;
+    let Object { properties, name, mut pieces, .. } = object;
+    // GDAL keeps the altitude mode of a KML file as a property.
+    if let Some(mode) = properties.get("altitudeMode").and_then(Altitudes::of_mode) {
+        pieces.iter_mut().for_each(|piece| piece.altitudes = mode);
+    }
     collector.feature(MapFeature { name, properties, pieces, place, ..MapFeature::default() })
 }
 
