@@ -18,7 +18,12 @@ pub fn run(data: &[u8]) {
     }
     match read_features("fuzz", data) {
         Ok(features) => {
-            assert!(features.iter().flat_map(|feature| feature.vertices()).all(|v| v.position.is_on_globe()));
+            assert!(
+                features
+                    .iter()
+                    .flat_map(betadeck::plan::feature::Feature::vertices)
+                    .all(|v| v.position.is_on_globe())
+            );
         }
         Err(errors) => assert_places(&errors, text),
     }

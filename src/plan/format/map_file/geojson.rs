@@ -132,7 +132,7 @@ impl<'de> Visitor<'de> for ObjectSeed<'_, '_, '_> {
                     map.next_value_seed(FeaturesSeed { collector: &mut *collector })?;
                 }
                 "crs" => {
-                    map.next_value::<Option<Crs>>()?.map_or(Ok(()), Crs::check).map_err(Error::custom)?
+                    map.next_value::<Option<Crs>>()?.map_or(Ok(()), Crs::check).map_err(Error::custom)?;
                 }
                 "betadeck" if role == Role::Root => {
                     map.next_value::<Private>()?.keep(collector);
@@ -154,7 +154,10 @@ impl<'de> Visitor<'de> for ObjectSeed<'_, '_, '_> {
             (
                 "Point" | "MultiPoint" | "LineString" | "MultiLineString" | "Polygon" | "MultiPolygon",
                 Role::Root | Role::Geometry,
-            ) => object.pieces = positions.pieces(of_type).map_err(A::Error::custom)?,
+            ) => {
+                object.pieces =
+                    positions.pieces(of_type, collector.limits.features).map_err(A::Error::custom)?;
+            }
             _ => return Err(A::Error::custom(format!("the type {of_type:?} does not belong here"))),
         }
         Ok(object)
