@@ -2,7 +2,6 @@
 #![allow(clippy::disallowed_methods, reason = "measures the wall time of the flight")]
 
 mod output;
-mod track_files;
 mod watched;
 
 use std::sync::Arc;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use betadeck::geo::LatLon;
-use betadeck::plan::feature::Shape;
+use betadeck::plan::feature::{Feature, Shape};
 use betadeck::plan::format::loss::Severity;
 use betadeck::plan::format::{
     Format, HomePosition, PlanFile, ReadOptions, WaypointRecord, WriteOptions, read, read_features, report,
@@ -61,7 +61,7 @@ proptest! {
     #[test]
     fn maps_carry_everything_but_what_the_findings_name(file in plan_file(), absolute in any::<bool>()) {
         for format in MAPS {
-            let options = WriteOptions { absolute, ..WriteOptions::default() };
+            let options = WriteOptions { absolute };
             let written = write_with(&file, format, &options);
             if written.is_refused() {
                 prop_assert!(absolute && file.home.and_then(|home| home.amsl_m).is_none());
@@ -119,7 +119,7 @@ struct Sample {
 }
 
 fn samples() -> Vec<Sample> {
-    let home: HomePosition = "40.4635,-79.5182,300".parse().unwrap();
+    let home: HomePosition = "40.4635,-79.5182,300".parse().expect("a home");
     let with_home = ReadOptions { home: Some(home), ..ReadOptions::default() };
     let sample = |file, options: &ReadOptions, waypoints, worst, shapes| Sample {
         file,
@@ -161,7 +161,7 @@ fn files_of_other_programs_are_read() {
         assert_eq!(plan.losses.worst(), Some(worst), "{file}: {:#?}", plan.losses);
         let features = read_features(file, &contents).unwrap();
         assert_eq!(features.len(), shapes, "{file}: {features:?}");
-        assert!(features.iter().flat_map(|feature| feature.vertices()).all(|v| v.position.is_on_globe()));
+        assert!(features.iter().flat_map(Feature::vertices).all(|v| v.position.is_on_globe()));
         for format in MAPS {
             let written = write_with(&plan, format, &WriteOptions::default());
             assert_eq!(back(&written.contents, format).plan, plan.plan, "{file} to {format}");

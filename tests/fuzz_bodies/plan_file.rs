@@ -1,7 +1,9 @@
 //! Plan files, in every format.
 
 use betadeck::plan::estimate::{Assumptions, estimate};
-use betadeck::plan::format::{Format, PlanError, PlanFile, parse, report, table, write};
+use betadeck::plan::format::{
+    Format, PlanError, PlanFile, ReadOptions, parse, read, read_features, report, table, write,
+};
 use betadeck::plan::review::review;
 use strum::IntoEnumIterator as _;
 
@@ -14,6 +16,17 @@ pub fn run(data: &[u8]) {
             Err(errors) => assert_places(&errors, text),
         }
     }
+    match read_features("fuzz", data) {
+        Ok(features) => {
+            assert!(
+                features
+                    .iter()
+                    .flat_map(betadeck::plan::feature::Feature::vertices)
+                    .all(|v| v.position.is_on_globe())
+            );
+        }
+        Err(errors) => assert_places(&errors, text),
+    }
 }
 
 fn assert_good(file: &PlanFile) {
@@ -23,7 +36,7 @@ fn assert_good(file: &PlanFile) {
             assert!(written.contents.is_empty());
             continue;
         }
-        let back = parse("fuzz", &written.text(), format)
+        let back = read("fuzz", &written.contents, format, &ReadOptions::default())
             .unwrap_or_else(|errors| panic!("{}\n{}", report(&errors), written.text()));
         assert_eq!(back.plan, file.plan, "{}", written.text());
         assert_eq!(write(&back, format).contents, written.contents);

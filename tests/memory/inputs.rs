@@ -16,7 +16,7 @@ use betadeck::link::proto::line_editor::LineEditor;
 use betadeck::link::proto::serial_session::{OUTPUT_MAX, SerialRequest, SerialSession};
 use betadeck::msp::{Decoder, MAX_REPLY, MAX_REQUEST};
 use betadeck::plan::MAX_WAYPOINTS;
-use betadeck::plan::format::{Format, parse, report};
+use betadeck::plan::format::{Format, parse, read_features, report};
 use betadeck::scenario::{BuiltinFiles, read};
 use betadeck::sim::Airframe;
 
@@ -390,4 +390,32 @@ fn scenarios_that_unfold_to_more_than_is_allowed() {
         // Refused data is not created and dropped again and again.
         assert!(taken.total <= 32 * most, "{what}: {taken:?}");
     }
+}
+
+/// A map takes at most four times its size with its text.
+#[test]
+fn maps() {
+    let repeated = |head: &str, part: &str, tail: &str| {
+        let count = 4 * MIB / part.len();
+        format!("{head}{}{tail}", part.repeat(count))
+    };
+    let texts = [
+        repeated(
+            "<kml><Placemark><LineString><coordinates>",
+            "1,2 ",
+            "</coordinates></LineString></Placemark></kml>",
+        ),
+        repeated("<gpx><trk><trkseg>", "<trkpt lat='1' lon='2'/>", "</trkseg></trk></gpx>"),
+        repeated("{\"type\":\"LineString\",\"coordinates\":[", "[8.55,47.37],", "[1,2]]}"),
+        repeated("<kml>", "\n", "</kml>"),
+        repeated("{\"type\":\"Feature\",\"properties\":{\"name\":\"", "x", "\"},\"geometry\":null}"),
+    ];
+    for text in &texts {
+        let (features, taken) = measured(|| read_features("map", text.as_bytes()));
+        assert!(features.is_ok(), "{}", &text[..60]);
+        assert!(taken.peak < 3 * text.len() + 64 * KIB, "{}: {taken:?} of {}", &text[..60], text.len());
+    }
+    let text = repeated("{\"type\":\"MultiPoint\",\"coordinates\":[", "[1,2],", "[1,2]]}");
+    let (features, taken) = measured(|| read_features("map", text.as_bytes()));
+    assert!(features.is_err() && taken.peak < 24 * MIB, "{taken:?}");
 }

@@ -1,9 +1,8 @@
 //! The outputs of a headless flight: lines, a track, and the last lines on standard error.
 
 use std::io::{BufWriter, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use super::track_files::{self, TrackFiles};
 use super::watched::WatchedFlight;
 use crate::app::error::{self, AppError};
 use crate::app::firmware::reported;
@@ -12,7 +11,9 @@ use crate::app::patient_output::PatientOutput;
 use crate::app::setup;
 use crate::args::{FlyArgs, OutputFile};
 use crate::plan::format::PlanFile;
-use crate::report::{End, GpxHeader, GpxPoint, GpxWriter, Track, UtcSeconds, json, sentence, truth};
+use crate::report::{
+    End, GpxHeader, GpxPoint, GpxWriter, Track, TrackPoint, UtcSeconds, json, sentence, truth,
+};
 use crate::session::{Event, Flying as _, Subscriber};
 use crate::signals::SimTime;
 use crate::text::printable;
@@ -214,7 +215,7 @@ impl Output {
         if !vehicle.time().0.is_multiple_of(1_000_000) {
             return Ok(());
         }
-        let Some((lat_deg, lon_deg, alt_m)) = track_files::place(vehicle) else { return Ok(()) };
+        let Some((lat_deg, lon_deg, alt_m)) = place(vehicle) else { return Ok(()) };
         gpx.offer(&GpxPoint { time: vehicle.time(), lat_deg, lon_deg, alt_m }).map_err(write_failed)
     }
 
@@ -278,7 +279,58 @@ impl Subscriber<WatchedFlight> for Output {
     }
 }
 
+/// The track and its files.
+struct TrackFiles {
+    track: Track,
+    /// The interval of the points, µs.
+    every_us: u64,
+    kml: Option<StreamedOutput>,
+    geojson: Option<StreamedOutput>,
+}
+
+impl TrackFiles {
+    /// Opens the files of the options, if there are any.
+    fn open(args: &FlyArgs, track: impl FnOnce() -> Track) -> Result<Option<Self>, AppError> {
+        if args.kml.is_none() && args.geojson.is_none() {
+            return Ok(None);
+        }
+        let open = |path: &Option<PathBuf>| path.as_deref().map(StreamedOutput::begin).transpose();
+        let (kml, geojson) = (open(&args.kml)?, open(&args.geojson)?);
+        Ok(Some(Self { track: track(), every_us: args.track_every_us(), kml, geojson }))
+    }
+
+    /// Records the place of the craft if a point is due.
+    fn offer(&mut self, vehicle: &Vehicle) {
+        let time = vehicle.time();
+        if time.0 / self.every_us == time.0.saturating_sub(vehicle.step_us()) / self.every_us {
+            return;
+        }
+        let Some((lat_deg, lon_deg, alt_m)) = place(vehicle) else { return };
+        let state = vehicle.snapshot().nav.map(|nav| nav.state);
+        self.track.add(TrackPoint { time, lat_deg, lon_deg, alt_m, state });
+    }
+
+    /// Writes the files.
+    fn finish(self) -> Result<(), AppError> {
+        let Self { track, kml, geojson, .. } = self;
+        let write = |file: Option<StreamedOutput>, text: &dyn Fn() -> String| {
+            let Some(mut file) = file else { return Ok(()) };
+            file.write_all(text().as_bytes()).map_err(write_failed)?;
+            file.finish()
+        };
+        write(kml, &|| track.kml())?;
+        write(geojson, &|| track.geojson())
+    }
+}
+
+/// Returns the true place of the craft: latitude and longitude, degrees, and altitude above home, m.
+fn place(vehicle: &Vehicle) -> Option<(f64, f64, f64)> {
+    let (truth, frame) = (vehicle.truth()?, vehicle.local_frame()?);
+    let (lat_deg, lon_deg, amsl_m) = frame.to_geodetic(truth.pos_enu);
+    Some((lat_deg, lon_deg, amsl_m - frame.alt_amsl_m))
+}
+
 #[expect(clippy::needless_pass_by_value, reason = "a map_err argument")]
-pub(super) fn write_failed(error: std::io::Error) -> AppError {
+fn write_failed(error: std::io::Error) -> AppError {
     AppError::environment(format!("cannot write the output: {error}"))
 }

@@ -25,6 +25,8 @@ pub(super) fn read(text: &str, options: &ReadOptions, problems: &mut Problems<'_
     match builder.choose() {
         Choice::Line(line) => builder.line(&line),
         Choice::Refused => return PlanFile::default(),
+        // Our own plan without waypoints.
+        Choice::None if builder.is_own_file() => {}
         Choice::None => {
             builder.refuse_nothing();
             return PlanFile::default();
@@ -34,7 +36,8 @@ pub(super) fn read(text: &str, options: &ReadOptions, problems: &mut Problems<'_
 }
 
 fn is_waypoint(feature: &MapFeature) -> bool {
-    feature.properties.get("featureType") == Some("waypoint")
+    // Other programs keep our properties when they convert a KML file.
+    feature.properties.get("featureType") == Some("waypoint") || own_type(&feature.properties).is_some()
 }
 
 /// Reads the features that are waypoints, or else all points, in the order of their numbers.

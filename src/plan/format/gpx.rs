@@ -32,10 +32,12 @@ pub(super) fn read(text: &str, options: &ReadOptions, problems: &mut Problems<'_
         }
         Choice::Line(line) => builder.line(&line),
         Choice::Refused => return PlanFile::default(),
-        Choice::None if points(&map).next().is_none() => {
+        Choice::None if points(&map).next().is_none() && !builder.is_own_file() => {
             builder.refuse_nothing();
             return PlanFile::default();
         }
+        // Our own plan without waypoints.
+        Choice::None if builder.is_own_file() => {}
         Choice::None => {
             for (item, feature, piece) in points(&map) {
                 let Shape::Point(vertex) = piece.shape else { continue };
@@ -74,7 +76,7 @@ pub(super) fn write(file: &PlanFile) -> Written {
         <gpx version=\"1.1\" creator=\"betadeck\" xmlns=\"http://www.topografix.com/GPX/1/1\" \
         xmlns:b=\"urn:betadeck:1\">\n"
         .to_owned();
-    text.push_str(&format!("  <metadata>\n    <name>{}</name>\n", escaped(&file.name)));
+    text.push_str(&format!("  <metadata>\n    <name>{}</name>\n", escaped(map_data::xml_name(file))));
     if !carried(&file.description).is_empty() {
         text.push_str(&format!("    <desc>{}</desc>\n", escaped(&file.description)));
     }
@@ -87,7 +89,7 @@ pub(super) fn write(file: &PlanFile) -> Written {
         let amsl = home.amsl_m.map(|amsl| ("alt_amsl_m", amsl.to_string()));
         text.push_str(&point("  ", "wpt", home.position, ele, "Home", HOME, amsl.into_iter()));
     }
-    text.push_str(&format!("  <rte>\n    <name>{}</name>\n", escaped(&file.name)));
+    text.push_str(&format!("  <rte>\n    <name>{}</name>\n", escaped(map_data::xml_name(file))));
     for (index, waypoint) in file.plan.waypoints.iter().enumerate() {
         let kind = waypoint.kind;
         let ele = map_data::amsl_m(file.home, waypoint).filter(|_| kind.capability().altitude).map(metres);

@@ -27,10 +27,12 @@ pub(super) fn read(text: &str, options: &ReadOptions, problems: &mut Problems<'_
     match builder.choose() {
         Choice::Line(line) => builder.line(&line),
         Choice::Refused => return PlanFile::default(),
-        Choice::None if points(&map).next().is_none() => {
+        Choice::None if points(&map).next().is_none() && !builder.is_own_file() => {
             builder.refuse_nothing();
             return PlanFile::default();
         }
+        // Our own plan without waypoints.
+        Choice::None if builder.is_own_file() => {}
         Choice::None => {
             for (item, feature, piece) in points(&map) {
                 let Shape::Point(vertex) = piece.shape else { continue };
@@ -132,7 +134,7 @@ fn document(file: &PlanFile, options: &WriteOptions) -> Result<(String, LossRepo
     let mut text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
         <kml xmlns=\"http://www.opengis.net/kml/2.2\">\n<Document>\n"
         .to_owned();
-    text.push_str(&format!("  <name>{}</name>\n", escaped(&file.name)));
+    text.push_str(&format!("  <name>{}</name>\n", escaped(map_data::xml_name(file))));
     if !carried(&file.description).is_empty() {
         text.push_str(&format!("  <description>{}</description>\n", escaped(&file.description)));
     }

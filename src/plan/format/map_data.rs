@@ -158,6 +158,11 @@ pub(super) fn losses(file: &PlanFile, fence_as: &str) -> LossReport {
     losses
 }
 
+/// Returns the name for XML. A name of blanks would be read as none.
+pub(super) fn xml_name(file: &PlanFile) -> &str {
+    if super::xml::carried(&file.name).is_empty() { "plan" } else { &file.name }
+}
+
 /// Adds a finding for each text that XML cannot hold as it is.
 pub(super) fn add_text_losses(file: &PlanFile, losses: &mut LossReport) {
     let texts = [("name", &file.name), ("description", &file.description)];

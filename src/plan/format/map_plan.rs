@@ -62,6 +62,7 @@ pub(super) struct Builder<'m, 'p, 'a> {
     waypoints: Vec<Waypoint>,
     losses: LossReport,
     needs_amsl: bool,
+    has_own: bool,
 }
 
 impl<'m, 'p, 'a> Builder<'m, 'p, 'a> {
@@ -81,6 +82,7 @@ impl<'m, 'p, 'a> Builder<'m, 'p, 'a> {
             waypoints: Vec::new(),
             losses: LossReport::default(),
             needs_amsl: false,
+            has_own: false,
         };
         for skipped in &map.skipped {
             let why = "it is not a line or a point, and nothing is fetched";
@@ -109,6 +111,11 @@ impl<'m, 'p, 'a> Builder<'m, 'p, 'a> {
         true
     }
 
+    /// Returns `true` if the file has our data for the whole plan.
+    pub(super) fn is_own_file(&self) -> bool {
+        self.map.properties.get("betadeck") == Some(VERSION)
+    }
+
     fn read_home(&mut self, feature: &MapFeature) {
         let Some((Shape::Point(vertex), altitudes)) =
             feature.pieces.first().map(|piece| (&piece.shape, piece.altitudes))
@@ -122,9 +129,13 @@ impl<'m, 'p, 'a> Builder<'m, 'p, 'a> {
                 None
             }
         };
-        let shown = f64::from(vertex.altitude_m);
-        if let Some(own) = amsl_m
-            && altitudes == Altitudes::AboveSeaLevel
+        let shown = (f64::from(vertex.altitude_m) * 100.0).round() / 100.0;
+        let is_amsl = altitudes == Altitudes::AboveSeaLevel && shown.is_finite();
+        if amsl_m.is_none() && is_amsl {
+            // Another program dropped our data, and kept the point.
+            amsl_m = super::home::amsl_m(&shown.to_string()).ok();
+        } else if let Some(own) = amsl_m
+            && is_amsl
             && (own - shown).abs() > SAME_ALTITUDE_M
         {
             let why = "another program changed the altitude of home, the point counts";
@@ -161,6 +172,7 @@ impl<'m, 'p, 'a> Builder<'m, 'p, 'a> {
 
     /// Adds a waypoint of our own data. A place and an altitude that another program changed count.
     pub(super) fn own(&mut self, spot: &Spot<'_>, kind: WaypointType) {
+        self.has_own = true;
         let place = spot.vertex.map(|(vertex, _)| vertex.position);
         let record = match map_data::record(spot.properties, kind, place) {
             Ok(record) => record,
@@ -187,6 +199,9 @@ impl<'m, 'p, 'a> Builder<'m, 'p, 'a> {
 
     /// Returns the altitude of a point above home, if it says it.
     fn shown_altitude(&self, spot: &Spot<'_>) -> Option<f64> {
+        if let Some(text) = spot.properties.get("altitudeRelative") {
+            return text.parse().ok().filter(|&metres| altitude_m(metres).is_ok());
+        }
         let (vertex, altitudes) = spot.vertex?;
         let metres = Some(f64::from(vertex.altitude_m)).filter(|metres| metres.is_finite())?;
         match altitudes {
@@ -326,13 +341,18 @@ impl<'m, 'p, 'a> Builder<'m, 'p, 'a> {
             let message = format!("the file has {count} waypoints, a plan holds at most {MAX_WAYPOINTS}");
             self.problem(0, None, message, "remove some of the points");
         }
-        if count == 0 && self.problems.is_empty() {
+        if count == 0 && self.problems.is_empty() && !self.is_own_file() {
             self.problem(
                 0,
                 None,
                 "the file has no points of a plan".to_owned(),
                 "a plan is a line or points",
             );
+        }
+        if self.has_own && self.map.properties.get("betadeck").is_none() {
+            let why =
+                "the data of the whole plan are missing: another program wrote the file without its settings";
+            self.losses.add(Finding::new(Severity::Assumed, "settings", why));
         }
         let mut plan = FlightPlan::default();
         plan.waypoints.extend(self.waypoints.drain(..).take(MAX_WAYPOINTS));

@@ -114,3 +114,19 @@ fn wrong_values_have_their_pointer() {
     let other = "{\"type\":\"FeatureCollection\",\"betadeck\":{\"version\":2},\"features\":[]}";
     assert!(!faults(other).is_empty());
 }
+
+#[test]
+fn properties_of_a_converted_kml_are_read() {
+    let text = collection(&[point(
+        1.0,
+        "\"Name\":\"WP 0 HOLD\",\"altitudeMode\":\"relativeToGround\",\"type\":\"HOLD\",\"alt_m\":\"350\",\"duration_s\":\"5\"",
+    )]);
+    let file = read_with(&text, &ReadOptions::default());
+    let hold = file.plan.waypoints[0];
+    assert_eq!((hold.kind, hold.altitude.cm(), hold.duration.ds()), (WaypointType::Hold, 35_000, 50));
+    assert_eq!(file.losses.counts(), "1 assumed");
+    let changed = text.replace("\"350\"", "\"50\",\"altitudeRelative\":60");
+    let file = read_with(&changed, &ReadOptions::default());
+    assert_eq!(file.plan.waypoints[0].altitude.cm(), 6000);
+    assert_eq!(file.losses.counts(), "2 assumed");
+}

@@ -60,16 +60,14 @@ fn the_document_shows_points_path_and_fence() {
     let lines: Vec<String> = written.losses.findings.iter().map(ToString::to_string).collect();
     assert_eq!(lines.len(), 3, "{lines:?}");
     assert!(written.losses.is_lossless());
-    let absolute =
-        write_with(&plan(), Format::Kml, &WriteOptions { absolute: true, ..WriteOptions::default() });
+    let absolute = write_with(&plan(), Format::Kml, &WriteOptions { absolute: true });
     assert!(
         absolute
             .text()
             .contains("<altitudeMode>absolute</altitudeMode><coordinates>-79.5190000,40.4630000,350.25<")
     );
     let homeless = PlanFile { home: None, ..plan() };
-    let refused =
-        write_with(&homeless, Format::Kml, &WriteOptions { absolute: true, ..WriteOptions::default() });
+    let refused = write_with(&homeless, Format::Kml, &WriteOptions { absolute: true });
     assert!(refused.is_refused() && refused.contents.is_empty());
 }
 

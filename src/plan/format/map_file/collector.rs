@@ -24,7 +24,7 @@ const KEYS: &[&str] = &[
     "featureType",
     "sequenceNumber",
     "altitudeRelative",
-    "altitudeAMSL",
+    "altitudeMode",
     "command",
     "zone",
     "inclusion",
@@ -47,6 +47,18 @@ pub(in crate::plan::format) enum Altitudes {
     Clamped,
     AboveGround,
     AboveSeaLevel,
+}
+
+impl Altitudes {
+    /// Returns the reference of an altitude mode of KML.
+    pub(super) fn of_mode(mode: &str) -> Option<Self> {
+        match mode {
+            "absolute" => Some(Self::AboveSeaLevel),
+            "relativeToGround" | "relativeToSeaFloor" => Some(Self::AboveGround),
+            "clampToGround" | "clampToSeaFloor" => Some(Self::Clamped),
+            _ => None,
+        }
+    }
 }
 
 /// The kind of a piece in its file.
@@ -211,6 +223,11 @@ pub(super) struct Counter {
 }
 
 impl Counter {
+    /// Returns the number of vertices that may still come.
+    pub(super) fn left(&self) -> usize {
+        self.left
+    }
+
     /// Checks the numbers of a vertex and counts it. An altitude of `None` is not given.
     ///
     /// # Errors

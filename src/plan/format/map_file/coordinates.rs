@@ -25,6 +25,9 @@ impl Tuples {
     ///
     /// Returns the message for the first vertex that cannot be read, and its byte in the piece.
     pub(super) fn take(&mut self, piece: &str, counter: &mut Counter) -> Result<(), (usize, String)> {
+        // A list that grows would need twice the memory for a moment.
+        let blanks = piece.as_bytes().windows(2).filter(|pair| is_end_of_word(pair)).count();
+        self.vertices.reserve_exact((blanks + 1).min(counter.left()));
         let mut at = 0;
         while let Some(length) = piece[at..].find(char::is_whitespace) {
             let word = &piece[at..at + length];
@@ -63,6 +66,10 @@ impl Tuples {
         }
         Ok(())
     }
+}
+
+fn is_end_of_word(pair: &[u8]) -> bool {
+    matches!(pair, [word, blank] if !word.is_ascii_whitespace() && blank.is_ascii_whitespace())
 }
 
 /// Reads `LON LAT ALT`.

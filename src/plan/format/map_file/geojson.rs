@@ -6,7 +6,7 @@ use std::fmt;
 
 use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 
-use super::collector::{Collector, MapFeature, Piece, Properties};
+use super::collector::{Altitudes, Collector, MapFeature, Piece, Properties};
 use super::positions::{Positions, PositionsSeed};
 use crate::plan::format::json;
 use crate::plan::format::loss::Place;
@@ -57,7 +57,11 @@ pub(super) fn read(text: &str, collector: &mut Collector<'_, '_>) {
 /// Passes a feature on.
 fn give(object: Object, collector: &mut Collector<'_, '_>, index: Option<usize>) -> Result<(), String> {
     let place = index.map(|index| Place::Pointer { pointer: format!("/features/{index}") });
-    let Object { properties, name, pieces, .. } = object;
+    let Object { properties, name, mut pieces, .. } = object;
+    // GDAL keeps the altitude mode of a KML file as a property.
+    if let Some(mode) = properties.get("altitudeMode").and_then(Altitudes::of_mode) {
+        pieces.iter_mut().for_each(|piece| piece.altitudes = mode);
+    }
     collector.feature(MapFeature { name, properties, pieces, place, ..MapFeature::default() })
 }
 
@@ -128,7 +132,7 @@ impl<'de> Visitor<'de> for ObjectSeed<'_, '_, '_> {
                     map.next_value_seed(FeaturesSeed { collector: &mut *collector })?;
                 }
                 "crs" => {
-                    map.next_value::<Option<Crs>>()?.map_or(Ok(()), Crs::check).map_err(Error::custom)?
+                    map.next_value::<Option<Crs>>()?.map_or(Ok(()), Crs::check).map_err(Error::custom)?;
                 }
                 "betadeck" if role == Role::Root => {
                     map.next_value::<Private>()?.keep(collector);
@@ -150,7 +154,10 @@ impl<'de> Visitor<'de> for ObjectSeed<'_, '_, '_> {
             (
                 "Point" | "MultiPoint" | "LineString" | "MultiLineString" | "Polygon" | "MultiPolygon",
                 Role::Root | Role::Geometry,
-            ) => object.pieces = positions.pieces(of_type).map_err(A::Error::custom)?,
+            ) => {
+                object.pieces =
+                    positions.pieces(of_type, collector.limits.features).map_err(A::Error::custom)?;
+            }
             _ => return Err(A::Error::custom(format!("the type {of_type:?} does not belong here"))),
         }
         Ok(object)

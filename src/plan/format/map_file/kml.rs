@@ -145,12 +145,7 @@ impl Reader<'_, '_, '_, '_> {
     }
 
     fn altitudes(&mut self) -> Option<Altitudes> {
-        match self.text().as_str() {
-            "absolute" => Some(Altitudes::AboveSeaLevel),
-            "relativeToGround" | "relativeToSeaFloor" => Some(Altitudes::AboveGround),
-            "clampToGround" | "clampToSeaFloor" => Some(Altitudes::Clamped),
-            _ => None,
-        }
+        Altitudes::of_mode(&self.text())
     }
 
     fn simple(&mut self, kind: Kind, pieces: &mut Vec<Piece>) {

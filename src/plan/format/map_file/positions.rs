@@ -23,12 +23,12 @@ pub(super) enum Positions {
 }
 
 impl Positions {
-    /// Returns the shapes of a geometry of this type.
+    /// Returns the shapes of a geometry of this type, at most `most`.
     ///
     /// # Errors
     ///
-    /// Returns the message if the coordinates do not fit the type.
-    pub(super) fn pieces(self, of_type: &str) -> Result<Vec<Piece>, String> {
+    /// Returns the message if the coordinates do not fit the type, or if they are too many points.
+    pub(super) fn pieces(self, of_type: &str, most: usize) -> Result<Vec<Piece>, String> {
         let piece = |kind, shape| Piece { kind, altitudes: Altitudes::AboveSeaLevel, shape };
         let point = |vertex| piece(Kind::Point, Shape::Point(vertex));
         let line = |line: Vec<Vertex>| (line.len() > 1).then(|| piece(Kind::Line, Shape::Line(line)));
@@ -41,6 +41,9 @@ impl Positions {
         Ok(match (of_type, self) {
             (_, Self::Empty) => Vec::new(),
             ("Point", Self::One(vertex)) => vec![point(vertex)],
+            ("MultiPoint", Self::Line(points)) if points.len() > most => {
+                return Err(format!("the file has more than {most} shapes"));
+            }
             ("MultiPoint", Self::Line(points)) => points.into_iter().map(point).collect(),
             ("LineString", Self::Line(vertices)) => line(vertices).into_iter().collect(),
             ("MultiLineString", Self::Lines(lines)) => lines.into_iter().filter_map(line).collect(),
