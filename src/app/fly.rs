@@ -18,11 +18,15 @@ use crate::args::{FlyArgs, PhysicsArgs, Speed};
 use crate::fc::upload;
 use crate::flight::FlightResult;
 use crate::flight::setup::{BootLines, PhysicsSource};
+use crate::geo::LatLon;
+use crate::plan::estimate::Assumptions;
 use crate::plan::format::PlanFile;
+use crate::plan::review::{Finding, clearances};
 use crate::report::End;
 use crate::scenario::FlightHash;
 use crate::session::{Event, Flying as _, Runner, Stopped, Subscriber, hazards};
 use crate::storage::Store;
+use crate::terrain::{Relief, Tiles};
 use crate::vehicle::Vehicle;
 use output::{Output, Prelude};
 use watched::WatchedFlight;
@@ -50,8 +54,9 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
     setup.boot_lines.push(BootLines::settings("--set", &args.mission.set));
     setup.stick_inputs.clone_from(&args.stick);
     setup.remote_controller = firmware.is_some();
+    let tiles = setup.world.terrain.clone();
     let vehicle = setup::build(setup, &mut notices)?;
-    let start = Start { args, plan, vehicle, notices, interrupted: interrupt_flag()? };
+    let start = Start { args, plan, tiles, vehicle, notices, interrupted: interrupt_flag()? };
     let prepared = match &firmware {
         None => Some(start.embedded()?),
         Some(firmware) => start.remote(firmware)?,
@@ -97,6 +102,8 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
 struct Start<'a> {
     args: &'a FlyArgs,
     plan: PlanFile,
+    /// The elevation tiles under the plan.
+    tiles: Option<Arc<Tiles>>,
     vehicle: Vehicle,
     /// The first messages.
     notices: Vec<String>,
@@ -142,7 +149,7 @@ impl Start<'_> {
         let options = setup::flight_options(&self.args.mission);
         self.notices.extend(self.hazards());
         let hash = self.hash();
-        let Self { args, plan, vehicle, notices, interrupted } = self;
+        let Self { args, plan, vehicle, notices, interrupted, .. } = self;
         let mut flight = WatchedFlight::new(setup::start_flight(vehicle, &options)?, hash);
         let mut output = Output::open(args, flight.vehicle(), &plan)?;
         first_events(flight.vehicle_mut(), notices).iter().try_for_each(|event| output.write(event))?;
@@ -183,7 +190,23 @@ impl Start<'_> {
     }
 
     fn hazards(&self) -> Vec<String> {
-        hazards(&self.vehicle, self.args.mission.takeoff_m(), Some(self.args.review.max_altitude_m()))
+        let (takeoff_m, review) = (self.args.mission.takeoff_m(), self.args.review);
+        let mut hazards = hazards(&self.vehicle, takeoff_m, Some(review.max_altitude_m()));
+        hazards.extend(self.low().iter().map(|finding| format!("Caution: {finding}.")));
+        hazards
+    }
+
+    /// Returns the legs and the ways home that come too close to the ground.
+    fn low(&self) -> Vec<Finding> {
+        let settings = self.vehicle.controller().settings_view();
+        let Some((frame, settings)) = self.vehicle.local_frame().zip(settings) else { return Vec::new() };
+        let home = LatLon::from_degrees(frame.lat_deg, frame.lon_deg);
+        let relief = self.tiles.clone().and_then(|tiles| Relief::new(tiles, home));
+        let assumptions =
+            Assumptions { start_alt_m: self.args.mission.takeoff_m(), ..settings.assumptions() };
+        relief.map_or_else(Vec::new, |relief| {
+            clearances(&self.plan.plan, &assumptions, &relief, self.args.review.clearance_m()).findings
+        })
     }
 }
 

@@ -1,15 +1,16 @@
 //! A set of tiles, and the height at a place.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use super::grid::Grid;
 use super::square::Square;
 use crate::geo::{LatLon, METRES_PER_E7};
 
-/// Tiles by their squares.
+/// Tiles by their squares. A clone shares them.
 #[derive(Clone, Default, PartialEq)]
 pub struct Tiles {
-    grids: BTreeMap<Square, Grid>,
+    grids: BTreeMap<Square, Arc<Grid>>,
 }
 
 /// The ground at a place.
@@ -23,7 +24,7 @@ pub struct Spot {
 
 impl Tiles {
     pub fn insert(&mut self, square: Square, grid: Grid) {
-        self.grids.insert(square, grid);
+        self.grids.insert(square, Arc::new(grid));
     }
 
     pub fn is_empty(&self) -> bool {

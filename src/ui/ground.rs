@@ -7,8 +7,10 @@ use std::sync::Arc;
 use super::config::GroundConfig;
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
+use crate::plan::estimate::Assumptions;
+use crate::plan::review::Finding;
 use crate::terrain::{Relief, Tiles};
-pub(super) use under::{above_home_m, agl_m, follow_plan, read, relief};
+pub(super) use under::{above_home_m, agl_m, follow_clearance, follow_plan, read, relief};
 
 /// The tiles that were read.
 #[derive(Debug, Default)]
@@ -19,12 +21,32 @@ pub struct GroundState {
     can_read: bool,
     /// The home and the plan for which tiles were requested last.
     asked: Option<(LatLon, FlightPlan)>,
+    /// The findings about low clearances, and their input. A look at the ground is too slow for each picture.
+    low: Vec<Finding>,
+    low_basis: Option<LowBasis>,
+}
+
+/// The input of the findings about low clearances.
+#[derive(Debug, Clone, PartialEq)]
+struct LowBasis {
+    home: LatLon,
+    plan: FlightPlan,
+    assumptions: Assumptions,
+    clearance_m: f64,
+    tiles: usize,
+    /// The number of points and the time of the flown estimate, s.
+    estimate: Option<(usize, f64)>,
 }
 
 impl GroundState {
     pub(super) fn new(config: GroundConfig) -> Self {
         let GroundConfig { clearance_m, tiles, can_read } = config;
-        Self { clearance_m, tiles, can_read, asked: None }
+        Self { clearance_m, tiles, can_read, ..Self::default() }
+    }
+
+    /// Returns the findings about low clearances of the open plan.
+    pub(super) fn low(&self) -> &[Finding] {
+        &self.low
     }
 
     /// Returns the ground as seen from home, if the tiles know its height.

@@ -57,6 +57,7 @@ pub fn update(state: &mut AppState, msg: Msg) -> Vec<Effect> {
         tutorial::follow(&mut state.tutorial, &mut state.shared);
         effects.extend(forecast::follow_plan(&mut state.shared));
         effects.extend(ground::follow_plan(&mut state.shared));
+        ground::follow_clearance(&mut state.shared);
         state.shared.editor.follow_generator(findings::home(&state.shared));
         zones::follow(&mut state.shared);
     }

@@ -36,12 +36,19 @@ fn assert_good(file: &PlanFile) {
             assert!(written.contents.is_empty());
             continue;
         }
-        let back = read("fuzz", &written.contents, format, &ReadOptions::default())
-            .unwrap_or_else(|errors| panic!("{}\n{}", report(&errors), written.text()));
-        assert_eq!(back.plan, file.plan, "{}", written.text());
-        assert_eq!(write(&back, format).contents, written.contents);
+        let is_own = matches!(format, Format::Toml | Format::CliText);
+        let back = match read("fuzz", &written.contents, format, &ReadOptions::default()) {
+            Ok(back) => back,
+            // A map without points is no plan.
+            Err(_) if !is_own && file.plan.waypoints.is_empty() => continue,
+            Err(errors) => panic!("{}\n{}", report(&errors), written.text()),
+        };
+        if is_own || written.losses.is_lossless() {
+            assert_eq!(back.plan, file.plan, "{}", written.text());
+            assert_eq!(write(&back, format).contents, written.contents);
+        }
         if written.losses.is_lossless() {
-            assert_eq!((&back.home, &back.settings), (&file.home, &file.settings));
+            assert_eq!((&back.home, &back.settings), (&file.home, &file.settings), "{}", written.text());
         }
     }
     let home = file.home.map_or_else(Default::default, |home| home.position);

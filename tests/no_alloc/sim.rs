@@ -1,8 +1,11 @@
 //! One step of the world allocates nothing, whatever happens in it.
 
+use std::sync::Arc;
+
 use betadeck::signals::MotorCommand;
 use betadeck::sim::{Fault, Noise, World, WorldCommand, WorldConfig};
 use betadeck::telemetry::Turbulence;
+use betadeck::terrain::{Grid, Samples, Square, Tiles};
 
 use crate::allocations;
 
@@ -50,6 +53,36 @@ fn a_flight_with_faults_wind_and_a_crash_allocates_nothing() {
     }
     assert_eq!(allocations(), before, "steps allocate");
     assert!(world.truth().crashed && events > 20, "{events} events");
+}
+
+#[test]
+fn a_flight_over_elevation_tiles_allocates_nothing() {
+    let side = 1201;
+    let step_deg = 1.0 / 1200.0;
+    let grid = Grid {
+        rows: side,
+        cols: side,
+        north_deg: 41.0,
+        west_deg: -80.0,
+        lat_step_deg: step_deg,
+        lon_step_deg: step_deg,
+        samples: Samples::Metres((0..side * side).map(|index| (index % side) as i16).collect()),
+    };
+    let mut tiles = Tiles::default();
+    tiles.insert(Square { lat_deg: 40, lon_deg: -80 }, grid);
+    let mut config = WorldConfig { terrain: Some(Arc::new(tiles)), ..WorldConfig::default() };
+    config.switches.set("ground=terrain").expect("a switch");
+    config.switches.set("ground_effect=on").expect("a switch");
+    let mut world = World::new(config).expect("a world");
+    let hover = world.airframe().hover_rotor_speed() / world.airframe().rotor_speed_max;
+    let before = allocations();
+    for step in 0..6000_u32 {
+        let command = if step < 2000 { 1.1 * hover } else { 0.5 * hover };
+        world.step(&MotorCommand([command; 4]));
+        while world.take_event().is_some() {}
+    }
+    assert_eq!(allocations(), before, "steps allocate");
+    assert!(world.truth().on_ground || world.truth().crashed, "{:?}", world.truth().pos_enu);
 }
 
 #[test]

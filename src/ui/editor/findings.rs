@@ -32,7 +32,7 @@ pub(crate) fn findings(state: &Shared) -> Vec<Finding> {
             let mut findings = review(&document.plan, home, &assumptions);
             let refusals = findings.iter().take_while(|finding| finding.is_refusal()).count();
             findings.splice(refusals..refusals, differs);
-            findings.extend(low(state, home, &assumptions));
+            findings.extend_from_slice(state.ground.low());
             findings.extend(state.editor.zones.findings().iter().cloned());
             findings
         }
@@ -40,8 +40,8 @@ pub(crate) fn findings(state: &Shared) -> Vec<Finding> {
     }
 }
 
-/// Returns the legs and the ways home that come too close to the ground, as planned and as flown in the estimate.
-fn low(state: &Shared, home: LatLon, assumptions: &Assumptions) -> Vec<Finding> {
+/// Looks at the ground for the legs and the ways home that come too close to it, as planned and as flown in the estimate.
+pub(crate) fn low(state: &Shared, home: LatLon, assumptions: &Assumptions) -> Vec<Finding> {
     let Some(relief) = state.ground.relief(home) else { return Vec::new() };
     let (plan, margin_m) = (state.plan(), state.ground.clearance_m);
     let mut findings = clearances(plan, assumptions, &relief, margin_m).findings;

@@ -7,8 +7,9 @@ use nalgebra::Vector3;
 use crate::geo::{LatLon, LocalFrame};
 use crate::plan::FlightPlan;
 use crate::terrain::{Relief, Tiles};
-use crate::ui::editor::{FileRequest, findings};
+use crate::ui::editor::{FileRequest, findings, settings_in_force};
 use crate::ui::event_log::Severity;
+use crate::ui::ground::LowBasis;
 use crate::ui::map_point::origin::origin;
 use crate::ui::map_point::{MapPoint, craft};
 use crate::ui::message::Effect;
@@ -28,6 +29,27 @@ pub(in crate::ui) fn follow_plan(state: &mut Shared) -> Option<Effect> {
     let plan = state.plan().clone();
     state.ground.asked = Some((home, plan.clone()));
     Some(Effect::Files(FileRequest::Ground { home, plan: Box::new(plan) }))
+}
+
+/// Looks for low clearances of the open plan if their input has changed.
+pub(in crate::ui) fn follow_clearance(state: &mut Shared) {
+    let Some((tiles, home)) = state.ground.tiles.as_ref().zip(findings::home(state)) else {
+        state.ground.low.clear();
+        state.ground.low_basis = None;
+        return;
+    };
+    let basis = LowBasis {
+        home,
+        plan: state.plan().clone(),
+        assumptions: settings_in_force::assumptions(state, state.editor.document()),
+        clearance_m: state.ground.clearance_m,
+        tiles: tiles.squares().count(),
+        estimate: state.forecast.estimate().map(|forecast| (forecast.path.len(), forecast.time_s)),
+    };
+    if state.ground.low_basis.as_ref() != Some(&basis) {
+        state.ground.low = findings::low(state, home, &basis.assumptions);
+        state.ground.low_basis = Some(basis);
+    }
 }
 
 /// Takes tiles that were read.
