@@ -177,7 +177,13 @@ pub fn read(
             PlanFile::default()
         }
         Format::Toml => native_read::read(text, options.check, &mut problems),
-        Format::CliText => cli_text::read(text, &mut problems),
+        Format::CliText => {
+            if let Some(other) = foreign(text) {
+                let hint = format!("the formats of plans are {}", Format::names(false));
+                problems.add(0..0, format!("this is {other}, but not a plan"), hint);
+            }
+            cli_text::read(text, &mut problems)
+        }
         Format::QgcPlan => qgc_plan::read(text, options, &mut problems),
         Format::QgcWpl => qgc_wpl::read(text, options, &mut problems),
         Format::QgcCsv => qgc_csv::read(text, options, &mut problems),
@@ -200,6 +206,15 @@ pub fn read(
         file.losses.waypoints = file.plan.waypoints.len();
     }
     Ok(file)
+}
+
+/// Returns the kind of a text that is no command line.
+fn foreign(text: &str) -> Option<&'static str> {
+    match text.trim_start().chars().next()? {
+        '{' => Some("JSON"),
+        '<' => Some("XML or HTML"),
+        _ => None,
+    }
 }
 
 /// Writes a plan file in its canonical form: see [`write_with`].
@@ -240,6 +255,15 @@ fn stem(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn another_file_is_not_taken_for_an_empty_plan() {
+        for (text, is) in [("{\n \"name\": \"x\"\n}", "this is JSON"), ("\u{feff}\n <html>", "this is XML")] {
+            let errors = parse("-", text, Format::of_contents(text.as_bytes())).unwrap_err();
+            let reported = report(&errors);
+            assert!(reported.contains(is) && reported.contains("toml, txt"), "{reported}");
+        }
+    }
 
     #[test]
     fn stem_names_a_nameless_plan() {

@@ -1,6 +1,6 @@
 //! The backdrop of the map, its zones, the grid of coordinates, the measure tool, and the arrows at the edge.
 
-use betadeck::flight::forecast::{FlightResult, Forecast, ForecastEnd, ForecastKind, PathPoint};
+use betadeck::flight::forecast::{FlightResult, Forecast, ForecastEnd, ForecastKind, LegTime, PathPoint};
 use betadeck::geo::{GroundPlane, LatLon};
 use betadeck::plan::feature::{Feature, Shape, Vertex, Zone};
 use betadeck::session::ForecastReply;
@@ -117,7 +117,7 @@ fn the_flown_estimate_is_judged_by_the_zones() {
         battery_used_pct: 20.0,
         worst_xte: None,
         fence_margin_m: None,
-        legs: Vec::new(),
+        legs: vec![LegTime { wp: 1, time_s: 40.0, battery_used_pct: 12.4 }],
         moved_m: 0.0,
         path: path.collect(),
     };
@@ -136,6 +136,8 @@ fn the_flown_estimate_is_judged_by_the_zones() {
     keys(&mut state, "2 z down down");
     let seen = screen(&state);
     assert!(seen.contains("the flown estimate enters the no-fly zone Nest after 30 m"), "{seen}");
+    let row = seen.lines().find(|line| line.contains("FLYBY")).expect("waypoint 1");
+    assert!(row.contains("0:39") && row.contains("12 %"), "{row}");
 }
 
 #[test]

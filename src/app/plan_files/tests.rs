@@ -1,6 +1,7 @@
 use super::*;
 use crate::plan::format::WaypointRecord;
 
+mod backdrop;
 mod damaged_journals;
 
 fn document(alt_cm: i32) -> PlanDocument {

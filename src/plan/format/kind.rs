@@ -313,7 +313,7 @@ mod tests {
             ("PK\u{3}\u{4}", Format::Kmz),
             (" { \"type\" : \"Feature\" }", Format::GeoJson),
             ("{\"features\":[{\"type\":\"Feature\"}]}", Format::GeoJson),
-            ("{\"fileType\":\"Plan\",\"type\":\"Feature\"}", Format::CliText),
+            ("{\"fileType\":\"Plan\",\"type\":\"Feature\"}", Format::QgcPlan),
             ("{\"type\":\"SimpleItem\"}", Format::CliText),
             ("<html>", Format::CliText),
         ] {

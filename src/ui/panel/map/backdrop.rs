@@ -46,18 +46,51 @@ pub(super) fn paint(state: &Shared, view: &Viewport, buffer: &mut Buffer) {
 }
 
 fn lines(layer: &BackdropLayer, of_zones: bool, frame: &LocalFrame, view: &Viewport, raster: &mut Raster) {
-    let half_turn_m = 2.0 * to_map(frame, LatLon::from_degrees(frame.lat_deg, frame.lon_deg + 90.0)).e.abs();
+    let to_dots = ToDots::new(frame, view);
     for run in layer.lines(of_zones).runs(view.scale / 2.0, window(frame, view)) {
-        let mut from: Option<MapPoint> = None;
+        let mut from: Option<(f64, f64)> = None;
         for &position in run {
-            let place = to_map(frame, position);
+            let dot = to_dots.dot(position);
             // A longer step goes around the other side of the globe.
-            let start = from.filter(|from| (place.e - from.e).abs() < half_turn_m);
+            let start = from.filter(|from| (dot.0 - from.0).abs() < to_dots.half_turn);
             if start.is_some() || run.len() == 1 {
-                raster.line(view.dot(start.unwrap_or(place)), view.dot(place));
+                raster.line(start.unwrap_or(dot), dot);
             }
-            from = Some(place);
+            from = Some(dot);
         }
+    }
+}
+
+/// Converts positions to dots of the window, as [`to_map`] and [`Viewport::dot`] do, with two products each.
+struct ToDots {
+    origin: LatLon,
+    /// Dots for 1e-7 degrees to the east and to the north.
+    scale: (f64, f64),
+    /// The dot of the origin.
+    at: (f64, f64),
+    /// Half a turn to the east, in dots.
+    half_turn: f64,
+}
+
+impl ToDots {
+    fn new(frame: &LocalFrame, view: &Viewport) -> Self {
+        let degree = to_map(frame, LatLon::from_degrees(frame.lat_deg + 0.5, frame.lon_deg + 0.5));
+        let at = view.dot(MapPoint::default());
+        let end = view.dot(degree);
+        let scale = ((end.0 - at.0) / 0.5e7, (end.1 - at.1) / 0.5e7);
+        let origin = LatLon::from_degrees(frame.lat_deg, frame.lon_deg);
+        Self { origin, scale, at, half_turn: (scale.0 * 1.8e9).abs() }
+    }
+
+    fn dot(&self, position: LatLon) -> (f64, f64) {
+        let north = f64::from(position.lat_e7) - f64::from(self.origin.lat_e7);
+        let mut east = f64::from(position.lon_e7) - f64::from(self.origin.lon_e7);
+        if east > 1.8e9 {
+            east -= 3.6e9;
+        } else if east <= -1.8e9 {
+            east += 3.6e9;
+        }
+        (self.at.0 + east * self.scale.0, self.at.1 + north * self.scale.1)
     }
 }
 
@@ -101,5 +134,27 @@ pub(super) fn write_names(state: &Shared, labels: &mut Labels<'_>) {
             [0, -1, 1, -2, 2, -3, 3].map(|down| (-width / 2, down)).to_vec()
         };
         labels.on_free_ground(place, &text, &offsets, role);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use ratatui::layout::Rect;
+
+    proptest! {
+        #[test]
+        fn positions_become_the_dots_of_their_places(
+            lat in -80.0..80.0_f64, lon in -180.0..180.0_f64, n in -900.0..900.0_f64, e in -900.0..900.0_f64,
+            scale in 0.1..50.0_f64,
+        ) {
+            let frame = LocalFrame::new(lat, lon, 0.0);
+            let view = Viewport { area: Rect::new(1, 2, 120, 40), centre: MapPoint::new(30.0, -20.0), scale };
+            let position = map_edit::position(&frame, MapPoint::new(n, e));
+            let (dot, same) = (ToDots::new(&frame, &view).dot(position), view.dot(to_map(&frame, position)));
+            let rounded = 0.05 / scale;
+            prop_assert!((dot.0 - same.0).abs() < rounded && (dot.1 - same.1).abs() < rounded, "{dot:?} {same:?}");
+        }
     }
 }

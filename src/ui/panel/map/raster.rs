@@ -11,45 +11,56 @@ const COLUMNS: usize = 2;
 const ROWS: usize = 4;
 /// The bits of a Braille character, from the top left by rows.
 const BITS: [[u8; COLUMNS]; ROWS] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
-/// The most dots that are set, so that a hostile file cannot stop the screen. They fill a window of 200x60 ten times.
-const MOST_DOTS: usize = 1_000_000;
+/// The most dots that are set, so that a hostile file cannot stop the screen. They fill a window of 200x60 five times.
+const MOST_DOTS: usize = 500_000;
 
 /// The dots of a window.
 pub(super) struct Raster {
     area: Rect,
     cells: Vec<u8>,
+    /// The last column and the last row of dots.
+    limits: (f64, f64),
+    /// The number of dots that may still be set.
     left: usize,
 }
 
 impl Raster {
     pub(super) fn new(area: Rect) -> Self {
         let cells = vec![0; usize::from(area.width) * usize::from(area.height)];
-        Self { area, cells, left: MOST_DOTS }
-    }
-
-    /// Returns the number of dots in a row and in a column.
-    fn size(&self) -> (usize, usize) {
-        (usize::from(self.area.width) * COLUMNS, usize::from(self.area.height) * ROWS)
+        let last = |cells: u16, dots: usize| (usize::from(cells) * dots).saturating_sub(1) as f64;
+        let limits = (last(area.width, COLUMNS), last(area.height, ROWS));
+        Self { area, cells, limits, left: MOST_DOTS }
     }
 
     /// Sets the dots of a line between two places, in dots from the middle of the top left dot.
     pub(super) fn line(&mut self, from: (f64, f64), to: (f64, f64)) {
-        let (width, height) = self.size();
-        if self.left == 0 || width == 0 || height == 0 {
+        if self.left == 0 || self.cells.is_empty() {
             return;
         }
-        let limits = ((width - 1) as f64, (height - 1) as f64);
-        let Some((from, to)) = clipped(from, to, limits) else { return };
-        let (x, y) = (from.0.round() as i32, from.1.round() as i32);
-        let (dx, dy) = (to.0.round() as i32 - x, to.1.round() as i32 - y);
-        let steps = dx.abs().max(dy.abs());
-        for step in 0..=steps {
-            // The nearest dot; halves are away from the start.
-            let along =
-                |by: i32| if steps == 0 { 0 } else { (2 * by * step + steps * by.signum()) / (2 * steps) };
-            self.set((x + along(dx)) as usize, (y + along(dy)) as usize);
+        let limits = self.limits;
+        let is_inside = |(x, y): (f64, f64)| x >= 0.0 && y >= 0.0 && x <= limits.0 && y <= limits.1;
+        // Most lines of a backdrop are short and inside.
+        let (from, to) = if is_inside(from) && is_inside(to) {
+            (from, to)
+        } else if let Some(ends) = clipped(from, to, limits) {
+            ends
+        } else {
+            return;
+        };
+        let (x, y) = nearest(from);
+        let end = nearest(to);
+        self.set(x, y);
+        let steps = x.abs_diff(end.0).max(y.abs_diff(end.1));
+        if steps > 1 {
+            let step = |from: usize, to: usize| (to as f64 - from as f64) / steps as f64;
+            let (dx, dy) = (step(x, end.0), step(y, end.1));
+            for done in 1..steps {
+                let at = |from: usize, by: f64| (from as f64 + by * done as f64 + 0.5) as usize;
+                self.set(at(x, dx), at(y, dy));
+            }
         }
-        self.left = self.left.saturating_sub(steps as usize + 1);
+        self.set(end.0, end.1);
+        self.left = self.left.saturating_sub(steps + 1);
     }
 
     fn set(&mut self, x: usize, y: usize) {
@@ -72,6 +83,11 @@ impl Raster {
             cell.set_char(symbol).set_style(style);
         }
     }
+}
+
+/// Returns the dot nearest to a place inside.
+fn nearest((x, y): (f64, f64)) -> (usize, usize) {
+    ((x + 0.5) as usize, (y + 0.5) as usize)
 }
 
 /// Returns the part of a line from (0, 0) to `limits`, by the method of Liang and Barsky. `None` if it is outside.
