@@ -1,6 +1,13 @@
 //! Flight plans: pure data and rules, without I/O. Quantities are in SI; the units of files, lines and messages are in
 //! `format::WaypointRecord` only.
 //!
+//! The layers, each of which uses those before it:
+//!
+//! * The records, quantities and rules of a plan in the files of this folder.
+//! * `estimate` and `review`: times, distances and energy, and what the craft would refuse.
+//! * `format`: the file formats, with the report of what another program cannot hold.
+//! * `edit`: documents with their history and journal.
+//!
 //! ```
 //! use betadeck::plan::WaypointType;
 //! use betadeck::plan::format::{Format, parse};
