@@ -27,7 +27,7 @@ pub(super) fn is_header(text: &str) -> bool {
 pub(super) fn read(text: &str, options: &ReadOptions, problems: &mut Problems<'_>) -> PlanFile {
     let Some(mut table) = Table::new(text, &NEEDED, problems) else { return PlanFile::default() };
     let columns = COLUMNS.map(|name| table.column(name));
-    let mut reader = Reader { columns, yaw_rate: table.column(YAW_RATE), losses: LossReport::default() };
+    let mut reader = TableReader { columns, yaw_rate: table.column(YAW_RATE), losses: LossReport::default() };
     let unknown: Vec<&str> = table
         .columns()
         .iter()
@@ -57,13 +57,13 @@ pub(super) fn read(text: &str, options: &ReadOptions, problems: &mut Problems<'_
     PlanFile { plan, home: options.home, losses: reader.losses, ..PlanFile::default() }
 }
 
-struct Reader {
+struct TableReader {
     columns: [Option<usize>; COLUMNS.len()],
     yaw_rate: Option<usize>,
     losses: LossReport,
 }
 
-impl Reader {
+impl TableReader {
     fn differs(
         &mut self,
         row: &Row<'_>,

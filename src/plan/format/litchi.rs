@@ -36,7 +36,7 @@ struct Unused {
     curves_of_stops: usize,
 }
 
-struct Reader {
+struct LitchiReader {
     options: ReadOptions,
     columns: Columns,
     losses: LossReport,
@@ -87,7 +87,7 @@ impl Columns {
 /// Reads a mission.
 pub(super) fn read(text: &str, options: &ReadOptions, problems: &mut Problems<'_>) -> PlanFile {
     let Some(mut table) = Table::new(text, &NEEDED, problems) else { return PlanFile::default() };
-    let mut reader = Reader {
+    let mut reader = LitchiReader {
         options: options.clone(),
         columns: Columns::new(&table),
         losses: LossReport::default(),
@@ -113,7 +113,7 @@ pub(super) fn read(text: &str, options: &ReadOptions, problems: &mut Problems<'_
     PlanFile { home: options.home, plan, losses: reader.losses, ..PlanFile::default() }
 }
 
-impl Reader {
+impl LitchiReader {
     /// Adds a finding about a row.
     fn differs(
         &mut self,

@@ -48,7 +48,7 @@ pub(super) fn plan_file(
         Some(Err(why)) => losses.add(dropped(why)),
     }
     let home = home(mission.home, known.home, options);
-    let mut reader = Reader { options, problems, home, losses, waypoints: Vec::new(), plain: 0 };
+    let mut reader = ItemReader { options, problems, home, losses, waypoints: Vec::new(), plain: 0 };
     reader.mission(&mission.items);
     let plan = reader.plan(&mission.items);
     PlanFile { home, plan, losses: reader.losses, ..known }
@@ -78,7 +78,7 @@ fn others(missions: &[Mission], chosen: usize) -> Finding {
     Finding::new(Severity::Lost, "missions", why).values(named, "")
 }
 
-struct Reader<'o, 'p, 't> {
+struct ItemReader<'o, 'p, 't> {
     options: &'o ReadOptions,
     problems: &'p mut Problems<'t>,
     home: Option<HomePosition>,
@@ -88,7 +88,7 @@ struct Reader<'o, 'p, 't> {
     plain: usize,
 }
 
-impl Reader<'_, '_, '_> {
+impl ItemReader<'_, '_, '_> {
     fn mission(&mut self, items: &[Found]) {
         let order = match flight_order(items) {
             Ok(order) => order,

@@ -11,15 +11,15 @@ const HINT: &str = "write lat=\"40.4635\" lon=\"-79.5182\" with decimal points";
 
 /// Reads a text.
 pub(super) fn read(text: &str, collector: &mut Collector<'_, '_>) {
-    Reader { parts: Parts::new(text), collector }.document();
+    GpxReader { parts: Parts::new(text), collector }.document();
 }
 
-struct Reader<'t, 'r, 'c, 'a> {
+struct GpxReader<'t, 'r, 'c, 'a> {
     parts: Parts<'t>,
     collector: &'r mut Collector<'c, 'a>,
 }
 
-impl Reader<'_, '_, '_, '_> {
+impl GpxReader<'_, '_, '_, '_> {
     fn document(&mut self) {
         while let Some(part) = self.next() {
             let Part::Start(element) = part else { continue };

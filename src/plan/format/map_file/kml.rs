@@ -15,15 +15,15 @@ const SKIPPED: &[&str] =
 
 /// Reads a text.
 pub(super) fn read(text: &str, collector: &mut Collector<'_, '_>) {
-    Reader { parts: Parts::new(text), collector }.document();
+    KmlReader { parts: Parts::new(text), collector }.document();
 }
 
-struct Reader<'t, 'r, 'c, 'a> {
+struct KmlReader<'t, 'r, 'c, 'a> {
     parts: Parts<'t>,
     collector: &'r mut Collector<'c, 'a>,
 }
 
-impl Reader<'_, '_, '_, '_> {
+impl KmlReader<'_, '_, '_, '_> {
     fn document(&mut self) {
         let mut open: Vec<String> = Vec::new();
         while let Some(part) = self.next() {

@@ -27,7 +27,7 @@ pub(in crate::plan::format) fn send(
     assumptions: &Assumptions,
     private: bool,
 ) -> Sent {
-    let mut walk = Walk {
+    let mut walk = PlanWalk {
         assumptions,
         private,
         sent: Sent::default(),
@@ -50,7 +50,7 @@ pub(in crate::plan::format) fn send(
 }
 
 /// The state after some waypoints.
-struct Walk<'a> {
+struct PlanWalk<'a> {
     assumptions: &'a Assumptions,
     private: bool,
     sent: Sent,
@@ -72,7 +72,7 @@ struct Leg {
     altitude: Altitude,
 }
 
-impl Walk<'_> {
+impl PlanWalk<'_> {
     /// The table of the types.
     fn take(&mut self, index: usize, waypoint: &Waypoint) {
         match waypoint.kind {

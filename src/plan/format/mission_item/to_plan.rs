@@ -37,7 +37,7 @@ impl Mission<'_> {
             Ok(order) => order,
             Err(fault) => return Mapping { faults: vec![fault], ..Mapping::default() },
         };
-        let mut walk = Walk {
+        let mut walk = ItemWalk {
             mission: self,
             mapping: Mapping { findings: order.findings, jump: order.jump, ..Mapping::default() },
             speed: LegSpeed::default(),
@@ -63,7 +63,7 @@ impl Mission<'_> {
 const RETURN: u16 = 20;
 
 /// The state of the craft after some items.
-struct Walk<'m> {
+struct ItemWalk<'m> {
     mission: &'m Mission<'m>,
     mapping: Mapping,
     /// The running speed.
@@ -80,7 +80,7 @@ struct Walk<'m> {
     left_out: BTreeMap<u16, usize>,
 }
 
-impl<'m> Walk<'m> {
+impl<'m> ItemWalk<'m> {
     fn take(&mut self, index: usize) {
         let item = &self.mission.items[index];
         if !item.autocontinue {
