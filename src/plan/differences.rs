@@ -45,8 +45,11 @@ pub fn differences(from: &FlightPlan, to: &FlightPlan) -> Vec<Difference> {
     found
 }
 
+/// A field of a record: its name, and its value as text with the unit.
+type Field = (&'static str, fn(&WaypointRecord) -> String);
+
 fn of_waypoint(waypoint: usize, a: &WaypointRecord, b: &WaypointRecord) -> Vec<Difference> {
-    let fields: [(&'static str, fn(&WaypointRecord) -> String); 6] = [
+    let fields: [Field; 6] = [
         ("type", |record| record.kind.to_string()),
         ("position", |record| {
             format!("{},{}", Degrees7(record.position.lat_e7), Degrees7(record.position.lon_e7))
