@@ -8,13 +8,15 @@ use betadeck::flight::FlightSetup;
 use betadeck::flight::forecast::ForecastRun;
 use betadeck::plan::builtin::{BuiltinPlan, DEMO};
 use betadeck::plan::edit::History;
+use betadeck::plan::format::{self, Format};
 use betadeck::plan::upload_lines;
 use betadeck::report::sentence;
 use betadeck::session::{ForecastReply, ForecastRequest, SessionView};
 use betadeck::signals::SimTime;
 use betadeck::sim::WorldConfig;
 use betadeck::timeline::{Marks, Timeline, TimelineView};
-use betadeck::ui::editor::PlanId;
+use betadeck::ui::backdrop::BackdropLayer;
+use betadeck::ui::editor::{Conversion, ConversionLosses, FileReply, PlanId};
 use betadeck::ui::keymap::Keymap;
 use betadeck::ui::{AppState, CliHelp, Effect, EnteredLines, Msg, OpenPlan, Theme, UiConfig, Units, update};
 use betadeck::vehicle::Vehicle;
@@ -100,6 +102,26 @@ impl DemoFlight {
         let recording =
             TimelineView { head, rewound: true, marks: self.marks.all(), ..TimelineView::default() };
         self.tell(Msg::View(SessionView { paused: true, timeline: Some(recording), ..view(shown) }))
+    }
+
+    /// Asks as if a file of another program had been chosen in the file browser.
+    pub(crate) fn ask_about(&mut self, name: &str, text: &str) -> Result<(), Box<dyn Error>> {
+        let format = Format::detect(name, text.as_bytes()).0;
+        let file = format::parse(name, text, format).map_err(|errors| format::report(&errors))?;
+        let losses = ConversionLosses {
+            conversion: Conversion::Open(name.into()),
+            lines: file.losses.findings.iter().map(ToString::to_string).collect(),
+            summary: file.losses.counts(),
+        };
+        self.tell(Msg::Files(FileReply::Losses(Box::new(losses))))
+    }
+
+    /// Shows a map under the plan.
+    pub(crate) fn put_under(&mut self, name: &str, text: &str) -> Result<(), Box<dyn Error>> {
+        let features =
+            format::read_features(name, text.as_bytes()).map_err(|errors| format::report(&errors))?;
+        let layer = BackdropLayer::new(name.into(), features);
+        self.tell(Msg::Files(FileReply::Backdrop { id: PlanId(1), layer, is_new: true }))
     }
 
     /// Types keys. A line end is the Enter key, and U+0008 is the backspace key.

@@ -1,5 +1,6 @@
 //! Draws the pictures of the documentation and writes them into `docs/`: the screen while the demo plan is flown, the plan
-//! editor while one of its altitudes is changed, and the flight rewound to an earlier leg.
+//! editor while one of its altitudes is changed, the flight rewound to an earlier leg, the question before a plan of
+//! another program is opened, and a map under the plan.
 //!
 //! ```sh
 //! cargo run --release --example picture
@@ -34,7 +35,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     flight.fly_to(MOMENT_S)?;
     write("screen", &flight.state)?;
     flight.rewind(REWOUND_TO_S)?;
-    write("rewound", &flight.state)
+    write("rewound", &flight.state)?;
+
+    let mut opening = DemoFlight::on_the_ground(SIZE)?;
+    opening.ask_about("theirs.plan", include_str!("../../tests/exchange/square.plan"))?;
+    write("losses", &opening.state)?;
+
+    let mut mapped = DemoFlight::on_the_ground(SIZE)?;
+    mapped.put_under("field.geojson", include_str!("../../tests/exchange/field.geojson"))?;
+    mapped.press("1#")?;
+    write("backdrop", &mapped.state)
 }
 
 /// Writes the screen as `docs/NAME.svg`.

@@ -14,6 +14,7 @@ use crate::flight::setup::check_setting;
 use crate::plan::format::loss::Severity;
 use crate::plan::format::{self, Format, PlanFile, ReadOptions};
 use crate::report::conversion::Conversion;
+use crate::text::printable;
 
 /// The exit code of a plan that changed, with `--strict`.
 const CHANGED: u8 = 1;
@@ -56,9 +57,10 @@ pub(super) fn run(args: &ConvertArgs) -> Result<u8, AppError> {
         conversion.lines().iter().for_each(|line| error::tell(line));
     } else if output == OutputFile::Stdout && !is_refused {
         // Standard output has the plan.
-        error::tell(&conversion.json());
+        error::tell_json(&conversion.json());
     } else {
-        error::print(&format!("{}\n", conversion.json()))?;
+        let line = format!("{}\n", printable::json(&conversion.json()));
+        error::write_stdout(line.as_bytes())?;
     }
     Ok(match conversion.worst() {
         _ if is_refused => USAGE,
@@ -69,18 +71,20 @@ pub(super) fn run(args: &ConvertArgs) -> Result<u8, AppError> {
 
 /// Returns the table of the formats.
 fn list() -> String {
-    let row = |name: &str, endings: &str, ways: &str, title: &str, carries: &str| {
-        format!("{name:<9} {endings:<18} {ways:<11} {title}: {carries}\n")
-    };
-    let mut text = String::new();
-    for format in Format::iter() {
+    let rows = Format::iter().map(|format| {
         let info = format.info();
         let endings: Vec<String> =
             info.endings.iter().chain(info.also).map(|ending| format!(".{ending}")).collect();
         let ways = if info.writes { "read, write" } else { "read" };
-        text.push_str(&row(&format.to_string(), &endings.join(" "), ways, info.title, info.carries));
-    }
-    text
+        (format.to_string(), endings.join(" "), ways, info)
+    });
+    let rows: Vec<_> = rows.collect();
+    let width = rows.iter().map(|(_, endings, ..)| endings.len()).max().unwrap_or_default();
+    rows.iter()
+        .map(|(name, endings, ways, info)| {
+            format!("{name:<7}  {endings:<width$}  {ways:<11}  {}: {}\n", info.title, info.carries)
+        })
+        .collect()
 }
 
 /// Writes the file. An existing file may be the work of the user, so it is replaced only on request.

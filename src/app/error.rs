@@ -48,6 +48,12 @@ pub(super) fn tell(text: &str) {
     PatientOutput(std::io::stderr()).write_all(text.as_bytes()).ok();
 }
 
+/// Writes a JSON object as a line, unshortened, to standard error.
+pub(super) fn tell_json(json: &str) {
+    let line = format!("{}\n", printable::json(json));
+    PatientOutput(std::io::stderr()).write_all(line.as_bytes()).ok();
+}
+
 /// Prints text for people on standard output, without control sequences for the terminal.
 pub(super) fn print(text: &str) -> Result<u8, AppError> {
     write_stdout(printable::lines(text).as_bytes())

@@ -180,7 +180,6 @@ fn what_cannot_be_compared_is_refused() {
         (&["--firmware", "embedded"], "name the firmware to compare with"),
         (&["--firmware", "attach", "--seeds", "1..3"], "write --repeat 1"),
         (&["--firmware", PROGRAM, "--clock=real", "--seeds", "1..3"], "use --repeat N"),
-        (&["--firmware=embedded", "--firmware=embedded", "--repeat=3"], "with --seeds 1..3"),
         (&["--firmware=embedded", "--firmware=embedded", "--seeds=1..6000"], "10000 are allowed"),
     ] {
         let ran = sandbox.run(&[&["compare", "square"], options].concat()).exits(2);

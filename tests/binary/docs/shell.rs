@@ -104,6 +104,8 @@ impl Desk {
         for file in ["my-test.toml", "flight-tests/one.toml", "tests/one.toml"] {
             sandbox.write(file, &scenario.replace("my-plan.txt", &plan("guide-square.txt")));
         }
+        sandbox.write("theirs.plan", include_str!("../../exchange/square.plan"));
+        sandbox.write("field.geojson", include_str!("../../exchange/field.geojson"));
         sandbox.write("my-plan.toml", &std::fs::read_to_string(plan("square.toml")).expect("the square"));
         let (tcp, udp) = if needs_firmware { free_ports() } else { ("0".to_owned(), "0,0,0,0".to_owned()) };
         let script = format!(
