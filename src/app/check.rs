@@ -49,7 +49,7 @@ fn run_all(args: &CheckArgs) -> Result<u8, AppError> {
         return list(args);
     }
     if let Some(plan) = &args.new {
-        let plan = setup::read_plan(plan)?;
+        let plan = setup::read_plan(plan, None)?;
         let text = Draft::of_plan(&plan).finish().map_err(AppError::input)?;
         return error::print(&text);
     }

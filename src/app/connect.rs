@@ -19,7 +19,7 @@ use crate::vehicle::Vehicle;
 /// Opens the user interface for the flight controller at `place`, and returns the exit code after the user leaves it.
 pub(super) fn run(args: &TuiArgs, place: &FcPlace, keymap: Keymap) -> Result<u8, AppError> {
     let plan = match &args.plan {
-        Some(plan) => setup::read_plan(plan)?,
+        Some(plan) => setup::read_plan(plan, args.flight.home)?,
         // The plan of the craft is downloaded.
         None => PlanFile { name: "new".to_owned(), ..PlanFile::default() },
     };

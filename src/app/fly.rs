@@ -34,7 +34,7 @@ use watched::WatchedFlight;
 /// Flies and reports. The exit code is 0 if the mission completed.
 pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
     output::claim(args)?;
-    let plan = setup::read_plan(&args.plan)?;
+    let plan = setup::read_plan(&args.plan, args.flight.home)?;
     setup::refuse_unflyable(&plan)?;
     let mut notices = plan.notices();
     let physics = PhysicsArgs::default();

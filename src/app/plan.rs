@@ -36,7 +36,7 @@ pub(super) fn show(
     maps: &BackdropArgs,
     terrain: &TerrainArgs,
 ) -> Result<u8, AppError> {
-    let file = setup::read_plan(plan)?;
+    let file = setup::read_plan(plan, None)?;
     let mut zones = Vec::new();
     for path in &maps.backdrop {
         zones

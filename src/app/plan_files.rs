@@ -22,7 +22,7 @@ use tokio::sync::watch;
 use super::line_history::LineHistory;
 use super::terrain::TerrainFiles;
 use crate::plan::edit::{History, Journal, JournalLine, PlanDocument};
-use crate::plan::format::loss::LossReport;
+use crate::plan::format::{HomePosition, loss::LossReport};
 use crate::terrain::Tiles;
 use crate::ui::editor::{Conversion, ConversionLosses, FileReply, FileRequest, Opened, PlanId};
 use backdrops::Backdrops;
@@ -150,7 +150,7 @@ impl PlanFiles {
         let has_saved = found.losses.has_saved;
         let (journal, mut history) = self.whole_part(found);
         let mut seen = path.as_deref().map_or(Content::Missing, Content::of);
-        let newer = path.as_deref().filter(|_| has_saved).and_then(|path| on_disk::read(path).ok());
+        let newer = path.as_deref().filter(|_| has_saved).and_then(|path| on_disk::read(path, None).ok());
         if let Some(on_disk::Read { document, content, .. }) = newer {
             history.commit(SAVED_LATER, document);
             history.mark_saved();
@@ -214,8 +214,8 @@ impl PlanFiles {
 
     fn carry_out(&mut self, request: FileRequest) -> Vec<FileReply> {
         match request {
-            FileRequest::Open { path, accepted } => {
-                let opened = self.open(&path, accepted);
+            FileRequest::Open { path, home, accepted } => {
+                let opened = self.open(&path, home, accepted);
                 let backdrop = match &opened {
                     FileReply::Opened(opened) => self.remembered_backdrop(opened.id),
                     _ => Vec::new(),
@@ -266,12 +266,12 @@ impl PlanFiles {
         }
     }
 
-    fn open(&mut self, path: &Path, accepted: bool) -> FileReply {
+    fn open(&mut self, path: &Path, home: Option<HomePosition>, accepted: bool) -> FileReply {
         let path = match std::path::absolute(path) {
             Ok(path) => path,
             Err(error) => return FileReply::Failed(format!("Cannot open {}: {error}.", path.display())),
         };
-        let on_disk::Read { document, mut notes, losses, content: seen } = match on_disk::read(&path) {
+        let on_disk::Read { document, mut notes, losses, content: seen } = match on_disk::read(&path, home) {
             Ok(read) => read,
             Err(sentence) => return FileReply::Failed(sentence),
         };

@@ -13,7 +13,7 @@ use crate::firmware::config::Configuration;
 use crate::flight::setup::{BootLines, PhysicsSource, check_setting};
 use crate::flight::{Flight, FlightOptions, FlightSetup};
 use crate::plan::builtin::BuiltinPlan;
-use crate::plan::format::{self, Format, PlanFile, ReadOptions, SettingPart};
+use crate::plan::format::{self, Format, HomePosition, PlanFile, ReadOptions, SettingPart};
 use crate::plan::review::Finding;
 use crate::plan::validate::check_plan;
 use crate::report::UtcSeconds;
@@ -22,9 +22,9 @@ use crate::sim::{Airframe, Home, WorldConfig};
 use crate::storage::Store;
 use crate::vehicle::Vehicle;
 
-/// Reads a plan from its source.
-pub(super) fn read_plan(plan: &PlanArg) -> Result<PlanFile, AppError> {
-    let options = ReadOptions { check: check_setting, ..ReadOptions::default() };
+/// Reads a plan from its source. `home` is that of a file that has none, or none with its altitude above sea level.
+pub(super) fn read_plan(plan: &PlanArg, home: Option<HomePosition>) -> Result<PlanFile, AppError> {
+    let options = ReadOptions { check: check_setting, home, ..ReadOptions::default() };
     read_plan_with(plan, &options).map(|(_, file)| file)
 }
 

@@ -73,10 +73,13 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
     }
     let backdrop = backdrop_file::read_all(&args.backdrop.backdrop)?;
     let plan = match &args.plan {
-        Some(plan) => setup::read_plan(plan)?,
-        None => setup::read_plan(&PlanArg::Builtin(
-            BuiltinPlan::find(DEMO).ok_or_else(|| AppError::internal("the demo plan is missing"))?,
-        ))?,
+        Some(plan) => setup::read_plan(plan, args.flight.home)?,
+        None => setup::read_plan(
+            &PlanArg::Builtin(
+                BuiltinPlan::find(DEMO).ok_or_else(|| AppError::internal("the demo plan is missing"))?,
+            ),
+            None,
+        )?,
     };
     let mut notices = plan.notices();
     let mut store = setup::open_store(&args.flight)?;

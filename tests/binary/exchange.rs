@@ -50,10 +50,10 @@ fn a_plan_of_another_program_is_flown_as_it_is() {
     let piped = sandbox.run_with(&["plan", "show", "-"], PLAN);
     assert_eq!(piped.code, Some(0), "{}", piped.err);
     assert!(piped.out.contains("HOLD ORBIT"), "{}", piped.out);
-    sandbox
-        .write("test.toml", "[plan]\nfile = 'theirs.plan'\n[[expect]]\nfinally = \"result = 'complete'\"\n");
-    let shown = sandbox.run(&["check", "test.toml"]);
-    assert_ne!(shown.code, Some(2), "{}", shown.err);
+    sandbox.write("test.toml", "format = 1\nname = 'theirs'\n[plan]\nfile = 'theirs.plan'\n");
+    let checked = sandbox.run(&["check", "test.toml"]);
+    assert_ne!(checked.code, Some(2), "{}", checked.err);
+    assert!(!checked.err.contains("theirs.plan"), "{}", checked.err);
 }
 
 #[test]
@@ -106,6 +106,8 @@ fn a_format_without_a_home_needs_one_for_altitudes_above_sea_level() {
     let ran = sandbox.run(&["convert", "route.gpx", "route.toml"]);
     assert_eq!(ran.code, Some(2), "{}", ran.err);
     assert!(ran.err.contains("--home LAT,LON,AMSL"), "{}", ran.err);
+    let shown = sandbox.run(&["fly", "route.gpx", "--home", "40.4635,-79.5182,300", "--timeout", "60"]);
+    assert_ne!(shown.code, Some(2), "{}", shown.err);
     let ran = sandbox.run(&["convert", "route.gpx", "route.toml", "--home", "40.4635,-79.5182,300"]);
     assert_eq!(ran.code, Some(0), "{}", ran.err);
     assert!(sandbox.read("route.toml").contains("alt_m = 20\n"), "{}", sandbox.read("route.toml"));

@@ -184,7 +184,7 @@ fn a_survey_beyond_thirty_waypoints_is_reported_before_it_is_made() {
     let mut state = state((120, 40));
     keys(&mut state, "2 P right right right down down backspace backspace '300 down backspace backspace '5");
     let seen = screen(&state);
-    assert!(seen.contains("122 waypoints, there is room for 30: a spacing of"), "{seen}");
+    assert!(seen.contains("122 waypoints, there is room for 30"), "{seen}");
     keys(&mut state, "enter");
     assert!(state.shared.plan().waypoints.len() <= 30 && state.shared.plan().waypoints.len() > 20);
     keys(&mut state, "u");
@@ -372,9 +372,11 @@ fn plans_are_opened_and_saved_by_name() {
         }
         requests(keys(&mut state, "enter"))
     };
-    assert_eq!(
-        line("open plans/orbit.toml"),
-        [FileRequest::Open { path: "plans/orbit.toml".into(), accepted: false }]
+    let opened = line("open plans/orbit.toml");
+    assert!(
+        matches!(&opened[..], [FileRequest::Open { path, home: Some(home), accepted: false }]
+            if path.ends_with("plans/orbit.toml") && home.amsl_m.is_some()),
+        "{opened:?}"
     );
     assert!(
         matches!(&line("save /tmp/a.txt")[..], [FileRequest::Save { path, .. }] if path.ends_with("a.txt"))

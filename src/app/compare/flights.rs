@@ -47,7 +47,7 @@ impl Flights {
         let embedded_flies = compared.iter().any(|one| one.firmware.is_none());
         let executable_flies =
             compared.iter().flat_map(|one| &one.firmware).any(|firmware| firmware.executable.is_some());
-        let plan = setup::read_plan(&args.plan)?;
+        let plan = setup::read_plan(&args.plan, args.flight.home)?;
         setup::refuse_unflyable(&plan)?;
         notices.extend(plan.notices());
         let mut setup =

@@ -7,7 +7,7 @@ use crate::app::{input_file, output_file};
 use crate::flight::setup::check_setting;
 use crate::plan::edit::PlanDocument;
 use crate::plan::format::loss::LossReport;
-use crate::plan::format::{self, Format, PlanFile, ReadOptions, Written};
+use crate::plan::format::{self, Format, HomePosition, PlanFile, ReadOptions, Written};
 use crate::storage::link_target;
 use crate::ui::editor::{Entry, Listing};
 
@@ -57,7 +57,7 @@ impl Content {
     pub(super) fn is_document(&self, path: &Path, document: &PlanDocument) -> bool {
         let Self::Bytes(bytes) = self else { return false };
         self.is_written(path, document)
-            || parse(path, bytes).is_ok_and(|there| PlanDocument::from(there) == *document)
+            || parse(path, bytes, document.home).is_ok_and(|there| PlanDocument::from(there) == *document)
     }
 }
 
@@ -72,18 +72,18 @@ pub(super) struct Read {
 }
 
 /// Reads a plan.
-pub(super) fn read(path: &Path) -> Result<Read, String> {
+pub(super) fn read(path: &Path, home: Option<HomePosition>) -> Result<Read, String> {
     let contents = input_file::read_plan(path).map_err(|error| format!("{error}."))?;
-    let mut file = parse(path, &contents)?;
+    let mut file = parse(path, &contents, home)?;
     let notes = std::mem::take(&mut file.notes).iter().map(ToString::to_string).collect();
     let losses = std::mem::take(&mut file.losses);
     Ok(Read { document: file.into(), notes, losses, content: Content::Bytes(contents) })
 }
 
-fn parse(path: &Path, contents: &[u8]) -> Result<PlanFile, String> {
+fn parse(path: &Path, contents: &[u8], home: Option<HomePosition>) -> Result<PlanFile, String> {
     let name = path.display().to_string();
     let (format, finding) = Format::detect(&name, contents);
-    let options = ReadOptions { check: check_setting, ..ReadOptions::default() };
+    let options = ReadOptions { check: check_setting, home, ..ReadOptions::default() };
     let mut file = format::read(&name, contents, format, &options).map_err(|errors| {
         let more = match errors.len() - 1 {
             0 => String::new(),

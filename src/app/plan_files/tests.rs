@@ -31,7 +31,8 @@ fn save(files: &mut PlanFiles, opened: &mut Opened, path: &Path, replace: bool) 
 }
 
 fn open(files: &mut PlanFiles, path: &Path) -> Opened {
-    match files.carry_out(FileRequest::Open { path: path.to_owned(), accepted: false }).remove(0) {
+    match files.carry_out(FileRequest::Open { path: path.to_owned(), home: None, accepted: false }).remove(0)
+    {
         FileReply::Opened(opened) => *opened,
         other => panic!("{other:?}"),
     }
@@ -156,7 +157,7 @@ fn what_is_wrong_is_one_sentence() {
     std::fs::write(&bad, "name = 3\n[[waypoint]]\ntype = \"LAMD\"\n").unwrap();
     for path in [bad, directory.path().join("missing.toml"), directory.path().to_owned()] {
         let FileReply::Failed(sentence) =
-            files.carry_out(FileRequest::Open { path, accepted: false }).remove(0)
+            files.carry_out(FileRequest::Open { path, home: None, accepted: false }).remove(0)
         else {
             panic!()
         };
@@ -325,7 +326,7 @@ fn a_change_of_the_same_length_within_a_clock_tick_is_seen() {
     assert_eq!(files.changed(), [opened.id]);
     let reply = save(&mut files, &mut opened, &path, false);
     assert!(matches!(reply, FileReply::Occupied { changed: true, .. }), "{reply:?}");
-    assert_eq!(on_disk::read(&path).unwrap().document, document(9), "theirs is still there");
+    assert_eq!(on_disk::read(&path, None).unwrap().document, document(9), "theirs is still there");
     let mut again = open(&mut files, &path);
     assert_eq!(again.history.document(), &document(9));
     again.history.undo();

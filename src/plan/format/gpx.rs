@@ -69,7 +69,7 @@ pub(super) fn write(file: &PlanFile) -> Written {
         losses.add(Finding::new(Severity::Info, "fence", why));
     }
     if file.home.and_then(|home| home.amsl_m).is_none() && !file.plan.waypoints.is_empty() {
-        let why = "GPX has altitudes above sea level, and that of home is unknown: add --home LAT,LON,AMSL";
+        let why = "GPX has altitudes above sea level, and that of home is unknown: give the plan a home, or `convert` one by --home LAT,LON,AMSL";
         losses.add(Finding::new(Severity::Lost, "altitude", why).values("above home", ""));
     }
     let mut text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\

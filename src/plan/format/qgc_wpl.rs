@@ -217,7 +217,7 @@ fn other_kind(items: &[MissionItem]) -> Option<&'static str> {
 /// Writes a plan. A plan without a home is refused.
 pub(super) fn write(file: &PlanFile) -> Written {
     let Some(home) = file.home else {
-        let why = "a waypoint file begins with the home: add --home LAT,LON,AMSL";
+        let why = "a waypoint file begins with the home: give the plan one, or `convert` one by --home LAT,LON,AMSL";
         return refused(vec![Finding::new(Severity::Refused, "home", why)]);
     };
     let assumptions = Assumptions::from_settings(&file.settings);

@@ -1,18 +1,25 @@
 //! Commands that write or open files. Without a name they do the same as their keys.
 
 use crate::ui::action::{Action, EditAction, PanelAction};
-use crate::ui::editor::FileRequest;
+use crate::ui::editor::{FileRequest, findings};
 use crate::ui::message::{Change, Effect, Request};
 use crate::ui::shared::Shared;
 
 /// The argument that removes the backdrop.
 const OFF: &str = "off";
 
-pub(super) fn open(_: &mut Shared, _: &str, file: &str) -> Result<Vec<Request>, String> {
+pub(super) fn open(state: &mut Shared, _: &str, file: &str) -> Result<Vec<Request>, String> {
     if file.is_empty() {
         return Ok(vec![Request::Act(Action::Edit(EditAction::Open))]);
     }
-    Ok(vec![Effect::Files(FileRequest::Open { path: file.into(), accepted: false }).into()])
+    Ok(vec![
+        Effect::Files(FileRequest::Open {
+            path: file.into(),
+            home: findings::home_above_sea(state),
+            accepted: false,
+        })
+        .into(),
+    ])
 }
 
 pub(super) fn save(state: &mut Shared, _: &str, file: &str) -> Result<Vec<Request>, String> {

@@ -7,6 +7,7 @@ use super::open_plan::PlanId;
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
 use crate::plan::edit::{History, JournalLine, PlanDocument};
+use crate::plan::format::HomePosition;
 use crate::terrain::Tiles;
 use crate::ui::backdrop::BackdropLayer;
 use crate::ui::history::LineField;
@@ -16,6 +17,8 @@ pub enum FileRequest {
     /// Read a plan, with the history from its journal.
     Open {
         path: PathBuf,
+        /// The home for a file that has none, or none with its altitude above sea level.
+        home: Option<HomePosition>,
         /// `true` if the user has accepted the differences between the file and the plan.
         accepted: bool,
     },

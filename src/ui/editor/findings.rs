@@ -6,6 +6,7 @@ use crate::geo::LatLon;
 use crate::plan::FlightPlan;
 use crate::plan::edit::fix::{Fix, fix, waypoint_of};
 use crate::plan::estimate::Assumptions;
+use crate::plan::format::HomePosition;
 use crate::plan::review::{Finding, FlownPlace, clearances, low_in_flight, review};
 use crate::ui::editor::settings_in_force;
 use crate::ui::map_point::origin::origin;
@@ -19,6 +20,12 @@ pub(crate) fn home(state: &Shared) -> Option<LatLon> {
     let map = origin(state);
     let map = map.map(|frame| LatLon::from_degrees(frame.lat_deg, frame.lon_deg));
     state.view.vehicle.craft.home.or(planned).or(map).or_else(first)
+}
+
+/// Returns the home with its altitude above sea level, for a file without it.
+pub(crate) fn home_above_sea(state: &Shared) -> Option<HomePosition> {
+    let amsl_m = origin(state)?.alt_amsl_m;
+    Some(HomePosition { position: home(state)?, amsl_m: Some(amsl_m) })
 }
 
 /// Returns all findings about the open plan, refusals first; empty for an empty plan.

@@ -1,6 +1,6 @@
 //! Handles keys for the editor's popups, and replies of the files.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crossterm::event::{KeyCode, KeyEvent};
 
@@ -56,7 +56,7 @@ fn browser_key(state: &mut Shared, mut browser: Browser, event: KeyEvent) -> Vec
         }
         BrowserKey::Chosen(path) => {
             return match browser.purpose {
-                Purpose::Open => vec![Effect::Files(FileRequest::Open { path, accepted: false })],
+                Purpose::Open => vec![open(state, path, false)],
                 Purpose::Save(id) => vec![state.editor.write(id, path, false, false)],
                 Purpose::Backdrop(id) => vec![Effect::Files(FileRequest::Backdrop(id, path))],
             };
@@ -83,7 +83,7 @@ fn question_key(state: &mut Shared, question: Question, event: KeyEvent) -> Vec<
         }
         (Question::Replace { id, path, .. }, 'y') => vec![state.editor.write(id, path, true, false)],
         (Question::Replace { path, changed: true, .. }, 'r') => {
-            vec![Effect::Files(FileRequest::Open { path, accepted: false })]
+            vec![open(state, path, false)]
         }
         (Question::Replace { .. }, 'o') => plan::save_as(state),
         (Question::MovesTarget { id, .. }, 'y') => {
@@ -118,7 +118,7 @@ fn losses_key(state: &mut Shared, mut list: LossList, event: KeyEvent) -> Vec<Ef
     match event.code {
         KeyCode::Enter | KeyCode::Char('y' | 'Y') => {
             return vec![match list.losses.conversion {
-                Conversion::Open(path) => Effect::Files(FileRequest::Open { path, accepted: true }),
+                Conversion::Open(path) => open(state, path, true),
                 Conversion::Save { id, path, replace } => state.editor.write(id, path, replace, true),
             }];
         }
@@ -134,6 +134,11 @@ fn losses_key(state: &mut Shared, mut list: LossList, event: KeyEvent) -> Vec<Ef
     }
     state.editor.popup = Some(EditorPopup::Losses(list));
     Vec::new()
+}
+
+/// Returns the request to open a file.
+fn open(state: &Shared, path: PathBuf, accepted: bool) -> Effect {
+    Effect::Files(FileRequest::Open { path, home: findings::home_above_sea(state), accepted })
 }
 
 fn save_plan(state: &mut Shared, id: PlanId) -> Vec<Effect> {

@@ -24,12 +24,15 @@ fn a_backdrop_comes_back_with_the_file_of_its_plan() {
     assert!(matches!(save(&mut files, &mut opened, &at("plan.toml"), false), FileReply::Saved { .. }));
 
     let mut later = PlanFiles::new(Some(directory.path()));
-    let replies = later.carry_out(FileRequest::Open { path: at("plan.toml"), accepted: false });
+    let replies = later.carry_out(FileRequest::Open { path: at("plan.toml"), home: None, accepted: false });
     assert_eq!(names(&replies), [(at("road.geojson"), false)]);
     let FileReply::Opened(opened) = &replies[0] else { panic!("{replies:?}") };
     assert!(later.carry_out(FileRequest::NoBackdrop(opened.id)).is_empty());
     let mut last = PlanFiles::new(Some(directory.path()));
-    assert_eq!(names(&last.carry_out(FileRequest::Open { path: at("plan.toml"), accepted: false })), []);
+    assert_eq!(
+        names(&last.carry_out(FileRequest::Open { path: at("plan.toml"), home: None, accepted: false })),
+        []
+    );
 }
 
 #[test]
@@ -48,9 +51,13 @@ fn a_map_that_cannot_be_read_is_one_sentence_and_stays_remembered() {
     }
     std::fs::remove_file(at("road.geojson")).unwrap();
     let mut later = PlanFiles::new(Some(directory.path()));
-    let replies = later.carry_out(FileRequest::Open { path: at("plan.toml"), accepted: false });
+    let replies = later.carry_out(FileRequest::Open { path: at("plan.toml"), home: None, accepted: false });
     assert!(matches!(&replies[1], FileReply::Failed(text) if text.contains("road.geojson")), "{replies:?}");
     std::fs::write(at("road.geojson"), MAP).unwrap();
     let mut last = PlanFiles::new(Some(directory.path()));
-    assert_eq!(names(&last.carry_out(FileRequest::Open { path: at("plan.toml"), accepted: false })).len(), 1);
+    assert_eq!(
+        names(&last.carry_out(FileRequest::Open { path: at("plan.toml"), home: None, accepted: false }))
+            .len(),
+        1
+    );
 }

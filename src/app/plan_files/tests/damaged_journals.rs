@@ -42,8 +42,9 @@ fn a_journal_that_is_damaged_in_the_middle_or_of_a_later_version_is_set_aside_as
         let path = edited_five_times(directory.path());
         let damaged = damage(directory.path(), line);
         let mut files = PlanFiles::new(Some(directory.path()));
-        let mut replies =
-            files.carry_out(FileRequest::Open { path: path.clone(), accepted: false }).into_iter();
+        let mut replies = files
+            .carry_out(FileRequest::Open { path: path.clone(), home: None, accepted: false })
+            .into_iter();
         let Some(FileReply::Opened(mut back)) = replies.next() else { panic!("it is opened") };
         assert_eq!(back.history.document(), &document(5200), "what is whole is kept");
         let [bad] = kept(directory.path(), "bad").try_into().expect("one file set aside");

@@ -14,7 +14,8 @@ use crate::plan::estimate::Assumptions;
 pub(in crate::plan::format) fn write(file: &PlanFile) -> Written {
     let assumptions = Assumptions::from_settings(&file.settings);
     let Some(home) = file.home else {
-        let why = "a plan of QGroundControl has a home: add --home LAT,LON,AMSL";
+        let why =
+            "a plan of QGroundControl has a home: give the plan one, or `convert` one by --home LAT,LON,AMSL";
         let finding = Finding::new(Severity::Refused, "home", why);
         return refused(vec![finding]);
     };
