@@ -9,6 +9,10 @@ use strum::IntoEnumIterator as _;
 
 /// Reads the text in every format, and writes each result in every format.
 pub fn run(data: &[u8]) {
+    // Archives and UTF-16 are bytes.
+    if let Ok(file) = read("fuzz", data, Format::detect("fuzz.kmz", data).0, &ReadOptions::default()) {
+        assert_good(&file);
+    }
     let Ok(text) = std::str::from_utf8(data) else { return };
     for format in Format::iter() {
         match parse("fuzz", text, format) {

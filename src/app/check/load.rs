@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::app::{AppError, input_file};
+use crate::app::{AppError, error, input_file};
 use crate::args::{CheckArgs, MOST_FLIGHTS};
 use crate::flight::setup::check_setting;
 use crate::plan::format::{self, Format, PlanFile, ReadOptions};
@@ -162,10 +162,15 @@ impl Files for Beside<'_> {
         let path = self.place.join(name);
         let contents = input_file::read_plan(&path).map_err(|error| error.message)?;
         self.read.push(path);
-        let (format, _) = Format::detect(name, &contents);
+        let (format, finding) = Format::detect(name, &contents);
         let options = ReadOptions { check: check_setting, ..ReadOptions::default() };
-        format::read(name, &contents, format, &options)
-            .map_err(|errors| format::report(&errors).trim_end().to_owned())
+        let plan = format::read(name, &contents, format, &options)
+            .map_err(|errors| format::report(&errors).trim_end().to_owned())?;
+        finding
+            .iter()
+            .chain(&plan.losses.findings)
+            .for_each(|found| error::tell(&format!("{name}: {found}")));
+        Ok(plan)
     }
 
     fn text(&mut self, name: &str) -> Result<String, String> {
