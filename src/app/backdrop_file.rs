@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::{AppError, input_file};
 use crate::plan::feature::Feature;
-use crate::plan::format;
+use crate::plan::format::{self, Format};
 use crate::ui::backdrop::{BackdropLayer, MAX_VERTICES};
 
 /// Reads the shapes of a file.
@@ -17,6 +17,12 @@ pub(super) fn read_features(path: &Path) -> Result<Vec<Feature>, AppError> {
             None => format!("{name} is not a map"),
         })
     })
+}
+
+/// Returns `true` for a plan of QGroundControl that has zones.
+pub(super) fn has_fences(path: &Path) -> bool {
+    Format::from_file_name(&path.to_string_lossy()) == Some(Format::QgcPlan)
+        && read_features(path).is_ok_and(|features| !features.is_empty())
 }
 
 /// Reads a file for the screen, for a backdrop that has some vertices already.

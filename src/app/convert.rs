@@ -27,11 +27,20 @@ pub(super) fn run(args: &ConvertArgs) -> Result<u8, AppError> {
     let source = args.source().map_err(|error| AppError::input(error.to_string()))?;
     let target = args.target().map_err(AppError::input)?;
     let options = ReadOptions { check: check_setting, ..args.read_options() };
-    let (format, file) = setup::read_plan_with(&source, &options)?;
-    if file.plan.waypoints.is_empty() {
+    let read = setup::read_plan_with(&source, &options).and_then(|(format, file)| {
         let name = source.display_name();
-        return Err(AppError::input(format!("{name} has no waypoints: there is nothing to convert")));
-    }
+        match file.plan.waypoints.is_empty() {
+            true => Err(AppError::input(format!("{name} has no waypoints: there is nothing to convert"))),
+            false => Ok((format, file)),
+        }
+    });
+    let (format, file) = match read {
+        Err(error) if args.json => {
+            print_json(&Conversion::refused(target, &error.message), args.output() == OutputFile::Stdout)?;
+            return Err(error);
+        }
+        read => read?,
+    };
     for note in &file.notes {
         error::tell(&note.to_string());
     }
@@ -55,18 +64,24 @@ pub(super) fn run(args: &ConvertArgs) -> Result<u8, AppError> {
     let conversion = Conversion::new(format, &file, target, written.losses);
     if !args.json {
         conversion.lines().iter().for_each(|line| error::tell(line));
-    } else if output == OutputFile::Stdout && !is_refused {
-        // Standard output has the plan.
-        error::tell_json(&conversion.json());
     } else {
-        let line = format!("{}\n", printable::json(&conversion.json()));
-        error::write_stdout(line.as_bytes())?;
+        print_json(&conversion, output == OutputFile::Stdout)?;
     }
     Ok(match conversion.worst() {
         _ if is_refused => USAGE,
         Some(worst) if args.strict && worst > Severity::Info => CHANGED,
         _ => 0,
     })
+}
+
+/// Prints the report: on standard error if standard output is for the plan.
+fn print_json(conversion: &Conversion, has_plan: bool) -> Result<(), AppError> {
+    if has_plan {
+        error::tell_json(&conversion.json());
+        return Ok(());
+    }
+    let line = format!("{}\n", printable::json(&conversion.json()));
+    error::write_stdout(line.as_bytes()).map(drop)
 }
 
 /// Returns the table of the formats.

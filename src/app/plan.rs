@@ -1,5 +1,7 @@
 //! `betadeck plan`: the built-in plans by name, and a plan as a table with distances, times and findings.
 
+use std::path::PathBuf;
+
 use super::error::{self, AppError};
 use super::terrain::TerrainFiles;
 use super::{backdrop_file, setup};
@@ -38,7 +40,8 @@ pub(super) fn show(
 ) -> Result<u8, AppError> {
     let file = setup::read_plan(plan, None)?;
     let mut zones = Vec::new();
-    for path in &maps.backdrop {
+    let own = plan.path().filter(|path| backdrop_file::has_fences(path));
+    for path in maps.backdrop.iter().map(PathBuf::as_path).chain(own) {
         zones
             .extend(backdrop_file::read_features(path)?.into_iter().filter(|feature| feature.zone.is_some()));
     }

@@ -8,7 +8,8 @@ use crate::plan::format::{Format, PlanFile};
 /// A conversion: from a file to a plan, and from the plan to another file.
 #[derive(Debug)]
 pub struct Conversion {
-    from: Format,
+    /// `None` if the file could not be read.
+    from: Option<Format>,
     to: Format,
     /// The number of items that were read; `None` if each waypoint is an item.
     read: Option<usize>,
@@ -22,7 +23,7 @@ pub struct Conversion {
 #[derive(Serialize)]
 struct Object<'c> {
     format: u32,
-    from: String,
+    from: Option<String>,
     to: String,
     findings: &'c [Finding],
     summary: Summary,
@@ -46,13 +47,26 @@ impl Conversion {
         let mut losses = file.losses.clone();
         losses.findings.extend(written.findings);
         Self {
-            from,
+            from: Some(from),
             to,
             read: Some(file.losses.items).filter(|&items| items > 0),
             waypoints: file.plan.waypoints.len(),
             written: written.items,
             losses,
         }
+    }
+
+    /// Creates the report of a file that cannot be read, for the reason `why`.
+    pub fn refused(to: Format, why: &str) -> Self {
+        let mut losses = LossReport::default();
+        // Without the quoted lines of the file and the carets below them.
+        let is_quoted = |line: &str| {
+            line.split_once(" |")
+                .is_some_and(|(number, _)| number.trim().parse::<u32>().is_ok() || number.trim().is_empty())
+        };
+        let why: Vec<&str> = why.lines().filter(|line| !is_quoted(line)).collect();
+        losses.add(Finding::new(Severity::Refused, "file", why.join("; ")));
+        Self { from: None, to, read: None, waypoints: 0, written: 0, losses }
     }
 
     /// Returns the heaviest severity.
@@ -78,7 +92,7 @@ impl Conversion {
         let count = |severity| self.losses.count(severity);
         let object = Object {
             format: 1,
-            from: self.from.to_string(),
+            from: self.from.map(|from| from.to_string()),
             to: self.to.to_string(),
             findings: &self.losses.findings,
             summary: Summary {

@@ -17,7 +17,7 @@ pub(super) use detail::{Detail, Window};
 pub const MAX_VERTICES: usize = 200_000;
 
 /// The endings of files that may be maps.
-const MAP_ENDINGS: [&str; 5] = ["geojson", "json", "kml", "kmz", "gpx"];
+const MAP_ENDINGS: [&str; 6] = ["geojson", "json", "kml", "kmz", "gpx", "plan"];
 
 /// The shapes of one file.
 #[derive(Debug, Clone)]

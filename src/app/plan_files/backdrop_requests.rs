@@ -28,7 +28,9 @@ impl PlanFiles {
             return Vec::new();
         };
         let paths = file.path.as_deref().map_or_else(Vec::new, |path| self.backdrops.of(path));
-        paths.iter().map(|path| self.read_backdrop(id, path, false)).collect()
+        // A plan of QGroundControl has its zones in its own file.
+        let own = file.path.clone().filter(|path| !paths.contains(path) && backdrop_file::has_fences(path));
+        paths.iter().chain(&own).map(|path| self.read_backdrop(id, path, false)).collect()
     }
 
     /// Reads a file and puts it under a plan.

@@ -89,7 +89,13 @@ fn parse(path: &Path, contents: &[u8], home: Option<HomePosition>) -> Result<Pla
             0 => String::new(),
             more => format!(" ({more} more problems: `betadeck plan show` lists them)"),
         };
-        errors.first().map_or_else(|| format!("{name} is not a plan."), |error| format!("{error}{more}"))
+        errors.first().map_or_else(
+            || format!("{name} is not a plan."),
+            |error| match error.hint.as_str() {
+                "" => format!("{}.{more}", error.headline()),
+                hint => format!("{}: {hint}.{more}", error.headline()),
+            },
+        )
     })?;
     file.losses.findings.splice(0..0, finding);
     Ok(file)

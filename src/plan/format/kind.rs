@@ -4,7 +4,7 @@ use strum::IntoEnumIterator as _;
 
 use super::loss::{Finding, Severity};
 use super::map_file::{MapKind, is_geojson, kmz, root_element};
-use super::{csv_plan, inav, litchi, native_read, qgc_csv, qgc_wpl};
+use super::{csv_plan, inav, litchi, native_read, qgc_csv, qgc_plan, qgc_wpl};
 
 /// A file format for plans. `Display` and `FromStr` use the names of `convert --from` and `--to`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumString, strum::EnumIter)]
@@ -248,7 +248,7 @@ impl Format {
 fn of_mark(text: &str) -> Option<Format> {
     if text.starts_with(qgc_wpl::MARK) {
         Some(Format::QgcWpl)
-    } else if text.starts_with('{') && text.contains("\"fileType\"") {
+    } else if qgc_plan::is_plan(text) {
         Some(Format::QgcPlan)
     } else if qgc_csv::is_header(text.lines().next().unwrap_or_default()) {
         Some(Format::QgcCsv)

@@ -116,6 +116,9 @@ pub fn read_features(name: &str, contents: &[u8]) -> Result<Vec<Feature>, Vec<Pl
         contents
     };
     let text = encoding::decode(contents).map_err(|message| refused(message, "a map is a text file"))?;
+    if super::qgc_plan::is_plan(&text) {
+        return Ok(super::qgc_fences(&text));
+    }
     let Some(kind) = MapKind::of_text(&text) else {
         let message = "this is none of GeoJSON, KML, KMZ and GPX";
         return Err(refused(message.to_owned(), "a map is a file of one of these formats"));

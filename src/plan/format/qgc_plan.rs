@@ -33,6 +33,11 @@ pub(super) fn read(text: &str, options: &ReadOptions, problems: &mut Problems<'_
     file
 }
 
+/// Returns `true` for a text with the mark of such a plan.
+pub(super) fn is_plan(text: &str) -> bool {
+    text.trim_start().starts_with('{') && text.contains("\"fileType\"")
+}
+
 /// Returns the fences of a `.plan` that are not the distance from home of the craft. A circle becomes an area of 72
 /// points. Returns none for a text that is no plan.
 pub fn qgc_fences(text: &str) -> Vec<Feature> {

@@ -80,7 +80,6 @@ impl Browser {
             KeyCode::Up => self.at = self.at.and_then(|at| at.checked_sub(1)),
             KeyCode::PageDown => self.at = last.map(|last| self.at.map_or(0, |at| (at + 10).min(last))),
             KeyCode::PageUp => self.at = self.at.and_then(|at| at.checked_sub(10)),
-            KeyCode::Backspace if self.text.is_empty() => return self.parent(),
             KeyCode::Left if self.text.is_empty() => return self.parent(),
             KeyCode::Tab => {
                 let typed = self.text.value();
@@ -167,7 +166,8 @@ mod tests {
         let mut open = browser(Purpose::Open, "");
         press(&mut open, KeyCode::Down);
         assert_eq!(press(&mut open, KeyCode::Enter), BrowserKey::List("/plans/deep".into()));
-        assert_eq!(press(&mut open, KeyCode::Backspace), BrowserKey::List("/".into()));
+        assert_eq!(press(&mut open, KeyCode::Backspace), BrowserKey::Edited);
+        assert_eq!(press(&mut open, KeyCode::Left), BrowserKey::List("/".into()));
         let mut open = browser(Purpose::Open, "/etc/x.txt");
         assert_eq!(press(&mut open, KeyCode::Enter), BrowserKey::Chosen("/etc/x.txt".into()));
     }

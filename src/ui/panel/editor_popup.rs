@@ -120,7 +120,8 @@ fn browser(state: &Shared, browser: &Browser, area: Rect, buffer: &mut Buffer) -
     };
     let inside = popup(theme, area, (WIDTH, area.height.saturating_sub(6).min(22)), title, buffer);
     let directory = browser.listing.directory.display().to_string();
-    row(buffer, inside, 0, theme, Role::Dim, &format!(" {directory}/"));
+    let slash = if directory.ends_with('/') { "" } else { "/" };
+    row(buffer, inside, 0, theme, Role::Dim, &format!(" {directory}{slash}"));
     row(buffer, inside, 1, theme, Role::Title, " name ");
     let name = Rect { x: inside.x + 6, y: inside.y + 1, width: inside.width.saturating_sub(6), height: 1 };
     let cursor = browser.text.draw(theme, name.intersection(inside), buffer);

@@ -5,9 +5,11 @@ use super::filled_in;
 use crate::pty::Terminal;
 
 /// The beginning of a line, and the words on the screen after it was carried out.
-const CARRIED_OUT: [(&str, &str); 12] = [
+const CARRIED_OUT: [(&str, &str); 14] = [
     (":allow-changes", "changes need no permission"),
     (":arm", "● ARMED"),
+    (":backdrop field.geojson", "is under the plan: 10 vertices"),
+    (":backdrop off", "Nothing is under the plan."),
     (":fault gps-loss", "Fault gps-loss begins."),
     (":fault teleport", "Fault teleport 90,90,0 begins."),
     (":flight.home", "Nothing to bring home"),
@@ -32,6 +34,7 @@ fn every_line_of_the_pages_for_the_screen_is_carried_out() {
         }
         let mut terminal = Terminal::betadeck(200, 60, &["--fresh", "--no-ports"]);
         terminal.until_shown("DISARMED");
+        terminal.home().write("field.geojson", include_str!("../../exchange/field.geojson"));
         if line == ":arm" {
             // This is what is missing once nothing blocks the arming any more.
             terminal.until_shown("The craft has no plan.");
