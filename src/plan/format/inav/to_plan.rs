@@ -41,7 +41,13 @@ pub(super) fn plan_file(
     match private.map(|text| private::restore(&text, &items, mission.home, form, options)) {
         None => {}
         Some(Ok(Restored { file, has_plan: true })) => {
-            return PlanFile { home: file.home.or(options.home), losses, ..file };
+            let mut home = file.home.or(options.home);
+            if let (Some(home), Some(given)) = (&mut home, options.home)
+                && home.position == given.position
+            {
+                home.amsl_m = home.amsl_m.or(given.amsl_m);
+            }
+            return PlanFile { home, losses, ..file };
         }
         Some(Ok(Restored { file, has_plan: false })) => {
             losses.add(not_used(private::EDITED));

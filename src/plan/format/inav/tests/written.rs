@@ -180,6 +180,15 @@ fn private_data_are_used_only_if_the_items_are_the_same() {
 }
 
 #[test]
+fn the_home_of_the_user_completes_that_of_the_file() {
+    let file = PlanFile { home: "40.4635,-79.5182".parse().ok(), ..file(&[record(WaypointType::Land)]) };
+    for format in FORMATS {
+        let text = write(&file, format).text().into_owned();
+        assert_eq!(try_read(&text, format, &at_home()).unwrap().home, at_home().home);
+    }
+}
+
+#[test]
 fn dropped_private_waypoints_are_named() {
     let next =
         WaypointRecord { position: LatLon::new(404_730_000, -795_175_000), ..record(WaypointType::Land) };
