@@ -15,7 +15,7 @@ mod tiles;
 pub use geotiff::decode as decode_geotiff;
 pub use grid::{Grid, Samples};
 pub use hgt::{HGT_SIDES, decode as decode_hgt};
-pub use relief::Relief;
+pub use relief::{HOME_UNKNOWN, Relief};
 pub use square::{Square, squares_of};
 pub use tiles::{Spot, Tiles};
 

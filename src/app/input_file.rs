@@ -14,47 +14,54 @@ use crate::args::is_descriptor;
 
 /// The name of standard input in messages.
 const STDIN: &str = "standard input";
-/// The largest plan or settings file, bytes.
-const MAX_FILE: u64 = 4 << 20;
-/// The largest elevation tile, bytes.
-const MAX_TILE: u64 = 64 << 20;
-/// The largest map, bytes.
-const MAX_MAP: u64 = 64 << 20;
-/// The largest file for a syntax tree, bytes. The tree takes a hundred times as much memory.
-const MAX_TREE: u64 = 512 << 10;
+/// A plan or settings.
+const TEXT: Kind = Kind { most: 4 << 20, too_large: "neither a plan nor settings" };
+const TILE: Kind = Kind { most: 64 << 20, too_large: "no elevation tile" };
+const MAP: Kind = Kind { most: 64 << 20, too_large: "too much for a map" };
+/// A file for a syntax tree. The tree takes a hundred times as much memory.
+const TREE: Kind = Kind { most: 512 << 10, ..TEXT };
+
+/// A kind of file.
+#[derive(Clone, Copy)]
+struct Kind {
+    /// The size of the largest one, bytes.
+    most: u64,
+    /// The end of the sentence about a larger one.
+    too_large: &'static str,
+}
 
 /// Reads a plan file.
 pub(super) fn read_plan(path: &Path) -> Result<Vec<u8>, AppError> {
     let name = path.display().to_string();
-    read_bytes(open(path, &name, MAX_FILE)?, &name, MAX_FILE)
+    read_bytes(open(path, &name, TEXT)?, &name, TEXT)
 }
 
 /// Reads an elevation tile.
 pub(super) fn read_tile(path: &Path) -> Result<Vec<u8>, AppError> {
     let name = path.display().to_string();
-    read_bytes(open(path, &name, MAX_TILE)?, &name, MAX_TILE)
+    read_bytes(open(path, &name, TILE)?, &name, TILE)
 }
 
 /// Reads a map for a backdrop.
 pub(super) fn read_map(path: &Path) -> Result<Vec<u8>, AppError> {
     let name = path.display().to_string();
-    read_bytes(open(path, &name, MAX_MAP)?, &name, MAX_MAP)
+    read_bytes(open(path, &name, MAP)?, &name, MAP)
 }
 
 /// Reads a text file of reasonable size.
 pub(super) fn read(path: &Path) -> Result<String, AppError> {
-    read_at_most(path, MAX_FILE)
+    read_at_most(path, TEXT)
 }
 
 /// Reads a file for a syntax tree.
 pub(super) fn read_small(path: &Path) -> Result<String, AppError> {
-    read_at_most(path, MAX_TREE)
+    read_at_most(path, TREE)
 }
 
-fn read_at_most(path: &Path, most: u64) -> Result<String, AppError> {
+fn read_at_most(path: &Path, kind: Kind) -> Result<String, AppError> {
     let name = path.display().to_string();
-    let file = open(path, &name, most)?;
-    read_text(file, &name, most)
+    let file = open(path, &name, kind)?;
+    read_text(file, &name, kind)
 }
 
 /// Reads a text file, which may be missing.
@@ -66,14 +73,14 @@ pub(super) fn read_if_there(path: &Path) -> Result<Option<String>, AppError> {
 }
 
 pub(super) fn read_stdin() -> Result<Vec<u8>, AppError> {
-    read_bytes(std::io::stdin().lock(), STDIN, MAX_FILE)
+    read_bytes(std::io::stdin().lock(), STDIN, TEXT)
 }
 
 pub(super) fn read_stdin_text() -> Result<String, AppError> {
-    read_text(std::io::stdin().lock(), STDIN, MAX_FILE)
+    read_text(std::io::stdin().lock(), STDIN, TEXT)
 }
 
-fn open(path: &Path, name: &str, most: u64) -> Result<File, AppError> {
+fn open(path: &Path, name: &str, kind: Kind) -> Result<File, AppError> {
     let cannot_open = |error: std::io::Error| AppError::environment(format!("cannot open {name}: {error}"));
     if is_descriptor(path) {
         return File::open(path).map_err(cannot_open);
@@ -94,8 +101,8 @@ fn open(path: &Path, name: &str, most: u64) -> Result<File, AppError> {
             "{name} is a system file, which describes this machine: name a file of your own, or - for standard input"
         )));
     }
-    if metadata.len() > most {
-        return Err(too_large(name, most));
+    if metadata.len() > kind.most {
+        return Err(too_large(name, kind));
     }
     Ok(file)
 }
@@ -123,27 +130,27 @@ fn is_of_system(_: &File) -> bool {
     false
 }
 
-fn read_text(source: impl Read, name: &str, most: u64) -> Result<String, AppError> {
-    let bytes = read_bytes(source, name, most)?;
+fn read_text(source: impl Read, name: &str, kind: Kind) -> Result<String, AppError> {
+    let bytes = read_bytes(source, name, kind)?;
     String::from_utf8(bytes).map_err(|_| AppError::input(format!("{name} is not a text file (UTF-8)")))
 }
 
-fn read_bytes(source: impl Read, name: &str, most: u64) -> Result<Vec<u8>, AppError> {
+fn read_bytes(source: impl Read, name: &str, kind: Kind) -> Result<Vec<u8>, AppError> {
     let mut bytes = Vec::new();
     source
-        .take(most + 1)
+        .take(kind.most + 1)
         .read_to_end(&mut bytes)
         .map_err(|error| AppError::environment(format!("cannot read {name}: {error}")))?;
-    if bytes.len() as u64 > most {
-        return Err(too_large(name, most));
+    if bytes.len() as u64 > kind.most {
+        return Err(too_large(name, kind));
     }
     Ok(bytes)
 }
 
-fn too_large(name: &str, most: u64) -> AppError {
-    let what = if most == MAX_TILE { "no elevation tile" } else { "neither a plan nor settings" };
+fn too_large(name: &str, kind: Kind) -> AppError {
+    let Kind { most, too_large } = kind;
     let most = if most < 1 << 20 { format!("{} KiB", most >> 10) } else { format!("{} MiB", most >> 20) };
-    AppError::input(format!("{name} is larger than {most}: that is {what}"))
+    AppError::input(format!("{name} is larger than {most}: that is {too_large}"))
 }
 
 #[cfg(test)]
@@ -174,7 +181,19 @@ mod tests {
         let path = directory.path().join("huge.txt");
         File::create(&path).and_then(|file| file.set_len(20 << 30)).expect("a sparse file");
         let error = read(&path).expect_err("too large");
-        assert!(error.to_string().contains("larger than 4 MiB"), "{error}");
+        assert!(
+            error.to_string().ends_with("larger than 4 MiB: that is neither a plan nor settings"),
+            "{error}"
+        );
+        let error = read_small(&path).expect_err("too large");
+        assert!(
+            error.to_string().ends_with("larger than 512 KiB: that is neither a plan nor settings"),
+            "{error}"
+        );
+        let error = read_tile(&path).expect_err("too large");
+        assert!(error.to_string().ends_with("larger than 64 MiB: that is no elevation tile"), "{error}");
+        let error = read_map(&path).expect_err("too large");
+        assert!(error.to_string().ends_with("larger than 64 MiB: that is too much for a map"), "{error}");
     }
 
     #[test]

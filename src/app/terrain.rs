@@ -9,7 +9,7 @@ use crate::args::TerrainArgs;
 use crate::flight::FlightSetup;
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
-use crate::terrain::{Grid, HGT_SIDES, Square, Tiles, decode_geotiff, decode_hgt, squares_of};
+use crate::terrain::{Grid, HGT_SIDES, HOME_UNKNOWN, Square, Tiles, decode_geotiff, decode_hgt, squares_of};
 
 /// The largest number of tiles. Nine of the largest ones take 470 MB.
 const MOST_TILES: usize = 9;
@@ -45,14 +45,18 @@ impl TerrainFiles {
     }
 
     /// Reads the tiles under a plan that is flown from this home. Adds a sentence for each one that is missing or
-    /// cannot be read to `notices`. Returns `None` if there are none.
+    /// cannot be read to `notices`, and one if they do not know the ground at home. Returns `None` if there are none.
     pub(super) fn read(
         &self,
         home: LatLon,
         plan: &FlightPlan,
         notices: &mut Vec<String>,
     ) -> Option<Arc<Tiles>> {
-        self.read_more(&Tiles::default(), home, plan, notices).map(Arc::new)
+        let tiles = self.read_more(&Tiles::default(), home, plan, notices)?;
+        if tiles.elevation(home).is_none() {
+            notices.push(HOME_UNKNOWN.to_owned());
+        }
+        Some(Arc::new(tiles))
     }
 
     /// Does the same as [`Self::read`], and keeps the tiles that are there. Returns `None` if nothing changes.
@@ -82,8 +86,11 @@ impl TerrainFiles {
         }
         let mut tiles = there.clone();
         for square in wanted {
+            let before = notices.len();
             match self.tile(square, notices) {
                 Some(grid) => tiles.insert(square, grid),
+                // The file is there, and its problem is named.
+                None if notices.len() > before => {}
                 None => notices.push(format!(
                     "No elevation tile {} (or {}) in {}: the ground there is unknown.",
                     square.hgt_name(),
@@ -176,11 +183,23 @@ mod tests {
         ));
         assert!(
             notices[1].starts_with(
-                "No elevation tile N40W079.hgt (or Copernicus_DSM_COG_10_N40_00_W079_00_DEM.tif)"
-            )
+                "No elevation tile N40W078.hgt (or Copernicus_DSM_COG_10_N40_00_W078_00_DEM.tif)"
+            ),
+            "{notices:?}"
         );
-        assert!(notices[2].starts_with("No elevation tile N40W078.hgt"), "{notices:?}");
-        assert_eq!(notices.len(), 3);
+        assert_eq!(notices.len(), 2);
+    }
+
+    #[test]
+    fn unknown_ground_at_home_is_reported() {
+        let folder = tempfile::tempdir().unwrap();
+        let voids = i16::MIN.to_be_bytes().repeat(1201 * 1201);
+        std::fs::write(folder.path().join("N40W080.hgt"), voids).unwrap();
+        let files = TerrainFiles { directories: vec![folder.path().to_owned()] };
+        let home = LatLon::from_degrees(40.4635, -79.5182);
+        let mut notices = Vec::new();
+        assert!(files.read(home, &plan(&[(40.47, -79.52)]), &mut notices).is_some());
+        assert_eq!(notices, [HOME_UNKNOWN]);
     }
 
     #[test]

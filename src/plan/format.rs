@@ -11,6 +11,7 @@ mod bounds;
 mod cli_text;
 mod csv_plan;
 mod csv_table;
+mod dropped;
 mod encoding;
 mod field;
 mod geojson;

@@ -5,6 +5,10 @@ use std::sync::Arc;
 use super::tiles::Tiles;
 use crate::geo::LatLon;
 
+/// The notice for a home whose height the tiles do not know.
+pub const HOME_UNKNOWN: &str =
+    "The ground at home is unknown in the elevation tiles: clearances are not checked.";
+
 /// Tiles as seen from a home whose height they know.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Relief {

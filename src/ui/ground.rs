@@ -24,6 +24,8 @@ pub struct GroundState {
     /// The findings about low clearances, and their input. A look at the ground is too slow for each picture.
     low: Vec<Finding>,
     low_basis: Option<LowBasis>,
+    /// The notice about unknown ground at home was given.
+    is_home_unknown: bool,
 }
 
 /// The input of the findings about low clearances.

@@ -72,7 +72,7 @@ fn read_file(
         file.settings = checked_settings(&private.settings, options, &mut file.losses);
     }
     let fences = fence::read(value, file.home, source);
-    take_fence(fences.home_radius_m, private.is_some(), options, file);
+    take_fence(&fences, private.is_some(), options, file);
     report_vehicle(mission, &mut file.losses);
     if !source.is_clean() {
         return None;
@@ -208,13 +208,16 @@ fn checked_settings(lines: &[String], options: &ReadOptions, losses: &mut LossRe
 
 /// Makes the circle around home the setting. With private data the setting is there already, and the circle says
 /// whether another program changed it.
-fn take_fence(radius_m: Option<f64>, is_ours: bool, options: &ReadOptions, file: &mut PlanFile) {
+fn take_fence(fences: &fence::Fences, is_ours: bool, options: &ReadOptions, file: &mut PlanFile) {
     let before_m = Assumptions::from_settings(&file.settings).fence_m;
+    let radius_m = fences.home_radius_m;
     let whole_m = radius_m.map(f64::floor);
     if before_m == whole_m {
         return;
     }
     let text = |metres: Option<f64>| metres.map_or_else(|| "none".to_owned(), |metres| format!("{metres} m"));
+    let is_elsewhere = fences.elsewhere_m.iter().any(|radius_m| Some(radius_m.floor()) == before_m);
+    let mut severity = Severity::Assumed;
     let why = match whole_m {
         Some(metres) => {
             if let Err(fault) = (options.check)(FENCE_SETTING, &metres.to_string()) {
@@ -224,6 +227,10 @@ fn take_fence(radius_m: Option<f64>, is_ours: bool, options: &ReadOptions, file:
             }
             "another program changed the circle around home"
         }
+        None if is_elsewhere => {
+            severity = Severity::Lost;
+            "the home moved away from the centre of the circle"
+        }
         None => "another program removed the circle around home",
     };
     let is_fence =
@@ -231,7 +238,7 @@ fn take_fence(radius_m: Option<f64>, is_ours: bool, options: &ReadOptions, file:
     file.settings.retain(|line| !is_fence(line));
     file.settings.extend(whole_m.map(|metres| format!("{FENCE_SETTING} = {metres}")));
     if is_ours {
-        file.losses.add(Finding::new(Severity::Assumed, "fence", why).values(text(before_m), text(whole_m)));
+        file.losses.add(Finding::new(severity, "fence", why).values(text(before_m), text(whole_m)));
     }
     if radius_m != whole_m {
         let why = "the distance from home is in whole metres";

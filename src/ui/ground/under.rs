@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use crate::geo::{LatLon, LocalFrame};
 use crate::plan::FlightPlan;
-use crate::terrain::{Relief, Tiles};
+use crate::terrain::{HOME_UNKNOWN, Relief, Tiles};
 use crate::ui::editor::{FileRequest, findings, settings_in_force};
 use crate::ui::event_log::Severity;
 use crate::ui::ground::LowBasis;
@@ -47,6 +47,11 @@ pub(in crate::ui) fn follow_clearance(state: &mut Shared) {
         estimate: state.forecast.estimate().map(|forecast| (forecast.path.len(), forecast.time_s)),
     };
     if state.ground.low_basis.as_ref() != Some(&basis) {
+        let is_home_unknown = basis.tiles > 0 && state.ground.relief(home).is_none();
+        if is_home_unknown && !state.ground.is_home_unknown {
+            state.notify(Severity::Warn, HOME_UNKNOWN);
+        }
+        state.ground.is_home_unknown = is_home_unknown;
         state.ground.low = findings::low(state, home, &basis.assumptions);
         state.ground.low_basis = Some(basis);
     }
@@ -84,6 +89,7 @@ mod tests {
     use super::*;
     use crate::plan::Waypoint;
     use crate::session::SessionView;
+    use crate::terrain::{HGT_SIDES, Square, decode_hgt};
 
     #[test]
     fn the_tiles_of_other_places_are_requested_once() {
@@ -99,5 +105,22 @@ mod tests {
         assert!(follow_plan(&mut state).is_none());
         state.editor.insert("another place", &[Waypoint::default()]).expect("a place for a waypoint");
         assert!(follow_plan(&mut state).is_some());
+    }
+
+    #[test]
+    fn unknown_ground_at_home_is_reported_once() {
+        let mut state = Shared::bare((80, 24), SessionView::default());
+        let land = Waypoint { position: LatLon::new(405_000_000, -795_000_000), ..Waypoint::default() };
+        state.editor.insert("a plan", &[land]).expect("a place for a waypoint");
+        let square = Square::of(land.position);
+        let voids = i16::MIN.to_be_bytes().repeat(1201 * 1201);
+        let mut tiles = Tiles::default();
+        tiles.insert(square, decode_hgt(&voids, square, &HGT_SIDES).expect("a tile"));
+        read(&mut state, Some(Arc::new(tiles)), Vec::new());
+        follow_clearance(&mut state);
+        assert_eq!(state.notice.take().expect("a notice").text, HOME_UNKNOWN);
+        state.editor.insert("another place", &[land]).expect("a place for a waypoint");
+        follow_clearance(&mut state);
+        assert!(state.notice.is_none());
     }
 }

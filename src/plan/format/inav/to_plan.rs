@@ -1,6 +1,7 @@
 //! INAV items as a plan.
 
 use super::super::bounds::Reference;
+use super::super::dropped::dropped;
 use super::super::loss::{Finding, LossReport, Place, Severity};
 use super::super::{HomePosition, PlanFile, Problems, ReadOptions};
 use super::private::Restored;
@@ -35,23 +36,33 @@ pub(super) fn plan_file(
     losses.items = mission.items.len();
     let items: Vec<Item> = mission.items.iter().map(|found| found.item).collect();
     let mut known = PlanFile::default();
-    let dropped = |why: &str| Finding::new(Severity::Assumed, "private data", why);
+    let mut private_plan = FlightPlan::default();
+    let not_used = |why: &str| Finding::new(Severity::Assumed, "private data", why);
     match private.map(|text| private::restore(&text, &items, mission.home, form, options)) {
         None => {}
         Some(Ok(Restored { file, has_plan: true })) => {
-            return PlanFile { home: file.home.or(options.home), losses, ..file };
+            let mut home = file.home.or(options.home);
+            if let (Some(home), Some(given)) = (&mut home, options.home)
+                && home.position == given.position
+            {
+                home.amsl_m = home.amsl_m.or(given.amsl_m);
+            }
+            return PlanFile { home, losses, ..file };
         }
         Some(Ok(Restored { file, has_plan: false })) => {
-            losses.add(dropped(private::EDITED));
+            losses.add(not_used(private::EDITED));
+            private_plan = file.plan.clone();
             known = PlanFile { plan: FlightPlan::default(), ..file };
         }
-        Some(Err(why)) => losses.add(dropped(why)),
+        Some(Err(why)) => losses.add(not_used(why)),
     }
     let home = home(mission.home, known.home, options);
     let mut reader = ItemReader { options, problems, home, losses, waypoints: Vec::new(), plain: 0 };
     reader.mission(&mission.items);
     let plan = reader.plan(&mission.items);
-    PlanFile { home, plan, losses: reader.losses, ..known }
+    let mut losses = reader.losses;
+    losses.findings.extend(dropped(&private_plan.waypoints, &plan.waypoints, Severity::Lost));
+    PlanFile { home, plan, losses, ..known }
 }
 
 /// Returns the home: that of the file, with the altitude that it lacks.

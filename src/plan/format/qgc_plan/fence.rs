@@ -25,6 +25,8 @@ const LARGEST_M: f64 = 1e6;
 pub(super) struct Fences {
     /// The radius of the smallest circle around home that the craft must stay in, m.
     pub(super) home_radius_m: Option<f64>,
+    /// The radii of the other circles that the craft must stay in, m.
+    pub(super) elsewhere_m: Vec<f64>,
     /// The others.
     pub(super) features: Vec<Feature>,
     has_breach_return: bool,
@@ -47,6 +49,9 @@ pub(super) fn read(value: &Value, home: Option<HomePosition>, source: &mut Sourc
             let smallest = fences.home_radius_m.map_or(radius_m, |radius| radius.min(radius_m));
             fences.home_radius_m = Some(smallest);
         } else {
+            if zone == Zone::Inclusion {
+                fences.elsewhere_m.push(radius_m);
+            }
             fences.add(format!("fence circle {index}"), ring(center, radius_m), zone);
         }
     }

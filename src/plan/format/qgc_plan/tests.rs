@@ -254,6 +254,12 @@ fn private_data_are_used_for_items_that_nobody_edited() {
         [(hold, HoldPattern::Figure8), (hold, HoldPattern::None), (land, HoldPattern::None)]
     );
     assert_eq!(moved.plan.waypoints[1].position.lat_e7, 404_611_000);
+    // It moves the home only.
+    let mut other: serde_json::Value = serde_json::from_str(&text).unwrap();
+    other["mission"]["plannedHomePosition"][0] = json!(40.4640);
+    let said = findings(&read_text(&other.to_string()));
+    let away = "lost     fence: 500 m → none: the home moved away from the centre of the circle";
+    assert!(said.iter().any(|line| line == away), "{said:?}");
     // It removes the first item, and the circle.
     value["mission"]["items"].as_array_mut().unwrap().remove(0);
     value["geoFence"]["circles"] = json!([]);

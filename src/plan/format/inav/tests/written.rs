@@ -165,7 +165,8 @@ fn private_data_are_used_only_if_the_items_are_the_same() {
             findings(&edited),
             [
                 "assumed  private data: another program edited the items, so the waypoints are those of the items \
-                 alone"
+                 alone",
+                "lost     WP 0 pattern, duration: ORBIT, 30.1 s → NONE, 30 s: only the private data had it",
             ]
         );
         let broken = read_text(&text.replacen("pattern =", "patern =", 1), format);
@@ -176,6 +177,30 @@ fn private_data_are_used_only_if_the_items_are_the_same() {
     let moved = write(&file, Format::MwXml).text().replacen("home-y=\"40.4635000\"", "home-y=\"40.5\"", 1);
     let moved = read_text(&moved, Format::MwXml);
     assert_eq!((moved.home, &moved.plan), ("40.5,-79.5182".parse().ok(), &file.plan));
+}
+
+#[test]
+fn the_home_of_the_user_completes_that_of_the_file() {
+    let file = PlanFile { home: "40.4635,-79.5182".parse().ok(), ..file(&[record(WaypointType::Land)]) };
+    for format in FORMATS {
+        let text = write(&file, format).text().into_owned();
+        assert_eq!(try_read(&text, format, &at_home()).unwrap().home, at_home().home);
+    }
+}
+
+#[test]
+fn dropped_private_waypoints_are_named() {
+    let next =
+        WaypointRecord { position: LatLon::new(404_730_000, -795_175_000), ..record(WaypointType::Land) };
+    let file = file(&[record(WaypointType::Takeoff), record(WaypointType::Flyover), next]);
+    let text = write(&file, Format::MwXml).text().replacen("alt=\"50\"", "alt=\"60\"", 1);
+    assert_eq!(
+        findings(&read_text(&text, Format::MwXml))[2..],
+        [
+            "lost     waypoint: TAKEOFF (WP 0 of the private data): only the private data had it",
+            "lost     WP 0 type: FLYOVER → FLYBY: only the private data had it",
+        ]
+    );
 }
 
 /// Returns the indices of the waypoints that no finding above info names, and that no modifier before them changes.
