@@ -218,6 +218,14 @@ impl<'m, 'p, 'a> Builder<'m, 'p, 'a> {
         self.push(Waypoint { position: vertex.position, altitude, kind, ..Waypoint::default() });
     }
 
+    /// Adds a point that has the word of a type of ours and not the data that the type needs.
+    pub(super) fn without_data(&mut self, spot: &Spot<'_>, kind: WaypointType) {
+        let plain = self.options.waypoint_as;
+        let finding = self.find(spot, Severity::Lost, "type", "the data of the point are missing");
+        self.losses.add(finding.values(kind.to_string(), plain.to_string()));
+        self.plain(spot, plain);
+    }
+
     fn push(&mut self, waypoint: Waypoint) {
         self.waypoints.push(waypoint);
         self.losses.items += 1;

@@ -90,3 +90,31 @@ fn a_changed_elevation_counts() {
     let file = read_with(&text, &ReadOptions::default());
     assert_eq!(file.home.unwrap().amsl_m, Some(290.0));
 }
+
+#[test]
+fn a_type_without_its_data_is_a_plain_point() {
+    let point = |kind: &str| format!("<rtept lat='1' lon='2'><ele>350</ele><type>{kind}</type></rtept>");
+    let words = ["FLYOVER", "HOLD", "TAKEOFF", "DELAY", "ALT_CHANGE", "YAW_RATE", "Hold", "LAND"];
+    let text = format!("<gpx><rte>{}</rte></gpx>", words.map(point).concat());
+    let home = Some("1,2,300".parse().unwrap());
+    let file = read_with(&text, &ReadOptions { home, ..ReadOptions::default() });
+    let kinds: Vec<String> = file.plan.waypoints.iter().map(|waypoint| waypoint.kind.to_string()).collect();
+    let plain = ["FLYBY"; 6];
+    assert_eq!(kinds, [&["FLYOVER"], &plain[..], &["LAND"]].concat());
+    assert!(file.plan.waypoints.iter().all(|waypoint| waypoint.altitude.cm() == 5000));
+    let lost: Vec<String> = file.losses.findings.iter().map(ToString::to_string).collect();
+    let lost: Vec<&String> = lost.iter().filter(|line| line.starts_with("lost ")).collect();
+    assert_eq!(lost.len(), 5, "{lost:?}");
+    assert_eq!(
+        lost[0],
+        "lost     WP 1 (item 2, line 1) type: HOLD → FLYBY: the data of the point are missing"
+    );
+}
+
+#[test]
+fn a_delay_of_no_time_comes_back() {
+    let delay = parse("p", "[[waypoint]]\ntype = 'DELAY'\nduration_s = 0\n", Format::Toml).unwrap();
+    let file = read_with(&write(&delay, Format::Gpx).text(), &ReadOptions::default());
+    assert_eq!(file.plan, delay.plan);
+    assert!(file.losses.is_lossless());
+}
