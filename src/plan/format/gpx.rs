@@ -32,7 +32,7 @@ pub(super) fn read(text: &str, options: &ReadOptions, problems: &mut Problems<'_
                     }
                     Some(kind) if map_data::has_data(properties) => builder.own(&spot, kind),
                     Some(kind) => builder.without_data(&spot, kind),
-                    None => builder.plain(&spot, options.waypoint_as),
+                    None => builder.plain(&spot),
                 }
             }
         }
@@ -51,9 +51,8 @@ pub(super) fn read(text: &str, options: &ReadOptions, problems: &mut Problems<'_
                 let MapFeature { place, at, properties, .. } = feature;
                 let vertex = Some((vertex, piece.altitudes));
                 let spot = Spot { item, place: place.as_ref(), at: *at, properties, vertex };
-                builder.plain(&spot, options.waypoint_as);
+                builder.plain(&spot);
             }
-            builder.passing();
         }
     }
     builder.finish()

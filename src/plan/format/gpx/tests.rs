@@ -77,7 +77,7 @@ fn elevations_are_above_sea_level() {
     let file = read_with(text, &options);
     let cm: Vec<i32> = file.plan.waypoints.iter().map(|waypoint| waypoint.altitude.cm()).collect();
     assert_eq!(cm, [5000, 1000]);
-    assert_eq!(file.losses.counts(), "1 assumed, 1 info");
+    assert_eq!(file.losses.counts(), "2 assumed");
 }
 
 #[test]
@@ -117,4 +117,26 @@ fn a_delay_of_no_time_comes_back() {
     let file = read_with(&write(&delay, Format::Gpx).text(), &ReadOptions::default());
     assert_eq!(file.plan, delay.plan);
     assert!(file.losses.is_lossless());
+}
+
+#[test]
+fn a_given_altitude_completes_the_home_of_the_file() {
+    let text = "<gpx><wpt lat='1' lon='2'><type>HOME</type></wpt><rte><rtept lat='1' lon='3'/></rte></gpx>";
+    let home = |given: &str| {
+        let options = ReadOptions { home: Some(given.parse().unwrap()), ..ReadOptions::default() };
+        read_with(text, &options).home.unwrap().amsl_m
+    };
+    assert_eq!(home("1,2.000001,300"), Some(300.0));
+    assert_eq!((home("1,2.1,300"), home("1,2")), (None, None));
+}
+
+#[test]
+fn a_point_that_does_not_say_how_it_is_passed_is_assumed() {
+    let options = ReadOptions { altitude_m: Some(20.0), ..ReadOptions::default() };
+    let file = read_with("<gpx><rte><rtept lat='1' lon='2'/><rtept lat='1' lon='3'/></rte></gpx>", &options);
+    let lines: Vec<String> = file.losses.findings.iter().map(ToString::to_string).collect();
+    assert_eq!(
+        lines,
+        ["assumed  type: FLYBY: the file does not say how a point is passed: set it with --waypoint-as"]
+    );
 }
