@@ -134,15 +134,15 @@ fn samples() -> Vec<Sample> {
     vec![
         sample("google-earth.kml", &plain, 3, Severity::Assumed, 1),
         sample("google-earth-polygon.kml", &ring, 4, Severity::Assumed, 1),
-        sample("google-earth-track.kml", &track, 3, Severity::Info, 1),
-        sample("qgis.kml", &with_home, 3, Severity::Info, 1),
+        sample("google-earth-track.kml", &track, 3, Severity::Assumed, 1),
+        sample("qgis.kml", &with_home, 3, Severity::Assumed, 1),
         sample("qgis.geojson", &plain, 3, Severity::Assumed, 2),
         sample("geojson-io.geojson", &plain, 2, Severity::Assumed, 2),
-        sample("gpsbabel.gpx", &with_home, 3, Severity::Info, 1),
+        sample("gpsbabel.gpx", &with_home, 3, Severity::Assumed, 1),
         sample("garmin.gpx", &with_home, 2, Severity::Assumed, 2),
         sample("litchi.kml", &plain, 3, Severity::Assumed, 4),
-        sample("qgroundcontrol.kml", &with_home, 3, Severity::Info, 3),
-        sample("qgroundcontrol.geojson", &plain, 2, Severity::Info, 3),
+        sample("qgroundcontrol.kml", &with_home, 3, Severity::Assumed, 3),
+        sample("qgroundcontrol.geojson", &plain, 2, Severity::Assumed, 3),
     ]
 }
 

@@ -67,19 +67,11 @@ fn waypoints(builder: &mut Builder<'_, '_, '_>) {
         spot.properties.get("sequenceNumber").and_then(|text| text.parse().ok()).unwrap_or(u64::MAX)
     };
     found.sort_by_key(number);
-    let mut has_plain = false;
     for spot in &found {
         match own_type(spot.properties).filter(|_| reads_own) {
             Some(kind) => builder.own(spot, kind),
-            None => {
-                has_plain = true;
-                let kind = command(builder, spot);
-                builder.plain(spot, kind);
-            }
+            None => command(builder, spot),
         }
-    }
-    if has_plain {
-        builder.passing();
     }
     map.features.iter().for_each(|feature| builder.wrapped(feature));
     if !marked
@@ -101,22 +93,21 @@ fn spot(
     Spot { item, place: feature.place.as_ref(), at: feature.at, properties: &feature.properties, vertex }
 }
 
-/// Returns the type for the MAVLink command that QGroundControl exports with a point.
-fn command(builder: &mut Builder<'_, '_, '_>, spot: &Spot<'_>) -> WaypointType {
-    let plain = builder.options.waypoint_as;
-    let Some(command) = spot.properties.get("command") else { return plain };
-    match command {
-        "16" => plain,
-        "17" => WaypointType::Hold,
-        "21" => WaypointType::Land,
-        "22" => WaypointType::Takeoff,
-        other => {
+/// Adds a point with the type for the MAVLink command that QGroundControl exports with it.
+fn command(builder: &mut Builder<'_, '_, '_>, spot: &Spot<'_>) {
+    match spot.properties.get("command") {
+        None | Some("16") => builder.plain(spot),
+        Some("17") => builder.point(spot, WaypointType::Hold),
+        Some("21") => builder.land(spot),
+        Some("22") => builder.point(spot, WaypointType::Takeoff),
+        Some(other) => {
+            let plain = builder.options.waypoint_as;
             let why = "the parameters of the command are not in the file, so it is a plain waypoint";
             let finding = Finding::new(Severity::Lost, "command", why).item(spot.item);
             let place: Option<Place> = spot.place.cloned();
             builder
                 .finding(Finding { place, ..finding }.values(format!("command {other}"), plain.to_string()));
-            plain
+            builder.point(spot, plain);
         }
     }
 }

@@ -8,6 +8,7 @@ use super::map_plan::{Builder, Map, Spot};
 use super::xml::{carried, escaped};
 use super::{PlanFile, Problems, ReadOptions, Written};
 use crate::geo::{Degrees7, LatLon};
+use crate::plan::WaypointType;
 use crate::plan::feature::Shape;
 
 /// Reads the text and adds problems to `problems`.
@@ -25,8 +26,13 @@ pub(super) fn read(text: &str, options: &ReadOptions, problems: &mut Problems<'_
                 let (at, properties) = (detail.at, &detail.properties);
                 let spot = Spot { item: index + 1, place: feature.place.as_ref(), at, properties, vertex };
                 match own_type(properties) {
-                    Some(kind) => builder.own(&spot, kind),
-                    None => builder.plain(&spot, options.waypoint_as),
+                    // A plain point, and the approach to a landing, need no data but the type and the place.
+                    Some(kind @ (WaypointType::Flyover | WaypointType::Flyby | WaypointType::Land)) => {
+                        builder.own(&spot, kind);
+                    }
+                    Some(kind) if map_data::has_data(properties) => builder.own(&spot, kind),
+                    Some(kind) => builder.without_data(&spot, kind),
+                    None => builder.plain(&spot),
                 }
             }
         }
@@ -45,9 +51,8 @@ pub(super) fn read(text: &str, options: &ReadOptions, problems: &mut Problems<'_
                 let MapFeature { place, at, properties, .. } = feature;
                 let vertex = Some((vertex, piece.altitudes));
                 let spot = Spot { item, place: place.as_ref(), at: *at, properties, vertex };
-                builder.plain(&spot, options.waypoint_as);
+                builder.plain(&spot);
             }
-            builder.passing();
         }
     }
     builder.finish()

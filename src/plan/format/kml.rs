@@ -38,9 +38,8 @@ pub(super) fn read(text: &str, options: &ReadOptions, problems: &mut Problems<'_
                 let Shape::Point(vertex) = piece.shape else { continue };
                 builder.wrapped(feature);
                 let vertex = Some((vertex, piece.altitudes));
-                builder.plain(&spot(item, feature, vertex), options.waypoint_as);
+                builder.plain(&spot(item, feature, vertex));
             }
-            builder.passing();
         }
     }
     builder.finish()
@@ -59,7 +58,7 @@ fn own(builder: &mut Builder<'_, '_, '_>) {
         match own_type(&feature.properties) {
             Some(kind) => builder.own(&spot, kind),
             None if point.is_some() && feature.properties.get("type") != Some(HOME) => {
-                builder.plain(&spot, builder.options.waypoint_as);
+                builder.plain(&spot);
             }
             None => {}
         }

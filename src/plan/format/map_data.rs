@@ -38,7 +38,8 @@ pub(super) fn values(record: WaypointRecord) -> Vec<(&'static str, String)> {
     } else if speed != 0 {
         values.push(("speed_mps", scaled(i64::from(speed), 2)));
     }
-    if duration_ds != 0 {
+    // Without a value, a reader could not know whether the data of the point are there.
+    if duration_ds != 0 || kind == WaypointType::Delay {
         values.push(("duration_s", scaled(i64::from(duration_ds), 1)));
     }
     if pattern != HoldPattern::None {
@@ -52,6 +53,12 @@ pub(super) fn own_type(properties: &Properties) -> Option<WaypointType> {
     let word = properties.get("type")?;
     // `Land` is a word of other programs, too.
     word.parse().ok().filter(|kind: &WaypointType| kind.to_string() == word)
+}
+
+/// Returns `true` if properties have data of a waypoint of ours beside its type.
+pub(super) fn has_data(properties: &Properties) -> bool {
+    let keys = ["alt_m", "speed_mps", "yaw_rate_dps", "duration_s", "pattern"];
+    keys.into_iter().any(|key| properties.get(key).is_some())
 }
 
 /// Returns the record of our properties. A waypoint that is a place has that of its shape.

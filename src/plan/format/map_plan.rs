@@ -7,6 +7,7 @@ use super::map_data::{self, HOME, VERSION};
 use super::map_file::{self, Altitudes, Collector, MapFeature, MapKind, Properties, Skipped};
 use super::thinned::thinned;
 use super::{HomePosition, PlanFile, Problems, ReadOptions, setting_line};
+use crate::geo::distance_bearing;
 use crate::plan::feature::{Shape, Vertex};
 use crate::plan::{Altitude, FlightPlan, MAX_WAYPOINTS, Waypoint, WaypointType};
 
@@ -15,6 +16,9 @@ const DEFAULT_ALTITUDE_M: f64 = 10.0;
 
 /// The largest difference of an altitude in a shape from the one in our data, m. Vertices have single precision.
 const SAME_ALTITUDE_M: f64 = 0.02;
+
+/// The largest distance of two homes at the same place, m.
+const SAME_PLACE_M: f64 = 1.0;
 
 /// The contents of a map.
 #[derive(Debug, Default)]
@@ -63,6 +67,8 @@ pub(super) struct Builder<'m, 'p, 'a> {
     losses: LossReport,
     needs_amsl: bool,
     has_own: bool,
+    /// A point does not say how it is passed.
+    has_plain: bool,
 }
 
 impl<'m, 'p, 'a> Builder<'m, 'p, 'a> {
@@ -83,6 +89,7 @@ impl<'m, 'p, 'a> Builder<'m, 'p, 'a> {
             losses: LossReport::default(),
             needs_amsl: false,
             has_own: false,
+            has_plain: false,
         };
         for skipped in &map.skipped {
             let why = "it is not a line or a point, and nothing is fetched";
@@ -211,11 +218,47 @@ impl<'m, 'p, 'a> Builder<'m, 'p, 'a> {
         }
     }
 
+    /// Adds a point of a file of another program that does not say how it is passed.
+    pub(super) fn plain(&mut self, spot: &Spot<'_>) {
+        self.has_plain |= spot.vertex.is_some();
+        self.point(spot, self.options.waypoint_as);
+    }
+
     /// Adds a point of a file of another program.
-    pub(super) fn plain(&mut self, spot: &Spot<'_>, kind: WaypointType) {
+    pub(super) fn point(&mut self, spot: &Spot<'_>, kind: WaypointType) {
         let Some((vertex, _)) = spot.vertex else { return };
         let altitude = self.altitude(spot);
         self.push(Waypoint { position: vertex.position, altitude, kind, ..Waypoint::default() });
+    }
+
+    /// Adds a landing of MAVLink. Its altitude is that of the ground; ours is that of the approach.
+    pub(super) fn land(&mut self, spot: &Spot<'_>) {
+        let Some((vertex, _)) = spot.vertex else { return };
+        let before = self.waypoints.iter().rev().find(|waypoint| waypoint.kind.capability().altitude);
+        let level = before.map(|waypoint| waypoint.altitude);
+        let theirs_m = self.shown_altitude(spot);
+        let is_wrong = theirs_m.is_none() && spot.properties.get("altitudeRelative").is_some();
+        let altitude = match level {
+            Some(level) if !is_wrong => level,
+            _ => self.altitude(spot),
+        };
+        if level.is_some() && theirs_m.map(Altitude::above_home) != Some(altitude) {
+            let why = "the altitude of a MAVLink LAND is that of the ground";
+            let finding = self.find(spot, Severity::Changed, "altitude", why);
+            let text = |metres| format!("{} m", map_data::metres(metres));
+            self.losses
+                .add(finding.values(theirs_m.map_or_else(String::new, text), text(altitude.above_home_m())));
+        }
+        let kind = WaypointType::Land;
+        self.push(Waypoint { position: vertex.position, altitude, kind, ..Waypoint::default() });
+    }
+
+    /// Adds a point that has the word of a type of ours and not the data that the type needs.
+    pub(super) fn without_data(&mut self, spot: &Spot<'_>, kind: WaypointType) {
+        let plain = self.options.waypoint_as;
+        let finding = self.find(spot, Severity::Lost, "type", "the data of the point are missing");
+        self.losses.add(finding.values(kind.to_string(), plain.to_string()));
+        self.point(spot, plain);
     }
 
     fn push(&mut self, waypoint: Waypoint) {
@@ -312,17 +355,9 @@ impl<'m, 'p, 'a> Builder<'m, 'p, 'a> {
             let at = detail.map_or(at, |detail| detail.at);
             let vertex = Some((line[index], piece.altitudes));
             let spot = Spot { item: index + 1, place, at, properties, vertex };
-            self.plain(&spot, self.options.waypoint_as);
+            self.plain(&spot);
         }
         self.losses.items = line.len();
-        self.passing();
-    }
-
-    /// Notes how the points of another program are passed.
-    pub(super) fn passing(&mut self) {
-        let why = "the file does not say how a point is passed: set it with --waypoint-as";
-        let finding = Finding::new(Severity::Info, "type", why);
-        self.losses.add(finding.values("", self.options.waypoint_as.to_string()));
     }
 
     /// Notes that longitudes of a feature were wrapped.
@@ -349,6 +384,11 @@ impl<'m, 'p, 'a> Builder<'m, 'p, 'a> {
                 "a plan is a line or points",
             );
         }
+        if self.has_plain {
+            let why = "the file does not say how a point is passed: set it with --waypoint-as";
+            let finding = Finding::new(Severity::Assumed, "type", why);
+            self.losses.add(finding.values("", self.options.waypoint_as.to_string()));
+        }
         if self.has_own && self.map.properties.get("betadeck").is_none() {
             let why =
                 "the data of the whole plan are missing: another program wrote the file without its settings";
@@ -360,12 +400,20 @@ impl<'m, 'p, 'a> Builder<'m, 'p, 'a> {
         PlanFile {
             name: self.map.name.clone(),
             description: self.map.description.clone(),
-            home: self.home,
+            home: self.home.map(|home| self.with_amsl(home)),
             settings,
             plan,
             notes: Vec::new(),
             losses: self.losses,
         }
+    }
+
+    /// Returns a home of the file, with the altitude of that of the user if both are at the same place.
+    fn with_amsl(&self, home: HomePosition) -> HomePosition {
+        let is_near =
+            |given: &HomePosition| distance_bearing(home.position, given.position).0 <= SAME_PLACE_M;
+        let given = self.options.home.filter(is_near).and_then(|given| given.amsl_m);
+        HomePosition { amsl_m: home.amsl_m.or(given), ..home }
     }
 
     fn settings(&mut self) -> Vec<String> {

@@ -87,7 +87,7 @@ fn all_points_count_if_none_is_marked_else_a_line() {
     let both = collection(&[LINE.to_owned(), point(1.0, ""), point(2.0, "")]);
     let file = read_with(&both, &options);
     assert_eq!((file.plan.waypoints.len(), file.plan.waypoints[0].altitude.cm()), (2, 5000));
-    assert_eq!(file.losses.counts(), "1 assumed, 1 info");
+    assert_eq!(file.losses.counts(), "2 assumed");
     let line = ReadOptions { feature: Some("l".to_owned()), ..options.clone() };
     assert_eq!(read_with(&both, &line).plan.waypoints.len(), 3);
     assert_eq!(read_with(&collection(&[LINE.to_owned()]), &options).plan.waypoints.len(), 3);
@@ -129,4 +129,19 @@ fn properties_of_a_converted_kml_are_read() {
     let file = read_with(&changed, &ReadOptions::default());
     assert_eq!(file.plan.waypoints[0].altitude.cm(), 6000);
     assert_eq!(file.losses.counts(), "2 assumed");
+}
+
+#[test]
+fn a_mavlink_landing_has_the_altitude_before() {
+    let command = |number: u32, altitude_m: i32| {
+        format!("\"featureType\":\"waypoint\",\"command\":{number},\"altitudeRelative\":{altitude_m}")
+    };
+    let text = collection(&[point(1.0, &command(22, 20)), point(2.0, &command(21, 0))]);
+    let file = read_with(&text, &ReadOptions::default());
+    let land = file.plan.waypoints[1];
+    assert_eq!((land.kind, land.altitude.cm()), (WaypointType::Land, 2000));
+    let lines: Vec<String> = file.losses.findings.iter().map(ToString::to_string).collect();
+    let expected = "changed  WP 1 (item 2, /features/1) altitude: 0 m → 20 m: the altitude of a MAVLink LAND is that \
+                    of the ground";
+    assert_eq!(lines, [expected]);
 }

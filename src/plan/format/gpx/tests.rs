@@ -77,7 +77,7 @@ fn elevations_are_above_sea_level() {
     let file = read_with(text, &options);
     let cm: Vec<i32> = file.plan.waypoints.iter().map(|waypoint| waypoint.altitude.cm()).collect();
     assert_eq!(cm, [5000, 1000]);
-    assert_eq!(file.losses.counts(), "1 assumed, 1 info");
+    assert_eq!(file.losses.counts(), "2 assumed");
 }
 
 #[test]
@@ -89,4 +89,54 @@ fn a_changed_elevation_counts() {
     let text = write(&plan(), Format::Gpx).text().replace("<ele>300</ele>", "<ele>290</ele>");
     let file = read_with(&text, &ReadOptions::default());
     assert_eq!(file.home.unwrap().amsl_m, Some(290.0));
+}
+
+#[test]
+fn a_type_without_its_data_is_a_plain_point() {
+    let point = |kind: &str| format!("<rtept lat='1' lon='2'><ele>350</ele><type>{kind}</type></rtept>");
+    let words = ["FLYOVER", "HOLD", "TAKEOFF", "DELAY", "ALT_CHANGE", "YAW_RATE", "Hold", "LAND"];
+    let text = format!("<gpx><rte>{}</rte></gpx>", words.map(point).concat());
+    let home = Some("1,2,300".parse().unwrap());
+    let file = read_with(&text, &ReadOptions { home, ..ReadOptions::default() });
+    let kinds: Vec<String> = file.plan.waypoints.iter().map(|waypoint| waypoint.kind.to_string()).collect();
+    let plain = ["FLYBY"; 6];
+    assert_eq!(kinds, [&["FLYOVER"], &plain[..], &["LAND"]].concat());
+    assert!(file.plan.waypoints.iter().all(|waypoint| waypoint.altitude.cm() == 5000));
+    let lost: Vec<String> = file.losses.findings.iter().map(ToString::to_string).collect();
+    let lost: Vec<&String> = lost.iter().filter(|line| line.starts_with("lost ")).collect();
+    assert_eq!(lost.len(), 5, "{lost:?}");
+    assert_eq!(
+        lost[0],
+        "lost     WP 1 (item 2, line 1) type: HOLD → FLYBY: the data of the point are missing"
+    );
+}
+
+#[test]
+fn a_delay_of_no_time_comes_back() {
+    let delay = parse("p", "[[waypoint]]\ntype = 'DELAY'\nduration_s = 0\n", Format::Toml).unwrap();
+    let file = read_with(&write(&delay, Format::Gpx).text(), &ReadOptions::default());
+    assert_eq!(file.plan, delay.plan);
+    assert!(file.losses.is_lossless());
+}
+
+#[test]
+fn a_given_altitude_completes_the_home_of_the_file() {
+    let text = "<gpx><wpt lat='1' lon='2'><type>HOME</type></wpt><rte><rtept lat='1' lon='3'/></rte></gpx>";
+    let home = |given: &str| {
+        let options = ReadOptions { home: Some(given.parse().unwrap()), ..ReadOptions::default() };
+        read_with(text, &options).home.unwrap().amsl_m
+    };
+    assert_eq!(home("1,2.000001,300"), Some(300.0));
+    assert_eq!((home("1,2.1,300"), home("1,2")), (None, None));
+}
+
+#[test]
+fn a_point_that_does_not_say_how_it_is_passed_is_assumed() {
+    let options = ReadOptions { altitude_m: Some(20.0), ..ReadOptions::default() };
+    let file = read_with("<gpx><rte><rtept lat='1' lon='2'/><rtept lat='1' lon='3'/></rte></gpx>", &options);
+    let lines: Vec<String> = file.losses.findings.iter().map(ToString::to_string).collect();
+    assert_eq!(
+        lines,
+        ["assumed  type: FLYBY: the file does not say how a point is passed: set it with --waypoint-as"]
+    );
 }
