@@ -142,7 +142,7 @@ fn samples() -> Vec<Sample> {
         sample("garmin.gpx", &with_home, 2, Severity::Assumed, 2),
         sample("litchi.kml", &plain, 3, Severity::Assumed, 4),
         sample("qgroundcontrol.kml", &with_home, 3, Severity::Assumed, 3),
-        sample("qgroundcontrol.geojson", &plain, 2, Severity::Assumed, 3),
+        sample("qgroundcontrol.geojson", &plain, 2, Severity::Changed, 3),
     ]
 }
 
