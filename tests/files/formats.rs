@@ -58,6 +58,21 @@ fn nearly_a_line() -> impl Strategy<Value = String> {
     vec(word, 0..12).prop_map(|words| words.join(" "))
 }
 
+#[test]
+fn every_format_has_a_row_on_its_page() {
+    let page = include_str!("../../docs/exchange.md");
+    let rows: Vec<&str> = page.lines().filter(|line| line.starts_with("| `")).collect();
+    for format in Format::iter() {
+        let info = format.info();
+        let name = format!("`{format}`");
+        let row = rows.iter().find(|row| row.contains(&name)).unwrap_or_else(|| panic!("{name} has no row"));
+        for ending in info.endings {
+            assert!(row.contains(&format!("`.{ending}`")), "{name}: .{ending} is missing");
+        }
+        assert_eq!(row.contains("read only"), !info.writes, "{name}");
+    }
+}
+
 proptest! {
     #[test]
     fn toml_carries_everything(file in plan_file()) {

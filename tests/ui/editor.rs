@@ -1,7 +1,7 @@
 //! The plan editor by keys, mouse and paste: messages in, screen and effects out.
 
 use betadeck::plan::{Altitude, FlightPlan, Seconds, WaypointType};
-use betadeck::ui::editor::{Conversion, ConversionLosses, Entry, FileReply, FileRequest, Listing};
+use betadeck::ui::editor::{Entry, FileReply, FileRequest, Listing};
 use betadeck::ui::{Effect, Msg, update};
 use crossterm::event::{KeyCode, KeyModifiers, MouseEventKind};
 
@@ -11,7 +11,7 @@ use crate::hands::{
 };
 
 /// Returns the request to write a plan, from the effects.
-fn save_of(effects: Vec<Effect>) -> FileRequest {
+pub(crate) fn save_of(effects: Vec<Effect>) -> FileRequest {
     let requests = effects.into_iter().filter_map(|effect| match effect {
         Effect::Files(request @ FileRequest::Save { .. }) => Some(request),
         _ => None,
@@ -211,32 +211,6 @@ fn a_new_plan_is_saved_under_a_name_and_nothing_is_replaced_unasked() {
     update(&mut state, Msg::Files(FileReply::Saved { id, path, revision, lost: Vec::new() }));
     assert!(!state.shared.editor.plan().is_unsaved());
     assert!(screen(&state).contains("Saved old.toml."));
-}
-
-#[test]
-fn a_file_that_cannot_hold_the_plan_is_written_after_the_losses_were_read() {
-    let mut state = state((80, 24));
-    let FileRequest::Save { id, .. } = save_of(keys(&mut state, "2 + S down enter")) else { unreachable!() };
-    let lines: Vec<String> =
-        (0..40).map(|n| format!("lost     WP {n} pattern: FIGURE8 → HOLD: none")).collect();
-    let path: std::path::PathBuf = "/plans/a.mission".into();
-    let conversion = Conversion::Save { id, path: path.clone(), replace: true };
-    let losses = ConversionLosses { conversion, lines, summary: "40 lost".to_owned() };
-    update(&mut state, Msg::Files(FileReply::Losses(Box::new(losses.clone()))));
-    let seen = screen(&state);
-    assert!(seen.contains("Save a.mission? 40 lost.") && seen.contains("WP 0 pattern"), "{seen}");
-    keys(&mut state, "down down");
-    let seen = screen(&state);
-    assert!(!seen.contains("WP 1 pattern") && seen.contains("WP 2 pattern"), "{seen}");
-    assert!(keys(&mut state, "n").is_empty());
-    update(&mut state, Msg::Files(FileReply::Losses(Box::new(losses.clone()))));
-    let asked = save_of(keys(&mut state, "y"));
-    assert!(matches!(asked, FileRequest::Save { replace: true, accepted: true, .. }), "{asked:?}");
-    let open = ConversionLosses { conversion: Conversion::Open(path), ..losses };
-    update(&mut state, Msg::Files(FileReply::Losses(Box::new(open))));
-    assert!(screen(&state).contains("Open a.mission? 40 lost."));
-    let effects = keys(&mut state, "enter");
-    assert!(matches!(&effects[..], [Effect::Files(FileRequest::Open { accepted: true, .. })]), "{effects:?}");
 }
 
 #[test]

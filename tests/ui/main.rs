@@ -3,6 +3,7 @@
 mod altitudes;
 mod commands;
 mod connect;
+mod conversions;
 mod editor;
 mod first_minutes;
 mod fixture;

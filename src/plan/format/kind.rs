@@ -59,7 +59,7 @@ pub struct FormatInfo {
     pub also: &'static [&'static str],
     /// `true` if plans are written in it, too.
     pub writes: bool,
-    /// What it carries of a plan, for `convert --list`.
+    /// The parts of a plan that it carries, for `convert --list`.
     pub carries: &'static str,
 }
 

@@ -43,7 +43,7 @@ pub struct Raise {
     pub to_m: f64,
     /// The waypoint that gives the altitude of the leg; `None` if a setting gives it.
     pub waypoint: Option<usize>,
-    /// What else the craft needs in order to be so high in time.
+    /// The other change of the plan that lets the craft climb in time.
     pub before: Before,
 }
 
