@@ -7,13 +7,14 @@ use std::path::Path;
 use strum::IntoEnumIterator as _;
 
 use super::error::{self, AppError, USAGE};
-use super::output_file::KeptFiles;
+use super::output_file::{self, KeptFiles};
 use super::setup;
 use crate::args::{ConvertArgs, OutputFile, PlanArg};
 use crate::flight::setup::check_setting;
 use crate::plan::format::loss::Severity;
 use crate::plan::format::{self, Format, PlanFile, ReadOptions};
 use crate::report::conversion::Conversion;
+use crate::storage::link_target;
 use crate::text::printable;
 
 /// The exit code of a plan that changed, with `--strict`.
@@ -114,6 +115,10 @@ fn write(path: &Path, contents: &[u8], force: bool) -> Result<(), AppError> {
                     "{} exists: name another file, or replace it with --force",
                     path.display()
                 )));
+            }
+            if holds_data {
+                // A full disk leaves the old contents.
+                return output_file::replace(&link_target(path), contents).map_err(problem);
             }
             File::create(path)
         }

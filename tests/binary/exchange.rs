@@ -76,6 +76,24 @@ fn the_report_names_each_difference_and_strict_makes_it_the_exit_code() {
 }
 
 #[test]
+fn a_write_that_fails_leaves_the_file_that_was_to_be_replaced() {
+    let sandbox = Sandbox::new();
+    assert_eq!(sandbox.run(&["convert", "square", "square.plan"]).code, Some(0));
+    let before = sandbox.read("square.plan");
+    let program = crate::support::PROGRAM;
+    // A write beyond the limit of the size of a file fails, as on a full disk.
+    let script = format!("trap '' XFSZ; ulimit -f 1; {program} convert flyby square.plan --force");
+    let ran = std::process::Command::new("/bin/sh")
+        .args(["-c", &script])
+        .envs(sandbox.environment())
+        .current_dir(sandbox.path("."))
+        .output()
+        .expect("a shell");
+    assert_eq!(ran.status.code(), Some(3), "{}", String::from_utf8_lossy(&ran.stderr));
+    assert_eq!(sandbox.read("square.plan"), before);
+}
+
+#[test]
 fn a_file_that_cannot_be_taken_is_refused_with_its_place_and_nothing_is_written() {
     let sandbox = Sandbox::new();
     for (name, text, reported) in [
