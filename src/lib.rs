@@ -15,6 +15,8 @@ pub mod args;
 #[doc(hidden)]
 pub mod autopilot;
 #[doc(hidden)]
+pub mod blackbox;
+#[doc(hidden)]
 pub mod fc;
 #[doc(hidden)]
 pub mod firmware;
