@@ -22,6 +22,8 @@ pub mod fc;
 pub mod firmware;
 pub mod flight;
 #[doc(hidden)]
+pub mod flight_log;
+#[doc(hidden)]
 pub mod geo;
 #[doc(hidden)]
 pub mod link;
