@@ -1,10 +1,11 @@
-//! Reports of a flight: JSON lines, sentences, tracks.
+//! Reports of a flight: JSON lines, CSV rows, sentences, tracks.
 //!
 //! This module turns events and snapshots into text; the caller decides where the text goes.
 
 pub mod check;
 pub mod compare;
 pub mod conversion;
+pub mod csv;
 pub mod end;
 pub mod gpx;
 pub mod json;
@@ -14,6 +15,7 @@ pub mod track;
 pub mod truth;
 mod xml;
 
+pub use csv::CsvWriter;
 pub use end::End;
 pub use gpx::{GpxHeader, GpxPoint, GpxWriter, UtcSeconds};
 pub use track::{Track, TrackPoint};

@@ -19,7 +19,11 @@ pub struct FlyArgs {
     #[arg(long, value_name = "FILE|-", help_heading = "Output")]
     pub json: Option<OutputFile>,
 
-    /// Samples a second of simulated time in the JSON lines [default: 0, events only]
+    /// Writes samples of all signals as CSV; - is standard output, in place of the sentences
+    #[arg(long, value_name = "FILE|-", help_heading = "Output")]
+    pub csv: Option<OutputFile>,
+
+    /// Samples a second of simulated time [default: none in JSON lines, 10 in CSV]
     #[arg(long, value_name = "HZ", allow_negative_numbers = true, value_parser = value::samples, help_heading = "Output")]
     pub samples: Option<f64>,
 
@@ -87,6 +91,11 @@ impl FlyArgs {
         self.flight.speed.map_or(f64::INFINITY, |Speed(speed)| speed)
     }
 
+    /// Returns `true` if the events go to standard output as sentences.
+    pub fn has_sentences(&self) -> bool {
+        self.json.is_none() && self.csv != Some(OutputFile::Stdout)
+    }
+
     /// Returns the interval of the points of the KML and GeoJSON tracks, µs.
     pub fn track_every_us(&self) -> u64 {
         ((1e6 / self.track_hz.unwrap_or(1.0)).round() as u64).max(1)
@@ -94,9 +103,16 @@ impl FlyArgs {
 
     /// Checks the combination of the typed options.
     pub(super) fn check(&self) -> Result<(), String> {
-        if self.samples.is_some_and(|hz| hz > 0.0) && self.json.is_none() {
+        if self.samples.is_some_and(|hz| hz > 0.0) && self.json.is_none() && self.csv.is_none() {
             return Err(
-                "--samples needs --json: samples are JSON lines; add --json FILE or --json -".to_owned()
+                "--samples needs --json or --csv: samples are JSON lines or rows; add --json FILE or \
+                        --csv FILE"
+                    .to_owned(),
+            );
+        }
+        if self.samples.is_some_and(|hz| hz <= 0.0) && self.csv.is_some() {
+            return Err(
+                "--samples 0 leaves no rows for --csv: leave it out, or write a number above 0".to_owned()
             );
         }
         if self.track_hz.is_some() && self.kml.is_none() && self.geojson.is_none() {

@@ -80,6 +80,13 @@ pub struct SignalInfo {
     read: fn(&Observed<'_>) -> Option<f64>,
 }
 
+impl SignalInfo {
+    /// Returns the signal with which the flight controller estimates or reports this true value, if there is one.
+    pub fn counterpart(&self) -> Option<Signal> {
+        ["est", "reported"].iter().find_map(|prefix| Signal::find(&format!("{prefix}_{}", self.name)))
+    }
+}
+
 signals! {
     Time "time" TIME "time since the first engagement"
         = |o| o.engaged_at.map(|engaged| o.time.as_secs_f64() - engaged.as_secs_f64());
@@ -238,6 +245,18 @@ mod tests {
             assert_eq!(info.signal as usize, index);
             assert_eq!(Signal::find(info.name), Some(info.signal));
         }
+    }
+
+    #[test]
+    fn every_estimate_is_the_counterpart_of_a_true_value() {
+        let counterparts: Vec<&str> =
+            SIGNALS.iter().filter_map(SignalInfo::counterpart).map(|signal| signal.info().name).collect();
+        let is_belief = |name: &str| name.starts_with("est_") || name.starts_with("reported_");
+        let beliefs = SIGNALS.iter().map(|info| info.name).filter(|name| is_belief(name));
+        assert_eq!(beliefs.filter(|name| !counterparts.contains(name)).collect::<Vec<_>>(), [""; 0]);
+        assert_eq!(Signal::Altitude.info().counterpart(), Some(Signal::EstAltitude));
+        assert_eq!(Signal::Battery.info().counterpart(), Some(Signal::ReportedBattery));
+        assert_eq!(Signal::Wind.info().counterpart(), None);
     }
 
     #[test]

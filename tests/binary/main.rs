@@ -6,6 +6,7 @@ mod cli;
 mod compare;
 #[cfg(unix)]
 mod connect;
+mod csv;
 #[cfg(unix)]
 mod docs;
 #[cfg(unix)]

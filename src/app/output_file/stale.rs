@@ -10,7 +10,9 @@ use crate::storage;
 /// The most bytes of a file that are read.
 const LOOKED_AT: u64 = 1 << 20;
 /// The options for files of results.
-const OPTIONS: [&str; 6] = ["--json", "--junit", "--markdown", "--gpx", "--kml", "--geojson"];
+const OPTIONS: [&str; 7] = ["--json", "--csv", "--junit", "--markdown", "--gpx", "--kml", "--geojson"];
+/// The start of a table of samples.
+const SAMPLES: &str = "time (s),boot_time (s),state,waypoint,";
 /// The commands that write these results.
 const COMMANDS: [&str; 2] = ["fly", "check"];
 
@@ -65,6 +67,7 @@ fn holds_results(path: &Path) -> bool {
         || second.starts_with("<!-- betadeck (simulated) -->")
         || first.starts_with("{\"type\":\"FeatureCollection\",\"generator\":\"betadeck (simulated)\"")
         || summaries.contains(&first)
+        || first.starts_with(SAMPLES)
         || is_event()
 }
 
@@ -92,6 +95,8 @@ mod tests {
             ),
             ("plan.kml", "<?xml?>\n<kml>\n", false),
             ("plan.geojson", "{\"type\":\"FeatureCollection\",\n", false),
+            ("samples.csv", "time (s),boot_time (s),state,waypoint,lat (deg)\n,0,IDLE,,40\n", true),
+            ("plan.csv", "latitude,longitude,altitude(m)\n", false),
             ("run.md", "### ✅ All flights passed\n\n1 of 1\n", true),
             ("other.xml", "<?xml version=\"1.0\"?>\n<testsuites name=\"cargo\">\n", false),
             ("other.json", "{\"name\":\"plan\"}\n", false),

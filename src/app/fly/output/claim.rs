@@ -1,0 +1,33 @@
+//! The output files of the options, checked before anything is written.
+
+use std::path::Path;
+
+use crate::app::error::AppError;
+use crate::app::output_file;
+use crate::app::setup;
+use crate::args::{FlyArgs, OutputFile};
+
+/// Checks that no output replaces a file that must be kept. If all outputs are allowed, removes the results of an
+/// earlier flight, because this flight may fail before it begins.
+pub(in crate::app::fly) fn claim(args: &FlyArgs) -> Result<(), AppError> {
+    if [&args.json, &args.csv].iter().all(|output| **output == Some(OutputFile::Stdout)) {
+        return Err(AppError::input(
+            "--json - and --csv - both go to standard output: name a file for one of them",
+        ));
+    }
+    let mut kept = setup::kept_files(&args.flight, Some(&args.plan));
+    files(args).try_for_each(|(option, path)| kept.claim(option, path))?;
+    files(args).for_each(|(_, path)| output_file::remove_results(path));
+    Ok(())
+}
+
+/// Returns the output files of the options, with their options.
+fn files(args: &FlyArgs) -> impl Iterator<Item = (&'static str, &Path)> {
+    let of_stream = [("--json", &args.json), ("--csv", &args.csv)];
+    let streams = of_stream.into_iter().filter_map(|(option, output)| match output {
+        Some(OutputFile::File(path)) => Some((option, path.as_path())),
+        Some(OutputFile::Stdout) | None => None,
+    });
+    let whole = [("--gpx", &args.gpx), ("--kml", &args.kml), ("--geojson", &args.geojson)];
+    streams.chain(whole.into_iter().filter_map(|(option, path)| Some((option, path.as_deref()?))))
+}

@@ -1,0 +1,64 @@
+//! The messages before a flight with a remote firmware.
+
+use super::Output;
+use crate::app::error::{self, AppError};
+use crate::app::firmware::reported;
+use crate::args::FlyArgs;
+use crate::plan::format::PlanFile;
+use crate::report::sentence;
+use crate::session::{Event, Subscriber};
+use crate::text::printable;
+use crate::vehicle::Vehicle;
+
+/// The messages before a flight with a remote firmware. The files begin with the flight.
+#[derive(Debug)]
+pub(in crate::app::fly) struct Prelude<'a> {
+    args: &'a FlyArgs,
+    /// The first events of the outputs.
+    held: Vec<Event>,
+    problem: Option<AppError>,
+}
+
+impl<'a> Prelude<'a> {
+    /// Creates the messages before the flight of these options.
+    pub(in crate::app::fly) fn new(args: &'a FlyArgs) -> Self {
+        Self { args, held: Vec::new(), problem: None }
+    }
+
+    /// Reports an event: as a sentence on standard output, or, if other output goes there, on standard error until the
+    /// flight begins.
+    pub(in crate::app::fly) fn write(&mut self, event: &Event) -> Result<(), AppError> {
+        if !self.args.has_sentences() {
+            reported::tell(event);
+            self.held.push(event.clone());
+        } else if let Some(line) = sentence::line(event) {
+            error::write_stdout(format!("{}\n", printable::line(&line)).as_bytes())?;
+        }
+        Ok(())
+    }
+
+    /// Returns the error with which an event could not be reported, if there was one.
+    pub(in crate::app::fly) fn check(&mut self) -> Result<(), AppError> {
+        self.problem.take().map_or(Ok(()), Err)
+    }
+
+    /// Opens the outputs at the beginning of the flight.
+    pub(in crate::app::fly) fn open(self, vehicle: &Vehicle, plan: &PlanFile) -> Result<Output, AppError> {
+        let mut output = Output::open(self.args, vehicle, plan)?;
+        self.held.iter().try_for_each(|event| output.write(event))?;
+        output.flush()?;
+        Ok(output)
+    }
+}
+
+impl Subscriber<Vehicle> for Prelude<'_> {
+    fn event(&mut self, event: &Event) {
+        if let Err(problem) = self.write(event) {
+            self.problem.get_or_insert(problem);
+        }
+    }
+
+    fn goes_on(&self) -> bool {
+        self.problem.is_none()
+    }
+}
