@@ -48,7 +48,7 @@ pub use waypoint::{HoldPattern, Waypoint, WaypointType};
 pub const MAX_WAYPOINTS: usize = 30;
 
 /// An ordered list of at most [`MAX_WAYPOINTS`] waypoints; it never allocates, so the vehicle can copy it in flight.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct FlightPlan {
     /// The waypoints in flight order.
     pub waypoints: arrayvec::ArrayVec<Waypoint, MAX_WAYPOINTS>,

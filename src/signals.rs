@@ -9,7 +9,7 @@ pub mod fdm;
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// The simulated time since boot in whole microseconds, the only time that the core uses.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Hash, serde::Serialize, serde::Deserialize)]
 pub struct SimTime(pub u64);
 
 impl SimTime {
@@ -144,7 +144,7 @@ pub struct BatterySample {
 pub const RC_CHANNELS: usize = 16;
 
 /// The source of an RC frame.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumCount, strum::EnumIter)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumCount, strum::EnumIter, serde::Serialize, serde::Deserialize)]
 #[strum(serialize_all = "lowercase")]
 pub enum RcSource {
     /// UDP 9004 (scripts, joysticks).
@@ -156,7 +156,7 @@ pub enum RcSource {
 }
 
 /// One RC frame in wire order (AETR1234 …), µs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct RcFrame {
     /// Pulses, µs: roll, pitch, throttle, yaw, AUX1 … AUX12.
     pub channels: [u16; RC_CHANNELS],

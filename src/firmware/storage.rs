@@ -55,6 +55,22 @@ pub fn encode(configuration: &Configuration) -> Vec<u8> {
     image
 }
 
+/// Returns the records of a configuration, without the frame of an image.
+pub fn to_text(configuration: &Configuration) -> String {
+    write::payload(configuration)
+}
+
+/// Reads the records of a configuration. The second part lists the values that cannot be used, as in [`decode`].
+///
+/// # Errors
+/// Fails if the text is longer than an image.
+pub fn from_text(text: &str) -> Result<(Configuration, Vec<String>), ImageError> {
+    if text.len() > MAX_IMAGE {
+        return Err(ImageError::Damaged);
+    }
+    Ok(read::configuration(text))
+}
+
 /// Reads an image. The second part lists, in sentences, the stored values that cannot be used and were left at their
 /// default.
 pub fn decode(image: &[u8]) -> Result<(Configuration, Vec<String>), ImageError> {

@@ -76,7 +76,7 @@ flags! {
 }
 
 /// A set of reasons. The bits are those on the wire.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, serde::Serialize, serde::Deserialize)]
 pub struct ArmingFlags(u32);
 
 impl ArmingFlags {

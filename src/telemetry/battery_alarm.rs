@@ -1,7 +1,7 @@
 //! Alarms of a low battery.
 
 /// The discharge level of a battery. `Display` gives the name in events.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, serde::Serialize, serde::Deserialize)]
 #[strum(serialize_all = "UPPERCASE")]
 pub enum BatteryAlarm {
     /// Below `vbat_warning_cell_voltage`.

@@ -1,7 +1,7 @@
 //! The deviation of a craft that cannot hold its position.
 
 /// The limit that keeps a craft from holding its position. `Display` gives the word in events.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::Display, strum::IntoStaticStr)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::Display, strum::IntoStaticStr, serde::Serialize, serde::Deserialize)]
 #[strum(serialize_all = "lowercase")]
 pub enum HoldLimit {
     /// The lean is at `ap_max_angle`.
@@ -16,7 +16,7 @@ pub enum HoldLimit {
 }
 
 /// The deviation of a craft from its target.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct CannotHold {
     /// The horizontal distance from the target, m.
     pub distance_m: f64,

@@ -11,7 +11,7 @@ pub struct Event {
     pub kind: EventKind,
 }
 
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum EventKind {
     /// The vehicle was started.
     Boot {
@@ -56,7 +56,7 @@ pub enum EventKind {
 }
 
 /// The cause of a crash. `Display` ends a sentence.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum CrashCause {
     /// The craft came down too fast, m/s.
     HardLanding(f64),
@@ -77,7 +77,7 @@ impl std::fmt::Display for CrashCause {
 }
 
 /// The cause of a failed integration. `Display` ends a sentence.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::Display)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::Display, serde::Serialize, serde::Deserialize)]
 pub enum DivergeCause {
     /// A number is not finite.
     #[strum(to_string = "the state is not finite")]
@@ -91,7 +91,7 @@ pub enum DivergeCause {
 }
 
 /// A notice of the vehicle itself. `Display` gives the sentence.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum VehicleNotice {
     /// This many of the last firmware events of a step were lost.
     EventsLost(u32),

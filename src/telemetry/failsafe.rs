@@ -14,6 +14,8 @@
     strum::FromRepr,
     strum::IntoStaticStr,
     strum::VariantNames,
+    serde::Serialize,
+    serde::Deserialize,
 )]
 #[strum(serialize_all = "UPPERCASE")]
 #[repr(u8)]
@@ -28,7 +30,7 @@ pub enum RxLossPolicy {
 }
 
 /// The procedure of failsafe stage 2.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::IntoStaticStr)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::IntoStaticStr, serde::Serialize, serde::Deserialize)]
 pub enum FailsafeProcedure {
     #[strum(to_string = "DROP")]
     Drop,
@@ -47,7 +49,7 @@ pub enum FailsafeProcedure {
 }
 
 /// The failsafe that will start after the guard time of a lost receiver link.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct FailsafeAhead {
     /// Time until the procedure starts, s.
     pub in_s: f64,

@@ -13,6 +13,8 @@ use std::fmt;
     strum::EnumString,
     strum::IntoStaticStr,
     strum::VariantNames,
+    serde::Serialize,
+    serde::Deserialize,
 )]
 #[strum(serialize_all = "kebab-case")]
 pub enum FaultKind {
@@ -64,7 +66,7 @@ pub enum FaultKind {
 }
 
 /// The value of a fault. `Display` gives its form on the command line.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum FaultValue {
     /// A kind without a value.
     None,
@@ -89,10 +91,25 @@ pub enum FaultValue {
     Push {
         /// Size, N·s.
         impulse: f64,
-        direction: &'static str,
+        /// One of [`DIRECTIONS`].
+        #[serde(deserialize_with = "direction")]
+        direction: Word,
     },
     /// A displacement north, east and up, m.
     Offset([f64; 3]),
+}
+
+/// A word of this program. Under this name serde does not try to borrow it from its input.
+type Word = &'static str;
+
+/// The words for the direction of a push.
+const DIRECTIONS: [Word; 6] = ["north", "east", "south", "west", "up", "down"];
+
+/// Reads the word of a direction.
+fn direction<'de, D: serde::Deserializer<'de>>(source: D) -> Result<Word, D::Error> {
+    let word = <std::borrow::Cow<'de, str> as serde::Deserialize>::deserialize(source)?;
+    let known = DIRECTIONS.into_iter().find(|known| *known == word);
+    known.ok_or_else(|| serde::de::Error::custom("an unknown direction"))
 }
 
 impl fmt::Display for FaultValue {

@@ -7,7 +7,7 @@ use super::mode::ModeFlags;
 use super::nav::NavEvent;
 
 /// The reason for a disarming. The discriminant is the code in logs and protocols.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumIter)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumIter, serde::Serialize, serde::Deserialize)]
 #[strum(serialize_all = "SCREAMING_SNAKE_CASE")]
 #[repr(u8)]
 pub enum DisarmReason {
@@ -30,7 +30,7 @@ pub enum DisarmReason {
 }
 
 /// An event of the flight controller.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum FirmwareEvent {
     /// The GPS got its first fix, or has a fix again.
     GpsFix {
@@ -70,6 +70,7 @@ pub enum FirmwareEvent {
         /// The magnetic heading minus the heading by the course, degrees.
         error_deg: f64,
     },
-    /// A notice for the pilot.
+    /// A notice for the pilot. It has no stored form: recordings keep its sentence.
+    #[serde(skip)]
     Notice(FirmwareNotice),
 }

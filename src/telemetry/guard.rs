@@ -1,7 +1,7 @@
 //! A condition of the state machine with its value, limit and unit.
 
 /// The comparison of a guard.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::Display)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::Display, serde::Serialize, serde::Deserialize)]
 pub enum GuardOp {
     #[strum(to_string = "≤")]
     AtMost,
@@ -17,7 +17,7 @@ pub enum GuardOp {
 macro_rules! guards {
     ($($variant:ident $name:literal $unit:ident $explanation:literal;)*) => {
         /// The quantity that a guard compares.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::IntoStaticStr)]
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::IntoStaticStr, serde::Serialize, serde::Deserialize)]
         pub enum GuardName {
             $(#[doc = $explanation] #[strum(to_string = $name)] $variant,)*
         }
@@ -101,13 +101,20 @@ pub enum GuardUnit {
 }
 
 /// A named condition of the state machine with all values that explain its result.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Guard {
     pub name: GuardName,
+    #[serde(deserialize_with = "or_nan")]
     pub value: f64,
     /// The limit in the same unit.
+    #[serde(deserialize_with = "or_nan")]
     pub limit: f64,
     pub op: GuardOp,
+}
+
+/// Reads a number. JSON has no form for one that is not finite.
+fn or_nan<'de, D: serde::Deserializer<'de>>(source: D) -> Result<f64, D::Error> {
+    Ok(<Option<f64> as serde::Deserialize>::deserialize(source)?.unwrap_or(f64::NAN))
 }
 
 impl Guard {

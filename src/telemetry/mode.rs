@@ -1,7 +1,7 @@
 //! The flight modes as users see them.
 
 /// A set of active modes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, serde::Serialize, serde::Deserialize)]
 pub struct ModeFlags(u32);
 
 /// A mode that can be active. `Display` gives the box name.

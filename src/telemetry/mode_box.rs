@@ -18,7 +18,7 @@ macro_rules! boxes {
     ($($(#[$doc:meta])* $variant:ident = $id:literal $name:literal $level:ident;)*) => {
         /// A box. The discriminant is its permanent id in mode conditions and protocols. `Display` gives its name.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-        #[derive(strum::Display, strum::EnumIter, strum::FromRepr, strum::IntoStaticStr)]
+        #[derive(strum::Display, strum::EnumIter, strum::FromRepr, strum::IntoStaticStr, serde::Serialize, serde::Deserialize)]
         #[repr(u8)]
         pub enum ModeBox {
             $($(#[$doc])* #[strum(to_string = $name)] $variant = $id,)*

@@ -23,6 +23,8 @@ use crate::plan::{FlightPlan, WaypointType};
     strum::Display,
     strum::EnumIter,
     strum::IntoStaticStr,
+    serde::Serialize,
+    serde::Deserialize,
 )]
 #[strum(serialize_all = "UPPERCASE")]
 #[repr(u8)]
@@ -42,7 +44,7 @@ pub enum NavState {
 }
 
 /// The origin of the active plan.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, strum::Display)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, strum::Display, serde::Serialize, serde::Deserialize)]
 #[strum(serialize_all = "lowercase")]
 pub enum PlanSource {
     /// The user's stored plan.
@@ -55,7 +57,7 @@ pub enum PlanSource {
 }
 
 /// The choice of the aim point on the current leg.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, strum::Display)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, strum::Display, serde::Serialize, serde::Deserialize)]
 #[strum(serialize_all = "UPPERCASE")]
 pub enum L1Mode {
     #[default]
@@ -80,6 +82,8 @@ pub enum L1Mode {
     strum::FromRepr,
     strum::IntoStaticStr,
     strum::VariantNames,
+    serde::Serialize,
+    serde::Deserialize,
 )]
 #[strum(serialize_all = "UPPERCASE")]
 #[repr(u8)]
@@ -91,7 +95,7 @@ pub enum FenceAction {
 }
 
 /// An event of the navigator.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum NavEvent {
     /// A new active plan.
     Plan {
@@ -143,7 +147,8 @@ pub enum NavEvent {
 }
 
 /// The navigator's state for displays, logs and samples. Each update refreshes it.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(default)]
 pub struct NavTelemetry {
     /// The state of the machine.
     pub state: NavState,

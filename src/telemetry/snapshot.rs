@@ -46,11 +46,14 @@ impl Snapshot {
 }
 
 /// The craft's true motion.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(default)]
 pub struct TruthView {
     /// Latitude, degrees.
+    #[serde(rename = "lat_e9", with = "degrees9")]
     pub lat_deg: f64,
     /// Longitude, degrees.
+    #[serde(rename = "lon_e9", with = "degrees9")]
     pub lon_deg: f64,
     /// North of the boot position, m.
     pub n: f64,
@@ -88,6 +91,20 @@ pub struct TruthView {
     pub diverged: bool,
 }
 
+/// Degrees, stored as whole numbers of 10⁻⁹ degrees.
+mod degrees9 {
+    use serde::{Deserialize as _, Deserializer, Serializer};
+
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+    pub(super) fn serialize<S: Serializer>(degrees: &f64, to: S) -> Result<S::Ok, S::Error> {
+        to.serialize_i64((degrees * 1e9).round() as i64)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+        Ok(i64::deserialize(from)? as f64 / 1e9)
+    }
+}
+
 impl TruthView {
     pub fn ground_speed_mps(&self) -> f64 {
         self.vn.hypot(self.ve)
@@ -95,7 +112,8 @@ impl TruthView {
 }
 
 /// The true state of the battery.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(default)]
 pub struct BatteryView {
     /// Terminal voltage, V.
     pub voltage_v: f64,
@@ -108,7 +126,8 @@ pub struct BatteryView {
 }
 
 /// The state as estimated by the firmware.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(default)]
 pub struct EstimateView {
     /// North of the boot position, m; `None` before the first fix.
     pub n: Option<f64>,
@@ -133,7 +152,8 @@ pub struct EstimateView {
 }
 
 /// Modes, arming, receiver, battery. Values that a remote flight controller does not report are `None`.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(default)]
 pub struct CraftView {
     pub armed: Option<bool>,
     pub modes: Option<ModeFlags>,
@@ -175,11 +195,13 @@ pub struct CraftView {
     /// `true` while a command instead of a switch makes the craft fly home or land.
     pub commanded: Option<bool>,
     /// The mode conditions in force, which the RC panel draws on the AUX bars.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub mode_ranges: Option<Vec<ModeRange>>,
 }
 
 /// The unfiltered data of the GPS.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(default)]
 pub struct GpsView {
     pub position: LatLon,
     /// Altitude above mean sea level, m.
@@ -227,7 +249,7 @@ impl CraftView {
 }
 
 /// A switch range that turns a mode on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct ModeRange {
     /// The box that the range switches on.
     pub mode_box: ModeBox,
@@ -247,7 +269,8 @@ impl ModeRange {
 }
 
 /// The settings that displays and sticks need, in SI units.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(default)]
 pub struct SettingsView {
     /// `ap_waypoint_arrival_radius`, m.
     pub arrival_radius_m: f64,
@@ -332,7 +355,8 @@ impl SettingsView {
 }
 
 /// The air and the faults of the craft.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(default)]
 pub struct WorldView {
     /// Name of the airframe.
     pub airframe: String,
@@ -345,7 +369,7 @@ pub struct WorldView {
     pub faults: Vec<FaultView>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct WindView {
     /// Speed, m/s.
     pub speed_mps: f64,
@@ -354,7 +378,7 @@ pub struct WindView {
 }
 
 /// An active fault.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct FaultView {
     pub kind: FaultKind,
     pub value: FaultValue,

@@ -8,7 +8,7 @@ use super::refusal::{AbortReason, Refusal};
 macro_rules! reasons {
     ($($(#[$doc:meta])* $variant:ident $word:literal;)*) => {
         /// The cause of a transition. `Display` gives the word in events and on the screen.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
         pub enum TransitionReason {
             $($(#[$doc])* $variant,)*
             /// The mission cannot start again.

@@ -14,6 +14,8 @@
     strum::VariantNames,
     strum::EnumIter,
     strum::IntoStaticStr,
+    serde::Serialize,
+    serde::Deserialize,
 )]
 #[strum(serialize_all = "lowercase")]
 pub enum Turbulence {

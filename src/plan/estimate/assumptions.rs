@@ -76,7 +76,7 @@ pub enum SettingSource {
 }
 
 /// The throttle condition of a touchdown: below `ap_hover_throttle` less `ap_landing_throttle_threshold`; µs.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct TouchdownThrottle {
     /// `ap_hover_throttle`; 0 = captured in flight.
     pub hover_us: f64,

@@ -1,7 +1,7 @@
 //! The altitude at which a GPS rescue returns home.
 
 /// The choice of the altitude: `gps_rescue_alt_mode`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub enum ReturnMode {
     /// Above the highest altitude of the flight.
     #[default]
@@ -13,7 +13,7 @@ pub enum ReturnMode {
 }
 
 /// The altitude of the return flight.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ReturnFlight {
     pub mode: ReturnMode,
     /// `gps_rescue_initial_climb`, m.

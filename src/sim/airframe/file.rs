@@ -16,6 +16,7 @@ use super::{Airframe, check};
 
 mod problem;
 mod value;
+mod write;
 
 pub use problem::{AirframeFileError, AirframeProblem};
 use value::{base, cells, four, legs, number, string, vector};
