@@ -33,6 +33,8 @@ pub mod msp;
 pub mod pilot;
 pub mod plan;
 #[doc(hidden)]
+pub mod recording;
+#[doc(hidden)]
 pub mod report;
 pub mod scenario;
 #[doc(hidden)]

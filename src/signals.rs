@@ -9,7 +9,9 @@ pub mod fdm;
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// The simulated time since boot in whole microseconds, the only time that the core uses.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Hash, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Hash, serde::Serialize, serde::Deserialize,
+)]
 pub struct SimTime(pub u64);
 
 impl SimTime {
@@ -144,7 +146,19 @@ pub struct BatterySample {
 pub const RC_CHANNELS: usize = 16;
 
 /// The source of an RC frame.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumCount, strum::EnumIter, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    Hash,
+    strum::Display,
+    strum::EnumCount,
+    strum::EnumIter,
+    serde::Serialize,
+    serde::Deserialize,
+)]
 #[strum(serialize_all = "lowercase")]
 pub enum RcSource {
     /// UDP 9004 (scripts, joysticks).

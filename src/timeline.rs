@@ -24,7 +24,7 @@ use replay::Replay;
 
 pub use idle::IdleSpan;
 pub use marks::{Mark, MarkKind, Marks};
-pub use recorded_flight::RecordedFlight;
+pub use recorded_flight::{RecordedFlight, begins_flight};
 pub use view::TimelineView;
 
 /// The recording of a flight, and the earlier instant that is shown.

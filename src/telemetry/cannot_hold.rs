@@ -1,7 +1,18 @@
 //! The deviation of a craft that cannot hold its position.
 
 /// The limit that keeps a craft from holding its position. `Display` gives the word in events.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::Display, strum::IntoStaticStr, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    Default,
+    strum::Display,
+    strum::IntoStaticStr,
+    serde::Serialize,
+    serde::Deserialize,
+)]
 #[strum(serialize_all = "lowercase")]
 pub enum HoldLimit {
     /// The lean is at `ap_max_angle`.

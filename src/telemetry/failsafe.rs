@@ -30,7 +30,18 @@ pub enum RxLossPolicy {
 }
 
 /// The procedure of failsafe stage 2.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::IntoStaticStr, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    Hash,
+    strum::Display,
+    strum::IntoStaticStr,
+    serde::Serialize,
+    serde::Deserialize,
+)]
 pub enum FailsafeProcedure {
     #[strum(to_string = "DROP")]
     Drop,

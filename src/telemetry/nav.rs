@@ -44,7 +44,9 @@ pub enum NavState {
 }
 
 /// The origin of the active plan.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, strum::Display, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Default, Hash, strum::Display, serde::Serialize, serde::Deserialize,
+)]
 #[strum(serialize_all = "lowercase")]
 pub enum PlanSource {
     /// The user's stored plan.
@@ -57,7 +59,9 @@ pub enum PlanSource {
 }
 
 /// The choice of the aim point on the current leg.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, strum::Display, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Default, Hash, strum::Display, serde::Serialize, serde::Deserialize,
+)]
 #[strum(serialize_all = "UPPERCASE")]
 pub enum L1Mode {
     #[default]

@@ -17,20 +17,20 @@ pub struct RecordedFlight {
 }
 
 /// Returns `true` if the input puts the craft back home or restarts it, so that a flight ends and another begins.
-fn begins(input: &VehicleCommand) -> bool {
+pub fn begins_flight(input: &VehicleCommand) -> bool {
     matches!(input, VehicleCommand::ResetCraft | VehicleCommand::Restart(_))
 }
 
 impl Timeline {
     /// Returns the end of the flight that an instant belongs to, or `None` for the last flight.
     pub fn flight_ends(&self, instant: SimTime) -> Option<SimTime> {
-        self.recording.inputs().find(|(at, input)| *at >= instant && begins(input)).map(|(at, _)| at)
+        self.recording.inputs().find(|(at, input)| *at >= instant && begins_flight(input)).map(|(at, _)| at)
     }
 
     /// Returns the flight from its start to `until`, or `None` if the recording does not reach back so far.
     pub fn recorded_flight(&self, until: SimTime) -> Option<RecordedFlight> {
         let recorded = || self.recording.inputs().filter(|(at, _)| *at < until);
-        let last = recorded().enumerate().filter(|(_, (_, input))| begins(input)).last();
+        let last = recorded().enumerate().filter(|(_, (_, input))| begins_flight(input)).last();
         let (skipped, start_at) = match last {
             // Earlier inputs at the same instant belong to the previous flight.
             Some((index, (at, _))) => (index + 1, SimTime(at.0 + 1)),

@@ -4,7 +4,7 @@ use crate::paths::{Named, named, tokens};
 use crate::source::{SourceFile, files};
 
 /// Rooms that are pure: no file, no socket, no thread, no clock, no global state.
-const PURE: [&str; 15] = [
+const PURE: [&str; 16] = [
     "autopilot",
     "fc",
     "firmware",
@@ -12,6 +12,7 @@ const PURE: [&str; 15] = [
     "geo",
     "pilot",
     "plan",
+    "recording",
     "scenario",
     "signals",
     "sim",

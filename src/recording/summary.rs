@@ -1,0 +1,114 @@
+//! The end of a recording, which is found without reading the rest.
+
+use std::io::{self, BufRead};
+use std::ops::ControlFlow;
+
+use serde::{Deserialize, Serialize};
+
+use super::lines::{Rest, each};
+use super::read::ReadError;
+use super::record::{Header, Record};
+use crate::signals::SimTime;
+
+/// The name in the header of the last gzip member.
+pub(super) const LAST_MEMBER: &[u8] = b"end";
+/// The first bytes of that member: the magic number, deflate, a name, no time, no level, no system.
+const LAST_HEADER: [u8; 10] = [0x1f, 0x8b, 8, 8, 0, 0, 0, 0, 0, 255];
+/// The longest last member, bytes.
+pub const TAIL: usize = 16 << 10;
+
+/// The last line.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct End {
+    /// The time of the end, since boot.
+    pub t: SimTime,
+    /// The result in a word, such as `complete`.
+    pub result: String,
+    /// The reason, a sentence without its full stop.
+    pub reason: String,
+    /// The duration of the flight, s.
+    pub flown_s: f64,
+    /// The hash of the flight; `None` if it cannot be flown again.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hash: Option<String>,
+}
+
+/// What a list of recordings shows of one.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Summary {
+    pub header: Header,
+    /// The end; `None` if the recording has none.
+    pub end: Option<End>,
+    /// The duration up to the last picture of a recording without an end, s.
+    pub seen_s: f64,
+}
+
+impl Summary {
+    /// Returns the duration, s.
+    pub fn flown_s(&self) -> f64 {
+        self.end.as_ref().map_or(self.seen_s, |end| end.flown_s)
+    }
+}
+
+/// Returns the summary of a recording from its first and its last [`TAIL`] bytes, which may overlap. One without an end
+/// has no duration yet: see [`seen_s`].
+///
+/// # Errors
+/// Fails if it is no recording of a version that is read.
+pub fn read_summary(head: &[u8], tail: &[u8]) -> Result<Summary, ReadError> {
+    let mut first = None;
+    let _rest = each(head, |line| {
+        first = serde_json::from_slice::<Record>(line).ok();
+        ControlFlow::Break(())
+    });
+    let Some(Record::Flight(header)) = first else { return Err(ReadError::NoRecording) };
+    header.check()?;
+    Ok(Summary { header, end: end(tail), seen_s: 0.0 })
+}
+
+/// Returns the last line if the file ends with it.
+fn end(tail: &[u8]) -> Option<End> {
+    let mark: Vec<u8> = LAST_HEADER.iter().chain(LAST_MEMBER).chain(&[0]).copied().collect();
+    let at = tail.windows(mark.len()).rposition(|window| window == mark)?;
+    let mut found = None;
+    let rest = each(tail.get(at..)?, |line| {
+        found = serde_json::from_slice::<Record>(line).ok();
+        ControlFlow::Continue(())
+    });
+    match found {
+        Some(Record::End(end)) if matches!(rest, Ok(Rest::Whole)) => Some(end),
+        _ => None,
+    }
+}
+
+/// A line as far as it says when it was recorded.
+#[derive(Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Timed {
+    Begin(At),
+    Picture(At),
+}
+
+#[derive(Deserialize)]
+struct At {
+    t: SimTime,
+}
+
+/// Returns the time from the beginning to the last picture of a recording without an end, s.
+///
+/// # Errors
+/// Fails if the source cannot be read.
+pub fn seen_s(source: impl BufRead) -> io::Result<f64> {
+    let (mut begin, mut last) = (None, SimTime::ZERO);
+    each(source, |line| {
+        let is_timed = line.starts_with(b"{\"begin\"") || line.starts_with(b"{\"picture\"");
+        match is_timed.then(|| serde_json::from_slice::<Timed>(line)) {
+            Some(Ok(Timed::Begin(at))) => begin = Some(at.t),
+            Some(Ok(Timed::Picture(at))) => last = at.t,
+            Some(Err(_)) | None => {}
+        }
+        ControlFlow::Continue(())
+    })?;
+    Ok(last.seconds_since(begin.unwrap_or_default()))
+}
