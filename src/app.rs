@@ -30,6 +30,7 @@ mod parallel;
 mod patient_output;
 mod plan;
 mod plan_files;
+mod recording_file;
 mod runtime;
 mod scenario_file;
 mod serve;

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use fuzz_bodies::{
     airframe, betaloop, cli, configuration, door, eeprom, fc_client, fdm, history, journal, msp_stream,
-    plan_file, rc, scenario, servo, settings_file,
+    plan_file, rc, recording, scenario, servo, settings_file,
 };
 
 /// The longest stored case, in bytes, whose beginnings are all tested too.
@@ -257,6 +257,11 @@ fn plan_files() {
 #[test]
 fn rc_datagrams() {
     check("rc", rc::run, 100);
+}
+
+#[test]
+fn recordings_of_flights() {
+    check("recording", recording::run, 200);
 }
 
 #[test]

@@ -16,8 +16,8 @@ use super::setup;
 use super::terrain::with_terrain;
 use crate::args::{FlyArgs, PhysicsArgs, Speed};
 use crate::fc::upload;
-use crate::flight::FlightResult;
 use crate::flight::setup::{BootLines, PhysicsSource};
+use crate::flight::{FlightResult, FlightSetup};
 use crate::geo::LatLon;
 use crate::plan::estimate::Assumptions;
 use crate::plan::format::PlanFile;
@@ -28,7 +28,7 @@ use crate::session::{Event, Flying as _, Runner, Stopped, Subscriber, hazards};
 use crate::storage::Store;
 use crate::terrain::{Relief, Tiles};
 use crate::vehicle::Vehicle;
-use output::{Output, Prelude};
+use output::{Output, Prelude, Recorder};
 use watched::WatchedFlight;
 
 /// Flies and reports. The exit code is 0 if the mission completed.
@@ -55,8 +55,11 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
     setup.stick_inputs.clone_from(&args.stick);
     setup.remote_controller = firmware.is_some();
     let tiles = setup.world.terrain.clone();
-    let vehicle = setup::build(setup, &mut notices)?;
-    let start = Start { args, plan, tiles, vehicle, notices, interrupted: interrupt_flag()? };
+    let recorded = args.record.as_ref().map(|_| setup.clone());
+    let mut vehicle = setup::build(setup, &mut notices)?;
+    // From the first input on. A remote firmware has none to keep.
+    vehicle.keep_inputs(recorded.is_some());
+    let start = Start { args, plan, tiles, vehicle, recorded, notices, interrupted: interrupt_flag()? };
     let prepared = match &firmware {
         None => Some(start.embedded()?),
         Some(firmware) => start.remote(firmware)?,
@@ -105,6 +108,8 @@ struct Start<'a> {
     /// The elevation tiles under the plan.
     tiles: Option<Arc<Tiles>>,
     vehicle: Vehicle,
+    /// The start of the flight for its recording, if one is wanted.
+    recorded: Option<FlightSetup>,
     /// The first messages.
     notices: Vec<String>,
     interrupted: Arc<AtomicBool>,
@@ -149,9 +154,10 @@ impl Start<'_> {
         let options = setup::flight_options(&self.args.mission);
         self.notices.extend(self.hazards());
         let hash = self.hash();
+        let recorder = self.recorder()?;
         let Self { args, plan, vehicle, notices, interrupted, .. } = self;
         let mut flight = WatchedFlight::new(setup::start_flight(vehicle, &options)?, hash);
-        let mut output = Output::open(args, flight.vehicle(), &plan)?;
+        let mut output = Output::open(args, flight.vehicle(), &plan, recorder)?;
         first_events(flight.vehicle_mut(), notices).iter().try_for_each(|event| output.write(event))?;
         let step_us = flight.vehicle().step_us();
         let run = Run::Embedded(Runner::new(step_us, args.speed(), None));
@@ -178,8 +184,9 @@ impl Start<'_> {
             prelude.write(&Event::notice(self.vehicle.time(), hazard))?;
         }
         let hash = run.motor_hash().and_then(|_| self.hash());
+        let recorder = self.recorder()?;
         let flight = setup::start_flight(self.vehicle, &setup::flight_options(&self.args.mission))?;
-        let output = prelude.open(flight.vehicle(), &self.plan)?;
+        let output = prelude.open(flight.vehicle(), &self.plan, recorder)?;
         let flight = WatchedFlight::new(flight, hash);
         Ok(Some(Prepared { flight, output, run: Run::Remote(run), interrupted: self.interrupted }))
     }
@@ -187,6 +194,12 @@ impl Start<'_> {
     /// Begins the hash of the flight, if something prints it.
     fn hash(&self) -> Option<FlightHash> {
         self.args.json.as_ref().map(|_| FlightHash::new(&self.vehicle, self.plan.plan.clone()))
+    }
+
+    /// Begins the recording, if one is wanted.
+    fn recorder(&self) -> Result<Option<Recorder>, AppError> {
+        let wanted = self.args.record.as_deref().zip(self.recorded.as_ref());
+        wanted.map(|(path, setup)| Recorder::begin(path, setup)).transpose()
     }
 
     fn hazards(&self) -> Vec<String> {

@@ -39,6 +39,10 @@ pub struct FlyArgs {
     #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
     pub geojson: Option<PathBuf>,
 
+    /// Records the flight, to open it again on the screen with betadeck replay
+    #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
+    pub record: Option<PathBuf>,
+
     /// Points a second of simulated time in the KML and GeoJSON tracks [default: 1]
     #[arg(long, value_name = "HZ", value_parser = value::track_rate, help_heading = "Output")]
     pub track_hz: Option<f64>,

@@ -294,3 +294,20 @@ fn text_without_end_in_a_small_file_is_bounded() {
     assert!(bomb.len() < 100_000);
     assert!(matches!(Recording::read(&bomb[..]), Err(ReadError::Empty)));
 }
+
+#[test]
+fn the_lines_of_stored_recordings_keep_their_names() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/corpus/recording/");
+    for name in ["every-input.txt", "unusual-start.txt", "events.txt", "pictures.txt", "in-flight.txt"] {
+        let text = std::fs::read(format!("{folder}{name}")).unwrap();
+        let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+        io::Write::write_all(&mut encoder, &text).unwrap();
+        let recording = read(&encoder.finish().unwrap());
+        assert_eq!(recording.left_out, 0, "{name}");
+        if name.contains("start") || name.contains("input") {
+            assert_eq!(recording.flight().map(drop), Ok(()), "{name}");
+        }
+    }
+    let recording = read(&std::fs::read(format!("{folder}short.flight")).unwrap());
+    assert_eq!((recording.left_out, recording.rest, recording.only_pictures()), (0, Rest::Whole, None));
+}

@@ -29,6 +29,8 @@ mod plans;
 #[cfg(unix)]
 mod pty;
 #[cfg(unix)]
+mod recordings;
+#[cfg(unix)]
 mod reports;
 #[cfg(unix)]
 mod signals;

@@ -16,6 +16,7 @@ pub mod journal;
 pub mod msp_stream;
 pub mod plan_file;
 pub mod rc;
+pub mod recording;
 pub mod scenario;
 pub mod servo;
 pub mod settings_file;

@@ -4,6 +4,7 @@ mod claim;
 mod lines;
 mod pace;
 mod prelude;
+mod recorder;
 mod stream;
 mod table;
 mod tracks;
@@ -12,6 +13,7 @@ use super::watched::WatchedFlight;
 use crate::app::error::{self, AppError};
 use crate::args::FlyArgs;
 use crate::plan::format::PlanFile;
+use crate::recording;
 use crate::report::End;
 use crate::session::{Event, Flying as _, Subscriber};
 use crate::signals::SimTime;
@@ -19,6 +21,7 @@ use crate::vehicle::Vehicle;
 pub(super) use claim::claim;
 use lines::Lines;
 pub(super) use prelude::Prelude;
+pub(super) use recorder::Recorder;
 use table::Table;
 use tracks::Tracks;
 
@@ -27,6 +30,7 @@ pub(super) struct Output {
     lines: Option<Lines>,
     table: Option<Table>,
     tracks: Tracks,
+    recorder: Option<Recorder>,
     /// `true` after the end of the flight: only its end remains to be reported.
     is_over: bool,
     /// The first error. The flight stops.
@@ -35,11 +39,17 @@ pub(super) struct Output {
 
 impl Output {
     /// Opens the outputs of the options.
-    pub(super) fn open(args: &FlyArgs, vehicle: &Vehicle, plan: &PlanFile) -> Result<Self, AppError> {
+    pub(super) fn open(
+        args: &FlyArgs,
+        vehicle: &Vehicle,
+        plan: &PlanFile,
+        recorder: Option<Recorder>,
+    ) -> Result<Self, AppError> {
         Ok(Self {
             lines: Lines::open(args)?,
             table: Table::open(args)?,
             tracks: Tracks::open(args, vehicle, plan)?,
+            recorder,
             is_over: false,
             problem: None,
         })
@@ -52,7 +62,15 @@ impl Output {
 
     /// Writes an event.
     pub(super) fn write(&mut self, event: &Event) -> Result<(), AppError> {
+        self.record(event);
         self.lines.as_mut().map_or(Ok(()), |lines| lines.event(event))
+    }
+
+    /// Records an event without writing it.
+    fn record(&mut self, event: &Event) {
+        if let Some(recorder) = &mut self.recorder {
+            recorder.event(event);
+        }
     }
 
     /// Writes the samples that are due.
@@ -62,6 +80,9 @@ impl Output {
         }
         if let Some(table) = &mut self.table {
             table.sample(flight)?;
+        }
+        if let Some(recorder) = &mut self.recorder {
+            recorder.after_tick(flight.vehicle())?;
         }
         self.tracks.offer(flight.vehicle())
     }
@@ -83,13 +104,17 @@ impl Output {
 
     /// Ends the files and reports the end of the flight.
     pub(super) fn finish(self, time: SimTime, end: &End) -> Result<(), AppError> {
-        let Self { lines, table, tracks, .. } = self;
+        let Self { lines, table, tracks, recorder, .. } = self;
         if let Some(mut lines) = lines {
             lines.end(time, end)?;
             lines.finish()?;
         }
         table.map_or(Ok(()), Table::finish)?;
         tracks.finish()?;
+        if let Some(recorder) = recorder {
+            let (result, reason) = (end.result.clone(), end.reason.clone());
+            recorder.finish(recording::End { t: time, result, reason, flown_s: end.flown_s, hash: None })?;
+        }
         error::tell(&end.result_line());
         error::tell(&end.flown_line());
         Ok(())
@@ -97,6 +122,14 @@ impl Output {
 }
 
 impl Subscriber<WatchedFlight> for Output {
+    fn before_tick(&mut self, vehicle: &mut Vehicle) {
+        if let Some(recorder) = &mut self.recorder
+            && !self.is_over
+        {
+            recorder.before_tick(vehicle);
+        }
+    }
+
     fn event(&mut self, event: &Event) {
         if !self.is_over {
             let done = self.write(event);

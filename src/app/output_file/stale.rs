@@ -2,15 +2,17 @@
 
 use std::ffi::OsString;
 use std::fs::File;
-use std::io::{BufRead as _, BufReader, Read as _};
+use std::io::{BufRead as _, BufReader, Read as _, Seek as _};
 use std::path::{Path, PathBuf};
 
+use crate::recording::{ReadError, TAIL, read_summary};
 use crate::storage;
 
 /// The most bytes of a file that are read.
 const LOOKED_AT: u64 = 1 << 20;
 /// The options for files of results.
-const OPTIONS: [&str; 7] = ["--json", "--csv", "--junit", "--markdown", "--gpx", "--kml", "--geojson"];
+const OPTIONS: [&str; 8] =
+    ["--json", "--csv", "--junit", "--markdown", "--gpx", "--kml", "--geojson", "--record"];
 /// The start of a table of samples.
 const SAMPLES: &str = "time (s),boot_time (s),state,waypoint,";
 /// The commands that write these results.
@@ -47,7 +49,12 @@ fn holds_results(path: &Path) -> bool {
     if !path.symlink_metadata().is_ok_and(|there| there.is_file()) {
         return false;
     }
-    let Ok(file) = File::open(path) else { return false };
+    let Ok(mut file) = File::open(path) else { return false };
+    let mut head = Vec::new();
+    let is_read = file.by_ref().take(TAIL as u64).read_to_end(&mut head).is_ok() && file.rewind().is_ok();
+    if is_read && !matches!(read_summary(&head, &[]), Err(ReadError::NoRecording)) {
+        return true;
+    }
     let mut start = Vec::new();
     let mut lines = BufReader::new(file.take(LOOKED_AT));
     for _ in 0..2 {

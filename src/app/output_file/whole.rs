@@ -99,6 +99,25 @@ impl StreamedOutput {
         Ok(Self { path: path.to_owned(), writer: BufWriter::new(stream), target })
     }
 
+    /// Does the same, and gives the file its name at once, with these bytes in it. After a kill it has what was flushed.
+    ///
+    /// # Errors
+    /// Returns the reason why it cannot be written.
+    pub(in crate::app) fn begin_with(path: &Path, bytes: &[u8]) -> Result<Self, AppError> {
+        let Self { writer, target, .. } = Self::begin(path)?;
+        let named = writer.into_inner().map_err(io::IntoInnerError::into_error).and_then(|mut stream| {
+            stream.write_all(bytes)?;
+            match (stream, target) {
+                (Stream::Temporary(file), Some((target, permissions))) => {
+                    name(file, &target, permissions).map(Stream::Direct)
+                }
+                (stream, _) => Ok(stream),
+            }
+        });
+        let stream = named.map_err(|error| cannot_write(path, &error))?;
+        Ok(Self { path: path.to_owned(), writer: BufWriter::new(stream), target: None })
+    }
+
     /// Gives the file its name. Until then there is no file with that name.
     ///
     /// # Errors
@@ -107,7 +126,9 @@ impl StreamedOutput {
         let Self { path, writer, target } = self;
         let stream = writer.into_inner().map_err(io::IntoInnerError::into_error);
         let named = stream.and_then(|stream| match (stream, target) {
-            (Stream::Temporary(file), Some((target, permissions))) => name(file, &target, permissions),
+            (Stream::Temporary(file), Some((target, permissions))) => {
+                name(file, &target, permissions).map(drop)
+            }
             _ => Ok(()),
         });
         named.map_err(|error| cannot_write(&path, &error))
@@ -199,18 +220,19 @@ pub(in crate::app) fn replace(path: &Path, contents: &[u8]) -> io::Result<()> {
 fn replace_with(path: &Path, contents: &[u8], permissions: Option<Permissions>) -> io::Result<()> {
     let mut file = state_file::temporary_in(directory_of(path), USUAL_MODE)?;
     file.write_all(contents)?;
-    name(file, path, permissions)
+    name(file, path, permissions).map(drop)
 }
 
-/// Gives a temporary file its name, with the permissions of an existing file.
-fn name(file: NamedTempFile, path: &Path, permissions: Option<Permissions>) -> io::Result<()> {
+/// Gives a temporary file its name, with the permissions of an existing file. Returns the file.
+fn name(file: NamedTempFile, path: &Path, permissions: Option<Permissions>) -> io::Result<File> {
     let there = path.metadata().ok().map(|there| there.permissions());
     if let Some(permissions) = there.or(permissions) {
         file.as_file().set_permissions(permissions)?;
     }
     file.as_file().sync_all()?;
-    file.persist(path).map_err(|error| error.error)?;
-    File::open(directory_of(path))?.sync_all()
+    let named = file.persist(path).map_err(|error| error.error)?;
+    File::open(directory_of(path))?.sync_all()?;
+    Ok(named)
 }
 
 /// Returns `true` if a path goes through a directory of devices and open descriptors.

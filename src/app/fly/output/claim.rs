@@ -28,6 +28,11 @@ fn files(args: &FlyArgs) -> impl Iterator<Item = (&'static str, &Path)> {
         Some(OutputFile::File(path)) => Some((option, path.as_path())),
         Some(OutputFile::Stdout) | None => None,
     });
-    let whole = [("--gpx", &args.gpx), ("--kml", &args.kml), ("--geojson", &args.geojson)];
+    let whole = [
+        ("--gpx", &args.gpx),
+        ("--kml", &args.kml),
+        ("--geojson", &args.geojson),
+        ("--record", &args.record),
+    ];
     streams.chain(whole.into_iter().filter_map(|(option, path)| Some((option, path.as_deref()?))))
 }

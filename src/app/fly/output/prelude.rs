@@ -1,6 +1,6 @@
 //! The messages before a flight with a remote firmware.
 
-use super::Output;
+use super::{Output, Recorder};
 use crate::app::error::{self, AppError};
 use crate::app::firmware::reported;
 use crate::args::FlyArgs;
@@ -14,7 +14,7 @@ use crate::vehicle::Vehicle;
 #[derive(Debug)]
 pub(in crate::app::fly) struct Prelude<'a> {
     args: &'a FlyArgs,
-    /// The first events of the outputs.
+    /// The first events, for the outputs that begin with the flight.
     held: Vec<Event>,
     problem: Option<AppError>,
 }
@@ -28,9 +28,9 @@ impl<'a> Prelude<'a> {
     /// Reports an event: as a sentence on standard output, or, if other output goes there, on standard error until the
     /// flight begins.
     pub(in crate::app::fly) fn write(&mut self, event: &Event) -> Result<(), AppError> {
+        self.held.push(event.clone());
         if !self.args.has_sentences() {
             reported::tell(event);
-            self.held.push(event.clone());
         } else if let Some(line) = sentence::line(event) {
             error::write_stdout(format!("{}\n", printable::line(&line)).as_bytes())?;
         }
@@ -43,9 +43,21 @@ impl<'a> Prelude<'a> {
     }
 
     /// Opens the outputs at the beginning of the flight.
-    pub(in crate::app::fly) fn open(self, vehicle: &Vehicle, plan: &PlanFile) -> Result<Output, AppError> {
-        let mut output = Output::open(self.args, vehicle, plan)?;
-        self.held.iter().try_for_each(|event| output.write(event))?;
+    pub(in crate::app::fly) fn open(
+        self,
+        vehicle: &Vehicle,
+        plan: &PlanFile,
+        recorder: Option<Recorder>,
+    ) -> Result<Output, AppError> {
+        let mut output = Output::open(self.args, vehicle, plan, recorder)?;
+        let is_told = self.args.has_sentences();
+        for event in &self.held {
+            if is_told {
+                output.record(event);
+            } else {
+                output.write(event)?;
+            }
+        }
         output.flush()?;
         Ok(output)
     }

@@ -1,0 +1,76 @@
+//! `fly --record`: the recording of a headless flight.
+
+use std::io::Write as _;
+use std::path::Path;
+
+use super::stream::write_failed;
+use crate::app::error::AppError;
+use crate::app::output_file::StreamedOutput;
+use crate::app::recording_file::{header, recorded};
+use crate::flight::FlightSetup;
+use crate::recording::{End, FlightPrint, Seen, Setup, Writer};
+use crate::session::Event;
+use crate::signals::SimTime;
+use crate::vehicle::Vehicle;
+
+/// A recording that grows with its flight. After a kill it is readable up to its last second.
+pub(in crate::app::fly) struct Recorder {
+    writer: Writer,
+    file: StreamedOutput,
+    print: FlightPrint,
+    /// `true` once a picture had no number, so the flight has no hash.
+    is_unknown: bool,
+    flushed_at: SimTime,
+}
+
+/// Simulated time between two writes, µs.
+const FLUSH_US: u64 = 1_000_000;
+
+impl Recorder {
+    /// Begins the file of a flight. If an earlier one has that name, it is replaced.
+    pub(in crate::app::fly) fn begin(path: &Path, setup: &FlightSetup) -> Result<Self, AppError> {
+        let mut writer = Writer::new(header(&setup.plan.name));
+        writer.setup(&Setup::from(setup));
+        writer.begin(SimTime::ZERO);
+        let file = StreamedOutput::begin_with(path, &writer.flush())?;
+        let print = FlightPrint::default();
+        Ok(Self { writer, file, print, is_unknown: false, flushed_at: SimTime::ZERO })
+    }
+
+    pub(super) fn event(&mut self, event: &Event) {
+        if let Some(event) = recorded(event) {
+            self.writer.event(&event);
+        }
+    }
+
+    /// Records the inputs since the last tick.
+    pub(super) fn before_tick(&mut self, vehicle: &mut Vehicle) {
+        let now = vehicle.time();
+        vehicle.take_inputs(|input| self.writer.input(now, &input));
+    }
+
+    /// Records a picture if one is due, and writes what there is once a second.
+    pub(super) fn after_tick(&mut self, vehicle: &Vehicle) -> Result<(), AppError> {
+        if let Some(seen) = Seen::due(vehicle) {
+            match seen.print {
+                Some(print) => self.print.add(vehicle.time(), print),
+                None => self.is_unknown = true,
+            }
+            self.writer.picture(seen);
+        }
+        if vehicle.time().0 < self.flushed_at.0 + FLUSH_US {
+            return Ok(());
+        }
+        self.flushed_at = vehicle.time();
+        let bytes = self.writer.flush();
+        self.file.write_all(&bytes).and_then(|()| self.file.flush()).map_err(write_failed)
+    }
+
+    /// Ends the file.
+    pub(super) fn finish(mut self, end: End) -> Result<(), AppError> {
+        let hash = (!self.is_unknown).then(|| self.print.text());
+        let bytes = self.writer.finish(End { hash, ..end });
+        self.file.write_all(&bytes).map_err(write_failed)?;
+        self.file.finish()
+    }
+}
