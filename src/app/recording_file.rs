@@ -7,9 +7,6 @@ use crate::recording::{FORMAT, Happened, Header, RecordedEvent};
 use crate::report::{UtcSeconds, sentence};
 use crate::session::{Event, SessionEvent};
 
-/// The ending of the files.
-pub(super) const ENDING: &str = "flight";
-
 /// Returns the first line of a recording that begins now.
 pub(super) fn header(plan: &str) -> Header {
     Header {

@@ -122,7 +122,7 @@ mod tests {
         let switched_off = firmware(Disarmed(DisarmReason::Switch));
         let touchdown = EventKind::Touchdown { impact_mps: 0.4, peak_mps2: 12.0 };
         let crash = EventKind::Crash { cause: CrashCause::HullContact };
-        assert_eq!(verdict(&[armed.clone()]), "interrupted: the recording ends in flight");
+        assert_eq!(verdict(std::slice::from_ref(&armed)), "interrupted: the recording ends in flight");
         assert_eq!(
             verdict(&[armed.clone(), touchdown, switched_off.clone()]),
             "landed: landed, disarmed by SWITCH"

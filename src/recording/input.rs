@@ -27,7 +27,7 @@ pub(super) enum Input {
     EndAllCli,
     Line(Session, String),
     Upload {
-        waypoints: ArrayVec<Waypoint, MAX_WAYPOINTS>,
+        waypoints: Box<ArrayVec<Waypoint, MAX_WAYPOINTS>>,
         settings: Vec<String>,
     },
     /// Code, payload, and the time of day: seconds since 1970 and milliseconds.
@@ -149,9 +149,10 @@ impl From<&VehicleCommand> for Input {
             VehicleCommand::EndCli(session) => Self::EndCli((*session).into()),
             VehicleCommand::EndAllCli => Self::EndAllCli,
             VehicleCommand::Line(line) => Self::Line(line.session.into(), line.line.clone()),
-            VehicleCommand::Upload(upload) => {
-                Self::Upload { waypoints: upload.plan.waypoints.clone(), settings: upload.settings.clone() }
-            }
+            VehicleCommand::Upload(upload) => Self::Upload {
+                waypoints: Box::new(upload.plan.waypoints.clone()),
+                settings: upload.settings.clone(),
+            },
             VehicleCommand::Message(message) => {
                 let clock = message.clock.map(|UtcTime { unix_s, millis }| (unix_s, millis));
                 Self::Msp(message.code, message.payload.clone(), clock)
@@ -190,7 +191,7 @@ impl Input {
             Self::EndAllCli => VehicleCommand::EndAllCli,
             Self::Line(session, line) => VehicleCommand::line(session.into(), line),
             Self::Upload { waypoints, settings } => {
-                VehicleCommand::upload(FlightPlan { waypoints }, settings)
+                VehicleCommand::upload(FlightPlan { waypoints: *waypoints }, settings)
             }
             Self::Msp(code, payload, clock) => {
                 let clock = clock.map(|(unix_s, millis)| UtcTime { unix_s, millis });

@@ -14,6 +14,7 @@ use crate::plan::format::{HomePosition, PlanFile};
 use crate::plan::{FlightPlan, MAX_WAYPOINTS, Waypoint};
 use crate::sim::{Airframe, Home, Noise, Switches, Wind, WorldConfig};
 use crate::telemetry::Turbulence;
+use crate::terrain::Square;
 
 /// The longest text of an airframe, bytes. Its syntax tree takes a hundred times as much memory.
 const MAX_AIRFRAME: usize = 16 << 10;
@@ -98,7 +99,7 @@ impl From<&FlightSetup> for Setup {
             turbulence: world.turbulence.to_string(),
             switches: world.switches.changed(),
             faults: world.faults.iter().map(ToString::to_string).collect(),
-            tiles: tiles.map(|square| square.hgt_name()).collect(),
+            tiles: tiles.map(Square::hgt_name).collect(),
             plan: StoredPlan {
                 name: plan.name.clone(),
                 description: plan.description.clone(),

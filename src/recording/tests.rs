@@ -195,7 +195,7 @@ fn a_recording_cut_anywhere_is_read_up_to_its_last_whole_line() {
                 );
             }
             Err(error) => {
-                assert!(matches!(error, ReadError::NoRecording | ReadError::Empty), "{cut}: {error}")
+                assert!(matches!(error, ReadError::NoRecording | ReadError::Empty), "{cut}: {error}");
             }
         }
     }

@@ -28,8 +28,18 @@ fn fly_again(recording: &Recording) -> Option<SimTime> {
 #[test]
 fn a_recorded_flight_flies_again_and_does_not_change_the_flight() {
     let sandbox = Sandbox::new();
-    let options =
-        ["--wind", "3@250", "--gust", "1", "--fault", "gps-loss@20,6", "--stick", "aux2=1000@boot+40,3"];
+    let options = [
+        "--wind",
+        "3@250",
+        "--gust",
+        "1",
+        "--fault",
+        "gps-loss@20,6",
+        "--stick",
+        "aux2=1000@boot+40,3",
+        "--timeout",
+        "50",
+    ];
     let land = plan("land.toml");
     let arguments = [&["fly", land.as_str(), "--json", "-"][..], &options].concat();
     let plain = sandbox.run(&arguments);

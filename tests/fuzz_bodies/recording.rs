@@ -2,7 +2,7 @@
 
 use std::io::Write as _;
 
-use betadeck::recording::{End, Header, Recording, Repeat, TAIL, Writer, read_summary, seen_s};
+use betadeck::recording::{End, Header, Picture, Recording, Repeat, TAIL, Writer, read_summary, seen_s};
 use flate2::Compression;
 use flate2::write::GzEncoder;
 
@@ -33,7 +33,7 @@ fn check(file: &[u8]) {
         assert_eq!(summary.header, recording.header);
     }
     let pictures = recording.pictures.all();
-    assert!(pictures.is_sorted_by_key(|picture| picture.time()));
+    assert!(pictures.is_sorted_by_key(Picture::time));
     for picture in pictures.iter().take(3) {
         assert_eq!(picture.snapshot().time, picture.time());
         assert_eq!(recording.pictures.at(picture.time()), Some(picture));
