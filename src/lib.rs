@@ -35,6 +35,8 @@ pub mod plan;
 #[doc(hidden)]
 pub mod recording;
 #[doc(hidden)]
+pub mod replay;
+#[doc(hidden)]
 pub mod report;
 pub mod scenario;
 #[doc(hidden)]

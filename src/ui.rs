@@ -19,6 +19,7 @@
 //! * `panel` has one file per panel, `popup` the windows over them, `keymap` the keys of the configuration file.
 //!   `transmitter` is the user's virtual RC transmitter, `stick_recording` records its sticks, `forecast` holds the
 //!   results of flights flown ahead of time, `graphs` the history of the graphs' signals, `ground` the elevation tiles,
+//!   `past_flight` shows a recorded flight at once, `other_flight` a second one beside it,
 //!   `map_point` the places on the map, `viewport` its window, `map_edit` the edits on it, `backdrop` the files under it,
 //!   and `timeline` the timeline of the recording.
 //! * [`run`] is the shell around it: it waits for the terminal, the session and the clock, and carries out the effects.
@@ -62,8 +63,10 @@ mod map_point;
 mod map_state;
 mod message;
 mod notice;
+mod other_flight;
 mod panel;
 mod panel_bar;
+mod past_flight;
 mod permission;
 mod popup;
 mod prompt;
@@ -96,8 +99,8 @@ pub use history::{EnteredLines, LineField};
 pub use map_state::MapMode;
 pub use message::{Effect, Msg};
 pub use panel::{Panel, Panels};
-pub use popup::{CommandLine, Palette, Popup};
-pub use run::{Ending, SessionLink, run, run_plain};
+pub use popup::{CommandLine, Palette, Popup, SeriesList};
+pub use run::{Ending, OtherReceiver, SessionLink, run, run_plain};
 pub use shared::{Notice, Shared};
 pub use terminal::{Tui, restore_terminal_modes};
 pub use text_field::TextField;

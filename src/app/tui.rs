@@ -204,6 +204,7 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
             view: session.view,
             events: session.events,
             past: past.unwrap_or_default(),
+            other: None,
             write_scenario: scenario_file::write,
         };
         // This comes before the first frame, because a person who sees the frame may already send a signal.

@@ -20,6 +20,7 @@ pub fn text(kind: &SessionEvent) -> Option<String> {
         SessionEvent::Endpoints(addresses) => Some(endpoints(addresses)),
         SessionEvent::Notice(notice) | SessionEvent::ArmingBlocked(notice) => Some(sentence_end(notice)),
         SessionEvent::Remote(notice) => Some(notice.to_string()),
+        SessionEvent::Replay(notice) => Some(sentence_end(&notice.to_string())),
         SessionEvent::Simulator(remark) => Some(sentence_end(&remark.to_string())),
         SessionEvent::Branch { left, .. } => Some(format!(
             "Flying on from here: the flight that had reached {:.1} s is left; everything saved is kept.",

@@ -3,10 +3,12 @@
 use std::sync::Arc;
 
 use super::event::Event;
+use super::replay::ReplayView;
 use super::reply::ReplyTo;
 use crate::fc::{RemoteView, UploadReport, UploadView};
 use crate::link::endpoint::EndpointStatus;
 use crate::plan::FlightPlan;
+use crate::replay::{Curve, CurvesRequest};
 use crate::signals::{RcFrame, SimTime};
 use crate::telemetry::{LinkState, LostTime, Snapshot};
 use crate::timeline::{RecordedFlight, TimelineView};
@@ -98,6 +100,13 @@ pub enum Command {
     /// Copies the recorded flight of the shown instant up to its end. The reply is the copy, or the reason
     /// why there is none.
     RecordedFlight(ReplyTo<Result<Box<RecordedFlight>, String>>),
+    /// Shows another flight of the recorded file: this many further.
+    ShowFlight(isize),
+    /// Reads a part of the recorded series. The reply is their curves, or the reason why there are none.
+    Curves {
+        request: CurvesRequest,
+        reply: ReplyTo<Result<Vec<Curve>, String>>,
+    },
     /// Sends all later events to this receiver, too, until it is dropped.
     Subscribe(tokio::sync::mpsc::UnboundedSender<Event>),
     Quit,
@@ -151,6 +160,8 @@ pub struct SessionView {
     pub live: bool,
     /// The recording; `None` if the flight cannot be rewound.
     pub timeline: Option<TimelineView>,
+    /// The recorded flight that is shown; `None` if a vehicle flies.
+    pub replay: Option<Arc<ReplayView>>,
 }
 
 impl SessionView {
@@ -172,6 +183,7 @@ impl SessionView {
             remote: None,
             live: false,
             timeline: None,
+            replay: None,
         }
     }
 
@@ -180,9 +192,11 @@ impl SessionView {
         self.timeline.as_ref().is_some_and(|timeline| timeline.rewound)
     }
 
-    /// Returns `true` if the craft is armed. While an earlier instant is shown, the newest one counts.
+    /// Returns `true` if the craft is armed. While an earlier instant is shown, the newest one counts. The craft of a
+    /// recorded flight is not there any more.
     pub fn is_armed_now(&self) -> bool {
         match &self.timeline {
+            _ if self.replay.is_some() => false,
             Some(timeline) if timeline.rewound => timeline.head_is_armed,
             Some(_) | None => self.vehicle.craft.is_armed(),
         }

@@ -4,6 +4,7 @@ use std::net::SocketAddr;
 
 use tokio::sync::mpsc;
 
+use super::replay::ReplayNotice;
 use super::simulator::SimulatorNotice;
 use crate::fc::RemoteNotice;
 use crate::signals::{RcFrame, SimTime};
@@ -30,6 +31,8 @@ pub enum SessionEvent {
     ArmingBlocked(String),
     /// Other programs can reach the vehicle from now on.
     Endpoints(EndpointAddresses),
+    /// A notice about the recorded flight that is shown.
+    Replay(ReplayNotice),
     /// A notice about the external simulator that moves the craft.
     Simulator(SimulatorNotice),
     /// A state from an external simulator that arrived before any was accepted.

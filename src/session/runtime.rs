@@ -12,9 +12,7 @@ mod requests;
 mod rewind;
 
 use std::any::Any;
-use std::sync::Arc;
-use std::task::{Context, Wake, Waker};
-use std::thread::Thread;
+use std::task::Context;
 use std::time::{Duration, Instant};
 
 use tokio::sync::{mpsc, watch};
@@ -29,6 +27,7 @@ use super::real_time::RealTime;
 use super::request_handler::RequestHandler;
 use super::runner::{Runner, Subscriber};
 use super::simulator::Simulator;
+use super::waker;
 use crate::fc::{Access, Denial, RemoteLink, RemoteNotice};
 use crate::link::endpoint::EndpointStatus;
 use crate::link::{ExternalSimulator, ImpairedLink, Request};
@@ -39,6 +38,7 @@ use crate::telemetry::LinkState;
 use crate::timeline::Timeline;
 use crate::vehicle::Vehicle;
 use interface::{Interface, Outcome, UploadTo};
+pub(super) use limits::refuse_command;
 use rewind::RunOn;
 
 /// The interval of published views.
@@ -197,15 +197,6 @@ struct Session {
     failure: Option<String>,
 }
 
-/// Wakes the session's thread when a command or a request arrives.
-struct ThreadWaker(Thread);
-
-impl Wake for ThreadWaker {
-    fn wake(self: Arc<Self>) {
-        self.0.unpark();
-    }
-}
-
 /// Returns `true` if the vehicle can wait while an earlier instant is shown: its time is that of the session.
 fn can_wait(config: &SessionConfig) -> bool {
     config.vehicle.embedded().is_some() || config.remote.as_ref().is_some_and(RemoteLink::is_in_steps)
@@ -271,7 +262,7 @@ impl Session {
     }
 
     fn run(&mut self, view: &watch::Sender<SessionView>) -> Option<String> {
-        let waker = Waker::from(Arc::new(ThreadWaker(std::thread::current())));
+        let waker = waker::of_this_thread();
         let mut context = Context::from_waker(&waker);
         let start = Instant::now();
         let mut published = Duration::ZERO;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::signals::SimTime;
-use crate::telemetry::{BatteryAlarm, DisarmReason, EventKind, FirmwareEvent, NavEvent, NavState};
+use crate::telemetry::{BatteryAlarm, DisarmReason, EventKind, FirmwareEvent, ModeFlags, NavEvent, NavState};
 
 /// The maximum number of marks. A flight of an hour has some hundred.
 const MOST: usize = 4096;
@@ -21,6 +21,8 @@ pub struct Mark {
 pub enum MarkKind {
     /// The autopilot entered this state.
     State(NavState),
+    /// The active modes changed to these. Only the record of a craft without states has such marks.
+    Modes(ModeFlags),
     /// The craft was armed.
     Armed,
     /// The craft was disarmed normally.
@@ -80,9 +82,9 @@ impl MarkKind {
         })
     }
 
-    /// Returns `true` if the autopilot changed its state.
+    /// Returns `true` if the autopilot changed its state, or in its place the active modes changed.
     pub fn is_state(self) -> bool {
-        matches!(self, Self::State(_))
+        matches!(self, Self::State(_) | Self::Modes(_))
     }
 }
 
@@ -98,12 +100,21 @@ impl Marks {
     /// Adds the mark of an event.
     pub fn note(&mut self, time: SimTime, event: &EventKind) {
         let Some(kind) = MarkKind::of(event) else { return };
+        self.push(time, kind);
         if matches!(event, EventKind::Crash { .. } | EventKind::Firmware(FirmwareEvent::Disarmed(_))) {
             if self.ends.len() == MOST {
                 self.ends.drain(..MOST / 4);
             }
             self.ends.push(time);
         }
+    }
+
+    /// Adds the mark of a change of modes.
+    pub fn note_modes(&mut self, time: SimTime, modes: ModeFlags) {
+        self.push(time, MarkKind::Modes(modes));
+    }
+
+    fn push(&mut self, time: SimTime, kind: MarkKind) {
         let marks = Arc::make_mut(&mut self.all);
         if marks.len() == MOST {
             marks.drain(..MOST / 4);

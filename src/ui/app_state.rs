@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::session::{Event, SessionEvent, SessionView};
+use crate::session::{Event, ReplayNotice, SessionEvent, SessionView};
 use crate::signals::SimTime;
 use crate::telemetry::{EventKind, FirmwareEvent, NavEvent};
 
@@ -86,6 +86,10 @@ impl AppState {
             self.panels.state.transitions.leave_behind(event.time);
             shared.forecast.forget_what_if();
         }
+        if let SessionEvent::Replay(ReplayNotice::Begins(_)) = event.kind {
+            shared.log.clear();
+            self.panels.state.transitions.clear();
+        }
         if !text.is_empty() {
             shared.log.push(event.time, severity, text.clone());
         }
@@ -100,8 +104,9 @@ impl AppState {
     fn follow_vehicle(&mut self, time: SimTime, kind: &EventKind) {
         match kind {
             EventKind::Boot { rate_hz, .. } => self.step_ticks = (rate_hz / 100).max(1),
-            EventKind::Firmware(FirmwareEvent::Armed) => {
-                self.shared.track.clear();
+            // A recorded flight is shown as a whole.
+            EventKind::Firmware(FirmwareEvent::Armed) if self.shared.view.replay.is_none() => {
+                self.shared.track.begin_at(time.as_secs_f64());
                 self.shared.abandoned.forget();
             }
             EventKind::Firmware(FirmwareEvent::Nav(NavEvent::State { from, to, wp, reason, .. })) => {

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use crate::fc::RemoteNotice;
-use crate::session::SessionEvent;
+use crate::session::{ReplayNotice, SessionEvent};
 use crate::signals::SimTime;
 use crate::telemetry::{BatteryAlarm, DisarmReason, EventKind, FirmwareEvent, NavEvent, NavState};
 
@@ -31,7 +31,11 @@ impl Severity {
             SessionEvent::Notice(text) if text.starts_with("Not saved: ") => Self::Warn,
             SessionEvent::Branch { .. } => Self::Step,
             SessionEvent::Remote(RemoteNotice::Lost(_) | RemoteNotice::Restarted(_)) => Self::Warn,
-            SessionEvent::Remote(RemoteNotice::Failed(_)) => Self::Fault,
+            SessionEvent::Remote(RemoteNotice::Failed(_)) | SessionEvent::Replay(ReplayNotice::Failed(_)) => {
+                Self::Fault
+            }
+            SessionEvent::Replay(ReplayNotice::Damage(_)) => Self::Warn,
+            SessionEvent::Replay(ReplayNotice::Begins(_)) => Self::Step,
             SessionEvent::Remote(RemoteNotice::Output(_) | RemoteNotice::Reported(_))
             | SessionEvent::Endpoints(_)
             | SessionEvent::Notice(_)
@@ -137,6 +141,11 @@ impl LogState {
         let text = if text.contains(char::is_control) { text.replace(char::is_control, " ") } else { text };
         self.lines.push_back(LogLine { number: self.count, time, severity, text, left_behind: false });
         self.count += 1;
+    }
+
+    /// Removes all lines.
+    pub(super) fn clear(&mut self) {
+        self.lines.clear();
     }
 
     /// Marks the lines after `time` as left behind, because the flight continues from there.

@@ -1,61 +1,139 @@
 //! The graphs of a flight: the history of its signals, the shown plots, the time span, and the cursor.
+//!
+//! A recorded flight also has series by name. `curves` has the part of them that is shown.
 
+mod curves;
 mod history;
 mod plot;
 
-pub(super) use history::Sample;
 pub(super) use plot::{PLOTS, Plot, Stroke};
 
 use super::map_point::MapPoint;
+use crate::replay::{Overview, Picture};
 use crate::session::SessionView;
 use crate::signals::SimTime;
 use crate::telemetry::Snapshot;
-use crate::telemetry::signal::Signal;
+use crate::telemetry::signal::{SIGNALS, Signal, SignalInfo};
+use curves::SeriesCurves;
 use history::SignalHistory;
 
 /// The selectable time spans, s.
-const SPANS_S: [f64; 8] = [10.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1800.0, 7200.0];
+const SPANS_S: [f64; 12] = [0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1800.0, 7200.0];
+/// The index of the shortest span of a flight without recorded series: its pictures come a few times a second.
+const SHORTEST_OF_PICTURES: usize = 4;
+/// The index of the span at start.
+const FIRST_SPAN: usize = 6;
 /// The number of cursor steps in a span.
 const CURSOR_STEPS: f64 = 60.0;
+
+/// A graph of the Graphs panel.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Graph<'a> {
+    Plot(&'static Plot),
+    /// The difference of a plot's last curve between two flights.
+    Difference(&'static Plot),
+    /// A recorded series by name.
+    Series(&'a str),
+}
 
 /// The state of the Graphs panel.
 #[derive(Debug)]
 pub struct GraphsState {
     history: SignalHistory,
     shown: [bool; PLOTS.len()],
+    /// The plots whose difference between two flights is shown.
+    differences: [bool; PLOTS.len()],
+    /// The names of the shown series.
+    series: Vec<String>,
+    curves: SeriesCurves,
+    has_series: bool,
+    /// The signals that a recorded flight has; `None` while a vehicle flies.
+    recorded: Option<Vec<Signal>>,
     span: usize,
     cursor_s: Option<f64>,
 }
 
 impl Default for GraphsState {
-    /// Returns a state that shows altitude, speed, cross-track error, roll and pitch over the last minute.
+    /// Returns a state that shows altitude, speed, cross-track error, roll and pitch over the last minute, and of two
+    /// flights the differences of altitude and speed.
     fn default() -> Self {
-        let shown = std::array::from_fn(|plot| plot < 5);
-        Self { history: SignalHistory::default(), shown, span: 2, cursor_s: None }
+        Self {
+            history: SignalHistory::default(),
+            shown: std::array::from_fn(|plot| plot < 5),
+            differences: std::array::from_fn(|plot| plot < 2),
+            series: Vec::new(),
+            curves: SeriesCurves::default(),
+            has_series: false,
+            recorded: None,
+            span: FIRST_SPAN,
+            cursor_s: None,
+        }
     }
 }
 
 impl GraphsState {
-    /// Returns the shown plots.
-    pub(super) fn plots(&self) -> impl Iterator<Item = &'static Plot> + '_ {
-        PLOTS.iter().zip(self.shown).filter_map(|(plot, shown)| shown.then_some(plot))
+    /// Shows the whole of a recorded flight. What was chosen for the one before stays chosen.
+    pub(super) fn load(&mut self, overview: &Overview) {
+        if self.recorded.is_none() {
+            self.shown = std::array::from_fn(|plot| plot < 7);
+        }
+        let is_recorded =
+            |info: &&SignalInfo| overview.pictures.iter().any(|picture| picture.value(info.signal).is_some());
+        self.recorded = Some(SIGNALS.iter().filter(is_recorded).map(|info| info.signal).collect());
+        self.history = SignalHistory::of_past(&overview.pictures);
+        self.has_series = !overview.series.is_empty();
+        self.curves = SeriesCurves::default();
+        self.cursor_s = None;
+        self.change_span(0);
     }
 
-    /// Returns `true` if the plot at this index of [`PLOTS`] is shown.
-    pub(super) fn is_shown(&self, plot: usize) -> bool {
-        self.shown.get(plot).copied().unwrap_or(false)
+    /// Returns the shown graphs, from top to bottom, without plots of which a recorded flight has nothing. Differences are
+    /// shown if there are two flights.
+    pub(super) fn graphs(&self, has_two: bool) -> impl Iterator<Item = Graph<'_>> {
+        let plots = PLOTS.iter().zip(self.shown.iter().zip(&self.differences));
+        let plots = plots.filter(|(plot, _)| plot.curves.iter().any(|(signal, ..)| self.has(*signal)));
+        let plots = plots.flat_map(move |(plot, (shown, difference))| {
+            let difference = (*difference && has_two).then_some(Graph::Difference(plot));
+            shown.then_some(Graph::Plot(plot)).into_iter().chain(difference)
+        });
+        plots.chain(self.series.iter().map(|name| Graph::Series(name)))
     }
 
-    /// Shows a plot, or hides it.
-    pub(super) fn toggle(&mut self, plot: usize) {
-        if let Some(shown) = self.shown.get_mut(plot) {
+    /// Returns `true` if a signal may have a value: in a recorded flight, if it has one at any instant.
+    pub(super) fn has(&self, signal: Signal) -> bool {
+        self.recorded.as_ref().is_none_or(|recorded| recorded.contains(&signal))
+    }
+
+    /// Returns `true` if the row at this index of the list of plots is shown. After the plots come their differences.
+    pub(super) fn is_shown(&self, row: usize) -> bool {
+        self.shown.iter().chain(&self.differences).nth(row).copied().unwrap_or(false)
+    }
+
+    /// Shows the row at this index of the list of plots, or hides it.
+    pub(super) fn toggle(&mut self, row: usize) {
+        if let Some(shown) = self.shown.iter_mut().chain(&mut self.differences).nth(row) {
             *shown = !*shown;
+        }
+    }
+
+    /// Returns `true` if the series with this name is shown.
+    pub(super) fn shows_series(&self, name: &str) -> bool {
+        self.series.iter().any(|shown| shown == name)
+    }
+
+    /// Shows a series, or hides it.
+    pub(super) fn toggle_series(&mut self, name: &str) {
+        if self.shows_series(name) {
+            self.series.retain(|shown| shown != name);
+        } else {
+            self.series.push(name.to_owned());
         }
     }
 
     /// Selects a longer time span, or a shorter one.
     pub(super) fn change_span(&mut self, by: isize) {
-        self.span = self.span.saturating_add_signed(by).min(SPANS_S.len() - 1);
+        let shortest = if self.has_series { 0 } else { SHORTEST_OF_PICTURES };
+        self.span = self.span.saturating_add_signed(by).clamp(shortest, SPANS_S.len() - 1);
     }
 
     /// Returns the shown time span, s.
@@ -66,7 +144,7 @@ impl GraphsState {
     /// Returns the start and end of the shown time, s: up to the newest sample, or around an older cursor.
     pub(super) fn window(&self, cursor_s: Option<f64>) -> (f64, f64) {
         let span = self.span_s();
-        let newest = self.history.newest().map_or(0.0, |sample| sample.time_s);
+        let newest = self.history.newest().map_or(0.0, Picture::time_s);
         let to =
             cursor_s.filter(|cursor| *cursor < newest - span).map_or(newest, |cursor| cursor + span / 2.0);
         let to = to.max(span);
@@ -76,10 +154,10 @@ impl GraphsState {
     /// Moves the cursor by steps, starting from the newest sample if there is no cursor.
     pub(super) fn move_cursor(&mut self, steps: f64) {
         let (Some(oldest), Some(newest)) = (self.history.oldest(), self.history.newest()) else { return };
-        let from = self.cursor_s.unwrap_or(newest.time_s);
-        let to = (from + steps * self.span_s() / CURSOR_STEPS).max(oldest.time_s);
+        let from = self.cursor_s.unwrap_or(newest.time_s());
+        let to = (from + steps * self.span_s() / CURSOR_STEPS).max(oldest.time_s());
         // Beyond the newest sample there is nothing to point at, so the graphs show the present again.
-        self.cursor_s = (to < newest.time_s).then_some(to);
+        self.cursor_s = (to < newest.time_s()).then_some(to);
     }
 
     pub(super) fn leave_cursor(&mut self) {
@@ -88,7 +166,7 @@ impl GraphsState {
 
     /// Adds a picture to the history.
     pub(super) fn record(&mut self, vehicle: &Snapshot) {
-        self.history.push(Sample::of(vehicle));
+        self.history.push(Picture::of(vehicle));
     }
 
     /// Returns the instant of the cursor, s: of the user's cursor, else the earlier instant on the screen.
@@ -109,12 +187,12 @@ impl GraphsState {
     }
 
     /// Returns the samples between two times.
-    pub(super) fn samples(&self, from_s: f64, to_s: f64) -> impl Iterator<Item = &Sample> {
+    pub(super) fn samples(&self, from_s: f64, to_s: f64) -> impl Iterator<Item = &Picture> {
         self.history.between(from_s, to_s)
     }
 
     /// Returns the sample for a time, or the newest one without a time.
-    pub(super) fn sample_at(&self, time_s: Option<f64>) -> Option<&Sample> {
+    pub(super) fn sample_at(&self, time_s: Option<f64>) -> Option<&Picture> {
         match time_s {
             Some(time_s) => self.history.at(time_s),
             None => self.history.newest(),
@@ -162,7 +240,13 @@ mod tests {
         for _ in 0..20 {
             graphs.change_span(-1);
         }
-        assert_eq!(graphs.span_s(), SPANS_S[0]);
+        assert_eq!(graphs.span_s(), 10.0);
+        let series = vec![crate::replay::Series { name: "debug[0]".to_owned(), unit: "" }];
+        graphs.load(&Overview { series, ..Overview::default() });
+        for _ in 0..20 {
+            graphs.change_span(-1);
+        }
+        assert_eq!(graphs.span_s(), 0.1, "a log is finer than pictures");
         for _ in 0..20 {
             graphs.change_span(1);
         }

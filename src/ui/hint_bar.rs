@@ -54,6 +54,9 @@ pub(super) fn draw(own: &[Hint], state: &Shared, area: Rect, buffer: &mut Buffer
 fn hint_actions(own: &[Hint], state: &Shared) -> Vec<Hint> {
     let craft = &state.view.vehicle.craft;
     let mut hints: Vec<Hint> = Vec::new();
+    if state.view.replay.is_some() {
+        return replay_actions(own, state);
+    }
     if state.is_rewound() {
         if state.flies_again() {
             hints.push((&[Action::FlyOn], "fly on"));
@@ -147,6 +150,26 @@ fn hint_actions(own: &[Hint], state: &Shared) -> Vec<Hint> {
     }
     if state.focus == Panel::Rc {
         hints.push((&[Action::Panel(PanelAction::Flip)], "flip"));
+    }
+    hints.push((&[Action::CommandLine], "command"));
+    hints.retain(|(actions, _)| actions.iter().all(|&action| enabled(state, action).is_ok()));
+    hints
+}
+
+/// Returns the actions for a recorded flight.
+fn replay_actions(own: &[Hint], state: &Shared) -> Vec<Hint> {
+    let play = if state.view.paused { "play" } else { "pause" };
+    let mut hints: Vec<Hint> = vec![(&[Action::Pause], play)];
+    hints.extend_from_slice(own);
+    hints.extend([
+        (&[Action::EventBack, Action::EventForward] as &[_], "event"),
+        (&[Action::Earlier, Action::Later], "10 s"),
+        (&[Action::Slower, Action::Faster], "speed"),
+        (&[Action::Step], "step"),
+        (&[Action::Newest], "end"),
+    ]);
+    if state.view.replay.as_ref().is_some_and(|replay| replay.count > 1) {
+        hints.push((&[Action::PreviousFlight, Action::NextFlight], "flight"));
     }
     hints.push((&[Action::CommandLine], "command"));
     hints.retain(|(actions, _)| actions.iter().all(|&action| enabled(state, action).is_ok()));

@@ -1,6 +1,7 @@
 //! The messages to the user interface, and the effects that it requests.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Duration;
 
 use crossterm::event::{KeyEvent, MouseEvent};
@@ -13,6 +14,7 @@ use super::map_state::{MapItem, MapMode};
 use super::popup::Popup;
 use crate::fc::UploadReport;
 use crate::plan::{Altitude, FlightPlan};
+use crate::replay::{Curve, CurvesRequest, Overview};
 use crate::session::command::{CliOutput, Command, SessionView};
 use crate::session::{Event, ForecastJob, ForecastReply};
 use crate::telemetry::snapshot::WorldView;
@@ -66,6 +68,18 @@ pub enum Msg {
     /// The flight was written as a scenario. The result is a sentence with the place, or with the reason for a failure.
     ScenarioReply(Result<String, String>),
     Files(FileReply),
+    /// A second flight was read, to be shown beside the first.
+    OtherFlight {
+        /// The name of its file, safe to print.
+        name: String,
+        /// The flight, or the reason why it cannot be shown, a sentence.
+        result: Result<Arc<Overview>, String>,
+    },
+    /// A part of the recorded series was read.
+    Curves {
+        request: CurvesRequest,
+        result: Result<Vec<Curve>, String>,
+    },
     /// A command could not be delivered because the session does not keep up.
     Busy,
 }
@@ -174,6 +188,8 @@ pub enum Effect {
         /// The setting lines of the plan, without `set `.
         settings: Vec<String>,
     },
+    /// Read a part of the recorded series; the curves come back as [`Msg::Curves`].
+    Curves(CurvesRequest),
     /// Fly ahead on a copy of the vehicle; the forecast comes back as [`Msg::Forecast`].
     Forecast(ForecastJob),
     Files(FileRequest),

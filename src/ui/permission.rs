@@ -53,6 +53,7 @@ fn intent_of(effect: &Effect) -> Intent {
         Effect::World(_) => Intent::World,
         Effect::Forecast(_) => Intent::Forecast,
         Effect::Files(_)
+        | Effect::Curves(_)
         | Effect::WriteScenario { .. }
         | Effect::Copy(_)
         | Effect::Suspend

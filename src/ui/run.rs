@@ -4,15 +4,17 @@
 
 use std::io::{self, IsTerminal as _};
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use crossterm::event::{Event as TerminalEvent, EventStream};
 use futures_util::StreamExt as _;
 use rustix::process::Signal;
 use tokio::signal::unix::{SignalKind, signal};
-use tokio::sync::{mpsc, watch};
+use tokio::sync::{mpsc, oneshot, watch};
 use tokio::time::sleep;
 
+use crate::replay::Overview;
 use crate::session::{Command, Event, Forecaster, SessionView};
 use crate::timeline::RecordedFlight;
 
@@ -39,6 +41,9 @@ const FADE_FRAME: Duration = Duration::from_millis(500);
 /// The number of events processed at once.
 const BATCH: usize = 256;
 
+/// Receives a second flight: the name of its file, safe to print, and the flight, or the reason why it cannot be shown.
+pub type OtherReceiver = oneshot::Receiver<(String, Result<Arc<Overview>, String>)>;
+
 /// The user interface's link to the session.
 #[derive(Debug)]
 pub struct SessionLink {
@@ -47,6 +52,8 @@ pub struct SessionLink {
     pub events: mpsc::UnboundedReceiver<Event>,
     /// Pictures of an earlier flight, oldest first.
     pub past: Vec<SessionView>,
+    /// A second flight, once it is read.
+    pub other: Option<OtherReceiver>,
     /// Writes a flight as a scenario. Receives the file, or the name of the plan if there is none. Returns a sentence
     /// with the place, or with the reason for a failure.
     pub write_scenario: fn(Option<PathBuf>, &str, RecordedFlight) -> Result<String, String>,
@@ -140,6 +147,7 @@ async fn run_loop(
             },
             Some(msg) = replies.recv() => Wake::Msg(msg),
             Some(reply) = files.replies.recv() => Wake::Msg(Msg::Files(reply)),
+            Some(msg) = second_flight(&mut link.other) => Wake::Msg(msg),
             () = sleep(frame_at.saturating_duration_since(Instant::now())) => Wake::Time,
             received = link.events.recv_many(&mut events, BATCH) => match received {
                 0 => Wake::End(Ending::SessionEnded),
@@ -202,6 +210,14 @@ async fn run_loop(
             due = None;
         }
     }
+}
+
+/// Waits for the second flight. Returns its message once; without one, or after it, `None` at once.
+async fn second_flight(other: &mut Option<OtherReceiver>) -> Option<Msg> {
+    let received = other.as_mut()?.await;
+    *other = None;
+    let (name, result) = received.ok()?;
+    Some(Msg::OtherFlight { name, result })
 }
 
 /// Returns the message of a terminal event, if there is one.

@@ -1,10 +1,12 @@
 //! The state that every panel may read.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Duration;
 
 use crate::fc::{RemoteView, UploadView};
 use crate::plan::FlightPlan;
+use crate::replay::{Overview, Series};
 use crate::session::SessionView;
 use crate::signals::{RcFrame, SimTime};
 use crate::telemetry::PlanSource;
@@ -21,6 +23,7 @@ use super::keymap::Keymap;
 use super::layout::Slots;
 use super::map_state::MapState;
 use super::message::Effect;
+use super::other_flight::{Alignment, OtherFlight};
 use super::panel::Panel;
 use super::stick_recording::StickRecording;
 use super::theme::Theme;
@@ -69,6 +72,10 @@ pub struct Shared {
     pub graphs: GraphsState,
     /// The path that the craft has flown.
     pub track: Track,
+    /// The recorded flight whose track and graphs are shown.
+    pub past: Option<Arc<Overview>>,
+    /// A second flight, beside the one that is shown.
+    pub other: Option<OtherFlight>,
     /// The tracks of abandoned branches of the flight.
     pub abandoned: AbandonedTracks,
     /// Flights flown ahead of time.
@@ -112,6 +119,8 @@ impl Shared {
             map: MapState::default(),
             graphs: GraphsState::default(),
             track: Track::default(),
+            past: None,
+            other: None,
             abandoned: AbandonedTracks::default(),
             forecast: ForecastState::default(),
             log: LogState::default(),
@@ -232,6 +241,29 @@ impl Shared {
     /// Returns `true` if the craft stores the open plan.
     pub fn plan_is_on_craft(&self) -> bool {
         self.view.vehicle.stored_plan.as_ref() == Some(self.plan())
+    }
+
+    /// Returns the alignment of the second flight with the shown one, and the time to add to its times, µs.
+    pub(super) fn other_aligned(&self) -> Option<(Alignment, i64)> {
+        let timeline = self.view.timeline.as_ref()?;
+        Some(self.other.as_ref()?.aligned(&timeline.marks, timeline.first))
+    }
+
+    /// Returns the second flight, and the time to add to its times, s.
+    pub(super) fn other_flight(&self) -> Option<(&OtherFlight, f64)> {
+        let (_, offset_us) = self.other_aligned()?;
+        Some((self.other.as_ref()?, offset_us as f64 / 1e6))
+    }
+
+    /// Returns the recorded series.
+    pub(super) fn series(&self) -> &[Series] {
+        self.view.replay.as_ref().map_or(&[], |replay| &replay.overview.series)
+    }
+
+    /// Returns the value of a recorded series at the shown instant, if it is known.
+    pub(super) fn series_value(&self, index: usize) -> Option<f64> {
+        let values = &self.view.replay.as_ref()?.values;
+        values.get(index).copied().filter(|value| value.is_finite())
     }
 
     /// Returns `true` if an earlier instant is shown while the flight waits.

@@ -12,6 +12,7 @@ use super::drawing;
 use super::formatting::{clock, clock_ms, compass, cut, factor, fixed, signed};
 use super::ground;
 use super::panel::span;
+use super::past_flight;
 use super::shared::Shared;
 use super::theme::Role;
 use super::units::Units;
@@ -205,6 +206,16 @@ fn leg(nav: &NavTelemetry, units: Units) -> Vec<(u8, &'static str, String, Strin
     ]
 }
 
+/// Returns the instant of a recorded flight, and the speed while it plays.
+fn replay_time(state: &Shared, label: &str) -> String {
+    let view = &state.view;
+    let time = clock_ms(view.vehicle.time);
+    if view.paused {
+        return format!(" {time} ‖ {label} ");
+    }
+    format!(" {time} ▸ {label} {} ", factor(view.speed_wanted))
+}
+
 /// Returns simulated time and speed.
 fn time(state: &Shared) -> Vec<Span<'static>> {
     let theme = &state.theme;
@@ -219,6 +230,9 @@ fn time(state: &Shared) -> Vec<Span<'static>> {
             span(theme, Role::Text, format!(" {}", clock(view.vehicle.time))),
             span(theme, role, why),
         ];
+    }
+    if let Some(label) = past_flight::label(state) {
+        return vec![span(theme, Role::Active, replay_time(state, &label))];
     }
     if let Some(rewound_s) = state.rewound_s() {
         let mark = if view.paused { "◂" } else { "▸" };

@@ -15,6 +15,7 @@ use super::shared::Shared;
 use super::transmitter;
 use super::transmitter::ThrottleMove;
 use super::units::Units;
+use crate::session::ReplayView;
 
 /// The state of the craft as a sentence, and the next step.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -43,6 +44,9 @@ pub fn current(state: &Shared) -> Option<StatusMessage> {
         let (reached_s, until_s) = (reached.as_secs_f64(), until.as_secs_f64());
         let condition = format!("The firmware flies again: {reached_s:.0} of {until_s:.0} s.");
         return message(Severity::Info, condition, format!("{} stops it", key(Action::FlyOn)));
+    }
+    if let Some(replay) = &state.view.replay {
+        return of_replay(state, replay);
     }
     if let Some(rewound_s) = state.rewound_s() {
         let condition = format!("Rewound by {rewound_s:.1} s: the flight waits.");
@@ -191,6 +195,30 @@ pub fn current(state: &Shared) -> Option<StatusMessage> {
     }
     let by_hand = [Action::Arm, Action::Throttle, Action::Autopilot].map(key).join(", ");
     message(Severity::Good, "Ready.", format!("{} flies the plan; by hand: {by_hand}", key(Action::Fly)))
+}
+
+/// Returns the message for a recorded flight.
+fn of_replay(state: &Shared, replay: &ReplayView) -> Option<StatusMessage> {
+    let file = &replay.file;
+    if replay.reading.is_some() {
+        return message(
+            Severity::Info,
+            format!("Reading {file}."),
+            format!("{} quits", state.key(Action::Quit)),
+        );
+    }
+    let [play, back, on] =
+        [Action::Pause, Action::EventBack, Action::EventForward].map(|action| state.key(action));
+    let condition = match state.rewound_s() {
+        Some(left_s) => format!("Recorded flight {file}, {left_s:.1} s before its end."),
+        None => format!("The end of the recorded flight {file}."),
+    };
+    let plays = match (state.rewound_s(), state.view.paused) {
+        (None, _) => "plays it again",
+        (Some(_), true) => "plays it",
+        (Some(_), false) => "pauses",
+    };
+    message(Severity::Info, condition, format!("{play} {plays}; `{back}` and `{on}` go from event to event"))
 }
 
 /// Returns the time that the lost link has to come back, and the failsafe action after it.

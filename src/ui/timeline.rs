@@ -19,7 +19,7 @@ use super::panel::span;
 use super::shared::Shared;
 use super::theme::Role;
 use crate::signals::SimTime;
-use crate::telemetry::NavState;
+use crate::telemetry::{Mode, NavState};
 use crate::timeline::{Mark, MarkKind, TimelineView};
 use columns::Columns;
 
@@ -38,6 +38,9 @@ pub(super) fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {
     let pointed_at = pointed_at.map(|time| columns.column_of(time));
     let mut spans: Vec<Span<'_>> = vec![span(theme, Role::Dim, format!(" {} ", clock(timeline.first)))];
     let mut flying = NavState::Idle;
+    // A record without states has only events.
+    let has_states = state.view.replay.is_none()
+        || timeline.marks.iter().any(|mark| matches!(mark.kind, MarkKind::State(_)));
     let mut marks = timeline.marks.iter().peekable();
     for column in 0..columns.width {
         let mut here: Option<Mark> = None;
@@ -60,7 +63,7 @@ pub(super) fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {
             span(theme, role, glyph)
         } else if columns.is_fold(column) {
             span(theme, Role::Dim, "≈")
-        } else if column == 0 {
+        } else if column == 0 && has_states {
             span(theme, role_of(flying), letter(flying))
         } else {
             span(theme, role_of(flying), if column < shown { "━" } else { "─" })
@@ -76,7 +79,7 @@ fn weight(kind: MarkKind) -> u8 {
         MarkKind::Recovery => 0,
         MarkKind::Touchdown => 1,
         MarkKind::Armed | MarkKind::Disarmed => 2,
-        MarkKind::State(_) => 3,
+        MarkKind::State(_) | MarkKind::Modes(_) => 3,
         MarkKind::Alarm => 4,
     }
 }
@@ -89,6 +92,8 @@ fn appearance(kind: MarkKind) -> (&'static str, Role) {
         MarkKind::Touchdown => ("▼", Role::Text),
         MarkKind::Recovery => ("✓", Role::Ok),
         MarkKind::State(state) => (letter(state), role_of(state)),
+        MarkKind::Modes(modes) if modes.has(Mode::Autopilot) => ("◆", Role::Target),
+        MarkKind::Modes(_) => ("◇", Role::Title),
     }
 }
 

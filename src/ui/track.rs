@@ -1,6 +1,7 @@
 //! The flown track: a polyline that never grows beyond a bound.
 
 use crate::geo::{BoundedPath, Located};
+use crate::replay::Picture;
 
 /// The maximum number of points.
 const MAX_POINTS: usize = 20_480;
@@ -29,6 +30,15 @@ pub struct TrackPoint {
     pub engaged: bool,
     /// The index of the current waypoint of the stored plan.
     pub wp: Option<u8>,
+}
+
+impl TrackPoint {
+    /// Returns the point of a picture, if it has a place.
+    pub(super) fn of(picture: &Picture) -> Option<Self> {
+        let (n, e) = picture.place()?;
+        let alt_m = picture.altitude_m().unwrap_or_default();
+        Some(Self { n, e, alt_m, time_s: picture.time_s(), engaged: picture.engaged, wp: None })
+    }
 }
 
 /// The tracks of abandoned branches of the flight.
@@ -78,6 +88,15 @@ impl Default for Track {
 }
 
 impl Track {
+    /// Returns the track of a flight that is over. Its jumps are gaps of the record, not resets.
+    pub(super) fn of_past(points: impl Iterator<Item = TrackPoint>) -> Self {
+        let mut track = Self::default();
+        for point in points {
+            track.add(point);
+        }
+        track
+    }
+
     /// Appends a point if it is far enough from the last one. A jump starts a new track.
     pub fn push(&mut self, point: TrackPoint) {
         if !(point.n.is_finite() && point.e.is_finite() && point.alt_m.is_finite()) {
@@ -92,6 +111,10 @@ impl Track {
             self.clear();
         }
         self.seen = Some(point);
+        self.add(point);
+    }
+
+    fn add(&mut self, point: TrackPoint) {
         let is_same_leg = |last: &TrackPoint| last.engaged == point.engaged && last.wp == point.wp;
         if self.points().last().is_none_or(is_same_leg) {
             self.path.push(point);
@@ -109,6 +132,15 @@ impl Track {
             part.insert(0, last);
         }
         part
+    }
+
+    /// Removes the part before `time_s`, s: the flight begins there.
+    pub(super) fn begin_at(&mut self, time_s: f64) {
+        let before = self.points().partition_point(|point| point.time_s < time_s);
+        let flown = self.path.split_off(before);
+        let seen = self.seen.filter(|seen| seen.time_s >= time_s);
+        *self = Self { seen, ..Self::default() };
+        flown.into_iter().for_each(|point| self.add(point));
     }
 
     pub fn clear(&mut self) {
@@ -138,6 +170,22 @@ impl Track {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_track_of_a_flight_begins_where_the_craft_was_armed() {
+        let mut track = Track::default();
+        let at =
+            |step: u32| TrackPoint { n: f64::from(step), time_s: f64::from(step), ..TrackPoint::default() };
+        (0..20).for_each(|step| track.push(at(step)));
+        track.begin_at(7.5);
+        assert_eq!(track.points().first().map(|point| point.time_s), Some(8.0));
+        assert_eq!(track.points().last().map(|point| point.time_s), Some(19.0));
+        track.begin_at(30.0);
+        assert!(track.points().is_empty());
+        // The craft was put back home before it was armed again.
+        track.push(TrackPoint { time_s: 30.1, ..TrackPoint::default() });
+        assert_eq!(track.points().len(), 1);
+    }
 
     #[test]
     fn a_long_flight_stays_bounded_and_keeps_both_ends() {

@@ -53,6 +53,10 @@ impl Transitions {
         self.list.iter().take(shown)
     }
 
+    pub(super) fn clear(&mut self) {
+        *self = Self::default();
+    }
+
     /// Drops the transitions after `time`.
     pub(super) fn leave_behind(&mut self, time: SimTime) {
         let kept = self.list.partition_point(|step| step.time <= time);

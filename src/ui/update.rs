@@ -19,6 +19,7 @@ use super::map_edit::actions as map_edit;
 use super::map_point;
 use super::message::{Effect, Msg, Request};
 use super::panel::Panel;
+use super::past_flight;
 use super::popup::{GoTo, Palette, Popup};
 use super::stick_recording::keys::advance;
 use super::track::TrackPoint;
@@ -30,10 +31,12 @@ mod change;
 mod flight;
 mod map_menu;
 mod mouse;
+mod other_flight;
 mod paste;
 mod permission;
 mod plan_popup;
 mod popup;
+mod series;
 mod timeline;
 mod view;
 
@@ -43,6 +46,9 @@ use paste::paste;
 use view::{focus, focus_neighbour, scroll};
 
 pub(super) use permission::hold;
+
+/// The time of a step in a recorded flight, µs.
+const STEP_US: u64 = 10_000;
 
 /// Processes a message and returns its effects.
 pub fn update(state: &mut AppState, msg: Msg) -> Vec<Effect> {
@@ -57,6 +63,7 @@ pub fn update(state: &mut AppState, msg: Msg) -> Vec<Effect> {
         tutorial::follow(&mut state.tutorial, &mut state.shared);
         effects.extend(forecast::follow_plan(&mut state.shared));
         effects.extend(ground::follow_plan(&mut state.shared));
+        effects.extend(series::follow(&mut state.shared));
         ground::follow_clearance(&mut state.shared);
         state.shared.editor.follow_generator(findings::home(&state.shared));
         zones::follow(&mut state.shared);
@@ -77,12 +84,14 @@ fn take(state: &mut AppState, msg: Msg) -> Vec<Effect> {
         Msg::Resize(columns, rows) => state.shared.size = (columns, rows),
         Msg::View(view) => {
             take_view(state, view);
-            if !state.shared.is_rewound() {
+            if !state.shared.is_rewound() && state.shared.view.replay.is_none() {
                 state.shared.graphs.record(&state.shared.view.vehicle);
                 return advance(&mut state.shared);
             }
         }
         Msg::Event(event) => state.take_event(&event),
+        Msg::OtherFlight { name, result } => other_flight::take(&mut state.shared, name, result),
+        Msg::Curves { request, result } => series::take(&mut state.shared, request, result),
         Msg::CliReply(output) => {
             if let Some((severity, text)) = state.panels.cli.console.answer(output.as_ref()) {
                 state.shared.notify(severity, text);
@@ -132,7 +141,12 @@ fn take_view(state: &mut AppState, view: SessionView) {
         plan::craft_plan_changed(&mut state.shared, was, &now);
     }
     state.shared.forecast.take_view();
-    if state.shared.is_rewound() {
+    past_flight::follow(&mut state.shared);
+    other_flight::follow(&mut state.shared);
+    if let Some(replay) = &state.shared.view.replay {
+        state.step_ticks = replay.overview.frames_in(STEP_US);
+    }
+    if state.shared.is_rewound() || state.shared.view.replay.is_some() {
         return;
     }
     if let Some(place) = map_point::craft(&state.shared.view) {
@@ -349,7 +363,11 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
         | Action::Earlier
         | Action::Later
         | Action::FlyOn
-        | Action::Newest => return timeline::act(&state.shared, action),
+        | Action::Newest
+        | Action::NextFlight
+        | Action::PreviousFlight => return timeline::act(&state.shared, action),
+        Action::ShiftEarlier => other_flight::shift(&mut state.shared, -1),
+        Action::ShiftLater => other_flight::shift(&mut state.shared, 1),
         Action::Slower => return speed(&mut state.shared, -1),
         Action::Faster => return speed(&mut state.shared, 1),
         Action::RealTime => return speed(&mut state.shared, 0),

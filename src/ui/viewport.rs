@@ -10,6 +10,7 @@ use ratatui::layout::Rect;
 use super::map_point::origin::origin;
 use super::map_point::{MapPoint, craft, to_map};
 use super::map_state::MapMode;
+use super::other_flight::OtherFlight;
 use super::shared::Shared;
 
 /// The limits of the scale, metres per column.
@@ -61,7 +62,11 @@ impl Viewport {
         let mut low = MapPoint::default();
         let mut high = MapPoint::default();
         let craft = craft(&state.view);
-        for place in places.chain(craft) {
+        // A recorded flight is shown as a whole.
+        let past = state.view.replay.as_ref().map_or(&[][..], |_| state.track.points());
+        let other = state.other.as_ref().map_or(&[][..], OtherFlight::track);
+        let flown = past.iter().chain(other).map(|point| MapPoint::new(point.n, point.e));
+        for place in places.chain(craft).chain(flown) {
             low = MapPoint::new(low.n.min(place.n), low.e.min(place.e));
             high = MapPoint::new(high.n.max(place.n), high.e.max(place.e));
         }

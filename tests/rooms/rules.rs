@@ -4,7 +4,7 @@ use crate::paths::{Named, named, tokens};
 use crate::source::{SourceFile, files};
 
 /// Rooms that are pure: no file, no socket, no thread, no clock, no global state.
-const PURE: [&str; 16] = [
+const PURE: [&str; 17] = [
     "autopilot",
     "fc",
     "firmware",
@@ -13,6 +13,7 @@ const PURE: [&str; 16] = [
     "pilot",
     "plan",
     "recording",
+    "replay",
     "scenario",
     "signals",
     "sim",

@@ -104,6 +104,7 @@ fn name(kind: &SessionEvent) -> Option<&'static str> {
         SessionEvent::Branch { .. } => Some("branch"),
         SessionEvent::Notice(_)
         | SessionEvent::ArmingBlocked(_)
+        | SessionEvent::Replay(_)
         | SessionEvent::Simulator(_)
         | SessionEvent::Remote(_) => Some("notice"),
         SessionEvent::FirstState { .. } | SessionEvent::FirstRc { .. } | SessionEvent::Restarted => None,

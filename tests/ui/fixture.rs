@@ -53,7 +53,11 @@ fn open(plan: FlightPlan) -> OpenPlan {
 
 /// Returns an event as a short sentence.
 fn sentence(event: &Event) -> String {
-    let SessionEvent::Vehicle(kind) = &event.kind else { return format!("{:?}", event.kind) };
+    let kind = match &event.kind {
+        SessionEvent::Vehicle(kind) => kind,
+        SessionEvent::Replay(notice) => return notice.to_string(),
+        other => return format!("{other:?}"),
+    };
     match kind {
         EventKind::Boot { airframe, .. } => format!("started, airframe {airframe}"),
         EventKind::Firmware(FirmwareEvent::Armed) => "armed (home 40.4635000,-79.5182000)".to_owned(),

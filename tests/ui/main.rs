@@ -20,6 +20,7 @@ mod orientation;
 mod panels;
 mod plan_panel;
 mod remapped;
+mod replay;
 mod rewind;
 mod screens;
 mod session_rig;

@@ -88,6 +88,7 @@ impl<'a> Fields<'a> {
                 ("notice", Self::Notice { text: text.into() })
             }
             SessionEvent::Remote(notice) => ("notice", Self::Notice { text: notice.to_string().into() }),
+            SessionEvent::Replay(notice) => ("notice", Self::Notice { text: notice.to_string().into() }),
             SessionEvent::Simulator(remark) => ("notice", Self::Notice { text: remark.to_string().into() }),
             SessionEvent::Branch { number, left } => {
                 ("branch", Self::Branch { number: *number, left_at: Decimals(left.as_secs_f64()) })

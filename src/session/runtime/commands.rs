@@ -113,6 +113,9 @@ impl Session {
             }
             Command::RecordedFlight(reply) => reply.send(self.recorded_flight()),
             Command::Subscribe(receiver) => self.events.subscribe(receiver),
+            // The policy refuses another flight.
+            Command::ShowFlight(_) => {}
+            Command::Curves { reply, .. } => reply.send(Err(policy::NO_FILE.to_owned())),
             Command::Quit => self.quit = true,
         }
     }
@@ -130,6 +133,7 @@ impl Session {
             cannot_continue: is_pictures && self.again.is_none(),
             has_ended: is_pictures && self.runner.link.is_none(),
             is_rewound: self.is_rewound(),
+            is_replay: false,
         }
     }
 

@@ -9,7 +9,7 @@ use crate::session::command::{CliOutput, Command};
 use crate::session::policy::{REWOUND, Refusal};
 
 /// Answers a command with the reason for its refusal. Returns the reason as a notice if the command has no answer.
-pub(super) fn refuse_command(command: Command, refusal: Refusal) -> Option<String> {
+pub(in crate::session) fn refuse_command(command: Command, refusal: Refusal) -> Option<String> {
     let sentence = refusal.to_string();
     match command {
         Command::Cli { reply, .. } => {

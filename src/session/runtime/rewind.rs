@@ -15,16 +15,13 @@ use crate::session::fly_again::{FlownAgain, FlyingAgain};
 use crate::session::pacer::SPEED_RANGE;
 use crate::session::policy::{NOT_FLOWN_AGAIN, NOT_RECORDED};
 use crate::session::runner::{Runner, tick};
+use crate::session::seek::{Target, target};
 use crate::signals::SimTime;
 use crate::timeline::{RecordedFlight, Shown, Timeline, TimelineView};
 use crate::vehicle::{Answer, Reply, Vehicle, VehicleCommand};
 
 /// The longest time that the flight continues until an event, µs.
 const RUN_ON_US: u64 = 600_000_000;
-
-/// The time before the first alarm of a mishap at which the view starts, µs: a link is cut before its loss is
-/// detected.
-const MISHAP_LEAD_US: u64 = 2_000_000;
 
 /// The amount of input that may arrive while time is paused before it is recorded, bytes.
 const FLOOD_BYTES: usize = 1 << 20;
@@ -237,40 +234,17 @@ impl Session {
     pub(super) fn seek(&mut self, seek: Seek, now: Duration) {
         self.flush_events();
         let (shown, head, marks) = (self.shown_vehicle().time(), self.vehicle.time(), self.events.marks());
-        let before = |states_only| marks.before(shown, states_only).map(|mark| mark.time);
-        let target = match seek {
-            Seek::Time(time) => Some(time),
-            Seek::Seconds(seconds) => {
-                let us = (seconds * 1e6) as i64;
-                Some(SimTime(shown.0.saturating_add_signed(us)))
-            }
-            Seek::Back { states_only } => before(states_only),
-            Seek::BeforeMishap => {
-                let mishap = marks.mishap_before(shown);
-                let lead = mishap.map(|mark| SimTime(mark.time.0.saturating_sub(MISHAP_LEAD_US)));
-                lead.or_else(|| before(true))
-            }
-            Seek::Forward { states_only } => {
-                Some(marks.after(shown, states_only).map_or(head, |mark| mark.time))
-            }
-            Seek::Newest => {
-                self.show_newest(now);
-                return;
-            }
-        };
-        match (target, seek) {
-            (None, Seek::Back { states_only: true }) => {
-                self.notice("The autopilot was in no other state before this instant.");
-            }
-            (None, _) => self.notice("Nothing happened before this instant."),
-            (Some(time), Seek::Forward { states_only }) if time >= head && !self.is_rewound() => {
+        match (target(seek, shown, head, marks), seek) {
+            (Target::Newest, _) => self.show_newest(now),
+            (Target::Nowhere(sentence), _) => self.notice(sentence),
+            (Target::At(time), Seek::Forward { states_only }) if time >= head && !self.is_rewound() => {
                 self.runner.pacer.set_paused(true, now);
                 self.run_on = Some(RunOn { states_only, since: head.max(time) });
             }
-            (Some(time), _) if time >= head && !self.is_rewound() => {
+            (Target::At(time), _) if time >= head && !self.is_rewound() => {
                 self.notice("This is the newest instant: nothing is recorded after it.");
             }
-            (Some(time), _) => self.show(time, now),
+            (Target::At(time), _) => self.show(time, now),
         }
     }
 

@@ -1,5 +1,7 @@
 use tokio::sync::oneshot;
 
+use std::task::Waker;
+
 use super::*;
 use crate::fc::UploadView;
 use crate::fc::{RemoteEnds, UploadReport};

@@ -244,6 +244,7 @@ fn print_event(event: &Event, print: &mut impl FnMut(OutputLine)) {
         }
         SessionEvent::Simulator(_)
         | SessionEvent::Remote(_)
+        | SessionEvent::Replay(_)
         | SessionEvent::Vehicle(_)
         | SessionEvent::ArmingBlocked(_)
         | SessionEvent::Branch { .. }

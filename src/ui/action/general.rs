@@ -43,6 +43,12 @@ actions! {
         Later Global "time.later" "10 s on" "Forward by 10 s in the recording" [">"];
         FlyOn Global "time.fly-on" "fly on" "Fly on from the instant shown; leave everything after it" ["b"];
         Newest Global "time.end" "to the end" "Back to the newest instant" ["e"];
+        NextFlight Global "replay.next" "next flight" "The next flight of the replayed file" ["alt-right"];
+        PreviousFlight Global "replay.previous" "flight before" "The flight before it in the replayed file" ["alt-left"];
+        ShiftEarlier Global "replay.shift-earlier" "shift earlier"
+            "Shift the second flight of a comparison by 0.1 s to earlier times" ["ctrl-left"];
+        ShiftLater Global "replay.shift-later" "shift later"
+            "Shift the second flight of a comparison by 0.1 s to later times" ["ctrl-right"];
         Slower Global "sim.slower" "slower" "Half the speed" ["["];
         Faster Global "sim.faster" "faster" "Twice the speed, in the end as fast as it goes" ["]"];
         RealTime Global "sim.real-time" "real time" "Back to real time" ["\\"];

@@ -18,6 +18,7 @@ pub(super) fn intent_of(state: &Shared, action: Action) -> Intent {
         | Action::Earlier
         | Action::Later
         | Action::Newest => Intent::Recording,
+        Action::NextFlight | Action::PreviousFlight => Intent::OtherFlight,
         Action::FlyOn => Intent::FlyOn,
         Action::Fly => Intent::Fly,
         Action::Arm | Action::Throttle | Action::Autopilot | Action::ReturnHome | Action::CutRc => {

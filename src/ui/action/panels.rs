@@ -42,6 +42,7 @@ actions! {
         SpanLess GRAPHS "graphs.shorter" "shorter" "A shorter time" ["+", "="];
         SpanMore GRAPHS "graphs.longer" "longer" "A longer time, up to two hours" ["-"];
         ChoosePlots GRAPHS "graphs.choose" "choose" "Choose what is shown" ["enter"];
+        ChooseSeries GRAPHS "graphs.series" "series" "Search the series of a recorded flight, and show them" ["/"];
         CursorOff GRAPHS "graphs.live" "live" "No cursor: the newest instant" ["0", "end"];
         KnobUp WORLD "world.up" "knob above" "Select the knob above" ["up", "k"];
         KnobDown WORLD "world.down" "knob below" "Select the knob below" ["down", "j"];

@@ -133,7 +133,11 @@ fn draw_machine(
     buffer: &mut Buffer,
 ) -> u16 {
     let Some(nav) = &state.view.vehicle.nav else {
-        row(buffer, area, 0, &state.theme, Role::Dim, " — the firmware reports no state");
+        let text = match state.view.replay {
+            Some(_) => " — no state of the autopilot was recorded",
+            None => " — the firmware reports no state",
+        };
+        row(buffer, area, 0, &state.theme, Role::Dim, text);
         return 1.min(area.height);
     };
     let last = own.shown(state).next_back().filter(|last| is_lit(state, last));

@@ -39,6 +39,17 @@ impl Content for WorldPanel {
     fn draw(&self, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
         let own = &self.knobs;
         let theme = &state.theme;
+        if state.view.replay.is_some() {
+            row(
+                buffer,
+                area,
+                0,
+                theme,
+                Role::Dim,
+                "The air and the faults of a recorded flight are unknown.",
+            );
+            return None;
+        }
         let rows = usize::from(area.height.checked_sub(1)?);
         let all = knobs(state);
         let focused = state.focus == Panel::World;

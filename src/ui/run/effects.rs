@@ -105,6 +105,11 @@ pub(super) fn carry_out(
             });
             Command::RecordedFlight(reply)
         }
+        Effect::Curves(request) => {
+            let asked = request.clone();
+            let message = |result| Msg::Curves { request: asked, result };
+            Command::Curves { request, reply: answers.result(MISSING, message) }
+        }
         Effect::Forecast(job) => {
             let (forecaster, answers) = (forecaster.clone(), answers.clone());
             Command::CopyVehicle(ReplyTo::new(move |copy: Option<Result<VehicleCopy, String>>| match copy {

@@ -6,7 +6,7 @@ use std::time::Instant;
 use tokio::sync::mpsc;
 
 use super::effects::{Answers, carry_out};
-use super::{Ending, SessionLink};
+use super::{Ending, SessionLink, second_flight};
 use crate::flight::forecast::ForecastKind;
 use crate::session::{Command, Forecaster};
 use crate::ui::app_state::AppState;
@@ -57,6 +57,7 @@ async fn run_loop(
     let (answers, mut replies) = Answers::channel();
     let forecaster = Forecaster::start(answers.of_forecasts())?;
     let mut awaited = 0_usize;
+    let mut has_ended = false;
     let ending = loop {
         let effects = tokio::select! {
             biased;
@@ -70,6 +71,7 @@ async fn run_loop(
                 awaited = awaited.saturating_sub(usize::from(is_answer(&msg)));
                 lines.answer(&mut state, msg)?
             }
+            Some(msg) = second_flight(&mut link.other) => lines.answer(&mut state, msg)?,
             event = link.events.recv() => match event {
                 None => break Ending::SessionEnded,
                 Some(event) => {
@@ -90,11 +92,15 @@ async fn run_loop(
                 }
                 Err(_) => break Ending::SessionEnded,
             },
-            Some(line) = input.recv(), if awaited == 0 => {
+            line = input.recv(), if awaited == 0 && !has_ended => {
                 update(&mut state, Msg::Clock(started.elapsed()));
                 match line {
-                    Ok(line) => lines.enter(&mut state, &line)?,
-                    Err(sentence) => {
+                    None => {
+                        has_ended = true;
+                        Vec::new()
+                    }
+                    Some(Ok(line)) => lines.enter(&mut state, &line)?,
+                    Some(Err(sentence)) => {
                         lines.write(&sentence)?;
                         Vec::new()
                     }
@@ -102,6 +108,11 @@ async fn run_loop(
             }
         };
         lines.follow(&mut state)?;
+        // After the end of the input a flight goes on. A recorded one is over once its events are written.
+        let is_over = awaited == 0 && link.other.is_none() && link.events.is_empty() && is_read(&state);
+        if has_ended && is_over {
+            break Ending::Quit;
+        }
         if effects.iter().any(|effect| matches!(effect, Effect::Quit)) {
             break Ending::Quit;
         }
@@ -119,6 +130,11 @@ async fn run_loop(
     files.keep_edits().await;
     link.commands.try_send(Command::Quit).ok();
     Ok(ending)
+}
+
+/// Returns `true` if a recorded flight is shown that was read to its end.
+fn is_read(state: &AppState) -> bool {
+    state.shared.view.replay.as_ref().is_some_and(|replay| replay.reading.is_none())
 }
 
 /// Returns `true` if a message answers the effect. The next line is read only after that answer.
@@ -140,7 +156,7 @@ fn is_question(effect: &Effect) -> bool {
             )
         }
         Effect::Forecast(job) => job.request.kind() != ForecastKind::PlanEstimate,
-        Effect::Send(_) | Effect::Copy(_) | Effect::Suspend | Effect::Quit => false,
+        Effect::Send(_) | Effect::Curves(_) | Effect::Copy(_) | Effect::Suspend | Effect::Quit => false,
     }
 }
 
@@ -170,6 +186,8 @@ fn is_answer(msg: &Msg) -> bool {
         | Msg::Paste(_)
         | Msg::Resize(..)
         | Msg::View(_)
+        | Msg::OtherFlight { .. }
+        | Msg::Curves { .. }
         | Msg::Event(_) => false,
     }
 }

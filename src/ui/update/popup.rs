@@ -9,11 +9,12 @@ use crate::ui::app_state::AppState;
 use crate::ui::editor::FileRequest;
 use crate::ui::event_log::Severity;
 use crate::ui::forecast;
-use crate::ui::graphs::PLOTS;
 use crate::ui::history::LineField;
 use crate::ui::message::Effect;
+use crate::ui::panel::graphs;
 use crate::ui::popup::palette::Entry;
-use crate::ui::popup::{Outcome, Popup, command_line, guards, palette, what_if};
+use crate::ui::popup::series_list::SeriesKey;
+use crate::ui::popup::{Outcome, Popup, command_line, guards, palette, series_list, what_if};
 use crate::vehicle::VehicleCommand;
 
 /// Handles a key for the popup opened last; `found` is the action of the key without a popup.
@@ -58,12 +59,24 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) 
         Some(Popup::Plots { selected }) => {
             match event.code {
                 KeyCode::Up | KeyCode::Char('k') => *selected = selected.saturating_sub(1),
-                KeyCode::Down | KeyCode::Char('j') => *selected = (*selected + 1).min(PLOTS.len() - 1),
+                KeyCode::Down | KeyCode::Char('j') => {
+                    *selected = (*selected + 1).min(graphs::choices(&state.shared).saturating_sub(1));
+                }
                 KeyCode::Enter | KeyCode::Char(' ') => state.shared.graphs.toggle(*selected),
                 KeyCode::Esc => {
                     state.popups.pop();
                 }
                 _ => {}
+            }
+            Vec::new()
+        }
+        Some(Popup::Series(list)) => {
+            match series_list::key(list, &state.shared, event) {
+                SeriesKey::Open => {}
+                SeriesKey::Left => {
+                    state.popups.pop();
+                }
+                SeriesKey::Toggle(name) => state.shared.graphs.toggle_series(&name),
             }
             Vec::new()
         }

@@ -24,6 +24,8 @@ pub(super) fn act(state: &Shared, action: Action) -> Vec<Effect> {
         Action::Later => Command::Seek(Seek::Seconds(SKIP_S)),
         Action::FlyOn => Command::FlyOn,
         Action::Newest => Command::Seek(Seek::Newest),
+        Action::NextFlight => Command::ShowFlight(1),
+        Action::PreviousFlight => Command::ShowFlight(-1),
         _ => return Vec::new(),
     };
     vec![Effect::Send(command)]

@@ -9,6 +9,7 @@ use crate::telemetry::snapshot::SettingsView;
 use crate::ui::map_point::origin::origin;
 use crate::ui::map_point::{MapPoint, to_map};
 use crate::ui::map_state::{MapItem, Moving};
+use crate::ui::other_flight::OtherFlight;
 use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
 use crate::ui::track::TrackPoint;
@@ -150,6 +151,10 @@ pub(super) fn paint(state: &Shared, scene: &Scene, context: &mut Context<'_>) {
         for track in state.abandoned.tracks().iter().map(Vec::as_slice).chain([later]) {
             painter.track(track);
         }
+    });
+    layer(Role::Predicted, &mut |painter| {
+        let other = state.other.as_ref().map_or(&[][..], OtherFlight::track);
+        painter.dotted(other.iter().map(|point| MapPoint::new(point.n, point.e)));
     });
     layer(Role::Track, &mut |painter| {
         painter.track(points);

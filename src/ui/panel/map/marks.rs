@@ -6,6 +6,7 @@ use crate::plan::WaypointType;
 use crate::ui::forecast;
 use crate::ui::map_edit::measure;
 use crate::ui::map_point::MapPoint;
+use crate::ui::past_flight;
 use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
 use crate::ui::viewport::round_length;
@@ -49,6 +50,14 @@ pub(super) fn write(state: &Shared, scene: &Scene, buffer: &mut Buffer) {
     if let Some(place) = state.graphs.cursor_place() {
         labels.mark(place, "╋", Role::Focus);
     }
+    if let Some((other, offset_s)) = state.other_flight() {
+        let time_s = vehicle.time.as_secs_f64() - offset_s;
+        if let Some(place) = other.place_at(time_s) {
+            labels.mark(place, "○", Role::Predicted);
+        }
+        let shown = state.view.replay.as_ref().map_or("this flight", |replay| &replay.file);
+        labels.top(&format!("── {shown}   ··· ○ {}", other.name), Role::Predicted);
+    }
     if let Some(craft) = scene.craft {
         let heading = vehicle.truth.map(|truth| truth.heading_deg).or(vehicle.estimate.heading_deg);
         let crashed = vehicle.truth.as_ref().is_some_and(|truth| truth.crashed);
@@ -91,7 +100,9 @@ pub(super) fn write(state: &Shared, scene: &Scene, buffer: &mut Buffer) {
     }
     off_screen::write(state, scene, home_known, &mut labels);
     backdrop::write_names(state, &mut labels);
-    if scene.craft.is_none() && scene.spots.is_empty() {
+    if let Some(why) = past_flight::without_track(state) {
+        labels.middle(why, Role::Dim);
+    } else if scene.craft.is_none() && scene.spots.is_empty() {
         labels.middle("No position yet: waiting for GPS.", Role::Dim);
     }
     // Again, over the marks, so that it stays readable.

@@ -1,0 +1,349 @@
+//! A session without a vehicle: the thread that plays flights of a recorded file.
+//!
+//! It takes the same commands and publishes the same views and events as a session that flies. `player` has the play head of
+//! one flight. Commands to a craft are refused.
+#![allow(clippy::disallowed_methods, reason = "this is where wall time meets the time of the flight")]
+
+mod notice;
+mod player;
+mod view;
+
+use std::task::{Context, Poll};
+use std::time::{Duration, Instant};
+
+use tokio::sync::{mpsc, watch};
+
+use super::command::{Command, Seek, SessionView};
+use super::event::{Event, EventSender, SessionEvent};
+use super::policy::{self, Facts, Intent};
+use super::runtime::{Handle, refuse_command};
+use super::waker;
+use crate::replay::{PastEventKind, PastFlights};
+use crate::signals::SimTime;
+use player::Player;
+
+pub use notice::ReplayNotice;
+pub use view::ReplayView;
+
+/// The interval of published views.
+const VIEW_INTERVAL: Duration = Duration::from_millis(16);
+/// The interval of the views that show how much of a file was read.
+const READING_INTERVAL: Duration = Duration::from_millis(100);
+/// The longest sleep of the loop while nothing moves. Commands wake it.
+const LONGEST_SLEEP: Duration = Duration::from_secs(1);
+
+/// The instant at which a replay begins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ReplayStart {
+    /// Seconds since the first instant of the flight.
+    Seconds(f64),
+    /// The time on the craft's clock.
+    Clock(SimTime),
+}
+
+/// The start of a replay.
+pub struct ReplayConfig {
+    pub flights: Box<dyn PastFlights>,
+    /// The first flight to show, numbered from zero.
+    pub number: usize,
+    /// The first instant to show, with time paused. `None` plays the flight from its beginning.
+    pub start: Option<ReplayStart>,
+    /// The multiple of real time at the start.
+    pub speed: f64,
+    /// The notices that are reported first.
+    pub notices: Vec<String>,
+}
+
+impl std::fmt::Debug for ReplayConfig {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("ReplayConfig").field("number", &self.number).finish_non_exhaustive()
+    }
+}
+
+/// Starts the thread of a replay.
+///
+/// # Errors
+/// Returns an error if the system cannot start a thread.
+pub fn start_replay(config: ReplayConfig) -> std::io::Result<Handle> {
+    let (command_tx, command_rx) = mpsc::channel(256);
+    let (event_tx, event_rx) = mpsc::unbounded_channel();
+    let mut session = ReplaySession::new(config, command_rx, event_tx);
+    let (view_tx, view_rx) = watch::channel(session.view());
+    let thread =
+        std::thread::Builder::new().name("replay".to_owned()).spawn(move || session.run(&view_tx))?;
+    Ok(Handle { commands: command_tx, view: view_rx, events: event_rx, thread })
+}
+
+struct ReplaySession {
+    flights: Box<dyn PastFlights>,
+    number: usize,
+    start: Option<ReplayStart>,
+    speed: f64,
+    /// The flight that is shown; `None` until it is read.
+    player: Option<Player>,
+    commands: mpsc::Receiver<Command>,
+    /// A command that was taken from the queue and is carried out next.
+    held_back: Option<Command>,
+    events: EventSender,
+    changed: bool,
+    quit: bool,
+}
+
+impl ReplaySession {
+    fn new(
+        config: ReplayConfig,
+        commands: mpsc::Receiver<Command>,
+        events: mpsc::UnboundedSender<Event>,
+    ) -> Self {
+        let mut events = EventSender::new(events);
+        for text in config.notices {
+            events.send(&Event::notice(SimTime::ZERO, text));
+        }
+        Self {
+            number: config.number,
+            flights: config.flights,
+            start: config.start,
+            speed: config.speed,
+            player: None,
+            commands,
+            held_back: None,
+            events,
+            changed: true,
+            quit: false,
+        }
+    }
+
+    /// Runs until it is told to quit. Returns the reason if there is nothing to show.
+    fn run(&mut self, view: &watch::Sender<SessionView>) -> Option<String> {
+        let waker = waker::of_this_thread();
+        let mut context = Context::from_waker(&waker);
+        let clock = Instant::now();
+        match self.begin_with_file(clock, view) {
+            Ok(true) => {}
+            // The screen has left meanwhile.
+            Ok(false) => return None,
+            Err(why) => return Some(why),
+        }
+        let mut published = Duration::ZERO;
+        while !self.quit {
+            let wanted = self.take_commands(clock.elapsed(), &mut context);
+            if let Some(number) = wanted
+                && let Err(why) = self.show_flight(number, clock.elapsed())
+            {
+                self.report(ReplayNotice::Failed(why));
+            }
+            let now = clock.elapsed();
+            let moved = self.player.as_mut().map_or(Ok(false), |player| player.play(now));
+            let moved = moved.unwrap_or_else(|why| self.fail(why, now));
+            if self.changed || moved && now.saturating_sub(published) >= VIEW_INTERVAL {
+                published = now;
+                self.changed = false;
+                view.send_replace(self.view());
+            }
+            if self.held_back.is_none() && self.commands.is_empty() {
+                let is_playing = self.player.as_ref().is_some_and(Player::is_playing);
+                std::thread::park_timeout(if is_playing { VIEW_INTERVAL } else { LONGEST_SLEEP });
+            }
+        }
+        None
+    }
+
+    /// Reads the file and shows the first flight. Returns `false` if the receiver of the views has left.
+    fn begin_with_file(&mut self, clock: Instant, view: &watch::Sender<SessionView>) -> Result<bool, String> {
+        let name = self.flights.name().to_owned();
+        let mut published = Duration::ZERO;
+        let (commands, speed) = (&self.commands, self.speed);
+        let mut progress = |share: f64| {
+            let now = clock.elapsed();
+            if now.saturating_sub(published) >= READING_INTERVAL {
+                published = now;
+                view.send_replace(view::while_reading(&name, share, speed));
+            }
+            !commands.is_closed()
+        };
+        if !self.flights.read(&mut progress)? {
+            return Ok(false);
+        }
+        self.number = self.number.min(self.flights.count().saturating_sub(1));
+        self.show_flight(self.number, clock.elapsed())?;
+        Ok(true)
+    }
+
+    /// Shows a flight. If that fails, the flight before stays.
+    fn show_flight(&mut self, number: usize, now: Duration) -> Result<(), String> {
+        let flight = self.flights.open(number)?;
+        let player = Player::new(flight, self.start.take(), self.speed, now)?;
+        self.changed = true;
+        self.number = number;
+        self.begin(&player);
+        self.player = Some(player);
+        Ok(())
+    }
+
+    /// Reports the beginning of a flight and all of its events.
+    fn begin(&mut self, player: &Player) {
+        let overview = player.overview();
+        let (first, count) = (overview.first, self.flights.count());
+        let which = match count {
+            1 => String::new(),
+            count => format!(", flight {} of {count}", self.number + 1),
+        };
+        let name = self.flights.name();
+        let length_s = overview.last.seconds_since(first);
+        let begins = ReplayNotice::Begins(format!("{name}{which}: {length_s:.1} s of flight are shown."));
+        let mut send = |time, kind| self.events.send(&Event { time, kind });
+        send(first, SessionEvent::Replay(begins));
+        let event = |kind: &PastEventKind| match kind {
+            PastEventKind::Vehicle(kind) => SessionEvent::Vehicle(kind.clone()),
+            PastEventKind::Damage(text) => SessionEvent::Replay(ReplayNotice::Damage(text.clone())),
+            PastEventKind::Notice(text) => SessionEvent::Notice(text.clone()),
+        };
+        for kind in &overview.about {
+            send(first, event(kind));
+        }
+        for past in &overview.events {
+            send(past.time, event(&past.kind));
+        }
+    }
+
+    /// Takes the commands that wait. Returns the number of another flight to show.
+    fn take_commands(&mut self, now: Duration, context: &mut Context<'_>) -> Option<usize> {
+        while let Some(mut command) = self.next_command(context) {
+            // A held key repeats faster than instants are shown.
+            while let Command::Seek(Seek::Seconds(way)) = &mut command {
+                match self.next_command(context) {
+                    Some(Command::Seek(Seek::Seconds(more))) if more.signum() == way.signum() => *way += more,
+                    other => {
+                        self.held_back = other;
+                        break;
+                    }
+                }
+            }
+            self.changed = true;
+            match command {
+                Command::ShowFlight(further) => {
+                    if let Some(number) = self.other_flight(further) {
+                        return Some(number);
+                    }
+                }
+                Command::Seek(seek) => {
+                    self.seek(seek, now);
+                    // Its view is shown before the next seek.
+                    return None;
+                }
+                command => self.carry_out(command, now),
+            }
+        }
+        None
+    }
+
+    fn next_command(&mut self, context: &mut Context<'_>) -> Option<Command> {
+        if let Some(command) = self.held_back.take() {
+            return Some(command);
+        }
+        match self.commands.poll_recv(context) {
+            Poll::Ready(Some(command)) => Some(command),
+            Poll::Ready(None) => {
+                self.quit = true;
+                None
+            }
+            Poll::Pending => None,
+        }
+    }
+
+    /// Returns the number of the flight this many further, and reports if there is none.
+    fn other_flight(&mut self, further: isize) -> Option<usize> {
+        let count = self.flights.count();
+        let found = self.number.checked_add_signed(further).filter(|number| *number < count);
+        if found.is_none() {
+            let number = self.number + 1;
+            let text = match count {
+                1 => "The file has only this flight.".to_owned(),
+                _ if further < 0 => "This is the first flight of the file.".to_owned(),
+                count => format!("This is the last flight of the file, {number} of {count}."),
+            };
+            self.notice(text);
+        }
+        found
+    }
+
+    fn carry_out(&mut self, command: Command, now: Duration) {
+        if let Err(refusal) = policy::check(&Facts::from(&self.view()), Intent::of(&command)) {
+            if let Some(sentence) = refuse_command(command, refusal) {
+                self.notice(sentence);
+            }
+            return;
+        }
+        match command {
+            Command::Quit => self.quit = true,
+            Command::Subscribe(receiver) => self.events.subscribe(receiver),
+            Command::Curves { request, reply } => {
+                let player = self.player.as_mut();
+                let none = || Err("No flight is read yet.".to_owned());
+                reply.send(player.map_or_else(none, |player| player.curves(&request)));
+            }
+            Command::RecordedFlight(reply) => {
+                reply.send(Err("The inputs of this flight were not recorded.".to_owned()));
+            }
+            Command::Speed(speed) => {
+                self.speed = speed;
+                if let Some(player) = &mut self.player {
+                    player.set_speed(speed, now);
+                }
+            }
+            Command::Pause(paused) => self.with_player(now, |player| player.pause(paused, now)),
+            Command::Step(ticks) => self.with_player(now, |player| player.step(ticks, now)),
+            // A recorded flight has no remote craft. The policy refuses the rest.
+            _ => {}
+        }
+    }
+
+    fn seek(&mut self, seek: Seek, now: Duration) {
+        let Some(player) = &mut self.player else { return };
+        match player.seek(seek, now) {
+            Ok(None) => {}
+            Ok(Some(sentence)) => self.notice(sentence),
+            Err(why) => {
+                self.fail(why, now);
+            }
+        }
+    }
+
+    fn with_player(&mut self, now: Duration, act: impl FnOnce(&mut Player) -> Result<(), String>) {
+        if let Some(Err(why)) = self.player.as_mut().map(act) {
+            self.fail(why, now);
+        }
+    }
+
+    /// Reports that the file can no longer be read, and pauses. The picture stays. Returns `false`.
+    fn fail(&mut self, why: String, now: Duration) -> bool {
+        self.changed = true;
+        if self.player.as_mut().is_some_and(|player| player.halt(now)) {
+            self.report(ReplayNotice::Failed(why));
+        }
+        false
+    }
+
+    fn notice(&mut self, text: impl Into<String>) {
+        self.send(SessionEvent::Notice(text.into()));
+    }
+
+    fn report(&mut self, notice: ReplayNotice) {
+        self.send(SessionEvent::Replay(notice));
+    }
+
+    fn send(&mut self, kind: SessionEvent) {
+        let time = self.player.as_ref().map_or(SimTime::ZERO, Player::shown);
+        self.events.send(&Event { time, kind });
+    }
+
+    fn view(&self) -> SessionView {
+        let Some(player) = &self.player else {
+            return view::while_reading(self.flights.name(), 0.0, self.speed);
+        };
+        view::of(player, (self.flights.name(), self.number, self.flights.count()))
+    }
+}
+
+#[cfg(test)]
+mod tests;
