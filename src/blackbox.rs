@@ -2,10 +2,11 @@
 //!
 //! `field` names the frames, their fields and how each field is predicted and encoded, `event` the events between frames.
 //! A log begins with a header of text lines, which define the fields. Binary frames without separators follow. Several
-//! logs may follow each other in one file. `encode` writes logs.
+//! logs may follow each other in one file. `encode` writes logs, `decode` reads them.
 //!
 //! Nothing here does I/O.
 
+pub mod decode;
 pub mod encode;
 
 mod event;

@@ -1,0 +1,65 @@
+//! The firmware that wrote a log.
+
+use super::lines::Lines;
+
+/// The version of a firmware: major, minor, patch.
+pub type Version = (u32, u32, u32);
+
+/// The firmware that wrote a log. `Display` gives its name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumIter, strum::IntoStaticStr)]
+pub enum FirmwareName {
+    Betaflight,
+    Cleanflight,
+    #[strum(to_string = "INAV")]
+    Inav,
+    EmuFlight,
+    Rotorflight,
+    /// A firmware that this program does not know.
+    #[strum(to_string = "unknown firmware")]
+    Unknown,
+}
+
+/// Returns the firmware that a header names. Forks of Cleanflight write their own name only into the revision.
+pub(super) fn of(lines: &Lines) -> (FirmwareName, Version) {
+    use strum::IntoEnumIterator as _;
+    let revision = lines.value("Firmware revision").unwrap_or_default();
+    let (word, rest) = revision.trim_start().split_once(' ').unwrap_or((revision, ""));
+    let called =
+        |name: &str| FirmwareName::iter().find(|known| <&str>::from(known).eq_ignore_ascii_case(name));
+    match called(word) {
+        Some(name) => (name, version(rest)),
+        None => (
+            called(lines.value("Firmware type").unwrap_or_default()).unwrap_or(FirmwareName::Unknown),
+            (0, 0, 0),
+        ),
+    }
+}
+
+/// Returns the version at the start of a text such as `4.5.2 (024f8e13d)` or `2026.12.0-alpha`.
+fn version(text: &str) -> Version {
+    let end = text.find(|letter: char| !letter.is_ascii_digit() && letter != '.').unwrap_or(text.len());
+    let mut parts = text[..end].split('.').map(|part| part.parse().unwrap_or_default());
+    let mut next = || parts.next().unwrap_or_default();
+    (next(), next(), next())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn named(revision: &str, kind: &str) -> (FirmwareName, Version) {
+        let text = format!("H Firmware type:{kind}\nH Firmware revision:{revision}\n");
+        of(&Lines::read(text.as_bytes()).unwrap().0)
+    }
+
+    #[test]
+    fn firmwares_have_names_and_versions() {
+        use FirmwareName::*;
+        assert_eq!(named("Betaflight 2026.12.0-alpha (rev) SITL", "Betaflight"), (Betaflight, (2026, 12, 0)));
+        assert_eq!(named("Betaflight 4.5.2 (024f8e13d) STM32F7X2", "Cleanflight"), (Betaflight, (4, 5, 2)));
+        assert_eq!(named("INAV 7.1 (x) Y", "Cleanflight"), (Inav, (7, 1, 0)));
+        assert_eq!(named("EmuFlight 0.4.1", "Cleanflight"), (EmuFlight, (0, 4, 1)));
+        assert_eq!(named("c49bd40", "Cleanflight"), (Cleanflight, (0, 0, 0)));
+        assert_eq!(named("", "Baseflight"), (Unknown, (0, 0, 0)));
+    }
+}
