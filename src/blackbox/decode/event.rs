@@ -4,8 +4,10 @@ use super::super::event::{AdjustedValue, LogEvent};
 use super::bytes::{Bytes, Stop};
 use super::header::FirmwareName;
 
-/// The last event of a log with its number.
-pub(super) const END: &[u8] = b"\xffEnd of log\0";
+/// The start of the last event of a log.
+const END: &[u8] = b"\xffEnd of log";
+/// The continuation that INAV writes before a number and a parenthesis.
+const END_REASON: &[u8] = b"(disarm reason:";
 
 /// Reads an event after its letter. Returns `None` for an event that only old firmwares or those for developers write.
 pub(super) fn event(bytes: &mut Bytes<'_>, firmware: FirmwareName) -> Result<Option<LogEvent>, Stop> {
@@ -34,13 +36,25 @@ pub(super) fn event(bytes: &mut Bytes<'_>, firmware: FirmwareName) -> Result<Opt
         // A stage of a latency test and its result.
         40 => skipped(&mut rest, 5)?,
         255 => {
-            bytes.literal(END)?;
-            return Ok(Some(LogEvent::End));
+            rest = *bytes;
+            end(&mut rest)?;
+            Some(LogEvent::End)
         }
         _ => return Err(Stop::Wrong),
     };
     *bytes = rest;
     Ok(event)
+}
+
+/// Reads the last event, which ends with a zero byte.
+fn end(bytes: &mut Bytes<'_>) -> Result<(), Stop> {
+    bytes.literal(END)?;
+    if bytes.byte()? == 0 {
+        return Ok(());
+    }
+    bytes.literal(END_REASON)?;
+    while bytes.byte()?.is_ascii_digit() {}
+    bytes.literal(b"\0")
 }
 
 fn skipped(bytes: &mut Bytes<'_>, count: usize) -> Result<Option<LogEvent>, Stop> {
@@ -81,7 +95,8 @@ mod tests {
         assert_eq!(read(&[14, 7, 9]), Ok(Some(LogEvent::Resume { iteration: 7, time_us: 9 })));
         assert_eq!(read(&[15, 4]), Ok(Some(LogEvent::Disarm { reason: 4 })));
         assert_eq!(read(&[30, 3, 1]), Ok(Some(LogEvent::FlightMode { new: 3, old: 1 })));
-        assert_eq!(read(END), Ok(Some(LogEvent::End)));
+        assert_eq!(read(b"\xffEnd of log\0"), Ok(Some(LogEvent::End)));
+        assert_eq!(read(b"\xffEnd of log (disarm reason:4)\0"), Ok(Some(LogEvent::End)));
         for old in [&[10, 1, 2, 3, 4, 5][..], &[11, 1, 2, 3, 4], &[12, 1, 2, 3, 4, 5, 6, 7, 8]] {
             assert_eq!(read(old), Ok(None));
         }
