@@ -2,10 +2,8 @@
 
 use strum::IntoEnumIterator as _;
 
+use crate::blackbox::decode::Version;
 use crate::telemetry::{Mode, ModeBox, ModeFlags};
-
-/// A version of a firmware: major, minor, patch.
-pub type Version = (u32, u32, u32);
 
 /// The version before all that are known.
 const FIRST: Version = (0, 0, 0);

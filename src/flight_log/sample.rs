@@ -56,6 +56,7 @@ pub struct LogSample {
     pub motors: ArrayVec<f64, MAX_MOTORS>,
     /// The boxes that are on.
     pub boxes: Option<BoxFlags>,
+    /// The phase of the failsafe; `None` also for numbers that Betaflight does not have.
     pub failsafe_phase: Option<FailsafePhase>,
     /// `true` while the receiver gets a signal.
     pub rx_signal: Option<bool>,

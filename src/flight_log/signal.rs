@@ -1,5 +1,12 @@
 //! The named numbers of a log.
 
+use super::fields::Place;
+use super::sample::LogSample;
+use super::scale::{Scale, Scales};
+use super::tracker::TrackerState;
+use crate::blackbox::FrameKind;
+use crate::blackbox::decode::Header;
+
 /// A number of a log that changes in flight.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LogSignal {
@@ -25,4 +32,129 @@ pub enum SignalFrame {
 pub struct Extent {
     pub min: f64,
     pub max: f64,
+}
+
+impl Extent {
+    /// Contains no value.
+    pub(super) const NONE: Self = Self { min: f64::INFINITY, max: f64::NEG_INFINITY };
+
+    /// Widens the extent to a value; NaN changes nothing.
+    pub(super) fn include(&mut self, value: f64) {
+        self.min = self.min.min(value);
+        self.max = self.max.max(value);
+    }
+
+    /// Widens the extent to another one.
+    pub(super) fn merge(&mut self, other: Self) {
+        self.min = self.min.min(other.min);
+        self.max = self.max.max(other.max);
+    }
+
+    /// Returns the extent if it contains a value.
+    pub(super) fn known(self) -> Option<Self> {
+        (self.min <= self.max).then_some(self)
+    }
+}
+
+/// Reads a derived value; it is given the charge drawn, mAh.
+type Derived = fn(&LogSample, f64) -> Option<f64>;
+
+/// The derived signals: name, unit, source.
+const DERIVED: &[(&str, &str, Derived)] = &[
+    ("roll", "°", |sample, _| sample.attitude.map(|attitude| attitude.roll_deg)),
+    ("pitch", "°", |sample, _| sample.attitude.map(|attitude| attitude.pitch_deg)),
+    ("heading", "°", |sample, _| sample.attitude.map(|attitude| attitude.heading_deg)),
+    ("north", "m", |sample, _| sample.n),
+    ("east", "m", |sample, _| sample.e),
+    ("altitude", "m", |sample, _| sample.alt),
+    ("home_distance", "m", |sample, _| Some(sample.n?.hypot(sample.e?))),
+    ("speed", "m/s", |sample, _| sample.ground_speed_mps),
+    ("climb", "m/s", |sample, _| sample.climb_mps),
+    ("course", "°", |sample, _| sample.course_deg),
+    ("satellites", "", |sample, _| sample.sats.map(f64::from)),
+    ("battery", "V", |sample, _| sample.battery_v),
+    ("current", "A", |sample, _| sample.battery_a),
+    ("charge", "mAh", |sample, drawn_mah| sample.battery_a.map(|_| drawn_mah)),
+];
+
+/// The source of a signal.
+#[derive(Debug, Clone, Copy)]
+enum Source {
+    Derived(Derived),
+    Field(FrameKind, Place),
+}
+
+/// The newest values of a log.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Newest<'a> {
+    pub(super) main: &'a [i32],
+    pub(super) slow: &'a [i32],
+    pub(super) gps: &'a [i32],
+    pub(super) state: &'a TrackerState,
+}
+
+/// The signals of a log, and how to read them.
+#[derive(Debug, Clone)]
+pub(super) struct SignalTable {
+    pub(super) signals: Vec<LogSignal>,
+    sources: Vec<Source>,
+}
+
+impl SignalTable {
+    pub(super) fn of(header: &Header, scales: &Scales) -> Self {
+        let mut table = Self { signals: Vec::new(), sources: Vec::new() };
+        for (name, unit, read) in DERIVED {
+            table.signals.push(LogSignal { name: (*name).to_owned(), unit, frame: None });
+            table.sources.push(Source::Derived(*read));
+        }
+        let kinds = [
+            (FrameKind::Intra, SignalFrame::Main),
+            (FrameKind::Slow, SignalFrame::Slow),
+            (FrameKind::Gps, SignalFrame::Gps),
+        ];
+        for (kind, frame) in kinds {
+            for (at, field) in header.fields(kind).iter().enumerate() {
+                let scale = scales.scale(field).unwrap_or(Scale::RAW);
+                table.signals.push(LogSignal {
+                    name: field.name.clone(),
+                    unit: scale.unit,
+                    frame: Some(frame),
+                });
+                table.sources.push(Source::Field(kind, Place { at, signed: field.signed, scale }));
+            }
+        }
+        table
+    }
+
+    /// Returns the place of the signal with this name.
+    pub(super) fn find(&self, name: &str) -> Option<usize> {
+        self.signals.iter().position(|signal| signal.name == name)
+    }
+
+    /// Returns the value of a signal, if it is known.
+    pub(super) fn read(&self, signal: usize, newest: &Newest<'_>) -> Option<f64> {
+        match self.sources.get(signal)? {
+            Source::Derived(read) => read(&newest.state.sample, newest.state.drawn_mah),
+            Source::Field(FrameKind::Slow, place) => {
+                place.read(newest.slow).filter(|_| newest.state.has_slow)
+            }
+            Source::Field(FrameKind::Gps, place) => place.read(newest.gps).filter(|_| newest.state.has_gps),
+            Source::Field(_, place) => place.read(newest.main),
+        }
+    }
+
+    /// Widens the extents of the signals that change with a frame of this kind.
+    pub(super) fn widen(&self, kind: FrameKind, newest: &Newest<'_>, extents: &mut [Extent]) {
+        let is_main = matches!(kind, FrameKind::Intra | FrameKind::Inter);
+        for (signal, (source, extent)) in self.sources.iter().zip(extents).enumerate() {
+            let changes = match source {
+                Source::Derived(_) => true,
+                Source::Field(FrameKind::Intra, _) => is_main,
+                Source::Field(of, _) => *of == kind,
+            };
+            if changes && let Some(value) = self.read(signal, newest) {
+                extent.include(value);
+            }
+        }
+    }
 }

@@ -6,9 +6,11 @@ use crate::source::{SourceFile, files};
 /// Rooms that are pure: no file, no socket, no thread, no clock, no global state.
 const PURE: [&str; 17] = [
     "autopilot",
+    "blackbox",
     "fc",
     "firmware",
     "flight",
+    "flight_log",
     "geo",
     "pilot",
     "plan",

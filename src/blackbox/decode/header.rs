@@ -12,7 +12,9 @@ pub use error::HeaderError;
 pub use firmware::{FirmwareName, Version};
 
 /// The most bytes of a header. Real ones have at most 10 kB.
-pub(super) const MAX_HEADER: usize = 64 * 1024;
+pub(super) const MAX_HEADER: usize = 32 * 1024;
+/// The most lines of a header. Real ones have at most 300.
+const MAX_LINES: usize = 1000;
 
 /// The header of a log.
 #[derive(Debug, Clone, PartialEq, Eq)]

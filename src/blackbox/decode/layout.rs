@@ -52,7 +52,7 @@ impl Layout {
             let encoding = read_encoding(field);
             match reads.last_mut() {
                 Some(last) if last.encoding == encoding && at - last.from < group_size(encoding) => {
-                    last.to = at + 1
+                    last.to = at + 1;
                 }
                 _ => reads.push(Read { from: at, to: at + 1, encoding }),
             }

@@ -90,6 +90,8 @@ pub struct LogReader<S> {
     passed: Passed,
     /// What was found after the passed bytes.
     waiting: Option<Found>,
+    /// `true` after the end of the log.
+    is_over: bool,
 }
 
 impl<S: LogSource> LogReader<S> {
@@ -105,7 +107,7 @@ impl<S: LogSource> LogReader<S> {
     }
 
     fn within(window: Window<S>, log: Option<Decoder>) -> Self {
-        Self { window, log, passed: Passed::default(), waiting: None }
+        Self { window, log, passed: Passed::default(), waiting: None, is_over: false }
     }
 
     /// Returns the place of a frame that was just read, for [`Self::resumed`]. `None` outside a log. The frame must be a whole
@@ -114,7 +116,7 @@ impl<S: LogSource> LogReader<S> {
         self.log.as_ref().map(|log| ResumePoint { offset: frame_offset, state: log.state().clone() })
     }
 
-    /// Returns the newest values of a kind of frame in the log being read.
+    /// Returns the newest values of a kind of frame in the log being read; right after its end, of that one.
     pub fn newest(&self, kind: FrameKind) -> &[i32] {
         self.log.as_ref().map_or(&[], |log| log.values(kind))
     }
@@ -129,7 +131,10 @@ impl<S: LogSource> LogReader<S> {
     /// # Errors
     ///
     /// Returns the error of the source.
-    pub fn next(&mut self) -> io::Result<Option<Item<'_>>> {
+    pub fn next_item(&mut self) -> io::Result<Option<Item<'_>>> {
+        if std::mem::take(&mut self.is_over) {
+            self.log = None;
+        }
         let found = match self.waiting.take() {
             Some(found) => found,
             None if self.log.is_none() => return self.next_log(),
@@ -139,10 +144,6 @@ impl<S: LogSource> LogReader<S> {
             self.waiting = Some(found);
             let Passed { bytes, frames, offset } = std::mem::take(&mut self.passed);
             return Ok(Some(Item::Skipped { bytes, frames, offset }));
-        }
-        if let Found::LogEnd { offset } = found {
-            self.log = None;
-            return Ok(Some(Item::LogEnd { offset }));
         }
         let Some(log) = &self.log else { return Ok(None) };
         let time_us = log.time_us();
@@ -157,7 +158,10 @@ impl<S: LogSource> LogReader<S> {
                 }
                 Item::Event { event, time_us, offset }
             }
-            Found::LogEnd { offset } => Item::LogEnd { offset },
+            Found::LogEnd { offset } => {
+                self.is_over = true;
+                Item::LogEnd { offset }
+            }
         }))
     }
 

@@ -34,7 +34,7 @@ fn read(item: &Item<'_>) -> Read {
 
 fn rest_of(mut reader: LogReader<impl LogSource>) -> Vec<Read> {
     let mut all = Vec::new();
-    while let Some(item) = reader.next().expect("a source without errors") {
+    while let Some(item) = reader.next_item().expect("a source without errors") {
         all.push(read(&item));
     }
     all
@@ -100,7 +100,7 @@ fn places_are_relative_to_home() {
     let mut reader = LogReader::new(&maker.bytes[..]);
     let mut homes = Vec::new();
     let mut last = Vec::new();
-    while let Some(item) = reader.next().unwrap() {
+    while let Some(item) = reader.next_item().unwrap() {
         if let Item::Frame(frame) = item
             && frame.kind == FrameKind::Gps
         {
@@ -227,7 +227,7 @@ fn reading_goes_on_at_any_whole_frame() {
     let whole = all(&maker.bytes);
     let mut reader = LogReader::new(&maker.bytes[..]);
     let (mut at, mut header, mut resumed) = (0, None, 0);
-    while let Some(item) = reader.next().unwrap() {
+    while let Some(item) = reader.next_item().unwrap() {
         let offset = match &item {
             Item::Log { header: new, .. } => {
                 header = Some(new.clone());
@@ -254,7 +254,7 @@ fn the_newest_values_of_each_kind_of_frame_are_kept() {
     let mut reader = LogReader::new(&maker.bytes[..]);
     assert_eq!(reader.newest(FrameKind::Slow), [0; 0]);
     while reader.offset() < maker.bytes.len() as u64 {
-        reader.next().unwrap();
+        reader.next_item().unwrap();
     }
     assert_eq!(reader.newest(FrameKind::Slow), [5]);
     assert_eq!(reader.newest(FrameKind::Inter)[0], 14);

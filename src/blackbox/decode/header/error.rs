@@ -24,8 +24,8 @@ pub enum HeaderError {
     /// Main frames have no loop iteration or no time.
     #[error("its main frames have no field `{0}`")]
     NoField(&'static str),
-    #[error("its header is longer than {0} bytes")]
-    TooLong(usize),
+    #[error("its header is longer than {bytes} bytes or {lines} lines")]
+    TooLong { bytes: usize, lines: usize },
     #[error("the file ends inside its header")]
     Cut,
 }

@@ -2,7 +2,7 @@
 
 use super::super::super::field::{Encoding, Field, Predictor};
 use super::super::layout::Layout;
-use super::{HeaderError, MAX_HEADER};
+use super::{HeaderError, MAX_HEADER, MAX_LINES};
 
 /// The most bytes of a line. Firmwares write less than 1024.
 const MAX_LINE: usize = 8192;
@@ -21,8 +21,8 @@ impl Lines {
         while let Some((name, value, length)) = line(&bytes[at..]) {
             lines.push((text(name), text(value)));
             at += length;
-            if at > MAX_HEADER {
-                return Err(HeaderError::TooLong(MAX_HEADER));
+            if at > MAX_HEADER || lines.len() > MAX_LINES {
+                return Err(HeaderError::TooLong { bytes: MAX_HEADER, lines: MAX_LINES });
             }
         }
         Ok((Self(lines), at))
@@ -154,7 +154,10 @@ mod tests {
         let list = "a,".repeat(300);
         let text = format!("H Field I name:{list}\n");
         assert_eq!(lines(&text).layout('I', 'I'), Err(HeaderError::TooManyFields(MAX_FIELDS)));
-        let endless = "H a:b\n".repeat(MAX_HEADER / 6 + 1);
-        assert_eq!(Lines::read(endless.as_bytes()), Err(HeaderError::TooLong(MAX_HEADER)));
+        let too_long = HeaderError::TooLong { bytes: MAX_HEADER, lines: MAX_LINES };
+        for line in ["H a:b\n".to_owned(), format!("H a:{}\n", "b".repeat(MAX_LINE - 5))] {
+            assert!(Lines::read(line.repeat(3).as_bytes()).is_ok());
+            assert_eq!(Lines::read(line.repeat(1001).as_bytes()), Err(too_long.clone()));
+        }
     }
 }
