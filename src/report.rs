@@ -9,6 +9,7 @@ pub mod csv;
 pub mod end;
 pub mod gpx;
 pub mod json;
+pub mod log_export;
 mod number;
 pub mod sentence;
 pub mod track;

@@ -9,7 +9,7 @@ mod fuzz_bodies;
 use std::path::{Path, PathBuf};
 
 use fuzz_bodies::{
-    airframe, betaloop, cli, configuration, door, eeprom, fc_client, fdm, history, journal, msp_stream,
+    airframe, betaloop, blackbox, cli, configuration, door, eeprom, fc_client, fdm, history, journal, msp_stream,
     plan_file, rc, recording, scenario, servo, settings_file,
 };
 
@@ -19,7 +19,7 @@ const SHORT: usize = 64;
 const LONGEST_MUTANT: usize = 4096;
 
 /// Pieces that have a meaning for some target.
-const WORDS: [&[u8]; 40] = [
+const WORDS: [&[u8]; 43] = [
     b"\n",
     b"\r\n",
     b"#",
@@ -60,6 +60,9 @@ const WORDS: [&[u8]; 40] = [
     b"base = \"iris\"\n",
     b"setting\t",
     b"kept\tmaster\t0\t\t",
+    b"H Product:Blackbox flight data recorder by Nicholas Sherlock\n",
+    b"E\xffEnd of log\0",
+    b"H Field I name:loopIteration,time,a\n",
 ];
 
 /// A generator of numbers from a seed (splitmix64).
@@ -192,6 +195,11 @@ fn airframe_files() {
 #[test]
 fn launcher_files() {
     check("betaloop", betaloop::run, 400);
+}
+
+#[test]
+fn blackbox_logs() {
+    check("blackbox", blackbox::run, 400);
 }
 
 #[test]

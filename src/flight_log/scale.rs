@@ -26,6 +26,15 @@ impl Scale {
         Self { factor, offset: 0.0, unit }
     }
 
+    /// Returns the digits after the point that the numbers of the log resolve.
+    pub(super) fn decimals(&self) -> u8 {
+        if self.factor.fract() == 0.0 {
+            return 0;
+        }
+        // The logarithm of a power of ten may be a little above a whole number.
+        (-self.factor.abs().log10() - 1e-9).ceil().clamp(1.0, 8.0) as u8
+    }
+
     /// Returns the value of a number of the log.
     pub(super) fn apply(&self, raw: f64) -> f64 {
         raw * self.factor + self.offset
@@ -142,4 +151,16 @@ fn motor_range(header: &Header) -> (f64, f64) {
     let range: Option<(f64, f64)> =
         pair("motorOutput").or(limits.map(|(low, high)| (low.into(), high.into())));
     range.filter(|(low, high)| high > low).unwrap_or((1000.0, 2000.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn decimals_are_those_that_the_log_resolves() {
+        let of = |factor| Scale::of(factor, "").decimals();
+        assert_eq!([1.0, 100.0, 0.1, 0.01, 1e-7].map(of), [0, 0, 1, 2, 7]);
+        assert_eq!([GRAVITY / 2048.0, 200.0 / 14.0, 1.0 / QUATERNION_ONE].map(of), [3, 1, 5]);
+    }
 }

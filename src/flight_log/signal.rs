@@ -15,9 +15,14 @@ pub struct LogSignal {
     pub name: String,
     /// The unit, for example `°/s`; empty for a number without a unit, and for a field with an unknown one.
     pub unit: &'static str,
+    /// The digits after the point that the log resolves; of a derived signal those that make sense.
+    pub decimals: u8,
     /// The frame that has the field; `None` if the value is derived.
     pub frame: Option<SignalFrame>,
 }
+
+/// The digits after the point of derived signals.
+const DERIVED_DECIMALS: u8 = 3;
 
 /// The kinds of frames with fields that change in flight.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -104,7 +109,8 @@ impl SignalTable {
     pub(super) fn of(header: &Header, scales: &Scales) -> Self {
         let mut table = Self { signals: Vec::new(), sources: Vec::new() };
         for (name, unit, read) in DERIVED {
-            table.signals.push(LogSignal { name: (*name).to_owned(), unit, frame: None });
+            let decimals = DERIVED_DECIMALS;
+            table.signals.push(LogSignal { name: (*name).to_owned(), unit, decimals, frame: None });
             table.sources.push(Source::Derived(*read));
         }
         let kinds = [
@@ -118,6 +124,7 @@ impl SignalTable {
                 table.signals.push(LogSignal {
                     name: field.name.clone(),
                     unit: scale.unit,
+                    decimals: scale.decimals(),
                     frame: Some(frame),
                 });
                 table.sources.push(Source::Field(kind, Place { at, signed: field.signed, scale }));

@@ -111,7 +111,7 @@ mod tests {
 
     fn track() -> Track {
         let header = GpxHeader {
-            creator: "betadeck".to_owned(),
+            creator: "betadeck (simulated)".to_owned(),
             track: "a & \"b\"".to_owned(),
             home_amsl_m: 300.0,
             boot: UtcSeconds::SIMULATED_BOOT,

@@ -4,6 +4,7 @@
 
 pub mod airframe;
 pub mod betaloop;
+pub mod blackbox;
 pub mod cli;
 pub mod configuration;
 mod craft;

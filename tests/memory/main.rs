@@ -4,4 +4,5 @@
 
 mod cli;
 mod inputs;
+mod logs;
 mod meter;

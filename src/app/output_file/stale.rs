@@ -71,8 +71,8 @@ fn holds_results(path: &Path) -> bool {
     let summaries = ["### – Nothing was judged", "### ✅ All flights passed", "### ❌ Some flights failed"];
     second.starts_with("<testsuites name=\"betadeck\"")
         || second.starts_with("<gpx version=\"1.1\" creator=\"betadeck")
-        || second.starts_with("<!-- betadeck (simulated) -->")
-        || first.starts_with("{\"type\":\"FeatureCollection\",\"generator\":\"betadeck (simulated)\"")
+        || second.starts_with("<!-- betadeck (")
+        || first.starts_with("{\"type\":\"FeatureCollection\",\"generator\":\"betadeck (")
         || summaries.contains(&first)
         || first.starts_with(SAMPLES)
         || is_event()
@@ -100,6 +100,7 @@ mod tests {
                 "{\"type\":\"FeatureCollection\",\"generator\":\"betadeck (simulated)\",\"features\":[\n",
                 true,
             ),
+            ("log.kml", "<?xml?>\n<!-- betadeck (from a log) -->\n<kml>\n", true),
             ("plan.kml", "<?xml?>\n<kml>\n", false),
             ("plan.geojson", "{\"type\":\"FeatureCollection\",\n", false),
             ("samples.csv", "time (s),boot_time (s),state,waypoint,lat (deg)\n,0,IDLE,,40\n", true),

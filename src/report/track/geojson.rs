@@ -34,9 +34,10 @@ impl Track {
             )
         });
         let features: Vec<String> = parts.chain(waypoints).collect();
-        let name = serde_json::Value::from(self.header.track.as_str());
+        let [generator, name] =
+            [&self.header.creator, &self.header.track].map(|text| serde_json::Value::from(text.as_str()));
         format!(
-            "{{\"type\":\"FeatureCollection\",\"generator\":\"betadeck (simulated)\",\"name\":{name},\"features\":[\n{}\n]}}\n",
+            "{{\"type\":\"FeatureCollection\",\"generator\":{generator},\"name\":{name},\"features\":[\n{}\n]}}\n",
             features.join(",\n")
         )
     }

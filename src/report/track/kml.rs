@@ -7,9 +7,10 @@ use crate::report::xml::escaped;
 impl Track {
     /// Returns the document.
     pub fn kml(&self) -> String {
-        let mut text = String::from(
-            "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!-- betadeck (simulated) -->\n\
+        let mut text = format!(
+            "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!-- {} -->\n\
              <kml xmlns=\"http://www.opengis.net/kml/2.2\" xmlns:gx=\"http://www.google.com/kml/ext/2.2\">\n<Document>\n",
+            escaped(&self.header.creator)
         );
         text.push_str(&format!("  <name>{}</name>\n", escaped(&self.header.track)));
         let mut styles = Vec::new();

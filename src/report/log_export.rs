@@ -1,0 +1,13 @@
+//! A blackbox log as a table and as tracks.
+//!
+//! Times of tracks are UTC if the log has its date. Otherwise the craft counts as booted at the instant at which simulated
+//! flights boot.
+
+mod csv;
+mod date;
+#[cfg(test)]
+mod tests;
+mod track;
+
+pub use csv::{LogCsv, write_csv};
+pub use track::{log_gpx, log_track};
