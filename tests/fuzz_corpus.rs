@@ -9,8 +9,8 @@ mod fuzz_bodies;
 use std::path::{Path, PathBuf};
 
 use fuzz_bodies::{
-    airframe, betaloop, blackbox, cli, configuration, door, eeprom, fc_client, fdm, history, journal, msp_stream,
-    plan_file, rc, recording, scenario, servo, settings_file,
+    airframe, betaloop, blackbox, cli, configuration, door, eeprom, fc_client, fdm, history, journal,
+    msp_stream, plan_file, rc, recording, scenario, servo, settings_file,
 };
 
 /// The longest stored case, in bytes, whose beginnings are all tested too.

@@ -4,7 +4,7 @@ use crate::paths::{Named, named, tokens};
 use crate::source::{SourceFile, files};
 
 /// Rooms that are pure: no file, no socket, no thread, no clock, no global state.
-const PURE: [&str; 17] = [
+const PURE: [&str; 19] = [
     "autopilot",
     "blackbox",
     "fc",

@@ -52,7 +52,10 @@ fn tracks_have_the_date_of_the_log() {
     let gpx = String::from_utf8(log_gpx(&flight, "a & b", Vec::new()).unwrap()).unwrap();
     insta::assert_snapshot!(gpx);
     let kml = log_track(&flight, "a & b").kml();
-    assert!(kml.contains("<!-- betadeck (from a log) -->") && kml.contains("2026-05-01T09:59:59.990Z"), "{kml}");
+    assert!(
+        kml.contains("<!-- betadeck (from a log) -->") && kml.contains("2026-05-01T09:59:59.990Z"),
+        "{kml}"
+    );
     for bytes in [kml.as_bytes(), log_track(&flight, "a & b").geojson().as_bytes(), gpx.as_bytes()] {
         let features = read_features("track", bytes).unwrap();
         assert!(features.iter().any(|feature| matches!(feature.shape, Shape::Line(_))), "{features:?}");
