@@ -61,7 +61,7 @@ scenarios! {
     "stick-override"
     "flyaway"
     "soak"
-    "campaign"
+    "two-hundred-winds"
 }
 
 /// Settings that several scenarios share.
