@@ -17,6 +17,8 @@ pub mod autopilot;
 #[doc(hidden)]
 pub mod blackbox;
 #[doc(hidden)]
+pub mod campaign;
+#[doc(hidden)]
 pub mod design;
 #[doc(hidden)]
 pub mod fc;

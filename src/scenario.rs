@@ -20,33 +20,43 @@
 //! assert!(judgements.iter().all(|judgement| matches!(judgement.outcome, Outcome::Met(_))));
 //! ```
 
+mod air;
 mod allowance;
+mod campaign_spec;
 mod case;
 mod draft;
 pub mod expression;
 mod file;
 pub mod flag;
+mod goal;
 pub mod happening;
 mod input;
 mod insight;
 mod judge;
 mod library;
+mod metric;
 mod run;
 mod sampling;
 mod trace;
+mod varied;
 
+pub use air::{AirTemplate, WindProblem, WindText};
+pub use campaign_spec::{CampaignSpec, FlightSeeds, MAX_CAMPAIGN, USUAL_FLIGHTS, USUAL_LEVELS};
 pub use case::{
     Air, Allowance, Case, Compare, Expectation, Expected, Measure, Measured, Scenario, StateStep, Statistic,
     Window,
 };
 pub use draft::Draft;
-pub use file::{FORMAT, Files, MAX_FLIGHTS, TABLES, read, read_at_most, seed_range};
+pub use file::{FORMAT, Files, Flights, MAX_FLIGHTS, Request, TABLES, read, read_request, seed_range};
+pub use goal::{Goal, GoalLimit, GoalStatistic, Quantity, Subject, percent};
 pub use input::{Action, FORMS, TimedInput};
 pub use insight::Insight;
 pub use judge::{Judgement, Margin, Outcome, compare, judge, skip};
 pub use library::{BuiltinFiles, BuiltinScenario, SCENARIOS};
+pub use metric::{Metric, metrics};
 pub use run::{CaseFlight, FlightHash, Flown};
 pub use trace::{NearestGuard, Sample, Stay, Trace};
+pub use varied::{Change, Choice, NumberInput, Spread, Tolerance, VariedInput};
 
 #[cfg(test)]
 mod tests;

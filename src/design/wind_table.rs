@@ -50,7 +50,7 @@ impl WindTable {
         }
     }
 
-    /// Returns the wind for three independent numbers between 0 and 1.
+    /// Returns the wind for three independent numbers between 0 and 1: of the row or cell, of the direction, of the speed.
     pub fn draw(&self, units: [f64; 3]) -> DrawnWind {
         let drawn = match self {
             Self::Rose(rose) => rose.draw(units),

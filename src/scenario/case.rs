@@ -1,5 +1,6 @@
 //! A scenario read from its file: the cases, and the expectations of each case.
 
+use super::campaign_spec::CampaignSpec;
 use super::expression::{Comparison, Condition, Instant, Number};
 use super::happening::Pattern;
 use super::input::TimedInput;
@@ -25,6 +26,8 @@ pub struct Scenario {
     pub cases: Vec<Case>,
     /// Expectations that compare several flights.
     pub compares: Vec<Compare>,
+    /// What a campaign varies from flight to flight; `None` if the cases and their airs are all flights.
+    pub campaign: Option<CampaignSpec>,
 }
 
 /// The flights of one set-up.
@@ -35,7 +38,9 @@ pub struct Case {
     /// The name that the file gives.
     pub base: String,
     pub variant: String,
-    /// The air of each seed.
+    /// The varied keys with the values of this case, for people.
+    pub varied: Vec<(String, String)>,
+    /// The air of each seed. Of a campaign that draws its flights, the one of the first.
     pub airs: Vec<Air>,
     /// The start of the flight, apart from the air.
     pub setup: FlightSetup,
@@ -60,7 +65,7 @@ pub struct Case {
 }
 
 /// The air and the sensors of a flight.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Air {
     /// Seed of all randomness.
     pub seed: u64,

@@ -7,6 +7,7 @@
 mod condition;
 mod cursor;
 mod evaluate;
+mod goal;
 mod instant;
 mod number;
 mod place;
@@ -23,6 +24,7 @@ use crate::telemetry::{Mode, NavState, PlanSource};
 pub use condition::read_condition;
 pub use cursor::{Cursor, MAX_TERMS, SyntaxError};
 pub use evaluate::{Evaluator, Verdict};
+pub use goal::read_goal;
 pub(super) use instant::mode_of as read_mode;
 pub use instant::{Search, read_instant, read_pattern, read_span_from};
 pub use number::{MAX_NAME, read_number, read_quantity};

@@ -2,12 +2,14 @@
 
 mod air;
 mod bounds;
+mod campaign;
 mod craft;
 mod expect;
 mod keys;
 mod measure;
 mod plan;
 mod reader;
+mod varied;
 mod vary;
 
 use std::collections::BTreeMap;
@@ -62,6 +64,31 @@ pub trait Files {
     fn text(&mut self, name: &str) -> Result<String, String>;
 }
 
+/// A request for a scenario.
+#[derive(Debug, Clone, Copy)]
+pub struct Request<'a> {
+    /// The name of the file, as the user gave it.
+    pub file: &'a str,
+    pub text: &'a str,
+    /// The seeds that replace those of the file.
+    pub seeds: Option<&'a [u64]>,
+    /// The most flights that are listed.
+    pub max_flights: usize,
+    pub flights: Flights,
+}
+
+/// The flights of a scenario that is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Flights {
+    /// Each case with each of its seeds. A file that draws its flights is refused.
+    Listed,
+    /// Those of a campaign: drawn if the file or the user says so, else listed.
+    OfCampaign {
+        /// `true` if they are drawn in any case.
+        is_drawn: bool,
+    },
+}
+
 /// Reads a scenario. `file` is the name given by the user; `seeds` replace the seeds of the file.
 ///
 /// # Errors
@@ -72,30 +99,25 @@ pub fn read(
     seeds: Option<&[u64]>,
     files: &mut dyn Files,
 ) -> Result<Scenario, Vec<PlanError>> {
-    read_at_most(MAX_FLIGHTS, file, text, seeds, files)
+    let request = Request { file, text, seeds, max_flights: MAX_FLIGHTS, flights: Flights::Listed };
+    read_request(&request, files)
 }
 
-/// Reads a scenario with up to `max_flights` flights.
+/// Reads a scenario as requested.
 ///
 /// # Errors
 /// Returns all problems, in the order of their places.
-pub fn read_at_most(
-    max_flights: usize,
-    file: &str,
-    text: &str,
-    seeds: Option<&[u64]>,
-    files: &mut dyn Files,
-) -> Result<Scenario, Vec<PlanError>> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut problems = Problems::new(file, text);
+pub fn read_request(request: &Request<'_>, files: &mut dyn Files) -> Result<Scenario, Vec<PlanError>> {
+    let text = request.text.strip_prefix('\u{feff}').unwrap_or(request.text);
+    let mut problems = Problems::new(request.file, text);
     let scenario = if text.len() > MAX_BYTES {
         let message =
             format!("the file has {} KiB, a scenario at most {} KiB", text.len() >> 10, MAX_BYTES >> 10);
         problems.add(0..0, message, "is this the right file?");
         None
     } else {
-        let mut reader = Reader::new(max_flights, text, files, &mut problems);
-        read_text(file, text, seeds, &mut reader)
+        let mut reader = Reader::new(request.max_flights, text, files, &mut problems);
+        read_text(&Request { text, ..*request }, &mut reader)
     };
     match scenario {
         Some(scenario) if problems.is_empty() => Ok(scenario),
@@ -103,8 +125,8 @@ pub fn read_at_most(
     }
 }
 
-fn read_text(file: &str, text: &str, seeds: Option<&[u64]>, reader: &mut Reader<'_, '_>) -> Option<Scenario> {
-    let (document, syntax) = toml::de::DeTable::parse_recoverable(text);
+fn read_text(request: &Request<'_>, reader: &mut Reader<'_, '_>) -> Option<Scenario> {
+    let (document, syntax) = toml::de::DeTable::parse_recoverable(request.text);
     for error in &syntax {
         let message = error.message().replace('\n', ", ");
         reader.problem(error.span().unwrap_or(0..0), message, "this is not valid TOML");
@@ -116,12 +138,24 @@ fn read_text(file: &str, text: &str, seeds: Option<&[u64]>, reader: &mut Reader<
     let top = TomlTable::of_document("the scenario", document.get_ref(), span);
     reader.refuse_unknown(&top, FILE_KEYS);
     check_format(&top, reader);
+    let is_campaign = top.get("campaign").is_some() || varied::is_drawn(&top);
+    let is_drawn = match request.flights {
+        Flights::Listed if is_campaign => {
+            let place = top.get("campaign").or(top.get("vary")).map_or(0..0, toml::Spanned::span);
+            let hint = format!("fly it with betadeck campaign {}", request.file);
+            reader.problem(place, "this is a campaign", hint);
+            return None;
+        }
+        Flights::Listed => false,
+        Flights::OfCampaign { is_drawn } => is_drawn || is_campaign,
+    };
     let case_tables = reader.tables(&top, "case", "case");
-    let variants = vary::read(&top, reader);
+    let variants = if is_drawn { vec![Variant::default()] } else { vary::read(&top, reader) };
     if !bounds::check(&top, &case_tables, variants.len(), reader) {
         return None;
     }
     let case_names = case_names(&case_tables, reader);
+    let mut all_layers = Vec::new();
     let mut cases = Vec::new();
     let undivided = [None];
     let tables: Vec<Option<&TomlTable<'_, '_>>> =
@@ -132,22 +166,25 @@ fn read_text(file: &str, text: &str, seeds: Option<&[u64]>, reader: &mut Reader<
         }
         for variant in &variants {
             let base = case_names.get(index).cloned().unwrap_or_default();
-            let layers = Layers { top: &top, case: table, variant, seeds };
+            let layers = Layers { top: &top, case: table, variant, seeds: request.seeds, is_drawn };
             if reader.can_go_on() {
                 cases.push(read_case(&base, &case_names, &layers, reader));
             }
+            all_layers.push(layers);
         }
     }
     reader.check_flights();
+    let campaign = is_drawn.then(|| campaign::read(&top, &all_layers, &cases, reader));
     let compares = read_compares(&top, &cases, reader);
-    let name = reader.string(&top, "name").unwrap_or_else(|| stem(file).to_owned());
+    let name = reader.string(&top, "name").unwrap_or_else(|| stem(request.file).to_owned());
     Some(Scenario {
-        file: file.to_owned(),
+        file: request.file.to_owned(),
         name,
         description: reader.string(&top, "description").unwrap_or_default(),
         slow: reader.boolean(&top, "slow").unwrap_or(false),
         cases,
         compares,
+        campaign,
     })
 }
 
@@ -217,6 +254,7 @@ fn read_case(base: &str, all: &[String], layers: &Layers<'_, '_>, reader: &mut R
         name: layers.variant.name_of(base),
         base: base.to_owned(),
         variant: layers.variant.name_of(""),
+        varied: layers.variant.shown().map(|(key, shown)| (key.to_owned(), shown)).collect(),
         airs,
         setup: craft.setup,
         options: craft.options,

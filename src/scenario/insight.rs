@@ -6,7 +6,7 @@ use super::expression::{Anchor, Bound, Comparison, Condition, Instant, Number, P
 use super::happening::{EventName, Pattern};
 use super::input::Action;
 use crate::scenario::flag::Flag;
-use crate::sim::{Fault, Switches};
+use crate::sim::{Fault, ScheduledFault, Switches};
 use crate::telemetry::signal::Signal;
 use crate::telemetry::{DisarmReason, PlanSource};
 use crate::vehicle::VehicleCommand;
@@ -171,7 +171,9 @@ impl<'a> Needs<'a> {
         let inputs =
             case.inputs.iter().map(|input| self.instant(&input.at).max(action(&input.action, switches)));
         let end = case.ends.as_ref().map_or(Insight::Truth, |end| self.instant(end));
-        inputs.fold(end, Insight::max)
+        let is_idle = |scheduled: &ScheduledFault| !scheduled.fault.acts_on_remote_controller(switches);
+        let faults = case.setup.world.faults.iter().any(is_idle);
+        inputs.fold(if faults { Insight::Inner } else { end }, Insight::max)
     }
 
     pub(super) fn measure(&self, name: &str) -> Insight {

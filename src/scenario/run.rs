@@ -10,9 +10,9 @@ use super::expression::{Evaluator, Search};
 use super::happening::{EventName, Happening};
 use super::insight::Insight;
 use super::trace::Trace;
-use crate::flight::{Flight, FlightEnd, FlightOptions, FlightResult};
+use crate::flight::{Flight, FlightEnd, FlightResult};
 use crate::signals::SimTime;
-use crate::telemetry::{Event, FirmwareProfile};
+use crate::telemetry::{Event, FirmwareProfile, FlightTruth};
 use crate::vehicle::Vehicle;
 pub use flight_hash::FlightHash;
 use inputs::Inputs;
@@ -32,6 +32,10 @@ pub struct Flown {
     pub reported: Insight,
     /// The kind of its firmware, if it is known.
     pub firmware: Option<FirmwareProfile>,
+    /// The truth about the plan at the end of the flight.
+    pub truth: FlightTruth,
+    /// Simulated seconds from the engagement (or boot, if there was none) to the end.
+    pub flown_s: f64,
 }
 
 /// A flight of a case in progress.
@@ -66,14 +70,12 @@ impl<'a> CaseFlight<'a> {
     /// Returns a sentence if a mode that the pilot needs has no switch.
     pub fn of_vehicle(case: &'a Case, vehicle: Vehicle) -> Result<Self, String> {
         let recorder = Recorder::new(&vehicle, case.setup.plan.plan.clone(), case.sample_hz);
-        // The time limit of the scenario applies.
-        let options = FlightOptions { timeout: SimTime(u64::MAX), ..case.options };
         let flight = if case.pilot {
-            Flight::new(vehicle, &options).map_err(|mode| {
+            Flight::new(vehicle, &case.options).map_err(|mode| {
                 format!("no channel switches {mode}: the pilot needs one; set it with an aux line")
             })?
         } else {
-            Flight::go_on(vehicle, &options)
+            Flight::go_on(vehicle, &case.options)
         };
         Ok(Self {
             case,
@@ -194,11 +196,12 @@ impl<'a> CaseFlight<'a> {
         self.recorder.finish(&self.flight);
         let firmware = self.flight.vehicle().controller().profile();
         let end = self.end.unwrap_or_else(|| self.flight.interrupt("the scenario ended the flight"));
+        let FlightEnd { verdict, truth, flown_s, time: ended_at } = end;
         let (result, reason) = match self.stopped {
             Some((word, reason)) => (word.to_owned(), reason),
-            None => (end.verdict.result.to_string(), end.verdict.reason),
+            None => (verdict.result.to_string(), verdict.reason),
         };
         let Recorder { trace, reported, .. } = self.recorder;
-        Flown { trace, result, reason, ended_at: end.time, reported, firmware }
+        Flown { trace, result, reason, ended_at, reported, firmware, truth, flown_s }
     }
 }

@@ -2,6 +2,7 @@
 
 mod allowance;
 mod bounds;
+mod campaign;
 mod remote;
 
 use super::*;

@@ -4,9 +4,10 @@ use crate::paths::{Named, named, tokens};
 use crate::source::{SourceFile, files};
 
 /// Rooms that are pure: no file, no socket, no thread, no clock, no global state.
-const PURE: [&str; 20] = [
+const PURE: [&str; 21] = [
     "autopilot",
     "blackbox",
+    "campaign",
     "design",
     "fc",
     "firmware",

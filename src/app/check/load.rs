@@ -7,7 +7,9 @@ use crate::args::{CheckArgs, MOST_FLIGHTS};
 use crate::flight::setup::check_setting;
 use crate::plan::format::{self, Format, PlanFile, ReadOptions};
 use crate::report::check::STANDARD_INPUT;
-use crate::scenario::{self, BuiltinFiles, BuiltinScenario, Files, SCENARIOS, Scenario, read_at_most};
+use crate::scenario::{
+    self, BuiltinFiles, BuiltinScenario, Files, Flights, Request, SCENARIOS, Scenario, read_request,
+};
 
 #[derive(Debug)]
 pub(super) struct Loaded {
@@ -131,21 +133,20 @@ fn read(
     max_flights: usize,
     read: &mut Vec<PathBuf>,
 ) -> Result<Scenario, AppError> {
+    let request = |file, text| Request { file, text, seeds, max_flights, flights: Flights::Listed };
     let scenario = match source {
-        Source::Builtin(builtin) => {
-            read_at_most(max_flights, builtin.name, builtin.text, seeds, &mut BuiltinFiles)
-        }
+        Source::Builtin(builtin) => read_request(&request(builtin.name, builtin.text), &mut BuiltinFiles),
         Source::Stdin => {
             let text = input_file::read_stdin_text()?;
             let mut beside = Beside { place: PathBuf::new(), read };
-            read_at_most(max_flights, STANDARD_INPUT, &text, seeds, &mut beside)
+            read_request(&request(STANDARD_INPUT, &text), &mut beside)
         }
         Source::File(path) => {
             let text = input_file::read_small(path)?;
             read.push(path.clone());
             let place = path.parent().map(Path::to_owned).unwrap_or_default();
             let name = path.display().to_string();
-            read_at_most(max_flights, &name, &text, seeds, &mut Beside { place, read })
+            read_request(&request(&name, &text), &mut Beside { place, read })
         }
     };
     scenario.map_err(|errors| AppError::input(format::report(&errors).trim_end().to_owned()))

@@ -1,40 +1,31 @@
 //! `[air]` and `seeds`: the air of each flight of a case.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
 
 use super::Air;
 use super::keys::AIR_KEYS;
 use super::reader::{Layers, Reader};
 use crate::plan::format::{TomlTable, Value};
-use crate::scenario::expression::{Cursor, Number, Scope, read_number};
+use crate::scenario::air::{AirTemplate, WindProblem, WindText};
+use crate::scenario::campaign_spec::FlightSeeds;
 use crate::sim::{Noise, Wind, WorldConfig};
 use crate::telemetry::Turbulence;
-use crate::telemetry::quantity::Dimension;
 use toml::de::DeValue;
 
 /// The most seeds of a case.
 const MAX_SEEDS: u64 = 1_000_000;
-/// The longest wind with its `{…}`, characters. The wind is read once for each seed.
-const MAX_WIND: usize = 200;
 
 /// Returns the air of each seed.
 pub(super) fn read(layers: &Layers<'_, '_>, reader: &mut Reader<'_, '_>) -> Vec<Air> {
-    let section = layers.tables("air", reader);
-    for table in &section {
-        reader.refuse_unknown(table, AIR_KEYS);
+    if layers.is_drawn {
+        let (template, seeds) = read_drawn(layers, reader);
+        return template.of_seed(seeds.at(0)).into_iter().collect();
     }
-    let usual = WorldConfig::default();
-    let get = |key| layers.of_section(&section, key);
-    let gust_mps = reader.number_in(get("gust_mps"), 0.0, Wind::MAX_MPS, "m/s").unwrap_or(usual.gust_mps);
-    let turbulence =
-        word(get("turbulence"), reader, |text| Turbulence::parse(text).map_err(|e| e.problem().to_owned()));
-    let noise = word(get("noise"), reader, |text| Noise::parse(text).map_err(|e| e.problem().to_owned()));
-    let noise = noise.unwrap_or(usual.noise);
-    let turbulence = turbulence.unwrap_or_default();
+    let (template, wind_value) = template(layers, reader);
     let seeds_value = layers.value("seeds");
     let of_file = seeds_value.map_or_else(
-        || Seeds::One(usual.seed),
+        || Seeds::One(WorldConfig::default().seed),
         |value| {
             // Replaced seeds are not flown, so any number of them is allowed.
             let most = if layers.seeds.is_some() { usize::MAX } else { reader.max_flights };
@@ -43,10 +34,7 @@ pub(super) fn read(layers: &Layers<'_, '_>, reader: &mut Reader<'_, '_>) -> Vec<
     );
     let seeds = layers.seeds.map_or(of_file, Seeds::Given);
     // Without randomness one flight is enough.
-    let has_template =
-        get("wind").and_then(|value| value.get_ref().as_str()).is_some_and(|text| text.contains('{'));
-    let is_random = noise != Noise::None || gust_mps > 0.0 || turbulence != Turbulence::None || has_template;
-    let wanted = if is_random { seeds.count() } else { 1 };
+    let wanted = if template.is_random() { seeds.count() } else { 1 };
     let place = seeds_value.map(toml::Spanned::span).or(layers.case.map(TomlTable::span)).unwrap_or(0..0);
     // Too many flights are reported after all cases are counted. They are not created.
     let made = if reader.take_flights(wanted, place) { wanted } else { 1 };
@@ -54,13 +42,62 @@ pub(super) fn read(layers: &Layers<'_, '_>, reader: &mut Reader<'_, '_>) -> Vec<
         .iter()
         .take(made)
         .map(|seed| {
-            let wind = get("wind").and_then(|value| read_wind(value, seed, reader)).unwrap_or(usual.wind);
-            Air { seed, wind, gust_mps, turbulence, noise }
+            template.of_seed(seed).unwrap_or_else(|WindProblem { message, hint }| {
+                reader.problem(wind_value.map_or(0..0, toml::Spanned::span), message, hint);
+                Air { seed, ..Air::default() }
+            })
         })
         .collect()
 }
 
-fn word<T>(
+/// Returns the air of a case of a campaign, and the seeds of its flights.
+pub(super) fn read_drawn(layers: &Layers<'_, '_>, reader: &mut Reader<'_, '_>) -> (AirTemplate, FlightSeeds) {
+    let (template, wind_value) = template(layers, reader);
+    let given = layers.seeds.map(|seeds| FlightSeeds::List(seeds.to_vec()));
+    let seeds = given.unwrap_or_else(|| match layers.value("seeds") {
+        None => FlightSeeds::From(WorldConfig::default().seed),
+        Some(value) => read_flight_seeds(value, reader),
+    });
+    if let Err(WindProblem { message, hint }) = template.of_seed(seeds.at(0)) {
+        reader.problem(wind_value.map_or(0..0, toml::Spanned::span), message, hint);
+    }
+    (template, seeds)
+}
+
+/// Returns the air without the seed, and the place of its wind.
+fn template<'l, 't>(
+    layers: &Layers<'l, 't>,
+    reader: &mut Reader<'_, '_>,
+) -> (AirTemplate, Option<&'l Value<'t>>) {
+    let section = layers.tables("air", reader);
+    for table in &section {
+        reader.refuse_unknown(table, AIR_KEYS);
+    }
+    let usual = WorldConfig::default();
+    let get = |key| layers.of_section(&section, key);
+    let gust_mps = reader.number_in(get("gust_mps"), 0.0, Wind::MAX_MPS, "m/s").unwrap_or(usual.gust_mps);
+    let turbulence = word(get("turbulence"), reader, turbulence);
+    let noise = word(get("noise"), reader, noise);
+    let wind_value = get("wind");
+    let wind = wind_value.and_then(|value| {
+        let text = reader.text(value)?;
+        WindText::new(text)
+            .map_err(|WindProblem { message, hint }| reader.problem(value.span(), message, hint))
+            .ok()
+    });
+    let noise = noise.unwrap_or(usual.noise);
+    (AirTemplate { wind, gust_mps, turbulence: turbulence.unwrap_or_default(), noise }, wind_value)
+}
+
+pub(super) fn turbulence(text: &str) -> Result<Turbulence, String> {
+    Turbulence::parse(text).map_err(|error| error.problem().to_owned())
+}
+
+pub(super) fn noise(text: &str) -> Result<Noise, String> {
+    Noise::parse(text).map_err(|error| error.problem().to_owned())
+}
+
+pub(super) fn word<T>(
     value: Option<&Value<'_>>,
     reader: &mut Reader<'_, '_>,
     parse: impl Fn(&str) -> Result<T, String>,
@@ -68,53 +105,6 @@ fn word<T>(
     let value = value?;
     let text = reader.text(value)?;
     parse(&text).map_err(|problem| reader.problem(value.span(), problem, "")).ok()
-}
-
-/// Reads a wind and puts the seed in the place of `{…}`.
-fn read_wind(value: &Value<'_>, seed: u64, reader: &mut Reader<'_, '_>) -> Option<Wind> {
-    let text = reader.text(value)?;
-    let length = text.chars().count();
-    if length > MAX_WIND {
-        let message = format!("this wind has {length} characters");
-        reader.problem(value.span(), message, format!("allowed: {MAX_WIND}"));
-        return None;
-    }
-    let filled = match fill(&text, seed) {
-        Ok(filled) => filled,
-        Err(problem) => {
-            reader.problem(value.span(), problem, "write {seed % 9}@{37 * seed % 360}");
-            return None;
-        }
-    };
-    filled
-        .parse()
-        .map_err(|error: crate::sim::ParseError| reader.problem(value.span(), error.problem().to_owned(), ""))
-        .ok()
-}
-
-/// Puts numbers in the place of `{…}`, which may use `seed`.
-fn fill(text: &str, seed: u64) -> Result<String, String> {
-    let mut filled = String::new();
-    let mut rest = text;
-    while let Some((before, behind)) = rest.split_once('{') {
-        let (inside, after) = behind.split_once('}').ok_or("the } is missing")?;
-        let scope = Scope {
-            names: BTreeMap::from([("seed".to_owned(), Dimension::NONE)]).into(),
-            ..Scope::default()
-        };
-        let mut cursor = Cursor::new(inside);
-        let (number, _) = read_number(&mut cursor, &scope).map_err(|error| error.message)?;
-        cursor.finish().map_err(|error| error.message)?;
-        let value = number_of_seed(&number, seed as f64).ok_or("only seed and numbers are allowed here")?;
-        filled.push_str(before);
-        filled.push_str(&value.to_string());
-        rest = after;
-    }
-    Ok(filled + rest)
-}
-
-fn number_of_seed(number: &Number, seed: f64) -> Option<f64> {
-    number.constant(&|name| (name == "seed").then_some(seed))
 }
 
 /// Reads `seeds = 3`, `[1, 2]` or `"1..5"`.
@@ -152,6 +142,20 @@ fn read_seeds<'s>(value: &Value<'_>, most: usize, reader: &mut Reader<'_, '_>) -
         },
     }
     Seeds::One(1)
+}
+
+/// Reads the seeds of a campaign's flights: as [`read_seeds`], or `"5.."` for all seeds from 5 on.
+fn read_flight_seeds(value: &Value<'_>, reader: &mut Reader<'_, '_>) -> FlightSeeds {
+    let first = value.get_ref().as_str().and_then(|text| text.trim().strip_suffix(".."));
+    if let Some(first) = first.and_then(|first| first.trim().parse().ok()) {
+        return FlightSeeds::From(first);
+    }
+    match read_seeds(value, MAX_SEEDS as usize, reader) {
+        Seeds::One(seed) => FlightSeeds::List(vec![seed]),
+        Seeds::Range(seeds) => FlightSeeds::Range(seeds),
+        Seeds::List(seeds) => FlightSeeds::List(seeds),
+        Seeds::Given(seeds) => FlightSeeds::List(seeds.to_vec()),
+    }
 }
 
 /// Returns `true` if the count is at most `max`; otherwise notes a problem.

@@ -1,14 +1,22 @@
 //! `[craft]`: the craft, its start position and its settings.
 
+use strum::IntoEnumIterator as _;
+
 use super::Craft;
-use super::keys::CRAFT_KEYS;
+use super::keys::{CRAFT_KEYS, OF_FAULTS};
 use super::reader::{Layers, Reader};
 use crate::firmware::AttitudeSource;
 use crate::flight::setup::{BootLines, check_setting};
 use crate::flight::{FlightOptions, FlightSetup};
+use crate::pilot::StickInput;
 use crate::plan::format::{PlanFile, TomlTable, setting_line};
 use crate::scenario::case::OWN_LINES;
-use crate::sim::{Airframe, Home, STEP_RATES_HZ, Switches, WorldConfig};
+use crate::scenario::varied::Tolerance;
+use crate::signals::SimTime;
+use crate::sim::{Airframe, Home, MAX_FAULTS, STEP_RATES_HZ, ScheduledFault, Switches, WorldConfig};
+
+/// The most stick inputs of a craft.
+const MAX_STICKS: usize = 1000;
 
 pub(super) fn read(layers: &Layers<'_, '_>, plan: PlanFile, reader: &mut Reader<'_, '_>) -> Craft {
     let section = layers.tables("craft", reader);
@@ -17,10 +25,12 @@ pub(super) fn read(layers: &Layers<'_, '_>, plan: PlanFile, reader: &mut Reader<
     }
     let get = |key| layers.of_section(&section, key);
     let usual = FlightOptions::default();
+    let timeout_s = reader.number_in(layers.value("timeout_s"), 1.0, 1e6, "s");
     let options = FlightOptions {
+        // Without it the time limit of the scenario ends the flight.
+        timeout: timeout_s.map_or(SimTime(u64::MAX), SimTime::from_secs_f64),
         takeoff_m: reader.number_in(get("takeoff_m"), 0.0, 500.0, "m").unwrap_or(usual.takeoff_m),
         tolerance_m: reader.number_in(get("tolerance_m"), 0.0, 1e5, "m").unwrap_or(usual.tolerance_m),
-        ..usual
     };
     let pilot = match get("pilot").and_then(|value| Some((value, reader.text(value)?))) {
         None => true,
@@ -33,13 +43,19 @@ pub(super) fn read(layers: &Layers<'_, '_>, plan: PlanFile, reader: &mut Reader<
     };
     let heading_deg = reader.number_in(get("heading_deg"), -360.0, 360.0, "degrees").unwrap_or(0.0);
     let world_tables = layers.tables("air", reader);
-    let world = WorldConfig {
+    let mut world = WorldConfig {
         airframe: airframe(layers, &section, reader),
         home: Home { heading_deg, ..Home::default() },
         rate_hz: rate(layers, &section, reader),
         switches: switches(layers, &world_tables, reader),
+        faults: faults(&world_tables, reader),
         ..WorldConfig::default()
     };
+    for of in Tolerance::iter() {
+        if let Some(percent) = reader.number_in(get(of.key()), -90.0, 900.0, "%") {
+            of.apply(percent, &mut world.airframe, &mut world.switches);
+        }
+    }
     let home = get("home").and_then(|value| {
         let text = reader.text(value)?;
         text.parse()
@@ -57,7 +73,9 @@ pub(super) fn read(layers: &Layers<'_, '_>, plan: PlanFile, reader: &mut Reader<
         }
     });
     let boot_lines = boot_lines(layers, &section, reader);
-    let setup = FlightSetup { world, home, plan, attitude, boot_lines, ..FlightSetup::default() };
+    let stick_inputs = sticks(&section, reader);
+    let setup =
+        FlightSetup { world, home, plan, attitude, boot_lines, stick_inputs, ..FlightSetup::default() };
     if let Err(error) = setup.configuration() {
         let place = section.last().map_or(0..0, TomlTable::span);
         reader.problem(place, error.to_string(), "");
@@ -68,17 +86,61 @@ pub(super) fn read(layers: &Layers<'_, '_>, plan: PlanFile, reader: &mut Reader<
 fn airframe(layers: &Layers<'_, '_>, section: &[TomlTable<'_, '_>], reader: &mut Reader<'_, '_>) -> Airframe {
     let Some(value) = layers.of_section(section, "airframe") else { return Airframe::iris() };
     let Some(name) = reader.text(value) else { return Airframe::iris() };
-    let found = if name.ends_with(".toml") {
-        reader
-            .file(&name)
-            .and_then(|text| Airframe::from_toml(text).map_err(|error| error.in_file(&name).to_string()))
-    } else {
-        name.parse::<Airframe>().map_err(|error| error.to_string())
-    };
-    found.unwrap_or_else(|problem| {
+    airframe_named(&name, reader).unwrap_or_else(|problem| {
         reader.problem(value.span(), problem, "");
         Airframe::iris()
     })
+}
+
+/// Returns a built-in airframe or that of a file.
+pub(super) fn airframe_named(name: &str, reader: &mut Reader<'_, '_>) -> Result<Airframe, String> {
+    if name.ends_with(".toml") {
+        reader
+            .file(name)
+            .and_then(|text| Airframe::from_toml(text).map_err(|error| error.in_file(name).to_string()))
+    } else {
+        name.parse::<Airframe>().map_err(|error| error.to_string())
+    }
+}
+
+/// Returns the faults with their times, as in the option `--fault`.
+fn faults(section: &[TomlTable<'_, '_>], reader: &mut Reader<'_, '_>) -> Vec<ScheduledFault> {
+    let mut faults = Vec::new();
+    for table in section {
+        for (text, span) in reader.texts(table, OF_FAULTS).unwrap_or_default() {
+            match text.parse::<ScheduledFault>() {
+                Ok(scheduled) if scheduled.fault.needs_link() => {
+                    let message = format!("{} needs an external simulator", scheduled.fault.name());
+                    reader.problem(span, message, "leave it out");
+                }
+                Ok(_) if faults.len() >= MAX_FAULTS => {
+                    reader.problem(span, "this fault does not fit", format!("allowed: {MAX_FAULTS}"));
+                    break;
+                }
+                Ok(scheduled) => faults.push(scheduled),
+                Err(error) => reader.problem(span, error.problem().to_owned(), ""),
+            }
+        }
+    }
+    faults
+}
+
+/// Returns the inputs of the sticks, as in the option `--stick`.
+fn sticks(section: &[TomlTable<'_, '_>], reader: &mut Reader<'_, '_>) -> Vec<StickInput> {
+    let mut sticks = Vec::new();
+    for table in section {
+        for (text, span) in reader.texts(table, "sticks").unwrap_or_default() {
+            match text.parse() {
+                Ok(_) if sticks.len() >= MAX_STICKS => {
+                    reader.problem(span, "this stick input does not fit", format!("allowed: {MAX_STICKS}"));
+                    break;
+                }
+                Ok(stick) => sticks.push(stick),
+                Err(problem) => reader.problem(span, problem, ""),
+            }
+        }
+    }
+    sticks
 }
 
 fn rate(layers: &Layers<'_, '_>, section: &[TomlTable<'_, '_>], reader: &mut Reader<'_, '_>) -> u32 {

@@ -8,6 +8,7 @@ pub(super) const FILE_KEYS: &[&str] = &[
     "slow",
     "seeds",
     "time_limit_s",
+    "timeout_s",
     "watch_s",
     "ends",
     "sample_hz",
@@ -17,6 +18,7 @@ pub(super) const FILE_KEYS: &[&str] = &[
     "parameters",
     "allow",
     "vary",
+    "campaign",
     "input",
     "measure",
     "expect",
@@ -29,6 +31,7 @@ pub(super) const CASE_KEYS: &[&str] = &[
     "name",
     "seeds",
     "time_limit_s",
+    "timeout_s",
     "watch_s",
     "ends",
     "sample_hz",
@@ -58,10 +61,19 @@ pub(super) const CRAFT_KEYS: &[&str] = &[
     "lines",
     "attitude",
     "rate_hz",
+    "mass_pct",
+    "thrust_pct",
+    "drag_pct",
+    "inertia_pct",
+    "battery_pct",
+    "sticks",
 ];
 
+/// The key of faults in `[air]` and `[vary]`.
+pub(super) const OF_FAULTS: &str = "faults";
+
 /// Keys of `[air]`.
-pub(super) const AIR_KEYS: &[&str] = &["wind", "gust_mps", "turbulence", "noise", "world"];
+pub(super) const AIR_KEYS: &[&str] = &["wind", "gust_mps", "turbulence", "noise", "world", OF_FAULTS];
 
 /// Keys of `[vary]`.
 pub(super) const VARY_KEYS: &[&str] = &[
@@ -74,8 +86,17 @@ pub(super) const VARY_KEYS: &[&str] = &[
     "takeoff_m",
     "heading_deg",
     "rate_hz",
+    "mass_pct",
+    "thrust_pct",
+    "drag_pct",
+    "inertia_pct",
+    "battery_pct",
     "settings",
+    OF_FAULTS,
 ];
+
+/// Keys of `[campaign]`.
+pub(super) const CAMPAIGN_KEYS: &[&str] = &["design", "flights", "seed", "levels", "expect"];
 
 /// Keys of `[allow]`.
 pub(super) const ALLOW_KEYS: &[&str] = &["horizontal_m", "vertical_m", "speed_mps", "angle_deg"];
@@ -125,6 +146,7 @@ pub const TABLES: &[(&str, &[&str])] = &[
     ("[craft]", CRAFT_KEYS),
     ("[air]", AIR_KEYS),
     ("[vary]", VARY_KEYS),
+    ("[campaign]", CAMPAIGN_KEYS),
     ("[allow]", ALLOW_KEYS),
     ("[[input]]", INPUT_KEYS),
     ("[[measure]]", MEASURE_KEYS),

@@ -38,6 +38,8 @@ pub(super) struct Layers<'l, 't> {
     pub(super) variant: &'l Variant<'l, 't>,
     /// The seeds that replace those of the file.
     pub(super) seeds: Option<&'l [u64]>,
+    /// `true` if a campaign draws the flights of the case.
+    pub(super) is_drawn: bool,
 }
 
 impl<'l, 't> Layers<'l, 't> {

@@ -4,6 +4,7 @@ use toml::de::DeValue;
 
 use super::keys::VARY_KEYS;
 use super::reader::Reader;
+use super::varied::scalar;
 use crate::plan::format::{TomlTable, Value};
 
 const MAX_VARIANTS: usize = 1000;
@@ -19,17 +20,15 @@ impl<'l, 't> Variant<'l, 't> {
         self.values.iter().find(|(name, _)| *name == key).map(|&(_, value)| value)
     }
 
+    /// Returns the keys with their values for people.
+    pub(super) fn shown(&self) -> impl Iterator<Item = (&'l str, String)> {
+        self.values.iter().map(|&(key, value)| (key, scalar(value)))
+    }
+
     /// Returns the name of a case with this combination.
     pub(super) fn name_of(&self, base: &str) -> String {
-        let parts = self.values.iter().map(|(key, value)| {
-            let shown = match value.get_ref() {
-                DeValue::String(text) => text.to_string(),
-                DeValue::Integer(integer) => integer.as_str().to_owned(),
-                DeValue::Float(float) => float.as_str().to_owned(),
-                _ => String::new(),
-            };
-            if *key == "settings" { shown } else { format!("{key} {shown}") }
-        });
+        let parts =
+            self.shown().map(|(key, shown)| if key == "settings" { shown } else { format!("{key} {shown}") });
         std::iter::once(base.to_owned())
             .filter(|base| !base.is_empty())
             .chain(parts)

@@ -5,7 +5,7 @@ use crate::plan::Waypoint;
 use crate::plan::format::{PlanError, PlanFile};
 use crate::scenario::expression::{MAX_NAME, MAX_TERMS};
 use crate::scenario::file::BOUNDS;
-use crate::scenario::{Files, MAX_FLIGHTS, read, read_at_most};
+use crate::scenario::{Files, Flights, MAX_FLIGHTS, Request, read, read_request};
 
 /// Returns a comparison with a sum of this many altitudes.
 fn sum(terms: usize) -> String {
@@ -174,8 +174,14 @@ fn more_than_ten_thousand_flights_are_read_only_when_they_were_asked_for() {
         "test.toml:1:9: the scenario has 12000 flights",
         "allowed: 10000; take fewer seeds or cases, or add --max-flights 12000",
     );
-    let scenario =
-        read_at_most(12_000, "test.toml", &text, None, &mut NoFiles).expect("as many as asked for");
+    let request = Request {
+        file: "test.toml",
+        text: &text,
+        seeds: None,
+        max_flights: 12_000,
+        flights: Flights::Listed,
+    };
+    let scenario = read_request(&request, &mut NoFiles).expect("as many as asked for");
     assert_eq!(scenario.cases.iter().map(|case| case.airs.len()).sum::<usize>(), 12_000);
 }
 

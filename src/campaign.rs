@@ -1,0 +1,30 @@
+//! Campaigns: many flights of one scenario, and the answer that they give together.
+//!
+//! ```text
+//! Scenario ── Campaign ──▶ CampaignFlight: the case, the air and the inputs of flight 1234
+//!                              │ flown and judged elsewhere
+//!                              ▼
+//!                           Record ── AnswerBuilder ──▶ Answer: success, distributions, causes, worst flights, goals
+//! ```
+//!
+//! A flight needs only its number, so it can be made alone, on any machine, and again. The answer takes records one at a
+//! time and keeps a bounded part of them. `statistics` has the mathematics. [`Shard`] divides the flights among machines.
+
+mod answer;
+mod draw;
+mod flights;
+mod record;
+mod shard;
+mod statistics;
+
+pub use answer::{
+    Answer, AnswerBuilder, Cause, Causes, Distribution, GoalOutcome, JudgedGoal, MetricDifference, Success,
+    Versus, Worst,
+};
+pub use flights::{Campaign, CampaignFlight};
+pub use record::{InputValue, Instant, Record, Side, Standing};
+pub use shard::{Shard, ShardError};
+pub use statistics::{Rule, Significance, Split, Summary, wilson};
+
+#[cfg(test)]
+mod tests;
