@@ -1,10 +1,11 @@
 //! The program: from arguments to the tasks of one mode.
 //!
-//! One file a mode, with its parts in the layer of its name: `check` flies scenarios, `compare` two firmwares, `fly` one
-//! plan. `firmware` starts or finds a remote firmware, `output_file` replaces files as a whole, and `plan_files` reads,
+//! One file a mode, with its parts in the layer of its name: `check` flies scenarios, `campaign` many flights of one,
+//! `compare` two firmwares, `fly` one plan. `firmware` starts or finds a remote firmware, `output_file` replaces files as a whole, and `plan_files` reads,
 //! writes and watches plan files. `terrain` reads the elevation tiles that a plan needs.
 
 mod backdrop_file;
+mod campaign;
 mod check;
 mod compare;
 mod config;
@@ -97,6 +98,7 @@ fn reads_layers(command: Option<&Command>) -> bool {
         None | Some(Command::Fly(_) | Command::Compare(_) | Command::Serve(_) | Command::Sitl(_)) => true,
         Some(
             Command::Check(_)
+            | Command::Campaign(_)
             | Command::Open(_)
             | Command::Plan(_)
             | Command::Convert(_)
@@ -111,7 +113,14 @@ fn reads_layers(command: Option<&Command>) -> bool {
 /// Returns `true` if the command may start a firmware in a folder of its own.
 fn may_start_firmware(command: Option<&Command>) -> bool {
     match command {
-        None | Some(Command::Fly(_) | Command::Check(_) | Command::Compare(_) | Command::Serve(_)) => true,
+        None
+        | Some(
+            Command::Fly(_)
+            | Command::Check(_)
+            | Command::Campaign(_)
+            | Command::Compare(_)
+            | Command::Serve(_),
+        ) => true,
         Some(
             Command::Sitl(_)
             | Command::Open(_)
@@ -133,6 +142,7 @@ fn dispatch(cli: Cli, keymap: Keymap) -> Result<u8, AppError> {
         None => tui::run(&cli.tui, keymap),
         Some(Command::Fly(args)) => fly::run(&args),
         Some(Command::Check(args)) => check::run(&args),
+        Some(Command::Campaign(args)) => campaign::run(&args),
         Some(Command::Open(args)) => open::run(&args, keymap),
         Some(Command::Compare(args)) => compare::run(&args),
         Some(Command::Sitl(args)) => sitl::run(&args),

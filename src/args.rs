@@ -5,6 +5,7 @@
 
 mod backdrop;
 mod betaloop;
+mod campaign;
 mod check;
 mod compare;
 mod config_file;
@@ -24,6 +25,7 @@ mod physics;
 mod plan_arg;
 mod review;
 mod terrain;
+mod trouble;
 mod value;
 
 use std::ffi::OsString;
@@ -35,6 +37,7 @@ use crate::text::did_you_mean;
 
 pub use backdrop::BackdropArgs;
 pub use betaloop::{Betaloop, BetaloopError};
+pub use campaign::{CampaignArgs, CampaignCommand, CampaignOutputArgs, MergeArgs, ShardArg};
 pub use check::{CheckArgs, MOST_FLIGHTS};
 pub use compare::CompareArgs;
 pub use config_file::{ConfigCommand, KeyHelp, Origin, origins, template};
@@ -42,7 +45,7 @@ pub use connect::ConnectArgs;
 pub use convert::ConvertArgs;
 pub use display::{CharsetChoice, DisplayArgs, ThemeChoice, UnitsChoice};
 pub use doors::{DoorArgs, ServeArgs, SitlArgs, UdpPorts, sitl_usage_error};
-pub use firmware::{FirmwareArgs, FirmwareChoice, FirmwareLinkArgs, FirmwarePortArgs};
+pub use firmware::{FirmwareArgs, FirmwareChoice, FirmwareLinkArgs, FirmwarePortArgs, firmware_options};
 pub use flight::FlightArgs;
 pub use fly::FlyArgs;
 pub use generate::{completions, man_page};
@@ -53,6 +56,7 @@ pub use physics::{FdmDialect, PhysicsArgs, PhysicsChoice, SimulatorArgs};
 pub use plan_arg::{PlanArg, PlanArgError, is_descriptor};
 pub use review::ReviewArgs;
 pub use terrain::TerrainArgs;
+pub use trouble::TroubleArgs;
 pub use value::{AttitudeChoice, Instant, OnOff, OutputFile, Seeds, Speed};
 
 /// Flies the Betaflight waypoint autopilot in a simulated quadcopter
@@ -148,9 +152,20 @@ pub enum Command {
     ]))]
     Check(Box<CheckArgs>),
 
+    /// Flies a plan or a scenario hundreds of times in different conditions, and answers: how sure, how far off, and why
+    #[command(before_help = help::examples(&[
+        ("betadeck campaign square --wind 4@270 --turbulence light", "a thousand seeds of the demo plan"),
+        ("betadeck campaign my-campaign.toml --out run.jsonl", "what the file varies; killed, it goes on where it was"),
+        ("betadeck campaign square --vary wind=6+-2@250+-20 --vary mass_pct=+-3", "a forecast and a scale"),
+        ("betadeck campaign square --vs ap_position_p=60", "the same flights with other gains"),
+        ("betadeck campaign my-campaign.toml --out part-3.jsonl --shard 3/7", "a seventh of it, on this machine"),
+    ]))]
+    Campaign(Box<CampaignArgs>),
+
     /// Flies a scenario and opens the screen at one of its instants, paused, to look around in the flight
     #[command(before_help = help::examples(&[
         ("betadeck open guide-7 --case 'wind-5, noise real' --seed 3 --at 21.4", "a moment that `check` named"),
+        ("betadeck open run.jsonl:1234", "a flight of a campaign"),
     ]))]
     Open(Box<OpenArgs>),
 
@@ -259,6 +274,7 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>, layers: &Layers) -> 
     let combination = match &typed.command {
         Some(Command::Fly(fly)) => fly.check(),
         Some(Command::Compare(compare)) => compare.check(),
+        Some(Command::Campaign(campaign)) => campaign.check(),
         Some(Command::Convert(convert)) => convert.check(),
         Some(
             Command::Serve(_)

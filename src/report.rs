@@ -2,6 +2,7 @@
 //!
 //! This module turns events and snapshots into text; the caller decides where the text goes.
 
+pub mod campaign;
 pub mod check;
 pub mod compare;
 pub mod conversion;

@@ -4,7 +4,7 @@ mod load;
 mod output;
 mod progress;
 mod remote;
-pub(super) use remote::prepare;
+pub(super) use remote::{RemoteFlown, fly_case, prepare};
 mod results;
 mod run;
 mod watch;

@@ -50,9 +50,9 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
     let stored = setup::stored(&mut store, &mut notices);
     let mut setup = setup::from_args(&args.flight, PhysicsSource::Embedded, plan.clone(), stored)?;
     setup = with_terrain(setup, &args.flight.terrain, &mut notices)?;
-    setup.world.faults = args.faults().collect();
+    setup.world.faults = args.trouble.faults().collect();
     setup.boot_lines.push(BootLines::settings("--set", &args.mission.set));
-    setup.stick_inputs.clone_from(&args.stick);
+    setup.stick_inputs.clone_from(&args.trouble.stick);
     setup.remote_controller = firmware.is_some();
     let tiles = setup.world.terrain.clone();
     let recorded = args.record.as_ref().map(|_| setup.clone());

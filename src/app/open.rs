@@ -1,5 +1,7 @@
-//! `betadeck open`: the screen at an instant of a scenario's flight, which is flown first, by the embedded firmware or by a
-//! remote one.
+//! `betadeck open`: the screen at an instant of a flight of a scenario or a campaign, which is flown first, by the embedded
+//! firmware or by a remote one.
+
+mod of_campaign;
 
 use super::check;
 use super::error::{self, AppError};
@@ -44,24 +46,22 @@ impl Subscriber<CaseFlight<'_>> for Recorded {
 /// Flies the case to its end and opens the screen at the instant.
 pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
     tui::require_terminal(false)?;
-    let scenario = check::load_one(&args.scenario, args.seed)?;
-    let (case, air) = choose(&scenario, args)?;
     let mut notices = Vec::new();
-    let beside = Beside {
-        ports: (&args.firmware_ports).into(),
-        flight: &FlightArgs::default(),
-        physics: &PhysicsArgs::default(),
+    let Opened { case, air, name, firmware, wanted } = match of_campaign::read(args)? {
+        Some(opened) => opened,
+        None => of_scenario(args, &mut notices)?,
     };
-    let firmware = firmware::choose(&args.firmware, beside, &mut notices)?;
-    notices.extend(args.firmware_ports.idle_options(firmware.is_some()));
     let flown = match &firmware {
-        None => fly(case, &air)?,
-        Some(firmware) => match unless_interrupted(on_its_own_thread(|| fly_remote(case, &air, firmware)))? {
-            Some(flown) => flown,
-            None => return Ok(error::INTERRUPTED),
-        },
+        None => fly(&case, &air)?,
+        Some(firmware) => {
+            match unless_interrupted(on_its_own_thread(|| fly_remote(&case, &air, firmware)))? {
+                Some(flown) => flown,
+                None => return Ok(error::INTERRUPTED),
+            }
+        }
     };
-    let Flown { flight, timeline, recorded: Recorded { events, past } } = flown;
+    notices.extend(wanted.map(|wanted| wanted.compared(flown.hash)));
+    let Flown { flight, timeline, recorded: Recorded { events, past }, .. } = flown;
     let is_repeatable =
         |firmware: &RemoteFirmware| firmware.executable.is_some() && firmware.clock == FirmwareClock::Sim;
     let again = firmware.filter(is_repeatable).map(|firmware| {
@@ -69,13 +69,8 @@ pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
         FlyAgain::new(move |until, progress| fly_again(&case, &air, &firmware, until, progress))
     });
     let show = instant(args.at, flight.trace().engaged_at, flight.vehicle().time())?;
-    let name = if case.name.is_empty() {
-        scenario.name.clone()
-    } else {
-        format!("{}, {}", scenario.name, case.name)
-    };
     notices.push(format!(
-        "Scenario {name}, seed {}, was flown to its end: `,` and `<` go back, Space plays it, `b` flies on from here.",
+        "{name}, seed {}, was flown to its end: `,` and `<` go back, Space plays it, `b` flies on from here.",
         air.seed
     ));
     let doors = DoorArgs { no_ports: true, ..DoorArgs::default() };
@@ -106,11 +101,43 @@ pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
     tui::show(screen, keymap)
 }
 
+/// What is flown and shown.
+struct Opened {
+    case: Case,
+    air: Air,
+    /// The name of the flight, for the screen.
+    name: String,
+    firmware: Option<RemoteFirmware>,
+    /// The flight as it was flown before, if it is one of a campaign.
+    wanted: Option<of_campaign::FlownInCampaign>,
+}
+
+/// Reads the scenario and the firmware of the options.
+fn of_scenario(args: &OpenArgs, notices: &mut Vec<String>) -> Result<Opened, AppError> {
+    let scenario = check::load_one(&args.scenario, args.seed)?;
+    let (case, air) = choose(&scenario, args)?;
+    let beside = Beside {
+        ports: (&args.firmware_ports).into(),
+        flight: &FlightArgs::default(),
+        physics: &PhysicsArgs::default(),
+    };
+    let firmware = firmware::choose(&args.firmware, beside, notices)?;
+    notices.extend(args.firmware_ports.idle_options(firmware.is_some()));
+    let name = if case.name.is_empty() {
+        format!("Scenario {}", scenario.name)
+    } else {
+        format!("Scenario {}, {}", scenario.name, case.name)
+    };
+    Ok(Opened { case: case.clone(), air, name, firmware, wanted: None })
+}
+
 /// A flight that is over, with its record.
 struct Flown<'a> {
     flight: CaseFlight<'a>,
     timeline: Timeline,
     recorded: Recorded,
+    /// Equal for flights that are the same to the last bit.
+    hash: u64,
 }
 
 fn recording(flight: &mut CaseFlight<'_>) -> Result<(Timeline, Recorded), AppError> {
@@ -128,7 +155,8 @@ fn fly<'a>(case: &'a Case, air: &Air) -> Result<Flown<'a>, AppError> {
         .fly(&mut flight, &mut subscribers, || false)
         .map_err(|_| AppError::internal("the flight of a scenario stopped"))?;
     let (timeline, recorded) = subscribers;
-    Ok(Flown { flight, timeline, recorded })
+    let hash = flight.hash();
+    Ok(Flown { flight, timeline, recorded, hash })
 }
 
 /// Runs a flight on a thread, which the flight may keep to one processor.
@@ -153,7 +181,8 @@ fn fly_remote<'a>(case: &'a Case, air: &Air, firmware: &RemoteFirmware) -> Resul
     let mut subscribers = recording(&mut flight)?;
     remote.fly(&mut flight, &mut subscribers)?;
     let (timeline, recorded) = subscribers;
-    Ok(Flown { flight, timeline, recorded })
+    let hash = remote.motor_hash().unwrap_or_else(|| flight.hash());
+    Ok(Flown { flight, timeline, recorded, hash })
 }
 
 /// Records how far a flight has come.

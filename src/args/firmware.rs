@@ -194,6 +194,28 @@ impl FirmwarePortArgs {
     }
 }
 
+/// A command line with nothing but the choice of the firmware.
+#[derive(Debug, clap::Parser)]
+#[command(no_binary_name = true, disable_help_flag = true)]
+struct FirmwareOnly {
+    #[command(flatten)]
+    firmware: FirmwareArgs,
+    #[command(flatten)]
+    ports: FirmwarePortArgs,
+}
+
+/// Reads the options of a firmware that were kept from an earlier command line.
+///
+/// # Errors
+/// Returns the problem as a sentence.
+pub fn firmware_options(words: &[String]) -> Result<(FirmwareArgs, FirmwarePortArgs), String> {
+    use clap::Parser as _;
+    match FirmwareOnly::try_parse_from(words) {
+        Ok(FirmwareOnly { firmware, ports }) => Ok((firmware, ports)),
+        Err(error) => Err(error.to_string().lines().next().unwrap_or_default().to_owned()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

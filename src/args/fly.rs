@@ -2,12 +2,9 @@
 
 use std::path::PathBuf;
 
-use crate::pilot::StickInput;
-use crate::sim::ScheduledFault;
-
 use super::plan_arg::PlanArg;
 use super::value::{self, OutputFile};
-use super::{FirmwareArgs, FirmwarePortArgs, FlightArgs, MissionArgs, ReviewArgs, Speed, help};
+use super::{FirmwareArgs, FirmwarePortArgs, FlightArgs, MissionArgs, ReviewArgs, Speed, TroubleArgs};
 
 /// The options of `fly`.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
@@ -55,21 +52,9 @@ pub struct FlyArgs {
     #[command(flatten)]
     pub review: ReviewArgs,
 
-    /// Moves a stick or switch: a channel (roll, pitch, throttle, yaw, aux1…aux12), µs, when, how long; repeatable
-    #[arg(long, value_name = "CH=VALUE@T[,FOR]", help_heading = "Flight")]
-    pub stick: Vec<StickInput>,
-
-    /// The radio link is lost at T
-    #[arg(long, value_name = "T[,FOR]", allow_hyphen_values = true, value_parser = value::rx_loss, help_heading = "Faults")]
-    pub rx_loss_at: Option<ScheduledFault>,
-
-    /// The GPS is lost at T
-    #[arg(long, value_name = "T[,FOR]", allow_hyphen_values = true, value_parser = value::gps_loss, help_heading = "Faults")]
-    pub gps_loss_at: Option<ScheduledFault>,
-
-    /// Something goes wrong at T, such as motor@10,,2:0.8 or gps-glitch@10,2,30@90; repeatable
-    #[arg(long, value_name = "NAME@T[,FOR][,VALUE]", value_parser = value::fault, long_help = help::faults(), help_heading = "Faults")]
-    pub fault: Vec<ScheduledFault>,
+    /// What goes wrong.
+    #[command(flatten)]
+    pub trouble: TroubleArgs,
 
     /// The choice of the firmware.
     #[command(flatten)]
@@ -85,11 +70,6 @@ pub struct FlyArgs {
 }
 
 impl FlyArgs {
-    /// Returns all faults of the flight.
-    pub fn faults(&self) -> impl Iterator<Item = ScheduledFault> + '_ {
-        self.rx_loss_at.into_iter().chain(self.gps_loss_at).chain(self.fault.iter().copied())
-    }
-
     /// Returns the speed as a multiple of real time; infinite = as fast as the machine allows, the default.
     pub fn speed(&self) -> f64 {
         self.flight.speed.map_or(f64::INFINITY, |Speed(speed)| speed)

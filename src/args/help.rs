@@ -30,6 +30,17 @@ Exit codes: 0 every flight completed, 1 one did not, 2 wrong usage or input, 3 f
 Each option can also be set in the configuration file (wind = \"5@270\") and in the environment
 (BETADECK_WIND=5@270); the command line overrides the environment, which overrides the file.";
 
+/// The end of the help of `campaign`.
+pub(super) const CAMPAIGN: &str = "\
+docs/scenarios.md explains what a file can vary and expect, docs/clusters.md how several machines fly one campaign.
+The options below Craft, Air, Time, Flight and Faults are for a plan; a scenario has them in its file.
+
+Exit codes: 0 every expectation of the campaign was met (without one: every flight succeeded), 1 not, 2 wrong usage or
+input, 3 file trouble or a firmware that could not be flown, 4 internal error, 130 interrupted.
+
+The firmware can also be set in the configuration file (firmware = \"PATH\") and in the environment
+(BETADECK_FIRMWARE=PATH), as can each option below Firmware.";
+
 /// The end of the help of `check`.
 pub(super) const CHECK: &str = "\
 docs/scenarios.md explains how to write a scenario.

@@ -1,8 +1,8 @@
 //! The layers below the command line: environment and configuration file.
 //!
 //! Every long option of a command that flies is a key in the file (`wind = "5@270"`) and a variable in the
-//! environment (`BETADECK_WIND`). For `check` these are the options of the firmware, for `plan show` all options. A
-//! value from a layer for an option that no higher layer gave is parsed by the option's own parser, as if someone
+//! environment (`BETADECK_WIND`). For `check` and `campaign` these are the options of the firmware, for `plan show` all
+//! options. A value from a layer for an option that no higher layer gave is parsed by the option's own parser, as if someone
 //! typed it.
 
 use std::collections::BTreeMap;
@@ -34,8 +34,9 @@ type Found = (String, Vec<String>);
 
 /// Commands with options from all layers; the empty name is the terminal user interface.
 pub(super) const FLYING: [&str; 5] = ["", "fly", "compare", "serve", "sitl"];
-/// The command that takes only the firmware from all layers. The scenario gives the rest of a flight.
-const CHECK: &str = "check";
+/// The commands that take only the firmware from all layers. The scenario, or the command line of a campaign, gives the
+/// rest of a flight.
+const FIRMWARE_ONLY: [&str; 2] = ["check", "campaign"];
 /// The command and the subcommand that judge a plan without a flight.
 const PLAN_SHOW: (&str, &str) = ("plan", "show");
 /// The heading of the options for the choice of the firmware.
@@ -52,7 +53,9 @@ pub(super) fn apply(
     let (name, typed) = matches.subcommand().unwrap_or(("", matches));
     let mut sources = BTreeMap::new();
     let nested = typed.subcommand().filter(|(nested, _)| (name, *nested) == PLAN_SHOW);
-    if FLYING.contains(&name) || name == CHECK || nested.is_some() {
+    // Merging the parts of a campaign flies nothing.
+    let is_firmware_only = FIRMWARE_ONLY.contains(&name) && typed.subcommand().is_none();
+    if FLYING.contains(&name) || is_firmware_only || nested.is_some() {
         let unknown = layers.unknown_keys(command);
         if !unknown.is_empty() {
             return Err(problem(&unknown.join("\n")));
@@ -74,7 +77,7 @@ pub(super) fn apply(
 
 /// Returns the options of a command that the layers can give; a hidden option does not belong to the command.
 pub(super) fn options(command: &clap::Command) -> impl Iterator<Item = &Arg> {
-    let of_firmware_only = command.get_name() == CHECK;
+    let of_firmware_only = FIRMWARE_ONLY.contains(&command.get_name());
     command
         .get_arguments()
         .filter(|arg| !arg.is_positional() && !arg.is_hide_set())

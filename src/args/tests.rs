@@ -58,7 +58,7 @@ fn fly_reads_every_option() {
          --home -40,-79,300 --heading -90 --fresh --arm-assist on --attitude truth",
     );
     assert_eq!(fly.json, Some(OutputFile::Stdout));
-    assert_eq!(fly.faults().count(), 4);
+    assert_eq!(fly.trouble.faults().count(), 4);
     assert_eq!(fly.mission.set, ["ap_max_angle = 25", "gps_sbas_mode = AUTO"]);
     assert!(
         (fly.speed() - 2.0).abs() < 1e-9
@@ -255,7 +255,7 @@ fn the_command_line_wins_over_environment_over_file() {
     assert_eq!(fly.flight.wind.unwrap().to_string(), "5@270");
     assert!((fly.mission.takeoff_m() - 12.5).abs() < 1e-9 && (fly.mission.tolerance_m() - 3.0).abs() < 1e-9);
     assert_eq!(fly.mission.set, ["ap_max_angle = 11", "ap_max_angle = 12"]);
-    assert!(fly.rx_loss_at.is_some() && fly.flight.arm_assist == Some(OnOff::On));
+    assert!(fly.trouble.rx_loss_at.is_some() && fly.flight.arm_assist == Some(OnOff::On));
     assert_eq!(
         fly_over("betadeck fly square --set ap_max_angle=13", &layers).mission.set,
         ["ap_max_angle = 13"]

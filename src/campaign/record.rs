@@ -149,6 +149,14 @@ impl Record {
         }
     }
 
+    /// Returns the record with a reason not to trust the flight, if there is one.
+    pub fn with_problem(self, problem: Option<String>) -> Self {
+        match problem {
+            None => self,
+            Some(problem) => Self { problem: Some(short(problem)), standing: Standing::Failed, ..self },
+        }
+    }
+
     /// Returns a metric; `None` if the flight has none.
     pub fn metric(&self, name: &str) -> Option<f64> {
         self.metrics.iter().find(|(known, _)| known == name).map(|&(_, value)| value)

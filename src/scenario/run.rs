@@ -191,6 +191,12 @@ impl<'a> CaseFlight<'a> {
         }
     }
 
+    /// Ends the record, and returns its hash: equal for flights that are the same to the last bit.
+    pub fn hash(&mut self) -> u64 {
+        self.recorder.finish(&self.flight);
+        self.recorder.trace.hash()
+    }
+
     /// Returns the finished flight.
     pub fn finish(mut self) -> Flown {
         self.recorder.finish(&self.flight);

@@ -11,7 +11,7 @@ use crate::app::firmware::{RemoteFirmware, reported};
 use crate::app::{AppError, error, parallel, setup};
 use crate::fc::Unset;
 use crate::report::check::{CheckedFlight, shell_word};
-use crate::scenario::{self, Air, Case, CaseFlight};
+use crate::scenario::{self, Air, Case, CaseFlight, Flown};
 use crate::session::{Event, Subscriber};
 use crate::signals::fdm::{FirmwareClock, Stamps};
 use crate::vehicle::Vehicle;
@@ -125,21 +125,48 @@ impl Run<'_> {
         reported: &mut Vec<String>,
     ) -> Result<CheckedFlight, Stopped> {
         let started = Stopwatch::start();
-        let mut tell = OnEvent(|event: &Event| reported.extend(reported::sentence(event)));
-        let (mut remote, vehicle) = prepare(self.firmware, case, air, self.interrupted, thread, &mut tell)?;
-        let problem = remote.unset().and_then(|unset| not_as_wanted(case, unset));
-        let mut flight = match CaseFlight::of_vehicle(case, vehicle) {
-            Ok(flight) => flight,
-            Err(problem) => return Ok(CheckedFlight { problem: Some(problem), ..checked }),
-        };
-        remote.runner().begin_flight();
-        remote.fly(&mut flight, &mut tell)?;
-        let mut flown = flight.finish();
-        flown.reason += &remote.runner().disturbance();
-        let judged = run::judged(checked, case, flown, &started);
-        let hash = remote.motor_hash().unwrap_or(judged.hash);
-        Ok(CheckedFlight { problem, hash, ..judged })
+        match fly_case(self.firmware, case, air, self.interrupted, thread, reported)? {
+            Err(problem) => Ok(CheckedFlight { problem: Some(problem), ..checked }),
+            Ok(RemoteFlown { flown, problem, hash }) => {
+                let judged = run::judged(checked, case, flown, &started);
+                let hash = hash.unwrap_or(judged.hash);
+                Ok(CheckedFlight { problem, hash, ..judged })
+            }
+        }
     }
+}
+
+/// A flight that a remote firmware flew.
+pub(in crate::app) struct RemoteFlown {
+    pub(in crate::app) flown: Flown,
+    /// The reason why it does not match its case.
+    pub(in crate::app) problem: Option<String>,
+    /// The hash of its motor packets, in simulated time.
+    pub(in crate::app) hash: Option<u64>,
+}
+
+/// Flies a case with a new start of the firmware. The inner error is the reason why the pilot cannot fly it. Adds the
+/// messages about the firmware to `reported`.
+pub(in crate::app) fn fly_case(
+    firmware: &RemoteFirmware,
+    case: &Case,
+    air: &Air,
+    interrupted: &Arc<AtomicBool>,
+    thread: usize,
+    reported: &mut Vec<String>,
+) -> Result<Result<RemoteFlown, String>, Stopped> {
+    let mut tell = OnEvent(|event: &Event| reported.extend(reported::sentence(event)));
+    let (mut remote, vehicle) = prepare(firmware, case, air, interrupted, thread, &mut tell)?;
+    let problem = remote.unset().and_then(|unset| not_as_wanted(case, unset));
+    let mut flight = match CaseFlight::of_vehicle(case, vehicle) {
+        Ok(flight) => flight,
+        Err(problem) => return Ok(Err(problem)),
+    };
+    remote.runner().begin_flight();
+    remote.fly(&mut flight, &mut tell)?;
+    let mut flown = flight.finish();
+    flown.reason += &remote.runner().disturbance();
+    Ok(Ok(RemoteFlown { flown, problem, hash: remote.motor_hash() }))
 }
 
 /// Starts the firmware for the flight of a case and sets it up. `thread` is the number of the flight among those at once.

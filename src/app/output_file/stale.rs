@@ -16,7 +16,7 @@ const OPTIONS: [&str; 8] =
 /// The start of a table of samples.
 const SAMPLES: &str = "time (s),boot_time (s),state,waypoint,";
 /// The commands that write these results.
-const COMMANDS: [&str; 2] = ["fly", "check"];
+const COMMANDS: [&str; 3] = ["fly", "check", "campaign"];
 
 /// Removes a file if it has the results of an earlier run of this program. All other files stay.
 pub(in crate::app) fn remove_results(path: &Path) {

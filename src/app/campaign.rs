@@ -1,0 +1,29 @@
+//! `betadeck campaign`: many flights of a scenario or a plan on all processors, and their answer.
+
+mod definition;
+mod fly;
+mod loaded;
+mod merge;
+mod of_plan;
+mod outputs;
+mod progress;
+mod run_file;
+mod shard;
+mod sources;
+
+use super::error::AppError;
+use crate::args::{CampaignArgs, CampaignCommand};
+pub(super) use loaded::{OneFlight, open_flight};
+
+/// Flies, or merges the parts of a campaign. The exit code is 0 if every expectation was met.
+pub(super) fn run(args: &CampaignArgs) -> Result<u8, AppError> {
+    match &args.command {
+        Some(CampaignCommand::Merge(args)) => merge::run(args),
+        None => fly::run(args),
+    }
+}
+
+/// Returns the version that flies, which is in every line.
+fn version() -> String {
+    format!("{} {}", env!("CARGO_PKG_VERSION"), env!("BETADECK_REVISION"))
+}

@@ -1,0 +1,228 @@
+//! A campaign with everything that is needed to fly it.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use super::definition::{check_other_side, firmware_of};
+use super::run_file::RunReader;
+use super::sources::Sources;
+use super::version;
+use crate::app::AppError;
+use crate::app::check::{RemoteFlown, fly_case};
+use crate::app::error;
+use crate::app::firmware::RemoteFirmware;
+use crate::app::firmware::run::Stopped;
+use crate::app::terrain::with_terrain;
+use crate::args::TerrainArgs;
+use crate::campaign::{Campaign, CampaignFlight, Record, Side};
+use crate::plan::format;
+use crate::report::campaign::{Definition, RunHeader};
+use crate::scenario::{self, CaseFlight, Change, Flights, Request, read_request};
+use crate::session::Runner;
+
+/// The most flights of a file of `check`.
+const MAX_LISTED: usize = 1_000_000;
+
+/// A campaign that can be flown.
+pub(super) struct Loaded {
+    pub(super) header: RunHeader,
+    pub(super) campaign: Campaign,
+    firmware: [Option<RemoteFirmware>; 2],
+}
+
+/// A flight of a campaign for the screen.
+pub(in crate::app) struct OneFlight {
+    pub(in crate::app) flight: CampaignFlight,
+    /// The name of the campaign.
+    pub(in crate::app) name: String,
+    pub(in crate::app) firmware: Option<RemoteFirmware>,
+    /// The flight as it was flown in the campaign.
+    pub(in crate::app) record: Record,
+}
+
+impl Loaded {
+    /// Reads the scenario of a definition, whose files come from `sources`.
+    pub(super) fn new(mut definition: Definition, mut sources: Sources) -> Result<Self, AppError> {
+        let campaign = campaign(&definition, &mut sources)?;
+        definition.files = sources.contents;
+        let name = campaign.scenario().name.clone();
+        let header = RunHeader::new(definition, &version(), &name, campaign.count());
+        Self::with_header(header, campaign)
+    }
+
+    /// Reads the campaign of a run's file.
+    pub(super) fn of_run(header: RunHeader) -> Result<Self, AppError> {
+        let definition = &header.definition;
+        let mut sources = Sources { place: None, contents: definition.files.clone() };
+        let campaign = campaign(definition, &mut sources)?;
+        Self::with_header(header, campaign)
+    }
+
+    fn with_header(header: RunHeader, campaign: Campaign) -> Result<Self, AppError> {
+        let definition = &header.definition;
+        let own = firmware_of(&definition.firmware, definition.firmware_print.as_deref())?;
+        let other = match &definition.versus {
+            None => None,
+            Some(side) => {
+                let firmware = if side.has_firmware {
+                    firmware_of(&side.firmware, side.firmware_print.as_deref())?
+                } else {
+                    own.clone()
+                };
+                check_other_side(side, firmware.is_none())?;
+                firmware
+            }
+        };
+        Ok(Self { header, campaign, firmware: [own, other] })
+    }
+
+    /// Returns the flight of a line, from 0, and its side.
+    pub(super) fn flight(&self, line: u64) -> Option<(CampaignFlight, Side)> {
+        let sides = self.header.sides();
+        let side = if line % sides == 0 { Side::A } else { Side::B };
+        self.of_side(line / sides + 1, side).map(|flight| (flight, side))
+    }
+
+    fn of_side(&self, number: u64, side: Side) -> Option<CampaignFlight> {
+        let mut flight = self.campaign.flight(number)?;
+        if let Some(other) = self.header.definition.versus.as_ref().filter(|_| side == Side::B) {
+            for setting in &other.settings {
+                let applied = Change::Setting(setting.clone()).apply(&mut flight.case, &mut flight.air);
+                if let Err(problem) = applied {
+                    flight.problem.get_or_insert(problem);
+                }
+            }
+        }
+        Some(flight)
+    }
+
+    /// Flies and judges the flight of a line; `None` if it was interrupted. Adds messages about a remote firmware to
+    /// `reported`.
+    pub(super) fn fly(
+        &self,
+        line: u64,
+        thread: usize,
+        interrupted: &Arc<AtomicBool>,
+        is_stopped: &impl Fn() -> bool,
+        reported: &mut Vec<String>,
+    ) -> Option<Result<Record, AppError>> {
+        let (flight, side) = self.flight(line)?;
+        if let Some(problem) = flight.problem.clone() {
+            return Some(Ok(Record::not_flown(&flight, side, problem)));
+        }
+        match &self.firmware[side as usize] {
+            None => embedded(&flight, side, is_stopped).map(Ok),
+            Some(firmware) => remote(&flight, side, firmware, thread, interrupted, reported),
+        }
+    }
+}
+
+fn embedded(flight: &CampaignFlight, side: Side, is_stopped: &impl Fn() -> bool) -> Option<Record> {
+    let mut flown = match CaseFlight::new(&flight.case, &flight.air) {
+        Ok(flown) => flown,
+        Err(problem) => return Some(Record::not_flown(flight, side, problem)),
+    };
+    let mut runner = Runner::new(flown.vehicle().step_us(), f64::INFINITY, None);
+    runner.fly(&mut flown, &mut (), is_stopped).ok()?;
+    Some(Record::of(flight, side, &flown.finish(), None))
+}
+
+fn remote(
+    flight: &CampaignFlight,
+    side: Side,
+    firmware: &RemoteFirmware,
+    thread: usize,
+    interrupted: &Arc<AtomicBool>,
+    reported: &mut Vec<String>,
+) -> Option<Result<Record, AppError>> {
+    if scenario::skip(&flight.case).is_some() {
+        let problem = "only the embedded firmware can fly this case: its inputs or its end need knowledge that no other gives";
+        return Some(Ok(Record::not_flown(flight, side, problem.to_owned())));
+    }
+    match fly_case(firmware, &flight.case, &flight.air, interrupted, thread, reported) {
+        Ok(Ok(RemoteFlown { flown, problem, hash })) => {
+            let record = Record::of(flight, side, &flown, hash);
+            Some(Ok(record.with_problem(problem)))
+        }
+        Ok(Err(problem)) => Some(Ok(Record::not_flown(flight, side, problem))),
+        Err(Stopped::Interrupted | Stopped::BySubscriber) => None,
+        Err(Stopped::Failed(problem)) if problem.code >= error::ENVIRONMENT => Some(Err(problem)),
+        Err(Stopped::Failed(problem)) => Some(Ok(Record::not_flown(flight, side, problem.message))),
+    }
+}
+
+/// Reads the scenario of a definition as a campaign.
+fn campaign(definition: &Definition, sources: &mut Sources) -> Result<Campaign, AppError> {
+    let seeds: Option<Vec<u64>> = definition.seeds.map(|(first, last)| (first..=last).collect());
+    let is_drawn = definition.flights.is_some() || definition.design.is_some();
+    let request = Request {
+        file: &definition.file,
+        text: &definition.text,
+        seeds: seeds.as_deref(),
+        max_flights: MAX_LISTED,
+        flights: Flights::OfCampaign { is_drawn },
+    };
+    let mut scenario = read_request(&request, sources)
+        .map_err(|errors| AppError::input(format::report(&errors).trim_end().to_owned()))?;
+    if let Some(directory) = &definition.terrain {
+        let directory = Some(PathBuf::from(directory)).filter(|directory| !directory.as_os_str().is_empty());
+        let mut notices = Vec::new();
+        for case in &mut scenario.cases {
+            let setup = std::mem::take(&mut case.setup);
+            case.setup = with_terrain(setup, &TerrainArgs { directory: directory.clone() }, &mut notices)?;
+        }
+        notices.dedup();
+        notices.iter().for_each(|notice| error::tell(notice));
+    }
+    let design = definition.design.as_deref().and_then(|design| design.parse().ok());
+    Campaign::new(scenario, definition.flights, design).map_err(AppError::input)
+}
+
+/// Returns the flight that `RUN.jsonl:1234` names, or `None` if the text names no file of a run. `1234b` is the flight of
+/// the other side of a comparison.
+pub(in crate::app) fn open_flight(text: &str) -> Result<Option<OneFlight>, AppError> {
+    let Some((file, number)) = text.rsplit_once(':') else { return Ok(None) };
+    let path = Path::new(file);
+    if !path.is_file() {
+        return Ok(None);
+    }
+    let (number, side) = match number.strip_suffix('b') {
+        Some(number) => (number, Side::B),
+        None => (number.strip_suffix('a').unwrap_or(number), Side::A),
+    };
+    let number: u64 = number.parse().map_err(|_| {
+        AppError::input(format!("{text}: {number} is not the number of a flight; write {file}:17"))
+    })?;
+    let reader = RunReader::open(path)?;
+    let header = reader.header().clone();
+    if side == Side::B && header.sides() < 2 {
+        return Err(AppError::input(format!("{file} has no second side: write {file}:{number}")));
+    }
+    let record = reader.find(number, side)?.ok_or_else(|| {
+        AppError::input(format!("{file} has no flight {number}: the campaign has {} flights", header.flights))
+    })?;
+    let loaded = Loaded::of_run(header)?;
+    let flight = loaded.of_side(number, side).ok_or_else(|| AppError::internal("a flight without a case"))?;
+    let [own, other] = loaded.firmware;
+    let firmware = if side == Side::A { own } else { other };
+    Ok(Some(OneFlight { flight, name: loaded.header.name, firmware, record }))
+}
+
+/// Returns how another campaign differs from this one, for messages.
+pub(super) fn differs(mine: &RunHeader, theirs: &RunHeader) -> String {
+    if mine.version != theirs.version {
+        return format!("it was flown by betadeck {}, and this is {}", theirs.version, mine.version);
+    }
+    let (mine, theirs) = (&mine.definition, &theirs.definition);
+    if mine.text != theirs.text {
+        return "its scenario, plan or options were others".to_owned();
+    }
+    if mine.files != theirs.files {
+        return "a file that it names has changed".to_owned();
+    }
+    if mine.firmware_print != theirs.firmware_print || mine.firmware != theirs.firmware {
+        return "its firmware was another".to_owned();
+    }
+    "its options were others".to_owned()
+}

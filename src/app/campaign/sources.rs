@@ -1,0 +1,61 @@
+//! The files that a campaign names, from the disk or from the file of a run.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use crate::app::{error, input_file};
+use crate::flight::setup::check_setting;
+use crate::plan::format::{self, Format, PlanFile, ReadOptions};
+use crate::report::campaign::Contents;
+use crate::scenario::{BuiltinFiles, Files};
+
+/// The files of a campaign. Those that were read are kept for the file of the run.
+#[derive(Debug, Default)]
+pub(super) struct Sources {
+    /// The place of the other files; `None` = there are no others.
+    pub(super) place: Option<PathBuf>,
+    pub(super) contents: BTreeMap<String, Contents>,
+}
+
+impl Sources {
+    fn bytes(&mut self, name: &str, is_plan: bool) -> Result<Vec<u8>, String> {
+        if let Some(known) = self.contents.get(name) {
+            return known.bytes().map_err(|problem| format!("{name}: {problem}"));
+        }
+        let bytes = match &self.place {
+            None => BuiltinFiles.text(name)?.into_bytes(),
+            Some(place) => {
+                let path = place.join(name);
+                let read = if is_plan {
+                    input_file::read_plan(&path)
+                } else {
+                    input_file::read_small(&path).map(String::into_bytes)
+                };
+                read.map_err(|error| error.message)?
+            }
+        };
+        self.contents.insert(name.to_owned(), Contents::new(&bytes));
+        Ok(bytes)
+    }
+}
+
+impl Files for Sources {
+    fn plan(&mut self, name: &str) -> Result<PlanFile, String> {
+        let is_new = !self.contents.contains_key(name);
+        let contents = self.bytes(name, true)?;
+        let (format, finding) = Format::detect(name, &contents);
+        let options = ReadOptions { check: check_setting, ..ReadOptions::default() };
+        let plan = format::read(name, &contents, format, &options)
+            .map_err(|errors| format::report(&errors).trim_end().to_owned())?;
+        if is_new {
+            let found = finding.iter().chain(&plan.losses.findings);
+            found.for_each(|found| error::tell(&format!("{name}: {found}")));
+        }
+        Ok(plan)
+    }
+
+    fn text(&mut self, name: &str) -> Result<String, String> {
+        let bytes = self.bytes(name, false)?;
+        String::from_utf8(bytes).map_err(|_| format!("{name} is not a text file (UTF-8)"))
+    }
+}

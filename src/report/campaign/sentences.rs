@@ -1,0 +1,233 @@
+//! The answer of a campaign as sentences.
+
+use super::{Reported, shown};
+use crate::campaign::{
+    Answer, Causes, GoalOutcome, JudgedGoal, MetricDifference, Significance, Success, Summary, Versus,
+};
+use crate::scenario::percent;
+
+/// The most causes that are named.
+const CAUSES: usize = 3;
+
+/// Returns the answer.
+pub fn answer_sentences(reported: &Reported<'_>) -> Vec<String> {
+    let answer = reported.answer;
+    let mut lines = vec![format!("{}.", success(reported))];
+    if answer.results.len() > 1 {
+        let results: Vec<String> =
+            answer.results.iter().map(|(result, count)| format!("{count} {result}")).collect();
+        lines.push(format!("Results: {}.", results.join(", ")));
+    }
+    lines.extend(distributions(answer));
+    lines.extend(touchdown(answer));
+    lines.extend(causes(&answer.causes));
+    lines.extend(worst(reported));
+    if let Some(versus) = &answer.versus {
+        lines.extend(comparison(reported, versus));
+    }
+    if !answer.goals.is_empty() {
+        lines.push(String::new());
+        lines.extend(answer.goals.iter().map(goal));
+    }
+    lines
+}
+
+/// Returns the first sentence, without its full stop.
+pub(super) fn success(reported: &Reported<'_>) -> String {
+    let answer = reported.answer;
+    let flights = if answer.flown == 1 { "1 flight".to_owned() } else { format!("{} flights", answer.flown) };
+    let mut head = vec![reported.name.to_owned(), flights];
+    head.extend(reported.design.clone());
+    head.extend(reported.shard.map(|shard| format!("shard {shard}")));
+    let head = head.join(", ");
+    let unflown = match answer.wanted.saturating_sub(answer.flown) {
+        0 => String::new(),
+        rest => format!("; {rest} of {} were not flown", answer.wanted),
+    };
+    format!("{head}: {}{unflown}", share(&answer.success))
+}
+
+fn share(success: &Success) -> String {
+    let skipped = match success.skipped {
+        0 => String::new(),
+        skipped => format!("; {skipped} could not be judged"),
+    };
+    let Some(share) = success.share() else { return format!("nothing was judged{skipped}") };
+    let Success { passed, judged, low, high, .. } = *success;
+    format!(
+        "{} succeeded ({passed} of {judged}; {} to {} with 95 % confidence){skipped}",
+        percent(share),
+        percent(low),
+        percent(high)
+    )
+}
+
+/// Returns the table of distributions.
+fn distributions(answer: &Answer) -> Vec<String> {
+    if answer.distributions.is_empty() {
+        return Vec::new();
+    }
+    let mut rows = vec![["", "median", "5 %", "95 %", "least", "greatest"].map(str::to_owned)];
+    for distribution in &answer.distributions {
+        let value = |value| shown::value(&distribution.of, value);
+        rows.push([
+            distribution.of.name.clone(),
+            value(distribution.median),
+            value(distribution.p5),
+            value(distribution.p95),
+            value(distribution.least),
+            value(distribution.greatest),
+        ]);
+    }
+    let mut lines = vec![String::new()];
+    lines.extend(aligned(&rows));
+    if answer.distributions.iter().any(|distribution| !distribution.is_exact) {
+        lines.push(format!("Quantiles are within {} of themselves.", percent(Summary::ERROR)));
+    }
+    lines
+}
+
+/// Returns rows as lines with columns of equal width, the first one to the left.
+fn aligned<const N: usize>(rows: &[[String; N]]) -> Vec<String> {
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..N).map(width).collect();
+    rows.iter()
+        .map(|row| {
+            let cells = row.iter().zip(&widths).enumerate().map(|(column, (cell, width))| {
+                if column == 0 { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
+            });
+            cells.collect::<Vec<_>>().join("  ").trim_end().to_owned()
+        })
+        .collect()
+}
+
+fn touchdown(answer: &Answer) -> Option<String> {
+    let distribution = answer.distribution("touchdown")?;
+    let value = |value| shown::value(&distribution.of, value);
+    Some(format!(
+        "Half of the landings are within {} of their place (CEP50), 95 % within {} (CEP95).",
+        value(distribution.median),
+        value(distribution.p95)
+    ))
+}
+
+fn causes(causes: &Causes) -> Vec<String> {
+    let mut lines = Vec::new();
+    if causes.failures > 0 && causes.failures < causes.flights {
+        lines.push(String::new());
+        let real: Vec<_> = causes.of_failures.iter().filter(|cause| cause.is_real).take(CAUSES).collect();
+        let failures = if causes.failures == 1 {
+            "the failure".to_owned()
+        } else {
+            format!("the {} failures", causes.failures)
+        };
+        if real.is_empty() {
+            let best = causes.of_failures.first().map_or_else(String::new, |cause| {
+                format!(" The closest is {}.", shown::rule(&cause.input, &cause.split.rule))
+            });
+            lines.push(format!("No input explains {failures} better than chance.{best}"));
+        } else {
+            lines.push(format!("What explains {failures}:"));
+        }
+        for (number, cause) in (1..).zip(real) {
+            let rho = cause.rho.map_or_else(String::new, |rho| format!("; rank correlation {rho:.2}"));
+            lines.push(format!(
+                "  {number}. {}: {}{rho}",
+                shown::rule(&cause.input, &cause.split.rule),
+                shown::split(&cause.split)
+            ));
+        }
+    }
+    for (metric, input, rho) in &causes.of_metrics {
+        lines.push(format!("{metric} depends most on {input} (rank correlation {rho:.2})."));
+    }
+    lines
+}
+
+fn worst(reported: &Reported<'_>) -> Vec<String> {
+    let worst = &reported.answer.worst;
+    if worst.is_empty() {
+        return Vec::new();
+    }
+    let all_passed = worst.iter().all(|worst| worst.has_passed);
+    let title = if all_passed { "The tightest flights:" } else { "The worst flights:" };
+    let mut lines = vec![String::new(), title.to_owned()];
+    for one in worst {
+        lines.push(format!("  {}: {}", shown::flight_name(reported, one), shown::complaint(one)));
+        lines.extend(shown::open_command(reported, one).map(|command| format!("      {command}")));
+    }
+    if reported.run.is_none() {
+        lines.push(
+            "  (--out RUN.jsonl keeps the flights; betadeck open RUN.jsonl:N then shows flight N)".to_owned(),
+        );
+    }
+    lines
+}
+
+fn comparison(reported: &Reported<'_>, versus: &Versus) -> Vec<String> {
+    let [a, b] = reported.sides.clone().unwrap_or_else(|| ["A".to_owned(), "B".to_owned()]);
+    let mut lines =
+        vec![String::new(), format!("B ({b}) against A ({a}), {} pairs with the same inputs:", versus.pairs)];
+    lines.push(format!("  A: {}", share(&versus.a)));
+    lines.push(format!("  B: {}", share(&versus.b)));
+    let p = shown::probability(versus.success.p);
+    let verdict = match (versus.success.is_real(), versus.only_b > versus.only_a) {
+        (true, true) => "B succeeds more often",
+        (true, false) => "A succeeds more often",
+        (false, _) => "this may be chance",
+    };
+    lines.push(format!(
+        "  {} flights succeeded only with A, {} only with B: {verdict} (McNemar, p = {p}).",
+        versus.only_a, versus.only_b
+    ));
+    lines.extend(versus.metrics.iter().map(|metric| format!("  {}", difference(metric))));
+    lines
+}
+
+fn difference(metric: &MetricDifference) -> String {
+    let value = |value| shown::value(&metric.of, value);
+    let head = format!(
+        "{}: median {} with A, {} with B",
+        metric.of.name,
+        value(metric.median_a),
+        value(metric.median_b)
+    );
+    let sign = if metric.difference > 0.0 { "+" } else { "" };
+    match metric.significance {
+        None => format!("{head}; the same in every pair."),
+        Some(significance) => {
+            let Significance { p, test } = significance;
+            let real = if significance.is_real() { "a real difference" } else { "this may be chance" };
+            format!(
+                "{head}; B − A {sign}{} in the median: {real} ({test}, p = {}).",
+                value(metric.difference),
+                shown::probability(p)
+            )
+        }
+    }
+}
+
+/// Returns a judged goal as a line.
+pub(super) fn goal(judged: &JudgedGoal) -> String {
+    let mark = match judged.outcome {
+        GoalOutcome::Met => "✓",
+        GoalOutcome::Failed => "✗",
+        GoalOutcome::Unknown => "–",
+    };
+    format!("{mark} {}: {}", judged.goal.label, found(judged))
+}
+
+/// Returns what was found for a goal.
+pub(super) fn found(judged: &JudgedGoal) -> String {
+    let subject = &judged.goal.subject;
+    match (judged.found, judged.bound, judged.goal.confidence) {
+        (None, ..) => "no flight has this number".to_owned(),
+        (Some(found), Some(bound), Some(_)) => {
+            format!("{} (the bound is {})", subject.shown(found), subject.shown(bound))
+        }
+        (Some(found), None, Some(_)) => {
+            format!("{} (too few flights for this confidence)", subject.shown(found))
+        }
+        (Some(found), _, None) => subject.shown(found),
+    }
+}
