@@ -1,4 +1,5 @@
-//! `docs/scenarios.md` against the code: every key, signal, flag, event, input and unit has its row.
+//! `docs/scenarios.md` and `docs/campaigns.md` against the code: every key, signal, flag, event, input, unit and metric has
+//! its row.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
@@ -9,21 +10,32 @@ use std::path::Path;
 
 use betadeck::scenario::flag::Flag;
 use betadeck::scenario::happening::EVENTS;
-use betadeck::scenario::{FORMS, TABLES};
+use betadeck::scenario::{FORMS, Metric, TABLES};
 use betadeck::telemetry::quantity::UNITS;
 use betadeck::telemetry::signal::{SIGNALS, SignalInfo};
 use strum::IntoEnumIterator as _;
 
-/// Returns the tables of the reference, each with the name of the marks around it.
-fn tables() -> Vec<(&'static str, String)> {
+/// Returns the tables of the reference, each with its page and the name of the marks around it.
+fn tables() -> Vec<(&'static str, &'static str, String)> {
+    let page = "docs/scenarios.md";
     vec![
-        ("INPUTS", inputs()),
-        ("EVENTS", events()),
-        ("FLAGS", flags()),
-        ("SIGNALS", signals()),
-        ("UNITS", units()),
-        ("KEYS", keys()),
+        (page, "INPUTS", inputs()),
+        (page, "EVENTS", events()),
+        (page, "FLAGS", flags()),
+        (page, "SIGNALS", signals()),
+        (page, "UNITS", units()),
+        (page, "KEYS", keys()),
+        ("docs/campaigns.md", "METRICS", metrics()),
     ]
+}
+
+fn metrics() -> String {
+    let row = |metric: Metric| {
+        let unit = metric.dimension().unit().map_or("", |unit| unit.name);
+        let unit = if metric.is_share() { "%" } else { unit };
+        format!("| `{metric}` | {unit} | {} |", metric.help())
+    };
+    rows("| metric | unit | is |", Metric::iter().map(row))
 }
 
 fn rows(head: &str, rows: impl Iterator<Item = String>) -> String {
@@ -93,18 +105,14 @@ fn keys() -> String {
 
 #[test]
 fn the_reference_has_a_row_for_everything_that_can_be_written() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/scenarios.md");
-    let page = std::fs::read_to_string(path).unwrap();
     let mut missing = Vec::new();
-    for (name, table) in tables() {
+    for (page, name, table) in tables() {
+        let page = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(page)).unwrap();
         println!("=={name}==\n{table}");
         let marked = format!("<!-- {name} -->\n{table}<!-- end -->");
         if !page.contains(&marked) {
             missing.push(name);
         }
     }
-    assert!(
-        missing.is_empty(),
-        "replace these tables of docs/scenarios.md by those printed above: {missing:?}"
-    );
+    assert!(missing.is_empty(), "replace these tables of the pages by those printed above: {missing:?}");
 }

@@ -2,6 +2,7 @@
 //! Each of the guide's scenarios must fail if something is wrong with the craft.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may stop and say what it expects")]
 
+mod deploy;
 mod docs;
 mod faults;
 mod language;

@@ -80,7 +80,7 @@ impl Loaded {
     /// Returns the flight of a line, from 0, and its side.
     pub(super) fn flight(&self, line: u64) -> Option<(CampaignFlight, Side)> {
         let sides = self.header.sides();
-        let side = if line % sides == 0 { Side::A } else { Side::B };
+        let side = if line.is_multiple_of(sides) { Side::A } else { Side::B };
         self.of_side(line / sides + 1, side).map(|flight| (flight, side))
     }
 

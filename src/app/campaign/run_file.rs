@@ -84,7 +84,7 @@ impl RunReader {
             read_record(&text, &self.header).map_err(|error: LineError| problem(error.to_string()))?;
         let sides = self.header.sides();
         let wanted = self.shard.flights(self.header.flights).start() + self.lines / sides;
-        let side = if self.lines % sides == 0 { Side::A } else { Side::B };
+        let side = if self.lines.is_multiple_of(sides) { Side::A } else { Side::B };
         if self.lines >= self.wanted() || record.number != wanted || record.side != side {
             return Err(problem(format!("flight {} is here in place of flight {wanted}", record.number)));
         }

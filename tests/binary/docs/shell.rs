@@ -16,8 +16,26 @@ use crate::pty::Terminal;
 use crate::support::{PROGRAM, Sandbox, plan};
 
 /// Programs of other people, which are not run here.
-const OTHERS: [(&str, &str); 2] =
-    [("cargo", "builds and tests this program"), ("cat", "passes a report to the CI service")];
+const OTHERS: [(&str, &str); 7] = [
+    ("cargo", "builds and tests this program"),
+    ("cat", "passes a report to the CI service"),
+    ("kubectl", "starts a job on a cluster"),
+    ("pip", "installs packages of Python"),
+    ("python3", "checks against SciPy"),
+    ("sbatch", "starts an array job on a cluster"),
+    ("kubernetes-validate", "checks a file against the schema of Kubernetes"),
+];
+
+/// A campaign whose craft stays on the ground for a second, in random winds.
+const CAMPAIGN: &str = "format = 1
+ends = \"1 s after boot\"
+[plan]
+builtin = \"square\"
+[craft]
+pilot = \"none\"
+[vary]
+wind = \"6+-2@250+-20\"
+";
 
 /// Executables of a firmware that the pages name.
 const FIRMWARES: [&str; 4] = ["remote.elf", "new.elf", "old.elf", "obj/main/betaflight_SITL.elf"];
@@ -52,8 +70,8 @@ impl Kind {
             Some("serve" | "fly" | "check" | "compare") if is_remote => Self::RunsFirmware,
             Some("serve" | "sitl" | "--plain") => Self::Runs,
             Some(
-                "fly" | "plan" | "convert" | "completions" | "man" | "check" | "config" | "compare"
-                | "doctor",
+                "fly" | "plan" | "convert" | "completions" | "man" | "check" | "campaign" | "config"
+                | "compare" | "doctor",
             ) => Self::ByItself,
             _ if is_remote => Self::ScreenWithFirmware,
             _ => Self::Screen,
@@ -104,6 +122,7 @@ impl Desk {
         for file in ["my-test.toml", "flight-tests/one.toml", "tests/one.toml"] {
             sandbox.write(file, &scenario.replace("my-plan.txt", &plan("guide-square.txt")));
         }
+        sandbox.write("my-campaign.toml", CAMPAIGN);
         sandbox.write("theirs.plan", include_str!("../../exchange/square.plan"));
         sandbox.write("field.geojson", include_str!("../../exchange/field.geojson"));
         sandbox.write("my-plan.toml", &std::fs::read_to_string(plan("square.toml")).expect("the square"));
@@ -130,6 +149,23 @@ impl Desk {
         Self { sandbox, variables }
     }
 
+    /// Flies what a line about campaigns needs before, and returns the line with few flights.
+    fn of_campaign(&self, line: &str) -> String {
+        let fly = |more: &[&str]| {
+            let arguments = ["campaign", "my-campaign.toml", "--flights", "20"];
+            self.sandbox.run(&[&arguments[..], more].concat()).exits(0);
+        };
+        if line.contains(" merge part") {
+            fly(&["--shard", "1/2", "--out", "part-1.jsonl"]);
+            fly(&["--shard", "2/2", "--out", "part-2.jsonl"]);
+        } else if line.contains(" run.jsonl") && !line.contains("--out run.jsonl") {
+            fly(&["--out", "run.jsonl"]);
+        } else if line.starts_with("betadeck campaign ") && !line.contains("--help") {
+            return format!("{line} --flights 1");
+        }
+        line.to_owned()
+    }
+
     /// Runs a command line as a user would, and reports if it does not end as the page says.
     fn run(self, shown: &Shown, line: &str, kind: Kind) -> Result<(), String> {
         let attached = line.contains("--firmware attach");
@@ -142,6 +178,7 @@ impl Desk {
             // It never replaces a file unless it is asked to.
             drop(std::fs::remove_file(self.sandbox.path("my-plan.toml")));
         }
+        let line = &self.of_campaign(line);
         // The exit code is that of the command, and the shell reads it after a Ctrl-C, too.
         let script = format!("{}; trap : INT; {before}{line}\nexit $?\n", self.variables);
         let mut terminal = Terminal::start_in(self.sandbox, 200, 60, "/bin/sh", &["-c", &script]);
