@@ -165,7 +165,7 @@ mod tests {
         // Deterministic values over many sizes, half of them negative.
         let value = |index: u32| {
             let unit = f64::from(index.wrapping_mul(2_654_435_761) >> 8) / f64::from(1 << 24);
-            if index % 2 == 0 { (10.0 * unit).exp() * 1e-3 } else { -(6.0 * unit).exp() }
+            if index.is_multiple_of(2) { (10.0 * unit).exp() * 1e-3 } else { -(6.0 * unit).exp() }
         };
         let count = 200_000;
         let mut exact: Vec<f64> = (0..count).map(value).collect();

@@ -27,7 +27,7 @@ pub(super) fn read(value: &Value<'_>, reader: &mut Reader<'_, '_>) -> Option<Spr
     }
     let text = reader.text(value)?;
     if let Some(name) = text.trim().strip_prefix(TABLE) {
-        let table = reader.file(name.trim()).and_then(|text| WindTable::parse(text));
+        let table = reader.file(name.trim()).and_then(WindTable::parse);
         return table
             .map_err(|problem| reader.problem(value.span(), format!("{}: {problem}", name.trim()), ""))
             .ok()
