@@ -1,8 +1,9 @@
 //! The program: from arguments to the tasks of one mode.
 //!
 //! One file a mode, with its parts in the layer of its name: `check` flies scenarios, `campaign` many flights of one,
-//! `compare` two firmwares, `fly` one plan; `open` shows a flight of a scenario or a campaign. `firmware` starts or finds a remote firmware, `output_file` replaces files as a whole, and `plan_files` reads,
-//! writes and watches plan files. `terrain` reads the elevation tiles that a plan needs.
+//! `compare` two firmwares, `fly` one plan, and `open` shows a flight of a scenario or a campaign. `firmware` starts or
+//! finds a remote firmware, `output_file` replaces files as a whole, and `plan_files` reads, writes and watches plan
+//! files. `terrain` reads the elevation tiles that a plan needs.
 
 mod backdrop_file;
 mod campaign;

@@ -54,7 +54,7 @@ pub(super) fn read_setting(name: &str, value: &Value<'_>, reader: &mut Reader<'_
 pub(super) fn read_switch(name: &str, value: &Value<'_>, reader: &mut Reader<'_, '_>) -> Option<Spread> {
     let distribution = distribution(value, reader)?;
     // The limits of a switch are known only by trying.
-    for unit in [1e-9, 0.5, 1.0 - 1e-9] {
+    for unit in [1.0 - 1e-9, 1e-9] {
         let text = format!("{name}={}", distribution.quantile(unit));
         if let Err(error) = Switches::default().set(&text) {
             reader.problem(value.span(), error.problem().to_owned(), "limit it: 0.5 +- 0.2 in 0..1");
