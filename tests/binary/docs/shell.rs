@@ -160,7 +160,10 @@ impl Desk {
             fly(&["--shard", "2/2", "--out", "part-2.jsonl"]);
         } else if line.contains(" run.jsonl") && !line.contains("--out run.jsonl") {
             fly(&["--out", "run.jsonl"]);
-        } else if line.starts_with("betadeck campaign ") && !line.contains("--help") {
+        } else if line.starts_with("betadeck campaign ")
+            && !line.contains("--help")
+            && !line.contains("--flights")
+        {
             return format!("{line} --flights 1");
         }
         line.to_owned()
