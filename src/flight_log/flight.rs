@@ -79,6 +79,17 @@ impl LogFlight {
         &self.marks
     }
 
+    /// Returns samples a few milliseconds to a few seconds apart, without reading the log: more bytes lie between those of
+    /// a larger file. They have no values of signals.
+    pub fn coarse_samples(&self) -> impl ExactSizeIterator<Item = &LogSample> {
+        self.blocks.iter().map(|block| &block.state.sample)
+    }
+
+    /// Returns the number of parts of a range of time whose extents are known without reading the log.
+    pub fn coarse_parts(&self, range: &Range<SimTime>) -> usize {
+        self.block_at(range.end) - self.block_at(range.start).min(self.block_at(range.end))
+    }
+
     /// Returns the places of the GPS frames, at most 20 000, evenly thinned out.
     pub fn track(&self) -> &[TrackFix] {
         &self.track

@@ -18,7 +18,7 @@ pub struct PastEvent {
 pub enum PastEventKind {
     Vehicle(EventKind),
     /// A part of the record is damaged, as a sentence.
-    Damage(String),
+    Warning(String),
     /// Something else, as a sentence.
     Notice(String),
 }

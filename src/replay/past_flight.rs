@@ -51,14 +51,18 @@ pub trait PastFlights: Send {
     /// Returns the name of the file, safe to print.
     fn name(&self) -> &str;
 
-    /// Reads the file. Returns `false` if the progress stopped it. Call it once, before all others.
+    /// Reads the file, before anything else is asked; a second call does nothing. Returns `false` if the progress stopped
+    /// it.
     ///
     /// # Errors
     /// Returns an error if the file has no flight that can be read.
     fn read(&mut self, progress: Progress<'_>) -> Result<bool, String>;
 
-    /// Returns the number of flights.
+    /// Returns the number of flights, also of those that cannot be shown.
     fn count(&self) -> usize;
+
+    /// Returns sentences about the file as a whole.
+    fn notices(&self) -> Vec<String>;
 
     /// Opens a flight, numbered from zero.
     ///

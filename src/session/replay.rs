@@ -44,8 +44,8 @@ pub enum ReplayStart {
 /// The start of a replay.
 pub struct ReplayConfig {
     pub flights: Box<dyn PastFlights>,
-    /// The first flight to show, numbered from zero.
-    pub number: usize,
+    /// The first flight to show, numbered from zero; `None` for the first that can be shown.
+    pub number: Option<usize>,
     /// The first instant to show, with time paused. `None` plays the flight from its beginning.
     pub start: Option<ReplayStart>,
     /// The multiple of real time at the start.
@@ -76,7 +76,8 @@ pub fn start_replay(config: ReplayConfig) -> std::io::Result<Handle> {
 
 struct ReplaySession {
     flights: Box<dyn PastFlights>,
-    number: usize,
+    /// The number of the flight that is shown, or of the first one to show.
+    number: Option<usize>,
     start: Option<ReplayStart>,
     speed: f64,
     /// The flight that is shown; `None` until it is read.
@@ -126,11 +127,9 @@ impl ReplaySession {
         }
         let mut published = Duration::ZERO;
         while !self.quit {
-            let wanted = self.take_commands(clock.elapsed(), &mut context);
-            if let Some(number) = wanted
-                && let Err(why) = self.show_flight(number, clock.elapsed())
-            {
-                self.report(ReplayNotice::Failed(why));
+            let further = self.take_commands(clock.elapsed(), &mut context);
+            if let Some(further) = further {
+                self.show_further(further, clock.elapsed());
             }
             let now = clock.elapsed();
             let moved = self.player.as_mut().map_or(Ok(false), |player| player.play(now));
@@ -164,9 +163,27 @@ impl ReplaySession {
         if !self.flights.read(&mut progress)? {
             return Ok(false);
         }
-        self.number = self.number.min(self.flights.count().saturating_sub(1));
-        self.show_flight(self.number, clock.elapsed())?;
+        let now = clock.elapsed();
+        match self.number {
+            Some(number) => self.show_flight(number, now)?,
+            None => self.show_first_of(0..self.flights.count(), now)?,
+        }
         Ok(true)
+    }
+
+    /// Shows the first flight that can be shown. Reports those before it.
+    fn show_first_of(&mut self, numbers: impl Iterator<Item = usize>, now: Duration) -> Result<(), String> {
+        let mut refused = None;
+        for number in numbers {
+            match self.show_flight(number, now) {
+                Ok(()) => {
+                    refused.into_iter().for_each(|why| self.report(ReplayNotice::Warning(why)));
+                    return Ok(());
+                }
+                Err(why) => refused = Some(why),
+            }
+        }
+        refused.map_or(Ok(()), Err)
     }
 
     /// Shows a flight. If that fails, the flight before stays.
@@ -174,19 +191,19 @@ impl ReplaySession {
         let flight = self.flights.open(number)?;
         let player = Player::new(flight, self.start.take(), self.speed, now)?;
         self.changed = true;
-        self.number = number;
-        self.begin(&player);
+        self.number = Some(number);
+        self.begin(&player, number);
         self.player = Some(player);
         Ok(())
     }
 
     /// Reports the beginning of a flight and all of its events.
-    fn begin(&mut self, player: &Player) {
+    fn begin(&mut self, player: &Player, number: usize) {
         let overview = player.overview();
         let (first, count) = (overview.first, self.flights.count());
         let which = match count {
             1 => String::new(),
-            count => format!(", flight {} of {count}", self.number + 1),
+            count => format!(", flight {} of {count}", number + 1),
         };
         let name = self.flights.name();
         let length_s = overview.last.seconds_since(first);
@@ -195,9 +212,12 @@ impl ReplaySession {
         send(first, SessionEvent::Replay(begins));
         let event = |kind: &PastEventKind| match kind {
             PastEventKind::Vehicle(kind) => SessionEvent::Vehicle(kind.clone()),
-            PastEventKind::Damage(text) => SessionEvent::Replay(ReplayNotice::Damage(text.clone())),
+            PastEventKind::Warning(text) => SessionEvent::Replay(ReplayNotice::Warning(text.clone())),
             PastEventKind::Notice(text) => SessionEvent::Notice(text.clone()),
         };
+        for text in self.flights.notices() {
+            send(first, SessionEvent::Notice(text));
+        }
         for kind in &overview.about {
             send(first, event(kind));
         }
@@ -206,8 +226,8 @@ impl ReplaySession {
         }
     }
 
-    /// Takes the commands that wait. Returns the number of another flight to show.
-    fn take_commands(&mut self, now: Duration, context: &mut Context<'_>) -> Option<usize> {
+    /// Takes the commands that wait. Returns the way to another flight to show.
+    fn take_commands(&mut self, now: Duration, context: &mut Context<'_>) -> Option<isize> {
         while let Some(mut command) = self.next_command(context) {
             // A held key repeats faster than instants are shown.
             while let Command::Seek(Seek::Seconds(way)) = &mut command {
@@ -221,11 +241,7 @@ impl ReplaySession {
             }
             self.changed = true;
             match command {
-                Command::ShowFlight(further) => {
-                    if let Some(number) = self.other_flight(further) {
-                        return Some(number);
-                    }
-                }
+                Command::ShowFlight(further) => return Some(further),
                 Command::Seek(seek) => {
                     self.seek(seek, now);
                     // Its view is shown before the next seek.
@@ -251,20 +267,26 @@ impl ReplaySession {
         }
     }
 
-    /// Returns the number of the flight this many further, and reports if there is none.
-    fn other_flight(&mut self, further: isize) -> Option<usize> {
+    /// Shows the flight this many further, or the next one in this direction that can be shown.
+    fn show_further(&mut self, further: isize, now: Duration) {
         let count = self.flights.count();
-        let found = self.number.checked_add_signed(further).filter(|number| *number < count);
-        if found.is_none() {
-            let number = self.number + 1;
-            let text = match count {
-                1 => "The file has only this flight.".to_owned(),
-                _ if further < 0 => "This is the first flight of the file.".to_owned(),
-                count => format!("This is the last flight of the file, {number} of {count}."),
-            };
-            self.notice(text);
+        let Some(shown) = self.number else { return };
+        let step = further.signum();
+        let numbers = std::iter::successors(shown.checked_add_signed(further), |number| {
+            number.checked_add_signed(step)
+        });
+        let mut numbers = numbers.take_while(|number| *number < count).take(count).peekable();
+        if numbers.peek().is_some() {
+            if let Err(why) = self.show_first_of(numbers, now) {
+                self.report(ReplayNotice::Failed(why));
+            }
+            return;
         }
-        found
+        self.notice(match count {
+            1 => "The file has only this flight.".to_owned(),
+            _ if further < 0 => "This is the first flight of the file.".to_owned(),
+            count => format!("This is the last flight of the file, {} of {count}.", shown + 1),
+        });
     }
 
     fn carry_out(&mut self, command: Command, now: Duration) {
@@ -341,7 +363,7 @@ impl ReplaySession {
         let Some(player) = &self.player else {
             return view::while_reading(self.flights.name(), 0.0, self.speed);
         };
-        view::of(player, (self.flights.name(), self.number, self.flights.count()))
+        view::of(player, (self.flights.name(), self.number.unwrap_or_default(), self.flights.count()))
     }
 }
 

@@ -109,12 +109,8 @@ impl Marks {
         }
     }
 
-    /// Adds the mark of a change of modes.
-    pub fn note_modes(&mut self, time: SimTime, modes: ModeFlags) {
-        self.push(time, MarkKind::Modes(modes));
-    }
-
-    fn push(&mut self, time: SimTime, kind: MarkKind) {
+    /// Adds a mark.
+    pub fn push(&mut self, time: SimTime, kind: MarkKind) {
         let marks = Arc::make_mut(&mut self.all);
         if marks.len() == MOST {
             marks.drain(..MOST / 4);

@@ -34,7 +34,7 @@ impl Severity {
             SessionEvent::Remote(RemoteNotice::Failed(_)) | SessionEvent::Replay(ReplayNotice::Failed(_)) => {
                 Self::Fault
             }
-            SessionEvent::Replay(ReplayNotice::Damage(_)) => Self::Warn,
+            SessionEvent::Replay(ReplayNotice::Warning(_)) => Self::Warn,
             SessionEvent::Replay(ReplayNotice::Begins(_)) => Self::Step,
             SessionEvent::Remote(RemoteNotice::Output(_) | RemoteNotice::Reported(_))
             | SessionEvent::Endpoints(_)

@@ -53,6 +53,8 @@ pub struct OtherFlight {
     placed_on: Option<LocalFrame>,
     /// The time by which the user shifted it, µs.
     shift_us: i64,
+    /// The alignment that the user was shown last.
+    pub(super) reported: Option<(Alignment, i64)>,
 }
 
 impl OtherFlight {
@@ -63,6 +65,7 @@ impl OtherFlight {
             placed_on: None,
             overview,
             shift_us: 0,
+            reported: None,
         }
     }
 
@@ -160,7 +163,7 @@ mod tests {
         if let Some(engaged_s) = engaged_s {
             let mut modes = ModeFlags::NONE;
             modes.set(Mode::Autopilot, true);
-            marks.note_modes(at(engaged_s), modes);
+            marks.push(at(engaged_s), MarkKind::Modes(modes));
         }
         let picture = |second: u64| {
             let mut snapshot = Snapshot { time: at(second), ..Snapshot::default() };

@@ -94,7 +94,7 @@ fn ways_out(file: &SourceFile) -> Vec<String> {
     }
     let tokens = tokens(&file.text);
     for (index, token) in tokens.iter().enumerate() {
-        let is_lifetime = index > 0 && tokens[index - 1] == "&";
+        let is_lifetime = index > 0 && ["&", "+", ":", "<", ","].contains(&tokens[index - 1].as_str());
         let declared: Vec<&str> =
             tokens[index..].iter().take_while(|token| *token != "=").map(String::as_str).take(40).collect();
         let is_variable = declared.iter().any(|word| VARIABLES.contains(word) || word.starts_with("Atomic"));
@@ -169,6 +169,7 @@ fn every_known_way_out_is_found() {
         "use std::time::Duration;",
         "static TABLE: [u16; 3] = [1, 2, 3];",
         "fn f() -> &'static str { \"std::fs\" }",
+        "impl<S: Send + 'static> Late for Box<S> { fn f(&self, of: &Cell<S>) {} }",
         "#[cfg(test)]\nmod tests { use std::fs; }",
     ] {
         assert_eq!(ways_out(&file(text)), [""; 0], "{text}");

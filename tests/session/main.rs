@@ -1,5 +1,9 @@
 //! A session: its clients, its simulator, and its requests.
 
 mod doors;
+mod replay;
 mod requests;
 mod simulator;
+
+#[path = "../log_support/made_log.rs"]
+mod made_log;

@@ -8,7 +8,7 @@ pub enum ReplayNotice {
     /// This flight is shown from now on. Events of flights before it no longer matter.
     Begins(String),
     /// A part of the record is damaged.
-    Damage(String),
+    Warning(String),
     /// The record cannot be read any more, or another flight of the file cannot be read.
     Failed(String),
 }
@@ -16,7 +16,7 @@ pub enum ReplayNotice {
 impl fmt::Display for ReplayNotice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Begins(text) | Self::Damage(text) | Self::Failed(text) => f.write_str(text),
+            Self::Begins(text) | Self::Warning(text) | Self::Failed(text) => f.write_str(text),
         }
     }
 }

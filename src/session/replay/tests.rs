@@ -6,7 +6,7 @@ use crate::replay::{Curve, CurvesRequest, Moment, Overview, PastEvent, PastFligh
 use crate::session::policy::RECORDED;
 use crate::session::{ReplyTo, SPEED_RANGE};
 use crate::telemetry::{EventKind, FirmwareEvent, Mode, ModeFlags, Snapshot};
-use crate::timeline::Marks;
+use crate::timeline::{MarkKind, Marks};
 use crate::vehicle::VehicleCommand;
 
 /// A flight of twenty seconds, which climbs at 1 m/s and is armed from second 12 on. It begins at second 10.
@@ -37,12 +37,12 @@ impl Climb {
         marks.note(at_s(12.0), &armed);
         let mut modes = ModeFlags::NONE;
         modes.set(Mode::Autopilot, true);
-        marks.note_modes(at_s(15.0), modes);
+        marks.push(at_s(15.0), MarkKind::Modes(modes));
         let overview = Overview {
             first: FIRST,
             last: at_s(30.0),
             frame_us: 4000,
-            about: vec![PastEventKind::Damage("12 bytes are damaged.".to_owned())],
+            about: vec![PastEventKind::Warning("12 bytes are damaged.".to_owned())],
             events: vec![PastEvent { time: at_s(12.0), kind: PastEventKind::Vehicle(armed) }],
             marks,
             pictures: (100..300).map(|tenth| Picture::of(&picture(SimTime(tenth * 100_000)))).collect(),
@@ -86,6 +86,10 @@ impl PastFlights for File {
         self.count
     }
 
+    fn notices(&self) -> Vec<String> {
+        Vec::new()
+    }
+
     fn read(&mut self, progress: Progress<'_>) -> Result<bool, String> {
         Ok(progress(0.5))
     }
@@ -111,7 +115,7 @@ impl Rig {
     fn new(count: usize, start: Option<ReplayStart>) -> Self {
         let is_there = Arc::new(Mutex::new(true));
         let flights = Box::new(File { count, is_there: Arc::clone(&is_there) });
-        let config = ReplayConfig { flights, number: 0, start, speed: 1.0, notices: Vec::new() };
+        let config = ReplayConfig { flights, number: None, start, speed: 1.0, notices: Vec::new() };
         let (commands, taken) = mpsc::channel(32);
         let (sent, events) = mpsc::unbounded_channel();
         let session = ReplaySession::new(config, taken, sent);
@@ -124,9 +128,12 @@ impl Rig {
         self.session.show_flight(number, self.now)
     }
 
-    fn send(&mut self, command: Command) -> Option<usize> {
+    fn send(&mut self, command: Command) {
         self.commands.try_send(command).unwrap();
-        self.session.take_commands(self.now, &mut Context::from_waker(std::task::Waker::noop()))
+        let mut context = Context::from_waker(std::task::Waker::noop());
+        if let Some(further) = self.session.take_commands(self.now, &mut context) {
+            self.session.show_further(further, self.now);
+        }
     }
 
     fn seek(&mut self, seek: Seek) -> f64 {
@@ -257,19 +264,35 @@ fn the_events_of_the_flight_follow_its_beginning() {
 
 #[test]
 fn the_flights_of_a_file_are_shown_one_after_the_other() {
+    let mut rig = Rig::new(4, None);
+    let shown =
+        |rig: &Rig| rig.session.view().replay.map(|replay| (replay.number, Arc::clone(&replay.overview)));
+    let (first, before) = shown(&rig).unwrap();
+    rig.send(Command::ShowFlight(-1));
+    rig.send(Command::ShowFlight(1));
+    let (second, after) = shown(&rig).unwrap();
+    assert_eq!((first, second), (0, 1));
+    assert!(!Arc::ptr_eq(&before, &after));
+    rig.sentences();
+    // The next one is damaged.
+    rig.send(Command::ShowFlight(1));
+    assert_eq!(shown(&rig).unwrap().0, 3);
+    let sentences = rig.sentences();
+    assert!(sentences.contains(&"Flight 3 has no frame.".to_owned()), "{sentences:?}");
+    rig.send(Command::ShowFlight(1));
+    assert_eq!(rig.sentences(), ["This is the last flight of the file, 4 of 4."]);
+    rig.send(Command::ShowFlight(-1));
+    assert_eq!(shown(&rig).unwrap().0, 1, "the damaged one is passed over");
+}
+
+#[test]
+fn a_last_flight_that_cannot_be_shown_leaves_the_one_before() {
     let mut rig = Rig::new(3, None);
-    let before = rig.session.view().replay.unwrap();
-    assert_eq!(rig.send(Command::ShowFlight(-1)), None);
-    let next = rig.send(Command::ShowFlight(1)).unwrap();
-    rig.show(next).unwrap();
-    let after = rig.session.view().replay.unwrap();
-    assert_eq!((before.number, after.number, after.count), (0, 1, 3));
-    assert!(!Arc::ptr_eq(&before.overview, &after.overview));
-    // The flight before a damaged one stays.
-    let next = rig.send(Command::ShowFlight(1)).unwrap();
-    assert_eq!(rig.show(next), Err("Flight 3 has no frame.".to_owned()));
-    assert_eq!(rig.session.view().replay.unwrap().number, 1);
-    assert!(rig.sentences().iter().any(|said| said == "This is the first flight of the file."));
+    rig.send(Command::ShowFlight(1));
+    rig.sentences();
+    rig.send(Command::ShowFlight(1));
+    assert_eq!(rig.session.view().replay.map(|replay| replay.number), Some(1));
+    assert_eq!(rig.sentences(), ["Flight 3 has no frame."]);
 }
 
 #[test]
@@ -313,7 +336,7 @@ fn the_curves_of_a_flight_are_read() {
 #[test]
 fn the_thread_shows_views_until_its_commands_end() {
     let flights = Box::new(File { count: 1, is_there: Arc::new(Mutex::new(true)) });
-    let config = ReplayConfig { flights, number: 0, start: None, speed: 1.0, notices: Vec::new() };
+    let config = ReplayConfig { flights, number: None, start: None, speed: 1.0, notices: Vec::new() };
     let mut handle = start_replay(config).unwrap();
     let runtime = tokio::runtime::Builder::new_current_thread().build().unwrap();
     runtime.block_on(async {
@@ -331,7 +354,7 @@ fn the_thread_shows_views_until_its_commands_end() {
 #[test]
 fn a_flight_that_cannot_be_read_ends_the_session_with_the_reason() {
     let flights = Box::new(File { count: 3, is_there: Arc::new(Mutex::new(true)) });
-    let config = ReplayConfig { flights, number: 2, start: None, speed: 1.0, notices: Vec::new() };
+    let config = ReplayConfig { flights, number: Some(2), start: None, speed: 1.0, notices: Vec::new() };
     let handle = start_replay(config).unwrap();
     assert_eq!(handle.thread.join().unwrap().as_deref(), Some("Flight 3 has no frame."));
 }
@@ -346,6 +369,10 @@ impl PastFlights for Slow {
 
     fn count(&self) -> usize {
         1
+    }
+
+    fn notices(&self) -> Vec<String> {
+        Vec::new()
     }
 
     fn open(&mut self, _: usize) -> Result<Box<dyn PastFlight>, String> {
@@ -367,7 +394,7 @@ impl PastFlights for Slow {
 fn reading_a_large_file_ends_when_the_screen_leaves() {
     let ((go, gone), (begin, begun)) = (std::sync::mpsc::channel(), std::sync::mpsc::channel());
     let flights = Box::new(Slow(gone, begin));
-    let config = ReplayConfig { flights, number: 0, start: None, speed: 1.0, notices: Vec::new() };
+    let config = ReplayConfig { flights, number: None, start: None, speed: 1.0, notices: Vec::new() };
     let handle = start_replay(config).unwrap();
     assert_eq!(handle.view.borrow().replay.as_ref().and_then(|replay| replay.reading), Some(0.0));
     begun.recv().unwrap();

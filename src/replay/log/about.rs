@@ -1,0 +1,54 @@
+//! Sentences about a log as a whole.
+
+use crate::flight_log::LogFlight;
+use crate::replay::PastEventKind;
+
+/// Returns sentences about a log: who wrote it, and what is missing or damaged.
+pub(super) fn of(log: &LogFlight) -> Vec<PastEventKind> {
+    let header = log.header();
+    let value = |name: &str| header.value(name).filter(|value| !value.is_empty());
+    let main = log.counts().main;
+    let firmware = value("Firmware revision").unwrap_or("unknown");
+    let craft = value("Craft name").map_or_else(String::new, |name| format!(", craft {name}"));
+    let date = date(log).map_or_else(String::new, |date| format!(", {date}"));
+    let frames = if main == 1 { "frame" } else { "frames" };
+    let written = format!("Written by {firmware}{craft}{date}: {main} main {frames}.");
+    let mut about = vec![PastEventKind::Notice(written)];
+    if log.track().is_empty() {
+        about.push(PastEventKind::Notice("The log has no GPS: the map shows no track.".to_owned()));
+    }
+    about.extend(log_damage(log).map(PastEventKind::Warning));
+    about.extend(cut(log).map(PastEventKind::Notice));
+    about
+}
+
+/// Returns a sentence with the number of the damaged bytes and frames of a log, if it has any.
+pub fn log_damage(log: &LogFlight) -> Option<String> {
+    let counts = log.counts();
+    if counts.skipped_bytes == 0 && counts.skipped_frames == 0 {
+        return None;
+    }
+    let lost = match counts.skipped_frames {
+        0 => String::new(),
+        1 => ", and a frame after them cannot be used".to_owned(),
+        frames => format!(", and {frames} frames after them cannot be used"),
+    };
+    Some(format!("The log is damaged: {} bytes belong to no frame{lost}.", counts.skipped_bytes))
+}
+
+/// Returns a sentence about the missing end of a log.
+fn cut(log: &LogFlight) -> Option<String> {
+    if log.is_complete() {
+        return None;
+    }
+    let rest = match log.cut_bytes() {
+        0 => String::new(),
+        bytes => format!("; its last {bytes} bytes are no whole frame"),
+    };
+    Some(format!("The log was cut: it has no end{rest}."))
+}
+
+/// Returns the date of a log. A craft without a clock writes the year 0000.
+fn date(log: &LogFlight) -> Option<&str> {
+    log.header().value("Log start datetime").filter(|date| !date.is_empty() && !date.starts_with("0000"))
+}
