@@ -5,7 +5,11 @@
 
 use betadeck::geo::GroundPlane;
 use betadeck::plan::feature::{Feature, Shape, Vertex, Zone};
-use betadeck::telemetry::NavState;
+use betadeck::replay::{Overview, Picture};
+use betadeck::session::{ReplayView, SessionView};
+use betadeck::signals::SimTime;
+use betadeck::telemetry::{NavState, Snapshot};
+use betadeck::timeline::TimelineView;
 use betadeck::ui::backdrop::BackdropLayer;
 use betadeck::ui::editor::FileReply;
 use betadeck::ui::{AppState, MapMode, Msg, draw, update};
@@ -14,6 +18,7 @@ use divan::Bencher;
 use nalgebra::Vector2;
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
+use std::sync::Arc;
 
 #[path = "../tests/ui/fixture.rs"]
 mod fixture;
@@ -102,6 +107,50 @@ fn zoomed_map_with_a_long_track(bencher: Bencher<'_, '_>, size: (u16, u16)) {
     press(&mut state, 'z');
     press(&mut state, '+');
     press(&mut state, '+');
+    let mut terminal = terminal(size);
+    bencher.bench_local(|| {
+        terminal.clear()?;
+        terminal.draw(|frame| draw(&state, frame)).map(|_| ())
+    });
+}
+
+/// Returns two recorded flights of some 20 000 places each.
+fn with_two_recorded_flights(size: (u16, u16)) -> AppState {
+    let overview = |shift_m: f64| {
+        let pictures = (0..POINTS).map(|point| {
+            let angle = f64::from(point) / 500.0;
+            let radius_m = 20.0 + 0.02 * f64::from(point);
+            let time = SimTime::from_secs_f64(f64::from(point) * STEP.1);
+            let mut snapshot = Snapshot { time, ..Snapshot::default() };
+            snapshot.estimate.n = Some(radius_m * angle.cos() + shift_m);
+            snapshot.estimate.e = Some(radius_m * angle.sin());
+            snapshot.estimate.alt = Some(50.0 + angle.sin());
+            Picture::of(&snapshot)
+        });
+        let last = SimTime::from_secs_f64(f64::from(POINTS) * STEP.1);
+        Arc::new(Overview { last, frame_us: 1000, pictures: pictures.collect(), ..Overview::default() })
+    };
+    let mut state = fixture::state(size, fixture::colour());
+    let shown = overview(0.0);
+    let timeline = TimelineView { head: shown.last, rewound: true, ..TimelineView::default() };
+    let time = SimTime(shown.last.0 / 2);
+    let view = SessionView {
+        vehicle: Arc::new(Snapshot { time, ..Snapshot::default() }),
+        timeline: Some(timeline),
+        replay: Some(Arc::new(ReplayView { count: 1, overview: shown, ..ReplayView::default() })),
+        ..SessionView::default()
+    };
+    update(&mut state, Msg::View(view));
+    let result = Ok(overview(3.0));
+    update(&mut state, Msg::OtherFlight { name: "b.bbl".to_owned(), result });
+    assert!(state.shared.track.points().len() > POINTS as usize / 2, "{}", state.shared.track.points().len());
+    state
+}
+
+/// Every cell of the screen with two recorded flights drawn again.
+#[divan::bench(args = [(80, 24), (200, 60)])]
+fn full_redraw_with_two_recorded_flights(bencher: Bencher<'_, '_>, size: (u16, u16)) {
+    let state = with_two_recorded_flights(size);
     let mut terminal = terminal(size);
     bencher.bench_local(|| {
         terminal.clear()?;

@@ -112,6 +112,13 @@ fn battery_bar(volts: Option<f64>, cells: Option<u8>) -> (String, Role) {
 /// Returns the source of the channels, in at most ten columns.
 pub(super) fn rc(state: &Shared) -> (String, Role) {
     let craft = &state.view.vehicle.craft;
+    if state.view.replay.is_some() {
+        return match craft.rc_link {
+            Some(true) => ("RC ok".to_owned(), Role::Text),
+            Some(false) => ("RC LOST".to_owned(), Role::Fault),
+            None => ("RC —".to_owned(), Role::Dim),
+        };
+    }
     let ours = matches!(craft.rc_source, Some(RcSource::Sticks) | None);
     if state.view.rc_cut && ours {
         return ("RC CUT".to_owned(), Role::Fault);
@@ -155,6 +162,12 @@ fn mission(state: &Shared, room: usize) -> Vec<Span<'static>> {
     let speed = |value: Option<f64>| value.map(|speed| units.speed(speed));
     let estimate = &vehicle.estimate;
     let leg = engaged.map_or_else(Vec::new, |nav| leg(nav, units));
+    // Places in a recorded flight count from home.
+    let recorded_m = || {
+        let (n, e) = estimate.n.zip(estimate.e).filter(|_| state.view.replay.is_some())?;
+        Some(n.hypot(e))
+    };
+    let home_m = nav.and_then(|nav| nav.home_distance_m).or_else(recorded_m);
     let agl = ground::agl_m(state)
         .map(|agl_m| (3, "  agl", fixed(Some(units.length(agl_m)), 6, 1), format!(" {m}")));
     // Rank (a low one is kept longest), label, value, unit.
@@ -162,7 +175,7 @@ fn mission(state: &Shared, room: usize) -> Vec<Span<'static>> {
         (2, "", fixed(speed(estimate.ground_speed_mps), 5, 1), format!(" {mps}")),
         (1, "", fixed(length(estimate.alt), 6, 1), format!(" {m}")),
         (5, "  climb", signed(speed(estimate.climb_mps), 6, 1), format!(" {mps}")),
-        (6, "  home", fixed(length(nav.and_then(|nav| nav.home_distance_m)), 6, 0), format!(" {m}")),
+        (6, "  home", fixed(length(home_m), 6, 0), format!(" {m}")),
         (7, "  fence", fixed(length(nav.and_then(|nav| nav.fence_margin_m)), 6, 0), format!(" {m} left")),
     ];
     let mut spans = vec![

@@ -10,7 +10,7 @@ use betadeck::session::policy::RECORDED;
 use betadeck::session::{Command, Event, ReplayNotice, ReplayView, SessionEvent, SessionView};
 use betadeck::signals::SimTime;
 use betadeck::telemetry::{EventKind, FirmwareEvent, Mode, ModeFlags, Snapshot};
-use betadeck::timeline::{Marks, TimelineView};
+use betadeck::timeline::{MarkKind, Marks, TimelineView};
 use betadeck::ui::{AppState, Effect, Msg, Severity, update};
 
 use crate::fixture;
@@ -76,7 +76,7 @@ impl Circle {
         marks.note(at(self.armed_s), &EventKind::Firmware(FirmwareEvent::Armed));
         let mut modes = ModeFlags::NONE;
         modes.set(Mode::Angle, true);
-        marks.note_modes(at(self.armed_s + 20.0), modes);
+        marks.push(at(self.armed_s + 20.0), MarkKind::Modes(modes));
         let times = (0..=1200).map(|tenth| FROM_S + f64::from(tenth) / 10.0);
         let series = [("gyroADC[0]", "°/s"), ("debug[3]", "")];
         Overview {
@@ -130,7 +130,7 @@ fn replayed(size: (u16, u16), circle: Circle, time_s: f64) -> AppState {
         SessionEvent::Replay(ReplayNotice::Begins("LOG00007.BFL, flight 2 of 3.".into())),
     );
     let damage = "2 damaged parts, 318 bytes, were skipped.".to_owned();
-    hear(&mut state, FROM_S, SessionEvent::Replay(ReplayNotice::Damage(damage)));
+    hear(&mut state, FROM_S, SessionEvent::Replay(ReplayNotice::Warning(damage)));
     let armed = EventKind::Firmware(FirmwareEvent::Armed);
     hear(&mut state, circle.armed_s, SessionEvent::Vehicle(armed));
     state

@@ -37,6 +37,9 @@ impl Content for RcPanel {
             || state.panel_title(Panel::Rc).to_owned(),
             |doing| format!("{} {doing}", state.panel_title(Panel::Rc)),
         );
+        if state.view.replay.is_some() {
+            return format!("{name} — recorded");
+        }
         let craft = &state.view.vehicle.craft;
         let ours = !matches!(craft.rc_source, Some(RcSource::Udp | RcSource::Msp));
         if state.view.rc_cut && ours {

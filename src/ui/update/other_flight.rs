@@ -17,18 +17,25 @@ pub(super) fn take(state: &mut Shared, name: String, result: Result<Arc<Overview
         Ok(overview) => {
             state.other = Some(OtherFlight::new(name, overview));
             follow(state);
-            say_alignment(state);
         }
         Err(why) => state.notify(Severity::Fault, why),
     }
 }
 
-/// Puts the track of the second flight on the map of the newest view.
+/// Puts the second flight on the map of the newest view, and reports its alignment if it is another one.
 pub(super) fn follow(state: &mut Shared) {
     if let Some(origin) = origin(state)
         && let Some(other) = &mut state.other
     {
         other.place_on(origin);
+    }
+    let aligned = state.other_aligned();
+    if let Some(other) = &mut state.other
+        && aligned.is_some()
+        && other.reported != aligned
+    {
+        other.reported = aligned;
+        say_alignment(state);
     }
 }
 
@@ -37,7 +44,7 @@ pub(super) fn shift(state: &mut Shared, steps: i64) {
     if let Some(other) = &mut state.other {
         other.shift(steps * SHIFT_US);
     }
-    say_alignment(state);
+    follow(state);
 }
 
 fn say_alignment(state: &mut Shared) {
