@@ -3,7 +3,7 @@
 //! One file a mode, with its parts in the layer of its name: `check` flies scenarios, `campaign` many flights of one,
 //! `compare` two firmwares, `fly` one plan, and `open` shows a flight of a scenario or a campaign. `firmware` starts or
 //! finds a remote firmware, `output_file` replaces files as a whole, and `plan_files` reads, writes and watches plan
-//! files. `terrain` reads the elevation tiles that a plan needs.
+//! files. `replay` shows and exports recorded flights. `terrain` reads the elevation tiles that a plan needs.
 
 mod backdrop_file;
 mod campaign;
@@ -33,6 +33,7 @@ mod patient_output;
 mod plan;
 mod plan_files;
 mod recording_file;
+mod replay;
 mod runtime;
 mod scenario_file;
 mod serve;
@@ -96,7 +97,10 @@ fn outcome(arguments: Vec<OsString>) -> u8 {
 /// Returns `true` if the command uses the configuration file.
 fn reads_layers(command: Option<&Command>) -> bool {
     match command {
-        None | Some(Command::Fly(_) | Command::Compare(_) | Command::Serve(_) | Command::Sitl(_)) => true,
+        None
+        | Some(
+            Command::Fly(_) | Command::Compare(_) | Command::Serve(_) | Command::Sitl(_) | Command::Replay(_),
+        ) => true,
         Some(
             Command::Check(_)
             | Command::Campaign(_)
@@ -125,6 +129,7 @@ fn may_start_firmware(command: Option<&Command>) -> bool {
         Some(
             Command::Sitl(_)
             | Command::Open(_)
+            | Command::Replay(_)
             | Command::Plan(_)
             | Command::Convert(_)
             | Command::Config(_)
@@ -145,6 +150,7 @@ fn dispatch(cli: Cli, keymap: Keymap) -> Result<u8, AppError> {
         Some(Command::Check(args)) => check::run(&args),
         Some(Command::Campaign(args)) => campaign::run(&args),
         Some(Command::Open(args)) => open::run(&args, keymap),
+        Some(Command::Replay(args)) => replay::run(&args, keymap),
         Some(Command::Compare(args)) => compare::run(&args),
         Some(Command::Sitl(args)) => sitl::run(&args),
         Some(Command::Serve(args)) => serve::run(&args),

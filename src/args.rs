@@ -23,6 +23,7 @@ mod mission;
 mod open;
 mod physics;
 mod plan_arg;
+mod replay;
 mod review;
 mod terrain;
 mod trouble;
@@ -54,10 +55,11 @@ pub use mission::MissionArgs;
 pub use open::OpenArgs;
 pub use physics::{FdmDialect, PhysicsArgs, PhysicsChoice, SimulatorArgs};
 pub use plan_arg::{PlanArg, PlanArgError, is_descriptor};
+pub use replay::ReplayArgs;
 pub use review::ReviewArgs;
 pub use terrain::TerrainArgs;
 pub use trouble::TroubleArgs;
-pub use value::{AttitudeChoice, Instant, OnOff, OutputFile, Seeds, Speed};
+pub use value::{AttitudeChoice, Instant, OnOff, OutputFile, RecordInstant, Seeds, Speed};
 
 /// Flies the Betaflight waypoint autopilot in a simulated quadcopter
 ///
@@ -169,6 +171,15 @@ pub enum Command {
     ]))]
     Open(Box<OpenArgs>),
 
+    /// Shows a recorded flight on the screen: a blackbox log, or a recording; two of them beside each other
+    #[command(before_help = help::examples(&[
+        ("betadeck replay LOG00001.BFL", "map, horizon, graphs and events, with rewind and speed"),
+        ("betadeck replay flights.bbl --log 3 --at 95", "the third flight of a file, 95 s after its beginning"),
+        ("betadeck replay before.bbl after.bbl", "both tracks and the differences"),
+        ("betadeck replay log.bbl --csv values.csv --samples 100 --gpx track.gpx", "values and track for other programs"),
+    ]))]
+    Replay(Box<ReplayArgs>),
+
     /// Flies a plan on the embedded firmware and on another one, in the same air, and shows the differences
     #[command(before_help = help::examples(&[
         ("betadeck compare square --firmware obj/main/betaflight_SITL.elf", "your build against the embedded firmware"),
@@ -276,6 +287,7 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>, layers: &Layers) -> 
         Some(Command::Compare(compare)) => compare.check(),
         Some(Command::Campaign(campaign)) => campaign.check(),
         Some(Command::Convert(convert)) => convert.check(),
+        Some(Command::Replay(replay)) => replay.check(),
         Some(
             Command::Serve(_)
             | Command::Sitl(_)

@@ -7,7 +7,7 @@ use super::AppError;
 use super::backdrop_file;
 use super::live::LiveArgs;
 use super::setup;
-use super::tui::{self, Screen};
+use super::tui::{self, LiveFlight, Screen, Source};
 use crate::args::{ConnectArgs, PlanArg, TuiArgs};
 use crate::fc::{RemoteEnds, RemoteLink};
 use crate::link::{FcPlace, FcStream};
@@ -29,25 +29,29 @@ pub(super) fn run(args: &TuiArgs, place: &FcPlace, keymap: Keymap) -> Result<u8,
         plan,
         path: args.plan.as_ref().and_then(PlanArg::path),
         backdrop: backdrop_file::read_all(&args.backdrop.backdrop)?,
-        vehicle: Vehicle::elsewhere().map_err(AppError::internal)?,
-        // The craft keeps its configuration itself.
-        store: Store::in_memory(),
         directory: setup::store_directory(&args.flight)?,
         was_used: true,
-        flown: None,
         notices,
         review: args.review,
         tiles: None,
         plain: args.plain,
         display: &args.display,
-        live: LiveArgs {
-            doors: &args.doors,
-            connect: Some(place),
-            firmware: None,
-            physics: &args.physics,
-            flight: &args.flight,
-            has_screen: true,
-        },
+        terrain: &args.flight.terrain,
+        source: Source::Flight(Box::new(LiveFlight {
+            vehicle: Vehicle::elsewhere().map_err(AppError::internal)?,
+            // The craft keeps its configuration itself.
+            store: Store::in_memory(),
+            flown: None,
+            live: LiveArgs {
+                doors: &args.doors,
+                connect: Some(place),
+                firmware: None,
+                physics: &args.physics,
+                flight: &args.flight,
+                has_screen: true,
+            },
+        })),
+        other: None,
     };
     tui::show(screen, keymap)
 }

@@ -17,6 +17,8 @@ const STDIN: &str = "standard input";
 /// A plan or settings.
 const TEXT: Kind = Kind { most: 4 << 20, too_large: "neither a plan nor settings" };
 const TILE: Kind = Kind { most: 64 << 20, too_large: "no elevation tile" };
+/// A blackbox log, which is read in parts.
+const LOG: Kind = Kind { most: u64::MAX, too_large: "no log" };
 const MAP: Kind = Kind { most: 64 << 20, too_large: "too much for a map" };
 /// A file for a syntax tree. The tree takes a hundred times as much memory.
 const TREE: Kind = Kind { most: 512 << 10, ..TEXT };
@@ -40,6 +42,20 @@ pub(super) fn read_plan(path: &Path) -> Result<Vec<u8>, AppError> {
 pub(super) fn read_tile(path: &Path) -> Result<Vec<u8>, AppError> {
     let name = path.display().to_string();
     read_bytes(open(path, &name, TILE)?, &name, TILE)
+}
+
+/// Opens a recorded flight. Returns it with its size, bytes.
+pub(super) fn open_log(path: &Path) -> Result<(File, u64), AppError> {
+    let name = path.display().to_string();
+    if is_descriptor(path) {
+        return Err(AppError::input(format!(
+            "{name} is no file: a replay reads a file again and again, so name one"
+        )));
+    }
+    let file = open(path, &name, LOG)?;
+    let size =
+        file.metadata().map_err(|error| AppError::environment(format!("cannot read {name}: {error}")))?.len();
+    Ok((file, size))
 }
 
 /// Reads a map for a backdrop.

@@ -9,7 +9,7 @@ use super::firmware::run::{OnEvent, Stopped, unless_interrupted};
 use super::firmware::{self, Beside, RemoteFirmware, reported};
 use super::interrupt::interrupt_flag;
 use super::live::LiveArgs;
-use super::tui::{self, Screen};
+use super::tui::{self, LiveFlight, Screen, Source};
 use crate::args::{DoorArgs, FlightArgs, Instant, OpenArgs, PhysicsArgs, ReviewArgs};
 use crate::fc::RemoteLink;
 use crate::scenario::{self, Air, Case, CaseFlight, Scenario};
@@ -79,24 +79,28 @@ pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
         plan: case.setup.plan.clone(),
         path: None,
         backdrop: Vec::new(),
-        vehicle: flight.into_vehicle(),
-        store: Store::in_memory(),
         directory: None,
         was_used: true,
-        flown: Some((FlownBefore { timeline, events, show, again }, past)),
         notices,
         review: ReviewArgs::default(),
         tiles: None,
         plain: false,
         display: &args.display,
-        live: LiveArgs {
-            doors: &doors,
-            connect: None,
-            firmware: None,
-            physics: &physics,
-            flight: &flight_args,
-            has_screen: true,
-        },
+        terrain: &flight_args.terrain,
+        source: Source::Flight(Box::new(LiveFlight {
+            vehicle: flight.into_vehicle(),
+            store: Store::in_memory(),
+            flown: Some((FlownBefore { timeline, events, show, again }, past)),
+            live: LiveArgs {
+                doors: &doors,
+                connect: None,
+                firmware: None,
+                physics: &physics,
+                flight: &flight_args,
+                has_screen: true,
+            },
+        })),
+        other: None,
     };
     tui::show(screen, keymap)
 }

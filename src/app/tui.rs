@@ -5,8 +5,9 @@ use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use super::doors::OpenDoors;
 use super::error::{self, AppError};
-use super::firmware::{self, Beside};
+use super::firmware::{self, Beside, FirmwareFolder};
 use super::input_lines;
 use super::line_history::LineHistory;
 use super::live::{self, LiveArgs};
@@ -17,13 +18,16 @@ use super::setup;
 use super::stop_signal;
 use super::terrain::{TerrainFiles, with_terrain};
 use super::{backdrop_file, connect};
-use crate::args::{CharsetChoice, DisplayArgs, PlanArg, ReviewArgs, ThemeChoice, TuiArgs, UnitsChoice};
+use crate::args::{
+    CharsetChoice, DisplayArgs, PlanArg, ReviewArgs, TerrainArgs, ThemeChoice, TuiArgs, UnitsChoice,
+};
 use crate::firmware::cli;
 use crate::flight::setup::check_setting;
 use crate::plan::builtin::{BuiltinPlan, DEMO};
 use crate::plan::format::PlanFile;
+use crate::replay::Overview;
 use crate::report::sentence;
-use crate::session::{FlownBefore, SessionView};
+use crate::session::{FlownBefore, Handle, ReplayConfig, SessionView, start_replay};
 use crate::storage::Store;
 use crate::terrain::Tiles;
 use crate::ui::backdrop::BackdropLayer;
@@ -31,8 +35,8 @@ use crate::ui::editor::FileReply;
 use crate::ui::keymap::Keymap;
 use crate::ui::theme::{Charset, Palette};
 use crate::ui::{
-    self, CliHelp, Ending, EnteredLines, FilesLink, GroundConfig, OpenPlan, SessionLink, Theme, Tui,
-    UiConfig, Units,
+    self, CliHelp, Ending, EnteredLines, FilesLink, GroundConfig, OpenPlan, OtherReceiver, SessionLink,
+    Theme, Tui, UiConfig, Units,
 };
 use crate::vehicle::Vehicle;
 
@@ -43,15 +47,10 @@ pub(super) struct Screen<'a> {
     pub(super) path: Option<&'a Path>,
     /// The files under the first plan; none = the remembered ones.
     pub(super) backdrop: Vec<BackdropLayer>,
-    pub(super) vehicle: Vehicle,
-    /// The store for `save`.
-    pub(super) store: Store,
     /// The directory for edits.
     pub(super) directory: Option<PathBuf>,
     /// `true` if the program was used before. The first steps are then known.
     pub(super) was_used: bool,
-    /// A finished flight, and pictures of it.
-    pub(super) flown: Option<(FlownBefore, Vec<SessionView>)>,
     /// The first messages for the user.
     pub(super) notices: Vec<String>,
     /// The limits for warnings about waypoints.
@@ -61,8 +60,37 @@ pub(super) struct Screen<'a> {
     /// `true` for sentences instead of a screen.
     pub(super) plain: bool,
     pub(super) display: &'a DisplayArgs,
+    /// The elevation tiles that can be read.
+    pub(super) terrain: &'a TerrainArgs,
+    pub(super) source: Source<'a>,
+    /// A second flight, beside the first.
+    pub(super) other: Option<SecondFlight>,
+}
+
+/// The session that the user interface shows.
+pub(super) enum Source<'a> {
+    Flight(Box<LiveFlight<'a>>),
+    /// A recorded flight.
+    Replay(ReplayConfig),
+}
+
+/// A vehicle that flies.
+pub(super) struct LiveFlight<'a> {
+    pub(super) vehicle: Vehicle,
+    /// The store for `save`.
+    pub(super) store: Store,
+    /// A finished flight, and pictures of it.
+    pub(super) flown: Option<(FlownBefore, Vec<SessionView>)>,
     /// The doors, the physics and the flight.
     pub(super) live: LiveArgs<'a>,
+}
+
+/// A second flight, which is read while the first is shown.
+pub(super) struct SecondFlight {
+    /// The name of its file, safe to print.
+    pub(super) name: String,
+    /// Reads it. An error is a sentence.
+    pub(super) read: Box<dyn FnOnce() -> Result<Arc<Overview>, String> + Send>,
 }
 
 /// Opens the user interface, and returns the exit code after the user leaves it.
@@ -101,24 +129,28 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
         plan,
         path: args.plan.as_ref().and_then(PlanArg::path),
         backdrop,
-        vehicle,
-        store,
         directory: setup::store_directory(&args.flight)?,
         was_used: was_stored,
-        flown: None,
         notices,
         review: args.review,
         tiles,
         plain: args.plain,
         display: &args.display,
-        live: LiveArgs {
-            doors: &args.doors,
-            connect: None,
-            firmware: firmware.as_ref(),
-            physics: &args.physics,
-            flight: &args.flight,
-            has_screen: true,
-        },
+        terrain: &args.flight.terrain,
+        source: Source::Flight(Box::new(LiveFlight {
+            vehicle,
+            store,
+            flown: None,
+            live: LiveArgs {
+                doors: &args.doors,
+                connect: None,
+                firmware: firmware.as_ref(),
+                physics: &args.physics,
+                flight: &args.flight,
+                has_screen: true,
+            },
+        })),
+        other: None,
     };
     show(screen, keymap)
 }
@@ -138,7 +170,7 @@ pub(super) fn require_terminal(plain: bool) -> Result<(), AppError> {
 pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
     let mut notices = screen.notices;
     let mut files = PlanFiles::new(screen.directory.as_deref());
-    let ground = TerrainFiles::new(&screen.live.flight.terrain)?;
+    let ground = TerrainFiles::new(screen.terrain)?;
     let has_ground = ground.is_somewhere();
     files.read_ground(ground, screen.tiles.clone().unwrap_or_default());
     let opened = files.start_with(screen.path, screen.plan.into());
@@ -192,19 +224,18 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
     let files_thread = std::thread::Builder::new()
         .name("plan-files".to_owned())
         .spawn(move || files.run(&asked, &answers, &done))
-        .map_err(|error| AppError::environment(format!("cannot start a thread: {error}")))?;
+        .map_err(no_thread)?;
     let files = FilesLink::new(requests, replies, kept);
+    let is_replay = matches!(screen.source, Source::Replay(_));
     let runtime = runtime::with_threads(1)?;
     let ending = runtime.block_on(async {
-        let (flown, past) = screen.flown.unzip();
-        let (session, doors, _directory) =
-            live::start(screen.live, screen.vehicle, screen.store, notices, flown).await?;
+        let Started { session, doors, past, directory: _directory } = start(screen.source, notices).await?;
         let link = SessionLink {
             commands: session.commands,
             view: session.view,
             events: session.events,
-            past: past.unwrap_or_default(),
-            other: None,
+            past,
+            other: screen.other.map(read_beside).transpose()?,
             write_scenario: scenario_file::write,
         };
         // This comes before the first frame, because a person who sees the frame may already send a signal.
@@ -223,6 +254,8 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
             doors.close().await;
         }
         match why {
+            // A file of recorded flights is an input.
+            Ok(Some(why)) if is_replay => Err(AppError::input(why)),
             Ok(Some(why)) => Err(AppError::environment(why)),
             Ok(None) | Err(_) => ending,
         }
@@ -236,6 +269,46 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
         Ending::Signal | Ending::TerminalLost => Ok(error::INTERRUPTED),
         Ending::SessionEnded => Err(live::ended_by_itself()),
     }
+}
+
+/// A session that was started, with all that must be kept until it ends.
+struct Started {
+    session: Handle,
+    doors: Option<OpenDoors>,
+    past: Vec<SessionView>,
+    directory: Option<FirmwareFolder>,
+}
+
+async fn start(source: Source<'_>, notices: Vec<String>) -> Result<Started, AppError> {
+    match source {
+        Source::Flight(flight) => {
+            let LiveFlight { vehicle, store, flown, live } = *flight;
+            let (flown, past) = flown.unzip();
+            let (session, doors, directory) = live::start(live, vehicle, store, notices, flown).await?;
+            Ok(Started { session, doors, past: past.unwrap_or_default(), directory })
+        }
+        Source::Replay(config) => {
+            let session = start_replay(ReplayConfig { notices, ..config }).map_err(no_thread)?;
+            Ok(Started { session, doors: None, past: Vec::new(), directory: None })
+        }
+    }
+}
+
+/// Begins to read the second flight.
+fn read_beside(flight: SecondFlight) -> Result<OtherReceiver, AppError> {
+    let (sender, receiver) = tokio::sync::oneshot::channel();
+    let SecondFlight { name, read } = flight;
+    let read = move || {
+        // The screen may have left meanwhile.
+        sender.send((name, read())).ok();
+    };
+    std::thread::Builder::new().name("second-flight".to_owned()).spawn(read).map_err(no_thread)?;
+    Ok(receiver)
+}
+
+#[expect(clippy::needless_pass_by_value, reason = "a map_err argument")]
+fn no_thread(error: std::io::Error) -> AppError {
+    AppError::environment(format!("cannot start a thread: {error}"))
 }
 
 /// Returns the theme of the environment, changed by the options; `NO_COLOR` wins.

@@ -1,9 +1,9 @@
 //! The layers below the command line: environment and configuration file.
 //!
 //! Every long option of a command that flies is a key in the file (`wind = "5@270"`) and a variable in the
-//! environment (`BETADECK_WIND`). For `check` and `campaign` these are the options of the firmware, for `plan show` all
-//! options. A value from a layer for an option that no higher layer gave is parsed by the option's own parser, as if someone
-//! typed it.
+//! environment (`BETADECK_WIND`). For `check` and `campaign` these are the options of the firmware, for `replay` those of
+//! the screen, for `plan show` all options. A value from a layer for an option that no higher layer gave is parsed by the
+//! option's own parser, as if someone typed it.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -37,10 +37,14 @@ pub(super) const FLYING: [&str; 5] = ["", "fly", "compare", "serve", "sitl"];
 /// The commands that take only the firmware from all layers. The scenario, or the command line of a campaign, gives the
 /// rest of a flight.
 const FIRMWARE_ONLY: [&str; 2] = ["check", "campaign"];
+/// The command that takes only the options of the screen from all layers: its files say the rest.
+const REPLAY: &str = "replay";
 /// The command and the subcommand that judge a plan without a flight.
 const PLAN_SHOW: (&str, &str) = ("plan", "show");
 /// The heading of the options for the choice of the firmware.
 const FIRMWARE: &str = "Firmware";
+/// The heading of the options of the screen.
+const SCREEN: &str = "Screen";
 
 /// Parses the command line again with the additions from the layers.
 pub(super) fn apply(
@@ -55,7 +59,7 @@ pub(super) fn apply(
     let nested = typed.subcommand().filter(|(nested, _)| (name, *nested) == PLAN_SHOW);
     // Merging the parts of a campaign flies nothing.
     let is_firmware_only = FIRMWARE_ONLY.contains(&name) && typed.subcommand().is_none();
-    if FLYING.contains(&name) || is_firmware_only || nested.is_some() {
+    if FLYING.contains(&name) || is_firmware_only || name == REPLAY || nested.is_some() {
         let unknown = layers.unknown_keys(command);
         if !unknown.is_empty() {
             return Err(problem(&unknown.join("\n")));
@@ -77,12 +81,16 @@ pub(super) fn apply(
 
 /// Returns the options of a command that the layers can give; a hidden option does not belong to the command.
 pub(super) fn options(command: &clap::Command) -> impl Iterator<Item = &Arg> {
-    let of_firmware_only = FIRMWARE_ONLY.contains(&command.get_name());
+    let only = match command.get_name() {
+        name if FIRMWARE_ONLY.contains(&name) => Some(FIRMWARE),
+        REPLAY => Some(SCREEN),
+        _ => None,
+    };
     command
         .get_arguments()
         .filter(|arg| !arg.is_positional() && !arg.is_hide_set())
         .filter(|arg| !matches!(arg.get_long(), Some("help" | "version")))
-        .filter(move |arg| !of_firmware_only || arg.get_help_heading() == Some(FIRMWARE))
+        .filter(move |arg| only.is_none() || arg.get_help_heading() == only)
 }
 
 fn is_typed(matches: &ArgMatches, option: &Arg) -> bool {

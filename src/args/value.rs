@@ -206,6 +206,28 @@ pub(super) fn instant(text: &str) -> Result<Instant, String> {
     }
 }
 
+/// An instant of a recorded flight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum RecordInstant {
+    /// Seconds since the first instant of the record.
+    Start(f64),
+    /// Seconds after boot, as the screen shows them.
+    Boot(f64),
+}
+
+/// Reads an instant, `T` or `boot+T`.
+pub(super) fn record_instant(text: &str) -> Result<RecordInstant, String> {
+    match text.strip_prefix("boot+") {
+        Some(seconds) => bounded(seconds, 0.0, 1e9, "s").map(RecordInstant::Boot),
+        None => bounded(text, 0.0, 1e9, "s").map(RecordInstant::Start),
+    }
+}
+
+/// Reads the number of rows of a table a second.
+pub(super) fn table_rate(text: &str) -> Result<f64, String> {
+    bounded(text, 0.01, 50_000.0, "Hz")
+}
+
 /// Seeds of flights.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Seeds(pub Vec<u64>);

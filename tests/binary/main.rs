@@ -24,6 +24,9 @@ mod inputs;
 #[cfg(unix)]
 mod limits;
 mod lines;
+#[cfg(unix)]
+#[path = "../log_support/made_log.rs"]
+mod made_log;
 mod options;
 mod plain;
 mod plans;
@@ -31,6 +34,8 @@ mod plans;
 mod pty;
 #[cfg(unix)]
 mod recordings;
+#[cfg(unix)]
+mod replay;
 #[cfg(unix)]
 mod reports;
 #[cfg(unix)]

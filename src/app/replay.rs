@@ -1,0 +1,101 @@
+//! `betadeck replay`: recorded flights on the screen, and as files for other programs.
+
+mod log_export;
+mod log_source;
+mod opened;
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::error::{self, AppError};
+use super::interrupt::interrupt_flag;
+use super::setup;
+use super::tui::{self, Screen, SecondFlight, Source};
+use crate::args::{FlightArgs, RecordInstant, ReplayArgs, ReviewArgs, TerrainArgs};
+use crate::plan::format::PlanFile;
+use crate::replay::{Overview, PastFlights};
+use crate::session::{ReplayConfig, ReplayStart};
+use crate::signals::SimTime;
+use crate::ui::keymap::Keymap;
+use opened::Opened;
+
+/// Writes the files of the options, or shows the flights. With `--plain` it does both.
+pub(super) fn run(args: &ReplayArgs, keymap: Keymap) -> Result<u8, AppError> {
+    if !args.exports() {
+        tui::require_terminal(args.plain)?;
+    }
+    let (first, second) = match &args.files[..] {
+        [first] => (first, None),
+        [first, second, ..] => (first, Some(second)),
+        [] => return Err(AppError::internal("no file to replay")),
+    };
+    let mut flights = opened::open(first)?;
+    let second = second.map(|path| opened::open(path)).transpose()?;
+    if args.exports() {
+        let stop = interrupt_flag()?;
+        let is_whole = match &mut flights {
+            Opened::Logs(logs) => log_export::run(args, logs, &stop)?,
+        };
+        if !is_whole {
+            return Ok(error::INTERRUPTED);
+        }
+        if !args.plain {
+            return Ok(0);
+        }
+    }
+    let config = ReplayConfig {
+        flights: flights.into(),
+        number: args.number(),
+        start: args.at.map(start),
+        speed: 1.0,
+        notices: Vec::new(),
+    };
+    let (terrain, flight_args) = (TerrainArgs::default(), FlightArgs::default());
+    let screen = Screen {
+        plan: PlanFile { name: "new".to_owned(), ..PlanFile::default() },
+        path: None,
+        backdrop: Vec::new(),
+        directory: setup::store_directory(&flight_args)?,
+        was_used: true,
+        notices: Vec::new(),
+        review: ReviewArgs::default(),
+        tiles: None,
+        plain: args.plain,
+        display: &args.display,
+        terrain: &terrain,
+        source: Source::Replay(config),
+        other: second.map(beside),
+    };
+    tui::show(screen, keymap)
+}
+
+fn start(at: RecordInstant) -> ReplayStart {
+    match at {
+        RecordInstant::Start(seconds) => ReplayStart::Seconds(seconds),
+        RecordInstant::Boot(seconds) => ReplayStart::Clock(SimTime::from_secs_f64(seconds)),
+    }
+}
+
+/// Returns the first flight of a file, to be read beside another one.
+fn beside(flights: Opened) -> SecondFlight {
+    let mut flights: Box<dyn PastFlights> = flights.into();
+    let name = flights.name().to_owned();
+    let read = move || -> Result<Arc<Overview>, String> {
+        flights.read(&mut |_| true)?;
+        let mut refused = format!("{} has no flight.", flights.name());
+        for number in 0..flights.count() {
+            match flights.open(number) {
+                Ok(flight) => return Ok(flight.overview()),
+                Err(why) => refused = why,
+            }
+        }
+        Err(refused)
+    };
+    SecondFlight { name, read: Box::new(read) }
+}
+
+/// Returns the name of a file for messages and for the screen.
+fn shown_name(path: &Path) -> String {
+    let name = path.file_name().unwrap_or(path.as_os_str());
+    crate::text::printable::name(&name.to_string_lossy())
+}

@@ -1,0 +1,39 @@
+//! A file of blackbox logs as a source of bytes.
+
+use std::fs::File;
+use std::io;
+use std::os::unix::fs::FileExt as _;
+use std::sync::Arc;
+
+use crate::blackbox::decode::LogSource;
+
+/// An open file. Copies share it.
+#[derive(Debug, Clone)]
+pub(super) struct FileSource {
+    file: Arc<File>,
+    size: u64,
+}
+
+impl FileSource {
+    pub(super) fn new(file: File, size: u64) -> Self {
+        Self { file: Arc::new(file), size }
+    }
+}
+
+impl LogSource for FileSource {
+    fn size(&self) -> u64 {
+        self.size
+    }
+
+    fn read_at(&mut self, offset: u64, buffer: &mut [u8]) -> io::Result<usize> {
+        // A file that grows is shown as it was when it was opened.
+        let most = usize::try_from(self.size.saturating_sub(offset)).unwrap_or(usize::MAX);
+        let length = buffer.len().min(most);
+        loop {
+            match self.file.read_at(&mut buffer[..length], offset) {
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                read => return read,
+            }
+        }
+    }
+}

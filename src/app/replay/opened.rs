@@ -1,0 +1,64 @@
+//! Opens a file by its contents.
+
+use std::path::Path;
+
+use super::log_source::FileSource;
+use super::shown_name;
+use crate::app::error::AppError;
+use crate::app::input_file;
+use crate::blackbox::FIRST_LINE;
+use crate::blackbox::decode::LogSource as _;
+use crate::replay::{LogFlights, PastFlights};
+
+/// The first bytes of a file in which a log must begin.
+const LOOKED_AT: usize = 1 << 20;
+
+/// A file of recorded flights.
+pub(super) enum Opened {
+    /// Blackbox logs.
+    Logs(LogFlights<FileSource>),
+}
+
+impl From<Opened> for Box<dyn PastFlights> {
+    fn from(opened: Opened) -> Self {
+        match opened {
+            Opened::Logs(logs) => Box::new(logs),
+        }
+    }
+}
+
+/// Opens the flights of a file.
+///
+/// # Errors
+/// Returns a sentence if the file cannot be opened, or if it has no flight.
+pub(super) fn open(path: &Path) -> Result<Opened, AppError> {
+    let (file, size) = input_file::open_log(path)?;
+    let name = shown_name(path);
+    let mut source = FileSource::new(file, size);
+    let head =
+        head(&mut source).map_err(|error| AppError::environment(format!("cannot read {name}: {error}")))?;
+    if contains(&head, FIRST_LINE.as_bytes()) || size > LOOKED_AT as u64 {
+        return Ok(Opened::Logs(LogFlights::new(&name, source)));
+    }
+    Err(AppError::input(format!(
+        "{name} is no recorded flight: a blackbox log begins with the line `{FIRST_LINE}`"
+    )))
+}
+
+/// Returns the first bytes of a file.
+fn head(source: &mut FileSource) -> std::io::Result<Vec<u8>> {
+    let mut head = vec![0; LOOKED_AT];
+    let mut length = 0;
+    loop {
+        match source.read_at(length as u64, &mut head[length..])? {
+            0 => break,
+            count => length += count,
+        }
+    }
+    head.truncate(length);
+    Ok(head)
+}
+
+fn contains(bytes: &[u8], wanted: &[u8]) -> bool {
+    bytes.windows(wanted.len()).any(|window| window == wanted)
+}

@@ -1,0 +1,88 @@
+//! The options of `replay`.
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+use super::DisplayArgs;
+use super::value::{self, OutputFile, RecordInstant};
+
+/// The options of `replay`.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+pub struct ReplayArgs {
+    /// A blackbox log (*.bbl, *.bfl, *.txt) or a recording of betadeck; a second one is shown beside the first
+    ///
+    /// What a file is depends on its contents, not on its name.
+    #[arg(required = true, num_args = 1..=2, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+
+    /// The instant to show, with time paused: seconds since the record begins, or boot+SECONDS, the time on the screen
+    /// [default: plays from the beginning]
+    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = value::record_instant)]
+    pub at: Option<RecordInstant>,
+
+    /// The flight of a file with several logs, counted from 1 [default: the first that can be shown]
+    #[arg(long, value_name = "N")]
+    pub log: Option<NonZeroUsize>,
+
+    /// No screen: the events as sentences on standard output, commands of the `:` line on standard input
+    ///
+    /// Needs no terminal. Ends with the input.
+    #[arg(long, help_heading = "Screen")]
+    pub plain: bool,
+
+    /// Writes the values as CSV instead of showing them, with units in the header; - is standard output
+    #[arg(long, value_name = "FILE|-", help_heading = "Output")]
+    pub csv: Option<OutputFile>,
+
+    /// Rows a second in the table [default: a row for each frame of the log]
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true, value_parser = value::table_rate, help_heading = "Output")]
+    pub samples: Option<f64>,
+
+    /// Writes the track as GPX instead of showing it
+    #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
+    pub gpx: Option<PathBuf>,
+
+    /// Writes the track as KML instead of showing it
+    #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
+    pub kml: Option<PathBuf>,
+
+    /// The screen.
+    #[command(flatten)]
+    pub display: DisplayArgs,
+}
+
+impl ReplayArgs {
+    /// Returns the number of the wanted flight of a file, from zero.
+    pub fn number(&self) -> Option<usize> {
+        self.log.map(|log| log.get() - 1)
+    }
+
+    /// Returns `true` if a file is to be written.
+    pub fn exports(&self) -> bool {
+        self.csv.is_some() || self.gpx.is_some() || self.kml.is_some()
+    }
+
+    /// Returns the interval of the rows of a table, µs; `None` for a row for each frame.
+    pub fn row_every_us(&self) -> Option<u64> {
+        self.samples.map(|hz| ((1e6 / hz).round() as u64).max(1))
+    }
+
+    /// Checks the combination of the typed options.
+    pub(super) fn check(&self) -> Result<(), String> {
+        if self.samples.is_some() && self.csv.is_none() {
+            return Err("--samples is the number of rows of a table: add --csv FILE or --csv -".to_owned());
+        }
+        if self.plain && self.csv == Some(OutputFile::Stdout) {
+            return Err("--plain and --csv - both write to standard output: leave one of them out".to_owned());
+        }
+        if self.exports() && self.files.len() > 1 {
+            return Err("--csv, --gpx and --kml write one recorded flight: name one file".to_owned());
+        }
+        if self.exports() && self.at.is_some() && !self.plain {
+            return Err(
+                "--at is an instant of the screen, which --csv, --gpx and --kml do not open".to_owned()
+            );
+        }
+        Ok(())
+    }
+}
