@@ -12,6 +12,7 @@ use clap::error::ErrorKind;
 use super::extract::{Shown, commands, is_screen, pages};
 use super::filled_in;
 use crate::free_port::free_port;
+use crate::made_log::MadeLog;
 use crate::pty::Terminal;
 use crate::support::{PROGRAM, Sandbox, plan};
 
@@ -67,6 +68,8 @@ impl Kind {
         let is_remote = has("--firmware") || has("--betaloop");
         match words.get(1).map(String::as_str) {
             _ if has("--help") || has("--version") => Self::ByItself,
+            Some("replay") if has("--plain") => Self::Runs,
+            Some("replay") if ["--csv", "--gpx", "--kml"].into_iter().any(has) => Self::ByItself,
             Some("serve" | "fly" | "check" | "compare") if is_remote => Self::RunsFirmware,
             Some("serve" | "sitl" | "--plain") => Self::Runs,
             Some(
@@ -123,6 +126,11 @@ impl Desk {
             sandbox.write(file, &scenario.replace("my-plan.txt", &plan("guide-square.txt")));
         }
         sandbox.write("my-campaign.toml", CAMPAIGN);
+        for file in ["LOG00001.BFL", "before.bbl", "after.bbl", "flights.bbl"] {
+            let log = MadeLog::default().bytes();
+            let logs = if file == "flights.bbl" { [log.clone(), log].concat() } else { log };
+            std::fs::write(sandbox.path(file), logs).expect("a writable directory");
+        }
         sandbox.write("theirs.plan", include_str!("../../exchange/square.plan"));
         sandbox.write("field.geojson", include_str!("../../exchange/field.geojson"));
         sandbox.write("my-plan.toml", &std::fs::read_to_string(plan("square.toml")).expect("the square"));
