@@ -1,27 +1,30 @@
-//! Two firmwares on the same plan: the measures of their tracks as a table, JSON and a picture.
+//! Two firmwares on the same plan: the measures of their tracks as tables, JSON and a picture.
 //!
-//! All measures come from truth, in the same way for both firmwares; their own reports do not count. `route` is the
-//! plan in metres, `passage` finds the times at which a track passed the waypoints, `measure` takes the other
+//! All measures come from truth, in the same way for both firmwares; their own reports do not count. `passage` finds the times at which a track passed the waypoints, `measure` takes the other
 //! measures, and `distance` gives the distance between two tracks.
 
+mod cells;
 mod distance;
 mod json;
+mod markdown;
 mod measure;
 mod passage;
-mod route;
+mod picture;
 mod statistics;
-mod svg;
 mod text;
 mod track;
 
 #[cfg(test)]
 mod tests;
 
+pub(super) use cells::TableRow;
 pub use measure::Measure;
-pub use route::Route;
 pub use statistics::Statistics;
 pub use track::{Track, TrackSample};
 
+use super::flight::{Detail, Figure};
+use super::plot::Ground;
+use super::route::Route;
 use measure::measures;
 
 /// The flights of one firmware.
@@ -99,7 +102,53 @@ impl Comparison {
 
     /// Returns a picture with both tracks, north up.
     pub fn svg(&self) -> String {
-        svg::picture(self)
+        picture::document(self)
+    }
+
+    /// Returns the table as Markdown, with the command that gives the comparison again.
+    pub fn markdown(&self, command: Option<&str>) -> String {
+        markdown::markdown(self, command)
+    }
+
+    /// Returns the plan and the air.
+    pub(super) fn title(&self) -> String {
+        format!("{}, {}", self.plan, self.conditions)
+    }
+
+    /// Returns the names of the firmwares.
+    pub(super) fn names(&self) -> [&str; 2] {
+        self.sides.each_ref().map(|side| side.name.as_str())
+    }
+
+    /// Returns `true` if all flights completed.
+    pub fn is_complete(&self) -> bool {
+        self.sides.iter().flat_map(|side| &side.flights).all(|flight| flight.result == "complete")
+    }
+
+    /// Returns the number of the flights of each firmware in words.
+    pub(super) fn flights(&self) -> String {
+        let [a, b] = self.sides.each_ref().map(|side| format!("{}, {}", side.name, cells::flights(side)));
+        format!("A: {a}; B: {b}.")
+    }
+
+    /// Returns a sentence for each flight that did not complete.
+    pub(super) fn incomplete(&self) -> Vec<String> {
+        cells::incomplete(self)
+    }
+
+    /// Returns the rows of the table.
+    pub(super) fn table(&self) -> Vec<TableRow> {
+        cells::rows(self)
+    }
+
+    /// Returns the meaning of the numbers.
+    pub(super) fn notes(&self) -> String {
+        cells::notes(self).join(" ")
+    }
+
+    /// Returns the pictures for a page.
+    pub(super) fn figures(&self, ground: Vec<Ground>, detail: Detail) -> Vec<Figure> {
+        picture::figures(self, ground, detail)
     }
 }
 

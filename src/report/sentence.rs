@@ -142,7 +142,7 @@ fn off(deviation: &CannotHold) -> String {
 }
 
 /// Returns the cause of a transition in plain language.
-fn cause(reason: TransitionReason, to: NavState) -> &'static str {
+pub(super) fn cause(reason: TransitionReason, to: NavState) -> &'static str {
     match reason {
         TransitionReason::Reset => "the mission starts",
         TransitionReason::Resume => "the mission goes on",
@@ -185,7 +185,7 @@ fn waypoint(to: NavState, wp: u8, kind: Option<WaypointType>) -> String {
 }
 
 /// Returns `arrival 4.9 m ≤ 5.0 m`; a count has no unit: `fix 0 < 1`.
-fn because(guard: &Guard) -> String {
+pub(super) fn because(guard: &Guard) -> String {
     let Guard { name, value, limit, op } = guard;
     match guard.unit() {
         GuardUnit::None => format!("{name} {value} {op} {limit}"),

@@ -17,7 +17,8 @@ use crate::firmware::config::Configuration;
 use crate::flight::setup::{BootLines, PhysicsSource};
 use crate::flight::{FlightOptions, FlightSetup};
 use crate::plan::format::PlanFile;
-use crate::report::compare::{Route, Track};
+use crate::report::compare::Track;
+use crate::report::route::Route;
 use crate::session::{Event, Runner, SessionEvent};
 use crate::sim::WorldConfig;
 

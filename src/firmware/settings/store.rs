@@ -88,6 +88,15 @@ impl Settings {
         self.value(setting, instance).is_some_and(|value| *value != setting.default_value())
     }
 
+    /// Returns the settings of the active profiles that differ from their defaults: name, value and default.
+    pub fn changed(&self) -> impl Iterator<Item = (String, String, String)> + '_ {
+        let changed = SETTINGS.iter().filter(|setting| self.is_changed(setting, self.active(setting.scope)));
+        changed.filter_map(|setting| {
+            let value = setting.display(self.active_value(setting)?);
+            Some((setting.name.to_owned(), value, setting.display(&setting.default_value())))
+        })
+    }
+
     /// Returns the active instance of a scope.
     pub fn active(&self, scope: Scope) -> u8 {
         self.active[scope as usize]

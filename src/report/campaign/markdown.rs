@@ -3,6 +3,7 @@
 use super::sentences::{found, success};
 use super::{Reported, shown};
 use crate::campaign::GoalOutcome;
+use crate::report::markdown::{cell, code, line};
 
 /// Returns the answer.
 pub fn answer_markdown(reported: &Reported<'_>) -> String {
@@ -72,29 +73,7 @@ pub fn answer_markdown(reported: &Reported<'_>) -> String {
             shown::flight_name(reported, worst),
             line(&shown::complaint(worst))
         ));
-        text.extend(
-            shown::open_command(reported, worst)
-                .map(|command| format!("  - `{}`\n", command.replace('`', "'"))),
-        );
+        text.extend(shown::open_command(reported, worst).map(|command| format!("  - {}\n", code(&command))));
     }
     text
-}
-
-/// Returns text for a cell of a table.
-fn cell(text: &str) -> String {
-    line(text).replace('|', "\\|")
-}
-
-/// Returns text with Markdown's special characters escaped.
-fn line(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '\n' | '\r' => escaped.push(' '),
-            '\\' | '*' | '_' | '`' | '[' | ']' => escaped.extend(['\\', c]),
-            '<' => escaped.push_str("&lt;"),
-            other => escaped.push(other),
-        }
-    }
-    escaped
 }

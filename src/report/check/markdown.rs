@@ -1,6 +1,7 @@
 //! Checked flights as a Markdown summary for a pull request.
 
 use super::{Summary, complaint};
+use crate::report::markdown::{cell, code, line};
 use crate::scenario::Outcome;
 
 pub fn markdown(summary: &Summary) -> String {
@@ -81,29 +82,4 @@ pub fn markdown(summary: &Summary) -> String {
         ));
     }
     text
-}
-
-/// Returns text for a cell of a table.
-fn cell(text: &str) -> String {
-    line(text).replace('|', "\\|")
-}
-
-/// Returns text with Markdown's special characters escaped.
-fn line(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '\n' | '\r' => escaped.push(' '),
-            '\\' | '*' | '_' | '`' | '[' | ']' => escaped.extend(['\\', c]),
-            '<' => escaped.push_str("&lt;"),
-            other => escaped.push(other),
-        }
-    }
-    escaped
-}
-
-/// Returns a command as Markdown code, even if it has a back quote.
-fn code(command: &str) -> String {
-    let command = command.replace('\n', " ");
-    if command.contains('`') { format!("`` {command} ``") } else { format!("`{command}`") }
 }

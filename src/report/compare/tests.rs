@@ -151,6 +151,11 @@ fn the_table_has_values_spreads_and_differences() {
 }
 
 #[test]
+fn the_table_for_a_pull_request_is_before_and_after() {
+    insta::assert_snapshot!(comparison("sitl_*.elf").markdown(Some("betadeck compare square")));
+}
+
+#[test]
 fn the_json_has_the_same_numbers() {
     let json: serde_json::Value = serde_json::from_str(&comparison("sitl.elf").json()).unwrap();
     assert_eq!(json["firmware"][1]["flights"].as_array().unwrap().len(), 2);
@@ -207,12 +212,9 @@ fn without_a_spread_nothing_is_marked() {
 fn names_are_escaped_in_the_picture() {
     let svg = comparison("<b> & \"c\"").svg();
     assert!(svg.contains("B: &lt;b&gt; &amp; &quot;c&quot;</text>"), "{svg}");
-    assert_eq!(
-        svg.matches("stroke=\"#d55e00\" stroke-width=\"0.8\"").count(),
-        1,
-        "the second flight is thin"
-    );
-    assert!(svg.contains(">WP0</text>") && svg.contains(">WP2 LAND</text>") && svg.contains(" m</text>"));
+    assert_eq!(svg.matches("stroke=\"#D55E00\" stroke-width=\"3\"").count(), 1, "the second flight is thin");
+    assert!(svg.contains("WP0</text>") && svg.contains("WP2 LAND</text>") && svg.contains(" m</text>"));
+    assert!(svg.contains("<title id=\"tracks-title\">square, calm, seed 1</title>"), "{svg}");
     // Every element is closed: there are as many ends as beginnings.
     assert_eq!(svg.matches('<').count(), svg.matches('>').count());
     assert!(svg.trim_end().ends_with("</svg>"));

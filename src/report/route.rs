@@ -2,7 +2,8 @@
 
 use nalgebra::Vector2;
 
-use super::TrackSample;
+use super::compare::TrackSample;
+use super::plot::{Mark, Point};
 use crate::geo::LocalFrame;
 use crate::plan::{FlightPlan, HoldPattern, WaypointType};
 use crate::telemetry::snapshot::SettingsView;
@@ -15,25 +16,25 @@ const CUT_M: f64 = 40.0;
 /// The places of a plan to fly to, in their order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Route {
-    pub(super) points: Vec<RoutePoint>,
+    pub(in crate::report) points: Vec<RoutePoint>,
 }
 
 /// A waypoint of the route.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct RoutePoint {
+pub(in crate::report) struct RoutePoint {
     /// Index in the plan.
-    pub(super) wp: u8,
-    pub(super) kind: WaypointType,
+    pub(in crate::report) wp: u8,
+    pub(in crate::report) kind: WaypointType,
     /// North and east of home, m; `None` for a TAKEOFF, which climbs at its own place.
-    pub(super) ne: Option<Vector2<f64>>,
+    pub(in crate::report) ne: Option<Vector2<f64>>,
     /// Altitude of the waypoint above home, m.
-    pub(super) alt_m: f64,
+    pub(in crate::report) alt_m: f64,
     /// Radius of the pattern around the waypoint, m; 0 = none.
-    pub(super) pattern_m: f64,
+    pub(in crate::report) pattern_m: f64,
     /// `true` if the craft stays there for a while.
-    pub(super) holds: bool,
+    pub(in crate::report) holds: bool,
     /// The distance at which it counts as flown, m.
-    pub(super) reach_m: f64,
+    pub(in crate::report) reach_m: f64,
 }
 
 impl Route {
@@ -81,12 +82,40 @@ impl Route {
         }
         Self { points }
     }
+
+    /// Returns the places of the waypoints in their order, for a map.
+    pub(super) fn legs(&self) -> impl Iterator<Item = Point> + '_ {
+        self.points.iter().filter_map(RoutePoint::place)
+    }
+
+    /// Returns the waypoints with their names, for a map.
+    pub(super) fn marks(&self) -> Vec<Mark> {
+        let mark = |point: &RoutePoint| {
+            let kind = match point.kind {
+                WaypointType::Flyover => String::new(),
+                kind => format!(" {kind}"),
+            };
+            Some(Mark { place: point.place()?, name: format!("WP{}{kind}", point.wp) })
+        };
+        self.points.iter().filter_map(mark).collect()
+    }
+
+    /// Returns the hold patterns, for a map: centre and radius, m.
+    pub(super) fn rings(&self) -> Vec<(Point, f64)> {
+        let patterns = self.points.iter().filter(|point| point.pattern_m > 0.0);
+        patterns.filter_map(|point| Some((point.place()?, point.pattern_m))).collect()
+    }
 }
 
 impl RoutePoint {
+    /// Returns the place on a map.
+    fn place(&self) -> Option<Point> {
+        self.ne.map(|ne| (ne.y, ne.x))
+    }
+
     /// Returns the distance of the craft from the waypoint, m: from the ring of a pattern, or below the altitude of a
     /// TAKEOFF.
-    pub(super) fn distance_m(&self, sample: &TrackSample) -> f64 {
+    pub(in crate::report) fn distance_m(&self, sample: &TrackSample) -> f64 {
         match self.ne {
             Some(ne) => ((sample.ne - ne).norm() - self.pattern_m).max(0.0),
             None => (self.alt_m - sample.alt_m).max(0.0),
