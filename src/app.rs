@@ -34,6 +34,7 @@ mod plan;
 mod plan_files;
 mod recording_file;
 mod replay;
+mod report;
 mod runtime;
 mod scenario_file;
 mod serve;
@@ -146,12 +147,12 @@ fn dispatch(cli: Cli, keymap: Keymap) -> Result<u8, AppError> {
     }
     match cli.command {
         None => tui::run(&cli.tui, keymap),
-        Some(Command::Fly(args)) => fly::run(&args),
-        Some(Command::Check(args)) => check::run(&args),
+        Some(Command::Fly(args)) => fly::run(&args, &cli.repeat),
+        Some(Command::Check(args)) => check::run(&args, &cli.repeat),
         Some(Command::Campaign(args)) => campaign::run(&args),
         Some(Command::Open(args)) => open::run(&args, keymap),
         Some(Command::Replay(args)) => replay::run(&args, keymap),
-        Some(Command::Compare(args)) => compare::run(&args),
+        Some(Command::Compare(args)) => compare::run(&args, &cli.repeat),
         Some(Command::Sitl(args)) => sitl::run(&args),
         Some(Command::Serve(args)) => serve::run(&args),
         Some(Command::Plan(PlanCommand::List)) => plan::list(),

@@ -23,6 +23,7 @@ mod mission;
 mod open;
 mod physics;
 mod plan_arg;
+mod repeat;
 mod replay;
 mod review;
 mod terrain;
@@ -86,6 +87,10 @@ pub struct Cli {
     /// The options of the terminal user interface.
     #[command(flatten)]
     pub tui: TuiArgs,
+
+    /// The words after the program's name that give the same run, with the values of all layers but without outputs.
+    #[arg(skip)]
+    pub repeat: Vec<String>,
 }
 
 /// The options of the terminal user interface.

@@ -3,6 +3,7 @@
 mod load;
 mod output;
 mod progress;
+mod record;
 mod remote;
 pub(super) use remote::{RemoteFlown, fly_case, prepare};
 mod results;
@@ -29,8 +30,8 @@ use results::Results;
 const SKIP_COMMIT: u8 = 125;
 
 /// Flies and judges. The exit code is 0 if every expectation was met.
-pub(super) fn run(args: &CheckArgs) -> Result<u8, AppError> {
-    let ended = run_all(args);
+pub(super) fn run(args: &CheckArgs, repeat: &[String]) -> Result<u8, AppError> {
+    let ended = run_all(args, repeat);
     if !args.bisect {
         return ended;
     }
@@ -44,7 +45,7 @@ pub(super) fn run(args: &CheckArgs) -> Result<u8, AppError> {
     }
 }
 
-fn run_all(args: &CheckArgs) -> Result<u8, AppError> {
+fn run_all(args: &CheckArgs, repeat: &[String]) -> Result<u8, AppError> {
     if args.list {
         return list(args);
     }
@@ -66,16 +67,17 @@ fn run_all(args: &CheckArgs) -> Result<u8, AppError> {
     }
     let interrupted = interrupt_flag()?;
     if args.watch {
-        return watch::run(args, firmware.as_ref(), &interrupted);
+        return watch::run(args, repeat, firmware.as_ref(), &interrupted);
     }
     let loaded = load::load(args)?;
-    fly(&loaded, args, firmware.as_ref(), &interrupted)
+    fly(&loaded, args, repeat, firmware.as_ref(), &interrupted)
 }
 
 /// Flies the loaded scenarios once.
 fn fly(
     loaded: &Loaded,
     args: &CheckArgs,
+    repeat: &[String],
     firmware: Option<&RemoteFirmware>,
     interrupted: &Arc<AtomicBool>,
 ) -> Result<u8, AppError> {
@@ -93,21 +95,22 @@ fn fly(
         remote::refuse_many(firmware, jobs.len(), args.watch)?;
     }
     let stop = AtomicBool::new(false);
-    let mut results = Results::new(Output::open(args, loaded)?, jobs.len(), args.fail_fast, &stop);
+    let mut results = Results::new(Output::open(args, repeat, loaded)?, jobs.len(), args.fail_fast, &stop);
     let started = run::Stopwatch::start();
     let is_stopped = || interrupted.load(Ordering::Relaxed) || stop.load(Ordering::Relaxed);
     let threads = parallel::threads(args.jobs);
     let trouble = match firmware {
         None => {
             let mut repetitions = run::Repetitions::default();
-            let fly = |_, job| run::one(loaded, job, &is_stopped);
-            parallel::all(&jobs, threads, &is_stopped, fly, |flight, done| {
-                results.flight(repetitions.compare(flight), done);
+            let is_reported = args.report.is_some();
+            let fly = |_, job| run::one(loaded, job, is_reported, &is_stopped);
+            parallel::all(&jobs, threads, &is_stopped, fly, |(flight, report), done| {
+                results.flight(repetitions.compare(flight), report, done);
             })?;
             None
         }
         Some(firmware) => {
-            let run = remote::Run { loaded, firmware, interrupted };
+            let run = remote::Run { loaded, firmware, is_reported: args.report.is_some(), interrupted };
             run.all(&jobs, threads, &is_stopped, &mut results)?
         }
     };

@@ -41,7 +41,7 @@ impl Compared {
 }
 
 /// Flies and compares. The exit code is 0 if all flights completed.
-pub(super) fn run(args: &CompareArgs) -> Result<u8, AppError> {
+pub(super) fn run(args: &CompareArgs, repeat: &[String]) -> Result<u8, AppError> {
     let mut notices = Vec::new();
     let compared = compared(args, &mut notices)?;
     let outside = compared.iter().any(|one| one.firmware.is_some());
@@ -64,7 +64,7 @@ pub(super) fn run(args: &CompareArgs) -> Result<u8, AppError> {
     let flights = Flights::new(args, &compared, &mut notices)?;
     let seeds = jobs::seeds(args, flights.world(), &mut notices);
     let jobs = jobs::jobs(args, &compared, &seeds)?;
-    let outputs = Outputs::prepare(args)?;
+    let outputs = Outputs::prepare(args, repeat)?;
     notices.iter().for_each(|notice| error::tell(notice));
     let mut sides = compared.each_ref().map(|one| Side {
         name: one.name.clone(),
@@ -74,7 +74,6 @@ pub(super) fn run(args: &CompareArgs) -> Result<u8, AppError> {
     let threads = if is_alone { 1 } else { parallel::threads(args.jobs) };
     let flown = fly(args, &flights, &compared, &jobs, threads, &mut sides);
     let has_flown = sides.iter().any(|side| !side.flights.is_empty());
-    let all_complete = sides.iter().flat_map(|side| &side.flights).all(|flight| flight.result == "complete");
     let conditions = conditions(&args.flight, &seeds);
     let comparison = Comparison::new(flights.plan_name(), &conditions, flights.route(), sides);
     if !matches!(flown, Ok(true)) && has_flown {
@@ -83,8 +82,8 @@ pub(super) fn run(args: &CompareArgs) -> Result<u8, AppError> {
     if !flown? {
         return Ok(error::INTERRUPTED);
     }
-    outputs.write(&comparison)?;
-    Ok(if all_complete { 0 } else { error::FAILED })
+    outputs.write(&comparison, flights.frame())?;
+    Ok(if comparison.is_complete() { 0 } else { error::FAILED })
 }
 
 /// Flies all jobs on this many threads. Returns `false` after an interrupt. Earlier flights are kept then, and after an

@@ -50,6 +50,20 @@ impl RemoteFirmware {
         }
     }
 
+    /// Returns the name of the firmware for reports, and the lines that set it up.
+    pub(super) fn described(&self) -> (String, Vec<String>) {
+        let name = match &self.executable {
+            Some(path) => path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned(),
+            None => "the running one".to_owned(),
+        };
+        let clock = match self.clock {
+            FirmwareClock::Sim => "in simulated time",
+            FirmwareClock::Real => "on the wall clock",
+        };
+        let lines = self.lines.usual.iter().chain(&self.lines.of_user);
+        (format!("{name} {clock}"), lines.cloned().collect())
+    }
+
     /// Returns the same firmware with a plan's settings added to the usual lines, and those of `--set` after the
     /// user's lines.
     pub(super) fn with_settings(&self, plan: &[String], set: &[String]) -> Self {

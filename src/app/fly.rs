@@ -12,8 +12,8 @@ use super::error::{self, AppError};
 use super::firmware::run::{RemoteRun, RunOptions, unless_interrupted};
 use super::firmware::{self, Beside, RemoteFirmware};
 use super::interrupt::interrupt_flag;
-use super::setup;
 use super::terrain::with_terrain;
+use super::{report, setup};
 use crate::args::{FlyArgs, PhysicsArgs, Speed};
 use crate::fc::upload;
 use crate::flight::setup::{BootLines, PhysicsSource};
@@ -28,12 +28,13 @@ use crate::session::{Event, Flying as _, Runner, Stopped, Subscriber, hazards};
 use crate::storage::Store;
 use crate::terrain::{Relief, Tiles};
 use crate::vehicle::Vehicle;
-use output::{Output, Prelude, Recorder};
+use output::{Beside as BesideFlight, Output, Prelude, Recorder};
 use watched::WatchedFlight;
 
 /// Flies and reports. The exit code is 0 if the mission completed.
-pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
+pub(super) fn run(args: &FlyArgs, repeat: &[String]) -> Result<u8, AppError> {
     output::claim(args)?;
+    let backdrop = if args.report.is_some() { report::backdrop(&args.backdrop)? } else { Vec::new() };
     let plan = setup::read_plan(&args.plan, args.flight.home)?;
     setup::refuse_unflyable(&plan)?;
     let mut notices = plan.notices();
@@ -59,7 +60,9 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
     let mut vehicle = setup::build(setup, &mut notices)?;
     // From the first input on. A remote firmware has none to keep.
     vehicle.keep_inputs(recorded.is_some());
-    let start = Start { args, plan, tiles, vehicle, recorded, notices, interrupted: interrupt_flag()? };
+    let beside = BesideFlight { command: report::command(repeat), backdrop, ..BesideFlight::default() };
+    let start =
+        Start { args, plan, tiles, vehicle, recorded, notices, beside, interrupted: interrupt_flag()? };
     let prepared = match &firmware {
         None => Some(start.embedded()?),
         Some(firmware) => start.remote(firmware)?,
@@ -112,6 +115,8 @@ struct Start<'a> {
     recorded: Option<FlightSetup>,
     /// The first messages.
     notices: Vec<String>,
+    /// What a report needs besides the flight.
+    beside: BesideFlight,
     interrupted: Arc<AtomicBool>,
 }
 
@@ -155,9 +160,10 @@ impl Start<'_> {
         self.notices.extend(self.hazards());
         let hash = self.hash();
         let recorder = self.recorder()?;
-        let Self { args, plan, vehicle, notices, interrupted, .. } = self;
+        self.beside.relief = self.relief();
+        let Self { args, plan, vehicle, notices, beside, interrupted, .. } = self;
         let mut flight = WatchedFlight::new(setup::start_flight(vehicle, &options)?, hash);
-        let mut output = Output::open(args, flight.vehicle(), &plan, recorder)?;
+        let mut output = Output::open(args, flight.vehicle(), &plan, beside, recorder)?;
         first_events(flight.vehicle_mut(), notices).iter().try_for_each(|event| output.write(event))?;
         let step_us = flight.vehicle().step_us();
         let run = Run::Embedded(Runner::new(step_us, args.speed(), None));
@@ -185,15 +191,19 @@ impl Start<'_> {
         }
         let hash = run.motor_hash().and_then(|_| self.hash());
         let recorder = self.recorder()?;
+        self.beside.relief = self.relief();
+        self.beside.firmware = Some(firmware.described());
         let flight = setup::start_flight(self.vehicle, &setup::flight_options(&self.args.mission))?;
-        let output = prelude.open(flight.vehicle(), &self.plan, recorder)?;
+        let output = prelude.open(flight.vehicle(), &self.plan, self.beside, recorder)?;
         let flight = WatchedFlight::new(flight, hash);
         Ok(Some(Prepared { flight, output, run: Run::Remote(run), interrupted: self.interrupted }))
     }
 
     /// Begins the hash of the flight, if something prints it.
     fn hash(&self) -> Option<FlightHash> {
-        self.args.json.as_ref().map(|_| FlightHash::new(&self.vehicle, self.plan.plan.clone()))
+        let args = self.args;
+        let is_printed = args.json.is_some() || args.report.is_some() || args.markdown.is_some();
+        is_printed.then(|| FlightHash::new(&self.vehicle, self.plan.plan.clone()))
     }
 
     /// Begins the recording, if one is wanted.
@@ -211,15 +221,18 @@ impl Start<'_> {
 
     /// Returns the legs and the ways home that come too close to the ground.
     fn low(&self) -> Vec<Finding> {
-        let settings = self.vehicle.controller().settings_view();
-        let Some((frame, settings)) = self.vehicle.local_frame().zip(settings) else { return Vec::new() };
-        let home = LatLon::from_degrees(frame.lat_deg, frame.lon_deg);
-        let relief = self.tiles.clone().and_then(|tiles| Relief::new(tiles, home));
+        let Some(settings) = self.vehicle.controller().settings_view() else { return Vec::new() };
         let assumptions =
             Assumptions { start_alt_m: self.args.mission.takeoff_m(), ..settings.assumptions() };
-        relief.map_or_else(Vec::new, |relief| {
+        self.relief().map_or_else(Vec::new, |relief| {
             clearances(&self.plan.plan, &assumptions, &relief, self.args.review.clearance_m()).findings
         })
+    }
+
+    /// Returns the ground around home, if there are tiles.
+    fn relief(&self) -> Option<Relief> {
+        let frame = self.vehicle.local_frame()?;
+        Relief::new(self.tiles.clone()?, LatLon::from_degrees(frame.lat_deg, frame.lon_deg))
     }
 }
 

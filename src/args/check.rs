@@ -85,8 +85,16 @@ pub struct CheckArgs {
     #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
     pub markdown: Option<PathBuf>,
 
+    /// Writes a report as one HTML file: all expectations with their margins, and the flights, the failed ones first
+    #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
+    pub report: Option<PathBuf>,
+
+    /// Map under the tracks of --report: fields, roads, no-fly zones (GeoJSON, KML, KMZ, GPX); repeatable
+    #[arg(long, value_name = "FILE", requires = "report", help_heading = "Output")]
+    pub backdrop: Vec<PathBuf>,
+
     /// Flies this plan and prints a scenario that expects the same behaviour, with sensible margins
-    #[arg(long, value_name = "PLAN", conflicts_with_all = ["what", "list", "filter", "json", "junit", "markdown"], conflicts_with_all = FIRMWARE_OPTIONS, help_heading = "Output")]
+    #[arg(long, value_name = "PLAN", conflicts_with_all = ["what", "list", "filter", "json", "junit", "markdown", "report"], conflicts_with_all = FIRMWARE_OPTIONS, help_heading = "Output")]
     pub new: Option<PlanArg>,
 
     /// The choice of the firmware.

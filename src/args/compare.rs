@@ -56,6 +56,18 @@ pub struct CompareArgs {
     #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
     pub svg: Option<PathBuf>,
 
+    /// Writes a report as one HTML file: the table, both tracks, their altitudes
+    #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
+    pub report: Option<PathBuf>,
+
+    /// Writes the table as Markdown, for a pull request: before and after
+    #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
+    pub markdown: Option<PathBuf>,
+
+    /// Map under the tracks of --report: fields, roads, no-fly zones (GeoJSON, KML, KMZ, GPX); repeatable
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub backdrop: Vec<PathBuf>,
+
     /// The flight and the judgement of the plan.
     #[command(flatten)]
     pub mission: MissionArgs,
@@ -88,6 +100,9 @@ impl CompareArgs {
     pub(super) fn check(&self) -> Result<(), String> {
         if self.firmware.len() > 2 {
             return Err("--firmware is given once, to compare with the embedded one, or twice".to_owned());
+        }
+        if !self.backdrop.is_empty() && self.report.is_none() {
+            return Err(value::BACKDROP_NEEDS_REPORT.to_owned());
         }
         if self.flight.state_dir.is_some() {
             return Err("--state-dir: in compare each flight starts from defaults, so that all start alike; give the \

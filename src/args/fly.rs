@@ -39,6 +39,17 @@ pub struct FlyArgs {
     /// Records the flight, to open it again on the screen with betadeck replay
     #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
     pub record: Option<PathBuf>,
+    /// Writes a report as one HTML file: verdict, map, charts, states with their guards, margins
+    #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
+    pub report: Option<PathBuf>,
+
+    /// Writes the verdict, the margins and the states as Markdown, for a pull request
+    #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
+    pub markdown: Option<PathBuf>,
+
+    /// Map under the track of --report: fields, roads, no-fly zones (GeoJSON, KML, KMZ, GPX); repeatable
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub backdrop: Vec<PathBuf>,
 
     /// Points a second of simulated time in the KML and GeoJSON tracks [default: 1]
     #[arg(long, value_name = "HZ", value_parser = value::track_rate, help_heading = "Output")]
@@ -98,6 +109,9 @@ impl FlyArgs {
             return Err(
                 "--samples 0 leaves no rows for --csv: leave it out, or write a number above 0".to_owned()
             );
+        }
+        if !self.backdrop.is_empty() && self.report.is_none() {
+            return Err(value::BACKDROP_NEEDS_REPORT.to_owned());
         }
         if self.track_hz.is_some() && self.kml.is_none() && self.geojson.is_none() {
             return Err("--track-hz needs a track: add --kml FILE or --geojson FILE".to_owned());

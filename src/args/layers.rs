@@ -12,7 +12,7 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, FromArgMatches as _};
 
-use super::Cli;
+use super::{Cli, repeat};
 use crate::text::did_you_mean;
 
 /// The start of the names of environment variables.
@@ -76,7 +76,8 @@ pub(super) fn apply(
     }
     let matches =
         command.try_get_matches_from_mut(arguments).map_err(|error| name_source(error, &sources))?;
-    Cli::from_arg_matches(&matches)
+    let cli = Cli::from_arg_matches(&matches)?;
+    Ok(Cli { repeat: repeat::words(&matches, command), ..cli })
 }
 
 /// Returns the options of a command that the layers can give; a hidden option does not belong to the command.

@@ -180,6 +180,9 @@ pub(super) fn seed(text: &str) -> Result<u64, String> {
         .map_err(|_| format!("{text} is not a seed; allowed are whole numbers from 0 to {}", u64::MAX))
 }
 
+/// The error for a map without a report.
+pub(super) const BACKDROP_NEEDS_REPORT: &str = "--backdrop needs --report: it is the map under its track";
+
 /// Reads the path of a file to write, which cannot be standard output.
 pub(super) fn output_path(text: &str) -> Result<PathBuf, String> {
     match text {

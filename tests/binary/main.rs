@@ -10,6 +10,7 @@ mod connect;
 mod csv;
 #[cfg(unix)]
 mod docs;
+mod documents;
 #[cfg(unix)]
 mod editor;
 mod exchange;

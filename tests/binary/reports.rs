@@ -22,8 +22,9 @@ from = \"boot\"
 always = \"altitude in -1..1 m\"
 ";
 
-const OPTIONS: [&str; 6] = ["--json", "run.json", "--junit", "run.xml", "--markdown", "run.md"];
-const FILES: [&str; 3] = ["run.json", "run.xml", "run.md"];
+const OPTIONS: [&str; 8] =
+    ["--json", "run.json", "--junit", "run.xml", "--markdown", "run.md", "--report", "run.html"];
+const FILES: [&str; 4] = ["run.json", "run.xml", "run.md", "run.html"];
 
 /// A process that is killed when its test ends.
 struct Guard(Child);
@@ -136,23 +137,25 @@ fn reports_of_a_check_are_whole_or_not_there() {
 fn the_files_of_a_flight_are_there_when_it_is_over() {
     for name in ["INT", "KILL"] {
         let sandbox = Sandbox::new();
-        let files = ["--json", "flight.json", "--gpx", "track.gpx"];
+        let files = ["--json", "flight.json", "--gpx", "track.gpx", "--report", "flight.html"];
         // Two simulated seconds are enough to write the files.
         sandbox.run(&[&["fly", "land", "--timeout=2"][..], &files].concat()).exits(1);
         let mut child = start(&sandbox, &[&["fly", "land", "--speed=1"][..], &files].concat());
         handles_signals(child.0.id());
         until("the flight begins", || !sandbox.path("flight.json").exists() && sandbox.names().len() >= 2);
-        assert!(!sandbox.path("track.gpx").exists());
+        assert!(!sandbox.path("track.gpx").exists() && !sandbox.path("flight.html").exists());
         signal(&child, name);
         let code = end_of(&mut child.0);
         assert_eq!(sandbox.path("flight.json").exists(), name == "INT", "after {name}");
         assert_eq!(sandbox.path("track.gpx").exists(), name == "INT", "after {name}");
+        assert_eq!(sandbox.path("flight.html").exists(), name == "INT", "after {name}");
         if name == "INT" {
             assert_eq!(code, Some(130));
             let lines = Line::read_all(&sandbox.read("flight.json"));
             assert_eq!(lines.last().expect("lines").text("result"), "interrupted");
             assert!(sandbox.read("track.gpx").trim_end().ends_with("</gpx>"));
-            assert_eq!(sandbox.names().len(), 2, "{:?}", sandbox.names());
+            assert!(sandbox.read("flight.html").contains("✗ interrupted"));
+            assert_eq!(sandbox.names().len(), 3, "{:?}", sandbox.names());
         }
     }
 }
@@ -169,7 +172,7 @@ fn a_flight_that_cannot_start_leaves_no_files_of_an_earlier_one() {
     ] {
         let sandbox = Sandbox::new();
         sandbox.write("empty.txt", "# nothing\n");
-        let files = ["--json=flight.json", "--gpx=track.gpx"];
+        let files = ["--json=flight.json", "--gpx=track.gpx", "--report=flight.html", "--markdown=flight.md"];
         // Two simulated seconds are enough to write the files.
         sandbox.run(&[&["fly", "land", "--timeout=2"][..], &files].concat()).exits(1);
         let ran = sandbox.run(&[line, &files].concat());

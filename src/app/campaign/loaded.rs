@@ -140,8 +140,8 @@ fn remote(
         let problem = "only the embedded firmware can fly this case: its inputs or its end need knowledge that no other gives";
         return Some(Ok(Record::not_flown(flight, side, problem.to_owned())));
     }
-    match fly_case(firmware, &flight.case, &flight.air, interrupted, thread, reported) {
-        Ok(Ok(RemoteFlown { flown, problem, hash })) => {
+    match fly_case(firmware, &flight.case, &flight.air, interrupted, thread, false, reported) {
+        Ok(Ok(RemoteFlown { flown, problem, hash, .. })) => {
             let record = Record::of(flight, side, &flown, hash);
             Some(Ok(record.with_problem(problem)))
         }

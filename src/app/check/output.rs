@@ -8,11 +8,14 @@ use super::progress::Progress;
 use crate::app::error::{self, AppError};
 use crate::app::output_file::{self, FinalOutput, KeptFiles};
 use crate::app::patient_output::PatientOutput;
-use crate::app::setup;
+use crate::app::{report, setup};
 use crate::args::{CheckArgs, OutputFile};
+use crate::plan::feature::Feature;
 use crate::report::check::{
     CheckedFlight, Summary, flight_line, flight_lines, junit, markdown, summary_line, summary_lines,
 };
+use crate::report::flight::FlightReport;
+use crate::report::html::CheckPage;
 use crate::text::printable;
 
 /// The outputs for the results.
@@ -24,7 +27,18 @@ pub(super) struct Output {
     json: Option<Json>,
     junit: Option<FinalOutput>,
     markdown: Option<FinalOutput>,
+    report: Option<Report>,
     progress: Progress,
+}
+
+/// The page about the run.
+struct Report {
+    file: FinalOutput,
+    page: CheckPage,
+    /// The map under the tracks.
+    backdrop: Vec<Feature>,
+    /// The command that gives the run again.
+    command: String,
 }
 
 /// The output for the JSON lines.
@@ -40,14 +54,16 @@ fn files(args: &CheckArgs) -> impl Iterator<Item = (&'static str, &Path)> {
         Some(OutputFile::File(path)) => Some(path),
         Some(OutputFile::Stdout) | None => None,
     };
-    [("--json", json), ("--junit", args.junit.as_ref()), ("--markdown", args.markdown.as_ref())]
-        .into_iter()
-        .filter_map(|(option, path)| Some((option, path?.as_path())))
+    let whole = [("--junit", &args.junit), ("--markdown", &args.markdown), ("--report", &args.report)];
+    let whole = whole.map(|(option, path)| (option, path.as_ref()));
+    let all = std::iter::once(("--json", json)).chain(whole);
+    all.filter_map(|(option, path)| Some((option, path?.as_path())))
 }
 
 /// Checks that no output replaces a file that must be kept.
 fn claim(args: &CheckArgs, inputs: &[PathBuf]) -> Result<(), AppError> {
     let mut kept = KeptFiles::default();
+    args.backdrop.iter().for_each(|path| kept.keep("--backdrop", path));
     for file in inputs {
         kept.keep("a scenario's file", file);
     }
@@ -65,8 +81,9 @@ pub(super) fn remove_earlier(args: &CheckArgs) -> Result<(), AppError> {
 
 impl Output {
     /// Opens the outputs of the options; an output must not be a scenario.
-    pub(super) fn open(args: &CheckArgs, loaded: &Loaded) -> Result<Self, AppError> {
+    pub(super) fn open(args: &CheckArgs, repeat: &[String], loaded: &Loaded) -> Result<Self, AppError> {
         claim(args, &loaded.files)?;
+        let backdrop = report::backdrop(&args.backdrop)?;
         // Problems are reported before the flights.
         let begin = |path: &Option<PathBuf>| path.as_deref().map(FinalOutput::begin).transpose();
         let json = match &args.json {
@@ -80,8 +97,21 @@ impl Output {
             json,
             junit: begin(&args.junit)?,
             markdown: begin(&args.markdown)?,
+            report: begin(&args.report)?.map(|file| Report {
+                file,
+                page: CheckPage::default(),
+                backdrop,
+                command: report::command(repeat),
+            }),
             progress: Progress::new(),
         })
+    }
+
+    /// Adds a flight to the page about the run.
+    pub(super) fn report(&mut self, flight: &CheckedFlight, report: FlightReport) {
+        if let Some(Report { page, backdrop, .. }) = &mut self.report {
+            page.add(flight, &FlightReport { backdrop: backdrop.clone(), ..report });
+        }
     }
 
     /// Reports a flight.
@@ -111,8 +141,11 @@ impl Output {
         let to =
             |file: Option<FinalOutput>, text: String| file.map_or(Ok(()), |file| file.write(text.as_bytes()));
         // Each file is written, even if another one fails.
+        let page = self.report.take().map_or(Ok(()), |Report { file, page, command, .. }| {
+            file.write(page.html(summary, Some(&command), &report::program()).as_bytes())
+        });
         let reports =
-            [json, to(self.junit.take(), junit(summary)), to(self.markdown.take(), markdown(summary))];
+            [json, to(self.junit.take(), junit(summary)), to(self.markdown.take(), markdown(summary)), page];
         reports.into_iter().collect()
     }
 

@@ -4,13 +4,15 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::Loaded;
+use super::record::Record;
 use super::results::Results;
-use super::run::{self, Job, Repetitions, Stopwatch};
+use super::run::{self, Job, Judged, Repetitions, Stopwatch};
 use crate::app::firmware::run::{OnEvent, RemoteRun, RunOptions, Stopped};
 use crate::app::firmware::{RemoteFirmware, reported};
 use crate::app::{AppError, error, parallel, setup};
 use crate::fc::Unset;
 use crate::report::check::{CheckedFlight, shell_word};
+use crate::report::flight::FlightReport;
 use crate::scenario::{self, Air, Case, CaseFlight, Flown};
 use crate::session::{Event, Subscriber};
 use crate::signals::fdm::{FirmwareClock, Stamps};
@@ -40,12 +42,15 @@ pub(super) fn refuse_many(firmware: &RemoteFirmware, flights: usize, watch: bool
 pub(super) struct Run<'a> {
     pub(super) loaded: &'a Loaded,
     pub(super) firmware: &'a RemoteFirmware,
+    /// `true` if flights have reports.
+    pub(super) is_reported: bool,
     pub(super) interrupted: &'a Arc<AtomicBool>,
 }
 
 /// A flight that is over.
 struct Done {
     flight: CheckedFlight,
+    report: Option<Box<FlightReport>>,
     /// The messages about the firmware during the flight.
     reported: Vec<String>,
     /// The exit code of a problem with the environment.
@@ -83,7 +88,7 @@ impl Run<'_> {
                 let was_in_trouble = std::mem::replace(&mut is_in_trouble, done.trouble.is_some());
                 trouble = trouble.max(done.trouble);
                 let flight = if is_repeatable { repetitions.compare(done.flight) } else { done.flight };
-                results.flight(flight, count);
+                results.flight(flight, done.report, count);
                 if was_in_trouble && is_in_trouble && count < jobs.len() {
                     gives_up.store(true, Ordering::Relaxed);
                     results.tell(NO_MORE);
@@ -103,17 +108,18 @@ impl Run<'_> {
         };
         let mut reported = Vec::new();
         if let Some(judgements) = scenario::skip(case) {
-            return Some(Done { flight: CheckedFlight { judgements, ..unflown }, reported, trouble: None });
+            let flight = CheckedFlight { judgements, ..unflown };
+            return Some(Done { flight, report: None, reported, trouble: None });
         }
-        let (flight, trouble) = match self.fly(case, air, unflown.clone(), thread, &mut reported) {
+        let ((flight, report), trouble) = match self.fly(case, air, unflown.clone(), thread, &mut reported) {
             Ok(flight) => (flight, None),
             Err(Stopped::Interrupted | Stopped::BySubscriber) => return None,
             Err(Stopped::Failed(AppError { code, message })) => {
                 let trouble = (code >= error::ENVIRONMENT).then_some(code);
-                (CheckedFlight { problem: Some(message), ..unflown }, trouble)
+                ((CheckedFlight { problem: Some(message), ..unflown }, None), trouble)
             }
         };
-        Some(Done { flight, reported, trouble })
+        Some(Done { flight, report, reported, trouble })
     }
 
     fn fly(
@@ -123,14 +129,14 @@ impl Run<'_> {
         checked: CheckedFlight,
         thread: usize,
         reported: &mut Vec<String>,
-    ) -> Result<CheckedFlight, Stopped> {
+    ) -> Result<Judged, Stopped> {
         let started = Stopwatch::start();
-        match fly_case(self.firmware, case, air, self.interrupted, thread, reported)? {
-            Err(problem) => Ok(CheckedFlight { problem: Some(problem), ..checked }),
-            Ok(RemoteFlown { flown, problem, hash }) => {
+        match fly_case(self.firmware, case, air, self.interrupted, thread, self.is_reported, reported)? {
+            Err(problem) => Ok((CheckedFlight { problem: Some(problem), ..checked }, None)),
+            Ok(RemoteFlown { flown, problem, hash, report }) => {
                 let judged = run::judged(checked, case, flown, &started);
                 let hash = hash.unwrap_or(judged.hash);
-                Ok(CheckedFlight { problem, hash, ..judged })
+                Ok((CheckedFlight { problem, hash, ..judged }, report))
             }
         }
     }
@@ -143,6 +149,8 @@ pub(in crate::app) struct RemoteFlown {
     pub(in crate::app) problem: Option<String>,
     /// The hash of its motor packets, in simulated time.
     pub(in crate::app) hash: Option<u64>,
+    /// The report about it, if one is wanted.
+    pub(in crate::app) report: Option<Box<FlightReport>>,
 }
 
 /// Flies a case with a new start of the firmware. The inner error is the reason why the pilot cannot fly it. Adds the
@@ -153,6 +161,7 @@ pub(in crate::app) fn fly_case(
     air: &Air,
     interrupted: &Arc<AtomicBool>,
     thread: usize,
+    is_reported: bool,
     reported: &mut Vec<String>,
 ) -> Result<Result<RemoteFlown, String>, Stopped> {
     let mut tell = OnEvent(|event: &Event| reported.extend(reported::sentence(event)));
@@ -162,11 +171,13 @@ pub(in crate::app) fn fly_case(
         Ok(flight) => flight,
         Err(problem) => return Ok(Err(problem)),
     };
+    let mut record = Record::new(is_reported, flight.vehicle(), case);
     remote.runner().begin_flight();
-    remote.fly(&mut flight, &mut tell)?;
+    remote.fly(&mut flight, &mut (&mut record, &mut tell))?;
     let mut flown = flight.finish();
     flown.reason += &remote.runner().disturbance();
-    Ok(Ok(RemoteFlown { flown, problem, hash: remote.motor_hash() }))
+    let report = record.finish(case, &flown);
+    Ok(Ok(RemoteFlown { flown, problem, hash: remote.motor_hash(), report }))
 }
 
 /// Starts the firmware for the flight of a case and sets it up. `thread` is the number of the flight among those at once.

@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::output::Output;
 use crate::app::AppError;
 use crate::report::check::CheckedFlight;
+use crate::report::flight::FlightReport;
 
 /// The finished flights, which are reported as they end.
 pub(super) struct Results<'a> {
@@ -27,9 +28,12 @@ impl<'a> Results<'a> {
     }
 
     /// Adds a flight, the `done`th that is over. After a stop there are none: one that was already under way does not count.
-    pub(super) fn flight(&mut self, flight: CheckedFlight, done: usize) {
+    pub(super) fn flight(&mut self, flight: CheckedFlight, report: Option<Box<FlightReport>>, done: usize) {
         if self.stop.load(Ordering::Relaxed) {
             return;
+        }
+        if let Some(report) = report {
+            self.output.report(&flight, *report);
         }
         if let Err(error) = self.output.flight(&flight, done, self.wanted) {
             self.problem.get_or_insert(error);

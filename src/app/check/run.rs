@@ -3,10 +3,12 @@
 
 use std::time::Instant;
 
+use super::record::Record;
 use super::{Comparisons, Loaded};
 use crate::app::AppError;
 use crate::args::{CheckArgs, MOST_FLIGHTS};
 use crate::report::check::{CheckedFlight, Compared};
+use crate::report::flight::FlightReport;
 use crate::scenario::{self, Air, Case, CaseFlight, Flown, Scenario};
 use crate::session::Runner;
 
@@ -89,8 +91,16 @@ pub(super) fn is_wanted(scenario: &Scenario, case: &Case, args: &CheckArgs) -> b
     args.filter.as_ref().is_none_or(|text| format!("{} {}", scenario.name, case.name).contains(text.as_str()))
 }
 
+/// A judged flight, and its report if there is one.
+pub(super) type Judged = (CheckedFlight, Option<Box<FlightReport>>);
+
 /// Flies and judges one flight; `None` if it was interrupted.
-pub(super) fn one(loaded: &Loaded, job: Job, is_stopped: &impl Fn() -> bool) -> Option<CheckedFlight> {
+pub(super) fn one(
+    loaded: &Loaded,
+    job: Job,
+    is_reported: bool,
+    is_stopped: &impl Fn() -> bool,
+) -> Option<Judged> {
     let (case, air) = job.of(loaded)?;
     let started = Stopwatch::start();
     let mut checked = job.not_flown_yet(loaded)?;
@@ -98,12 +108,15 @@ pub(super) fn one(loaded: &Loaded, job: Job, is_stopped: &impl Fn() -> bool) -> 
         Ok(flight) => flight,
         Err(problem) => {
             checked.problem = Some(problem);
-            return Some(checked);
+            return Some((checked, None));
         }
     };
+    let mut record = Record::new(is_reported, flight.vehicle(), case);
     let mut runner = Runner::new(flight.vehicle().step_us(), f64::INFINITY, None);
-    runner.fly(&mut flight, &mut (), is_stopped).ok()?;
-    Some(judged(checked, case, flight.finish(), &started))
+    runner.fly(&mut flight, &mut record, is_stopped).ok()?;
+    let flown = flight.finish();
+    let report = record.finish(case, &flown);
+    Some((judged(checked, case, flown, &started), report))
 }
 
 /// Returns the judged flight.

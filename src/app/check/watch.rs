@@ -17,6 +17,7 @@ const INTERVAL: Duration = Duration::from_millis(200);
 /// Flies, waits for a change, and flies again, until a signal.
 pub(super) fn run(
     args: &CheckArgs,
+    repeat: &[String],
     firmware: Option<&RemoteFirmware>,
     interrupted: &Arc<AtomicBool>,
 ) -> Result<u8, AppError> {
@@ -35,7 +36,7 @@ pub(super) fn run(
                         files.push(file.clone());
                     }
                 }
-                fly(&loaded, args, firmware, interrupted)?;
+                fly(&loaded, args, repeat, firmware, interrupted)?;
             }
             Err(error) => error::tell(&error.message),
         }

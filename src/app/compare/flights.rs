@@ -16,6 +16,7 @@ use crate::fc::{guide_settings, upload};
 use crate::firmware::config::Configuration;
 use crate::flight::setup::{BootLines, PhysicsSource};
 use crate::flight::{FlightOptions, FlightSetup};
+use crate::geo::LocalFrame;
 use crate::plan::format::PlanFile;
 use crate::report::compare::Track;
 use crate::report::route::Route;
@@ -29,6 +30,7 @@ pub(super) struct Flights {
     setup: FlightSetup,
     options: FlightOptions,
     route: Route,
+    frame: LocalFrame,
     /// Settings that are applied last.
     set: Vec<String>,
     /// The requested speed of a remote firmware, as a multiple of real time.
@@ -74,6 +76,7 @@ impl Flights {
         let settings = vehicle.controller().settings_view().unwrap_or_default();
         Ok(Self {
             route: Route::new(&plan.plan, frame, &settings),
+            frame: *frame,
             plan,
             setup,
             options: setup::flight_options(&args.mission),
@@ -92,6 +95,11 @@ impl Flights {
     /// Returns the plan in metres.
     pub(super) fn route(&self) -> Route {
         self.route.clone()
+    }
+
+    /// Returns the frame of the route.
+    pub(super) fn frame(&self) -> &LocalFrame {
+        &self.frame
     }
 
     /// Returns the world without the seed of a flight.

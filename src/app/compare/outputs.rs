@@ -1,9 +1,14 @@
 //! The outputs of a comparison.
 
+use std::path::PathBuf;
+
 use crate::app::output_file::FinalOutput;
-use crate::app::{AppError, error, setup};
+use crate::app::{AppError, error, report, setup};
 use crate::args::{CompareArgs, OutputFile};
+use crate::geo::LocalFrame;
+use crate::plan::feature::Feature;
 use crate::report::compare::Comparison;
+use crate::report::html;
 
 /// The outputs of a comparison.
 #[derive(Debug)]
@@ -12,36 +17,62 @@ pub(super) struct Outputs {
     json_on_stdout: bool,
     json: Option<FinalOutput>,
     svg: Option<FinalOutput>,
+    report: Option<FinalOutput>,
+    markdown: Option<FinalOutput>,
+    /// The map under the tracks of the report.
+    backdrop: Vec<Feature>,
+    /// The command that gives the comparison again.
+    command: String,
 }
 
 impl Outputs {
     /// Checks that the files can be written, so that no flight is wasted. The files stay unchanged.
-    pub(super) fn prepare(args: &CompareArgs) -> Result<Self, AppError> {
+    pub(super) fn prepare(args: &CompareArgs, repeat: &[String]) -> Result<Self, AppError> {
         let json = match &args.json {
             Some(OutputFile::File(path)) => Some(path),
             Some(OutputFile::Stdout) | None => None,
         };
         let mut kept = setup::kept_files(&args.flight, Some(&args.plan));
-        for (option, path) in [("--json", json), ("--svg", args.svg.as_ref())] {
+        args.backdrop.iter().for_each(|path| kept.keep("--backdrop", path));
+        for (option, path) in [
+            ("--json", json),
+            ("--svg", args.svg.as_ref()),
+            ("--report", args.report.as_ref()),
+            ("--markdown", args.markdown.as_ref()),
+        ] {
             path.map_or(Ok(()), |path| kept.claim(option, path))?;
         }
+        let backdrop = if args.report.is_some() { report::backdrop(&args.backdrop)? } else { Vec::new() };
+        let prepare = |path: &Option<PathBuf>| path.as_deref().map(FinalOutput::prepare).transpose();
         Ok(Self {
             json_on_stdout: args.json == Some(OutputFile::Stdout),
             json: json.map(|path| FinalOutput::prepare(path)).transpose()?,
-            svg: args.svg.as_deref().map(FinalOutput::prepare).transpose()?,
+            svg: prepare(&args.svg)?,
+            report: prepare(&args.report)?,
+            markdown: prepare(&args.markdown)?,
+            backdrop,
+            command: report::command(repeat),
         })
     }
 
     /// Writes all outputs, even if one of them fails.
-    pub(super) fn write(self, comparison: &Comparison) -> Result<(), AppError> {
+    pub(super) fn write(self, comparison: &Comparison, frame: &LocalFrame) -> Result<(), AppError> {
         let json = format!("{}\n", comparison.json());
         let shown = match self.json_on_stdout {
             true => error::write_stdout(json.as_bytes()),
             false => error::print(&comparison.text()),
         };
-        let to =
-            |file: Option<FinalOutput>, text: &str| file.map_or(Ok(()), |file| file.write(text.as_bytes()));
-        let written = [to(self.json, &json), to(self.svg, &comparison.svg())];
+        let to = |file: Option<FinalOutput>, text: &dyn Fn() -> String| {
+            file.map_or(Ok(()), |file| file.write(text().as_bytes()))
+        };
+        let command = Some(self.command.as_str());
+        let page = || html::compare_page(comparison, (&self.backdrop, frame), command, &report::program());
+        let written = [
+            to(self.json, &|| json.clone()),
+            to(self.svg, &|| comparison.svg()),
+            to(self.report, &page),
+            to(self.markdown, &|| comparison.markdown(command)),
+        ];
         shown?;
         written.into_iter().collect()
     }

@@ -1,10 +1,11 @@
-//! The outputs of a headless flight: lines, rows, tracks, and the last lines on standard error.
+//! The outputs of a headless flight: lines, rows, tracks, a report, and the last lines on standard error.
 
 mod claim;
 mod lines;
 mod pace;
 mod prelude;
 mod recorder;
+mod report;
 mod stream;
 mod table;
 mod tracks;
@@ -22,6 +23,8 @@ pub(super) use claim::claim;
 use lines::Lines;
 pub(super) use prelude::Prelude;
 pub(super) use recorder::Recorder;
+pub(super) use report::Beside;
+use report::Report;
 use table::Table;
 use tracks::Tracks;
 
@@ -31,6 +34,7 @@ pub(super) struct Output {
     table: Option<Table>,
     tracks: Tracks,
     recorder: Option<Recorder>,
+    report: Option<Report>,
     /// `true` after the end of the flight: only its end remains to be reported.
     is_over: bool,
     /// The first error. The flight stops.
@@ -43,6 +47,7 @@ impl Output {
         args: &FlyArgs,
         vehicle: &Vehicle,
         plan: &PlanFile,
+        beside: Beside,
         recorder: Option<Recorder>,
     ) -> Result<Self, AppError> {
         Ok(Self {
@@ -50,6 +55,7 @@ impl Output {
             table: Table::open(args)?,
             tracks: Tracks::open(args, vehicle, plan)?,
             recorder,
+            report: Report::open(args, vehicle, plan, beside)?,
             is_over: false,
             problem: None,
         })
@@ -71,6 +77,9 @@ impl Output {
         if let Some(recorder) = &mut self.recorder {
             recorder.event(event);
         }
+        if let Some(report) = &mut self.report {
+            report.event(event);
+        }
     }
 
     /// Writes the samples that are due.
@@ -83,6 +92,9 @@ impl Output {
         }
         if let Some(recorder) = &mut self.recorder {
             recorder.after_tick(flight.vehicle())?;
+        }
+        if let Some(report) = &mut self.report {
+            report.after_tick(flight.vehicle());
         }
         self.tracks.offer(flight.vehicle())
     }
@@ -104,7 +116,7 @@ impl Output {
 
     /// Ends the files and reports the end of the flight.
     pub(super) fn finish(self, time: SimTime, end: &End) -> Result<(), AppError> {
-        let Self { lines, table, tracks, recorder, .. } = self;
+        let Self { lines, table, tracks, recorder, report, .. } = self;
         if let Some(mut lines) = lines {
             lines.end(time, end)?;
             lines.finish()?;
@@ -115,6 +127,7 @@ impl Output {
             let (result, reason) = (end.result.clone(), end.reason.clone());
             recorder.finish(recording::End { t: time, result, reason, flown_s: end.flown_s, hash: None })?;
         }
+        report.map_or(Ok(()), |report| report.finish(end))?;
         error::tell(&end.result_line());
         error::tell(&end.flown_line());
         Ok(())

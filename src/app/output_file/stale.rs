@@ -11,8 +11,8 @@ use crate::storage;
 /// The most bytes of a file that are read.
 const LOOKED_AT: u64 = 1 << 20;
 /// The options for files of results.
-const OPTIONS: [&str; 8] =
-    ["--json", "--csv", "--junit", "--markdown", "--gpx", "--kml", "--geojson", "--record"];
+const OPTIONS: [&str; 9] =
+    ["--json", "--csv", "--junit", "--markdown", "--gpx", "--kml", "--geojson", "--record", "--report"];
 /// The start of a table of samples.
 const SAMPLES: &str = "time (s),boot_time (s),state,waypoint,";
 /// The commands that write these results.
@@ -72,6 +72,8 @@ fn holds_results(path: &Path) -> bool {
     second.starts_with("<testsuites name=\"betadeck\"")
         || second.starts_with("<gpx version=\"1.1\" creator=\"betadeck")
         || second.starts_with("<!-- betadeck (")
+        || second.starts_with("<!-- betadeck report -->")
+        || first == "<!-- betadeck flight -->"
         || first.starts_with("{\"type\":\"FeatureCollection\",\"generator\":\"betadeck (")
         || summaries.contains(&first)
         || first.starts_with(SAMPLES)
@@ -104,6 +106,9 @@ mod tests {
             ("plan.kml", "<?xml?>\n<kml>\n", false),
             ("plan.geojson", "{\"type\":\"FeatureCollection\",\n", false),
             ("samples.csv", "time (s),boot_time (s),state,waypoint,lat (deg)\n,0,IDLE,,40\n", true),
+            ("flight.html", "<!DOCTYPE html>\n<!-- betadeck report -->\n<html>\n", true),
+            ("flight.md", "<!-- betadeck flight -->\n### x\n", true),
+            ("page.html", "<!DOCTYPE html>\n<html>\n", false),
             ("plan.csv", "latitude,longitude,altitude(m)\n", false),
             ("run.md", "### ✅ All flights passed\n\n1 of 1\n", true),
             ("other.xml", "<?xml version=\"1.0\"?>\n<testsuites name=\"cargo\">\n", false),

@@ -16,6 +16,7 @@ pub(in crate::app::fly) fn claim(args: &FlyArgs) -> Result<(), AppError> {
         ));
     }
     let mut kept = setup::kept_files(&args.flight, Some(&args.plan));
+    args.backdrop.iter().for_each(|path| kept.keep("--backdrop", path));
     files(args).try_for_each(|(option, path)| kept.claim(option, path))?;
     files(args).for_each(|(_, path)| output_file::remove_results(path));
     Ok(())
@@ -33,6 +34,8 @@ fn files(args: &FlyArgs) -> impl Iterator<Item = (&'static str, &Path)> {
         ("--kml", &args.kml),
         ("--geojson", &args.geojson),
         ("--record", &args.record),
+        ("--report", &args.report),
+        ("--markdown", &args.markdown),
     ];
     streams.chain(whole.into_iter().filter_map(|(option, path)| Some((option, path.as_deref()?))))
 }

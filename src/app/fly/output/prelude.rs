@@ -1,6 +1,6 @@
 //! The messages before a flight with a remote firmware.
 
-use super::{Output, Recorder};
+use super::{Beside, Output, Recorder};
 use crate::app::error::{self, AppError};
 use crate::app::firmware::reported;
 use crate::args::FlyArgs;
@@ -47,9 +47,10 @@ impl<'a> Prelude<'a> {
         self,
         vehicle: &Vehicle,
         plan: &PlanFile,
+        beside: Beside,
         recorder: Option<Recorder>,
     ) -> Result<Output, AppError> {
-        let mut output = Output::open(self.args, vehicle, plan, recorder)?;
+        let mut output = Output::open(self.args, vehicle, plan, beside, recorder)?;
         let is_told = self.args.has_sentences();
         for event in &self.held {
             if is_told {

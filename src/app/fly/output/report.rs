@@ -1,0 +1,102 @@
+//! The report about a flight, written at its end.
+
+use std::io::Write as _;
+use std::path::PathBuf;
+
+use super::stream::write_failed;
+use crate::app::error::AppError;
+use crate::app::output_file::StreamedOutput;
+use crate::app::report;
+use crate::args::FlyArgs;
+use crate::plan::feature::Feature;
+use crate::plan::format::PlanFile;
+use crate::report::End;
+use crate::report::flight::{self, FlightReport, ReportedSettings, Verdict};
+use crate::report::html;
+use crate::session::Event;
+use crate::terrain::Relief;
+use crate::vehicle::Vehicle;
+
+/// What a report needs besides the flight.
+#[derive(Debug, Default)]
+pub(in crate::app::fly) struct Beside {
+    /// The command that gives the flight again.
+    pub(in crate::app::fly) command: String,
+    pub(in crate::app::fly) backdrop: Vec<Feature>,
+    pub(in crate::app::fly) relief: Option<Relief>,
+    /// The name of a remote firmware, and the lines that it got.
+    pub(in crate::app::fly) firmware: Option<(String, Vec<String>)>,
+}
+
+/// The report and its files.
+pub(super) struct Report {
+    report: FlightReport,
+    relief: Option<Relief>,
+    html: Option<StreamedOutput>,
+    markdown: Option<StreamedOutput>,
+}
+
+impl Report {
+    /// Opens the files of the options, if there are any.
+    ///
+    /// # Errors
+    /// Returns the reason why a file cannot be written.
+    pub(super) fn open(
+        args: &FlyArgs,
+        vehicle: &Vehicle,
+        plan: &PlanFile,
+        beside: Beside,
+    ) -> Result<Option<Self>, AppError> {
+        if args.report.is_none() && args.markdown.is_none() {
+            return Ok(None);
+        }
+        let open = |path: &Option<PathBuf>| path.as_deref().map(StreamedOutput::begin).transpose();
+        let (html, markdown) = (open(&args.report)?, open(&args.markdown)?);
+        let Beside { command, backdrop, relief, firmware } = beside;
+        let mut report = report::about(vehicle, &plan.name, &plan.plan);
+        let (name, lines) =
+            firmware.map_or(("embedded".to_owned(), None), |(name, lines)| (name, Some(lines)));
+        report.facts = vec![("firmware".to_owned(), name)];
+        report.settings = lines.map(ReportedSettings::Sent).or(report.settings);
+        report.tolerance_m = Some(args.mission.tolerance_m());
+        report.command = Some(command);
+        report.backdrop = backdrop;
+        Ok(Some(Self { report, relief, html, markdown }))
+    }
+
+    /// Records an event.
+    pub(super) fn event(&mut self, event: &Event) {
+        self.report.record.note(event);
+    }
+
+    /// Records the state after a tick.
+    pub(super) fn after_tick(&mut self, vehicle: &Vehicle) {
+        report::sample(&mut self.report.record, vehicle);
+    }
+
+    /// Writes the files.
+    ///
+    /// # Errors
+    /// Returns the error of the output.
+    pub(super) fn finish(self, end: &End) -> Result<(), AppError> {
+        let Self { mut report, relief, html, markdown } = self;
+        report.verdict = Verdict {
+            passed: Some(end.result == "complete"),
+            word: end.result.clone(),
+            reason: end.reason.clone(),
+        };
+        report.flown_s = Some(end.flown_s);
+        report.truth = end.truth.clone();
+        report.facts.extend(end.hash.map(|hash| ("hash".to_owned(), format!("{hash:016x}"))));
+        if let Some(relief) = relief {
+            report::add_ground(&mut report, &relief);
+        }
+        let write = |file: Option<StreamedOutput>, text: &dyn Fn() -> String| {
+            let Some(mut file) = file else { return Ok(()) };
+            file.write_all(text().as_bytes()).map_err(write_failed)?;
+            file.finish()
+        };
+        write(html, &|| html::flight_page(&report, &report::program()))?;
+        write(markdown, &|| flight::markdown(&report))
+    }
+}
