@@ -23,6 +23,7 @@
 pub mod forecast;
 mod judge;
 pub mod setup;
+pub mod sweep;
 mod truth_check;
 mod verdict;
 mod waiting;
@@ -60,14 +61,15 @@ impl Default for FlightOptions {
     }
 }
 
-/// A flight in progress.
-#[derive(Debug)]
+/// A flight in progress. A copy flies on by itself.
+#[derive(Debug, Clone)]
 pub struct Flight {
     vehicle: Vehicle,
     judge: Judge,
     touched_down: bool,
     ends_in_land: bool,
     takeoff_m: f64,
+    tolerance_m: f64,
     truth_check: TruthCheck,
     /// Events of the navigator in this tick.
     nav_events: Vec<NavEvent>,
@@ -112,6 +114,7 @@ impl Flight {
             touched_down: false,
             ends_in_land,
             takeoff_m: options.takeoff_m,
+            tolerance_m: options.tolerance_m,
             truth_check: TruthCheck::new(options.tolerance_m),
             nav_events: Vec::with_capacity(8),
             armed_alt_m,

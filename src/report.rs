@@ -26,6 +26,7 @@ mod plot;
 mod record;
 pub mod route;
 pub mod sentence;
+pub mod sweep;
 pub mod track;
 pub mod truth;
 mod xml;

@@ -10,6 +10,7 @@ mod progress;
 mod run_file;
 mod shard;
 mod sources;
+mod sweep;
 
 use super::error::AppError;
 use crate::args::{CampaignArgs, CampaignCommand};
@@ -19,7 +20,10 @@ pub(super) use loaded::{OneFlight, open_flight};
 pub(super) fn run(args: &CampaignArgs) -> Result<u8, AppError> {
     match &args.command {
         Some(CampaignCommand::Merge(args)) => merge::run(args),
-        None => fly::run(args),
+        None => match args.sweep {
+            Some(fault) => sweep::run(args, fault),
+            None => fly::run(args),
+        },
     }
 }
 

@@ -8,6 +8,7 @@ use super::{FirmwareArgs, FirmwareChoice, FirmwarePortArgs, FlightArgs, MissionA
 use crate::campaign::Shard;
 use crate::design::Design;
 use crate::scenario::MAX_CAMPAIGN;
+use crate::sim::ScheduledFault;
 
 /// The options of `campaign`.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
@@ -56,6 +57,15 @@ pub struct CampaignArgs {
     /// repeatable
     #[arg(long, value_name = "TEXT", help_heading = "Which")]
     pub expect: Vec<String>,
+
+    /// Flies a plan with this fault at every second of the flight instead, such as gps-loss,6 or motor,,2:0.7, and shows
+    /// when and where it is fatal
+    #[arg(
+        long, value_name = "NAME[,FOR][,VALUE]", value_parser = value::timeless_fault, help_heading = "Which",
+        conflicts_with_all = ["flights", "design", "seeds", "vary", "expect", "shard", "vs", "vs_settings", "vs_firmware",
+            "out", "junit", "markdown"]
+    )]
+    pub sweep: Option<ScheduledFault>,
 
     /// Flies only a part of the campaign: K/N (K from 1), slurm (a task of an array job), k8s/N (a pod of an indexed job)
     #[arg(long, value_name = "PART", help_heading = "Which")]

@@ -103,6 +103,11 @@ impl<'a> CaseFlight<'a> {
         self.flight.into_vehicle()
     }
 
+    /// Returns the flight without its record, its timed inputs and its own end.
+    pub fn into_flight(self) -> Flight {
+        self.flight
+    }
+
     /// Returns the record so far.
     pub fn trace(&self) -> &Trace {
         &self.recorder.trace

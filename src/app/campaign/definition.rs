@@ -23,8 +23,10 @@ pub(super) const MAX_HEADER: u64 = 64 << 20;
 pub(super) enum Wanted {
     /// The file of an earlier run, to go on.
     Run(PathBuf, Box<RunHeader>),
-    /// A scenario or a plan, with the reader of the files that it names.
-    New(Box<Definition>, Sources),
+    /// A scenario, with the reader of the files that it names.
+    Scenario(Box<Definition>, Sources),
+    /// A plan, with its file.
+    Plan(Box<Definition>, Sources),
 }
 
 /// Reads what the user names, with the options.
@@ -124,7 +126,7 @@ fn of_scenario(
         )));
     }
     let definition = Definition { file: name.to_owned(), text, ..common(args)? };
-    Ok(Wanted::New(Box::new(definition), Sources { place, ..Sources::default() }))
+    Ok(Wanted::Scenario(Box::new(definition), Sources { place, ..Sources::default() }))
 }
 
 /// Returns the campaign of a plan, whose bytes were read unless it is built in.
@@ -147,7 +149,7 @@ fn of_plan(args: &CampaignArgs, plan: &PlanArg, bytes: Option<&[u8]>) -> Result<
         directory.map_or_else(String::new, |directory| directory.display().to_string())
     });
     let definition = Definition { file: plan.display_name(), text, terrain, ..common(args)? };
-    Ok(Wanted::New(Box::new(definition), sources))
+    Ok(Wanted::Plan(Box::new(definition), sources))
 }
 
 /// Returns the parts of a definition that scenarios and plans share.

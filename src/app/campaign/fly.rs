@@ -25,7 +25,7 @@ const ATTEMPTS: u32 = 3;
 pub(super) fn run(args: &CampaignArgs) -> Result<u8, AppError> {
     let shard = shard::of(args.shard)?;
     let (loaded, out, shard) = match definition::read(args)? {
-        Wanted::New(definition, sources) => {
+        Wanted::Scenario(definition, sources) | Wanted::Plan(definition, sources) => {
             let inputs = inputs(&definition.file, &sources);
             outputs::claim(&args.output, args.out.as_deref(), &inputs)?;
             (Loaded::new(*definition, sources)?, args.out.clone(), shard)
@@ -54,7 +54,7 @@ pub(super) fn run(args: &CampaignArgs) -> Result<u8, AppError> {
     let lines = (flights.start() - 1) * header.sides()..flights.end() * header.sides();
     refuse_two_versions(&loaded, out.as_deref(), lines.start + before < lines.end)?;
     let mut run = Run {
-        progress: Progress::new(lines.end - lines.start, before),
+        progress: Progress::new(Some(lines.end - lines.start), before),
         next: lines.start + before,
         flown_s: 0.0,
         reported: BTreeSet::new(),
@@ -69,7 +69,7 @@ pub(super) fn run(args: &CampaignArgs) -> Result<u8, AppError> {
 }
 
 /// Returns the files that are read for a campaign.
-fn inputs(file: &str, sources: &super::sources::Sources) -> Vec<PathBuf> {
+pub(super) fn inputs(file: &str, sources: &super::sources::Sources) -> Vec<PathBuf> {
     let place = sources.place.clone().unwrap_or_default();
     let named = sources.contents.keys().map(|name| place.join(name));
     std::iter::once(PathBuf::from(file)).chain(named).collect()

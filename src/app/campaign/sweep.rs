@@ -1,0 +1,115 @@
+//! Flies a plan with a fault at every second of the flight.
+
+use std::sync::atomic::Ordering;
+use std::sync::{Mutex, PoisonError};
+
+use super::definition::{self, Wanted};
+use super::loaded::Loaded;
+use super::outputs;
+use super::progress::Progress;
+use crate::app::AppError;
+use crate::app::error;
+use crate::app::interrupt::interrupt_flag;
+use crate::app::output_file::FinalOutput;
+use crate::app::parallel;
+use crate::args::{CampaignArgs, OutputFile};
+use crate::flight::Flight;
+use crate::flight::sweep::{Branch, Fate, Sweep, SweepPoint};
+use crate::report::sweep::{SweptFlight, sweep_csv, sweep_json, sweep_sentences};
+use crate::scenario::CaseFlight;
+use crate::sim::ScheduledFault;
+
+/// The most branches that wait in memory at the same time.
+const WAITING: usize = 64;
+
+/// Flies and reports. The exit code is 0 if the craft is lost at no second.
+pub(super) fn run(args: &CampaignArgs, fault: ScheduledFault) -> Result<u8, AppError> {
+    let name = args.what.as_deref().unwrap_or_default();
+    let (definition, sources) = match definition::read(args)? {
+        Wanted::Plan(definition, sources) => (*definition, sources),
+        Wanted::Scenario(..) | Wanted::Run(..) => {
+            return Err(AppError::input(format!(
+                "--sweep flies a plan with the options of fly, and {name} is none: name the plan"
+            )));
+        }
+    };
+    if !definition.firmware.is_empty() {
+        return Err(AppError::input(
+            "--sweep flies copies of the embedded firmware, and another program cannot be copied: leave --firmware out",
+        ));
+    }
+    outputs::claim(&args.output, None, &super::fly::inputs(&definition.file, &sources))?;
+    let loaded = Loaded::new(definition, sources)?;
+    let mut sweep = Sweep::new(flight(&loaded)?, fault);
+    let json = match &args.output.json {
+        Some(OutputFile::File(path)) => Some(FinalOutput::begin(path)?),
+        Some(OutputFile::Stdout) | None => None,
+    };
+    let csv = args.output.csv.as_deref().map(FinalOutput::begin).transpose()?;
+
+    let interrupted = interrupt_flag()?;
+    let is_stopped = || interrupted.load(Ordering::Relaxed);
+    let threads = parallel::threads(args.jobs);
+    let mut points: Vec<SweepPoint> = Vec::new();
+    let mut progress = Progress::new(None, 0);
+    loop {
+        let mut branches = Vec::with_capacity(WAITING);
+        while branches.len() < WAITING
+            && let Some(branch) = sweep.next_branch(&is_stopped).map_err(AppError::input)?
+        {
+            branches.push(Mutex::new(Some(branch)));
+        }
+        let fly = |_, index: u64| take(&branches, index)?.fly(&is_stopped);
+        parallel::in_order(0..branches.len() as u64, threads, &is_stopped, fly, |point, _| {
+            // A point after one that was stopped would be in the wrong place.
+            if point.second as usize == points.len() {
+                points.push(point);
+            }
+            progress.show(points.len() as u64, count(&points, Fate::Lost));
+        })?;
+        if branches.len() < WAITING || is_stopped() {
+            break;
+        }
+    }
+    progress.clear();
+
+    let end = sweep.end().map(|end| (end.verdict.result.to_string(), end.verdict.reason.as_str()));
+    let swept = SweptFlight {
+        name: &loaded.header.name,
+        fault,
+        without: end.as_ref().map(|(result, reason)| (result.as_str(), *reason)),
+        points: &points,
+    };
+    let printed = match args.output.json {
+        Some(OutputFile::Stdout) => error::write_stdout((sweep_json(&swept) + "\n").as_bytes()).map(drop),
+        _ => error::print(&(sweep_sentences(&swept).join("\n") + "\n")).map(drop),
+    };
+    let json = json.map_or(Ok(()), |file| file.write((sweep_json(&swept) + "\n").as_bytes()));
+    let csv = csv.map_or(Ok(()), |file| file.write(&sweep_csv(&points)));
+    printed.and(json).and(csv)?;
+    let seconds = progress.seconds();
+    error::tell(&format!("{} flights in {seconds:.2} s", points.len()));
+    Ok(match () {
+        () if is_stopped() => error::INTERRUPTED,
+        () if swept.count(Fate::Lost) == 0 => 0,
+        () => error::FAILED,
+    })
+}
+
+/// Returns the flight of the plan, at home.
+fn flight(loaded: &Loaded) -> Result<Flight, AppError> {
+    let first = loaded.campaign.flight(1).ok_or_else(|| AppError::internal("a plan without a flight"))?;
+    if let Some(problem) = first.problem {
+        return Err(AppError::input(problem));
+    }
+    let flight = CaseFlight::new(&first.case, &first.air).map_err(AppError::input)?;
+    Ok(flight.into_flight())
+}
+
+fn take(branches: &[Mutex<Option<Branch>>], index: u64) -> Option<Branch> {
+    branches.get(index as usize)?.lock().unwrap_or_else(PoisonError::into_inner).take()
+}
+
+fn count(points: &[SweepPoint], fate: Fate) -> u64 {
+    points.iter().filter(|point| point.fate == fate).count() as u64
+}

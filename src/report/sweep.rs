@@ -1,0 +1,184 @@
+//! The results of a sweep: the same flight with a fault at every second, as sentences, a map, JSON and a table.
+
+mod drawn;
+mod json;
+mod table;
+
+use strum::IntoEnumIterator as _;
+
+use crate::flight::sweep::{Fate, SweepPoint};
+use crate::sim::{FaultStart, ScheduledFault};
+use crate::telemetry::quantity::{Dimension, shown};
+
+pub use json::sweep_json;
+pub use table::sweep_csv;
+
+/// The results of a sweep with their names.
+#[derive(Debug, Clone, Copy)]
+pub struct SweptFlight<'a> {
+    /// The name of the plan.
+    pub name: &'a str,
+    pub fault: ScheduledFault,
+    /// The result and the reason of the flight without the fault; `None` if it was stopped before its end.
+    pub without: Option<(&'a str, &'a str)>,
+    /// The flights with the fault, in the order of their seconds.
+    pub points: &'a [SweepPoint],
+}
+
+/// A time in which the fault has the same result.
+struct Span<'a> {
+    fate: Fate,
+    points: &'a [SweepPoint],
+}
+
+impl SweptFlight<'_> {
+    /// Returns the number of seconds with a fate.
+    pub fn count(&self, fate: Fate) -> usize {
+        self.points.iter().filter(|point| point.fate == fate).count()
+    }
+
+    /// Returns the fault without its time: `gps-loss,6`.
+    fn fault_name(&self) -> String {
+        let text = self.at(0).to_string();
+        text.replacen("@0", "", 1)
+    }
+
+    /// Returns the fault at a second.
+    fn at(&self, second: u32) -> ScheduledFault {
+        ScheduledFault { start: FaultStart::Engagement(f64::from(second)), ..self.fault }
+    }
+
+    fn spans(&self) -> impl Iterator<Item = Span<'_>> {
+        self.points
+            .chunk_by(|a, b| a.fate == b.fate)
+            .filter_map(|points| Some(Span { fate: points.first()?.fate, points }))
+    }
+
+    /// Returns the point to look at: the first one with the worst fate, or the one that ends farthest away.
+    fn worst(&self) -> Option<&SweepPoint> {
+        let fate = self.points.iter().map(|point| point.fate).max()?;
+        let mut of_fate = self.points.iter().filter(|point| point.fate == fate);
+        match fate {
+            Fate::Home => None,
+            Fate::Off => of_fate.max_by(|a, b| a.off_m.total_cmp(&b.off_m)),
+            Fate::Lost => of_fate.next(),
+        }
+    }
+}
+
+/// Returns the results as lines.
+pub fn sweep_sentences(swept: &SweptFlight<'_>) -> Vec<String> {
+    let counts: Vec<String> = Fate::iter().map(|fate| format!("{} {fate}", swept.count(fate))).collect();
+    let (name, fault, flights) = (swept.name, swept.fault_name(), swept.points.len());
+    let mut lines = vec![format!(
+        "{name}, {fault} at every second of the flight ({flights} flights): {}.",
+        counts.join(", ")
+    )];
+    lines.push(match swept.without {
+        Some((result, reason)) => format!("Without the fault the flight ends {result}: {reason}."),
+        None => "The flight was stopped before its end, so later seconds are missing.".to_owned(),
+    });
+    lines.push(String::new());
+    lines.extend(swept.spans().map(|span| span_line(&span)));
+    lines.push(String::new());
+    lines.extend(drawn::timeline(swept.points));
+    lines.push(String::new());
+    lines.extend(drawn::map(swept.points));
+    lines.push(String::new());
+    lines.push(drawn::LEGEND.to_owned());
+    if let Some(worst) = swept.worst() {
+        lines.push(format!(
+            "The worst second: betadeck fly or betadeck open with the same options and --fault {}",
+            swept.at(worst.second)
+        ));
+    }
+    lines
+}
+
+fn span_line(span: &Span<'_>) -> String {
+    let seconds = |point: Option<&SweepPoint>| minutes(point.map_or(0, |point| point.second));
+    let (first, last) = (seconds(span.points.first()), seconds(span.points.last()));
+    let time = if first == last { first } else { format!("{first} to {last}") };
+    let fate = span.fate.to_string();
+    if span.fate == Fate::Home {
+        return format!("  {time:<13} {fate}");
+    }
+    let worst = span.points.iter().max_by(|a, b| a.off_m.total_cmp(&b.off_m));
+    let (off_m, reason) = worst.map_or((0.0, ""), |worst| (worst.off_m, worst.reason.as_str()));
+    let up_to = if span.points.len() == 1 { "" } else { "up to " };
+    let off = shown(off_m, Dimension::LENGTH);
+    format!("  {time:<13} {fate:<4}  {up_to}{off} from home and from its LAND: {reason}")
+}
+
+/// Returns minutes and seconds: `1:52`.
+fn minutes(second: u32) -> String {
+    format!("{}:{:02}", second / 60, second % 60)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flight::FlightResult;
+
+    fn point(second: u32, fate: Fate, off_m: f64) -> SweepPoint {
+        let (result, reason) = match fate {
+            Fate::Home => (FlightResult::Complete, "mission complete"),
+            Fate::Off => (FlightResult::Landed, "landed by an emergency landing"),
+            Fate::Lost => (FlightResult::Crashed, "the craft crashed"),
+        };
+        let angle = f64::from(second) / 10.0;
+        SweepPoint {
+            second,
+            place_enu: [30.0 * angle.sin(), 30.0 - 30.0 * angle.cos(), 10.0],
+            fate,
+            result,
+            reason: reason.to_owned(),
+            off_m,
+            after_s: 12.5,
+        }
+    }
+
+    fn points() -> Vec<SweepPoint> {
+        (0..70)
+            .map(|second| match second {
+                20..=29 => point(second, Fate::Off, f64::from(second)),
+                30 | 64 => point(second, Fate::Lost, 41.25),
+                _ => point(second, Fate::Home, 0.3),
+            })
+            .collect()
+    }
+
+    fn swept(points: &[SweepPoint]) -> SweptFlight<'_> {
+        SweptFlight {
+            name: "square",
+            fault: "gps-loss@0,6".parse().unwrap(),
+            without: Some(("complete", "flown as planned")),
+            points,
+        }
+    }
+
+    #[test]
+    fn a_sweep_says_when_the_fault_is_fatal_and_where() {
+        insta::assert_snapshot!(sweep_sentences(&swept(&points())).join("\n"));
+    }
+
+    #[test]
+    fn a_sweep_without_a_flight_has_no_map() {
+        let lines = sweep_sentences(&SweptFlight { without: None, ..swept(&[]) });
+        assert!(lines[0].ends_with("(0 flights): 0 home, 0 off, 0 lost."), "{}", lines[0]);
+        assert!(!lines.iter().any(|line| line.contains("The worst second")));
+    }
+
+    #[test]
+    fn json_and_table_have_each_second() {
+        let points = points();
+        let json: serde_json::Value = serde_json::from_str(&sweep_json(&swept(&points))).unwrap();
+        assert_eq!(json["fault"], "gps-loss,6");
+        assert_eq!(json["counts"], serde_json::json!({"home": 58, "off": 10, "lost": 2}));
+        assert_eq!(json["seconds"].as_array().unwrap().len(), 70);
+        assert_eq!(json["seconds"][30]["fate"], "lost");
+        let table = String::from_utf8(sweep_csv(&points)).unwrap();
+        assert_eq!(table.lines().count(), 71);
+        assert!(table.contains("\n30,lost,crashed,41.25,"), "{table}");
+    }
+}
