@@ -105,6 +105,7 @@ fn reads_layers(command: Option<&Command>) -> bool {
         Some(
             Command::Check(_)
             | Command::Campaign(_)
+            | Command::Forecast(_)
             | Command::Open(_)
             | Command::Plan(_)
             | Command::Convert(_)
@@ -129,6 +130,7 @@ fn may_start_firmware(command: Option<&Command>) -> bool {
         ) => true,
         Some(
             Command::Sitl(_)
+            | Command::Forecast(_)
             | Command::Open(_)
             | Command::Replay(_)
             | Command::Plan(_)
@@ -150,6 +152,7 @@ fn dispatch(cli: Cli, keymap: Keymap) -> Result<u8, AppError> {
         Some(Command::Fly(args)) => fly::run(&args, &cli.repeat),
         Some(Command::Check(args)) => check::run(&args, &cli.repeat),
         Some(Command::Campaign(args)) => campaign::run(&args),
+        Some(Command::Forecast(args)) => campaign::forecast(&args),
         Some(Command::Open(args)) => open::run(&args, keymap),
         Some(Command::Replay(args)) => replay::run(&args, keymap),
         Some(Command::Compare(args)) => compare::run(&args, &cli.repeat),

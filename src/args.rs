@@ -16,6 +16,7 @@ mod doors;
 mod firmware;
 mod flight;
 mod fly;
+mod forecast;
 mod generate;
 mod help;
 mod layers;
@@ -50,6 +51,7 @@ pub use doors::{DoorArgs, ServeArgs, SitlArgs, UdpPorts, sitl_usage_error};
 pub use firmware::{FirmwareArgs, FirmwareChoice, FirmwareLinkArgs, FirmwarePortArgs, firmware_options};
 pub use flight::FlightArgs;
 pub use fly::FlyArgs;
+pub use forecast::{Charge, ForecastArgs};
 pub use generate::{completions, man_page};
 pub use layers::{ENVIRONMENT_PREFIX, Layers};
 pub use mission::MissionArgs;
@@ -168,6 +170,13 @@ pub enum Command {
         ("betadeck campaign my-campaign.toml --out part-3.jsonl --shard 3/7", "a seventh of it, on this machine"),
     ]))]
     Campaign(Box<CampaignArgs>),
+
+    /// Go or no-go: flies a plan in the weather to come, and says how likely it completes with charge to spare
+    #[command(before_help = help::examples(&[
+        ("betadeck forecast my-plan.toml --wind 6+-2@250+-20", "a hundred flights in this wind"),
+        ("betadeck forecast my-plan.toml --wind 'table hours.csv' --airframe my-quad.toml --battery 92%", ""),
+    ]), after_help = help::FORECAST)]
+    Forecast(Box<ForecastArgs>),
 
     /// Flies a scenario and opens the screen at one of its instants, paused, to look around in the flight
     #[command(before_help = help::examples(&[
@@ -297,6 +306,7 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>, layers: &Layers) -> 
             Command::Serve(_)
             | Command::Sitl(_)
             | Command::Check(_)
+            | Command::Forecast(_)
             | Command::Open(_)
             | Command::Plan(_)
             | Command::Config(_)

@@ -13,6 +13,7 @@
 mod answer;
 mod draw;
 mod flights;
+mod forecast;
 mod record;
 mod shard;
 mod statistics;
@@ -22,6 +23,7 @@ pub use answer::{
     Versus, Worst,
 };
 pub use flights::{Campaign, CampaignFlight};
+pub use forecast::{Forecast, ForecastAnswer};
 pub use record::{InputValue, Instant, Record, Side, Standing};
 pub use shard::{Shard, ShardError};
 pub use statistics::{Rule, Significance, Split, Summary, wilson};

@@ -2,6 +2,7 @@
 
 mod definition;
 mod fly;
+mod forecast;
 mod loaded;
 mod merge;
 mod of_plan;
@@ -13,7 +14,7 @@ mod sources;
 mod sweep;
 
 use super::error::AppError;
-use crate::args::{CampaignArgs, CampaignCommand};
+use crate::args::{CampaignArgs, CampaignCommand, ForecastArgs};
 pub(super) use loaded::{OneFlight, open_flight};
 
 /// Flies, or merges the parts of a campaign. The exit code is 0 if every expectation was met.
@@ -25,6 +26,11 @@ pub(super) fn run(args: &CampaignArgs) -> Result<u8, AppError> {
             None => fly::run(args),
         },
     }
+}
+
+/// Flies a plan in the weather to come. The exit code is 0 if the answer is go.
+pub(super) fn forecast(args: &ForecastArgs) -> Result<u8, AppError> {
+    forecast::run(args)
 }
 
 /// Returns the version that flies, which is in every line.

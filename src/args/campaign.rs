@@ -11,7 +11,7 @@ use crate::scenario::MAX_CAMPAIGN;
 use crate::sim::ScheduledFault;
 
 /// The options of `campaign`.
-#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[derive(Debug, Clone, Default, PartialEq, clap::Args)]
 // Each flight starts from defaults, as fast as the machine allows.
 #[command(
     after_help = help::CAMPAIGN,

@@ -41,6 +41,13 @@ input, 3 file trouble or a firmware that could not be flown, 4 internal error, 1
 The firmware can also be set in the configuration file (firmware = \"PATH\") and in the environment
 (BETADECK_FIRMWARE=PATH), as can each option below Firmware.";
 
+/// The end of the help of `forecast`.
+pub(super) const FORECAST: &str = "\
+Each flight draws its wind and its seed. A flight succeeds if it completes as planned with the reserve left. With a fence,
+the answer has the least distance left to it. docs/campaigns.md explains the forms of --wind.
+
+Exit codes: 0 go, 1 no-go, 2 wrong usage or input, 3 file trouble, 4 internal error, 130 interrupted.";
+
 /// The end of the help of `check`.
 pub(super) const CHECK: &str = "\
 docs/scenarios.md explains how to write a scenario.

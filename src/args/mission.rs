@@ -3,7 +3,7 @@
 use super::value;
 
 /// The flight and the judgement of a plan.
-#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[derive(Debug, Clone, Default, PartialEq, clap::Args)]
 pub struct MissionArgs {
     /// Altitude of the pilot's climb before the autopilot is engaged, m [default: 10]
     ///

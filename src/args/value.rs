@@ -163,7 +163,9 @@ pub(super) fn fault(text: &str) -> Result<ScheduledFault, String> {
 pub(super) fn timeless_fault(text: &str) -> Result<ScheduledFault, String> {
     let (name, rest) = text.split_once(',').map_or((text, None), |(name, rest)| (name, Some(rest)));
     if name.contains('@') {
-        return Err("leave the time out: the fault begins at every second; write NAME[,FOR][,VALUE]".to_owned());
+        return Err(
+            "leave the time out: the fault begins at every second; write NAME[,FOR][,VALUE]".to_owned()
+        );
     }
     fault(&rest.map_or_else(|| format!("{name}@0"), |rest| format!("{name}@0,{rest}")))
 }

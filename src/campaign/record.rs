@@ -26,6 +26,14 @@ pub enum InputValue {
 }
 
 impl InputValue {
+    /// Returns the number; `None` for a word.
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            Self::Number(number) => Some(*number),
+            Self::Word(_) => None,
+        }
+    }
+
     /// Returns a text as a number if it is one.
     pub fn of(text: &str) -> Self {
         match text.parse::<f64>() {

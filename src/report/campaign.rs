@@ -1,6 +1,7 @@
 //! Campaigns as text: the lines of a run's file, and the answer as sentences, JSON, Markdown, JUnit and CSV.
 
 mod csv;
+mod forecast;
 mod header;
 mod json;
 mod junit;
@@ -12,6 +13,7 @@ mod shown;
 use crate::campaign::{Answer, Shard};
 
 pub use csv::CsvTable;
+pub use forecast::{forecast_json, forecast_sentence};
 pub use header::{Contents, Definition, OtherSide, RunHeader};
 pub use json::answer_json;
 pub use junit::answer_junit;

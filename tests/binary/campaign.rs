@@ -482,3 +482,52 @@ fn a_flight_of_a_campaign_is_opened_on_the_screen_bit_by_bit() {
     let ran = sandbox.run(&["open", "run.jsonl:4"]);
     assert_ne!(ran.code, Some(0), "a screen needs a terminal");
 }
+
+#[test]
+fn a_sweep_shows_each_second_at_which_a_fault_is_fatal() {
+    let sandbox = sandbox();
+    let arguments = ["campaign", "land", "--takeoff", "2", "--sweep", "motor,,1:0", "--csv", "s.csv"];
+    let ran = sandbox.run(&arguments).exits(1);
+    let first = ran.out.lines().next().expect("a sentence");
+    assert!(first.starts_with("land, motor,,1:0 at every second of the flight ("), "{first}");
+    assert!(!first.contains(" 0 lost"), "{first}");
+    assert!(ran.out.contains("Without the fault the flight ends complete: "), "{}", ran.out);
+    let table = sandbox.read("s.csv");
+    let rows: Vec<&str> = table.lines().skip(1).collect();
+    assert!(first.contains(&format!("({} flights)", rows.len())), "{first}: {} rows", rows.len());
+    for (second, row) in rows.iter().enumerate() {
+        assert!(row.starts_with(&format!("{second},")), "{row}");
+    }
+    // The command of the worst second leads to a flight that ends so.
+    let worst = ran.out.lines().find_map(|line| line.split_once(" and --fault ")).expect("the worst second").1;
+    let flown = sandbox.run(&["fly", "land", "--takeoff", "2", "--fault", worst]).exits(1);
+    assert!(flown.out.contains("crashed"), "{}", flown.out);
+}
+
+#[test]
+fn a_sweep_takes_a_plan_and_no_other_program() {
+    let sandbox = sandbox();
+    for (arguments, sentence) in [
+        (&["campaign", "standing.toml", "--sweep", "gps-loss"][..], "standing.toml is none: name the plan"),
+        (&["campaign", "land", "--sweep", "gps-loss@3"], "leave the time out"),
+        (&["campaign", "land", "--sweep", "gps-loss", "--vary", "mass_pct=1"], "cannot be used with"),
+        (&["campaign", "land", "--sweep", "stall,1"], "stall"),
+    ] {
+        let ran = sandbox.run(arguments).exits(2);
+        assert!(ran.err.contains(sentence), "{arguments:?}: {}", ran.err);
+    }
+}
+
+#[test]
+fn a_forecast_is_go_in_a_calm_and_no_go_in_a_storm() {
+    let sandbox = sandbox();
+    let forecast = |more: &[&str]| sandbox.run(&[&["forecast", "land", "--flights", "6"], more].concat());
+    let calm = forecast(&["--wind", "1±0.5@250±20", "--battery", "92%"]).exits(0);
+    assert!(calm.out.starts_with("GO land: 100 % complete with more than 20 % "), "{}", calm.out);
+    let storm = forecast(&["--wind", "26+-1@250+-20", "--json", "answer.json"]).exits(1);
+    assert!(storm.out.starts_with("NO-GO land: ") && storm.out.contains("; to change: "), "{}", storm.out);
+    let answer = json(&sandbox.read("answer.json"));
+    assert_eq!((answer["go"].as_bool(), answer["flights"].as_u64()), (Some(false), Some(6)));
+    let none = forecast(&["--battery", "empty"]).exits(2);
+    assert!(none.err.contains("92% or 90+-5%"), "{}", none.err);
+}

@@ -102,7 +102,10 @@ mod tests {
 
     #[test]
     fn the_rate_is_that_of_the_new_flights() {
-        assert_eq!(line(431, Some(1000), 331, 20.0, 2), "431 of 1000 flights, 16.6 a second, 34 s left, 2 failed");
+        assert_eq!(
+            line(431, Some(1000), 331, 20.0, 2),
+            "431 of 1000 flights, 16.6 a second, 34 s left, 2 failed"
+        );
         assert_eq!(line(30, None, 30, 10.0, 0), "30 flights, 3.0 a second");
         assert_eq!(line(100, Some(1000), 0, 0.0, 0), "100 of 1000 flights");
     }

@@ -154,8 +154,5 @@ impl Column {
 }
 
 fn number(record: &Record, name: &str) -> Option<f64> {
-    record.inputs.iter().find(|(known, _)| known == name).and_then(|(_, value)| match value {
-        InputValue::Number(number) => Some(*number),
-        InputValue::Word(_) => None,
-    })
+    record.inputs.iter().find(|(known, _)| known == name).and_then(|(_, value)| value.number())
 }

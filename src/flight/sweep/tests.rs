@@ -42,11 +42,7 @@ fn a_sweep_agrees_with_whole_flights() {
     for index in (0..count.min(50)).map(|i| i * 7919 % count) {
         let point = &points[index];
         let (end, [east, north, _]) = whole("land", &format!("gps-loss@{index},6"));
-        assert_eq!(
-            (point.result, &point.reason),
-            (end.verdict.result, &end.verdict.reason),
-            "at {index} s"
-        );
+        assert_eq!((point.result, &point.reason), (end.verdict.result, &end.verdict.reason), "at {index} s");
         let home = east.hypot(north);
         assert!(point.off_m <= home, "at {index} s: {} m, and {home} m from home", point.off_m);
         let begun = end.time.as_secs_f64() - end.flown_s + index as f64;

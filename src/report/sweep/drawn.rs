@@ -37,11 +37,13 @@ pub(super) fn map(points: &[SweepPoint]) -> Vec<String> {
     let places = || points.iter().map(|point| [point.place_enu[0], point.place_enu[1]]).chain([[0.0, 0.0]]);
     let bounds = |axis: usize| {
         let values = places().map(|place| place[axis]);
-        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
+        values
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
     };
     let ((west, east), (south, north)) = (bounds(0), bounds(1));
     // Metres of a character's width; its height is twice as many.
-    let scale = ((east - west) / (WIDTH - 1) as f64).max((north - south) / (2 * (HEIGHT - 1)) as f64).max(0.1);
+    let scale =
+        ((east - west) / (WIDTH - 1) as f64).max((north - south) / (2 * (HEIGHT - 1)) as f64).max(0.1);
     if !scale.is_finite() {
         return Vec::new();
     }

@@ -73,7 +73,7 @@ impl Kind {
             Some("serve" | "fly" | "check" | "compare") if is_remote => Self::RunsFirmware,
             Some("serve" | "sitl" | "--plain") => Self::Runs,
             Some(
-                "fly" | "plan" | "convert" | "completions" | "man" | "check" | "campaign" | "config"
+                "fly" | "plan" | "convert" | "completions" | "man" | "check" | "campaign" | "forecast" | "config"
                 | "compare" | "doctor",
             ) => Self::ByItself,
             _ if is_remote => Self::ScreenWithFirmware,
@@ -168,7 +168,8 @@ impl Desk {
             fly(&["--shard", "2/2", "--out", "part-2.jsonl"]);
         } else if line.contains(" run.jsonl") && !line.contains("--out run.jsonl") {
             fly(&["--out", "run.jsonl"]);
-        } else if line.starts_with("betadeck campaign ")
+        } else if (line.starts_with("betadeck campaign ") || line.starts_with("betadeck forecast "))
+            && !line.contains("--sweep")
             && !line.contains("--help")
             && !line.contains("--flights")
         {

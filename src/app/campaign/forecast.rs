@@ -1,0 +1,111 @@
+//! Go or no-go: flies a plan in the weather to come.
+
+use std::sync::atomic::Ordering;
+
+use super::definition::{self, Wanted};
+use super::loaded::Loaded;
+use super::outputs;
+use super::progress::Progress;
+use crate::app::AppError;
+use crate::app::error;
+use crate::app::interrupt::interrupt_flag;
+use crate::app::output_file::FinalOutput;
+use crate::app::parallel;
+use crate::args::{CampaignArgs, CampaignOutputArgs, FlightArgs, ForecastArgs, OutputFile};
+use crate::campaign::{Forecast, Standing};
+use crate::report::campaign::{forecast_json, forecast_sentence};
+
+/// The usual number of flights.
+const FLIGHTS: u64 = 100;
+/// The usual reserve and the usual share of successes for go, per cent.
+const RESERVE_PCT: f64 = 20.0;
+const GO_FROM_PCT: f64 = 95.0;
+
+/// Flies and answers. The exit code is 0 if the answer is go.
+pub(super) fn run(args: &ForecastArgs) -> Result<u8, AppError> {
+    let Wanted::Plan(definition, sources) = definition::read(&campaign_of(args))? else {
+        return Err(AppError::input(format!(
+            "forecast flies a plan, and {} is none: name a plan, or fly it with betadeck campaign",
+            args.plan
+        )));
+    };
+    let output = CampaignOutputArgs { json: args.json.clone(), ..CampaignOutputArgs::default() };
+    outputs::claim(&output, None, &super::fly::inputs(&definition.file, &sources))?;
+    let loaded = Loaded::new(*definition, sources)?;
+    let json = match &args.json {
+        Some(OutputFile::File(path)) => Some(FinalOutput::begin(path)?),
+        Some(OutputFile::Stdout) | None => None,
+    };
+    let flights = loaded.header.flights;
+    let reserve = args.reserve.unwrap_or(RESERVE_PCT) / 100.0;
+    let mut forecast = Forecast::new(loaded.campaign.scenario(), flights, reserve);
+
+    let interrupted = interrupt_flag()?;
+    let is_stopped = || interrupted.load(Ordering::Relaxed);
+    let mut progress = Progress::new(Some(flights), 0);
+    let fly = |thread, line| loaded.fly(line, thread, &interrupted, &is_stopped, &mut Vec::new());
+    let (mut trouble, mut flown, mut failed) = (Ok(()), 0, 0);
+    parallel::in_order(
+        0..flights,
+        parallel::threads(args.jobs),
+        &is_stopped,
+        fly,
+        |record, _| match record {
+            Ok(record) => {
+                flown += 1;
+                failed += u64::from(record.standing == Standing::Failed);
+                forecast.add(record);
+                progress.show(flown, failed);
+            }
+            Err(problem) => trouble = Err(problem),
+        },
+    )?;
+    progress.clear();
+    trouble?;
+
+    let (name, go_from) = (&loaded.header.name, args.go_from.unwrap_or(GO_FROM_PCT) / 100.0);
+    let answer = forecast.answer();
+    let object = || forecast_json(name, &answer, go_from) + "\n";
+    match args.json {
+        Some(OutputFile::Stdout) => error::write_stdout(object().as_bytes()),
+        _ => error::print(&(forecast_sentence(name, &answer, go_from) + "\n")),
+    }?;
+    json.map_or(Ok(()), |file| file.write(object().as_bytes()))?;
+    error::tell(&format!("{flown} flights in {:.2} s", progress.seconds()));
+    Ok(match () {
+        () if is_stopped() => error::INTERRUPTED,
+        () if answer.is_go(go_from) => 0,
+        () => error::FAILED,
+    })
+}
+
+/// Returns the campaign whose flights the forecast flies.
+fn campaign_of(args: &ForecastArgs) -> CampaignArgs {
+    let mut vary = Vec::new();
+    vary.extend(args.wind.as_ref().map(|wind| format!("wind={wind}")));
+    vary.extend(args.battery.map(|charge| {
+        let missing = charge.percent - 100.0;
+        match charge.deviation {
+            0.0 => format!("battery_pct={missing}"),
+            deviation => format!("battery_pct={missing} +- {deviation} in -90..0"),
+        }
+    }));
+    CampaignArgs {
+        what: Some(args.plan.clone()),
+        flights: Some(args.flights.unwrap_or(FLIGHTS)),
+        vary,
+        jobs: args.jobs,
+        mission: args.mission.clone(),
+        flight: FlightArgs {
+            gust: args.gust,
+            turbulence: args.turbulence,
+            world: args.world.clone(),
+            airframe: args.airframe.clone(),
+            home: args.home,
+            settings: args.settings.clone(),
+            seed: args.seed,
+            ..FlightArgs::default()
+        },
+        ..CampaignArgs::default()
+    }
+}
