@@ -73,8 +73,8 @@ impl Kind {
             Some("serve" | "fly" | "check" | "compare") if is_remote => Self::RunsFirmware,
             Some("serve" | "sitl" | "--plain") => Self::Runs,
             Some(
-                "fly" | "plan" | "convert" | "completions" | "man" | "check" | "campaign" | "forecast" | "config"
-                | "compare" | "doctor",
+                "fly" | "plan" | "convert" | "completions" | "man" | "check" | "campaign" | "forecast"
+                | "config" | "compare" | "doctor",
             ) => Self::ByItself,
             _ if is_remote => Self::ScreenWithFirmware,
             _ => Self::Screen,
