@@ -152,7 +152,7 @@ impl Branch {
             .map(|wanted| (Vector2::new(east, north) - wanted).norm())
             .fold(f64::INFINITY, f64::min);
         let fate = fate(&end, vehicle, off_m <= self.flight.tolerance_m);
-        let begun = vehicle.engaged_at().map_or(0.0, |at| at.as_secs_f64()) + f64::from(self.second);
+        let begun = vehicle.engaged_at().map_or(0.0, SimTime::as_secs_f64) + f64::from(self.second);
         SweepPoint {
             second: self.second,
             place_enu: self.place_enu,
