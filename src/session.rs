@@ -21,6 +21,7 @@ mod runtime;
 mod seek;
 mod simulator;
 pub mod sitl;
+mod tape;
 mod waker;
 
 pub use command::{Command, Seek, SessionView};
@@ -37,3 +38,4 @@ pub use request_handler::{Handled, RequestHandler};
 pub use runner::{Flying, Runner, Stopped, Subscriber};
 pub use runtime::{Endpoints, FlownBefore, Handle, SessionConfig, Subscription, start, start_at};
 pub use simulator::SimulatorNotice;
+pub use tape::{Tape, TapeReceiver, Taped, tape};

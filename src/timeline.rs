@@ -18,7 +18,7 @@ mod tests;
 mod view;
 
 use crate::signals::SimTime;
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Vehicle, VehicleCommand};
 use recording::{Bounds, Recording};
 use replay::Replay;
 
@@ -75,6 +75,21 @@ impl Timeline {
     /// while time is stopped.
     pub fn record(&mut self, vehicle: &mut Vehicle) {
         self.recording.record(vehicle);
+    }
+
+    /// Returns the number of the first input that is kept, counted from the beginning of the recording.
+    pub fn first_input(&self) -> u64 {
+        self.recording.first_input()
+    }
+
+    /// Returns the number of the next input.
+    pub fn next_input(&self) -> u64 {
+        self.recording.next_input()
+    }
+
+    /// Returns the kept inputs from this number on, oldest first, with their times.
+    pub fn inputs_from(&self, number: u64) -> impl Iterator<Item = (SimTime, &VehicleCommand)> {
+        self.recording.inputs_from(number)
     }
 
     /// Returns the vehicle at the earlier instant that is shown, if there is one.

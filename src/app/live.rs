@@ -79,7 +79,7 @@ pub(super) async fn start(
         remote: remote.or_else(|| args.connect.map(connect::link)),
         first_events,
     };
-    let session = session::start_at(config, flown)
+    let session = session::start_at(config, flown, None)
         .map_err(|error| AppError::environment(format!("cannot start a thread: {error}")))?;
     Ok((session, doors, directory.flatten()))
 }

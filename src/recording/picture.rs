@@ -39,13 +39,22 @@ impl Seen {
             print: vehicle.embedded().and_then(|_| fingerprint::of(vehicle)),
         }
     }
+}
 
-    /// Returns the state of a vehicle after a tick if a picture is due: ten times a second, and once a second while the
-    /// craft is at rest and disarmed.
-    pub fn due(vehicle: &Vehicle) -> Option<Self> {
+/// Decides when a picture is due: ten times a second, and once a second while the craft is at rest and disarmed.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Cadence {
+    /// The time at which it was last asked.
+    asked_at: SimTime,
+}
+
+impl Cadence {
+    /// Returns the state of a vehicle if a picture is due. Ask after each tick, or less often.
+    pub fn due(&mut self, vehicle: &Vehicle) -> Option<Seen> {
         let now = vehicle.time().0;
-        let every = |interval: u64| now / interval != now.saturating_sub(vehicle.step_us()) / interval;
-        (every(PICTURE_US) && (every(IDLE_US) || !vehicle.is_idle())).then(|| Self::of(vehicle))
+        let before = std::mem::replace(&mut self.asked_at, vehicle.time()).0;
+        let every = |interval: u64| now / interval != before / interval;
+        (every(PICTURE_US) && (every(IDLE_US) || !vehicle.is_idle())).then(|| Seen::of(vehicle))
     }
 }
 

@@ -1,5 +1,7 @@
 //! Whole recordings: written, read, damaged, flown again.
 
+mod sessions;
+
 use std::io::{self, Read as _};
 
 use super::fingerprint::FlightPrint;
@@ -34,7 +36,7 @@ fn record(seconds: u64, mut happen: impl FnMut(u64, &mut Vehicle)) -> Recorded {
     let plan = setup.plan.plan.clone();
     let (mut vehicle, _) = setup.build().unwrap();
     vehicle.keep_inputs(true);
-    let mut print = FlightPrint::default();
+    let (mut print, mut cadence) = (FlightPrint::default(), Cadence::default());
     let mut bytes = Vec::new();
     for tick in 0..seconds * 1000 {
         if tick == 5 {
@@ -46,7 +48,7 @@ fn record(seconds: u64, mut happen: impl FnMut(u64, &mut Vehicle)) -> Recorded {
         vehicle.take_inputs(|input| writer.input(at, &input));
         vehicle.tick();
         vehicle.drain_events(|event| writer.event(&event.into()));
-        if let Some(seen) = Seen::due(&vehicle) {
+        if let Some(seen) = cadence.due(&vehicle) {
             print.add(vehicle.time(), seen.print.unwrap());
             writer.picture(seen);
         }

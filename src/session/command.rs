@@ -68,6 +68,8 @@ pub enum Command {
     },
     /// Uploads a plan to the craft as a ground station does. The reply is the craft's answer.
     Upload {
+        /// The name of the plan, for recordings.
+        name: String,
         plan: Box<FlightPlan>,
         /// Setting lines that come with the plan file, without `set `.
         settings: Vec<String>,
@@ -107,6 +109,9 @@ pub enum Command {
         request: CurvesRequest,
         reply: ReplyTo<Result<Vec<Curve>, String>>,
     },
+    /// Copies the recording of the flight so far: the bytes of a file. The reply is the copy, or the reason why there is
+    /// none.
+    CopyRecording(ReplyTo<Result<Vec<u8>, String>>),
     /// Sends all later events to this receiver, too, until it is dropped.
     Subscribe(tokio::sync::mpsc::UnboundedSender<Event>),
     Quit,

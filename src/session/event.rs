@@ -6,6 +6,7 @@ use tokio::sync::mpsc;
 
 use super::replay::ReplayNotice;
 use super::simulator::SimulatorNotice;
+use super::tape::{TapeSender, Taped};
 use crate::fc::RemoteNotice;
 use crate::signals::{RcFrame, SimTime};
 use crate::telemetry::{self, EventKind, FirmwareEvent};
@@ -89,6 +90,8 @@ impl From<telemetry::Event> for Event {
 #[derive(Debug)]
 pub(super) struct EventSender {
     receivers: Vec<mpsc::UnboundedSender<Event>>,
+    /// The recorder of flights, if there is one.
+    recorder: Option<TapeSender>,
     marks: Marks,
     /// `true` if the craft was disarmed since the last query.
     disarmed: bool,
@@ -96,12 +99,17 @@ pub(super) struct EventSender {
 
 impl EventSender {
     pub(super) fn new(receiver: mpsc::UnboundedSender<Event>) -> Self {
-        Self { receivers: vec![receiver], marks: Marks::default(), disarmed: false }
+        Self { receivers: vec![receiver], recorder: None, marks: Marks::default(), disarmed: false }
     }
 
     /// Sends all later events to this receiver, too, until it is dropped.
     pub(super) fn subscribe(&mut self, receiver: mpsc::UnboundedSender<Event>) {
         self.receivers.push(receiver);
+    }
+
+    /// Sends all later events to a recorder, too.
+    pub(super) fn record(&mut self, recorder: TapeSender) {
+        self.recorder = Some(recorder);
     }
 
     pub(super) fn marks(&self) -> &Marks {
@@ -149,6 +157,9 @@ impl EventSender {
         if let SessionEvent::Vehicle(kind) = &event.kind {
             self.marks.note(event.time, kind);
             self.disarmed |= matches!(kind, EventKind::Firmware(FirmwareEvent::Disarmed(_)));
+        }
+        if let Some(recorder) = &self.recorder {
+            recorder.send(Taped::Event(event.clone()));
         }
         self.receivers.retain(|receiver| receiver.send(event.clone()).is_ok());
     }

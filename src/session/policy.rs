@@ -165,6 +165,7 @@ impl Intent {
             Command::CopyVehicle(_) => Self::Forecast,
             Command::RecordedFlight(_)
             | Command::Curves { .. }
+            | Command::CopyRecording(_)
             | Command::PermitChanges(_)
             | Command::Subscribe(_)
             | Command::Quit => Self::Read,

@@ -27,6 +27,7 @@ use super::real_time::RealTime;
 use super::request_handler::RequestHandler;
 use super::runner::{Runner, Subscriber};
 use super::simulator::Simulator;
+use super::tape::Tape;
 use super::waker;
 use crate::fc::{Access, Denial, RemoteLink, RemoteNotice};
 use crate::link::endpoint::EndpointStatus;
@@ -136,18 +137,22 @@ fn factor(speed: f64) -> String {
 /// # Errors
 /// Returns an error if the system cannot start a thread.
 pub fn start(config: SessionConfig) -> std::io::Result<Handle> {
-    start_at(config, None)
+    start_at(config, None, None)
 }
 
 /// Starts the session at the end of a flight that was flown before. The vehicle is in the state after that
-/// flight, one of its instants is shown, and time is paused.
+/// flight, one of its instants is shown, and time is paused. `tape` records the flights of the session.
 ///
 /// # Errors
 /// Returns an error if the system cannot start a thread.
-pub fn start_at(config: SessionConfig, flown: Option<FlownBefore>) -> std::io::Result<Handle> {
+pub fn start_at(
+    config: SessionConfig,
+    flown: Option<FlownBefore>,
+    tape: Option<Tape>,
+) -> std::io::Result<Handle> {
     let (command_tx, command_rx) = mpsc::channel(256);
     let (event_tx, event_rx) = mpsc::unbounded_channel();
-    let mut session = Session::new(config, flown, command_rx, event_tx);
+    let mut session = Session::new(config, flown, tape, (command_rx, event_tx));
     let (view_tx, view_rx) = watch::channel(session.view());
     let thread =
         std::thread::Builder::new().name("vehicle".to_owned()).spawn(move || session.run(&view_tx))?;
@@ -172,6 +177,8 @@ struct Session {
     real_time: RealTime,
     /// The recording, unless the flight cannot be rewound.
     timeline: Option<Timeline>,
+    /// The way to the recorder of flights, if there is one.
+    tape: Option<Tape>,
     /// Flies the flight of a remote firmware that has ended again.
     again: Option<FlyAgain>,
     flying_again: Option<FlyingAgain>,
@@ -206,8 +213,8 @@ impl Session {
     fn new(
         mut config: SessionConfig,
         flown: Option<FlownBefore>,
-        commands: mpsc::Receiver<Command>,
-        events: mpsc::UnboundedSender<Event>,
+        tape: Option<Tape>,
+        (commands, events): (mpsc::Receiver<Command>, mpsc::UnboundedSender<Event>),
     ) -> Self {
         let simulator = config.endpoints.as_mut().and_then(|endpoints| endpoints.simulator.take());
         let incoming = ImpairedLink::new(Stream::Link.rng(config.vehicle.clock().seed()));
@@ -239,6 +246,7 @@ impl Session {
             interface: Interface::default(),
             real_time: RealTime::default(),
             timeline,
+            tape,
             again,
             flying_again: None,
             keeps: None,
@@ -252,6 +260,9 @@ impl Session {
             quit: false,
             failure: None,
         };
+        if let Some(tape) = &session.tape {
+            session.events.record(tape.sender());
+        }
         if let Some((events, show)) = flown {
             session.begin_with(&events, show);
         }
@@ -273,6 +284,7 @@ impl Session {
             self.take_late_answers(Instant::now());
             self.take_flown_again(start.elapsed());
             let flown = self.handle_requests(&mut context);
+            self.record_flown(flown);
             let now = start.elapsed();
             self.record_flood();
             let due = if self.follows_wall_clock() { self.runner.due(now) } else { 0 };

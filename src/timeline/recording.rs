@@ -139,7 +139,7 @@ impl Recording {
             let mut frozen = Box::new(vehicle.clone());
             frozen.keep_inputs(false);
             frozen.drain_events(drop);
-            let next_input = self.first_input + self.inputs.len() as u64;
+            let next_input = self.next_input();
             let active_us = self.idle.active_us(at);
             self.key_frames.push_back(KeyFrame { vehicle: frozen, next_input, active_us });
             self.bytes_since_key_frame = 0;
@@ -180,6 +180,17 @@ impl Recording {
         self.inputs.iter().map(|input| (input.at, &input.input))
     }
 
+    /// Returns the kept inputs from this number on with their times, oldest first.
+    pub(super) fn inputs_from(&self, number: u64) -> impl Iterator<Item = (SimTime, &VehicleCommand)> {
+        let skipped = usize::try_from(number.saturating_sub(self.first_input)).unwrap_or(usize::MAX);
+        self.inputs.iter().skip(skipped).map(|input| (input.at, &input.input))
+    }
+
+    /// Returns the number of the next input.
+    pub(super) fn next_input(&self) -> u64 {
+        self.first_input + self.inputs.len() as u64
+    }
+
     /// Returns the number of the oldest kept input.
     pub(super) fn first_input(&self) -> u64 {
         self.first_input
@@ -192,7 +203,7 @@ impl Recording {
         while self.key_frames.back().is_some_and(|newest| !stays(newest)) {
             self.key_frames.pop_back();
         }
-        while self.first_input + self.inputs.len() as u64 > replay.next_input()
+        while self.next_input() > replay.next_input()
             && let Some(input) = self.inputs.pop_back()
         {
             self.input_bytes -= input.bytes();

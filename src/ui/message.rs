@@ -184,6 +184,8 @@ pub enum Effect {
     Upload {
         /// The identifier of the plan.
         id: PlanId,
+        /// The name of the plan.
+        name: String,
         plan: Box<FlightPlan>,
         /// The setting lines of the plan, without `set `.
         settings: Vec<String>,

@@ -137,7 +137,11 @@ async fn nothing_steers_an_instant_that_is_past() {
     // The session itself refuses, too.
     let (reply, answer) = ReplyTo::channel();
     let plan = Box::default();
-    rig.session.commands.send(Command::Upload { plan, settings: Vec::new(), reply }).await.unwrap();
+    rig.session
+        .commands
+        .send(Command::Upload { name: String::new(), plan, settings: Vec::new(), reply })
+        .await
+        .unwrap();
     assert_eq!(answer.await.unwrap(), Err(refused.clone()));
     let (reply, answer) = ReplyTo::channel();
     let line = "wind=5@270".to_owned();

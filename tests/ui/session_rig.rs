@@ -101,10 +101,14 @@ impl Rig {
         for effect in effects {
             match effect {
                 Effect::Send(command) => self.session.commands.send(command).await.unwrap(),
-                Effect::Upload { id, plan, settings } => {
+                Effect::Upload { id, name, plan, settings } => {
                     let count = plan.waypoints.len();
                     let (reply, answer) = ReplyTo::channel();
-                    self.session.commands.send(Command::Upload { plan, settings, reply }).await.unwrap();
+                    self.session
+                        .commands
+                        .send(Command::Upload { name, plan, settings, reply })
+                        .await
+                        .unwrap();
                     let result = answer.await.unwrap();
                     let next = update(&mut self.state, Msg::UploadReply { id, count, result });
                     Box::pin(self.carry_out(next)).await;

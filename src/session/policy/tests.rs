@@ -186,7 +186,7 @@ fn the_intents_of_commands() {
         (line("get"), Intent::Line(Impact::Reads)),
         (line("save"), Intent::Line(Impact::Changes)),
         (line("motor 1 1500"), Intent::Line(Impact::Forbidden(NOTHING_MOVES))),
-        (Command::Upload { plan, settings, reply: reply() }, Intent::Upload),
+        (Command::Upload { name: String::new(), plan, settings, reply: reply() }, Intent::Upload),
         (Command::Save { reply: reply() }, Intent::Save),
         (Command::Download { reply: reply() }, Intent::Download),
         (Command::Vehicle(VehicleCommand::Sticks(RcFrame::SAFE)), Intent::Move),

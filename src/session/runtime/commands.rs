@@ -11,6 +11,7 @@ use crate::flight::forecast;
 use crate::session::command::{Command, Seek, VehicleCopy};
 use crate::session::policy::{self, Facts, Intent, RemoteFacts};
 use crate::session::simulator::Simulator;
+use crate::session::tape::Taped;
 use crate::sim::WorldCommand;
 use crate::timeline::Timeline;
 use crate::vehicle::{Answer, Reply, VehicleCommand, VehicleRefusal};
@@ -80,7 +81,10 @@ impl Session {
                 let outcome = self.interface.run_line(line, reply, vehicle, persistence, handler);
                 self.report(outcome);
             }
-            Command::Upload { plan, settings, reply } => {
+            Command::Upload { name, plan, settings, reply } => {
+                if let Some(tape) = &self.tape {
+                    tape.sender().send(Taped::Plan(name, plan.clone()));
+                }
                 let is_simulated = !self.access().is_limited();
                 let craft = &mut UploadTo { vehicle: &mut self.vehicle, takeoff_m: self.takeoff_m };
                 let outcome = self.interface.upload(&plan, settings, is_simulated, reply, craft);
@@ -112,6 +116,7 @@ impl Session {
                 reply.send(copy);
             }
             Command::RecordedFlight(reply) => reply.send(self.recorded_flight()),
+            Command::CopyRecording(reply) => self.copy_recording(reply),
             Command::Subscribe(receiver) => self.events.subscribe(receiver),
             // The policy refuses another flight.
             Command::ShowFlight(_) => {}

@@ -8,14 +8,15 @@ use super::requests::FreshRc;
 use super::{SLICE, Session};
 use crate::fc::{Impact, RemoteLink};
 use crate::link::Request;
-use crate::session::Event;
 use crate::session::arming::ArmingWatch;
 use crate::session::command::{BEGINNING_LOST, CliOutput, REWOUND_FOR_CLIENTS, Seek};
 use crate::session::fly_again::{FlownAgain, FlyingAgain};
 use crate::session::pacer::SPEED_RANGE;
 use crate::session::policy::{NOT_FLOWN_AGAIN, NOT_RECORDED};
-use crate::session::runner::{Runner, tick};
+use crate::session::runner::{Runner, Subscriber, tick};
 use crate::session::seek::{Target, target};
+use crate::session::tape::{Tape, Taped};
+use crate::session::{Event, ReplyTo};
 use crate::signals::SimTime;
 use crate::timeline::{RecordedFlight, Shown, Timeline, TimelineView};
 use crate::vehicle::{Answer, Reply, Vehicle, VehicleCommand};
@@ -176,7 +177,8 @@ impl Session {
     fn tick(&mut self) {
         let speed = self.wanted_speed();
         let rc = self.endpoints.as_ref().map(|endpoints| FreshRc { handler: &endpoints.handler, speed });
-        let subscribers = &mut (rc, (&mut self.timeline, &mut self.events));
+        let recorders = Recorders { timeline: &mut self.timeline, tape: &mut self.tape };
+        let subscribers = &mut (rc, (recorders, &mut self.events));
         let _no_end = tick(&mut self.vehicle, subscribers);
     }
 
@@ -186,7 +188,27 @@ impl Session {
             && self.vehicle.input_bytes() > FLOOD_BYTES
         {
             timeline.record(&mut self.vehicle);
+            if let Some(tape) = &mut self.tape {
+                tape.take_inputs(timeline);
+            }
         }
+    }
+
+    /// Records the ticks of an external simulator.
+    pub(super) fn record_flown(&mut self, ticks: u64) {
+        if let Some(tape) = self.tape.as_mut().filter(|_| ticks > 0) {
+            tape.look(&self.vehicle);
+        }
+    }
+
+    /// Asks the recorder for the recording of the flight so far.
+    pub(super) fn copy_recording(&mut self, reply: ReplyTo<Result<Vec<u8>, String>>) {
+        let Some(tape) = &mut self.tape else { return reply.send(Err(NOT_RECORDED.to_owned())) };
+        if let Some(timeline) = &mut self.timeline {
+            timeline.record(&mut self.vehicle);
+            tape.take_inputs(timeline);
+        }
+        tape.sender().send(Taped::Copy(reply));
     }
 
     /// Continues the flight for one slice, or until an event.
@@ -371,11 +393,37 @@ impl Session {
         self.persistence.tell(self.vehicle.controller_mut());
         self.vehicle.apply(&VehicleCommand::EndAllCli);
         self.arming = ArmingWatch::default();
+        if let (Some(tape), Some(timeline)) = (&mut self.tape, &self.timeline) {
+            tape.branch(self.vehicle.time(), timeline);
+        }
         self.events.branch(&mut self.vehicle, branch, left);
         if let Some(endpoints) = &mut self.endpoints {
             endpoints.handler.after_restart(true, &mut self.vehicle);
         }
         self.runner.pacer.set_paused(false, now);
+    }
+}
+
+/// The recording for replays, and the way to the recorder of flights, which gets the same inputs.
+struct Recorders<'s> {
+    timeline: &'s mut Option<Timeline>,
+    tape: &'s mut Option<Tape>,
+}
+
+impl Subscriber<Vehicle> for Recorders<'_> {
+    fn before_tick(&mut self, vehicle: &mut Vehicle) {
+        if let Some(timeline) = self.timeline {
+            timeline.record(vehicle);
+            if let Some(tape) = self.tape {
+                tape.take_inputs(timeline);
+            }
+        }
+    }
+
+    fn after_tick(&mut self, vehicle: &Vehicle) {
+        if let Some(tape) = self.tape {
+            tape.look(vehicle);
+        }
     }
 }
 

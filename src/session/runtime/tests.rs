@@ -51,7 +51,7 @@ impl Rig {
     fn with(vehicle: Vehicle) -> Self {
         let (commands, taken) = mpsc::channel(32);
         let config = config_of(vehicle, true);
-        let mut session = Session::new(config, None, taken, mpsc::unbounded_channel().0);
+        let mut session = Session::new(config, None, None, (taken, mpsc::unbounded_channel().0));
         if let Some(mailbox) = session.vehicle.controller_mut().remote_mut() {
             let altitude_reference = AltitudeReference::Home;
             mailbox.deliver_telemetry(RemoteTelemetry { altitude_reference, ..RemoteTelemetry::default() });
@@ -77,7 +77,7 @@ impl Rig {
         );
         let (reply, result) = ReplyTo::channel();
         let settings = vec![setting.to_owned()];
-        self.commands.try_send(Command::Upload { plan, settings, reply }).unwrap();
+        self.commands.try_send(Command::Upload { name: String::new(), plan, settings, reply }).unwrap();
         self.take_commands();
         result
     }
@@ -264,7 +264,8 @@ impl Rig {
     fn fly_and_land(&mut self) -> f64 {
         let plan = crate::plan::builtin::BuiltinPlan::find("land").unwrap().read().unwrap().plan;
         let (reply, _result) = ReplyTo::channel();
-        let upload = Command::Upload { plan: Box::new(plan), settings: Vec::new(), reply };
+        let upload =
+            Command::Upload { name: String::new(), plan: Box::new(plan), settings: Vec::new(), reply };
         for command in [upload, Command::StartPilot] {
             self.commands.try_send(command).unwrap();
         }
@@ -320,7 +321,7 @@ fn a_session_without_a_screen_keeps_nothing_of_its_flight() {
             live: false,
         };
         let config = config_of(Vehicle::new(config).unwrap(), is_recorded);
-        Session::new(config, None, mpsc::channel(1).1, mpsc::unbounded_channel().0).timeline.is_some()
+        Session::new(config, None, None, (mpsc::channel(1).1, mpsc::unbounded_channel().0)).timeline.is_some()
     };
     assert_eq!((recorded(true), recorded(false)), (true, false));
 }
@@ -338,7 +339,7 @@ fn after_a_flight(
     let again = Some(FlyAgain::new(again));
     let flown = FlownBefore { timeline, events: Vec::new(), show: SimTime(1_000_000), again };
     let (events, reported) = mpsc::unbounded_channel();
-    (Session::new(config_of(vehicle, true), Some(flown), mpsc::channel(1).1, events), reported)
+    (Session::new(config_of(vehicle, true), Some(flown), None, (mpsc::channel(1).1, events)), reported)
 }
 
 fn flown_until(time: SimTime) -> Vehicle {
@@ -421,7 +422,7 @@ fn a_further_subscriber_gets_every_later_event_until_it_leaves() {
     let (commands, taken) = mpsc::channel(32);
     let (first, mut all) = mpsc::unbounded_channel();
     let vehicle = Vehicle::with_remote_controller(WorldConfig::default()).unwrap();
-    let mut session = Session::new(config_of(vehicle, true), None, taken, first);
+    let mut session = Session::new(config_of(vehicle, true), None, None, (taken, first));
     session.notice("before");
     let (second, mut later) = mpsc::unbounded_channel();
     commands.try_send(Command::Subscribe(second)).unwrap();
@@ -463,7 +464,7 @@ fn the_hazards_of_an_uploaded_plan_are_reported_before_the_answer() {
     let (events, mut heard) = mpsc::unbounded_channel();
     let (vehicle, _) = FlightSetup::default().build().unwrap();
     let home = *vehicle.local_frame().unwrap();
-    let mut session = Session::new(config_of(vehicle, true), None, taken, events);
+    let mut session = Session::new(config_of(vehicle, true), None, None, (taken, events));
     session.flush_events();
     let mut plan = Box::new(FlightPlan::default());
     // The leg to the second waypoint is too steep.
@@ -481,7 +482,7 @@ fn the_hazards_of_an_uploaded_plan_are_reported_before_the_answer() {
         }
         order.send(before).unwrap();
     });
-    commands.try_send(Command::Upload { plan, settings: Vec::new(), reply }).unwrap();
+    commands.try_send(Command::Upload { name: String::new(), plan, settings: Vec::new(), reply }).unwrap();
     session.take_commands(Duration::ZERO, &mut Context::from_waker(Waker::noop()));
     assert!(answered.try_recv().unwrap() > 0, "the notices of the plan come first");
 }

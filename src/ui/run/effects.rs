@@ -81,10 +81,10 @@ pub(super) fn carry_out(
             let message = |result| Msg::WorldReply { line: asked, result };
             Command::World { line, reply: answers.result("The session did not answer.", message) }
         }
-        Effect::Upload { id, plan, settings } => {
+        Effect::Upload { id, name, plan, settings } => {
             let count = plan.waypoints.len();
             let message = move |result| Msg::UploadReply { id, count, result };
-            Command::Upload { plan, settings, reply: answers.result(MISSING, message) }
+            Command::Upload { name, plan, settings, reply: answers.result(MISSING, message) }
         }
         Effect::Download(id) => {
             let message = move |result| Msg::DownloadReply { id, result };

@@ -84,6 +84,7 @@ pub(super) fn upload_now(state: &mut Shared) -> Effect {
     state.editor.remember_upload();
     Effect::Upload {
         id: state.editor.plan().id(),
+        name: state.editor.document().name.clone(),
         plan: Box::new(state.plan().clone()),
         settings: state.editor.document().settings.clone(),
     }

@@ -8,7 +8,7 @@ use crate::app::error::AppError;
 use crate::app::output_file::StreamedOutput;
 use crate::app::recording_file::{header, recorded};
 use crate::flight::FlightSetup;
-use crate::recording::{End, FlightPrint, Seen, Setup, Writer};
+use crate::recording::{Cadence, End, FlightPrint, Setup, Writer};
 use crate::session::Event;
 use crate::signals::SimTime;
 use crate::vehicle::Vehicle;
@@ -17,6 +17,7 @@ use crate::vehicle::Vehicle;
 pub(in crate::app::fly) struct Recorder {
     writer: Writer,
     file: StreamedOutput,
+    cadence: Cadence,
     print: FlightPrint,
     /// `true` once a picture had no number, so the flight has no hash.
     is_unknown: bool,
@@ -33,8 +34,8 @@ impl Recorder {
         writer.setup(&Setup::from(setup));
         writer.begin(SimTime::ZERO);
         let file = StreamedOutput::begin_with(path, &writer.flush())?;
-        let print = FlightPrint::default();
-        Ok(Self { writer, file, print, is_unknown: false, flushed_at: SimTime::ZERO })
+        let (cadence, print) = (Cadence::default(), FlightPrint::default());
+        Ok(Self { writer, file, cadence, print, is_unknown: false, flushed_at: SimTime::ZERO })
     }
 
     pub(super) fn event(&mut self, event: &Event) {
@@ -51,7 +52,7 @@ impl Recorder {
 
     /// Records a picture if one is due, and writes what there is once a second.
     pub(super) fn after_tick(&mut self, vehicle: &Vehicle) -> Result<(), AppError> {
-        if let Some(seen) = Seen::due(vehicle) {
+        if let Some(seen) = self.cadence.due(vehicle) {
             match seen.print {
                 Some(print) => self.print.add(vehicle.time(), print),
                 None => self.is_unknown = true,
