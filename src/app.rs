@@ -3,7 +3,8 @@
 //! One file a mode, with its parts in the layer of its name: `check` flies scenarios, `campaign` many flights of one,
 //! `compare` two firmwares, `fly` one plan, and `open` shows a flight of a scenario or a campaign. `firmware` starts or
 //! finds a remote firmware, `output_file` replaces files as a whole, and `plan_files` reads, writes and watches plan
-//! files. `replay` shows and exports recorded flights. `terrain` reads the elevation tiles that a plan needs.
+//! files. `replay` shows and exports recorded flights. `flight_library` keeps the recorded flights, and `flight_recorder`
+//! records them. `terrain` reads the elevation tiles that a plan needs.
 
 mod backdrop_file;
 mod campaign;
@@ -18,6 +19,9 @@ mod doors;
 pub mod entered_lines;
 mod error;
 mod firmware;
+mod flight_library;
+mod flight_recorder;
+mod flights;
 mod fly;
 mod input_file;
 mod input_lines;
@@ -26,6 +30,7 @@ mod keys;
 mod layers;
 mod line_history;
 mod live;
+mod named_file;
 mod open;
 mod output_file;
 mod parallel;
@@ -107,6 +112,7 @@ fn reads_layers(command: Option<&Command>) -> bool {
             | Command::Campaign(_)
             | Command::Forecast(_)
             | Command::Open(_)
+            | Command::Flights(_)
             | Command::Plan(_)
             | Command::Convert(_)
             | Command::Config(_)
@@ -133,6 +139,7 @@ fn may_start_firmware(command: Option<&Command>) -> bool {
             | Command::Forecast(_)
             | Command::Open(_)
             | Command::Replay(_)
+            | Command::Flights(_)
             | Command::Plan(_)
             | Command::Convert(_)
             | Command::Config(_)
@@ -155,6 +162,7 @@ fn dispatch(cli: Cli, keymap: Keymap) -> Result<u8, AppError> {
         Some(Command::Forecast(args)) => campaign::forecast(&args),
         Some(Command::Open(args)) => open::run(&args, keymap),
         Some(Command::Replay(args)) => replay::run(&args, keymap),
+        Some(Command::Flights(args)) => flights::run(&args),
         Some(Command::Compare(args)) => compare::run(&args, &cli.repeat),
         Some(Command::Sitl(args)) => sitl::run(&args),
         Some(Command::Serve(args)) => serve::run(&args),

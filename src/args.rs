@@ -24,6 +24,7 @@ mod mission;
 mod open;
 mod physics;
 mod plan_arg;
+mod recordings;
 mod repeat;
 mod replay;
 mod review;
@@ -58,6 +59,7 @@ pub use mission::MissionArgs;
 pub use open::OpenArgs;
 pub use physics::{FdmDialect, PhysicsArgs, PhysicsChoice, SimulatorArgs};
 pub use plan_arg::{PlanArg, PlanArgError, is_descriptor};
+pub use recordings::{FlightsArgs, RecordingArgs};
 pub use replay::ReplayArgs;
 pub use review::ReviewArgs;
 pub use terrain::TerrainArgs;
@@ -138,6 +140,10 @@ pub struct TuiArgs {
     /// The limits for warnings about waypoints.
     #[command(flatten)]
     pub review: ReviewArgs,
+
+    /// The library of recorded flights.
+    #[command(flatten)]
+    pub recordings: RecordingArgs,
 }
 
 /// The commands.
@@ -178,10 +184,11 @@ pub enum Command {
     ]), after_help = help::FORECAST)]
     Forecast(Box<ForecastArgs>),
 
-    /// Flies a scenario and opens the screen at one of its instants, paused, to look around in the flight
+    /// Flies a scenario or a recorded flight and opens the screen at one of its instants, paused, to look around in it
     #[command(before_help = help::examples(&[
         ("betadeck open guide-7 --case 'wind-5, noise real' --seed 3 --at 21.4", "a moment that `check` named"),
         ("betadeck open run.jsonl:1234", "a flight of a campaign"),
+        ("betadeck open square.flight", "a recorded flight, to the last bit"),
     ]))]
     Open(Box<OpenArgs>),
 
@@ -193,6 +200,13 @@ pub enum Command {
         ("betadeck replay log.bbl --csv values.csv --samples 100 --gpx track.gpx", "values and track for other programs"),
     ]))]
     Replay(Box<ReplayArgs>),
+
+    /// Lists the recorded flights: date, plan, verdict, duration and file, the newest first
+    #[command(before_help = help::examples(&[
+        ("betadeck flights", "what the screen recorded"),
+        ("betadeck flights --json", "a JSON object for each flight"),
+    ]))]
+    Flights(FlightsArgs),
 
     /// Flies a plan on the embedded firmware and on another one, in the same air, and shows the differences
     #[command(before_help = help::examples(&[
@@ -308,6 +322,7 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>, layers: &Layers) -> 
             | Command::Check(_)
             | Command::Forecast(_)
             | Command::Open(_)
+            | Command::Flights(_)
             | Command::Plan(_)
             | Command::Config(_)
             | Command::Doctor

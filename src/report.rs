@@ -16,6 +16,7 @@ pub mod conversion;
 pub mod csv;
 pub mod end;
 pub mod flight;
+pub mod flights;
 pub mod gpx;
 pub mod html;
 pub mod json;

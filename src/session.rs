@@ -3,6 +3,7 @@
 mod arming;
 pub mod command;
 mod event;
+mod flight_feed;
 mod fly_again;
 mod forecaster;
 mod hazards;
@@ -21,11 +22,11 @@ mod runtime;
 mod seek;
 mod simulator;
 pub mod sitl;
-mod tape;
 mod waker;
 
 pub use command::{Command, Seek, SessionView};
 pub use event::{EndpointAddresses, Event, SessionEvent};
+pub use flight_feed::{FeedReceiver, FlightFeed, FlightPart, flight_feed};
 pub use fly_again::{FlownAgain, FlyAgain, Progress};
 pub use forecaster::{ForecastJob, ForecastReply, ForecastRequest, Forecaster};
 pub use hazards::hazards;
@@ -38,4 +39,3 @@ pub use request_handler::{Handled, RequestHandler};
 pub use runner::{Flying, Runner, Stopped, Subscriber};
 pub use runtime::{Endpoints, FlownBefore, Handle, SessionConfig, Subscription, start, start_at};
 pub use simulator::SimulatorNotice;
-pub use tape::{Tape, TapeReceiver, Taped, tape};

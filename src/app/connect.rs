@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use super::AppError;
 use super::backdrop_file;
+use super::flight_recorder::RecordedStart;
 use super::live::LiveArgs;
 use super::setup;
 use super::tui::{self, LiveFlight, Screen, Source};
@@ -41,6 +42,8 @@ pub(super) fn run(args: &TuiArgs, place: &FcPlace, keymap: Keymap) -> Result<u8,
             vehicle: Vehicle::elsewhere().map_err(AppError::internal)?,
             // The craft keeps its configuration itself.
             store: Store::in_memory(),
+            recorded: RecordedStart::at_boot(Err("a remote flight controller flew it".to_owned())),
+            recordings_most: args.recordings.most_bytes(),
             flown: None,
             live: LiveArgs {
                 doors: &args.doors,

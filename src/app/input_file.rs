@@ -20,6 +20,8 @@ const TILE: Kind = Kind { most: 64 << 20, too_large: "no elevation tile" };
 /// A blackbox log, which is read in parts.
 const LOG: Kind = Kind { most: u64::MAX, too_large: "no log" };
 const MAP: Kind = Kind { most: 64 << 20, too_large: "too much for a map" };
+/// A recording. Its reader has bounds of its own.
+const RECORDING: Kind = Kind { most: 1 << 30, too_large: "no recording of a flight" };
 /// A file for a syntax tree. The tree takes a hundred times as much memory.
 const TREE: Kind = Kind { most: 512 << 10, ..TEXT };
 
@@ -62,6 +64,11 @@ pub(super) fn open_log(path: &Path) -> Result<(File, u64), AppError> {
 pub(super) fn read_map(path: &Path) -> Result<Vec<u8>, AppError> {
     let name = path.display().to_string();
     read_bytes(open(path, &name, MAP)?, &name, MAP)
+}
+
+/// Opens a recording of a flight.
+pub(super) fn open_recording(path: &Path) -> Result<File, AppError> {
+    open(path, &path.display().to_string(), RECORDING)
 }
 
 /// Reads a text file of reasonable size.

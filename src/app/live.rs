@@ -8,7 +8,7 @@ use super::firmware::{FirmwareFolder, RemoteFirmware};
 use super::setup;
 use crate::args::{DoorArgs, FlightArgs, PhysicsArgs, Speed};
 use crate::link::FcPlace;
-use crate::session::{self, FlownBefore, Handle, SessionConfig, SessionEvent};
+use crate::session::{self, FlightFeed, FlownBefore, Handle, SessionConfig, SessionEvent};
 use crate::storage::Store;
 use crate::vehicle::Vehicle;
 
@@ -34,8 +34,9 @@ pub(super) fn ended_by_itself() -> AppError {
     AppError::internal("the session ended by itself")
 }
 
-/// Opens the doors and starts the session; `notices` are reported first. With `--no-ports` there are no doors. A
-/// returned directory belongs to the remote firmware, and must be kept until the session has ended.
+/// Opens the doors and starts the session; `notices` are reported first, and `feed` records its flights. With
+/// `--no-ports` there are no doors. A returned directory belongs to the remote firmware, and must be kept until the session
+/// has ended.
 ///
 /// # Errors
 /// Returns an error if there is no socket for the motors of an external simulator, no thread, or no link to the
@@ -46,6 +47,7 @@ pub(super) async fn start(
     store: Store,
     mut notices: Vec<String>,
     flown: Option<FlownBefore>,
+    feed: Option<FlightFeed>,
 ) -> Result<(Handle, Option<OpenDoors>, Option<FirmwareFolder>), AppError> {
     let state = setup::store_directory(args.flight)?;
     let opened =
@@ -79,7 +81,7 @@ pub(super) async fn start(
         remote: remote.or_else(|| args.connect.map(connect::link)),
         first_events,
     };
-    let session = session::start_at(config, flown, None)
+    let session = session::start_at(config, flown, feed)
         .map_err(|error| AppError::environment(format!("cannot start a thread: {error}")))?;
     Ok((session, doors, directory.flatten()))
 }

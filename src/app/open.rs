@@ -1,17 +1,21 @@
-//! `betadeck open`: the screen at an instant of a flight of a scenario or a campaign, which is flown first, by the embedded
-//! firmware or by a remote one.
+//! `betadeck open`: the screen at an instant of a flight of a scenario, a campaign or a recording, which is flown first, by
+//! the embedded firmware or by a remote one.
 
 mod of_campaign;
+mod of_recording;
 
 use super::check;
 use super::error::{self, AppError};
 use super::firmware::run::{OnEvent, Stopped, unless_interrupted};
 use super::firmware::{self, Beside, RemoteFirmware, reported};
+use super::flight_recorder::RecordedStart;
 use super::interrupt::interrupt_flag;
 use super::live::LiveArgs;
 use super::tui::{self, LiveFlight, Screen, Source};
 use crate::args::{DoorArgs, FlightArgs, Instant, OpenArgs, PhysicsArgs, ReviewArgs};
 use crate::fc::RemoteLink;
+use crate::plan::format::PlanFile;
+use crate::recording::Setup;
 use crate::scenario::{self, Air, Case, CaseFlight, Scenario};
 use crate::session::{Event, FlownAgain, FlownBefore, FlyAgain, Progress, Runner, SessionView, Subscriber};
 use crate::signals::SimTime;
@@ -20,6 +24,7 @@ use crate::storage::Store;
 use crate::text::did_you_mean;
 use crate::timeline::Timeline;
 use crate::ui::keymap::Keymap;
+use crate::vehicle::{Vehicle, VehicleCommand};
 
 /// The pictures for each simulated second of the finished flight. Tracks and graphs are made from them.
 const PICTURES_HZ: u64 = 5;
@@ -37,8 +42,15 @@ impl Subscriber<CaseFlight<'_>> for Recorded {
     }
 
     fn after_tick(&mut self, flight: &CaseFlight<'_>) {
-        if flight.vehicle().time().0.is_multiple_of(1_000_000 / PICTURES_HZ) {
-            self.past.push(SessionView::of_recorded(flight.vehicle()));
+        self.look(flight.vehicle());
+    }
+}
+
+impl Recorded {
+    /// Records a picture of the vehicle if one is due.
+    fn look(&mut self, vehicle: &Vehicle) {
+        if vehicle.time().0.is_multiple_of(1_000_000 / PICTURES_HZ) {
+            self.past.push(SessionView::of_recorded(vehicle));
         }
     }
 }
@@ -47,6 +59,9 @@ impl Subscriber<CaseFlight<'_>> for Recorded {
 pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
     tui::require_terminal(false)?;
     let mut notices = Vec::new();
+    if let Some(recording) = of_recording::read(args)? {
+        return of_recording::run(args, &recording, keymap);
+    }
     let Opened { case, air, name, firmware, wanted } = match of_campaign::read(args)? {
         Some(opened) => opened,
         None => of_scenario(args, &mut notices)?,
@@ -73,10 +88,34 @@ pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
         "{name}, seed {}, was flown to its end: `,` and `<` go back, Space plays it, `b` flies on from here.",
         air.seed
     ));
+    let recorded = recorded_start(&case, &air, flight.vehicle());
+    let finished = Finished {
+        plan: case.setup.plan.clone(),
+        vehicle: flight.into_vehicle(),
+        recorded,
+        flown: FlownBefore { timeline, events, show, again },
+        past,
+        notices,
+    };
+    open_screen(args, finished, keymap)
+}
+
+/// A finished flight for the screen.
+struct Finished {
+    plan: PlanFile,
+    vehicle: Vehicle,
+    recorded: RecordedStart,
+    flown: FlownBefore,
+    past: Vec<SessionView>,
+    notices: Vec<String>,
+}
+
+fn open_screen(args: &OpenArgs, finished: Finished, keymap: Keymap) -> Result<u8, AppError> {
+    let Finished { plan, vehicle, recorded, flown, past, notices } = finished;
     let doors = DoorArgs { no_ports: true, ..DoorArgs::default() };
     let (physics, flight_args) = (PhysicsArgs::default(), FlightArgs::default());
     let screen = Screen {
-        plan: case.setup.plan.clone(),
+        plan,
         path: None,
         backdrop: Vec::new(),
         directory: None,
@@ -88,9 +127,11 @@ pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
         display: &args.display,
         terrain: &flight_args.terrain,
         source: Source::Flight(Box::new(LiveFlight {
-            vehicle: flight.into_vehicle(),
+            vehicle,
             store: Store::in_memory(),
-            flown: Some((FlownBefore { timeline, events, show, again }, past)),
+            recorded,
+            recordings_most: 0,
+            flown: Some((flown, past)),
             live: LiveArgs {
                 doors: &doors,
                 connect: None,
@@ -222,6 +263,20 @@ fn fly_again(
         Stopped::Failed(AppError { message, .. }) => message,
         Stopped::Interrupted | Stopped::BySubscriber => "The flight was interrupted.".to_owned(),
     })
+}
+
+/// Returns the start of the flight for its recording.
+fn recorded_start(case: &Case, air: &Air, flown: &Vehicle) -> RecordedStart {
+    let mut setup = case.setup_in(air);
+    setup.stored.plan = setup.plan.plan.clone();
+    setup.remote_controller = flown.embedded().is_none();
+    // The pilot starts before the inputs are recorded.
+    let pilot = case.pilot.then(|| (SimTime::ZERO, VehicleCommand::StartPilot(case.options.takeoff_m)));
+    RecordedStart {
+        setup: Ok(Setup::from(&setup)),
+        earlier: pilot.into_iter().collect(),
+        flown_until: flown.time(),
+    }
 }
 
 /// Returns the requested case and air.

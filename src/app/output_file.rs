@@ -9,7 +9,7 @@ use std::io;
 use std::os::unix::fs::MetadataExt as _;
 use std::path::{Path, PathBuf};
 
-use super::AppError;
+use super::{AppError, flight_library};
 use crate::storage;
 pub(super) use stale::{remove_results, remove_results_of};
 pub(super) use whole::{FinalOutput, StreamedOutput, replace};
@@ -20,6 +20,12 @@ const HISTORIES: [&str; 2] = ["commands.history", "cli.history"];
 const JOURNALS: (&str, &str) = ("plans", "journal");
 /// The folder in which a remote firmware keeps its configuration.
 const FIRMWARE: &str = "firmware";
+/// The folders of the program, with the words for their files.
+const FOLDERS: [(&str, &str); 3] = [
+    (JOURNALS.0, "a journal of edits"),
+    (FIRMWARE, "the configuration of a firmware"),
+    (flight_library::FOLDER, "a recorded flight"),
+];
 
 /// The files that no output may replace, under any name or link.
 #[derive(Debug, Default)]
@@ -73,8 +79,7 @@ impl KeptFiles {
 fn state_files(directory: &Path) -> Vec<(&'static str, PathBuf)> {
     let mut files: Vec<_> =
         HISTORIES.map(|name| ("the history of entered lines", directory.join(name))).into();
-    for (what, folder) in [("a journal of edits", JOURNALS.0), ("the configuration of a firmware", FIRMWARE)]
-    {
+    for (folder, what) in FOLDERS {
         let entries = std::fs::read_dir(directory.join(folder)).into_iter().flatten().flatten();
         let paths = entries.map(|entry| entry.path());
         files.extend(paths.filter(|path| is_stored_in(folder, path)).map(|path| (what, path)));
@@ -89,17 +94,13 @@ fn state_folder(directory: &Path, path: &Path) -> Option<&'static str> {
         directory.join(folder).canonicalize().is_ok_and(|folder| folder == place)
             && is_stored_in(folder, Path::new(&name))
     };
-    match (lies_in(JOURNALS.0), lies_in(FIRMWARE)) {
-        (true, _) => Some("a journal of edits"),
-        (_, true) => Some("the configuration of a firmware"),
-        _ => None,
-    }
+    FOLDERS.iter().find(|(folder, _)| lies_in(folder)).map(|(_, what)| *what)
 }
 
 /// Returns `true` if a file with this name in this folder belongs to the program. A folder of plans may be the user's
 /// own.
 fn is_stored_in(folder: &str, path: &Path) -> bool {
-    folder == FIRMWARE || path.extension().is_some_and(|ending| ending == JOURNALS.1 || ending == "bad")
+    folder != JOURNALS.0 || path.extension().is_some_and(|ending| ending == JOURNALS.1 || ending == "bad")
 }
 
 /// Creates a file after a successful claim.

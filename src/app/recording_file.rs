@@ -1,11 +1,25 @@
 //! What recordings of flights have in common, whoever records them: the first line, the events, the sentences.
 #![allow(clippy::disallowed_methods, reason = "a recording has its date")]
 
+use std::path::PathBuf;
 use std::time::SystemTime;
 
+use super::named_file::Kind;
 use crate::recording::{FORMAT, Happened, Header, RecordedEvent};
 use crate::report::{UtcSeconds, sentence};
 use crate::session::{Event, SessionEvent};
+
+/// The first bytes of a recording, those of a gzip member.
+pub(super) const GZIP: [u8; 2] = [0x1f, 0x8b];
+const RECORDING: Kind = Kind { ending: "flight", command: "record" };
+
+/// Writes a recording to `file`, or to a new file named after the plan. Never replaces an existing file. Returns a
+/// sentence with the name of the file, or with the reason for a failure.
+pub(super) fn write(file: Option<PathBuf>, plan: &str, bytes: &[u8]) -> Result<String, String> {
+    let path = RECORDING.write(file, plan, bytes)?;
+    let shown = path.display();
+    Ok(format!("The flight so far is recorded as {shown}: `betadeck open {shown}` flies it again."))
+}
 
 /// Returns the first line of a recording that begins now.
 pub(super) fn header(plan: &str) -> Header {

@@ -44,7 +44,7 @@ pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
             flight: &args.flight,
             has_screen: false,
         };
-        let (session, doors, _directory) = live::start(options, vehicle, store, notices, None).await?;
+        let (session, doors, _directory) = live::start(options, vehicle, store, notices, None, None).await?;
         let outcome = report(session, &mut output, stop).await;
         if let Some(doors) = doors {
             doors.close().await;

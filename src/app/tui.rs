@@ -4,14 +4,19 @@
 use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::thread::JoinHandle;
+
+use tokio::sync::mpsc::UnboundedSender;
 
 use super::doors::OpenDoors;
 use super::error::{self, AppError};
 use super::firmware::{self, Beside, FirmwareFolder};
+use super::flight_recorder::{self, FlightRecorder, RecordedStart};
 use super::input_lines;
 use super::line_history::LineHistory;
 use super::live::{self, LiveArgs};
 use super::plan_files::PlanFiles;
+use super::recording_file;
 use super::runtime;
 use super::scenario_file;
 use super::setup;
@@ -25,6 +30,7 @@ use crate::firmware::cli;
 use crate::flight::setup::check_setting;
 use crate::plan::builtin::{BuiltinPlan, DEMO};
 use crate::plan::format::PlanFile;
+use crate::recording::Setup;
 use crate::replay::Overview;
 use crate::report::sentence;
 use crate::session::{FlownBefore, Handle, ReplayConfig, SessionView, start_replay};
@@ -79,6 +85,10 @@ pub(super) struct LiveFlight<'a> {
     pub(super) vehicle: Vehicle,
     /// The store for `save`.
     pub(super) store: Store,
+    /// The start of the flights for their recordings.
+    pub(super) recorded: RecordedStart,
+    /// The bound of the library of recorded flights, bytes; 0 = none.
+    pub(super) recordings_most: u64,
     /// A finished flight, and pictures of it.
     pub(super) flown: Option<(FlownBefore, Vec<SessionView>)>,
     /// The doors, the physics and the flight.
@@ -124,6 +134,7 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
     setup = with_terrain(setup, &args.flight.terrain, &mut Vec::new())?;
     let tiles = setup.world.terrain.clone();
     setup.remote_controller = firmware.is_some();
+    let recorded = RecordedStart::at_boot(Ok(Setup::from(&setup)));
     let vehicle = setup::build(setup, &mut notices)?;
     let screen = Screen {
         plan,
@@ -140,6 +151,8 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
         source: Source::Flight(Box::new(LiveFlight {
             vehicle,
             store,
+            recorded,
+            recordings_most: args.recordings.most_bytes(),
             flown: None,
             live: LiveArgs {
                 doors: &args.doors,
@@ -221,6 +234,7 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
     for reply in backdrop {
         answers.send(reply).ok();
     }
+    let unrecorded = answers.clone();
     let files_thread = std::thread::Builder::new()
         .name("plan-files".to_owned())
         .spawn(move || files.run(&asked, &answers, &done))
@@ -229,7 +243,8 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
     let is_replay = matches!(screen.source, Source::Replay(_));
     let runtime = runtime::with_threads(1)?;
     let ending = runtime.block_on(async {
-        let Started { session, doors, past, directory: _directory } = start(screen.source, notices).await?;
+        let started = start(screen.source, notices, screen.directory.as_deref(), unrecorded).await?;
+        let Started { session, recorder, doors, past, directory: _directory } = started;
         let link = SessionLink {
             commands: session.commands,
             view: session.view,
@@ -237,6 +252,7 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
             past,
             other: screen.other.map(read_beside).transpose()?,
             write_scenario: scenario_file::write,
+            write_recording: recording_file::write,
         };
         // This comes before the first frame, because a person who sees the frame may already send a signal.
         let stop = stop_signal::stop_in_time().map_err(problem)?;
@@ -250,6 +266,8 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
         };
         // The session ends with its last sender, or by itself.
         let why = session.thread.join();
+        // The flight under way ends its recording.
+        drop(recorder.map(JoinHandle::join));
         if let Some(doors) = doors {
             doors.close().await;
         }
@@ -274,22 +292,38 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
 /// A session that was started, with all that must be kept until it ends.
 struct Started {
     session: Handle,
+    /// The recorder, which ends after the session.
+    recorder: Option<JoinHandle<()>>,
     doors: Option<OpenDoors>,
     past: Vec<SessionView>,
     directory: Option<FirmwareFolder>,
 }
 
-async fn start(source: Source<'_>, notices: Vec<String>) -> Result<Started, AppError> {
+/// Starts the session, and the recorder of its flights in the state directory. A problem of the recorder is reported to
+/// `unrecorded`.
+async fn start(
+    source: Source<'_>,
+    notices: Vec<String>,
+    state: Option<&Path>,
+    unrecorded: UnboundedSender<FileReply>,
+) -> Result<Started, AppError> {
     match source {
         Source::Flight(flight) => {
-            let LiveFlight { vehicle, store, flown, live } = *flight;
+            let LiveFlight { vehicle, store, recorded, recordings_most, flown, live } = *flight;
+            let report = move |problem| {
+                unrecorded.send(FileReply::NotRecorded(problem)).ok();
+            };
+            let FlightRecorder { feed, thread } =
+                flight_recorder::start(recorded, state, recordings_most, report)?;
             let (flown, past) = flown.unzip();
-            let (session, doors, directory) = live::start(live, vehicle, store, notices, flown).await?;
-            Ok(Started { session, doors, past: past.unwrap_or_default(), directory })
+            let (session, doors, directory) =
+                live::start(live, vehicle, store, notices, flown, Some(feed)).await?;
+            let past = past.unwrap_or_default();
+            Ok(Started { session, recorder: Some(thread), doors, past, directory })
         }
         Source::Replay(config) => {
             let session = start_replay(ReplayConfig { notices, ..config }).map_err(no_thread)?;
-            Ok(Started { session, doors: None, past: Vec::new(), directory: None })
+            Ok(Started { session, recorder: None, doors: None, past: Vec::new(), directory: None })
         }
     }
 }

@@ -36,7 +36,7 @@ pub struct FlyArgs {
     #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
     pub geojson: Option<PathBuf>,
 
-    /// Records the flight, to open it again on the screen with betadeck replay
+    /// Records the flight, to open it again on the screen with betadeck open
     #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
     pub record: Option<PathBuf>,
     /// Writes a report as one HTML file: verdict, map, charts, states with their guards, margins

@@ -2,8 +2,8 @@
 //!
 //! Every long option of a command that flies is a key in the file (`wind = "5@270"`) and a variable in the
 //! environment (`BETADECK_WIND`). For `check` and `campaign` these are the options of the firmware, for `replay` those of
-//! the screen, for `plan show` all options. A value from a layer for an option that no higher layer gave is parsed by the
-//! option's own parser, as if someone typed it.
+//! the screen, for `flights` the state directory, for `plan show` all options. A value from a layer for an option that no
+//! higher layer gave is parsed by the option's own parser, as if someone typed it.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -39,6 +39,8 @@ pub(super) const FLYING: [&str; 5] = ["", "fly", "compare", "serve", "sitl"];
 const FIRMWARE_ONLY: [&str; 2] = ["check", "campaign"];
 /// The command that takes only the options of the screen from all layers: its files say the rest.
 const REPLAY: &str = "replay";
+/// The command that takes only the state directory from all layers, and the option for it.
+const STATE_ONLY: (&str, &str) = ("flights", "state-dir");
 /// The command and the subcommand that judge a plan without a flight.
 const PLAN_SHOW: (&str, &str) = ("plan", "show");
 /// The heading of the options for the choice of the firmware.
@@ -59,7 +61,8 @@ pub(super) fn apply(
     let nested = typed.subcommand().filter(|(nested, _)| (name, *nested) == PLAN_SHOW);
     // Merging the parts of a campaign flies nothing.
     let is_firmware_only = FIRMWARE_ONLY.contains(&name) && typed.subcommand().is_none();
-    if FLYING.contains(&name) || is_firmware_only || name == REPLAY || nested.is_some() {
+    let is_partial = is_firmware_only || name == REPLAY || name == STATE_ONLY.0;
+    if FLYING.contains(&name) || is_partial || nested.is_some() {
         let unknown = layers.unknown_keys(command);
         if !unknown.is_empty() {
             return Err(problem(&unknown.join("\n")));
@@ -87,11 +90,13 @@ pub(super) fn options(command: &clap::Command) -> impl Iterator<Item = &Arg> {
         REPLAY => Some(SCREEN),
         _ => None,
     };
+    let of_state_only = command.get_name() == STATE_ONLY.0;
     command
         .get_arguments()
         .filter(|arg| !arg.is_positional() && !arg.is_hide_set())
         .filter(|arg| !matches!(arg.get_long(), Some("help" | "version")))
         .filter(move |arg| only.is_none() || arg.get_help_heading() == only)
+        .filter(move |arg| !of_state_only || arg.get_long() == Some(STATE_ONLY.1))
 }
 
 fn is_typed(matches: &ArgMatches, option: &Arg) -> bool {

@@ -6,8 +6,8 @@ use super::{DisplayArgs, value};
 /// The options of `open`.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct OpenArgs {
-    /// A built-in scenario's name or a file, or a flight of a campaign: RUN.jsonl:1234
-    #[arg(value_name = "SCENARIO|RUN:N")]
+    /// A built-in scenario's name or a file, a flight of a campaign, RUN.jsonl:1234, or a recording, FILE.flight
+    #[arg(value_name = "SCENARIO|RUN:N|RECORDING")]
     pub scenario: String,
 
     /// The instant to show: seconds after the engagement, or boot+SECONDS [default: the end]

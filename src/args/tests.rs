@@ -1,6 +1,7 @@
 //! Tests of the whole command line.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use super::*;
 use crate::signals::fdm::FirmwareClock;
@@ -263,6 +264,22 @@ fn the_command_line_wins_over_environment_over_file() {
     // The terminal user interface has no --takeoff: this key is for other commands.
     let cli = parse_line("betadeck", &layers).unwrap();
     assert_eq!(cli.tui.flight.seed, Some(2));
+}
+
+#[test]
+fn the_flights_are_listed_from_the_state_directory_that_the_screen_uses() {
+    let of = |line: &str, layers: &Layers| match parse_line(line, layers).unwrap().command {
+        Some(Command::Flights(flights)) => flights,
+        other => panic!("{other:?}"),
+    };
+    // A key with the name of another command's option means that one.
+    let file = layers(&[("BETADECK_JSON", "flight.jsonl")], "state-dir = \"x\"\nwind = \"5@270\"\n");
+    let flights = of("betadeck flights", &file);
+    assert_eq!((flights.state_dir.as_deref(), flights.json), (Some(Path::new("x")), false));
+    assert_eq!(of("betadeck flights --state-dir y", &file).state_dir.as_deref(), Some(Path::new("y")));
+    let most = |layers: &Layers| parse_line("betadeck", layers).unwrap().tui.recordings.most_bytes();
+    assert_eq!(most(&layers(&[], "")), 200 << 20);
+    assert_eq!(most(&layers(&[], "recordings_max_mb = 5")), 5 << 20);
 }
 
 #[test]

@@ -33,7 +33,7 @@ const INPUTS: usize = 1000;
 const MOST_EVENTS: usize = 10_000;
 
 /// The place of the recordings of finished flights.
-pub trait Shelf {
+pub trait RecordingSink {
     /// Returns the first line of a recording that begins now.
     fn header(&self, plan: &str) -> Header;
 
@@ -81,8 +81,8 @@ struct Flight {
     /// The time of the last picture.
     last: SimTime,
     flushed_at: SimTime,
-    /// `true` once it has a place on the shelf.
-    is_shelved: bool,
+    /// `true` once it has begun in the sink.
+    is_begun: bool,
 }
 
 impl Flight {
@@ -101,7 +101,7 @@ impl Flight {
             plan: String::new(),
             last: begin,
             flushed_at: begin,
-            is_shelved: false,
+            is_begun: false,
         }
     }
 
@@ -127,10 +127,14 @@ impl Flight {
 }
 
 impl Recorder {
-    /// Returns a recorder for a vehicle at boot. Without a setup, its flights are recorded as pictures.
-    pub fn new(setup: Option<Setup>) -> Self {
-        let named = setup.as_ref().map(|setup| setup.plan()).map(|plan| (plan.name, plan.plan));
-        let gap = setup.is_none().then(|| "a remote flight controller flew it".to_owned());
+    /// Returns a recorder for a vehicle at boot. Without a setup, its flights are recorded as pictures; the error is the
+    /// reason, the end of a sentence.
+    pub fn new(setup: Result<Setup, String>) -> Self {
+        let (setup, gap) = match setup {
+            Ok(setup) => (Some(setup), None),
+            Err(reason) => (None, Some(reason)),
+        };
+        let named = setup.as_ref().map(Setup::plan).map(|plan| (plan.name, plan.plan));
         Self {
             setup,
             named,
@@ -142,15 +146,27 @@ impl Recorder {
         }
     }
 
+    /// Returns the same recorder for a vehicle that has flown before, with the inputs of that flight up to the first one
+    /// that [`Self::input`] will get.
+    pub fn after(mut self, flown_until: SimTime, inputs: &[(SimTime, VehicleCommand)]) -> Self {
+        for (time, input) in inputs {
+            self.inputs.input(*time, input);
+        }
+        self.count = inputs.len();
+        self.history.extend(self.inputs.end_part());
+        self.flight = Flight::new(flown_until, self.history.len());
+        self
+    }
+
     /// Notes the name of a plan that is uploaded.
     pub fn plan(&mut self, name: String, plan: FlightPlan) {
         self.named = Some((name, plan));
     }
 
     /// Records a command that the vehicle took before the tick at `time`.
-    pub fn input(&mut self, time: SimTime, command: &VehicleCommand, shelf: &mut dyn Shelf) {
+    pub fn input(&mut self, time: SimTime, command: &VehicleCommand, sink: &mut dyn RecordingSink) {
         if begins_flight(command) && time > self.flight.begin {
-            self.next_flight(time, shelf);
+            self.next_flight(time, sink);
         }
         self.inputs.input(time, command);
         self.flight.writer.input(time, command);
@@ -180,9 +196,9 @@ impl Recorder {
     }
 
     /// Records a picture. With it, a flight begins or ends.
-    pub fn picture(&mut self, seen: Seen, shelf: &mut dyn Shelf) {
+    pub fn picture(&mut self, seen: Seen, sink: &mut dyn RecordingSink) {
         let (time, is_armed) = (seen.snapshot.time, seen.snapshot.craft.is_armed());
-        let begins = is_armed && !self.flight.is_shelved;
+        let begins = is_armed && !self.flight.is_begun;
         if begins {
             self.flight.plan = self.plan_name(&seen.snapshot);
         }
@@ -197,23 +213,23 @@ impl Recorder {
             flight.disarmed_at.get_or_insert(time);
         }
         if begins {
-            self.shelve(shelf);
+            self.begin_recording(sink);
         } else if time.0 >= self.flight.flushed_at.0 + FLUSH_US || time < self.flight.flushed_at {
-            self.flush(shelf);
+            self.flush(sink);
         }
         let flight = &self.flight;
         let is_over = flight.disarmed_at.is_some_and(|since| time.0 >= since.0 + AFTERMATH_US);
-        let is_long = flight.bytes.len() > if flight.is_shelved { MOST_FLIGHT } else { MOST_WAITING };
-        if is_over && flight.is_shelved || is_long {
-            self.next_flight(time, shelf);
+        let is_long = flight.bytes.len() > if flight.is_begun { MOST_FLIGHT } else { MOST_WAITING };
+        if is_over && flight.is_begun || is_long {
+            self.next_flight(time, sink);
         }
     }
 
     /// Notes that the flight continues from an earlier instant, with this many inputs since boot.
-    pub fn branch(&mut self, at: SimTime, inputs: usize, shelf: &mut dyn Shelf) {
+    pub fn branch(&mut self, at: SimTime, inputs: usize, sink: &mut dyn RecordingSink) {
         self.inputs.branch(at, inputs);
         if at < self.flight.begin {
-            return self.next_flight(at, shelf);
+            return self.next_flight(at, sink);
         }
         let flight = &mut self.flight;
         flight.writer.branch(at, inputs);
@@ -222,40 +238,40 @@ impl Recorder {
         flight.last = at;
         flight.disarmed_at = None;
         flight.armed_at = flight.armed_at.filter(|armed| *armed <= at);
-        if flight.is_shelved && flight.armed_at.is_none() {
-            flight.is_shelved = false;
-            shelf.discard();
+        if flight.is_begun && flight.armed_at.is_none() {
+            flight.is_begun = false;
+            sink.discard();
         }
     }
 
     /// Writes what there is.
-    pub fn flush(&mut self, shelf: &mut dyn Shelf) {
+    pub fn flush(&mut self, sink: &mut dyn RecordingSink) {
         self.flight.flushed_at = self.flight.last;
         let bytes = self.flight.writer.flush();
-        if self.flight.is_shelved {
-            shelf.append(&bytes);
+        if self.flight.is_begun {
+            sink.append(&bytes);
         }
         self.flight.bytes.extend(bytes);
     }
 
     /// Returns the recording of the flight so far.
-    pub fn copy(&mut self, shelf: &mut dyn Shelf) -> Vec<u8> {
-        self.flush(shelf);
+    pub fn copy(&mut self, sink: &mut dyn RecordingSink) -> Vec<u8> {
+        self.flush(sink);
         // The end is a member of its own, so the present one ends here.
         let closing = self.flight.writer.end_part();
-        if self.flight.is_shelved {
-            shelf.append(&closing);
+        if self.flight.is_begun {
+            sink.append(&closing);
         }
         self.flight.bytes.extend(closing);
         let plan = if self.flight.plan.is_empty() { self.named_plan() } else { self.flight.plan.clone() };
-        let mut bytes = self.beginning(&shelf.header(&plan));
+        let mut bytes = self.beginning(&sink.header(&plan));
         bytes.extend(Writer::part().finish(self.flight.end()));
         bytes
     }
 
     /// Ends the recording at the end of the session.
-    pub fn finish(mut self, shelf: &mut dyn Shelf) {
-        self.end(shelf);
+    pub fn finish(mut self, sink: &mut dyn RecordingSink) {
+        self.end(sink);
     }
 
     fn named_plan(&self) -> String {
@@ -289,25 +305,25 @@ impl Recorder {
         bytes
     }
 
-    /// Gives the present flight a place on the shelf.
-    fn shelve(&mut self, shelf: &mut dyn Shelf) {
-        self.flush(shelf);
-        self.flight.is_shelved = true;
-        let header = shelf.header(&self.flight.plan);
-        shelf.begin(&header, &self.beginning(&header));
+    /// Begins the recording of the present flight.
+    fn begin_recording(&mut self, sink: &mut dyn RecordingSink) {
+        self.flush(sink);
+        self.flight.is_begun = true;
+        let header = sink.header(&self.flight.plan);
+        sink.begin(&header, &self.beginning(&header));
     }
 
-    fn end(&mut self, shelf: &mut dyn Shelf) {
-        if self.flight.is_shelved {
+    fn end(&mut self, sink: &mut dyn RecordingSink) {
+        if self.flight.is_begun {
             let mut bytes = self.flight.writer.end_part();
             bytes.extend(Writer::part().finish(self.flight.end()));
-            shelf.end(&bytes);
+            sink.end(&bytes);
         }
     }
 
     /// Ends the present flight, and begins another one at `begin`.
-    fn next_flight(&mut self, begin: SimTime, shelf: &mut dyn Shelf) {
-        self.end(shelf);
+    fn next_flight(&mut self, begin: SimTime, sink: &mut dyn RecordingSink) {
+        self.end(sink);
         self.history.extend(self.inputs.end_part());
         if self.history.len() > MOST_HISTORY {
             self.lack("more inputs came before it than are kept");

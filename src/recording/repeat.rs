@@ -6,7 +6,7 @@ use crate::flight::FlightSetup;
 use crate::signals::SimTime;
 use crate::telemetry::Event;
 use crate::timeline::{self, Timeline};
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Vehicle, VehicleCommand};
 
 /// The longest flight that is flown again, since boot, µs: a day.
 const LONGEST_US: u64 = 86_400_000_000;
@@ -77,6 +77,13 @@ impl<'r> Repeat<'r> {
     /// Returns the time of the end.
     pub fn until(&self) -> SimTime {
         self.until
+    }
+
+    /// Returns the inputs before those of the flight for replays, with their times.
+    pub fn earlier(&self) -> &'r [(SimTime, VehicleCommand)] {
+        let inputs = &self.recording.inputs;
+        let earlier = inputs.partition_point(|(time, _)| *time < self.timeline_from);
+        inputs.get(..earlier).unwrap_or_default()
     }
 
     /// Returns the time of the first picture that shows another flight, if there is one.

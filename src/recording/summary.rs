@@ -2,6 +2,7 @@
 
 use std::io::{self, BufRead};
 use std::ops::ControlFlow;
+use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
@@ -40,8 +41,19 @@ pub struct Summary {
     pub header: Header,
     /// The end; `None` if the recording has none.
     pub end: Option<End>,
-    /// The duration up to the last picture of a recording without an end, s.
+    /// The time from the arming to the last picture of a recording without an end, s.
     pub seen_s: f64,
+}
+
+/// A recording in a library.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Listed {
+    pub file: PathBuf,
+    pub bytes: u64,
+    /// `true` while its flight is being recorded.
+    pub is_growing: bool,
+    /// What it says of itself, or the reason why it cannot be read, the end of a sentence.
+    pub summary: Result<Summary, String>,
 }
 
 impl Summary {
@@ -82,33 +94,35 @@ fn end(tail: &[u8]) -> Option<End> {
     }
 }
 
-/// A line as far as it says when it was recorded.
+/// A picture as far as it says when the craft was armed.
 #[derive(Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum Timed {
-    Begin(At),
-    Picture(At),
+    Picture { t: SimTime, craft: Craft },
 }
 
 #[derive(Deserialize)]
-struct At {
-    t: SimTime,
+struct Craft {
+    armed: Option<bool>,
 }
 
-/// Returns the time from the beginning to the last picture of a recording without an end, s.
+/// Returns the time from the arming to the last picture of a recording without an end, s.
 ///
 /// # Errors
 /// Fails if the source cannot be read.
 pub fn seen_s(source: impl BufRead) -> io::Result<f64> {
-    let (mut begin, mut last) = (None, SimTime::ZERO);
+    let (mut armed_at, mut last) = (None, SimTime::ZERO);
     each(source, |line| {
-        let is_timed = line.starts_with(b"{\"begin\"") || line.starts_with(b"{\"picture\"");
-        match is_timed.then(|| serde_json::from_slice::<Timed>(line)) {
-            Some(Ok(Timed::Begin(at))) => begin = Some(at.t),
-            Some(Ok(Timed::Picture(at))) => last = at.t,
-            Some(Err(_)) | None => {}
+        let is_picture = line.starts_with(b"{\"picture\"");
+        if let Some(Ok(Timed::Picture { t, craft })) = is_picture.then(|| serde_json::from_slice(line)) {
+            last = t;
+            // The flight may have continued from an instant before the arming.
+            armed_at = armed_at.filter(|armed_at| *armed_at <= t);
+            if craft.armed == Some(true) {
+                armed_at.get_or_insert(t);
+            }
         }
         ControlFlow::Continue(())
     })?;
-    Ok(last.seconds_since(begin.unwrap_or_default()))
+    Ok(armed_at.map_or(0.0, |armed_at| last.seconds_since(armed_at)))
 }

@@ -4,9 +4,9 @@ use std::net::SocketAddr;
 
 use tokio::sync::mpsc;
 
+use super::flight_feed::{FeedSender, FlightPart};
 use super::replay::ReplayNotice;
 use super::simulator::SimulatorNotice;
-use super::tape::{TapeSender, Taped};
 use crate::fc::RemoteNotice;
 use crate::signals::{RcFrame, SimTime};
 use crate::telemetry::{self, EventKind, FirmwareEvent};
@@ -91,7 +91,7 @@ impl From<telemetry::Event> for Event {
 pub(super) struct EventSender {
     receivers: Vec<mpsc::UnboundedSender<Event>>,
     /// The recorder of flights, if there is one.
-    recorder: Option<TapeSender>,
+    recorder: Option<FeedSender>,
     marks: Marks,
     /// `true` if the craft was disarmed since the last query.
     disarmed: bool,
@@ -108,7 +108,7 @@ impl EventSender {
     }
 
     /// Sends all later events to a recorder, too.
-    pub(super) fn record(&mut self, recorder: TapeSender) {
+    pub(super) fn record(&mut self, recorder: FeedSender) {
         self.recorder = Some(recorder);
     }
 
@@ -159,7 +159,7 @@ impl EventSender {
             self.disarmed |= matches!(kind, EventKind::Firmware(FirmwareEvent::Disarmed(_)));
         }
         if let Some(recorder) = &self.recorder {
-            recorder.send(Taped::Event(event.clone()));
+            recorder.send(FlightPart::Event(event.clone()));
         }
         self.receivers.retain(|receiver| receiver.send(event.clone()).is_ok());
     }

@@ -20,6 +20,7 @@ use tokio::sync::{mpsc, watch};
 use super::arming::ArmingWatch;
 use super::command::{Command, SessionView};
 use super::event::{Event, EventSender, SessionEvent};
+use super::flight_feed::FlightFeed;
 use super::fly_again::{FlyAgain, FlyingAgain};
 use super::host_status::HostStatus;
 use super::persistence::Persistence;
@@ -27,7 +28,6 @@ use super::real_time::RealTime;
 use super::request_handler::RequestHandler;
 use super::runner::{Runner, Subscriber};
 use super::simulator::Simulator;
-use super::tape::Tape;
 use super::waker;
 use crate::fc::{Access, Denial, RemoteLink, RemoteNotice};
 use crate::link::endpoint::EndpointStatus;
@@ -141,18 +141,18 @@ pub fn start(config: SessionConfig) -> std::io::Result<Handle> {
 }
 
 /// Starts the session at the end of a flight that was flown before. The vehicle is in the state after that
-/// flight, one of its instants is shown, and time is paused. `tape` records the flights of the session.
+/// flight, one of its instants is shown, and time is paused. `feed` records the flights of the session.
 ///
 /// # Errors
 /// Returns an error if the system cannot start a thread.
 pub fn start_at(
     config: SessionConfig,
     flown: Option<FlownBefore>,
-    tape: Option<Tape>,
+    feed: Option<FlightFeed>,
 ) -> std::io::Result<Handle> {
     let (command_tx, command_rx) = mpsc::channel(256);
     let (event_tx, event_rx) = mpsc::unbounded_channel();
-    let mut session = Session::new(config, flown, tape, (command_rx, event_tx));
+    let mut session = Session::new(config, flown, feed, (command_rx, event_tx));
     let (view_tx, view_rx) = watch::channel(session.view());
     let thread =
         std::thread::Builder::new().name("vehicle".to_owned()).spawn(move || session.run(&view_tx))?;
@@ -178,7 +178,7 @@ struct Session {
     /// The recording, unless the flight cannot be rewound.
     timeline: Option<Timeline>,
     /// The way to the recorder of flights, if there is one.
-    tape: Option<Tape>,
+    feed: Option<FlightFeed>,
     /// Flies the flight of a remote firmware that has ended again.
     again: Option<FlyAgain>,
     flying_again: Option<FlyingAgain>,
@@ -213,7 +213,7 @@ impl Session {
     fn new(
         mut config: SessionConfig,
         flown: Option<FlownBefore>,
-        tape: Option<Tape>,
+        feed: Option<FlightFeed>,
         (commands, events): (mpsc::Receiver<Command>, mpsc::UnboundedSender<Event>),
     ) -> Self {
         let simulator = config.endpoints.as_mut().and_then(|endpoints| endpoints.simulator.take());
@@ -246,7 +246,7 @@ impl Session {
             interface: Interface::default(),
             real_time: RealTime::default(),
             timeline,
-            tape,
+            feed,
             again,
             flying_again: None,
             keeps: None,
@@ -260,8 +260,12 @@ impl Session {
             quit: false,
             failure: None,
         };
-        if let Some(tape) = &session.tape {
-            session.events.record(tape.sender());
+        if let Some(feed) = &mut session.feed {
+            session.events.record(feed.sender());
+            // Those of a flight before the session.
+            if let Some(timeline) = &session.timeline {
+                feed.take_inputs(timeline);
+            }
         }
         if let Some((events, show)) = flown {
             session.begin_with(&events, show);

@@ -65,7 +65,8 @@ pub enum Msg {
     },
     /// The craft saved its configuration. The error is the reason for a failure, a sentence.
     SaveReply(Result<(), String>),
-    /// The flight was written as a scenario. The result is a sentence with the place, or with the reason for a failure.
+    /// The flight was written as a scenario, or as a recording. The result is a sentence with the place, or with the
+    /// reason for a failure.
     ScenarioReply(Result<String, String>),
     Files(FileReply),
     /// A second flight was read, to be shown beside the first.
@@ -203,6 +204,13 @@ pub enum Effect {
     /// Write the flight just flown as a scenario to this file, or to one named after the plan; the reply comes back as
     /// [`Msg::ScenarioReply`].
     WriteScenario {
+        file: Option<PathBuf>,
+        /// The name of the plan.
+        plan: String,
+    },
+    /// Write the recording of the flight so far to this file, or to one named after the plan; the reply comes back as
+    /// [`Msg::ScenarioReply`].
+    WriteRecording {
         file: Option<PathBuf>,
         /// The name of the plan.
         plan: String,

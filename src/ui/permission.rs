@@ -55,6 +55,7 @@ fn intent_of(effect: &Effect) -> Intent {
         Effect::Files(_)
         | Effect::Curves(_)
         | Effect::WriteScenario { .. }
+        | Effect::WriteRecording { .. }
         | Effect::Copy(_)
         | Effect::Suspend
         | Effect::Quit => Intent::Read,

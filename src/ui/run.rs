@@ -44,6 +44,9 @@ const BATCH: usize = 256;
 /// Receives a second flight: the name of its file, safe to print, and the flight, or the reason why it cannot be shown.
 pub type OtherReceiver = oneshot::Receiver<(String, Result<Arc<Overview>, String>)>;
 
+/// Writes the bytes of a recording to a file, or to one that is named after the plan. Returns a sentence.
+type WriteRecording = fn(Option<PathBuf>, &str, &[u8]) -> Result<String, String>;
+
 /// The user interface's link to the session.
 #[derive(Debug)]
 pub struct SessionLink {
@@ -57,6 +60,8 @@ pub struct SessionLink {
     /// Writes a flight as a scenario. Receives the file, or the name of the plan if there is none. Returns a sentence
     /// with the place, or with the reason for a failure.
     pub write_scenario: fn(Option<PathBuf>, &str, RecordedFlight) -> Result<String, String>,
+    /// Writes a recording, in the same way.
+    pub write_recording: WriteRecording,
 }
 
 /// The reason for the end of the user interface.

@@ -221,6 +221,11 @@ impl Shared {
         Effect::WriteScenario { file, plan: self.editor.plan().document().name.clone() }
     }
 
+    /// Returns the request to write the recording of the flight so far.
+    pub(super) fn write_recording(&self, file: Option<PathBuf>) -> Effect {
+        Effect::WriteRecording { file, plan: self.editor.plan().document().name.clone() }
+    }
+
     /// Returns the waypoints of the open plan.
     pub fn plan(&self) -> &FlightPlan {
         &self.editor.document().plan

@@ -376,6 +376,7 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
         Action::Previous => return focus_neighbour(&mut state.shared, -1),
         Action::Zoom => state.shared.zoomed = !state.shared.zoomed,
         Action::WriteScenario => return vec![state.shared.write_scenario(None)],
+        Action::WriteRecording => return vec![state.shared.write_recording(None)],
         Action::Tutorial => tutorial::toggle(&mut state.tutorial, &mut state.shared),
         Action::Help => state.popups.push(Popup::Help { scroll: 0 }),
         Action::CommandLine => popup::open_command_line(state, ""),

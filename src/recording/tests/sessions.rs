@@ -1,19 +1,19 @@
 //! The flights of whole sessions, each as a recording of its own.
 
 use super::{header, read, repeat, setup};
-use crate::recording::{Cadence, Header, Recorder, Recording, Rest, Seen, Setup, Shelf};
+use crate::recording::{Cadence, Header, Recorder, Recording, RecordingSink, Rest, Seen, Setup};
 use crate::signals::SimTime;
 use crate::timeline::{Shown, Timeline};
 use crate::vehicle::{Vehicle, VehicleCommand};
 
-/// A shelf in memory: the finished recordings, and the one under way.
+/// A sink in memory: the finished recordings, and the one under way.
 #[derive(Default)]
 struct Memory {
     done: Vec<Vec<u8>>,
     open: Option<Vec<u8>>,
 }
 
-impl Shelf for Memory {
+impl RecordingSink for Memory {
     fn header(&self, plan: &str) -> Header {
         Header { plan: plan.to_owned(), ..header() }
     }
@@ -42,26 +42,26 @@ struct Session {
     vehicle: Vehicle,
     timeline: Timeline,
     recorder: Recorder,
-    shelf: Memory,
+    sink: Memory,
     cadence: Cadence,
-    taped: u64,
+    passed: u64,
 }
 
 impl Session {
     fn new() -> Self {
         let setup = setup();
-        let recorder = Recorder::new(Some(Setup::from(&setup)));
+        let recorder = Recorder::new(Ok(Setup::from(&setup)));
         let (mut vehicle, _) = setup.build().unwrap();
         let timeline = Timeline::new(&mut vehicle).unwrap();
-        Self { vehicle, timeline, recorder, shelf: Memory::default(), cadence: Cadence::default(), taped: 0 }
+        Self { vehicle, timeline, recorder, sink: Memory::default(), cadence: Cadence::default(), passed: 0 }
     }
 
     fn tape_inputs(&mut self) {
         self.timeline.record(&mut self.vehicle);
-        for (time, input) in self.timeline.inputs_from(self.taped) {
-            self.recorder.input(time, input, &mut self.shelf);
+        for (time, input) in self.timeline.inputs_from(self.passed) {
+            self.recorder.input(time, input, &mut self.sink);
         }
-        self.taped = self.timeline.next_input();
+        self.passed = self.timeline.next_input();
     }
 
     fn fly(&mut self, seconds: u64) {
@@ -71,7 +71,7 @@ impl Session {
             self.vehicle.tick();
             self.vehicle.drain_events(|event| self.recorder.event(event.into()));
             if let Some(seen) = self.cadence.due(&self.vehicle) {
-                self.recorder.picture(seen, &mut self.shelf);
+                self.recorder.picture(seen, &mut self.sink);
             }
         }
     }
@@ -87,15 +87,15 @@ impl Session {
         let head = self.vehicle.time();
         assert_eq!(self.timeline.show(SimTime(seconds * 1_000_000), head), Shown::Earlier);
         self.vehicle = self.timeline.fly_on().unwrap();
-        self.taped = self.timeline.next_input();
-        self.recorder.branch(self.vehicle.time(), self.taped as usize, &mut self.shelf);
+        self.passed = self.timeline.next_input();
+        self.recorder.branch(self.vehicle.time(), self.passed as usize, &mut self.sink);
     }
 
     fn finish(self) -> Vec<Recording> {
-        let Self { recorder, mut shelf, .. } = self;
-        recorder.finish(&mut shelf);
-        assert!(shelf.open.is_none());
-        shelf.done.iter().map(|bytes| read(bytes)).collect()
+        let Self { recorder, mut sink, .. } = self;
+        recorder.finish(&mut sink);
+        assert!(sink.open.is_none());
+        sink.done.iter().map(|bytes| read(bytes)).collect()
     }
 }
 
@@ -142,12 +142,12 @@ fn flying_on_from_an_earlier_instant_leaves_what_came_after_it() {
     session.fly_on_from(20);
     let _reported = session.vehicle.apply(&VehicleCommand::ReturnHome);
     session.fly(5);
-    let copy = read(&session.recorder.copy(&mut session.shelf));
+    let copy = read(&session.recorder.copy(&mut session.sink));
     assert_eq!(copy.end.as_ref().unwrap().t, SimTime(25_000_000));
     assert_eq!(repeat(&copy).differs(), None);
     // Before the arming: that flight is not kept.
     session.fly_on_from(1);
-    assert!(session.shelf.open.is_none());
+    assert!(session.sink.open.is_none());
     session.fly(3);
     session.start();
     session.fly(110);
@@ -168,11 +168,11 @@ fn flying_on_from_an_earlier_instant_leaves_what_came_after_it() {
 fn a_session_without_a_flight_leaves_no_recording_and_can_be_copied() {
     let mut session = Session::new();
     session.fly(30);
-    let copy = read(&session.recorder.copy(&mut session.shelf));
+    let copy = read(&session.recorder.copy(&mut session.sink));
     assert_eq!(copy.header.plan, "land");
     assert!(copy.pictures.all().len() > 20);
     session.fly(2);
-    let again = read(&session.recorder.copy(&mut session.shelf));
+    let again = read(&session.recorder.copy(&mut session.sink));
     assert!(again.pictures.all().len() > copy.pictures.all().len());
     assert_eq!((again.rest, again.left_out), (Rest::Whole, 0));
     assert_eq!(session.finish().len(), 0);
@@ -187,10 +187,10 @@ fn a_flight_without_its_inputs_is_recorded_as_pictures_with_the_reason() {
     let recordings = session.finish();
     assert_eq!(recordings[0].only_pictures().unwrap(), "more inputs came than could be recorded");
     assert!(recordings[0].flight().is_err() && recordings[0].pictures.all().len() > 100);
-    let mut remote = Recorder::new(None);
-    let mut shelf = Memory::default();
+    let mut remote = Recorder::new(Err("a remote flight controller flew it".to_owned()));
+    let mut sink = Memory::default();
     let (vehicle, _) = setup().build().unwrap();
-    remote.picture(Seen::of(&vehicle), &mut shelf);
-    let copy = read(&remote.copy(&mut shelf));
+    remote.picture(Seen::of(&vehicle), &mut sink);
+    let copy = read(&remote.copy(&mut sink));
     assert_eq!(copy.only_pictures().unwrap(), "a remote flight controller flew it");
 }

@@ -9,9 +9,9 @@ use super::limits::refuse_command;
 use crate::fc::Access;
 use crate::flight::forecast;
 use crate::session::command::{Command, Seek, VehicleCopy};
+use crate::session::flight_feed::FlightPart;
 use crate::session::policy::{self, Facts, Intent, RemoteFacts};
 use crate::session::simulator::Simulator;
-use crate::session::tape::Taped;
 use crate::sim::WorldCommand;
 use crate::timeline::Timeline;
 use crate::vehicle::{Answer, Reply, VehicleCommand, VehicleRefusal};
@@ -82,8 +82,8 @@ impl Session {
                 self.report(outcome);
             }
             Command::Upload { name, plan, settings, reply } => {
-                if let Some(tape) = &self.tape {
-                    tape.sender().send(Taped::Plan(name, plan.clone()));
+                if let Some(feed) = &self.feed {
+                    feed.sender().send(FlightPart::Plan(name, plan.clone()));
                 }
                 let is_simulated = !self.access().is_limited();
                 let craft = &mut UploadTo { vehicle: &mut self.vehicle, takeoff_m: self.takeoff_m };

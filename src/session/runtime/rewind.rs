@@ -10,12 +10,12 @@ use crate::fc::{Impact, RemoteLink};
 use crate::link::Request;
 use crate::session::arming::ArmingWatch;
 use crate::session::command::{BEGINNING_LOST, CliOutput, REWOUND_FOR_CLIENTS, Seek};
+use crate::session::flight_feed::{FlightFeed, FlightPart};
 use crate::session::fly_again::{FlownAgain, FlyingAgain};
 use crate::session::pacer::SPEED_RANGE;
 use crate::session::policy::{NOT_FLOWN_AGAIN, NOT_RECORDED};
 use crate::session::runner::{Runner, Subscriber, tick};
 use crate::session::seek::{Target, target};
-use crate::session::tape::{Tape, Taped};
 use crate::session::{Event, ReplyTo};
 use crate::signals::SimTime;
 use crate::timeline::{RecordedFlight, Shown, Timeline, TimelineView};
@@ -33,6 +33,9 @@ const PICTURE_RUNS_NO_LINE: &str =
 
 /// The reason why a flight over a remote firmware is not written as a scenario.
 const INPUTS_NOT_KEPT: &str = "The flight of a remote firmware is recorded as pictures, without its inputs.";
+
+/// The refusal of a recording without a recorder.
+const NO_RECORDER: &str = "The flights of this program are not recorded.";
 
 /// The notice if the newest instant is shown.
 const NOTHING_EARLIER: &str = "The newest instant is shown: `,` and `<` go back to one to fly on from.";
@@ -177,7 +180,7 @@ impl Session {
     fn tick(&mut self) {
         let speed = self.wanted_speed();
         let rc = self.endpoints.as_ref().map(|endpoints| FreshRc { handler: &endpoints.handler, speed });
-        let recorders = Recorders { timeline: &mut self.timeline, tape: &mut self.tape };
+        let recorders = Recorders { timeline: &mut self.timeline, feed: &mut self.feed };
         let subscribers = &mut (rc, (recorders, &mut self.events));
         let _no_end = tick(&mut self.vehicle, subscribers);
     }
@@ -188,27 +191,27 @@ impl Session {
             && self.vehicle.input_bytes() > FLOOD_BYTES
         {
             timeline.record(&mut self.vehicle);
-            if let Some(tape) = &mut self.tape {
-                tape.take_inputs(timeline);
+            if let Some(feed) = &mut self.feed {
+                feed.take_inputs(timeline);
             }
         }
     }
 
     /// Records the ticks of an external simulator.
     pub(super) fn record_flown(&mut self, ticks: u64) {
-        if let Some(tape) = self.tape.as_mut().filter(|_| ticks > 0) {
-            tape.look(&self.vehicle);
+        if let Some(feed) = self.feed.as_mut().filter(|_| ticks > 0) {
+            feed.look(&self.vehicle);
         }
     }
 
     /// Asks the recorder for the recording of the flight so far.
     pub(super) fn copy_recording(&mut self, reply: ReplyTo<Result<Vec<u8>, String>>) {
-        let Some(tape) = &mut self.tape else { return reply.send(Err(NOT_RECORDED.to_owned())) };
+        let Some(feed) = &mut self.feed else { return reply.send(Err(NO_RECORDER.to_owned())) };
         if let Some(timeline) = &mut self.timeline {
             timeline.record(&mut self.vehicle);
-            tape.take_inputs(timeline);
+            feed.take_inputs(timeline);
         }
-        tape.sender().send(Taped::Copy(reply));
+        feed.sender().send(FlightPart::Copy(reply));
     }
 
     /// Continues the flight for one slice, or until an event.
@@ -393,8 +396,8 @@ impl Session {
         self.persistence.tell(self.vehicle.controller_mut());
         self.vehicle.apply(&VehicleCommand::EndAllCli);
         self.arming = ArmingWatch::default();
-        if let (Some(tape), Some(timeline)) = (&mut self.tape, &self.timeline) {
-            tape.branch(self.vehicle.time(), timeline);
+        if let (Some(feed), Some(timeline)) = (&mut self.feed, &self.timeline) {
+            feed.branch(self.vehicle.time(), timeline);
         }
         self.events.branch(&mut self.vehicle, branch, left);
         if let Some(endpoints) = &mut self.endpoints {
@@ -407,22 +410,22 @@ impl Session {
 /// The recording for replays, and the way to the recorder of flights, which gets the same inputs.
 struct Recorders<'s> {
     timeline: &'s mut Option<Timeline>,
-    tape: &'s mut Option<Tape>,
+    feed: &'s mut Option<FlightFeed>,
 }
 
 impl Subscriber<Vehicle> for Recorders<'_> {
     fn before_tick(&mut self, vehicle: &mut Vehicle) {
         if let Some(timeline) = self.timeline {
             timeline.record(vehicle);
-            if let Some(tape) = self.tape {
-                tape.take_inputs(timeline);
+            if let Some(feed) = self.feed {
+                feed.take_inputs(timeline);
             }
         }
     }
 
     fn after_tick(&mut self, vehicle: &Vehicle) {
-        if let Some(tape) = self.tape {
-            tape.look(vehicle);
+        if let Some(feed) = self.feed {
+            feed.look(vehicle);
         }
     }
 }

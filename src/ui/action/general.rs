@@ -59,6 +59,8 @@ actions! {
         Zoom Global "view.zoom" "zoom" "The focused panel alone, or all again" ["z"];
         WriteScenario Global "flight.scenario" "write test"
             "Write the flight just flown as a scenario for `betadeck check`" ["T"];
+        WriteRecording Global "flight.record" "write recording"
+            "Write the recording of the flight so far, for `betadeck open`" ["ctrl-t"];
         Tutorial Global "app.tutorial" "tutorial" "Five steps through the first minutes, or end them" ["f12"];
         Help Global "app.help" "help" "The keys of this place" ["?"];
         CommandLine Global "app.command" "command" "A command by its name, such as :speed 4" [":"];

@@ -1,5 +1,7 @@
 //! Commands that write or open files. Without a name they do the same as their keys.
 
+use std::path::PathBuf;
+
 use crate::ui::action::{Action, EditAction, PanelAction};
 use crate::ui::editor::{FileRequest, findings};
 use crate::ui::message::{Change, Effect, Request};
@@ -31,12 +33,17 @@ pub(super) fn save(state: &mut Shared, _: &str, file: &str) -> Result<Vec<Reques
 }
 
 pub(super) fn scenario(state: &mut Shared, _: &str, file: &str) -> Result<Vec<Request>, String> {
-    let path = if file.is_empty() {
-        None
-    } else {
-        Some(std::path::absolute(file).map_err(|error| format!("{file}: {error}."))?)
-    };
-    Ok(vec![state.write_scenario(path).into()])
+    Ok(vec![state.write_scenario(named(file)?).into()])
+}
+
+pub(super) fn record(state: &mut Shared, _: &str, file: &str) -> Result<Vec<Request>, String> {
+    Ok(vec![state.write_recording(named(file)?).into()])
+}
+
+/// Returns the path of a file if it has a name.
+fn named(file: &str) -> Result<Option<PathBuf>, String> {
+    let absolute = |file| std::path::absolute(file).map_err(|error| format!("{file}: {error}."));
+    Some(file).filter(|file| !file.is_empty()).map(absolute).transpose()
 }
 
 /// Runs `backdrop FILE` and `backdrop off`.

@@ -98,6 +98,8 @@ pub enum FileReply {
     Failed(String),
     /// Edits cannot be kept from now on; the reason in one sentence.
     NotKept(String),
+    /// The flight is not recorded any further; the reason in one sentence.
+    NotRecorded(String),
     /// All edits are kept again.
     KeptAgain,
     /// Edits of an earlier run could not be read. One or two sentences name them and where they are kept.

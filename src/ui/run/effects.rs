@@ -110,6 +110,19 @@ pub(super) fn carry_out(
             let message = |result| Msg::Curves { request: asked, result };
             Command::Curves { request, reply: answers.result(MISSING, message) }
         }
+        Effect::WriteRecording { file, plan } => {
+            let written = answers.result("the flight could not be recorded.", Msg::ScenarioReply);
+            let write = link.write_recording;
+            let (reply, copied) = ReplyTo::<Result<Vec<u8>, String>>::channel();
+            tokio::spawn(async move {
+                let copied = copied.await.unwrap_or_else(|_| Err(MISSING.to_owned()));
+                // A disk may be slow.
+                tokio::task::spawn_blocking(move || {
+                    written.send(copied.and_then(|bytes| write(file, &plan, &bytes)));
+                });
+            });
+            Command::CopyRecording(reply)
+        }
         Effect::Forecast(job) => {
             let (forecaster, answers) = (forecaster.clone(), answers.clone());
             Command::CopyVehicle(ReplyTo::new(move |copy: Option<Result<VehicleCopy, String>>| match copy {

@@ -145,6 +145,7 @@ fn is_question(effect: &Effect) -> bool {
         | Effect::Upload { .. }
         | Effect::Download(_)
         | Effect::WriteScenario { .. }
+        | Effect::WriteRecording { .. }
         | Effect::SaveToFlash => true,
         Effect::Files(request) => {
             matches!(
@@ -176,6 +177,7 @@ fn is_answer(msg: &Msg) -> bool {
             FileReply::Changed(_)
                 | FileReply::NotKept(_)
                 | FileReply::KeptAgain
+                | FileReply::NotRecorded(_)
                 | FileReply::EditsLost(_)
                 | FileReply::Ground { .. }
                 | FileReply::Backdrop { is_new: false, .. }

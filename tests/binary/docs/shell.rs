@@ -74,7 +74,7 @@ impl Kind {
             Some("serve" | "sitl" | "--plain") => Self::Runs,
             Some(
                 "fly" | "plan" | "convert" | "completions" | "man" | "check" | "campaign" | "forecast"
-                | "config" | "compare" | "doctor",
+                | "config" | "compare" | "doctor" | "flights",
             ) => Self::ByItself,
             _ if is_remote => Self::ScreenWithFirmware,
             _ => Self::Screen,
@@ -186,6 +186,9 @@ impl Desk {
         } else {
             ""
         };
+        if line.contains("open square.flight") {
+            self.sandbox.run(&["fly", "land", "--record", "square.flight"]).exits(0);
+        }
         if line.contains("convert ") {
             // It never replaces a file unless it is asked to.
             drop(std::fs::remove_file(self.sandbox.path("my-plan.toml")));

@@ -18,7 +18,7 @@ const MOST_INPUT_BYTES: usize = 32 << 20;
 
 /// A part of a flight, in the order of the session.
 #[derive(Debug)]
-pub enum Taped {
+pub enum FlightPart {
     /// A command that the vehicle took before the tick at this time.
     Input(SimTime, VehicleCommand),
     /// Commands are missing from here on.
@@ -45,31 +45,34 @@ struct Waiting {
 
 /// Sends parts of a flight to a recorder.
 #[derive(Debug, Clone)]
-pub(super) struct TapeSender {
-    parts: std::sync::mpsc::Sender<Taped>,
+pub(super) struct FeedSender {
+    parts: std::sync::mpsc::Sender<FlightPart>,
     waiting: Arc<Waiting>,
 }
 
-impl TapeSender {
+impl FeedSender {
     /// Sends a part. A recorder that has ended gets none.
-    pub(super) fn send(&self, part: Taped) {
+    pub(super) fn send(&self, part: FlightPart) {
         self.parts.send(part).ok();
     }
 }
 
 /// The recorder's end.
 #[derive(Debug)]
-pub struct TapeReceiver {
-    parts: std::sync::mpsc::Receiver<Taped>,
+pub struct FeedReceiver {
+    parts: std::sync::mpsc::Receiver<FlightPart>,
     waiting: Arc<Waiting>,
 }
 
-impl TapeReceiver {
+impl FeedReceiver {
     /// Returns the next part; `None` if none comes within `timeout`.
     ///
     /// # Errors
     /// Returns an error after the last part of a session that has ended.
-    pub fn next(&self, timeout: std::time::Duration) -> Result<Option<Taped>, std::sync::mpsc::RecvError> {
+    pub fn next(
+        &self,
+        timeout: std::time::Duration,
+    ) -> Result<Option<FlightPart>, std::sync::mpsc::RecvError> {
         use std::sync::mpsc::RecvTimeoutError;
         let part = match self.parts.recv_timeout(timeout) {
             Ok(part) => part,
@@ -77,8 +80,8 @@ impl TapeReceiver {
             Err(RecvTimeoutError::Disconnected) => return Err(std::sync::mpsc::RecvError),
         };
         match &part {
-            Taped::Picture(_) => _ = self.waiting.pictures.fetch_sub(1, Ordering::Relaxed),
-            Taped::Input(_, input) => {
+            FlightPart::Picture(_) => _ = self.waiting.pictures.fetch_sub(1, Ordering::Relaxed),
+            FlightPart::Input(_, input) => {
                 self.waiting.input_bytes.fetch_sub(input.bytes(), Ordering::Relaxed);
             }
             _ => {}
@@ -89,25 +92,27 @@ impl TapeReceiver {
 
 /// The session's end: follows the vehicle that flies.
 #[derive(Debug)]
-pub struct Tape {
-    sender: TapeSender,
+pub struct FlightFeed {
+    sender: FeedSender,
     cadence: Cadence,
-    /// Number of the first input that was not sent.
+    /// Number of the first input of the timeline that was not sent.
     next_input: u64,
+    /// The number of inputs before those of the timeline.
+    earlier: u64,
 }
 
-/// Returns both ends.
-pub fn tape() -> (Tape, TapeReceiver) {
+/// Returns both ends. The recorder has `earlier` inputs from before those of the session's timeline.
+pub fn flight_feed(earlier: u64) -> (FlightFeed, FeedReceiver) {
     let (parts, receiver) = std::sync::mpsc::channel();
     let waiting = Arc::<Waiting>::default();
-    let sender = TapeSender { parts, waiting: Arc::clone(&waiting) };
-    let tape = Tape { sender, cadence: Cadence::default(), next_input: 0 };
-    (tape, TapeReceiver { parts: receiver, waiting })
+    let sender = FeedSender { parts, waiting: Arc::clone(&waiting) };
+    let feed = FlightFeed { sender, cadence: Cadence::default(), next_input: 0, earlier };
+    (feed, FeedReceiver { parts: receiver, waiting })
 }
 
-impl Tape {
+impl FlightFeed {
     /// Returns a sender for the events.
-    pub(super) fn sender(&self) -> TapeSender {
+    pub(super) fn sender(&self) -> FeedSender {
         self.sender.clone()
     }
 
@@ -118,16 +123,16 @@ impl Tape {
             return;
         }
         if timeline.first_input() > self.next_input {
-            self.sender.send(Taped::Gap);
+            self.sender.send(FlightPart::Gap);
         }
         for (time, input) in timeline.inputs_from(self.next_input) {
             let waiting = &self.sender.waiting.input_bytes;
             if waiting.fetch_add(input.bytes(), Ordering::Relaxed) > MOST_INPUT_BYTES {
                 waiting.fetch_sub(input.bytes(), Ordering::Relaxed);
-                self.sender.send(Taped::Gap);
+                self.sender.send(FlightPart::Gap);
                 break;
             }
-            self.sender.send(Taped::Input(time, input.clone()));
+            self.sender.send(FlightPart::Input(time, input.clone()));
         }
         self.next_input = next;
     }
@@ -139,14 +144,14 @@ impl Tape {
             && let Some(seen) = self.cadence.due(vehicle)
         {
             pictures.fetch_add(1, Ordering::Relaxed);
-            self.sender.send(Taped::Picture(Box::new(seen)));
+            self.sender.send(FlightPart::Picture(Box::new(seen)));
         }
     }
 
     /// Notes that the flight continues from an earlier instant, whose inputs the timeline has kept.
     pub(super) fn branch(&mut self, at: SimTime, timeline: &Timeline) {
         self.next_input = timeline.next_input();
-        self.sender.send(Taped::Branch { at, inputs: self.next_input });
+        self.sender.send(FlightPart::Branch { at, inputs: self.earlier + self.next_input });
     }
 }
 
@@ -157,7 +162,7 @@ mod tests {
     use super::*;
     use crate::flight::FlightSetup;
 
-    fn parts(receiver: &TapeReceiver) -> Vec<Taped> {
+    fn parts(receiver: &FeedReceiver) -> Vec<FlightPart> {
         std::iter::from_fn(|| receiver.next(Duration::ZERO).ok().flatten()).collect()
     }
 
@@ -165,7 +170,7 @@ mod tests {
     fn a_recorder_that_does_not_keep_up_loses_pictures_and_no_inputs() {
         let (mut vehicle, _) = FlightSetup::default().build().unwrap();
         let mut timeline = Timeline::new(&mut vehicle).unwrap();
-        let (mut tape, receiver) = tape();
+        let (mut feed, receiver) = flight_feed(0);
         vehicle.start_pilot(5.0).unwrap();
         let ticks = 150_000;
         for tick in 0..ticks {
@@ -173,24 +178,24 @@ mod tests {
                 let _reported = vehicle.apply(&VehicleCommand::single_line("status"));
             }
             timeline.record(&mut vehicle);
-            tape.take_inputs(&timeline);
+            feed.take_inputs(&timeline);
             vehicle.tick();
             vehicle.drain_events(drop);
-            tape.look(&vehicle);
+            feed.look(&vehicle);
         }
         let parts = parts(&receiver);
-        let pictures = parts.iter().filter(|part| matches!(part, Taped::Picture(_))).count();
-        let inputs = parts.iter().filter(|part| matches!(part, Taped::Input(..))).count();
+        let pictures = parts.iter().filter(|part| matches!(part, FlightPart::Picture(_))).count();
+        let inputs = parts.iter().filter(|part| matches!(part, FlightPart::Input(..))).count();
         assert_eq!((pictures, inputs), (MOST_PICTURES, 151));
         vehicle.tick();
         while vehicle.time().0 % 1_000_000 != 0 {
             vehicle.tick();
         }
-        tape.look(&vehicle);
+        feed.look(&vehicle);
         assert_eq!(parts_of(&receiver), 1, "it goes on once the recorder has caught up");
     }
 
-    fn parts_of(receiver: &TapeReceiver) -> usize {
+    fn parts_of(receiver: &FeedReceiver) -> usize {
         parts(receiver).len()
     }
 }
