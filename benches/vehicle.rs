@@ -15,7 +15,9 @@
 use std::hint::black_box;
 use std::time::Instant;
 
+use betadeck::blackbox::encode::LogBuffer;
 use betadeck::firmware::Firmware;
+use betadeck::firmware::blackbox::LogStream;
 use betadeck::firmware::cli::Interpreter;
 use betadeck::flight::forecast::ForecastRun;
 use betadeck::flight::{Flight, FlightOptions, FlightResult, FlightSetup};
@@ -50,6 +52,14 @@ fn main() {
     println!("world    {world:>7.1} ns/tick");
     println!("firmware {firmware:>7.1} ns/tick");
     println!("both     {both:>7.1} ns/tick  ({:.0}x real time at 1 kHz)", 1e6 / both);
+    let mut costs: Vec<[f64; 3]> = (0..4 * RUNS).map(|_| recording.cost_of_logs()).collect();
+    costs.sort_by(|a, b| (a[1] / a[0]).total_cmp(&(b[1] / b[0])));
+    let [without, noted, encoded] = costs[2 * RUNS];
+    println!(
+        "blackbox log at rate 1/2: {noted:.1} ns/tick, without {without:.1} ns/tick, ratio {:.3} (limit 1.05)",
+        noted / without
+    );
+    println!("its bytes, after the tick: {:.1} ns/tick", encoded - noted);
 }
 
 fn air(rate_hz: u32) -> WorldConfig {
@@ -160,12 +170,43 @@ impl Recording {
     }
 
     fn fly_both(&self) -> f64 {
-        let mut vehicle = self.start.clone();
-        time_per_tick(|_| {
-            vehicle.tick();
-            vehicle.drain_events(drop);
-        })
+        fly(self.start.clone(), |_| {})
     }
+
+    /// Returns the nanoseconds per tick without a log, with one, and with one that is also encoded, measured one after
+    /// the other.
+    fn cost_of_logs(&self) -> [f64; 3] {
+        let mut logged = self.start.clone();
+        let firmware = logged.embedded_mut().unwrap();
+        assert!(!firmware.run_cli(&mut Interpreter::default(), "set blackbox_sample_rate = 1/2").failed);
+        firmware.set_logs(true);
+        let (mut stream, mut buffer, mut bytes) = (LogStream::default(), LogBuffer::default(), 0);
+        let encoded = logged.clone();
+        let ignore = |vehicle: &Vehicle| {
+            black_box(vehicle.embedded().and_then(Firmware::log_step));
+        };
+        let costs = [
+            fly(self.start.clone(), ignore),
+            fly(logged, ignore),
+            fly(encoded, |vehicle| {
+                let Some(step) = vehicle.embedded().and_then(Firmware::log_step) else { return };
+                buffer.clear();
+                stream.step(&step, &mut buffer);
+                bytes += buffer.bytes().len();
+            }),
+        ];
+        assert!(bytes > REPLAY * 10, "a log of {bytes} bytes");
+        costs
+    }
+}
+
+/// Flies on, with something to do after each tick. Returns the nanoseconds per tick.
+fn fly(mut vehicle: Vehicle, mut after_tick: impl FnMut(&Vehicle)) -> f64 {
+    time_per_tick(|_| {
+        vehicle.tick();
+        after_tick(&vehicle);
+        vehicle.drain_events(drop);
+    })
 }
 
 /// Returns the nanoseconds per tick.

@@ -14,7 +14,7 @@
 //! | layer | modules | purpose |
 //! | --- | --- | --- |
 //! | the whole craft | this file, [`Firmware`]'s requests and views | wires the stages: one step, the requests of its owner, the data for displays |
-//! | interfaces | [`cli`], [`msp`], [`storage`] | command line, MSP messages, the stored image: text and bytes in and out of the configuration |
+//! | interfaces | [`cli`], [`msp`], [`storage`], [`blackbox`] | command line, MSP messages, the stored image: text and bytes in and out of the configuration; logs of flights |
 //! | stages | `stages` | own the state of the step and update it in order |
 //! | decisions | [`rx`], [`modes`], [`arming`], [`failsafe`], [`orders`], [`battery`] | state machines of plain facts: the sticks that count, the active modes, permission to run the motors, orders for the navigator |
 //! | flying | [`estimate`], [`control`], [`filter`] | estimation of the craft's state, and control of the motors |
@@ -24,6 +24,7 @@
 
 pub mod arming;
 pub mod battery;
+pub mod blackbox;
 pub mod cli;
 pub mod config;
 pub mod control;
@@ -51,6 +52,7 @@ use crate::telemetry::{DisarmReason, FirmwareEvent, FirmwareNotice, Mode, ModeFl
 
 use arming::ArmingChange;
 use arming::crash::CrashAction;
+use blackbox::Recorder;
 use config::Configuration;
 use modes::{boxes, flight_modes};
 use outbox::Outbox;
@@ -70,6 +72,8 @@ pub struct FirmwareOptions {
     pub gps_timeout_s: f64,
     /// The declination of the magnetic field at the flying site, degrees east.
     pub declination_deg: f64,
+    /// Writes blackbox logs, whatever the setting `blackbox_device` says.
+    pub logs: bool,
 }
 
 impl Default for FirmwareOptions {
@@ -81,6 +85,7 @@ impl Default for FirmwareOptions {
             attitude: estimator.attitude,
             gps_timeout_s: estimator.gps_timeout_s,
             declination_deg: estimator.declination_deg,
+            logs: false,
         }
     }
 }
@@ -98,6 +103,8 @@ pub struct Firmware {
     control: FlightControl,
     modes: ModeFlags,
     outbox: Outbox,
+    /// The flight recorder, unless it is off.
+    recorder: Option<Box<Recorder>>,
 }
 
 impl Firmware {
@@ -119,6 +126,7 @@ impl Firmware {
             navigation: Navigation::new(now),
             control: FlightControl::new(&parameters.control, options.rate_hz),
             modes: ModeFlags::NONE,
+            recorder: parameters.blackbox.is_on().then(Box::default),
             setup,
             outbox,
         }
@@ -154,6 +162,10 @@ impl Firmware {
         };
         let motors = self.control.step(&step, self.sensing.estimate());
         self.watch_for_crash();
+        if let Some(mut recorder) = self.recorder.take() {
+            recorder.step(self);
+            self.recorder = Some(recorder);
+        }
         motors
     }
 
@@ -296,5 +308,11 @@ impl Firmware {
         let parameters = &self.setup.parameters;
         self.sensing.set_tuning(parameters);
         self.control.set_tuning(&parameters.control);
+        // A log under way goes on to its end.
+        if !parameters.blackbox.is_on() {
+            self.recorder.take_if(|recorder| !recorder.is_logging());
+        } else if self.recorder.is_none() {
+            self.recorder = Some(Box::default());
+        }
     }
 }

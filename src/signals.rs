@@ -14,6 +14,9 @@ use nalgebra::{UnitQuaternion, Vector3};
 )]
 pub struct SimTime(pub u64);
 
+/// The date of boot, 2026-01-01 UTC, in seconds since 1970. A simulated clock has no date, so all flights have this one.
+pub const SIMULATED_BOOT_UNIX_S: u64 = 1_767_225_600;
+
 impl SimTime {
     /// The time of boot.
     pub const ZERO: Self = Self(0);

@@ -122,6 +122,16 @@ impl Default for ControlInput {
     }
 }
 
+/// The terms of the PID sums of roll, pitch and yaw, in their units.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PidTerms {
+    pub p: [f64; 3],
+    pub i: [f64; 3],
+    pub d: [f64; 3],
+    /// The feed-forward.
+    pub f: [f64; 3],
+}
+
 /// The results of the last step of the controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ControlState {
@@ -130,12 +140,16 @@ pub struct ControlState {
     pub motors_us: PerMotor,
     /// The throttle that drove the mixer, RC µs.
     pub throttle_us: f64,
+    /// The same as a share of the mixer's range, 0…1.
+    pub throttle: f64,
     /// The filtered gyro rates, °/s: roll, pitch, yaw.
     pub gyro_dps: [f64; 3],
     /// The rate setpoints, °/s.
     pub setpoint_dps: [f64; 3],
     /// The PID sums before their limits; ±1000 = the full range of the mixer.
     pub pid_sum: [f64; 3],
+    /// The terms of these sums.
+    pub terms: PidTerms,
     /// The demanded roll and pitch (nose down positive) while levelling, rad.
     pub angle_demand_rad: Option<[f64; 2]>,
 }
@@ -146,9 +160,11 @@ impl Default for ControlState {
             motors: MotorCommand::default(),
             motors_us: [1000.0; MOTORS],
             throttle_us: 1000.0,
+            throttle: 0.0,
             gyro_dps: [0.0; 3],
             setpoint_dps: [0.0; 3],
             pid_sum: [0.0; 3],
+            terms: PidTerms::default(),
             angle_demand_rad: None,
         }
     }

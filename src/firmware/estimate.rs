@@ -49,6 +49,9 @@ pub use schedule::DueTasks;
 pub use tuning::{AttitudeSource, EstimatorOptions, EstimatorTuning};
 pub use vertical::AltitudeSource;
 
+/// The counts of an accelerometer at 1 g, for protocols and logs.
+pub const ACC_COUNTS_PER_G: f64 = 256.0;
+
 /// The turn rates, rad/s.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Rates {
@@ -103,6 +106,8 @@ pub struct Estimate {
     pub alt_m: f64,
     /// The climb rate, m/s.
     pub climb_mps: f64,
+    /// The altitude of the barometer alone above the same place, m.
+    pub baro_alt_m: f64,
     /// The altitude for displays: low-passed by `altitude_lpf`, m.
     pub shown_alt_m: f64,
     /// The climb rate for displays: low-passed by `altitude_d_lpf`, m/s.
@@ -136,6 +141,7 @@ impl Default for Estimate {
             altitude_valid: false,
             alt_m: 0.0,
             climb_mps: 0.0,
+            baro_alt_m: 0.0,
             shown_alt_m: 0.0,
             shown_climb_mps: 0.0,
             gps: GpsStatus::default(),

@@ -10,6 +10,7 @@ use super::arming::ArmingConfig;
 use super::arming::crash::{CrashAction, CrashConfig};
 use super::arming::runaway::RunawayConfig;
 use super::battery::BatteryConfig;
+use super::blackbox::LogConfig;
 use super::config::{
     Configuration, Feature, Features, MAX_MIX_ROWS, MODE_CONDITIONS, MixRow, MixerKind, ModeCondition,
 };
@@ -151,6 +152,8 @@ pub struct Parameters {
     pub estimator: EstimatorTuning,
     /// The controller's tuning.
     pub control: Tuning,
+    /// The flight recorder's settings.
+    pub blackbox: LogConfig,
 }
 
 impl Parameters {
@@ -184,6 +187,7 @@ impl Parameters {
             nav: navigator(settings),
             estimator: EstimatorTuning { has_mag: boot.mag, ..EstimatorTuning::from_settings(settings) },
             control: control(settings, boot),
+            blackbox: LogConfig::new(configuration, options.logs),
         }
     }
 }
@@ -223,6 +227,7 @@ fn receiver(configuration: &Configuration, boot: &BootChoices) -> RxConfig {
             deadband: pulse(settings, "deadband"),
             yaw_deadband: pulse(settings, "yaw_deadband"),
         },
+        rssi_channel: small(settings, "rssi_channel").checked_sub(1),
     }
 }
 

@@ -111,10 +111,27 @@ impl Firmware {
         let mut fresh = Self::boot(setup, self.now, outbox);
         fresh.rc = self.rc.restarted(&fresh.setup.parameters.rx);
         fresh.safety = self.safety.restarted();
+        if let Some(mut recorder) = self.recorder.take() {
+            recorder.end();
+            fresh.recorder = Some(recorder);
+        }
         if was_armed {
             fresh.outbox.push(FirmwareEvent::Disarmed(DisarmReason::System));
         }
         *self = fresh;
+    }
+
+    /// Begins to write logs, or stops to do so after the log under way, whatever the setting `blackbox_device` says.
+    pub fn set_logs(&mut self, logs: bool) {
+        self.setup.options.logs = logs;
+        self.refresh();
+    }
+
+    /// Begins a new log if one is under way, because what was written of it belongs to another flight.
+    pub fn begin_new_log(&mut self) {
+        if let Some(recorder) = &mut self.recorder {
+            recorder.forget();
+        }
     }
 
     /// Restarts with the configuration in memory, stored or not.

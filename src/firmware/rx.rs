@@ -19,6 +19,8 @@ use crate::signals::{RC_CHANNELS, RcFrame, RcSource, SimTime};
 
 /// The age of the newest frame above which the signal is lost, s.
 const SIGNAL_LOSS_S: f64 = 0.15;
+/// The signal strength of a full signal.
+const RSSI_MAX: u16 = 1023;
 /// The interval of receiver passes without frames, s.
 const LOOK_EVERY_S: f64 = 0.05;
 
@@ -28,6 +30,8 @@ pub struct RxConfig {
     pub channels: ChannelConfig,
     /// The conversion of channel values to stick positions.
     pub sticks: StickConfig,
+    /// The channel that carries the signal strength, from 0.
+    pub rssi_channel: Option<u8>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -39,6 +43,7 @@ pub struct Receiver {
     last_frame: Option<SimTime>,
     last_pass: SimTime,
     signal: bool,
+    has_valid_channels: bool,
 }
 
 impl Receiver {
@@ -53,6 +58,7 @@ impl Receiver {
             last_frame: None,
             last_pass: SimTime::ZERO,
             signal: false,
+            has_valid_channels: false,
         }
     }
 
@@ -74,7 +80,8 @@ impl Receiver {
     /// `true` if a new frame was used.
     pub fn update(&mut self, config: &RxConfig, now: SimTime, switched_off: bool, procedure: bool) -> bool {
         let fresh = self.last_frame.is_some_and(|last| now.seconds_since(last) <= SIGNAL_LOSS_S);
-        self.signal = fresh && self.channels.flight_channels_valid(now) && !switched_off;
+        self.has_valid_channels = self.channels.flight_channels_valid(now);
+        self.signal = fresh && self.has_valid_channels && !switched_off;
         self.channels.update(&config.channels, now, procedure);
         self.sticks = Sticks::from_channels(&config.sticks, self.channels.values());
         self.last_pass = now;
@@ -84,6 +91,22 @@ impl Receiver {
     /// Returns `true` while there is a signal: a frame within 150 ms with valid flight channels.
     pub fn signal(&self) -> bool {
         self.signal
+    }
+
+    /// Returns `true` while the pulses of the flight channels are valid.
+    pub fn has_valid_channels(&self) -> bool {
+        self.has_valid_channels
+    }
+
+    /// Returns the signal strength, 0…1023: the position of the channel that carries it; without one, full strength while
+    /// there is a signal.
+    pub fn rssi(&self, config: &RxConfig) -> u16 {
+        let strength = config.rssi_channel.and_then(|channel| self.channels().get(usize::from(channel)));
+        match strength {
+            Some(pulse) => (u32::from((*pulse).clamp(1000, 2000) - 1000) * u32::from(RSSI_MAX) / 1000) as u16,
+            None if self.signal => RSSI_MAX,
+            None => 0,
+        }
     }
 
     /// Returns `true` if any frame was ever used.

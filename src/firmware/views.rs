@@ -10,6 +10,7 @@ use crate::telemetry::{
     ArmingFlags, DisarmReason, FailsafeAhead, FirmwareEvent, ModeBox, ModeFlags, NavTelemetry,
 };
 
+use super::blackbox::{LogStep, Recorder};
 use super::config::{Configuration, ModeCondition};
 use super::estimate::Estimate;
 use super::modes::BoxSet;
@@ -144,6 +145,11 @@ impl Firmware {
     /// Returns `true` if there is a fix.
     pub fn gps_fix(&self) -> bool {
         self.sensing.fix
+    }
+
+    /// Returns what the last step noted for a log; `None` if logs are off.
+    pub fn log_step(&self) -> Option<LogStep<'_>> {
+        self.recorder.as_deref().map(Recorder::last_step)
     }
 
     /// Returns the configuration in memory.

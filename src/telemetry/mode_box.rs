@@ -67,7 +67,8 @@ boxes! {
     Servo1 = 23 "SERVO1" Name;
     Servo2 = 24 "SERVO2" Name;
     Servo3 = 25 "SERVO3" Name;
-    Blackbox = 26 "BLACKBOX" Flag;
+    /// Pauses the log while it is off.
+    Blackbox = 26 "BLACKBOX" Full;
     /// Full stabilisation at zero throttle.
     AirMode = 28 "AIR MODE" Full;
     ThreeDDisable = 29 "3D DISABLE" Name;

@@ -3,6 +3,7 @@
 #![allow(unsafe_code, reason = "an allocator that counts cannot be written without it")]
 
 mod firmware;
+mod logs;
 mod sim;
 
 use std::alloc::{GlobalAlloc, Layout, System};

@@ -250,6 +250,11 @@ impl AltitudeController {
         self.throttle_us
     }
 
+    /// Returns the integral of the last update, µs.
+    pub fn integral_us(&self) -> f64 {
+        self.integral_us
+    }
+
     /// Sets `on_ground`, `true` while the craft is on the ground and has not lifted off yet, and `load`, the specific
     /// force along its thrust in multiples of gravity.
     pub fn set_on_ground(&mut self, on_ground: bool, load: f64) {

@@ -96,6 +96,11 @@ impl LogLayout {
         self.groups(kind).iter().map(|group| group.names.len()).sum()
     }
 
+    /// Returns the number of header lines, including those that are empty.
+    pub fn lines(&self) -> usize {
+        LINES.len()
+    }
+
     /// Returns the header line with this number, from 0; `None` after the last one. A line of a frame that the log does
     /// not have is empty.
     pub fn line(&self, number: usize) -> Option<FieldLine<'_>> {

@@ -9,7 +9,7 @@ use super::mixer::{MixDemand, command, mix};
 use super::pid::{RateDemand, RateLoop};
 use super::smoothing::Smoothing;
 use super::tuning::Tuning;
-use super::{ControlInput, ControlState, StickMode};
+use super::{ControlInput, ControlState, PidTerms, StickMode};
 use crate::firmware::estimate::Estimate;
 
 /// The full stick deflection, RC command units.
@@ -97,6 +97,11 @@ impl Controller {
     /// Returns the smoothing cutoffs of sticks and throttle in use, Hz; 0 while nothing is smoothed.
     pub fn smoothing_hz(&self) -> [f64; 2] {
         self.smoothing.cutoffs_hz()
+    }
+
+    /// Returns `true` if the last step ran the rate loop, or if the craft is disarmed.
+    pub fn has_run(&self) -> bool {
+        self.phase == 0
     }
 
     /// Returns the results of the last step.
@@ -188,8 +193,9 @@ impl Controller {
         let state = &mut self.state;
         state.motors_us = input.motor_test_us;
         state.motors = command(&input.motor_test_us);
-        state.throttle_us = 1000.0;
+        (state.throttle_us, state.throttle) = (1000.0, 0.0);
         (state.setpoint_dps, state.pid_sum, state.angle_demand_rad) = ([0.0; 3], [0.0; 3], None);
+        state.terms = PidTerms::default();
     }
 
     fn yaw_dps(&mut self, input: &ControlInput, estimate: &Estimate, stick_dps: f64) -> f64 {
@@ -289,7 +295,8 @@ impl Controller {
         state.motors_us = motors_us;
         state.motors = command(&motors_us);
         state.throttle_us = zero + throttle * (2000.0 - zero);
-        (state.setpoint_dps, state.pid_sum) = (setpoint, sums);
+        state.throttle = throttle;
+        (state.setpoint_dps, state.pid_sum, state.terms) = (setpoint, sums, *self.rate_loop.terms());
     }
 
     /// Returns TPA, the gain factor for the stick throttle (0…1). It falls at high throttle, and at low throttle before

@@ -1,5 +1,6 @@
 //! The rate loop.
 
+use super::PidTerms;
 use super::boost::GainBoost;
 use super::derived::Derived;
 use super::tuning::{DMax, RateTuning};
@@ -47,6 +48,7 @@ struct Axis {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct RateLoop {
     axes: [Axis; 3],
+    terms: PidTerms,
 }
 
 impl RateLoop {
@@ -54,6 +56,11 @@ impl RateLoop {
         for axis in &mut self.axes {
             axis.integral = 0.0;
         }
+    }
+
+    /// Returns the terms of the last sums.
+    pub(super) fn terms(&self) -> &PidTerms {
+        &self.terms
     }
 
     /// Rotates the integrals against the turn of the craft (°/s), so that as a vector they keep their direction in the
@@ -116,11 +123,12 @@ impl RateLoop {
             } else {
                 gains.f * setpoint_rate * fade(demand.deflection[index], tuning.feedforward_transition)
             };
-            let raw = if demand.integrate || tuning.at_min_throttle {
-                p + axis.integral + d + f
-            } else {
-                axis.integral
-            };
+            let (p, d, f) =
+                if demand.integrate || tuning.at_min_throttle { (p, d, f) } else { (0.0, 0.0, 0.0) };
+            let raw = p + axis.integral + d + f;
+            let terms = &mut self.terms;
+            (terms.p[index], terms.i[index]) = (p, axis.integral);
+            (terms.d[index], terms.f[index]) = (d, f);
             *sum = if raw.is_finite() { raw } else { 0.0 };
         }
         sums

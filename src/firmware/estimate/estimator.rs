@@ -372,7 +372,11 @@ impl Estimator {
     fn fuse_baro(&mut self) {
         let Some(pressure) = self.pending_pressure.take() else { return };
         let altitude = pressure_altitude_m(pressure);
-        if self.tuning.altitude_source != AltitudeSource::GpsOnly && altitude.is_finite() {
+        if !altitude.is_finite() {
+            return;
+        }
+        self.vertical.see_baro(altitude);
+        if self.tuning.altitude_source != AltitudeSource::GpsOnly {
             self.vertical.fuse_baro(altitude, self.tuning.baro_preference);
         }
     }
@@ -468,6 +472,7 @@ impl Estimator {
         estimate.altitude_valid = self.vertical.is_valid();
         estimate.alt_m = self.vertical.altitude();
         estimate.climb_mps = self.vertical.climb();
+        estimate.baro_alt_m = self.vertical.baro_altitude();
         estimate.gps = self.gps.status;
         estimate.heading_doubt_rad = self.compass.doubt();
         estimate.calibrating = !self.gyro.done || self.acc.is_some() || self.mag.is_some();

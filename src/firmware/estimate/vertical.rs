@@ -44,6 +44,8 @@ pub(super) struct Vertical {
     /// The barometric and GPS altitude (m) of the zero.
     baro_zero: Option<f64>,
     gps_zero: Option<f64>,
+    /// The newest barometric altitude, m, and its value at the zero, also if it corrects nothing.
+    seen_baro: Option<(f64, f64)>,
     spikes: u8,
     since_baro_s: f64,
     since_gps_s: f64,
@@ -61,6 +63,7 @@ impl Vertical {
             axis: Axis::new(),
             baro_zero: None,
             gps_zero: None,
+            seen_baro: None,
             spikes: 0,
             since_baro_s: f64::INFINITY,
             since_gps_s: f64::INFINITY,
@@ -77,6 +80,17 @@ impl Vertical {
         self.axis.velocity
     }
 
+    /// Takes a barometric altitude, m, without a correction of the state.
+    pub(super) fn see_baro(&mut self, altitude: f64) {
+        let zero = self.seen_baro.map_or(altitude - self.axis.position, |(_, zero)| zero);
+        self.seen_baro = Some((altitude, zero));
+    }
+
+    /// Returns the newest barometric altitude above the zero, m; zero before the first one.
+    pub(super) fn baro_altitude(&self) -> f64 {
+        self.seen_baro.map_or(0.0, |(altitude, zero)| altitude - zero)
+    }
+
     /// Returns `true` if the altitude is valid.
     pub(super) fn is_valid(&self) -> bool {
         self.since_baro_s.min(self.since_gps_s) <= VALID_S
@@ -88,6 +102,7 @@ impl Vertical {
         self.axis.shift(-altitude);
         self.baro_zero = self.baro_zero.map(|zero| zero + altitude);
         self.gps_zero = self.gps_zero.map(|zero| zero + altitude);
+        self.seen_baro = self.seen_baro.map(|(baro, zero)| (baro, zero + altitude));
     }
 
     /// Takes one step with the measured upward acceleration without gravity, m/s².

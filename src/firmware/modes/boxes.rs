@@ -25,6 +25,8 @@ pub const HEADADJ: BoxId = ModeBox::HeadAdjust as BoxId;
 pub const POS_HOLD: BoxId = ModeBox::PosHold as BoxId;
 /// The FAILSAFE switch.
 pub const FAILSAFE: BoxId = ModeBox::Failsafe as BoxId;
+/// BLACKBOX: the log goes on while it is on.
+pub const BLACKBOX: BoxId = ModeBox::Blackbox as BoxId;
 pub const AIR_MODE: BoxId = ModeBox::AirMode as BoxId;
 /// FLIP OVER AFTER CRASH: blocks arming, because nothing here can be flipped.
 pub const CRASH_FLIP: BoxId = ModeBox::CrashFlip as BoxId;

@@ -2,6 +2,7 @@
 
 use super::layout::{Field, byte, i16, u8, u16, word};
 use super::{Call, Refused};
+use crate::firmware::blackbox::{DISABLED_FIELDS, Schedule, disabled_mask};
 use crate::firmware::config::{BAUD_RATES, Features, MixerKind};
 use crate::firmware::settings::Value;
 
@@ -150,36 +151,15 @@ pub(super) fn common_serial_config(call: &mut Call<'_>) {
     }
 }
 
-/// The fields of the flight recorder that can be disabled, by bit.
-const BLACKBOX_FIELDS: [(u32, &str); 14] = [
-    (0, "blackbox_disable_pids"),
-    (1, "blackbox_disable_rc"),
-    (2, "blackbox_disable_setpoint"),
-    (3, "blackbox_disable_bat"),
-    (4, "blackbox_disable_mag"),
-    (5, "blackbox_disable_alt"),
-    (6, "blackbox_disable_rssi"),
-    (7, "blackbox_disable_gyro"),
-    (8, "blackbox_disable_attitude"),
-    (9, "blackbox_disable_acc"),
-    (10, "blackbox_disable_debug"),
-    (11, "blackbox_disable_motors"),
-    (12, "blackbox_disable_gps"),
-    (14, "blackbox_disable_gyrounfilt"),
-];
-
-/// The control loops between two complete records at the slowest sample rate.
-const P_INTERVAL: i64 = 32;
-
 pub(super) fn blackbox(call: &mut Call<'_>) {
     let (device, rate) = (call.setting("blackbox_device"), call.setting("blackbox_sample_rate"));
-    let fields = BLACKBOX_FIELDS.iter().filter(|(_, name)| call.setting(name) != 0);
-    let disabled = fields.fold(0_u32, |mask, (bit, _)| mask | 1 << bit);
+    let schedule = Schedule::new(call.facts.pid_cycle_time_us, rate as u8);
+    let disabled = disabled_mask(&call.configuration.settings);
     call.reply.u8(1); // supported
     call.reply.u8(device);
     call.reply.u8(1);
     call.reply.u8(1 << rate);
-    call.reply.u16(P_INTERVAL >> rate);
+    call.reply.u16(schedule.i_interval() / schedule.p_interval());
     call.reply.u8(rate);
     call.reply.u32(disabled);
 }
@@ -197,7 +177,7 @@ pub(super) fn set_blackbox(call: &mut Call<'_>) {
     call.set("blackbox_sample_rate", rate);
     if call.request.remaining() > 0 {
         let disabled = call.request.u32();
-        for (bit, name) in BLACKBOX_FIELDS {
+        for (bit, name) in DISABLED_FIELDS {
             call.set(name, i64::from(disabled >> bit & 1));
         }
     }

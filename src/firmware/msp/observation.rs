@@ -10,8 +10,6 @@ use crate::msp::{BatteryReading, HomeVector, RawGps};
 use crate::signals::{MOTORS, PerMotor, RC_CHANNELS};
 use crate::telemetry::{ArmingFlags, ModeFlags};
 
-const RSSI_MAX: u16 = 1023;
-
 /// Figures of the running firmware.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MspFacts {
@@ -25,6 +23,8 @@ pub struct MspFacts {
     pub reboot_required: bool,
     /// The period of the control loop, µs.
     pub cycle_time_us: u32,
+    /// The period of the rate loop, µs.
+    pub pid_cycle_time_us: u32,
     /// The processor load, percent.
     pub cpu_load_percent: u32,
     /// The rate of the gyro loop, Hz.
@@ -75,6 +75,7 @@ impl Default for MspFacts {
             arming_blocks: ArmingFlags::NONE,
             reboot_required: false,
             cycle_time_us: 1000,
+            pid_cycle_time_us: 1000,
             cpu_load_percent: 0,
             gyro_hz: 1000,
             has_mag: true,
@@ -110,7 +111,8 @@ impl MspFacts {
             switches: firmware.boxes(),
             arming_blocks: firmware.arming_blocks(),
             reboot_required: firmware.parameters().arming.reboot_required,
-            cycle_time_us: 1_000_000 / firmware.setup.options.rate_hz.max(1),
+            cycle_time_us: firmware.setup.step_us(),
+            pid_cycle_time_us: firmware.setup.loop_us(),
             cpu_load_percent: 0,
             gyro_hz: firmware.setup.options.rate_hz,
             has_mag: firmware.configuration().settings.text("mag_hardware") != "NONE",
@@ -124,7 +126,7 @@ impl MspFacts {
             altitude_m: altitude_m(firmware),
             climb_mps: estimate.shown_climb_mps,
             battery: battery(firmware),
-            rssi: rssi(firmware),
+            rssi: firmware.receiver().rssi(&firmware.parameters().rx),
             channels: *firmware.receiver().channels(),
             motors_us: firmware
                 .control
@@ -145,19 +147,6 @@ fn altitude_m(firmware: &Firmware) -> f64 {
     match firmware.gps_view() {
         Some(gps) if !firmware.safety.arming.ever_armed() => gps.alt_amsl_m,
         _ => above_home,
-    }
-}
-
-/// Returns the position of the RSSI channel if one is set; otherwise full strength while there is a signal.
-fn rssi(firmware: &Firmware) -> u16 {
-    let channel = usize::try_from(firmware.configuration().settings.number("rssi_channel")).unwrap_or(0);
-    match channel.checked_sub(1).filter(|&channel| channel < RC_CHANNELS) {
-        Some(channel) => {
-            let above = firmware.receiver().channels()[channel].clamp(1000, 2000) - 1000;
-            (u32::from(above) * u32::from(RSSI_MAX) / 1000) as u16
-        }
-        None if firmware.receiver().signal() => RSSI_MAX,
-        None => 0,
     }
 }
 
@@ -207,4 +196,21 @@ pub struct UtcTime {
     pub unix_s: u32,
     /// The milliseconds of the second.
     pub millis: u16,
+}
+
+impl UtcTime {
+    /// Returns year, month and day in the Gregorian calendar, by years that begin in March (Hinnant,
+    /// "chrono-compatible low-level date algorithms").
+    pub fn date(self) -> (u32, u32, u32) {
+        // The days since 0000-03-01.
+        let days = self.unix_s / 86_400 + 719_468;
+        let era = days / 146_097;
+        let day_of_era = days % 146_097;
+        let year_of_era = (day_of_era - day_of_era / 1460 + day_of_era / 36_524 - day_of_era / 146_096) / 365;
+        let day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
+        let month_from_march = (5 * day_of_year + 2) / 153;
+        let day = day_of_year - (153 * month_from_march + 2) / 5 + 1;
+        let month = if month_from_march < 10 { month_from_march + 3 } else { month_from_march - 9 };
+        (era * 400 + year_of_era + u32::from(month <= 2), month, day)
+    }
 }

@@ -1,15 +1,13 @@
 //! The present measurements and state of the craft.
 
 use super::power::{METER_MEASURED, METER_VIRTUAL};
-use super::{Call, MspFacts, UtcTime, modes};
+use super::{Call, MspFacts, modes};
 use crate::firmware::config::Feature;
+use crate::firmware::estimate::ACC_COUNTS_PER_G;
 use crate::firmware::settings::Scope;
 use crate::geo::GRAVITY;
 use crate::msp::{Altitude, Attitude, BatteryReading, Channels, Motors, Status, steps};
 use nalgebra::{UnitQuaternion, Vector3};
-
-/// The accelerometer counts of 1 g.
-const COUNTS_PER_G: f64 = 256.0;
 
 pub(super) fn status(call: &mut Call<'_>) {
     present_status(call).encode(false, &mut call.reply);
@@ -50,7 +48,7 @@ fn present_status(call: &Call<'_>) -> Status {
 pub(super) fn raw_imu(call: &mut Call<'_>) {
     let facts = call.facts;
     for axis in facts.specific_force_flu.iter() {
-        call.reply.i16(steps(*axis, COUNTS_PER_G / GRAVITY));
+        call.reply.i16(steps(*axis, ACC_COUNTS_PER_G / GRAVITY));
     }
     for axis in facts.rate_flu.iter() {
         call.reply.i16(steps(axis.to_degrees(), 1.0));
@@ -149,7 +147,7 @@ pub(super) fn satellites(call: &mut Call<'_>) {
 
 pub(super) fn rtc(call: &mut Call<'_>) {
     if let Some(clock) = call.facts.clock {
-        let (year, month, day) = civil_date(clock);
+        let (year, month, day) = clock.date();
         let second = clock.unix_s % 86_400;
         call.reply.u16(year);
         for part in [month, day, second / 3600, second / 60 % 60, second % 60] {
@@ -157,21 +155,6 @@ pub(super) fn rtc(call: &mut Call<'_>) {
         }
         call.reply.u16(clock.millis);
     }
-}
-
-/// Returns year, month and day in the Gregorian calendar, by years that begin in March (Hinnant, "chrono-compatible
-/// low-level date algorithms").
-fn civil_date(clock: UtcTime) -> (u32, u32, u32) {
-    // The days since 0000-03-01.
-    let days = clock.unix_s / 86_400 + 719_468;
-    let era = days / 146_097;
-    let day_of_era = days % 146_097;
-    let year_of_era = (day_of_era - day_of_era / 1460 + day_of_era / 36_524 - day_of_era / 146_096) / 365;
-    let day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
-    let month_from_march = (5 * day_of_year + 2) / 153;
-    let day = day_of_year - (153 * month_from_march + 2) / 5 + 1;
-    let month = if month_from_march < 10 { month_from_march + 3 } else { month_from_march - 9 };
-    (era * 400 + year_of_era + u32::from(month <= 2), month, day)
 }
 
 pub(super) fn tx_info(call: &mut Call<'_>) {

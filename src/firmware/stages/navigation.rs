@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::autopilot::Navigator;
-use crate::autopilot::control::FlightControllers;
+use crate::autopilot::control::{AltitudeController, FlightControllers};
 use crate::autopilot::io::{NavInputs, NavOutput};
 use crate::autopilot::land_detector::{GroundMeasurement, ImpactFacts};
 use crate::firmware::control::hold::{DescentRate, HoldModes, HoldOutput, Holds};
@@ -390,6 +390,11 @@ impl Navigation {
     /// Returns the neutral position of the throttle stick in ALTHOLD, µs.
     pub(in crate::firmware) fn hover_stick_us(&self, parameters: &Parameters) -> f64 {
         self.controllers.altitude.hover_stick_us(&parameters.nav, parameters.hold.mid_us)
+    }
+
+    /// Returns the controller of navigator and holds that keeps the altitude.
+    pub(in crate::firmware) fn altitude_controller(&self) -> &AltitudeController {
+        &self.controllers.altitude
     }
 
     /// Returns the plan being flown, if any.

@@ -7,7 +7,7 @@ use crate::firmware::control::ControlState;
 use crate::firmware::estimate::Estimate;
 use crate::firmware::parameters::Parameters;
 use crate::geo::LatLon;
-use crate::signals::{RcSource, SimTime};
+use crate::signals::{GpsSample, RcSource, SimTime};
 use crate::telemetry::DisarmReason;
 
 use super::RcInput;
@@ -20,6 +20,8 @@ pub(in crate::firmware) struct Safety {
     pub crash: CrashDetector,
     pub last_disarm: Option<DisarmReason>,
     pub home: Option<LatLon>,
+    /// The altitude of home above mean sea level, cm.
+    pub home_alt_amsl_cm: Option<i32>,
     pub headfree_rad: f64,
 }
 
@@ -52,7 +54,9 @@ impl Safety {
         match change {
             Some(ArmingChange::Armed { .. }) => {
                 if !(parameters.rescue.home_once && self.home.is_some()) {
-                    self.home = trusted_position(parameters, estimate);
+                    let solution = trusted_solution(parameters, estimate);
+                    self.home = solution.map(|solution| solution.position);
+                    self.home_alt_amsl_cm = solution.map(|solution| solution.alt_amsl_cm);
                 }
                 self.headfree_rad = estimate.heading_rad;
                 self.runaway.rearm();
@@ -127,9 +131,13 @@ impl Safety {
 
 /// Returns the position of the craft, if there are enough satellites to fly home by it.
 pub(in crate::firmware) fn trusted_position(parameters: &Parameters, estimate: &Estimate) -> Option<LatLon> {
+    trusted_solution(parameters, estimate).map(|solution| solution.position)
+}
+
+fn trusted_solution(parameters: &Parameters, estimate: &Estimate) -> Option<GpsSample> {
     let gps = &estimate.gps;
     let trusted = gps.fix && gps.sats >= parameters.rescue.min_sats;
-    gps.solution.filter(|_| trusted).map(|solution| solution.position)
+    gps.solution.filter(|_| trusted)
 }
 
 fn tilt_rad(estimate: &Estimate) -> f64 {

@@ -48,6 +48,16 @@ impl Setup {
         Self { build: self.build.clone(), storage: self.storage.clone(), rewound: self.rewound, ..fresh }
     }
 
+    /// Returns the length of a step, µs.
+    pub(in crate::firmware) fn step_us(&self) -> u32 {
+        1_000_000 / self.options.rate_hz.max(1)
+    }
+
+    /// Returns the time between two runs of the rate loop, µs.
+    pub(in crate::firmware) fn loop_us(&self) -> u32 {
+        self.step_us() * u32::from(self.boot.pid_denominator.max(1))
+    }
+
     /// Updates the parameters from the configuration.
     pub(in crate::firmware) fn refresh(&mut self) {
         self.parameters = Parameters::new(&self.configuration, &self.boot, &self.options);

@@ -2,13 +2,15 @@
 
 use std::fmt;
 
+use crate::signals::SIMULATED_BOOT_UNIX_S;
+
 /// Seconds since 1970-01-01T00:00:00Z without leap seconds. `Display` gives `2026-01-01T00:00:00Z`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct UtcSeconds(pub u64);
 
 impl UtcSeconds {
     /// The instant of boot in simulated flights, 2026-01-01T00:00:00Z.
-    pub const SIMULATED_BOOT: Self = Self(1_767_225_600);
+    pub const SIMULATED_BOOT: Self = Self(SIMULATED_BOOT_UNIX_S);
 
     /// Returns the date and the time in the form of a version line: `Jan 01 2026`, `00:00:00`.
     pub fn build_stamp(self) -> (String, String) {

@@ -21,7 +21,7 @@ pub(super) const ARMING: Group = Group::new("Arming", Scope::Master, &[
 #[rustfmt::skip]
 pub(super) const MAINTENANCE: Group = Group::new("Maintenance", Scope::Master, &[
     switch("task_statistics", I8, true, Live, "Measure the run time of tasks."),
-    choice("debug_mode", U8, DEBUG_MODE, 0, Carry, "Source of the four debug values."),
+    choice("debug_mode", U8, DEBUG_MODE, 0, Live, "Source of the eight debug values of logs."),
     switch("rate_6pos_switch", U8, false, Carry, "Select rate profiles with a six-position switch."),
     number("pwr_on_arm_grace", U8, 0, 30, 5, Live, "Time after boot before arming is allowed, s."),
     switch("enable_stick_arming", U8, false, Live, "Allow arming with the sticks when no ARM switch is set up."),
