@@ -2,6 +2,7 @@
 
 mod hostile;
 mod maker;
+mod round_trip;
 
 use std::io;
 
