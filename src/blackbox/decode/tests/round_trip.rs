@@ -3,12 +3,15 @@
 use proptest::prelude::*;
 
 use super::{Read, all};
-use crate::blackbox::encode::{Coding, FieldGroup, FrameValues, LogBuffer, LogConstants, LogEncoder, LogLayout, MAX_FIELDS, Rule};
+use crate::blackbox::encode::{
+    Coding, FieldGroup, FrameValues, LogBuffer, LogConstants, LogEncoder, LogLayout, MAX_FIELDS, Rule,
+};
 use crate::blackbox::{AdjustedValue, FIRST_LINE, FrameKind, LogEvent, Predictor};
 
 /// The loops from one whole frame to the next.
 const INTRA: u32 = 32;
-const CONSTANTS: LogConstants = LogConstants { p_interval: 1, min_throttle: 1070, min_motor: 1000, vbat_reference: 1620 };
+const CONSTANTS: LogConstants =
+    LogConstants { p_interval: 1, min_throttle: 1070, min_motor: 1000, vbat_reference: 1620 };
 
 /// The groups of main frames with the range of their values.
 fn main_groups() -> Vec<(FieldGroup, std::ops::RangeInclusive<i32>)> {
@@ -19,15 +22,38 @@ fn main_groups() -> Vec<(FieldGroup, std::ops::RangeInclusive<i32>)> {
     let svb = Rule(Zero, SignedVb);
     vec![
         (FieldGroup::main(&["p[0]", "p[1]"], true, svb, Rule(Previous, SignedVb)), i32::MIN..=i32::MAX),
-        (FieldGroup::main(&["i[0]", "i[1]", "i[2]"], true, svb, Rule(Previous, Tag2_3S32)), i32::MIN..=i32::MAX),
-        (FieldGroup::main(&["rc[0]", "rc[1]", "rc[2]", "rc[3]"], true, svb, Rule(Previous, Tag8_4S16)), -9000..=9000),
-        (FieldGroup::main(&["vbat"], false, Rule(VbatReference, Neg14Bit), Rule(Previous, Tag8_8Svb)), 0..=8000),
-        (FieldGroup::main(&["a", "b", "c", "d", "e", "f"], true, svb, Rule(Previous, Tag8_8Svb)), i32::MIN..=i32::MAX),
+        (
+            FieldGroup::main(&["i[0]", "i[1]", "i[2]"], true, svb, Rule(Previous, Tag2_3S32)),
+            i32::MIN..=i32::MAX,
+        ),
+        (
+            FieldGroup::main(&["rc[0]", "rc[1]", "rc[2]", "rc[3]"], true, svb, Rule(Previous, Tag8_4S16)),
+            -9000..=9000,
+        ),
+        (
+            FieldGroup::main(&["vbat"], false, Rule(VbatReference, Neg14Bit), Rule(Previous, Tag8_8Svb)),
+            0..=8000,
+        ),
+        (
+            FieldGroup::main(&["a", "b", "c", "d", "e", "f"], true, svb, Rule(Previous, Tag8_8Svb)),
+            i32::MIN..=i32::MAX,
+        ),
         (FieldGroup::main(&["gyro[0]", "gyro[1]"], true, svb, Rule(Average2, SignedVb)), half.clone()),
         (FieldGroup::main(&["line"], true, Rule(MinThrottle, SignedVb), Rule(StraightLine, SignedVb)), half),
         (FieldGroup::main(&["centre"], true, Rule(Centre1500, SignedVb), Rule(Previous, SignedVb)), 0..=3000),
-        (FieldGroup::main(&["motor[0]"], false, Rule(MinMotor, UnsignedVb), Rule(Average2, SignedVb)), 900..=2100),
-        (FieldGroup::main(&["motor[1]", "motor[2]"], false, Rule(Motor0, SignedVb), Rule(Average2, SignedVb)), 900..=2100),
+        (
+            FieldGroup::main(&["motor[0]"], false, Rule(MinMotor, UnsignedVb), Rule(Average2, SignedVb)),
+            900..=2100,
+        ),
+        (
+            FieldGroup::main(
+                &["motor[1]", "motor[2]"],
+                false,
+                Rule(Motor0, SignedVb),
+                Rule(Average2, SignedVb),
+            ),
+            900..=2100,
+        ),
         (FieldGroup::main(&["alone"], true, svb, Rule(Previous, Tag8_8Svb)), i32::MIN..=i32::MAX),
     ]
 }
@@ -46,8 +72,18 @@ fn layout() -> LogLayout {
     let slow = Rule(Predictor::Zero, Coding::Tag2_3S32);
     add(FrameKind::Slow, FieldGroup::side(&["phase", "signal", "valid"], false, slow));
     add(FrameKind::GpsHome, FieldGroup::side(&["GPS_home[0]", "GPS_home[1]"], true, signed));
-    add(FrameKind::Gps, FieldGroup::side(&["time"], false, Rule(Predictor::LastMainFrameTime, Coding::UnsignedVb)));
-    add(FrameKind::Gps, FieldGroup::side(&["GPS_coord[0]", "GPS_coord[1]"], true, Rule(Predictor::HomeCoordinate, Coding::SignedVb)));
+    add(
+        FrameKind::Gps,
+        FieldGroup::side(&["time"], false, Rule(Predictor::LastMainFrameTime, Coding::UnsignedVb)),
+    );
+    add(
+        FrameKind::Gps,
+        FieldGroup::side(
+            &["GPS_coord[0]", "GPS_coord[1]"],
+            true,
+            Rule(Predictor::HomeCoordinate, Coding::SignedVb),
+        ),
+    );
     layout
 }
 
@@ -65,15 +101,21 @@ fn extra() -> impl Strategy<Value = Extra> {
         any::<u32>().prop_map(|time| LogEvent::SyncBeep { time_us: time.into() }),
         any::<u32>().prop_map(|reason| LogEvent::Disarm { reason }),
         any::<[u32; 2]>().prop_map(|[new, old]| LogEvent::FlightMode { new, old }),
-        (0..128_u8, any::<i32>())
-            .prop_map(|(function, value)| LogEvent::Adjustment { function, value: AdjustedValue::Whole(value) }),
-        (0..128_u8, -1e9..1e9_f32)
-            .prop_map(|(function, value)| LogEvent::Adjustment { function, value: AdjustedValue::Float(value) }),
+        (0..128_u8, any::<i32>()).prop_map(|(function, value)| LogEvent::Adjustment {
+            function,
+            value: AdjustedValue::Whole(value)
+        }),
+        (0..128_u8, -1e9..1e9_f32).prop_map(|(function, value)| LogEvent::Adjustment {
+            function,
+            value: AdjustedValue::Float(value)
+        }),
     ];
     prop_oneof![
         any::<[i32; 5]>().prop_map(Extra::Slow),
-        (-900_000_000..=900_000_000, -1_800_000_000..=1_800_000_000).prop_map(|(lat, lon)| Extra::Home([lat, lon])),
-        (-900_000_000..=900_000_000, -1_800_000_000..=1_800_000_000).prop_map(|(lat, lon)| Extra::Gps([lat, lon])),
+        (-900_000_000..=900_000_000, -1_800_000_000..=1_800_000_000)
+            .prop_map(|(lat, lon)| Extra::Home([lat, lon])),
+        (-900_000_000..=900_000_000, -1_800_000_000..=1_800_000_000)
+            .prop_map(|(lat, lon)| Extra::Gps([lat, lon])),
         event.prop_map(Extra::Event),
     ]
 }
@@ -104,7 +146,8 @@ fn frame(values: impl IntoIterator<Item = i32>) -> FrameValues {
 fn written(loops: &[Loop], p_interval: u32, begin: u32) -> (Vec<u8>, Vec<Read>) {
     let (layout, constants) = (layout(), LogConstants { p_interval, ..CONSTANTS });
     let mut bytes = format!("{FIRST_LINE}\nH Data version:2\n").into_bytes();
-    bytes.extend((0..).map_while(|number| layout.line(number)).flat_map(|line| line.to_string().into_bytes()));
+    bytes
+        .extend((0..).map_while(|number| layout.line(number)).flat_map(|line| line.to_string().into_bytes()));
     let settings = format!(
         "H I interval:{INTRA}\nH P interval:{p_interval}\nH minthrottle:1070\nH motorOutput:1000,2000\nH vbatref:1620\n"
     );
@@ -123,7 +166,8 @@ fn written(loops: &[Loop], p_interval: u32, begin: u32) -> (Vec<u8>, Vec<Read>) 
             // What is between two frames belongs to the next one.
             continue;
         }
-        let values: Vec<i32> = [iteration as i32, time as i32].into_iter().chain(values.iter().copied()).collect();
+        let values: Vec<i32> =
+            [iteration as i32, time as i32].into_iter().chain(values.iter().copied()).collect();
         let kind = if place == 0 { FrameKind::Intra } else { FrameKind::Inter };
         match kind {
             FrameKind::Intra => encoder.intra(&frame(values.clone()), &mut buffer),
