@@ -4,6 +4,7 @@ mod arming;
 pub mod command;
 mod event;
 mod flight_feed;
+mod flight_logs;
 mod fly_again;
 mod forecaster;
 mod hazards;

@@ -1,4 +1,4 @@
-//! The storage of the configuration: `eeprom.bin` in a directory, or memory.
+//! The storage of the configuration: `eeprom.bin` in a directory, or memory. `log_folder` has the blackbox logs beside it.
 //!
 //! A save always leaves at least one good copy, even if it is interrupted:
 //!
@@ -20,10 +20,12 @@ use crate::firmware::config::{Configuration, correct};
 use crate::firmware::storage::{ImageError, decode, encode};
 
 mod files;
+mod log_folder;
 pub mod state_file;
 
 pub use files::link_target;
 use files::{Files, read_image};
+pub use log_folder::{LogFolder, logs_in};
 
 /// Returns the files that a store in this directory uses or leaves, including missing ones. If the image is a
 /// link, they are beside its target.
@@ -173,6 +175,14 @@ impl Store {
         self.used_bytes = length;
         self.note = None;
         Ok(())
+    }
+
+    /// Returns the directory for logs, if the store has one.
+    pub fn log_folder(&self) -> Option<LogFolder> {
+        match &self.place {
+            Place::Memory(_) => None,
+            Place::Directory(directory) => Some(LogFolder::new(directory.files.directory.clone())),
+        }
     }
 
     /// Returns the reason why [`Store::save`] cannot work, if it is known beforehand.

@@ -15,6 +15,7 @@
 
 mod config;
 mod debug;
+mod flash;
 mod header;
 mod log;
 mod main_frame;
@@ -24,6 +25,8 @@ mod side_frames;
 mod stream;
 
 pub use config::{DISABLED_FIELDS, LogConfig, LogDevice, disabled_mask};
+pub use flash::{FLASH_BYTES, FLASH_SECTORS, Flash, FlashFacts};
+pub use header::WRITER_LINE;
 pub use log::{LogDefinition, LogPart};
 pub use main_frame::MainState;
 pub use recorder::LogStep;

@@ -14,6 +14,7 @@
 
 mod commands;
 mod craft;
+mod flash;
 mod gps;
 mod identity;
 mod layout;
@@ -30,6 +31,7 @@ mod table;
 mod text;
 mod tuning;
 
+pub use flash::flash_reply;
 pub use observation::{MspFacts, UtcTime};
 pub use table::{MESSAGES, Message};
 
@@ -71,6 +73,13 @@ pub enum MspAction {
         /// The ground speed, cm/s.
         speed_cms: u16,
     },
+    /// Reads the flash memory for logs. The owner writes the bytes, at most `length` from `address` on, behind the reply.
+    ReadFlash {
+        address: u32,
+        length: u16,
+    },
+    /// Erases the flash memory for logs.
+    EraseFlash,
     /// Runs the motors of the disarmed craft at these outputs, µs.
     MotorTest(PerMotor<u16>),
     CalibrateAcc,

@@ -5,6 +5,7 @@ use crate::signals::{RcFrame, RcSource};
 use crate::telemetry::{DisarmReason, FirmwareEvent, InFlightCommand, InFlightRefusal, NavEvent, Refusal};
 
 use super::Firmware;
+use super::blackbox::FlashFacts;
 use super::cli::{
     BuildInfo, CliAction, CliContext, CliFacts, CliReply, Interpreter, RefusedLine, StorageFacts,
 };
@@ -91,6 +92,11 @@ impl Firmware {
     /// Sets the facts about the stored configuration that commands print.
     pub fn set_storage_facts(&mut self, facts: StorageFacts) {
         self.setup.storage = facts;
+    }
+
+    /// Sets the facts about the flash memory for logs that messages report.
+    pub fn set_flash_facts(&mut self, facts: FlashFacts) {
+        self.setup.flash = facts;
     }
 
     /// Sets the flag that an earlier instant is shown. Clients cannot change anything then.

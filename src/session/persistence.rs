@@ -1,6 +1,7 @@
 //! Saves the configuration of the flight controller and restarts it, for the clients of the links and for the
-//! console alike. A remote flight controller stores its configuration itself.
+//! console alike, and keeps its logs. A remote flight controller stores both itself.
 
+use super::flight_logs::FlightLogs;
 use crate::firmware::cli::{CliAction, CliReply};
 use crate::firmware::config::Configuration;
 use crate::storage::Store;
@@ -15,6 +16,7 @@ pub struct Persistence {
     at_boot: Option<Box<Configuration>>,
     /// `true` if a craft without mode conditions gets the starter modes at every restart.
     starter_modes: bool,
+    logs: FlightLogs,
 }
 
 /// The effects of saving and restarting for a line of the command line.
@@ -32,7 +34,13 @@ impl Persistence {
     pub fn new(store: Store, controller: &mut FlightController, starter_modes: bool) -> Self {
         controller.set_storage_facts(store.facts());
         let at_boot = controller.configuration().cloned().map(Box::new);
-        Self { store, at_boot, starter_modes }
+        let logs = FlightLogs::new(store.log_folder());
+        Self { store, at_boot, starter_modes, logs }
+    }
+
+    /// Returns the blackbox logs of the craft.
+    pub(super) fn logs(&mut self) -> &mut FlightLogs {
+        &mut self.logs
     }
 
     /// Stores the configuration in the flight controller's memory.

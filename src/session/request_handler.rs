@@ -10,7 +10,7 @@ use super::host_status::HostStatus;
 use super::late_answers::{LateAnswers, no_answer_line};
 use super::persistence::Persistence;
 use crate::firmware::cli::{COMMANDS, CliAction, CliMode, CliReply, complete};
-use crate::firmware::msp::{MspAction, Outcome, UtcTime};
+use crate::firmware::msp::{MspAction, Outcome, UtcTime, flash_reply};
 use crate::link::proto::command_line::{AfterLine, Completion, LineReply, LineSource};
 use crate::link::{ClientId, Request, RestartSignal};
 use crate::signals::{RcFrame, RcSource};
@@ -97,6 +97,7 @@ impl RequestHandler {
         match request {
             Request::Msp { code, payload, reply, .. } => {
                 let message = Message { code, payload, clock: self.clock_at(now) };
+                vehicle.controller_mut().set_flash_facts(persistence.logs().flash().facts());
                 match vehicle.apply(&message.into()) {
                     Answer::Now(Reply::Message(outcome)) => {
                         let payload = self.act_on_message(outcome, vehicle, persistence, now, &mut handled);
@@ -225,6 +226,11 @@ impl RequestHandler {
             Some(MspAction::SetClock { unix_s, millis }) => {
                 self.clock = Some((UtcTime { unix_s, millis }, now));
             }
+            Some(MspAction::ReadFlash { address, length }) => {
+                let bytes = persistence.logs().flash().read(address as usize, length.into());
+                return Some(flash_reply(address, bytes));
+            }
+            Some(MspAction::EraseFlash) => persistence.logs().erase_flash(),
             // The firmware has used it. From here on it ages in wall time.
             Some(MspAction::RawRc(frame)) => {
                 self.msp = Some(ReceivedRc { frame, at: now });

@@ -299,6 +299,7 @@ impl Session {
             let after = start.elapsed();
             self.runner.pacer.ran(ticks, after);
             self.count_lost_time(after);
+            self.tend_logs();
             if ticks > 0 || self.changed {
                 self.flush_events();
             }
@@ -466,6 +467,14 @@ impl Session {
 
     fn flush_events(&mut self) {
         self.events.send_events_of(&mut self.vehicle);
+    }
+
+    /// Passes the blackbox logs on to the system, and reports their files and errors.
+    fn tend_logs(&mut self) {
+        let logs = self.persistence.logs();
+        logs.flush_if_due(Instant::now());
+        let notices = logs.take_notices();
+        self.notices(notices);
     }
 
     /// Reports the notices of a request, then its answer.

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use arrayvec::ArrayVec;
 
+use super::flight_logs::FlightLogs;
 use super::request_handler::RequestHandler;
 use crate::link::endpoint::EndpointStatus;
 use crate::link::proto::fdm::PacketError;
@@ -54,6 +55,15 @@ impl fmt::Display for SimulatorNotice {
             Self::Adapted(notice) => f.write_str(&sentence(&notice.to_string())),
         }
     }
+}
+
+/// The parts of the session that take part in the ticks.
+#[derive(Debug)]
+pub(super) struct Beside<'a> {
+    pub(super) handler: &'a mut RequestHandler,
+    pub(super) logs: &'a mut FlightLogs,
+    /// The multiple of the wall clock at which simulated time has run.
+    pub(super) speed: f64,
 }
 
 /// The external simulator of a session.
@@ -112,20 +122,18 @@ impl Simulator {
         self.link.status(now)
     }
 
-    /// Takes a datagram that was sent at `at`, while simulated time has run `speed` times as fast as the wall
-    /// clock. Flies on with the packets that have arrived by then, and returns the ticks.
+    /// Takes a datagram that was sent at `at`. Flies on with the packets that have arrived by then, and returns the ticks.
     pub(super) fn receive(
         &mut self,
         datagram: Vec<u8>,
         at: Instant,
         vehicle: &mut Vehicle,
-        handler: &mut RequestHandler,
         events: &mut EventSender,
-        speed: f64,
+        beside: &mut Beside<'_>,
     ) -> u64 {
         self.end_faults(at, vehicle);
         self.incoming.send(datagram, at, &impairment(vehicle.link_faults()));
-        self.take_arrived(at, vehicle, handler, events, speed)
+        self.take_arrived(at, vehicle, events, beside)
     }
 
     /// Flies on with the packets that have arrived by `now`, and returns the ticks.
@@ -133,13 +141,12 @@ impl Simulator {
         &mut self,
         now: Instant,
         vehicle: &mut Vehicle,
-        handler: &mut RequestHandler,
         events: &mut EventSender,
-        speed: f64,
+        beside: &mut Beside<'_>,
     ) -> u64 {
         let mut ticks = 0;
         while let Some((datagram, at)) = self.incoming.arrived(now) {
-            ticks += self.fly(&datagram, at, vehicle, handler, events, speed);
+            ticks += self.fly(&datagram, at, vehicle, events, beside);
         }
         ticks
     }
@@ -158,17 +165,17 @@ impl Simulator {
         datagram: &[u8],
         at: Instant,
         vehicle: &mut Vehicle,
-        handler: &mut RequestHandler,
         events: &mut EventSender,
-        speed: f64,
+        beside: &mut Beside<'_>,
     ) -> u64 {
         let received = self.link.receive(datagram, at, |sensors, ticks| {
             let mut frame = *sensors;
             for _ in 0..ticks {
                 if vehicle.time().0.is_multiple_of(RC_REPEAT_US) {
-                    handler.keep_rc_fresh(vehicle, speed, at);
+                    beside.handler.keep_rc_fresh(vehicle, beside.speed, at);
                 }
                 vehicle.tick_on(&frame);
+                beside.logs.after_tick(vehicle);
                 // Inputs are held; a sample is new only once.
                 (frame.pressure_pa, frame.mag_flu, frame.gps) = (None, None, None);
             }
@@ -182,7 +189,7 @@ impl Simulator {
         self.report_return(at, vehicle, events);
         if received.kind == (PacketKind::Resync { restarted: true }) {
             vehicle.reset_craft();
-            handler.after_restart(false, vehicle);
+            beside.handler.after_restart(false, vehicle);
         }
         for notice in received.notices {
             self.changed = true;
@@ -201,12 +208,11 @@ impl Simulator {
         now: Instant,
         is_read: bool,
         vehicle: &mut Vehicle,
-        handler: &mut RequestHandler,
         events: &mut EventSender,
-        speed: f64,
+        beside: &mut Beside<'_>,
     ) -> u64 {
         self.end_faults(now, vehicle);
-        let ticks = self.take_arrived(now, vehicle, handler, events, speed);
+        let ticks = self.take_arrived(now, vehicle, events, beside);
         if is_read {
             self.link.poll(now);
         }

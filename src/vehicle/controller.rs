@@ -9,6 +9,7 @@ pub use remote::{FrameOut, RemoteController, RemoteRequest, RemoteTelemetry};
 use super::input_log::InputLog;
 use super::{CliLine, CliSession, Message, PlanUpload, VehicleRefusal};
 use crate::firmware::Firmware;
+use crate::firmware::blackbox::FlashFacts;
 use crate::firmware::cli::{BuildInfo, CliMode, CliReply, StorageFacts};
 use crate::firmware::config::Configuration;
 use crate::firmware::msp::Outcome;
@@ -213,6 +214,13 @@ impl FlightController {
     pub fn set_storage_facts(&mut self, facts: StorageFacts) {
         if let Self::Embedded(embedded) = self {
             embedded.firmware.set_storage_facts(facts);
+        }
+    }
+
+    /// Sets the facts about the flash memory for logs that an embedded controller reports.
+    pub fn set_flash_facts(&mut self, facts: FlashFacts) {
+        if let Self::Embedded(embedded) = self {
+            embedded.firmware.set_flash_facts(facts);
         }
     }
 

@@ -12,6 +12,7 @@
 mod app;
 mod app_flow;
 mod hostile_clients;
+mod logs;
 mod lost_time;
 mod memory;
 mod msp;

@@ -2,6 +2,7 @@
 
 use std::io::{BufRead, BufReader, Read};
 use std::net::SocketAddr;
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
@@ -17,7 +18,7 @@ pub(crate) struct Program {
     lines: mpsc::Receiver<String>,
     seen: Vec<String>,
     /// A separate home directory, so that the process sees nothing of the user's configuration.
-    _home: tempfile::TempDir,
+    home: tempfile::TempDir,
 }
 
 impl Program {
@@ -36,12 +37,18 @@ impl Program {
         let (sender, lines) = mpsc::channel();
         pass_on(child.stdout.take().unwrap(), sender.clone());
         pass_on(child.stderr.take().unwrap(), sender);
-        Self { child, lines, seen: Vec::new(), _home: home }
+        Self { child, lines, seen: Vec::new(), home }
     }
 
     /// Returns the process id.
     pub(crate) fn id(&self) -> u32 {
         self.child.id()
+    }
+
+    /// Returns its home and working directory.
+    #[allow(dead_code, reason = "only some of those that share this file look at its files")]
+    pub(crate) fn directory(&self) -> &Path {
+        self.home.path()
     }
 
     /// Returns the first result of `wanted` among the next lines. Panics with all lines seen if there is

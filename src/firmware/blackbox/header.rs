@@ -13,6 +13,9 @@ use crate::firmware::estimate::ACC_COUNTS_PER_G;
 use crate::firmware::settings::{Kind, Role, SETTINGS, Setting, Value, find};
 use crate::signals::SimTime;
 
+/// The name of the line about the program that simulates the craft.
+pub const WRITER_LINE: &str = "Log writer";
+
 /// The data of the header.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct HeaderFacts<'a> {
@@ -77,6 +80,7 @@ const SYSTEM: &[(&str, WriteValue)] = &[
     ("serialrx_provider", |_, out| out.write_str("0")),
     ("debug_mode", |facts, out| write_settings(facts, &["debug_mode"], out)),
     ("fields_disabled_mask", |facts, out| write!(out, "{}", disabled_mask(&facts.firmware.configuration().settings))),
+    (WRITER_LINE, |_, out| out.write_str(concat!("betadeck ", env!("CARGO_PKG_VERSION")))),
     ("DeviceUID", |_, out| out.write_str("000000000000000100000002")),
 ];
 

@@ -3,6 +3,7 @@
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::firmware::Firmware;
+use crate::firmware::blackbox::FlashFacts;
 use crate::firmware::cli::BuildInfo;
 use crate::firmware::modes::BoxSet;
 use crate::geo::distance_bearing;
@@ -60,6 +61,8 @@ pub struct MspFacts {
     pub gps: RawGps,
     /// The distance and direction of home, seen from the craft; zeros without a home.
     pub home: HomeVector,
+    /// The flash memory for logs.
+    pub flash: FlashFacts,
     /// The time of day, if it was set.
     pub clock: Option<UtcTime>,
 }
@@ -94,6 +97,7 @@ impl Default for MspFacts {
             motors_us: [1000; MOTORS],
             gps: RawGps::default(),
             home: HomeVector::default(),
+            flash: FlashFacts::default(),
             clock: None,
         }
     }
@@ -136,6 +140,7 @@ impl MspFacts {
                 .map(|pulse| pulse.round().clamp(0.0, 2500.0) as u16),
             gps: gps(firmware),
             home: home(firmware),
+            flash: firmware.setup.flash,
             clock,
         }
     }

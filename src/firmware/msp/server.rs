@@ -8,8 +8,8 @@ use crate::signals::RcSource;
 use crate::telemetry::FirmwareEvent;
 
 impl Firmware {
-    /// Answers a message and carries out its requests to the firmware itself. Storing, restarting and setting the time
-    /// of day are left to the owner, by the action in the outcome. `clock` is the time of day, if it was set.
+    /// Answers a message and carries out its requests to the firmware itself. Storing, restarting, the flash memory and
+    /// setting the time of day are left to the owner, by the action in the outcome. `clock` is the time of day, if it was set.
     pub fn run_msp(&mut self, code: u16, request: &[u8], clock: Option<UtcTime>) -> Outcome {
         let facts = self.msp_facts(clock);
         let configuration = &mut self.setup.configuration;
@@ -38,7 +38,14 @@ impl Firmware {
             }
             // Positions come from the simulator, so this one is not used.
             Some(MspAction::RawGps { .. }) => {}
-            Some(MspAction::Reboot | MspAction::SaveAndReboot | MspAction::SetClock { .. }) | None => {}
+            Some(
+                MspAction::Reboot
+                | MspAction::SaveAndReboot
+                | MspAction::SetClock { .. }
+                | MspAction::ReadFlash { .. }
+                | MspAction::EraseFlash,
+            )
+            | None => {}
         }
         outcome
     }
@@ -58,6 +65,7 @@ fn changes_configuration(action: Option<MspAction>) -> bool {
                 | MspAction::MotorTest(_)
                 | MspAction::RawGps { .. }
                 | MspAction::HoldHeading(_)
+                | MspAction::EraseFlash
         )
     )
 }

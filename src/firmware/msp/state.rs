@@ -162,11 +162,7 @@ pub(super) fn tx_info(call: &mut Call<'_>) {
     call.reply.u8(u8::from(call.facts.clock.is_some()));
 }
 
-/// Reports neither flash nor card.
-pub(super) fn dataflash_summary(call: &mut Call<'_>) {
-    call.reply.zeros(13);
-}
-
+/// Reports no card.
 pub(super) fn sdcard_summary(call: &mut Call<'_>) {
     call.reply.zeros(11);
 }

@@ -2,8 +2,8 @@
 
 use super::layout::{self, Field};
 use super::{
-    Call, Refused, commands, craft, gps, identity, modes, multiple, power, receiver, setting, simplified,
-    state, text, tuning,
+    Call, Refused, commands, craft, flash, gps, identity, modes, multiple, power, receiver, setting,
+    simplified, state, text, tuning,
 };
 use crate::msp::code::{self, MessageKind};
 
@@ -109,7 +109,9 @@ pub static MESSAGES: &[Message] = &[
     answer(code::RX_MAP, receiver::rx_map),
     check(code::SET_RX_MAP, receiver::set_rx_map),
     check(code::REBOOT, commands::reboot),
-    answer(code::DATAFLASH_SUMMARY, state::dataflash_summary),
+    answer(code::DATAFLASH_SUMMARY, flash::summary),
+    check(code::DATAFLASH_READ, flash::read),
+    check(code::DATAFLASH_ERASE, flash::erase),
     get(code::FAILSAFE_CONFIG, receiver::FAILSAFE),
     set(code::SET_FAILSAFE_CONFIG, receiver::FAILSAFE),
     answer(code::RXFAIL_CONFIG, receiver::rxfail),

@@ -1,6 +1,7 @@
 //! The configuration of the craft and the typed parameters computed from it.
 
 use crate::firmware::FirmwareOptions;
+use crate::firmware::blackbox::FlashFacts;
 use crate::firmware::cli::{BuildInfo, StorageFacts};
 use crate::firmware::config::{Configuration, Feature, MixerKind, correct};
 use crate::firmware::estimate::NotTurned;
@@ -15,6 +16,7 @@ pub(in crate::firmware) struct Setup {
     pub options: FirmwareOptions,
     pub build: BuildInfo,
     pub storage: StorageFacts,
+    pub flash: FlashFacts,
     pub rewound: bool,
     pub configuration: Configuration,
     pub boot: BootChoices,
@@ -36,8 +38,8 @@ impl Setup {
             outbox.push(FirmwareEvent::Notice(FirmwareNotice::MixerNotFlown));
         }
         let (build, storage) = (BuildInfo::default(), StorageFacts::default());
-        let rewound = false;
-        let setup = Self { options, build, storage, rewound, configuration, boot, parameters };
+        let (flash, rewound) = (FlashFacts::default(), false);
+        let setup = Self { options, build, storage, flash, rewound, configuration, boot, parameters };
         setup.report_lost_gps(had_gps, outbox);
         setup
     }
@@ -45,7 +47,13 @@ impl Setup {
     /// Returns the state after a restart with `configuration`. Facts about build and storage stay.
     pub(in crate::firmware) fn restarted(&self, configuration: Configuration, outbox: &mut Outbox) -> Self {
         let fresh = Self::new(configuration, self.options, outbox);
-        Self { build: self.build.clone(), storage: self.storage.clone(), rewound: self.rewound, ..fresh }
+        Self {
+            build: self.build.clone(),
+            storage: self.storage.clone(),
+            flash: self.flash,
+            rewound: self.rewound,
+            ..fresh
+        }
     }
 
     /// Returns the length of a step, µs.

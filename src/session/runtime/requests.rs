@@ -15,7 +15,7 @@ use crate::session::event::{EventSender, SessionEvent};
 use crate::session::policy::REWOUND;
 use crate::session::request_handler::{Handled, RequestHandler};
 use crate::session::runner::Subscriber;
-use crate::session::simulator::{RC_REPEAT_US, Simulator};
+use crate::session::simulator::{Beside, RC_REPEAT_US, Simulator};
 use crate::signals::RcSource;
 use crate::telemetry::LinkState;
 use crate::timeline::Timeline;
@@ -93,27 +93,22 @@ impl Session {
                 self.events.report(&mut self.vehicle, SessionEvent::Restarted);
             }
             if let (Some((datagram, at)), Some(simulator)) = (fdm, &mut self.simulator) {
-                let speed = self.runner.pacer.achieved();
-                flown += simulator.receive(
-                    datagram,
-                    at,
-                    &mut self.vehicle,
-                    &mut endpoints.handler,
-                    &mut self.events,
-                    speed,
-                );
+                let beside = &mut Beside {
+                    handler: &mut endpoints.handler,
+                    logs: self.persistence.logs(),
+                    speed: self.runner.pacer.achieved(),
+                };
+                flown += simulator.receive(datagram, at, &mut self.vehicle, &mut self.events, beside);
             }
         }
         if let Some(simulator) = &mut self.simulator {
-            let speed = self.runner.pacer.achieved();
-            flown += simulator.poll(
-                Instant::now(),
-                may_send && !self.more_waits,
-                &mut self.vehicle,
-                &mut endpoints.handler,
-                &mut self.events,
-                speed,
-            );
+            let beside = &mut Beside {
+                handler: &mut endpoints.handler,
+                logs: self.persistence.logs(),
+                speed: self.runner.pacer.achieved(),
+            };
+            let is_read = may_send && !self.more_waits;
+            flown += simulator.poll(Instant::now(), is_read, &mut self.vehicle, &mut self.events, beside);
             self.changed |= simulator.take_changed();
         }
         if endpoints.status.has_changed().unwrap_or(false) {

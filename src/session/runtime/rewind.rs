@@ -181,6 +181,7 @@ impl Session {
         let speed = self.wanted_speed();
         let rc = self.endpoints.as_ref().map(|endpoints| FreshRc { handler: &endpoints.handler, speed });
         let recorders = Recorders { timeline: &mut self.timeline, feed: &mut self.feed };
+        let recorders = (recorders, self.persistence.logs());
         let subscribers = &mut (rc, (recorders, &mut self.events));
         let _no_end = tick(&mut self.vehicle, subscribers);
     }
@@ -388,6 +389,10 @@ impl Session {
             return;
         };
         self.vehicle = vehicle;
+        // The log under way has what is discarded now.
+        if let Some(firmware) = self.vehicle.embedded_mut() {
+            firmware.begin_new_log();
+        }
         self.continue_on(branch, left, now);
     }
 

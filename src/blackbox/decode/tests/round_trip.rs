@@ -162,7 +162,7 @@ fn written(loops: &[Loop], p_interval: u32, begin: u32) -> (Vec<u8>, Vec<Read>) 
             time_us += u64::from(*step);
         }
         let place = iteration % INTRA;
-        if place % p_interval != 0 {
+        if !place.is_multiple_of(p_interval) {
             // What is between two frames belongs to the next one.
             continue;
         }
