@@ -97,7 +97,7 @@ pub use event_log::Severity;
 pub use files_link::FilesLink;
 pub use history::{EnteredLines, LineField};
 pub use map_state::MapMode;
-pub use message::{Effect, Msg};
+pub use message::{Effect, FlightForm, Msg};
 pub use panel::{Panel, Panels};
 pub use popup::{CommandLine, Palette, Popup, SeriesList};
 pub use run::{Ending, OtherReceiver, SessionLink, run, run_plain};

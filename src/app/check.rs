@@ -16,6 +16,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::error::{self, AppError};
 use super::firmware::{self, Beside, RemoteFirmware};
 use super::interrupt::interrupt_flag;
+use super::log_output::needs_embedded;
 use super::{parallel, setup};
 use crate::args::{CheckArgs, FlightArgs, PhysicsArgs};
 use crate::report::check::{Compared, Summary};
@@ -59,6 +60,9 @@ fn run_all(args: &CheckArgs, repeat: &[String]) -> Result<u8, AppError> {
     let beside = Beside { ports: (&args.firmware_ports).into(), flight: &flight, physics: &physics };
     let mut notices = Vec::new();
     let firmware = firmware::choose(&args.firmware, beside, &mut notices)?;
+    if firmware.is_some() && args.blackbox.is_some() {
+        return Err(needs_embedded());
+    }
     notices.extend(args.firmware_ports.idle_options(firmware.is_some()));
     notices.iter().for_each(|notice| error::tell(notice));
     let is_alone = firmware.as_ref().is_some_and(|firmware| firmware.clock == FirmwareClock::Real);
@@ -94,6 +98,8 @@ fn fly(
     if let Some(firmware) = firmware {
         remote::refuse_many(firmware, jobs.len(), args.watch)?;
     }
+    let names = || jobs.iter().map(|job| job.name(loaded).unwrap_or_default()).collect();
+    let logs = output::log_files(args, loaded, names)?;
     let stop = AtomicBool::new(false);
     let mut results = Results::new(Output::open(args, repeat, loaded)?, jobs.len(), args.fail_fast, &stop);
     let started = run::Stopwatch::start();
@@ -103,7 +109,8 @@ fn fly(
         None => {
             let mut repetitions = run::Repetitions::default();
             let is_reported = args.report.is_some();
-            let fly = |_, job| run::one(loaded, job, is_reported, &is_stopped);
+            let log_of = |job: &run::Job| logs.as_ref().and_then(|files| files.of(job.number));
+            let fly = |_, job| run::one(loaded, job, is_reported, log_of(&job), &is_stopped);
             parallel::all(&jobs, threads, &is_stopped, fly, |(flight, report), done| {
                 results.flight(repetitions.compare(flight), report, done);
             })?;

@@ -64,7 +64,7 @@ pub(super) fn run(args: &CompareArgs, repeat: &[String]) -> Result<u8, AppError>
     let flights = Flights::new(args, &compared, &mut notices)?;
     let seeds = jobs::seeds(args, flights.world(), &mut notices);
     let jobs = jobs::jobs(args, &compared, &seeds)?;
-    let outputs = Outputs::prepare(args, repeat)?;
+    let outputs = Outputs::prepare(args, repeat, &jobs::logged(args, &compared, &jobs)?)?;
     notices.iter().for_each(|notice| error::tell(notice));
     let mut sides = compared.each_ref().map(|one| Side {
         name: one.name.clone(),
@@ -72,7 +72,7 @@ pub(super) fn run(args: &CompareArgs, repeat: &[String]) -> Result<u8, AppError>
         flights: Vec::new(),
     });
     let threads = if is_alone { 1 } else { parallel::threads(args.jobs) };
-    let flown = fly(args, &flights, &compared, &jobs, threads, &mut sides);
+    let flown = fly(args, &flights, &compared, (&jobs, &outputs), threads, &mut sides);
     let has_flown = sides.iter().any(|side| !side.flights.is_empty());
     let conditions = conditions(&args.flight, &seeds);
     let comparison = Comparison::new(flights.plan_name(), &conditions, flights.route(), sides);
@@ -92,7 +92,7 @@ fn fly(
     args: &CompareArgs,
     flights: &Flights,
     compared: &[Compared; 2],
-    jobs: &[Job],
+    (jobs, outputs): (&[Job], &Outputs),
     threads: usize,
     sides: &mut [Side; 2],
 ) -> Result<bool, AppError> {
@@ -107,7 +107,8 @@ fn fly(
         threads,
         &is_stopped,
         |thread, job| {
-            let done = flights.fly(compared.get(job.side)?, job.seed, thread, threads == 1);
+            let log = job.log.and_then(|flight| outputs.log(flight));
+            let done = flights.fly(compared.get(job.side)?, (job.seed, log), thread, threads == 1);
             if done.is_err() {
                 failed.store(true, Ordering::Relaxed);
             }

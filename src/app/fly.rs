@@ -12,6 +12,7 @@ use super::error::{self, AppError};
 use super::firmware::run::{RemoteRun, RunOptions, unless_interrupted};
 use super::firmware::{self, Beside, RemoteFirmware};
 use super::interrupt::interrupt_flag;
+use super::log_output::{LogOutput, needs_embedded};
 use super::terrain::with_terrain;
 use super::{report, setup};
 use crate::args::{FlyArgs, PhysicsArgs, Speed};
@@ -28,7 +29,7 @@ use crate::session::{Event, Flying as _, Runner, Stopped, Subscriber, hazards};
 use crate::storage::Store;
 use crate::terrain::{Relief, Tiles};
 use crate::vehicle::Vehicle;
-use output::{Beside as BesideFlight, Output, Prelude, Recorder};
+use output::{Beside as BesideFlight, Output, Prelude, Recorded, Recorder};
 use watched::WatchedFlight;
 
 /// Flies and reports. The exit code is 0 if the mission completed.
@@ -42,8 +43,10 @@ pub(super) fn run(args: &FlyArgs, repeat: &[String]) -> Result<u8, AppError> {
     let beside = Beside { ports: (&args.firmware_ports).into(), flight: &args.flight, physics: &physics };
     let firmware = firmware::choose(&args.firmware, beside, &mut notices)?
         .map(|firmware| firmware.with_settings(&plan.settings, &args.mission.set));
-    if firmware.is_none() {
-        setup::check_set(&args.mission.set)?;
+    match firmware {
+        None => setup::check_set(&args.mission.set)?,
+        Some(_) if args.blackbox.is_some() => return Err(needs_embedded()),
+        Some(_) => {}
     }
     notices.extend(args.firmware_ports.idle_options(firmware.is_some()));
     notices.extend(physics.idle_options(&args.flight, firmware.is_some()));
@@ -160,10 +163,13 @@ impl Start<'_> {
         self.notices.extend(self.hazards());
         let hash = self.hash();
         let recorder = self.recorder()?;
+        let log = output::log_file(self.args);
+        let log = log.map(|path| LogOutput::begin(&path, &mut self.vehicle)).transpose()?;
         self.beside.relief = self.relief();
         let Self { args, plan, vehicle, notices, beside, interrupted, .. } = self;
         let mut flight = WatchedFlight::new(setup::start_flight(vehicle, &options)?, hash);
-        let mut output = Output::open(args, flight.vehicle(), &plan, beside, recorder)?;
+        let files = Recorded { recorder, log };
+        let mut output = Output::open(args, flight.vehicle(), &plan, beside, files)?;
         first_events(flight.vehicle_mut(), notices).iter().try_for_each(|event| output.write(event))?;
         let step_us = flight.vehicle().step_us();
         let run = Run::Embedded(Runner::new(step_us, args.speed(), None));

@@ -57,16 +57,23 @@ impl KeptFiles {
     /// # Errors
     /// Returns a sentence that names the file that it would replace.
     pub(super) fn claim(&mut self, option: &'static str, path: &Path) -> Result<(), AppError> {
+        self.check(option, path)?;
+        self.keep(option, path);
+        Ok(())
+    }
+
+    /// Checks that the output of `option` may be written to a path.
+    ///
+    /// # Errors
+    /// Returns a sentence that names the file that it would replace.
+    pub(super) fn check(&self, option: &'static str, path: &Path) -> Result<(), AppError> {
         let stored = self.stores.iter().flat_map(|directory| storage::files_in(directory));
         let stored = stored.map(|file| ("the stored configuration", file));
         let states = self.states.iter().flat_map(|directory| state_files(directory));
         let kept = self.files.iter().cloned().chain(stored).chain(states);
         let clash = kept.filter(|(_, kept)| is_same(path, kept)).map(|(what, _)| what).next();
         match clash.or_else(|| self.states.iter().find_map(|directory| state_folder(directory, path))) {
-            None => {
-                self.keep(option, path);
-                Ok(())
-            }
+            None => Ok(()),
             Some(kept) => Err(AppError::input(format!(
                 "{option} {} would overwrite {kept}: name another file",
                 path.display()
@@ -79,6 +86,7 @@ impl KeptFiles {
 fn state_files(directory: &Path) -> Vec<(&'static str, PathBuf)> {
     let mut files: Vec<_> =
         HISTORIES.map(|name| ("the history of entered lines", directory.join(name))).into();
+    files.extend(storage::logs_in(directory).map(|path| ("a blackbox log", path)));
     for (folder, what) in FOLDERS {
         let entries = std::fs::read_dir(directory.join(folder)).into_iter().flatten().flatten();
         let paths = entries.map(|entry| entry.path());
@@ -108,7 +116,8 @@ pub(super) fn create(path: &Path) -> Result<File, AppError> {
     File::create(path).map_err(|error| cannot_write(path, &error))
 }
 
-fn cannot_write(path: &Path, error: &io::Error) -> AppError {
+/// Returns the error for a file that cannot be written.
+pub(super) fn cannot_write(path: &Path, error: &io::Error) -> AppError {
     AppError::environment(format!("cannot write {}: {error}", path.display()))
 }
 

@@ -12,6 +12,7 @@ use super::doors::OpenDoors;
 use super::error::{self, AppError};
 use super::firmware::{self, Beside, FirmwareFolder};
 use super::flight_recorder::{self, FlightRecorder, RecordedStart};
+use super::flown_log;
 use super::input_lines;
 use super::line_history::LineHistory;
 use super::live::{self, LiveArgs};
@@ -252,6 +253,7 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
             past,
             other: screen.other.map(read_beside).transpose()?,
             write_scenario: scenario_file::write,
+            write_log: flown_log::write,
             write_recording: recording_file::write,
         };
         // This comes before the first frame, because a person who sees the frame may already send a signal.

@@ -93,8 +93,12 @@ pub struct CheckArgs {
     #[arg(long, value_name = "FILE", requires = "report", help_heading = "Output")]
     pub backdrop: Vec<PathBuf>,
 
+    /// Writes the blackbox log of each flight of the embedded firmware into a folder; of one flight into a file, too
+    #[arg(long, value_name = "FILE|DIR", value_parser = value::output_path, conflicts_with_all = ["list", "watch"], help_heading = "Output")]
+    pub blackbox: Option<PathBuf>,
+
     /// Flies this plan and prints a scenario that expects the same behaviour, with sensible margins
-    #[arg(long, value_name = "PLAN", conflicts_with_all = ["what", "list", "filter", "json", "junit", "markdown", "report"], conflicts_with_all = FIRMWARE_OPTIONS, help_heading = "Output")]
+    #[arg(long, value_name = "PLAN", conflicts_with_all = ["what", "list", "filter", "json", "junit", "markdown", "report", "blackbox"], conflicts_with_all = FIRMWARE_OPTIONS, help_heading = "Output")]
     pub new: Option<PlanArg>,
 
     /// The choice of the firmware.

@@ -68,6 +68,10 @@ pub struct CompareArgs {
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub backdrop: Vec<PathBuf>,
 
+    /// Writes the blackbox log of each flight of the embedded firmware into a folder; of one flight into a file, too
+    #[arg(long, value_name = "FILE|DIR", value_parser = value::output_path, help_heading = "Output")]
+    pub blackbox: Option<PathBuf>,
+
     /// The flight and the judgement of the plan.
     #[command(flatten)]
     pub mission: MissionArgs,

@@ -51,6 +51,10 @@ pub struct FlyArgs {
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub backdrop: Vec<PathBuf>,
 
+    /// Writes the blackbox log of the embedded firmware; in a folder it gets the name of the plan
+    #[arg(long, value_name = "FILE|DIR", value_parser = value::output_path, help_heading = "Output")]
+    pub blackbox: Option<PathBuf>,
+
     /// Points a second of simulated time in the KML and GeoJSON tracks [default: 1]
     #[arg(long, value_name = "HZ", value_parser = value::track_rate, help_heading = "Output")]
     pub track_hz: Option<f64>,

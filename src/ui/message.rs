@@ -20,6 +20,25 @@ use crate::session::{Event, ForecastJob, ForecastReply};
 use crate::telemetry::snapshot::WorldView;
 use crate::vehicle::VehicleCommand;
 
+/// A form in which the flight just flown is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FlightForm {
+    /// A test for `betadeck check`.
+    Scenario,
+    /// The blackbox log of the craft.
+    Log,
+}
+
+impl FlightForm {
+    /// Returns the word for such a file.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Scenario => "scenario",
+            Self::Log => "log",
+        }
+    }
+}
+
 /// An input of the user interface.
 #[derive(Debug)]
 pub enum Msg {
@@ -65,9 +84,12 @@ pub enum Msg {
     },
     /// The craft saved its configuration. The error is the reason for a failure, a sentence.
     SaveReply(Result<(), String>),
-    /// The flight was written as a scenario, or as a recording. The result is a sentence with the place, or with the
-    /// reason for a failure.
-    ScenarioReply(Result<String, String>),
+    /// The flight was written. The result is a sentence with the place, or with the reason for a failure.
+    FlightWritten {
+        /// The word for the written file.
+        what: &'static str,
+        result: Result<String, String>,
+    },
     Files(FileReply),
     /// A second flight was read, to be shown beside the first.
     OtherFlight {
@@ -201,15 +223,16 @@ pub enum Effect {
     /// Save the configuration in the craft's flash, as a ground station does; the reply comes back as
     /// [`Msg::SaveReply`].
     SaveToFlash,
-    /// Write the flight just flown as a scenario to this file, or to one named after the plan; the reply comes back as
-    /// [`Msg::ScenarioReply`].
-    WriteScenario {
+    /// Write the flight just flown to this file, or to one named after the plan; the reply comes back as
+    /// [`Msg::FlightWritten`].
+    WriteFlight {
+        form: FlightForm,
         file: Option<PathBuf>,
         /// The name of the plan.
         plan: String,
     },
     /// Write the recording of the flight so far to this file, or to one named after the plan; the reply comes back as
-    /// [`Msg::ScenarioReply`].
+    /// [`Msg::FlightWritten`].
     WriteRecording {
         file: Option<PathBuf>,
         /// The name of the plan.

@@ -54,7 +54,7 @@ fn intent_of(effect: &Effect) -> Intent {
         Effect::Forecast(_) => Intent::Forecast,
         Effect::Files(_)
         | Effect::Curves(_)
-        | Effect::WriteScenario { .. }
+        | Effect::WriteFlight { .. }
         | Effect::WriteRecording { .. }
         | Effect::Copy(_)
         | Effect::Suspend

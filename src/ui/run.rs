@@ -45,6 +45,7 @@ const BATCH: usize = 256;
 pub type OtherReceiver = oneshot::Receiver<(String, Result<Arc<Overview>, String>)>;
 
 /// Writes the bytes of a recording to a file, or to one that is named after the plan. Returns a sentence.
+type WriteFlight = fn(Option<PathBuf>, &str, RecordedFlight) -> Result<String, String>;
 type WriteRecording = fn(Option<PathBuf>, &str, &[u8]) -> Result<String, String>;
 
 /// The user interface's link to the session.
@@ -59,7 +60,9 @@ pub struct SessionLink {
     pub other: Option<OtherReceiver>,
     /// Writes a flight as a scenario. Receives the file, or the name of the plan if there is none. Returns a sentence
     /// with the place, or with the reason for a failure.
-    pub write_scenario: fn(Option<PathBuf>, &str, RecordedFlight) -> Result<String, String>,
+    pub write_scenario: WriteFlight,
+    /// Writes the blackbox log of a flight, in the same way.
+    pub write_log: WriteFlight,
     /// Writes a recording, in the same way.
     pub write_recording: WriteRecording,
 }

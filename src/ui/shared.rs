@@ -22,7 +22,7 @@ use super::ground::GroundState;
 use super::keymap::Keymap;
 use super::layout::Slots;
 use super::map_state::MapState;
-use super::message::Effect;
+use super::message::{Effect, FlightForm};
 use super::other_flight::{Alignment, OtherFlight};
 use super::panel::Panel;
 use super::stick_recording::StickRecording;
@@ -215,10 +215,16 @@ impl Shared {
             && stored.is_some_and(|stored| !stored.waypoints.is_empty() && !self.flies(stored))
     }
 
-    /// Returns the request to write the flight just flown as a scenario.
-    pub(super) fn write_scenario(&mut self, file: Option<PathBuf>) -> Effect {
-        self.notify(Severity::Info, "The flight is flown again to derive its expectations.");
-        Effect::WriteScenario { file, plan: self.editor.plan().document().name.clone() }
+    /// Returns the request to write the flight just flown.
+    pub(super) fn write_flight(&mut self, form: FlightForm, file: Option<PathBuf>) -> Effect {
+        self.notify(
+            Severity::Info,
+            match form {
+                FlightForm::Scenario => "The flight is flown again to derive its expectations.",
+                FlightForm::Log => "The flight is flown again to write its log.",
+            },
+        );
+        Effect::WriteFlight { form, file, plan: self.editor.plan().document().name.clone() }
     }
 
     /// Returns the request to write the recording of the flight so far.

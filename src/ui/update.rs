@@ -17,7 +17,7 @@ use super::ground;
 use super::keymap::KeyPress;
 use super::map_edit::actions as map_edit;
 use super::map_point;
-use super::message::{Effect, Msg, Request};
+use super::message::{Effect, FlightForm, Msg, Request};
 use super::panel::Panel;
 use super::past_flight;
 use super::popup::{GoTo, Palette, Popup};
@@ -110,7 +110,7 @@ fn take(state: &mut AppState, msg: Msg) -> Vec<Effect> {
         Msg::UploadReply { id, count, result } => return uploaded(&mut state.shared, id, count, result),
         Msg::Forecast(reply) => forecast::take_answer(&mut state.shared, reply),
         Msg::DownloadReply { id, result } => return plan::downloaded(&mut state.shared, id, result),
-        Msg::ScenarioReply(result) => plan::scenario_written(&mut state.shared, result),
+        Msg::FlightWritten { what, result } => plan::flight_written(&mut state.shared, what, result),
         Msg::SaveReply(result) => plan::saved_to_flash(&mut state.shared, result),
         Msg::Files(reply) => return plan_popup::answered(&mut state.shared, reply),
         Msg::Busy => {
@@ -375,7 +375,8 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
         Action::Next => return focus_neighbour(&mut state.shared, 1),
         Action::Previous => return focus_neighbour(&mut state.shared, -1),
         Action::Zoom => state.shared.zoomed = !state.shared.zoomed,
-        Action::WriteScenario => return vec![state.shared.write_scenario(None)],
+        Action::WriteScenario => return vec![state.shared.write_flight(FlightForm::Scenario, None)],
+        Action::WriteLog => return vec![state.shared.write_flight(FlightForm::Log, None)],
         Action::WriteRecording => return vec![state.shared.write_recording(None)],
         Action::Tutorial => tutorial::toggle(&mut state.tutorial, &mut state.shared),
         Action::Help => state.popups.push(Popup::Help { scroll: 0 }),

@@ -23,7 +23,7 @@ const PLACEHOLDERS: [(&str, &str); 11] = [
 ];
 
 /// Values of settings that look like placeholders.
-const VALUES: [&str; 2] = ["OFF", "ON"];
+const VALUES: [&str; 4] = ["OFF", "ON", "SPIFLASH", "VIRTUAL"];
 
 /// Returns a command without its comment, with examples in place of the placeholders.
 fn filled_in(shown: &Shown) -> Result<String, String> {

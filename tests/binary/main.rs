@@ -26,6 +26,8 @@ mod inputs;
 mod limits;
 mod lines;
 #[cfg(unix)]
+mod logs;
+#[cfg(unix)]
 #[path = "../log_support/made_log.rs"]
 mod made_log;
 mod options;

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use super::Loaded;
 use super::progress::Progress;
 use crate::app::error::{self, AppError};
+use crate::app::log_output::LogFiles;
 use crate::app::output_file::{self, FinalOutput, KeptFiles};
 use crate::app::patient_output::PatientOutput;
 use crate::app::{report, setup};
@@ -60,15 +61,26 @@ fn files(args: &CheckArgs) -> impl Iterator<Item = (&'static str, &Path)> {
     all.filter_map(|(option, path)| Some((option, path?.as_path())))
 }
 
-/// Checks that no output replaces a file that must be kept.
-fn claim(args: &CheckArgs, inputs: &[PathBuf]) -> Result<(), AppError> {
+/// Checks that no output replaces a file that must be kept. Returns the files that a log must not replace.
+fn claim(args: &CheckArgs, inputs: &[PathBuf]) -> Result<KeptFiles, AppError> {
     let mut kept = KeptFiles::default();
     args.backdrop.iter().for_each(|path| kept.keep("--backdrop", path));
     for file in inputs {
         kept.keep("a scenario's file", file);
     }
     setup::keep_own_files(&mut kept);
-    files(args).try_for_each(|(option, path)| kept.claim(option, path))
+    files(args).try_for_each(|(option, path)| kept.claim(option, path))?;
+    Ok(kept)
+}
+
+/// Returns the files of the blackbox logs, if they are wanted, for flights with these names.
+pub(super) fn log_files(
+    args: &CheckArgs,
+    loaded: &Loaded,
+    flights: impl FnOnce() -> Vec<String>,
+) -> Result<Option<LogFiles>, AppError> {
+    let Some(path) = &args.blackbox else { return Ok(None) };
+    LogFiles::claim(path, &flights(), &claim(args, &loaded.files)?).map(Some)
 }
 
 /// Removes the results of an earlier run, because this run may fail before it flies.

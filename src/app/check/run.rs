@@ -1,16 +1,18 @@
 //! The flights of a run of `check`, and their results.
 #![allow(clippy::disallowed_methods, reason = "measures the wall time of flights")]
 
+use std::path::Path;
 use std::time::Instant;
 
 use super::record::Record;
 use super::{Comparisons, Loaded};
 use crate::app::AppError;
+use crate::app::log_output::{LogOnly, LogOutput};
 use crate::args::{CheckArgs, MOST_FLIGHTS};
 use crate::report::check::{CheckedFlight, Compared};
 use crate::report::flight::FlightReport;
 use crate::scenario::{self, Air, Case, CaseFlight, Flown, Scenario};
-use crate::session::Runner;
+use crate::session::{Runner, Stopped};
 
 /// A flight to be flown: the indices of its scenario, case and air, and the number of the repetition.
 #[derive(Debug, Clone, Copy)]
@@ -19,6 +21,8 @@ pub(super) struct Job {
     case: usize,
     air: usize,
     repetition: u32,
+    /// The number of the flight in the run, from 0.
+    pub(super) number: usize,
 }
 
 #[derive(Debug)]
@@ -79,7 +83,14 @@ pub(super) fn jobs(loaded: &Loaded, args: &CheckArgs) -> Vec<Job> {
             }
             for air in 0..one.airs.len() {
                 let repetitions = 0..args.repeat.unwrap_or(1);
-                jobs.extend(repetitions.map(|repetition| Job { scenario, case, air, repetition }));
+                let first = jobs.len();
+                jobs.extend((first..).zip(repetitions).map(|(number, repetition)| Job {
+                    scenario,
+                    case,
+                    air,
+                    repetition,
+                    number,
+                }));
             }
         }
     }
@@ -94,11 +105,12 @@ pub(super) fn is_wanted(scenario: &Scenario, case: &Case, args: &CheckArgs) -> b
 /// A judged flight, and its report if there is one.
 pub(super) type Judged = (CheckedFlight, Option<Box<FlightReport>>);
 
-/// Flies and judges one flight; `None` if it was interrupted.
+/// Flies and judges one flight, with its blackbox log in `log`, if that is a file. `None` if the flight was interrupted.
 pub(super) fn one(
     loaded: &Loaded,
     job: Job,
     is_reported: bool,
+    log: Option<&Path>,
     is_stopped: &impl Fn() -> bool,
 ) -> Option<Judged> {
     let (case, air) = job.of(loaded)?;
@@ -113,7 +125,19 @@ pub(super) fn one(
     };
     let mut record = Record::new(is_reported, flight.vehicle(), case);
     let mut runner = Runner::new(flight.vehicle().step_us(), f64::INFINITY, None);
-    runner.fly(&mut flight, &mut record, is_stopped).ok()?;
+    let mut log = match log.map(|path| LogOutput::begin(path, flight.vehicle_mut())).transpose() {
+        Ok(log) => log.map(LogOnly::new),
+        Err(error) => {
+            checked.problem = Some(error.message);
+            return Some((checked, None));
+        }
+    };
+    let ended = runner.fly(&mut flight, &mut (&mut record, &mut log), is_stopped);
+    let logged = log.map_or(Ok(()), LogOnly::finish);
+    if ended == Err(Stopped::Interrupted) {
+        return None;
+    }
+    checked.problem = logged.err().map(|error| error.message);
     let flown = flight.finish();
     let report = record.finish(case, &flown);
     Some((judged(checked, case, flown, &started), report))
@@ -142,6 +166,14 @@ impl Job {
     pub(super) fn of<'l>(&self, loaded: &'l Loaded) -> Option<(&'l Case, &'l Air)> {
         let case = loaded.scenarios.get(self.scenario)?.cases.get(self.case)?;
         Some((case, case.airs.get(self.air)?))
+    }
+
+    /// Returns the name of the flight for its file: scenario, case, and seed if the case is flown with several.
+    pub(super) fn name(&self, loaded: &Loaded) -> Option<String> {
+        let scenario = loaded.scenarios.get(self.scenario)?;
+        let (case, air) = self.of(loaded)?;
+        let seed = if case.airs.len() > 1 { format!("seed {}", air.seed) } else { String::new() };
+        Some(format!("{} {} {seed}", scenario.name, case.name))
     }
 
     /// Returns the facts that are known before the flight.

@@ -1,5 +1,6 @@
 //! Flights of one plan, each from the same start.
 
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -9,6 +10,7 @@ use super::recorder::Recorder;
 use crate::app::firmware::run::{OnEvent, RemoteRun, RunOptions, Stopped, unless_interrupted};
 use crate::app::firmware::{RemoteFirmware, reported};
 use crate::app::interrupt::interrupt_flag;
+use crate::app::log_output::{LogOnly, LogOutput};
 use crate::app::terrain::with_terrain;
 use crate::app::{AppError, error, setup};
 use crate::args::{CompareArgs, Speed};
@@ -112,17 +114,18 @@ impl Flights {
         self.interrupted.load(Ordering::Relaxed)
     }
 
-    /// Flies once; `None` after an interrupt. Messages about the firmware are printed at once if `at_once`.
+    /// Flies once with a seed, and with the log of an embedded firmware in a file, if it is named; `None` after an
+    /// interrupt. Messages about the firmware are printed at once if `at_once`.
     pub(super) fn fly(
         &self,
         compared: &Compared,
-        seed: u64,
+        (seed, log): (u64, Option<&Path>),
         thread: usize,
         at_once: bool,
     ) -> Result<Option<Flown>, AppError> {
         let mut setup = self.setup.clone();
         setup.world.seed = seed;
-        let Some(firmware) = &compared.firmware else { return self.fly_embedded(setup) };
+        let Some(firmware) = &compared.firmware else { return self.fly_embedded(setup, log) };
         let mut reported = Vec::new();
         let mut tell = |sentence: String| match at_once {
             true => error::tell(&sentence),
@@ -132,14 +135,16 @@ impl Flights {
         Ok(flown.map(|track| Flown { track, reported }))
     }
 
-    fn fly_embedded(&self, setup: FlightSetup) -> Result<Option<Flown>, AppError> {
+    fn fly_embedded(&self, setup: FlightSetup, log: Option<&Path>) -> Result<Option<Flown>, AppError> {
         let seed = setup.world.seed;
         let mut vehicle = setup::build(setup, &mut Vec::new())?;
         upload(vehicle.controller_mut(), &self.plan.plan, &[]).map_err(AppError::input)?;
         let mut recorder = Recorder::new(&vehicle, seed);
+        let mut log = log.map(|path| LogOutput::begin(path, &mut vehicle).map(LogOnly::new)).transpose()?;
         let mut flight = setup::start_flight(vehicle, &self.options)?;
         let mut runner = Runner::new(flight.vehicle().step_us(), f64::INFINITY, None);
-        let end = runner.fly(&mut flight, &mut recorder, || self.is_interrupted());
+        let end = runner.fly(&mut flight, &mut (&mut recorder, &mut log), || self.is_interrupted());
+        log.map_or(Ok(()), LogOnly::finish)?;
         Ok(end.ok().map(|end| Flown { track: recorder.finish(&flight, end), reported: Vec::new() }))
     }
 

@@ -2,6 +2,7 @@
 
 use super::Compared;
 use crate::app::AppError;
+use crate::app::log_output::needs_embedded;
 use crate::args::CompareArgs;
 use crate::scenario::MAX_FLIGHTS;
 use crate::sim::{Noise, WorldConfig};
@@ -15,6 +16,8 @@ pub(super) struct Job {
     pub(super) seed: u64,
     /// The number of the flight of this firmware, from 1, and the number of all its flights.
     pub(super) number: (usize, usize),
+    /// The place of the flight among those that can have a blackbox log, which are those of embedded firmwares.
+    pub(super) log: Option<usize>,
 }
 
 impl Job {
@@ -45,11 +48,35 @@ pub(super) fn jobs(
         )));
     }
     let mut jobs = Vec::with_capacity(all);
+    let mut logs = 0..;
     for (side, one) in compared.iter().enumerate() {
         let flights = seeds.iter().flat_map(|&seed| (0..one.times).map(move |_| seed)).enumerate();
-        jobs.extend(flights.map(|(index, seed)| Job { side, seed, number: (index + 1, times(one)) }));
+        jobs.extend(flights.map(|(index, seed)| Job {
+            side,
+            seed,
+            number: (index + 1, times(one)),
+            log: if one.firmware.is_none() { logs.next() } else { None },
+        }));
     }
     Ok(jobs)
+}
+
+/// Returns the names of the flights that can have a blackbox log: the firmware, and the seed if there are several.
+///
+/// # Errors
+/// Returns an error if logs are wanted and no embedded firmware flies.
+pub(super) fn logged(
+    args: &CompareArgs,
+    compared: &[Compared; 2],
+    jobs: &[Job],
+) -> Result<Vec<String>, AppError> {
+    if args.blackbox.is_some() && jobs.iter().all(|job| job.log.is_none()) {
+        return Err(needs_embedded());
+    }
+    let of_seed =
+        |job: &Job| if args.seeds.is_some() { format!(" seed {}", job.seed) } else { String::new() };
+    let logged = jobs.iter().filter(|job| job.log.is_some());
+    Ok(logged.filter_map(|job| Some(format!("{}{}", compared.get(job.side)?.name, of_seed(job)))).collect())
 }
 
 /// Refuses other seeds for a firmware on the wall clock.

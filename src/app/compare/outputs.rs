@@ -1,7 +1,8 @@
 //! The outputs of a comparison.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use crate::app::log_output::LogFiles;
 use crate::app::output_file::FinalOutput;
 use crate::app::{AppError, error, report, setup};
 use crate::args::{CompareArgs, OutputFile};
@@ -19,6 +20,7 @@ pub(super) struct Outputs {
     svg: Option<FinalOutput>,
     report: Option<FinalOutput>,
     markdown: Option<FinalOutput>,
+    logs: Option<LogFiles>,
     /// The map under the tracks of the report.
     backdrop: Vec<Feature>,
     /// The command that gives the comparison again.
@@ -26,8 +28,13 @@ pub(super) struct Outputs {
 }
 
 impl Outputs {
-    /// Checks that the files can be written, so that no flight is wasted. The files stay unchanged.
-    pub(super) fn prepare(args: &CompareArgs, repeat: &[String]) -> Result<Self, AppError> {
+    /// Checks that the files can be written, so that no flight is wasted. The files stay unchanged. `logged` are the names
+    /// of the flights that can have a blackbox log.
+    pub(super) fn prepare(
+        args: &CompareArgs,
+        repeat: &[String],
+        logged: &[String],
+    ) -> Result<Self, AppError> {
         let json = match &args.json {
             Some(OutputFile::File(path)) => Some(path),
             Some(OutputFile::Stdout) | None => None,
@@ -50,9 +57,15 @@ impl Outputs {
             svg: prepare(&args.svg)?,
             report: prepare(&args.report)?,
             markdown: prepare(&args.markdown)?,
+            logs: args.blackbox.as_deref().map(|path| LogFiles::claim(path, logged, &kept)).transpose()?,
             backdrop,
             command: report::command(repeat),
         })
+    }
+
+    /// Returns the file of the log of a flight, by its place among the flights with a log.
+    pub(super) fn log(&self, flight: usize) -> Option<&Path> {
+        self.logs.as_ref()?.of(flight)
     }
 
     /// Writes all outputs, even if one of them fails.

@@ -12,6 +12,7 @@ mod tracks;
 
 use super::watched::WatchedFlight;
 use crate::app::error::{self, AppError};
+use crate::app::log_output::LogOutput;
 use crate::args::FlyArgs;
 use crate::plan::format::PlanFile;
 use crate::recording;
@@ -19,7 +20,7 @@ use crate::report::End;
 use crate::session::{Event, Flying as _, Subscriber};
 use crate::signals::SimTime;
 use crate::vehicle::Vehicle;
-pub(super) use claim::claim;
+pub(super) use claim::{claim, log_file};
 use lines::Lines;
 pub(super) use prelude::Prelude;
 pub(super) use recorder::Recorder;
@@ -28,6 +29,12 @@ use report::Report;
 use table::Table;
 use tracks::Tracks;
 
+/// The files of the flight that begin with its vehicle.
+pub(super) struct Recorded {
+    pub(super) recorder: Option<Recorder>,
+    pub(super) log: Option<LogOutput>,
+}
+
 /// The outputs of the flight.
 pub(super) struct Output {
     lines: Option<Lines>,
@@ -35,6 +42,7 @@ pub(super) struct Output {
     tracks: Tracks,
     recorder: Option<Recorder>,
     report: Option<Report>,
+    log: Option<LogOutput>,
     /// `true` after the end of the flight: only its end remains to be reported.
     is_over: bool,
     /// The first error. The flight stops.
@@ -48,7 +56,7 @@ impl Output {
         vehicle: &Vehicle,
         plan: &PlanFile,
         beside: Beside,
-        recorder: Option<Recorder>,
+        Recorded { recorder, log }: Recorded,
     ) -> Result<Self, AppError> {
         Ok(Self {
             lines: Lines::open(args)?,
@@ -56,6 +64,7 @@ impl Output {
             tracks: Tracks::open(args, vehicle, plan)?,
             recorder,
             report: Report::open(args, vehicle, plan, beside)?,
+            log,
             is_over: false,
             problem: None,
         })
@@ -96,6 +105,9 @@ impl Output {
         if let Some(report) = &mut self.report {
             report.after_tick(flight.vehicle());
         }
+        if let Some(log) = &mut self.log {
+            log.after_tick(flight.vehicle())?;
+        }
         self.tracks.offer(flight.vehicle())
     }
 
@@ -116,7 +128,7 @@ impl Output {
 
     /// Ends the files and reports the end of the flight.
     pub(super) fn finish(self, time: SimTime, end: &End) -> Result<(), AppError> {
-        let Self { lines, table, tracks, recorder, report, .. } = self;
+        let Self { lines, table, tracks, recorder, report, log, .. } = self;
         if let Some(mut lines) = lines {
             lines.end(time, end)?;
             lines.finish()?;
@@ -128,6 +140,9 @@ impl Output {
             recorder.finish(recording::End { t: time, result, reason, flown_s: end.flown_s, hash: None })?;
         }
         report.map_or(Ok(()), |report| report.finish(end))?;
+        if let Some(sentence) = log.map(LogOutput::finish).transpose()?.flatten() {
+            error::tell(&sentence);
+        }
         error::tell(&end.result_line());
         error::tell(&end.flown_line());
         Ok(())

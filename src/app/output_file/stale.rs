@@ -5,14 +5,26 @@ use std::fs::File;
 use std::io::{BufRead as _, BufReader, Read as _, Seek as _};
 use std::path::{Path, PathBuf};
 
+use crate::blackbox::FIRST_LINE;
+use crate::firmware::blackbox::WRITER_LINE;
 use crate::recording::{ReadError, TAIL, read_summary};
 use crate::storage;
 
 /// The most bytes of a file that are read.
 const LOOKED_AT: u64 = 1 << 20;
 /// The options for files of results.
-const OPTIONS: [&str; 9] =
-    ["--json", "--csv", "--junit", "--markdown", "--gpx", "--kml", "--geojson", "--record", "--report"];
+const OPTIONS: [&str; 10] = [
+    "--json",
+    "--csv",
+    "--junit",
+    "--markdown",
+    "--gpx",
+    "--kml",
+    "--geojson",
+    "--record",
+    "--report",
+    "--blackbox",
+];
 /// The start of a table of samples.
 const SAMPLES: &str = "time (s),boot_time (s),state,waypoint,";
 /// The commands that write these results.
@@ -55,6 +67,9 @@ fn holds_results(path: &Path) -> bool {
     if is_read && !matches!(read_summary(&head, &[]), Err(ReadError::NoRecording)) {
         return true;
     }
+    if head.starts_with(FIRST_LINE.as_bytes()) {
+        return is_own_log(&head);
+    }
     let mut start = Vec::new();
     let mut lines = BufReader::new(file.take(LOOKED_AT));
     for _ in 0..2 {
@@ -78,6 +93,12 @@ fn holds_results(path: &Path) -> bool {
         || summaries.contains(&first)
         || first.starts_with(SAMPLES)
         || is_event()
+}
+
+/// Returns `true` if the header of a blackbox log has the line of this program.
+fn is_own_log(head: &[u8]) -> bool {
+    let mark = format!("H {WRITER_LINE}:betadeck ");
+    head.split(|byte| *byte == b'\n').any(|line| line.starts_with(mark.as_bytes()))
 }
 
 #[cfg(test)]
@@ -114,6 +135,16 @@ mod tests {
             ("other.xml", "<?xml version=\"1.0\"?>\n<testsuites name=\"cargo\">\n", false),
             ("other.json", "{\"name\":\"plan\"}\n", false),
             ("plan.txt", "waypoint insert 0 40 -79 2000 0 LAND 0 NONE\n", false),
+            (
+                "own.bbl",
+                "H Product:Blackbox flight data recorder by Nicholas Sherlock\nH Data version:2\nH Log writer:betadeck 1\n",
+                true,
+            ),
+            (
+                "real.bbl",
+                "H Product:Blackbox flight data recorder by Nicholas Sherlock\nH Data version:2\n",
+                false,
+            ),
             ("empty", "", false),
         ];
         let mut line: Vec<OsString> = vec!["betadeck".into(), "fly".into()];

@@ -104,18 +104,26 @@ impl StreamedOutput {
     /// # Errors
     /// Returns the reason why it cannot be written.
     pub(in crate::app) fn begin_with(path: &Path, bytes: &[u8]) -> Result<Self, AppError> {
-        let Self { writer, target, .. } = Self::begin(path)?;
-        let named = writer.into_inner().map_err(io::IntoInnerError::into_error).and_then(|mut stream| {
-            stream.write_all(bytes)?;
-            match (stream, target) {
-                (Stream::Temporary(file), Some((target, permissions))) => {
-                    name(file, &target, permissions).map(Stream::Direct)
-                }
-                (stream, _) => Ok(stream),
+        let mut output = Self::begin(path)?;
+        output.write_all(bytes).map_err(|error| cannot_write(path, &error))?;
+        output.named()
+    }
+
+    /// Gives the file its name before its end. After a kill it has what was flushed.
+    ///
+    /// # Errors
+    /// Returns the reason why it cannot be written.
+    pub(in crate::app) fn named(self) -> Result<Self, AppError> {
+        let Self { path, writer, target } = self;
+        let stream = writer.into_inner().map_err(io::IntoInnerError::into_error);
+        let named = stream.and_then(|stream| match (stream, target) {
+            (Stream::Temporary(file), Some((target, permissions))) => {
+                name(file, &target, permissions).map(Stream::Direct)
             }
+            (stream, _) => Ok(stream),
         });
-        let stream = named.map_err(|error| cannot_write(path, &error))?;
-        Ok(Self { path: path.to_owned(), writer: BufWriter::new(stream), target: None })
+        let stream = named.map_err(|error| cannot_write(&path, &error))?;
+        Ok(Self { path, writer: BufWriter::new(stream), target: None })
     }
 
     /// Gives the file its name. Until then there is no file with that name.
@@ -123,15 +131,7 @@ impl StreamedOutput {
     /// # Errors
     /// Returns the reason why it cannot be written.
     pub(in crate::app) fn finish(self) -> Result<(), AppError> {
-        let Self { path, writer, target } = self;
-        let stream = writer.into_inner().map_err(io::IntoInnerError::into_error);
-        let named = stream.and_then(|stream| match (stream, target) {
-            (Stream::Temporary(file), Some((target, permissions))) => {
-                name(file, &target, permissions).map(drop)
-            }
-            _ => Ok(()),
-        });
-        named.map_err(|error| cannot_write(&path, &error))
+        self.named().map(drop)
     }
 }
 

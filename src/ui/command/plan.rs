@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::ui::action::{Action, EditAction, PanelAction};
 use crate::ui::editor::{FileRequest, findings};
-use crate::ui::message::{Change, Effect, Request};
+use crate::ui::message::{Change, Effect, FlightForm, Request};
 use crate::ui::shared::Shared;
 
 /// The argument that removes the backdrop.
@@ -33,7 +33,11 @@ pub(super) fn save(state: &mut Shared, _: &str, file: &str) -> Result<Vec<Reques
 }
 
 pub(super) fn scenario(state: &mut Shared, _: &str, file: &str) -> Result<Vec<Request>, String> {
-    Ok(vec![state.write_scenario(named(file)?).into()])
+    Ok(vec![state.write_flight(FlightForm::Scenario, named(file)?).into()])
+}
+
+pub(super) fn log(state: &mut Shared, _: &str, file: &str) -> Result<Vec<Request>, String> {
+    Ok(vec![state.write_flight(FlightForm::Log, named(file)?).into()])
 }
 
 pub(super) fn record(state: &mut Shared, _: &str, file: &str) -> Result<Vec<Request>, String> {

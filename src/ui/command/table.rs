@@ -37,6 +37,8 @@ commands! {
         plan::scenario, plan::complete;
     "record" "FILE" "Write the recording of the flight so far in this file; without a name: in one named as the plan"
         plan::record, plan::complete;
+    "log" "FILE" "Write the blackbox log of the flight so far in this file; without a name: in one named as the plan"
+        plan::log, plan::complete;
     "backdrop" "FILE or off" "Show a file (GeoJSON, KML, KMZ, GPX) under the plan; off: none; without a name: choose one"
         plan::backdrop, plan::complete_backdrop;
     "go-to" "WAYPOINT" "Go now to a waypoint of the craft's plan; without a number: choose one"

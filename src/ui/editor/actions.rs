@@ -350,12 +350,12 @@ pub(in crate::ui) fn saved_to_flash(state: &mut Shared, result: Result<(), Strin
     }
 }
 
-pub(in crate::ui) fn scenario_written(state: &mut Shared, result: Result<String, String>) {
+pub(in crate::ui) fn flight_written(state: &mut Shared, what: &str, result: Result<String, String>) {
     match result {
         Ok(sentence) => state.notify(Severity::Good, sentence),
         Err(sentence) => {
             let sentence = state.keymap.in_force(&sentence);
-            state.notify(Severity::Fault, format!("No scenario was written: {sentence}"));
+            state.notify(Severity::Fault, format!("No {what} was written: {sentence}"));
         }
     }
 }

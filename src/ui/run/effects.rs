@@ -12,7 +12,7 @@ use crate::session::{Command, ForecastReply, Forecaster, ReplyTo};
 use crate::timeline::RecordedFlight;
 use crate::ui::editor::FileReply;
 use crate::ui::files_link::FilesLink;
-use crate::ui::message::{Effect, Msg};
+use crate::ui::message::{Effect, FlightForm, Msg};
 
 /// The channel of all answers.
 #[derive(Debug, Clone)]
@@ -91,10 +91,13 @@ pub(super) fn carry_out(
             Command::Download { reply: answers.result(MISSING, message) }
         }
         Effect::SaveToFlash => Command::Save { reply: answers.result(MISSING, Msg::SaveReply) },
-        Effect::WriteScenario { file, plan } => {
+        Effect::WriteFlight { form, file, plan } => {
             let failed = "the flight could not be flown again.";
-            let written = answers.result(failed, Msg::ScenarioReply);
-            let write = link.write_scenario;
+            let written = answers.result(failed, move |result| Msg::FlightWritten { what: form.word(), result });
+            let write = match form {
+                FlightForm::Scenario => link.write_scenario,
+                FlightForm::Log => link.write_log,
+            };
             let (reply, recorded) = ReplyTo::<Result<Box<RecordedFlight>, String>>::channel();
             tokio::spawn(async move {
                 let recorded = recorded.await.unwrap_or_else(|_| Err(MISSING.to_owned()));
@@ -111,7 +114,9 @@ pub(super) fn carry_out(
             Command::Curves { request, reply: answers.result(MISSING, message) }
         }
         Effect::WriteRecording { file, plan } => {
-            let written = answers.result("the flight could not be recorded.", Msg::ScenarioReply);
+            let written = answers.result("the flight could not be recorded.", |result| {
+                Msg::FlightWritten { what: "recording", result }
+            });
             let write = link.write_recording;
             let (reply, copied) = ReplyTo::<Result<Vec<u8>, String>>::channel();
             tokio::spawn(async move {

@@ -144,7 +144,7 @@ fn is_question(effect: &Effect) -> bool {
         | Effect::World(_)
         | Effect::Upload { .. }
         | Effect::Download(_)
-        | Effect::WriteScenario { .. }
+        | Effect::WriteFlight { .. }
         | Effect::WriteRecording { .. }
         | Effect::SaveToFlash => true,
         Effect::Files(request) => {
@@ -169,7 +169,7 @@ fn is_answer(msg: &Msg) -> bool {
         | Msg::UploadReply { .. }
         | Msg::DownloadReply { .. }
         | Msg::SaveReply(_)
-        | Msg::ScenarioReply(_)
+        | Msg::FlightWritten { .. }
         | Msg::Busy => true,
         Msg::Forecast(reply) => reply.kind != ForecastKind::PlanEstimate,
         Msg::Files(reply) => !matches!(

@@ -5,7 +5,7 @@ use super::filled_in;
 use crate::pty::Terminal;
 
 /// The beginning of a line, and the words on the screen after it was carried out.
-const CARRIED_OUT: [(&str, &str); 15] = [
+const CARRIED_OUT: [(&str, &str); 16] = [
     (":allow-changes", "changes need no permission"),
     (":arm", "● ARMED"),
     (":backdrop field.geojson", "is under the plan: 10 vertices"),
@@ -13,6 +13,7 @@ const CARRIED_OUT: [(&str, &str); 15] = [
     (":fault gps-loss", "Fault gps-loss begins."),
     (":fault teleport", "Fault teleport 90,90,0 begins."),
     (":flight.home", "Nothing to bring home"),
+    (":log ", "No log was written: the craft was not armed"),
     (":record ", "so far is recorded as"),
     (":scenario ", "The flight is written as"),
     (":set ap_l1_enable=OFF", "ap_l1_enable set to OFF"),

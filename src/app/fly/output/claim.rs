@@ -1,11 +1,12 @@
 //! The output files of the options, checked before anything is written.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::app::error::AppError;
+use crate::app::log_output::{self, file_of_one};
 use crate::app::output_file;
 use crate::app::setup;
-use crate::args::{FlyArgs, OutputFile};
+use crate::args::{FlyArgs, OutputFile, PlanArg};
 
 /// Checks that no output replaces a file that must be kept. If all outputs are allowed, removes the results of an
 /// earlier flight, because this flight may fail before it begins.
@@ -17,12 +18,24 @@ pub(in crate::app::fly) fn claim(args: &FlyArgs) -> Result<(), AppError> {
     }
     let mut kept = setup::kept_files(&args.flight, Some(&args.plan));
     args.backdrop.iter().for_each(|path| kept.keep("--backdrop", path));
-    files(args).try_for_each(|(option, path)| kept.claim(option, path))?;
-    files(args).for_each(|(_, path)| output_file::remove_results(path));
+    let log = log_file(args);
+    let files = || files(args).chain(log.as_deref().map(|path| (log_output::OPTION, path)));
+    files().try_for_each(|(option, path)| kept.claim(option, path))?;
+    files().for_each(|(_, path)| output_file::remove_results(path));
     Ok(())
 }
 
-/// Returns the output files of the options, with their options.
+/// Returns the file of the blackbox log, if one is wanted.
+pub(in crate::app::fly) fn log_file(args: &FlyArgs) -> Option<PathBuf> {
+    let plan = match &args.plan {
+        PlanArg::Builtin(plan) => plan.name.into(),
+        PlanArg::File(path, _) => path.file_stem().unwrap_or_default().to_string_lossy(),
+        PlanArg::Stdin(_) => "plan".into(),
+    };
+    args.blackbox.as_deref().map(|path| file_of_one(path, &plan))
+}
+
+/// Returns the other output files of the options, with their options.
 fn files(args: &FlyArgs) -> impl Iterator<Item = (&'static str, &Path)> {
     let of_stream = [("--json", &args.json), ("--csv", &args.csv)];
     let streams = of_stream.into_iter().filter_map(|(option, output)| match output {

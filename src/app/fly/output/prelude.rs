@@ -1,6 +1,6 @@
 //! The messages before a flight with a remote firmware.
 
-use super::{Beside, Output, Recorder};
+use super::{Beside, Output, Recorded, Recorder};
 use crate::app::error::{self, AppError};
 use crate::app::firmware::reported;
 use crate::args::FlyArgs;
@@ -50,7 +50,8 @@ impl<'a> Prelude<'a> {
         beside: Beside,
         recorder: Option<Recorder>,
     ) -> Result<Output, AppError> {
-        let mut output = Output::open(self.args, vehicle, plan, beside, recorder)?;
+        let files = Recorded { recorder, log: None };
+        let mut output = Output::open(self.args, vehicle, plan, beside, files)?;
         let is_told = self.args.has_sentences();
         for event in &self.held {
             if is_told {
