@@ -4,7 +4,7 @@ use betadeck::session::Command;
 use betadeck::ui::action::{ACTIONS, Action, enabled};
 use betadeck::ui::editor::FileRequest;
 use betadeck::ui::keymap::KeyPress;
-use betadeck::ui::{AppState, Effect, EnteredLines, LineField, Msg, Panel, Popup, draw, update};
+use betadeck::ui::{AppState, Effect, EnteredLines, FlightForm, LineField, Msg, Panel, Popup, draw, update};
 use betadeck::vehicle::VehicleCommand;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::Terminal;
@@ -291,4 +291,22 @@ fn imperial_units_are_shown_and_nothing_else_changes() {
     assert!(!shown.contains("5.0 m/s") && !shown.contains(" m   N"), "{shown}");
     enter(&mut state, "units metric");
     assert_eq!(screen(&state), metric);
+}
+
+#[test]
+fn the_log_of_the_flight_has_a_key_and_a_command_with_a_file() {
+    let mut state = ready();
+    let effects = key(&mut state, KeyCode::Char('X'));
+    assert!(
+        matches!(&effects[..], [Effect::WriteFlight { form: FlightForm::Log, file: None, .. }]),
+        "{effects:?}"
+    );
+    let effects = enter(&mut state, "log mine.bbl");
+    let [Effect::WriteFlight { form: FlightForm::Log, file: Some(file), .. }] = &effects[..] else {
+        panic!("{effects:?}")
+    };
+    assert!(file.is_absolute() && file.ends_with("mine.bbl"), "{}", file.display());
+    let result = Err("the craft was not armed in this flight.".to_owned());
+    update(&mut state, Msg::FlightWritten { what: "log", result });
+    assert_eq!(notice(&state), "No log was written: the craft was not armed in this flight.");
 }

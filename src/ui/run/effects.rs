@@ -93,7 +93,8 @@ pub(super) fn carry_out(
         Effect::SaveToFlash => Command::Save { reply: answers.result(MISSING, Msg::SaveReply) },
         Effect::WriteFlight { form, file, plan } => {
             let failed = "the flight could not be flown again.";
-            let written = answers.result(failed, move |result| Msg::FlightWritten { what: form.word(), result });
+            let written =
+                answers.result(failed, move |result| Msg::FlightWritten { what: form.word(), result });
             let write = match form {
                 FlightForm::Scenario => link.write_scenario,
                 FlightForm::Log => link.write_log,
@@ -114,8 +115,9 @@ pub(super) fn carry_out(
             Command::Curves { request, reply: answers.result(MISSING, message) }
         }
         Effect::WriteRecording { file, plan } => {
-            let written = answers.result("the flight could not be recorded.", |result| {
-                Msg::FlightWritten { what: "recording", result }
+            let written = answers.result("the flight could not be recorded.", |result| Msg::FlightWritten {
+                what: "recording",
+                result,
             });
             let write = link.write_recording;
             let (reply, copied) = ReplyTo::<Result<Vec<u8>, String>>::channel();
