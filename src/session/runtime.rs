@@ -299,7 +299,7 @@ impl Session {
             let after = start.elapsed();
             self.runner.pacer.ran(ticks, after);
             self.count_lost_time(after);
-            self.tend_logs();
+            self.tend_logs(Instant::now());
             if ticks > 0 || self.changed {
                 self.flush_events();
             }
@@ -467,14 +467,6 @@ impl Session {
 
     fn flush_events(&mut self) {
         self.events.send_events_of(&mut self.vehicle);
-    }
-
-    /// Passes the blackbox logs on to the system, and reports their files and errors.
-    fn tend_logs(&mut self) {
-        let logs = self.persistence.logs();
-        logs.flush_if_due(Instant::now());
-        let notices = logs.take_notices();
-        self.notices(notices);
     }
 
     /// Reports the notices of a request, then its answer.

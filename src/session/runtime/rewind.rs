@@ -1,6 +1,6 @@
 //! Shows earlier instants of the flight, and continues the flight from them.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use super::interface::output;
 use super::limits::{impact_of_request, refuse};
@@ -184,6 +184,14 @@ impl Session {
         let recorders = (recorders, self.persistence.logs());
         let subscribers = &mut (rc, (recorders, &mut self.events));
         let _no_end = tick(&mut self.vehicle, subscribers);
+    }
+
+    /// Passes the blackbox logs on to the system, and reports their files and errors.
+    pub(super) fn tend_logs(&mut self, now: Instant) {
+        let logs = self.persistence.logs();
+        logs.flush_if_due(now);
+        let notices = logs.take_notices();
+        self.notices(notices);
     }
 
     /// Records the input that arrives while time is paused, if there is much of it.
