@@ -163,7 +163,7 @@ fn dispatch(cli: Cli, keymap: Keymap) -> Result<u8, AppError> {
         Some(Command::Campaign(args)) => campaign::run(&args),
         Some(Command::Forecast(args)) => campaign::forecast(&args),
         Some(Command::Open(args)) => open::run(&args, keymap),
-        Some(Command::Replay(args)) => replay::run(&args, keymap),
+        Some(Command::Replay(args)) => replay::run(&args, &cli.repeat, keymap),
         Some(Command::Flights(args)) => flights::run(&args),
         Some(Command::Compare(args)) => compare::run(&args, &cli.repeat),
         Some(Command::Sitl(args)) => sitl::run(&args),

@@ -3,6 +3,7 @@
 mod log_export;
 mod log_source;
 mod opened;
+mod report;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -20,7 +21,7 @@ use crate::ui::keymap::Keymap;
 use opened::Opened;
 
 /// Writes the files of the options, or shows the flights. With `--plain` it does both.
-pub(super) fn run(args: &ReplayArgs, keymap: Keymap) -> Result<u8, AppError> {
+pub(super) fn run(args: &ReplayArgs, repeat: &[String], keymap: Keymap) -> Result<u8, AppError> {
     if !args.exports() {
         tui::require_terminal(args.plain)?;
     }
@@ -34,7 +35,7 @@ pub(super) fn run(args: &ReplayArgs, keymap: Keymap) -> Result<u8, AppError> {
     if args.exports() {
         let stop = interrupt_flag()?;
         let is_whole = match &mut flights {
-            Opened::Logs(logs) => log_export::run(args, logs, &stop)?,
+            Opened::Logs(logs) => log_export::run(args, repeat, logs, &stop)?,
         };
         if !is_whole {
             return Ok(error::INTERRUPTED);

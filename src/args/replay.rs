@@ -46,6 +46,14 @@ pub struct ReplayArgs {
     #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
     pub kml: Option<PathBuf>,
 
+    /// Writes a report as one HTML file instead of showing the flight: map, charts, modes, events
+    #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
+    pub report: Option<PathBuf>,
+
+    /// Map under the track of --report: fields, roads, no-fly zones (GeoJSON, KML, KMZ, GPX); repeatable
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub backdrop: Vec<PathBuf>,
+
     /// The screen.
     #[command(flatten)]
     pub display: DisplayArgs,
@@ -59,7 +67,7 @@ impl ReplayArgs {
 
     /// Returns `true` if a file is to be written.
     pub fn exports(&self) -> bool {
-        self.csv.is_some() || self.gpx.is_some() || self.kml.is_some()
+        self.csv.is_some() || self.gpx.is_some() || self.kml.is_some() || self.report.is_some()
     }
 
     /// Returns the interval of the rows of a table, µs; `None` for a row for each frame.
@@ -72,15 +80,21 @@ impl ReplayArgs {
         if self.samples.is_some() && self.csv.is_none() {
             return Err("--samples is the number of rows of a table: add --csv FILE or --csv -".to_owned());
         }
+        if !self.backdrop.is_empty() && self.report.is_none() {
+            return Err(value::BACKDROP_NEEDS_REPORT.to_owned());
+        }
         if self.plain && self.csv == Some(OutputFile::Stdout) {
             return Err("--plain and --csv - both write to standard output: leave one of them out".to_owned());
         }
         if self.exports() && self.files.len() > 1 {
-            return Err("--csv, --gpx and --kml write one recorded flight: name one file".to_owned());
+            return Err(
+                "--csv, --gpx, --kml and --report write one recorded flight: name one file".to_owned()
+            );
         }
         if self.exports() && self.at.is_some() && !self.plain {
             return Err(
-                "--at is an instant of the screen, which --csv, --gpx and --kml do not open".to_owned()
+                "--at is an instant of the screen, which --csv, --gpx, --kml and --report do not open"
+                    .to_owned(),
             );
         }
         Ok(())

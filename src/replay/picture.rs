@@ -1,8 +1,8 @@
 //! The signals of a flight at one instant, as tracks and graphs need them.
 
 use crate::signals::SimTime;
-use crate::telemetry::Snapshot;
 use crate::telemetry::signal::{Observed, Signal, SignalValues};
+use crate::telemetry::{ModeFlags, Snapshot};
 
 /// All signals at one instant.
 #[derive(Debug, Clone, Copy)]
@@ -10,6 +10,8 @@ pub struct Picture {
     pub time: SimTime,
     /// `true` if the autopilot was flying.
     pub engaged: bool,
+    /// The active modes, if they are known.
+    pub modes: Option<ModeFlags>,
     values: SignalValues,
 }
 
@@ -32,12 +34,17 @@ impl Picture {
                 values.set(truth, values.get(estimate));
             }
         }
-        Self { time: vehicle.time, engaged: vehicle.is_engaged(), values }
+        Self { time: vehicle.time, engaged: vehicle.is_engaged(), modes: vehicle.craft.modes, values }
     }
 
     /// Returns the time, s.
     pub fn time_s(&self) -> f64 {
         self.time.as_secs_f64()
+    }
+
+    /// Returns the values of all signals.
+    pub fn values(&self) -> &SignalValues {
+        &self.values
     }
 
     /// Returns the value of a signal, if it is known.

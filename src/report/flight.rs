@@ -1,22 +1,23 @@
 //! All that a report says about one flight, as plain data.
 //!
-//! `fly` and `check` fill a [`FlightReport`] from a flight. A part that is not known, such as the truth of a log, stays
-//! empty and is left out of the report. `facts` and `margins` are the numbers, `pictures` draws them.
+//! `fly` and `check` fill a [`FlightReport`] from a flight, `replay` from the record of one. A part that is not known, such as the truth of a log, stays
+//! empty and is left out of the report. `facts` and `margins` are the numbers, `pictures` draws them in the colours of `look`.
 
 mod facts;
 #[cfg(test)]
 pub(super) mod fixture;
+pub(super) mod look;
 mod margins;
 mod markdown;
+mod past;
 mod pictures;
 
-use super::plot::Colour;
 use super::record::FlightRecord;
 use super::route::Route;
 use crate::geo::LocalFrame;
 use crate::plan::feature::Feature;
 use crate::signals::SimTime;
-use crate::telemetry::{FlightTruth, NavState};
+use crate::telemetry::FlightTruth;
 pub(super) use facts::facts;
 pub(super) use margins::{Margin, MarginRow, rows as margin_rows};
 pub use markdown::markdown;
@@ -101,6 +102,8 @@ pub enum ReportedSettings {
     Changed(Vec<[String; 3]>),
     /// The command lines that a remote firmware got, which keeps its settings itself.
     Sent(Vec<String>),
+    /// Those in the header of a log: name and value.
+    Logged(Vec<[String; 2]>),
 }
 
 /// The most points, rows and so on of a report. A report that is too large is written again with less.
@@ -132,19 +135,4 @@ impl Detail {
             is_whole,
         })
     }
-}
-
-/// Returns the colour of a state and its name.
-pub(super) fn look(state: Option<NavState>) -> (Colour, &'static str) {
-    let colour = match state {
-        None | Some(NavState::Idle) => Colour::Idle,
-        Some(NavState::Approaching) => Colour::Approaching,
-        Some(NavState::Arrived) => Colour::Arrived,
-        Some(NavState::Holding) => Colour::Holding,
-        Some(NavState::Orbiting) => Colour::Orbiting,
-        Some(NavState::Figure8) => Colour::Figure8,
-        Some(NavState::Landing) => Colour::Landing,
-        Some(NavState::Complete) => Colour::Complete,
-    };
-    (colour, state.map_or("UNKNOWN", Into::into))
 }

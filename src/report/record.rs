@@ -2,13 +2,15 @@
 //!
 //! A flight fills it with its events and snapshots. Whatever else knows a flight, such as a log, can fill it, too.
 
+mod past;
+
 use super::sentence;
 use crate::plan::WaypointType;
 use crate::session::{Event, SessionEvent};
 use crate::signals::SimTime;
 use crate::telemetry::signal::{Observed, Signal, SignalValues};
 use crate::telemetry::snapshot::{Snapshot, WorldView};
-use crate::telemetry::{EventKind, FirmwareEvent, Guard, NavEvent, NavState, TransitionReason};
+use crate::telemetry::{EventKind, FirmwareEvent, Guard, ModeFlags, NavEvent, NavState, TransitionReason};
 
 /// The most samples. When they are reached, every second one is dropped and the interval doubles.
 const MOST_SAMPLES: usize = 12_000;
@@ -26,6 +28,8 @@ pub struct FlightRecord {
     pub transitions: Vec<Transition>,
     /// The other events as sentences, oldest first.
     pub sentences: Vec<(SimTime, String)>,
+    /// The beginning of the record of a flight that is over. Its times count from there.
+    pub begins_at: Option<SimTime>,
     /// The time of the first engagement.
     pub engaged_at: Option<SimTime>,
     /// The time of the first arming.
@@ -49,6 +53,8 @@ pub struct RecordedSample {
     pub values: SignalValues,
     /// The state of the state machine, if it is known.
     pub state: Option<NavState>,
+    /// The active modes, if they are known.
+    pub modes: Option<ModeFlags>,
 }
 
 /// A transition of the state machine.
@@ -134,8 +140,9 @@ impl FlightRecord {
         self.engaged_at = self.engaged_at.or(engaged_at);
         self.world.get_or_insert_with(|| snapshot.world.clone());
         let observed = Observed { engaged_at, ..Observed::of(snapshot) };
-        let state = snapshot.nav.as_ref().map(|nav| nav.state);
-        self.samples.push(RecordedSample { time: snapshot.time, values: SignalValues::of(&observed), state });
+        let (state, modes) = (snapshot.nav.as_ref().map(|nav| nav.state), snapshot.craft.modes);
+        let values = SignalValues::of(&observed);
+        self.samples.push(RecordedSample { time: snapshot.time, values, state, modes });
         if self.samples.len() >= MOST_SAMPLES {
             // The samples that stay are those that are due at the longer interval.
             let mut keep = true;
@@ -147,9 +154,10 @@ impl FlightRecord {
         }
     }
 
-    /// Returns the seconds since the first engagement, or since boot if there was none.
+    /// Returns the seconds since the beginning of the record of a flight that is over; of another flight since the first
+    /// engagement, or since boot if there was none.
     pub fn seconds(&self, time: SimTime) -> f64 {
-        time.as_secs_f64() - self.engaged_at.map_or(0.0, SimTime::as_secs_f64)
+        time.as_secs_f64() - self.begins_at.or(self.engaged_at).map_or(0.0, SimTime::as_secs_f64)
     }
 
     /// Returns the known values of a signal.

@@ -221,7 +221,7 @@ fn disarm(reason: DisarmReason) -> &'static str {
     }
 }
 
-fn sentence_end(text: &str) -> String {
+pub(super) fn sentence_end(text: &str) -> String {
     if text.ends_with(['.', '!', '?']) { text.to_owned() } else { format!("{text}.") }
 }
 

@@ -3,6 +3,7 @@
 use quick_xml::Reader;
 use quick_xml::events::Event;
 
+use crate::made_log::MadeLog;
 use crate::support::Sandbox;
 
 /// The greatest size of a page, bytes.
@@ -160,4 +161,33 @@ fn the_report_of_a_comparison_has_both_tracks() {
     // A comparison that cannot fly leaves the files alone.
     sandbox.run(&[&["compare", "missing.toml"][..], &both[2..], &outputs].concat()).exits(3);
     assert_eq!(page(&sandbox, "both.html"), html);
+}
+
+#[test]
+fn the_report_of_a_log_has_its_track_its_modes_and_its_settings() {
+    let sandbox = Sandbox::new();
+    std::fs::write(sandbox.path("a.bbl"), MadeLog::default().bytes()).expect("a writable directory");
+    sandbox.write("field.geojson", FIELD);
+    let command = ["replay", "a.bbl", "--log", "1"];
+    let outputs = ["--report", "a.html", "--backdrop", "field.geojson"];
+    let ran = sandbox.run(&[&command[..], &outputs].concat()).exits(0);
+    assert_eq!((ran.out.as_str(), ran.err.as_str()), ("", ""));
+    let html = page(&sandbox, "a.html");
+    for part in [
+        "<h1>a.bbl</h1>",
+        "– recorded",
+        "<dt>recorded</dt><dd>20.0 s</dd>",
+        "AUTOPILOT</text>",
+        "coloured by flight mode",
+        "<h2>Open it again</h2>",
+        "a &lt;b&gt; field</text>",
+        "The settings of the craft in the header of its log.",
+        "Armed.",
+        "betadeck replay a.bbl --log 1</code>",
+    ] {
+        assert!(html.contains(part), "{part} is not in the page");
+    }
+    let ran = sandbox.run(&["replay", "a.bbl", "--report", "a.bbl"]).exits(2);
+    assert!(ran.err.contains("--report a.bbl would overwrite the recorded flight"), "{}", ran.err);
+    sandbox.run(&["replay", "a.bbl", "--backdrop", "field.geojson"]).exits(2);
 }

@@ -1,4 +1,4 @@
-//! Writes a blackbox log for other programs: its values as a table, its places as a track.
+//! Writes a blackbox log as files: its values as a table, its places as a track, a page about its flight.
 
 use std::io::{self, BufWriter, ErrorKind, Write as _};
 use std::path::Path;
@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::log_source::FileSource;
+use super::report::Report;
 use crate::app::error::{self, AppError};
 use crate::app::output_file::{KeptFiles, StreamedOutput};
 use crate::app::patient_output::PatientOutput;
@@ -20,15 +21,17 @@ use crate::report::log_export::{log_gpx, log_track, write_csv};
 /// Returns a sentence if the log cannot be read or a file cannot be written.
 pub(super) fn run(
     args: &ReplayArgs,
+    repeat: &[String],
     logs: &mut LogFlights<FileSource>,
     stop: &AtomicBool,
 ) -> Result<bool, AppError> {
     claim(args)?;
+    let report = Report::prepare(args, repeat)?;
     let is_stopped = || stop.load(Ordering::Relaxed);
     if !logs.read(&mut |_| !is_stopped()).map_err(AppError::input)? {
         return Ok(false);
     }
-    let log = chosen(args, logs)?;
+    let (number, log) = chosen(args, logs)?;
     let name = logs.name().to_owned();
     if args.number().is_none() && logs.count() > 1 {
         error::tell(&format!(
@@ -72,6 +75,14 @@ pub(super) fn run(
         out.write_all(log_track(&log, &name).kml().as_bytes()).map_err(|error| failed(&error))?;
         out.finish()?;
     }
+    if let Some(report) = report {
+        let past = logs.open(number).map_err(AppError::input)?;
+        if is_stopped() {
+            return Ok(false);
+        }
+        let title = if logs.count() > 1 { format!("{name}, log {}", log.number()) } else { name };
+        report.write_log(&title, &log, &past.overview())?;
+    }
     Ok(!is_stopped())
 }
 
@@ -79,25 +90,27 @@ pub(super) fn run(
 fn claim(args: &ReplayArgs) -> Result<(), AppError> {
     let mut kept = KeptFiles::default();
     args.files.iter().for_each(|file| kept.keep("the recorded flight", file));
+    args.backdrop.iter().for_each(|file| kept.keep("--backdrop", file));
     let table = match &args.csv {
         Some(OutputFile::File(path)) => Some(path.as_path()),
         Some(OutputFile::Stdout) | None => None,
     };
-    let outputs = [("--csv", table), ("--gpx", args.gpx.as_deref()), ("--kml", args.kml.as_deref())];
-    outputs
-        .into_iter()
+    let outputs = [("--gpx", &args.gpx), ("--kml", &args.kml), ("--report", &args.report)];
+    let outputs = outputs.into_iter().map(|(option, path)| (option, path.as_deref()));
+    std::iter::once(("--csv", table))
+        .chain(outputs)
         .filter_map(|(option, path): (_, Option<&Path>)| Some((option, path?)))
         .try_for_each(|(option, path)| kept.claim(option, path))
 }
 
-/// Returns the log of the options, or the first that can be shown.
-fn chosen(args: &ReplayArgs, logs: &LogFlights<FileSource>) -> Result<Arc<LogFlight>, AppError> {
+/// Returns the log of the options, or the first that can be shown, with its number from zero.
+fn chosen(args: &ReplayArgs, logs: &LogFlights<FileSource>) -> Result<(usize, Arc<LogFlight>), AppError> {
+    let numbered = |number| logs.log(number).map(|log| (number, log));
     if let Some(number) = args.number() {
-        return logs.log(number).map_err(AppError::input);
+        return numbered(number).map_err(AppError::input);
     }
-    let mut all = (0..logs.count()).map(|number| logs.log(number));
-    let first = logs.log(0);
-    all.find_map(Result::ok).map_or(first, Ok).map_err(AppError::input)
+    let first = (0..logs.count()).map(numbered).find_map(Result::ok);
+    first.map_or_else(|| numbered(0), Ok).map_err(AppError::input)
 }
 
 /// Returns `Ok` if a write was done or its reader went away.

@@ -89,7 +89,7 @@ fn record() -> FlightRecord {
             values.set(signal, value);
         }
         let state = if time < 40.0 { NavState::Approaching } else { NavState::Landing };
-        RecordedSample { time: at(10.0 + time), values, state: Some(state) }
+        RecordedSample { time: at(10.0 + time), values, state: Some(state), modes: None }
     };
     let guard = Guard::new(GuardName::Arrival, 1.9, GuardOp::AtMost, 2.0);
     let transition = |seconds, from, to, wp, kind, reason, guard| Transition {

@@ -88,9 +88,11 @@ fn settings(settings: &ReportedSettings) -> String {
         ReportedSettings::Sent(sent) => {
             sent.iter().take(MOST_ROWS).map(|line| format!("- {}\n", code(line))).collect()
         }
+        // There are hundreds, and only a page has room for them.
+        ReportedSettings::Logged(_) => Vec::new(),
     };
     match (settings, lines.is_empty()) {
-        (_, true) => String::new(),
+        (_, true) | (ReportedSettings::Logged(_), _) => String::new(),
         (ReportedSettings::Changed(_), false) => {
             format!("Settings that differ from their defaults:\n\n{}\n", lines.concat())
         }

@@ -9,6 +9,7 @@ use crate::report::flight::{
 };
 use crate::report::record::{FlightRecord, Transition};
 use crate::report::sentence;
+use crate::telemetry::signal::Signal;
 use crate::telemetry::{Guard, NavState};
 
 /// The part of a page about one flight.
@@ -43,6 +44,8 @@ struct TransitionRow {
 struct Settings {
     sentence: &'static str,
     has_defaults: bool,
+    /// `true` if there are so many rows that they are shown on demand.
+    is_closed: bool,
     rows: Vec<SettingRow>,
 }
 
@@ -70,6 +73,9 @@ pub fn flight_page(report: &FlightReport, program: &str) -> String {
         let mut page = Page::new(&kind, &title, &verdict, &body, program);
         page.facts = page::facts(&facts(report));
         page.command = report.command.as_deref().and_then(text::command);
+        if report.record.begins_at.is_some() {
+            page.again = "Open it again";
+        }
         page.note = &note;
         page.html()
     })
@@ -95,7 +101,7 @@ pub(super) fn part(report: &FlightReport, id: &str, level: u8, detail: Detail) -
 
 fn transition_row(record: &FlightRecord, transition: &Transition) -> TransitionRow {
     let Transition { time, to, wp, kind, reason, guard, .. } = transition;
-    let (colour, name) = look(Some(*to));
+    let (colour, name) = look::of_state(*to);
     let waypoint = kind.filter(|_| *to != NavState::Idle).map(|kind| format!("WP{wp} {kind}"));
     let of_guard = |number: fn(&Guard) -> String| guard.as_ref().map_or_else(String::new, number);
     TransitionRow {
@@ -125,6 +131,7 @@ fn settings(settings: &ReportedSettings, detail: Detail) -> Settings {
                 false => "All others have their defaults.",
             },
             has_defaults: true,
+            is_closed: false,
             rows: changed
                 .iter()
                 .take(detail.rows)
@@ -144,7 +151,20 @@ fn settings(settings: &ReportedSettings, detail: Detail) -> Settings {
             Settings {
                 sentence: "The lines that the firmware got before the flight.",
                 has_defaults: false,
+                is_closed: false,
                 rows: lines.iter().take(detail.rows).map(row).collect(),
+            }
+        }
+        ReportedSettings::Logged(values) => {
+            let row = |texts: &[String; 2]| {
+                let [name, value] = texts.each_ref().map(|cell| text::line(cell));
+                SettingRow { name, value, default: String::new() }
+            };
+            Settings {
+                sentence: "The settings of the craft in the header of its log.",
+                has_defaults: false,
+                is_closed: true,
+                rows: values.iter().take(detail.rows).map(row).collect(),
             }
         }
     }
@@ -162,7 +182,12 @@ fn log(record: &FlightRecord, detail: Detail) -> Vec<LogLine> {
 
 /// Returns the meaning of the times.
 fn note(record: &FlightRecord) -> String {
+    let is_true = record.values(Signal::Altitude).next().is_some();
     match record.engaged_at {
+        _ if record.begins_at.is_some() => format!(
+            "Times are seconds after the record begins. Places, altitudes and speeds are {}.",
+            if is_true { "true unless they are called an estimate" } else { "those that the craft measured" }
+        ),
         Some(engaged_at) => format!(
             "Times are simulated seconds after the autopilot engaged, {:.1} s after boot. Places and altitudes are \
              true unless they are called an estimate.",

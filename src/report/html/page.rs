@@ -25,6 +25,8 @@ pub(super) struct Page<'a> {
     /// The content as HTML.
     pub(super) body: &'a str,
     pub(super) command: Option<&'a str>,
+    /// The heading of the command.
+    pub(super) again: &'static str,
     /// A sentence below the content.
     pub(super) note: &'a str,
     pub(super) program: &'a str,
@@ -54,6 +56,7 @@ impl<'a> Page<'a> {
             facts: Vec::new(),
             body,
             command: None,
+            again: "Fly it again",
             note: "",
             program,
             style: style(),

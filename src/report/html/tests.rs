@@ -6,12 +6,12 @@ use quick_xml::events::{BytesStart, Event};
 use super::*;
 use crate::report::check::{CheckedFlight, Summary};
 use crate::report::compare::{Comparison, Side, Track, TrackSample};
-use crate::report::flight::FlightReport;
-use crate::report::flight::fixture;
+use crate::report::flight::{FlightReport, ReportedSettings, fixture};
 use crate::report::record::RecordedSample;
 use crate::scenario::{Judgement, Outcome};
 use crate::signals::SimTime;
-use crate::telemetry::signal::{SIGNALS, SignalValues};
+use crate::telemetry::signal::{SIGNALS, Signal, SignalValues};
+use crate::telemetry::{Mode, ModeFlags};
 
 const PROGRAM: &str = "betadeck 0.1.0";
 
@@ -102,8 +102,7 @@ fn a_name_cannot_add_markup() {
         let mut report = fixture::report(name, name);
         report.record.sentences.push((SimTime(1), name.to_owned()));
         report.facts.push((name.to_owned(), name.to_owned()));
-        report.settings =
-            Some(crate::report::flight::ReportedSettings::Changed(vec![[(); 3].map(|()| name.to_owned())]));
+        report.settings = Some(ReportedSettings::Changed(vec![[(); 3].map(|()| name.to_owned())]));
         flight_page(&report, PROGRAM)
     };
     assert_eq!(HOSTILE.chars().count(), HARMLESS.chars().count());
@@ -124,7 +123,7 @@ fn half_an_hour_of_noise_fits_into_a_page() {
         .map(|tenth| {
             let mut values = SignalValues::UNKNOWN;
             SIGNALS.iter().for_each(|info| values.set(info.signal, 200.0 * noise()));
-            RecordedSample { time: SimTime(tenth * 100_000), values, state: None }
+            RecordedSample { time: SimTime(tenth * 100_000), values, state: None, modes: None }
         })
         .collect();
     let transition = report.record.transitions[1].clone();
@@ -134,6 +133,30 @@ fn half_an_hour_of_noise_fits_into_a_page() {
     assert!((100_000..=MOST_BYTES).contains(&page.len()), "{}", page.len());
     assert!(count(&elements(&page), "svg") > 8, "all pictures are there");
     assert!(page.contains("later transitions are left out"));
+}
+
+#[test]
+fn a_log_whose_modes_change_all_the_time_fits_into_a_page() {
+    let mut report = fixture::report("LOG00001.BFL", "field");
+    report.record.transitions.clear();
+    report.record.samples = (0..12_000_u32)
+        .map(|tenth| {
+            let mut values = SignalValues::UNKNOWN;
+            values.set(Signal::North, 100.0 * f64::from(tenth / 10 % 7));
+            values.set(Signal::East, f64::from(tenth % 10));
+            let mut modes = ModeFlags::NONE;
+            modes.set(Mode::Arm, true);
+            modes.set(Mode::Angle, tenth % 2 == 0);
+            let time = SimTime(u64::from(tenth) * 100_000);
+            RecordedSample { time, values, state: None, modes: Some(modes) }
+        })
+        .collect();
+    let lines = (0..1000).map(|at| [format!("setting_{at}"), "1,2,3".repeat(50)]);
+    report.settings = Some(ReportedSettings::Logged(lines.collect()));
+    let page = flight_page(&report, PROGRAM);
+    assert!((100_000..=MOST_BYTES).contains(&page.len()), "{}", page.len());
+    assert!(count(&elements(&page), "svg") >= 2, "the map and the modes are there");
+    assert!(page.contains("setting_1</code>") && page.contains("coloured by flight mode"));
 }
 
 fn checked(scenario: &str, passed: bool) -> CheckedFlight {

@@ -69,7 +69,7 @@ impl Kind {
         match words.get(1).map(String::as_str) {
             _ if has("--help") || has("--version") => Self::ByItself,
             Some("replay") if has("--plain") => Self::Runs,
-            Some("replay") if ["--csv", "--gpx", "--kml"].into_iter().any(has) => Self::ByItself,
+            Some("replay") if ["--csv", "--gpx", "--kml", "--report"].into_iter().any(has) => Self::ByItself,
             Some("serve" | "fly" | "check" | "compare") if is_remote => Self::RunsFirmware,
             Some("serve" | "sitl" | "--plain") => Self::Runs,
             Some(

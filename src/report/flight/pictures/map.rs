@@ -6,17 +6,19 @@ use crate::plan::feature::{Feature, Shape, Vertex, Zone};
 use crate::report::flight::{Detail, FlightReport, look};
 use crate::report::plot::{Colour, Ground, GroundKind, Map, MapTrack, Picture, Point};
 use crate::report::record::FlightRecord;
-use crate::telemetry::NavState;
 use crate::text::printable;
 
 /// Width of the track, px.
 const WIDTH: f64 = 2.0;
 
+/// A part of the track: its colour, the name of its state or mode, its places.
+type Part = (Colour, &'static str, Vec<Point>);
+
 /// Returns the map; `None` if no place is known.
 pub(super) fn figure(report: &FlightReport, id: &str, detail: Detail) -> Option<Figure> {
     let record = &report.record;
-    let parts = parts(record);
-    let first = parts.first().and_then(|(_, points)| points.first());
+    let parts = parts(record, detail.points);
+    let first = parts.first().and_then(|(.., points)| points.first());
     if first.is_none() && report.route.is_none() {
         return None;
     }
@@ -28,8 +30,7 @@ pub(super) fn figure(report: &FlightReport, id: &str, detail: Detail) -> Option<
     }
     map.rings.extend(report.fence_m.map(|fence_m| ((0.0, 0.0), fence_m)));
     map.ground = report.frame.map_or_else(Vec::new, |frame| ground(&report.backdrop, &frame));
-    for (state, points) in parts {
-        let (colour, name) = look(state);
+    for (colour, name, points) in parts {
         if !map.legend.iter().any(|(known, ..)| *known == colour) {
             map.legend.push((colour, WIDTH, name.to_owned()));
         }
@@ -41,40 +42,41 @@ pub(super) fn figure(report: &FlightReport, id: &str, detail: Detail) -> Option<
     let down = record.touchdown_at.and_then(|at| record.samples.iter().rfind(|sample| sample.time <= at));
     let down = down.and_then(|sample| record.place(sample)).map(|[north, east]| ((east, north), Colour::Ink));
     map.touchdowns = down.into_iter().collect();
+    let coloured = super::coloured(record);
     let description = format!(
-        "The track of the craft, north up, coloured by the state of the autopilot, with {} waypoints. The craft was \
-         up to {:.0} m from home.",
+        "The track of the craft, north up{coloured}, with {} waypoints. The craft was up to {:.0} m from home.",
         map.marks.len(),
         map.tracks.iter().flat_map(|track| &track.points).map(|(x, y)| x.hypot(*y)).fold(0.0, f64::max)
     );
     let picture = Picture::new(&format!("{id}-map"), "Map of the flight", &description);
     let caption = match down.is_some() {
-        true => "The true track, coloured by the state of the autopilot. The cross is the touchdown.",
-        false => "The track, coloured by the state of the autopilot.",
+        true => format!("The true track{coloured}. The cross is the touchdown."),
+        false => format!("The track{coloured}."),
     };
-    Some(Figure {
-        svg: map.svg(&picture),
-        title: "Map.".to_owned(),
-        caption: caption.to_owned(),
-        is_wide: false,
-    })
+    Some(Figure { svg: map.svg(&picture), title: "Map.".to_owned(), caption, is_wide: false })
 }
 
-/// Returns the parts of the track with the same state. Each ends with the first place of the next one, so that the line
-/// has no gap.
-fn parts(record: &FlightRecord) -> Vec<(Option<NavState>, Vec<Point>)> {
-    let mut parts: Vec<(Option<NavState>, Vec<Point>)> = Vec::new();
+/// Returns the parts of the track with the same look. Each ends with the first place of the next one, so that the line has
+/// no gap. A track of more than `most` parts is one part.
+fn parts(record: &FlightRecord, most: usize) -> Vec<Part> {
+    let mut parts: Vec<Part> = Vec::new();
     for sample in &record.samples {
         let Some([north, east]) = record.place(sample) else { continue };
+        let place = (east, north);
+        let look = look::of_sample(sample);
         match parts.last_mut() {
-            Some((state, points)) if *state == sample.state => points.push((east, north)),
+            Some((colour, name, points)) if (*colour, *name) == look => points.push(place),
             last => {
-                if let Some((_, points)) = last {
-                    points.push((east, north));
+                if let Some((.., points)) = last {
+                    points.push(place);
                 }
-                parts.push((sample.state, vec![(east, north)]));
+                parts.push((look.0, look.1, vec![place]));
             }
         }
+    }
+    if parts.len() > most {
+        let points = parts.into_iter().flat_map(|(.., points)| points).collect();
+        return vec![(Colour::First, "track", points)];
     }
     parts
 }

@@ -1,0 +1,59 @@
+//! The page about a recorded flight.
+
+use std::io::Write as _;
+use std::path::Path;
+
+use crate::app::error::AppError;
+use crate::app::output_file::StreamedOutput;
+use crate::app::report;
+use crate::args::ReplayArgs;
+use crate::flight_log::LogFlight;
+use crate::plan::feature::Feature;
+use crate::replay::Overview;
+use crate::report::flight::{FlightReport, ReportedSettings};
+use crate::report::html;
+
+/// The beginnings of the lines of a header that describe the format.
+const FORMAT: [&str; 3] = ["Field ", "Product", "Data version"];
+
+/// The page and what it needs besides the flight.
+pub(super) struct Report<'a> {
+    path: &'a Path,
+    backdrop: Vec<Feature>,
+    command: String,
+}
+
+impl<'a> Report<'a> {
+    /// Reads the maps under the track of a report, if one is wanted. `repeat` are the words of the command without its
+    /// outputs.
+    ///
+    /// # Errors
+    /// Returns the error in a map.
+    pub(super) fn prepare(args: &'a ReplayArgs, repeat: &[String]) -> Result<Option<Self>, AppError> {
+        let Some(path) = args.report.as_deref() else { return Ok(None) };
+        Ok(Some(Self { path, backdrop: report::backdrop(&args.backdrop)?, command: report::command(repeat) }))
+    }
+
+    /// Writes the page about a log.
+    ///
+    /// # Errors
+    /// Returns the error of the output.
+    pub(super) fn write_log(self, name: &str, log: &LogFlight, overview: &Overview) -> Result<(), AppError> {
+        let mut report = FlightReport::of_past(name, overview);
+        let is_setting = |name: &str| !FORMAT.iter().any(|format| name.starts_with(format));
+        let lines = log.header().lines().filter(|(name, _)| is_setting(name));
+        let settings = lines.map(|(name, value)| [name, value].map(str::to_owned)).collect();
+        report.settings = Some(ReportedSettings::Logged(settings));
+        self.write(report)
+    }
+
+    fn write(self, report: FlightReport) -> Result<(), AppError> {
+        let Self { path, backdrop, command } = self;
+        let report = FlightReport { backdrop, command: Some(command), ..report };
+        let mut file = StreamedOutput::begin(path)?;
+        let page = html::flight_page(&report, &report::program());
+        let written = file.write_all(page.as_bytes());
+        written.map_err(|error| AppError::environment(format!("cannot write the report: {error}")))?;
+        file.finish()
+    }
+}
