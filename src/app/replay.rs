@@ -3,6 +3,8 @@
 mod log_export;
 mod log_source;
 mod opened;
+mod outputs;
+mod recording_export;
 mod report;
 
 use std::path::Path;
@@ -34,8 +36,10 @@ pub(super) fn run(args: &ReplayArgs, repeat: &[String], keymap: Keymap) -> Resul
     let second = second.map(|path| opened::open(path)).transpose()?;
     if args.exports() {
         let stop = interrupt_flag()?;
+        outputs::claim(args)?;
         let is_whole = match &mut flights {
             Opened::Logs(logs) => log_export::run(args, repeat, logs, &stop)?,
+            Opened::Recording(recording) => recording_export::run(args, repeat, recording, &stop)?,
         };
         if !is_whole {
             return Ok(error::INTERRUPTED);

@@ -39,6 +39,7 @@ mod pty;
 mod recordings;
 #[cfg(unix)]
 mod replay;
+mod replayed_recordings;
 #[cfg(unix)]
 mod reports;
 #[cfg(unix)]

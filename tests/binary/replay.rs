@@ -173,7 +173,7 @@ fn a_log_plays_on_the_screen_with_rewind_speed_and_search() {
     for size in [(80, 24), (120, 40), (200, 60)] {
         let mut terminal = started(with_log(), size, &["a.bbl", "--at", "5"]);
         terminal.until("the fifth second", |terminal| (shown_s(terminal) - 25.0).abs() < 1e-9);
-        assert!(terminal.screen().contains("⌂"), "{}", terminal.screen());
+        terminal.until_shown("⌂");
         // Modes, then the end.
         terminal.send(";");
         terminal.until("the next event", |terminal| (shown_s(terminal) - 28.0).abs() < 1e-9);

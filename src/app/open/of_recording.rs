@@ -55,8 +55,9 @@ pub(super) fn run(args: &OpenArgs, recording: &Recording, keymap: Keymap) -> Res
     let file = Path::new(&args.scenario);
     let name = printable::name(&file.file_name().unwrap_or(file.as_os_str()).to_string_lossy());
     let mut notices = recording.notices();
-    let repeat = begin(recording, &mut notices)
-        .map_err(|reason| AppError::input(format!("{name} cannot be flown again: {reason}")))?;
+    let repeat = begin(recording, &mut notices).map_err(|reason| {
+        AppError::input(format!("{name} cannot be flown again: {reason}; `betadeck replay` shows it"))
+    })?;
     let Some(flown) = fly(repeat)? else { return Ok(error::INTERRUPTED) };
     let Flown { repeat, recorded, engaged_at } = flown;
     let end = repeat.vehicle().time();

@@ -6,9 +6,10 @@ use super::log_source::FileSource;
 use super::shown_name;
 use crate::app::error::AppError;
 use crate::app::input_file;
+use crate::app::recording_file::GZIP;
 use crate::blackbox::FIRST_LINE;
 use crate::blackbox::decode::LogSource as _;
-use crate::replay::{LogFlights, PastFlights};
+use crate::replay::{LogFlights, PastFlights, RecordedFlights};
 
 /// The first bytes of a file in which a log must begin.
 const LOOKED_AT: usize = 1 << 20;
@@ -17,12 +18,15 @@ const LOOKED_AT: usize = 1 << 20;
 pub(super) enum Opened {
     /// Blackbox logs.
     Logs(LogFlights<FileSource>),
+    /// A recording of this program.
+    Recording(RecordedFlights<FileSource>),
 }
 
 impl From<Opened> for Box<dyn PastFlights> {
     fn from(opened: Opened) -> Self {
         match opened {
             Opened::Logs(logs) => Box::new(logs),
+            Opened::Recording(recording) => Box::new(recording),
         }
     }
 }
@@ -37,11 +41,15 @@ pub(super) fn open(path: &Path) -> Result<Opened, AppError> {
     let mut source = FileSource::new(file, size);
     let head =
         head(&mut source).map_err(|error| AppError::environment(format!("cannot read {name}: {error}")))?;
+    if head.starts_with(&GZIP) {
+        return Ok(Opened::Recording(RecordedFlights::new(&name, source)));
+    }
     if contains(&head, FIRST_LINE.as_bytes()) || size > LOOKED_AT as u64 {
         return Ok(Opened::Logs(LogFlights::new(&name, source)));
     }
     Err(AppError::input(format!(
-        "{name} is no recorded flight: a blackbox log begins with the line `{FIRST_LINE}`"
+        "{name} is no recorded flight: a blackbox log begins with the line `{FIRST_LINE}`, and a recording is a file of \
+         `betadeck fly --record`"
     )))
 }
 

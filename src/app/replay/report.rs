@@ -47,6 +47,14 @@ impl<'a> Report<'a> {
         self.write(report)
     }
 
+    /// Writes the page about a recording.
+    ///
+    /// # Errors
+    /// Returns the error of the output.
+    pub(super) fn write_recording(self, name: &str, overview: &Overview) -> Result<(), AppError> {
+        self.write(FlightReport::of_past(name, overview))
+    }
+
     fn write(self, report: FlightReport) -> Result<(), AppError> {
         let Self { path, backdrop, command } = self;
         let report = FlightReport { backdrop, command: Some(command), ..report };

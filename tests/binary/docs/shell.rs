@@ -186,7 +186,7 @@ impl Desk {
         } else {
             ""
         };
-        if line.contains("open square.flight") {
+        if line.contains("open square.flight") || line.contains("replay square.flight") {
             self.sandbox.run(&["fly", "land", "--record", "square.flight"]).exits(0);
         }
         if line.contains("convert ") {
