@@ -94,8 +94,9 @@ fn the_drop_in_writes_its_logs_beside_its_configuration() {
     let _simulator = sockets.fly(sitl.fdm, 4.0);
     let mut terminal = Terminal::open(sitl.tcp);
     terminal.type_lines("set blackbox_device = VIRTUAL\nset blackbox_mode = ALWAYS");
-    terminal.save();
     let log = |number: u32| std::fs::read(sitl.program.directory().join(format!("LOG{number:05}.BFL")));
+    patiently("a log before the restart", || log(1).ok().filter(|log| !log.is_empty()));
+    terminal.save();
     // The log before the restart has its end.
     let second = patiently("a second log", || log(2).ok().filter(|log| log.len() > 30_000));
     assert!(main_frames(&second) > 200);

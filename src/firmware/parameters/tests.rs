@@ -21,13 +21,12 @@ fn defaults_of_settings_and_modules_agree() {
 }
 
 /// Live settings that are used in other places, with those places.
-const ELSEWHERE: [(&str, &str); 8] = [
+const ELSEWHERE: [(&str, &str); 7] = [
     ("profile_name", "shown by MSP"),
     ("rateprofile_name", "shown by MSP"),
     ("battery_profile_name", "shown by MSP"),
     ("craft_name", "shown by MSP and dumps"),
     ("bat_capacity", "reported by MSP with the charge drawn"),
-    ("rssi_channel", "read by MSP"),
     ("task_statistics", "columns of the tasks command"),
     ("gps_provider", "a real receiver without a port turns the feature GPS off at boot"),
 ];
