@@ -89,6 +89,10 @@ fn avoid(cause: &Cause) -> String {
     let split = &cause.split;
     let (input, rule) = (cause.input.as_str(), &split.rule);
     match (input, rule) {
+        ("wind from the north", Rule::Above(limit)) if *limit > 0.0 => wait_for_wind(*limit, "north"),
+        ("wind from the north", Rule::AtMost(limit)) if *limit < 0.0 => wait_for_wind(-limit, "south"),
+        ("wind from the east", Rule::Above(limit)) if *limit > 0.0 => wait_for_wind(*limit, "east"),
+        ("wind from the east", Rule::AtMost(limit)) if *limit < 0.0 => wait_for_wind(-limit, "west"),
         ("wind_mps", Rule::Above(limit)) => format!("wait for a wind of at most {limit:.1} m/s"),
         ("gust_mps", Rule::Above(limit)) => format!("wait for gusts of at most {limit:.1} m/s"),
         ("battery_pct", Rule::AtMost(limit)) => format!("start with more than {:.0} % charge", 100.0 + limit),
@@ -96,10 +100,14 @@ fn avoid(cause: &Cause) -> String {
     }
 }
 
+fn wait_for_wind(limit_mps: f64, from: &str) -> String {
+    format!("wait until at most {limit_mps:.1} m/s of the wind come from the {from}")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::campaign::{Forecast, InputValue, Record, Side, Standing};
+    use crate::campaign::{Forecast, InputValue, Record, Side, Split, Standing};
     use crate::scenario::{BuiltinFiles, Scenario, read};
 
     fn scenario() -> Scenario {
@@ -154,6 +162,25 @@ mod tests {
         assert!(sentence.contains("to change: wait for a wind of at most 8."), "{sentence}");
         let json: serde_json::Value = serde_json::from_str(&forecast_json("land", &answer, 0.95)).unwrap();
         assert_eq!((json["go"].as_bool(), json["success"].as_f64()), (Some(false), Some(0.8)));
+    }
+
+    #[test]
+    fn a_component_of_the_wind_is_named_by_where_it_comes_from() {
+        let split = |rule| Cause {
+            input: "wind from the east".to_owned(),
+            split: Split { rule, inside: (18, 20), outside: (0, 80), gain: 0.5, p: 1e-6 },
+            rho: None,
+            is_real: true,
+        };
+        assert_eq!(
+            avoid(&split(Rule::AtMost(-12.19))),
+            "wait until at most 12.2 m/s of the wind come from the west"
+        );
+        assert_eq!(
+            avoid(&split(Rule::Above(7.5))),
+            "wait until at most 7.5 m/s of the wind come from the east"
+        );
+        assert_eq!(avoid(&split(Rule::Above(-3.0))), "avoid wind from the east above -3");
     }
 
     #[test]
