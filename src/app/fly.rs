@@ -118,7 +118,7 @@ struct Start<'a> {
     recorded: Option<FlightSetup>,
     /// The first messages.
     notices: Vec<String>,
-    /// What a report needs besides the flight.
+    /// The facts of a report that the flight does not have.
     beside: BesideFlight,
     interrupted: Arc<AtomicBool>,
 }

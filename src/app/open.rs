@@ -146,7 +146,7 @@ fn open_screen(args: &OpenArgs, finished: Finished, keymap: Keymap) -> Result<u8
     tui::show(screen, keymap)
 }
 
-/// What is flown and shown.
+/// The flight that is opened, with its start on the screen.
 struct Opened {
     case: Case,
     air: Air,

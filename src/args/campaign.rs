@@ -99,7 +99,7 @@ pub struct CampaignArgs {
     #[command(flatten)]
     pub mission: MissionArgs,
 
-    /// What goes wrong.
+    /// The sticks and the faults.
     #[command(flatten)]
     pub trouble: TroubleArgs,
 

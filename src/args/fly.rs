@@ -67,7 +67,7 @@ pub struct FlyArgs {
     #[command(flatten)]
     pub review: ReviewArgs,
 
-    /// What goes wrong.
+    /// The sticks and the faults.
     #[command(flatten)]
     pub trouble: TroubleArgs,
 

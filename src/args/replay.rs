@@ -11,7 +11,7 @@ use super::value::{self, OutputFile, RecordInstant};
 pub struct ReplayArgs {
     /// A blackbox log (*.bbl, *.bfl, *.txt) or a recording of betadeck; a second one is shown beside the first
     ///
-    /// What a file is depends on its contents, not on its name.
+    /// The contents of a file decide its kind, not its name.
     #[arg(required = true, num_args = 1..=2, value_name = "FILE")]
     pub files: Vec<PathBuf>,
 

@@ -5,7 +5,7 @@ use crate::sim::ScheduledFault;
 
 use super::{help, value};
 
-/// What the pilot and the world do to a flight.
+/// Sticks that the pilot moves, and faults of the craft and the world.
 #[derive(Debug, Clone, Default, PartialEq, clap::Args)]
 pub struct TroubleArgs {
     /// Moves a stick or switch: a channel (roll, pitch, throttle, yaw, aux1…aux12), µs, when, how long; repeatable

@@ -1,4 +1,4 @@
-//! What the user wants to fly, as a definition from which every flight follows.
+//! Reads the scenario, plan or run that the user names, with its options, into a definition of all flights.
 
 use std::fs::File;
 use std::io::{BufRead as _, BufReader, Read as _};

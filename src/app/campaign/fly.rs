@@ -83,7 +83,7 @@ fn refuse_two_versions(loaded: &Loaded, out: Option<&Path>, is_unfinished: bool)
     }
     let name = out.map(|path| path.display().to_string()).unwrap_or_default();
     Err(AppError::input(format!(
-        "{name} was begun by betadeck {theirs}, and this is {}: finish it with that one, or fly it anew with another --out",
+        "{name} was begun by betadeck {theirs}, and this is {}: finish it with that one, or fly all of it again with another --out",
         version()
     )))
 }

@@ -214,7 +214,7 @@ impl RunFile {
             old(&line.record);
         }
         (run.bytes, run.lines, run.wanted) = (reader.bytes, reader.lines, reader.wanted());
-        // What is left of a line that was being written.
+        // The beginning of a line that a kill cut short.
         run.file.set_len(run.bytes).map_err(cannot)?;
         Ok(run)
     }

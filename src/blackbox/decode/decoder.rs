@@ -24,7 +24,7 @@ pub struct DecoderState {
     has_home: bool,
 }
 
-/// What is at the start of the bytes.
+/// The kind of part with which the bytes begin.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Step {
     Frame {

@@ -17,7 +17,7 @@ use crate::session::Event;
 use crate::terrain::Relief;
 use crate::vehicle::Vehicle;
 
-/// What a report needs besides the flight.
+/// The facts of a report that the flight does not have.
 #[derive(Debug, Default)]
 pub(in crate::app::fly) struct Beside {
     /// The command that gives the flight again.
