@@ -287,3 +287,14 @@ fn hostile_names_and_headers_are_shown_without_their_control_characters() {
     assert_eq!(terminal.end(), 0);
     assert!(!terminal.raw().contains("\u{1b}]0;owned"), "the title of the terminal is unchanged");
 }
+
+#[test]
+fn a_full_disk_is_named_with_the_file() {
+    if !std::path::Path::new("/dev/full").exists() {
+        return;
+    }
+    for option in ["--csv", "--gpx", "--report"] {
+        let ran = with_log().run(&["replay", "a.bbl", option, "/dev/full"]).exits(3);
+        assert!(ran.err.contains("/dev/full: No space left"), "{option}: {}", ran.err);
+    }
+}

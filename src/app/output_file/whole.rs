@@ -105,7 +105,7 @@ impl StreamedOutput {
     /// Returns the reason why it cannot be written.
     pub(in crate::app) fn begin_with(path: &Path, bytes: &[u8]) -> Result<Self, AppError> {
         let mut output = Self::begin(path)?;
-        output.write_all(bytes).map_err(|error| cannot_write(path, &error))?;
+        output.add(bytes)?;
         output.named()
     }
 
@@ -124,6 +124,14 @@ impl StreamedOutput {
         });
         let stream = named.map_err(|error| cannot_write(&path, &error))?;
         Ok(Self { path, writer: BufWriter::new(stream), target: None })
+    }
+
+    /// Adds these bytes.
+    ///
+    /// # Errors
+    /// Returns the reason why they cannot be written, with the name of the file.
+    pub(in crate::app) fn add(&mut self, bytes: &[u8]) -> Result<(), AppError> {
+        self.write_all(bytes).map_err(|error| cannot_write(&self.path, &error))
     }
 
     /// Gives the file its name. Until then there is no file with that name.

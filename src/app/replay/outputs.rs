@@ -40,13 +40,15 @@ pub(super) fn table(
             let mut out = BufWriter::new(PatientOutput(io::stdout()));
             match write(&mut out).and_then(|()| out.flush()) {
                 // The reader of the pipe has what it wanted.
-                Err(error) if error.kind() != ErrorKind::BrokenPipe => return Err(failed(&error)),
+                Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+                    return Err(failed("standard output", &error));
+                }
                 Ok(()) | Err(_) => {}
             }
         }
         OutputFile::File(path) => {
             let mut out = StreamedOutput::begin(path)?;
-            write(&mut out).map_err(|error| failed(&error))?;
+            write(&mut out).map_err(|error| failed(&path.display().to_string(), &error))?;
             if stop.load(Ordering::Relaxed) {
                 return Ok(false);
             }
@@ -65,10 +67,10 @@ pub(super) fn file(
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), AppError> {
     let mut out = StreamedOutput::begin(path)?;
-    write(&mut out).map_err(|error| failed(&error))?;
+    write(&mut out).map_err(|error| failed(&path.display().to_string(), &error))?;
     out.finish()
 }
 
-fn failed(error: &io::Error) -> AppError {
-    AppError::environment(format!("cannot export the recorded flight: {error}"))
+fn failed(output: &str, error: &io::Error) -> AppError {
+    AppError::environment(format!("cannot write the recorded flight to {output}: {error}"))
 }

@@ -1,6 +1,5 @@
 //! The page about a recorded flight.
 
-use std::io::Write as _;
 use std::path::Path;
 
 use crate::app::error::AppError;
@@ -59,9 +58,7 @@ impl<'a> Report<'a> {
         let Self { path, backdrop, command } = self;
         let report = FlightReport { backdrop, command: Some(command), ..report };
         let mut file = StreamedOutput::begin(path)?;
-        let page = html::flight_page(&report, &report::program());
-        let written = file.write_all(page.as_bytes());
-        written.map_err(|error| AppError::environment(format!("cannot write the report: {error}")))?;
+        file.add(html::flight_page(&report, &report::program()).as_bytes())?;
         file.finish()
     }
 }

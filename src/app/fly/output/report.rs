@@ -1,9 +1,7 @@
 //! The report about a flight, written at its end.
 
-use std::io::Write as _;
 use std::path::PathBuf;
 
-use super::stream::write_failed;
 use crate::app::error::AppError;
 use crate::app::output_file::StreamedOutput;
 use crate::app::report;
@@ -93,7 +91,7 @@ impl Report {
         }
         let write = |file: Option<StreamedOutput>, text: &dyn Fn() -> String| {
             let Some(mut file) = file else { return Ok(()) };
-            file.write_all(text().as_bytes()).map_err(write_failed)?;
+            file.add(text().as_bytes())?;
             file.finish()
         };
         write(html, &|| html::flight_page(&report, &report::program()))?;

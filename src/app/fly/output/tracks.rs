@@ -1,6 +1,5 @@
 //! The track of a flight in files of map programs.
 
-use std::io::Write as _;
 use std::path::PathBuf;
 
 use super::pace::Pace;
@@ -82,7 +81,7 @@ impl Tracks {
         let Some(OfStates { track, kml, geojson, .. }) = self.of_states else { return Ok(()) };
         let write = |file: Option<StreamedOutput>, text: &dyn Fn() -> String| {
             let Some(mut file) = file else { return Ok(()) };
-            file.write_all(text().as_bytes()).map_err(write_failed)?;
+            file.add(text().as_bytes())?;
             file.finish()
         };
         write(kml, &|| track.kml())?;
