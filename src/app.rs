@@ -3,8 +3,9 @@
 //! One file a mode, with its parts in the layer of its name: `check` flies scenarios, `campaign` many flights of one,
 //! `compare` two firmwares, `fly` one plan, and `open` shows a flight of a scenario or a campaign. `firmware` starts or
 //! finds a remote firmware, `output_file` replaces files as a whole, `log_output` writes blackbox logs, and `plan_files`
-//! reads, writes and watches plan files. `replay` shows and exports recorded flights. `flight_library` keeps the recorded
-//! flights, and `flight_recorder` records them. `terrain` reads the elevation tiles that a plan needs.
+//! reads, writes and watches plan files. `replay` shows and exports recorded flights, `recording_file` writes them.
+//! `flight_library` keeps the recorded flights, and `flight_recorder` records them. `terrain` reads the elevation tiles
+//! that a plan needs.
 
 mod backdrop_file;
 mod campaign;
@@ -32,6 +33,7 @@ mod layers;
 mod line_history;
 mod live;
 mod log_output;
+mod log_source;
 mod named_file;
 mod open;
 mod output_file;

@@ -2,6 +2,7 @@
 
 mod flights;
 mod jobs;
+mod log;
 mod outputs;
 mod recorder;
 
@@ -42,6 +43,9 @@ impl Compared {
 
 /// Flies and compares. The exit code is 0 if all flights completed.
 pub(super) fn run(args: &CompareArgs, repeat: &[String]) -> Result<u8, AppError> {
+    if let Some(path) = &args.log {
+        return log::run(args, path, repeat);
+    }
     let mut notices = Vec::new();
     let compared = compared(args, &mut notices)?;
     let outside = compared.iter().any(|one| one.firmware.is_some());
@@ -68,6 +72,7 @@ pub(super) fn run(args: &CompareArgs, repeat: &[String]) -> Result<u8, AppError>
     notices.iter().for_each(|notice| error::tell(notice));
     let mut sides = compared.each_ref().map(|one| Side {
         name: one.name.clone(),
+        is_log: false,
         repeatable: !one.is_on_wall_clock(),
         flights: Vec::new(),
     });

@@ -13,6 +13,7 @@ use super::firmware::run::{RemoteRun, RunOptions, unless_interrupted};
 use super::firmware::{self, Beside, RemoteFirmware};
 use super::interrupt::interrupt_flag;
 use super::log_output::{LogOutput, needs_embedded};
+use super::recording_file::Recorder;
 use super::terrain::with_terrain;
 use super::{report, setup};
 use crate::args::{FlyArgs, PhysicsArgs, Speed};
@@ -29,7 +30,7 @@ use crate::session::{Event, Flying as _, Runner, Stopped, Subscriber, hazards};
 use crate::storage::Store;
 use crate::terrain::{Relief, Tiles};
 use crate::vehicle::Vehicle;
-use output::{Beside as BesideFlight, Output, Prelude, Recorded, Recorder};
+use output::{Beside as BesideFlight, Output, Prelude, Recorded};
 use watched::WatchedFlight;
 
 /// Flies and reports. The exit code is 0 if the mission completed.

@@ -1,6 +1,8 @@
 //! What recordings of flights have in common, whoever records them: the first line, the events, the sentences.
 #![allow(clippy::disallowed_methods, reason = "a recording has its date")]
 
+mod recorder;
+
 use std::path::PathBuf;
 use std::time::SystemTime;
 
@@ -8,6 +10,8 @@ use super::named_file::Kind;
 use crate::recording::{FORMAT, Happened, Header, RecordedEvent};
 use crate::report::{UtcSeconds, sentence};
 use crate::session::{Event, SessionEvent};
+
+pub(super) use recorder::Recorder;
 
 /// The first bytes of a recording, those of a gzip member.
 pub(super) const GZIP: [u8; 2] = [0x1f, 0x8b];

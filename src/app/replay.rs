@@ -1,7 +1,6 @@
 //! `betadeck replay`: recorded flights on the screen, and as files for other programs.
 
 mod log_export;
-mod log_source;
 mod opened;
 mod outputs;
 mod recording_export;

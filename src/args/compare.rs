@@ -28,6 +28,20 @@ pub struct CompareArgs {
     #[arg(long, value_name = "WHICH", help_heading = "Firmware")]
     pub firmware: Vec<FirmwareChoice>,
 
+    /// Blackbox log of a flight of the plan to compare with the same flight in the simulation: its home, settings, sticks and
+    /// switches; of several logs in the file the longest
+    #[arg(
+        long,
+        value_name = "FILE",
+        conflicts_with_all = ["firmware", "betaloop", "seeds", "repeat", "jobs", "blackbox"],
+        help_heading = "Flight"
+    )]
+    pub log: Option<PathBuf>,
+
+    /// Records the simulated flight beside the log, to show both with betadeck replay LOG FILE
+    #[arg(long, value_name = "FILE", requires = "log", value_parser = value::output_path, help_heading = "Output")]
+    pub record: Option<PathBuf>,
+
     /// The start of the firmwares and the packets to them.
     #[command(flatten)]
     pub link: FirmwareLinkArgs,

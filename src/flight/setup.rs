@@ -6,9 +6,11 @@
 
 mod boot_lines;
 mod home;
+mod log_lines;
 mod notice;
 
 pub use boot_lines::BootLines;
+pub use log_lines::settings_of_log;
 pub use notice::SetupNotice;
 
 use crate::firmware::cli::BuildInfo;

@@ -89,6 +89,11 @@ impl<'a, S: LogSource> FlightCursor<'a, S> {
         LogSample { values, ..self.tracker.state.sample.clone() }
     }
 
+    /// Returns the sample without the values of the signals.
+    pub fn latest(&self) -> &LogSample {
+        &self.tracker.state.sample
+    }
+
     /// Returns the value of a signal, by its place in the list of the log.
     pub fn value(&self, signal: usize) -> Option<f64> {
         self.table.read(signal, &self.newest())

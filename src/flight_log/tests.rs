@@ -1,6 +1,7 @@
 //! Whole logs as flights.
 
 mod maker;
+mod sticks;
 mod units;
 
 use std::io;

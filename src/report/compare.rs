@@ -1,11 +1,13 @@
-//! Two firmwares on the same plan: the measures of their tracks as tables, JSON and a picture.
+//! Two firmwares, or a log and its simulation, on the same plan: the measures of their tracks as tables, JSON and a picture.
 //!
-//! All measures come from truth, in the same way for both firmwares; their own reports do not count. `passage` finds the times at which a track passed the waypoints, `measure` takes the other
-//! measures, and `distance` gives the distance between two tracks.
+//! All measures come from truth, in the same way for both firmwares; their own reports do not count. The flight of a log
+//! is measured by its GPS and its altitude (`log_track`). `passage` finds the times at which a track passed the waypoints,
+//! `measure` takes the other measures, and `distance` gives the distance between two tracks.
 
 mod cells;
 mod distance;
 mod json;
+mod log_track;
 mod markdown;
 mod measure;
 mod passage;
@@ -18,6 +20,7 @@ mod track;
 mod tests;
 
 pub(super) use cells::TableRow;
+pub use log_track::begin_of_log;
 pub use measure::Measure;
 pub use statistics::Statistics;
 pub use track::{Track, TrackSample};
@@ -30,8 +33,10 @@ use measure::measures;
 /// The flights of one firmware.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Side {
-    /// The name of the firmware.
+    /// The name of the firmware, or of the log.
     pub name: String,
+    /// `true` if its flight is measured by its log instead of by truth.
+    pub is_log: bool,
     /// `true` if all flights with one seed are equal to the last bit.
     pub repeatable: bool,
     pub flights: Vec<Track>,
@@ -115,17 +120,23 @@ impl Comparison {
         format!("{}, {}", self.plan, self.conditions)
     }
 
-    /// Returns the names of the firmwares.
+    /// Returns the names of the sides.
     pub(super) fn names(&self) -> [&str; 2] {
         self.sides.each_ref().map(|side| side.name.as_str())
     }
 
-    /// Returns `true` if all flights completed.
+    /// Returns `true` if all simulated flights, and those of real firmwares, completed.
     pub fn is_complete(&self) -> bool {
-        self.sides.iter().flat_map(|side| &side.flights).all(|flight| flight.result == "complete")
+        let judged = self.sides.iter().filter(|side| !side.is_log);
+        judged.flat_map(|side| &side.flights).all(|flight| flight.result == "complete")
     }
 
-    /// Returns the number of the flights of each firmware in words.
+    /// Returns `true` if one side is a log.
+    pub(super) fn has_log(&self) -> bool {
+        self.sides.iter().any(|side| side.is_log)
+    }
+
+    /// Returns the number of the flights of each side in words.
     pub(super) fn flights(&self) -> String {
         let [a, b] = self.sides.each_ref().map(|side| format!("{}, {}", side.name, cells::flights(side)));
         format!("A: {a}; B: {b}.")

@@ -186,3 +186,68 @@ fn what_cannot_be_compared_is_refused() {
         assert!(ran.err.contains(part), "{options:?}: {}", ran.err);
     }
 }
+
+/// Options of a short flight in wind.
+const IN_WIND: [&str; 2] = ["--wind=3@250", "--rate=400"];
+
+/// Flies a short flight and writes its log.
+fn log_of_hop(sandbox: &Sandbox, log: &str, options: &[&str]) {
+    sandbox.write("hop.toml", HOP);
+    let fly = ["fly", "hop.toml", "--takeoff=4", "--blackbox", log];
+    sandbox.run(&[&fly[..], &IN_WIND, options].concat()).exits(0);
+}
+
+#[test]
+fn a_log_is_compared_with_the_same_flight_in_the_simulation() {
+    let sandbox = Sandbox::new();
+    log_of_hop(&sandbox, "hop.bbl", &["--set", "ap_max_velocity=600"]);
+    let outputs = ["--json", "-", "--svg", "tracks.svg", "--report", "page.html", "--record", "again.flight"];
+    let arguments = [&["compare", "hop.toml", "--log", "hop.bbl"][..], &outputs, &IN_WIND].concat();
+    let ran = sandbox.run(&arguments).exits(0);
+    assert!(ran.err.contains("settings of its header apply"), "{}", ran.err);
+    let compared: serde_json::Value = serde_json::from_str(&ran.out).expect("JSON");
+    let [log, simulated] = [0, 1].map(|side| &compared["firmware"][side]);
+    assert_eq!((log["name"].as_str(), log["is_log"].as_bool()), (Some("hop.bbl"), Some(true)));
+    assert_eq!(simulated["flights"][0]["result"].as_str(), Some("complete"), "{}", ran.out);
+    let apart_m = compared["tracks_apart_rms_m"]["between"]["median"].as_f64().expect("a distance");
+    assert!(apart_m < 2.0, "{apart_m}");
+    assert!(sandbox.read("tracks.svg").contains("hop.bbl"));
+    assert!(sandbox.read("page.html").contains("A log and its simulation"));
+    // The recording shows both on the screen.
+    let shown = sandbox.run(&["replay", "hop.bbl", "again.flight", "--plain"]);
+    assert!(shown.out.contains("again.flight is aligned at the engagement"), "{}\n{}", shown.out, shown.err);
+    let listed = sandbox.run(&["replay", "again.flight", "--csv", "-"]).exits(0);
+    assert!(listed.out.lines().count() > 100, "{}", listed.out);
+}
+
+#[test]
+fn the_log_of_another_place_or_without_what_a_comparison_needs_is_refused_in_a_sentence() {
+    let sandbox = Sandbox::new();
+    log_of_hop(&sandbox, "whole.bbl", &[]);
+    log_of_hop(&sandbox, "sticks.bbl", &["--set", "blackbox_disable_rc=ON"]);
+    log_of_hop(&sandbox, "places.bbl", &["--set", "blackbox_disable_gps=ON"]);
+    sandbox.write("far.toml", &HOP.replace("40.4635", "48.4635"));
+    sandbox.write("notes.txt", "not a log");
+    for (plan, log, part) in [
+        ("hop.toml", "notes.txt", "notes.txt has no blackbox log with frames"),
+        ("hop.toml", "sticks.bbl", "sticks.bbl: the log has no rcCommand"),
+        ("hop.toml", "places.bbl", "places.bbl: the log has no GPS"),
+        ("far.toml", "whole.bbl", "whole.bbl was flown 891 km away from the plan far: allowed are 50 km"),
+    ] {
+        let ran = sandbox.run(&["compare", plan, "--log", log]).exits(2);
+        assert!(ran.err.contains(part) && ran.out.is_empty(), "{log}: {}", ran.err);
+    }
+    sandbox.run(&["compare", "hop.toml", "--log", "whole.bbl", "--record", "whole.bbl"]).exits(2);
+    sandbox.run(&["compare", "hop.toml", "--record", "again.flight"]).exits(2);
+}
+
+#[test]
+fn a_log_that_was_cut_is_compared_as_far_as_it_goes() {
+    let sandbox = Sandbox::new();
+    log_of_hop(&sandbox, "hop.bbl", &[]);
+    let whole = std::fs::read(sandbox.path("hop.bbl")).expect("a log");
+    std::fs::write(sandbox.path("cut.bbl"), &whole[..whole.len() / 2]).expect("a file");
+    let ran = sandbox.run(&[&["compare", "hop.toml", "--log", "cut.bbl"][..], &IN_WIND].concat()).exits(0);
+    assert!(ran.err.contains("The log was cut: it has no end"), "{}", ran.err);
+    assert!(ran.out.contains("B: interrupted: the log ends"), "{}", ran.out);
+}

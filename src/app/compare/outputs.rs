@@ -41,11 +41,13 @@ impl Outputs {
         };
         let mut kept = setup::kept_files(&args.flight, Some(&args.plan));
         args.backdrop.iter().for_each(|path| kept.keep("--backdrop", path));
+        args.log.iter().for_each(|path| kept.keep("--log", path));
         for (option, path) in [
             ("--json", json),
             ("--svg", args.svg.as_ref()),
             ("--report", args.report.as_ref()),
             ("--markdown", args.markdown.as_ref()),
+            ("--record", args.record.as_ref()),
         ] {
             path.map_or(Ok(()), |path| kept.claim(option, path))?;
         }

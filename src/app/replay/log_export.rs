@@ -3,10 +3,10 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::log_source::FileSource;
 use super::outputs;
 use super::report::Report;
 use crate::app::error::{self, AppError};
+use crate::app::log_source::FileSource;
 use crate::args::ReplayArgs;
 use crate::flight_log::LogFlight;
 use crate::replay::{LogFlights, PastFlights as _, log_damage};

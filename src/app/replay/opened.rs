@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use super::log_source::FileSource;
 use super::shown_name;
 use crate::app::error::AppError;
 use crate::app::input_file;
+use crate::app::log_source::FileSource;
 use crate::app::recording_file::GZIP;
 use crate::blackbox::FIRST_LINE;
 use crate::blackbox::decode::LogSource as _;

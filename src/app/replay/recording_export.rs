@@ -3,10 +3,10 @@
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::log_source::FileSource;
 use super::outputs;
 use super::report::Report;
 use crate::app::error::{self, AppError};
+use crate::app::log_source::FileSource;
 use crate::args::ReplayArgs;
 use crate::plan::FlightPlan;
 use crate::recording::{Happened, Picture, Recording, Setup};

@@ -18,7 +18,7 @@ pub(super) fn of(log: &LogFlight) -> Vec<PastEventKind> {
         about.push(PastEventKind::Notice("The log has no GPS: the map shows no track.".to_owned()));
     }
     about.extend(log_damage(log).map(PastEventKind::Warning));
-    about.extend(cut(log).map(PastEventKind::Notice));
+    about.extend(log_cut(log).map(PastEventKind::Notice));
     about
 }
 
@@ -36,8 +36,8 @@ pub fn log_damage(log: &LogFlight) -> Option<String> {
     Some(format!("The log is damaged: {} bytes belong to no frame{lost}.", counts.skipped_bytes))
 }
 
-/// Returns a sentence about the missing end of a log.
-fn cut(log: &LogFlight) -> Option<String> {
+/// Returns a sentence about the missing end of a log, if it was cut.
+pub fn log_cut(log: &LogFlight) -> Option<String> {
     if log.is_complete() {
         return None;
     }

@@ -50,6 +50,7 @@ pub(super) fn rows(comparison: &Comparison) -> Vec<TableRow> {
 /// Returns the number of flights in words.
 pub(super) fn flights(side: &Side) -> String {
     match side.flights.len() {
+        _ if side.is_log => "as logged".to_owned(),
         0 => "not flown".to_owned(),
         1 if side.repeatable => "one flight, identical each time".to_owned(),
         1 => "one flight".to_owned(),
@@ -60,7 +61,7 @@ pub(super) fn flights(side: &Side) -> String {
 /// Returns a sentence for each flight that did not complete: `B, seed 3: crashed: the hull touched the ground`.
 pub(super) fn incomplete(comparison: &Comparison) -> Vec<String> {
     let mut sentences = Vec::new();
-    for (letter, side) in ["A", "B"].iter().zip(&comparison.sides) {
+    for (letter, side) in ["A", "B"].iter().zip(&comparison.sides).filter(|(_, side)| !side.is_log) {
         let first = side.flights.first().map_or(0, |flight| flight.seed);
         let of_several = side.flights.iter().any(|flight| flight.seed != first);
         for flight in side.flights.iter().filter(|flight| flight.result != "complete") {
@@ -73,11 +74,14 @@ pub(super) fn incomplete(comparison: &Comparison) -> Vec<String> {
 
 /// Returns the meaning of the numbers.
 pub(super) fn notes(comparison: &Comparison) -> Vec<String> {
-    let mut notes = vec![
+    let measured = if comparison.has_log() {
+        "The log is measured by its GPS and its altitude, the simulated flight from truth. The touchdown is where the \
+         craft was disarmed. Tracks apart: from each point of one track to the nearest of the other, both ways."
+    } else {
         "Measured from truth. Tracks apart: from each point of one track to the nearest of the other, both ways; \
          below A and B among the flights of that firmware."
-            .to_owned(),
-    ];
+    };
+    let mut notes = vec![measured.to_owned()];
     if comparison.sides.iter().any(|side| side.flights.len() > 1) {
         let marks = comparison.rows.iter().filter_map(|row| row.is_beyond).chain(comparison.apart.is_beyond);
         let is_beyond: Vec<bool> = marks.collect();

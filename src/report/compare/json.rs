@@ -19,6 +19,9 @@ struct Object<'a> {
 #[derive(Serialize)]
 struct Firmware<'a> {
     name: &'a str,
+    /// Written for a log only.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    is_log: bool,
     repeatable: bool,
     flights: Vec<Flight<'a>>,
 }
@@ -82,7 +85,7 @@ pub(super) fn object(comparison: &Comparison) -> String {
 impl<'a> From<&'a Side> for Firmware<'a> {
     fn from(side: &'a Side) -> Self {
         let flights = side.flights.iter().map(Flight::from).collect();
-        Self { name: &side.name, repeatable: side.repeatable, flights }
+        Self { name: &side.name, is_log: side.is_log, repeatable: side.repeatable, flights }
     }
 }
 

@@ -1,4 +1,4 @@
-//! The comparison as a table in Markdown for a pull request: before and after.
+//! The comparison as a table in Markdown for a pull request: before and after, or measured and simulated.
 
 use super::Comparison;
 use super::cells::{flights, incomplete, notes, rows};
@@ -12,8 +12,9 @@ pub(super) fn markdown(comparison: &Comparison, command: Option<&str>) -> String
     for (letter, side) in ["A", "B"].iter().zip(&comparison.sides) {
         text.push_str(&format!("- {letter}: {}, {}\n", line(&side.name), flights(side)));
     }
+    let [first, second] = if comparison.has_log() { ["measured", "simulated"] } else { ["before", "after"] };
     text.push_str(&format!(
-        "\n| measure | before (A: {}) | after (B: {}) | B − A |\n| --- | ---: | ---: | ---: |\n",
+        "\n| measure | {first} (A: {}) | {second} (B: {}) | B − A |\n| --- | ---: | ---: | ---: |\n",
         cell(&before.name),
         cell(&after.name)
     ));

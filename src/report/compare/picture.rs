@@ -25,17 +25,32 @@ pub(super) fn document(comparison: &Comparison) -> String {
 /// Returns the pictures for a page, with a map under the tracks.
 pub(super) fn figures(comparison: &Comparison, ground: Vec<Ground>, detail: Detail) -> Vec<Figure> {
     let names = comparison.names().join(" and ");
+    let [of_map, _] = captions(comparison);
     let others = MOST_OTHERS.min(detail.points / 50);
     let map = map(comparison, ground, detail.points, others);
     let picture = Picture::new("compare-map", "Tracks", &format!("The tracks of {names}, north up."));
     let map = Figure {
         svg: map.svg(&picture),
         title: "Tracks.".to_owned(),
-        caption: "The true tracks; crosses are touchdowns. The first flight of each firmware is bold."
-            .to_owned(),
+        caption: of_map.to_owned(),
         is_wide: false,
     };
     [Some(map), altitude(comparison, &names, detail)].into_iter().flatten().collect()
+}
+
+/// Returns the captions of the map and of the altitudes.
+fn captions(comparison: &Comparison) -> [&'static str; 2] {
+    if comparison.has_log() {
+        [
+            "The track of the log by its GPS, and the true track of the simulated flight; crosses are touchdowns.",
+            "Seconds after the AUTOPILOT switch; the altitude in the log, and the true one of the simulated flight.",
+        ]
+    } else {
+        [
+            "The true tracks; crosses are touchdowns. The first flight of each firmware is bold.",
+            "Seconds after the pilot switched the autopilot on; the first flight of each firmware.",
+        ]
+    }
 }
 
 fn map(comparison: &Comparison, ground: Vec<Ground>, most_points: usize, most_others: usize) -> Map {
@@ -73,6 +88,7 @@ fn legend(comparison: &Comparison) -> Vec<(Colour, f64, String)> {
 
 /// Returns the altitudes of the first flights; `None` if nobody flew.
 fn altitude(comparison: &Comparison, names: &str, detail: Detail) -> Option<Figure> {
+    let [_, of_altitude] = captions(comparison);
     let sides = comparison.sides.iter().zip(COLOURS).zip(WIDTHS).zip(["A", "B"]);
     let line = |(((side, colour), width), letter): (((&Side, Colour), f64), &str)| {
         let points: Vec<Point> =
@@ -87,14 +103,13 @@ fn altitude(comparison: &Comparison, names: &str, detail: Detail) -> Option<Figu
     }
     // The first firmware is on top.
     lines.reverse();
-    let description = format!("The true altitudes of {names} over {:.0} s.", time.1);
+    let description = format!("The altitudes of {names} over {:.0} s.", time.1);
     let picture = Picture::new("compare-altitude", "Altitude", &description);
     let chart = Chart { time, lines, least_span: 5.0, height: 160.0, most_points: detail.points };
     Some(Figure {
         svg: chart.svg(&picture),
         title: "Altitude, m above home.".to_owned(),
-        caption: "Seconds after the pilot switched the autopilot on; the first flight of each firmware."
-            .to_owned(),
+        caption: of_altitude.to_owned(),
         is_wide: true,
     })
 }

@@ -139,8 +139,8 @@ fn comparison(name: &str) -> Comparison {
     let straight = track(&[(0.0, 0.0), (100.0, 0.0), (100.0, 100.0), (0.0, 0.0)]);
     let wide = |by: f64| track(&[(0.0, 0.0), (100.0 + by, 0.0), (100.0 + by, 100.0), (0.0, 0.0)]);
     let sides = [
-        Side { name: "embedded".to_owned(), repeatable: true, flights: vec![straight] },
-        Side { name: name.to_owned(), repeatable: false, flights: vec![wide(2.0), wide(4.0)] },
+        Side { name: "embedded".to_owned(), is_log: false, repeatable: true, flights: vec![straight] },
+        Side { name: name.to_owned(), is_log: false, repeatable: false, flights: vec![wide(2.0), wide(4.0)] },
     ];
     Comparison::new("square", "calm, seed 1", route, sides)
 }
@@ -185,6 +185,7 @@ fn mark(overshoots: [&[f64]; 2], repeatable: bool) -> Option<bool> {
     };
     let sides = overshoots.map(|of_side| Side {
         name: "x".to_owned(),
+        is_log: false,
         repeatable,
         flights: of_side.iter().enumerate().map(flight).collect(),
     });
@@ -224,8 +225,28 @@ fn names_are_escaped_in_the_picture() {
 #[test]
 fn flights_without_a_track_are_shown_all_the_same() {
     let refused = Track { result: "refused".to_owned(), reason: "no fix".to_owned(), ..Track::default() };
-    let side = |name: &str| Side { name: name.to_owned(), repeatable: false, flights: vec![refused.clone()] };
+    let side = |name: &str| Side {
+        name: name.to_owned(),
+        is_log: false,
+        repeatable: false,
+        flights: vec![refused.clone()],
+    };
     let comparison = Comparison::new("x", "calm", route(&[(9.0, 0.0, Flyover)]), [side("a"), side("b")]);
     assert!(comparison.text().contains("B: refused: no fix"), "{}", comparison.text());
     assert!(comparison.svg().contains("</svg>"));
+}
+
+#[test]
+fn a_log_beside_its_simulation_is_called_measured_and_simulated() {
+    let mut comparison = comparison("embedded");
+    comparison.sides[0] = Side { name: "flight.bbl".to_owned(), is_log: true, ..comparison.sides[0].clone() };
+    comparison.sides[0].flights[0].result = "logged".to_owned();
+    assert!(comparison.is_complete() && comparison.incomplete().is_empty());
+    let text = comparison.text();
+    assert!(text.contains("A: flight.bbl, as logged\n"), "{text}");
+    let markdown = comparison.markdown(None);
+    assert!(markdown.contains("| measured (A: flight.bbl) | simulated (B: embedded) |"), "{markdown}");
+    for told in [&text, &markdown] {
+        assert!(told.contains("measured by its GPS") && !told.contains("firmware"), "{told}");
+    }
 }

@@ -1,4 +1,4 @@
-//! The page of a comparison of two firmwares.
+//! The page of a comparison: of two firmwares, or of a log and its simulation.
 
 use askama::Template;
 
@@ -31,7 +31,12 @@ pub fn compare_page(
     let complete = comparison.is_complete();
     let verdict = Verdict {
         passed: Some(complete),
-        word: if complete { "both complete" } else { "not complete" }.to_owned(),
+        word: match (comparison.has_log(), complete) {
+            (false, true) => "both complete",
+            (true, true) => "simulation complete",
+            (_, false) => "not complete",
+        }
+        .to_owned(),
         reason: text::line(&comparison.flights()),
     };
     bounded(Detail::WHOLE, |detail| {
@@ -45,9 +50,20 @@ pub fn compare_page(
         };
         // Writing to a string does not fail.
         let body = body.render().unwrap_or_default();
-        let mut page = Page::new("Two firmwares on one plan by betadeck", &title, &verdict, &body, program);
+        let (subject, note) = if comparison.has_log() {
+            (
+                "A log and its simulation by betadeck",
+                "Times are seconds after the AUTOPILOT switch. Places and altitudes of the log are as the craft measured them.",
+            )
+        } else {
+            (
+                "Two firmwares on one plan by betadeck",
+                "Times are simulated seconds after the pilot switched the autopilot on. Places and altitudes are true.",
+            )
+        };
+        let mut page = Page::new(subject, &title, &verdict, &body, program);
         page.command = command.and_then(text::command);
-        page.note = "Times are simulated seconds after the pilot switched the autopilot on. Places and altitudes are true.";
+        page.note = note;
         page.html()
     })
 }

@@ -108,7 +108,7 @@ fn a_name_cannot_add_markup() {
     assert_eq!(HOSTILE.chars().count(), HARMLESS.chars().count());
     assert_eq!(elements(&page(HOSTILE)), elements(&page(HARMLESS)));
     assert_eq!(elements(&check_page(&[(HOSTILE, false)])), elements(&check_page(&[(HARMLESS, false)])));
-    assert_eq!(elements(&comparison_page(HOSTILE)), elements(&comparison_page(HARMLESS)));
+    assert_eq!(elements(&comparison_page(HOSTILE, false)), elements(&comparison_page(HARMLESS, false)));
 }
 
 #[test]
@@ -210,7 +210,8 @@ fn a_run_of_many_flights_fits_into_a_page() {
     assert!(page.contains("of 3000 flights are shown") && page.contains("further cases are left out"));
 }
 
-fn comparison_page(name: &str) -> String {
+/// Returns the page of two firmwares with this name, or of a log and its simulation.
+fn comparison_page(name: &str, is_log: bool) -> String {
     let track = |by: f64| {
         let sample = |step: u32| TrackSample {
             time_s: f64::from(step),
@@ -225,16 +226,31 @@ fn comparison_page(name: &str) -> String {
             ..Track::default()
         }
     };
-    let side = |by| Side { name: name.to_owned(), repeatable: true, flights: vec![track(by)] };
+    let side =
+        |by, is_log| Side { name: name.to_owned(), is_log, repeatable: true, flights: vec![track(by)] };
     let report = fixture::report(name, name);
-    let comparison = Comparison::new(name, "calm", report.route.expect("a route"), [side(0.0), side(3.0)]);
+    let comparison =
+        Comparison::new(name, "calm", report.route.expect("a route"), [side(0.0, is_log), side(3.0, false)]);
     let frame = report.frame.expect("a frame");
     compare_page(&comparison, (&report.backdrop, &frame), report.command.as_deref(), PROGRAM)
 }
 
 #[test]
+fn the_page_of_a_log_and_its_simulation_says_how_each_is_measured() {
+    let page = comparison_page("flight.bbl", true);
+    for part in [
+        "A log and its simulation by betadeck",
+        "The track of the log by its GPS, and the true track of the simulated flight",
+        "<li>B: crashed: flight.bbl</li>",
+    ] {
+        assert!(page.contains(part), "{part} is not in\n{page}");
+    }
+    assert!(!page.contains("firmware") && !page.contains("<li>A: "), "{page}");
+}
+
+#[test]
 fn the_page_of_a_comparison_has_both_tracks_and_the_table() {
-    let page = comparison_page("old.elf");
+    let page = comparison_page("old.elf", false);
     assert_eq!(count(&elements(&page), "svg"), 2);
     for part in [
         "<th scope=\"col\" class=\"number\">A: old.elf</th>",

@@ -1,8 +1,9 @@
 //! The messages before a flight with a remote firmware.
 
-use super::{Beside, Output, Recorded, Recorder};
+use super::{Beside, Output, Recorded};
 use crate::app::error::{self, AppError};
 use crate::app::firmware::reported;
+use crate::app::recording_file::Recorder;
 use crate::args::FlyArgs;
 use crate::plan::format::PlanFile;
 use crate::report::sentence;

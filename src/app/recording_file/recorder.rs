@@ -1,12 +1,11 @@
-//! `fly --record`: the recording of a headless flight.
+//! The recording of a headless flight: `fly --record`, `compare --log LOG --record`.
 
 use std::io::Write as _;
 use std::path::Path;
 
-use super::stream::write_failed;
+use super::{header, recorded};
 use crate::app::error::AppError;
 use crate::app::output_file::StreamedOutput;
-use crate::app::recording_file::{header, recorded};
 use crate::flight::FlightSetup;
 use crate::recording::{Cadence, End, FlightPrint, Setup, Writer};
 use crate::session::Event;
@@ -14,7 +13,7 @@ use crate::signals::SimTime;
 use crate::vehicle::Vehicle;
 
 /// A recording that grows with its flight. After a kill it is readable up to its last second.
-pub(in crate::app::fly) struct Recorder {
+pub(in crate::app) struct Recorder {
     writer: Writer,
     file: StreamedOutput,
     cadence: Cadence,
@@ -29,7 +28,7 @@ const FLUSH_US: u64 = 1_000_000;
 
 impl Recorder {
     /// Begins the file of a flight. If an earlier one has that name, it is replaced.
-    pub(in crate::app::fly) fn begin(path: &Path, setup: &FlightSetup) -> Result<Self, AppError> {
+    pub(in crate::app) fn begin(path: &Path, setup: &FlightSetup) -> Result<Self, AppError> {
         let mut writer = Writer::new(header(&setup.plan.name));
         writer.setup(&Setup::from(setup));
         writer.begin(SimTime::ZERO);
@@ -38,20 +37,20 @@ impl Recorder {
         Ok(Self { writer, file, cadence, print, is_unknown: false, flushed_at: SimTime::ZERO })
     }
 
-    pub(super) fn event(&mut self, event: &Event) {
+    pub(in crate::app) fn event(&mut self, event: &Event) {
         if let Some(event) = recorded(event) {
             self.writer.event(&event);
         }
     }
 
     /// Records the inputs since the last tick.
-    pub(super) fn before_tick(&mut self, vehicle: &mut Vehicle) {
+    pub(in crate::app) fn before_tick(&mut self, vehicle: &mut Vehicle) {
         let now = vehicle.time();
         vehicle.take_inputs(|input| self.writer.input(now, &input));
     }
 
     /// Records a picture if one is due, and writes what there is once a second.
-    pub(super) fn after_tick(&mut self, vehicle: &Vehicle) -> Result<(), AppError> {
+    pub(in crate::app) fn after_tick(&mut self, vehicle: &Vehicle) -> Result<(), AppError> {
         if let Some(seen) = self.cadence.due(vehicle) {
             match seen.print {
                 Some(print) => self.print.add(vehicle.time(), print),
@@ -68,10 +67,15 @@ impl Recorder {
     }
 
     /// Ends the file.
-    pub(super) fn finish(mut self, end: End) -> Result<(), AppError> {
+    pub(in crate::app) fn finish(mut self, end: End) -> Result<(), AppError> {
         let hash = (!self.is_unknown).then(|| self.print.text());
         let bytes = self.writer.finish(End { hash, ..end });
         self.file.write_all(&bytes).map_err(write_failed)?;
         self.file.finish()
     }
+}
+
+#[expect(clippy::needless_pass_by_value, reason = "a map_err argument")]
+fn write_failed(error: std::io::Error) -> AppError {
+    AppError::environment(format!("cannot write the recording: {error}"))
 }
