@@ -43,6 +43,9 @@ use crate::telemetry::{
 };
 use crate::vehicle::Vehicle;
 
+/// The time between two looks of the judge while nothing happens, µs. It is the period of the navigator.
+const LOOK_US: u64 = 10_000;
+
 /// The options of a flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlightOptions {
@@ -76,6 +79,7 @@ pub struct Flight {
     /// True altitude at which the craft was armed, m.
     armed_alt_m: f64,
     battery_empty_at: Option<SimTime>,
+    next_look: SimTime,
 }
 
 /// The end of a flight.
@@ -119,6 +123,7 @@ impl Flight {
             nav_events: Vec::with_capacity(8),
             armed_alt_m,
             battery_empty_at: None,
+            next_look: SimTime::ZERO,
         }
     }
 
@@ -141,13 +146,15 @@ impl Flight {
         self.judge.engaged_at()
     }
 
-    /// Flies one tick and reports its events. Returns the end when the flight is over.
+    /// Flies one tick and reports its events. Returns the end when the flight is over. The judge looks a hundred times a
+    /// second, and whenever something happens.
     pub fn tick(&mut self, mut report: impl FnMut(Event)) -> Option<FlightEnd> {
         self.vehicle.tick();
         let (touched_down, nav_events) = (&mut self.touched_down, &mut self.nav_events);
         let battery_empty_at = &mut self.battery_empty_at;
-        let mut was_armed = false;
+        let (mut was_armed, mut happened) = (false, false);
         self.vehicle.drain_events(|event| {
+            happened = true;
             match &event.kind {
                 EventKind::Touchdown { .. } => *touched_down = true,
                 EventKind::Firmware(FirmwareEvent::Armed) => {
@@ -168,6 +175,11 @@ impl Flight {
         if was_armed {
             self.armed_alt_m = self.true_alt_m();
         }
+        let now = self.vehicle.time();
+        if !happened && now < self.next_look {
+            return None;
+        }
+        self.next_look = SimTime((now.0 / LOOK_US + 1) * LOOK_US);
         self.check_truth();
         let verdict = self.judge.look(&self.facts())?;
         Some(self.end(verdict))

@@ -9,6 +9,8 @@
 
 use nalgebra::Vector2;
 
+use crate::math;
+
 mod bounded_path;
 mod ground_plane;
 mod local;
@@ -92,7 +94,7 @@ pub fn distance_bearing(a: LatLon, b: LatLon) -> (f64, f64) {
     if ne.x == 0.0 && ne.y == 0.0 {
         return (0.0, 0.0);
     }
-    (ne.norm(), ne.y.atan2(ne.x).rem_euclid(std::f64::consts::TAU))
+    (ne.norm(), math::atan2(ne.y, ne.x).rem_euclid(std::f64::consts::TAU))
 }
 
 /// Returns the offset (north, east) in metres from `origin` to `point`. The reference latitude is that of the origin.
@@ -105,14 +107,14 @@ fn offset_with_reference(from: LatLon, to: LatLon, reference_lat_deg: f64) -> Ve
     let dlon = wrap_lon_e7(i64::from(to.lon_e7) - i64::from(from.lon_e7));
     Vector2::new(
         dlat as f64 * METRES_PER_E7,
-        f64::from(dlon) * METRES_PER_E7 * reference_lat_deg.to_radians().cos(),
+        f64::from(dlon) * METRES_PER_E7 * math::cos(reference_lat_deg.to_radians()),
     )
 }
 
 /// Returns the position at `offset_ne` (north, east; metres) from `origin`, the inverse of [`local_offset`]. Latitude
 /// is clamped to ±90°, longitude wrapped. Within 1e-6 of a pole (cosine) the longitude stays that of the origin.
 pub fn offset_to_latlon(origin: LatLon, offset_ne: Vector2<f64>) -> LatLon {
-    let cos_lat = origin.lat_deg().to_radians().cos();
+    let cos_lat = math::cos(origin.lat_deg().to_radians());
     let lat = f64::from(origin.lat_e7) + offset_ne.x / METRES_PER_E7;
     let lat_e7 = lat.round().clamp(-900_000_000.0, 900_000_000.0) as i32;
     if cos_lat < 1e-6 {
@@ -125,7 +127,7 @@ pub fn offset_to_latlon(origin: LatLon, offset_ne: Vector2<f64>) -> LatLon {
 /// Does the same as [`offset_to_latlon`] in degrees and without rounding to 1e-7, for displays that compare with the
 /// truth.
 pub fn offset_to_degrees(origin: LatLon, offset_ne: Vector2<f64>) -> (f64, f64) {
-    let cos_lat = origin.lat_deg().to_radians().cos().max(1e-6);
+    let cos_lat = math::cos(origin.lat_deg().to_radians()).max(1e-6);
     let per_degree = METRES_PER_E7 * 1e7;
     (origin.lat_deg() + offset_ne.x / per_degree, origin.lon_deg() + offset_ne.y / (per_degree * cos_lat))
 }

@@ -32,6 +32,8 @@ pub mod geo;
 #[doc(hidden)]
 pub mod link;
 #[doc(hidden)]
+pub mod math;
+#[doc(hidden)]
 pub mod msp;
 #[doc(hidden)]
 pub mod pilot;

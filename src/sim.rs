@@ -4,9 +4,9 @@
 //! call of [`World::step`] takes the motor commands of the present instant and computes the next one:
 //!
 //! ```text
-//!  MotorCommand ─► motors ─► forces and torques ─► RK4 ─► ground ─► sensors ─► SensorFrame
-//!     0…1           Ω, lag     rotors, drag,        p v q ω   contact,   noise, rate,
-//!                              wind, battery                  events     latency, faults
+//!  MotorCommand ─► motors ─► forces and torques ─► motion ─► ground ─► sensors ─► SensorFrame
+//!     0…1           Ω, lag     rotors, drag,        p v q ω      contact,   noise, rate,
+//!                              wind, battery                     events     latency, faults
 //! ```
 //!
 //! part
@@ -62,9 +62,9 @@ pub use fault::{
     BatteryFault, Direction, FAULTS, Fault, FaultInfo, FaultKey, FaultStart, LinkFaults, MAX_FAULTS,
     MotorNumber, ScheduledFault,
 };
-pub use ground::{ContactAnchors, Ground, GroundContact, NO_ANCHORS};
-pub use plant::{Plant, ground_effect_factor};
-pub use random::Stream;
+pub use ground::{Ground, GroundContact};
+pub use plant::{Craft, Plant, Present, ground_effect_factor};
+pub use random::{Stream, StreamRng};
 pub use sensors::{GpsGrade, SITL_DECLINATION_DEG, magnetic_field_enu};
 pub use surface::{Slope, Surface, TangentPlane};
 pub use switches::{AirDensity, SWITCHES, SwitchInfo, Switches, WindProfile};

@@ -34,7 +34,6 @@ mod physics;
 mod view;
 
 use rand::RngExt as _;
-use rand_chacha::ChaCha8Rng;
 
 pub use command::{CliLine, CliSession, Message, PlanUpload, Reply, VehicleCommand, VehicleRefusal};
 pub use controller::{
@@ -49,8 +48,8 @@ use crate::pilot::{FRAME_US, Pilot, RcTransmitter};
 use crate::plan::FlightPlan;
 use crate::signals::{MotorCommand, Pose, RcFrame, RcSource, SensorFrame, SimTime};
 use crate::sim::{
-    Airframe, Clock, LinkFaults, Stream, Truth, World, WorldCommand, WorldConfig, WorldError, WorldEventKind,
-    WorldStatus,
+    Airframe, Clock, LinkFaults, Stream, StreamRng, Truth, World, WorldCommand, WorldConfig, WorldError,
+    WorldEventKind, WorldStatus,
 };
 use crate::telemetry::{Event, EventKind, FirmwareEvent, Mode, NavEvent, NavState, VehicleNotice};
 use physics::{ExternalPhysics, Physics};
@@ -77,7 +76,7 @@ pub struct Vehicle {
     controller: FlightController,
     physics: Physics,
     transmitter: RcTransmitter,
-    rx_jitter: ChaCha8Rng,
+    rx_jitter: StreamRng,
     engaged_at: Option<SimTime>,
     active_plan: Option<Box<FlightPlan>>,
     events: Vec<Event>,

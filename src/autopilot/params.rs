@@ -6,6 +6,7 @@
 mod value;
 
 use crate::geo::GRAVITY;
+use crate::math;
 use crate::telemetry::{FenceAction, RxLossPolicy};
 use value::Value;
 pub use value::YawMode;
@@ -284,14 +285,14 @@ impl Params {
 
     /// Returns the acceleration that the maximum lean allows for braking and turning, m/s²: g·sin(maximum lean).
     pub fn max_accel_mps2(&self) -> f64 {
-        GRAVITY * self.max_lean_rad().sin()
+        GRAVITY * math::sin(self.max_lean_rad())
     }
 
     /// Returns the acceleration when speed builds up, m/s².
     pub fn build_up_accel_mps2(&self) -> f64 {
         match self.velocity_buildup_max_pitch {
             0 => 0.5 * self.max_accel_mps2(),
-            pitch_deg => GRAVITY * f64::from(pitch_deg).to_radians().tan(),
+            pitch_deg => GRAVITY * math::tan(f64::from(pitch_deg).to_radians()),
         }
     }
 

@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 use super::RemoteNotice;
 use crate::geo::{LatLon, distance_bearing};
 use crate::link::proto::fdm::{Gravity, State};
+use crate::math;
 use crate::signals::fdm::Dialect;
 use crate::telemetry::snapshot::{EstimateView, TruthView};
 use crate::vehicle::Vehicle;
@@ -142,7 +143,7 @@ fn fitting_dialect(sent: Dialect, truth: &TruthView, heading_deg: f64) -> Option
     [Dialect::SitlGz, Dialect::GzPlugin, Dialect::Legacy].into_iter().filter(|read| *read != sent).find(
         |read| {
             let seen = read.decode(&sent.encode(&state), Gravity::Included).attitude * Vector3::x();
-            off_by(heading_deg, seen.x.atan2(seen.y).to_degrees()) < NEAR_DEG
+            off_by(heading_deg, math::atan2(seen.x, seen.y).to_degrees()) < NEAR_DEG
         },
     )
 }

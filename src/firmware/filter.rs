@@ -2,6 +2,8 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
+use crate::math;
+
 /// The ratio of the cutoff of each stage to the cutoff of the whole, so that n equal stages together are 3 dB down.
 const PT2_STAGE: f64 = 1.553_773_974;
 const PT3_STAGE: f64 = 1.961_459_177;
@@ -133,7 +135,7 @@ impl LowPass {
 
     /// Computes the bilinear transform of a second-order low-pass with Q = 1/√2.
     fn butterworth(cutoff_hz: f64, dt: f64) -> Self {
-        let (sin, cos) = (2.0 * PI * cutoff_hz * dt).sin_cos();
+        let (sin, cos) = math::sin_cos(2.0 * PI * cutoff_hz * dt);
         let alpha = sin / (2.0 * FRAC_1_SQRT_2);
         let a0 = 1.0 + alpha;
         let b1 = (1.0 - cos) / a0;

@@ -2,6 +2,7 @@
 
 use crate::autopilot::io::NavOutput;
 use crate::geo::LatLon;
+use crate::math;
 use crate::plan::FlightPlan;
 use crate::plan::estimate::{ReturnFlight, ReturnMode, TouchdownThrottle};
 use crate::signals::{RC_CHANNELS, RcSource, SimTime};
@@ -178,7 +179,7 @@ impl Firmware {
         Some(GpsView {
             position: solution.position,
             alt_amsl_m: f64::from(solution.alt_amsl_cm) / 100.0,
-            ground_speed_mps: solution.vel_enu.x.hypot(solution.vel_enu.y),
+            ground_speed_mps: math::hypot(solution.vel_enu.x, solution.vel_enu.y),
         })
     }
 

@@ -6,6 +6,7 @@ use nalgebra::{Quaternion, Unit, UnitQuaternion, Vector3};
 
 use super::sample::LogAttitude;
 use crate::geo::GRAVITY;
+use crate::math;
 
 /// The share of the error against the accelerometer that is corrected in a second.
 const CORRECTION_PER_S: f64 = 0.3;
@@ -25,9 +26,9 @@ pub(super) fn angles(attitude: &UnitQuaternion<f64>) -> LogAttitude {
     let matrix = attitude.to_rotation_matrix();
     let down = -matrix[(2, 0)];
     LogAttitude {
-        roll_deg: matrix[(2, 1)].atan2(matrix[(2, 2)]).to_degrees(),
-        pitch_deg: -down.clamp(-1.0, 1.0).asin().to_degrees(),
-        heading_deg: heading((-matrix[(1, 0)].atan2(matrix[(0, 0)])).to_degrees()),
+        roll_deg: math::atan2(matrix[(2, 1)], matrix[(2, 2)]).to_degrees(),
+        pitch_deg: -math::asin(down.clamp(-1.0, 1.0)).to_degrees(),
+        heading_deg: heading((-math::atan2(matrix[(1, 0)], matrix[(0, 0)])).to_degrees()),
     }
 }
 

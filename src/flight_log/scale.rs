@@ -3,6 +3,7 @@
 use crate::blackbox::Field;
 use crate::blackbox::decode::{FirmwareName, Header};
 use crate::geo::GRAVITY;
+use crate::math;
 
 /// The greatest value of a part of a quaternion.
 const QUATERNION_ONE: f64 = 32_767.0;
@@ -32,7 +33,7 @@ impl Scale {
             return 0;
         }
         // The logarithm of a power of ten may be a little above a whole number.
-        (-self.factor.abs().log10() - 1e-9).ceil().clamp(1.0, 8.0) as u8
+        (-math::log10(self.factor.abs()) - 1e-9).ceil().clamp(1.0, 8.0) as u8
     }
 
     /// Returns the value of a number of the log.

@@ -6,6 +6,7 @@ use super::scale::{Scale, Scales};
 use super::tracker::TrackerState;
 use crate::blackbox::FrameKind;
 use crate::blackbox::decode::Header;
+use crate::math;
 
 /// A number of a log that changes in flight.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -72,7 +73,7 @@ const DERIVED: &[(&str, &str, Derived)] = &[
     ("north", "m", |sample, _| sample.n),
     ("east", "m", |sample, _| sample.e),
     ("altitude", "m", |sample, _| sample.alt),
-    ("home_distance", "m", |sample, _| Some(sample.n?.hypot(sample.e?))),
+    ("home_distance", "m", |sample, _| Some(math::hypot(sample.n?, sample.e?))),
     ("speed", "m/s", |sample, _| sample.ground_speed_mps),
     ("climb", "m/s", |sample, _| sample.climb_mps),
     ("course", "°", |sample, _| sample.course_deg),

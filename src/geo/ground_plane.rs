@@ -3,6 +3,7 @@
 use nalgebra::{Vector2, Vector3};
 
 use super::{LatLon, METRES_PER_E7};
+use crate::math;
 
 /// The radius of the sphere on which [`super::distance_bearing`] measures, m.
 const RADIUS_M: f64 = METRES_PER_E7 * 1e7 * 180.0 / std::f64::consts::PI;
@@ -23,8 +24,12 @@ impl GroundPlane {
         let (lat, lon) = (origin.lat_deg().to_radians(), origin.lon_deg().to_radians());
         Self {
             up: direction(origin),
-            north: Vector3::new(-lat.sin() * lon.cos(), -lat.sin() * lon.sin(), lat.cos()),
-            east: Vector3::new(-lon.sin(), lon.cos(), 0.0),
+            north: Vector3::new(
+                -math::sin(lat) * math::cos(lon),
+                -math::sin(lat) * math::sin(lon),
+                math::cos(lat),
+            ),
+            east: Vector3::new(-math::sin(lon), math::cos(lon), 0.0),
         }
     }
 
@@ -33,7 +38,7 @@ impl GroundPlane {
         let point = direction(position);
         let across = Vector2::new(point.dot(&self.north), point.dot(&self.east));
         let sine = across.norm();
-        let angle = sine.atan2(point.dot(&self.up));
+        let angle = math::atan2(sine, point.dot(&self.up));
         if sine < 1e-15 { Vector2::zeros() } else { across * (angle * RADIUS_M / sine) }
     }
 
@@ -43,19 +48,19 @@ impl GroundPlane {
         if !(distance.is_finite() && distance > 0.0) {
             return at(self.up);
         }
-        let (sine, cosine) = (distance / RADIUS_M).sin_cos();
+        let (sine, cosine) = math::sin_cos(distance / RADIUS_M);
         at(self.up * cosine + (self.north * ne.x + self.east * ne.y) * (sine / distance))
     }
 }
 
 fn direction(position: LatLon) -> Vector3<f64> {
     let (lat, lon) = (position.lat_deg().to_radians(), position.lon_deg().to_radians());
-    Vector3::new(lat.cos() * lon.cos(), lat.cos() * lon.sin(), lat.sin())
+    Vector3::new(math::cos(lat) * math::cos(lon), math::cos(lat) * math::sin(lon), math::sin(lat))
 }
 
 fn at(direction: Vector3<f64>) -> LatLon {
-    let lat = direction.z.atan2(direction.x.hypot(direction.y));
-    LatLon::from_degrees(lat.to_degrees(), direction.y.atan2(direction.x).to_degrees())
+    let lat = math::atan2(direction.z, math::hypot(direction.x, direction.y));
+    LatLon::from_degrees(lat.to_degrees(), math::atan2(direction.y, direction.x).to_degrees())
 }
 
 #[cfg(test)]

@@ -2,6 +2,8 @@
 
 use nalgebra::Vector3;
 
+use crate::math;
+
 /// The WGS-84 semi-major axis, m.
 const SEMI_MAJOR: f64 = 6_378_137.0;
 /// The WGS-84 flattening.
@@ -27,7 +29,7 @@ impl LocalFrame {
     /// level).
     pub fn new(lat_deg: f64, lon_deg: f64, alt_amsl_m: f64) -> Self {
         let e2 = FLATTENING * (2.0 - FLATTENING);
-        let (sin, cos) = lat_deg.to_radians().sin_cos();
+        let (sin, cos) = math::sin_cos(lat_deg.to_radians());
         let w = 1.0 - e2 * sin * sin;
         let meridian = SEMI_MAJOR * (1.0 - e2) / (w * w.sqrt());
         let prime_vertical = SEMI_MAJOR / w.sqrt();

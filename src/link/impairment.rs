@@ -7,7 +7,7 @@ use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
 use rand::RngExt as _;
-use rand_chacha::ChaCha8Rng;
+use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// The maximum number of packets in transit. Further packets are lost, as in a full socket.
 const MAX_IN_FLIGHT: usize = 16_384;
@@ -29,7 +29,7 @@ pub struct LinkImpairment {
 /// The link from a simulator to the firmware.
 #[derive(Debug, Clone)]
 pub struct ImpairedLink {
-    rng: ChaCha8Rng,
+    rng: Xoshiro256PlusPlus,
     /// Sorted by arrival.
     in_flight: VecDeque<DelayedPacket>,
 }
@@ -42,7 +42,7 @@ struct DelayedPacket {
 
 impl ImpairedLink {
     /// Creates a link without packets in transit. `rng` decides the fate of packets.
-    pub fn new(rng: ChaCha8Rng) -> Self {
+    pub fn new(rng: Xoshiro256PlusPlus) -> Self {
         Self { rng, in_flight: VecDeque::new() }
     }
 
@@ -97,7 +97,7 @@ mod tests {
         LinkImpairment { stall: false, loss: 0.0, late_ms: 0.0, duplicated: 0.0, jitter_ms: 0.0 };
 
     fn link(seed: u64) -> ImpairedLink {
-        ImpairedLink::new(ChaCha8Rng::seed_from_u64(seed))
+        ImpairedLink::new(Xoshiro256PlusPlus::seed_from_u64(seed))
     }
 
     /// Sends packets 0, 1, 2…, one per millisecond. Returns the number of each packet and its time of arrival

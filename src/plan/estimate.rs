@@ -5,6 +5,7 @@ mod assumptions;
 mod return_flight;
 
 use crate::geo::{LatLon, distance_bearing};
+use crate::math;
 
 use super::setpoint::AltitudeSetpoint;
 use super::{FlightPlan, Modifier, Then, Waypoint};
@@ -102,7 +103,7 @@ impl Walk {
         let (distance_m, bearing_rad) = distance_bearing(self.place, target);
         let mut speed_mps = assumptions.leg_speed_mps(waypoint);
         if let Some(delay_s) = self.delay_s.take().filter(|&delay_s| delay_s > 0.0) {
-            let length_m = distance_m.hypot(alt_m - self.setpoint.altitude_m);
+            let length_m = math::hypot(distance_m, alt_m - self.setpoint.altitude_m);
             speed_mps = speed_mps.min(assumptions.delayed_mps(length_m, delay_s));
         }
         let leg_s = distance_m / speed_mps;

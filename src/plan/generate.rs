@@ -6,6 +6,7 @@ use nalgebra::Vector2;
 
 use super::{Altitude, LegSpeed, MAX_WAYPOINTS, Waypoint, WaypointType};
 use crate::geo::{GroundPlane, LatLon};
+use crate::math;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::Display, strum::EnumIter, strum::EnumString)]
 #[strum(serialize_all = "kebab-case", ascii_case_insensitive)]
@@ -76,7 +77,7 @@ impl Pattern {
                 let points = steps(TAU * half).max(3);
                 (0..=points)
                     .map(|step| TAU * share(step % points, points))
-                    .map(|angle| Vector2::new(angle.cos(), angle.sin()) * half)
+                    .map(|angle| Vector2::new(math::cos(angle), math::sin(angle)) * half)
                     .collect()
             }
             Shape::ZigZag => {
@@ -99,7 +100,7 @@ impl Pattern {
                     .collect()
             }
         };
-        let (sin, cos) = self.heading_deg.to_radians().sin_cos();
+        let (sin, cos) = math::sin_cos(self.heading_deg.to_radians());
         for place in &mut places {
             *place = Vector2::new(place.x * cos - place.y * sin, place.x * sin + place.y * cos);
         }

@@ -4,6 +4,7 @@ use nalgebra::Vector2;
 
 use super::estimate::Assumptions;
 use crate::geo::GRAVITY;
+use crate::math;
 
 /// A step, s.
 const STEP_S: f64 = 0.05;
@@ -45,9 +46,9 @@ impl Motion {
 
     /// Flies the leg in the direction of a unit vector and returns its time, s.
     pub(super) fn fly(&mut self, leg: &LegShape, along: Vector2<f64>, assumptions: &Assumptions) -> f64 {
-        let lean = GRAVITY * assumptions.max_angle_deg.clamp(5.0, 80.0).to_radians().sin();
+        let lean = GRAVITY * math::sin(assumptions.max_angle_deg.clamp(5.0, 80.0).to_radians());
         let speed_up = match assumptions.buildup_deg {
-            deg if deg > 0.0 => GRAVITY * deg.min(45.0).to_radians().tan(),
+            deg if deg > 0.0 => GRAVITY * math::tan(deg.min(45.0).to_radians()),
             _ => 0.5 * lean,
         };
         let gain = 0.025 * assumptions.position_p;
@@ -84,7 +85,8 @@ impl Motion {
 /// Returns the time until a craft at steady speed slows down or arrives, s.
 fn steady_s(leg: &LegShape, left_m: f64, lean: f64, gain: f64) -> f64 {
     let until_m = if leg.stops {
-        (leg.speed_mps / gain.max(0.01)).max(leg.speed_mps.powi(2) / (2.0 * STOP_SHARE * lean.max(0.1)))
+        (leg.speed_mps / gain.max(0.01))
+            .max(math::powi(leg.speed_mps, 2) / (2.0 * STOP_SHARE * lean.max(0.1)))
     } else {
         leg.reach_m
     };

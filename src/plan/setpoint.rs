@@ -1,5 +1,7 @@
 //! The altitude setpoint on a leg: a simulation of the control law of the altitude controller.
 
+use crate::math;
+
 /// The limit for the change of the setpoint's speed, m/s².
 const ACCEL: f64 = 2.0;
 /// The deceleration before the target, m/s².
@@ -92,7 +94,7 @@ impl AltitudeSetpoint {
         } else if self.altitude_m >= limits.landing_alt_m {
             target_m
         } else {
-            target_m.max(self.altitude_m - 0.5 * limits.landing_mps.powi(2))
+            target_m.max(self.altitude_m - 0.5 * math::powi(limits.landing_mps, 2))
         }
     }
 
@@ -115,7 +117,8 @@ impl AltitudeSetpoint {
         if (rate.abs() - speed).abs() > 1e-6 {
             return None;
         }
-        let mut way_m = ((target_m - self.altitude_m).abs() - 0.5 * speed.powi(2) / BRAKE).min(to_go_m);
+        let mut way_m =
+            ((target_m - self.altitude_m).abs() - 0.5 * math::powi(speed, 2) / BRAKE).min(to_go_m);
         if target_m < BELOW_HOME_M && !is_low {
             way_m = way_m.min(self.altitude_m - limits.landing_alt_m);
         } else if target_m.abs() < LOW_TARGET_M && target_m < self.altitude_m {

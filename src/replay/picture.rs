@@ -1,5 +1,6 @@
 //! The signals of a flight at one instant, as tracks and graphs need them.
 
+use crate::math;
 use crate::signals::SimTime;
 use crate::telemetry::signal::{Observed, Signal, SignalValues};
 use crate::telemetry::{ModeFlags, Snapshot};
@@ -26,7 +27,7 @@ impl Picture {
             }
         }
         // The curve is the horizontal wind.
-        let wind = values.get(Signal::WindNorth).hypot(values.get(Signal::WindEast));
+        let wind = math::hypot(values.get(Signal::WindNorth), values.get(Signal::WindEast));
         values.set(Signal::Wind, wind);
         // A real craft has no truth.
         for (truth, estimate) in [(Signal::North, Signal::EstNorth), (Signal::East, Signal::EstEast)] {

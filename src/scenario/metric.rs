@@ -6,6 +6,7 @@ use super::case::Case;
 use super::happening::{EventName, Happening, HappeningKind};
 use super::run::Flown;
 use super::trace::{Sample, Trace};
+use crate::math;
 use crate::plan::WaypointType;
 use crate::telemetry::quantity::Dimension;
 use crate::telemetry::signal::Signal;
@@ -146,10 +147,10 @@ fn leg_to(sample: &Sample, trace: &Trace) -> Option<(u8, [f64; 2], [f64; 2])> {
 /// Returns the distance of a place from the line through two others; from the second one if they are the same.
 fn beside(place: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
     let (north, east) = (to[0] - from[0], to[1] - from[1]);
-    let length = north.hypot(east);
+    let length = math::hypot(north, east);
     let (place_north, place_east) = (place[0] - to[0], place[1] - to[1]);
     if length < 0.1 {
-        return place_north.hypot(place_east);
+        return math::hypot(place_north, place_east);
     }
     ((place_east * north - place_north * east) / length).abs()
 }

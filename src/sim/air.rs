@@ -5,6 +5,7 @@
 
 use nalgebra::Vector3;
 
+use crate::math;
 use crate::signals::SimTime;
 use crate::telemetry::Turbulence;
 
@@ -158,7 +159,7 @@ impl Air {
 fn profile(profile: WindProfile, height_m: f64) -> f64 {
     match profile {
         WindProfile::Log if height_m < PROFILE_TOP_M => {
-            (height_m.max(PROFILE_BOTTOM_M) / ROUGHNESS_M).ln() / (PROFILE_TOP_M / ROUGHNESS_M).ln()
+            math::ln(height_m.max(PROFILE_BOTTOM_M) / ROUGHNESS_M) / math::ln(PROFILE_TOP_M / ROUGHNESS_M)
         }
         WindProfile::Log | WindProfile::Flat => 1.0,
     }

@@ -18,6 +18,7 @@ use arrayvec::ArrayVec;
 use nalgebra::Vector3;
 
 use crate::geo::GRAVITY;
+use crate::math;
 use crate::signals::MOTORS;
 
 use super::battery::BatterySpec;
@@ -174,7 +175,7 @@ impl Airframe {
 
     /// Returns the maximum thrust over weight at the reference density.
     pub fn thrust_to_weight(&self) -> f64 {
-        ROTORS as f64 * self.thrust_coeff * self.rotor_speed_max.powi(2) / (self.mass_kg * GRAVITY)
+        ROTORS as f64 * self.thrust_coeff * math::powi(self.rotor_speed_max, 2) / (self.mass_kg * GRAVITY)
     }
 
     /// Returns the height of the centre of mass above the ground when the craft is on its legs, m.

@@ -1,6 +1,7 @@
 //! The ICAO standard atmosphere below 11 km.
 
 use super::airframe::REFERENCE_DENSITY;
+use crate::math;
 
 const SEA_LEVEL_K: f64 = 288.15;
 const SEA_LEVEL_PA: f64 = 101_325.0;
@@ -20,7 +21,7 @@ pub fn temperature_k(alt_amsl_m: f64) -> f64 {
 
 /// Returns the static pressure at an altitude above mean sea level (m), Pa.
 pub fn pressure_pa(alt_amsl_m: f64) -> f64 {
-    SEA_LEVEL_PA * (temperature_k(alt_amsl_m) / SEA_LEVEL_K).powf(PRESSURE_EXPONENT)
+    SEA_LEVEL_PA * math::powf(temperature_k(alt_amsl_m) / SEA_LEVEL_K, PRESSURE_EXPONENT)
 }
 
 /// Returns the air density at an altitude above mean sea level (m), kg/m³.

@@ -1,6 +1,7 @@
 //! The battery: open-circuit voltage over charge, internal resistance, load of the motors.
 
 use super::airframe::{Airframe, ROTORS};
+use crate::math;
 
 /// The share of the electrical power that reaches the propeller shafts.
 const DRIVE_EFFICIENCY: f64 = 0.75;
@@ -56,7 +57,8 @@ impl BatterySpec {
 /// Returns the electrical power of the four motors at the given rotor speeds (rad/s), W. `load_factor` is the factor
 /// of density and efficiency on the torque of each rotor.
 pub fn motor_power_w(airframe: &Airframe, rotor_speeds: &[f64; ROTORS], load_factor: &[f64; ROTORS]) -> f64 {
-    let cubes: f64 = rotor_speeds.iter().zip(load_factor).map(|(speed, load)| speed.powi(3) * load).sum();
+    let cubes: f64 =
+        rotor_speeds.iter().zip(load_factor).map(|(speed, load)| math::powi(*speed, 3) * load).sum();
     airframe.torque_per_thrust_m * airframe.thrust_coeff * cubes / DRIVE_EFFICIENCY
 }
 

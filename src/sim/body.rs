@@ -1,4 +1,4 @@
-//! The state of the rigid body and its loads, with the stages of the integrator.
+//! The state of the rigid body and its loads.
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
@@ -41,42 +41,6 @@ pub struct Loads {
     pub torque_flu: Vector3<f64>,
 }
 
-/// The numbers of a stage of the integrator. The quaternion need not have norm one there.
-#[derive(Clone, Copy)]
-pub(super) struct Stage {
-    pub(super) pos: Vector3<f64>,
-    pub(super) vel: Vector3<f64>,
-    pub(super) q: Quaternion<f64>,
-    pub(super) rate: Vector3<f64>,
-}
-
-impl From<&BodyState> for Stage {
-    fn from(state: &BodyState) -> Self {
-        Self { pos: state.pos_enu, vel: state.vel_enu, q: *state.attitude, rate: state.rate_flu }
-    }
-}
-
-/// The time derivative of a [`Stage`].
-#[derive(Clone, Copy)]
-pub(super) struct Slope {
-    pub(super) vel: Vector3<f64>,
-    pub(super) acc: Vector3<f64>,
-    pub(super) q_dot: Quaternion<f64>,
-    pub(super) rate_dot: Vector3<f64>,
-}
-
-impl Stage {
-    /// Returns this stage moved along a slope for `dt` seconds.
-    pub(super) fn along(&self, slope: &Slope, dt: f64) -> Self {
-        Self {
-            pos: self.pos + slope.vel * dt,
-            vel: self.vel + slope.acc * dt,
-            q: self.q + slope.q_dot * dt,
-            rate: self.rate + slope.rate_dot * dt,
-        }
-    }
-}
-
 /// Returns the additional acceleration at an accelerometer away from the centre of mass: `α × r + ω × (ω × r)`, m/s².
 pub fn lever_arm_acceleration(
     rate_flu: Vector3<f64>,
@@ -87,6 +51,7 @@ pub fn lever_arm_acceleration(
 }
 
 /// Returns the body → world matrix of a quaternion with a norm near one.
+#[inline]
 pub(super) fn rotation(q: &Quaternion<f64>) -> Matrix3<f64> {
     let (w, x, y, z) = (q.w, q.i, q.j, q.k);
     let (ww, xx, yy, zz) = (w * w, x * x, y * y, z * z);

@@ -22,10 +22,10 @@ const INVERTED_HULL_M: f64 = 0.05;
 
 /// The places at which the contact points are latched to the ground, metres east and north; `None` while a point
 /// slides or is in the air.
-pub type ContactAnchors = [Option<Vector2<f64>>; MAX_POINTS];
+pub(super) type ContactAnchors = [Option<Vector2<f64>>; MAX_POINTS];
 
 /// The anchors of a craft that friction does not hold at any point.
-pub const NO_ANCHORS: ContactAnchors = [None; MAX_POINTS];
+pub(super) const NO_ANCHORS: ContactAnchors = [None; MAX_POINTS];
 
 /// The contact model of one airframe.
 #[derive(Debug, Clone)]
@@ -211,7 +211,7 @@ impl Ground {
 mod tests {
     use super::*;
     use crate::sim::body::AirSample;
-    use crate::sim::plant::Plant;
+    use crate::sim::plant::{Craft, Plant};
     use nalgebra::UnitQuaternion;
     use std::f64::consts::PI;
 
@@ -232,9 +232,7 @@ mod tests {
     /// An Iris with stopped rotors that rests on its legs.
     struct Resting {
         plant: Plant,
-        state: BodyState,
-        rotors: [f64; ROTORS],
-        anchors: ContactAnchors,
+        craft: Craft,
     }
 
     impl Resting {
@@ -247,7 +245,7 @@ mod tests {
                 rate_flu: Vector3::zeros(),
             };
             let plant = Plant::new(&airframe, STEP_S);
-            let mut resting = Self { plant, state, rotors: [0.0; ROTORS], anchors: NO_ANCHORS };
+            let mut resting = Self { plant, craft: Craft::new(state) };
             resting.run(1.0);
             resting
         }
@@ -256,12 +254,17 @@ mod tests {
         fn run(&mut self, seconds: f64) -> f64 {
             let mut largest_turn_rad = 0.0_f64;
             for _ in 0..(seconds / STEP_S).round() as usize {
-                let Self { plant, state, rotors, anchors } = self;
-                let first = plant.loads(state, rotors, &CALM, anchors);
-                plant.step(state, rotors, anchors, &[0.0; ROTORS], &CALM, &first);
-                largest_turn_rad = largest_turn_rad.max(state.attitude.euler_angles().2.abs());
+                let Self { plant, craft } = self;
+                let present = plant.present(craft, &CALM);
+                plant.step(craft, &[0.0; ROTORS], &CALM, &present);
+                largest_turn_rad = largest_turn_rad.max(craft.body().attitude.euler_angles().2.abs());
             }
             largest_turn_rad
+        }
+
+        /// Returns the number of points that friction holds.
+        fn held(&self) -> usize {
+            self.craft.anchors().iter().flatten().count()
         }
     }
 
@@ -284,11 +287,12 @@ mod tests {
         let airframe = Airframe::iris();
         let plant = Plant::new(&airframe, 0.001);
         let air = AirSample { wind_enu: Vector3::zeros(), density_ratio: 1.0 };
-        let (mut state, mut anchors, mut rotors) = (at(0.1, PI), NO_ANCHORS, [0.0; ROTORS]);
+        let mut craft = Craft::new(at(0.1, PI));
         for _ in 0..2000 {
-            let loads = plant.loads(&state, &rotors, &air, &anchors);
-            plant.step(&mut state, &mut rotors, &mut anchors, &[0.0; ROTORS], &air, &loads);
+            let present = plant.present(&craft, &air);
+            plant.step(&mut craft, &[0.0; ROTORS], &air, &present);
         }
+        let state = *craft.body();
         let height_m = state.pos_enu.z;
         assert!((0.01..0.02).contains(&height_m), "{height_m} m");
         assert!(state.vel_enu.norm() < 0.01 && state.rate_flu.norm() < 0.01, "{state:?}");
@@ -299,12 +303,14 @@ mod tests {
     #[test]
     fn a_craft_twisted_on_its_legs_comes_to_rest() {
         let mut craft = Resting::new();
-        assert_eq!(craft.anchors.iter().flatten().count(), 4, "friction holds every leg");
+        assert_eq!(craft.held(), 4, "friction holds every leg");
         // A third of a millimetre at each leg, which friction can hold.
         let twist_rad = 0.001;
-        craft.state.attitude = UnitQuaternion::from_euler_angles(0.0, 0.0, twist_rad) * craft.state.attitude;
+        let mut twisted = *craft.craft.body();
+        twisted.attitude = UnitQuaternion::from_euler_angles(0.0, 0.0, twist_rad) * twisted.attitude;
+        craft.craft.set_body(twisted);
         craft.run(0.1);
-        assert_eq!(craft.anchors.iter().flatten().count(), 4, "no leg has slid");
+        assert_eq!(craft.held(), 4, "no leg has slid");
         let rocking_rad = craft.run(0.1);
         assert!(rocking_rad < 0.1 * twist_rad, "the legs damp it: {rocking_rad}");
     }

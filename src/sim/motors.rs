@@ -1,18 +1,20 @@
-//! Motors: a first-order lag from command to rotor speed, stepped with the rest of the craft by Runge–Kutta.
+//! Motors: a first-order lag from command to rotor speed.
 //!
-//! The equation `Ω̇ = (target − Ω)/τ` is linear, so the four stages of the integrator reduce to constants that depend
-//! on `h/τ` only. They are exactly the stages of RK4, so angular momentum (rotors + body) is conserved to rounding.
+//! The equation `Ω̇ = (target − Ω)/τ` is solved exactly, so the speed at any time of a step follows from the gap to the
+//! target by a factor that depends on `h/τ` only.
 
 use super::airframe::{Airframe, ROTORS};
+use crate::math;
 
-/// Number of stages of the integrator.
-pub(super) const STAGES: usize = 4;
-
-/// The lag over one step: the share of the gap to the target that is closed at each stage and at the end.
+/// The share of the gap to the target that a rotor closes in one step.
 #[derive(Debug, Clone, Copy)]
 struct Lag {
-    closed: [f64; STAGES],
-    closed_at_end: f64,
+    /// The share at half the step, and at its end.
+    at_half: f64,
+    at_end: f64,
+    /// The mean over the step of the share, and of its square.
+    mean: f64,
+    mean_square: f64,
     /// 1/τ, 1/s.
     rate: f64,
 }
@@ -20,12 +22,15 @@ struct Lag {
 impl Lag {
     fn new(tau_s: f64, h: f64) -> Self {
         let x = h / tau_s;
-        let second = 0.5 * x;
-        let third = 0.5 * x * (1.0 - second);
-        let fourth = x * (1.0 - third);
-        let closed = [0.0, second, third, fourth];
-        let closed_at_end = x / 6.0 * (1.0 + 2.0 * (1.0 - second) + 2.0 * (1.0 - third) + (1.0 - fourth));
-        Self { closed, closed_at_end, rate: 1.0 / tau_s }
+        let at = |part: f64| 1.0 - math::exp(-x * part);
+        let mean = 1.0 - at(1.0) / x;
+        Self {
+            at_half: at(0.5),
+            at_end: at(1.0),
+            mean,
+            mean_square: 1.0 - 2.0 * at(1.0) / x + at(2.0) / (2.0 * x),
+            rate: 1.0 / tau_s,
+        }
     }
 }
 
@@ -36,12 +41,12 @@ pub(super) struct Motors {
     down: Lag,
 }
 
-/// Rotor speeds (rad/s) and accelerations (rad/s²) at the stages of one step.
+/// The rotors in one step. All speeds are in rad/s.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct RotorSweep {
-    pub speed: [[f64; ROTORS]; STAGES],
-    pub acceleration: [[f64; ROTORS]; STAGES],
-    pub end: [f64; ROTORS],
+pub(super) struct RotorStep<'a> {
+    motors: &'a Motors,
+    start: [f64; ROTORS],
+    gap: [f64; ROTORS],
 }
 
 impl Motors {
@@ -50,20 +55,54 @@ impl Motors {
         Self { up: Lag::new(airframe.motor_tau_up_s, h), down: Lag::new(airframe.motor_tau_down_s, h) }
     }
 
-    /// Computes one step from the given rotor speeds towards the target speeds, rad/s.
-    pub(super) fn sweep(&self, speed: &[f64; ROTORS], target: &[f64; ROTORS]) -> RotorSweep {
-        let mut sweep =
-            RotorSweep { speed: [*speed; STAGES], acceleration: [[0.0; ROTORS]; STAGES], end: *speed };
-        for i in 0..ROTORS {
-            let gap = target[i] - speed[i];
-            let lag = if gap > 0.0 { &self.up } else { &self.down };
-            for stage in 0..STAGES {
-                sweep.speed[stage][i] += gap * lag.closed[stage];
-                sweep.acceleration[stage][i] = gap * (1.0 - lag.closed[stage]) * lag.rate;
-            }
-            sweep.end[i] += gap * lag.closed_at_end;
-        }
-        sweep
+    /// Returns the step from the given rotor speeds towards the target speeds, rad/s.
+    #[inline]
+    pub(super) fn step(&self, start: &[f64; ROTORS], target: &[f64; ROTORS]) -> RotorStep<'_> {
+        RotorStep { motors: self, start: *start, gap: std::array::from_fn(|i| target[i] - start[i]) }
+    }
+}
+
+impl RotorStep<'_> {
+    /// Returns the speeds at half the step.
+    #[inline]
+    pub(super) fn at_half(&self) -> [f64; ROTORS] {
+        self.after(self.by_rotor(|lag| lag.at_half))
+    }
+
+    /// Returns the speeds at the end of the step.
+    #[inline]
+    pub(super) fn at_end(&self) -> [f64; ROTORS] {
+        self.after(self.by_rotor(|lag| lag.at_end))
+    }
+
+    /// Returns the means over the step of the squares of the speeds.
+    #[inline]
+    pub(super) fn mean_squares(&self) -> [f64; ROTORS] {
+        let (mean, square) = (self.by_rotor(|lag| lag.mean), self.by_rotor(|lag| lag.mean_square));
+        std::array::from_fn(|i| {
+            let (start, gap) = (self.start[i], self.gap[i]);
+            start * (start + 2.0 * gap * mean[i]) + gap * gap * square[i]
+        })
+    }
+
+    /// Returns the accelerations at the start and at the end of the step, rad/s².
+    #[inline]
+    pub(super) fn accelerations(&self) -> [[f64; ROTORS]; 2] {
+        let (rate, closed) = (self.by_rotor(|lag| lag.rate), self.by_rotor(|lag| lag.at_end));
+        let at_start: [f64; ROTORS] = std::array::from_fn(|i| self.gap[i] * rate[i]);
+        [at_start, std::array::from_fn(|i| at_start[i] * (1.0 - closed[i]))]
+    }
+
+    #[inline]
+    fn after(&self, closed: [f64; ROTORS]) -> [f64; ROTORS] {
+        std::array::from_fn(|i| self.start[i] + self.gap[i] * closed[i])
+    }
+
+    /// Returns a number of each rotor's lag.
+    #[inline]
+    fn by_rotor(&self, number: impl Fn(&Lag) -> f64) -> [f64; ROTORS] {
+        let (up, down) = (number(&self.motors.up), number(&self.motors.down));
+        self.gap.map(|gap| if gap > 0.0 { up } else { down })
     }
 }
 
@@ -71,17 +110,47 @@ impl Motors {
 mod tests {
     use super::*;
 
+    /// The speeds of rotors that speed up, slow down, and stay as they are, and their targets.
+    const START: [f64; ROTORS] = [0.0, 1000.0, 500.0, 0.0];
+    const TARGET: [f64; ROTORS] = [1000.0, 0.0, 500.0, 0.0];
+
+    /// Returns the motors of a five-inch craft with steps of `h` seconds.
+    fn motors(h: f64) -> Motors {
+        Motors::new(&Airframe::five_inch(), h)
+    }
+
     #[test]
     fn a_step_of_command_is_an_exponential() {
-        let airframe = Airframe::five_inch();
-        let motors = Motors::new(&airframe, 0.001);
-        let mut speed = [0.0, 1000.0, 500.0, 0.0];
-        let target = [1000.0, 0.0, 500.0, 0.0];
-        for _ in 0..30 {
-            speed = motors.sweep(&speed, &target).end;
+        let h = 0.03;
+        for speed in
+            [motors(h).step(&START, &TARGET).at_end(), motors(2.0 * h).step(&START, &TARGET).at_half()]
+        {
+            assert!((speed[0] - 1000.0 * (1.0 - (-h / 0.020_f64).exp())).abs() < 1e-9);
+            assert!((speed[1] - 1000.0 * (-h / 0.030_f64).exp()).abs() < 1e-9);
+            assert_eq!(speed[2..], [500.0, 0.0]);
         }
-        assert!((speed[0] - 1000.0 * (1.0 - (-30.0_f64 / 20.0).exp())).abs() < 1e-4);
-        assert!((speed[1] - 1000.0 * (-30.0_f64 / 30.0).exp()).abs() < 1e-4);
-        assert_eq!(speed[2..], [500.0, 0.0]);
+    }
+
+    #[test]
+    fn means_and_accelerations_are_those_of_the_exponential() {
+        const PARTS: u32 = 10_000;
+        let h = 0.004;
+        let whole = motors(h);
+        let step = whole.step(&START, &TARGET);
+        let means = step.mean_squares();
+        let [start, end] = step.accelerations();
+        for rotor in 0..ROTORS {
+            let at = |seconds: f64| motors(seconds).step(&START, &TARGET).at_end()[rotor];
+            let middles = (0..PARTS).map(|part| (f64::from(part) + 0.5) * h / f64::from(PARTS));
+            let mean = middles.map(|seconds| at(seconds) * at(seconds)).sum::<f64>() / f64::from(PARTS);
+            assert!(
+                (means[rotor] - mean).abs() <= 1e-6 * mean,
+                "{rotor}: {} instead of {mean}",
+                means[rotor]
+            );
+            let slope = |from: f64, to: f64| (at(to) - at(from)) / (to - from);
+            assert!((start[rotor] - slope(1e-9, 2e-6)).abs() <= 1e-3 * start[rotor].abs());
+            assert!((end[rotor] - slope(h - 1e-6, h + 1e-6)).abs() <= 1e-3 * end[rotor].abs());
+        }
     }
 }

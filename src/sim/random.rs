@@ -1,10 +1,16 @@
-//! Randomness: one independent ChaCha8 stream per consumer, all from one seed.
+//! Randomness: one independent stream per consumer, all from one seed.
 //!
 //! A consumer that draws more, fewer or no numbers does not change the numbers of any other consumer.
 
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, StandardNormal};
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use crate::math;
+
+mod ziggurat;
+
+/// The generator of one stream.
+pub type StreamRng = Xoshiro256PlusPlus;
 
 /// The consumer of random numbers. The discriminant is the stream number of the generator. Changing one changes every
 /// flight.
@@ -42,16 +48,20 @@ pub enum Stream {
 
 impl Stream {
     /// Returns the generator of this consumer for a seed.
-    pub fn rng(self, seed: u64) -> ChaCha8Rng {
-        let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        rng.set_stream(self as u64);
+    ///
+    /// The streams of a seed are parts of one sequence, each 2¹²⁸ numbers after the one before.
+    pub fn rng(self, seed: u64) -> StreamRng {
+        let mut rng = StreamRng::seed_from_u64(seed);
+        for _ in 0..self as u64 {
+            rng.jump();
+        }
         rng
     }
 }
 
 /// Unit normal deviates from one stream.
 #[derive(Debug, Clone)]
-pub(super) struct Normals(ChaCha8Rng);
+pub(super) struct Normals(StreamRng);
 
 impl Normals {
     pub(super) fn new(seed: u64, stream: Stream) -> Self {
@@ -60,7 +70,7 @@ impl Normals {
 
     /// Returns one deviate with mean 0 and standard deviation 1.
     pub(super) fn next(&mut self) -> f64 {
-        StandardNormal.sample(&mut self.0)
+        ziggurat::normal(&mut self.0)
     }
 
     pub(super) fn next3(&mut self) -> nalgebra::Vector3<f64> {
@@ -68,6 +78,12 @@ impl Normals {
         let y = self.next();
         nalgebra::Vector3::new(x, y, self.next())
     }
+}
+
+/// Returns an exponential deviate with mean 1.
+pub(super) fn exponential(rng: &mut StreamRng) -> f64 {
+    // The argument is never zero.
+    -math::ln(1.0 - rng.random::<f64>())
 }
 
 /// A first-order Gauss–Markov process: an error that wanders with a time constant and a constant standard deviation.
@@ -81,7 +97,7 @@ impl GaussMarkov {
     /// Returns the process with stationary standard deviation `sigma` and time constant `tau_s`, updated every `dt`
     /// seconds.
     pub(super) fn stationary(sigma: f64, tau_s: f64, dt: f64) -> Self {
-        let keep = (-dt / tau_s).exp();
+        let keep = math::exp(-dt / tau_s);
         Self { keep, drive: sigma * (1.0 - keep * keep).sqrt() }
     }
 
@@ -106,6 +122,22 @@ mod tests {
         assert_ne!(first(1, Stream::Gyro), first(1, Stream::Gps));
         assert_ne!(first(1, Stream::Gyro), first(2, Stream::Gyro));
         assert_eq!(first(1, Stream::Gyro), first(1, Stream::Gyro));
+    }
+
+    #[test]
+    fn an_exponential_deviate_has_mean_and_deviation_one() {
+        let mut rng = Stream::Gusts.rng(1);
+        let n = 1_000_000;
+        let (mut sum, mut squares) = (0.0, 0.0);
+        for _ in 0..n {
+            let value = exponential(&mut rng);
+            assert!(value >= 0.0 && value.is_finite());
+            sum += value;
+            squares += value * value;
+        }
+        let mean = sum / f64::from(n);
+        assert!((mean - 1.0).abs() < 0.005, "{mean}");
+        assert!((squares / f64::from(n) - 2.0).abs() < 0.03);
     }
 
     #[test]

@@ -53,8 +53,8 @@ pub(super) struct SensorInputs<'a> {
     pub switches: &'a Switches,
     /// Number of the slow tick, if the present instant is one.
     pub slow_tick: Option<u64>,
-    /// Angular acceleration, FLU, rad/s².
-    pub rate_dot_flu: Vector3<f64>,
+    /// Body rates one step before, FLU, rad/s.
+    pub rate_before_flu: Vector3<f64>,
 }
 
 impl Sensors {

@@ -3,6 +3,7 @@
 use nalgebra::{Vector2, Vector3};
 
 use super::value_text::number;
+use crate::math;
 
 /// The steepest ground, m in 100 m. A craft does not slide on it and may arm.
 pub(super) const MAX_RISE_M: f64 = 40.0;
@@ -39,7 +40,7 @@ pub struct TangentPlane {
 impl Slope {
     /// Returns a plane that rises by `rise_m` in 100 m towards `bearing_deg`, degrees from north.
     pub fn new(rise_m: f64, bearing_deg: f64) -> Self {
-        let (sin, cos) = bearing_deg.to_radians().sin_cos();
+        let (sin, cos) = math::sin_cos(bearing_deg.to_radians());
         let gradient = Vector2::new(sin, cos) * (rise_m / 100.0);
         let normal = Vector3::new(-gradient.x, -gradient.y, 1.0).normalize();
         Self { rise_m, bearing_deg, gradient, normal }

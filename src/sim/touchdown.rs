@@ -1,5 +1,7 @@
 //! The touchdown detector: first contact, settled touchdown, crash.
 
+use nalgebra::Vector3;
+
 use crate::signals::SimTime;
 
 use super::body::BodyState;
@@ -38,14 +40,14 @@ impl TouchdownDetector {
     pub(super) const STANDING: Self = Self { phase: Phase::Standing };
 
     /// Takes one step: the present contact, the state before the step (whose velocity the ground has not changed yet)
-    /// and after it, and the magnitude of the present specific force, m/s².
+    /// and after it, and the present specific force, m/s².
     pub(super) fn update(
         &mut self,
         now: SimTime,
         contact: GroundContact,
         before: &BodyState,
         after: &BodyState,
-        force_mps2: f64,
+        force: &Vector3<f64>,
     ) -> Option<WorldEventKind> {
         match self.phase {
             Phase::Standing => {
@@ -67,11 +69,11 @@ impl TouchdownDetector {
             }
             Phase::Airborne { .. } => {
                 let impact_mps = (-before.vel_enu.dot(contact.plane.normal())).max(0.0);
-                self.phase = Phase::Settling { impact_mps, peak_mps2: force_mps2, loaded: None };
+                self.phase = Phase::Settling { impact_mps, peak_mps2: force.norm(), loaded: None };
                 Some(WorldEventKind::Contact { impact_mps })
             }
             Phase::Settling { impact_mps, peak_mps2, loaded } => {
-                let peak_mps2 = peak_mps2.max(force_mps2);
+                let peak_mps2 = peak_mps2.max(force.norm());
                 let settled = contact.all_legs && after.vel_enu.norm() < SETTLED_MPS;
                 let loaded = settled.then(|| loaded.unwrap_or(now));
                 if loaded.is_some_and(|since| now.seconds_since(since) >= SETTLED_S) {

@@ -2,6 +2,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
+use crate::math;
 use crate::signals::SimTime;
 
 use super::airframe::ROTORS;
@@ -56,19 +57,19 @@ impl Truth {
     /// Returns the heading of the nose, degrees clockwise from north, 0…360.
     pub fn heading_deg(&self) -> f64 {
         let nose = self.attitude * Vector3::x();
-        nose.x.atan2(nose.y).to_degrees().rem_euclid(360.0)
+        math::atan2(nose.x, nose.y).to_degrees().rem_euclid(360.0)
     }
 
     /// Returns the roll, right wing down positive, degrees.
     pub fn roll_deg(&self) -> f64 {
         let up = self.attitude.inverse_transform_vector(&Vector3::z());
-        up.y.atan2(up.z).to_degrees()
+        math::atan2(up.y, up.z).to_degrees()
     }
 
     /// Returns the pitch, nose up positive, degrees.
     pub fn pitch_deg(&self) -> f64 {
         let nose = self.attitude * Vector3::x();
-        nose.z.clamp(-1.0, 1.0).asin().to_degrees()
+        math::asin(nose.z.clamp(-1.0, 1.0)).to_degrees()
     }
 }
 

@@ -7,12 +7,12 @@ use crate::signals::{MotorCommand, SensorFrame};
 use super::air::{AIR_TICK_US, Air};
 use super::airframe::{Airframe, ROTORS};
 use super::battery::{Battery, motor_power_w};
-use super::body::{AirSample, BodyState, Loads};
+use super::body::{AirSample, BodyState};
 use super::clock::{Clock, FaultHost};
 use super::event::WorldEventKind;
-use super::ground::{ContactAnchors, GroundContact};
+use super::ground::GroundContact;
 use super::landform::LocalRelief;
-use super::plant::Plant;
+use super::plant::{Craft, Plant, Present};
 use super::sensors::{SensorInputs, Sensors};
 use super::switches::Switches;
 use super::touchdown::{TouchdownDetector, crash_cause};
@@ -38,13 +38,10 @@ pub struct World {
     heading_deg: f64,
     switches: Switches,
     relief: Option<LocalRelief>,
-    step_s: f64,
     clock: Clock,
     // The craft.
     plant: Plant,
-    body: BodyState,
-    rotors: [f64; ROTORS],
-    anchors: ContactAnchors,
+    craft: Craft,
     battery: Battery,
     command: [f64; ROTORS],
     refused_commands: u64,
@@ -55,7 +52,7 @@ pub struct World {
     air: Air,
     // The present instant.
     air_now: AirSample,
-    loads: Loads,
+    present: Present,
     rate_before: Vector3<f64>,
     truth: Truth,
     sensors: Sensors,
@@ -67,9 +64,9 @@ impl World {
     /// and that motor keeps its previous one.
     pub fn step(&mut self, command: &MotorCommand) {
         self.accept(command);
-        let before = self.body;
+        let before = *self.craft.body();
         if !self.diverged {
-            self.move_body();
+            self.move_craft(&before);
         }
         self.clock.advance();
         self.run_faults();
@@ -92,28 +89,22 @@ impl World {
         }
     }
 
-    /// Computes motors, forces, integration and contact over one step.
-    fn move_body(&mut self) {
+    /// Computes motors, forces, integration and contact over one step that begins in the state `before`.
+    fn move_craft(&mut self, before: &BodyState) {
         let scale = if self.switches.battery_sag { self.battery.speed_scale() } else { 1.0 };
         let full_speed = self.airframe.rotor_speed_max * scale;
-        let target = std::array::from_fn(|i| {
+        let target: [f64; ROTORS] = std::array::from_fn(|i| {
             if self.crashed {
                 0.0
             } else {
                 full_speed * self.clock.effects.stuck[i].unwrap_or(self.command[i])
             }
         });
-        let (body, rotors, anchors) = (self.body, self.rotors, self.anchors);
-        self.plant.step(
-            &mut self.body,
-            &mut self.rotors,
-            &mut self.anchors,
-            &target,
-            &self.air_now,
-            &self.loads,
-        );
-        if let Some(cause) = divergence(&self.body) {
-            (self.body, self.rotors, self.anchors) = (body, rotors, anchors);
+        let anchors = *self.craft.anchors();
+        self.plant.step(&mut self.craft, &target, &self.air_now, &self.present);
+        if let Some(cause) = divergence(self.craft.body()) {
+            // The last sane state is also that of the truth.
+            self.craft = Craft::held(*before, self.truth.rotor_speeds, anchors);
             self.diverged = true;
             self.clock.emit(WorldEventKind::Diverged { cause });
         }
@@ -121,20 +112,32 @@ impl World {
 
     /// Advances air and battery, every 10 ms.
     fn slow_tick(&mut self) {
-        let ground_m = self.plant.ground().landform().elevation_m(&self.body.pos_enu.xy());
-        self.air.tick(self.clock.time, self.body.pos_enu.z, ground_m, self.body.vel_enu, &self.switches);
+        let BodyState { pos_enu, vel_enu, .. } = *self.craft.body();
+        let ground_m = self.plant.ground().landform().elevation_m(&pos_enu.xy());
+        self.air.tick(self.clock.time, pos_enu.z, ground_m, vel_enu, &self.switches);
         let load = self.plant.efficiency().map(|efficiency| efficiency * self.air_now.density_ratio);
-        let power = motor_power_w(&self.airframe, &self.rotors, &load);
+        let power = motor_power_w(&self.airframe, self.craft.rotors(), &load);
         let was_charged = self.battery.charge_left() > 0.0;
         let runs_out = self.switches.battery_sag;
         self.battery.draw(power, self.clock.effects.battery, runs_out, AIR_TICK_US as f64 * 1e-6);
+        self.update_battery_truth();
         if was_charged && self.battery.charge_left() <= 0.0 {
             self.clock.emit(WorldEventKind::BatteryEmpty { cell_v: self.battery.cell_v() });
         }
     }
 
     fn refresh_loads(&mut self) {
-        self.loads = self.plant.loads(&self.body, &self.rotors, &self.air_now, &self.anchors);
+        self.present = self.plant.present(&self.craft, &self.air_now);
+    }
+
+    fn update_battery_truth(&mut self) {
+        self.truth.battery = BatteryTruth {
+            voltage_v: self.battery.voltage_v,
+            current_a: self.battery.current_a,
+            drawn_mah: self.battery.drawn_mah,
+            drawn_wh: self.battery.drawn_wh,
+            capacity_mah: self.battery.capacity_mah(),
+        };
     }
 
     /// Updates truth and sensor readings of the present instant.
@@ -149,25 +152,19 @@ impl World {
     fn update_outputs_on(&mut self, slow_tick: Option<u64>) {
         self.air_now = self.air.sample(self.clock.time);
         self.refresh_loads();
-        self.contact = self.plant.ground().contact(&self.body);
+        let body = self.craft.body();
+        self.contact = self.plant.ground().contact(body);
         let truth = &mut self.truth;
         truth.time = self.clock.time;
-        truth.pos_enu = self.body.pos_enu;
-        truth.vel_enu = self.body.vel_enu;
-        truth.attitude = self.body.attitude;
-        truth.rate_flu = self.body.rate_flu;
-        truth.rotor_speeds = self.rotors;
+        truth.pos_enu = body.pos_enu;
+        truth.vel_enu = body.vel_enu;
+        truth.attitude = body.attitude;
+        truth.rate_flu = body.rate_flu;
+        truth.rotor_speeds = *self.craft.rotors();
         truth.motor_command = self.command;
-        truth.specific_force_flu = self.loads.force_flu / self.plant.mass_kg();
+        truth.specific_force_flu = self.present.loads.force_flu / self.plant.mass_kg();
         truth.wind_enu = self.air_now.wind_enu;
-        truth.battery = BatteryTruth {
-            voltage_v: self.battery.voltage_v,
-            current_a: self.battery.current_a,
-            drawn_mah: self.battery.drawn_mah,
-            drawn_wh: self.battery.drawn_wh,
-            capacity_mah: self.battery.capacity_mah(),
-        };
-        truth.ground_m = self.plant.ground().landform().elevation_m(&self.body.pos_enu.xy());
+        truth.ground_m = self.plant.ground().landform().elevation_m(&body.pos_enu.xy());
         truth.on_ground = self.contact.any_leg;
         truth.crashed = self.crashed;
         truth.diverged = self.diverged;
@@ -176,7 +173,7 @@ impl World {
             effects: &self.clock.effects,
             switches: &self.switches,
             slow_tick,
-            rate_dot_flu: (self.body.rate_flu - self.rate_before) / self.step_s,
+            rate_before_flu: self.rate_before,
         };
         self.sensors.read(&inputs, &mut self.frame);
     }
@@ -184,8 +181,8 @@ impl World {
     /// Detects contact, touchdown and crash after a step that began in the state `before`.
     fn detect_touchdown(&mut self, before: &BodyState) {
         let contact = self.contact;
-        let force = self.truth.specific_force_flu.norm();
-        let event = self.touchdown.update(self.clock.time, contact, before, &self.body, force);
+        let force = self.truth.specific_force_flu;
+        let event = self.touchdown.update(self.clock.time, contact, before, self.craft.body(), &force);
         // A wreck that bounces and settles has nothing more to report.
         if let Some(kind) = event
             && !self.crashed

@@ -7,6 +7,7 @@
 use super::nav::NavTelemetry;
 use super::quantity::Dimension;
 use super::snapshot::{CraftView, EstimateView, Snapshot, TruthView};
+use crate::math;
 use crate::signals::SimTime;
 
 /// The ground speed below which the course has no meaning, m/s.
@@ -105,11 +106,11 @@ signals! {
     Course "course" ANGLE "direction of the true motion, 0 to 360; unknown below 0.3 m/s" = |o| {
         o.truth
             .filter(|truth| truth.ground_speed_mps() >= COURSE_MPS)
-            .map(|truth| truth.ve.atan2(truth.vn).to_degrees().rem_euclid(360.0))
+            .map(|truth| math::atan2(truth.ve, truth.vn).to_degrees().rem_euclid(360.0))
     };
     Lean "lean" ANGLE "true tilt from level" = |o| {
-        let cos = |degrees: f64| degrees.to_radians().cos();
-        o.truth.map(|truth| (cos(truth.roll_deg) * cos(truth.pitch_deg)).acos().to_degrees())
+        let cos = |degrees: f64| math::cos(degrees.to_radians());
+        o.truth.map(|truth| math::acos(cos(truth.roll_deg) * cos(truth.pitch_deg)).to_degrees())
     };
     Force "force" ACCELERATION "specific force on the craft, 9.8 at rest"
         = |o| o.truth.and_then(|truth| truth.force_mps2);

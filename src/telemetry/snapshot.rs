@@ -6,6 +6,7 @@
 use nalgebra::Vector2;
 
 use crate::geo::{GRAVITY, LatLon};
+use crate::math;
 use crate::plan::estimate::{Assumptions, ReturnFlight, TouchdownThrottle};
 use crate::plan::{FlightPlan, Waypoint};
 use crate::signals::{PerMotor, RC_CHANNELS, RcSource, SimTime};
@@ -107,7 +108,7 @@ mod degrees9 {
 
 impl TruthView {
     pub fn ground_speed_mps(&self) -> f64 {
-        self.vn.hypot(self.ve)
+        math::hypot(self.vn, self.ve)
     }
 }
 
@@ -337,7 +338,7 @@ impl SettingsView {
 
     /// Returns the radius of a coordinated turn at this speed, m: R = V² / (g·tan θ) with the maximum lean.
     pub fn turn_radius_m(&self, speed_mps: f64) -> f64 {
-        speed_mps * speed_mps / (GRAVITY * self.max_angle_deg.to_radians().tan()).max(0.1)
+        speed_mps * speed_mps / (GRAVITY * math::tan(self.max_angle_deg.to_radians())).max(0.1)
     }
 
     /// Returns the number of laps that an ORBIT of this waypoint flies in its time; `None` if it has no end.
@@ -348,7 +349,7 @@ impl SettingsView {
         let speed_mps = wp.speed.own_mps().unwrap_or(self.max_velocity_mps);
         let radius_m = self.orbit_radius_m.max(0.1);
         // The autopilot has the same limits: the setting, the speed of the leg and half of the maximum lean.
-        let by_lean = (0.5 * GRAVITY * self.max_angle_deg.to_radians().tan() / radius_m).sqrt();
+        let by_lean = (0.5 * GRAVITY * math::tan(self.max_angle_deg.to_radians()) / radius_m).sqrt();
         let rate_rps = self.max_turn_rate_dps.to_radians().min(speed_mps / radius_m).min(by_lean);
         Some(rate_rps * wp.duration.get() / std::f64::consts::TAU)
     }

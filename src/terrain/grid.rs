@@ -1,5 +1,7 @@
 //! The samples of one tile.
 
+use crate::math;
+
 /// The distance, in samples, within which the nearest valid sample replaces a void.
 const VOID_REACH: i64 = 3;
 
@@ -72,7 +74,7 @@ impl Grid {
         let mut best: Option<(f64, f64)> = None;
         for r in row0 - VOID_REACH..=row0 + VOID_REACH {
             for c in col0 - VOID_REACH..=col0 + VOID_REACH {
-                let distance = (r as f64 - row).hypot(c as f64 - col);
+                let distance = math::hypot(r as f64 - row, c as f64 - col);
                 if distance > VOID_REACH as f64 || best.is_some_and(|(nearest, _)| distance >= nearest) {
                     continue;
                 }

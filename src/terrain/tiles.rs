@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::grid::Grid;
 use super::square::Square;
 use crate::geo::{LatLon, METRES_PER_E7};
+use crate::math;
 
 /// Tiles by their squares. A clone shares them.
 #[derive(Clone, Default, PartialEq)]
@@ -54,7 +55,7 @@ impl Tiles {
     pub fn step_m(&self, place: LatLon) -> Option<f64> {
         let grid = self.grids.get(&Square::of(place))?;
         let metres = METRES_PER_E7 * 1e7;
-        let across = grid.lon_step_deg * place.lat_deg().to_radians().cos();
+        let across = grid.lon_step_deg * math::cos(place.lat_deg().to_radians());
         Some(grid.lat_step_deg.min(across) * metres)
     }
 

@@ -33,6 +33,7 @@ mod made_log;
 mod options;
 mod plain;
 mod plans;
+mod portable;
 #[cfg(unix)]
 mod pty;
 #[cfg(unix)]

@@ -6,6 +6,7 @@ mod impls;
 mod inside;
 mod page;
 mod paths;
+mod portable;
 mod rules;
 mod size;
 mod source;

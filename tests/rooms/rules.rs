@@ -4,7 +4,7 @@ use crate::paths::{Named, named, tokens};
 use crate::source::{SourceFile, files};
 
 /// Rooms that are pure: no file, no socket, no thread, no clock, no global state.
-const PURE: [&str; 21] = [
+const PURE: [&str; 22] = [
     "autopilot",
     "blackbox",
     "campaign",
@@ -14,6 +14,7 @@ const PURE: [&str; 21] = [
     "flight",
     "flight_log",
     "geo",
+    "math",
     "pilot",
     "plan",
     "recording",
@@ -38,7 +39,7 @@ const OUTSIDE: [&str; 6] = ["env", "fs", "net", "os", "process", "thread"];
 const VARIABLES: [&str; 8] =
     ["Cell", "LazyLock", "Mutex", "OnceCell", "OnceLock", "RefCell", "RwLock", "UnsafeCell"];
 
-fn is_pure(file: &SourceFile) -> bool {
+pub(crate) fn is_pure(file: &SourceFile) -> bool {
     let is_pure_room = PURE.contains(&file.room().as_str()) && !NOT_PURE.contains(&file.name.as_str());
     is_pure_room || file.name.starts_with("link/proto")
 }

@@ -2,6 +2,7 @@
 
 mod airframes;
 mod environment;
+mod integrator;
 mod physics;
 mod stand;
 

@@ -6,6 +6,7 @@ use super::spool_up::SpoolUp;
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::params::Params;
 use crate::geo::GRAVITY;
+use crate::math;
 
 /// The maximum acceleration of the setpoint, m/s².
 const SETPOINT_ACCEL: f64 = 2.0;
@@ -401,7 +402,7 @@ impl AltitudeController {
         let error_cm = (self.setpoint_m - now.altitude_m) * 100.0;
         // The integral must not learn the lag of a climb. It would carry the craft past its altitude.
         let speed = self.setpoint_rate.abs().max(now.climb_mps.abs());
-        let steady = 1.0 / (1.0 + (speed / HALF_INTEGRAL_MPS).powi(2));
+        let steady = 1.0 / (1.0 + math::powi(speed / HALF_INTEGRAL_MPS, 2));
         let share = match (landing, error_cm.abs() > 200.0) {
             (true, _) => 1.0,
             (false, true) => 0.1 * steady,

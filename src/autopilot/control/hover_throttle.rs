@@ -1,6 +1,7 @@
 //! Estimates the throttle that holds the craft, independently of the parameter.
 
 use crate::geo::GRAVITY;
+use crate::math;
 
 /// The lower limit of the estimated hover throttle, µs.
 pub const HOVER_MIN_US: f64 = 1050.0;
@@ -141,7 +142,7 @@ impl HoverThrottleEstimator {
         self.airborne_s = if now.altitude_m > AIRBORNE_M { self.airborne_s + dt } else { 0.0 };
         let is_still = now.climb_mps.abs() < STILL_CLIMB_MPS
             && accel.abs() < STILL_ACCEL_MPS2
-            && now.cos_tilt > STILL_LEAN_RAD.cos();
+            && now.cos_tilt > math::cos(STILL_LEAN_RAD);
         self.still_s = if is_still { self.still_s + dt } else { 0.0 };
         if self.hovers() && self.airborne_s > 0.0 {
             let estimate = self.estimate_us.unwrap_or(instant);

@@ -3,6 +3,7 @@
 use super::altitude::AltitudeController;
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::params::Params;
+use crate::math;
 
 const DEG: f64 = std::f64::consts::PI / 180.0;
 /// The rates at which the limit falls while the craft sinks at full throttle, and rises while there is throttle to
@@ -33,11 +34,11 @@ impl LeanLimiter {
         let max_rad = params.max_lean_rad();
         let zero_us = params.throttle_zero_us();
         let available_us = (f64::from(params.throttle_max) - zero_us).max(1.0);
-        let needed = RESERVE * ((altitude.hover_us() - zero_us) / available_us).powi(2);
-        let by_thrust_rad = needed.clamp(0.0, 1.0).acos();
+        let needed = RESERVE * math::powi((altitude.hover_us() - zero_us) / available_us, 2);
+        let by_thrust_rad = math::acos(needed.clamp(0.0, 1.0));
         let found_rad = self.found_rad.unwrap_or(f64::INFINITY);
         self.found_rad = if altitude.sinks_at_full_throttle(now) {
-            let tilt_rad = now.cos_tilt.clamp(0.0, 1.0).acos();
+            let tilt_rad = math::acos(now.cos_tilt.clamp(0.0, 1.0));
             Some(found_rad.min(tilt_rad.max(LEAST_RAD)).min(max_rad) - FALL_RPS * now.dt)
         } else if altitude.has_throttle_to_spare() {
             Some(found_rad + RISE_RPS * now.dt)

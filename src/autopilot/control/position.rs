@@ -8,6 +8,7 @@ use crate::autopilot::guidance::stop_speed_mps;
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::params::Params;
 use crate::geo::GRAVITY;
+use crate::math;
 
 /// The limit of the speed law's integral, rad.
 const SPEED_INTEGRAL_LIMIT: f64 = 35.0 * DEG;
@@ -39,7 +40,7 @@ const DEG: f64 = std::f64::consts::PI / 180.0;
 
 /// Converts a lean towards (north, east) to (forward, right) of a craft that heads `heading_rad`.
 pub fn earth_to_body(ne: Vector2<f64>, heading_rad: f64) -> Vector2<f64> {
-    let (sin, cos) = heading_rad.sin_cos();
+    let (sin, cos) = math::sin_cos(heading_rad);
     Vector2::new(ne.x * cos + ne.y * sin, -ne.x * sin + ne.y * cos)
 }
 
@@ -148,7 +149,7 @@ impl PositionController {
     /// the craft.
     pub fn track(&mut self, now: &PositionMeasurement, dt: f64) {
         self.observe(now, dt);
-        let keep = 0.5_f64.powf(dt / BLEED_HALF_LIFE_S);
+        let keep = math::powf(0.5, dt / BLEED_HALF_LIFE_S);
         self.speed_integral *= keep;
         self.direct_integral *= keep;
         self.accel_filtered = now.accel;
@@ -223,7 +224,7 @@ impl PositionController {
 
     fn observe(&mut self, now: &PositionMeasurement, dt: f64) {
         let lean = body_to_earth(now.lean_body, now.heading_rad);
-        let accel = lean.map(|axis| GRAVITY * axis.clamp(-1.3, 1.3).tan());
+        let accel = lean.map(|axis| GRAVITY * math::tan(axis.clamp(-1.3, 1.3)));
         self.observer.update(now.velocity, accel, dt);
     }
 
@@ -275,7 +276,7 @@ impl PositionController {
         if self.saturated || error.norm() > ON_PATTERN * radius_m {
             return;
         }
-        let gain = (0.025 * f64::from(params.position_p) / 2.0).powi(2);
+        let gain = math::powi(0.025 * f64::from(params.position_p) / 2.0, 2);
         let trim = self.pattern_trim + Vector2::new(along.dot(&error), inward.dot(&error)) * (gain * dt);
         self.pattern_trim = trim.cap_magnitude(MOST_TRIM * speed);
     }
@@ -291,7 +292,7 @@ impl PositionController {
         }
         match target.law {
             PositionLaw::Speed => {
-                let steady = 1.0 / (1.0 + (self.accel_setpoint.norm() / HALF_INTEGRAL_ACCEL).powi(2));
+                let steady = 1.0 / (1.0 + math::powi(self.accel_setpoint.norm() / HALF_INTEGRAL_ACCEL, 2));
                 let gain = 0.1 * DEG * f64::from(params.velocity_i);
                 let step = (self.velocity_setpoint - now.velocity) * (gain * steady * dt);
                 self.speed_integral = (self.speed_integral + step)
@@ -308,7 +309,7 @@ impl PositionController {
     }
 
     fn law(&self, now: &PositionMeasurement, target: &PositionTarget, params: &Params) -> Vector2<f64> {
-        let wind = self.observer.accel().map(|axis| -(axis / GRAVITY).atan());
+        let wind = self.observer.accel().map(|axis| -math::atan(axis / GRAVITY));
         let lean = match target.law {
             PositionLaw::Speed => self.speed_law(now, params),
             PositionLaw::Direct => self.direct_law(now, target, params),
@@ -323,7 +324,7 @@ impl PositionController {
         let setpoint = self.velocity_setpoint;
         (setpoint - now.velocity) * p + self.speed_integral - self.accel_filtered * d
             + setpoint * (setpoint.norm() * drag)
-            + self.accel_setpoint.map(|axis| (axis / GRAVITY).atan())
+            + self.accel_setpoint.map(|axis| math::atan(axis / GRAVITY))
     }
 
     fn direct_law(
@@ -340,7 +341,7 @@ impl PositionController {
             + self.direct_integral * i
             + (target.target_velocity - now.velocity) * d
             + (target.target_accel - self.accel_filtered) * a
-            + target.target_accel.map(|axis| (axis / GRAVITY).atan())
+            + target.target_accel.map(|axis| math::atan(axis / GRAVITY))
     }
 
     fn start_transfer(&mut self, old: Vector2<f64>, new: Vector2<f64>) {

@@ -3,6 +3,7 @@
 use super::bumpless::BumplessTransfer;
 use crate::autopilot::params::{Params, YawMode};
 use crate::geo::wrap_pi;
+use crate::math;
 
 /// The time in which yaw control fades in, s.
 const RAMP_S: f64 = 2.0;
@@ -55,9 +56,9 @@ pub fn desired_heading(
 fn hybrid(facts: &YawFacts) -> f64 {
     let share = (facts.distance_m / HYBRID_M).clamp(0.0, 1.0);
     let (bearing, course) = (facts.bearing_rad, facts.course_rad);
-    let north = share * bearing.cos() + (1.0 - share) * course.cos();
-    let east = share * bearing.sin() + (1.0 - share) * course.sin();
-    east.atan2(north)
+    let north = share * math::cos(bearing) + (1.0 - share) * math::cos(course);
+    let east = share * math::sin(bearing) + (1.0 - share) * math::sin(course);
+    math::atan2(east, north)
 }
 
 /// Returns the yaw rate (deg/s, clockwise positive) towards `desired_rad`, scaled by `ramp` (0…1) and limited to

@@ -2,13 +2,15 @@
 
 use nalgebra::Vector2;
 
+use crate::math;
+
 /// Gravity of the turn radius, m/s²; the value that the radius has always been computed with.
 const TURN_GRAVITY: f64 = 9.8;
 
 /// Returns the distance before a FLYBY waypoint at which the turn begins, m: `R = V²/(g·tan θ)` for the ground speed
 /// (m/s, at least 1) and the maximum lean (rad), within 0.5…1000 m. It is the exact tangent distance of a 90° corner.
 pub fn turn_radius_m(ground_speed_mps: f64, max_lean_rad: f64) -> f64 {
-    let tan = max_lean_rad.tan();
+    let tan = math::tan(max_lean_rad);
     if tan < 0.1 {
         return 1000.0;
     }

@@ -8,6 +8,7 @@ use nalgebra::Vector2;
 use super::corner::SHORTEST_LEG_M;
 use crate::autopilot::params::Params;
 use crate::geo::wrap_pi;
+use crate::math;
 use crate::telemetry::L1Mode;
 
 /// The steepest angle at which the craft cuts in to a line, rad.
@@ -97,7 +98,7 @@ pub fn l1(
     let relative = position - start;
     let along_m = unit.dot(&relative);
     let xte_m = unit.perp(&relative);
-    let effective_lookahead_m = lookahead_m.max(xte_m.abs() / STEEPEST_CUT_IN.tan());
+    let effective_lookahead_m = lookahead_m.max(xte_m.abs() / math::tan(STEEPEST_CUT_IN));
     let reanchor = xte_m.abs() > limits.max_cross_track_m;
     let carrot = (along_m + effective_lookahead_m).clamp(0.0, length_m);
     let pinned = reanchor || carrot >= length_m;
@@ -126,11 +127,11 @@ fn steering(to_aim: Vector2<f64>, velocity: Vector2<f64>) -> (Option<f64>, f64) 
     }
     // An aim directly behind the craft gives a left turn, always the same one of the two.
     let eta = -wrap_pi(bearing(velocity) - bearing(to_aim));
-    (Some(eta), 2.0 * speed * speed * eta.clamp(-FRAC_PI_2, FRAC_PI_2).sin() / distance)
+    (Some(eta), 2.0 * speed * speed * math::sin(eta.clamp(-FRAC_PI_2, FRAC_PI_2)) / distance)
 }
 
 fn bearing(vector: Vector2<f64>) -> f64 {
-    vector.y.atan2(vector.x)
+    math::atan2(vector.y, vector.x)
 }
 
 /// An arc at the start of a leg. The aim turns from the course of the corner to the line at a fixed rate.

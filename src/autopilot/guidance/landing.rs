@@ -3,6 +3,7 @@
 use nalgebra::Vector2;
 
 use crate::autopilot::params::Params;
+use crate::math;
 
 /// Returns the altitude setpoint of a landing, m: from `start_m` down at `rate_mps` for `elapsed_s`, and on below
 /// zero until the touchdown. Above the landing altitude it is never more than 5 m below the craft, so that it cannot
@@ -46,6 +47,6 @@ pub fn spiral_offset(spiral: &Spiral, elapsed_s: f64, altitude_m: f64) -> Vector
     let half = spiral.landing_altitude_m / 2.0;
     let open =
         if half > 0.0 { ((altitude_m - half) / half).clamp(0.0, 1.0) } else { f64::from(altitude_m >= 1.0) };
-    let (sin, cos) = (spiral.rate_rps * elapsed_s).sin_cos();
+    let (sin, cos) = math::sin_cos(spiral.rate_rps * elapsed_s);
     Vector2::new(cos, sin) * (spiral.radius_m * open)
 }

@@ -6,6 +6,7 @@ use nalgebra::Vector2;
 
 use crate::autopilot::params::Params;
 use crate::geo::GRAVITY;
+use crate::math;
 use crate::plan::Seconds;
 
 /// A point on a pattern, relative to the waypoint.
@@ -24,7 +25,7 @@ pub struct PatternPoint {
 
 /// Returns a point on a circle that runs clockwise. Phase 0 is north of the waypoint.
 pub fn orbit(radius_m: f64, phase_rad: f64) -> PatternPoint {
-    let (sin, cos) = phase_rad.sin_cos();
+    let (sin, cos) = math::sin_cos(phase_rad);
     PatternPoint {
         offset: Vector2::new(cos, sin) * radius_m,
         heading_rad: (phase_rad + FRAC_PI_2).rem_euclid(TAU),
@@ -41,7 +42,7 @@ pub fn figure8(width_m: f64, phase_rad: f64) -> PatternPoint {
     let phase = phase_rad.rem_euclid(2.0 * TAU);
     let (side, sense, compass) =
         if phase < TAU { (-1.0, 1.0, FRAC_PI_2 + phase) } else { (1.0, -1.0, 1.5 * PI - (phase - TAU)) };
-    let (sin, cos) = compass.sin_cos();
+    let (sin, cos) = math::sin_cos(compass);
     PatternPoint {
         offset: Vector2::new(0.0, side * radius) + Vector2::new(cos, sin) * radius,
         heading_rad: (compass + sense * FRAC_PI_2).rem_euclid(TAU),
@@ -54,7 +55,7 @@ pub fn figure8(width_m: f64, phase_rad: f64) -> PatternPoint {
 /// and by half the acceleration of the maximum lean, so that the circle can be flown.
 pub fn pattern_rate_rps(radius_m: f64, leg_speed_mps: f64, params: &Params) -> f64 {
     let radius = radius_m.max(0.1);
-    let by_lean = (0.5 * GRAVITY * params.max_lean_rad().tan() / radius).sqrt();
+    let by_lean = (0.5 * GRAVITY * math::tan(params.max_lean_rad()) / radius).sqrt();
     f64::from(params.max_turn_rate).to_radians().min(leg_speed_mps / radius).min(by_lean)
 }
 

@@ -6,6 +6,7 @@
 
 use super::GroundMeasurement;
 use crate::geo::GRAVITY;
+use crate::math;
 
 /// The altitude above home from which the thrust is learned, m.
 const AIRBORNE_M: f64 = 1.0;
@@ -83,7 +84,7 @@ impl GroundContact {
     fn push(&self, now: &GroundMeasurement) -> f64 {
         let thrust = self.thrust.unwrap_or(0.0) * self.square;
         let up = now.force_flu.z;
-        now.force_flu.xy().norm().hypot((up - thrust).max(0.0) + up.min(0.0))
+        math::hypot(now.force_flu.xy().norm(), (up - thrust).max(0.0) + up.min(0.0))
     }
 
     /// Takes one cycle of an armed craft, `dt` seconds after the last.
@@ -118,7 +119,7 @@ impl GroundContact {
         let on_legs = 1.0 - *thrust * self.square / GRAVITY;
         let is_steady = (self.force / GRAVITY - 1.0).abs() < STEADY_SHARE;
         // An unknown speed is no evidence that the craft is on the ground.
-        let speed = now.climb_mps.hypot(now.ground_speed_mps.unwrap_or(0.0));
+        let speed = math::hypot(now.climb_mps, now.ground_speed_mps.unwrap_or(0.0));
         let is_still = now.ground_speed_mps.is_some() && speed < STILL_MPS;
         let is_pressed = on_legs > LOADED_SHARE && is_steady && is_still && has_sunk;
         self.loaded_s = if is_pressed { self.loaded_s + dt } else { 0.0 };

@@ -11,6 +11,7 @@ use crate::autopilot::control::{
 };
 use crate::autopilot::io::{NavInputs, NavOutput};
 use crate::autopilot::params::Params;
+use crate::math;
 use crate::telemetry::NavState;
 
 /// The deflection of a stick at its end.
@@ -40,7 +41,7 @@ fn above_ground_m(target_m: f64, now: &NavInputs, params: &Params, setpoint_m: f
         return target_m;
     }
     // The setpoint moves at √(2·1 m/s²·remaining distance).
-    target_m.max(setpoint_m - 0.5 * params.descent_rate_mps().powi(2))
+    target_m.max(setpoint_m - 0.5 * math::powi(params.descent_rate_mps(), 2))
 }
 
 /// Returns the share of the full deflection beyond the deadband, −1…1. The share begins at zero, so that there is no
@@ -180,9 +181,9 @@ impl Steering {
         let facts = YawFacts {
             heading_rad: now.heading_rad,
             yaw_rate_rps: now.yaw_rate_rps,
-            course_rad: now.vel_ne.y.atan2(now.vel_ne.x),
+            course_rad: math::atan2(now.vel_ne.y, now.vel_ne.x),
             ground_speed_mps: seen.ground_speed_mps,
-            bearing_rad: seen.to_waypoint.y.atan2(seen.to_waypoint.x),
+            bearing_rad: math::atan2(seen.to_waypoint.y, seen.to_waypoint.x),
             distance_m: seen.distance_m,
             acceptance_radius_m: if stops { params.hold_radius_m() } else { params.arrival_radius_m() },
         };

@@ -13,6 +13,7 @@ use crate::autopilot::guidance::{
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::params::Params;
 use crate::geo::{LatLon, local_offset};
+use crate::math;
 use crate::plan::{LegSpeed, Waypoint};
 use crate::signals::SimTime;
 
@@ -80,7 +81,7 @@ impl Leg {
     pub(super) fn set_delay(&mut self, modifier: &Waypoint, now: &NavInputs) {
         self.delay = (!modifier.duration.is_zero()).then(|| {
             let horizontal = (local_offset(now.origin, self.waypoint) - now.pos_ne).norm();
-            let length = horizontal.hypot(self.altitude_m - now.alt_m);
+            let length = math::hypot(horizontal, self.altitude_m - now.alt_m);
             let speed = length / modifier.duration.get();
             let until = SimTime(now.time.0.saturating_add(modifier.duration.micros()));
             (speed.max(SLOWEST_MPS), until)
@@ -119,11 +120,11 @@ impl Leg {
     fn arc_aim(&mut self, result: &L1Result, now: &NavInputs) -> Vector2<f64> {
         let Some(arc) = &mut self.arc else { return result.aim };
         let to_aim = result.aim - now.pos_ne;
-        if !arc.advance(now.dt, to_aim.y.atan2(to_aim.x)) {
+        if !arc.advance(now.dt, math::atan2(to_aim.y, to_aim.x)) {
             self.arc = None;
             return result.aim;
         }
-        let (sin, cos) = arc.bearing_rad.sin_cos();
+        let (sin, cos) = math::sin_cos(arc.bearing_rad);
         now.pos_ne + Vector2::new(cos, sin) * result.lookahead_m
     }
 }
@@ -132,7 +133,7 @@ fn corner_arc(to_target: Vector2<f64>, velocity: Vector2<f64>, params: &Params) 
     if velocity.norm() < MOVING_MPS || to_target.norm() < CO_LOCATED_M {
         return None;
     }
-    let course = velocity.y.atan2(velocity.x);
-    let leg = to_target.y.atan2(to_target.x);
+    let course = math::atan2(velocity.y, velocity.x);
+    let leg = math::atan2(to_target.y, to_target.x);
     CornerArc::begin(course, leg, f64::from(params.l1_turn_rate).to_radians())
 }

@@ -2,6 +2,7 @@
 
 use crate::autopilot::machine::{ProgressFacts, STALL_S};
 use crate::geo::GRAVITY;
+use crate::math;
 use crate::signals::SimTime;
 
 /// The decrease of the distance that counts as progress, m.
@@ -35,7 +36,7 @@ impl LegTurn {
 
     /// Returns the stopping distance of a craft at this speed that brakes at the maximum lean, m.
     fn stop_m(&self, speed_mps: f64) -> f64 {
-        speed_mps.powi(2) / (2.0 * GRAVITY * self.max_lean_rad.tan().max(0.1))
+        math::powi(speed_mps, 2) / (2.0 * GRAVITY * math::tan(self.max_lean_rad).max(0.1))
     }
 }
 

@@ -8,6 +8,7 @@ use crate::autopilot::control::FlightControllers;
 use crate::autopilot::guidance::hold_remaining_s;
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::machine::{Facts, waiting_for};
+use crate::math;
 use crate::plan::Seconds;
 use crate::telemetry::{CannotHold, L1Mode, NavState, NavTelemetry};
 
@@ -40,7 +41,9 @@ pub(super) fn report(
     let on_leg = state == NavState::Approaching;
     NavTelemetry {
         distance_m: Some(seen.distance_m),
-        bearing_rad: Some(seen.to_waypoint.y.atan2(seen.to_waypoint.x).rem_euclid(std::f64::consts::TAU)),
+        bearing_rad: Some(
+            math::atan2(seen.to_waypoint.y, seen.to_waypoint.x).rem_euclid(std::f64::consts::TAU),
+        ),
         xte_m: path.xte_m.filter(|_| on_leg),
         along_m: path.along_m.filter(|_| on_leg),
         lookahead_m: path.lookahead_m.filter(|_| on_leg),

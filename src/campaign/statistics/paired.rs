@@ -4,6 +4,7 @@ use super::Significance;
 use super::binomial::at_most;
 use super::ranks::ranks;
 use crate::design::normal_cdf;
+use crate::math;
 
 /// The least pairs with a difference for the normal approximation.
 const MANY: usize = 10;
@@ -40,7 +41,10 @@ pub(in crate::campaign) fn signed_rank(differences: &[f64]) -> Option<Significan
     let ties: f64 = {
         let mut sorted = sizes;
         sorted.sort_by(f64::total_cmp);
-        sorted.chunk_by(|a, b| a == b).map(|group| (group.len() as f64).powi(3) - group.len() as f64).sum()
+        sorted
+            .chunk_by(|a, b| a == b)
+            .map(|group| math::powi(group.len() as f64, 3) - group.len() as f64)
+            .sum()
     };
     let variance = n * (n + 1.0) * (2.0 * n + 1.0) / 24.0 - ties / 48.0;
     let z = (positive - mean) / variance.sqrt();

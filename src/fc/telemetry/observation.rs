@@ -2,6 +2,7 @@
 
 use super::mode_ranges;
 use crate::geo::{LatLon, local_offset, offset_to_latlon};
+use crate::math;
 use crate::msp::{Altitude, Attitude, BatteryReading, Channels, HomeVector, Motors, RawGps, Status, code};
 use crate::signals::{PerMotor, RC_CHANNELS};
 use crate::telemetry::snapshot::{CraftView, EstimateView, GpsView, ModeRange};
@@ -96,7 +97,7 @@ impl Observation {
         }
         if self.home.is_none() && self.armed() == Some(true) {
             self.home = self.gps.zip(self.home_vector).filter(|(gps, _)| gps.fix).map(|(gps, vector)| {
-                let (sin, cos) = vector.bearing_deg.to_radians().sin_cos();
+                let (sin, cos) = math::sin_cos(vector.bearing_deg.to_radians());
                 offset_to_latlon(gps.position, vector.distance_m * nalgebra::Vector2::new(cos, sin))
             });
         }

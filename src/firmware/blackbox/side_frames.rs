@@ -9,6 +9,7 @@ use crate::firmware::Firmware;
 use crate::firmware::modes::BoxSet;
 use crate::firmware::msp::UtcTime;
 use crate::geo::LatLon;
+use crate::math;
 use crate::signals::{GpsSample, SIMULATED_BOOT_UNIX_S, SimTime};
 use crate::telemetry::ModeBox;
 
@@ -112,7 +113,7 @@ impl LoggedHome {
 /// Returns the values of a `G` frame of this solution.
 pub(super) fn gps_values(firmware: &Firmware, solution: &GpsSample) -> GpsValues {
     let (east, north, up) = (solution.vel_enu.x, solution.vel_enu.y, solution.vel_enu.z);
-    let course_deg = east.atan2(north).to_degrees().rem_euclid(360.0);
+    let course_deg = math::atan2(east, north).to_degrees().rem_euclid(360.0);
     let week_ms = (BOOT_WEEK_MS + firmware.now.0 / 1000) % WEEK_MS;
     let whole = |value: f64| value.round() as i32;
     [
@@ -121,7 +122,7 @@ pub(super) fn gps_values(firmware: &Firmware, solution: &GpsSample) -> GpsValues
         solution.position.lat_e7,
         solution.position.lon_e7,
         solution.alt_amsl_cm / 10,
-        whole(100.0 * east.hypot(north)),
+        whole(100.0 * math::hypot(east, north)),
         whole(10.0 * course_deg) % 3600,
         whole(100.0 * north),
         whole(100.0 * east),

@@ -11,6 +11,7 @@ use super::smoothing::Smoothing;
 use super::tuning::Tuning;
 use super::{ControlInput, ControlState, PidTerms, StickMode};
 use crate::firmware::estimate::Estimate;
+use crate::math;
 
 /// The full stick deflection, RC command units.
 const FULL_STICK: f64 = 500.0;
@@ -232,7 +233,7 @@ impl Controller {
             self.tilt_throttle = self.tuning.tilt_throttle.at(estimate.cos_tilt);
             if is_horizon {
                 let stick = input.stick_roll.abs().max(input.stick_pitch.abs()) / FULL_STICK;
-                let tilt = estimate.cos_tilt.clamp(-1.0, 1.0).acos().to_degrees();
+                let tilt = math::acos(estimate.cos_tilt.clamp(-1.0, 1.0)).to_degrees();
                 self.horizon_strength = self.horizon.update(stick, tilt, &self.tuning.level, dt);
             }
         }

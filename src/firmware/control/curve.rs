@@ -1,5 +1,7 @@
 //! Stick curves: from stick positions to rates and throttle.
 
+use crate::math;
+
 /// The formula that turns sticks into rates. The discriminant is the value of the setting.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::FromRepr)]
 #[repr(u8)]
@@ -41,7 +43,7 @@ impl RateCurve {
         let e = self.expo / 100.0;
         let rate = match self.kind {
             RatesType::Betaflight => {
-                let bent = x * (a.powi(3) * e + 1.0 - e);
+                let bent = x * (math::powi(a, 3) * e + 1.0 - e);
                 let mut r = self.rc_rate / 100.0;
                 if r > 2.0 {
                     r += 14.54 * (r - 2.0);
@@ -52,12 +54,12 @@ impl RateCurve {
                 x * (1.0 + e * (x * x - 1.0)) * self.rc_rate * 10.0 * (1.0 + a * self.srate / 100.0)
             }
             RatesType::Kiss => {
-                (x.powi(3) * e + x * (1.0 - e)) * 2.0 * self.rc_rate
+                (math::powi(x, 3) * e + x * (1.0 - e)) * 2.0 * self.rc_rate
                     / (1.0 - a * self.srate / 100.0).max(0.01)
             }
             RatesType::Actual => {
                 let centre = self.rc_rate * 10.0;
-                let bent = a * (x.powi(5) * e + x * (1.0 - e));
+                let bent = a * (math::powi(x, 5) * e + x * (1.0 - e));
                 x * centre + (self.srate * 10.0 - centre).max(0.0) * bent
             }
             RatesType::Quick => {
@@ -65,9 +67,9 @@ impl RateCurve {
                 let greatest = (self.srate * 10.0).max(centre);
                 let s = if greatest > 0.0 { 1.0 - centre / greatest } else { 0.0 };
                 if self.quick_expo_on_stick {
-                    (x.powi(3) * e + x * (1.0 - e)) * centre / (1.0 - a * s).max(0.01)
+                    (math::powi(x, 3) * e + x * (1.0 - e)) * centre / (1.0 - a * s).max(0.01)
                 } else {
-                    x * centre / (1.0 - s * (a.powi(3) * e + a * (1.0 - e))).max(0.01)
+                    x * centre / (1.0 - s * (math::powi(a, 3) * e + a * (1.0 - e))).max(0.01)
                 }
             }
         };

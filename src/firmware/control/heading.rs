@@ -1,6 +1,7 @@
 //! Heading hold (MAG) and headless flight (HEADFREE).
 
 use crate::geo::wrap_pi;
+use crate::math;
 
 /// The yaw stick deflection (RC units) at which the pilot takes over the heading.
 const STICK: f64 = 15.0;
@@ -46,7 +47,7 @@ impl HeadingHold {
 
 /// Converts roll and pitch sticks, given relative to `reference_rad`, for a craft that heads to `heading_rad`.
 pub(super) fn headless(roll: f64, pitch: f64, reference_rad: f64, heading_rad: f64) -> (f64, f64) {
-    let (sin, cos) = (heading_rad - reference_rad).sin_cos();
+    let (sin, cos) = math::sin_cos(heading_rad - reference_rad);
     (roll * cos - pitch * sin, pitch * cos + roll * sin)
 }
 

@@ -8,6 +8,7 @@
 use super::derived::Derived;
 use super::tuning::LevelTuning;
 use crate::firmware::filter::Pt3;
+use crate::math;
 
 /// The poles of the leading angle per smoothing time. It settles within 5 % after 2.4 smoothing times.
 const LEAD_POLES: f64 = 2.0;
@@ -95,9 +96,9 @@ impl Level {
     fn couple(&mut self, demand: &LevelDemand) {
         let g = demand.earth_reference;
         let [roll, pitch] = demand.target.map(f64::to_radians);
-        self.wanted[0] += demand.yaw_dps * pitch.sin() * g;
-        self.wanted[1] -= demand.yaw_dps * roll.sin() * g;
-        self.yaw_share = (roll.abs().max(pitch.abs()) * g).cos();
+        self.wanted[0] += demand.yaw_dps * math::sin(pitch) * g;
+        self.wanted[1] -= demand.yaw_dps * math::sin(roll) * g;
+        self.yaw_share = math::cos(roll.abs().max(pitch.abs()) * g);
     }
 
     /// Returns the rate setpoints of roll and pitch, °/s. Called once per step of the rate loop.
@@ -117,7 +118,7 @@ impl Level {
 /// the demanded turn about the vertical. Pitching about a tilted wing axis turns the nose sideways.
 fn keep_heading(demand: &LevelDemand, pitch_dps: f64) -> f64 {
     let roll = demand.flown[0].clamp(-COUPLED_ROLL_DEG, COUPLED_ROLL_DEG).to_radians();
-    (pitch_dps + demand.yaw_dps * roll.sin()) * roll.tan()
+    (pitch_dps + demand.yaw_dps * math::sin(roll)) * math::tan(roll)
 }
 
 /// Wraps an angle to ±180°.

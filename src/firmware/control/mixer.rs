@@ -14,6 +14,7 @@
 //! ```
 
 use super::tuning::MixerTuning;
+use crate::math;
 use crate::signals::{MotorCommand, PerMotor};
 
 /// The zero of a motor command, µs, and its range.
@@ -67,7 +68,7 @@ fn boosted(output: f64, k: f64) -> f64 {
         return output;
     }
     let output = output.clamp(0.0, 1.0);
-    output * (1.0 + k * (1.0 - output).powi(2))
+    output * (1.0 + k * math::powi(1.0 - output, 2))
 }
 
 /// Returns the throttle whose boosted output is this one, so that the throttle stick feels unchanged. The iteration
@@ -77,7 +78,8 @@ fn before_boost(throttle: f64, k: f64) -> f64 {
     if k <= 0.0 {
         return throttle;
     }
-    (0..ROUNDS).fold(throttle, |before, _| 0.5 * (before + throttle / (1.0 + k * (1.0 - before).powi(2))))
+    (0..ROUNDS)
+        .fold(throttle, |before, _| 0.5 * (before + throttle / (1.0 + k * math::powi(1.0 - before, 2))))
 }
 
 /// Converts pulses to a motor command.

@@ -4,6 +4,7 @@ use super::curve::{RateCurve, RatesType, ThrottleCurve, ThrottleLimit};
 use crate::firmware::config::{MixRow, MixerKind};
 use crate::firmware::filter::LowPassKind;
 use crate::firmware::settings::Settings;
+use crate::math;
 use crate::signals::PerMotor;
 
 /// The gains of one axis. The error is in °/s, the sum in thousandths of the mixer's range.
@@ -188,9 +189,9 @@ impl TiltThrottle {
         if self.share <= 0.0 {
             return 0.0;
         }
-        let tilt = cos_tilt.clamp(-1.0, 1.0).acos();
+        let tilt = math::acos(cos_tilt.clamp(-1.0, 1.0));
         let way = (tilt / self.complete_rad.max(1e-3)).min(1.0);
-        self.share * (way * std::f64::consts::FRAC_PI_2).sin()
+        self.share * math::sin(way * std::f64::consts::FRAC_PI_2)
     }
 }
 

@@ -5,6 +5,7 @@
 use nalgebra::{Quaternion, Rotation3, UnitQuaternion, Vector3};
 
 use crate::geo::GRAVITY;
+use crate::math;
 
 /// The largest relative difference from gravity at which the accelerometer shows the vertical.
 const STEADY_PART: f64 = 0.1;
@@ -117,13 +118,13 @@ impl Attitude {
     /// Returns roll, right positive, and pitch, nose down positive, rad.
     pub(super) fn roll_pitch_down(&self) -> (f64, f64) {
         let m = self.matrix.matrix();
-        (m[(2, 1)].atan2(m[(2, 2)]), (-m[(2, 0)]).clamp(-1.0, 1.0).asin())
+        (math::atan2(m[(2, 1)], m[(2, 2)]), math::asin((-m[(2, 0)]).clamp(-1.0, 1.0)))
     }
 
     /// Returns the heading, rad clockwise from north, 0…2π.
     pub(super) fn heading(&self) -> f64 {
         let m = self.matrix.matrix();
-        m[(0, 0)].atan2(m[(1, 0)]).rem_euclid(std::f64::consts::TAU)
+        math::atan2(m[(0, 0)], m[(1, 0)]).rem_euclid(std::f64::consts::TAU)
     }
 
     /// Returns the cosine of the tilt from level.

@@ -3,6 +3,7 @@
 use nalgebra::{Rotation3, Vector2, Vector3};
 
 use crate::geo::wrap_pi;
+use crate::math;
 
 /// The time constants of the correction by the magnetometer, s: on the ground, trusted in the air, and not trusted in
 /// the air.
@@ -36,7 +37,7 @@ pub(super) fn magnetic_error(
 ) -> Option<f64> {
     let field = attitude * mag_flu;
     let horizontal = field.xy().norm();
-    let error = wrap_pi(field.x.atan2(field.y) - declination_rad);
+    let error = wrap_pi(math::atan2(field.x, field.y) - declination_rad);
     (horizontal > 0.05 * field.norm() && error.is_finite()).then_some(error)
 }
 
@@ -107,7 +108,7 @@ impl CourseComparison {
 
     /// Adapts to a heading that was turned anticlockwise by `angle`, rad: the felt changes are that much further left.
     pub(super) fn turn(&mut self, angle: f64) {
-        let (sin, cos) = angle.sin_cos();
+        let (sin, cos) = math::sin_cos(angle);
         let (x, y) = (self.evidence.x, self.evidence.y);
         self.evidence = Vector2::new(x * cos + y * sin, y * cos - x * sin);
     }
@@ -117,7 +118,7 @@ impl CourseComparison {
     pub(super) fn heading_error(&self) -> Option<f64> {
         let size = self.evidence_size;
         let is_sure = size > ENOUGH && self.evidence.norm() > COHERENT * size;
-        is_sure.then(|| self.evidence.y.atan2(self.evidence.x))
+        is_sure.then(|| math::atan2(self.evidence.y, self.evidence.x))
     }
 
     /// Compares a solution's velocity (north, east) of `age` steps ago. Returns the correction of the heading,
@@ -144,8 +145,8 @@ impl CourseComparison {
             return 0.0;
         }
         // Bearings grow from north to east.
-        let error = wrap_pi(felt.y.atan2(felt.x) - seen.y.atan2(seen.x));
-        SHARE * (size / FULL_CHANGE).min(1.0).powi(2) * error
+        let error = wrap_pi(math::atan2(felt.y, felt.x) - math::atan2(seen.y, seen.x));
+        SHARE * math::powi((size / FULL_CHANGE).min(1.0), 2) * error
     }
 }
 

@@ -6,6 +6,7 @@ use super::gps::Dilution;
 use super::history::Axis;
 use super::kalman::{Gain, KalmanCovariance, ProcessNoise};
 use crate::geo::{LatLon, local_offset};
+use crate::math;
 use crate::signals::GpsSample;
 
 /// The nominal step, s.
@@ -135,7 +136,7 @@ impl Horizontal {
         let dilution = Dilution::of(sample);
         let age = (age_s / STEP_S).round().max(0.0) as usize;
         let mut covariance = self.covariance;
-        let by_velocity = covariance.measure_velocity((VELOCITY_SIGMA * dilution.speed).powi(2));
+        let by_velocity = covariance.measure_velocity(math::powi(VELOCITY_SIGMA * dilution.speed, 2));
         let (p, v) = self.past(age);
         let velocity_error = velocity - v;
         if exceeds(velocity_error, &by_velocity, VELOCITY_GATE) {
@@ -146,7 +147,7 @@ impl Horizontal {
         }
         self.correct(&by_velocity, velocity_error, age);
         let before = covariance;
-        let by_position = covariance.measure_position((POSITION_SIGMA * dilution.horizontal).powi(2));
+        let by_position = covariance.measure_position(math::powi(POSITION_SIGMA * dilution.horizontal, 2));
         let position_error = position - p;
         if exceeds(position_error, &by_position, POSITION_GATE) {
             // A plausible velocity with a displaced position: after a while the new position is accepted.

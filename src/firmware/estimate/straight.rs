@@ -3,6 +3,7 @@
 use nalgebra::Vector2;
 
 use crate::geo::wrap_pi;
+use crate::math;
 
 /// The time for which the flight must be straight, s.
 const LENGTH_S: f64 = 3.0;
@@ -24,7 +25,7 @@ impl StraightFlight {
             self.stretch = None;
             return None;
         }
-        let course = velocity.y.atan2(velocity.x);
+        let course = math::atan2(velocity.y, velocity.x);
         let (begin, length_s) = match self.stretch {
             Some((begin, length_s)) if wrap_pi(course - begin).abs() < WIDTH => (begin, length_s + dt),
             _ => (course, 0.0),

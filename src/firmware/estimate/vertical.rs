@@ -3,6 +3,7 @@
 use super::gps::Dilution;
 use super::history::Axis;
 use super::kalman::{KalmanCovariance, ProcessNoise};
+use crate::math;
 use crate::signals::GpsSample;
 
 /// The nominal step, s.
@@ -53,7 +54,7 @@ pub(super) struct Vertical {
 
 /// Returns the altitude (m) in the standard atmosphere for a pressure (Pa).
 pub(super) fn pressure_altitude_m(pressure_pa: f64) -> f64 {
-    (1.0 - (pressure_pa / 101_325.0).powf(1.0 / 5.255_88)) / 2.255_77e-5
+    (1.0 - math::powf(pressure_pa / 101_325.0, 1.0 / 5.255_88)) / 2.255_77e-5
 }
 
 impl Vertical {
@@ -152,12 +153,12 @@ impl Vertical {
         }
         let zero = *zero;
         self.since_gps_s = 0.0;
-        let gain = self.covariance.measure_velocity((CLIMB_SIGMA * dilution.speed).powi(2));
+        let gain = self.covariance.measure_velocity(math::powi(CLIMB_SIGMA * dilution.speed, 2));
         let error = sample.vel_enu.z - self.axis.past(age).1;
         self.axis.correct(&gain, error.clamp(-5.0, 5.0), age, STEP_S);
         let sigma =
             if has_baro && source == AltitudeSource::Both { GPS_BESIDE_SIGMA } else { GPS_ALONE_SIGMA };
-        let gain = self.covariance.measure_position((sigma * dilution.vertical).powi(2));
+        let gain = self.covariance.measure_position(math::powi(sigma * dilution.vertical, 2));
         let error = altitude - zero - self.axis.past(age).0;
         self.axis.correct(&gain, error, age, STEP_S);
     }

@@ -7,6 +7,7 @@ use crate::firmware::blackbox::FlashFacts;
 use crate::firmware::cli::BuildInfo;
 use crate::firmware::modes::BoxSet;
 use crate::geo::distance_bearing;
+use crate::math;
 use crate::msp::{BatteryReading, HomeVector, RawGps};
 use crate::signals::{MOTORS, PerMotor, RC_CHANNELS};
 use crate::telemetry::{ArmingFlags, ModeFlags};
@@ -179,7 +180,7 @@ fn gps(firmware: &Firmware) -> RawGps {
         position: view.position,
         alt_amsl_m: view.alt_amsl_m,
         ground_speed_mps: view.ground_speed_mps,
-        course_deg: east.atan2(north).to_degrees(),
+        course_deg: math::atan2(east, north).to_degrees(),
         dop: (gps.hdop > 0.0).then_some(gps.hdop),
     }
 }

@@ -7,6 +7,7 @@ use crate::firmware::control::ControlState;
 use crate::firmware::estimate::Estimate;
 use crate::firmware::parameters::Parameters;
 use crate::geo::LatLon;
+use crate::math;
 use crate::signals::{GpsSample, RcSource, SimTime};
 use crate::telemetry::DisarmReason;
 
@@ -141,5 +142,5 @@ fn trusted_solution(parameters: &Parameters, estimate: &Estimate) -> Option<GpsS
 }
 
 fn tilt_rad(estimate: &Estimate) -> f64 {
-    estimate.cos_tilt.clamp(-1.0, 1.0).acos()
+    math::acos(estimate.cos_tilt.clamp(-1.0, 1.0))
 }

@@ -1,6 +1,7 @@
 //! The path of a forecast: a polyline with a maximum number of points.
 
 use crate::geo;
+use crate::math;
 
 /// The maximum number of points.
 const MAX_POINTS: usize = 2048;
@@ -24,7 +25,7 @@ pub struct PathPoint {
 
 impl geo::Located for PathPoint {
     fn distance_m(&self, other: &Self) -> f64 {
-        (self.n - other.n).hypot(self.e - other.e).hypot(self.alt - other.alt)
+        math::hypot(math::hypot(self.n - other.n, self.e - other.e), self.alt - other.alt)
     }
 }
 
@@ -54,7 +55,7 @@ impl Path {
         self.kept
             .points()
             .first()
-            .map_or(0.0, |first| (self.newest.n - first.n).hypot(self.newest.e - first.e))
+            .map_or(0.0, |first| math::hypot(self.newest.n - first.n, self.newest.e - first.e))
     }
 
     /// Returns all points, with the end last.

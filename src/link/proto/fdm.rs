@@ -10,6 +10,8 @@
 //! Eighteen little-endian doubles, 144 bytes. The meaning of the numbers depends on the sender:
 //! [`Dialect`](crate::signals::fdm::Dialect). The program itself uses body FLU, world ENU, SI.
 
+use crate::math;
+
 mod dialect;
 
 pub use dialect::{Gravity, State, mirrored};
@@ -125,5 +127,5 @@ fn norm(fields: &[f64]) -> f64 {
 
 /// Returns the pressure (Pa) of the standard atmosphere at a height (m) in the troposphere.
 pub fn pressure_pa(altitude_m: f64) -> f64 {
-    101_325.0 * (1.0 - 2.255_77e-5 * altitude_m).max(0.0).powf(5.255_88)
+    101_325.0 * math::powf((1.0 - 2.255_77e-5 * altitude_m).max(0.0), 5.255_88)
 }

@@ -10,6 +10,7 @@
 use super::fdm::{Packet, State, mirrored, pressure_pa};
 use super::servo;
 use crate::geo::offset_to_degrees;
+use crate::math;
 use crate::signals::fdm::{Dialect, MotorOrder, Stamps};
 use crate::signals::{GpsSample, MotorCommand, SensorFrame, SimTime};
 use nalgebra::{UnitQuaternion, Vector2, Vector3};
@@ -209,7 +210,7 @@ struct Position {
 /// Returns the height (m) in the troposphere of the standard atmosphere at a pressure (Pa), the inverse of
 /// [`pressure_pa`].
 fn altitude_m(pressure_pa: f64) -> f64 {
-    (1.0 - (pressure_pa / 101_325.0).max(0.0).powf(1.0 / 5.255_88)) / 2.255_77e-5
+    (1.0 - math::powf((pressure_pa / 101_325.0).max(0.0), 1.0 / 5.255_88)) / 2.255_77e-5
 }
 
 #[cfg(test)]

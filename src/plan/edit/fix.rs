@@ -4,6 +4,7 @@ use nalgebra::Vector2;
 
 use super::PlanDocument;
 use crate::geo::{GroundPlane, LatLon, distance_bearing};
+use crate::math;
 use crate::plan::review::{Before, Finding, LowClearance, Raise, Remedy, SteepLeg};
 use crate::plan::validate::{PlanFault, WaypointFault};
 use crate::plan::{Altitude, HoldPattern, LegSpeed, Seconds, Then, Waypoint, WaypointType};
@@ -58,7 +59,7 @@ pub fn fix(document: &PlanDocument, finding: &Finding, home: LatLon) -> Option<F
         Finding::OutsideFence { index, limit_m, .. } => {
             let wp = waypoints.get_mut(index)?;
             let (_, bearing) = distance_bearing(home, wp.position);
-            let inside = Vector2::new(bearing.cos(), bearing.sin()) * (INSIDE_FENCE * limit_m);
+            let inside = Vector2::new(math::cos(bearing), math::sin(bearing)) * (INSIDE_FENCE * limit_m);
             wp.position = GroundPlane::new(home).to_position(inside);
             format!("move WP{index} inside the fence")
         }

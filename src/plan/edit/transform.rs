@@ -4,6 +4,7 @@
 use nalgebra::Vector2;
 
 use crate::geo::{GroundPlane, LatLon};
+use crate::math;
 use crate::plan::{Altitude, FlightPlan, LegSpeed, SpeedUse, Waypoint};
 
 /// An edit of each selected waypoint that has such a value.
@@ -46,7 +47,7 @@ pub fn transform(plan: &mut FlightPlan, selected: std::ops::RangeInclusive<usize
             }
         }
         Transform::Rotate(angle) => {
-            let (sin, cos) = angle.sin_cos();
+            let (sin, cos) = math::sin_cos(angle);
             about_middle(waypoints, |ne| Vector2::new(ne.x * cos - ne.y * sin, ne.x * sin + ne.y * cos));
         }
         Transform::MirrorNorthSouth => about_middle(waypoints, |ne| Vector2::new(-ne.x, ne.y)),

@@ -2,6 +2,7 @@
 
 use super::ReturnFlight;
 use crate::geo::GRAVITY;
+use crate::math;
 use crate::plan::Waypoint;
 use crate::plan::setpoint::{AltitudeSetpoint, SetpointLimits};
 
@@ -193,11 +194,11 @@ impl Assumptions {
 
     /// Returns the distance before a FLYBY at which the craft begins its turn at this speed, m.
     pub(in crate::plan) fn turn_radius_m(&self, speed_mps: f64) -> f64 {
-        let tangent = self.max_angle_deg.to_radians().tan();
+        let tangent = math::tan(self.max_angle_deg.to_radians());
         if !(0.1..).contains(&tangent) {
             return WIDEST_TURN_M;
         }
-        (speed_mps.max(SLOWEST_MPS).powi(2) / (GRAVITY * tangent)).clamp(0.5, WIDEST_TURN_M)
+        (math::powi(speed_mps.max(SLOWEST_MPS), 2) / (GRAVITY * tangent)).clamp(0.5, WIDEST_TURN_M)
     }
 
     /// Returns the rate of an ORBIT at this waypoint, radians/s: the setting, limited by the speed of the leg and by half
@@ -208,7 +209,7 @@ impl Assumptions {
         self.turn_rate_dps
             .to_radians()
             .min(self.leg_speed_mps(waypoint) / radius_m)
-            .min((0.5 * GRAVITY * lean.tan() / radius_m).sqrt())
+            .min((0.5 * GRAVITY * math::tan(lean) / radius_m).sqrt())
     }
 
     /// Returns the slowest speed of a leg of this length after a DELAY, m/s.

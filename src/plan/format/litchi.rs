@@ -6,6 +6,7 @@ use super::loss::{Finding, LossReport, Place, Severity};
 use super::number::decimal;
 use super::{PlanFile, Problems, ReadOptions};
 use crate::geo::{Degrees7, GRAVITY};
+use crate::math;
 use crate::plan::estimate::Assumptions;
 use crate::plan::{FlightPlan, LegSpeed, MAX_WAYPOINTS, Seconds, Waypoint, WaypointType};
 
@@ -232,7 +233,7 @@ impl LitchiReader {
     fn curve(&mut self, row: &Row<'_>, curve_m: f64, speed: LegSpeed, problems: &Problems<'_>) {
         let craft = Assumptions::default();
         let mps = speed.own_mps().unwrap_or(craft.max_velocity_mps);
-        let radius_m = mps * mps / (GRAVITY * craft.max_angle_deg.to_radians().tan());
+        let radius_m = mps * mps / (GRAVITY * math::tan(craft.max_angle_deg.to_radians()));
         if (radius_m - curve_m).abs() > SAME_RADIUS_M {
             let why = "a FLYBY begins its turn at the radius of its speed";
             let values = (format!("{curve_m} m"), format!("{radius_m:.1} m"));

@@ -8,6 +8,7 @@ use super::native_read::{altitude_cm, duration_ds, speed_cms, yaw_rate};
 use super::native_write::scaled;
 use super::{HomePosition, PlanFile, WaypointRecord};
 use crate::geo::{Degrees7, LatLon, offset_to_latlon};
+use crate::math;
 use crate::plan::{HoldPattern, Waypoint, WaypointType};
 use nalgebra::Vector2;
 
@@ -125,7 +126,7 @@ pub(super) fn fence(file: &PlanFile) -> Option<(f64, Vec<LatLon>)> {
     let home = file.home?.position;
     let point = |step: u32| {
         let bearing = -f64::from(step % FENCE_POINTS) * std::f64::consts::TAU / f64::from(FENCE_POINTS);
-        offset_to_latlon(home, Vector2::new(bearing.cos(), bearing.sin()) * radius_m)
+        offset_to_latlon(home, Vector2::new(math::cos(bearing), math::sin(bearing)) * radius_m)
     };
     Some((radius_m, (0..=FENCE_POINTS).map(point).collect()))
 }

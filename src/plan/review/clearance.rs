@@ -5,6 +5,7 @@ use std::fmt;
 
 use super::{Finding, ends_the_mission};
 use crate::geo::{LatLon, local_offset, offset_to_latlon};
+use crate::math;
 use crate::plan::estimate::{Assumptions, ReturnMode};
 use crate::plan::setpoint::AltitudeSetpoint;
 use crate::plan::{Approach, FlightPlan, Modifier, Then, Waypoint};
@@ -224,7 +225,7 @@ impl Walk<'_> {
         }
         let mut speed_mps = self.assumptions.leg_speed_mps(waypoint);
         if let Some(delay_s) = self.delay_s.take().filter(|&delay_s| delay_s > 0.0) {
-            let length_m = looks.length_m.hypot(alt_m - self.setpoint.altitude_m);
+            let length_m = math::hypot(looks.length_m, alt_m - self.setpoint.altitude_m);
             speed_mps = speed_mps.min(self.assumptions.delayed_mps(length_m, delay_s));
         }
         let step_s = looks.length_m / f64::from(looks.count) / speed_mps;

@@ -6,6 +6,7 @@ use nalgebra::Vector2;
 
 use super::ends_the_mission;
 use crate::geo::{GRAVITY, LatLon, local_offset};
+use crate::math;
 use crate::plan::estimate::Assumptions;
 use crate::plan::leg_time::{LegShape, Motion};
 use crate::plan::setpoint::AltitudeSetpoint;
@@ -162,7 +163,7 @@ impl Walk<'_> {
             self.setpoint.reach(target_m, &self.assumptions.setpoint_limits(), target_m - enough_m);
         }
         let cap_mps = self.delay_s.take().filter(|&delay_s| delay_s > 0.0).map_or(f64::INFINITY, |delay_s| {
-            self.assumptions.delayed_mps(distance_m.hypot(alt_m - self.setpoint.altitude_m), delay_s)
+            self.assumptions.delayed_mps(math::hypot(distance_m, alt_m - self.setpoint.altitude_m), delay_s)
         });
         Leg {
             distance_m,
@@ -180,7 +181,7 @@ impl Walk<'_> {
             Approach::Pass | Approach::Turn if leg.stops => self.assumptions.arrival_radius_m,
             Approach::Turn => {
                 let lean = self.assumptions.max_angle_deg.clamp(5.0, 80.0).to_radians();
-                speed_mps.powi(2) / (GRAVITY * lean.tan())
+                math::powi(speed_mps, 2) / (GRAVITY * math::tan(lean))
             }
             Approach::Pass => 0.0,
             _ => self.assumptions.hold_radius_m,
@@ -258,7 +259,7 @@ impl Walk<'_> {
     fn on_the_orbit(&self, waypoint: &Waypoint, seconds: f64) -> Vector2<f64> {
         let radius_m = self.assumptions.orbit_radius_m.max(0.1);
         let rate = self.assumptions.orbit_rate_rps(waypoint);
-        let (east, north) = (rate * seconds).sin_cos();
+        let (east, north) = math::sin_cos(rate * seconds);
         Vector2::new(north, east) * radius_m
     }
 }

@@ -2,6 +2,7 @@
 
 use super::Block;
 use super::toml_text::quoted;
+use crate::math;
 use crate::scenario::case::Statistic;
 use crate::scenario::expression::Evaluator;
 use crate::scenario::happening::{EventName, Field, Happening, HappeningKind};
@@ -131,7 +132,7 @@ fn landing(flown: &Flown) -> Vec<Block> {
     };
     if let (Some(target), Some(index)) = (target, trace.index_at(contact.time.0 as i64)) {
         let [north, east] = trace.samples[index].place();
-        let distance = (north - target[0]).hypot(east - target[1]);
+        let distance = math::hypot(north - target[0], east - target[1]);
         let that = format!("distance({place}) <= {} m", above(distance, 1.0));
         blocks.push(vec![("at", quoted("touchdown")), ("that", quoted(&that))]);
     }

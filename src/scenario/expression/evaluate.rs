@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use super::instant::Search;
 use super::{Bound, Comparison, Condition, Function, Instant, Number, Place};
+use crate::math;
 use crate::scenario::flag::Flag;
 use crate::scenario::happening::Happening;
 use crate::scenario::trace::{Sample, Trace};
@@ -109,12 +110,14 @@ impl<'a> Evaluator<'a> {
                 let second = arguments.get(1).map_or(f64::NAN, at);
                 function.apply(first, second)
             }
-            Number::Distance(place) => self.offset(place, sample).map_or(f64::NAN, |[n, e]| n.hypot(e)),
+            Number::Distance(place) => {
+                self.offset(place, sample).map_or(f64::NAN, |[n, e]| math::hypot(n, e))
+            }
             Number::Bearing(place) => self
                 .offset(place, sample)
-                .map_or(f64::NAN, |[n, e]| e.atan2(n).to_degrees().rem_euclid(360.0)),
+                .map_or(f64::NAN, |[n, e]| math::atan2(e, n).to_degrees().rem_euclid(360.0)),
             Number::Apart(from, to) => match (self.place(from, sample), self.place(to, sample)) {
-                (Some(from), Some(to)) => (to[0] - from[0]).hypot(to[1] - from[1]),
+                (Some(from), Some(to)) => math::hypot(to[0] - from[0], to[1] - from[1]),
                 _ => f64::NAN,
             },
             Number::Along(from, to) => self.on_line(from, to, sample).map_or(f64::NAN, |line| line.along),
@@ -176,7 +179,7 @@ impl<'a> Evaluator<'a> {
     fn on_line(&self, from: &Place, to: &Place, sample: &Sample) -> Option<OnLine> {
         let (from, to) = (self.place(from, sample)?, self.place(to, sample)?);
         let (north, east) = (to[0] - from[0], to[1] - from[1]);
-        let length = north.hypot(east);
+        let length = math::hypot(north, east);
         if length < 1e-6 {
             return None;
         }
@@ -328,7 +331,7 @@ impl Function {
             Self::Max if second > first => second,
             Self::Min | Self::Max if second.is_nan() => second,
             Self::Min | Self::Max => first,
-            Self::Hypot => first.hypot(second),
+            Self::Hypot => math::hypot(first, second),
             Self::Wrap => wrap(first),
         }
     }

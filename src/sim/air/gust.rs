@@ -3,12 +3,11 @@
 use arrayvec::ArrayVec;
 use nalgebra::Vector3;
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, Exp1};
 
+use crate::math;
 use crate::signals::SimTime;
 use crate::sim::config::Wind;
-use crate::sim::random::Stream;
+use crate::sim::random::{Stream, StreamRng, exponential};
 
 /// The time that a gust keeps its full strength, s.
 const HOLD_S: f64 = 2.0;
@@ -30,7 +29,7 @@ pub fn one_minus_cosine(peak_mps: f64, rise_s: f64, hold_s: f64, t: f64) -> f64 
     } else if into >= rise_s {
         peak_mps
     } else {
-        0.5 * peak_mps * (1.0 - (std::f64::consts::PI * into / rise_s).cos())
+        0.5 * peak_mps * (1.0 - math::cos(std::f64::consts::PI * into / rise_s))
     }
 }
 
@@ -65,7 +64,7 @@ pub(in crate::sim) fn usual_length_s(rise_s: f64) -> f64 {
 pub(in crate::sim) struct Gusts {
     /// Strength of random gusts, m/s; 0 for none.
     size_mps: f64,
-    rng: ChaCha8Rng,
+    rng: StreamRng,
     next: Option<SimTime>,
     blowing: ArrayVec<Gust, MAX_GUSTS>,
 }
@@ -123,7 +122,7 @@ impl Gusts {
 
     fn plan_next(&mut self, now: SimTime) {
         self.next = (self.size_mps > 0.0).then(|| {
-            let wait: f64 = Exp1.sample(&mut self.rng);
+            let wait = exponential(&mut self.rng);
             let spacing = LEAST_SPACING_S + (MEAN_SPACING_S - LEAST_SPACING_S) * wait;
             SimTime(now.0 + SimTime::from_secs_f64(spacing).0)
         });

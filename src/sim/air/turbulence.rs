@@ -7,6 +7,7 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 use nalgebra::Vector3;
 
+use crate::math;
 use crate::sim::config::Wind;
 use crate::sim::random::{Normals, Stream};
 use crate::telemetry::Turbulence;
@@ -40,7 +41,7 @@ impl DrydenScales {
         let (low, high) = HEIGHT_FT;
         let height_ft = (height_m * FEET_PER_METRE).clamp(low, high);
         // base^1.2 = (base^0.4)³.
-        let root = (0.177 + 0.000_823 * height_ft).powf(0.4);
+        let root = math::powf(0.177 + 0.000_823 * height_ft, 0.4);
         let sigma_w_mps = 0.1 * wind_at_20ft_kt * KNOT_MPS;
         Self {
             length_uv_m: height_ft / (root * root * root) / FEET_PER_METRE,
@@ -62,7 +63,7 @@ impl DrydenScales {
 
 /// Returns the rest of a disturbance after a flight of `way_m` through air of the given scale length.
 fn decay(way_m: f64, length_m: f64) -> f64 {
-    (-way_m / length_m).exp()
+    math::exp(-way_m / length_m)
 }
 
 /// Returns the drive that gives a first-order lag unit variance.

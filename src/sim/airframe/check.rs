@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::{Airframe, ROTORS};
+use crate::math;
 
 /// The minimum thrust over weight.
 const MIN_THRUST_TO_WEIGHT: f64 = 1.3;
@@ -157,7 +158,7 @@ impl Findings {
             .max(lever(|r| r.x * r.x + r.y * r.y, airframe.inertia_kgm2.z));
         let phase = (airframe.leg_stiffness * per_unit).sqrt() * LONGEST_STEP_S;
         if phase > MAX_LEG_PHASE {
-            let limit = (MAX_LEG_PHASE / LONGEST_STEP_S).powi(2) / per_unit;
+            let limit = math::powi(MAX_LEG_PHASE / LONGEST_STEP_S, 2) / per_unit;
             self.add(
                 "k_n_N_per_m_per_point",
                 format!(

@@ -4,6 +4,7 @@ use std::str::FromStr;
 
 use nalgebra::Vector3;
 
+use crate::math;
 use crate::sim::value_text::{ParseError, number, number_in};
 
 /// A steady horizontal wind.
@@ -23,7 +24,7 @@ impl Wind {
 
     /// Returns the velocity of the air, ENU, m/s: the direction that the wind blows to.
     pub fn velocity_enu(&self) -> Vector3<f64> {
-        let (east, north) = self.from_deg.to_radians().sin_cos();
+        let (east, north) = math::sin_cos(self.from_deg.to_radians());
         Vector3::new(-self.speed_mps * east, -self.speed_mps * north, 0.0)
     }
 }

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use crate::math;
 use crate::sim::airframe::ROTORS;
 use crate::sim::battery::BatteryFaults;
 use crate::sim::config::Wind;
@@ -90,7 +91,7 @@ impl Effects {
             Fault::RxJitter(fraction) => self.rx_jitter = fraction,
             Fault::GpsLoss => self.gps.loss = true,
             Fault::GpsGlitch(metres, bearing_deg) => {
-                let (east, north) = bearing_deg.to_radians().sin_cos();
+                let (east, north) = math::sin_cos(bearing_deg.to_radians());
                 self.gps.shift_enu = Vector3::new(metres * east, metres * north, 0.0);
             }
             Fault::GpsFreeze => self.gps.freeze = true,

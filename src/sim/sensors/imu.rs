@@ -10,6 +10,7 @@ use std::f64::consts::TAU;
 use nalgebra::Vector3;
 
 use crate::geo::GRAVITY;
+use crate::math;
 use crate::sim::airframe::ROTORS;
 use crate::sim::body::lever_arm_acceleration;
 use crate::sim::config::{Noise, WorldConfig};
@@ -119,7 +120,8 @@ impl Imu {
         let mut rate = truth.rate_flu + effects.gyro_bias;
         let mut force = truth.specific_force_flu + effects.acc_bias;
         if self.position_m != Vector3::zeros() {
-            force += lever_arm_acceleration(truth.rate_flu, inputs.rate_dot_flu, self.position_m);
+            let rate_dot = (truth.rate_flu - inputs.rate_before_flu) / self.step_s;
+            force += lever_arm_acceleration(truth.rate_flu, rate_dot, self.position_m);
         }
         if effects.imbalance_mps2 != [0.0; ROTORS] {
             force += self.imbalance(&truth.rotor_speeds, &effects.imbalance_mps2);
@@ -128,13 +130,15 @@ impl Imu {
         if noise == Noise::None && vibration == 0.0 {
             return (rate, force);
         }
-        let mut acc_variance = (vibration * self.rotor_energy(&truth.rotor_speeds)).powi(2);
+        let mut acc_sigma = if noise == Noise::Real { self.acc_sigma } else { 0.0 };
+        if vibration != 0.0 {
+            acc_sigma = math::hypot(acc_sigma, vibration * self.rotor_energy(&truth.rotor_speeds));
+        }
         if noise == Noise::Real {
-            acc_variance += self.acc_sigma * self.acc_sigma;
             rate += self.bias.0 + self.gyro.next3() * self.gyro_sigma;
             force += self.bias.1;
         }
-        force += self.acc.next3() * acc_variance.sqrt();
+        force += self.acc.next3() * acc_sigma;
         if noise == Noise::Real {
             rate = rate.map(|v| quantise(v.clamp(-GYRO_RANGE, GYRO_RANGE), GYRO_STEPS));
             force = force.map(|v| quantise(v.clamp(-ACC_RANGE, ACC_RANGE), ACC_STEPS));
@@ -144,7 +148,8 @@ impl Imu {
 
     /// Returns the mean squared rotor speed over its value in hover.
     fn rotor_energy(&self, speeds: &[f64; ROTORS]) -> f64 {
-        speeds.iter().map(|speed| speed * speed).sum::<f64>() / (ROTORS as f64 * self.hover_speed.powi(2))
+        speeds.iter().map(|speed| speed * speed).sum::<f64>()
+            / (ROTORS as f64 * math::powi(self.hover_speed, 2))
     }
 
     /// Returns the acceleration of the body by unbalanced propellers, m/s².
@@ -152,8 +157,8 @@ impl Imu {
         let mut sum = Vector3::zeros();
         for i in 0..ROTORS {
             self.rotor_angle[i] = (self.rotor_angle[i] + speeds[i] * self.step_s) % TAU;
-            let size = at_hover_mps2[i] * (speeds[i] / self.hover_speed).powi(2);
-            let (sin, cos) = self.rotor_angle[i].sin_cos();
+            let size = at_hover_mps2[i] * math::powi(speeds[i] / self.hover_speed, 2);
+            let (sin, cos) = math::sin_cos(self.rotor_angle[i]);
             sum += Vector3::new(size * cos, size * sin, 0.0);
         }
         sum

@@ -5,6 +5,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
+use crate::math;
 use crate::sim::config::Noise;
 use crate::sim::fault::Effects;
 use crate::sim::random::{Normals, Stream};
@@ -24,7 +25,7 @@ pub(super) struct Magnetometer {
 
 /// Returns the earth's magnetic field for a declination (degrees east), ENU, counts: 4096 counts are 500 mG.
 pub fn magnetic_field_enu(declination_deg: f64) -> Vector3<f64> {
-    let (sin, cos) = declination_deg.to_radians().sin_cos();
+    let (sin, cos) = math::sin_cos(declination_deg.to_radians());
     Vector3::new(HORIZONTAL * sin, HORIZONTAL * cos, UP)
 }
 

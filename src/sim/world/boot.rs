@@ -14,7 +14,6 @@ use crate::sim::clock::{Clock, FaultHost as _};
 use crate::sim::command::{check_wind, in_range};
 use crate::sim::config::{Wind, WorldConfig, WorldError};
 use crate::sim::fault::FaultLink;
-use crate::sim::ground::NO_ANCHORS;
 use crate::sim::landform::{Landform, LocalRelief};
 use crate::sim::plant::Plant;
 use crate::sim::sensors::Sensors;
@@ -43,12 +42,10 @@ impl World {
         plant.set_landform(landform);
         let air = Air::new(&config, start.pos_enu.z);
         let air_now = air.sample(SimTime::ZERO);
-        let mut anchors = NO_ANCHORS;
-        plant.ground().update_anchors(&start, &mut anchors);
-        let rotors = [0.0; ROTORS];
+        let craft = plant.at_rest(start);
         let mut sensors = Sensors::new(&config, step_s);
         sensors.settle(start.pos_enu, start.vel_enu);
-        let loads = plant.loads(&start, &rotors, &air_now, &anchors);
+        let present = plant.present(&craft, &air_now);
         let contact = plant.ground().contact(&start);
         let battery = full_battery(&config.airframe, &config.switches);
         let WorldConfig { airframe, switches, .. } = config;
@@ -58,12 +55,9 @@ impl World {
             heading_deg,
             switches,
             relief,
-            step_s,
             clock,
             plant,
-            body: start,
-            rotors,
-            anchors,
+            craft,
             battery,
             command: [0.0; ROTORS],
             refused_commands: 0,
@@ -73,12 +67,13 @@ impl World {
             diverged: false,
             air,
             air_now,
-            loads,
+            present,
             rate_before: Vector3::zeros(),
             truth: truth_at_boot(&start),
             sensors,
             frame: SensorFrame::default(),
         };
+        world.update_battery_truth();
         world.set_ground_effect();
         world.run_faults();
         world.update_outputs();

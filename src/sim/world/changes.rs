@@ -5,11 +5,11 @@ use nalgebra::{Vector2, Vector3};
 use crate::signals::SimTime;
 use crate::sim::air::usual_length_s;
 use crate::sim::airframe::ROTORS;
+use crate::sim::body::BodyState;
 use crate::sim::clock::{Clock, FaultHost};
 use crate::sim::command::WorldCommand;
 use crate::sim::config::{Wind, WorldError};
 use crate::sim::fault::{ActiveFault, Fault};
-use crate::sim::ground::NO_ANCHORS;
 use crate::sim::landform::Landform;
 use crate::sim::touchdown::TouchdownDetector;
 
@@ -51,6 +51,8 @@ impl World {
             | WorldCommand::Schedule(_) => self.change_faults(command)?,
             WorldCommand::ResetToHome => self.reset_to_home(),
         }
+        // Air and loads may have jumped.
+        self.craft.forget();
         self.refresh_loads();
         Ok(())
     }
@@ -72,32 +74,35 @@ impl World {
         if self.plant.ground().landform().surface() == landform.surface() {
             return;
         }
-        let stands = self.plant.ground().contact(&self.body).all_legs && !self.crashed;
+        let body = *self.craft.body();
+        let stands = self.plant.ground().contact(&body).all_legs && !self.crashed;
         self.start = standing(&self.airframe, &landform, &Vector2::zeros(), self.heading_deg);
         if stands {
-            let place = self.body.pos_enu.xy();
-            self.body = standing(&self.airframe, &landform, &place, self.truth.heading_deg());
+            let rotors = *self.craft.rotors();
+            let place = body.pos_enu.xy();
+            let body = standing(&self.airframe, &landform, &place, self.truth.heading_deg());
             self.plant.set_landform(landform);
-            self.anchors = NO_ANCHORS;
-            self.plant.ground().update_anchors(&self.body, &mut self.anchors);
+            self.craft = self.plant.at_rest(body);
+            self.craft.set_rotors(rotors);
         } else {
             self.plant.set_landform(landform);
-            self.lift_out_of_the_ground();
+            self.place_on_or_above_ground(body);
         }
     }
 
-    /// Moves a craft that is below the ground up to it. Returns its clearance before, m.
-    fn lift_out_of_the_ground(&mut self) -> f64 {
-        let contact = self.plant.ground().contact(&self.body);
-        self.body.pos_enu.z -= contact.clearance_m.min(0.0) / contact.plane.normal().z;
-        self.anchors = NO_ANCHORS;
+    /// Moves the craft to a state, and from below the ground up to it. Returns the clearance of the state, m.
+    fn place_on_or_above_ground(&mut self, mut body: BodyState) -> f64 {
+        let contact = self.plant.ground().contact(&body);
+        body.pos_enu.z -= contact.clearance_m.min(0.0) / contact.plane.normal().z;
+        self.craft.place(body);
         contact.clearance_m
     }
 
     /// Moves the craft, never into the ground.
     fn teleport(&mut self, by_enu: Vector3<f64>) {
-        self.body.pos_enu += by_enu;
-        if self.lift_out_of_the_ground() > 0.0 {
+        let mut body = *self.craft.body();
+        body.pos_enu += by_enu;
+        if self.place_on_or_above_ground(body) > 0.0 {
             self.touchdown.set_airborne(self.clock.time);
         }
     }
@@ -105,16 +110,14 @@ impl World {
     /// Puts the craft back at home, undamaged, with a full battery. Air, noise and faults stay as they are.
     pub fn reset_to_home(&mut self) {
         self.end_flight();
-        self.body = self.start;
-        self.rotors = [0.0; ROTORS];
-        self.anchors = NO_ANCHORS;
-        self.plant.ground().update_anchors(&self.start, &mut self.anchors);
+        self.craft = self.plant.at_rest(self.start);
         self.battery = full_battery(&self.airframe, &self.switches);
+        self.update_battery_truth();
         self.command = [0.0; ROTORS];
         self.touchdown = TouchdownDetector::STANDING;
         (self.crashed, self.diverged) = (false, false);
         self.sensors.settle(self.start.pos_enu, self.start.vel_enu);
-        self.rate_before = self.body.rate_flu;
+        self.rate_before = self.start.rate_flu;
         self.update_outputs_on(None);
     }
 }
@@ -127,7 +130,9 @@ impl FaultHost for World {
     fn act(&mut self, begun: &ActiveFault) {
         match begun.fault {
             Fault::Push(impulse, direction) => {
-                self.body.vel_enu += direction.enu() * (impulse / self.plant.mass_kg());
+                let mut body = *self.craft.body();
+                body.vel_enu += direction.enu() * (impulse / self.plant.mass_kg());
+                self.craft.set_body(body);
             }
             Fault::Teleport([north, east, up]) => self.teleport(Vector3::new(east, north, up)),
             Fault::Gust(wind) => {
@@ -140,6 +145,7 @@ impl FaultHost for World {
 
     fn use_effects(&mut self) {
         let effects = &self.clock.effects;
+        self.craft.forget();
         self.plant.set_efficiency(effects.efficiency);
         let depth = self.start.pos_enu.z * PAYLOAD_DEPTH;
         self.plant.set_payload(&self.airframe, effects.payload_kg, depth);

@@ -15,7 +15,7 @@ fn ideal() -> WorldConfig {
 }
 
 fn run(world: &mut World, seconds: f64, command: [f64; 4]) {
-    let steps = (seconds / world.step_s).round() as u64;
+    let steps = (seconds * 1e6 / world.clock.step_us() as f64).round() as u64;
     for _ in 0..steps {
         world.step(&MotorCommand(command));
     }
@@ -178,8 +178,9 @@ fn commands_that_are_no_numbers_are_refused_and_counted() {
 #[test]
 fn a_runaway_is_frozen_and_reported() {
     let mut world = lifted(ideal(), 50.0);
-    world.body.rate_flu.x = 299.9;
-    world.body.rate_flu.z = 20.0;
+    let rate_flu = Vector3::new(299.9, 0.0, 20.0);
+    world.craft.set_body(BodyState { rate_flu, ..*world.craft.body() });
+    world.refresh_loads();
     run(&mut world, 0.5, [1.0, 1.0, 0.0, 0.0]);
     assert!(world.truth().diverged);
     let seen = events(&mut world);
@@ -221,7 +222,7 @@ fn a_push_changes_the_momentum() {
 fn payload_makes_it_heavier_until_it_is_dropped() {
     let mut world = lifted(ideal(), 20.0);
     let hover = hover_command(world.airframe());
-    world.rotors = [world.airframe().hover_rotor_speed(); 4];
+    world.craft.set_rotors([world.airframe().hover_rotor_speed(); 4]);
     let payload = Fault::Payload(0.53);
     world.apply(WorldCommand::FaultOn(payload, None)).unwrap();
     run(&mut world, 0.002, [hover; 4]);

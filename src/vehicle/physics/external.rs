@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::geo::LocalFrame;
+use crate::math;
 use crate::signals::{PerMotor, Pose, SensorFrame};
 use crate::sim::Clock;
 use crate::telemetry::snapshot::TruthView;
@@ -97,9 +98,9 @@ impl Track {
             vn: pose.vel_enu.y,
             ve: pose.vel_enu.x,
             vu: pose.vel_enu.z,
-            roll_deg: up.y.atan2(up.z).to_degrees(),
-            pitch_deg: nose.z.clamp(-1.0, 1.0).asin().to_degrees(),
-            heading_deg: nose.x.atan2(nose.y).to_degrees().rem_euclid(360.0),
+            roll_deg: math::atan2(up.y, up.z).to_degrees(),
+            pitch_deg: math::asin(nose.z.clamp(-1.0, 1.0)).to_degrees(),
+            heading_deg: math::atan2(nose.x, nose.y).to_degrees().rem_euclid(360.0),
             motors,
             on_ground: enu.z < STANDING_M && pose.vel_enu.norm() < STANDING_MPS,
             wind_ne: None,

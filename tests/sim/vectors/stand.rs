@@ -1,8 +1,7 @@
 //! A test stand: the bare plant with motor commands and air held, without sensors, faults or events.
 
 use betadeck::sim::{
-    AirSample, Airframe, BodyState, ContactAnchors, Loads, NO_ANCHORS, Plant, REFERENCE_DENSITY, ROTORS,
-    level_attitude,
+    AirSample, Airframe, BodyState, Craft, Loads, Plant, REFERENCE_DENSITY, ROTORS, level_attitude,
 };
 use nalgebra::Vector3;
 
@@ -13,28 +12,37 @@ pub(crate) struct Stand {
     pub(crate) rotors: [f64; ROTORS],
     pub(crate) target: [f64; ROTORS],
     pub(crate) air: AirSample,
-    anchors: ContactAnchors,
+    craft: Craft,
     h: f64,
+    by_runge_kutta: bool,
 }
 
 impl Stand {
     /// Returns a level craft facing north at a height, at rest, rotors stopped, in still air of reference density.
     pub(crate) fn new(airframe: Airframe, height_m: f64, h: f64) -> Self {
+        let body = BodyState {
+            pos_enu: Vector3::new(0.0, 0.0, height_m),
+            vel_enu: Vector3::zeros(),
+            attitude: level_attitude(0.0),
+            rate_flu: Vector3::zeros(),
+        };
         Self {
             plant: Plant::new(&airframe, h),
             airframe,
-            body: BodyState {
-                pos_enu: Vector3::new(0.0, 0.0, height_m),
-                vel_enu: Vector3::zeros(),
-                attitude: level_attitude(0.0),
-                rate_flu: Vector3::zeros(),
-            },
+            body,
             rotors: [0.0; ROTORS],
             target: [0.0; ROTORS],
             air: AirSample { wind_enu: Vector3::zeros(), density_ratio: 1.0 },
-            anchors: NO_ANCHORS,
+            craft: Craft::new(body),
             h,
+            by_runge_kutta: false,
         }
+    }
+
+    /// Makes every step by Runge–Kutta, as the first steps after a jump of the loads.
+    pub(crate) fn by_runge_kutta(mut self) -> Self {
+        self.by_runge_kutta = true;
+        self
     }
 
     /// Sets the rotors to these speeds and keeps them there.
@@ -49,16 +57,34 @@ impl Stand {
     }
 
     pub(crate) fn loads(&self) -> Loads {
-        self.plant.loads(&self.body, &self.rotors, &self.air, &self.anchors)
+        self.plant.present(&self.craft(), &self.air).loads
     }
 
     pub(crate) fn specific_force(&self) -> Vector3<f64> {
         self.loads().force_flu / self.plant.mass_kg()
     }
 
+    /// Returns the craft in the state of the stand, which a test may have changed since the last step.
+    fn craft(&self) -> Craft {
+        let mut craft = self.craft.clone();
+        if *craft.body() != self.body {
+            craft.set_body(self.body);
+        }
+        if *craft.rotors() != self.rotors {
+            craft.set_rotors(self.rotors);
+        }
+        craft
+    }
+
     pub(crate) fn step(&mut self) {
-        let loads = self.loads();
-        self.plant.step(&mut self.body, &mut self.rotors, &mut self.anchors, &self.target, &self.air, &loads);
+        let mut craft = self.craft();
+        if self.by_runge_kutta {
+            craft.forget();
+        }
+        let present = self.plant.present(&craft, &self.air);
+        self.plant.step(&mut craft, &self.target, &self.air, &present);
+        (self.body, self.rotors) = (*craft.body(), *craft.rotors());
+        self.craft = craft;
     }
 
     pub(crate) fn run(&mut self, seconds: f64) {

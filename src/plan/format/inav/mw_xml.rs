@@ -13,6 +13,7 @@ use super::{
     whole,
 };
 use crate::geo::{Degrees7, LatLon};
+use crate::math;
 use crate::text::did_you_mean;
 use strum::IntoEnumIterator as _;
 
@@ -251,7 +252,7 @@ fn view(places: &[LatLon], home: Option<LatLon>) -> String {
     let middle = |range: &Range<i32>| (f64::from(range.start) + f64::from(range.end)) * 0.5e-7;
     let span = |range: &Range<i32>| (f64::from(range.end) - f64::from(range.start)) * 1e-7;
     // Zoom 17 shows about 0.005 degrees, each zoom less twice as much.
-    let zoom = 17.0 - (span(&lat).max(span(&lon)) / 0.005).log2().max(0.0).ceil();
+    let zoom = 17.0 - math::log2(span(&lat).max(span(&lon)) / 0.005).max(0.0).ceil();
     let home = home.map_or_else(String::new, |home| {
         format!(" home-x=\"{}\" home-y=\"{}\"", Degrees7(home.lon_e7), Degrees7(home.lat_e7))
     });

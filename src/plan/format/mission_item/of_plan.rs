@@ -5,6 +5,7 @@ use super::{
     TAKEOFF, WAYPOINT, YAW_SPEED, amount, metres, written_position,
 };
 use crate::geo::{LatLon, distance_bearing};
+use crate::math;
 use crate::plan::estimate::Assumptions;
 use crate::plan::format::bounds;
 use crate::plan::format::loss::{Finding, Severity};
@@ -234,7 +235,7 @@ impl PlanWalk<'_> {
             Some(delay) => {
                 let start_m = self.altitude.map_or(self.assumptions.start_alt_m, Altitude::above_home_m);
                 let rise_m = altitude.above_home_m() - start_m;
-                let length_m = distance_bearing(self.place, place).0.hypot(rise_m);
+                let length_m = math::hypot(distance_bearing(self.place, place).0, rise_m);
                 let leg_mps = self.assumptions.leg_speed_mps(waypoint);
                 Some(self.assumptions.delayed_mps(length_m, delay.get()).min(leg_mps))
             }

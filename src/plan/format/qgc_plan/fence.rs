@@ -10,6 +10,7 @@ use super::super::bounds::{self, MAX_ITEMS};
 use super::super::loss::{Finding, LossReport, Severity};
 use super::source::Source;
 use crate::geo::{LatLon, distance_bearing, local_offset, offset_to_latlon};
+use crate::math;
 use crate::plan::FlightPlan;
 use crate::plan::feature::{Feature, Shape, Vertex, Zone};
 
@@ -118,7 +119,7 @@ fn polygon(value: &Value, pointer: &str, source: &mut Source<'_, '_>) -> Option<
 /// Returns the points of a circle.
 fn ring(center: LatLon, radius_m: f64) -> Vec<LatLon> {
     let point = |index: usize| {
-        let (east, north) = (TAU * index as f64 / CIRCLE_POINTS as f64).sin_cos();
+        let (east, north) = math::sin_cos(TAU * index as f64 / CIRCLE_POINTS as f64);
         offset_to_latlon(center, Vector2::new(north, east) * radius_m)
     };
     (0..CIRCLE_POINTS).map(point).collect()

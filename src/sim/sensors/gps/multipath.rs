@@ -3,10 +3,9 @@
 
 use nalgebra::Vector3;
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, Exp1};
 
-use crate::sim::random::Stream;
+use crate::math;
+use crate::sim::random::{Stream, StreamRng, exponential};
 
 /// The mean time between the beginnings of two steps, s.
 const MEAN_SPACING_S: f64 = 40.0;
@@ -22,7 +21,7 @@ const MASK_SPACING_S: f64 = 10.0;
 /// Multipath and masking at the receiver.
 #[derive(Debug, Clone)]
 pub(super) struct Multipath {
-    rng: ChaCha8Rng,
+    rng: StreamRng,
     /// The present step, ENU, m, and its remaining time, s.
     step_enu: Vector3<f64>,
     step_left_s: f64,
@@ -52,7 +51,7 @@ impl Multipath {
         self.next_mask_s -= dt;
         if self.next_step_s <= 0.0 {
             self.next_step_s += wait(&mut self.rng, MEAN_SPACING_S);
-            let (north, east) = self.rng.random_range(0.0..std::f64::consts::TAU).sin_cos();
+            let (north, east) = math::sin_cos(self.rng.random_range(0.0..std::f64::consts::TAU));
             self.step_enu = Vector3::new(east, north, 0.0) * self.rng.random_range(SIZE_M);
             self.step_left_s = self.rng.random_range(LENGTH_S);
         }
@@ -74,9 +73,8 @@ impl Multipath {
 }
 
 /// Returns the time to the next event of a Poisson process with this mean spacing, s.
-fn wait(rng: &mut ChaCha8Rng, mean_s: f64) -> f64 {
-    let unit: f64 = Exp1.sample(rng);
-    mean_s * unit
+fn wait(rng: &mut StreamRng, mean_s: f64) -> f64 {
+    mean_s * exponential(rng)
 }
 
 #[cfg(test)]
