@@ -28,6 +28,8 @@ pub(super) struct Derived {
     pub throttle_boost: f64,
     /// The low-pass gain of the D boost.
     pub d_boost: f64,
+    /// The throttle that the moving cutoffs are for; `None` before the first one.
+    filters_for: Option<f64>,
 }
 
 impl Derived {
@@ -47,6 +49,7 @@ impl Derived {
             anti_gravity: pt1_gain(tuning.boost.anti_gravity_cutoff_hz, pid_dt),
             throttle_boost: pt1_gain(tuning.boost.throttle_cutoff_hz, pid_dt),
             d_boost: pt1_gain(D_BOOST_HZ, pid_dt),
+            filters_for: None,
         };
         derived.set_filters_for(tuning, 0.0);
         derived
@@ -54,6 +57,10 @@ impl Derived {
 
     /// Moves the cutoffs that depend on the throttle (0…1).
     pub(super) fn set_filters_for(&mut self, tuning: &Tuning, throttle: f64) {
+        if self.filters_for == Some(throttle) {
+            return;
+        }
+        self.filters_for = Some(throttle);
         let (gyro, d) = (&tuning.rate.gyro_lpf1, &tuning.rate.d_lpf1);
         self.gyro_lpf1 = LowPass::new(gyro.kind, gyro.cutoff_hz(throttle), self.dt);
         self.d_lpf1 = LowPass::new(d.kind, d.cutoff_hz(throttle), self.pid_dt);

@@ -24,6 +24,8 @@ pub(super) struct Smoothing {
     interval_s: f64,
     /// The interval that the gains were computed for.
     used_interval_s: f64,
+    /// The values that the filters have reached, so that the same values leave them as they are.
+    settled: Option<[f64; 4]>,
 }
 
 impl Smoothing {
@@ -35,6 +37,7 @@ impl Smoothing {
             since_frame_s: 0.0,
             interval_s: 1.0 / ASSUMED_FRAME_HZ,
             used_interval_s: 0.0,
+            settled: None,
         }
     }
 
@@ -46,6 +49,7 @@ impl Smoothing {
     /// Makes the next step compute the gains again.
     pub(super) fn invalidate(&mut self) {
         self.used_interval_s = 0.0;
+        self.settled = None;
     }
 
     /// Runs one step. `values` are the setpoints of roll, pitch, yaw (°/s) and the throttle (0…1).
@@ -60,6 +64,7 @@ impl Smoothing {
         }
         if !tuning.smoothing {
             self.cutoffs_hz = [0.0; 2];
+            self.settled = None;
             for (filter, value) in self.filters.iter_mut().zip(values) {
                 filter.reset(*value);
             }
@@ -67,6 +72,7 @@ impl Smoothing {
         }
         if (self.interval_s - self.used_interval_s).abs() > INTERVAL_CHANGE * self.used_interval_s {
             self.used_interval_s = self.interval_s;
+            self.settled = None;
             for which in 0..2 {
                 let cutoff = cutoff_hz(
                     1.0 / self.interval_s,
@@ -77,14 +83,15 @@ impl Smoothing {
                 self.cutoffs_hz[which] = cutoff;
             }
         }
-        let [sticks, throttle] = self.gains;
-        let [roll, pitch, yaw, lift] = &mut self.filters;
-        [
-            roll.apply(values[0], sticks),
-            pitch.apply(values[1], sticks),
-            yaw.apply(values[2], sticks),
-            lift.apply(values[3], throttle),
-        ]
+        if self.settled != Some(*values) {
+            let before = self.filters;
+            let [sticks, throttle] = self.gains;
+            for (index, (filter, value)) in self.filters.iter_mut().zip(values).enumerate() {
+                filter.apply(*value, if index < 3 { sticks } else { throttle });
+            }
+            self.settled = (self.filters == before).then_some(*values);
+        }
+        self.filters.map(|filter| filter.state())
     }
 }
 
@@ -117,6 +124,26 @@ mod tests {
             smoothing.apply(&[0.0; 4], step % 4 == 0, &tuning, 0.001);
         }
         assert!(smoothing.gains[0] > 2.5 * at_50);
+    }
+
+    #[test]
+    fn settled_filters_follow_a_new_value_as_others_do() {
+        let tuning = Tuning::default();
+        let mut settled = Smoothing::new();
+        for _ in 0..10_000 {
+            settled.apply(&[100.0, 0.0, 0.0, 0.5], false, &tuning, 0.001);
+        }
+        assert!(settled.settled.is_some());
+        let mut other = Smoothing { settled: None, ..settled.clone() };
+        for _ in 0..10 {
+            let [at_rest, filtered] =
+                [&mut settled, &mut other].map(|it| it.apply(&[100.0, 0.0, 0.0, 0.5], false, &tuning, 0.001));
+            assert_eq!(at_rest, filtered);
+            other.settled = None;
+        }
+        let [first, second] =
+            [&mut settled, &mut other].map(|it| it.apply(&[90.0, 0.0, 0.0, 0.5], true, &tuning, 0.001));
+        assert!(first == second && first[0] < 100.0);
     }
 
     #[test]
