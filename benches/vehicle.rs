@@ -3,7 +3,10 @@
 //!
 //! `cargo bench --bench vehicle`. The mission is the demo square from engagement to disarm, with real noise and light
 //! turbulence, no samples; each figure is the median of several runs on one core. World and firmware alone replay the
-//! other's recorded output in a part of that mission.
+//! other's recorded output in a part of that mission. The step of a bare rigid body is printed beside the whole tick, as a
+//! measure of the machine.
+//!
+//! `-- --fly RATE` flies the mission once and prints nothing, for a profiler that counts instructions.
 
 #![allow(
     clippy::unwrap_used,
@@ -11,6 +14,9 @@
     clippy::print_stdout,
     reason = "a benchmark looks at the clock and prints"
 )]
+
+#[path = "support/bare_body.rs"]
+mod bare_body;
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -33,6 +39,11 @@ const RUNS: usize = 5;
 const REPLAY: usize = 100_000;
 
 fn main() {
+    let mut arguments = std::env::args().skip_while(|argument| argument != "--fly");
+    if let Some(rate_hz) = arguments.nth(1) {
+        mission(rate_hz.parse().expect("a rate in Hz"));
+        return;
+    }
     for rate_hz in [1000, 4000, 8000] {
         let mut runs: Vec<(f64, f64)> = (0..RUNS).map(|_| mission(rate_hz)).collect();
         runs.sort_by(|a, b| a.1.total_cmp(&b.1));
@@ -52,6 +63,8 @@ fn main() {
     println!("world    {world:>7.1} ns/tick");
     println!("firmware {firmware:>7.1} ns/tick");
     println!("both     {both:>7.1} ns/tick  ({:.0}x real time at 1 kHz)", 1e6 / both);
+    let bare = median(|| bare_body::ns_per_step(REPLAY as u32));
+    println!("bare     {bare:>7.1} ns/step of a rigid body, {:.0} % of the whole tick", 100.0 * bare / both);
     let mut costs: Vec<[f64; 3]> = (0..4 * RUNS).map(|_| recording.cost_of_logs()).collect();
     costs.sort_by(|a, b| (a[1] / a[0]).total_cmp(&(b[1] / b[0])));
     let [without, noted, encoded] = costs[2 * RUNS];
