@@ -129,7 +129,11 @@ impl Theme {
 
     /// Returns the background colour to paint if the terminal's own cannot be relied on.
     pub fn background(&self) -> Option<Color> {
-        (self.palette == Palette::Light).then_some(Color::Rgb(250, 250, 247))
+        match self.palette {
+            Palette::Light => Some(Color::Rgb(250, 250, 247)),
+            Palette::HighContrast => Some(Color::Rgb(0, 0, 0)),
+            Palette::Dark | Palette::Ansi16 | Palette::Mono => None,
+        }
     }
 
     /// Returns the foreground colour of a role.
@@ -153,8 +157,8 @@ impl Theme {
             Palette::Light => match role {
                 Role::Text | Role::Selected => Color::Rgb(32, 35, 40),
                 Role::Dim => Color::Rgb(104, 108, 116),
-                Role::Backdrop => Color::Rgb(166, 168, 172),
-                Role::Zone => Color::Rgb(196, 110, 84),
+                Role::Backdrop => Color::Rgb(138, 141, 147),
+                Role::Zone => Color::Rgb(170, 84, 58),
                 Role::Title => Color::Rgb(62, 68, 78),
                 Role::Focus | Role::Key => Color::Rgb(0, 92, 160),
                 Role::Ok => Color::Rgb(0, 110, 80),
@@ -182,9 +186,9 @@ impl Theme {
             },
             Palette::Dark => match role {
                 Role::Text | Role::Selected => Color::Reset,
-                Role::Dim => Color::Rgb(120, 124, 133),
+                Role::Dim => Color::Rgb(132, 136, 145),
                 Role::Backdrop => Color::Rgb(82, 86, 95),
-                Role::Zone => Color::Rgb(158, 74, 54),
+                Role::Zone => Color::Rgb(210, 110, 88),
                 Role::Title => Color::Rgb(190, 196, 206),
                 Role::Focus | Role::Key => Color::Rgb(86, 180, 233),
                 Role::Ok => Color::Rgb(0, 186, 136),
@@ -241,6 +245,55 @@ mod tests {
         assert_eq!(theme(&[("TERM", "xterm"), ("NO_COLOR", "1")]).palette, Palette::Mono);
         assert_eq!(theme(&[("TERM", "xterm"), ("NO_COLOR", "")]).palette, Palette::Ansi16);
         assert_eq!(theme(&[("LANG", "C"), ("LC_ALL", "C.utf8")]).charset, Charset::Unicode);
+    }
+
+    /// Returns the contrast ratio of two colours by WCAG 2.2, from 1 to 21.
+    fn contrast(a: Color, b: Color) -> f64 {
+        let luminance = |colour| {
+            let Color::Rgb(r, g, b) = colour else { panic!("{colour} depends on the terminal") };
+            let linear = |part: u8| match f64::from(part) / 255.0 {
+                part if part <= 0.04045 => part / 12.92,
+                part => ((part + 0.055) / 1.055).powf(2.4),
+            };
+            0.2126 * linear(r) + 0.7152 * linear(g) + 0.0722 * linear(b)
+        };
+        let (a, b) = (luminance(a), luminance(b));
+        (a.max(b) + 0.05) / (a.min(b) + 0.05)
+    }
+
+    #[test]
+    fn text_and_lines_have_the_contrast_that_wcag_asks_for() {
+        use strum::IntoEnumIterator as _;
+        assert!((contrast(Color::Rgb(0, 0, 0), Color::Rgb(255, 255, 255)) - 21.0).abs() < 1e-9);
+        // The background of the terminal for a palette that paints none; AA asks for 4.5, AAA for 7, lines for 3.
+        let dark = Color::Rgb(30, 30, 30);
+        let palettes = [(Palette::Dark, 4.5), (Palette::Light, 4.5), (Palette::HighContrast, 7.0)];
+        for (palette, least_of_text) in palettes {
+            let theme = Theme { palette, ..Theme::default() };
+            let background = theme.background().unwrap_or(dark);
+            for role in Role::iter() {
+                // The dark palette leaves plain text to the terminal; its backdrop is only a hint of the ground.
+                let is_left_out =
+                    palette == Palette::Dark && matches!(role, Role::Text | Role::Selected | Role::Backdrop);
+                if is_left_out {
+                    continue;
+                }
+                let least = if matches!(role, Role::Backdrop | Role::Fence) { 3.0 } else { least_of_text };
+                let ratio = contrast(theme.colour(role), background);
+                assert!(ratio >= least, "{palette:?} {role:?}: {ratio:.2} of {least}");
+            }
+        }
+    }
+
+    #[test]
+    fn without_colours_roles_that_matter_differ_by_weight() {
+        let mono = Theme { palette: Palette::Mono, ..Theme::default() };
+        let plain = mono.style(Role::Text);
+        for role in
+            [Role::Active, Role::Selected, Role::Fault, Role::Focus, Role::Key, Role::Craft, Role::Target]
+        {
+            assert_ne!(mono.style(role), plain, "{role:?}");
+        }
     }
 
     #[test]
