@@ -106,7 +106,8 @@ impl AppState {
             EventKind::Boot { rate_hz, .. } => self.step_ticks = (rate_hz / 100).max(1),
             // A recorded flight is shown as a whole.
             EventKind::Firmware(FirmwareEvent::Armed) if self.shared.view.replay.is_none() => {
-                self.shared.track.begin_at(time.as_secs_f64());
+                let before = self.shared.track.begin_at(time.as_secs_f64());
+                self.shared.past_flights.keep_flight(before);
                 self.shared.abandoned.forget();
             }
             EventKind::Firmware(FirmwareEvent::Nav(NavEvent::State { from, to, wp, reason, .. })) => {

@@ -14,7 +14,7 @@ use super::formatting;
 use super::layout::{self, SMALLEST};
 use super::panel::{self, Panel, span};
 use super::popup::frame::{key_line, popup};
-use super::popup::{Popup, command_line, go_to, guards, map_menu, palette, series_list, what_if};
+use super::popup::{Popup, command_line, go_to, guards, map_menu, palette, signal_list, what_if};
 use super::shared::Shared;
 use super::text_wrap::wrapped;
 use super::theme::{Charset, Role};
@@ -73,7 +73,7 @@ fn draw_popup(state: &AppState, popup: &Popup, area: Rect, buffer: &mut Buffer) 
     let shared = &state.shared;
     match popup {
         Popup::CommandLine => return command_line::draw(&state.command_line, shared, area, buffer),
-        Popup::Series(list) => return series_list::draw(shared, list, area, buffer),
+        Popup::Signals(list) => return signal_list::draw(shared, list, area, buffer),
         Popup::Palette(palette) => return palette::draw(shared, palette, area, buffer),
         Popup::Help { scroll } => panel::help::draw(shared, *scroll, area, buffer),
         Popup::GoTo(question) => go_to::draw(shared, question, area, buffer),

@@ -1,12 +1,12 @@
 //! The graphs of a flight: the history of its signals, the shown plots, the time span, and the cursor.
 //!
-//! A recorded flight also has series by name. `curves` has the part of them that is shown.
+//! Signals and the series of a recorded flight are shown by name, too. `curves` has the part of the series that is shown.
 
 mod curves;
 mod history;
 mod plot;
 
-pub(super) use plot::{PLOTS, Plot, Stroke};
+pub(super) use plot::{PLOTS, Plot};
 
 use super::map_point::MapPoint;
 use crate::replay::{Overview, Picture};
@@ -32,8 +32,8 @@ pub(super) enum Graph<'a> {
     Plot(&'static Plot),
     /// The difference of a plot's last curve between two flights.
     Difference(&'static Plot),
-    /// A recorded series by name.
-    Series(&'a str),
+    /// A recorded series or a signal, by name.
+    Named(&'a str),
 }
 
 /// The state of the Graphs panel.
@@ -43,7 +43,7 @@ pub struct GraphsState {
     shown: [bool; PLOTS.len()],
     /// The plots whose difference between two flights is shown.
     differences: [bool; PLOTS.len()],
-    /// The names of the shown series.
+    /// The names of the series and signals that are shown as graphs of their own.
     series: Vec<String>,
     curves: SeriesCurves,
     has_series: bool,
@@ -96,7 +96,7 @@ impl GraphsState {
             let difference = (*difference && has_two).then_some(Graph::Difference(plot));
             shown.then_some(Graph::Plot(plot)).into_iter().chain(difference)
         });
-        plots.chain(self.series.iter().map(|name| Graph::Series(name)))
+        plots.chain(self.series.iter().map(|name| Graph::Named(name)))
     }
 
     /// Returns `true` if a signal may have a value: in a recorded flight, if it has one at any instant.
@@ -116,12 +116,12 @@ impl GraphsState {
         }
     }
 
-    /// Returns `true` if the series with this name is shown.
+    /// Returns `true` if the series or signal with this name is shown.
     pub(super) fn shows_series(&self, name: &str) -> bool {
         self.series.iter().any(|shown| shown == name)
     }
 
-    /// Shows a series, or hides it.
+    /// Shows a series or a signal, or hides it.
     pub(super) fn toggle_series(&mut self, name: &str) {
         if self.shows_series(name) {
             self.series.retain(|shown| shown != name);

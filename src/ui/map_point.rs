@@ -28,6 +28,16 @@ impl MapPoint {
     pub(super) fn towards(self, other: Self, t: f64) -> Self {
         Self::new(self.n + (other.n - self.n) * t, self.e + (other.e - self.e) * t)
     }
+
+    /// Returns the place in axes that are turned clockwise by an angle, rad: `n` is then the distance in the direction
+    /// of this bearing, and `e` the distance to the right of it.
+    pub(super) fn turned(self, bearing_rad: f64) -> Self {
+        if bearing_rad == 0.0 {
+            return self;
+        }
+        let (sin, cos) = bearing_rad.sin_cos();
+        Self::new(self.n * cos + self.e * sin, self.e * cos - self.n * sin)
+    }
 }
 
 /// Converts a position to metres from the origin of the map.

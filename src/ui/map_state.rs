@@ -20,6 +20,15 @@ pub enum MapMode {
         /// Metres per column.
         scale: f64,
     },
+    /// The user has chosen the window, and it moves as far as keeps the craft in it.
+    Near {
+        /// The middle, north, m.
+        n: f64,
+        /// The middle, east, m.
+        e: f64,
+        /// Metres per column.
+        scale: f64,
+    },
 }
 
 /// The state of the map panel.
@@ -34,6 +43,10 @@ pub struct MapState {
     pub(super) measure: Option<Measure>,
     /// `true` to show the grid of coordinates.
     pub(super) grid: bool,
+    /// `true` if the course of the craft is up instead of north.
+    pub(super) course_up: bool,
+    /// `true` to leave out the tracks of earlier flights.
+    pub(super) hides_past: bool,
 }
 
 /// A line whose length and bearing are measured.

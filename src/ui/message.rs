@@ -148,6 +148,12 @@ pub enum Change {
     MeasureTo(MapPoint),
     /// Show or hide the grid of coordinates.
     MapGrid,
+    /// Turn the course of the craft up, or north.
+    CourseUp,
+    /// Show or hide the tracks of earlier flights.
+    PastTracks,
+    /// Move the cursor on the map by waypoints; without a cursor, the map.
+    MapWaypoint(isize),
     /// Choose a file for the backdrop of the open plan.
     ChooseBackdrop,
     /// Remove the backdrop of the open plan.

@@ -6,14 +6,14 @@ pub(super) mod go_to;
 pub(super) mod guards;
 pub(super) mod map_menu;
 pub(super) mod palette;
-pub(super) mod series_list;
+pub(super) mod signal_list;
 pub(super) mod what_if;
 
 pub use command_line::CommandLine;
 pub(super) use go_to::GoTo;
 pub(super) use map_menu::MapMenu;
 pub use palette::Palette;
-pub use series_list::SeriesList;
+pub use signal_list::SignalList;
 
 /// The result of a key in a popup.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,8 +53,8 @@ pub enum Popup {
         /// The index of the selected plot.
         selected: usize,
     },
-    /// The search of the recorded series.
-    Series(SeriesList),
+    /// The search of the signals.
+    Signals(SignalList),
     /// The `:` line.
     CommandLine,
     /// The search of all commands.

@@ -57,7 +57,7 @@ pub(super) fn question(state: &AppState) -> Option<Vec<String>> {
         Popup::Help { .. }
         | Popup::Guards { .. }
         | Popup::Plots { .. }
-        | Popup::Series(_)
+        | Popup::Signals(_)
         | Popup::CommandLine
         | Popup::Palette(_)
         | Popup::MapMenu(_) => None,

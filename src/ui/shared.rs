@@ -27,7 +27,7 @@ use super::other_flight::{Alignment, OtherFlight};
 use super::panel::Panel;
 use super::stick_recording::StickRecording;
 use super::theme::Theme;
-use super::track::{AbandonedTracks, Track};
+use super::track::{KeptTracks, Track};
 use super::units::Units;
 
 /// The altitude from which a craft that touches nothing counts as in the air, m. A bounce stays below it.
@@ -77,7 +77,9 @@ pub struct Shared {
     /// A second flight, beside the one that is shown.
     pub other: Option<OtherFlight>,
     /// The tracks of abandoned branches of the flight.
-    pub abandoned: AbandonedTracks,
+    pub abandoned: KeptTracks,
+    /// The tracks of the flights before this one.
+    pub past_flights: KeptTracks,
     /// Flights flown ahead of time.
     pub forecast: ForecastState,
     pub log: LogState,
@@ -121,7 +123,8 @@ impl Shared {
             track: Track::default(),
             past: None,
             other: None,
-            abandoned: AbandonedTracks::default(),
+            abandoned: KeptTracks::default(),
+            past_flights: KeptTracks::default(),
             forecast: ForecastState::default(),
             log: LogState::default(),
             notice: None,

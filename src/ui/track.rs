@@ -12,8 +12,8 @@ const JUMP_MPS: f64 = 60.0;
 /// The greatest step that is never a jump, m.
 const STEP_M: f64 = 5.0;
 
-/// The number of tracks of abandoned branches, the newest last.
-const MAX_ABANDONED: usize = 4;
+/// The number of other tracks that are kept.
+const MAX_KEPT: usize = 4;
 
 /// A point of the track, metres from the boot place.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -41,19 +41,27 @@ impl TrackPoint {
     }
 }
 
-/// The tracks of abandoned branches of the flight.
+/// The newest other tracks, the newest last: those of abandoned branches of the flight, or of earlier flights.
 #[derive(Debug, Default)]
-pub struct AbandonedTracks {
+pub struct KeptTracks {
     tracks: Vec<Vec<TrackPoint>>,
 }
 
-impl AbandonedTracks {
+impl KeptTracks {
     pub(super) fn keep(&mut self, track: Vec<TrackPoint>) {
         if track.len() > 1 {
-            if self.tracks.len() == MAX_ABANDONED {
+            if self.tracks.len() == MAX_KEPT {
                 self.tracks.remove(0);
             }
             self.tracks.push(track);
+        }
+    }
+
+    /// Keeps the track of a flight, unless it stayed at its place.
+    pub(super) fn keep_flight(&mut self, track: Vec<TrackPoint>) {
+        let has_left = |first: &TrackPoint| track.iter().any(|point| point.distance_m(first) > STEP_M);
+        if track.first().is_some_and(has_left) {
+            self.keep(track);
         }
     }
 
@@ -97,21 +105,20 @@ impl Track {
         track
     }
 
-    /// Appends a point if it is far enough from the last one. A jump starts a new track.
-    pub fn push(&mut self, point: TrackPoint) {
+    /// Appends a point if it is far enough from the last one. A jump starts a new track; the one before is returned.
+    pub fn push(&mut self, point: TrackPoint) -> Vec<TrackPoint> {
         if !(point.n.is_finite() && point.e.is_finite() && point.alt_m.is_finite()) {
-            return;
+            return Vec::new();
         }
         let distance = |from: &TrackPoint| (point.n - from.n).hypot(point.e - from.e);
         // Measured from the last known position: since the last kept point a standing craft has had time to go
         // anywhere.
         let jumped =
             self.seen.is_some_and(|seen| distance(&seen) > STEP_M + JUMP_MPS * (point.time_s - seen.time_s));
-        if jumped {
-            self.clear();
-        }
+        let ended = if jumped { self.clear() } else { Vec::new() };
         self.seen = Some(point);
         self.add(point);
+        ended
     }
 
     fn add(&mut self, point: TrackPoint) {
@@ -134,17 +141,19 @@ impl Track {
         part
     }
 
-    /// Removes the part before `time_s`, s: the flight begins there.
-    pub(super) fn begin_at(&mut self, time_s: f64) {
+    /// Removes the part before `time_s`, s: the flight begins there. Returns it.
+    pub(super) fn begin_at(&mut self, time_s: f64) -> Vec<TrackPoint> {
         let before = self.points().partition_point(|point| point.time_s < time_s);
         let flown = self.path.split_off(before);
         let seen = self.seen.filter(|seen| seen.time_s >= time_s);
-        *self = Self { seen, ..Self::default() };
+        let mut path = std::mem::replace(self, Self { seen, ..Self::default() }).path;
         flown.into_iter().for_each(|point| self.add(point));
+        path.split_off(0)
     }
 
-    pub fn clear(&mut self) {
-        *self = Self::default();
+    /// Removes all points, and returns them.
+    pub fn clear(&mut self) -> Vec<TrackPoint> {
+        std::mem::take(self).path.split_off(0)
     }
 
     /// Prepares for a reset: if the craft is then disarmed away from its last position, the track starts again, even if
@@ -153,12 +162,10 @@ impl Track {
         self.awaits_reset = true;
     }
 
-    /// Records a disarmed craft at a place, which ends the track if a reset was requested.
-    pub fn disarmed_at(&mut self, n: f64, e: f64) {
+    /// Records a disarmed craft at a place, which ends the track if a reset was requested. Returns the track that ended.
+    pub fn disarmed_at(&mut self, n: f64, e: f64) -> Vec<TrackPoint> {
         let moved = self.seen.is_some_and(|seen| (n - seen.n).hypot(e - seen.e) > STEP_M);
-        if self.awaits_reset && moved {
-            self.clear();
-        }
+        if self.awaits_reset && moved { self.clear() } else { Vec::new() }
     }
 
     /// Returns the points, the oldest first.
@@ -176,8 +183,14 @@ mod tests {
         let mut track = Track::default();
         let at =
             |step: u32| TrackPoint { n: f64::from(step), time_s: f64::from(step), ..TrackPoint::default() };
-        (0..20).for_each(|step| track.push(at(step)));
-        track.begin_at(7.5);
+        for step in 0..20 {
+            track.push(at(step));
+        }
+        let before = track.begin_at(7.5);
+        assert_eq!(
+            before.iter().map(|point| point.time_s).collect::<Vec<_>>(),
+            [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]
+        );
         assert_eq!(track.points().first().map(|point| point.time_s), Some(8.0));
         assert_eq!(track.points().last().map(|point| point.time_s), Some(19.0));
         track.begin_at(30.0);
@@ -203,7 +216,9 @@ mod tests {
     fn a_branch_goes_on_from_where_it_was_cut_off() {
         let mut track = Track::default();
         let at = |n: f64| TrackPoint { n, time_s: n, engaged: true, ..TrackPoint::default() };
-        (0..10).for_each(|n| track.push(at(f64::from(n))));
+        for n in 0..10 {
+            track.push(at(f64::from(n)));
+        }
         assert_eq!(track.cut_after(6.5), [at(6.0), at(7.0), at(8.0), at(9.0)]);
         assert!(track.cut_after(6.5).is_empty());
         track.push(TrackPoint { e: 1.0, ..at(7.0) });
@@ -217,7 +232,7 @@ mod tests {
         for second in 0..30 {
             track.push(at(100.0, f64::from(second)));
         }
-        track.push(at(0.0, 29.1));
+        assert!(!track.push(at(0.0, 29.1)).is_empty(), "the track before is an earlier flight");
         assert_eq!(track.points(), [at(0.0, 29.1)]);
     }
 

@@ -126,7 +126,11 @@ fn take_view(state: &mut AppState, view: SessionView) {
     }
     let left = timeline::follow_branch(&mut state.shared, &view);
     if !left && !view.is_rewound() && view.vehicle.time < state.shared.view.vehicle.time {
-        state.shared.track.clear();
+        let ended = state.shared.track.clear();
+        state.shared.past_flights.keep_flight(ended);
+    }
+    if view.vehicle.origin != state.shared.view.vehicle.origin {
+        state.shared.past_flights.forget();
     }
     let before = std::mem::replace(&mut state.shared.view, view);
     if !left
@@ -157,9 +161,12 @@ fn take_view(state: &mut AppState, view: SessionView) {
             vehicle.truth.as_ref().map(|truth| truth.alt).or(vehicle.estimate.alt).unwrap_or_default();
         let wp = vehicle.nav.as_ref().filter(|_| state.shared.flies_stored_plan()).map(|nav| nav.wp);
         if state.shared.view.vehicle.craft.armed == Some(false) {
-            state.shared.track.disarmed_at(place.n, place.e);
+            let ended = state.shared.track.disarmed_at(place.n, place.e);
+            state.shared.past_flights.keep_flight(ended);
         }
-        state.shared.track.push(TrackPoint { n: place.n, e: place.e, alt_m, time_s, engaged, wp });
+        let point = TrackPoint { n: place.n, e: place.e, alt_m, time_s, engaged, wp };
+        let ended = state.shared.track.push(point);
+        state.shared.past_flights.keep_flight(ended);
     }
 }
 

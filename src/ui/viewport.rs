@@ -1,7 +1,7 @@
 //! The window of the map: converts between metres and cells.
 //!
 //! Places are metres north and east of the boot place. A cell is taken to be twice as high as wide, so a row spans
-//! twice the metres of a column.
+//! twice the metres of a column. North is up, or the course of the craft.
 
 pub(super) mod moves;
 
@@ -13,6 +13,13 @@ use super::map_state::MapMode;
 use super::other_flight::OtherFlight;
 use super::shared::Shared;
 
+/// The bearing at the top of the map changes in steps of this many degrees, so that noise does not turn the map.
+const TURN_STEP_DEG: f64 = 5.0;
+/// The ground speed below which the heading is up instead of the course, m/s. A craft without a true course has its
+/// heading up, too.
+const COURSE_MPS: f64 = 1.0;
+/// The craft stays in this share of a window that keeps it in view.
+const KEPT_SHARE: f64 = 0.8;
 /// The limits of the scale, metres per column.
 const SCALE_LIMITS: (f64, f64) = (0.02, 20_000.0);
 /// The number of steps of the automatic scale per octave.
@@ -26,28 +33,35 @@ pub(super) struct Viewport {
     pub centre: MapPoint,
     /// Metres per column; a row is twice that.
     pub scale: f64,
+    /// The bearing that is up, clockwise from north, rad.
+    pub up_rad: f64,
 }
 
 impl Viewport {
     /// Returns the window of the map in these cells.
     pub(super) fn of(state: &Shared, area: Rect) -> Self {
+        let up_rad = up_rad(state);
         match state.map.mode {
             // The whole preview, whatever was shown before.
-            _ if state.editor.is_generating() => Self::fit(state, area),
-            MapMode::Fit => Self::fit(state, area),
+            _ if state.editor.is_generating() => Self::fit(state, area, up_rad),
+            MapMode::Fit => Self::fit(state, area, up_rad),
             MapMode::Follow(scale) => {
                 let centre = craft(&state.view).unwrap_or_default();
-                Self { area, centre, scale: limited(scale) }
+                Self { area, centre, scale: limited(scale), up_rad }
             }
             MapMode::Free { n, e, scale } => {
-                Self { area, centre: MapPoint::new(n, e), scale: limited(scale) }
+                Self { area, centre: MapPoint::new(n, e), scale: limited(scale), up_rad }
+            }
+            MapMode::Near { n, e, scale } => {
+                let view = Self { area, centre: MapPoint::new(n, e), scale: limited(scale), up_rad };
+                craft(&state.view).map_or(view, |craft| view.moved_to_keep(craft))
             }
         }
     }
 
     /// Returns the window that shows plan, home and craft. Its scale changes in steps, so that it stays constant while
     /// the craft flies inside the plan.
-    fn fit(state: &Shared, area: Rect) -> Self {
+    fn fit(state: &Shared, area: Rect, up_rad: f64) -> Self {
         let origin = origin(state);
         let home = state.view.vehicle.craft.home;
         let places = origin.iter().flat_map(|frame| {
@@ -66,7 +80,8 @@ impl Viewport {
         let past = state.view.replay.as_ref().map_or(&[][..], |_| state.track.points());
         let other = state.other.as_ref().map_or(&[][..], OtherFlight::track);
         let flown = past.iter().chain(other).map(|point| MapPoint::new(point.n, point.e));
-        for place in places.chain(craft).chain(flown) {
+        let turned = |place: MapPoint| place.turned(up_rad);
+        for place in places.chain(craft).chain(flown).map(turned) {
             low = MapPoint::new(low.n.min(place.n), low.e.min(place.e));
             high = MapPoint::new(high.n.max(place.n), high.e.max(place.e));
         }
@@ -78,19 +93,20 @@ impl Viewport {
         let scale = limited(stepped);
         let mut centre = low.towards(high, 0.5);
         // A plan too far away for the widest scale must not push the craft out.
-        if let Some(craft) = craft {
+        if let Some(craft) = craft.map(turned) {
             let half_e = columns.min(0.9 * f64::from(area.width)) / 2.0 * scale;
             let half_n = rows.min(0.9 * f64::from(area.height)) * scale;
             centre.e = centre.e.clamp(craft.e - half_e, craft.e + half_e);
             centre.n = centre.n.clamp(craft.n - half_n, craft.n + half_n);
         }
-        Self { area, centre, scale }
+        Self { area, centre: centre.turned(-up_rad), scale, up_rad }
     }
 
     /// Returns column and row of a place, in cells from the top left of the area; they may be outside of it.
     pub(super) fn cell(&self, place: MapPoint) -> (f64, f64) {
-        let column = f64::from(self.area.width) / 2.0 + (place.e - self.centre.e) / self.scale;
-        let row = f64::from(self.area.height) / 2.0 - (place.n - self.centre.n) / (2.0 * self.scale);
+        let relative = self.relative(place);
+        let column = f64::from(self.area.width) / 2.0 + relative.e / self.scale;
+        let row = f64::from(self.area.height) / 2.0 - relative.n / (2.0 * self.scale);
         (column, row)
     }
 
@@ -107,58 +123,99 @@ impl Viewport {
     /// Returns column and row of a place, in dots of lines from the middle of the top left dot. A cell has two columns and
     /// four rows of dots.
     pub(super) fn dot(&self, place: MapPoint) -> (f64, f64) {
-        let [west, east] = self.east_bounds();
-        let [south, north] = self.north_bounds();
+        let relative = self.relative(place);
+        let ([left, right], [bottom, top]) = (self.across(), self.upward());
         let (columns, rows) =
             (f64::from(self.area.width) * 2.0 - 1.0, f64::from(self.area.height) * 4.0 - 1.0);
-        ((place.e - west) / (east - west) * columns, (north - place.n) / (north - south) * rows)
+        ((relative.e - left) / (right - left) * columns, (top - relative.n) / (top - bottom) * rows)
     }
 
     /// Returns the place under the middle of a screen cell.
     pub(super) fn place(&self, column: u16, row: u16) -> MapPoint {
         let dc = f64::from(column) + 0.5 - f64::from(self.area.x) - f64::from(self.area.width) / 2.0;
         let dr = f64::from(row) + 0.5 - f64::from(self.area.y) - f64::from(self.area.height) / 2.0;
-        MapPoint::new(self.centre.n - dr * 2.0 * self.scale, self.centre.e + dc * self.scale)
+        self.beside(self.centre, dc, dr)
     }
 
-    /// Returns the east limits of the window, m.
-    pub(super) fn east_bounds(&self) -> [f64; 2] {
+    /// Returns the place a number of columns to the right of another and a number of rows below it.
+    pub(super) fn beside(&self, place: MapPoint, columns: f64, rows: f64) -> MapPoint {
+        let step = MapPoint::new(-rows * 2.0 * self.scale, columns * self.scale).turned(-self.up_rad);
+        MapPoint::new(place.n + step.n, place.e + step.e)
+    }
+
+    /// Returns the distance of a place above the centre and to the right of it, m.
+    pub(super) fn relative(&self, place: MapPoint) -> MapPoint {
+        MapPoint::new(place.n - self.centre.n, place.e - self.centre.e).turned(self.up_rad)
+    }
+
+    /// Returns the limits of the window to the left and to the right of its centre, m.
+    pub(super) fn across(&self) -> [f64; 2] {
         let half = f64::from(self.area.width) / 2.0 * self.scale;
-        [self.centre.e - half, self.centre.e + half]
+        [-half, half]
     }
 
-    /// Returns the north limits of the window, m.
-    pub(super) fn north_bounds(&self) -> [f64; 2] {
+    /// Returns the limits of the window below its centre and above it, m.
+    pub(super) fn upward(&self) -> [f64; 2] {
         let half = f64::from(self.area.height) * self.scale;
-        [self.centre.n - half, self.centre.n + half]
+        [-half, half]
+    }
+
+    /// Returns the greatest distances to the north and to the east of the centre in the window, m.
+    pub(super) fn reach(&self) -> (f64, f64) {
+        let ([_, right], [_, top]) = (self.across(), self.upward());
+        let (sin, cos) = self.up_rad.sin_cos();
+        (top * cos.abs() + right * sin.abs(), right * cos.abs() + top * sin.abs())
+    }
+
+    /// Returns the window moved as little as keeps a place in its inner part.
+    fn moved_to_keep(self, place: MapPoint) -> Self {
+        let relative = self.relative(place);
+        let ([_, right], [_, top]) = (self.across(), self.upward());
+        let too_far = |distance: f64, limit: f64| distance - distance.clamp(-limit, limit);
+        let (up, across) = (too_far(relative.n, KEPT_SHARE * top), too_far(relative.e, KEPT_SHARE * right));
+        let centre = self.beside(self.centre, across / self.scale, -up / (2.0 * self.scale));
+        Self { centre, ..self }
+    }
+
+    /// Returns the mode that shows this window whatever the craft does.
+    pub(super) fn free(&self) -> MapMode {
+        MapMode::Free { n: self.centre.n, e: self.centre.e, scale: self.scale }
+    }
+
+    /// Returns the mode that shows this window, moved so that the craft stays in it.
+    pub(super) fn near(&self) -> MapMode {
+        MapMode::Near { n: self.centre.n, e: self.centre.e, scale: self.scale }
     }
 
     /// Returns the window moved by a number of columns and rows.
     pub(super) fn panned(&self, columns: f64, rows: f64) -> MapMode {
-        MapMode::Free {
-            n: self.centre.n - rows * 2.0 * self.scale,
-            e: self.centre.e + columns * self.scale,
-            scale: self.scale,
-        }
+        Self { centre: self.beside(self.centre, columns, rows), ..*self }.free()
     }
 
     /// Returns the window with its scale times `factor`; `fixed` keeps its place on the screen.
-    pub(super) fn zoomed(&self, factor: f64, fixed: MapPoint) -> MapMode {
+    pub(super) fn zoomed(&self, factor: f64, fixed: MapPoint) -> Self {
         let scale = limited(self.scale * factor);
         let ratio = scale / self.scale;
-        let centre = fixed.towards(self.centre, ratio);
-        MapMode::Free { n: centre.n, e: centre.e, scale }
+        Self { centre: fixed.towards(self.centre, ratio), scale, ..*self }
     }
+}
+
+/// Returns the bearing that is up on the map, rad. North is up while the user edits or measures, so that the map does
+/// not turn under the cursor.
+fn up_rad(state: &Shared) -> f64 {
+    if !state.map.course_up || state.edits_on_map() || state.map.measure.is_some() {
+        return 0.0;
+    }
+    let vehicle = &state.view.vehicle;
+    let moves = vehicle.truth.as_ref().filter(|truth| truth.ground_speed_mps() >= COURSE_MPS);
+    let course = moves.map(|truth| truth.ve.atan2(truth.vn).to_degrees());
+    let heading = vehicle.truth.as_ref().map(|truth| truth.heading_deg).or(vehicle.estimate.heading_deg);
+    let up_deg = course.or(heading).filter(|up_deg| up_deg.is_finite()).unwrap_or(0.0);
+    ((up_deg / TURN_STEP_DEG).round() * TURN_STEP_DEG).to_radians()
 }
 
 fn limited(scale: f64) -> f64 {
     if scale.is_finite() { scale.clamp(SCALE_LIMITS.0, SCALE_LIMITS.1) } else { 1.0 }
-}
-
-/// Returns the longest round length (1, 2, 5 times a power of ten) not above `metres`.
-pub(super) fn round_length(metres: f64) -> f64 {
-    let decade = 10_f64.powf(metres.max(1e-3).log10().floor());
-    [5.0, 2.0].into_iter().map(|step| step * decade).find(|&length| length <= metres).unwrap_or(decade)
 }
 
 #[cfg(test)]
@@ -170,7 +227,12 @@ mod tests {
     use crate::telemetry::snapshot::TruthView;
 
     fn viewport() -> Viewport {
-        Viewport { area: Rect::new(3, 5, 40, 20), centre: MapPoint::new(10.0, -20.0), scale: 2.0 }
+        Viewport {
+            area: Rect::new(3, 5, 40, 20),
+            centre: MapPoint::new(10.0, -20.0),
+            scale: 2.0,
+            up_rad: 0.0,
+        }
     }
 
     #[test]
@@ -186,13 +248,30 @@ mod tests {
     }
 
     #[test]
+    fn a_turned_map_has_its_bearing_at_the_top() {
+        let view = Viewport { up_rad: 90_f64.to_radians(), ..viewport() };
+        let ahead = view.cell(MapPoint::new(view.centre.n, view.centre.e + 8.0));
+        assert!((ahead.0 - 20.0).abs() < 1e-9 && (ahead.1 - 8.0).abs() < 1e-9, "{ahead:?}: east is up");
+        let place = view.place(13, 9);
+        assert_eq!(view.screen_cell(place), Some((13, 9)));
+        let (north_m, east_m) = view.reach();
+        assert!((north_m - 40.0).abs() < 1e-9 && (east_m - 40.0).abs() < 1e-9, "{north_m} {east_m}");
+    }
+
+    #[test]
+    fn a_window_moves_only_as_far_as_keeps_the_craft_in_view() {
+        let view = viewport();
+        assert_eq!(view.moved_to_keep(MapPoint::new(12.0, -25.0)), view);
+        let moved = view.moved_to_keep(MapPoint::new(10.0, 100.0));
+        assert!((moved.centre.e - (100.0 - KEPT_SHARE * 40.0)).abs() < 1e-9, "{moved:?}");
+        assert!((moved.centre.n - view.centre.n).abs() < 1e-9);
+    }
+
+    #[test]
     fn zoom_keeps_the_place_under_the_pointer() {
         let view = viewport();
         let fixed = view.place(7, 22);
-        let MapMode::Free { n, e, scale } = view.zoomed(0.5, fixed) else {
-            panic!("zoom leaves the map free")
-        };
-        let after = Viewport { centre: MapPoint::new(n, e), scale, ..view };
+        let after = view.zoomed(0.5, fixed);
         let (a, b) = (view.cell(fixed), after.cell(fixed));
         assert!((a.0 - b.0).abs() < 1e-9 && (a.1 - b.1).abs() < 1e-9);
     }
@@ -216,13 +295,5 @@ mod tests {
                 }
             }
         }
-    }
-
-    #[test]
-    fn scale_bars_are_round() {
-        assert!((round_length(34.0) - 20.0).abs() < 1e-9);
-        assert!((round_length(50.0) - 50.0).abs() < 1e-9);
-        assert!((round_length(999.0) - 500.0).abs() < 1e-9);
-        assert!((round_length(1.2) - 1.0).abs() < 1e-9);
     }
 }

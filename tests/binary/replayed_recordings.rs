@@ -29,7 +29,7 @@ fn a_recording_is_shown_with_the_states_of_its_autopilot() {
     terminal.send("6z/");
     terminal.until_shown("est_north");
     terminal.send("\u{1b}");
-    terminal.until("the list is closed", |terminal| !terminal.screen().contains("Series —"));
+    terminal.until("the list is closed", |terminal| !terminal.screen().contains("Signals —"));
     terminal.send("q");
     assert_eq!(terminal.end(), 0);
     terminal.assert_given_back();

@@ -7,7 +7,8 @@ use crossterm::event::{KeyCode, KeyModifiers, MouseEventKind};
 
 use crate::fixture;
 use crate::hands::{
-    journal_lines, keys, mouse, mouse_button, place_of, press, screen, state_with_fix as state,
+    journal_lines, keys, mouse, mouse_button, place_in_profile, place_of, press, screen,
+    state_with_fix as state,
 };
 
 /// Returns the request to write a plan, from the effects.
@@ -367,14 +368,13 @@ fn the_mouse_chooses_values_and_drags_altitudes_in_the_profile() {
     mouse(&mut state, MouseEventKind::Up, speed);
     keys(&mut state, "+");
     assert_eq!(state.shared.plan().waypoints[2].duration, Seconds::new(31.0));
-    let number = place_of(&state, "···3");
-    let number = (number.0 + 3, number.1);
+    let number = place_in_profile(&state, '3');
     mouse(&mut state, MouseEventKind::Down, number);
     assert!(mouse(&mut state, MouseEventKind::Drag, (number.0, number.1 + 2)).is_empty());
     let effects = mouse(&mut state, MouseEventKind::Up, (number.0, number.1 + 2));
     assert_eq!(journal_lines(&effects), 1);
     assert!(
-        (2000..4500).contains(&state.shared.plan().records()[3].alt_cm),
+        (4000..5000).contains(&state.shared.plan().records()[3].alt_cm),
         "{:?}",
         altitudes(state.shared.plan())
     );

@@ -96,3 +96,21 @@ pub(crate) fn place_of(state: &AppState, text: &str) -> (u16, u16) {
     // Each line of the screen is in quotes.
     (line[..at].chars().count() as u16 - 1, row as u16)
 }
+
+/// Returns the cell of a waypoint's number in the altitude profile.
+pub(crate) fn place_in_profile(state: &AppState, number: char) -> (u16, u16) {
+    let seen = screen(state);
+    let rows = seen.lines().enumerate().skip_while(|(_, line)| !line.contains("altitude and distance in"));
+    let rows = rows.skip(1).take_while(|(_, line)| !line.contains('└'));
+    let place = rows.filter_map(|(row, line)| {
+        let cells: Vec<char> = line.chars().collect();
+        // After the numbers of the axis.
+        let after_axis = cells
+            .iter()
+            .position(|c| matches!(c, '┤'))
+            .or_else(|| cells.iter().skip(2).position(|c| *c == '│').map(|at| at + 2))?;
+        let column = cells.iter().rposition(|c| *c == number).filter(|column| *column > after_axis)?;
+        Some((column as u16 - 1, row as u16))
+    });
+    place.last().unwrap_or_else(|| panic!("no {number} in the profile of\n{seen}"))
+}

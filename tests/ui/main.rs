@@ -15,6 +15,7 @@ mod keys;
 mod live_settings;
 mod map_edit;
 mod map_tools;
+mod map_view;
 mod mistyped;
 mod orientation;
 mod panels;

@@ -310,6 +310,33 @@ fn recorded_sticks_are_played_again_in_their_time() {
 }
 
 #[test]
+fn any_signal_of_a_flight_is_found_by_name_or_meaning_and_drawn() {
+    let mut state = fixture::state((120, 40), fixture::colour());
+    fixture::approach(&mut state);
+    press(&mut state, '6');
+    press(&mut state, '/');
+    type_text(&mut state, "specific force");
+    let seen = screen(&state);
+    assert!(seen.contains("Signals —") && seen.contains("force"), "{seen}");
+    for _ in 0.."specific force".len() {
+        key(&mut state, KeyCode::Backspace);
+    }
+    type_text(&mut state, "bearing");
+    key(&mut state, KeyCode::Enter);
+    let seen = screen(&state);
+    assert!(seen.contains("✓ bearing"), "{seen}");
+    assert!(seen.contains("bearing to the current waypoint"), "its meaning is shown\n{seen}");
+    key(&mut state, KeyCode::Esc);
+    let seen = screen(&state);
+    assert!(seen.contains("bearing deg"), "{seen}");
+    press(&mut state, '/');
+    type_text(&mut state, "bearing");
+    key(&mut state, KeyCode::Enter);
+    key(&mut state, KeyCode::Esc);
+    assert!(!screen(&state).contains("bearing deg"));
+}
+
+#[test]
 fn graphs_at_four_sizes() {
     for size in SIZES {
         let mut state = fixture::state(size, fixture::colour());

@@ -8,7 +8,7 @@ use betadeck::ui::{AppState, Msg, Units, update};
 use crossterm::event::MouseEventKind;
 
 use crate::fixture;
-use crate::hands::{keys, mouse, place_of, screen, state_with_fix};
+use crate::hands::{keys, mouse, place_in_profile, screen, state_with_fix};
 
 fn imperial(size: (u16, u16)) -> AppState {
     let mut state = state_with_fix(size);
@@ -22,7 +22,7 @@ fn with_imperial_units_the_table_shows_takes_and_nudges_feet_and_miles_an_hour()
     keys(&mut state, "2 z");
     let seen = screen(&state);
     assert!(seen.contains("alt ft") && seen.contains("mph") && seen.contains("164.0"), "{seen}");
-    assert!(seen.contains("altitude ft") && seen.contains(" 164 ┤"), "{seen}");
+    assert!(seen.contains("altitude and distance in ft") && seen.contains(" 150 ┤"), "{seen}");
     keys(&mut state, "right right right enter");
     assert!(screen(&state).contains("feet above home"), "{}", screen(&state));
     keys(&mut state, "backspace backspace backspace backspace backspace backspace '200 enter");
@@ -61,8 +61,7 @@ fn an_altitude_dragged_far_up_follows_the_mouse_however_often_that_tells() {
     let mut dragged = [1, 30].map(|events| {
         let mut state = fixture::state((120, 40), fixture::colour());
         keys(&mut state, "2 z");
-        let number = place_of(&state, "···3");
-        let number = (number.0 + 3, number.1);
+        let number = place_in_profile(&state, '3');
         mouse(&mut state, MouseEventKind::Down, number);
         for _ in 0..events {
             mouse(&mut state, MouseEventKind::Drag, (number.0, number.1 - 15));
@@ -78,8 +77,7 @@ fn an_altitude_dragged_far_up_follows_the_mouse_however_often_that_tells() {
 fn altitudes_are_dragged_by_whole_feet() {
     let mut state = imperial((120, 40));
     keys(&mut state, "2 z");
-    let number = place_of(&state, "···3");
-    let number = (number.0 + 3, number.1);
+    let number = place_in_profile(&state, '3');
     mouse(&mut state, MouseEventKind::Down, number);
     mouse(&mut state, MouseEventKind::Drag, (number.0, number.1 + 2));
     mouse(&mut state, MouseEventKind::Up, (number.0, number.1 + 2));
@@ -91,20 +89,24 @@ fn altitudes_are_dragged_by_whole_feet() {
 fn the_flown_altitude_is_beside_the_plan_and_the_legend_names_it() {
     let mut state = fixture::state((120, 40), fixture::colour());
     keys(&mut state, "2 z");
-    assert!(!screen(&state).contains("• flown"), "nothing was flown");
+    assert!(!screen(&state).contains("── flown"), "nothing was flown");
     fixture::approach(&mut state);
     let seen = screen(&state);
-    assert!(seen.contains("altitude m · plan • flown "), "{seen}");
+    assert!(seen.contains("altitude and distance in m ╌╌ plan ── flown "), "{seen}");
     // It follows the line of the plan at 50 m, as far as the middle of the leg to WP1.
     let line = seen.lines().find(|line| line.contains("50 ┤")).expect("50 m");
-    assert!(line.matches('•').count() > 20 && line.contains('·'), "{seen}");
-    let (flown, one) = (line.rfind('•').unwrap(), line.find('1').unwrap());
-    assert!(flown < one, "it is not at WP1 yet: {line}");
+    let dots = |line: &str| line.chars().filter(|c| ('\u{2801}'..='\u{28ff}').contains(c)).count();
+    assert!(dots(line) > 40, "{seen}");
+    let (first, rest) = line.split_once('1').expect("WP1");
+    assert!(
+        dots(first) > dots(rest) / 2,
+        "solid up to the middle of the leg to WP1, dashed after it: {line}"
+    );
     // An edit of altitudes keeps the flown profile; an edit of positions makes it meaningless.
     keys(&mut state, "right right right shift-up");
-    assert!(screen(&state).contains("• flown"), "{}", screen(&state));
+    assert!(screen(&state).contains("── flown"), "{}", screen(&state));
     keys(&mut state, "left +");
-    assert!(!screen(&state).contains("• flown"), "{}", screen(&state));
+    assert!(!screen(&state).contains("── flown"), "{}", screen(&state));
 }
 
 #[test]
@@ -120,5 +122,5 @@ fn a_climb_above_the_plan_is_seen_in_the_profile() {
         update(&mut state, Msg::View(view.clone()));
     }
     let seen = screen(&state);
-    assert!(seen.contains("o flown") && seen.contains("  89 "), "{seen}");
+    assert!(seen.contains("** flown") && seen.contains("  80 "), "{seen}");
 }

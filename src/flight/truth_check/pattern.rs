@@ -19,7 +19,7 @@ impl Pattern {
             Self::Point => offset_ne.norm(),
             Self::Orbit(radius) => (offset_ne.norm() - radius).abs(),
             Self::Figure8(radius) => {
-                let circle = |side: f64| (from_centre(offset_ne, side * radius) - radius).abs();
+                let circle = |side: f64| (relative(offset_ne, side * radius) - radius).abs();
                 circle(-1.0).min(circle(1.0))
             }
         }
@@ -32,7 +32,7 @@ impl Pattern {
             Self::Point => offset_ne.norm(),
             Self::Orbit(radius) => (offset_ne.norm() - radius).max(0.0),
             Self::Figure8(radius) => {
-                let disc = |side: f64| (from_centre(offset_ne, side * radius) - radius).max(0.0);
+                let disc = |side: f64| (relative(offset_ne, side * radius) - radius).max(0.0);
                 disc(-1.0).min(disc(1.0))
             }
         }
@@ -47,7 +47,7 @@ impl Pattern {
     }
 }
 
-fn from_centre(offset_ne: Vector2<f64>, east_m: f64) -> f64 {
+fn relative(offset_ne: Vector2<f64>, east_m: f64) -> f64 {
     (offset_ne - Vector2::new(0.0, east_m)).norm()
 }
 

@@ -57,9 +57,6 @@ fn can_do(state: &Shared, action: Action) -> Result<(), String> {
         Action::ShiftEarlier | Action::ShiftLater if state.other.is_none() => {
             Err("There is no second flight to shift: `betadeck replay A B` shows two.".to_owned())
         }
-        Action::Panel(PanelAction::ChooseSeries) if state.series().is_empty() => {
-            Err("Only a log has series by name: the graphs of this flight are in the other list.".to_owned())
-        }
         Action::Panel(PanelAction::Play) => stick_recording::can_play(state),
         Action::Throttle if state.view.vehicle.is_engaged() => Err(format!(
             "The autopilot has the throttle: `{}` switches it off.",

@@ -23,6 +23,10 @@ actions! {
         ZoomOut MAP "map.zoom-out" "zoom out" "Zoom out" ["-"];
         Follow MAP "map.follow" "follow" "Keep the craft in the middle" ["f"];
         Fit MAP "map.fit" "fit" "Show the whole plan" ["0"];
+        CourseUp MAP "map.course-up" "course up" "The course of the craft up, or north again" ["c"];
+        NextWaypoint MAP "map.next" "next waypoint" "To the next waypoint: the cursor, or the map" ["n"];
+        PreviousWaypoint MAP "map.previous" "waypoint before" "To the waypoint before it" ["N"];
+        PastTracks MAP "map.past" "earlier flights" "Show or hide the tracks of earlier flights" ["v"];
         Measure MAP "map.measure" "measure" "Measure between two points (Enter or a click sets them), or end it" ["m"];
         Grid MAP "map.grid" "grid" "Show or hide the grid of coordinates" ["#"];
         Backdrop MAP "map.backdrop" "backdrop" "Show a file with fields, roads or zones under the plan" ["B"];
@@ -42,7 +46,7 @@ actions! {
         SpanLess GRAPHS "graphs.shorter" "shorter" "A shorter time" ["+", "="];
         SpanMore GRAPHS "graphs.longer" "longer" "A longer time, up to two hours" ["-"];
         ChoosePlots GRAPHS "graphs.choose" "choose" "Choose what is shown" ["enter"];
-        ChooseSeries GRAPHS "graphs.series" "series" "Search the series of a recorded flight, and show them" ["/"];
+        ChooseSignals GRAPHS "graphs.series" "find a signal" "Search the signals by name or meaning, and show them" ["/"];
         CursorOff GRAPHS "graphs.live" "live" "No cursor: the newest instant" ["0", "end"];
         KnobUp WORLD "world.up" "knob above" "Select the knob above" ["up", "k"];
         KnobDown WORLD "world.down" "knob below" "Select the knob below" ["down", "j"];

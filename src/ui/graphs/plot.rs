@@ -2,14 +2,7 @@
 
 use crate::telemetry::quantity::Dimension;
 use crate::telemetry::signal::Signal;
-
-/// The stroke of a curve, which identifies it without its colour.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::ui) enum Stroke {
-    Solid,
-    Dashed,
-    Dotted,
-}
+use crate::ui::curve::Stroke;
 
 /// Curves over one axis.
 #[derive(Debug)]

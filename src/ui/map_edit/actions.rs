@@ -7,8 +7,8 @@ use crate::ui::editor::{PlanId, actions as plan};
 use crate::ui::event_log::Severity;
 use crate::ui::map_edit;
 use crate::ui::map_edit::measure;
-use crate::ui::map_point::MapPoint;
 use crate::ui::map_point::origin::origin;
+use crate::ui::map_point::{MapPoint, to_map};
 use crate::ui::map_state::{MapCursor, MapItem, MapMode, Moving};
 use crate::ui::message::Effect;
 use crate::ui::shared::Shared;
@@ -27,7 +27,7 @@ pub(in crate::ui) fn toggle(state: &mut Shared) -> Vec<Effect> {
     let Some(view) = view::viewport(state) else { return Vec::new() };
     state.map.edit = Some(MapCursor { place: view.centre });
     // In the modes Follow and Fit the map would move under the cursor.
-    state.map.mode = MapMode::Free { n: view.centre.n, e: view.centre.e, scale: view.scale };
+    state.map.mode = view.free();
     Vec::new()
 }
 
@@ -40,8 +40,7 @@ pub(in crate::ui) fn arrow(state: &mut Shared, columns: f64, rows: f64) {
         view::pan(state, columns, rows);
         return;
     };
-    let place =
-        MapPoint::new(cursor.place.n - rows * 2.0 * view.scale, cursor.place.e + columns * view.scale);
+    let place = view.beside(cursor.place, columns, rows);
     state.map.edit = Some(MapCursor { place });
     if let Some(moving) = &mut state.map.moving {
         moving.place = place;
@@ -50,6 +49,40 @@ pub(in crate::ui) fn arrow(state: &mut Shared, columns: f64, rows: f64) {
     if view.screen_cell(place).is_none() {
         view::pan(state, columns, rows);
     }
+}
+
+/// Moves the cursor to the next waypoint with a place, or by as many as `by`; without a cursor, the middle of the map.
+/// The row of the plan moves with it.
+pub(in crate::ui) fn to_waypoint(state: &mut Shared, by: isize) -> Vec<Effect> {
+    if state.map.moving.is_some() {
+        let key = state.key(Action::Edit(EditAction::Pick));
+        return state.only_notify(Severity::Info, format!("`{key}` puts the waypoint down first."));
+    }
+    let (Some(frame), Some(view)) = (origin(state), view::viewport(state)) else { return Vec::new() };
+    let places: Vec<(usize, MapPoint)> = {
+        let waypoints = state.plan().waypoints.iter().enumerate().filter(|(_, wp)| wp.kind.uses_position());
+        waypoints.map(|(index, wp)| (index, to_map(&frame, wp.position))).collect()
+    };
+    let Some(last) = places.len().checked_sub(1) else {
+        return state.only_notify(Severity::Info, "The plan has no waypoint with a place.");
+    };
+    let row = state.editor.row();
+    // From the row of the plan on, unless the map shows another place than that of its waypoint.
+    let here = state.map.edit.map_or(view.centre, |cursor| cursor.place);
+    let is_here = |(index, place): &(usize, MapPoint)| *index == row && place.distance(here) < view.scale;
+    let at = match places.iter().position(is_here) {
+        Some(at) => at.checked_add_signed(by).unwrap_or(last),
+        None => places.iter().position(|(index, _)| *index >= row).unwrap_or(0),
+    };
+    let (index, place) = places[if at > last { 0 } else { at }];
+    state.editor.go_to_row(index);
+    if state.map.edit.is_some() {
+        state.map.edit = Some(MapCursor { place });
+    }
+    if state.map.edit.is_none() || view.screen_cell(place).is_none() {
+        state.map.mode = MapMode::Free { n: place.n, e: place.e, scale: view.scale };
+    }
+    Vec::new()
 }
 
 /// Picks up the item at the cursor, or puts down the item picked up before.

@@ -5,7 +5,7 @@ use crate::geo::distance_bearing;
 use crate::ui::formatting::compass;
 use crate::ui::map_point::MapPoint;
 use crate::ui::map_point::origin::origin;
-use crate::ui::map_state::{MapMode, Measure};
+use crate::ui::map_state::Measure;
 use crate::ui::shared::Shared;
 use crate::ui::viewport::moves as view;
 
@@ -19,7 +19,7 @@ pub(in crate::ui) fn toggle(state: &mut Shared) {
     state.map.moving = None;
     state.map.measure = Some(Measure { cursor, ..Measure::default() });
     // In the modes Follow and Fit the map would move under the cursor.
-    state.map.mode = MapMode::Free { n: view.centre.n, e: view.centre.e, scale: view.scale };
+    state.map.mode = view.free();
 }
 
 /// Begins to measure from a place.
@@ -52,8 +52,7 @@ pub(in crate::ui) fn drag_to(state: &mut Shared, place: MapPoint) {
 /// Moves the cursor by cells, and the map with it at the edge. Returns `false` if nothing is measured.
 pub(super) fn arrow(state: &mut Shared, columns: f64, rows: f64) -> bool {
     let (Some(measure), Some(view)) = (state.map.measure, view::viewport(state)) else { return false };
-    let at = measure.cursor;
-    let cursor = MapPoint::new(at.n - rows * 2.0 * view.scale, at.e + columns * view.scale);
+    let cursor = view.beside(measure.cursor, columns, rows);
     state.map.measure = Some(Measure { cursor, ..measure });
     if view.screen_cell(cursor).is_none() {
         view::pan(state, columns, rows);

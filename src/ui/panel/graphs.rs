@@ -13,7 +13,7 @@ use crate::ui::graphs::{Graph, PLOTS};
 use crate::ui::message::{Change, Request};
 use crate::ui::panel::{Content, Hint, Panel};
 use crate::ui::popup::Popup;
-use crate::ui::popup::SeriesList;
+use crate::ui::popup::SignalList;
 use crate::ui::popup::frame::popup;
 use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
@@ -58,10 +58,8 @@ impl Content for GraphsPanel {
             (&[Action::Panel(PanelAction::CursorBack), Action::Panel(PanelAction::CursorOn)], "cursor"),
             (&[Action::Panel(PanelAction::SpanLess), Action::Panel(PanelAction::SpanMore)], "time"),
             (&[Action::Panel(PanelAction::ChoosePlots)], "choose"),
+            (&[Action::Panel(PanelAction::ChooseSignals)], "find a signal"),
         ];
-        if !state.series().is_empty() {
-            hints.push((&[Action::Panel(PanelAction::ChooseSeries)], "series"));
-        }
         if state.other.is_some() {
             hints.push((&[Action::ShiftEarlier, Action::ShiftLater], "shift"));
         }
@@ -75,7 +73,7 @@ impl Content for GraphsPanel {
             PanelAction::SpanLess => Change::GraphsSpan(-1).into(),
             PanelAction::SpanMore => Change::GraphsSpan(1).into(),
             PanelAction::ChoosePlots => Request::Open(Popup::Plots { selected: 0 }),
-            PanelAction::ChooseSeries => Request::Open(Popup::Series(SeriesList::default())),
+            PanelAction::ChooseSignals => Request::Open(Popup::Signals(SignalList::default())),
             PanelAction::CursorOff => Change::NoGraphsCursor.into(),
             _ => return Vec::new(),
         }]
@@ -107,11 +105,11 @@ fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {
         return;
     }
     let body = Rect { height: area.height - 1, ..area };
-    // The series that were chosen last are always visible.
-    let is_series = |graph: &&Graph<'_>| matches!(graph, Graph::Series(_));
-    let series = graphs.iter().filter(is_series);
-    let plots = graphs.iter().filter(|graph| !is_series(graph));
-    let charts = series.chain(plots).filter_map(|graph| charts::chart(state, *graph, window));
+    // The signals that were chosen by name are always visible.
+    let is_named = |graph: &&Graph<'_>| matches!(graph, Graph::Named(_));
+    let named = graphs.iter().filter(is_named);
+    let plots = graphs.iter().filter(|graph| !is_named(graph));
+    let charts = named.chain(plots).filter_map(|graph| charts::chart(state, *graph, window));
     let charts: Vec<Chart> = charts.collect();
     let fitting = usize::from(body.height / LEAST_ROWS).clamp(1, charts.len().max(1));
     let rows = body.height / fitting as u16;

@@ -40,6 +40,7 @@ pub(crate) fn draw(state: &Shared, scroll: usize, area: Rect, buffer: &mut Buffe
     lines.push(Line::from(span(theme, Role::Title, "Mouse")));
     for (what, text) in [
         ("click", "Focus a panel, set a channel"),
+        ("double", "Add a waypoint on the map"),
         ("drag", "Move the map"),
         ("right", "What can be done at a place of the map"),
         ("wheel", "Zoom the map at the pointer, scroll the others"),

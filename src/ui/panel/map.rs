@@ -1,4 +1,6 @@
-//! 1 Map: metres, north up.
+//! 1 Map: metres, with north or the course of the craft up.
+
+use std::time::Duration;
 
 use crossterm::event::{KeyModifiers, MouseEvent};
 use ratatui::buffer::Buffer;
@@ -28,14 +30,18 @@ mod labels;
 mod lines;
 mod marks;
 mod off_screen;
-mod raster;
 mod track_line;
+
+/// Two presses at a cell within this time are a double click.
+const DOUBLE_CLICK: Duration = Duration::from_millis(500);
 
 /// The mouse on the map; the window and the edit are shared.
 #[derive(Debug, Default)]
 pub(super) struct MapPanel {
     /// The cell where the mouse picked up the map, and the middle of the map then.
     dragged: Option<(u16, u16, MapPoint)>,
+    /// The cell where free ground was pressed last, and the time.
+    pressed: Option<(u16, u16, Duration)>,
 }
 
 impl Content for MapPanel {
@@ -67,6 +73,10 @@ impl Content for MapPanel {
         match state.map.mode {
             MapMode::Fit => format!("{name}{source}"),
             MapMode::Follow(_) => format!("{name}{source} — follows"),
+            MapMode::Near { .. } => {
+                let fits = state.key(Action::Panel(PanelAction::Fit));
+                format!("{name}{source} — keeps the craft in view · {fits} fits")
+            }
             MapMode::Free { .. } => {
                 format!("{name}{source} — {} fits", state.key(Action::Panel(PanelAction::Fit)))
             }
@@ -93,6 +103,7 @@ impl Content for MapPanel {
                 (&[Action::Edit(EditAction::Pick)], pick),
                 (&[Action::Edit(EditAction::AddOnMap)], "insert"),
                 (&[Action::Edit(EditAction::DeleteOnMap)], "delete"),
+                (&[Action::Panel(PanelAction::NextWaypoint)], "next"),
                 (&[Action::Edit(EditAction::Undo)], "undo"),
                 (&[Action::Edit(EditAction::OnMap)], "done"),
             ];
@@ -104,6 +115,7 @@ impl Content for MapPanel {
             (&[Action::Panel(PanelAction::ZoomIn), Action::Panel(PanelAction::ZoomOut)], "zoom"),
             (&[Action::Panel(PanelAction::Follow)], "follow"),
             (&[Action::Panel(PanelAction::Fit)], "fit"),
+            (&[Action::Panel(PanelAction::CourseUp)], "course up"),
             (&[Action::Panel(PanelAction::Measure)], "measure"),
             (&[Action::Panel(PanelAction::Grid)], "grid"),
             (&[Action::Panel(PanelAction::Backdrop)], "backdrop"),
@@ -122,6 +134,10 @@ impl Content for MapPanel {
             PanelAction::Fit => Some(Change::MapWindow(MapMode::Fit)),
             PanelAction::Measure => Some(Change::Measure),
             PanelAction::Grid => Some(Change::MapGrid),
+            PanelAction::CourseUp => Some(Change::CourseUp),
+            PanelAction::PastTracks => Some(Change::PastTracks),
+            PanelAction::NextWaypoint => Some(Change::MapWaypoint(1)),
+            PanelAction::PreviousWaypoint => Some(Change::MapWaypoint(-1)),
             PanelAction::Backdrop => Some(Change::ChooseBackdrop),
             _ => None,
         };
@@ -133,13 +149,15 @@ impl Content for MapPanel {
         let view = Viewport::of(state, area);
         let window = match state.map.mode {
             MapMode::Follow(scale) => MapMode::Follow(scale * factor),
-            MapMode::Fit | MapMode::Free { .. } => view.zoomed(factor, view.place(event.column, event.row)),
+            MapMode::Fit | MapMode::Free { .. } | MapMode::Near { .. } => {
+                view.zoomed(factor, view.place(event.column, event.row)).free()
+            }
         };
         vec![Change::MapWindow(window).into()]
     }
 
-    /// Picks up a waypoint, home or the fence under the mouse, or starts dragging the map. A press with Ctrl adds a
-    /// waypoint.
+    /// Picks up a waypoint, home or the fence under the mouse, or starts dragging the map. A press with Ctrl, or a second
+    /// press within a moment, adds a waypoint.
     fn press(&mut self, state: &Shared, area: Rect, event: &MouseEvent) -> Vec<Request> {
         let view = Viewport::of(state, area);
         let place = view.place(event.column, event.row);
@@ -150,12 +168,22 @@ impl Content for MapPanel {
             return vec![Change::AddWaypoint(place).into()];
         }
         let item = map_edit::item_at(state, place, view.scale);
+        let is_waypoint = matches!(item, Some(MapItem::Waypoint(_)));
         // Home and fence move only in edit mode, because they are in areas where the map is dragged, too.
         let item = item.filter(|item| matches!(item, MapItem::Waypoint(_)) || state.map.edit.is_some());
         match item.filter(|_| state.view.vehicle.active_plan.is_none() || state.map.edit.is_some()) {
             Some(item) => vec![Change::PickUp(item, place).into()],
             None => {
-                self.dragged = Some((event.column, event.row, view.centre));
+                let (column, row) = (event.column, event.row);
+                let is_second = self.pressed.take().is_some_and(|(before_column, before_row, at)| {
+                    (before_column, before_row) == (column, row)
+                        && state.now.saturating_sub(at) < DOUBLE_CLICK
+                });
+                if is_second && !is_waypoint {
+                    return vec![Change::AddWaypoint(place).into()];
+                }
+                self.pressed = Some((column, row, state.now));
+                self.dragged = Some((column, row, view.centre));
                 Vec::new()
             }
         }
@@ -168,9 +196,8 @@ impl Content for MapPanel {
         }
         if state.map.moving.is_some() {
             // The window stays still meanwhile.
-            let still = MapMode::Free { n: view.centre.n, e: view.centre.e, scale: view.scale };
             let place = view.place(event.column, event.row);
-            return vec![Change::MapWindow(still).into(), Change::DragTo(place).into()];
+            return vec![Change::MapWindow(view.free()).into(), Change::DragTo(place).into()];
         }
         if let Some((column, row, centre)) = self.dragged {
             let columns = f64::from(column) - f64::from(event.column);
@@ -237,8 +264,8 @@ fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {
     backdrop::paint(state, &scene.view, buffer);
     Canvas::default()
         .marker(state.theme.marker())
-        .x_bounds(scene.view.east_bounds())
-        .y_bounds(scene.view.north_bounds())
+        .x_bounds(scene.view.across())
+        .y_bounds(scene.view.upward())
         .paint(|context| lines::paint(state, &scene, context))
         .render(area, buffer);
     marks::write(state, &scene, buffer);

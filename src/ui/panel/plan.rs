@@ -22,8 +22,10 @@ use crate::ui::shared::Shared;
 use crate::ui::text_wrap::wrapped;
 use crate::ui::theme::Role;
 
-/// The panel height from which the altitude profile is shown.
+/// The panel height from which the altitude profile is always shown.
 const PROFILE_FROM: u16 = 16;
+/// The least number of rows of the altitude profile, and the greatest.
+const PROFILE_ROWS: (u16, u16) = (6, 24);
 
 /// The mouse on the altitude profile; the plan and the cursor are those of the editor.
 #[derive(Debug, Default)]
@@ -76,7 +78,7 @@ impl Content for PlanPanel {
         }
         let findings = findings::findings(state);
         let below = below(state, &findings, area);
-        let (table, foot, profile) = divided(area, below.len());
+        let (table, foot, profile) = divided(state, area, below.len());
         let cursor = table::draw(state, &findings, table, buffer);
         for (at, text) in below.iter().enumerate() {
             line(buffer, foot, at as u16, text);
@@ -154,21 +156,25 @@ fn target_at(state: &Shared, area: Rect, at: (u16, u16)) -> Option<PlanTarget> {
     if state.plan().waypoints.is_empty() {
         return None;
     }
-    let (table, _, profile) = divided(area, below(state, &findings::findings(state), area).len());
+    let (table, _, profile) = divided(state, area, below(state, &findings::findings(state), area).len());
     let cell = table::cell_at(state, table, at).map(|(row, column)| PlanTarget::Cell(row, column));
     cell.or_else(|| profile::waypoint_at(state, profile?, at).map(PlanTarget::Altitude))
 }
 
 /// Returns the height of a row of the altitude profile, m.
 fn metres_per_row(state: &Shared, area: Rect) -> Option<f64> {
-    let (_, _, profile) = divided(area, below(state, &findings::findings(state), area).len());
+    let (_, _, profile) = divided(state, area, below(state, &findings::findings(state), area).len());
     profile::metres_per_row(state, profile?)
 }
 
-/// Divides the area into table, the lines below it, and profile.
-fn divided(area: Rect, below_rows: usize) -> (Rect, Rect, Option<Rect>) {
-    let profile = if area.height >= PROFILE_FROM { (area.height / 4).clamp(6, 12) } else { 0 };
+/// Divides the area into table, the lines below it, and profile. The profile takes the rows that a short plan leaves.
+fn divided(state: &Shared, area: Rect, below_rows: usize) -> (Rect, Rect, Option<Rect>) {
     let below_rows = (below_rows as u16).min(area.height.saturating_sub(2));
+    let waypoints = u16::try_from(state.plan().waypoints.len()).unwrap_or(u16::MAX);
+    let left = area.height.saturating_sub(below_rows).saturating_sub(waypoints.saturating_add(1));
+    let share = if area.height >= PROFILE_FROM { (area.height / 4).clamp(6, 12) } else { 0 };
+    let profile = left.max(share).min(PROFILE_ROWS.1);
+    let profile = if profile < PROFILE_ROWS.0 { 0 } else { profile };
     let table = Rect { height: area.height.saturating_sub(below_rows + profile), ..area };
     let foot = Rect { y: area.y + table.height, height: below_rows, ..area };
     let bottom = Rect { y: area.y + area.height - profile, height: profile, ..area };

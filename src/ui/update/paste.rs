@@ -13,7 +13,7 @@ pub(super) fn paste(state: &mut AppState, text: &str) -> Vec<Effect> {
     let field = match state.popups.last_mut() {
         Some(Popup::CommandLine) => Some(&mut state.command_line.field),
         Some(Popup::Palette(palette)) => Some(&mut palette.query),
-        Some(Popup::Series(list)) => Some(&mut list.query),
+        Some(Popup::Signals(list)) => Some(&mut list.query),
         Some(
             Popup::Help { .. }
             | Popup::GoTo(_)

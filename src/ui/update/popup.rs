@@ -13,8 +13,8 @@ use crate::ui::history::LineField;
 use crate::ui::message::Effect;
 use crate::ui::panel::graphs;
 use crate::ui::popup::palette::Entry;
-use crate::ui::popup::series_list::SeriesKey;
-use crate::ui::popup::{Outcome, Popup, command_line, guards, palette, series_list, what_if};
+use crate::ui::popup::signal_list::SignalKey;
+use crate::ui::popup::{Outcome, Popup, command_line, guards, palette, signal_list, what_if};
 use crate::vehicle::VehicleCommand;
 
 /// Handles a key for the popup opened last; `found` is the action of the key without a popup.
@@ -70,13 +70,13 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) 
             }
             Vec::new()
         }
-        Some(Popup::Series(list)) => {
-            match series_list::key(list, &state.shared, event) {
-                SeriesKey::Open => {}
-                SeriesKey::Left => {
+        Some(Popup::Signals(list)) => {
+            match signal_list::key(list, &state.shared, event) {
+                SignalKey::Open => {}
+                SignalKey::Left => {
                     state.popups.pop();
                 }
-                SeriesKey::Toggle(name) => state.shared.graphs.toggle_series(&name),
+                SignalKey::Toggle(name) => state.shared.graphs.toggle_series(&name),
             }
             Vec::new()
         }

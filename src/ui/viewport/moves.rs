@@ -1,6 +1,7 @@
 //! Moves the window of the map.
 
 use super::Viewport;
+use crate::ui::map_point::MapPoint;
 use crate::ui::map_state::MapMode;
 use crate::ui::panel::Panel;
 use crate::ui::shared::Shared;
@@ -28,18 +29,22 @@ pub(in crate::ui) fn pan(state: &mut Shared, columns: f64, rows: f64) {
     }
 }
 
-/// Returns the mode after a zoom around the edit cursor, else around the craft if it is in the window, else around the
-/// middle.
+/// Returns the mode after a zoom around the edit cursor, else around the craft if it is in the window, which then keeps it
+/// in view, else around the middle.
 pub(in crate::ui) fn zoomed(state: &Shared, factor: f64) -> Option<MapMode> {
     let view = viewport(state)?;
     Some(match state.map.mode {
         MapMode::Follow(scale) => MapMode::Follow(scale * factor),
-        MapMode::Fit | MapMode::Free { .. } => {
+        MapMode::Fit | MapMode::Free { .. } | MapMode::Near { .. } => {
+            let is_seen = |place: &MapPoint| view.screen_cell(*place).is_some();
             let measured = state.map.measure.map(|measure| measure.cursor);
             let cursor = state.map.edit.map(|cursor| cursor.place).or(measured);
-            let place = cursor.or_else(|| map_point::craft(&state.view));
-            let place = place.filter(|&place| view.screen_cell(place).is_some());
-            view.zoomed(factor, place.unwrap_or(view.centre))
+            let craft = map_point::craft(&state.view).filter(is_seen);
+            match (cursor.filter(is_seen), craft) {
+                (Some(cursor), _) => view.zoomed(factor, cursor).free(),
+                (None, Some(craft)) => view.zoomed(factor, craft).near(),
+                (None, None) => view.zoomed(factor, view.centre).free(),
+            }
         }
     })
 }

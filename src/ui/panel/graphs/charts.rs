@@ -1,15 +1,17 @@
-//! The charts of the shown graphs: plots of signals, differences of two flights, recorded series.
+//! The charts of the shown graphs: plots of signals, differences of two flights, series and signals by name.
 
 use crate::replay::Picture;
 use crate::telemetry::quantity::Dimension;
 use crate::telemetry::signal::Signal;
+use crate::ui::curve::{Point, Stroke};
 use crate::ui::formatting::cut;
-use crate::ui::graphs::{Graph, Plot, Stroke};
+use crate::ui::graphs::{Graph, Plot};
+use crate::ui::named_signal::{Named, scale};
 use crate::ui::other_flight::OtherFlight;
 use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
 
-use super::chart::{Chart, Point, Strand};
+use super::chart::{Chart, Strand};
 
 /// The greatest width of a flight's name.
 const NAME: usize = 12;
@@ -19,7 +21,7 @@ pub(super) fn chart(state: &Shared, graph: Graph<'_>, window: (f64, f64)) -> Opt
     match graph {
         Graph::Plot(plot) => Some(of_plot(state, plot, window)),
         Graph::Difference(plot) => of_difference(state, plot, window),
-        Graph::Series(name) => of_series(state, name, window),
+        Graph::Named(name) => of_name(state, name, window),
     }
 }
 
@@ -127,20 +129,28 @@ fn shortest_turn(degrees: f64) -> f64 {
     (degrees + 180.0).rem_euclid(360.0) - 180.0
 }
 
-fn of_series(state: &Shared, name: &str, (from, to): (f64, f64)) -> Option<Chart> {
-    let index = state.series().iter().position(|series| series.name == name)?;
-    let series = state.series().get(index)?;
-    let points = state.graphs.curve(index).map(|curve| curve.between(from, to).collect());
+fn of_name(state: &Shared, name: &str, (from, to): (f64, f64)) -> Option<Chart> {
+    let named = Named::find(state, name)?;
+    let points = match named {
+        Named::Recorded(index, _) => {
+            let curve = state.graphs.curve(index);
+            curve.map(|curve| curve.between(from, to).collect()).unwrap_or_default()
+        }
+        Named::Signal(info) => {
+            let value = |sample: &Picture| sample.value(info.signal).map(|value| value / scale(info));
+            state.graphs.samples(from, to).map(|sample| point(sample.time_s(), value(sample))).collect()
+        }
+    };
     Some(Chart {
-        title: format!("{name} {}", series.unit),
+        title: format!("{name} {}", named.unit()),
         least_range: 1e-3,
         decimals: None,
         strands: vec![Strand {
             name: "now".to_owned(),
             role: Role::Track,
             stroke: Stroke::Solid,
-            points: points.unwrap_or_default(),
-            now: state.series_value(index),
+            points,
+            now: named.value(state),
         }],
     })
 }

@@ -1,18 +1,25 @@
 //! The coordinate grid: parallels and meridians at round degrees, with their degrees at the edges.
 
+use ratatui::layout::Rect;
+
 use crate::geo::{LatLon, LocalFrame};
+use crate::ui::axis::round_step;
 use crate::ui::map_edit;
 use crate::ui::map_point::{MapPoint, to_map};
+use crate::ui::raster::Raster;
 use crate::ui::theme::Role;
 use crate::ui::viewport::Viewport;
 
 use super::labels::Labels;
-use super::raster::Raster;
 
 /// The least distance between two lines, columns of the map.
 const LEAST_COLUMNS: f64 = 16.0;
 /// The distance between two dots of a line, dots.
-const DOT_GAP: usize = 4;
+const DOT_GAP: f64 = 4.0;
+/// The most dots of a line, more than any screen shows.
+const MOST_DOTS: f64 = 2000.0;
+/// The narrowest step, degrees: the resolution of positions.
+const LEAST_DEG: f64 = 1e-7;
 /// The widest step, degrees. Near a pole nothing is wider.
 const WIDEST_DEG: f64 = 10.0;
 
@@ -36,12 +43,13 @@ impl Grid {
         let least_m = LEAST_COLUMNS * view.scale;
         // One step for both directions, so that they can be compared.
         let least_deg = least_m / (2.0 * degree.e.abs().min(degree.n.abs()).max(1e-3));
-        let step_deg = round_step(least_deg).min(WIDEST_DEG);
-        let corner = |n: usize, e: usize| {
-            let [north, east] = [view.north_bounds()[n], view.east_bounds()[e]];
-            map_edit::position(frame, MapPoint::new(north, east))
+        let step_deg = round_step(least_deg.max(LEAST_DEG)).min(WIDEST_DEG);
+        let (north_m, east_m) = view.reach();
+        let corner = |side: f64| {
+            let place = MapPoint::new(view.centre.n + side * north_m, view.centre.e + side * east_m);
+            map_edit::position(frame, place)
         };
-        let (low, high) = (corner(0, 0), corner(1, 1));
+        let (low, high) = (corner(-1.0), corner(1.0));
         let centre = map_edit::position(frame, view.centre);
         let steps = |low: f64, high: f64| {
             let first = (low / step_deg).ceil();
@@ -63,60 +71,57 @@ impl Grid {
     }
 }
 
-/// Returns the shortest round step (1, 2, 5 times a power of ten) not below `degrees`.
-fn round_step(degrees: f64) -> f64 {
-    let degrees = degrees.max(1e-7);
-    let decade = 10_f64.powf(degrees.log10().floor());
-    let steps = [1.0, 2.0, 5.0].map(|step| step * decade);
-    steps.into_iter().find(|step| *step >= degrees * (1.0 - 1e-9)).unwrap_or(10.0 * decade)
+/// The places of the dots of a line, from the west or the south on.
+fn dots<'a>(
+    line: &'a GridLine,
+    is_parallel: bool,
+    view: &'a Viewport,
+) -> impl Iterator<Item = MapPoint> + 'a {
+    let (north_m, east_m) = view.reach();
+    let reach_m = if is_parallel { east_m } else { north_m };
+    // Dots are half a column apart, and rows of dots, too.
+    let gap_m = DOT_GAP * view.scale / 2.0;
+    let count = (2.0 * reach_m / gap_m).clamp(0.0, MOST_DOTS) as u32;
+    (0..=count).map(move |dot| {
+        let along_m = f64::from(dot) * gap_m - reach_m;
+        if is_parallel {
+            MapPoint::new(line.place.n, view.centre.e + along_m)
+        } else {
+            MapPoint::new(view.centre.n + along_m, line.place.e)
+        }
+    })
 }
 
 /// Sets the dots of the lines.
 pub(super) fn paint(frame: &LocalFrame, view: &Viewport, raster: &mut Raster) {
     let grid = Grid::of(frame, view);
-    let (columns, rows) = (usize::from(view.area.width) * 2, usize::from(view.area.height) * 4);
-    for line in &grid.parallels {
-        let (_, y) = view.dot(line.place);
-        for x in (0..columns).step_by(DOT_GAP) {
-            raster.line((x as f64, y), (x as f64, y));
-        }
-    }
-    for line in &grid.meridians {
-        let (x, _) = view.dot(line.place);
-        for y in (0..rows).step_by(DOT_GAP) {
-            raster.line((x, y as f64), (x, y as f64));
+    for (lines, is_parallel) in [(&grid.parallels, true), (&grid.meridians, false)] {
+        for place in lines.iter().flat_map(|line| dots(line, is_parallel, view)) {
+            raster.dot(view.dot(place));
         }
     }
 }
 
-/// Writes the degrees: those of parallels at the left edge, those of meridians above the bottom line.
+/// Writes the degrees where a line enters the window: those of parallels from the west, those of meridians from the
+/// south, above the bottom line.
 pub(super) fn write(frame: &LocalFrame, labels: &mut Labels<'_>) {
     let view = *labels.view();
     let grid = Grid::of(frame, &view);
-    let [west, _] = view.east_bounds();
-    let [south, _] = view.north_bounds();
-    let text = |line: &GridLine| format!("{:.*}°", grid.decimals, line.degrees);
-    for line in &grid.parallels {
-        let edge = MapPoint::new(line.place.n, west + 0.5 * view.scale);
-        labels.on_free_ground(edge, &text(line), &[(0, 0)], Role::Dim);
-    }
-    for line in &grid.meridians {
-        let edge = MapPoint::new(south + 3.0 * view.scale, line.place.e);
-        labels.on_free_ground(edge, &text(line), &[(0, 0), (1, 0)], Role::Dim);
+    let free = Rect { height: view.area.height.saturating_sub(1), ..view.area };
+    let is_free = |place: &MapPoint| view.screen_cell(*place).is_some_and(|cell| free.contains(cell.into()));
+    for (lines, is_parallel) in [(&grid.parallels, true), (&grid.meridians, false)] {
+        for line in lines {
+            let text = format!("{:.*}°", grid.decimals, line.degrees);
+            if let Some(place) = dots(line, is_parallel, &view).find(is_free) {
+                labels.on_free_ground(place, &text, &[(0, 0), (1, 0)], Role::Dim);
+            }
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ratatui::layout::Rect;
-
-    #[test]
-    fn steps_are_round_and_wide_enough() {
-        for (degrees, step) in [(0.0011, 0.002), (0.002, 0.002), (0.3, 0.5), (7.0, 10.0), (1e-9, 1e-7)] {
-            assert!((round_step(degrees) / step - 1.0).abs() < 1e-9, "{degrees}");
-        }
-    }
 
     #[test]
     fn the_lines_are_in_the_window_wherever_it_is() {
@@ -124,7 +129,7 @@ mod tests {
             let frame = LocalFrame::new(lat, lon, 0.0);
             for scale in [0.05, 2.0, 300.0, 20_000.0] {
                 let area = Rect::new(0, 0, 120, 40);
-                let view = Viewport { area, centre: MapPoint::new(3.0, -2.0), scale };
+                let view = Viewport { area, centre: MapPoint::new(3.0, -2.0), scale, up_rad: 0.0 };
                 let grid = Grid::of(&frame, &view);
                 assert!(grid.parallels.len() <= 20 && grid.meridians.len() <= 40, "{lat} {scale}");
                 for line in &grid.parallels {

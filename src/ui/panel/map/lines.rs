@@ -13,6 +13,7 @@ use crate::ui::other_flight::OtherFlight;
 use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
 use crate::ui::track::TrackPoint;
+use crate::ui::viewport::Viewport;
 use crate::ui::{forecast, map_edit};
 
 use super::track_line::TrackLine;
@@ -27,9 +28,10 @@ const RING_GAP: u32 = 6;
 /// A line of more dashes than this is drawn solid, because most of it is outside the window.
 const MAX_DASHES: f64 = 400.0;
 
-/// Draws the lines of a layer in one colour, in metres.
+/// Draws the lines of a layer in one colour, in metres from the middle of the window.
 struct LinePainter<'a, 'c> {
     context: &'a mut Context<'c>,
+    view: Viewport,
     colour: Color,
     dot_m: f64,
 }
@@ -37,12 +39,13 @@ struct LinePainter<'a, 'c> {
 impl LinePainter<'_, '_> {
     fn line(&mut self, a: MapPoint, b: MapPoint) {
         if a.n.is_finite() && a.e.is_finite() && b.n.is_finite() && b.e.is_finite() {
+            let (a, b) = (self.view.relative(a), self.view.relative(b));
             self.context.draw(&CanvasLine::new(a.e, a.n, b.e, b.n, self.colour));
         }
     }
 
     fn track(&mut self, points: &[TrackPoint]) {
-        self.context.draw(&TrackLine { points, colour: self.colour, dot_m: self.dot_m });
+        self.context.draw(&TrackLine { points, view: self.view, colour: self.colour, dot_m: self.dot_m });
     }
 
     /// Draws a dot every few dots along a path.
@@ -113,7 +116,12 @@ pub(super) fn paint(state: &Shared, scene: &Scene, context: &mut Context<'_>) {
     let theme = &state.theme;
     let dot_m = scene.view.scale / 2.0;
     let mut layer = |role: Role, lines: &mut dyn FnMut(&mut LinePainter<'_, '_>)| {
-        lines(&mut LinePainter { context: &mut *context, colour: theme.colour(role), dot_m });
+        lines(&mut LinePainter {
+            context: &mut *context,
+            view: scene.view,
+            colour: theme.colour(role),
+            dot_m,
+        });
         context.layer();
     };
     layer(Role::Fence, &mut |painter| {
@@ -145,10 +153,11 @@ pub(super) fn paint(state: &Shared, scene: &Scene, context: &mut Context<'_>) {
             painter.dotted(ghost.path.iter().map(|point| MapPoint::new(point.n, point.e)));
         }
     });
-    // The track is bright up to the shown instant. The part after it and abandoned branches are faint.
+    // The track is bright up to the shown instant. The part after it, abandoned branches and earlier flights are faint.
     let (points, later) = state.track.points().split_at(state.track_points_shown());
     layer(Role::Dim, &mut |painter| {
-        for track in state.abandoned.tracks().iter().map(Vec::as_slice).chain([later]) {
+        let past = if state.map.hides_past { &[] } else { state.past_flights.tracks() };
+        for track in past.iter().chain(state.abandoned.tracks()).map(Vec::as_slice).chain([later]) {
             painter.track(track);
         }
     });

@@ -3,13 +3,13 @@
 use ratatui::buffer::Buffer;
 
 use crate::plan::WaypointType;
+use crate::ui::axis::round_length;
 use crate::ui::forecast;
 use crate::ui::map_edit::measure;
 use crate::ui::map_point::MapPoint;
 use crate::ui::past_flight;
 use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
-use crate::ui::viewport::round_length;
 
 use super::labels::Labels;
 use super::{PlacedWaypoint, Scene, backdrop, off_screen};
@@ -60,9 +60,10 @@ pub(super) fn write(state: &Shared, scene: &Scene, buffer: &mut Buffer) {
     }
     if let Some(craft) = scene.craft {
         let heading = vehicle.truth.map(|truth| truth.heading_deg).or(vehicle.estimate.heading_deg);
+        let on_map = |heading_deg: f64| arrow(heading_deg - scene.view.up_rad.to_degrees());
         let crashed = vehicle.truth.as_ref().is_some_and(|truth| truth.crashed);
         let (mark, role) =
-            if crashed { ("✗", Role::Fault) } else { (heading.map_or("●", arrow), Role::Craft) };
+            if crashed { ("✗", Role::Fault) } else { (heading.map_or("●", on_map), Role::Craft) };
         labels.mark(craft, mark, role);
     }
     if let Some(cursor) = state.map.edit {
@@ -137,17 +138,19 @@ fn frame_notes(state: &Shared, labels: &mut Labels<'_>) {
         Some(truth) => truth.wind_ne.map(|ne| (ne.x.hypot(ne.y), ne.y.atan2(ne.x).to_degrees())),
         None => vehicle.world.wind.map(|wind| (wind.speed_mps, wind.from_deg + 180.0)),
     };
+    let up_deg = labels.view().up_rad.to_degrees();
     let wind = match wind {
         None => " wind —".to_owned(),
         Some((speed, _)) if speed < 0.05 => " calm".to_owned(),
         Some((speed, to_deg)) => {
-            format!(" wind {} {:4.1} {}", arrow(to_deg), units.speed(speed), units.speed_unit())
+            format!(" wind {} {:4.1} {}", arrow(to_deg - up_deg), units.speed(speed), units.speed_unit())
         }
     };
     let scale = units.length(labels.view().scale);
     let length = round_length(scale * f64::from(labels.view().area.width) / 5.0);
     let columns = (length / scale).round().max(2.0) as usize;
-    let bar = format!("├{}┤ {length} {}   N ↑ ", "─".repeat(columns.saturating_sub(2)), units.length_unit());
+    let (line, unit) = ("─".repeat(columns.saturating_sub(2)), units.length_unit());
+    let bar = format!("├{line}┤ {length} {unit}   N {} ", arrow(-up_deg));
     labels.bottom(&wind, &bar);
 }
 

@@ -18,7 +18,7 @@ pub(super) fn write(state: &Shared, scene: &Scene, is_home_known: bool, labels: 
         let Some(edge) = edge(&view, place) else { continue };
         let (north, east) = (place.n - view.centre.n, place.e - view.centre.e);
         let distance = state.units.length_text(north.hypot(east), 0);
-        labels.mark(edge, arrow(east.atan2(north).to_degrees()), role);
+        labels.mark(edge, arrow((east.atan2(north) - view.up_rad).to_degrees()), role);
         labels.beside(edge, &format!("{name} {distance}"), &distance, role);
     }
 }
@@ -56,7 +56,7 @@ mod tests {
             n in -1e6..1e6_f64, e in -1e6..1e6_f64, width in 8_u16..200, height in 4_u16..60,
         ) {
             let area = Rect::new(2, 3, width, height);
-            let view = Viewport { area, centre: MapPoint::new(5.0, -3.0), scale: 0.5 };
+            let view = Viewport { area, centre: MapPoint::new(5.0, -3.0), scale: 0.5, up_rad: 0.7 };
             prop_assume!(view.screen_cell(MapPoint::new(n, e)).is_none());
             let (column, row) = edge(&view, MapPoint::new(n, e)).and_then(|edge| view.screen_cell(edge)).unwrap();
             prop_assert!(row < area.bottom() - 1);

@@ -3,7 +3,9 @@
 use ratatui::style::Color;
 use ratatui::widgets::canvas::{Line, Painter, Shape};
 
+use crate::ui::map_point::MapPoint;
 use crate::ui::track::TrackPoint;
+use crate::ui::viewport::Viewport;
 
 /// Points closer than this to the last drawn one are left out, dots.
 const NEAR_DOTS: f64 = 0.7;
@@ -11,6 +13,7 @@ const NEAR_DOTS: f64 = 0.7;
 /// A line through the points. Dense points are set as dots, without lines between them.
 pub(super) struct TrackLine<'a> {
     pub(super) points: &'a [TrackPoint],
+    pub(super) view: Viewport,
     pub(super) colour: Color,
     /// The width of a dot, m.
     pub(super) dot_m: f64,
@@ -21,7 +24,12 @@ impl Shape for TrackLine<'_> {
         let Some((first, rest)) = self.points.split_first() else { return };
         let near_m2 = (NEAR_DOTS * self.dot_m).powi(2);
         let mut from = first;
-        let mut from_dot = painter.get_point(first.e, first.n);
+        let place = |point: &TrackPoint| self.view.relative(MapPoint::new(point.n, point.e));
+        let dot = |painter: &Painter<'_, '_>, point: &TrackPoint| {
+            let place = place(point);
+            painter.get_point(place.e, place.n)
+        };
+        let mut from_dot = dot(painter, first);
         if let Some((x, y)) = from_dot {
             painter.paint(x, y, self.colour);
         }
@@ -31,13 +39,16 @@ impl Shape for TrackLine<'_> {
             if north_m * north_m + east_m * east_m < near_m2 && rest.peek().is_some() {
                 continue;
             }
-            let to_dot = painter.get_point(to.e, to.n);
+            let to_dot = dot(painter, to);
             match (from_dot, to_dot) {
                 (Some(a), Some(b)) if a.0.abs_diff(b.0) <= 1 && a.1.abs_diff(b.1) <= 1 => {
                     painter.paint(b.0, b.1, self.colour);
                 }
                 // Clipped at the edge of the window.
-                _ => Line::new(from.e, from.n, to.e, to.n, self.colour).draw(painter),
+                _ => {
+                    let (a, b) = (place(from), place(to));
+                    Line::new(a.e, a.n, b.e, b.n, self.colour).draw(painter);
+                }
             }
             (from, from_dot) = (to, to_dot);
         }
@@ -62,7 +73,9 @@ mod tests {
     }
 
     fn track(points: &[TrackPoint]) -> Buffer {
-        drawn(&TrackLine { points, colour: Color::Green, dot_m: 1.0 })
+        let view =
+            Viewport { area: Rect::new(0, 0, 20, 10), centre: MapPoint::default(), scale: 2.0, up_rad: 0.0 };
+        drawn(&TrackLine { points, view, colour: Color::Green, dot_m: 1.0 })
     }
 
     fn at(n: f64, e: f64) -> TrackPoint {

@@ -1,4 +1,4 @@
-//! The dots of the backdrop: one bit each, in the cells of the map.
+//! The dots of lines, one bit each, in the cells of a part of the screen.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -11,11 +11,13 @@ const COLUMNS: usize = 2;
 const ROWS: usize = 4;
 /// The bits of a Braille character, from the top left by rows.
 const BITS: [[u8; COLUMNS]; ROWS] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
+/// The Braille character without dots.
+const BLANK: u32 = 0x2800;
 /// The most dots that are set, so that a hostile file cannot stop the screen. They fill a window of 200x60 five times.
 const MOST_DOTS: usize = 500_000;
 
 /// The dots of a window.
-pub(super) struct Raster {
+pub(in crate::ui) struct Raster {
     area: Rect,
     cells: Vec<u8>,
     /// The last column and the last row of dots.
@@ -25,15 +27,20 @@ pub(super) struct Raster {
 }
 
 impl Raster {
-    pub(super) fn new(area: Rect) -> Self {
+    pub(in crate::ui) fn new(area: Rect) -> Self {
         let cells = vec![0; usize::from(area.width) * usize::from(area.height)];
         let last = |cells: u16, dots: usize| (usize::from(cells) * dots).saturating_sub(1) as f64;
         let limits = (last(area.width, COLUMNS), last(area.height, ROWS));
         Self { area, cells, limits, left: MOST_DOTS }
     }
 
+    /// Returns the number of columns and of rows of dots.
+    pub(in crate::ui) fn dots(&self) -> (usize, usize) {
+        (usize::from(self.area.width) * COLUMNS, usize::from(self.area.height) * ROWS)
+    }
+
     /// Sets the dots of a line between two places, in dots from the middle of the top left dot.
-    pub(super) fn line(&mut self, from: (f64, f64), to: (f64, f64)) {
+    pub(in crate::ui) fn line(&mut self, from: (f64, f64), to: (f64, f64)) {
         if self.left == 0 || self.cells.is_empty() {
             return;
         }
@@ -70,19 +77,46 @@ impl Raster {
         }
     }
 
-    /// Writes the cells that have dots.
-    pub(super) fn write(&self, style: Style, charset: Charset, buffer: &mut Buffer) {
-        let width = usize::from(self.area.width);
-        for (index, &bits) in self.cells.iter().enumerate().filter(|(_, bits)| **bits != 0) {
-            let place = (self.area.x + (index % width) as u16, self.area.y + (index / width) as u16);
-            let Some(cell) = buffer.cell_mut(place) else { continue };
+    /// Sets the nearest dot to a place.
+    pub(in crate::ui) fn dot(&mut self, place: (f64, f64)) {
+        self.line(place, place);
+    }
+
+    /// Writes the cells that have dots, over everything.
+    pub(in crate::ui) fn write(&self, style: Style, charset: Charset, buffer: &mut Buffer) {
+        let plain = (charset == Charset::Ascii).then_some('.');
+        self.cells(|place, bits| {
+            if let Some(cell) = buffer.cell_mut(place) {
+                cell.set_char(plain.unwrap_or(braille(bits))).set_style(style);
+            }
+        });
+    }
+
+    /// Adds the dots to those that a cell has already. `plain` is the character of a cell in ASCII.
+    pub(in crate::ui) fn add(&self, style: Style, charset: Charset, plain: char, buffer: &mut Buffer) {
+        self.cells(|place, bits| {
+            let Some(cell) = buffer.cell_mut(place) else { return };
+            let there = cell.symbol().chars().next().map_or(0, |there| u32::from(there).wrapping_sub(BLANK));
             let symbol = match charset {
-                Charset::Unicode => char::from_u32(0x2800 + u32::from(bits)).unwrap_or(' '),
-                Charset::Ascii => '.',
+                Charset::Unicode => braille(bits | u8::try_from(there).unwrap_or(0)),
+                Charset::Ascii => plain,
             };
             cell.set_char(symbol).set_style(style);
+        });
+    }
+
+    /// Calls `write` with the screen cell and the bits of each cell that has dots.
+    fn cells(&self, mut write: impl FnMut((u16, u16), u8)) {
+        let width = usize::from(self.area.width);
+        for (index, &bits) in self.cells.iter().enumerate().filter(|(_, bits)| **bits != 0) {
+            write((self.area.x + (index % width) as u16, self.area.y + (index / width) as u16), bits);
         }
     }
+}
+
+/// Returns the Braille character with these dots.
+fn braille(bits: u8) -> char {
+    char::from_u32(BLANK + u32::from(bits)).unwrap_or(' ')
 }
 
 /// Returns the dot nearest to a place inside.
@@ -136,6 +170,22 @@ mod tests {
         raster.write(Style::new(), Charset::Ascii, &mut buffer);
         let row: String = (0..20).map(|x| buffer[(x, 4)].symbol()).collect();
         assert_eq!(row, "   ..........       ");
+    }
+
+    #[test]
+    fn added_lines_leave_the_dots_below_them() {
+        let area = Rect::new(0, 0, 1, 1);
+        let mut buffer = Buffer::empty(area);
+        for (place, symbol) in [((0.0, 0.0), "⠁"), ((1.0, 3.0), "⢁")] {
+            let mut raster = Raster::new(area);
+            raster.dot(place);
+            raster.add(Style::new(), Charset::Unicode, '*', &mut buffer);
+            assert_eq!(buffer[(0, 0)].symbol(), symbol);
+        }
+        let mut raster = Raster::new(area);
+        raster.dot((0.0, 0.0));
+        raster.add(Style::new(), Charset::Ascii, '*', &mut buffer);
+        assert_eq!(buffer[(0, 0)].symbol(), "*");
     }
 
     #[test]

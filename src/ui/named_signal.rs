@@ -1,0 +1,76 @@
+//! The series and signals that can be shown as a graph of their own, by name.
+
+use super::shared::Shared;
+use crate::replay::Series;
+use crate::telemetry::signal::{SIGNALS, Signal, SignalInfo};
+
+/// A curve with a name.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Named<'a> {
+    /// A recorded series, with its index in the flight.
+    Recorded(usize, &'a Series),
+    /// A signal of the table.
+    Signal(&'static SignalInfo),
+}
+
+impl<'a> Named<'a> {
+    /// Returns all of a flight: its recorded series, then the other signals that it may have.
+    pub(super) fn all(state: &'a Shared) -> Vec<Self> {
+        let recorded = state.series();
+        let is_new = |info: &&SignalInfo| {
+            state.graphs.has(info.signal) && recorded.iter().all(|series| series.name != info.name)
+        };
+        let signals = SIGNALS.iter().filter(is_new).map(Self::Signal);
+        recorded
+            .iter()
+            .enumerate()
+            .map(|(index, series)| Self::Recorded(index, series))
+            .chain(signals)
+            .collect()
+    }
+
+    /// Returns the one with this name, if the flight has it.
+    pub(super) fn find(state: &'a Shared, name: &str) -> Option<Self> {
+        let recorded = state.series().iter().enumerate().find(|(_, series)| series.name == name);
+        recorded.map(|(index, series)| Self::Recorded(index, series)).or_else(|| {
+            let signal = Signal::find(name).filter(|signal| state.graphs.has(*signal))?;
+            Some(Self::Signal(signal.info()))
+        })
+    }
+
+    pub(super) fn name(self) -> &'a str {
+        match self {
+            Self::Recorded(_, series) => &series.name,
+            Self::Signal(info) => info.name,
+        }
+    }
+
+    /// Returns the unit of the values; empty for counts and shares.
+    pub(super) fn unit(self) -> &'a str {
+        match self {
+            Self::Recorded(_, series) => series.unit,
+            Self::Signal(info) => info.dimension.unit().map_or("", |unit| unit.name),
+        }
+    }
+
+    /// Returns the meaning, if the table of signals has the name.
+    pub(super) fn help(self) -> Option<&'static str> {
+        Signal::find(self.name()).map(|signal| signal.info().help)
+    }
+
+    /// Returns the value at the cursor, in the unit, if it is known.
+    pub(super) fn value(self, state: &Shared) -> Option<f64> {
+        match self {
+            Self::Recorded(index, _) => state.series_value(index),
+            Self::Signal(info) => {
+                let sample = state.graphs.sample_at(state.graphs.cursor_s(&state.view))?;
+                Some(sample.value(info.signal)? / scale(info))
+            }
+        }
+    }
+}
+
+/// Returns the size of the unit in SI units.
+pub(super) fn scale(info: &SignalInfo) -> f64 {
+    info.dimension.unit().map_or(1.0, |unit| unit.scale)
+}
