@@ -16,6 +16,7 @@ mod editor;
 mod exchange;
 mod first_walk;
 mod fly;
+mod forecast;
 #[cfg(unix)]
 #[path = "../port_support/free_port.rs"]
 mod free_port;
@@ -50,6 +51,7 @@ mod state_files;
 #[cfg(unix)]
 mod streams;
 mod support;
+mod sweep;
 #[cfg(unix)]
 mod terminal;
 #[cfg(unix)]
