@@ -19,8 +19,8 @@ mod shard;
 mod statistics;
 
 pub use answer::{
-    Answer, AnswerBuilder, Cause, Causes, Distribution, GoalOutcome, JudgedGoal, MetricDifference, Success,
-    Versus, Worst,
+    Answer, AnswerBuilder, Cause, Causes, Distribution, FailureClass, GoalOutcome, JudgedGoal,
+    MetricDifference, Scatter, ScatterPoint, Success, Values, Versus, Worst,
 };
 pub use flights::{Campaign, CampaignFlight};
 pub use forecast::{Forecast, ForecastAnswer};

@@ -17,20 +17,21 @@ use super::error::AppError;
 use crate::args::{CampaignArgs, CampaignCommand, ForecastArgs};
 pub(super) use loaded::{OneFlight, open_flight};
 
-/// Flies, or merges the parts of a campaign. The exit code is 0 if every expectation was met.
-pub(super) fn run(args: &CampaignArgs) -> Result<u8, AppError> {
+/// Flies, or merges the parts of a campaign. `repeat` has the words that give the run again. The exit code is 0 if every
+/// expectation was met.
+pub(super) fn run(args: &CampaignArgs, repeat: &[String]) -> Result<u8, AppError> {
     match &args.command {
-        Some(CampaignCommand::Merge(args)) => merge::run(args),
+        Some(CampaignCommand::Merge(args)) => merge::run(args, repeat),
         None => match args.sweep {
-            Some(fault) => sweep::run(args, fault),
-            None => fly::run(args),
+            Some(fault) => sweep::run(args, fault, repeat),
+            None => fly::run(args, repeat),
         },
     }
 }
 
 /// Flies a plan in the weather to come. The exit code is 0 if the answer is go.
-pub(super) fn forecast(args: &ForecastArgs) -> Result<u8, AppError> {
-    forecast::run(args)
+pub(super) fn forecast(args: &ForecastArgs, repeat: &[String]) -> Result<u8, AppError> {
+    forecast::run(args, repeat)
 }
 
 /// Returns the version that flies, which is in every line.

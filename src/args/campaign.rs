@@ -134,6 +134,10 @@ pub struct CampaignOutputArgs {
     /// Writes the answer in Markdown, for a pull request
     #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
     pub markdown: Option<PathBuf>,
+
+    /// Writes a report as one HTML file: the answer, distributions, what explains the failures, the worst flights
+    #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
+    pub report: Option<PathBuf>,
 }
 
 /// The other tasks of `campaign`.

@@ -56,8 +56,12 @@ pub struct ForecastArgs {
     pub go_from: Option<f64>,
 
     /// Writes the answer as one JSON object; - is standard output, in place of the sentence
-    #[arg(long, value_name = "FILE|-", help_heading = "Answer")]
+    #[arg(long, value_name = "FILE|-", help_heading = "Output")]
     pub json: Option<OutputFile>,
+
+    /// Writes a report as one HTML file: the answer, distributions, what explains the failures
+    #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
+    pub report: Option<PathBuf>,
 
     /// Number of flights [default: 100]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000), help_heading = "How")]

@@ -11,6 +11,9 @@ const OUTPUT: &str = "Output";
 pub(super) fn words(matches: &ArgMatches, command: &clap::Command) -> Vec<String> {
     let (name, typed) = matches.subcommand().unwrap_or(("", matches));
     let Some(definition) = command.find_subcommand(name) else { return Vec::new() };
+    if typed.subcommand().is_some() {
+        return std::iter::once(name.to_owned()).chain(words(typed, definition)).collect();
+    }
     let mut parts: Vec<(usize, Vec<String>)> = Vec::new();
     for option in definition.get_arguments() {
         let id = option.get_id().as_str();
@@ -90,5 +93,18 @@ mod tests {
             ["check", "guide-1", "a b.toml", "--seeds", "1..3"]
         );
         assert_eq!(repeated(&["doctor"]), ["doctor"]);
+        assert_eq!(
+            repeated(&[
+                "campaign",
+                "merge",
+                "a.jsonl",
+                "b.jsonl",
+                "--out",
+                "run.jsonl",
+                "--report",
+                "r.html"
+            ]),
+            ["campaign", "merge", "a.jsonl", "b.jsonl"]
+        );
     }
 }

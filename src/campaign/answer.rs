@@ -2,6 +2,7 @@
 
 mod builder;
 mod causes;
+mod failures;
 mod goals;
 mod versus;
 
@@ -10,6 +11,7 @@ use crate::scenario::Quantity;
 
 pub use builder::AnswerBuilder;
 pub use causes::{Cause, Causes};
+pub use failures::{FailureClass, Scatter, ScatterPoint, Values};
 pub use goals::{GoalOutcome, JudgedGoal};
 pub use versus::{MetricDifference, Versus};
 
@@ -69,6 +71,15 @@ pub struct Distribution {
     pub greatest: f64,
     /// `true` if the quantiles are exact; otherwise they are within [`Summary::ERROR`](super::Summary::ERROR).
     pub is_exact: bool,
+    /// The quantiles in steps of a hundredth, from the least value to the greatest.
+    pub curve: Vec<f64>,
+    /// The number of values in each of [`CLASSES`](Self::CLASSES) classes of equal width.
+    pub classes: Vec<u64>,
+}
+
+impl Distribution {
+    /// The number of classes.
+    pub const CLASSES: usize = 24;
 }
 
 /// One of the worst flights.

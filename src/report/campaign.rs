@@ -7,13 +7,13 @@ mod json;
 mod junit;
 mod line;
 mod markdown;
-mod sentences;
-mod shown;
+pub(super) mod sentences;
+pub(super) mod shown;
 
 use crate::campaign::{Answer, Shard};
 
 pub use csv::CsvTable;
-pub use forecast::{forecast_json, forecast_sentence};
+pub use forecast::{forecast_json, forecast_reason, forecast_sentence};
 pub use header::{Contents, Definition, OtherSide, RunHeader};
 pub use json::answer_json;
 pub use junit::answer_junit;

@@ -38,7 +38,7 @@ impl SweptFlight<'_> {
     }
 
     /// Returns the fault without its time: `gps-loss,6`.
-    fn fault_name(&self) -> String {
+    pub(super) fn fault_name(&self) -> String {
         let text = self.at(0).to_string();
         text.replacen("@0", "", 1)
     }
@@ -46,6 +46,11 @@ impl SweptFlight<'_> {
     /// Returns the fault at a second.
     fn at(&self, second: u32) -> ScheduledFault {
         ScheduledFault { start: FaultStart::Engagement(f64::from(second)), ..self.fault }
+    }
+
+    /// Returns the fault at the second to look at.
+    pub fn worst_fault(&self) -> Option<ScheduledFault> {
+        self.worst().map(|worst| self.at(worst.second))
     }
 
     fn spans(&self) -> impl Iterator<Item = Span<'_>> {
@@ -66,48 +71,89 @@ impl SweptFlight<'_> {
     }
 }
 
+/// A time in which the fault has the same fate, in words.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct SpanRow {
+    /// Minutes and seconds: `0:20 to 0:29`.
+    pub(super) time: String,
+    pub(super) fate: String,
+    /// The class of its cell: good, bad or neither.
+    pub(super) class: &'static str,
+    /// The greatest distance at the end; empty if the craft comes home.
+    pub(super) off: String,
+    /// The reason of the flight that ends there.
+    pub(super) reason: String,
+}
+
 /// Returns the results as lines.
 pub fn sweep_sentences(swept: &SweptFlight<'_>) -> Vec<String> {
-    let counts: Vec<String> = Fate::iter().map(|fate| format!("{} {fate}", swept.count(fate))).collect();
-    let (name, fault, flights) = (swept.name, swept.fault_name(), swept.points.len());
-    let mut lines = vec![format!(
-        "{name}, {fault} at every second of the flight ({flights} flights): {}.",
-        counts.join(", ")
-    )];
-    lines.push(match swept.without {
-        Some((result, reason)) => format!("Without the fault the flight ends {result}: {reason}."),
-        None => "The flight was stopped before its end, so later seconds are missing.".to_owned(),
-    });
-    lines.push(String::new());
-    lines.extend(swept.spans().map(|span| span_line(&span)));
+    let mut lines = vec![
+        format!(
+            "{}, {} at every second of the flight ({} flights): {}.",
+            swept.name,
+            swept.fault_name(),
+            swept.points.len(),
+            summary(swept)
+        ),
+        without(swept),
+        String::new(),
+    ];
+    lines.extend(span_rows(swept).iter().map(span_line));
     lines.push(String::new());
     lines.extend(drawn::timeline(swept.points));
     lines.push(String::new());
     lines.extend(drawn::map(swept.points));
     lines.push(String::new());
     lines.push(drawn::LEGEND.to_owned());
-    if let Some(worst) = swept.worst() {
-        lines.push(format!(
-            "The worst second: betadeck fly or betadeck open with the same options and --fault {}",
-            swept.at(worst.second)
-        ));
-    }
+    lines.extend(swept.worst_fault().map(|fault| {
+        format!("The worst second: betadeck fly or betadeck open with the same options and --fault {fault}")
+    }));
     lines
 }
 
-fn span_line(span: &Span<'_>) -> String {
+/// Returns how often each fate comes.
+pub(super) fn summary(swept: &SweptFlight<'_>) -> String {
+    let counts: Vec<String> = Fate::iter().map(|fate| format!("{} {fate}", swept.count(fate))).collect();
+    counts.join(", ")
+}
+
+/// Returns how the flight ends without the fault.
+pub(super) fn without(swept: &SweptFlight<'_>) -> String {
+    match swept.without {
+        Some((result, reason)) => format!("Without the fault the flight ends {result}: {reason}."),
+        None => "The flight was stopped before its end, so later seconds are missing.".to_owned(),
+    }
+}
+
+/// Returns the times with the same fate.
+pub(super) fn span_rows(swept: &SweptFlight<'_>) -> Vec<SpanRow> {
+    swept.spans().map(|span| span_row(&span)).collect()
+}
+
+fn span_row(span: &Span<'_>) -> SpanRow {
     let seconds = |point: Option<&SweepPoint>| minutes(point.map_or(0, |point| point.second));
     let (first, last) = (seconds(span.points.first()), seconds(span.points.last()));
     let time = if first == last { first } else { format!("{first} to {last}") };
+    let class = match span.fate {
+        Fate::Home => "passed",
+        Fate::Off => "",
+        Fate::Lost => "failed",
+    };
     let fate = span.fate.to_string();
-    if span.fate == Fate::Home {
+    let worst = span.points.iter().max_by(|a, b| a.off_m.total_cmp(&b.off_m));
+    let worst = worst.filter(|_| span.fate != Fate::Home);
+    let up_to = if span.points.len() == 1 { "" } else { "up to " };
+    let off =
+        worst.map_or_else(String::new, |worst| format!("{up_to}{}", shown(worst.off_m, Dimension::LENGTH)));
+    SpanRow { time, fate, class, off, reason: worst.map_or_else(String::new, |worst| worst.reason.clone()) }
+}
+
+fn span_line(row: &SpanRow) -> String {
+    let SpanRow { time, fate, off, reason, .. } = row;
+    if off.is_empty() {
         return format!("  {time:<13} {fate}");
     }
-    let worst = span.points.iter().max_by(|a, b| a.off_m.total_cmp(&b.off_m));
-    let (off_m, reason) = worst.map_or((0.0, ""), |worst| (worst.off_m, worst.reason.as_str()));
-    let up_to = if span.points.len() == 1 { "" } else { "up to " };
-    let off = shown(off_m, Dimension::LENGTH);
-    format!("  {time:<13} {fate:<4}  {up_to}{off} from home and from its LAND: {reason}")
+    format!("  {time:<13} {fate:<4}  {off} from home and from its LAND: {reason}")
 }
 
 /// Returns minutes and seconds: `1:52`.

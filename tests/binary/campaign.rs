@@ -116,7 +116,18 @@ fn the_answer_goes_to_files_and_goals_decide_the_exit_code() {
     let with = |goals: &str| format!("{STANDING}[campaign]\nflights = 30\nexpect = [{goals}]\n");
     sandbox.write("met.toml", &with("'success >= 40 %', 'max(blow) <= 20 m/s'"));
     sandbox.write("failed.toml", &with("'success >= 40 %', 'success >= 99 % with 95 % confidence'"));
-    let outputs = ["--json", "a.json", "--junit", "a.xml", "--markdown", "a.md", "--csv", "a.csv"];
+    let outputs = [
+        "--json",
+        "a.json",
+        "--junit",
+        "a.xml",
+        "--markdown",
+        "a.md",
+        "--csv",
+        "a.csv",
+        "--report",
+        "a.html",
+    ];
     let ran = sandbox.run(&[&["campaign", "met.toml"][..], &outputs].concat()).exits(0);
     assert!(ran.out.contains("\n✓ success >= 40 %: "), "{}", ran.out);
     assert!(ran.out.contains("(--out RUN.jsonl keeps the flights"), "{}", ran.out);
@@ -125,6 +136,9 @@ fn the_answer_goes_to_files_and_goals_decide_the_exit_code() {
     assert_eq!(answer["causes"][0]["input"], "wind_mps");
     assert!(sandbox.read("a.xml").contains("<testcase classname=\"standing\" name=\"success &gt;= 40 %\"/>"));
     assert!(sandbox.read("a.md").starts_with("### ✅ standing, 30 flights, monte-carlo: "));
+    let page = sandbox.read("a.html");
+    assert!(page.contains("<!-- betadeck report -->") && page.contains("<h1>standing</h1>"));
+    assert!(page.contains("Failures by wind_mps.") && page.contains("betadeck campaign met.toml</code>"));
     let table = sandbox.read("a.csv");
     let head = "flight,side,seed,outcome,result,margin,hash,ap_max_angle,gust_mps,mass_pct,wind_from_deg,wind_mps,cross_track";
     assert!(table.starts_with(head), "{}", table.lines().next().unwrap_or_default());
@@ -274,12 +288,15 @@ fn seven_shards_make_the_file_of_one_process() {
     let merge = |parts: &[String]| {
         let mut arguments = vec!["campaign", "merge"];
         arguments.extend(parts.iter().map(String::as_str));
-        arguments.extend(["--out", "merged.jsonl"]);
+        arguments.extend(["--out", "merged.jsonl", "--report", "merged.html"]);
         sandbox.run(&arguments)
     };
     let merged = merge(&parts).exits(1);
     assert_eq!(sandbox.read("merged.jsonl"), sandbox.read("whole.jsonl"));
     assert_eq!(merged.out, whole.out.replace("whole.jsonl", "merged.jsonl"));
+    let page = sandbox.read("merged.html");
+    assert!(page.contains("<code>betadeck open merged.jsonl:"), "{page}");
+    assert!(page.contains("<code>betadeck campaign merge part-7.jsonl part-6.jsonl"), "{page}");
     std::fs::remove_file(sandbox.path("merged.jsonl")).expect("removed");
 
     // Lost, doubled, unfinished and foreign parts are found.

@@ -6,6 +6,7 @@ use crate::support::Sandbox;
 fn a_sweep_shows_each_second_at_which_a_fault_is_fatal() {
     let sandbox = Sandbox::new();
     let arguments = ["campaign", "land", "--takeoff", "2", "--sweep", "motor,,1:0", "--csv", "s.csv"];
+    let arguments = [&arguments[..], &["--report", "s.html"]].concat();
     let ran = sandbox.run(&arguments).exits(1);
     let first = ran.out.lines().next().expect("a sentence");
     assert!(first.starts_with("land, motor,,1:0 at every second of the flight ("), "{first}");
@@ -17,16 +18,23 @@ fn a_sweep_shows_each_second_at_which_a_fault_is_fatal() {
     for (second, row) in rows.iter().enumerate() {
         assert!(row.starts_with(&format!("{second},")), "{row}");
     }
+    let page = sandbox.read("s.html");
+    for part in ["✗ may be lost", "betadeck campaign land --takeoff 2 --sweep motor,,1:0</code>", "lost ("]
+    {
+        assert!(page.contains(part), "{part} is not in the page");
+    }
     // The command of the worst second leads to a flight that ends so.
     let worst =
         ran.out.lines().find_map(|line| line.split_once(" and --fault ")).expect("the worst second").1;
     let flown = sandbox.run(&["fly", "land", "--takeoff", "2", "--fault", worst]).exits(1);
     assert!(flown.out.contains("Crashed: "), "{}", flown.out);
+    assert!(page.contains(&format!("<code>betadeck fly land --takeoff 2 --fault {worst}</code>")), "{worst}");
 }
 
 #[test]
 fn a_sweep_takes_a_plan_and_no_other_program() {
     let sandbox = Sandbox::new();
+    sandbox.write("flown.toml", "format = 1\n[plan]\nbuiltin = \"land\"\n");
     for (arguments, sentence) in [
         (&["campaign", "flown.toml", "--sweep", "gps-loss"][..], "flown.toml is none: name the plan"),
         (&["campaign", "land", "--sweep", "gps-loss@3"], "leave the time out"),

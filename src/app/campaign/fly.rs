@@ -14,6 +14,7 @@ use super::{shard, version};
 use crate::app::error::{self, AppError};
 use crate::app::interrupt::interrupt_flag;
 use crate::app::parallel;
+use crate::app::report;
 use crate::args::CampaignArgs;
 use crate::campaign::{Record, Shard};
 use crate::report::campaign::record_line;
@@ -22,7 +23,7 @@ use crate::report::campaign::record_line;
 const ATTEMPTS: u32 = 3;
 
 /// Flies and answers. The exit code is 0 if every goal was met.
-pub(super) fn run(args: &CampaignArgs) -> Result<u8, AppError> {
+pub(super) fn run(args: &CampaignArgs, repeat: &[String]) -> Result<u8, AppError> {
     let shard = shard::of(args.shard)?;
     let (loaded, out, shard) = match definition::read(args)? {
         Wanted::Scenario(definition, sources) | Wanted::Plan(definition, sources) => {
@@ -62,6 +63,7 @@ pub(super) fn run(args: &CampaignArgs) -> Result<u8, AppError> {
         outputs,
         file,
         trouble: None,
+        command: report::command(repeat),
     };
     run.fly(lines.start + before..lines.end, parallel::threads(args.jobs), &interrupted)?;
     let is_whole = run.next == lines.end;
@@ -102,6 +104,8 @@ struct Run<'a> {
     reported: BTreeSet<String>,
     /// The reason why no more flights can be flown or kept.
     trouble: Option<AppError>,
+    /// The command that gives the run again.
+    command: String,
 }
 
 /// A flight that is over.
@@ -174,7 +178,7 @@ impl Run<'_> {
         self.progress.clear();
         let kept = self.file.take().map_or(Ok(()), RunFile::finish);
         let seconds = self.progress.seconds();
-        let titles = Titles { loaded: self.loaded, run: out, shard };
+        let titles = Titles { loaded: self.loaded, run: out, shard, command: &self.command };
         let answer = self.outputs.finish(&titles)?;
         let new = answer.flown.saturating_mul(self.loaded.header.sides()).saturating_sub(before);
         let old = if before > 0 { format!("; {before} were flown before") } else { String::new() };

@@ -11,9 +11,12 @@ use crate::app::error;
 use crate::app::interrupt::interrupt_flag;
 use crate::app::output_file::FinalOutput;
 use crate::app::parallel;
+use crate::app::report;
 use crate::args::{CampaignArgs, CampaignOutputArgs, FlightArgs, ForecastArgs, OutputFile};
-use crate::campaign::{Forecast, Standing};
-use crate::report::campaign::{forecast_json, forecast_sentence};
+use crate::campaign::{Forecast, ForecastAnswer, Standing};
+use crate::report::campaign::{Reported, forecast_json, forecast_reason, forecast_sentence};
+use crate::report::flight::Verdict;
+use crate::report::html::{CampaignPage, campaign_page};
 
 /// The usual number of flights.
 const FLIGHTS: u64 = 100;
@@ -22,20 +25,22 @@ const RESERVE_PCT: f64 = 20.0;
 const GO_FROM_PCT: f64 = 95.0;
 
 /// Flies and answers. The exit code is 0 if the answer is go.
-pub(super) fn run(args: &ForecastArgs) -> Result<u8, AppError> {
+pub(super) fn run(args: &ForecastArgs, repeat: &[String]) -> Result<u8, AppError> {
     let Wanted::Plan(definition, sources) = definition::read(&campaign_of(args))? else {
         return Err(AppError::input(format!(
             "forecast flies a plan, and {} is none: name a plan, or fly it with betadeck campaign",
             args.plan
         )));
     };
-    let output = CampaignOutputArgs { json: args.json.clone(), ..CampaignOutputArgs::default() };
+    let (json, page) = (args.json.clone(), args.report.clone());
+    let output = CampaignOutputArgs { json, report: page, ..CampaignOutputArgs::default() };
     outputs::claim(&output, None, &super::fly::inputs(&definition.file, &sources))?;
     let loaded = Loaded::new(*definition, sources)?;
     let json = match &args.json {
         Some(OutputFile::File(path)) => Some(FinalOutput::begin(path)?),
         Some(OutputFile::Stdout) | None => None,
     };
+    let page = args.report.as_deref().map(FinalOutput::begin).transpose()?;
     let flights = loaded.header.flights;
     let reserve = args.reserve.unwrap_or(RESERVE_PCT) / 100.0;
     let mut forecast = Forecast::new(loaded.campaign.scenario(), flights, reserve);
@@ -71,12 +76,41 @@ pub(super) fn run(args: &ForecastArgs) -> Result<u8, AppError> {
         _ => error::print(&(forecast_sentence(name, &answer, go_from) + "\n")),
     }?;
     json.map_or(Ok(()), |file| file.write(object().as_bytes()))?;
+    page.map_or(Ok(()), |file| {
+        let page = forecast_page(name, &answer, go_from, &loaded.header.version, &report::command(repeat));
+        file.write(page.as_bytes())
+    })?;
     error::tell(&format!("{flown} flights in {:.2} s", progress.seconds()));
     Ok(match () {
         () if is_stopped() => error::INTERRUPTED,
         () if answer.is_go(go_from) => 0,
         () => error::FAILED,
     })
+}
+
+fn forecast_page(
+    name: &str,
+    forecast: &ForecastAnswer,
+    go_from: f64,
+    version: &str,
+    command: &str,
+) -> String {
+    let reported = Reported {
+        answer: &forecast.answer,
+        name,
+        version,
+        design: None,
+        run: None,
+        sides: None,
+        shard: None,
+    };
+    let is_go = forecast.is_go(go_from);
+    let reason = forecast_reason(forecast);
+    let word = if is_go { "go" } else { "no-go" }.to_owned();
+    let verdict = Some(Verdict { passed: Some(is_go), word, reason });
+    let page =
+        CampaignPage { kind: "Forecast by betadeck", reported: &reported, verdict, command: Some(command) };
+    campaign_page(&page, &report::program())
 }
 
 /// Returns the campaign whose flights the forecast flies.

@@ -9,6 +9,7 @@ use super::run_file::RunReader;
 use crate::app::AppError;
 use crate::app::error;
 use crate::app::output_file::StreamedOutput;
+use crate::app::report;
 use crate::args::MergeArgs;
 use crate::campaign::Shard;
 
@@ -16,7 +17,7 @@ use crate::campaign::Shard;
 const SHOWN: usize = 20;
 
 /// Merges and answers. The exit code is 0 if every goal was met.
-pub(super) fn run(args: &MergeArgs) -> Result<u8, AppError> {
+pub(super) fn run(args: &MergeArgs, repeat: &[String]) -> Result<u8, AppError> {
     outputs::claim(&args.output, Some(&args.out), &args.parts)?;
     let parts = sorted(args)?;
     let header = match parts.first() {
@@ -54,7 +55,11 @@ pub(super) fn run(args: &MergeArgs) -> Result<u8, AppError> {
         return Err(AppError::input(lost.join("\n")));
     }
     out.finish()?;
-    let answer = outputs.finish(&Titles { loaded: &loaded, run: Some(&args.out), shard: Shard::WHOLE })?;
+    // A merge needs its output.
+    let words = [repeat, &["--out".to_owned(), args.out.display().to_string()]].concat();
+    let command = report::command(&words);
+    let titles = Titles { loaded: &loaded, run: Some(&args.out), shard: Shard::WHOLE, command: &command };
+    let answer = outputs.finish(&titles)?;
     Ok(if answer.is_met() { 0 } else { error::FAILED })
 }
 

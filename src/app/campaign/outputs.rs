@@ -6,12 +6,13 @@ use std::path::{Path, PathBuf};
 use super::loaded::Loaded;
 use crate::app::error::{self, AppError};
 use crate::app::output_file::{self, FinalOutput, KeptFiles, StreamedOutput};
-use crate::app::setup;
+use crate::app::{report, setup};
 use crate::args::{CampaignOutputArgs, OutputFile};
 use crate::campaign::{Answer, AnswerBuilder, Record, Shard, Standing};
 use crate::report::campaign::{
     CsvTable, Reported, answer_json, answer_junit, answer_markdown, answer_sentences,
 };
+use crate::report::html::{CampaignPage, campaign_page};
 use crate::scenario::Metric;
 use strum::IntoEnumIterator as _;
 
@@ -22,6 +23,7 @@ pub(super) struct Outputs {
     json: Option<Json>,
     junit: Option<FinalOutput>,
     markdown: Option<FinalOutput>,
+    report: Option<FinalOutput>,
     /// The number of flights that failed.
     failed: u64,
 }
@@ -43,6 +45,8 @@ pub(super) struct Titles<'a> {
     /// The file of the flights.
     pub(super) run: Option<&'a Path>,
     pub(super) shard: Shard,
+    /// The command that gives the answer again.
+    pub(super) command: &'a str,
 }
 
 /// Checks that no output replaces an input, another output, or a file of the program.
@@ -66,6 +70,7 @@ pub(super) fn claim(
         ("--json", json),
         ("--junit", args.junit.as_deref()),
         ("--markdown", args.markdown.as_deref()),
+        ("--report", args.report.as_deref()),
     ]
     .into_iter()
     .filter_map(|(option, path)| Some((option, path?)))
@@ -85,8 +90,8 @@ impl Outputs {
         let has_two_sides = loaded.header.sides() > 1;
         let builder = AnswerBuilder::new(loaded.campaign.scenario(), wanted, has_two_sides);
         let csv = args.csv.as_ref().map(|path| Table::begin(path, loaded)).transpose()?;
-        let (junit, markdown) = (begin(&args.junit)?, begin(&args.markdown)?);
-        Ok(Self { builder, csv, json, junit, markdown, failed: 0 })
+        let (junit, markdown, report) = (begin(&args.junit)?, begin(&args.markdown)?, begin(&args.report)?);
+        Ok(Self { builder, csv, json, junit, markdown, report, failed: 0 })
     }
 
     /// Adds a flight, old or new.
@@ -137,10 +142,16 @@ impl Outputs {
             self.csv.map_or(Ok(()), |csv| csv.output.finish()),
             to(self.junit, &|| answer_junit(&reported)),
             to(self.markdown, &|| answer_markdown(&reported)),
+            to(self.report, &|| page(&reported, titles.command)),
         ];
         written.into_iter().collect::<Result<(), AppError>>()?;
         Ok(answer)
     }
+}
+
+fn page(reported: &Reported<'_>, command: &str) -> String {
+    let page = CampaignPage { kind: "Campaign by betadeck", reported, verdict: None, command: Some(command) };
+    campaign_page(&page, &report::program())
 }
 
 fn name_of_a(header: &crate::report::campaign::RunHeader) -> String {

@@ -12,9 +12,12 @@ use crate::app::error;
 use crate::app::interrupt::interrupt_flag;
 use crate::app::output_file::FinalOutput;
 use crate::app::parallel;
+use crate::app::report;
 use crate::args::{CampaignArgs, OutputFile};
 use crate::flight::Flight;
 use crate::flight::sweep::{Branch, Fate, Sweep, SweepPoint};
+use crate::report::flight::FlightReport;
+use crate::report::html::{SweepPage, sweep_page};
 use crate::report::sweep::{SweptFlight, sweep_csv, sweep_json, sweep_sentences};
 use crate::scenario::CaseFlight;
 use crate::sim::ScheduledFault;
@@ -23,7 +26,7 @@ use crate::sim::ScheduledFault;
 const WAITING: usize = 64;
 
 /// Flies and reports. The exit code is 0 if the craft is lost at no second.
-pub(super) fn run(args: &CampaignArgs, fault: ScheduledFault) -> Result<u8, AppError> {
+pub(super) fn run(args: &CampaignArgs, fault: ScheduledFault, repeat: &[String]) -> Result<u8, AppError> {
     let name = args.what.as_deref().unwrap_or_default();
     let (definition, sources) = match definition::read(args)? {
         Wanted::Plan(definition, sources) => (*definition, sources),
@@ -40,12 +43,15 @@ pub(super) fn run(args: &CampaignArgs, fault: ScheduledFault) -> Result<u8, AppE
     }
     outputs::claim(&args.output, None, &super::fly::inputs(&definition.file, &sources))?;
     let loaded = Loaded::new(definition, sources)?;
-    let mut sweep = Sweep::new(flight(&loaded)?, fault);
+    let flight = flight(&loaded)?;
+    let about = about(&loaded, &flight);
+    let mut sweep = Sweep::new(flight, fault);
     let json = match &args.output.json {
         Some(OutputFile::File(path)) => Some(FinalOutput::begin(path)?),
         Some(OutputFile::Stdout) | None => None,
     };
     let csv = args.output.csv.as_deref().map(FinalOutput::begin).transpose()?;
+    let page = args.output.report.as_deref().map(FinalOutput::begin).transpose()?;
 
     let interrupted = interrupt_flag()?;
     let is_stopped = || interrupted.load(Ordering::Relaxed);
@@ -86,7 +92,18 @@ pub(super) fn run(args: &CampaignArgs, fault: ScheduledFault) -> Result<u8, AppE
     };
     let json = json.map_or(Ok(()), |file| file.write((sweep_json(&swept) + "\n").as_bytes()));
     let csv = csv.map_or(Ok(()), |file| file.write(&sweep_csv(&points)));
-    printed.and(json).and(csv)?;
+    let page = page.map_or(Ok(()), |file| {
+        let worst = swept.worst_fault().map(|fault| of_fault(repeat, fault));
+        let page = SweepPage {
+            swept: &swept,
+            route: about.route.as_ref(),
+            fence_m: about.fence_m,
+            command: Some(&report::command(repeat)),
+            worst: worst.as_deref(),
+        };
+        file.write(sweep_page(&page, &report::program()).as_bytes())
+    });
+    printed.and(json).and(csv).and(page)?;
     let seconds = progress.seconds();
     error::tell(&format!("{} flights in {seconds:.2} s", points.len()));
     Ok(match () {
@@ -94,6 +111,27 @@ pub(super) fn run(args: &CampaignArgs, fault: ScheduledFault) -> Result<u8, AppE
         () if swept.count(Fate::Lost) == 0 => 0,
         () => error::FAILED,
     })
+}
+
+/// Returns the places of the plan, for a report.
+fn about(loaded: &Loaded, flight: &Flight) -> FlightReport {
+    let plan = loaded.campaign.scenario().cases.first().map(|case| case.setup.plan.plan.clone());
+    report::about(flight.vehicle(), &loaded.header.name, &plan.unwrap_or_default())
+}
+
+/// Returns the command that flies the plan with the fault at one second.
+fn of_fault(repeat: &[String], fault: ScheduledFault) -> String {
+    let mut words = vec!["fly".to_owned()];
+    let mut typed = repeat.iter().skip(1);
+    while let Some(word) = typed.next() {
+        match word.as_str() {
+            "--sweep" | "--jobs" => drop(typed.next()),
+            word if word.starts_with("--sweep=") || word.starts_with("--jobs=") => {}
+            _ => words.push(word.clone()),
+        }
+    }
+    words.extend(["--fault".to_owned(), fault.to_string()]);
+    report::command(&words)
 }
 
 /// Returns the flight of the plan, at home.

@@ -162,6 +162,10 @@ impl AnswerBuilder {
                 p95,
                 greatest: summary.greatest()?,
                 is_exact: summary.is_exact(),
+                curve: summary
+                    .quantiles(std::array::from_fn::<f64, 101, _>(|at| at as f64 / 100.0))?
+                    .to_vec(),
+                classes: summary.histogram(Distribution::CLASSES),
             })
         };
         self.quantities.iter().filter_map(distribution).collect()

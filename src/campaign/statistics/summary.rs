@@ -94,6 +94,20 @@ impl Summary {
         Some(shares.map(quantile))
     }
 
+    /// Returns the number of values in each of so many classes of equal width, from the least value to the greatest.
+    pub fn histogram(&self, classes: usize) -> Vec<u64> {
+        let mut counts = vec![0; classes.max(1)];
+        let width = (self.greatest - self.least) / counts.len() as f64;
+        let last = counts.len() - 1;
+        let mut add = |value: f64, count: u64| {
+            let class = if width > 0.0 { ((value - self.least) / width) as usize } else { 0 };
+            counts[class.min(last)] += count;
+        };
+        self.values.iter().for_each(|&value| add(value, 1));
+        self.classes.iter().for_each(|(&class, &count)| add(value_of(class), count));
+        counts
+    }
+
     /// Returns the value with a rank, from 1.
     pub fn ranked(&self, rank: u64) -> Option<f64> {
         let index = rank.checked_sub(1).filter(|&index| index < self.count)?;
@@ -183,6 +197,17 @@ mod tests {
             );
         }
         assert!(summary.classes.len() < 60_000, "{}", summary.classes.len());
+    }
+
+    #[test]
+    fn each_value_is_in_one_class_of_the_histogram() {
+        assert_eq!(of([0.0, 1.0, 2.5, 9.9, 10.0]).histogram(5), [2, 1, 0, 0, 2]);
+        assert_eq!(of([3.0, 3.0]).histogram(4), [2, 0, 0, 0]);
+        assert_eq!(of([]).histogram(3), [0, 0, 0]);
+        let counted = of((0..100_000).map(|index| f64::from(index % 1000)));
+        let counts = counted.histogram(10);
+        assert!(!counted.is_exact() && counts.iter().sum::<u64>() == 100_000);
+        assert!(counts.iter().all(|count| (9_800..=10_200).contains(count)), "{counts:?}");
     }
 
     #[test]

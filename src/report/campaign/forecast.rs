@@ -8,14 +8,17 @@ use crate::scenario::percent;
 
 /// Returns the answer. `go_from` is the share of successful flights from which on it is go.
 pub fn forecast_sentence(name: &str, forecast: &ForecastAnswer, go_from: f64) -> String {
+    let word = if forecast.is_go(go_from) { "GO" } else { "NO-GO" };
+    format!("{word} {name}: {}", forecast_reason(forecast))
+}
+
+/// Returns the reason of the answer.
+pub fn forecast_reason(forecast: &ForecastAnswer) -> String {
     let answer = &forecast.answer;
     let success = &answer.success;
-    let word = if forecast.is_go(go_from) { "GO" } else { "NO-GO" };
     let whole = |share: f64| format!("{:.0} %", 100.0 * share);
     let reserve = whole(forecast.reserve);
-    let Some(share) = success.share() else {
-        return format!("{word} {name}: no flight could be judged");
-    };
+    let Some(share) = success.share() else { return "no flight could be judged".to_owned() };
     let mut parts = vec![format!(
         "{} complete with more than {reserve} of the battery left ({} of {}; {} to {} with 95 % confidence)",
         percent(share),
@@ -33,7 +36,7 @@ pub fn forecast_sentence(name: &str, forecast: &ForecastAnswer, go_from: f64) ->
         }
     }));
     parts.extend(change(forecast).map(|change| format!("to change: {change}")));
-    format!("{word} {name}: {}", parts.join("; "))
+    parts.join("; ")
 }
 
 /// Returns the answer as one JSON object. Shares are between 0 and 1, lengths in metres.
@@ -171,6 +174,7 @@ mod tests {
             split: Split { rule, inside: (18, 20), outside: (0, 80), gain: 0.5, p: 1e-6 },
             rho: None,
             is_real: true,
+            classes: Vec::new(),
         };
         assert_eq!(
             avoid(&split(Rule::AtMost(-12.19))),

@@ -13,11 +13,7 @@ const CAUSES: usize = 3;
 pub fn answer_sentences(reported: &Reported<'_>) -> Vec<String> {
     let answer = reported.answer;
     let mut lines = vec![format!("{}.", success(reported))];
-    if answer.results.len() > 1 {
-        let results: Vec<String> =
-            answer.results.iter().map(|(result, count)| format!("{count} {result}")).collect();
-        lines.push(format!("Results: {}.", results.join(", ")));
-    }
+    lines.extend(results(answer));
     lines.extend(distributions(answer));
     lines.extend(touchdown(answer));
     lines.extend(causes(&answer.causes));
@@ -30,6 +26,13 @@ pub fn answer_sentences(reported: &Reported<'_>) -> Vec<String> {
         lines.extend(answer.goals.iter().map(goal));
     }
     lines
+}
+
+/// Returns the number of flights with each result; `None` if all have the same.
+pub(in crate::report) fn results(answer: &Answer) -> Option<String> {
+    let results: Vec<String> =
+        answer.results.iter().map(|(result, count)| format!("{count} {result}")).collect();
+    (results.len() > 1).then(|| format!("Results: {}.", results.join(", ")))
 }
 
 /// Returns the first sentence, without its full stop.
@@ -47,7 +50,8 @@ pub(super) fn success(reported: &Reported<'_>) -> String {
     format!("{head}: {}{unflown}", share(&answer.success))
 }
 
-fn share(success: &Success) -> String {
+/// Returns the share of successful flights with its interval.
+pub(in crate::report) fn share(success: &Success) -> String {
     let skipped = match success.skipped {
         0 => String::new(),
         skipped => format!("; {skipped} could not be judged"),
@@ -101,7 +105,7 @@ fn aligned<const N: usize>(rows: &[[String; N]]) -> Vec<String> {
         .collect()
 }
 
-fn touchdown(answer: &Answer) -> Option<String> {
+pub(in crate::report) fn touchdown(answer: &Answer) -> Option<String> {
     let distribution = answer.distribution("touchdown")?;
     let value = |value| shown::value(&distribution.of, value);
     Some(format!(
@@ -111,7 +115,8 @@ fn touchdown(answer: &Answer) -> Option<String> {
     ))
 }
 
-fn causes(causes: &Causes) -> Vec<String> {
+/// Returns what explains the failures, with an empty line before it.
+pub(in crate::report) fn causes(causes: &Causes) -> Vec<String> {
     let mut lines = Vec::new();
     if causes.failures > 0 && causes.failures < causes.flights {
         lines.push(String::new());
@@ -164,7 +169,8 @@ fn worst(reported: &Reported<'_>) -> Vec<String> {
     lines
 }
 
-fn comparison(reported: &Reported<'_>, versus: &Versus) -> Vec<String> {
+/// Returns the comparison of two sides, with an empty line before it.
+pub(in crate::report) fn comparison(reported: &Reported<'_>, versus: &Versus) -> Vec<String> {
     let [a, b] = reported.sides.clone().unwrap_or_else(|| ["A".to_owned(), "B".to_owned()]);
     let mut lines =
         vec![String::new(), format!("B ({b}) against A ({a}), {} pairs with the same inputs:", versus.pairs)];
@@ -218,7 +224,7 @@ pub(super) fn goal(judged: &JudgedGoal) -> String {
 }
 
 /// Returns what was found for a goal.
-pub(super) fn found(judged: &JudgedGoal) -> String {
+pub(in crate::report) fn found(judged: &JudgedGoal) -> String {
     let subject = &judged.goal.subject;
     match (judged.found, judged.bound, judged.goal.confidence) {
         (None, ..) => "no flight has this number".to_owned(),

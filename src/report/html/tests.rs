@@ -21,7 +21,7 @@ const HOSTILE: &str = "</title><script>a('\"');</script><img src=x onerror=a()>&
 const HARMLESS: &str = "a long name that is only that, and as long as the other one!";
 
 /// Returns the elements of a page in their order, and fails if it is not well-formed or needs something else.
-fn elements(page: &str) -> Vec<String> {
+pub(super) fn elements(page: &str) -> Vec<String> {
     let mut reader = Reader::from_str(page);
     reader.config_mut().check_end_names = true;
     let (mut elements, mut ids) = (Vec::new(), BTreeSet::new());
