@@ -60,7 +60,7 @@ fn high_above_the_ground(h: f64) -> Stand {
 
 #[test]
 fn a_flight_with_one_evaluation_a_step_ends_where_a_flight_with_short_steps_does() {
-    // The hold of the commands moves a flight with 1 kHz by 2 mm from one with 8 kHz. In rough air each change of the wind
+    // The hold of the commands moves a flight with 1 kHz by 4 mm from one with 8 kHz. In rough air each change of the wind
     // takes effect half a step late.
     for (wind, largest_m) in [(steady as fn(f64) -> _, 1e-4), (rough, 2e-3)] {
         let reference = flown(high_above_the_ground(SHORT_H).by_runge_kutta(), SHORT_H, wind);
