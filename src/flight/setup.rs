@@ -10,7 +10,7 @@ mod log_lines;
 mod notice;
 
 pub use boot_lines::BootLines;
-pub use log_lines::settings_of_log;
+pub use log_lines::{LoggedSetting, logged_settings, settings_of_log};
 pub use notice::SetupNotice;
 
 use crate::firmware::cli::BuildInfo;

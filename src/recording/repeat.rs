@@ -36,6 +36,11 @@ impl Recording {
             (reason, _) => Err(reason.unwrap_or_default()),
         }
     }
+
+    /// Returns the inputs of the flight, oldest first.
+    pub fn inputs(&self) -> impl Iterator<Item = &VehicleCommand> {
+        self.inputs.iter().map(|(_, input)| input)
+    }
 }
 
 impl<'r> Repeat<'r> {

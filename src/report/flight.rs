@@ -102,8 +102,13 @@ pub enum ReportedSettings {
     Changed(Vec<[String; 3]>),
     /// The command lines that a remote firmware got, which keeps its settings itself.
     Sent(Vec<String>),
-    /// Those in the header of a log: name and value.
-    Logged(Vec<[String; 2]>),
+    /// Those in the header of a log: name, value, and the default if the embedded firmware has the setting.
+    Logged {
+        /// Those that differ from their defaults.
+        changed: Vec<[String; 3]>,
+        /// The other lines of the header.
+        others: Vec<[String; 3]>,
+    },
 }
 
 /// The most points, rows and so on of a report. A report that is too large is written again with less.

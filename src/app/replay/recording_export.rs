@@ -57,7 +57,7 @@ pub(super) fn run(
     }
     if let Some(report) = report {
         let past = flights.open(args.number().unwrap_or_default()).map_err(AppError::input)?;
-        report.write_recording(flights.name(), &past.overview())?;
+        report.write_recording(flights.name(), &recording, &past.overview())?;
     }
     Ok(!is_stopped())
 }

@@ -4,13 +4,17 @@ use std::path::Path;
 
 use crate::app::error::AppError;
 use crate::app::output_file::StreamedOutput;
-use crate::app::report;
+use crate::app::{report, setup};
 use crate::args::ReplayArgs;
+use crate::flight::setup::{LoggedSetting, logged_settings};
 use crate::flight_log::LogFlight;
+use crate::plan::FlightPlan;
 use crate::plan::feature::Feature;
+use crate::recording::Recording;
 use crate::replay::Overview;
 use crate::report::flight::{FlightReport, ReportedSettings};
 use crate::report::html;
+use crate::vehicle::VehicleCommand;
 
 /// The beginnings of the lines of a header that describe the format.
 const FORMAT: [&str; 3] = ["Field ", "Product", "Data version"];
@@ -41,8 +45,14 @@ impl<'a> Report<'a> {
         let mut report = FlightReport::of_past(name, overview);
         let is_setting = |name: &str| !FORMAT.iter().any(|format| name.starts_with(format));
         let lines = log.header().lines().filter(|(name, _)| is_setting(name));
-        let settings = lines.map(|(name, value)| [name, value].map(str::to_owned)).collect();
-        report.settings = Some(ReportedSettings::Logged(settings));
+        let (changed, others) = logged_settings(lines).into_iter().partition(LoggedSetting::is_changed);
+        let rows = |settings: Vec<LoggedSetting>| {
+            settings
+                .into_iter()
+                .map(|LoggedSetting { name, value, default }| [name, value, default.unwrap_or_default()])
+                .collect()
+        };
+        report.settings = Some(ReportedSettings::Logged { changed: rows(changed), others: rows(others) });
         self.write(report)
     }
 
@@ -50,8 +60,14 @@ impl<'a> Report<'a> {
     ///
     /// # Errors
     /// Returns the error of the output.
-    pub(super) fn write_recording(self, name: &str, overview: &Overview) -> Result<(), AppError> {
-        self.write(FlightReport::of_past(name, overview))
+    pub(super) fn write_recording(
+        self,
+        name: &str,
+        recording: &Recording,
+        overview: &Overview,
+    ) -> Result<(), AppError> {
+        let settings = settings(recording);
+        self.write(FlightReport { settings, ..FlightReport::of_past(name, overview) })
     }
 
     fn write(self, report: FlightReport) -> Result<(), AppError> {
@@ -61,4 +77,23 @@ impl<'a> Report<'a> {
         file.add(html::flight_page(&report, &report::program()).as_bytes())?;
         file.finish()
     }
+}
+
+/// Returns the settings of a recorded craft that differ from their defaults, with all that lines, messages and uploads have
+/// changed; `None` if the recording has no inputs.
+fn settings(recording: &Recording) -> Option<ReportedSettings> {
+    let mut craft = setup::build(recording.flight().ok()?, &mut Vec::new()).ok()?;
+    for input in recording.inputs() {
+        if let VehicleCommand::Line(_)
+        | VehicleCommand::Message(_)
+        | VehicleCommand::Upload(_)
+        | VehicleCommand::BeginCli(..)
+        | VehicleCommand::EndCli(_)
+        | VehicleCommand::EndAllCli
+        | VehicleCommand::Restart(_) = input
+        {
+            craft.apply(input);
+        }
+    }
+    report::about(&craft, "", &FlightPlan::default()).settings
 }

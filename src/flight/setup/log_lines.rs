@@ -36,6 +36,55 @@ pub fn settings_of_log<'a>(lines: impl Iterator<Item = (&'a str, &'a str)>) -> V
     found
 }
 
+/// A setting in the header of a log.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LoggedSetting {
+    pub name: String,
+    /// The value; a word if this firmware has one for it.
+    pub value: String,
+    /// The default of this firmware, if it has the setting.
+    pub default: Option<String>,
+}
+
+impl LoggedSetting {
+    /// Returns `true` if it differs from the default of this firmware.
+    pub fn is_changed(&self) -> bool {
+        self.default.as_ref().is_some_and(|default| *default != self.value)
+    }
+
+    fn of(name: &str, value: &str) -> Self {
+        let value = value.trim();
+        let setting = settings::find(name);
+        let word = setting.and_then(|setting| match setting.kind {
+            Kind::Choice { words, .. } => words.get(value.parse::<usize>().ok()?).copied(),
+            _ => None,
+        });
+        Self {
+            name: setting.map_or(name, |setting| setting.name).to_owned(),
+            value: word.unwrap_or(value).to_owned(),
+            default: setting.map(|setting| setting.display(&setting.default_value())),
+        }
+    }
+}
+
+/// Returns the lines of a header as settings, each with its default if this firmware has it. A line with several settings
+/// becomes several.
+pub fn logged_settings<'a>(lines: impl Iterator<Item = (&'a str, &'a str)>) -> Vec<LoggedSetting> {
+    let mut found = Vec::new();
+    for (name, value) in lines {
+        let several =
+            SEVERAL.iter().find(|(line, names)| *line == name && value.split(',').count() == names.len());
+        match several {
+            Some((_, names)) => {
+                let pairs = names.iter().zip(value.split(','));
+                found.extend(pairs.map(|(name, value)| LoggedSetting::of(name, value)));
+            }
+            None => found.push(LoggedSetting::of(name, value)),
+        }
+    }
+    found
+}
+
 /// Returns the setting if the firmware has it and accepts the value.
 fn line(name: &str, value: &str) -> Option<String> {
     let setting = settings::find(name)?;
@@ -76,6 +125,25 @@ mod tests {
         assert!(
             !found.iter().any(|setting| setting.contains("yaw_expo") || setting.contains("blackbox")),
             "{found:?}"
+        );
+    }
+
+    #[test]
+    fn lines_of_a_header_have_the_defaults_of_this_firmware() {
+        let lines = [
+            ("rollPID", "50,80,30"),
+            ("ap_rx_loss_policy", "2"),
+            ("Craft name", "x"),
+            ("ap_max_angle", "50"),
+        ];
+        let found = logged_settings(lines.into_iter());
+        let row = |name: &str| found.iter().find(|setting| setting.name == name).unwrap();
+        assert!(row("p_roll").is_changed() && row("p_roll").value == "50" && row("p_roll").default.is_some());
+        assert_eq!(row("ap_rx_loss_policy").value, "LAND");
+        assert_eq!((row("Craft name").default.as_deref(), row("Craft name").is_changed()), (None, false));
+        assert_eq!(
+            (row("ap_max_angle").default.as_deref(), row("ap_max_angle").is_changed()),
+            (Some("50"), false)
         );
     }
 }

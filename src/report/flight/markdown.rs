@@ -89,10 +89,10 @@ fn settings(settings: &ReportedSettings) -> String {
             sent.iter().take(MOST_ROWS).map(|line| format!("- {}\n", code(line))).collect()
         }
         // There are hundreds, and only a page has room for them.
-        ReportedSettings::Logged(_) => Vec::new(),
+        ReportedSettings::Logged { .. } => Vec::new(),
     };
     match (settings, lines.is_empty()) {
-        (_, true) | (ReportedSettings::Logged(_), _) => String::new(),
+        (_, true) | (ReportedSettings::Logged { .. }, _) => String::new(),
         (ReportedSettings::Changed(_), false) => {
             format!("Settings that differ from their defaults:\n\n{}\n", lines.concat())
         }

@@ -44,9 +44,21 @@ struct TransitionRow {
 struct Settings {
     sentence: &'static str,
     has_defaults: bool,
-    /// `true` if there are so many rows that they are shown on demand.
-    is_closed: bool,
+    groups: Vec<SettingGroup>,
+}
+
+#[derive(Debug)]
+struct SettingGroup {
+    /// The line above rows that are shown on demand.
+    summary: Option<String>,
     rows: Vec<SettingRow>,
+}
+
+impl SettingGroup {
+    /// Returns rows that are always shown, if there are any.
+    fn shown(rows: Vec<SettingRow>) -> Vec<Self> {
+        if rows.is_empty() { Vec::new() } else { vec![Self { summary: None, rows }] }
+    }
 }
 
 #[derive(Debug)]
@@ -131,15 +143,7 @@ fn settings(settings: &ReportedSettings, detail: Detail) -> Settings {
                 false => "All others have their defaults.",
             },
             has_defaults: true,
-            is_closed: false,
-            rows: changed
-                .iter()
-                .take(detail.rows)
-                .map(|texts| {
-                    let [name, value, default] = texts.each_ref().map(|cell| text::line(cell));
-                    SettingRow { name, value, default }
-                })
-                .collect(),
+            groups: SettingGroup::shown(changed.iter().take(detail.rows).map(setting_row).collect()),
         },
         ReportedSettings::Sent(lines) => {
             let row = |line: &String| {
@@ -151,23 +155,31 @@ fn settings(settings: &ReportedSettings, detail: Detail) -> Settings {
             Settings {
                 sentence: "The lines that the firmware got before the flight.",
                 has_defaults: false,
-                is_closed: false,
-                rows: lines.iter().take(detail.rows).map(row).collect(),
+                groups: SettingGroup::shown(lines.iter().take(detail.rows).map(row).collect()),
             }
         }
-        ReportedSettings::Logged(values) => {
-            let row = |texts: &[String; 2]| {
-                let [name, value] = texts.each_ref().map(|cell| text::line(cell));
-                SettingRow { name, value, default: String::new() }
-            };
+        ReportedSettings::Logged { changed, others } => {
+            let rows = |rows: &[[String; 3]]| rows.iter().take(detail.rows).map(setting_row).collect();
+            let mut groups = SettingGroup::shown(rows(changed));
+            if !others.is_empty() {
+                let summary = Some(format!("{} more lines of the header", others.len()));
+                groups.push(SettingGroup { summary, rows: rows(others) });
+            }
             Settings {
-                sentence: "The settings of the craft in the header of its log.",
-                has_defaults: false,
-                is_closed: true,
-                rows: values.iter().take(detail.rows).map(row).collect(),
+                sentence: match changed.is_empty() {
+                    true => "No setting in the header of the log differs from the defaults of this firmware.",
+                    false => "Those in the header of the log that differ from the defaults of this firmware.",
+                },
+                has_defaults: true,
+                groups,
             }
         }
     }
+}
+
+fn setting_row(texts: &[String; 3]) -> SettingRow {
+    let [name, value, default] = texts.each_ref().map(|cell| text::line(cell));
+    SettingRow { name, value, default }
 }
 
 fn log(record: &FlightRecord, detail: Detail) -> Vec<LogLine> {

@@ -151,11 +151,14 @@ fn a_log_whose_modes_change_all_the_time_fits_into_a_page() {
             RecordedSample { time, values, state: None, modes: Some(modes) }
         })
         .collect();
-    let lines = (0..1000).map(|at| [format!("setting_{at}"), "1,2,3".repeat(50)]);
-    report.settings = Some(ReportedSettings::Logged(lines.collect()));
+    let others = (0..1000).map(|at| [format!("setting_{at}"), "1,2,3".repeat(50), String::new()]).collect();
+    let changed = vec![["p_roll", "50", "45"].map(str::to_owned)];
+    report.settings = Some(ReportedSettings::Logged { changed, others });
     let page = flight_page(&report, PROGRAM);
     assert!((100_000..=MOST_BYTES).contains(&page.len()), "{}", page.len());
     assert!(count(&elements(&page), "svg") >= 2, "the map and the modes are there");
+    assert!(page.contains("<code>p_roll</code></th><td><code>50</code></td><td><code>45</code></td>"));
+    assert!(page.contains("<summary>1000 more lines of the header</summary>"));
     assert!(page.contains("setting_1</code>") && page.contains("coloured by flight mode"));
 }
 
