@@ -22,6 +22,7 @@ mod error;
 mod firmware;
 mod flight_library;
 mod flight_recorder;
+mod flight_shelf;
 mod flights;
 mod flown_log;
 mod fly;

@@ -19,7 +19,7 @@
 //! * `panel` has one file per panel, `popup` the windows over them, `keymap` the keys of the configuration file.
 //!   `transmitter` is the user's virtual RC transmitter, `stick_recording` records its sticks, `forecast` holds the
 //!   results of flights flown ahead of time, `graphs` the history of the graphs' signals, `ground` the elevation tiles,
-//!   `past_flight` shows a recorded flight at once, `other_flight` a second one beside it,
+//!   `flights` is the library of recorded flights, `past_flight` shows a recorded flight at once, `other_flight` a second one beside it,
 //!   `map_point` the places on the map, `viewport` its window, `map_edit` the edits on it, `backdrop` the files under it,
 //!   and `timeline` the timeline of the recording.
 //! * [`run`] is the shell around it: it waits for the terminal, the session and the clock, and carries out the effects.
@@ -49,6 +49,7 @@ mod drawing;
 pub mod editor;
 mod event_log;
 mod files_link;
+pub mod flights;
 mod forecast;
 mod formatting;
 mod fuzzy;
@@ -103,7 +104,7 @@ pub use history::{EnteredLines, LineField};
 pub use map_state::MapMode;
 pub use message::{Effect, FlightForm, Msg};
 pub use panel::{Panel, Panels};
-pub use popup::{CommandLine, Palette, Popup, SignalList};
+pub use popup::{CommandLine, FlightsList, Palette, Popup, SignalList};
 pub use run::{Ending, OtherReceiver, SessionLink, run, run_plain};
 pub use shared::{Notice, Shared};
 pub use terminal::{Tui, restore_terminal_modes};

@@ -3,9 +3,11 @@
 //! A recording is locked while it grows. Files are created under a fresh name, opened without following a link, and the
 //! oldest are removed beyond the bound.
 
+use std::collections::BTreeMap;
 use std::fs::{File, TryLockError};
 use std::io::{self, BufReader, ErrorKind, Read as _, Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use super::named_file::stem;
 use crate::recording::{Header, Listed, ReadError, Summary, TAIL, read_summary, seen_s};
@@ -25,13 +27,58 @@ const MOST_NUMBERS: u32 = 100;
 /// # Errors
 /// Returns the error of the system if the folder cannot be read. A missing folder is empty.
 pub(super) fn list(state: &Path) -> io::Result<Vec<Listed>> {
-    let mut listed: Vec<Listed> =
-        files(&state.join(FOLDER))?.into_iter().filter_map(|path| look(&path)).collect();
+    Known::default().list(state)
+}
+
+/// The recordings of a library that were read before. They are read again only once they have changed.
+#[derive(Debug, Default)]
+pub(super) struct Known(BTreeMap<PathBuf, (Fingerprint, Listed)>);
+
+/// The size and the time of the last change of a file.
+type Fingerprint = (u64, Option<SystemTime>);
+
+impl Known {
+    /// Returns the recordings in a state directory, the newest first.
+    ///
+    /// # Errors
+    /// Returns the error of the system if the folder cannot be read. A missing folder is empty.
+    pub(super) fn list(&mut self, state: &Path) -> io::Result<Vec<Listed>> {
+        let mut before = std::mem::take(&mut self.0);
+        for path in files(&state.join(FOLDER))? {
+            let fingerprint = path.symlink_metadata().ok().map(|there| (there.len(), there.modified().ok()));
+            let Some(fingerprint) = fingerprint else { continue };
+            let same =
+                before.remove(&path).filter(|(then, listed)| *then == fingerprint && !listed.is_growing);
+            let listed = same.map(|(_, listed)| listed).or_else(|| look(&path));
+            if let Some(listed) = listed {
+                self.0.insert(path, (fingerprint, listed));
+            }
+        }
+        Ok(newest_first(self.0.values().map(|(_, listed)| listed.clone()).collect()))
+    }
+}
+
+/// Deletes a recording of the library in a state directory, unless it is being recorded.
+///
+/// # Errors
+/// Returns the reason, the end of a sentence.
+pub(super) fn remove(state: &Path, path: &Path) -> Result<(), String> {
+    if path.parent() != Some(&state.join(FOLDER)) || !is_recording(path) {
+        return Err("it is not in the library".to_owned());
+    }
+    let file = state_file::open(path, Access::Read).map_err(|error| error.to_string())?;
+    if matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)) {
+        return Err("it is still being recorded".to_owned());
+    }
+    std::fs::remove_file(path).map_err(|error| error.to_string())
+}
+
+fn newest_first(mut listed: Vec<Listed>) -> Vec<Listed> {
     let date = |entry: &Listed| {
         entry.summary.as_ref().map_or_else(|_| String::new(), |summary| summary.header.date.clone())
     };
     listed.sort_by_cached_key(|entry| std::cmp::Reverse((date(entry), entry.file.clone())));
-    Ok(listed)
+    listed
 }
 
 /// Returns the paths of the recordings in a folder, in the order of their names.

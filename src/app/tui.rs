@@ -12,6 +12,7 @@ use super::doors::OpenDoors;
 use super::error::{self, AppError};
 use super::firmware::{self, Beside, FirmwareFolder};
 use super::flight_recorder::{self, FlightRecorder, RecordedStart};
+use super::flight_shelf::Shelf;
 use super::flown_log;
 use super::input_lines;
 use super::line_history::LineHistory;
@@ -39,6 +40,7 @@ use crate::storage::Store;
 use crate::terrain::Tiles;
 use crate::ui::backdrop::BackdropLayer;
 use crate::ui::editor::FileReply;
+use crate::ui::flights::FlightShelf;
 use crate::ui::keymap::Keymap;
 use crate::ui::theme::{Charset, Palette};
 use crate::ui::{
@@ -241,6 +243,8 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
         .spawn(move || files.run(&asked, &answers, &done))
         .map_err(no_thread)?;
     let files = FilesLink::new(requests, replies, kept);
+    let shelf = screen.directory.as_deref().map(|state| Arc::new(Shelf::new(state, screen.display)));
+    let shelf = shelf.map(|shelf| -> Arc<dyn FlightShelf> { shelf });
     let is_replay = matches!(screen.source, Source::Replay(_));
     let runtime = runtime::with_threads(1)?;
     let ending = runtime.block_on(async {
@@ -252,6 +256,7 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
             events: session.events,
             past,
             other: screen.other.map(read_beside).transpose()?,
+            shelf,
             write_scenario: scenario_file::write,
             write_log: flown_log::write,
             write_recording: recording_file::write,

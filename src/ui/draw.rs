@@ -14,7 +14,9 @@ use super::formatting;
 use super::layout::{self, SMALLEST};
 use super::panel::{self, Panel, span};
 use super::popup::frame::{key_line, popup};
-use super::popup::{Popup, command_line, go_to, guards, map_menu, palette, signal_list, what_if};
+use super::popup::{
+    Popup, command_line, flights_list, go_to, guards, map_menu, palette, signal_list, what_if,
+};
 use super::shared::Shared;
 use super::text_wrap::wrapped;
 use super::theme::{Charset, Role};
@@ -73,6 +75,7 @@ fn draw_popup(state: &AppState, popup: &Popup, area: Rect, buffer: &mut Buffer) 
     let shared = &state.shared;
     match popup {
         Popup::CommandLine => return command_line::draw(&state.command_line, shared, area, buffer),
+        Popup::Flights(list) => return flights_list::draw(shared, list, area, buffer),
         Popup::Signals(list) => return signal_list::draw(shared, list, area, buffer),
         Popup::Palette(palette) => return palette::draw(shared, palette, area, buffer),
         Popup::Help { scroll } => panel::help::draw(shared, *scroll, area, buffer),

@@ -9,6 +9,7 @@ use crossterm::event::{KeyEvent, MouseEvent};
 use super::action::Action;
 use super::editor::{Column, FileReply, FileRequest, PlanId};
 use super::event_log::Severity;
+use super::flights::LibraryFlight;
 use super::map_point::MapPoint;
 use super::map_state::{MapItem, MapMode};
 use super::popup::Popup;
@@ -91,6 +92,15 @@ pub enum Msg {
         result: Result<String, String>,
     },
     Files(FileReply),
+    /// The library of recorded flights was read. The error is a sentence.
+    Flights(Result<Vec<LibraryFlight>, String>),
+    /// A recorded flight was deleted. The error is the end of a sentence.
+    FlightDeleted {
+        file: PathBuf,
+        result: Result<(), String>,
+    },
+    /// The user has left recorded flights. The error is the reason why they could not be shown, a sentence.
+    FlightsShown(Result<(), String>),
     /// A second flight was read, to be shown beside the first.
     OtherFlight {
         /// The name of its file, safe to print.
@@ -243,6 +253,18 @@ pub enum Effect {
         file: Option<PathBuf>,
         /// The name of the plan.
         plan: String,
+    },
+    /// Read the library of recorded flights after a while; the list comes back as [`Msg::Flights`].
+    ListFlights {
+        after: Duration,
+    },
+    /// Delete a recorded flight; the reply comes back as [`Msg::FlightDeleted`].
+    DeleteFlight(PathBuf),
+    /// Show a recorded flight on this terminal, or two beside each other; [`Msg::FlightsShown`] when the user leaves them.
+    ShowFlights {
+        files: Vec<PathBuf>,
+        /// `true` to fly the flight again from its inputs.
+        again: bool,
     },
     /// Copy text to the terminal's clipboard.
     Copy(String),

@@ -56,6 +56,9 @@ fn intent_of(effect: &Effect) -> Intent {
         | Effect::Curves(_)
         | Effect::WriteFlight { .. }
         | Effect::WriteRecording { .. }
+        | Effect::ListFlights { .. }
+        | Effect::DeleteFlight(_)
+        | Effect::ShowFlights { .. }
         | Effect::Copy(_)
         | Effect::Suspend
         | Effect::Quit => Intent::Read,

@@ -1,6 +1,7 @@
 //! The popups.
 
 pub(super) mod command_line;
+pub(super) mod flights_list;
 pub(super) mod frame;
 pub(super) mod go_to;
 pub(super) mod guards;
@@ -10,6 +11,7 @@ pub(super) mod signal_list;
 pub(super) mod what_if;
 
 pub use command_line::CommandLine;
+pub use flights_list::FlightsList;
 pub(super) use go_to::GoTo;
 pub(super) use map_menu::MapMenu;
 pub use palette::Palette;
@@ -57,6 +59,8 @@ pub enum Popup {
     Signals(SignalList),
     /// The `:` line.
     CommandLine,
+    /// The library of recorded flights.
+    Flights(FlightsList),
     /// The search of all commands.
     Palette(Palette),
 }

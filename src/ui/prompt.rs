@@ -1,6 +1,7 @@
 //! The popups as lines of text, and lines of input as answers, for use without a screen.
 
 mod file;
+mod flights;
 mod form;
 
 use crate::flight::forecast::WHAT_IFS;
@@ -54,6 +55,7 @@ pub(super) fn question(state: &AppState) -> Option<Vec<String>> {
         }
         Popup::Quit => Some(vec!["The craft is armed and flying ends here. Quit? y yes, n no.".to_owned()]),
         Popup::Permission => Some(vec![format!("{} y yes, n no.", permission::question(&state.shared))]),
+        Popup::Flights(open) => flights::question(state, open),
         Popup::Help { .. }
         | Popup::Guards { .. }
         | Popup::Plots { .. }
@@ -123,6 +125,7 @@ pub(super) fn answer(state: &mut AppState, line: &str) -> Result<Answered, Strin
             return Ok(press(state, KeyCode::Char('n')).into());
         }
         Some(Popup::Permission) => return Err("Answer y to go on, n to change nothing.".to_owned()),
+        Some(Popup::Flights(_)) => return flights::answer(state, line),
         Some(Popup::GoTo(_) | Popup::WhatIf { .. }) if !line.is_empty() => {
             let effects = match state.popups.last() {
                 Some(Popup::GoTo(_)) => command::flight::go_to_waypoint(&state.shared, line)?,

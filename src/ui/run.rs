@@ -22,14 +22,17 @@ use super::app_state::AppState;
 use super::config::UiConfig;
 use super::event_log::Severity;
 use super::files_link::FilesLink;
+use super::flights::FlightShelf;
 use super::message::{Effect, Msg};
 use super::terminal::{Tui, can_be_continued};
 use super::update::update;
 
 mod effects;
+mod flights;
 mod plain;
 
 use effects::{Answers, carry_out};
+use flights::Shown;
 pub use plain::run_plain;
 
 /// The shortest time between two frames after a key.
@@ -58,6 +61,8 @@ pub struct SessionLink {
     pub past: Vec<SessionView>,
     /// A second flight, once it is read.
     pub other: Option<OtherReceiver>,
+    /// The library of recorded flights, if there is one.
+    pub shelf: Option<Arc<dyn FlightShelf>>,
     /// Writes a flight as a scenario. Receives the file, or the name of the plan if there is none. Returns a sentence
     /// with the place, or with the reason for a failure.
     pub write_scenario: WriteFlight,
@@ -205,6 +210,20 @@ async fn run_loop(
                     tui.suspend()?;
                     let size = tui.terminal().size()?;
                     update(&mut state, Msg::Resize(size.width, size.height));
+                }
+                if let Effect::ShowFlights { files, again } = &effect {
+                    // The reader of the terminal ends, so that the keys go to the other program.
+                    keys = EventStream::new();
+                    tui.leave();
+                    let shown = flights::show(link.shelf.as_ref(), files, *again, &mut stop).await;
+                    tui.resume()?;
+                    let Shown::Left(result) = shown else {
+                        link.commands.try_send(Command::Quit).ok();
+                        return Ok(Ending::Signal);
+                    };
+                    let size = tui.terminal().size()?;
+                    update(&mut state, Msg::Resize(size.width, size.height));
+                    update(&mut state, Msg::FlightsShown(result));
                 }
                 carry_out(effect, &link, &forecaster, &mut files, &answers);
             }

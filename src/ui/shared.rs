@@ -16,6 +16,7 @@ use super::config::UiConfig;
 use super::console::CliHelp;
 use super::editor::{Editor, PlanId};
 use super::event_log::{LogState, Severity};
+use super::flights::FlightsState;
 use super::forecast::ForecastState;
 use super::graphs::GraphsState;
 use super::ground::GroundState;
@@ -76,6 +77,8 @@ pub struct Shared {
     pub past: Option<Arc<Overview>>,
     /// A second flight, beside the one that is shown.
     pub other: Option<OtherFlight>,
+    /// The library of recorded flights.
+    pub flights: FlightsState,
     /// The tracks of abandoned branches of the flight.
     pub abandoned: KeptTracks,
     /// The tracks of the flights before this one.
@@ -123,6 +126,7 @@ impl Shared {
             track: Track::default(),
             past: None,
             other: None,
+            flights: FlightsState::default(),
             abandoned: KeptTracks::default(),
             past_flights: KeptTracks::default(),
             forecast: ForecastState::default(),

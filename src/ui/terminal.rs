@@ -70,6 +70,11 @@ impl Tui {
         self.resume()
     }
 
+    /// Restores the terminal for another program, until [`Self::resume`].
+    pub fn leave(&mut self) {
+        restore();
+    }
+
     /// Takes over the terminal again after a stop, during which the shell has used it.
     ///
     /// # Errors

@@ -29,6 +29,7 @@ use super::tutorial;
 
 mod change;
 mod flight;
+mod flights;
 mod map_menu;
 mod mouse;
 mod other_flight;
@@ -111,6 +112,9 @@ fn take(state: &mut AppState, msg: Msg) -> Vec<Effect> {
         Msg::Forecast(reply) => forecast::take_answer(&mut state.shared, reply),
         Msg::DownloadReply { id, result } => return plan::downloaded(&mut state.shared, id, result),
         Msg::FlightWritten { what, result } => plan::flight_written(&mut state.shared, what, result),
+        Msg::Flights(list) => return flights::listed(state, list),
+        Msg::FlightDeleted { file, result } => return flights::deleted(state, &file, result),
+        Msg::FlightsShown(result) => return flights::shown(state, result),
         Msg::SaveReply(result) => plan::saved_to_flash(&mut state.shared, result),
         Msg::Files(reply) => return plan_popup::answered(&mut state.shared, reply),
         Msg::Busy => {
@@ -385,6 +389,7 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
         Action::WriteScenario => return vec![state.shared.write_flight(FlightForm::Scenario, None)],
         Action::WriteLog => return vec![state.shared.write_flight(FlightForm::Log, None)],
         Action::WriteRecording => return vec![state.shared.write_recording(None)],
+        Action::Flights => return flights::open(state),
         Action::Tutorial => tutorial::toggle(&mut state.tutorial, &mut state.shared),
         Action::Help => state.popups.push(Popup::Help { scroll: 0 }),
         Action::CommandLine => popup::open_command_line(state, ""),

@@ -203,6 +203,11 @@ fn everything_open() -> Vec<Open> {
         update(&mut state, Msg::Files(FileReply::Occupied { id, path, changed }));
         open.push((format!("{name}, replace"), state));
     }
+    for opened in ["ctrl-f", "ctrl-f tab", "ctrl-f 'zzzz"] {
+        let (name, mut state) = waiting(opened);
+        update(&mut state, Msg::Flights(Ok(crate::flights::library())));
+        open.push((format!("{name}, listed"), state));
+    }
     let (_, mut asked) = flying("");
     asked.popups.push(Popup::Permission);
     open.push(("permission".to_owned(), asked));

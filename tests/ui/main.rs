@@ -7,6 +7,7 @@ mod conversions;
 mod editor;
 mod first_minutes;
 mod fixture;
+mod flights;
 mod forecast;
 mod four_sizes;
 mod hands;

@@ -111,3 +111,43 @@ fn a_folder_that_cannot_be_written_is_a_reason() {
     assert!(!problem.is_empty() && !problem.ends_with('.'), "{problem}");
     assert!(list(state.path()).is_err());
 }
+
+#[test]
+fn a_list_that_is_read_again_has_what_was_recorded_meanwhile_and_lacks_what_is_gone() {
+    let state = tempfile::tempdir().unwrap();
+    let mut library = Library::new(state.path(), 1 << 20);
+    let mut known = Known::default();
+    record(&mut library, 1, 100).unwrap();
+    assert_eq!(known.list(state.path()).unwrap(), list(state.path()).unwrap());
+    library.begin(&header(2), &Writer::new(header(2)).flush()).unwrap();
+    assert!(known.list(state.path()).unwrap()[0].is_growing);
+    // The size stays the same.
+    drop(library);
+    let listed = known.list(state.path()).unwrap();
+    assert!(!listed[0].is_growing && listed.len() == 2, "{listed:?}");
+    std::fs::remove_file(&listed[1].file).unwrap();
+    std::fs::write(&listed[0].file, "damaged").unwrap();
+    let listed = known.list(state.path()).unwrap();
+    assert!(listed.len() == 1 && listed[0].summary.is_err(), "{listed:?}");
+}
+
+#[test]
+fn only_a_recording_of_the_library_that_is_over_is_deleted() {
+    let state = tempfile::tempdir().unwrap();
+    let mut library = Library::new(state.path(), 1 << 20);
+    record(&mut library, 1, 100).unwrap();
+    library.begin(&header(2), &Writer::new(header(2)).flush()).unwrap();
+    let files: Vec<PathBuf> = list(state.path()).unwrap().into_iter().map(|listed| listed.file).collect();
+    assert_eq!(remove(state.path(), &files[0]), Err("it is still being recorded".to_owned()));
+    let precious = state.path().join("precious.flight");
+    std::fs::write(&precious, "precious").unwrap();
+    for outside in [
+        precious,
+        state.path().join(FOLDER).join("..").join("precious.flight"),
+        files[1].with_extension("txt"),
+    ] {
+        assert_eq!(remove(state.path(), &outside), Err("it is not in the library".to_owned()));
+    }
+    assert_eq!(remove(state.path(), &files[1]), Ok(()));
+    assert_eq!(list(state.path()).unwrap().len(), 1);
+}

@@ -17,11 +17,14 @@ pub(in crate::ui) fn popup(
     title: &str,
     buffer: &mut Buffer,
 ) -> Rect {
+    framed(theme, place(area, size), title, buffer)
+}
+
+/// Returns the place in the middle for a popup of this inner size.
+pub(in crate::ui) fn place(area: Rect, size: (u16, u16)) -> Rect {
     let width = (size.0 + 2).min(area.width);
     let height = (size.1 + 2).min(area.height);
-    let place =
-        Rect::new(area.x + (area.width - width) / 2, area.y + (area.height - height) / 2, width, height);
-    framed(theme, place, title, buffer)
+    Rect::new(area.x + (area.width - width) / 2, area.y + (area.height - height) / 2, width, height)
 }
 
 /// Draws an empty frame. Returns the inside.

@@ -6,7 +6,7 @@ use crossterm::clipboard::CopyToClipboard;
 use crossterm::execute;
 use tokio::sync::mpsc;
 
-use super::SessionLink;
+use super::{SessionLink, flights};
 use crate::session::command::VehicleCopy;
 use crate::session::{Command, ForecastReply, Forecaster, ReplyTo};
 use crate::timeline::RecordedFlight;
@@ -30,7 +30,7 @@ impl Answers {
         move |reply| answers.send(Msg::Forecast(reply))
     }
 
-    fn send(&self, msg: Msg) {
+    pub(super) fn send(&self, msg: Msg) {
         // The loop that receives it may have ended.
         self.0.send(msg).ok();
     }
@@ -73,7 +73,16 @@ pub(super) fn carry_out(
             execute!(io::stdout(), CopyToClipboard::to_clipboard_from(text)).ok();
             return;
         }
-        Effect::Suspend | Effect::Quit => return,
+        Effect::ListFlights { after } => {
+            flights::list(link.shelf.clone(), after, answers.clone());
+            return;
+        }
+        Effect::DeleteFlight(file) => {
+            flights::delete(link.shelf.clone(), file, answers.clone());
+            return;
+        }
+        // These need the terminal.
+        Effect::ShowFlights { .. } | Effect::Suspend | Effect::Quit => return,
         Effect::Send(command) => command,
         Effect::Cli(line) => Command::Cli { line, reply: answers.reply(Msg::CliReply) },
         Effect::World(line) => {

@@ -6,7 +6,7 @@ use std::time::Instant;
 use tokio::sync::mpsc;
 
 use super::effects::{Answers, carry_out};
-use super::{Ending, SessionLink, second_flight};
+use super::{Ending, SessionLink, flights, second_flight};
 use crate::flight::forecast::ForecastKind;
 use crate::session::{Command, Forecaster};
 use crate::ui::app_state::AppState;
@@ -120,6 +120,9 @@ async fn run_loop(
             match effect {
                 Effect::Suspend => {}
                 Effect::Copy(text) => lines.write(&text)?,
+                Effect::ShowFlights { files, again } => {
+                    lines.write(&flights::command(&link, &files, again))?;
+                }
                 effect => {
                     awaited += usize::from(is_question(&effect));
                     carry_out(effect, &link, &forecaster, &mut files, &answers);
@@ -146,7 +149,9 @@ fn is_question(effect: &Effect) -> bool {
         | Effect::Download(_)
         | Effect::WriteFlight { .. }
         | Effect::WriteRecording { .. }
+        | Effect::DeleteFlight(_)
         | Effect::SaveToFlash => true,
+        Effect::ListFlights { after } => after.is_zero(),
         Effect::Files(request) => {
             matches!(
                 request,
@@ -157,7 +162,12 @@ fn is_question(effect: &Effect) -> bool {
             )
         }
         Effect::Forecast(job) => job.request.kind() != ForecastKind::PlanEstimate,
-        Effect::Send(_) | Effect::Curves(_) | Effect::Copy(_) | Effect::Suspend | Effect::Quit => false,
+        Effect::Send(_)
+        | Effect::Curves(_)
+        | Effect::ShowFlights { .. }
+        | Effect::Copy(_)
+        | Effect::Suspend
+        | Effect::Quit => false,
     }
 }
 
@@ -170,6 +180,8 @@ fn is_answer(msg: &Msg) -> bool {
         | Msg::DownloadReply { .. }
         | Msg::SaveReply(_)
         | Msg::FlightWritten { .. }
+        | Msg::FlightDeleted { .. }
+        | Msg::Flights(_)
         | Msg::Busy => true,
         Msg::Forecast(reply) => reply.kind != ForecastKind::PlanEstimate,
         Msg::Files(reply) => !matches!(
@@ -189,6 +201,7 @@ fn is_answer(msg: &Msg) -> bool {
         | Msg::Resize(..)
         | Msg::View(_)
         | Msg::OtherFlight { .. }
+        | Msg::FlightsShown(_)
         | Msg::Curves { .. }
         | Msg::Event(_) => false,
     }

@@ -9,7 +9,7 @@ use crate::ui::popup::Popup;
 use crate::ui::{layout, notice, panel_bar, tutorial};
 
 use super::view::focus;
-use super::{carry_out, map_menu, timeline};
+use super::{carry_out, flights, map_menu, timeline};
 
 /// Processes a mouse event.
 pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
@@ -20,6 +20,10 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
         let (outcome, place) = (menu.click(state.shared.size, (event.column, event.row)), menu.place);
         let is_click = matches!(event.kind, MouseEventKind::Down(_));
         return if is_click { map_menu::take(state, place, outcome) } else { Vec::new() };
+    }
+    if let Some(Popup::Flights(list)) = state.popups.last_mut() {
+        let result = list.mouse(&state.shared.flights, state.shared.size, event);
+        return flights::take(state, result);
     }
     if !state.popups.is_empty() || state.shared.editor.popup.is_some() {
         return Vec::new();

@@ -14,6 +14,7 @@ pub(super) fn paste(state: &mut AppState, text: &str) -> Vec<Effect> {
         Some(Popup::CommandLine) => Some(&mut state.command_line.field),
         Some(Popup::Palette(palette)) => Some(&mut palette.query),
         Some(Popup::Signals(list)) => Some(&mut list.query),
+        Some(Popup::Flights(list)) => list.deleting.is_none().then_some(&mut list.query),
         Some(
             Popup::Help { .. }
             | Popup::GoTo(_)

@@ -2,7 +2,7 @@
 
 use crossterm::event::{KeyCode, KeyEvent};
 
-use super::{act, map_menu, permission, run_line};
+use super::{act, flights, map_menu, permission, run_line};
 use crate::telemetry::InFlightCommand;
 use crate::ui::action::{self, Action};
 use crate::ui::app_state::AppState;
@@ -79,6 +79,10 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) 
                 SignalKey::Toggle(name) => state.shared.graphs.toggle_series(&name),
             }
             Vec::new()
+        }
+        Some(Popup::Flights(list)) => {
+            let result = list.key(&state.shared.flights, event);
+            flights::take(state, result)
         }
         Some(Popup::CommandLine) => {
             let outcome = command_line::key(&mut state.command_line, &state.shared, event);

@@ -74,6 +74,12 @@ impl<W: Write> Lines<W> {
                 }
                 Ok(effects)
             }
+            // The list is written once.
+            Msg::Flights(list) => {
+                update(state, Msg::Flights(list));
+                state.shared.flights.rest();
+                Ok(Vec::new())
+            }
             msg => Ok(update(state, msg)),
         }
     }
