@@ -3,13 +3,15 @@
 //! The protocol is a state machine without I/O and clock: [`remote`] takes bytes and requests and gives bytes
 //! and events. In it, `client` exchanges messages and lines over the serial port, one after the other, `life`
 //! is the phase of the connection, `polling` chooses the next message, `telemetry` decodes the replies, and
-//! the observer makes snapshots and events from them. `upload` and `provision` write a plan and settings.
+//! the observer makes snapshots and events from them. `upload` and `provision` write a plan and settings,
+//! `craft_settings` lists all settings.
 //!
 //! [`RemoteLink`] moves the data between this machine, the sockets and the vehicle, and `feed` gives a SITL
 //! executable the states of the simulated craft. `stepped` does both for an executable in simulated time.
 
 mod asked;
 pub mod client;
+mod craft_settings;
 mod feed;
 mod first_answer;
 mod identify;
@@ -35,6 +37,7 @@ mod tests;
 mod upload;
 mod view;
 
+pub use craft_settings::{Allowed, CraftSetting, CraftSettings, cli_block, same_value};
 pub use master_settings::replace_settings;
 pub use observer::{Observer, Simulated};
 pub use patience::{NotReady, Patience, Unready};

@@ -18,8 +18,9 @@
 //!   [`command`] takes an argument and returns requests, which `update` carries out.
 //! * `panel` has one file per panel, `popup` the windows over them, `keymap` the keys of the configuration file.
 //!   `transmitter` is the user's virtual RC transmitter, `stick_recording` records its sticks, `forecast` holds the
-//!   results of flights flown ahead of time, `graphs` the history of the graphs' signals, `ground` the elevation tiles,
-//!   `flights` is the library of recorded flights, `past_flight` shows a recorded flight at once, `other_flight` a second one beside it,
+//!   results of flights flown ahead of time, `settings` those of the craft, `graphs` the history of the graphs' signals,
+//!   `ground` the elevation tiles, `flights` is the library of recorded flights, `past_flight` shows a recorded flight at
+//!   once, `other_flight` a second one beside it,
 //!   `map_point` the places on the map, `viewport` its window, `map_edit` the edits on it, `backdrop` the files under it,
 //!   and `timeline` the timeline of the recording.
 //! * [`run`] is the shell around it: it waits for the terminal, the session and the clock, and carries out the effects.
@@ -76,6 +77,7 @@ mod popup;
 mod prompt;
 mod raster;
 mod run;
+pub mod settings;
 mod shared;
 mod status_bar;
 pub mod status_message;

@@ -58,6 +58,7 @@ impl DemoFlight {
             ground: betadeck::ui::GroundConfig::default(),
             keymap: Keymap::default(),
             cli: CliHelp { complete: |line| cli::complete(line).lines(line), ..CliHelp::default() },
+            given_settings: Vec::new(),
             sentence: |event| sentence::text(&event.kind).unwrap_or_default(),
             plan: OpenPlan::new(PlanId(1), None, History::new(file.into(), true)),
             mouse: true,

@@ -83,12 +83,12 @@ mod tests {
 
     #[test]
     fn quoted_names_bare_names_and_lists_are_read() {
-        let text = "wind = \"5@270\"\n[keys]\n\"flight.arm\" = \"A\"\nsim.step = [\"f9\", \"f11\"]\nflight.throttle = \"\"\n";
+        let text = "wind = \"5@270\"\n[keys]\n\"flight.arm\" = \"A\"\nsim.step = [\"f10\", \"f11\"]\nflight.throttle = \"\"\n";
         let map = read_map(text).expect("a keymap");
         let action = |key| map.action(KeyPress::parse(key).expect("a key"), Panel::Log);
         assert_eq!(action("A"), Some(Action::Arm));
         assert_eq!((action("a"), action("t")), (None, None), "a replaced key and an unbound one");
-        assert_eq!((action("f9"), action("f11")), (Some(Action::Step), Some(Action::Step)));
+        assert_eq!((action("f10"), action("f11")), (Some(Action::Step), Some(Action::Step)));
     }
 
     #[test]

@@ -11,6 +11,7 @@ use super::firmware::{self, Beside, RemoteFirmware, reported};
 use super::flight_recorder::RecordedStart;
 use super::interrupt::interrupt_flag;
 use super::live::LiveArgs;
+use super::setup;
 use super::tui::{self, LiveFlight, Screen, Source};
 use crate::args::{DoorArgs, FlightArgs, Instant, OpenArgs, PhysicsArgs, ReviewArgs};
 use crate::fc::RemoteLink;
@@ -24,6 +25,7 @@ use crate::storage::Store;
 use crate::text::did_you_mean;
 use crate::timeline::Timeline;
 use crate::ui::keymap::Keymap;
+use crate::ui::settings::GivenSetting;
 use crate::vehicle::{Vehicle, VehicleCommand};
 
 /// The pictures for each simulated second of the finished flight. Tracks and graphs are made from them.
@@ -91,6 +93,7 @@ pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
     let recorded = recorded_start(&case, &air, flight.vehicle());
     let finished = Finished {
         plan: case.setup.plan.clone(),
+        given_settings: setup::given_settings(&case.setup.boot_lines),
         vehicle: flight.into_vehicle(),
         recorded,
         flown: FlownBefore { timeline, events, show, again },
@@ -103,6 +106,8 @@ pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
 /// A finished flight for the screen.
 struct Finished {
     plan: PlanFile,
+    /// The settings that the scenario or the recording gave the craft.
+    given_settings: Vec<GivenSetting>,
     vehicle: Vehicle,
     recorded: RecordedStart,
     flown: FlownBefore,
@@ -111,7 +116,7 @@ struct Finished {
 }
 
 fn open_screen(args: &OpenArgs, finished: Finished, keymap: Keymap) -> Result<u8, AppError> {
-    let Finished { plan, vehicle, recorded, flown, past, notices } = finished;
+    let Finished { plan, given_settings, vehicle, recorded, flown, past, notices } = finished;
     let doors = DoorArgs { no_ports: true, ..DoorArgs::default() };
     let (physics, flight_args) = (PhysicsArgs::default(), FlightArgs::default());
     let screen = Screen {
@@ -120,6 +125,7 @@ fn open_screen(args: &OpenArgs, finished: Finished, keymap: Keymap) -> Result<u8
         backdrop: Vec::new(),
         directory: None,
         was_used: true,
+        given_settings,
         notices,
         review: ReviewArgs::default(),
         tiles: None,

@@ -9,6 +9,7 @@ mod backdrops;
 mod journal_file;
 mod on_disk;
 mod set_aside;
+mod settings_file;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -197,9 +198,7 @@ impl PlanFiles {
         loop {
             match requests.recv_timeout(WATCH) {
                 Ok(request) => {
-                    for reply in self.carry_out(request) {
-                        replies.send(reply).ok();
-                    }
+                    self.carry_out(request).into_iter().for_each(|reply| drop(replies.send(reply)));
                     done.send_modify(|done| *done += 1);
                 }
                 Err(RecvTimeoutError::Timeout) => {
@@ -240,6 +239,7 @@ impl PlanFiles {
                 self.lines.append(field, &line);
                 Vec::new()
             }
+            FileRequest::SaveSettings { path, text, count } => vec![settings_file::save(path, &text, count)],
             FileRequest::Ground { home, plan } => {
                 let mut problems = Vec::new();
                 let more = self.ground.read_more(&self.tiles, home, &plan, &mut problems);
@@ -251,8 +251,7 @@ impl PlanFiles {
             }
             FileRequest::Begin(id, document) => {
                 let kept = Journal { file: None, history: History::new(*document, false) };
-                let (path, seen, journal) = (None, Content::Missing, None);
-                let file = OpenFile::new((path, seen), (kept, journal), false);
+                let file = OpenFile::new((None, Content::Missing), (kept, None), false);
                 self.open.insert(id, file);
                 Vec::new()
             }

@@ -61,6 +61,7 @@ pub(super) fn run(args: &ReplayArgs, repeat: &[String], keymap: Keymap) -> Resul
         backdrop: Vec::new(),
         directory: setup::store_directory(&flight_args)?,
         was_used: true,
+        given_settings: Vec::new(),
         notices: Vec::new(),
         review: ReviewArgs::default(),
         tiles: None,

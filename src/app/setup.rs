@@ -20,6 +20,7 @@ use crate::report::UtcSeconds;
 use crate::signals::SimTime;
 use crate::sim::{Airframe, Home, WorldConfig};
 use crate::storage::Store;
+use crate::ui::settings::GivenSetting;
 use crate::vehicle::Vehicle;
 
 /// Reads a plan from its source. `home` is that of a file that has none, or none with its altitude above sea level.
@@ -92,6 +93,15 @@ pub(super) fn for_session(
     setup.arm_assist = flight.arm_assist.is_none_or(OnOff::is_on);
     setup.live = physics.is_external() || !doors.no_ports;
     Ok(setup)
+}
+
+/// Returns the settings that the boot lines set, with their sources.
+pub(super) fn given_settings(boot_lines: &[BootLines]) -> Vec<GivenSetting> {
+    let given = boot_lines.iter().flat_map(|lines| {
+        let given = |name: &str| GivenSetting { name: name.to_owned(), source: lines.source.clone() };
+        lines.setting_names().map(given)
+    });
+    given.collect()
 }
 
 /// Builds the vehicle. Notices for the user are added to `notices`.

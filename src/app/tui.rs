@@ -42,6 +42,7 @@ use crate::ui::backdrop::BackdropLayer;
 use crate::ui::editor::FileReply;
 use crate::ui::flights::FlightShelf;
 use crate::ui::keymap::Keymap;
+use crate::ui::settings::GivenSetting;
 use crate::ui::theme::{Charset, Palette};
 use crate::ui::{
     self, CliHelp, Ending, EnteredLines, FilesLink, GroundConfig, OpenPlan, OtherReceiver, SessionLink,
@@ -60,6 +61,8 @@ pub(super) struct Screen<'a> {
     pub(super) directory: Option<PathBuf>,
     /// `true` if the program was used before. The first steps are then known.
     pub(super) was_used: bool,
+    /// The settings that options or the scenario gave the craft.
+    pub(super) given_settings: Vec<GivenSetting>,
     /// The first messages for the user.
     pub(super) notices: Vec<String>,
     /// The limits for warnings about waypoints.
@@ -136,6 +139,7 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
     // The screen asks for the missing tiles again, and names them.
     setup = with_terrain(setup, &args.flight.terrain, &mut Vec::new())?;
     let tiles = setup.world.terrain.clone();
+    let given_settings = setup::given_settings(&setup.boot_lines);
     setup.remote_controller = firmware.is_some();
     let recorded = RecordedStart::at_boot(Ok(Setup::from(&setup)));
     let vehicle = setup::build(setup, &mut notices)?;
@@ -145,6 +149,7 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
         backdrop,
         directory: setup::store_directory(&args.flight)?,
         was_used: was_stored,
+        given_settings,
         notices,
         review: args.review,
         tiles,
@@ -218,6 +223,7 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
             hint: |line| cli::hint(line, None),
             check_setting,
         },
+        given_settings: screen.given_settings,
         sentence: |event| sentence::text(&event.kind).unwrap_or_default(),
         plan: OpenPlan::new(opened.id, opened.file, opened.history),
         mouse: true,

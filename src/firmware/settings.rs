@@ -14,13 +14,14 @@ mod judge;
 mod parse;
 mod store;
 mod table;
+mod unit;
 
 pub use current_firmware::beyond_current_firmware;
 pub use foreign::foreign_name;
 pub use judge::judge;
 pub use parse::AssignError;
 pub use store::{Settings, Value};
-pub use table::{PORT_NAMES, SETTINGS, find, group_of, needs_restart};
+pub use table::{PORT_NAMES, SETTINGS, find, group_of, grouped, needs_restart};
 
 /// The scope of a setting: one value for the craft, or one in each profile of a kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, strum::EnumIter)]
@@ -162,6 +163,11 @@ impl Setting {
             Kind::Array { default } => Value::Array(default.to_vec()),
             Kind::Text { .. } => Value::Text(String::new()),
         }
+    }
+
+    /// Returns the unit of its value, as in its description; empty if it has none.
+    pub fn unit(&self) -> &'static str {
+        unit::of_help(self.help)
     }
 
     /// Returns the line with the allowed values: `Allowed range: 10 - 70`. Empty for ports, which have no such line.

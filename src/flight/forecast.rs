@@ -8,12 +8,14 @@ mod observer;
 mod path;
 mod plan_distance;
 mod report;
+mod setting_change;
 mod what_if;
 
 pub use super::FlightResult;
 pub use observer::{LegTime, WorstXte};
 pub use path::PathPoint;
 pub use report::{Forecast, ForecastEnd, ForecastKind};
+pub use setting_change::PlanWithSettings;
 pub use what_if::{WHAT_IFS, WhatIf};
 
 use super::{Flight, FlightEnd, FlightOptions, Verdict};
@@ -27,6 +29,7 @@ use crate::vehicle::Vehicle;
 use endless::EndlessWatch;
 use observer::Observer;
 use report::Ended;
+use setting_change::Unchanged;
 
 /// The altitude from which a craft without ground contact counts as in the air, m. A bounce stays below it.
 const IN_THE_AIR_M: f64 = 1.0;
@@ -42,6 +45,8 @@ pub struct ForecastRun {
     limit: SimTime,
     endless: EndlessWatch,
     observer: Observer,
+    /// The same flight without the changed settings. It is flown first.
+    unchanged: Option<Unchanged>,
 }
 
 impl ForecastRun {
@@ -60,9 +65,7 @@ impl ForecastRun {
             return Err("No waypoints, so there is nothing to fly.".to_owned());
         }
         let Some(firmware) = vehicle.embedded_mut() else { return Err(CONTROLLER_IS_REMOTE.to_owned()) };
-        firmware
-            .upload(plan, settings)
-            .map_err(|RefusedLine { line, reply }| format!("The craft refuses `{line}`: {reply}"))?;
+        firmware.upload(plan, settings).map_err(|refused| refusal(&refused))?;
         change(&mut vehicle, WorldCommand::ClearFaults)?;
         vehicle.transmitter_mut().inputs_mut().clear();
         vehicle.transmitter_mut().set_cut(false);
@@ -109,12 +112,19 @@ impl ForecastRun {
             limit: SimTime(started.0 + SimTime::from_secs_f64(LIMIT_S).0),
             endless: EndlessWatch::default(),
             observer,
+            unchanged: None,
         })
     }
 
     /// Advances the flight by at most `ticks`. Returns the forecast when the flight is over.
     pub fn advance(&mut self, ticks: u32) -> Option<Forecast> {
-        (0..ticks).find_map(|_| self.tick())
+        if let Some(unchanged) = self.unchanged.as_mut().filter(|unchanged| unchanged.is_flying()) {
+            unchanged.advance(ticks);
+            return None;
+        }
+        let forecast = (0..ticks).find_map(|_| self.tick())?;
+        let unchanged = self.unchanged.take().and_then(Unchanged::flown);
+        Some(Forecast { unchanged, ..forecast })
     }
 
     fn tick(&mut self) -> Option<Forecast> {
@@ -196,6 +206,10 @@ fn check_flies(vehicle: &Vehicle) -> Result<(), String> {
         return Err(format!("The craft {does} disarmed, so there is no flight to look ahead to: {way_out}."));
     }
     Ok(())
+}
+
+fn refusal(RefusedLine { line, reply }: &RefusedLine) -> String {
+    format!("The craft refuses `{line}`: {reply}")
 }
 
 fn change(vehicle: &mut Vehicle, command: WorldCommand) -> Result<(), String> {

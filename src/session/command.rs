@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::event::Event;
 use super::replay::ReplayView;
 use super::reply::ReplyTo;
-use crate::fc::{RemoteView, UploadReport, UploadView};
+use crate::fc::{CraftSettings, RemoteView, UploadReport, UploadView};
 use crate::link::endpoint::EndpointStatus;
 use crate::plan::FlightPlan;
 use crate::replay::{Curve, CurvesRequest};
@@ -80,6 +80,11 @@ pub enum Command {
     Download {
         /// Receives the plan, or the sentence of the refusal.
         reply: ReplyTo<Result<Box<FlightPlan>, String>>,
+    },
+    /// Reads all settings of the craft, those of the shown instant while the flight is rewound.
+    ReadSettings {
+        /// Receives the settings, or the sentence of the refusal.
+        reply: ReplyTo<Result<Box<CraftSettings>, String>>,
     },
     /// Saves the configuration of the craft, plan included, without a restart.
     Save {

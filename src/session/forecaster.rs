@@ -8,7 +8,7 @@ use std::sync::mpsc;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crate::flight::forecast::{Forecast, ForecastKind, ForecastRun, WhatIf};
+use crate::flight::forecast::{Forecast, ForecastKind, ForecastRun, PlanWithSettings, WhatIf};
 use crate::plan::FlightPlan;
 use crate::session::command::VehicleCopy;
 
@@ -33,6 +33,14 @@ pub enum ForecastRequest {
     LookAhead,
     /// The current flight with a failure or change that begins now.
     WhatIf(WhatIf),
+    /// The current flight with other settings and without them; while nothing flies, the plan from home.
+    SettingChange {
+        /// The changed setting lines, without `set `.
+        changed: Vec<String>,
+        plan: Box<FlightPlan>,
+        /// Setting lines that come with the plan, without `set `.
+        settings: Vec<String>,
+    },
 }
 
 impl ForecastRequest {
@@ -41,6 +49,7 @@ impl ForecastRequest {
             Self::PlanEstimate { .. } => ForecastKind::PlanEstimate,
             Self::LookAhead => ForecastKind::LookAhead,
             Self::WhatIf(_) => ForecastKind::WhatIf,
+            Self::SettingChange { .. } => ForecastKind::SettingChange,
         }
     }
 }
@@ -156,6 +165,10 @@ impl<A: FnMut(ForecastReply)> Worker<A> {
             }
             ForecastRequest::LookAhead => ForecastRun::look_ahead(*vehicle),
             ForecastRequest::WhatIf(what_if) => ForecastRun::what_if(*vehicle, &what_if),
+            ForecastRequest::SettingChange { changed, plan, settings } => {
+                let plan = PlanWithSettings { plan: &plan, settings: &settings };
+                ForecastRun::setting_change(*vehicle, &changed, plan, takeoff_m)
+            }
         };
         match run {
             Ok(run) => self.flying.push(Flying { revision, kind, run }),

@@ -14,6 +14,8 @@ pub struct Persistence {
     /// The configuration that a restart returns to until something is saved: the stored one, plus the
     /// settings from the plan and the options.
     at_boot: Option<Box<Configuration>>,
+    /// The configuration that was saved last by this program.
+    saved: Option<Box<Configuration>>,
     /// `true` if a craft without mode conditions gets the starter modes at every restart.
     starter_modes: bool,
     logs: FlightLogs,
@@ -35,7 +37,7 @@ impl Persistence {
         controller.set_storage_facts(store.facts());
         let at_boot = controller.configuration().cloned().map(Box::new);
         let logs = FlightLogs::new(store.log_folder());
-        Self { store, at_boot, starter_modes, logs }
+        Self { store, at_boot, saved: None, starter_modes, logs }
     }
 
     /// Returns the blackbox logs of the craft.
@@ -50,11 +52,17 @@ impl Persistence {
     pub(super) fn save(&mut self, controller: &mut FlightController) -> Result<(), String> {
         let Some(configuration) = controller.configuration() else { return Ok(()) };
         let saved = self.store.save(configuration);
-        controller.set_storage_facts(self.store.facts());
         if saved.is_ok() {
             self.at_boot = None;
+            self.saved = Some(Box::new(configuration.clone()));
         }
+        controller.set_storage_facts(self.store.facts());
         saved.map_err(|error| format!("Not saved: {error}."))
+    }
+
+    /// Returns the configuration to which a restart returns; `None` for a remote flight controller.
+    pub(super) fn after_restart(&self) -> Option<&Configuration> {
+        self.saved.as_deref().or(self.at_boot.as_deref())
     }
 
     /// Updates the storage facts of `controller`, which was restored from an earlier instant.

@@ -160,6 +160,7 @@ impl Intent {
             Command::Cli { line, .. } => Self::Line(Impact::of_line(line)),
             Command::Upload { .. } => Self::Upload,
             Command::Download { .. } => Self::Download,
+            Command::ReadSettings { .. } => Self::Line(Impact::Reads),
             Command::Save { .. } => Self::Save,
             Command::World { .. } => Self::World,
             Command::CopyVehicle(_) => Self::Forecast,

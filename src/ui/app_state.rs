@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use crate::fc::RemoteNotice;
 use crate::session::{Event, ReplayNotice, SessionEvent, SessionView};
 use crate::signals::SimTime;
 use crate::telemetry::{EventKind, FirmwareEvent, NavEvent};
@@ -85,6 +86,15 @@ impl AppState {
             shared.log.leave_behind(event.time);
             self.panels.state.transitions.leave_behind(event.time);
             shared.forecast.forget_what_if();
+        }
+        let may_set = matches!(
+            event.kind,
+            SessionEvent::Branch { .. }
+                | SessionEvent::Restarted
+                | SessionEvent::Remote(RemoteNotice::Restarted(_))
+        );
+        if may_set {
+            shared.settings.outdate();
         }
         if let SessionEvent::Replay(ReplayNotice::Begins(_)) = event.kind {
             shared.log.clear();

@@ -6,6 +6,7 @@ use super::console::CliHelp;
 use super::editor::OpenPlan;
 use super::history::EnteredLines;
 use super::keymap::Keymap;
+use super::settings::GivenSetting;
 use super::theme::Theme;
 use super::units::Units;
 use crate::session::Event;
@@ -24,6 +25,8 @@ pub struct UiConfig {
     pub keymap: Keymap,
     /// Completion and help of the CLI panel.
     pub cli: CliHelp,
+    /// The settings that options gave the craft.
+    pub given_settings: Vec<GivenSetting>,
     /// Returns an event as a sentence; empty for events that nobody needs to read.
     pub sentence: fn(&Event) -> String,
     /// The plan that is open at start.
@@ -59,6 +62,7 @@ impl UiConfig {
             ground: GroundConfig::default(),
             keymap: Keymap::default(),
             cli: CliHelp::default(),
+            given_settings: Vec::new(),
             sentence: |_| String::new(),
             plan: OpenPlan::new(PlanId::default(), None, History::new(PlanDocument::default(), true)),
             mouse: false,

@@ -7,6 +7,7 @@ use super::event_log::Severity;
 use super::history::History;
 use super::message::Effect;
 use super::text_field::TextField;
+use crate::fc::Impact;
 use crate::plan::format::SettingCheck;
 use crate::session::command::CliOutput;
 
@@ -63,6 +64,8 @@ pub struct CliState {
     /// `true` while a line is being run.
     pub waiting: bool,
     queue: VecDeque<Queued>,
+    /// `true` if the running line may change the craft.
+    changes_craft: bool,
     /// `true` if the answer of the running line is also shown as a notice.
     reports: bool,
     history: History,
@@ -97,6 +100,7 @@ impl CliState {
         let Queued { line, reports } = self.queue.pop_front()?;
         self.reports = reports;
         self.waiting = true;
+        self.changes_craft = Impact::of_line(&line) > Impact::Reads;
         self.push(CliLineKind::Entered, line.clone());
         Some(line)
     }
@@ -111,12 +115,31 @@ impl CliState {
         self.queue.len()
     }
 
+    /// Returns `true` if the line that was run last may change the craft.
+    pub(super) fn changes_craft(&self) -> bool {
+        self.changes_craft
+    }
+
+    /// Keeps a line that another part of the screen ran, and its answer.
+    pub(super) fn record(&mut self, line: String, output: Option<&CliOutput>) {
+        self.push(CliLineKind::Entered, line);
+        self.keep_answer(output);
+    }
+
     /// Processes the answer of the line that was run. Returns the text of the notice if the answer is shown as one.
     pub fn answer(&mut self, output: Option<&CliOutput>) -> Option<(Severity, String)> {
         self.waiting = false;
+        if output.is_none() {
+            self.queue.clear();
+        }
+        let said = self.keep_answer(output);
+        said.filter(|_| std::mem::take(&mut self.reports))
+    }
+
+    /// Appends an answer. Returns its text in a line.
+    fn keep_answer(&mut self, output: Option<&CliOutput>) -> Option<(Severity, String)> {
         let Some(output) = output else {
             self.push(CliLineKind::Note, "no answer: the firmware went away".to_owned());
-            self.queue.clear();
             return None;
         };
         let mut severity = Severity::Good;
@@ -139,7 +162,7 @@ impl CliState {
         if output.restarted {
             self.push(CliLineKind::Note, "the firmware restarted".to_owned());
         }
-        std::mem::take(&mut self.reports).then(|| (severity, said.join(" ")))
+        Some((severity, said.join(" ")))
     }
 
     /// Drops the line to run and all lines after it, and notes the reason.

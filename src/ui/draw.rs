@@ -15,8 +15,9 @@ use super::layout::{self, SMALLEST};
 use super::panel::{self, Panel, span};
 use super::popup::frame::{key_line, popup};
 use super::popup::{
-    Popup, command_line, flights_list, go_to, guards, map_menu, palette, signal_list, what_if,
+    Popup, action_menu, command_line, flights_list, go_to, guards, map_menu, palette, signal_list, what_if,
 };
+use super::settings;
 use super::shared::Shared;
 use super::text_wrap::wrapped;
 use super::theme::{Charset, Role};
@@ -83,6 +84,8 @@ fn draw_popup(state: &AppState, popup: &Popup, area: Rect, buffer: &mut Buffer) 
         Popup::MapMenu(menu) => map_menu::draw(&shared.theme, menu, area, buffer),
         Popup::WhatIf { selected } => what_if::draw(&shared.theme, *selected, area, buffer),
         Popup::Guards { selected } => guards::draw(shared, *selected, area, buffer),
+        Popup::Actions(menu) => action_menu::draw(shared, menu, area, buffer),
+        Popup::ResetSettings => reset_question(shared, area, buffer),
         Popup::Quit => quit_question(shared, area, buffer),
         Popup::Permission => permission::draw(shared, area, buffer),
         Popup::Plots { selected } => panel::graphs::draw_choice(shared, *selected, area, buffer),
@@ -151,5 +154,20 @@ fn quit_question(state: &Shared, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     panel::row(buffer, inside, 0, theme, Role::Warn, " ▲ The craft is armed and flying ends here.");
     let answers = [(" y", " quit   "), ("n", " stay")];
+    panel::line(buffer, inside, 2, &key_line(theme, &answers));
+}
+
+fn reset_question(state: &Shared, area: Rect, buffer: &mut Buffer) {
+    let inside = popup(&state.theme, area, (56, 3), "Defaults?", buffer);
+    let theme = &state.theme;
+    panel::row(
+        buffer,
+        inside,
+        0,
+        theme,
+        Role::Warn,
+        &format!(" ▲ {}", settings::changes::reset_question(state)),
+    );
+    let answers = [(" y", " reset   "), ("n", " change nothing")];
     panel::line(buffer, inside, 2, &key_line(theme, &answers));
 }

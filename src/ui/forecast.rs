@@ -7,6 +7,7 @@ mod estimate_basis;
 mod estimate_line;
 mod ghost;
 mod requests;
+mod setting_change;
 
 use std::time::Duration;
 
@@ -17,11 +18,15 @@ use crate::signals::SimTime;
 use super::editor::PlanId;
 use super::formatting::within;
 use super::message::Effect;
+use super::settings::Assignment;
 use estimate_basis::EstimateBasis;
 
 pub(super) use estimate_line::lines as estimate_lines;
 pub(super) use ghost::ghost;
-pub(super) use requests::{ask_what_if, follow_plan, repeat, take_answer, toggle_look_ahead};
+pub(super) use requests::{
+    ask_setting_change, ask_what_if, follow_plan, repeat, take_answer, toggle_look_ahead,
+};
+pub(super) use setting_change::difference;
 
 /// The time without an answer after which a forecast is requested again.
 const LOST_AFTER: Duration = Duration::from_secs(30);
@@ -71,6 +76,13 @@ struct ChosenWhatIf {
     asked: Asked,
 }
 
+/// A value of a setting that is tried.
+#[derive(Debug)]
+struct TriedSetting {
+    assignment: Assignment,
+    asked: Asked,
+}
+
 /// The forecasts of the user interface.
 #[derive(Debug, Default)]
 pub struct ForecastState {
@@ -87,6 +99,7 @@ pub struct ForecastState {
     estimated: Option<PlanId>,
     look_ahead: Option<LookAhead>,
     what_if: Option<ChosenWhatIf>,
+    tried: Option<TriedSetting>,
 }
 
 impl ForecastState {
@@ -134,14 +147,27 @@ impl ForecastState {
         Effect::Forecast(ForecastJob { revision: self.revision, request })
     }
 
-    /// Drops the what-if, because the flight continues from another instant.
+    /// Drops the what-if and the tried setting, because the flight continues from another instant.
     pub(super) fn forget_what_if(&mut self) {
         self.what_if = None;
+        self.tried = None;
+    }
+
+    /// Drops the tried setting, because the craft has another value now.
+    pub(super) fn forget_tried(&mut self) {
+        self.tried = None;
+    }
+
+    /// Returns the tried value of a setting, with the answer if there is one.
+    pub(super) fn tried(&self, name: &str) -> Option<(&str, Option<&Forecast>)> {
+        let tried = self.tried.as_ref().filter(|tried| tried.assignment.name == name)?;
+        Some((&tried.assignment.value, tried.asked.forecast()))
     }
 
     /// Removes the ghost and its line from the map. Returns `true` if there were any.
     pub(super) fn dismiss(&mut self) -> bool {
+        let tried = self.tried.take().is_some();
         let what_if = self.what_if.take().is_some();
-        self.look_ahead.take().is_some() || what_if
+        self.look_ahead.take().is_some() || what_if || tried
     }
 }

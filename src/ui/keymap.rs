@@ -230,13 +230,13 @@ mod tests {
             action: action.to_owned(),
             keys: vec![key.to_owned()],
         };
-        let lines = [line("flight.arm", "f9"), line("app.palette", "ctrl-k"), line("flight.home", "")];
+        let lines = [line("flight.arm", "f10"), line("app.palette", "ctrl-k"), line("flight.home", "")];
         let keymap = Keymap::remapped(&lines).expect("no conflict");
         assert_eq!(
             keymap.in_force("`a` disarms, `save` stays, `Ctrl-P` lists; a `b"),
-            "`F9` disarms, `save` stays, `Ctrl-K` lists; a `b"
+            "`F10` disarms, `save` stays, `Ctrl-K` lists; a `b"
         );
-        assert_eq!(keymap.key(Action::Arm), "F9");
+        assert_eq!(keymap.key(Action::Arm), "F10");
     }
 
     #[test]

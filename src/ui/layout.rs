@@ -10,7 +10,7 @@
 //!  └──────────────┘    └───────────────┘    └─────────┴ plan─┘    └──────┴──────┴───────┘
 //! ```
 //!
-//! World takes the place of RC when it is shown, Graphs the place of the log.
+//! World and Settings take the place of RC when they are shown, Graphs the place of the log.
 //!
 //! While the form of the generator is open, the map fills the screen beside it and shows the result.
 //!
@@ -46,6 +46,9 @@ const TIMELINE_ROWS: u16 = 34;
 /// The width of the generator's form, and the least width of the map beside it.
 const FORM_COLUMNS: u16 = 42;
 const MAP_COLUMNS: u16 = 24;
+
+/// The height of the state above the settings.
+const STATE_ROWS: u16 = 13;
 
 impl Screen {
     /// Returns the area of a panel, if it is visible.
@@ -116,12 +119,24 @@ fn small(body: Rect, slots: Slots) -> Vec<(Panel, Rect)> {
 
 fn medium(body: Rect, slots: Slots) -> Vec<(Panel, Rect)> {
     let bottom = (body.height * 32 / 100).clamp(10, 20);
+    if slots.right == Panel::Settings {
+        return medium_with_settings(body, bottom, slots);
+    }
     let [top, bottom] = rows(body, [body.height - bottom, bottom]);
     let side = (body.width * 38 / 100).clamp(46, 60);
     let [map, state] = columns(top, [top.width - side, side]);
     let right = (body.width / 2).clamp(60, 76).min(body.width - 60);
     let [left, right] = columns(bottom, [bottom.width - right, right]);
     vec![(Panel::Map, map), (Panel::State, state), (slots.left, left), (slots.right, right)]
+}
+
+/// The settings need more rows than the other panels at the bottom right.
+fn medium_with_settings(body: Rect, bottom: u16, slots: Slots) -> Vec<(Panel, Rect)> {
+    let side = (body.width * 46 / 100).clamp(54, 76);
+    let [left, right] = columns(body, [body.width - side, side]);
+    let [map, below] = rows(left, [body.height - bottom, bottom]);
+    let [state, settings] = rows(right, [STATE_ROWS, body.height - STATE_ROWS]);
+    vec![(Panel::Map, map), (Panel::State, state), (slots.left, below), (Panel::Settings, settings)]
 }
 
 fn large(body: Rect, slots: Slots) -> Vec<(Panel, Rect)> {

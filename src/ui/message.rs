@@ -13,7 +13,8 @@ use super::flights::LibraryFlight;
 use super::map_point::MapPoint;
 use super::map_state::{MapItem, MapMode};
 use super::popup::Popup;
-use crate::fc::UploadReport;
+use super::settings::SettingsChange;
+use crate::fc::{CraftSettings, UploadReport};
 use crate::plan::{Altitude, FlightPlan};
 use crate::replay::{Curve, CurvesRequest, Overview};
 use crate::session::command::{CliOutput, Command, SessionView};
@@ -83,6 +84,13 @@ pub enum Msg {
         /// The plan of the craft, or the sentence of the refusal.
         result: Result<Box<FlightPlan>, String>,
     },
+    /// The settings of the craft, or the sentence of the refusal.
+    SettingsReply(Result<Box<CraftSettings>, String>),
+    /// The firmware answered a line that sets a setting; `None` when it went away instead.
+    SetReply {
+        line: String,
+        output: Option<CliOutput>,
+    },
     /// The craft saved its configuration. The error is the reason for a failure, a sentence.
     SaveReply(Result<(), String>),
     /// The flight was written. The result is a sentence with the place, or with the reason for a failure.
@@ -125,6 +133,8 @@ pub enum Request {
     Effect(Effect),
     Change(Change),
     Open(Popup),
+    /// Open the `:` line with this text.
+    Type(String),
     /// Run a line of the firmware's command line.
     Cli {
         line: String,
@@ -190,6 +200,8 @@ pub enum Change {
     Record,
     /// Play the recorded sticks, or stop.
     Play,
+    /// Change the settings of the craft.
+    Settings(SettingsChange),
     /// Show this world until the session confirms it, so that the next press of a key counts from it.
     World(Box<WorldView>),
 }
@@ -217,6 +229,10 @@ pub enum Effect {
     Send(Command),
     /// Run a CLI line; the reply comes back as [`Msg::CliReply`].
     Cli(String),
+    /// Read all settings of the craft; the reply comes back as [`Msg::SettingsReply`].
+    ReadSettings,
+    /// Run a line that sets a setting; the reply comes back as [`Msg::SetReply`].
+    Set(String),
     /// Change the world, such as `wind=5@270`; the reply comes back as [`Msg::WorldReply`].
     World(String),
     /// Upload a plan to the craft; the reply comes back as [`Msg::UploadReply`].

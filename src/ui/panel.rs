@@ -12,6 +12,7 @@ mod log;
 mod map;
 mod plan;
 pub(super) mod rc;
+mod settings;
 mod state;
 mod state_diagram;
 mod world;
@@ -38,6 +39,8 @@ pub enum Panel {
     /// The air and the faults.
     World,
     Log,
+    /// All settings of the craft.
+    Settings,
 }
 
 /// The place of a panel on the screen.
@@ -81,7 +84,7 @@ const fn row_of(
 }
 
 /// All panels in the order of their numbers.
-pub(super) const ROWS: [Row; 8] = [
+pub(super) const ROWS: [Row; 9] = [
     row_of(Panel::Map, "Map", ("view.map", "map", "Map panel"), &["1", "f1"], Place::Main, false),
     row_of(Panel::Plan, "Plan", ("view.plan", "plan", "Plan panel"), &["2", "f2"], Place::Right, true),
     row_of(Panel::State, "State", ("view.state", "state", "State panel"), &["3", "f3"], Place::Beside, true),
@@ -97,6 +100,14 @@ pub(super) const ROWS: [Row; 8] = [
     ),
     row_of(Panel::World, "World", ("view.world", "world", "World panel"), &["7", "f7"], Place::Right, false),
     row_of(Panel::Log, "Log", ("view.log", "log", "Log panel"), &["8", "f8"], Place::Below, true),
+    row_of(
+        Panel::Settings,
+        "Settings",
+        ("view.settings", "settings", "Settings panel"),
+        &["9", "f9"],
+        Place::Right,
+        true,
+    ),
 ];
 
 /// The states of the panels.
@@ -110,6 +121,7 @@ pub struct Panels {
     graphs: graphs::GraphsPanel,
     pub world: world::WorldPanel,
     pub log: log::LogPanel,
+    settings: settings::SettingsPanel,
 }
 
 impl Panels {
@@ -128,6 +140,7 @@ impl Panels {
             Panel::Graphs => &self.graphs,
             Panel::World => &self.world,
             Panel::Log => &self.log,
+            Panel::Settings => &self.settings,
         }
     }
 
@@ -141,6 +154,7 @@ impl Panels {
             Panel::Graphs => &mut self.graphs,
             Panel::World => &mut self.world,
             Panel::Log => &mut self.log,
+            Panel::Settings => &mut self.settings,
         }
     }
 }

@@ -46,7 +46,8 @@ impl Permission {
 fn intent_of(effect: &Effect) -> Intent {
     match effect {
         Effect::Send(command) => Intent::of(command),
-        Effect::Cli(line) => Intent::Line(Impact::of_line(line)),
+        Effect::Cli(line) | Effect::Set(line) => Intent::Line(Impact::of_line(line)),
+        Effect::ReadSettings => Intent::Line(Impact::Reads),
         Effect::Download(_) => Intent::Download,
         Effect::Upload { .. } => Intent::Upload,
         Effect::SaveToFlash => Intent::Save,

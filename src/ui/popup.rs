@@ -1,5 +1,6 @@
 //! The popups.
 
+pub(super) mod action_menu;
 pub(super) mod command_line;
 pub(super) mod flights_list;
 pub(super) mod frame;
@@ -10,6 +11,7 @@ pub(super) mod palette;
 pub(super) mod signal_list;
 pub(super) mod what_if;
 
+pub(super) use action_menu::ActionMenu;
 pub use command_line::CommandLine;
 pub use flights_list::FlightsList;
 pub(super) use go_to::GoTo;
@@ -46,8 +48,12 @@ pub enum Popup {
         /// The explained row.
         selected: usize,
     },
+    /// A menu of actions at the mouse.
+    Actions(ActionMenu),
     /// "The craft is armed. Quit?"
     Quit,
+    /// "Give all changed settings their defaults?"
+    ResetSettings,
     /// "This changes the flight controller. Go on?"
     Permission,
     /// The choice of plots for the graphs.

@@ -13,6 +13,7 @@ use super::editor::{ConversionLosses, EditorPopup, OpenPlan, Question};
 use super::message::{Effect, Msg};
 use super::permission;
 use super::popup::Popup;
+use super::settings::changes::reset_question;
 use super::update::update;
 
 /// The last line of a list of choices.
@@ -54,12 +55,14 @@ pub(super) fn question(state: &AppState) -> Option<Vec<String>> {
             Some(list("What if, from this instant on?".to_owned(), choices))
         }
         Popup::Quit => Some(vec!["The craft is armed and flying ends here. Quit? y yes, n no.".to_owned()]),
+        Popup::ResetSettings => Some(vec![format!("{} Go on? y yes, n no.", reset_question(&state.shared))]),
         Popup::Permission => Some(vec![format!("{} y yes, n no.", permission::question(&state.shared))]),
         Popup::Flights(open) => flights::question(state, open),
         Popup::Help { .. }
         | Popup::Guards { .. }
         | Popup::Plots { .. }
         | Popup::Signals(_)
+        | Popup::Actions(_)
         | Popup::CommandLine
         | Popup::Palette(_)
         | Popup::MapMenu(_) => None,
@@ -118,13 +121,15 @@ pub(super) fn answer(state: &mut AppState, line: &str) -> Result<Answered, Strin
         Some(Popup::Quit) if !matches!(line, "n" | "no" | "") => {
             return Err("Answer y to end, n to fly on.".to_owned());
         }
-        Some(Popup::Permission) if line == "y" || line == "yes" => {
+        Some(Popup::Permission | Popup::ResetSettings) if line == "y" || line == "yes" => {
             return Ok(press(state, KeyCode::Char('y')).into());
         }
-        Some(Popup::Permission) if matches!(line, "n" | "no" | "") => {
+        Some(Popup::Permission | Popup::ResetSettings) if matches!(line, "n" | "no" | "") => {
             return Ok(press(state, KeyCode::Char('n')).into());
         }
-        Some(Popup::Permission) => return Err("Answer y to go on, n to change nothing.".to_owned()),
+        Some(Popup::Permission | Popup::ResetSettings) => {
+            return Err("Answer y to go on, n to change nothing.".to_owned());
+        }
         Some(Popup::Flights(_)) => return flights::answer(state, line),
         Some(Popup::GoTo(_) | Popup::WhatIf { .. }) if !line.is_empty() => {
             let effects = match state.popups.last() {

@@ -26,6 +26,7 @@ use super::map_state::MapState;
 use super::message::{Effect, FlightForm};
 use super::other_flight::{Alignment, OtherFlight};
 use super::panel::Panel;
+use super::settings::SettingsState;
 use super::stick_recording::StickRecording;
 use super::theme::Theme;
 use super::track::{KeptTracks, Track};
@@ -85,6 +86,8 @@ pub struct Shared {
     pub past_flights: KeptTracks,
     /// Flights flown ahead of time.
     pub forecast: ForecastState,
+    /// All settings of the craft.
+    pub settings: SettingsState,
     pub log: LogState,
     pub notice: Option<Notice>,
     /// Notices that stay until Esc clears them, the oldest first.
@@ -130,6 +133,7 @@ impl Shared {
             abandoned: KeptTracks::default(),
             past_flights: KeptTracks::default(),
             forecast: ForecastState::default(),
+            settings: SettingsState::new(config.given_settings),
             log: LogState::default(),
             notice: None,
             pinned: Vec::new(),

@@ -21,6 +21,7 @@ use super::message::{Effect, FlightForm, Msg, Request};
 use super::panel::Panel;
 use super::past_flight;
 use super::popup::{GoTo, Palette, Popup};
+use super::settings;
 use super::stick_recording::keys::advance;
 use super::track::TrackPoint;
 use super::transmitter;
@@ -71,6 +72,8 @@ pub fn update(state: &mut AppState, msg: Msg) -> Vec<Effect> {
     }
     if is_picture {
         effects.extend(forecast::repeat(&mut state.shared));
+        let reads = settings::reading::follow(&mut state.shared);
+        effects.extend(permission::hold(state, reads.into_iter().collect()));
     }
     effects
 }
@@ -93,7 +96,15 @@ fn take(state: &mut AppState, msg: Msg) -> Vec<Effect> {
         Msg::Event(event) => state.take_event(&event),
         Msg::OtherFlight { name, result } => other_flight::take(&mut state.shared, name, result),
         Msg::Curves { request, result } => series::take(&mut state.shared, request, result),
+        Msg::SettingsReply(reply) => settings::reading::take(&mut state.shared, reply),
+        Msg::SetReply { line, output } => {
+            state.panels.cli.console.record(line, output.as_ref());
+            return settings::changes::take_answer(&mut state.shared, output.as_ref());
+        }
         Msg::CliReply(output) => {
+            if state.panels.cli.console.changes_craft() {
+                state.shared.settings.outdate();
+            }
             if let Some((severity, text)) = state.panels.cli.console.answer(output.as_ref()) {
                 state.shared.notify(severity, text);
             }
@@ -108,7 +119,10 @@ fn take(state: &mut AppState, msg: Msg) -> Vec<Effect> {
             let sentence = state.shared.keymap.in_force(&sentence);
             state.shared.notify(Severity::Fault, sentence);
         }
-        Msg::UploadReply { id, count, result } => return uploaded(&mut state.shared, id, count, result),
+        Msg::UploadReply { id, count, result } => {
+            state.shared.settings.outdate();
+            return uploaded(&mut state.shared, id, count, result);
+        }
         Msg::Forecast(reply) => forecast::take_answer(&mut state.shared, reply),
         Msg::DownloadReply { id, result } => return plan::downloaded(&mut state.shared, id, result),
         Msg::FlightWritten { what, result } => plan::flight_written(&mut state.shared, what, result),
@@ -319,6 +333,7 @@ fn carry_out(state: &mut AppState, requests: Vec<Request>) -> Vec<Effect> {
             Request::Effect(effect) => effects.push(effect),
             Request::Change(requested) => effects.extend(change(&mut state.shared, requested)),
             Request::Open(popup) => state.popups.push(popup),
+            Request::Type(text) => popup::open_command_line(state, &text),
             Request::Cli { line, is_reported } => {
                 state.panels.cli.console.queue(line, is_reported);
                 effects.extend(state.panels.cli.console.next_effect());
@@ -382,9 +397,9 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
         Action::Slower => return speed(&mut state.shared, -1),
         Action::Faster => return speed(&mut state.shared, 1),
         Action::RealTime => return speed(&mut state.shared, 0),
-        Action::Show(panel) => return focus(&mut state.shared, panel),
-        Action::Next => return focus_neighbour(&mut state.shared, 1),
-        Action::Previous => return focus_neighbour(&mut state.shared, -1),
+        Action::Show(panel) => return focus(state, panel),
+        Action::Next => return focus_neighbour(state, 1),
+        Action::Previous => return focus_neighbour(state, -1),
         Action::Zoom => state.shared.zoomed = !state.shared.zoomed,
         Action::WriteScenario => return vec![state.shared.write_flight(FlightForm::Scenario, None)],
         Action::WriteLog => return vec![state.shared.write_flight(FlightForm::Log, None)],
@@ -398,7 +413,7 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
             // Leave the text first, so that the next keys are not typed.
             let focus_now = state.shared.focus;
             if focus_now.takes_text() {
-                focus(&mut state.shared, Panel::Map);
+                focus(state, Panel::Map);
             } else if let Some(requests) = state.panels.of_mut(focus_now).go_back(&state.shared) {
                 return carry_out(state, requests);
             } else if !state.shared.forecast.dismiss()

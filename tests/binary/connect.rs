@@ -136,6 +136,39 @@ fn a_board_on_a_cable_is_read_asked_about_once_and_comes_back_after_the_cable_wa
 }
 
 #[test]
+fn all_settings_of_a_remote_firmware_are_read_and_changed_in_the_same_panel() {
+    let craft = Craft::start();
+    craft.line("set p_roll = 60");
+    let place = format!("tcp:{}", craft.address);
+    let mut terminal = Terminal::betadeck(80, 24, &["--connect", &place, "--fresh"]);
+    terminal.until_shown("answers: Betaflight");
+    terminal.send("9");
+    terminal.until_shown("─ Changed");
+    let row = |terminal: &Terminal, name: &str| {
+        let screen = terminal.screen();
+        let is_row = |line: &&str| line.contains(&format!("{name} ")) && !line.contains('─');
+        screen.lines().find(is_row).unwrap_or_default().to_owned()
+    };
+    let p_roll = row(&terminal, "p_roll");
+    assert!(p_roll.contains('●') && p_roll.contains("60"), "{p_roll}");
+    terminal.send("/lean of the auto\r");
+    terminal.until("the setting", |terminal| row(terminal, "ap_max_angle").contains("50"));
+    terminal.send("w");
+    terminal.until_shown("no forecast of its flight");
+    terminal.send("+");
+    terminal.until_shown("Change the craft?");
+    assert!(craft.line("get ap_max_angle").contains("= 50"), "nothing is changed before the answer");
+    terminal.send("y");
+    terminal.until_shown("ap_max_angle = 51.");
+    assert!(craft.line("get ap_max_angle").contains("= 51"));
+    terminal.send("u");
+    terminal.until_shown("ap_max_angle = 50.");
+    assert!(craft.line("get ap_max_angle").contains("= 50"));
+    terminal.send("q");
+    assert_eq!(terminal.end(), 0);
+}
+
+#[test]
 fn a_plan_goes_to_the_craft_and_back_over_tcp() {
     let craft = Craft::start();
     let place = format!("tcp:{}", craft.address);

@@ -47,6 +47,7 @@ mod replayed_recordings;
 #[cfg(unix)]
 mod reports;
 #[cfg(unix)]
+mod settings;
 mod signals;
 #[cfg(unix)]
 mod state_files;

@@ -216,7 +216,7 @@ fn a_storm_of_sizes_is_survived_in_flight_and_the_terminal_is_given_back_on_a_si
     // field.
     let keys = [
         "1", "2", "3", "6z", "7", "8", "?", "\x1b\x1b", "2z", "\x10", "\x10wi", ":w", "5set", "2S", "2Sname",
-        "2o", "2P", "2E", "8/wind", "G", "w", "q",
+        "2o", "2P", "2E", "8/wind", "G", "w", "9", "9/vel", "9\r", "9X", "9w9", "q",
     ];
     for keys in keys {
         terminal.send(keys);

@@ -102,6 +102,7 @@ pub(crate) fn state_after(
             hint: |line| line.starts_with("set ap_position_p").then(|| "0 … 200, default 30".to_owned()),
             check_setting: betadeck::flight::setup::check_setting,
         },
+        given_settings: Vec::new(),
         sentence,
         plan: open(plan),
         mouse: true,

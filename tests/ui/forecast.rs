@@ -96,6 +96,7 @@ fn square(kind: ForecastKind) -> Forecast {
         legs: Vec::new(),
         moved_m: 86.0,
         path,
+        unchanged: None,
     }
 }
 

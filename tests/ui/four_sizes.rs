@@ -11,6 +11,7 @@ use ratatui::layout::Position;
 use crate::fixture;
 use crate::hands;
 use crate::hands::{keys, press, screen, state_with_fix};
+use crate::settings;
 
 const SIZES: [(u16, u16); 4] = [(60, 20), (80, 24), (120, 40), (200, 60)];
 
@@ -179,11 +180,18 @@ fn everything_open() -> Vec<Open> {
         "7 enter '12",
         "q",
     ]
+    .into_iter()
     .map(waiting)
-    .into();
-    open.extend(
-        ["G", "w", "q", "2 i q", "5 'get", "G enter", "ctrl-p 'go", ": 'go", "6 enter", "m"].map(flying),
-    );
+    .collect();
+    let in_flight = ["G", "w", "q", "2 i q", "5 'get", "G enter", "ctrl-p 'go", ": 'go", "6 enter", "m"];
+    open.extend(in_flight.into_iter().map(flying));
+    for typed in ["", "/ 'vel", "/ 'zzzz enter", "enter", "enter 'x enter", "w '9", "f", "f f", "X", "z"] {
+        open.push((format!("settings, {typed}"), settings::opened_with((120, 40), typed)));
+    }
+    let mut menu = settings::opened_with((120, 40), "");
+    let right = crossterm::event::MouseEventKind::Down(crossterm::event::MouseButton::Right);
+    hands::mouse_button(&mut menu, right, (80, 20));
+    open.push(("settings menu".to_owned(), menu));
     let listing = Listing {
         directory: "/home/pilot/plans".into(),
         entries: (0..30)

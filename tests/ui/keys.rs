@@ -273,7 +273,7 @@ fn tab_goes_through_all_panels_and_back() {
     }
     assert_eq!(seen, Panel::ALL);
     key(&mut state, KeyCode::BackTab);
-    assert_eq!(state.shared.focus, Panel::Log);
+    assert_eq!(state.shared.focus, Panel::Settings);
 }
 
 #[test]

@@ -134,6 +134,7 @@ fn the_estimate_says_whose_fence_it_keeps_to() {
             legs: Vec::new(),
             moved_m: 86.0,
             path: Vec::new(),
+            unchanged: None,
         };
         let forecast = Ok(Box::new(forecast));
         let revision = job.unwrap().revision;

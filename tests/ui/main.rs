@@ -26,5 +26,6 @@ mod replay;
 mod rewind;
 mod screens;
 mod session_rig;
+mod settings;
 mod terrain;
 mod uploads;

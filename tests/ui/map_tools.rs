@@ -120,6 +120,7 @@ fn the_flown_estimate_is_judged_by_the_zones() {
         legs: vec![LegTime { wp: 1, time_s: 40.0, battery_used_pct: 12.4 }],
         moved_m: 0.0,
         path: path.collect(),
+        unchanged: None,
     };
     let reply = ForecastReply {
         revision: revision.expect("an estimate"),

@@ -165,6 +165,16 @@ fn every_panel_of_a_recorded_flight() {
 }
 
 #[test]
+fn the_settings_of_a_recorded_flight_are_not_read_and_the_panel_says_why() {
+    let mut state = replayed((80, 24), CIRCLE, 90.0);
+    keys(&mut state, "9");
+    let view = state.shared.view.clone();
+    let effects = update(&mut state, Msg::View(view));
+    assert!(effects.is_empty(), "{effects:?}");
+    assert!(screen(&state).contains("This is a recorded flight: it can be looked at"), "{}", screen(&state));
+}
+
+#[test]
 fn the_track_is_there_at_once_and_bright_up_to_the_shown_instant() {
     let state = replayed((120, 40), CIRCLE, 90.0);
     let points = state.shared.track.points();

@@ -67,6 +67,7 @@ impl Rig {
             ground: betadeck::ui::GroundConfig::default(),
             keymap: Keymap::default(),
             cli: CliHelp::default(),
+            given_settings: Vec::new(),
             sentence: |event| sentence::text(&event.kind).unwrap_or_default(),
             plan: OpenPlan::new(PlanId(1), None, History::new(demo.into(), true)),
             mouse: true,
@@ -113,6 +114,20 @@ impl Rig {
                     let next = update(&mut self.state, Msg::UploadReply { id, count, result });
                     Box::pin(self.carry_out(next)).await;
                 }
+                Effect::ReadSettings => {
+                    let (reply, answer) = ReplyTo::channel();
+                    self.session.commands.send(Command::ReadSettings { reply }).await.unwrap();
+                    let next = update(&mut self.state, Msg::SettingsReply(answer.await.unwrap()));
+                    Box::pin(self.carry_out(next)).await;
+                }
+                Effect::Set(line) => {
+                    let (reply, answer) = ReplyTo::channel();
+                    let set = line.clone();
+                    self.session.commands.send(Command::Cli { line, reply }).await.unwrap();
+                    let next =
+                        update(&mut self.state, Msg::SetReply { line: set, output: answer.await.ok() });
+                    Box::pin(self.carry_out(next)).await;
+                }
                 Effect::World(line) => {
                     let (reply, answer) = ReplyTo::channel();
                     let asked = line.clone();
@@ -142,7 +157,9 @@ impl Rig {
                     update(&mut self.state, Msg::Event(event));
                 }
                 let view = self.session.view.borrow_and_update().clone();
-                update(&mut self.state, Msg::View(view));
+                let mut effects = update(&mut self.state, Msg::View(view));
+                effects.retain(|effect| matches!(effect, Effect::ReadSettings));
+                self.carry_out(effects).await;
                 if wanted(&self.state) {
                     return;
                 }

@@ -10,6 +10,7 @@ use crate::app::flight_recorder::RecordedStart;
 use crate::app::input_file;
 use crate::app::interrupt::interrupt_flag;
 use crate::app::recording_file::GZIP;
+use crate::app::setup;
 use crate::app::terrain::with_terrain;
 use crate::args::{OpenArgs, TerrainArgs};
 use crate::flight::FlightSetup;
@@ -19,6 +20,7 @@ use crate::signals::SimTime;
 use crate::telemetry::{EventKind, FirmwareEvent, NavEvent, NavState};
 use crate::text::printable;
 use crate::ui::keymap::Keymap;
+use crate::ui::settings::GivenSetting;
 
 /// The ticks between two looks at a request to stop.
 const SLICE: usize = 4096;
@@ -55,7 +57,7 @@ pub(super) fn run(args: &OpenArgs, recording: &Recording, keymap: Keymap) -> Res
     let file = Path::new(&args.scenario);
     let name = printable::name(&file.file_name().unwrap_or(file.as_os_str()).to_string_lossy());
     let mut notices = recording.notices();
-    let repeat = begin(recording, &mut notices).map_err(|reason| {
+    let (repeat, given_settings) = begin(recording, &mut notices).map_err(|reason| {
         AppError::input(format!("{name} cannot be flown again: {reason}; `betadeck replay` shows it"))
     })?;
     let Some(flown) = fly(repeat)? else { return Ok(error::INTERRUPTED) };
@@ -83,16 +85,24 @@ pub(super) fn run(args: &OpenArgs, recording: &Recording, keymap: Keymap) -> Res
     let plan = recording.setup().map(Setup::plan).unwrap_or_default();
     let Recorded { events, past } = recorded;
     let flown = FlownBefore { timeline, events, show: show_at, again: None };
-    open_screen(args, Finished { plan, vehicle, recorded: start, flown, past, notices }, keymap)
+    open_screen(
+        args,
+        Finished { plan, given_settings, vehicle, recorded: start, flown, past, notices },
+        keymap,
+    )
 }
 
-/// Returns the flight at boot. The error is the reason why it cannot be flown again, the end of a sentence.
-fn begin<'r>(recording: &'r Recording, notices: &mut Vec<String>) -> Result<Repeat<'r>, String> {
+/// Returns the flight at boot, and the settings that its options gave the craft. The error is the reason why it cannot be flown again, the end of a sentence.
+fn begin<'r>(
+    recording: &'r Recording,
+    notices: &mut Vec<String>,
+) -> Result<(Repeat<'r>, Vec<GivenSetting>), String> {
     let mut setup: FlightSetup = recording.flight()?;
     if recording.setup().is_some_and(Setup::had_tiles) {
         setup = with_terrain(setup, &TerrainArgs::default(), notices).map_err(|error| error.message)?;
     }
-    Repeat::new(recording, setup)
+    let given_settings = setup::given_settings(&setup.boot_lines);
+    Ok((Repeat::new(recording, setup)?, given_settings))
 }
 
 /// A recording that was flown again.

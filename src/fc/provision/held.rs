@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, VecDeque};
 
 use super::report::Difference;
 use super::wish::{self, Wish};
+use crate::fc::same_value;
 use crate::fc::telemetry::setting;
 use crate::plan::FlightPlan;
 use crate::plan::format::{self, Format};
@@ -159,14 +160,6 @@ fn tells_of_no_change(output: &str) -> bool {
     });
     // A prompt alone is not an answer.
     output.contains(char::is_alphanumeric) && changes.next().is_none()
-}
-
-/// Returns `true` if two texts are the same value: `on` is `ON`, `05` is `5`.
-fn same_value(one: &str, other: &str) -> bool {
-    match (one.parse::<i64>(), other.parse::<i64>()) {
-        (Ok(one), Ok(other)) => one == other,
-        _ => one.eq_ignore_ascii_case(other),
-    }
 }
 
 fn spaced(row: &[u16]) -> String {

@@ -117,6 +117,13 @@ pub fn group_of(setting: &Setting) -> &'static str {
     GROUPS.iter().find(holds).map_or("", |group| group.title)
 }
 
+/// Returns all settings in the order of `dump`, each with the heading under which it is documented.
+pub fn grouped() -> impl Iterator<Item = (&'static str, &'static Setting)> {
+    let headings =
+        GROUPS.into_iter().flat_map(|group| std::iter::repeat_n(group.title, group.settings.len()));
+    std::iter::zip(headings, &SETTINGS)
+}
+
 /// Returns `true` if a change takes effect only after a restart of the firmware. All other settings are live from the
 /// next step.
 pub fn needs_restart(name: &str) -> bool {
@@ -284,6 +291,15 @@ mod tests {
         }
         assert_eq!(find("ap_max_angl").map(|setting| setting.name), None);
         assert_eq!(find("").map(|setting| setting.name), None);
+    }
+
+    #[test]
+    fn every_setting_stands_under_its_heading() {
+        let rows: Vec<_> = grouped().collect();
+        assert_eq!(rows.len(), COUNT);
+        for (heading, setting) in rows {
+            assert_eq!(heading, group_of(setting), "{}", setting.name);
+        }
     }
 
     #[test]

@@ -150,6 +150,7 @@ impl Observer {
             legs: self.legs.clone(),
             moved_m: self.path.moved_m(),
             path: self.path.points(),
+            unchanged: None,
         }
     }
 }

@@ -13,6 +13,8 @@ pub enum ForecastKind {
     LookAhead,
     /// The present flight with a failure.
     WhatIf,
+    /// The present flight or a plan with other settings. The forecast itself is of one of the kinds above.
+    SettingChange,
 }
 
 /// The end of a forecast's flight.
@@ -59,6 +61,8 @@ pub struct Forecast {
     pub moved_m: f64,
     /// True path of the craft.
     pub path: Vec<PathPoint>,
+    /// The same flight without the changed settings, of a forecast with other settings.
+    pub unchanged: Option<Box<Self>>,
 }
 
 impl Forecast {

@@ -172,3 +172,37 @@ fn sticks_that_stay_have_an_end_too() {
     assert_eq!(forecast.end, ForecastEnd::Endless, "{}", forecast.reason);
     assert!(forecast.time_s < 120.0);
 }
+
+fn change(vehicle: Vehicle, changed: &str) -> Result<ForecastRun, String> {
+    let plan = plan("land");
+    let plan = PlanWithSettings { plan: &plan, settings: &[] };
+    ForecastRun::setting_change(vehicle, &[changed.to_owned()], plan, 10.0)
+}
+
+#[test]
+fn a_changed_setting_is_flown_beside_the_same_flight_without_it() {
+    let forecast = end(change(vehicle("square", Noise::None), "ap_landing_descent_rate = 150").unwrap());
+    let unchanged = forecast.unchanged.as_ref().unwrap();
+    assert_eq!(**unchanged, estimate("land"), "nothing else is different");
+    assert!(forecast.is_complete() && forecast.time_s < unchanged.time_s - 5.0, "{}", forecast.time_s);
+    assert_eq!(forecast.kind, ForecastKind::PlanEstimate);
+}
+
+#[test]
+fn in_flight_a_changed_setting_counts_from_this_instant_on() {
+    let flying = in_flight(vehicle("land", Noise::Real), 4.0);
+    let expected = end(ForecastRun::look_ahead(flying.clone()).unwrap());
+    let forecast = end(change(flying, "ap_landing_descent_rate = 150").unwrap());
+    let unchanged = forecast.unchanged.as_ref().unwrap();
+    assert_eq!(**unchanged, expected);
+    assert!(forecast.time_s < unchanged.time_s - 5.0, "{} {}", forecast.time_s, unchanged.time_s);
+    assert_eq!((forecast.kind, forecast.path.first()), (ForecastKind::LookAhead, unchanged.path.first()));
+}
+
+#[test]
+fn a_value_that_the_craft_refuses_is_not_flown() {
+    for flying in [vehicle("square", Noise::None), in_flight(vehicle("land", Noise::None), 2.0)] {
+        let refused = change(flying, "ap_max_angle = 999").unwrap_err();
+        assert!(refused.contains("set ap_max_angle = 999"), "{refused}");
+    }
+}

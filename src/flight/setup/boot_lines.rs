@@ -27,6 +27,15 @@ impl BootLines {
         Self { source: source.into(), text }
     }
 
+    /// Returns the names of the settings that the lines set.
+    pub fn setting_names(&self) -> impl Iterator<Item = &str> {
+        self.text.lines().filter_map(|line| {
+            let (word, rest) = line.trim().split_once(' ')?;
+            let (name, _) = rest.split_once('=')?;
+            word.eq_ignore_ascii_case("set").then(|| name.trim())
+        })
+    }
+
     /// Applies the lines. Returns the notices for the pilot, or the lines that the firmware refuses with their
     /// places.
     pub(super) fn apply(

@@ -91,6 +91,10 @@ impl Session {
                 self.report(outcome);
             }
             Command::Download { reply } => self.interface.download(reply, &mut self.vehicle),
+            Command::ReadSettings { reply } if self.is_rewound() => reply.send(self.settings_of_shown()),
+            Command::ReadSettings { reply } => {
+                self.interface.read_settings(reply, &mut self.vehicle, &self.persistence);
+            }
             Command::Save { reply } => {
                 let is_real = self.access().is_limited();
                 self.interface.save(is_real, reply, &mut self.vehicle, &mut self.persistence);

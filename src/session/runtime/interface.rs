@@ -3,7 +3,9 @@
 
 use std::time::Instant;
 
-use crate::fc::{LIST, Upload, UploadProgress, UploadReport, UploadView, plan_above_home, replace_settings};
+use crate::fc::{
+    CraftSettings, LIST, Upload, UploadProgress, UploadReport, UploadView, plan_above_home, replace_settings,
+};
 use crate::firmware::cli::{CliAction, CliReply, advice};
 use crate::msp::code;
 use crate::plan::{AltitudeReference, FlightPlan};
@@ -13,9 +15,13 @@ use crate::session::late_answers::{LateAnswers, NO_ANSWER, no_answer_line};
 use crate::session::persistence::Persistence;
 use crate::session::request_handler::RequestHandler;
 use crate::session::{ReplyTo, hazards};
+use crate::text::printable;
 use crate::vehicle::{
     Answer, CliSession, LateAnswer, Message, Reply as VehicleReply, Ticket, Vehicle, VehicleCommand,
 };
+
+/// The line that prints all settings.
+const GET: &str = "get";
 
 /// A reply that can be a refusal, as a sentence.
 type Reply<T> = ReplyTo<Result<T, String>>;
@@ -37,6 +43,7 @@ enum Waiting {
         reply: ReplyTo<CliOutput>,
     },
     Download(Reply<Box<FlightPlan>>),
+    Settings(Reply<Box<CraftSettings>>),
     /// Receives `Ok` once the configuration is stored.
     Save(Reply<()>),
     /// An upload, which continues with the answer.
@@ -113,7 +120,7 @@ impl Interface {
     pub(super) fn upload_under_way(&self) -> Option<UploadView> {
         self.late_answers.recipients().find_map(|waiting| match waiting {
             Waiting::Upload(upload, _) => Some(upload.lines_sent()),
-            Waiting::Line { .. } | Waiting::Download(_) | Waiting::Save(_) => None,
+            Waiting::Line { .. } | Waiting::Download(_) | Waiting::Settings(_) | Waiting::Save(_) => None,
         })
     }
 
@@ -126,6 +133,23 @@ impl Interface {
             }
             Answer::Now(_) => {}
             Answer::Later(ticket) => self.late_answers.expect(ticket, Waiting::Download(reply), now()),
+        }
+    }
+
+    /// Reads all settings: those of an embedded flight controller from its configuration, those of a remote one from
+    /// its command line.
+    pub(super) fn read_settings(
+        &mut self,
+        reply: Reply<Box<CraftSettings>>,
+        vehicle: &mut Vehicle,
+        persistence: &Persistence,
+    ) {
+        if let Some(configuration) = vehicle.controller().configuration() {
+            let saved = persistence.after_restart();
+            return reply.send(Ok(Box::new(CraftSettings::of_configuration(configuration, saved))));
+        }
+        if let Answer::Later(ticket) = vehicle.apply(&VehicleCommand::single_line(GET)) {
+            self.late_answers.expect(ticket, Waiting::Settings(reply), now());
         }
     }
 
@@ -175,6 +199,7 @@ impl Interface {
                 let reference = craft.vehicle.controller().altitude_reference();
                 reply.send(plan_above_home(&said, reference).map(Box::new));
             }
+            (Some(Waiting::Settings(reply)), LateAnswer::Cli(said)) => reply.send(settings_of(&said)),
             (Some(Waiting::Save(reply)), LateAnswer::Msp(stored)) => {
                 let refusal = || "Not saved: the flight controller refuses to store now.".to_owned();
                 reply.send(stored.map(drop).ok_or_else(refusal));
@@ -192,6 +217,7 @@ impl Interface {
                     reply.send(CliOutput { text: no_answer_line(), ..CliOutput::default() });
                 }
                 Waiting::Download(reply) => reply.send(Err(NO_ANSWER.to_owned())),
+                Waiting::Settings(reply) => reply.send(Err(NO_ANSWER.to_owned())),
                 Waiting::Upload(_, reply) => reply.send(Err(NO_ANSWER.to_owned())),
                 Waiting::Save(reply) => reply.send(Err(NO_ANSWER.to_owned())),
             }
@@ -215,6 +241,17 @@ impl Interface {
             }
         }
     }
+}
+
+/// Returns the settings in the answer to [`GET`].
+fn settings_of(said: &CliReply) -> Result<Box<CraftSettings>, String> {
+    let settings = CraftSettings::of_get(&said.text);
+    if said.failed || settings.all.is_empty() {
+        let why =
+            printable::line(said.text.trim().trim_matches('#').trim_start_matches("ERROR: ")).into_owned();
+        return Err(format!("The settings cannot be read now: {}.", why.trim_end_matches('.')));
+    }
+    Ok(Box::new(settings))
 }
 
 /// The notices of a request for the user, and its answer, which follows them.

@@ -19,6 +19,7 @@ pub(in crate::session) fn refuse_command(command: Command, refusal: Refusal) -> 
         }
         Command::Upload { reply, .. } => reply.send(Err(sentence)),
         Command::Download { reply } => reply.send(Err(sentence)),
+        Command::ReadSettings { reply } => reply.send(Err(sentence)),
         Command::Save { reply } | Command::World { reply, .. } => reply.send(Err(sentence)),
         Command::CopyVehicle(reply) => reply.send(Err(sentence)),
         _ => return Some(sentence),

@@ -6,7 +6,7 @@ use super::interface::output;
 use super::limits::{impact_of_request, refuse};
 use super::requests::FreshRc;
 use super::{SLICE, Session};
-use crate::fc::{Impact, RemoteLink};
+use crate::fc::{CraftSettings, Impact, RemoteLink};
 use crate::link::Request;
 use crate::session::arming::ArmingWatch;
 use crate::session::command::{BEGINNING_LOST, CliOutput, REWOUND_FOR_CLIENTS, Seek};
@@ -136,6 +136,13 @@ impl Session {
                 restarted: false,
             },
         }
+    }
+
+    /// Returns all settings of the vehicle that is shown.
+    pub(super) fn settings_of_shown(&self) -> Result<Box<CraftSettings>, String> {
+        let configuration = self.shown_vehicle().controller().configuration();
+        let settings = configuration.map(|shown| CraftSettings::of_configuration(shown, None));
+        settings.map(Box::new).ok_or_else(|| PICTURE_RUNS_NO_LINE.to_owned())
     }
 
     /// Advances time by the due ticks and returns the ticks flown.

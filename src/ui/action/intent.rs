@@ -1,5 +1,6 @@
 //! The intent of an action, by which the session's policy allows it or refuses it.
 
+use crate::fc::Impact;
 use crate::session::policy::Intent;
 use crate::ui::shared::Shared;
 
@@ -51,6 +52,18 @@ fn of_panel(action: PanelAction) -> Intent {
         | PanelAction::KnobEnter
         | PanelAction::KnobEdit
         | PanelAction::KnobDefault => Intent::World,
+        PanelAction::SettingMore
+        | PanelAction::SettingLess
+        | PanelAction::SettingMoreMuch
+        | PanelAction::SettingLessMuch
+        | PanelAction::SettingEdit
+        | PanelAction::SettingType
+        | PanelAction::SettingDefault
+        | PanelAction::AllDefault
+        | PanelAction::SettingUndo
+        | PanelAction::SettingRedo => Intent::Line(Impact::Changes),
+        PanelAction::ReadSettings => Intent::Line(Impact::Reads),
+        PanelAction::SettingTry => Intent::Forecast,
         _ => Intent::Read,
     }
 }

@@ -10,6 +10,7 @@ const GRAPHS: Context = In(Panel::Graphs);
 const WORLD: Context = In(Panel::World);
 const STATE: Context = In(Panel::State);
 const LOG: Context = In(Panel::Log);
+const SETTINGS: Context = In(Panel::Settings);
 
 actions! {
     /// An action of one panel.
@@ -60,5 +61,35 @@ actions! {
         NextMatch LOG "log.next" "next match" "To the next older match" ["n"];
         PreviousMatch LOG "log.previous" "previous match" "To the next newer match" ["N"];
         Filter LOG "log.filter" "filter" "Everything, warnings and faults, faults" ["f"];
+    }
+    ON_SETTINGS {
+        SettingSearch SETTINGS "settings.search" "search"
+            "Search in names and descriptions: Enter keeps it, Esc leaves" ["/"];
+        NextSetting SETTINGS "settings.next" "next match" "To the next match" ["n"];
+        PreviousSetting SETTINGS "settings.previous" "previous match" "To the previous match" ["N"];
+        NextGroup SETTINGS "settings.next-group" "next group" "To the next group" [")"];
+        PreviousGroup SETTINGS "settings.previous-group" "previous group" "To the previous group" ["("];
+        SettingEdit SETTINGS "settings.edit" "edit" "Type a value, or switch a switch" ["enter"];
+        SettingType SETTINGS "settings.type" "type" "Type a value" ["="];
+        SettingMore SETTINGS "settings.raise" "raise" "Raise the value, or take the next word" ["+", "right", "l"];
+        SettingLess SETTINGS "settings.lower" "lower" "Lower the value, or take the word before" ["-", "left", "h"];
+        SettingMoreMuch SETTINGS "settings.raise-much" "raise much" "Raise the value ten times as much"
+            ["shift-up", "shift-right"];
+        SettingLessMuch SETTINGS "settings.lower-much" "lower much" "Lower the value ten times as much"
+            ["shift-down", "shift-left"];
+        SettingDefault SETTINGS "settings.default" "default" "Back to its default" ["delete", "backspace"];
+        AllDefault SETTINGS "settings.default-all" "all defaults" "All settings back to their defaults (asks)" ["X"];
+        SettingTry SETTINGS "settings.try" "what it changes"
+            "Fly ahead with another value and without it: both tracks, time, battery, cross-track" ["w"];
+        SettingUndo SETTINGS "settings.undo" "undo" "Undo the last change of a setting" ["u"];
+        SettingRedo SETTINGS "settings.redo" "redo" "Redo the change that was undone" ["ctrl-r"];
+        SettingCompare SETTINGS "settings.compare" "differences"
+            "Only what differs from the defaults, from the plan, from the craft's flash; all again" ["f"];
+        CopySettings SETTINGS "settings.copy" "copy" "Copy the changed or found settings as CLI lines" ["y"];
+        SettingIntoPlan SETTINGS "settings.into-plan" "into plan" "The plan sets this one at its upload" ["p"];
+        SettingsIntoPlan SETTINGS "settings.all-into-plan" "all into plan"
+            "The plan sets the changed or found settings at its upload" ["P"];
+        SettingsFile SETTINGS "settings.save" "save" "Save the changed settings in a file for --settings" ["s"];
+        ReadSettings SETTINGS "settings.read" "read" "Read all settings of the craft again" ["r"];
     }
 }

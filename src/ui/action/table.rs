@@ -29,7 +29,7 @@ macro_rules! actions {
 pub(super) use actions;
 
 /// The parts of the table, in the order help shows them.
-const PARTS: [&[Spec]; 10] = [
+const PARTS: [&[Spec]; 11] = [
     general::FLIGHT,
     edit::EVERYWHERE,
     general::TIME,
@@ -39,6 +39,7 @@ const PARTS: [&[Spec]; 10] = [
     edit::MAP,
     edit::PLAN,
     panels::OTHERS,
+    panels::ON_SETTINGS,
     general::LISTS,
 ];
 

@@ -33,6 +33,8 @@ commands! {
     "cli" "LINE" "A line for the firmware's command line" vehicle::cli, vehicle::complete_cli;
     "open" "FILE" "Open a plan file; without a name: choose one" plan::open, plan::complete;
     "save" "FILE" "Save the plan in this file; without a name: in its own" plan::save, plan::complete;
+    "settings-file" "FILE" "Save the changed settings of the craft in a new file, for --settings"
+        vehicle::settings_file, plan::complete;
     "scenario" "FILE" "Write the flight just flown as a scenario in this file; without a name: in one named as the plan"
         plan::scenario, plan::complete;
     "record" "FILE" "Write the recording of the flight so far in this file; without a name: in one named as the plan"

@@ -1,7 +1,9 @@
 //! Commands that go through the craft's command line.
 
+use crate::fc::{CraftSetting, cli_block};
 use crate::ui::action::Action;
-use crate::ui::message::Request;
+use crate::ui::editor::FileRequest;
+use crate::ui::message::{Effect, Request};
 use crate::ui::panel::Panel;
 use crate::ui::shared::Shared;
 
@@ -35,4 +37,22 @@ pub(super) fn cli(_: &mut Shared, _: &str, argument: &str) -> Result<Vec<Request
 /// Returns the firmware's completions.
 pub(super) fn complete_cli(state: &Shared, _: &str, typed: &str) -> Vec<String> {
     (state.cli_help.complete)(typed)
+}
+
+/// Saves the settings that differ from their defaults as lines of the command line.
+pub(super) fn settings_file(state: &mut Shared, _: &str, file: &str) -> Result<Vec<Request>, String> {
+    if file.is_empty() {
+        return Err("Write :settings-file FILE, such as :settings-file craft.txt.".to_owned());
+    }
+    let path = std::path::absolute(file).map_err(|error| format!("{file}: {error}."))?;
+    let Some(craft) = state.settings.craft() else {
+        let show = state.key(Action::Show(Panel::Settings));
+        return Err(format!("The settings of the craft were not read yet: `{show}` shows them."));
+    };
+    let changed: Vec<&CraftSetting> = craft.all.iter().filter(|setting| setting.is_changed()).collect();
+    if changed.is_empty() {
+        return Err("Every setting has its default, so there is nothing to save.".to_owned());
+    }
+    let (count, text) = (changed.len(), cli_block(&changed));
+    Ok(vec![Effect::Files(FileRequest::SaveSettings { path, text, count }).into()])
 }

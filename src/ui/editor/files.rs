@@ -45,6 +45,13 @@ pub enum FileRequest {
     Journal(PlanId, JournalLine),
     /// Keep a line entered in a text field, so that it can be recalled after a restart.
     KeepLine(LineField, String),
+    /// Write settings as lines of the command line in a new file.
+    SaveSettings {
+        path: PathBuf,
+        text: String,
+        /// The number of settings.
+        count: usize,
+    },
     /// Read the elevation tiles under a plan and its way home.
     Ground { home: LatLon, plan: Box<FlightPlan> },
     /// Begin the journal of a new plan.
@@ -71,6 +78,11 @@ pub enum FileReply {
         revision: usize,
         /// The differences between the plan and the file, one line each.
         lost: Vec<String>,
+    },
+    /// This many settings were written in a file.
+    SavedSettings {
+        path: PathBuf,
+        count: usize,
     },
     /// The file has other content, so it was not written.
     Occupied {

@@ -74,7 +74,7 @@ impl EstimateBasis {
 
 /// Returns the settings of the open plan that have yet to be uploaded. The estimate sets them on its copy of the craft,
 /// which has all other settings.
-fn to_upload(state: &Shared) -> Vec<String> {
+pub(super) fn to_upload(state: &Shared) -> Vec<String> {
     let lines = settings_in_force::to_upload(state, state.editor.document());
     lines.into_iter().map(str::to_owned).collect()
 }

@@ -1,5 +1,6 @@
 //! The forecast that the map shows.
 
+use super::setting_change;
 use crate::flight::forecast::{Forecast, PathPoint};
 use crate::ui::shared::Shared;
 use crate::ui::units::Units;
@@ -8,6 +9,8 @@ use crate::ui::units::Units;
 #[derive(Debug)]
 pub(in crate::ui) struct Ghost<'a> {
     pub path: &'a [PathPoint],
+    /// The path of the same flight without the tried setting.
+    pub unchanged: &'a [PathPoint],
     /// The description of the path and, if the user requested it, of its end.
     pub line: String,
 }
@@ -24,16 +27,24 @@ pub(in crate::ui) fn ghost(state: &Shared) -> Option<Ghost<'_>> {
     }
     let is_flown =
         state.view.vehicle.is_engaged() && state.view.vehicle.active_plan.as_ref() == Some(state.plan());
+    if let Some(tried) = &forecast.tried {
+        let flown = tried.asked.forecast();
+        let unchanged = flown.and_then(|flown| flown.unchanged.as_deref());
+        let difference = flown.and_then(|flown| setting_change::difference(flown, state.units));
+        let ghost = asked(state.units, &tried.assignment.line(), flown);
+        let line = [Some(ghost.line), difference].into_iter().flatten().collect::<Vec<_>>().join("; ");
+        return Some(Ghost { unchanged: unchanged.map_or(&[], |unchanged| &unchanged.path), line, ..ghost });
+    }
     let estimate = forecast.estimate().filter(|_| !is_flown)?;
-    Some(Ghost { path: &estimate.path, line: "predicted".to_owned() })
+    Some(Ghost { path: &estimate.path, unchanged: &[], line: "predicted".to_owned() })
 }
 
 fn asked<'a>(units: Units, what: &str, forecast: Option<&'a Forecast>) -> Ghost<'a> {
     match forecast {
         Some(forecast) => {
             let line = forecast.line(|metres| units.length_text(metres, 0));
-            Ghost { path: &forecast.path, line: format!("{what}: {line}") }
+            Ghost { path: &forecast.path, unchanged: &[], line: format!("{what}: {line}") }
         }
-        None => Ghost { path: &[], line: format!("{what}: …") },
+        None => Ghost { path: &[], unchanged: &[], line: format!("{what}: …") },
     }
 }

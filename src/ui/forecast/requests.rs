@@ -2,18 +2,21 @@
 
 use std::time::Duration;
 
-use super::estimate_basis::EstimateBasis;
+use super::estimate_basis::{EstimateBasis, to_upload};
 use super::ghost::ghost;
-use super::{Asked, ChosenWhatIf};
+use super::{Asked, ChosenWhatIf, TriedSetting};
 use crate::flight::forecast::{ForecastKind, WhatIf};
+use crate::session::policy::{self, Facts, Intent};
 use crate::session::{ForecastReply, ForecastRequest};
 use crate::ui::event_log::Severity;
 use crate::ui::formatting::within;
 use crate::ui::message::Effect;
+use crate::ui::settings::Assignment;
 use crate::ui::shared::Shared;
 
 /// The shortest time between two look-aheads while it is on.
 const LOOK_AHEAD_INTERVAL: Duration = Duration::from_secs(1);
+
 /// Requests an estimate of the open plan if the newest one was for another plan or other air.
 pub(in crate::ui) fn follow_plan(state: &mut Shared) -> Option<Effect> {
     let holds = state.forecast.basis.as_ref().is_some_and(|basis| basis.still_holds(state));
@@ -71,7 +74,7 @@ pub(in crate::ui) fn toggle_look_ahead(state: &mut Shared) -> Vec<Effect> {
         return Vec::new();
     }
     // One ghost at a time.
-    state.forecast.what_if = None;
+    state.forecast.dismiss();
     vec![ask_look_ahead(state)]
 }
 
@@ -79,11 +82,33 @@ pub(in crate::ui) fn toggle_look_ahead(state: &mut Shared) -> Vec<Effect> {
 pub(in crate::ui) fn ask_what_if(state: &mut Shared, what_if: WhatIf) -> Vec<Effect> {
     let now = state.now;
     let forecast = &mut state.forecast;
-    forecast.look_ahead = None;
+    forecast.dismiss();
     let effect = forecast.job(ForecastRequest::WhatIf(what_if));
     let mut asked = Asked::default();
     asked.ask(forecast.revision, now);
     forecast.what_if = Some(ChosenWhatIf { what_if, asked });
+    vec![effect]
+}
+
+/// Requests a flight ahead with another value of a setting, and the same one without it.
+pub(in crate::ui) fn ask_setting_change(state: &mut Shared, assignment: Assignment) -> Vec<Effect> {
+    let possible = policy::check(&Facts::from(&state.view), Intent::Forecast);
+    if let Err(refusal) = possible {
+        let refusal = state.keymap.in_force(&refusal.to_string());
+        return state.only_notify(Severity::Warn, refusal);
+    }
+    let (now, settings) = (state.now, to_upload(state));
+    let request = ForecastRequest::SettingChange {
+        changed: vec![assignment.line()],
+        plan: Box::new(state.plan().clone()),
+        settings,
+    };
+    let forecast = &mut state.forecast;
+    forecast.dismiss();
+    let effect = forecast.job(request);
+    let mut asked = Asked::default();
+    asked.ask(forecast.revision, now);
+    forecast.tried = Some(TriedSetting { assignment, asked });
     vec![effect]
 }
 
@@ -94,6 +119,7 @@ pub(in crate::ui) fn take_answer(state: &mut Shared, reply: ForecastReply) {
         ForecastKind::PlanEstimate => Some(&mut forecast.estimate),
         ForecastKind::LookAhead => forecast.look_ahead.as_mut().map(|look_ahead| &mut look_ahead.asked),
         ForecastKind::WhatIf => forecast.what_if.as_mut().map(|chosen| &mut chosen.asked),
+        ForecastKind::SettingChange => forecast.tried.as_mut().map(|tried| &mut tried.asked),
     };
     let Some(asked) = asked.filter(|asked| asked.revision == reply.revision) else { return };
     asked.waiting = false;
@@ -102,7 +128,7 @@ pub(in crate::ui) fn take_answer(state: &mut Shared, reply: ForecastReply) {
     match (reply.kind, refusal) {
         (ForecastKind::PlanEstimate, _) => {}
         // The flight is over, or there never was one to look ahead to.
-        (ForecastKind::LookAhead | ForecastKind::WhatIf, Some(reason)) => {
+        (ForecastKind::LookAhead | ForecastKind::WhatIf | ForecastKind::SettingChange, Some(reason)) => {
             forecast.dismiss();
             let reason = state.keymap.in_force(&reason);
             state.notify(Severity::Warn, reason);
@@ -112,6 +138,12 @@ pub(in crate::ui) fn take_answer(state: &mut Shared, reply: ForecastReply) {
             if let Some(ghost) = ghost(state) {
                 let text = format!("What if {}.", ghost.line.trim_end_matches('.'));
                 state.notify(Severity::Info, text);
+            }
+        }
+        (ForecastKind::SettingChange, None) => {
+            if let Some(ghost) = ghost(state) {
+                let text = format!("With {}.", ghost.line.trim_end_matches('.'));
+                state.log_only(Severity::Info, text);
             }
         }
     }

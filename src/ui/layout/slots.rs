@@ -5,11 +5,11 @@ use crate::ui::panel::{Panel, Place};
 /// The contents of the places that several panels share: the panel that had the focus last.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Slots {
-    /// From 80x24: map (with the log below), or one of RC, CLI, plan, graphs, world instead of both.
+    /// From 80x24: map (with the log below), or one of RC, CLI, plan, graphs, world, settings instead of both.
     pub(super) main: Panel,
     /// From 120x34, bottom left: log, CLI or graphs. From 180x48, bottom left: log or graphs.
     pub(super) left: Panel,
-    /// From 120x34, bottom right: RC, plan or world. From 180x48, top right: RC or world.
+    /// From 120x34, bottom right: RC, plan, world or settings. From 180x48, top right: RC, world or settings.
     pub(super) right: Panel,
 }
 

@@ -52,6 +52,9 @@ pub(in crate::ui) trait Content {
         None
     }
 
+    /// Notes that it gets the focus.
+    fn visit(&mut self) {}
+
     /// Scrolls by lines, within the content.
     fn scroll(&mut self, _: &Shared, _: Rect, _: isize) -> Vec<Request> {
         Vec::new()
@@ -77,7 +80,7 @@ pub(in crate::ui) trait Content {
     }
 
     /// Returns the menu for a press of the right button.
-    fn menu(&self, _: &Shared, _: Rect, _: &MouseEvent) -> Option<Popup> {
+    fn menu(&mut self, _: &Shared, _: Rect, _: &MouseEvent) -> Option<Popup> {
         None
     }
 }

@@ -215,7 +215,7 @@ impl Content for MapPanel {
         if is_moved { vec![Change::PutDown.into()] } else { Vec::new() }
     }
 
-    fn menu(&self, state: &Shared, area: Rect, event: &MouseEvent) -> Option<Popup> {
+    fn menu(&mut self, state: &Shared, area: Rect, event: &MouseEvent) -> Option<Popup> {
         let frame = origin(state)?;
         let view = Viewport::of(state, area);
         let at = (event.column, event.row);

@@ -85,6 +85,11 @@ pub(super) fn carry_out(
         Effect::ShowFlights { .. } | Effect::Suspend | Effect::Quit => return,
         Effect::Send(command) => command,
         Effect::Cli(line) => Command::Cli { line, reply: answers.reply(Msg::CliReply) },
+        Effect::ReadSettings => Command::ReadSettings { reply: answers.result(MISSING, Msg::SettingsReply) },
+        Effect::Set(line) => {
+            let set = line.clone();
+            Command::Cli { line, reply: answers.reply(|output| Msg::SetReply { line: set, output }) }
+        }
         Effect::World(line) => {
             let asked = line.clone();
             let message = |result| Msg::WorldReply { line: asked, result };

@@ -144,6 +144,7 @@ fn is_read(state: &AppState) -> bool {
 fn is_question(effect: &Effect) -> bool {
     match effect {
         Effect::Cli(_)
+        | Effect::Set(_)
         | Effect::World(_)
         | Effect::Upload { .. }
         | Effect::Download(_)
@@ -157,6 +158,7 @@ fn is_question(effect: &Effect) -> bool {
                 request,
                 FileRequest::Open { .. }
                     | FileRequest::Save { .. }
+                    | FileRequest::SaveSettings { .. }
                     | FileRequest::List(_)
                     | FileRequest::Backdrop(..)
             )
@@ -165,6 +167,7 @@ fn is_question(effect: &Effect) -> bool {
         Effect::Send(_)
         | Effect::Curves(_)
         | Effect::ShowFlights { .. }
+        | Effect::ReadSettings
         | Effect::Copy(_)
         | Effect::Suspend
         | Effect::Quit => false,
@@ -175,6 +178,7 @@ fn is_question(effect: &Effect) -> bool {
 fn is_answer(msg: &Msg) -> bool {
     match msg {
         Msg::CliReply(_)
+        | Msg::SetReply { .. }
         | Msg::WorldReply { .. }
         | Msg::UploadReply { .. }
         | Msg::DownloadReply { .. }
@@ -203,6 +207,7 @@ fn is_answer(msg: &Msg) -> bool {
         | Msg::OtherFlight { .. }
         | Msg::FlightsShown(_)
         | Msg::Curves { .. }
+        | Msg::SettingsReply(_)
         | Msg::Event(_) => false,
     }
 }

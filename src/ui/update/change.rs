@@ -4,6 +4,7 @@ use crate::ui::editor::actions as plan;
 use crate::ui::map_edit::actions as map_edit;
 use crate::ui::map_edit::measure;
 use crate::ui::message::{Change, Effect};
+use crate::ui::settings;
 use crate::ui::shared::Shared;
 use crate::ui::stick_recording::keys::{toggle_playing, toggle_recording};
 use crate::ui::transmitter;
@@ -50,6 +51,7 @@ pub(super) fn change(state: &mut Shared, change: Change) -> Vec<Effect> {
         Change::Channel(channel, us) => return transmitter::set(state, channel, us),
         Change::Record => return toggle_recording(state),
         Change::Play => return toggle_playing(state),
+        Change::Settings(requested) => return settings::changes::change(state, requested),
         Change::World(world) => std::sync::Arc::make_mut(&mut state.view.vehicle).world = *world,
     }
     Vec::new()

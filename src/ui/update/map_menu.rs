@@ -29,7 +29,7 @@ pub(super) fn take(state: &mut AppState, place: LatLon, outcome: Outcome<MapChoi
         MapChoice::SetFence => map_edit::put(&mut state.shared, MapItem::Fence, place),
         MapChoice::EditWaypoint(index) => {
             state.shared.editor.go_to_cell(index, Column::default());
-            view::focus(&mut state.shared, Panel::Plan)
+            view::focus(state, Panel::Plan)
         }
         MapChoice::DeleteWaypoint(index) => {
             state.shared.editor.cancel();

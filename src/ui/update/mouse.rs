@@ -8,8 +8,9 @@ use crate::ui::panel::Panel;
 use crate::ui::popup::Popup;
 use crate::ui::{layout, notice, panel_bar, tutorial};
 
+use super::popup::chosen;
 use super::view::focus;
-use super::{carry_out, flights, map_menu, timeline};
+use super::{act, carry_out, flights, map_menu, timeline};
 
 /// Processes a mouse event.
 pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
@@ -24,6 +25,13 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
     if let Some(Popup::Flights(list)) = state.popups.last_mut() {
         let result = list.mouse(&state.shared.flights, state.shared.size, event);
         return flights::take(state, result);
+    }
+    if let Some(Popup::Actions(menu)) = state.popups.last() {
+        if !matches!(event.kind, MouseEventKind::Down(_)) {
+            return Vec::new();
+        }
+        let outcome = menu.click(state.shared.size, (event.column, event.row));
+        return chosen(&mut state.popups, outcome).map_or_else(Vec::new, |action| act(state, action));
     }
     if !state.popups.is_empty() || state.shared.editor.popup.is_some() {
         return Vec::new();
@@ -45,7 +53,7 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
     if event.kind == MouseEventKind::Down(MouseButton::Left)
         && let Some(panel) = panel_bar::panel_at(&state.shared, &screen, (event.column, event.row))
     {
-        return focus(&mut state.shared, panel);
+        return focus(state, panel);
     }
     let at = match event.kind {
         // A drag belongs to the panel in which it began, even if the mouse leaves it.
@@ -54,7 +62,7 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
     };
     let Some((panel, area)) = at else { return Vec::new() };
     if let MouseEventKind::Down(MouseButton::Left | MouseButton::Right) = event.kind {
-        focus(&mut state.shared, panel);
+        focus(state, panel);
     }
     let content = state.panels.of_mut(panel);
     let shared = &state.shared;

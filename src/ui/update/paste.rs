@@ -22,6 +22,8 @@ pub(super) fn paste(state: &mut AppState, text: &str) -> Vec<Effect> {
             | Popup::Plots { .. }
             | Popup::WhatIf { .. }
             | Popup::Guards { .. }
+            | Popup::Actions(_)
+            | Popup::ResetSettings
             | Popup::Permission
             | Popup::Quit,
         ) => None,

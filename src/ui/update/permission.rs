@@ -5,6 +5,10 @@ use crate::ui::app_state::AppState;
 use crate::ui::event_log::Severity;
 use crate::ui::message::Effect;
 use crate::ui::popup::Popup;
+use crate::ui::settings;
+
+/// The reason for missing settings after the user declined.
+const NOT_READ: &str = "The settings were not read: reading them would have opened the command line.";
 
 /// Returns the effects that may be carried out. Effects that would change a real craft are held, and the user is asked.
 pub(in crate::ui) fn hold(state: &mut AppState, effects: Vec<Effect>) -> Vec<Effect> {
@@ -43,6 +47,12 @@ pub(super) fn decline(state: &mut AppState) {
     let held = std::mem::take(&mut state.permission.held);
     if held.iter().any(|effect| matches!(effect, Effect::Cli(_))) {
         state.panels.cli.console.not_run("not run: changes were not permitted");
+    }
+    if held.iter().any(|effect| matches!(effect, Effect::Set(_))) {
+        settings::changes::take_back(&mut state.shared);
+    }
+    if held.iter().any(|effect| matches!(effect, Effect::ReadSettings)) {
+        settings::reading::take(&mut state.shared, Err(NOT_READ.to_owned()));
     }
     state.shared.notify(Severity::Info, "Nothing was changed.");
 }

@@ -195,6 +195,10 @@ pub(super) fn answered(state: &mut Shared, reply: FileReply) -> Vec<Effect> {
                 return quit(state);
             }
         }
+        FileReply::SavedSettings { path, count } => {
+            let name = shown(&path);
+            state.notify(Severity::Good, format!("Saved {count} settings in {name}."));
+        }
         FileReply::Occupied { id, path, changed } => {
             state.editor.popup = Some(EditorPopup::Question(Question::Replace { id, path, changed }));
         }

@@ -15,6 +15,7 @@ use crate::ui::panel::graphs;
 use crate::ui::popup::palette::Entry;
 use crate::ui::popup::signal_list::SignalKey;
 use crate::ui::popup::{Outcome, Popup, command_line, guards, palette, signal_list, what_if};
+use crate::ui::settings;
 use crate::vehicle::VehicleCommand;
 
 /// Handles a key for the popup opened last; `found` is the action of the key without a popup.
@@ -47,6 +48,22 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) 
             }
             Vec::new()
         }
+        Some(Popup::Actions(menu)) => {
+            let outcome = menu.key(event, found);
+            chosen(&mut state.popups, outcome).map_or_else(Vec::new, |action| act(state, action))
+        }
+        Some(Popup::ResetSettings) => match event.code {
+            KeyCode::Char('y' | 'Y') => {
+                state.popups.pop();
+                let reset = settings::changes::reset_all(&state.shared);
+                settings::changes::change(&mut state.shared, reset)
+            }
+            KeyCode::Char('n' | 'N' | 'q') | KeyCode::Esc => {
+                state.popups.pop();
+                Vec::new()
+            }
+            _ => Vec::new(),
+        },
         Some(Popup::Quit) => quit_key(state, event),
         Some(Popup::Permission) => match event.code {
             KeyCode::Char('y' | 'Y') => permission::permit(state),

@@ -5,19 +5,21 @@ use crate::ui::app_state::AppState;
 use crate::ui::layout;
 use crate::ui::message::Effect;
 use crate::ui::panel::Panel;
-use crate::ui::shared::Shared;
 
 /// Gives a panel the focus.
-pub(super) fn focus(state: &mut Shared, panel: Panel) -> Vec<Effect> {
-    state.focus = panel;
-    state.slots.visit(panel);
+pub(super) fn focus(state: &mut AppState, panel: Panel) -> Vec<Effect> {
+    if state.shared.focus != panel {
+        state.panels.of_mut(panel).visit();
+    }
+    state.shared.focus = panel;
+    state.shared.slots.visit(panel);
     Vec::new()
 }
 
 /// Gives the focus to the panel before or after the focused one in the order of numbers.
-pub(super) fn focus_neighbour(state: &mut Shared, step: isize) -> Vec<Effect> {
+pub(super) fn focus_neighbour(state: &mut AppState, step: isize) -> Vec<Effect> {
     let count = Panel::ALL.len();
-    let at = Panel::ALL.iter().position(|&panel| panel == state.focus).unwrap_or(0);
+    let at = Panel::ALL.iter().position(|&panel| panel == state.shared.focus).unwrap_or(0);
     focus(state, Panel::ALL[(at + count).wrapping_add_signed(step) % count])
 }
 

@@ -140,6 +140,13 @@ pub(super) fn paint(state: &Shared, scene: &Scene, context: &mut Context<'_>) {
             figure(state, scene, at, spot, painter);
         }
     });
+    layer(Role::Title, &mut |painter| {
+        let ghost = forecast::ghost(state).filter(|_| scene.preview.is_empty());
+        for pair in ghost.map_or(&[][..], |ghost| ghost.unchanged).windows(2) {
+            let [from, to] = [&pair[0], &pair[1]].map(|point| MapPoint::new(point.n, point.e));
+            painter.line(from, to);
+        }
+    });
     layer(Role::Predicted, &mut |painter| {
         let home_or_last = if state.editor.preview().is_some_and(|(_, first)| first > 0) {
             scene.spots.last().map_or(scene.home, |spot| spot.place)

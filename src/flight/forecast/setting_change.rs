@@ -1,0 +1,81 @@
+//! What other settings change: the same flight with them and without them.
+
+use super::{Forecast, ForecastKind, ForecastRun, check_flies, check_possible, refusal};
+use crate::firmware::cli::{Interpreter, RefusedLine};
+use crate::flight::FlightOptions;
+use crate::plan::FlightPlan;
+use crate::vehicle::Vehicle;
+
+/// The flight without the changed settings.
+#[derive(Debug)]
+pub(super) enum Unchanged {
+    Flying(Box<ForecastRun>),
+    Flown(Box<Forecast>),
+}
+
+impl Unchanged {
+    pub(super) fn is_flying(&self) -> bool {
+        matches!(self, Self::Flying(_))
+    }
+
+    pub(super) fn advance(&mut self, ticks: u32) {
+        if let Self::Flying(run) = self
+            && let Some(forecast) = run.advance(ticks)
+        {
+            *self = Self::Flown(Box::new(forecast));
+        }
+    }
+
+    pub(super) fn flown(self) -> Option<Box<Forecast>> {
+        match self {
+            Self::Flying(_) => None,
+            Self::Flown(forecast) => Some(forecast),
+        }
+    }
+}
+
+/// A plan with the setting lines that its upload sets, without `set `.
+#[derive(Debug, Clone, Copy)]
+pub struct PlanWithSettings<'a> {
+    pub plan: &'a FlightPlan,
+    pub settings: &'a [String],
+}
+
+impl ForecastRun {
+    /// Forecasts the present flight with the setting lines `changed` (without `set `) and without them. If the craft
+    /// does not fly, it forecasts a flight of the plan from home by the scripted pilot, who first climbs to `takeoff_m`.
+    ///
+    /// # Errors
+    /// Fails with the reason why no forecast is possible, as a sentence.
+    pub fn setting_change(
+        vehicle: Vehicle,
+        changed: &[String],
+        PlanWithSettings { plan, settings }: PlanWithSettings<'_>,
+        takeoff_m: f64,
+    ) -> Result<Self, String> {
+        check_possible(&vehicle)?;
+        let run = |mut vehicle: Vehicle, changed: &[String]| {
+            if check_flies(&vehicle).is_ok() {
+                set(&mut vehicle, changed)?;
+                return Self::begin(ForecastKind::LookAhead, vehicle, FlightOptions::default().takeoff_m);
+            }
+            Self::plan_estimate(vehicle, plan, &[settings, changed].concat(), takeoff_m)
+        };
+        let unchanged = run(vehicle.clone(), &[])?;
+        let changed = run(vehicle, changed)?;
+        Ok(Self { unchanged: Some(Unchanged::Flying(Box::new(unchanged))), ..changed })
+    }
+}
+
+/// Sets settings as the command line does.
+fn set(vehicle: &mut Vehicle, settings: &[String]) -> Result<(), String> {
+    let Some(firmware) = vehicle.embedded_mut() else { return Ok(()) };
+    for setting in settings {
+        let line = format!("set {setting}");
+        let reply = firmware.run_cli(&mut Interpreter::default(), &line);
+        if reply.failed {
+            return Err(refusal(&RefusedLine { line, reply: reply.text.trim().to_owned() }));
+        }
+    }
+    Ok(())
+}

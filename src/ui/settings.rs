@@ -1,0 +1,110 @@
+//! The settings of the craft as the screen knows them: the newest reading, the changes under way, and their history.
+//!
+//! ```text
+//!   panel ── SettingsChange ─▶ changes ── Effect::Set ─▶ session      one line at a time
+//!                                ▲                         │
+//!   reading ◀── SettingsReply ───┴────── SetReply ◀────────┘
+//! ```
+//!
+//! A changed value is shown at once. The next reading confirms it, or takes it back.
+
+pub(super) mod changes;
+pub(super) mod listing;
+pub(super) mod reading;
+mod steps;
+
+use std::time::Duration;
+
+use crate::fc::{CraftSetting, CraftSettings};
+use steps::Steps;
+pub(super) use steps::{Assignment, Step};
+
+/// A setting that an option gave the craft at its start.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct GivenSetting {
+    pub name: String,
+    /// The option, such as `--settings craft.txt`.
+    pub source: String,
+}
+
+/// A change of the craft's settings, or of what is known about them, that the panel requests.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum SettingsChange {
+    /// Set values, as one step that can be undone.
+    Set(Step),
+    Undo,
+    Redo,
+    /// Read all settings again.
+    Read,
+    /// Fly ahead with this value and without it.
+    Try(Assignment),
+    /// Write these settings into the open plan.
+    IntoPlan(Vec<Assignment>),
+}
+
+/// The settings of the craft as the screen knows them.
+#[derive(Debug, Default)]
+pub struct SettingsState {
+    craft: Option<Box<CraftSettings>>,
+    /// The values of the first reading, by name, of a firmware that does not report what it has saved.
+    first: Vec<(String, String)>,
+    /// The reason why the newest reading failed, a sentence.
+    refusal: Option<String>,
+    /// `true` while a reading is on its way.
+    is_asked: bool,
+    /// The time of the newest answer, wall clock.
+    read_at: Option<Duration>,
+    /// `true` if something may have changed the settings since.
+    is_outdated: bool,
+    /// The number of the connection to a remote flight controller; `None` for an embedded one.
+    connection: Option<u32>,
+    /// The settings that options gave the craft.
+    given: Vec<GivenSetting>,
+    steps: Steps,
+}
+
+impl SettingsState {
+    pub(super) fn new(given: Vec<GivenSetting>) -> Self {
+        Self { given, ..Self::default() }
+    }
+
+    /// Returns all settings, if they were read.
+    pub(super) fn craft(&self) -> Option<&CraftSettings> {
+        self.craft.as_deref()
+    }
+
+    pub(super) fn find(&self, name: &str) -> Option<&CraftSetting> {
+        self.craft()?.find(name)
+    }
+
+    /// Returns the reason why the settings could not be read, as a sentence.
+    pub(super) fn refusal(&self) -> Option<&str> {
+        self.refusal.as_deref()
+    }
+
+    /// Returns `true` while the settings are read for the first time, or because the user requested it.
+    pub(super) fn is_reading(&self) -> bool {
+        self.is_asked && (self.craft.is_none() || self.connection.is_some())
+    }
+
+    /// Returns the number of values that the craft has not confirmed yet.
+    pub(super) fn pending(&self) -> usize {
+        self.steps.pending()
+    }
+
+    /// Returns `true` if the craft has not confirmed the value of this setting yet.
+    pub(super) fn is_pending(&self, name: &str) -> bool {
+        self.steps.is_pending(name)
+    }
+
+    /// Returns the option that gave the craft this setting.
+    pub(super) fn given_by(&self, name: &str) -> Option<&str> {
+        let given = self.given.iter().rev().find(|given| given.name.eq_ignore_ascii_case(name))?;
+        Some(&given.source)
+    }
+
+    /// Marks the settings as outdated.
+    pub(super) fn outdate(&mut self) {
+        self.is_outdated = true;
+    }
+}
