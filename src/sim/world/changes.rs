@@ -27,6 +27,7 @@ impl World {
     /// Fails if a value is not allowed. Nothing has changed then.
     pub fn apply(&mut self, command: WorldCommand) -> Result<(), WorldError> {
         command.check()?;
+        let is_planned = matches!(command, WorldCommand::Schedule(_));
         match command {
             WorldCommand::SetWind(wind) => self.air.change_wind(wind, self.clock.time),
             WorldCommand::SetGust(size) => self.air.gusts.set_size(size, self.clock.time),
@@ -51,9 +52,11 @@ impl World {
             | WorldCommand::Schedule(_) => self.change_faults(command)?,
             WorldCommand::ResetToHome => self.reset_to_home(),
         }
-        // Air and loads may have jumped.
-        self.craft.forget();
-        self.refresh_loads();
+        // Air and loads may have jumped, unless the change is only planned.
+        if !is_planned {
+            self.craft.forget();
+            self.refresh_loads();
+        }
         Ok(())
     }
 
