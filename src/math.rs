@@ -5,7 +5,7 @@
 //! from a library in Rust, so a flight has the same bits wherever it is flown. Each is within about 1 unit in the last place
 //! of the exact value. `tests/rooms` forbids the others to the core.
 //!
-//! What IEEE 754 defines exactly is not here: the four operations, `sqrt`, `abs`, `floor`, `round`, `%`. `mul_add` is exact
+//! Operations that IEEE 754 defines exactly are not here: the four operations, `sqrt`, `abs`, `floor`, `round`, `%`. `mul_add` is exact
 //! everywhere, but slow on processors without an instruction for it.
 
 /// Returns the sine of an angle, rad.

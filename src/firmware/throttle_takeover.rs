@@ -48,6 +48,6 @@ mod tests {
             assert_eq!(stick.update(AfterAbort::Altitude, pulse, &params), Some(pulse));
         }
         assert_eq!(stick.update(AfterAbort::Nothing, 1500.0, &params), Some(1500.0));
-        assert_eq!(stick.update(AfterAbort::Descent, 1500.0, &params), None, "given up anew");
+        assert_eq!(stick.update(AfterAbort::Descent, 1500.0, &params), None, "given up again");
     }
 }

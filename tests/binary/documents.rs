@@ -181,7 +181,7 @@ fn the_report_of_a_log_has_its_track_its_modes_and_its_settings() {
         "coloured by flight mode",
         "<h2>Open it again</h2>",
         "a &lt;b&gt; field</text>",
-        "The settings of the craft in the header of its log.",
+        "from the defaults of this firmware.",
         "Armed.",
         "betadeck replay a.bbl --log 1</code>",
     ] {

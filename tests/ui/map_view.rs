@@ -63,7 +63,7 @@ fn the_cursor_goes_from_waypoint_to_waypoint() {
     assert_eq!(state.shared.editor.row(), 0, "after the last comes the first");
     keys(&mut state, "N");
     assert_eq!(state.shared.editor.row(), 3);
-    // What is picked there is moved.
+    // The waypoint that is picked there is moved.
     keys(&mut state, "enter up up");
     assert_eq!(journal_lines(&keys(&mut state, "enter")), 1);
     // Without a cursor the map itself goes there.

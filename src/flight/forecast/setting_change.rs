@@ -1,4 +1,4 @@
-//! What other settings change: the same flight with them and without them.
+//! The effect of other settings: the same flight with them and without them.
 
 use super::{Forecast, ForecastKind, ForecastRun, check_flies, check_possible, refusal};
 use crate::firmware::cli::{Interpreter, RefusedLine};

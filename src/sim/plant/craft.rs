@@ -85,11 +85,11 @@ pub struct Present {
     /// Body → world.
     pub(super) rotation: Matrix3<f64>,
     pub(super) sums: RotorSums,
-    /// What changes the motion; `None` if the craft is not free in the air.
+    /// The trend of the motion; `None` if the craft is not free in the air.
     pub(super) trend: Option<Trend>,
 }
 
-/// What changes the motion of a craft in the air at one instant.
+/// The changes of the motion of a craft in the air at one instant.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Trend {
     /// The derivative of the angular momentum in body axes without the static torque of the rotors, N·m.

@@ -14,7 +14,7 @@ use crate::ui::text_field::TextField;
 use crate::ui::theme::Role;
 
 /// The inner size on a screen that has room for it.
-const SIZE: (u16, u16) = (60, 16);
+const SIZE: (u16, u16) = (60, 18);
 
 /// The search text, and the selected row.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]

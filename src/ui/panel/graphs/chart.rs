@@ -17,7 +17,7 @@ use super::AXIS;
 /// The rows of a chart from which it has ticks at round values. A lower one shows its limits.
 const ROWS_FOR_TICKS: u16 = 5;
 /// The least distance between two ticks, rows.
-const ROWS_OF_A_TICK: u16 = 3;
+const ROWS_OF_A_TICK: u16 = 2;
 /// The distance between two dots of the zero line, dots.
 const ZERO_GAP: usize = 8;
 
