@@ -1,6 +1,6 @@
 //! `betadeck compare PLAN --log FILE`: a log beside the same flight in the simulation.
 //!
-//! The embedded craft stands at the log's home with the log's settings, and gets its sticks and switches at their times.
+//! The embedded craft starts at the log's home with the log's settings, and gets its sticks and switches at their times.
 
 mod feed;
 mod opened;

@@ -20,8 +20,8 @@ const SEVERAL: &[(&str, &[&str])] = &[
 /// The settings that a simulated craft keeps: its logging, and what its simulated hardware determines.
 const KEPT: &[&str] = &["motor_pwm_protocol", "pid_process_denom", "vbat_scale", "serialrx_provider"];
 
-/// Returns the settings of a header's lines, each as `name = value`, that this firmware has and accepts. In headers, words are
-/// numbers: their positions in the list.
+/// Returns the settings of a header's lines, each as `name = value`, that this firmware has and accepts. In headers, words
+/// are numbers: their positions in the list.
 pub fn settings_of_log<'a>(lines: impl Iterator<Item = (&'a str, &'a str)>) -> Vec<String> {
     let mut found = Vec::new();
     for (name, value) in lines {

@@ -246,7 +246,7 @@ fn a_log_beside_its_simulation_is_called_measured_and_simulated() {
     assert!(text.contains("A: flight.bbl, as logged\n"), "{text}");
     let markdown = comparison.markdown(None);
     assert!(markdown.contains("| measured (A: flight.bbl) | simulated (B: embedded) |"), "{markdown}");
-    for told in [&text, &markdown] {
-        assert!(told.contains("measured by its GPS") && !told.contains("firmware"), "{told}");
+    for output in [&text, &markdown] {
+        assert!(output.contains("measured by its GPS") && !output.contains("firmware"), "{output}");
     }
 }

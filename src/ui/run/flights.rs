@@ -21,7 +21,7 @@ pub(super) const NO_LIBRARY: &str = "This screen has no library of flights: it h
 pub(super) enum Shown {
     /// The user left it. The error is a sentence.
     Left(Result<(), String>),
-    /// This program was told to stop.
+    /// A signal ended this program.
     Stopped,
 }
 
