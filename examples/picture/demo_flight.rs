@@ -18,7 +18,9 @@ use betadeck::timeline::{Marks, Timeline, TimelineView};
 use betadeck::ui::backdrop::BackdropLayer;
 use betadeck::ui::editor::{Conversion, ConversionLosses, FileReply, PlanId};
 use betadeck::ui::keymap::Keymap;
-use betadeck::ui::{AppState, CliHelp, Effect, EnteredLines, Msg, OpenPlan, Theme, UiConfig, Units, update};
+use betadeck::ui::{
+    AppState, CliHelp, Effect, EnteredLines, KeptScreens, Msg, OpenPlan, Theme, UiConfig, Units, update,
+};
 use betadeck::vehicle::Vehicle;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
@@ -64,6 +66,7 @@ impl DemoFlight {
             mouse: true,
             is_first_start: false,
             entered: EnteredLines::default(),
+            kept: KeptScreens::none(),
         };
         let state = AppState::new(config, size, view(&vehicle));
         let timeline = Timeline::new(&mut vehicle).ok_or("a flight that cannot be recorded")?;

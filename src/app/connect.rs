@@ -14,6 +14,7 @@ use crate::fc::{RemoteEnds, RemoteLink};
 use crate::link::{FcPlace, FcStream};
 use crate::plan::format::PlanFile;
 use crate::storage::Store;
+use crate::ui::KeptScreens;
 use crate::ui::keymap::Keymap;
 use crate::vehicle::Vehicle;
 
@@ -31,6 +32,7 @@ pub(super) fn run(args: &TuiArgs, place: &FcPlace, keymap: Keymap) -> Result<u8,
         path: args.plan.as_ref().and_then(PlanArg::path),
         backdrop: backdrop_file::read_all(&args.backdrop.backdrop)?,
         directory: setup::store_directory(&args.flight)?,
+        kept: KeptScreens::none(),
         was_used: true,
         given_settings: Vec::new(),
         notices,

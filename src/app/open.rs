@@ -24,6 +24,7 @@ use crate::signals::fdm::FirmwareClock;
 use crate::storage::Store;
 use crate::text::did_you_mean;
 use crate::timeline::Timeline;
+use crate::ui::KeptScreens;
 use crate::ui::keymap::Keymap;
 use crate::ui::settings::GivenSetting;
 use crate::vehicle::{Vehicle, VehicleCommand};
@@ -124,6 +125,7 @@ fn open_screen(args: &OpenArgs, finished: Finished, keymap: Keymap) -> Result<u8
         path: None,
         backdrop: Vec::new(),
         directory: None,
+        kept: KeptScreens::none(),
         was_used: true,
         given_settings,
         notices,

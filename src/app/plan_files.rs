@@ -7,8 +7,8 @@
 mod backdrop_requests;
 mod backdrops;
 mod journal_file;
+mod kept_plans;
 mod on_disk;
-mod set_aside;
 mod settings_file;
 
 use std::collections::BTreeMap;
@@ -21,6 +21,8 @@ use tokio::sync::mpsc::UnboundedSender;
 use tokio::sync::watch;
 
 use super::line_history::LineHistory;
+use super::screen_file::ScreenFile;
+use super::set_aside;
 use super::terrain::TerrainFiles;
 use crate::plan::edit::{History, Journal, JournalLine, PlanDocument};
 use crate::plan::format::{HomePosition, loss::LossReport};
@@ -50,6 +52,7 @@ pub(super) struct PlanFiles {
     /// The losses of journals, as sentences that were not reported yet.
     lost: Vec<String>,
     lines: LineHistory,
+    screen: ScreenFile,
     ground: TerrainFiles,
     tiles: Arc<Tiles>,
     backdrops: Backdrops,
@@ -106,6 +109,7 @@ impl PlanFiles {
             reported: false,
             lost: Vec::new(),
             lines: LineHistory::new(state),
+            screen: ScreenFile::new(state),
             ground: TerrainFiles::default(),
             tiles: Arc::default(),
             backdrops: Backdrops::new(state),
@@ -147,7 +151,7 @@ impl PlanFiles {
 
     fn recover(&mut self, found: Found) -> Opened {
         let path = found.journal.file.as_ref().map(PathBuf::from);
-        let notes = notes_on(&found);
+        let notes = found.notes();
         let has_saved = found.losses.has_saved;
         let (journal, mut history) = self.whole_part(found);
         let mut seen = path.as_deref().map_or(Content::Missing, Content::of);
@@ -240,6 +244,10 @@ impl PlanFiles {
                 Vec::new()
             }
             FileRequest::SaveSettings { path, text, count } => vec![settings_file::save(path, &text, count)],
+            FileRequest::KeepScreen(text) => {
+                self.screen.write(&text);
+                Vec::new()
+            }
             FileRequest::Ground { home, plan } => {
                 let mut problems = Vec::new();
                 let more = self.ground.read_more(&self.tiles, home, &plan, &mut problems);
@@ -342,7 +350,7 @@ impl PlanFiles {
         let Some(found) = journals.found.into_iter().next() else {
             return self.keep(path, seen, History::new(document, true), None, notes);
         };
-        notes.extend(notes_on(&found));
+        notes.extend(found.notes());
         let has_saved = found.losses.has_saved;
         let (file, mut history) = self.whole_part(found);
         let mut recovered = false;
@@ -486,13 +494,6 @@ impl PlanFiles {
 fn lossy(conversion: Conversion, losses: &LossReport) -> FileReply {
     let lines = losses.findings.iter().map(ToString::to_string).collect();
     FileReply::Losses(Box::new(ConversionLosses { conversion, lines, summary: losses.counts() }))
-}
-
-/// Returns notes about a journal that lost at most its last edit.
-fn notes_on(found: &Found) -> Vec<String> {
-    let is_cut_short = found.losses.is_cut_short && found.losses.line.is_none();
-    let note = "The newest edit was cut off when the program ended, and is lost.";
-    is_cut_short.then(|| note.to_owned()).into_iter().collect()
 }
 
 #[cfg(test)]

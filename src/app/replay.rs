@@ -18,6 +18,7 @@ use crate::plan::format::PlanFile;
 use crate::replay::{Overview, PastFlights};
 use crate::session::{ReplayConfig, ReplayStart};
 use crate::signals::SimTime;
+use crate::ui::KeptScreens;
 use crate::ui::keymap::Keymap;
 use opened::Opened;
 
@@ -60,6 +61,7 @@ pub(super) fn run(args: &ReplayArgs, repeat: &[String], keymap: Keymap) -> Resul
         path: None,
         backdrop: Vec::new(),
         directory: setup::store_directory(&flight_args)?,
+        kept: KeptScreens::none(),
         was_used: true,
         given_settings: Vec::new(),
         notices: Vec::new(),

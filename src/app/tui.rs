@@ -21,6 +21,7 @@ use super::plan_files::PlanFiles;
 use super::recording_file;
 use super::runtime;
 use super::scenario_file;
+use super::screen_file::ScreenFile;
 use super::setup;
 use super::stop_signal;
 use super::terrain::{TerrainFiles, with_terrain};
@@ -45,8 +46,8 @@ use crate::ui::keymap::Keymap;
 use crate::ui::settings::GivenSetting;
 use crate::ui::theme::{Charset, Palette};
 use crate::ui::{
-    self, CliHelp, Ending, EnteredLines, FilesLink, GroundConfig, OpenPlan, OtherReceiver, SessionLink,
-    Theme, Tui, UiConfig, Units,
+    self, CliHelp, Ending, EnteredLines, FilesLink, GroundConfig, KeptScreen, KeptScreens, OpenPlan,
+    OtherReceiver, SessionLink, Theme, Tui, UiConfig, Units,
 };
 use crate::vehicle::Vehicle;
 
@@ -59,6 +60,8 @@ pub(super) struct Screen<'a> {
     pub(super) backdrop: Vec<BackdropLayer>,
     /// The directory for edits.
     pub(super) directory: Option<PathBuf>,
+    /// The screen of the run before.
+    pub(super) kept: KeptScreens,
     /// `true` if the program was used before. The first steps are then known.
     pub(super) was_used: bool,
     /// The settings that options or the scenario gave the craft.
@@ -116,16 +119,11 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
         return connect::run(args, place, keymap);
     }
     let backdrop = backdrop_file::read_all(&args.backdrop.backdrop)?;
-    let plan = match &args.plan {
-        Some(plan) => setup::read_plan(plan, args.flight.home)?,
-        None => setup::read_plan(
-            &PlanArg::Builtin(
-                BuiltinPlan::find(DEMO).ok_or_else(|| AppError::internal("the demo plan is missing"))?,
-            ),
-            None,
-        )?,
-    };
-    let mut notices = plan.notices();
+    let directory = setup::store_directory(&args.flight)?;
+    let mut notices = Vec::new();
+    let kept = kept_screens(args, directory.as_deref(), &mut notices);
+    let (chosen, plan) = first_plan(args, kept.before(), &mut notices)?;
+    notices.extend(plan.notices());
     let mut store = setup::open_store(&args.flight)?;
     notices.extend(setup::storage_notice(&store));
     let beside =
@@ -145,9 +143,10 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
     let vehicle = setup::build(setup, &mut notices)?;
     let screen = Screen {
         plan,
-        path: args.plan.as_ref().and_then(PlanArg::path),
+        path: chosen.path(),
         backdrop,
-        directory: setup::store_directory(&args.flight)?,
+        directory,
+        kept,
         was_used: was_stored,
         given_settings,
         notices,
@@ -174,6 +173,40 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
         other: None,
     };
     show(screen, keymap)
+}
+
+/// Returns the screens that are kept: none without a screen.
+fn kept_screens(args: &TuiArgs, directory: Option<&Path>, notices: &mut Vec<String>) -> KeptScreens {
+    if args.plain {
+        return KeptScreens::none();
+    }
+    let kept = ScreenFile::new(directory).read(notices);
+    if args.fresh_screen { kept.fresh() } else { kept }
+}
+
+/// Returns the plan that is open at start: that of the command line, else the one that was shown last, else the demo.
+fn first_plan(
+    args: &TuiArgs,
+    kept: Option<&KeptScreen>,
+    notices: &mut Vec<String>,
+) -> Result<(PlanArg, PlanFile), AppError> {
+    if let Some(plan) = &args.plan {
+        return Ok((plan.clone(), setup::read_plan(plan, args.flight.home)?));
+    }
+    if let Some(path) = kept.and_then(KeptScreen::shown_plan) {
+        let plan = PlanArg::File(path.to_owned(), None);
+        match setup::read_plan(&plan, args.flight.home) {
+            Ok(file) => return Ok((plan, file)),
+            Err(error) => {
+                let why = error.message.lines().next().unwrap_or_default();
+                notices.push(format!("The plan of the last run is not open: {}.", why.trim_end_matches('.')));
+            }
+        }
+    }
+    let demo = BuiltinPlan::find(DEMO).ok_or_else(|| AppError::internal("the demo plan is missing"))?;
+    let demo = PlanArg::Builtin(demo);
+    let file = setup::read_plan(&demo, None)?;
+    Ok((demo, file))
 }
 
 /// Refuses the screen without a terminal.
@@ -204,6 +237,8 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
     for opened in &recovered {
         backdrop.extend(files.begin_with_backdrop(opened.id, Vec::new()));
     }
+    let before = screen.kept.before();
+    let reopened = before.map_or_else(Vec::new, |before| files.open_kept(before, opened.id));
     let history = LineHistory::new(screen.directory.as_deref());
     notices.extend(history.problems());
     let entered = history.read();
@@ -228,6 +263,7 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
         plan: OpenPlan::new(opened.id, opened.file, opened.history),
         mouse: true,
         entered,
+        kept: screen.kept,
         is_first_start,
     };
     let problem = |error| AppError::environment(format!("cannot use the terminal: {error}"));
@@ -240,7 +276,7 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
     for opened in recovered {
         answers.send(FileReply::Opened(Box::new(opened))).ok();
     }
-    for reply in backdrop {
+    for reply in backdrop.into_iter().chain(reopened) {
         answers.send(reply).ok();
     }
     let unrecorded = answers.clone();

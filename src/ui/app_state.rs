@@ -10,6 +10,7 @@ use crate::telemetry::{EventKind, FirmwareEvent, NavEvent};
 use super::action::Action;
 use super::config::UiConfig;
 use super::event_log::Severity;
+use super::kept_screen::KeptScreens;
 use super::panel::{Panel, Panels};
 use super::permission::Permission;
 use super::popup::{CommandLine, Popup};
@@ -33,6 +34,8 @@ pub struct AppState {
     pub permission: Permission,
     /// The time of the last Ctrl-C.
     pub cancelled: Option<Duration>,
+    /// The screen that is kept.
+    pub kept: KeptScreens,
     /// The number of ticks of one navigator update.
     pub step_ticks: u32,
     /// The panel on which the mouse button went down, while it is down.
@@ -61,7 +64,7 @@ impl AppState {
         state
     }
 
-    fn after_earlier_runs(config: UiConfig, size: (u16, u16), view: SessionView) -> Self {
+    fn after_earlier_runs(mut config: UiConfig, size: (u16, u16), view: SessionView) -> Self {
         Self {
             panels: Panels::new(&config.entered.cli),
             command_line: CommandLine::with_history(&config.entered.commands),
@@ -70,6 +73,7 @@ impl AppState {
             tutorial: None,
             permission: Permission::default(),
             cancelled: None,
+            kept: std::mem::take(&mut config.kept),
             step_ticks: 10,
             pressed: None,
             shared: Shared::new(config, size, view),

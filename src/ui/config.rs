@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::console::CliHelp;
 use super::editor::OpenPlan;
 use super::history::EnteredLines;
+use super::kept_screen::KeptScreens;
 use super::keymap::Keymap;
 use super::settings::GivenSetting;
 use super::theme::Theme;
@@ -13,7 +14,7 @@ use crate::session::Event;
 use crate::terrain::Tiles;
 
 /// The configuration of the user interface at start.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct UiConfig {
     pub theme: Theme,
     /// Units of the shown values.
@@ -35,6 +36,8 @@ pub struct UiConfig {
     pub mouse: bool,
     /// Lines entered in earlier runs.
     pub entered: EnteredLines,
+    /// The screen of the run before.
+    pub kept: KeptScreens,
     /// `true` to point to the tutorial on the first screen.
     pub is_first_start: bool,
 }
@@ -67,6 +70,7 @@ impl UiConfig {
             plan: OpenPlan::new(PlanId::default(), None, History::new(PlanDocument::default(), true)),
             mouse: false,
             entered: EnteredLines::default(),
+            kept: KeptScreens::none(),
             is_first_start: false,
         }
     }

@@ -2,10 +2,12 @@
 //!
 //! Signals and the series of a recorded flight are shown by name, too. `curves` has the part of the series that is shown.
 
+mod chosen;
 mod curves;
 mod history;
 mod plot;
 
+pub(super) use chosen::ChosenGraphs;
 pub(super) use plot::{PLOTS, Plot};
 
 use super::map_point::MapPoint;

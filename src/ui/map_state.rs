@@ -4,7 +4,7 @@ use super::editor::PlanId;
 use super::map_point::MapPoint;
 
 /// The mode that selects the window of the map.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub enum MapMode {
     /// The map shows the whole plan and the craft.
     #[default]
@@ -29,6 +29,24 @@ pub enum MapMode {
         /// Metres per column.
         scale: f64,
     },
+}
+
+/// The largest distance of the middle of the map from the boot place, m: half around the Earth.
+const FARTHEST_M: f64 = 20_100_000.0;
+
+impl MapMode {
+    /// Returns the mode, or the default one if its numbers are impossible, as a file can have them.
+    pub(super) fn possible(self) -> Self {
+        let is_place = |value: f64| value.abs() <= FARTHEST_M;
+        let is_possible = match self {
+            Self::Fit => true,
+            Self::Follow(scale) => scale.is_finite(),
+            Self::Free { n, e, scale } | Self::Near { n, e, scale } => {
+                is_place(n) && is_place(e) && scale.is_finite()
+            }
+        };
+        if is_possible { self } else { Self::default() }
+    }
 }
 
 /// The state of the map panel.

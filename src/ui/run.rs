@@ -25,7 +25,7 @@ use super::files_link::FilesLink;
 use super::flights::FlightShelf;
 use super::message::{Effect, Msg};
 use super::terminal::{Tui, can_be_continued};
-use super::update::update;
+use super::update::{keep, restore, update};
 
 mod effects;
 mod flights;
@@ -136,10 +136,14 @@ async fn run_loop(
     }
     // Before the first frame: a terminal that is closed once it has seen that frame sends no keys any more.
     let mut keys = EventStream::new();
+    let restored = restore(&mut state);
     tui.draw(&state)?;
 
     let (answers, mut replies) = Answers::channel();
     let forecaster = Forecaster::start(answers.of_forecasts())?;
+    for effect in restored {
+        carry_out(effect, &link, &forecaster, &mut files, &answers);
+    }
     let mut events = Vec::with_capacity(BATCH);
     let mut drawn = Instant::now();
     // The time of the next frame; `None` while nothing has changed.
@@ -175,6 +179,9 @@ async fn run_loop(
         update(&mut state, Msg::Clock(now - started));
         let (msg, frame) = match wake {
             Wake::End(ending) => {
+                if let Some(effect) = keep(&mut state) {
+                    carry_out(effect, &link, &forecaster, &mut files, &answers);
+                }
                 link.commands.try_send(Command::Quit).ok();
                 return Ok(ending);
             }

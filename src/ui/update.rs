@@ -31,6 +31,7 @@ use super::tutorial;
 mod change;
 mod flight;
 mod flights;
+mod kept;
 mod map_menu;
 mod mouse;
 mod other_flight;
@@ -47,6 +48,7 @@ use flight::{fly, speed, upload, uploaded};
 use paste::paste;
 use view::{focus, focus_neighbour, scroll};
 
+pub(super) use kept::{keep, restore};
 pub(super) use permission::hold;
 
 /// The time of a step in a recorded flight, µs.
@@ -74,6 +76,12 @@ pub fn update(state: &mut AppState, msg: Msg) -> Vec<Effect> {
         effects.extend(forecast::repeat(&mut state.shared));
         let reads = settings::reading::follow(&mut state.shared);
         effects.extend(permission::hold(state, reads.into_iter().collect()));
+    }
+    if effects.iter().any(|effect| matches!(effect, Effect::Quit)) {
+        // Before the end, which drops what comes after it.
+        effects.splice(0..0, kept::keep(state));
+    } else if is_followed {
+        effects.extend(kept::follow(state));
     }
     effects
 }

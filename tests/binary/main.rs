@@ -24,6 +24,8 @@ mod free_port;
 mod hostile;
 mod inputs;
 #[cfg(unix)]
+mod kept_screen;
+#[cfg(unix)]
 mod library;
 #[cfg(unix)]
 mod limits;

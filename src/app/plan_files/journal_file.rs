@@ -4,7 +4,7 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
-use super::set_aside::{self, SetAside};
+use crate::app::set_aside::{self, SetAside};
 use crate::plan::edit::{Journal, JournalLine, Losses};
 use crate::storage::state_file::{self, Access};
 
@@ -34,6 +34,15 @@ pub(super) struct Found {
     pub(super) file: JournalFile,
     pub(super) journal: Journal,
     pub(super) losses: Losses,
+}
+
+impl Found {
+    /// Returns notes about a journal that lost at most its last edit.
+    pub(super) fn notes(&self) -> Vec<String> {
+        let is_cut_short = self.losses.is_cut_short && self.losses.line.is_none();
+        let note = "The newest edit was cut off when the program ended, and is lost.";
+        is_cut_short.then(|| note.to_owned()).into_iter().collect()
+    }
 }
 
 /// The contents of a directory of journals.

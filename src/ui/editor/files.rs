@@ -52,6 +52,8 @@ pub enum FileRequest {
         /// The number of settings.
         count: usize,
     },
+    /// Keep the screen, so that it comes back with the next start.
+    KeepScreen(String),
     /// Read the elevation tiles under a plan and its way home.
     Ground { home: LatLon, plan: Box<FlightPlan> },
     /// Begin the journal of a new plan.
@@ -94,6 +96,8 @@ pub enum FileReply {
     /// Somebody else changed or removed the file of a plan.
     Changed(PlanId),
     Listed(Listing),
+    /// Show this open plan, with the cursor at this row.
+    Shown(PlanId, usize),
     /// More elevation tiles were read, if there are any; the problems, one sentence each.
     Ground {
         tiles: Option<Arc<Tiles>>,

@@ -20,6 +20,19 @@ impl Default for Slots {
 }
 
 impl Slots {
+    /// Returns the panels of the places: main, left, right.
+    pub(in crate::ui) fn panels(self) -> [Panel; 3] {
+        [self.main, self.left, self.right]
+    }
+
+    /// Returns places with these panels: main, left, right. `None` if a panel has another place.
+    pub(in crate::ui) fn of([main, left, right]: [Panel; 3]) -> Option<Self> {
+        let fits = !matches!(main.place(), Place::Beside | Place::Below)
+            && matches!(left.place(), Place::Left | Place::Below)
+            && right.place() == Place::Right;
+        fits.then_some(Self { main, left, right })
+    }
+
     /// Remembers that a panel got the focus.
     pub fn visit(&mut self, panel: Panel) {
         match panel.place() {

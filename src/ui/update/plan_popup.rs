@@ -216,6 +216,10 @@ pub(super) fn answered(state: &mut Shared, reply: FileReply) -> Vec<Effect> {
                 state.notify(Severity::Good, format!("{name} is under the plan: {vertices} {noun}."));
             }
         }
+        FileReply::Shown(id, row) => {
+            state.editor.show_plan(id);
+            state.editor.go_to_row(row);
+        }
         FileReply::Listed(mut listing) => {
             if let Some(EditorPopup::Browser(browser)) = &mut state.editor.popup {
                 let purpose = browser.purpose;

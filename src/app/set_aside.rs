@@ -1,4 +1,4 @@
-//! Journals that cannot be read, or only in part, kept under another name that is never replaced.
+//! Files of the state directory that cannot be read, or only in part, kept under another name that is never replaced.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, ErrorKind};
@@ -27,11 +27,11 @@ impl SetAside {
     }
 }
 
-/// Returns the current place of a journal as the second half of a message.
-pub(super) fn place(kept: &io::Result<PathBuf>, journal: &Path) -> String {
+/// Returns the current place of a file as the second half of a message.
+pub(super) fn place(kept: &io::Result<PathBuf>, file: &Path) -> String {
     match kept {
         Ok(kept) => format!("It is kept as {}", kept.display()),
-        Err(error) => format!("It stays as {}, because it cannot be copied: {error}", journal.display()),
+        Err(error) => format!("It stays as {}, because it cannot be copied: {error}", file.display()),
     }
 }
 
@@ -41,14 +41,14 @@ pub(super) fn away(journal: &Path, why: String) -> SetAside {
     SetAside { journal: journal.to_owned(), kept, why }
 }
 
-/// Copies a journal to a free name and returns that name.
-pub(super) fn copy(journal: &Path) -> io::Result<PathBuf> {
+/// Copies a file to a free name and returns that name.
+pub(super) fn copy(file: &Path) -> io::Result<PathBuf> {
     for number in 1..=MOST {
         let ending = if number == 1 { ENDING.to_owned() } else { format!("{number}.{ENDING}") };
-        let kept = journal.with_extension(ending);
+        let kept = file.with_extension(ending);
         // A second name takes no space on a full disk. Some file systems allow only one name for a file.
-        let copied = match std::fs::hard_link(journal, &kept) {
-            Err(error) if error.kind() != ErrorKind::AlreadyExists => copy_bytes(journal, &kept),
+        let copied = match std::fs::hard_link(file, &kept) {
+            Err(error) if error.kind() != ErrorKind::AlreadyExists => copy_bytes(file, &kept),
             linked => linked,
         };
         match copied {
@@ -60,9 +60,9 @@ pub(super) fn copy(journal: &Path) -> io::Result<PathBuf> {
     Err(io::Error::other("too many files are set aside already"))
 }
 
-fn copy_bytes(journal: &Path, kept: &Path) -> io::Result<()> {
+fn copy_bytes(file: &Path, kept: &Path) -> io::Result<()> {
     let mut to = OpenOptions::new().write(true).create_new(true).open(kept)?;
-    let copied = File::open(journal).and_then(|mut from| io::copy(&mut from, &mut to));
+    let copied = File::open(file).and_then(|mut from| io::copy(&mut from, &mut to));
     if copied.is_err() {
         std::fs::remove_file(kept).ok();
     }

@@ -1,0 +1,85 @@
+//! The screen that comes back: after a kill, after a quit, and not with `--fresh-screen`.
+
+use crate::pty::Terminal;
+use crate::support::Sandbox;
+
+const PLAN: &str = "waypoint insert 0 40.4640000 -79.5175000 1000 0 FLYOVER 0 NONE\nwaypoint insert 1 40.4636 -79.5182 1000 0 LAND 0 NONE\n";
+
+fn is_zoomed_on_graphs(terminal: &Terminal) -> bool {
+    let screen = terminal.screen();
+    screen.contains("▸6 Graphs") && !screen.contains("3 State")
+}
+
+#[test]
+fn the_screen_comes_back_as_it_was_left() {
+    let sandbox = Sandbox::new();
+    sandbox.write("mine.txt", PLAN);
+    let plan = sandbox.path("mine.txt").display().to_string();
+    let state = sandbox.path("state").display().to_string();
+    let arguments = ["--no-ports", "--state-dir", &state];
+    let mut terminal = Terminal::betadeck(120, 40, &[&[plan.as_str()], &arguments[..]].concat());
+    terminal.until_shown("DISARMED");
+    terminal.send(":wind 5@270\r");
+    terminal.send("]]6z");
+    terminal.until("zoomed graphs at four times real time", |terminal| {
+        is_zoomed_on_graphs(terminal) && terminal.row(1).contains("4×")
+    });
+    let file = sandbox.path("state/screen.json");
+    terminal.until("the screen is kept", |_| {
+        let kept = std::fs::read_to_string(&file).unwrap_or_default();
+        ["wind=5@270", "\"speed\": 4.0", "\"Graphs\"", "mine.txt"].iter().all(|part| kept.contains(part))
+    });
+    terminal.signal("KILL");
+    terminal.end();
+
+    let mut terminal = Terminal::betadeck(120, 40, &arguments);
+    terminal.until_shown("As you left it: speed 4×, wind=5@270.");
+    assert!(is_zoomed_on_graphs(&terminal), "{}", terminal.screen());
+    terminal.send("z2");
+    terminal.until_shown("Plan — mine.txt");
+    terminal.send("q");
+    assert_eq!(terminal.end(), 0);
+
+    let mut terminal = Terminal::betadeck(120, 40, &arguments);
+    terminal.until("the plan has the focus after a quit, too", |terminal| {
+        terminal.screen().contains("▸2 Plan — mine.txt")
+    });
+    terminal.send("q");
+    assert_eq!(terminal.end(), 0);
+
+    let mut terminal = Terminal::betadeck(120, 40, &[&arguments[..], &["--fresh-screen"]].concat());
+    terminal.until("the demo plan on the default screen", |terminal| {
+        let screen = terminal.screen();
+        screen.contains("▸1 Map") && screen.contains("Plan — square")
+    });
+    assert!(!terminal.screen().contains("As you left"), "{}", terminal.screen());
+    terminal.send("q");
+    assert_eq!(terminal.end(), 0);
+}
+
+#[test]
+fn a_screen_that_is_damaged_or_of_a_later_version_does_not_stop_the_start_and_is_not_lost() {
+    let sandbox = Sandbox::new();
+    let state = sandbox.path("state").display().to_string();
+    let arguments = ["--no-ports", "--state-dir", &state];
+    let later = r#"{"version": 99, "focus": {"panels": ["Map"]}}"#;
+    std::fs::create_dir(sandbox.path("state")).unwrap();
+    for (text, sentence, kept) in [
+        ("{ \"focus\": \"Gra", "is damaged. It is kept as", "state/screen.bad"),
+        (later, "was written by a later version of betadeck.", "state/screen.json"),
+    ] {
+        sandbox.write("state/screen.json", text);
+        let mut terminal = Terminal::betadeck(200, 60, &arguments);
+        terminal.until("the default screen", |terminal| terminal.screen().contains("▸1 Map"));
+        terminal.until("the reason", |terminal| {
+            // The first panel of each row: the log, whose lines are wrapped.
+            let rows = terminal.screen();
+            let first: Vec<&str> = rows.lines().filter_map(|row| row.split('│').nth(1)).collect();
+            let shown = first.join(" ").split_whitespace().collect::<Vec<_>>().join(" ");
+            shown.contains("The screen starts clean") && shown.contains(sentence)
+        });
+        terminal.send("6q");
+        assert_eq!(terminal.end(), 0);
+        assert_eq!(std::fs::read_to_string(sandbox.path(kept)).unwrap(), text);
+    }
+}
