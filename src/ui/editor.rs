@@ -292,6 +292,15 @@ impl Editor {
         Some((label, Effect::Files(FileRequest::Journal(id, line))))
     }
 
+    /// Goes to the revision made before the shown one, or after it, in any branch.
+    pub(super) fn go_in_time(&mut self, later: bool) -> Option<Effect> {
+        let id = self.plan().id();
+        let line = self.plan_mut().go_in_time(later)?;
+        self.field = None;
+        self.anchor = None;
+        Some(Effect::Files(FileRequest::Journal(id, line)))
+    }
+
     /// Inserts waypoints after the cursor and selects them.
     pub(super) fn insert(&mut self, label: &str, waypoints: &[Waypoint]) -> Result<Vec<Effect>, String> {
         let have = self.document().plan.waypoints.len();

@@ -1,5 +1,7 @@
 //! The state of the map: its window, and the edit with the cursor or the mouse.
 
+use std::time::Duration;
+
 use super::editor::PlanId;
 use super::map_point::MapPoint;
 
@@ -65,6 +67,8 @@ pub struct MapState {
     pub(super) course_up: bool,
     /// `true` to leave out the tracks of earlier flights.
     pub(super) hides_past: bool,
+    /// The time at which another revision of the plan was chosen, wall clock. The map shows it for a while.
+    pub(super) revision_at: Option<Duration>,
 }
 
 /// A line whose length and bearing are measured.

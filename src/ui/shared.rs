@@ -18,6 +18,7 @@ use super::editor::{Editor, PlanId};
 use super::event_log::{LogState, Severity};
 use super::flights::FlightsState;
 use super::forecast::ForecastState;
+use super::formatting::within;
 use super::graphs::GraphsState;
 use super::ground::GroundState;
 use super::keymap::Keymap;
@@ -34,6 +35,9 @@ use super::units::Units;
 
 /// The altitude from which a craft that touches nothing counts as in the air, m. A bounce stays below it.
 const IN_THE_AIR_M: f64 = 1.0;
+
+/// The time for which the map shows another revision of the plan while the craft flies.
+const REVISION_SHOWN: Duration = Duration::from_secs(8);
 
 /// A sentence that is shown for a moment.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -188,17 +192,26 @@ impl Shared {
         self.notice = Some(Notice { text: text.into(), severity, at: self.now });
     }
 
-    /// Returns `true` if the map shows the edited plan rather than the flown one.
+    /// Returns `true` while the plan is edited on the map.
     pub(super) fn edits_on_map(&self) -> bool {
         self.map.edit.is_some() || self.map.moving.is_some()
+    }
+
+    /// Returns `true` for a while after another revision of the plan was chosen.
+    pub(super) fn shows_revision(&self) -> bool {
+        self.map.revision_at.is_some_and(|at| within(self.now, at, REVISION_SHOWN))
+    }
+
+    /// Returns `true` if the map shows the edited plan rather than the flown one.
+    pub(super) fn shows_edited_plan(&self) -> bool {
+        self.edits_on_map() || self.shows_revision()
     }
 
     /// Returns the plan on the map: the edited one, else the flown one, else the open one, else the craft's.
     pub fn shown_plan(&self) -> &FlightPlan {
         let vehicle = &self.view.vehicle;
         match &vehicle.active_plan {
-            // While the user edits on the map, it shows the edited plan.
-            _ if self.edits_on_map() => self.plan(),
+            _ if self.shows_edited_plan() => self.plan(),
             Some(plan) => plan,
             None if self.plan().waypoints.is_empty() => vehicle.stored_plan.as_ref().unwrap_or(self.plan()),
             None => self.plan(),

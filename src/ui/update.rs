@@ -267,6 +267,8 @@ fn edit(state: &mut AppState, action: EditAction) -> Vec<Effect> {
     match action {
         EditAction::Undo => plan::undo(&mut state.shared, false),
         EditAction::Redo => plan::undo(&mut state.shared, true),
+        EditAction::Earlier => plan::go_in_time(&mut state.shared, false),
+        EditAction::Later => plan::go_in_time(&mut state.shared, true),
         EditAction::Open => plan::open_browser(&mut state.shared),
         EditAction::Save => plan::save(&mut state.shared),
         EditAction::SaveAs => plan::save_as(&mut state.shared),

@@ -23,7 +23,13 @@ fn with_alt() -> Keymap {
         KeyLine { line: 1, action: spec.name.to_owned(), keys: spec.keys.iter().map(own).collect() }
     });
     // Actions that already use Alt get other keys.
-    let moved = [("plan.move-up", "ctrl-up"), ("plan.move-down", "ctrl-down"), ("sim.tick", "ctrl-y")];
+    let moved = [
+        ("plan.move-up", "ctrl-up"),
+        ("plan.move-down", "ctrl-down"),
+        ("sim.tick", "ctrl-y"),
+        ("plan.earlier", "ctrl-b"),
+        ("plan.later", "ctrl-n"),
+    ];
     let moved =
         moved.map(|(action, key)| KeyLine { line: 1, action: action.to_owned(), keys: vec![key.to_owned()] });
     let remapped: Vec<KeyLine> = lines.chain(moved).collect();

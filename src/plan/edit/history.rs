@@ -82,6 +82,18 @@ impl History {
         self.at
     }
 
+    /// Returns the description of the edit that made a revision; `None` for the opened document.
+    pub fn label(&self, revision: usize) -> Option<&str> {
+        self.revisions.get(revision.checked_sub(1)?).map(Revision::label)
+    }
+
+    /// Returns the newest revision that is not on the way from the opened document to this one.
+    pub fn newest_beside(&self) -> Option<usize> {
+        let path = self.path(self.at);
+        // A parent is older than its child, so the path descends.
+        (1..=self.len()).rev().find(|revision| path.binary_search_by(|on| revision.cmp(on)).is_err())
+    }
+
     /// Returns the number of revisions.
     pub fn len(&self) -> usize {
         self.revisions.len()
@@ -242,6 +254,8 @@ mod tests {
         history.commit("b", named("b"));
         assert_eq!(history.undo(), Some("b"));
         assert_eq!(history.redo(), Some("b"), "redo follows the newest");
+        assert_eq!(history.newest_beside(), Some(1));
+        assert_eq!((history.label(0), history.label(1), history.label(2)), (None, Some("a"), Some("b")));
         assert!(history.go_to(1));
         assert_eq!(history.document().name, "a");
         assert!(!history.go_to(3));

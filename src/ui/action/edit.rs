@@ -15,6 +15,10 @@ actions! {
         SaveToFlash Global "plan.flash" "flash" "Save plan and settings in the craft's flash" ["W"];
         Undo Global "plan.undo" "undo" "Undo the last edit of the plan" ["u"];
         Redo Global "plan.redo" "redo" "Redo the edit that was undone" ["ctrl-r"];
+        Earlier Global "plan.earlier" "earlier revision"
+            "The revision made before this one, in any branch" ["alt-u"];
+        Later Global "plan.later" "later revision"
+            "The revision made after this one, in any branch" ["alt-U"];
         Open Global "plan.open" "open" "Open a plan file" ["o"];
         Save Global "plan.save" "save" "Save the plan in its file" ["s"];
     }

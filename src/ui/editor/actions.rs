@@ -169,12 +169,44 @@ fn reported(state: &mut Shared, done: Result<Vec<Effect>, String>) -> Vec<Effect
 pub(in crate::ui) fn undo(state: &mut Shared, redo: bool) -> Vec<Effect> {
     let done = if redo { state.editor.redo() } else { state.editor.undo() };
     let Some((label, effect)) = done else {
-        let nothing = if redo { "Nothing to redo." } else { "Nothing to undo." };
+        let nothing = if redo { nothing_to_redo(state) } else { "Nothing to undo.".to_owned() };
         return state.only_notify(Severity::Info, nothing);
     };
+    state.map.revision_at = Some(state.now);
     let verb = if redo { "Redone" } else { "Undone" };
     state.notify(Severity::Info, format!("{verb}: {label}."));
     vec![effect]
+}
+
+fn nothing_to_redo(state: &Shared) -> String {
+    let history = state.editor.plan().history();
+    let beside = history.newest_beside().and_then(|beside| Some((beside, history.label(beside)?)));
+    let Some((beside, label)) = beside else { return "Nothing to redo.".to_owned() };
+    let is_earlier = beside < history.at();
+    let action = if is_earlier { EditAction::Earlier } else { EditAction::Later };
+    let (key, way) = (state.key(Action::Edit(action)), if is_earlier { "back" } else { "on" });
+    format!(
+        "Nothing to redo here. Revision {beside} is another branch: {label}. `{key}` goes {way} to it in time."
+    )
+}
+
+/// Goes to the revision made before the shown one, or after it, in any branch.
+pub(in crate::ui) fn go_in_time(state: &mut Shared, later: bool) -> Vec<Effect> {
+    let effect = state.editor.go_in_time(later);
+    let history = state.editor.plan().history();
+    let (at, count) = (history.at(), history.len());
+    let text = match (&effect, history.label(at)) {
+        (None, _) if count == 0 => "The plan was not edited yet.".to_owned(),
+        (None, _) if later => format!("This is the newest of {count} revisions."),
+        (None, _) | (Some(_), None) => format!("The plan as it was opened; {count} revisions follow."),
+        (Some(_), Some(label)) => format!("Revision {at} of {count}: {label}."),
+    };
+    if effect.is_some() {
+        state.map.revision_at = Some(state.now);
+    }
+    // Each step replaces the sentence about the one before.
+    state.say(Severity::Info, text);
+    effect.into_iter().collect()
 }
 
 /// Applies the offered fix of the shown finding.

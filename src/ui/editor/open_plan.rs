@@ -101,6 +101,13 @@ impl OpenPlan {
         Some((label, JournalLine::Moved(self.history.at())))
     }
 
+    /// Goes to the revision made before this one, or after it, in any branch. Returns the line for the journal.
+    pub(super) fn go_in_time(&mut self, later: bool) -> Option<JournalLine> {
+        let at = self.history.at();
+        let to = if later { at.checked_add(1)? } else { at.checked_sub(1)? };
+        self.history.go_to(to).then_some(JournalLine::Moved(to))
+    }
+
     /// Records that this revision was written to a file.
     pub(super) fn saved(&mut self, file: PathBuf, revision: usize) {
         self.changed_on_disk = false;

@@ -70,6 +70,13 @@ impl Content for MapPanel {
                 place.and_then(|place| map_edit::measured(state, place, moving)).unwrap_or_default();
             return format!("{name} — edit · {measured}");
         }
+        if state.shows_revision() {
+            let history = state.editor.plan().history();
+            return match history.at() {
+                0 => format!("{name} — plan as opened"),
+                at => format!("{name} — revision {at} of {}", history.len()),
+            };
+        }
         match state.map.mode {
             MapMode::Fit => format!("{name}{source}"),
             MapMode::Follow(_) => format!("{name}{source} — follows"),
@@ -279,8 +286,8 @@ fn scene(state: &Shared, area: Rect) -> Scene {
     let craft_home =
         frame.zip(vehicle.craft.home).map_or(at_boot_place, |(frame, home)| to_map(&frame, home));
     let planned_home = map_edit::home(state).unwrap_or(craft_home);
-    // While editing, the map shows home of the edited plan and the fence around it.
-    let mut home = if state.edits_on_map() { planned_home } else { craft_home };
+    // With the edited plan, the map shows its home and the fence around it.
+    let mut home = if state.shows_edited_plan() { planned_home } else { craft_home };
     let mut spots = frame.map_or_else(Vec::new, |frame| spots_of(&plan.waypoints, 0, &frame, home));
     let (preview, first) = state.editor.preview().unwrap_or_default();
     let preview = frame
@@ -302,7 +309,8 @@ fn scene(state: &Shared, area: Rect) -> Scene {
         view: Viewport::of(state, area),
         spots,
         home,
-        planned_home: (planned_home.distance(home) > 1.0 && !state.edits_on_map()).then_some(planned_home),
+        planned_home: (planned_home.distance(home) > 1.0 && !state.shows_edited_plan())
+            .then_some(planned_home),
         craft: map_point::craft(&state.view),
         believed: believed.filter(|place| place.n.is_finite() && place.e.is_finite()),
         preview,

@@ -127,7 +127,9 @@ pub(super) fn paint(state: &Shared, scene: &Scene, context: &mut Context<'_>) {
     layer(Role::Fence, &mut |painter| {
         let fence_m = match state.map.moving {
             Some(Moving { item: MapItem::Fence, place, .. }) => Some(scene.home.distance(place)),
-            _ if state.edits_on_map() || state.view.vehicle.active_plan.is_none() => map_edit::fence_m(state),
+            _ if state.shows_edited_plan() || state.view.vehicle.active_plan.is_none() => {
+                map_edit::fence_m(state)
+            }
             _ => settings.and_then(|settings| settings.fence_m),
         };
         if let Some(fence_m) = fence_m {
