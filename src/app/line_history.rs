@@ -14,7 +14,7 @@ const MOST_LINES: usize = 2 * RECALLED;
 /// The largest file, bytes: twice the most lines of the greatest length.
 const LARGEST: u64 = 8 << 20;
 /// The fields that have a history.
-const FIELDS: [LineField; 2] = [LineField::Command, LineField::Cli];
+const FIELDS: [LineField; 3] = [LineField::Command, LineField::Cli, LineField::Palette];
 
 /// The files of the lines.
 #[derive(Debug, Clone)]
@@ -31,7 +31,11 @@ impl LineHistory {
 
     /// Returns the earlier lines, the oldest first. A file that cannot be read counts as empty.
     pub(super) fn read(&self) -> EnteredLines {
-        EnteredLines { commands: self.read_field(LineField::Command), cli: self.read_field(LineField::Cli) }
+        EnteredLines {
+            commands: self.read_field(LineField::Command),
+            cli: self.read_field(LineField::Cli),
+            palette: self.read_field(LineField::Palette),
+        }
     }
 
     /// Keeps a line. If this fails, the line is lost at the end of the program, as in a shell.
@@ -60,6 +64,7 @@ impl LineHistory {
         let name = match field {
             LineField::Command => "commands.history",
             LineField::Cli => "cli.history",
+            LineField::Palette => "palette.history",
         };
         Some(self.directory.as_ref()?.join(name))
     }
@@ -137,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn a_directory_or_a_fifo_in_its_place_and_a_missing_state_are_no_history() {
+    fn a_directory_a_fifo_or_a_link_in_its_place_and_a_missing_state_are_no_history() {
         let directory = directory("places");
         let history = LineHistory::new(Some(&directory));
         std::fs::create_dir(directory.join("commands.history")).unwrap();
@@ -149,9 +154,14 @@ mod tests {
             0,
         )
         .unwrap();
+        let other = directory.join("other file");
+        std::fs::write(&other, "map.fit\n").unwrap();
+        std::os::unix::fs::symlink(&other, directory.join("palette.history")).unwrap();
         history.append(LineField::Command, "speed 2");
         history.append(LineField::Cli, "status");
+        history.append(LineField::Palette, "flight.arm");
         assert_eq!(history.read(), EnteredLines::default());
+        assert_eq!(std::fs::read_to_string(&other).unwrap(), "map.fit\n");
         LineHistory::new(None).append(LineField::Cli, "status");
         assert_eq!(LineHistory::new(None).read(), EnteredLines::default());
         std::fs::remove_dir_all(directory).ok();

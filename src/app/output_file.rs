@@ -15,7 +15,7 @@ pub(super) use stale::{remove_results, remove_results_of};
 pub(super) use whole::{FinalOutput, StreamedOutput, replace};
 
 /// Files of a state directory other than the stored configuration.
-const HISTORIES: [&str; 2] = ["commands.history", "cli.history"];
+const HISTORIES: [&str; 3] = ["commands.history", "cli.history", "palette.history"];
 /// The folder for the journals of edits, and their file ending.
 const JOURNALS: (&str, &str) = ("plans", "journal");
 /// The folder in which a remote firmware keeps its configuration.

@@ -22,32 +22,85 @@ const WIDE: u16 = 120;
 /// Draws the hint line: keys on the left, those of the focused panel first; help, quit and the doors on the right.
 pub(super) fn draw(own: &[Hint], state: &Shared, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
-    let mut right: Vec<Span<'static>> =
-        permanent_hints(state).iter().flat_map(|(keys, label)| hint(theme, keys, label)).collect();
-    right.extend(doors(state, area.width));
-    let room = usize::from(area.width).saturating_sub(Line::from(right.clone()).width());
-    let mut spans: Vec<Span<'static>> = Vec::new();
-    let mut used = 0;
-    let mut push = |keys: &str, label: &str| {
-        let width = keys.width() + label.width() + 3;
-        if keys.is_empty() || used + width > room {
-            return;
-        }
-        used += width;
-        spans.extend(hint(theme, keys, label));
+    let spans = |hints: &[Shown]| -> Vec<Span<'static>> {
+        hints.iter().flat_map(|shown| hint(theme, &shown.keys(), shown.label)).collect()
     };
-    if state.focus == Panel::Cli {
-        for (keys, label) in
-            [("Enter", "run"), ("Tab", "complete"), ("↑ ↓", "history"), ("PgUp PgDn", "scroll")]
-        {
-            push(keys, label);
-        }
-    } else {
-        for (actions, label) in hint_actions(own, state) {
-            push(&keys_of(state, actions), label);
-        }
+    let (left, permanent) = (shown(own, state, area.width), permanent_hints(state));
+    let right: Vec<Span<'static>> = spans(&permanent).into_iter().chain(doors(state, area.width)).collect();
+    sides(buffer, area, &spans(&left), &right);
+}
+
+/// A hint on the screen: its keys, each with the action that a click on it triggers, and its label.
+struct Shown {
+    keys: Vec<(String, Option<Action>)>,
+    label: &'static str,
+}
+
+impl Shown {
+    fn of(state: &Shared, actions: &[Action], label: &'static str) -> Self {
+        let first =
+            |&action: &Action| Some((state.keymap.shown_keys(action).into_iter().next()?, Some(action)));
+        Self { keys: actions.iter().filter_map(first).collect(), label }
     }
-    sides(buffer, area, &spans, &right);
+
+    fn keys(&self) -> String {
+        self.keys.iter().map(|(key, _)| key.as_str()).collect::<Vec<_>>().join(" ")
+    }
+
+    /// Returns the width with the blanks around keys and label.
+    fn width(&self) -> usize {
+        self.keys().width() + self.label.width() + 3
+    }
+
+    /// Returns the action at a column of the hint: of the key there, else of the first key.
+    fn action_at(&self, column: usize) -> Option<Action> {
+        let mut end = 1;
+        let key = self.keys.iter().find(|(key, _)| {
+            end += key.width() + 1;
+            column < end
+        });
+        key.or(self.keys.first())?.1
+    }
+}
+
+/// Returns the hints on the left that fit into a bar of this width.
+fn shown(own: &[Hint], state: &Shared, width: u16) -> Vec<Shown> {
+    let permanent: usize = permanent_hints(state).iter().map(Shown::width).sum();
+    let mut room = usize::from(width).saturating_sub(permanent + Line::from(doors(state, width)).width());
+    let hints: Vec<Shown> = if state.focus == Panel::Cli {
+        [("Enter", "run"), ("Tab", "complete"), ("↑ ↓", "history"), ("PgUp PgDn", "scroll")]
+            .map(|(keys, label)| Shown { keys: vec![(keys.to_owned(), None)], label })
+            .into()
+    } else {
+        hint_actions(own, state).iter().map(|(actions, label)| Shown::of(state, actions, label)).collect()
+    };
+    let fits = |shown: &Shown| {
+        let is_shown = !shown.keys.is_empty() && shown.width() <= room;
+        room -= if is_shown { shown.width() } else { 0 };
+        is_shown
+    };
+    hints.into_iter().filter(fits).collect()
+}
+
+/// Returns the action of the hint at a cell.
+pub(super) fn action_at(own: &[Hint], state: &Shared, area: Rect, cell: (u16, u16)) -> Option<Action> {
+    if !area.contains(cell.into()) {
+        return None;
+    }
+    let permanent = permanent_hints(state);
+    let right: usize =
+        permanent.iter().map(Shown::width).sum::<usize>() + Line::from(doors(state, area.width)).width();
+    let column = usize::from(cell.0 - area.x);
+    let sides =
+        [(0, shown(own, state, area.width)), (usize::from(area.width).saturating_sub(right), permanent)];
+    sides.iter().find_map(|(start, hints)| {
+        let mut at = *start;
+        hints.iter().find_map(|shown| {
+            let from = at;
+            at += shown.width();
+            (from..at).contains(&column).then(|| shown.action_at(column - from))?
+        })
+    })
 }
 
 /// Returns the actions of the hint bar, the most useful first.
@@ -192,17 +245,11 @@ fn throttle_label(state: &Shared) -> &'static str {
 }
 
 /// Returns the keys that are never left out: help and quit; in the CLI panel Esc.
-fn permanent_hints(state: &Shared) -> Vec<(String, &'static str)> {
+fn permanent_hints(state: &Shared) -> Vec<Shown> {
     if state.focus == Panel::Cli {
-        return vec![("Esc".to_owned(), "leave")];
+        return vec![Shown { keys: vec![("Esc".to_owned(), Some(Action::Back))], label: "leave" }];
     }
-    vec![(keys_of(state, &[Action::Help]), "help"), (keys_of(state, &[Action::Quit]), "quit")]
-}
-
-/// Returns the first key of each action.
-fn keys_of(state: &Shared, actions: &[Action]) -> String {
-    let first = |&action: &Action| state.keymap.shown_keys(action).into_iter().next();
-    actions.iter().filter_map(first).collect::<Vec<_>>().join(" ")
+    vec![Shown::of(state, &[Action::Help], "help"), Shown::of(state, &[Action::Quit], "quit")]
 }
 
 /// Returns a key and its effect as spans of the hint line.

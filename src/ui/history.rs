@@ -1,4 +1,4 @@
-//! The lines entered in a text field, for recall.
+//! The lines entered in a text field, for recall, and the names chosen in the palette.
 
 /// A text field whose lines survive a restart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -7,6 +7,8 @@ pub enum LineField {
     Command,
     /// The firmware's command line.
     Cli,
+    /// The palette: the names of what was chosen.
+    Palette,
 }
 
 /// The lines entered in earlier runs, the oldest first.
@@ -16,6 +18,8 @@ pub struct EnteredLines {
     pub commands: Vec<String>,
     /// The lines entered in the firmware's command line.
     pub cli: Vec<String>,
+    /// The names chosen in the palette.
+    pub palette: Vec<String>,
 }
 
 const MAX_LINES: usize = 500;
@@ -82,6 +86,38 @@ impl History {
     }
 }
 
+/// The names chosen in the palette, the newest last.
+#[derive(Debug, Clone, Default)]
+pub struct UsedNames(Vec<String>);
+
+/// The most names that are remembered.
+const MOST_USED: usize = 50;
+
+impl UsedNames {
+    /// Returns the names chosen in earlier runs, the newest last.
+    pub(super) fn of(names: &[String]) -> Self {
+        let mut used = Self::default();
+        for name in names {
+            used.remember(name);
+        }
+        used
+    }
+
+    /// Makes a name the newest one.
+    pub(super) fn remember(&mut self, name: &str) {
+        self.0.retain(|used| used != name);
+        if self.0.len() == MOST_USED {
+            self.0.remove(0);
+        }
+        self.0.push(name.to_owned());
+    }
+
+    /// Returns the weight of a name: the newest one has the greatest, one that was never chosen has none.
+    pub(super) fn weight(&self, name: &str) -> u32 {
+        self.0.iter().position(|used| used == name).map_or(0, |at| (MOST_USED - self.0.len() + at + 1) as u32)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -99,5 +135,16 @@ mod tests {
             assert!(history.older("").is_some());
         }
         assert_eq!(history.older(""), None, "500 are kept");
+    }
+
+    #[test]
+    fn the_newest_name_weighs_most_and_their_number_is_bounded() {
+        let mut used = UsedNames::of(&["a", "b", "a"].map(str::to_owned));
+        assert!(used.weight("a") > used.weight("b") && used.weight("b") > 0);
+        assert_eq!(used.weight("c"), 0);
+        for number in 0..200 {
+            used.remember(&number.to_string());
+        }
+        assert_eq!((used.0.len(), used.weight("199")), (MOST_USED, MOST_USED as u32));
     }
 }

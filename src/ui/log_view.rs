@@ -27,8 +27,13 @@ pub struct LogView {
 
 impl LogView {
     /// Returns `true` if a line passes the filter.
-    fn shows(&self, line: &LogLine) -> bool {
+    fn passes(&self, line: &LogLine) -> bool {
         FILTERS.get(self.filter).is_none_or(|(least, _)| line.severity >= *least)
+    }
+
+    /// Returns `true` if a line passes the filter and has the searched text.
+    fn shows(&self, line: &LogLine) -> bool {
+        self.passes(line) && (self.search.is_empty() || self.find_in(&line.text).is_some())
     }
 
     /// Returns the name of the filter; empty if it shows all lines.
@@ -77,15 +82,24 @@ impl LogView {
     /// Handles a key while the search is typed.
     pub(super) fn search_key(&mut self, state: &Shared, event: KeyEvent) {
         match event.code {
-            KeyCode::Esc => self.end_search(),
+            KeyCode::Esc => self.leave_search(state),
             KeyCode::Enter => self.typing = false,
             _ => {
                 if self.search.key(event) {
                     self.found = None;
+                    self.scroll = 0;
                     self.show_match(state, false);
                 }
             }
         }
+    }
+
+    /// Ends the search. The line found last stays in view, among all lines.
+    pub(super) fn leave_search(&mut self, state: &Shared) {
+        let found = self.found;
+        self.end_search();
+        let place = self.newest_first(&state.log).position(|line| Some(line.number) == found);
+        self.scroll = place.unwrap_or(0).saturating_sub(self.later_above(state));
     }
 
     pub(super) fn end_search(&mut self) {
@@ -172,14 +186,17 @@ mod tests {
                 .find(|line| Some(line.number) == found)
                 .map(|line| line.text.clone())
         };
+        assert_eq!(view.newest_first(&state.log).count(), 2, "the lines with the text");
         view.next_match(&state, false);
-        assert_eq!((text(&view, &state).as_deref(), view.scroll), (Some("wind two"), 1));
+        assert_eq!((text(&view, &state).as_deref(), view.scroll), (Some("wind two"), 0));
         view.next_match(&state, false);
-        assert_eq!((text(&view, &state).as_deref(), view.scroll), (Some("Wind one"), 3));
+        assert_eq!((text(&view, &state).as_deref(), view.scroll), (Some("Wind one"), 1));
         view.next_match(&state, false);
         assert_eq!(text(&view, &state).as_deref(), Some("Wind one"), "it is the oldest");
         view.next_match(&state, true);
         assert_eq!(text(&view, &state).as_deref(), Some("wind two"));
+        view.leave_search(&state);
+        assert_eq!((view.scroll, view.newest_first(&state.log).count()), (1, 4), "it stays in view");
     }
 
     #[test]

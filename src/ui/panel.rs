@@ -6,7 +6,6 @@ pub(super) mod cli;
 mod content;
 pub(super) mod editor_popup;
 pub(super) mod graphs;
-pub(super) mod help;
 mod horizon;
 mod log;
 mod map;

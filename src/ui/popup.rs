@@ -6,6 +6,7 @@ pub(super) mod flights_list;
 pub(super) mod frame;
 pub(super) mod go_to;
 pub(super) mod guards;
+pub(super) mod help;
 pub(super) mod map_menu;
 pub(super) mod palette;
 pub(super) mod signal_list;
@@ -15,6 +16,7 @@ pub(super) use action_menu::ActionMenu;
 pub use command_line::CommandLine;
 pub use flights_list::FlightsList;
 pub(super) use go_to::GoTo;
+pub(super) use help::Help;
 pub(super) use map_menu::MapMenu;
 pub use palette::Palette;
 pub use signal_list::SignalList;
@@ -32,8 +34,8 @@ pub(super) enum Outcome<T> {
 /// A popup over the panels. The last one opened gets the keys first.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Popup {
-    /// The keys, scrolled down by this many lines.
-    Help { scroll: usize },
+    /// The keys and their effects.
+    Help(Help),
     /// The choice of a waypoint to go to.
     GoTo(GoTo),
     /// The menu of a place on the map.

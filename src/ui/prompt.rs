@@ -58,7 +58,7 @@ pub(super) fn question(state: &AppState) -> Option<Vec<String>> {
         Popup::ResetSettings => Some(vec![format!("{} Go on? y yes, n no.", reset_question(&state.shared))]),
         Popup::Permission => Some(vec![format!("{} y yes, n no.", permission::question(&state.shared))]),
         Popup::Flights(open) => flights::question(state, open),
-        Popup::Help { .. }
+        Popup::Help(_)
         | Popup::Guards { .. }
         | Popup::Plots { .. }
         | Popup::Signals(_)

@@ -21,6 +21,7 @@ use super::forecast::ForecastState;
 use super::formatting::within;
 use super::graphs::GraphsState;
 use super::ground::GroundState;
+use super::history::UsedNames;
 use super::keymap::Keymap;
 use super::layout::Slots;
 use super::map_state::MapState;
@@ -93,6 +94,8 @@ pub struct Shared {
     /// All settings of the craft.
     pub settings: SettingsState,
     pub log: LogState,
+    /// The names chosen in the palette.
+    pub used: UsedNames,
     pub notice: Option<Notice>,
     /// Notices that stay until Esc clears them, the oldest first.
     pub pinned: Vec<String>,
@@ -139,6 +142,7 @@ impl Shared {
             forecast: ForecastState::default(),
             settings: SettingsState::new(config.given_settings),
             log: LogState::default(),
+            used: UsedNames::of(&config.entered.palette),
             notice: None,
             pinned: Vec::new(),
             stick_recording: StickRecording::default(),

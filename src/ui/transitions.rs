@@ -3,10 +3,13 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
+use crossterm::event::{KeyCode, KeyEvent};
+
 use crate::signals::SimTime;
 use crate::telemetry::{NavState, TransitionReason};
 
 use super::shared::Shared;
+use super::text_field::TextField;
 
 /// The number of transitions kept.
 const MAX_TRANSITIONS: usize = 200;
@@ -30,6 +33,10 @@ pub struct Transitions {
     list: VecDeque<Transition>,
     /// The first visible transition, counted from the newest.
     pub scroll: usize,
+    /// The words that the shown transitions have.
+    pub(super) search: TextField,
+    /// `true` while the search is typed.
+    pub(super) is_typing: bool,
 }
 
 impl Transitions {
@@ -40,8 +47,32 @@ impl Transitions {
         self.list.push_back(transition);
     }
 
-    pub(super) fn len(&self) -> usize {
-        self.list.len()
+    /// Returns `true` while the transitions are searched.
+    pub(super) fn is_searched(&self) -> bool {
+        self.is_typing || !self.search.is_empty()
+    }
+
+    pub(super) fn begin_search(&mut self) {
+        self.end_search();
+        self.is_typing = true;
+    }
+
+    pub(super) fn end_search(&mut self) {
+        self.search = TextField::default();
+        self.is_typing = false;
+        self.scroll = 0;
+    }
+
+    /// Handles a key while the search is typed.
+    pub(super) fn search_key(&mut self, event: KeyEvent) {
+        match event.code {
+            KeyCode::Esc => self.end_search(),
+            KeyCode::Enter => self.is_typing = false,
+            _ => {
+                self.search.key(event);
+                self.scroll = 0;
+            }
+        }
     }
 
     /// Returns the transitions up to the shown instant, the oldest first.

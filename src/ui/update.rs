@@ -20,7 +20,7 @@ use super::map_point;
 use super::message::{Effect, FlightForm, Msg, Request};
 use super::panel::Panel;
 use super::past_flight;
-use super::popup::{GoTo, Palette, Popup};
+use super::popup::{GoTo, Help, Palette, Popup};
 use super::settings;
 use super::stick_recording::keys::advance;
 use super::track::TrackPoint;
@@ -416,7 +416,7 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
         Action::WriteRecording => return vec![state.shared.write_recording(None)],
         Action::Flights => return flights::open(state),
         Action::Tutorial => tutorial::toggle(&mut state.tutorial, &mut state.shared),
-        Action::Help => state.popups.push(Popup::Help { scroll: 0 }),
+        Action::Help => state.popups.push(Popup::Help(Help::default())),
         Action::CommandLine => popup::open_command_line(state, ""),
         Action::Palette => state.popups.push(Popup::Palette(Palette::default())),
         Action::Back => {

@@ -181,6 +181,7 @@ fn lines_of_earlier_runs_are_recalled_and_new_ones_kept_for_the_next() {
     let entered = EnteredLines {
         commands: vec!["speed 4".to_owned(), "wind 5@270".to_owned()],
         cli: vec!["status".to_owned()],
+        palette: Vec::new(),
     };
     let mut state = fixture::state_after((80, 24), fixture::colour(), fixture::square(), entered);
     key(&mut state, KeyCode::Char(':'));

@@ -351,7 +351,7 @@ fn a_dragged_slider_stays_the_one_that_was_pressed() {
 fn help_closes_by_the_key_it_explains() {
     let mut state = ready();
     press(&mut state, '?');
-    assert!(matches!(state.popups[..], [Popup::Help { .. }]));
+    assert!(matches!(state.popups[..], [Popup::Help(_)]));
     assert!(matches!(press(&mut state, ' ')[..], []), "blank scrolls");
     assert!(matches!(
         press(&mut state, 'x')[..],

@@ -25,6 +25,7 @@ mod remapped;
 mod replay;
 mod rewind;
 mod screens;
+mod searches;
 mod session_rig;
 mod settings;
 mod terrain;

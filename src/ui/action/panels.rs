@@ -56,8 +56,11 @@ actions! {
         KnobEnter WORLD "world.change" "change" "Type a number, change a level, begin or end a fault" ["enter"];
         KnobEdit WORLD "world.type" "type" "Type the value, of a fault SECONDS,VALUE" ["="];
         KnobDefault WORLD "world.default" "default" "Back to its default" ["delete", "backspace"];
+        SearchTransitions STATE "state.search" "search" "Only transitions with these words: Enter keeps it, Esc ends it" ["/"];
+        NextTransition STATE "state.next" "next match" "To the next older match" ["n"];
+        PreviousTransition STATE "state.previous" "previous match" "To the next newer match" ["N"];
         ExplainGuards STATE "state.explain" "explain" "Explain the guards and the abbreviations" ["enter"];
-        Search LOG "log.search" "search" "Search: Enter keeps it, Esc leaves" ["/"];
+        Search LOG "log.search" "search" "Only lines with a text: Enter keeps it, Esc shows all" ["/"];
         NextMatch LOG "log.next" "next match" "To the next older match" ["n"];
         PreviousMatch LOG "log.previous" "previous match" "To the next newer match" ["N"];
         Filter LOG "log.filter" "filter" "Everything, warnings and faults, faults" ["f"];

@@ -100,10 +100,10 @@ impl Content for LogPanel {
         self.view.end_search();
     }
 
-    fn go_back(&mut self, _: &Shared) -> Option<Vec<Request>> {
+    fn go_back(&mut self, state: &Shared) -> Option<Vec<Request>> {
         let has_search = !self.view.search.is_empty();
         has_search.then(|| {
-            self.view.end_search();
+            self.view.leave_search(state);
             Vec::new()
         })
     }
@@ -139,6 +139,7 @@ fn draw_lines(view: &LogView, state: &Shared, area: Rect, buffer: &mut Buffer) {
     if entries.peek().is_none() {
         let text = match (state.log.len(), view.filter_name()) {
             (0, _) => "Nothing has happened yet.".to_owned(),
+            _ if !view.search.is_empty() => format!("No line has {:?}.", view.search.value()),
             (_, filter) => {
                 format!("No {filter}: `{}` shows everything.", state.key(Action::Panel(PanelAction::Filter)))
             }

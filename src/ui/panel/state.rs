@@ -1,19 +1,23 @@
 //! 3 State: the status message, the state machine, the guards of the active state, the last transitions.
 
+mod transition_list;
+
 use std::time::Duration;
 
+use crossterm::event::KeyEvent;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::text::Line;
 
-use crate::telemetry::{Guard, GuardName, NavState, TransitionReason};
+use crate::telemetry::{Guard, GuardName, NavState};
 use crate::ui::action::{Action, PanelAction};
-use crate::ui::formatting::{clock, cut, fixed, signed, within};
+use crate::ui::formatting::{cut, fixed, signed, within};
 use crate::ui::message::Request;
 use crate::ui::panel::{Content, Hint, Panel};
 use crate::ui::popup::Popup;
 use crate::ui::shared::Shared;
 use crate::ui::status_message;
+use crate::ui::text_field::TextField;
 use crate::ui::theme::{Role, Theme};
 use crate::ui::transitions::{Transition, Transitions};
 use crate::ui::units::Units;
@@ -56,23 +60,60 @@ impl Content for StatePanel {
     }
 
     fn draw(&self, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+        if self.transitions.is_searched() {
+            return transition_list::draw_search(&self.transitions, state, area, buffer);
+        }
         draw(&self.transitions, state, area, buffer);
         None
     }
 
     fn hints(&self, _: &Shared) -> Vec<Hint> {
+        if self.transitions.is_searched() {
+            let next =
+                &[Action::Panel(PanelAction::NextTransition), Action::Panel(PanelAction::PreviousTransition)];
+            return vec![(next, "next match"), (&[Action::Back], "end search")];
+        }
         vec![(&[Action::Panel(PanelAction::ExplainGuards)], "explain")]
     }
 
-    fn act(&mut self, _: &Shared, action: PanelAction) -> Vec<Request> {
+    fn act(&mut self, state: &Shared, action: PanelAction) -> Vec<Request> {
         match action {
-            PanelAction::ExplainGuards => vec![Request::Open(Popup::Guards { selected: 0 })],
-            _ => Vec::new(),
+            PanelAction::ExplainGuards => return vec![Request::Open(Popup::Guards { selected: 0 })],
+            PanelAction::SearchTransitions => {
+                self.transitions.begin_search();
+                return vec![Request::Act(Action::Show(Panel::State))];
+            }
+            PanelAction::NextTransition => return transition_list::next(&mut self.transitions, state, 1),
+            PanelAction::PreviousTransition => {
+                return transition_list::next(&mut self.transitions, state, -1);
+            }
+            _ => {}
         }
+        Vec::new()
     }
 
-    fn scroll(&mut self, _: &Shared, _: Rect, by: isize) -> Vec<Request> {
-        let last = self.transitions.len().saturating_sub(1);
+    fn key(&mut self, _: &Shared, event: KeyEvent) -> Vec<Request> {
+        self.transitions.search_key(event);
+        Vec::new()
+    }
+
+    fn field(&mut self) -> Option<&mut TextField> {
+        self.transitions.is_typing.then_some(&mut self.transitions.search)
+    }
+
+    fn close_field(&mut self) {
+        self.transitions.end_search();
+    }
+
+    fn go_back(&mut self, _: &Shared) -> Option<Vec<Request>> {
+        self.transitions.is_searched().then(|| {
+            self.transitions.end_search();
+            Vec::new()
+        })
+    }
+
+    fn scroll(&mut self, state: &Shared, _: Rect, by: isize) -> Vec<Request> {
+        let last = transition_list::found(&self.transitions, state).count().saturating_sub(1);
         scrolled(&mut self.transitions.scroll, by, last);
         Vec::new()
     }
@@ -89,7 +130,7 @@ fn draw(own: &Transitions, state: &Shared, area: Rect, buffer: &mut Buffer) {
         let place = Rect { y: rest.bottom(), height: horizon::SIZE.1, ..rest };
         horizon::draw(state, Rect { x: place.x + 1, width: place.width - 1, ..place }, buffer);
     }
-    draw_transitions(own, state, rest, buffer);
+    transition_list::draw(own, state, rest, buffer);
 }
 
 /// Returns the largest state diagram that leaves room for the guards.
@@ -302,48 +343,6 @@ fn wide_guard(theme: &Theme, units: Units, guard: &Guard) -> Line<'static> {
         span(theme, Role::Dim, format!(" {unit:<4}")),
         span(theme, role, signed(Some(guard.margin() * factor), 7, 1)),
     ])
-}
-
-/// Draws the last transitions, the newest on top.
-fn draw_transitions(own: &Transitions, state: &Shared, area: Rect, buffer: &mut Buffer) {
-    let transitions = own.shown(state);
-    if area.height < 3 || transitions.len() == 0 {
-        return;
-    }
-    let theme = &state.theme;
-    let wide = area.width >= 40;
-    let rows = usize::from(area.height - 2);
-    row(buffer, area, 1, theme, Role::Title, "Transitions");
-    let first = own.scroll.min(transitions.len().saturating_sub(rows));
-    for (at, step) in transitions.rev().skip(first).take(rows).enumerate() {
-        let spans = if wide {
-            let states = format!("{} → {} ", step.from, step.to);
-            let room = usize::from(area.width).saturating_sub(8 + states.chars().count());
-            vec![
-                span(theme, Role::Dim, format!("{} ", clock(step.time))),
-                span(theme, Role::Text, states),
-                span(theme, Role::Dim, cut(&why(step, room), room)),
-            ]
-        } else {
-            vec![
-                span(theme, Role::Dim, format!("{} ", clock(step.time))),
-                span(theme, Role::Text, step.to.to_string()),
-            ]
-        };
-        line(buffer, area, at as u16 + 2, &Line::from(spans));
-    }
-}
-
-/// Returns the waypoint and the cause of a transition. The start of a mission uses the words of the log, without the
-/// waypoint if there is no room.
-fn why(step: &Transition, room: usize) -> String {
-    match step.reason {
-        TransitionReason::Reset => {
-            let long = format!("mission starts, WP{}", step.wp);
-            if long.chars().count() > room { "mission starts".to_owned() } else { long }
-        }
-        reason => format!("WP{} {reason}", step.wp),
-    }
 }
 
 #[cfg(test)]

@@ -9,9 +9,11 @@ use crate::ui::action::{self, ACTIONS, Action, Spec};
 use crate::ui::command::{self, Command};
 use crate::ui::formatting::cut;
 use crate::ui::fuzzy;
+use crate::ui::history::UsedNames;
+use crate::ui::layout;
 use crate::ui::panel::{line, row, span};
 use crate::ui::popup::Outcome;
-use crate::ui::popup::frame::popup;
+use crate::ui::popup::frame::{place, popup};
 use crate::ui::shared::Shared;
 use crate::ui::text_field::TextField;
 use crate::ui::theme::Role;
@@ -22,6 +24,8 @@ const SIZE: (u16, u16) = (72, 16);
 const NAME: usize = 21;
 /// The number of rows around the list: the search line above it and the reason below it.
 const AROUND: u16 = 2;
+/// The share of its weight that a name chosen before adds to its score for a query.
+const USED_SHARE: u32 = 4;
 /// The weight of letters found in the title or the name.
 const IN_NAME: u32 = 4;
 /// The weight of each letter of a word found in the help: more than letters scattered over a name.
@@ -35,6 +39,14 @@ pub struct Palette {
     pub selected: usize,
 }
 
+impl Palette {
+    /// Moves the selection by rows, within the list.
+    pub(in crate::ui) fn scroll(&mut self, used: &UsedNames, by: isize) {
+        let last = entries(self.query.value(), used).len().saturating_sub(1);
+        self.selected = self.selected.saturating_add_signed(by).min(last);
+    }
+}
+
 /// A row of the palette.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::ui) enum Entry {
@@ -44,7 +56,7 @@ pub(in crate::ui) enum Entry {
 }
 
 impl Entry {
-    fn name(&self) -> &'static str {
+    pub(in crate::ui) fn name(&self) -> &'static str {
         match self {
             Self::Action(spec) => spec.name,
             Self::Command(command) => command.name,
@@ -88,19 +100,22 @@ impl Entry {
     }
 }
 
-/// Returns the rows that match a query, the best first.
-pub(in crate::ui) fn entries(query: &str) -> Vec<Entry> {
+/// Returns the rows that match a query, the best first. What was chosen before comes before what was not.
+pub(in crate::ui) fn entries(query: &str, used: &UsedNames) -> Vec<Entry> {
     let actions = ACTIONS.iter().filter(|spec| spec.action != Action::Palette).map(Entry::Action);
     let all = actions.chain(command::all().map(Entry::Command));
-    let mut scored: Vec<(u32, Entry)> = all.filter_map(|entry| Some((entry.score(query)?, entry))).collect();
+    // A full name typed must stay the first one, so habits weigh less than letters.
+    let weight = |entry: &Entry| used.weight(entry.name()) / if query.is_empty() { 1 } else { USED_SHARE };
+    let mut scored: Vec<(u32, Entry)> =
+        all.filter_map(|entry| Some((entry.score(query)? + weight(&entry), entry))).collect();
     // Stable: entries with equal scores stay in the order of the table.
     scored.sort_by_key(|(score, _)| std::cmp::Reverse(*score));
     scored.into_iter().map(|(_, entry)| entry).collect()
 }
 
 /// Handles a key while the palette is open.
-pub(in crate::ui) fn key(palette: &mut Palette, event: KeyEvent) -> Outcome<Entry> {
-    let found = entries(palette.query.value());
+pub(in crate::ui) fn key(palette: &mut Palette, used: &UsedNames, event: KeyEvent) -> Outcome<Entry> {
+    let found = entries(palette.query.value(), used);
     let last = found.len().saturating_sub(1);
     match event.code {
         KeyCode::Esc => return Outcome::Left,
@@ -123,6 +138,30 @@ pub(in crate::ui) fn key(palette: &mut Palette, event: KeyEvent) -> Outcome<Entr
     Outcome::Open
 }
 
+/// Returns the first shown row for a list of this many rows on the screen.
+fn first_row(palette: &Palette, rows: u16) -> usize {
+    (palette.selected + 1).saturating_sub(usize::from(rows))
+}
+
+/// Handles a click on a screen of this size: a row is chosen, a click outside closes the palette.
+pub(in crate::ui) fn click(
+    palette: &Palette,
+    used: &UsedNames,
+    size: (u16, u16),
+    (column, row): (u16, u16),
+) -> Outcome<Entry> {
+    let place = place(Rect::new(0, 0, size.0, size.1), SIZE);
+    if !place.contains((column, row).into()) {
+        return Outcome::Left;
+    }
+    let inside = layout::inner(place);
+    let rows = inside.height.saturating_sub(AROUND);
+    let at = row.checked_sub(inside.y + 1).filter(|at| *at < rows);
+    let found = entries(palette.query.value(), used);
+    let entry = at.and_then(|at| found.get(first_row(palette, rows) + usize::from(at)));
+    entry.map_or(Outcome::Open, |entry| Outcome::Chosen(*entry))
+}
+
 /// Draws the palette. Returns the position of the cursor.
 pub(in crate::ui) fn draw(
     state: &Shared,
@@ -132,9 +171,9 @@ pub(in crate::ui) fn draw(
 ) -> Option<Position> {
     let theme = &state.theme;
     let inside = popup(theme, area, SIZE, "Commands — Enter runs, Esc closes", buffer);
-    let found = entries(palette.query.value());
+    let found = entries(palette.query.value(), &state.used);
     let rows = inside.height.saturating_sub(AROUND);
-    let first = (palette.selected + 1).saturating_sub(usize::from(rows));
+    let first = first_row(palette, rows);
     let width = usize::from(inside.width);
     for (at, entry) in found.iter().enumerate().skip(first).take(usize::from(rows)) {
         let refused = entry.refusal(state).is_some();
@@ -171,7 +210,7 @@ mod tests {
     use super::*;
 
     fn first(query: &str) -> Option<&'static str> {
-        entries(query).first().map(Entry::name)
+        entries(query, &UsedNames::default()).first().map(Entry::name)
     }
 
     #[test]
@@ -180,12 +219,24 @@ mod tests {
         assert_eq!(first("rtime"), Some("sim.real-time"));
         assert_eq!(first("cut rc"), Some("rc.cut"));
         assert_eq!(first("wind"), Some("wind"));
-        assert!(entries("whole plan").iter().any(|entry| entry.name() == "flight.fly"));
+        assert!(
+            entries("whole plan", &UsedNames::default()).iter().any(|entry| entry.name() == "flight.fly")
+        );
         assert_eq!(first("zzzz"), None);
     }
 
     #[test]
     fn without_a_query_it_lists_every_action_but_itself_and_every_command() {
-        assert_eq!(entries("").len(), ACTIONS.len() - 1 + command::all().count());
+        assert_eq!(entries("", &UsedNames::default()).len(), ACTIONS.len() - 1 + command::all().count());
+    }
+
+    #[test]
+    fn what_was_chosen_before_comes_first() {
+        let mut used = UsedNames::of(&["map.fit", "wind", "map.fit"].map(str::to_owned));
+        let first = |used: &UsedNames, query: &str| entries(query, used)[0].name();
+        assert_eq!((first(&used, ""), entries("", &used)[1].name()), ("map.fit", "wind"));
+        used.remember("flight.arm");
+        assert_eq!(first(&used, ""), "flight.arm");
+        assert_eq!(first(&used, "rc.cut"), "rc.cut", "a habit does not hide what is typed");
     }
 }

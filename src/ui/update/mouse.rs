@@ -5,33 +5,23 @@ use crossterm::event::{MouseButton, MouseEvent, MouseEventKind};
 use crate::ui::app_state::AppState;
 use crate::ui::message::{Effect, Request};
 use crate::ui::panel::Panel;
-use crate::ui::popup::Popup;
-use crate::ui::{layout, notice, panel_bar, tutorial};
+use crate::ui::popup::{Outcome, Popup, palette};
+use crate::ui::{hint_bar, layout, notice, panel_bar, tutorial};
 
-use super::popup::chosen;
+use super::popup::{chosen, take_entry};
 use super::view::focus;
 use super::{act, carry_out, flights, map_menu, timeline};
+
+/// The number of lines of the help per step of the wheel.
+const WHEEL_LINES: isize = 3;
 
 /// Processes a mouse event.
 pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
     if let MouseEventKind::Up(_) = event.kind {
         return release(state);
     }
-    if let Some(Popup::MapMenu(menu)) = state.popups.last() {
-        let (outcome, place) = (menu.click(state.shared.size, (event.column, event.row)), menu.place);
-        let is_click = matches!(event.kind, MouseEventKind::Down(_));
-        return if is_click { map_menu::take(state, place, outcome) } else { Vec::new() };
-    }
-    if let Some(Popup::Flights(list)) = state.popups.last_mut() {
-        let result = list.mouse(&state.shared.flights, state.shared.size, event);
-        return flights::take(state, result);
-    }
-    if let Some(Popup::Actions(menu)) = state.popups.last() {
-        if !matches!(event.kind, MouseEventKind::Down(_)) {
-            return Vec::new();
-        }
-        let outcome = menu.click(state.shared.size, (event.column, event.row));
-        return chosen(&mut state.popups, outcome).map_or_else(Vec::new, |action| act(state, action));
+    if let Some(effects) = popup(state, event) {
+        return effects;
     }
     if !state.popups.is_empty() || state.shared.editor.popup.is_some() {
         return Vec::new();
@@ -50,6 +40,13 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
         return effects;
     }
     let Some(screen) = layout::screen(&state.shared) else { return Vec::new() };
+    let cell = (event.column, event.row);
+    if event.kind == MouseEventKind::Down(MouseButton::Left) {
+        let hints = state.panels.of(state.shared.focus).hints(&state.shared);
+        if let Some(action) = hint_bar::action_at(&hints, &state.shared, screen.hints, cell) {
+            return act(state, action);
+        }
+    }
     if event.kind == MouseEventKind::Down(MouseButton::Left)
         && let Some(panel) = panel_bar::panel_at(&state.shared, &screen, (event.column, event.row))
     {
@@ -89,4 +86,51 @@ fn release(state: &mut AppState) -> Vec<Effect> {
     let released = |panel| state.panels.of_mut(panel).release(&state.shared);
     let requests = Panel::ALL.into_iter().flat_map(released).collect();
     carry_out(state, requests)
+}
+
+/// Handles an event for the popup opened last, if it takes the mouse.
+fn popup(state: &mut AppState, event: MouseEvent) -> Option<Vec<Effect>> {
+    let (size, cell) = (state.shared.size, (event.column, event.row));
+    let is_press = matches!(event.kind, MouseEventKind::Down(_));
+    let wheel = match event.kind {
+        MouseEventKind::ScrollUp => -1,
+        MouseEventKind::ScrollDown => 1,
+        _ => 0,
+    };
+    let effects = match state.popups.last_mut()? {
+        Popup::MapMenu(menu) => {
+            let (outcome, place) = (menu.click(size, cell), menu.place);
+            if is_press { map_menu::take(state, place, outcome) } else { Vec::new() }
+        }
+        Popup::Flights(list) => {
+            let result = list.mouse(&state.shared.flights, size, event);
+            flights::take(state, result)
+        }
+        Popup::Actions(menu) => {
+            let outcome = if is_press { menu.click(size, cell) } else { Outcome::Open };
+            chosen(&mut state.popups, outcome).map_or_else(Vec::new, |action| act(state, action))
+        }
+        Popup::Palette(palette) if wheel != 0 => {
+            palette.scroll(&state.shared.used, wheel);
+            Vec::new()
+        }
+        Popup::Palette(palette) => {
+            let outcome = if is_press {
+                palette::click(palette, &state.shared.used, size, cell)
+            } else {
+                Outcome::Open
+            };
+            take_entry(state, outcome)
+        }
+        Popup::Help(help) if wheel != 0 => {
+            help.scroll_by(wheel * WHEEL_LINES);
+            Vec::new()
+        }
+        Popup::Help(help) => {
+            let outcome = if is_press { help.click(&state.shared, cell) } else { Outcome::Open };
+            chosen(&mut state.popups, outcome).map_or_else(Vec::new, |action| act(state, action))
+        }
+        _ => return None,
+    };
+    Some(effects)
 }

@@ -15,9 +15,9 @@ pub(super) fn paste(state: &mut AppState, text: &str) -> Vec<Effect> {
         Some(Popup::Palette(palette)) => Some(&mut palette.query),
         Some(Popup::Signals(list)) => Some(&mut list.query),
         Some(Popup::Flights(list)) => list.deleting.is_none().then_some(&mut list.query),
+        Some(Popup::Help(help)) => help.is_typing.then_some(&mut help.search),
         Some(
-            Popup::Help { .. }
-            | Popup::GoTo(_)
+            Popup::GoTo(_)
             | Popup::MapMenu(_)
             | Popup::Plots { .. }
             | Popup::WhatIf { .. }

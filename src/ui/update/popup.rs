@@ -4,7 +4,7 @@ use crossterm::event::{KeyCode, KeyEvent};
 
 use super::{act, flights, map_menu, permission, run_line};
 use crate::telemetry::InFlightCommand;
-use crate::ui::action::{self, Action};
+use crate::ui::action::Action;
 use crate::ui::app_state::AppState;
 use crate::ui::editor::FileRequest;
 use crate::ui::event_log::Severity;
@@ -112,36 +112,40 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) 
             effects
         }
         Some(Popup::Palette(palette)) => {
-            let outcome = palette::key(palette, event);
-            match chosen(&mut state.popups, outcome) {
-                None => Vec::new(),
-                Some(Entry::Action(spec)) => act(state, spec.action),
-                Some(Entry::Command(command)) => {
-                    open_command_line(state, &format!("{} ", command.name));
-                    Vec::new()
+            let outcome = palette::key(palette, &state.shared.used, event);
+            take_entry(state, outcome)
+        }
+        Some(Popup::Help(help)) => match help.key(event) {
+            Some(outcome) => {
+                chosen(&mut state.popups, outcome).map_or_else(Vec::new, |action| act(state, action))
+            }
+            None => {
+                state.popups.pop();
+                match found {
+                    // Any other key closes the help and triggers its action, so that the user can try keys while
+                    // reading.
+                    None | Some(Action::Help | Action::Back | Action::Quit) => Vec::new(),
+                    Some(action) => act(state, action),
                 }
             }
-        }
-        Some(Popup::Help { scroll }) => {
-            let to = match event.code {
-                KeyCode::Up | KeyCode::Char('k') => Some(scroll.saturating_sub(1)),
-                KeyCode::Down | KeyCode::Char('j') => Some(*scroll + 1),
-                KeyCode::PageUp => Some(scroll.saturating_sub(10)),
-                KeyCode::PageDown | KeyCode::Char(' ') => Some(*scroll + 10),
-                _ => None,
-            };
-            if let Some(to) = to {
-                *scroll = to.min(action::ACTIONS.len());
-                return Vec::new();
-            }
-            state.popups.pop();
-            match found {
-                // Any other key closes the help and triggers its action, so that the user can try keys while reading.
-                None | Some(Action::Help | Action::Back | Action::Quit) => Vec::new(),
-                Some(action) => act(state, action),
-            }
-        }
+        },
     }
+}
+
+/// Runs the entry chosen in the palette, and remembers it.
+pub(super) fn take_entry(state: &mut AppState, outcome: Outcome<Entry>) -> Vec<Effect> {
+    let Some(entry) = chosen(&mut state.popups, outcome) else { return Vec::new() };
+    state.shared.used.remember(entry.name());
+    let mut effects = match entry {
+        Entry::Action(spec) => act(state, spec.action),
+        Entry::Command(command) => {
+            open_command_line(state, &format!("{} ", command.name));
+            Vec::new()
+        }
+    };
+    let name = entry.name().to_owned();
+    effects.insert(0, Effect::Files(FileRequest::KeepLine(LineField::Palette, name)));
+    effects
 }
 
 /// Returns the choice in the popup opened last, which closes unless it stays open.

@@ -90,7 +90,7 @@ impl<W: Write> Lines<W> {
             self.write(&notice.text)?;
         }
         match state.popups.last() {
-            Some(Popup::Help { .. } | Popup::Palette(_) | Popup::CommandLine) => {
+            Some(Popup::Help(_) | Popup::Palette(_) | Popup::CommandLine) => {
                 state.popups.clear();
                 self.list_commands()?;
             }
