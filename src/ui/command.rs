@@ -41,6 +41,14 @@ pub fn run(state: &mut Shared, line: &str) -> Result<Vec<Request>, String> {
     Ok(vec![Request::Act(action)])
 }
 
+/// Returns the action that a line names, if it is not a command with an argument.
+pub(super) fn named(state: &Shared, line: &str) -> Option<Action> {
+    let (word, argument) = split(line);
+    let is_command = all().any(|command| command.name == word);
+    let action = action_named(word, state.focus).ok()?;
+    (!is_command && argument.is_empty()).then_some(action)
+}
+
 /// Splits a line into its word and its argument.
 fn split(line: &str) -> (&str, &str) {
     let line = line.trim().trim_start_matches(':').trim_start();

@@ -7,6 +7,7 @@ mod content;
 pub(super) mod editor_popup;
 pub(super) mod graphs;
 mod horizon;
+pub(super) mod in_words;
 mod log;
 mod map;
 mod plan;

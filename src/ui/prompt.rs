@@ -1,8 +1,10 @@
 //! The popups as lines of text, and lines of input as answers, for use without a screen.
 
+mod field;
 mod file;
 mod flights;
 mod form;
+mod graphs;
 
 use crate::flight::forecast::WHAT_IFS;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
@@ -33,9 +35,18 @@ impl From<Vec<Effect>> for Answered {
     }
 }
 
+/// Returns `true` if the next line is an answer.
+pub(super) fn is_open(state: &mut AppState) -> bool {
+    state.shared.editor.popup.is_some() || !state.popups.is_empty() || field::is_open(state)
+}
+
 /// Returns the current question, one sentence or choice per line; `None` if there is none, or if its choices are not
 /// known yet.
-pub(super) fn question(state: &AppState) -> Option<Vec<String>> {
+pub(super) fn question(state: &mut AppState) -> Option<Vec<String>> {
+    of_popup(state).or_else(|| field::question(state))
+}
+
+fn of_popup(state: &AppState) -> Option<Vec<String>> {
     match &state.shared.editor.popup {
         Some(EditorPopup::Form(open)) => return Some(form::question(state, open)),
         Some(EditorPopup::Browser(browser)) => return file::question(browser),
@@ -58,10 +69,10 @@ pub(super) fn question(state: &AppState) -> Option<Vec<String>> {
         Popup::ResetSettings => Some(vec![format!("{} Go on? y yes, n no.", reset_question(&state.shared))]),
         Popup::Permission => Some(vec![format!("{} y yes, n no.", permission::question(&state.shared))]),
         Popup::Flights(open) => flights::question(state, open),
+        Popup::Plots { .. } => Some(graphs::plots(state)),
+        Popup::Signals(_) => Some(graphs::signals(state)),
         Popup::Help(_)
         | Popup::Guards { .. }
-        | Popup::Plots { .. }
-        | Popup::Signals(_)
         | Popup::Actions(_)
         | Popup::CommandLine
         | Popup::Palette(_)
@@ -131,6 +142,9 @@ pub(super) fn answer(state: &mut AppState, line: &str) -> Result<Answered, Strin
             return Err("Answer y to go on, n to change nothing.".to_owned());
         }
         Some(Popup::Flights(_)) => return flights::answer(state, line),
+        Some(Popup::Plots { .. }) if !line.is_empty() => return graphs::choose_plot(state, line),
+        Some(Popup::Signals(_)) if !line.is_empty() => return graphs::choose_signal(state, line),
+        None => return Ok(field::answer(state, line).into()),
         Some(Popup::GoTo(_) | Popup::WhatIf { .. }) if !line.is_empty() => {
             let effects = match state.popups.last() {
                 Some(Popup::GoTo(_)) => command::flight::go_to_waypoint(&state.shared, line)?,

@@ -175,3 +175,86 @@ fn plans_are_generated_saved_replaced_and_opened_line_by_line() {
     );
     assert_eq!(sandbox.read("mine.toml"), before);
 }
+
+#[test]
+fn every_panel_is_written_by_its_name() {
+    let sandbox = Sandbox::new();
+    let names = ["map", "state", "plan", "rc", "world", "graphs", "log", "settings"];
+    let input: String =
+        names.iter().map(|name| format!("view.{name}\n")).chain(["quit\n".to_owned()]).collect();
+    let arguments = [&["square"], &PLAIN[..]].concat();
+    let ran = sandbox.run_with(&arguments, &input).exits(0);
+    let mut rest = ran.out.as_str();
+    for part in [
+        "1 Map\n",
+        "Fence: 500 m around home, the craft is 500 m inside.",
+        "WP2 HOLD: ",
+        "3 State\n",
+        "State: IDLE.",
+        "2 Plan — square",
+        "40.4640000  -79.5175000     50.0",
+        "4 RC — ",
+        "THROTTLE  1000",
+        "7 World — airframe iris",
+        "wind speed        0.0 m/s",
+        "6 Graphs — ",
+        "altitude m, estimate: ",
+        "8 Log\n",
+        "Booted: airframe iris",
+        "9 Settings\n",
+    ] {
+        let at = rest.find(part).unwrap_or_else(|| panic!("no {part} in its place\n{}", ran.out));
+        rest = &rest[at + part.len()..];
+    }
+}
+
+#[test]
+fn a_plan_is_edited_line_by_line() {
+    let sandbox = Sandbox::new();
+    let input = "plan.right\nright\nright\nedit\nhigh\n62\nundo\nplan.insert\nquit\nd\n";
+    let arguments = [&["square"], &PLAIN[..]].concat();
+    let ran = sandbox.run_with(&arguments, input).exits(0);
+    let mut rest = ran.out.as_str();
+    for part in [
+        "[40.4640000]",
+        "[-79.5175000]",
+        "[50.0]",
+        "altitude (metres above home). Now 50. A line sets it, an empty line leaves it.",
+        "high is no altitude",
+        "[62.0]",
+        "[50.0]",
+        "Undone: altitude of WP0.",
+        "  4  LAND ",
+    ] {
+        let at = rest.find(part).unwrap_or_else(|| panic!("no {part} in its place\n{}", ran.out));
+        rest = &rest[at + part.len()..];
+    }
+}
+
+#[test]
+fn settings_and_signals_are_found_by_a_line() {
+    let sandbox = Sandbox::new();
+    let mut flight = Dialogue::start(&sandbox, &["--plain", "--fresh", "--no-ports"]);
+    flight.say("settings");
+    flight.hear("gyro_hardware_lpf");
+    flight.hear("ap_position_p");
+    flight.say("settings.search");
+    flight.hear("A line sets it");
+    flight.say("ap_position_p");
+    flight.say("settings");
+    let listed = flight.hear("ap_position_p ");
+    assert!(!listed.iter().any(|line| line.contains("ap_position_i")), "{listed:#?}");
+    flight.say("raise");
+    flight.hear("ap_position_p                    31");
+    flight.say("graphs.series");
+    flight.hear("Signals shown by name: none.");
+    flight.say("altit");
+    flight.hear("Signals with altit: ");
+    flight.say("est_altitude");
+    flight.hear("Signals shown by name: est_altitude.");
+    flight.say("");
+    flight.say("graphs");
+    flight.hear("est_altitude m, now: ");
+    flight.say("quit");
+    assert_eq!(flight.end(), Some(0));
+}

@@ -10,8 +10,13 @@ use crate::ui::popup::Popup;
 use crate::ui::shared::Shared;
 use crate::ui::text_field::TextField;
 
+use super::in_words;
+
 /// The number of lines per step of the wheel.
 const WHEEL_LINES: isize = 3;
+
+/// The greatest number of lines of a panel in words: more than the settings of the firmware.
+const ROWS_IN_WORDS: u16 = 600;
 
 /// The actions of a hint, and its label.
 pub(in crate::ui) type Hint = (&'static [Action], &'static str);
@@ -24,6 +29,13 @@ pub(in crate::ui) trait Content {
 
     /// Draws the inside. Returns the position of the cursor of a text field.
     fn draw(&self, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position>;
+
+    /// Returns the inside as lines of text, for use without a screen.
+    fn in_words(&self, state: &Shared) -> Vec<String> {
+        in_words::drawn(state, ROWS_IN_WORDS, |area, buffer| {
+            self.draw(state, area, buffer);
+        })
+    }
 
     /// Returns the hints of the panel, the most useful first.
     fn hints(&self, _: &Shared) -> Vec<Hint> {

@@ -2,6 +2,7 @@
 
 mod chart;
 mod charts;
+mod in_words;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -51,6 +52,10 @@ impl Content for GraphsPanel {
     fn draw(&self, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
         draw(state, area, buffer);
         None
+    }
+
+    fn in_words(&self, state: &Shared) -> Vec<String> {
+        in_words::lines(state)
     }
 
     fn hints(&self, state: &Shared) -> Vec<Hint> {

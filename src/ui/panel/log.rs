@@ -16,11 +16,14 @@ use crate::ui::text_field::TextField;
 use crate::ui::theme::Role;
 
 use super::content::scrolled;
-use super::{line, row, span};
+use super::{in_words, line, row, span};
 use crate::ui::text_wrap::{fitting, wrapped};
 
 /// The width of time and mark before the text.
 const STAMP: usize = 12;
+
+/// The number of lines shown in words.
+const ROWS_IN_WORDS: u16 = 20;
 
 /// The state of the Log panel.
 #[derive(Debug, Default)]
@@ -64,6 +67,13 @@ impl Content for LogPanel {
         let field =
             Rect { x: area.x + 1, y: area.y + list.height, width: area.width.checked_sub(1)?, height: 1 };
         view.search.draw(theme, field.intersection(area), buffer)
+    }
+
+    /// Returns the first lines of the list; the keys of lists scroll it.
+    fn in_words(&self, state: &Shared) -> Vec<String> {
+        in_words::drawn(state, ROWS_IN_WORDS, |area, buffer| {
+            self.draw(state, area, buffer);
+        })
     }
 
     fn hints(&self, _: &Shared) -> Vec<Hint> {

@@ -26,6 +26,7 @@ use crate::ui::viewport::moves::{self, ZOOM_STEP};
 
 mod backdrop;
 mod grid;
+mod in_words;
 mod labels;
 mod lines;
 mod marks;
@@ -93,6 +94,10 @@ impl Content for MapPanel {
     fn draw(&self, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
         draw(state, area, buffer);
         None
+    }
+
+    fn in_words(&self, state: &Shared) -> Vec<String> {
+        in_words::lines(state)
     }
 
     fn hints(&self, state: &Shared) -> Vec<Hint> {

@@ -1,5 +1,6 @@
 //! 2 Plan: the waypoints of the open plan, edited in place, with their findings and the altitude profile below.
 
+mod in_words;
 mod legs;
 mod profile;
 mod table;
@@ -87,6 +88,10 @@ impl Content for PlanPanel {
             profile::draw(state, area, buffer);
         }
         cursor
+    }
+
+    fn in_words(&self, state: &Shared) -> Vec<String> {
+        in_words::lines(state)
     }
 
     fn hints(&self, _: &Shared) -> Vec<Hint> {

@@ -1,5 +1,6 @@
 //! 3 State: the status message, the state machine, the guards of the active state, the last transitions.
 
+mod in_words;
 mod transition_list;
 
 use std::time::Duration;
@@ -65,6 +66,10 @@ impl Content for StatePanel {
         }
         draw(&self.transitions, state, area, buffer);
         None
+    }
+
+    fn in_words(&self, state: &Shared) -> Vec<String> {
+        in_words::lines(&self.transitions, state)
     }
 
     fn hints(&self, _: &Shared) -> Vec<Hint> {

@@ -34,7 +34,7 @@ pub(in crate::ui) enum SignalKey {
 
 /// Returns the signals that match a query, the best first: those whose names match, then those whose meaning contains
 /// it.
-fn found<'a>(state: &'a Shared, query: &str) -> Vec<Named<'a>> {
+pub(in crate::ui) fn found<'a>(state: &'a Shared, query: &str) -> Vec<Named<'a>> {
     let word = query.trim().to_lowercase();
     let means = |named: &Named<'_>| named.help().is_some_and(|help| help.to_lowercase().contains(&word));
     let score = |named: Named<'a>| {

@@ -20,7 +20,7 @@ fn state() -> AppState {
     state
 }
 
-fn asked(state: &AppState) -> Vec<String> {
+fn asked(state: &mut AppState) -> Vec<String> {
     question(state).expect("a question")
 }
 
@@ -28,17 +28,17 @@ fn asked(state: &AppState) -> Vec<String> {
 fn a_waypoint_to_go_to_is_chosen_by_its_number() {
     let mut state = state();
     perform(&mut state, Action::GoTo);
-    assert_eq!(asked(&state), ["Go now to which waypoint?", "0 FLYOVER", "2 LAND", NONE]);
+    assert_eq!(asked(&mut state), ["Go now to which waypoint?", "0 FLYOVER", "2 LAND", NONE]);
     assert!(answer(&mut state, "1").unwrap_err().contains("the craft has 0, 2."));
-    assert!(question(&state).is_some(), "it is still asked");
+    assert!(question(&mut state).is_some(), "it is still asked");
     let answered = answer(&mut state, " 2 ").unwrap();
     assert!(matches!(
         answered.effects[..],
         [Effect::Send(Command::Vehicle(VehicleCommand::InFlight(InFlightCommand::GoTo(2))))]
     ));
-    assert_eq!(question(&state), None);
+    assert_eq!(question(&mut state), None);
     perform(&mut state, Action::GoTo);
-    assert!(answer(&mut state, "").unwrap().effects.is_empty() && question(&state).is_none());
+    assert!(answer(&mut state, "").unwrap().effects.is_empty() && question(&mut state).is_none());
 }
 
 #[test]
@@ -46,7 +46,7 @@ fn what_may_go_wrong_is_chosen_by_number_or_name() {
     for line in ["1", "gps-loss"] {
         let mut state = state();
         perform(&mut state, Action::WhatIf);
-        assert_eq!(asked(&state)[1], "1 GPS lost here");
+        assert_eq!(asked(&mut state)[1], "1 GPS lost here");
         assert!(answer(&mut state, "gps-los").unwrap_err().contains("did you mean gps-loss?"));
         let effects = answer(&mut state, line).unwrap().effects;
         let [Effect::Forecast(job)] = &effects[..] else { panic!("{effects:?}") };
@@ -58,7 +58,7 @@ fn what_may_go_wrong_is_chosen_by_number_or_name() {
 fn a_form_takes_its_values_line_by_line() {
     let mut state = state();
     perform(&mut state, Action::Edit(EditAction::Generate));
-    let lines = asked(&state);
+    let lines = asked(&mut state);
     assert_eq!(lines[0], "Generate a pattern.");
     assert_eq!(lines[1], "1 shape = square (square, circle, zig-zag, survey)");
     for (line, part) in [
@@ -77,7 +77,7 @@ fn a_form_takes_its_values_line_by_line() {
     assert_eq!(answer(&mut state, "take").unwrap_err(), "length: wide is not a number.");
     answer(&mut state, "length = 80").unwrap();
     let effects = answer(&mut state, "take").unwrap().effects;
-    assert!(!effects.is_empty() && question(&state).is_none());
+    assert!(!effects.is_empty() && question(&mut state).is_none());
     assert!(state.shared.plan().waypoints.len() > 3, "{:?}", state.shared.plan());
 }
 
@@ -92,19 +92,19 @@ fn files_are_chosen_by_number_or_name_once_the_directory_was_read() {
     for (line, wanted) in [("3", "/plans/square.toml"), ("orbit", "/plans/orbit.toml")] {
         let mut state = state();
         perform(&mut state, Action::Edit(EditAction::Open));
-        assert_eq!(question(&state), None);
+        assert_eq!(question(&mut state), None);
         update(&mut state, Msg::Files(FileReply::Listed(listing())));
-        assert_eq!(asked(&state)[..3], ["Open which plan of /plans?", "1 deep/", "2 orbit.toml"]);
+        assert_eq!(asked(&mut state)[..3], ["Open which plan of /plans?", "1 deep/", "2 orbit.toml"]);
         let effects = answer(&mut state, line).unwrap().effects;
         let [Effect::Files(FileRequest::Open { path, .. })] = &effects[..] else { panic!("{effects:?}") };
         assert_eq!(path.to_str(), Some(wanted));
-        assert_eq!(question(&state), None);
+        assert_eq!(question(&mut state), None);
     }
     let mut state = state();
     let browser =
         Browser { listing: listing(), ..Browser::new(Purpose::Save(PlanId::default()), "new.toml") };
     state.shared.editor.popup = Some(EditorPopup::Browser(browser));
-    assert_eq!(asked(&state)[0], "Save as which file in /plans?");
+    assert_eq!(asked(&mut state)[0], "Save as which file in /plans?");
     let effects = answer(&mut state, "1").unwrap().effects;
     assert!(matches!(&effects[..], [Effect::Files(FileRequest::List(Some(_)))]), "{effects:?}");
     let effects = answer(&mut state, "mine").unwrap().effects;
@@ -126,7 +126,7 @@ fn unsaved_plans_are_asked_for_and_quitting_twice_keeps_them() {
         answer(&mut state, "what").unwrap_err(),
         "Answer s save, d discard, y quit, keep the edits for later, n stay."
     );
-    assert!(answer(&mut state, "stay").unwrap().effects.is_empty() && question(&state).is_none());
+    assert!(answer(&mut state, "stay").unwrap().effects.is_empty() && question(&mut state).is_none());
     ask(&mut state);
     assert!(matches!(answer(&mut state, "quit").unwrap().effects[..], [Effect::Quit]));
     ask(&mut state);
@@ -139,9 +139,9 @@ fn an_armed_craft_is_asked_about() {
     let mut state = state();
     std::sync::Arc::make_mut(&mut state.shared.view.vehicle).craft.armed = Some(true);
     perform(&mut state, Action::Quit);
-    assert!(asked(&state)[0].contains("armed"));
+    assert!(asked(&mut state)[0].contains("armed"));
     assert!(answer(&mut state, "perhaps").is_err());
-    assert!(answer(&mut state, "n").unwrap().effects.is_empty() && question(&state).is_none());
+    assert!(answer(&mut state, "n").unwrap().effects.is_empty() && question(&mut state).is_none());
     perform(&mut state, Action::Quit);
     assert!(matches!(answer(&mut state, "y").unwrap().effects[..], [Effect::Quit]));
 }

@@ -106,7 +106,7 @@ fn rows(own: &Transitions, state: &Shared, area: Rect, first: usize, buffer: &mu
 
 /// Returns the waypoint and the cause of a transition. The start of a mission uses the words of the log, without the
 /// waypoint if there is no room.
-fn why(step: &Transition, room: usize) -> String {
+pub(super) fn why(step: &Transition, room: usize) -> String {
     match step.reason {
         TransitionReason::Reset => {
             let long = format!("mission starts, WP{}", step.wp);

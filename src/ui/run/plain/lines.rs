@@ -4,23 +4,26 @@ use std::io::{self, Write};
 
 use crate::flight::forecast::ForecastKind;
 use crate::text::printable;
-use crate::ui::action::{ACTIONS, Context};
+use crate::ui::action::{ACTIONS, Action, Context, EditAction, spec_of};
 use crate::ui::app_state::AppState;
 use crate::ui::message::{Effect, Msg};
+use crate::ui::panel::{Panel, in_words};
 use crate::ui::popup::Popup;
 use crate::ui::update::{self, run_line, update};
-use crate::ui::{command, forecast, prompt};
+use crate::ui::{command, forecast, prompt, status_bar};
 
 /// The output, and the question written last.
 #[derive(Debug)]
 pub(super) struct Lines<W> {
     output: W,
     asked: Option<Vec<String>>,
+    /// `true` while the settings are read that a line asked for.
+    reads: bool,
 }
 
 impl<W: Write> Lines<W> {
     pub(super) fn new(output: W) -> Self {
-        Self { output, asked: None }
+        Self { output, asked: None, reads: false }
     }
 
     pub(super) fn write(&mut self, text: &str) -> io::Result<()> {
@@ -28,10 +31,49 @@ impl<W: Write> Lines<W> {
         self.output.flush()
     }
 
-    /// Handles a line of input: as the answer to the question if there is one, else as a command.
+    /// Handles a line of input: as the answer to the question if there is one, else as a command. Writes the panel that
+    /// it names, and the lines of a panel that it changes.
     pub(super) fn enter(&mut self, state: &mut AppState, line: &str) -> io::Result<Vec<Effect>> {
-        let is_asked = state.shared.editor.popup.is_some() || !state.popups.is_empty();
-        if !is_asked {
+        let named = if prompt::is_open(state) { None } else { command::named(&state.shared, line) };
+        let panel = named.and_then(panel_of);
+        let mut effects = match named.and_then(spec_of).map(|spec| spec.context) {
+            // Its short names then mean this panel.
+            Some(Context::In(panel)) => update::perform(state, Action::Show(panel)),
+            _ => Vec::new(),
+        };
+        let panel = panel.unwrap_or(state.shared.focus);
+        let before = lines_of(state, panel);
+        effects.extend(self.carry_out(state, line)?);
+        let is_shown = matches!(named, Some(Action::Show(_)));
+        if is_shown {
+            if panel == Panel::State {
+                self.write_status(state)?;
+            }
+            self.write(&state.panels.of(panel).title(&state.shared))?;
+            self.reads = panel == Panel::Settings && state.shared.settings.craft().is_none();
+        }
+        // The question about an open field shows its text.
+        let is_typed = prompt::is_open(state) && !is_shown;
+        let after = if is_typed { Vec::new() } else { lines_of(state, panel) };
+        for line in after.iter().filter(|line| is_shown || !before.contains(line)) {
+            self.write(line)?;
+        }
+        Ok(effects)
+    }
+
+    /// Writes the two lines at the top of the screen.
+    fn write_status(&mut self, state: &AppState) -> io::Result<()> {
+        let lines = in_words::drawn(&state.shared, 2, |area, buffer| {
+            status_bar::draw(&state.shared, area, buffer);
+        });
+        for line in lines {
+            self.write(&line.split_whitespace().collect::<Vec<_>>().join(" "))?;
+        }
+        Ok(())
+    }
+
+    fn carry_out(&mut self, state: &mut AppState, line: &str) -> io::Result<Vec<Effect>> {
+        if !prompt::is_open(state) {
             let effects = self.said(run_line(state, line))?;
             return Ok(update::hold(state, effects));
         }
@@ -101,11 +143,13 @@ impl<W: Write> Lines<W> {
                     self.write(&format!("{guard}: {}", guard.explanation()))?;
                 }
             }
-            Some(Popup::Plots { .. }) => {
-                state.popups.clear();
-                self.write("Graphs are drawn on the screen: start without --plain.")?;
-            }
             _ => {}
+        }
+        if self.reads && state.shared.settings.craft().is_some() {
+            self.reads = false;
+            for line in lines_of(state, Panel::Settings) {
+                self.write(&line)?;
+            }
         }
         let asked = prompt::question(state);
         if asked != self.asked {
@@ -121,9 +165,24 @@ impl<W: Write> Lines<W> {
         for command in command::all() {
             self.write(&format!("{} {} — {}", command.name, command.argument, command.help))?;
         }
-        for spec in ACTIONS.iter().filter(|spec| spec.context == Context::Global) {
+        let everywhere = ACTIONS.iter().filter(|spec| spec.context == Context::Global);
+        let of_panels = ACTIONS.iter().filter(|spec| matches!(spec.context, Context::In(_) | Context::Lists));
+        for spec in everywhere.chain(of_panels) {
             self.write(&format!("{} — {}", spec.name, spec.help))?;
         }
         Ok(())
     }
+}
+
+/// Returns the panel that an action shows or changes.
+fn panel_of(action: Action) -> Option<Panel> {
+    match (action, spec_of(action)?.context) {
+        (Action::Show(panel), _) | (_, Context::In(panel)) => Some(panel),
+        (Action::Edit(EditAction::Undo | EditAction::Redo | EditAction::Download), _) => Some(Panel::Plan),
+        _ => None,
+    }
+}
+
+fn lines_of(state: &AppState, panel: Panel) -> Vec<String> {
+    state.panels.of(panel).in_words(&state.shared)
 }
