@@ -29,4 +29,5 @@ mod searches;
 mod session_rig;
 mod settings;
 mod terrain;
+mod twelve_tasks;
 mod uploads;

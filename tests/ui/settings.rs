@@ -17,7 +17,7 @@ use crate::hands::{keys, mouse, mouse_button, place_of, screen, state_with_fix};
 use crate::session_rig::Rig;
 
 /// A firmware that answers the screen.
-struct Craft {
+pub(crate) struct Craft {
     firmware: Firmware,
     console: Interpreter,
     /// The configuration that a restart brings back.
@@ -28,7 +28,7 @@ struct Craft {
 
 impl Craft {
     /// Returns a craft on which these lines were run before it was saved.
-    fn with(lines: &[&str]) -> Self {
+    pub(crate) fn with(lines: &[&str]) -> Self {
         let mut firmware = Firmware::new(Configuration::default(), FirmwareOptions::default());
         let mut console = Interpreter::default();
         for line in lines {
@@ -39,7 +39,7 @@ impl Craft {
     }
 
     /// Answers the effects until there are none for the craft. Returns the others.
-    fn answer(&mut self, state: &mut AppState, effects: Vec<Effect>) -> Vec<Effect> {
+    pub(crate) fn answer(&mut self, state: &mut AppState, effects: Vec<Effect>) -> Vec<Effect> {
         let mut others = Vec::new();
         let mut left: std::collections::VecDeque<Effect> = effects.into();
         while let Some(effect) = left.pop_front() {
@@ -66,13 +66,13 @@ impl Craft {
     }
 
     /// Presses keys and answers.
-    fn press(&mut self, state: &mut AppState, names: &str) -> Vec<Effect> {
+    pub(crate) fn press(&mut self, state: &mut AppState, names: &str) -> Vec<Effect> {
         let effects = keys(state, names);
         self.answer(state, effects)
     }
 
     /// Shows the next picture and answers.
-    fn go_on(&mut self, state: &mut AppState) {
+    pub(crate) fn go_on(&mut self, state: &mut AppState) {
         let later = state.shared.now + Duration::from_millis(1100);
         update(state, Msg::Clock(later));
         let view = state.shared.view.clone();
@@ -80,13 +80,13 @@ impl Craft {
         self.answer(state, effects);
     }
 
-    fn number(&self, name: &str) -> i64 {
+    pub(crate) fn number(&self, name: &str) -> i64 {
         self.firmware.configuration().settings.number(name)
     }
 }
 
 /// Returns a screen of this size with the settings of a craft on it.
-fn opened(size: (u16, u16), lines: &[&str]) -> (AppState, Craft) {
+pub(crate) fn opened(size: (u16, u16), lines: &[&str]) -> (AppState, Craft) {
     let (mut state, mut craft) = (state_with_fix(size), Craft::with(lines));
     keys(&mut state, "9");
     craft.go_on(&mut state);

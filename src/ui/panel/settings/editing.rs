@@ -43,13 +43,17 @@ impl SettingsPanel {
         }
     }
 
-    /// Opens the field for a value of the selected setting. A value that was tried is offered to be set.
+    /// Opens the field for a value of the selected setting. A value that was tried is offered to be set, and a value to
+    /// try is another one than the present.
     pub(super) fn begin_typing(&mut self, state: &Shared, purpose: Purpose) -> Vec<Request> {
         self.choice.freeze(&state.settings);
         self.is_typing = false;
         let Some(setting) = self.setting(state) else { return Vec::new() };
-        let tried = state.forecast.tried(&setting.name).map(|(value, _)| value);
-        let value = tried.unwrap_or(&setting.value);
+        let tried = state.forecast.tried(&setting.name).map(|(value, _)| value.to_owned());
+        let steps = if matches!(setting.allowed, Allowed::Words(_)) { 1 } else { 10 };
+        let mut others = [steps, -steps].into_iter().filter_map(|steps| setting.nudged(steps));
+        let other = others.find(|other| purpose == Purpose::Try && *other != setting.value);
+        let value = tried.or(other).unwrap_or_else(|| setting.value.clone());
         self.selected = Some(setting.name.clone());
         let (name, field) = (setting.name.clone(), TextField::selected(value));
         self.edit = Some(Edit { name, field, purpose, problem: None });
