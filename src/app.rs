@@ -31,6 +31,7 @@ mod input_lines;
 mod interrupt;
 mod keys;
 mod layers;
+mod layout_file;
 mod line_history;
 mod live;
 mod log_output;

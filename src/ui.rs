@@ -105,6 +105,7 @@ pub use event_log::Severity;
 pub use files_link::FilesLink;
 pub use history::{EnteredLines, LineField};
 pub use kept_screen::{KeptScreen, KeptScreens, Unread};
+pub use layout::SavedLayouts;
 pub use map_state::MapMode;
 pub use message::{Effect, FlightForm, Msg};
 pub use panel::{Panel, Panels};

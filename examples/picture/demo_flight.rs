@@ -19,7 +19,8 @@ use betadeck::ui::backdrop::BackdropLayer;
 use betadeck::ui::editor::{Conversion, ConversionLosses, FileReply, PlanId};
 use betadeck::ui::keymap::Keymap;
 use betadeck::ui::{
-    AppState, CliHelp, Effect, EnteredLines, KeptScreens, Msg, OpenPlan, Theme, UiConfig, Units, update,
+    AppState, CliHelp, Effect, EnteredLines, KeptScreens, Msg, OpenPlan, SavedLayouts, Theme, UiConfig,
+    Units, update,
 };
 use betadeck::vehicle::Vehicle;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
@@ -66,6 +67,7 @@ impl DemoFlight {
             mouse: true,
             is_first_start: false,
             entered: EnteredLines::default(),
+            layouts: SavedLayouts::default(),
             kept: KeptScreens::none(),
         };
         let state = AppState::new(config, size, view(&vehicle));

@@ -20,12 +20,13 @@ use std::time::Duration;
 use tokio::sync::mpsc::UnboundedSender;
 use tokio::sync::watch;
 
+use super::layout_file::LayoutFile;
 use super::line_history::LineHistory;
 use super::screen_file::ScreenFile;
 use super::set_aside;
 use super::terrain::TerrainFiles;
 use crate::plan::edit::{History, Journal, JournalLine, PlanDocument};
-use crate::plan::format::{HomePosition, loss::LossReport};
+use crate::plan::format::HomePosition;
 use crate::terrain::Tiles;
 use crate::ui::editor::{Conversion, ConversionLosses, FileReply, FileRequest, Opened, PlanId};
 use backdrops::Backdrops;
@@ -53,6 +54,7 @@ pub(super) struct PlanFiles {
     lost: Vec<String>,
     lines: LineHistory,
     screen: ScreenFile,
+    layouts: LayoutFile,
     ground: TerrainFiles,
     tiles: Arc<Tiles>,
     backdrops: Backdrops,
@@ -110,6 +112,7 @@ impl PlanFiles {
             lost: Vec::new(),
             lines: LineHistory::new(state),
             screen: ScreenFile::new(state),
+            layouts: LayoutFile::new(state),
             ground: TerrainFiles::default(),
             tiles: Arc::default(),
             backdrops: Backdrops::new(state),
@@ -244,6 +247,9 @@ impl PlanFiles {
                 Vec::new()
             }
             FileRequest::SaveSettings { path, text, count } => vec![settings_file::save(path, &text, count)],
+            FileRequest::KeepLayout(line) => {
+                self.layouts.append(&line).err().map(FileReply::Failed).into_iter().collect()
+            }
             FileRequest::KeepScreen(text) => {
                 self.screen.write(&text);
                 Vec::new()
@@ -283,7 +289,7 @@ impl PlanFiles {
             Err(sentence) => return FileReply::Failed(sentence),
         };
         if !losses.is_lossless() && !accepted {
-            return lossy(Conversion::Open(path), &losses);
+            return FileReply::Losses(Box::new(ConversionLosses::of(Conversion::Open(path), &losses)));
         }
         notes.extend(losses.findings.iter().map(ToString::to_string));
         if let Some(parent) = path.parent() {
@@ -425,7 +431,8 @@ impl PlanFiles {
         let lost: Vec<String> = written.losses.findings.iter().map(ToString::to_string).collect();
         if !written.losses.is_lossless() && !consent.losses && file.accepted != lost {
             let replace = consent.replace;
-            return vec![lossy(Conversion::Save { id, path, replace }, &written.losses)];
+            let asked = Conversion::Save { id, path, replace };
+            return vec![FileReply::Losses(Box::new(ConversionLosses::of(asked, &written.losses)))];
         }
         if let Err(sentence) = on_disk::write(&path, &written.contents) {
             return vec![FileReply::Failed(sentence)];
@@ -480,20 +487,13 @@ impl PlanFiles {
         let mut changed = Vec::new();
         for (&id, file) in &mut self.open {
             let Some(path) = &file.path else { continue };
-            let is_other = Content::of(path) != file.seen;
-            if is_other && !file.reported {
+            let reported = std::mem::replace(&mut file.reported, Content::of(path) != file.seen);
+            if file.reported && !reported {
                 changed.push(id);
             }
-            file.reported = is_other;
         }
         changed
     }
-}
-
-/// Returns the reply that asks the user to accept differences.
-fn lossy(conversion: Conversion, losses: &LossReport) -> FileReply {
-    let lines = losses.findings.iter().map(ToString::to_string).collect();
-    FileReply::Losses(Box::new(ConversionLosses { conversion, lines, summary: losses.counts() }))
 }
 
 #[cfg(test)]

@@ -15,6 +15,7 @@ use super::flight_recorder::{self, FlightRecorder, RecordedStart};
 use super::flight_shelf::Shelf;
 use super::flown_log;
 use super::input_lines;
+use super::layout_file::LayoutFile;
 use super::line_history::LineHistory;
 use super::live::{self, LiveArgs};
 use super::plan_files::PlanFiles;
@@ -242,6 +243,7 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
     let history = LineHistory::new(screen.directory.as_deref());
     notices.extend(history.problems());
     let entered = history.read();
+    let layouts = LayoutFile::new(screen.directory.as_deref()).read(&mut notices);
     let is_first_start = !screen.was_used && screen.directory.is_some() && entered == EnteredLines::default();
     let config = UiConfig {
         theme: theme(screen.display),
@@ -263,6 +265,7 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
         plan: OpenPlan::new(opened.id, opened.file, opened.history),
         mouse: true,
         entered,
+        layouts,
         kept: screen.kept,
         is_first_start,
     };

@@ -11,6 +11,7 @@ use super::action::Action;
 use super::config::UiConfig;
 use super::event_log::Severity;
 use super::kept_screen::KeptScreens;
+use super::layout::Border;
 use super::panel::{Panel, Panels};
 use super::permission::Permission;
 use super::popup::{CommandLine, Popup};
@@ -40,6 +41,8 @@ pub struct AppState {
     pub step_ticks: u32,
     /// The panel on which the mouse button went down, while it is down.
     pub pressed: Option<Panel>,
+    /// The border between panels that the mouse moves.
+    pub dragged: Option<Border>,
 }
 
 #[cfg(test)]
@@ -76,6 +79,7 @@ impl AppState {
             kept: std::mem::take(&mut config.kept),
             step_ticks: 10,
             pressed: None,
+            dragged: None,
             shared: Shared::new(config, size, view),
         }
     }

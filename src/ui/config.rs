@@ -7,6 +7,7 @@ use super::editor::OpenPlan;
 use super::history::EnteredLines;
 use super::kept_screen::KeptScreens;
 use super::keymap::Keymap;
+use super::layout::SavedLayouts;
 use super::settings::GivenSetting;
 use super::theme::Theme;
 use super::units::Units;
@@ -36,6 +37,8 @@ pub struct UiConfig {
     pub mouse: bool,
     /// Lines entered in earlier runs.
     pub entered: EnteredLines,
+    /// The layouts that the user saved.
+    pub layouts: SavedLayouts,
     /// The screen of the run before.
     pub kept: KeptScreens,
     /// `true` to point to the tutorial on the first screen.
@@ -70,6 +73,7 @@ impl UiConfig {
             plan: OpenPlan::new(PlanId::default(), None, History::new(PlanDocument::default(), true)),
             mouse: false,
             entered: EnteredLines::default(),
+            layouts: SavedLayouts::default(),
             kept: KeptScreens::none(),
             is_first_start: false,
         }

@@ -15,8 +15,8 @@ use super::layout::{self, SMALLEST};
 use super::panel::{self, Panel, span};
 use super::popup::frame::{key_line, popup};
 use super::popup::{
-    Popup, action_menu, command_line, flights_list, go_to, guards, help, map_menu, palette, signal_list,
-    what_if,
+    Popup, action_menu, command_line, flights_list, go_to, guards, help, layout_bar, map_menu, palette,
+    signal_list, what_if,
 };
 use super::settings;
 use super::shared::Shared;
@@ -87,6 +87,7 @@ fn draw_popup(state: &AppState, popup: &Popup, area: Rect, buffer: &mut Buffer) 
         Popup::Guards { selected } => guards::draw(shared, *selected, area, buffer),
         Popup::Actions(menu) => action_menu::draw(shared, menu, area, buffer),
         Popup::ResetSettings => reset_question(shared, area, buffer),
+        Popup::Layout => layout_bar::draw(shared, area, buffer),
         Popup::Quit => quit_question(shared, area, buffer),
         Popup::Permission => permission::draw(shared, area, buffer),
         Popup::Plots { selected } => panel::graphs::draw_choice(shared, *selected, area, buffer),

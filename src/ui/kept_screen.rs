@@ -9,6 +9,7 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use super::graphs::ChosenGraphs;
+use super::layout::Arrangement;
 use super::map_state::MapMode;
 
 /// The most plans that are opened again.
@@ -36,6 +37,8 @@ pub struct KeptScreen {
     pub(super) zoomed: bool,
     /// The names of the panels in the places that several panels share.
     pub(super) places: Vec<String>,
+    /// The sizes of the panels and their places.
+    pub(super) arrangement: Arrangement,
     pub(super) map: KeptMap,
     pub(super) graphs: ChosenGraphs,
     /// The files of the open plans.

@@ -10,6 +10,8 @@
 //!  └──────────────┘    └───────────────┘    └─────────┴ plan─┘    └──────┴──────┴───────┘
 //! ```
 //!
+//! The user can move the borders and swap panels: [`Arrangement`].
+//!
 //! World and Settings take the place of RC when they are shown, Graphs the place of the log.
 //!
 //! While the form of the generator is open, the map fills the screen beside it and shows the result.
@@ -17,12 +19,19 @@
 //! Two status lines are at the top, one hint line at the bottom. The timeline is above the hints, on a tall screen or
 //! while an earlier instant is shown.
 
+mod arrangement;
+pub(super) mod named;
+mod saved;
 mod slots;
 
 use ratatui::layout::Rect;
 
 use super::panel::Panel;
 use super::shared::Shared;
+pub use arrangement::Arrangement;
+pub(super) use arrangement::Split;
+pub use named::NamedLayout;
+pub use saved::SavedLayouts;
 pub use slots::Slots;
 
 /// The smallest screen that shows anything useful.
@@ -33,6 +42,8 @@ pub struct Screen {
     pub status: Rect,
     /// The visible panels with their frames.
     pub panels: Vec<(Panel, Rect)>,
+    /// The borders between the panels, which the user can move.
+    pub borders: Vec<Border>,
     /// The line of the timeline, if it is shown.
     pub timeline: Option<Rect>,
     pub hints: Rect,
@@ -49,6 +60,28 @@ const MAP_COLUMNS: u16 = 24;
 
 /// The height of the state above the settings.
 const STATE_ROWS: u16 = 13;
+
+/// A border between panels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Border {
+    pub(in crate::ui) split: Split,
+    /// The cells of the two frames at the border.
+    pub(in crate::ui) cells: Rect,
+    /// The column or the row after the part whose size the border sets.
+    pub(in crate::ui) end: u16,
+    /// The columns or the rows of the whole.
+    pub(in crate::ui) whole: u16,
+    /// `true` for a border between a left and a right part.
+    pub(in crate::ui) is_upright: bool,
+}
+
+impl Border {
+    /// Returns the columns or rows of the part whose size the border sets.
+    pub(super) fn size(&self) -> u16 {
+        let start = if self.is_upright { self.cells.x } else { self.cells.y };
+        self.end.saturating_sub(start + 1)
+    }
+}
 
 impl Screen {
     /// Returns the area of a panel, if it is visible.
@@ -89,63 +122,134 @@ pub fn divided(state: &Shared, (width, height): (u16, u16)) -> Option<Screen> {
         let form = FORM_COLUMNS.min(width - MAP_COLUMNS);
         columns(body, [width - form, form])
     });
-    let panels = if let Some([map, _]) = form {
-        vec![(Panel::Map, map)]
+    let sizes = &state.arrangement;
+    let mut places = if let Some([map, _]) = form {
+        Places::of([(Panel::Map, map)])
     } else if state.zoomed || width < 80 || height < 24 {
-        vec![(state.focus, body)]
+        Places::of([(state.focus, body)])
     } else if width >= 180 && height >= 48 {
-        large(body, state.slots)
+        large(body, state.slots, sizes)
     } else if width >= 120 && height >= 34 {
-        medium(body, state.slots)
+        medium(body, state.slots, sizes)
     } else {
-        small(body, state.slots)
+        small(body, state.slots, sizes)
     };
+    if !places.borders.is_empty() {
+        for (panel, _) in &mut places.panels {
+            *panel = sizes.shown_at(*panel);
+        }
+    }
+    let Places { panels, borders } = places;
     let hints = Rect::new(0, height - 1, width, 1);
     let form = form.map(|[_, form]| form);
-    Some(Screen { status: Rect::new(0, 0, width, 2), panels, timeline, hints, form })
+    Some(Screen { status: Rect::new(0, 0, width, 2), panels, borders, timeline, hints, form })
 }
 
-fn small(body: Rect, slots: Slots) -> Vec<(Panel, Rect)> {
+/// The least width and height of a panel with its frame.
+const LEAST: (u16, u16) = (20, 5);
+
+/// The panels at their usual places, and the borders between them.
+#[derive(Default)]
+struct Places {
+    panels: Vec<(Panel, Rect)>,
+    borders: Vec<Border>,
+}
+
+impl Places {
+    fn of(panels: impl IntoIterator<Item = (Panel, Rect)>) -> Self {
+        Self { panels: panels.into_iter().collect(), borders: Vec::new() }
+    }
+
+    /// Divides an area of `body` into a left and a right part, whose width the user can change.
+    fn columns(&mut self, area: Rect, body: Rect, split: Split, width: u16) -> [Rect; 2] {
+        let [left, right] = columns(area, [area.width.saturating_sub(width), width.min(area.width)]);
+        let cells = Rect { x: right.x.saturating_sub(1), width: 2, ..area };
+        self.borders.push(Border { split, cells, end: right.right(), whole: body.width, is_upright: true });
+        [left, right]
+    }
+
+    /// Divides an area of `body` into an upper and a lower part, whose height the user can change.
+    fn rows(&mut self, area: Rect, body: Rect, split: Split, height: u16) -> [Rect; 2] {
+        let [top, bottom] = rows(area, [area.height.saturating_sub(height), height.min(area.height)]);
+        let cells = Rect { y: bottom.y.saturating_sub(1), height: 2, ..area };
+        let border = Border { split, cells, end: bottom.bottom(), whole: body.height, is_upright: false };
+        self.borders.push(border);
+        [top, bottom]
+    }
+}
+
+fn small(body: Rect, slots: Slots, sizes: &Arrangement) -> Places {
     let side = (body.width * 29 / 100).clamp(26, 46);
+    let side = sizes.size(Split::State, body.width, side, (LEAST.0, MAP_COLUMNS));
+    let mut places = Places::default();
     if slots.main != Panel::Map {
-        let [main, state] = columns(body, [body.width - side, side]);
-        return vec![(slots.main, main), (Panel::State, state)];
+        let [main, state] = places.columns(body, body, Split::State, side);
+        places.panels.extend([(slots.main, main), (Panel::State, state)]);
+        return places;
     }
-    let log = (body.height / 4).max(5);
-    let [top, bottom] = rows(body, [body.height - log, log]);
-    let [map, state] = columns(top, [top.width - side, side]);
-    vec![(Panel::Map, map), (Panel::State, state), (Panel::Log, bottom)]
+    let log = sizes.size(Split::Bottom, body.height, (body.height / 4).max(5), (LEAST.1, LEAST.1));
+    let [top, bottom] = places.rows(body, body, Split::Bottom, log);
+    let [map, state] = places.columns(top, body, Split::State, side);
+    places.panels.extend([(Panel::Map, map), (Panel::State, state), (Panel::Log, bottom)]);
+    places
 }
 
-fn medium(body: Rect, slots: Slots) -> Vec<(Panel, Rect)> {
+fn medium(body: Rect, slots: Slots, sizes: &Arrangement) -> Places {
+    let mut places = Places::default();
     let bottom = (body.height * 32 / 100).clamp(10, 20);
+    let bottom = sizes.size(Split::Bottom, body.height, bottom, (LEAST.1, LEAST.1));
     if slots.right == Panel::Settings {
-        return medium_with_settings(body, bottom, slots);
+        return medium_with_settings(body, bottom, slots, sizes);
     }
-    let [top, bottom] = rows(body, [body.height - bottom, bottom]);
+    let [top, bottom] = places.rows(body, body, Split::Bottom, bottom);
     let side = (body.width * 38 / 100).clamp(46, 60);
-    let [map, state] = columns(top, [top.width - side, side]);
+    let side = sizes.size(Split::State, body.width, side, (LEAST.0, MAP_COLUMNS));
+    let [map, state] = places.columns(top, body, Split::State, side);
     let right = (body.width / 2).clamp(60, 76).min(body.width - 60);
-    let [left, right] = columns(bottom, [bottom.width - right, right]);
-    vec![(Panel::Map, map), (Panel::State, state), (slots.left, left), (slots.right, right)]
+    let right = sizes.size(Split::Right, body.width, right, (LEAST.0, LEAST.0));
+    let [left, right] = places.columns(bottom, body, Split::Right, right);
+    places.panels.extend([
+        (Panel::Map, map),
+        (Panel::State, state),
+        (slots.left, left),
+        (slots.right, right),
+    ]);
+    places
 }
 
 /// The settings need more rows than the other panels at the bottom right.
-fn medium_with_settings(body: Rect, bottom: u16, slots: Slots) -> Vec<(Panel, Rect)> {
+fn medium_with_settings(body: Rect, bottom: u16, slots: Slots, sizes: &Arrangement) -> Places {
+    let mut places = Places::default();
     let side = (body.width * 46 / 100).clamp(54, 76);
-    let [left, right] = columns(body, [body.width - side, side]);
-    let [map, below] = rows(left, [body.height - bottom, bottom]);
-    let [state, settings] = rows(right, [STATE_ROWS, body.height - STATE_ROWS]);
-    vec![(Panel::Map, map), (Panel::State, state), (slots.left, below), (Panel::Settings, settings)]
+    let side = sizes.size(Split::Right, body.width, side, (LEAST.0, MAP_COLUMNS));
+    let [left, right] = places.columns(body, body, Split::Right, side);
+    let [map, below] = places.rows(left, body, Split::Bottom, bottom);
+    let list = sizes.size(Split::Settings, body.height, body.height - STATE_ROWS, (LEAST.1, LEAST.1));
+    let [state, settings] = places.rows(right, body, Split::Settings, list);
+    places.panels.extend([
+        (Panel::Map, map),
+        (Panel::State, state),
+        (slots.left, below),
+        (Panel::Settings, settings),
+    ]);
+    places
 }
 
-fn large(body: Rect, slots: Slots) -> Vec<(Panel, Rect)> {
-    let bottom = body.height * 36 / 100;
-    let [top, bottom] = rows(body, [body.height - bottom, bottom]);
-    let [map, state, rc] = columns(top, [top.width - 96, 48, 48]);
+fn large(body: Rect, slots: Slots, sizes: &Arrangement) -> Places {
+    let mut places = Places::default();
+    let bottom = sizes.size(Split::Bottom, body.height, body.height * 36 / 100, (LEAST.1, LEAST.1));
+    let [top, bottom] = places.rows(body, body, Split::Bottom, bottom);
+    let width = |split, default, rest| sizes.size(split, body.width, default, (LEAST.0, rest));
+    let side = width(Split::Side, 48, LEAST.0 + MAP_COLUMNS);
+    let [top, rc] = places.columns(top, body, Split::Side, side);
+    let state = width(Split::State, 48, MAP_COLUMNS + rc.width);
+    let [map, state] = places.columns(top, body, Split::State, state);
     let third = body.width / 3;
-    let [log, plan, cli] = columns(bottom, [body.width - 2 * third, third, third]);
-    vec![
+    let cli = width(Split::Right, third, 2 * LEAST.0);
+    let [bottom, cli] = places.columns(bottom, body, Split::Right, cli);
+    let plan = width(Split::Left, third, LEAST.0 + cli.width);
+    let [log, plan] = places.columns(bottom, body, Split::Left, plan);
+    places.panels.extend([
         (Panel::Map, map),
         (Panel::State, state),
         // These two have places of their own.
@@ -153,7 +257,8 @@ fn large(body: Rect, slots: Slots) -> Vec<(Panel, Rect)> {
         (if slots.left == Panel::Cli { Panel::Log } else { slots.left }, log),
         (Panel::Plan, plan),
         (Panel::Cli, cli),
-    ]
+    ]);
+    places
 }
 
 fn columns<const N: usize>(area: Rect, widths: [u16; N]) -> [Rect; N] {

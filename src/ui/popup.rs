@@ -7,6 +7,7 @@ pub(super) mod frame;
 pub(super) mod go_to;
 pub(super) mod guards;
 pub(super) mod help;
+pub(super) mod layout_bar;
 pub(super) mod map_menu;
 pub(super) mod palette;
 pub(super) mod signal_list;
@@ -63,6 +64,8 @@ pub enum Popup {
         /// The index of the selected plot.
         selected: usize,
     },
+    /// The keys that arrange the panels.
+    Layout,
     /// The search of the signals.
     Signals(SignalList),
     /// The `:` line.

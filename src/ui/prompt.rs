@@ -73,6 +73,7 @@ fn of_popup(state: &AppState) -> Option<Vec<String>> {
         Popup::Signals(_) => Some(graphs::signals(state)),
         Popup::Help(_)
         | Popup::Guards { .. }
+        | Popup::Layout
         | Popup::Actions(_)
         | Popup::CommandLine
         | Popup::Palette(_)

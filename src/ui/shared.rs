@@ -23,7 +23,7 @@ use super::graphs::GraphsState;
 use super::ground::GroundState;
 use super::history::UsedNames;
 use super::keymap::Keymap;
-use super::layout::Slots;
+use super::layout::{Arrangement, SavedLayouts, Slots};
 use super::map_state::MapState;
 use super::message::{Effect, FlightForm};
 use super::other_flight::{Alignment, OtherFlight};
@@ -73,6 +73,10 @@ pub struct Shared {
     pub zoomed: bool,
     /// The panels in the shared places.
     pub slots: Slots,
+    /// The sizes of the panels and their places, as the user changed them.
+    pub arrangement: Arrangement,
+    /// The layouts that the user saved.
+    pub layouts: SavedLayouts,
     /// Wall-clock time since start.
     pub now: Duration,
     pub map: MapState,
@@ -130,6 +134,8 @@ impl Shared {
             focus: Panel::Map,
             zoomed: false,
             slots: Slots::default(),
+            arrangement: Arrangement::default(),
+            layouts: config.layouts,
             now: Duration::ZERO,
             map: MapState::default(),
             graphs: GraphsState::default(),

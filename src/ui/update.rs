@@ -28,6 +28,7 @@ use super::transmitter;
 use super::transmitter::TWICE_WITHIN;
 use super::tutorial;
 
+mod arrange;
 mod change;
 mod flight;
 mod flights;
@@ -388,6 +389,7 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
             return vec![VehicleCommand::ResetCraft.into()];
         }
         Action::LookAhead => return forecast::toggle_look_ahead(&mut state.shared),
+        Action::Layout => state.popups.push(Popup::Layout),
         Action::WhatIf => state.popups.push(Popup::WhatIf { selected: 0 }),
         Action::Pause => return vec![Effect::Send(Command::Pause(!state.shared.view.paused))],
         Action::Step => return timeline::step(&state.shared, state.step_ticks),

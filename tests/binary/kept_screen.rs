@@ -83,3 +83,48 @@ fn a_screen_that_is_damaged_or_of_a_later_version_does_not_stop_the_start_and_is
         assert_eq!(std::fs::read_to_string(sandbox.path(kept)).unwrap(), text);
     }
 }
+
+#[test]
+fn panels_are_resized_by_keys_and_by_the_mouse_and_a_saved_layout_comes_back() {
+    let sandbox = Sandbox::new();
+    let state = sandbox.path("state").display().to_string();
+    let arguments = ["--no-ports", "--state-dir", &state];
+    // The column after the map, whose frame is at the left.
+    let edge = |terminal: &Terminal| terminal.row(2).chars().position(|c| c == '┐');
+    let mut terminal = Terminal::betadeck(80, 24, &arguments);
+    terminal.until("the frame of the map", |terminal| edge(terminal).is_some());
+    let before = edge(&terminal).expect("the frame of the map");
+    terminal.send("\x0c\x1b[D\x1b[D");
+    terminal.until("a narrower map", |terminal| edge(terminal) == Some(before - 4));
+    terminal.send("\r:layout save mine\r");
+    terminal.until_shown("`:layout mine` shows this layout.");
+    // Presses on the border, drags it twelve columns to the left, and lets go.
+    let (column, row) = (before - 4 + 1, 8);
+    terminal.send(&format!(
+        "\x1b[<0;{column};{row}M\x1b[<32;{};{row}M\x1b[<0;{};{row}m",
+        column - 12,
+        column - 12
+    ));
+    terminal.until("an even narrower map", |terminal| edge(terminal) < Some(before - 12));
+    let dragged = edge(&terminal);
+    let file = sandbox.path("state/screen.json");
+    terminal.until("the sizes are kept", |_| {
+        let kept = std::fs::read_to_string(&file).unwrap_or_default();
+        let kept: serde_json::Value = serde_json::from_str(&kept).unwrap_or_default();
+        kept["arrangement"]["sizes"][0].as_u64().is_some_and(|share| share > 400)
+    });
+    terminal.signal("KILL");
+    terminal.end();
+
+    let mut terminal = Terminal::betadeck(80, 24, &arguments);
+    terminal.until("the map as it was dragged", |terminal| edge(terminal) == dragged);
+    terminal.send("q");
+    assert_eq!(terminal.end(), 0);
+
+    let mut terminal = Terminal::betadeck(80, 24, &[&arguments[..], &["--fresh-screen"]].concat());
+    terminal.until("the usual map", |terminal| edge(terminal) == Some(before));
+    terminal.send(":layout mine\r");
+    terminal.until("the saved one", |terminal| edge(terminal) == Some(before - 4));
+    terminal.send("q");
+    assert_eq!(terminal.end(), 0);
+}

@@ -107,6 +107,7 @@ pub(crate) fn state_after(
         plan: open(plan),
         mouse: true,
         entered,
+        layouts: betadeck::ui::SavedLayouts::default(),
         kept: betadeck::ui::KeptScreens::default(),
         is_first_start: false,
     };

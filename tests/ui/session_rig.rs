@@ -72,6 +72,7 @@ impl Rig {
             plan: OpenPlan::new(PlanId(1), None, History::new(demo.into(), true)),
             mouse: true,
             entered: EnteredLines::default(),
+            layouts: betadeck::ui::SavedLayouts::default(),
             kept: betadeck::ui::KeptScreens::default(),
             is_first_start: false,
         };

@@ -63,6 +63,7 @@ actions! {
             "Write the recording of the flight so far, for `betadeck open`" ["ctrl-t"];
         WriteLog Global "flight.log" "write log" "Write the blackbox log of the flight so far" ["X"];
         Flights Global "app.flights" "flights" "The library of recorded flights: show, compare, delete" ["ctrl-f"];
+        Layout Global "view.layout" "layout" "Resize and swap panels, choose a layout" ["ctrl-l"];
         Tutorial Global "app.tutorial" "tutorial" "Five steps through the first minutes, or end them" ["f12"];
         Help Global "app.help" "help" "The keys of this place" ["?"];
         CommandLine Global "app.command" "command" "A command by its name, such as :speed 4" [":"];

@@ -1,7 +1,10 @@
 //! Commands that change the display.
 
 use super::did_you_mean_end;
-use crate::ui::message::Request;
+use crate::ui::editor::FileRequest;
+use crate::ui::event_log::Severity;
+use crate::ui::layout::{Arrangement, named};
+use crate::ui::message::{Change, Effect, Request};
 use crate::ui::shared::Shared;
 use crate::ui::theme::{Charset, Palette};
 use crate::ui::units::Units;
@@ -55,7 +58,36 @@ pub(super) fn complete_units(_: &Shared, _: &str, typed: &str) -> Vec<String> {
     starting(typed, &["metric", "imperial"])
 }
 
-fn unknown(what: &str, argument: &str, names: &[&'static str]) -> String {
+/// Runs `layout editing`, `layout default`, `layout save mine`, `layout delete mine`.
+pub(super) fn layout(state: &mut Shared, _: &str, argument: &str) -> Result<Vec<Request>, String> {
+    let keep = |line: Option<String>, text: String| {
+        let kept = line.map(|line| Effect::Files(FileRequest::KeepLayout(line)).into());
+        Ok(std::iter::once(Change::Say(Severity::Good, text).into()).chain(kept).collect())
+    };
+    match argument.split_once(' ').map_or((argument, ""), |(verb, name)| (verb, name.trim())) {
+        ("default", "") => state.arrangement = Arrangement::default(),
+        ("save", name) => {
+            return keep(named::save(state, name)?, format!("`:layout {name}` shows this layout."));
+        }
+        ("delete", name) => {
+            return keep(named::delete(state, name)?, format!("Layout {name} is deleted."));
+        }
+        _ => match named::find(state, argument) {
+            Some(layout) => layout.show(state),
+            None => return Err(unknown("layout", argument, &named::names(state).collect::<Vec<_>>())),
+        },
+    }
+    Ok(Vec::new())
+}
+
+/// Returns the matching names of layouts.
+pub(super) fn complete_layout(state: &Shared, _: &str, typed: &str) -> Vec<String> {
+    let saved = || state.layouts.names().map(|name| format!("delete {name}"));
+    let all = named::names(state).map(str::to_owned).chain(["default".to_owned(), "save ".to_owned()]);
+    all.chain(saved()).filter(|name| name.starts_with(typed)).collect()
+}
+
+fn unknown(what: &str, argument: &str, names: &[&str]) -> String {
     let all = names.join(", ");
     if argument.is_empty() {
         return format!("Which {what}? There are {all}.");

@@ -51,6 +51,8 @@ commands! {
     "world" "NAME=VALUE" "A rare switch of the simulated world" world::switch, world::complete_switch;
     "theme" "NAME" "The colours: dark, light, high-contrast, 16, mono" display::theme, display::complete_theme;
     "charset" "unicode or ascii" "The characters that the terminal shows" display::charset, display::complete_charset;
+    "layout" "NAME" "The places of the panels: flying, editing, debugging, demo, default; save NAME, delete NAME"
+        display::layout, display::complete_layout;
     "units" "metric or imperial" "The units of what is shown, not of what is stored"
         display::units, display::complete_units;
 }

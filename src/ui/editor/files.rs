@@ -8,6 +8,7 @@ use crate::geo::LatLon;
 use crate::plan::FlightPlan;
 use crate::plan::edit::{History, JournalLine, PlanDocument};
 use crate::plan::format::HomePosition;
+use crate::plan::format::loss::LossReport;
 use crate::terrain::Tiles;
 use crate::ui::backdrop::BackdropLayer;
 use crate::ui::history::LineField;
@@ -54,6 +55,8 @@ pub enum FileRequest {
     },
     /// Keep the screen, so that it comes back with the next start.
     KeepScreen(String),
+    /// Append this line to the layouts that the user saved.
+    KeepLayout(String),
     /// Read the elevation tiles under a plan and its way home.
     Ground { home: LatLon, plan: Box<FlightPlan> },
     /// Begin the journal of a new plan.
@@ -131,6 +134,14 @@ pub struct ConversionLosses {
     pub lines: Vec<String>,
     /// The numbers of differences.
     pub summary: String,
+}
+
+impl ConversionLosses {
+    /// Returns the differences that a conversion makes.
+    pub fn of(conversion: Conversion, losses: &LossReport) -> Self {
+        let lines = losses.findings.iter().map(ToString::to_string).collect();
+        Self { conversion, lines, summary: losses.counts() }
+    }
 }
 
 /// A conversion between a file and a plan.

@@ -32,6 +32,7 @@ fn present(state: &AppState) -> KeptScreen {
         focus: shared.focus.name().to_owned(),
         zoomed: shared.zoomed,
         places: shared.slots.panels().map(|panel| panel.name().to_owned()).to_vec(),
+        arrangement: shared.arrangement.clone(),
         map: KeptMap {
             mode: map.mode.possible(),
             grid: map.grid,
@@ -73,6 +74,7 @@ pub(in crate::ui) fn restore(state: &mut AppState) -> Vec<Effect> {
     if let Some(slots) = <[Panel; 3]>::try_from(places).ok().and_then(Slots::of) {
         shared.slots = slots;
     }
+    shared.arrangement = before.arrangement;
     let KeptMap { mode, grid, course_up, hides_past } = before.map;
     (shared.map.mode, shared.map.grid) = (mode.possible(), grid);
     (shared.map.course_up, shared.map.hides_past) = (course_up, hides_past);

@@ -10,7 +10,7 @@ use crate::ui::{hint_bar, layout, notice, panel_bar, tutorial};
 
 use super::popup::{chosen, take_entry};
 use super::view::focus;
-use super::{act, carry_out, flights, map_menu, timeline};
+use super::{act, arrange, carry_out, flights, map_menu, timeline};
 
 /// The number of lines of the help per step of the wheel.
 const WHEEL_LINES: isize = 3;
@@ -23,7 +23,8 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
     if let Some(effects) = popup(state, event) {
         return effects;
     }
-    if !state.popups.is_empty() || state.shared.editor.popup.is_some() {
+    let arranges = matches!(state.popups.last(), Some(Popup::Layout));
+    if !arranges && (!state.popups.is_empty() || state.shared.editor.popup.is_some()) {
         return Vec::new();
     }
     if event.kind == MouseEventKind::Down(MouseButton::Left)
@@ -40,8 +41,12 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
         return effects;
     }
     let Some(screen) = layout::screen(&state.shared) else { return Vec::new() };
+    if let (MouseEventKind::Drag(MouseButton::Left), Some(border)) = (event.kind, state.dragged) {
+        arrange::drag(&mut state.shared, &screen, border, &event);
+        return Vec::new();
+    }
     let cell = (event.column, event.row);
-    if event.kind == MouseEventKind::Down(MouseButton::Left) {
+    if !arranges && event.kind == MouseEventKind::Down(MouseButton::Left) {
         let hints = state.panels.of(state.shared.focus).hints(&state.shared);
         if let Some(action) = hint_bar::action_at(&hints, &state.shared, screen.hints, cell) {
             return act(state, action);
@@ -51,6 +56,20 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
         && let Some(panel) = panel_bar::panel_at(&state.shared, &screen, (event.column, event.row))
     {
         return focus(state, panel);
+    }
+    if event.kind == MouseEventKind::Down(MouseButton::Left)
+        && let Some(border) = arrange::border_at(&screen, event.column, event.row)
+    {
+        state.dragged = Some(border);
+        let panel = screen.at(event.column, event.row).map(|(panel, _)| panel);
+        return panel.map_or_else(Vec::new, |panel| focus(state, panel));
+    }
+    if arranges {
+        let clicked = screen.at(event.column, event.row);
+        return match event.kind {
+            MouseEventKind::Down(_) => clicked.map_or_else(Vec::new, |(panel, _)| focus(state, panel)),
+            _ => Vec::new(),
+        };
     }
     let at = match event.kind {
         // A drag belongs to the panel in which it began, even if the mouse leaves it.
@@ -83,6 +102,7 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
 /// Ends a drag, at any position of the mouse.
 fn release(state: &mut AppState) -> Vec<Effect> {
     state.pressed = None;
+    state.dragged = None;
     let released = |panel| state.panels.of_mut(panel).release(&state.shared);
     let requests = Panel::ALL.into_iter().flat_map(released).collect();
     carry_out(state, requests)

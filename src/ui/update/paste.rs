@@ -24,6 +24,7 @@ pub(super) fn paste(state: &mut AppState, text: &str) -> Vec<Effect> {
             | Popup::Guards { .. }
             | Popup::Actions(_)
             | Popup::ResetSettings
+            | Popup::Layout
             | Popup::Permission
             | Popup::Quit,
         ) => None,

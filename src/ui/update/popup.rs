@@ -2,7 +2,7 @@
 
 use crossterm::event::{KeyCode, KeyEvent};
 
-use super::{act, flights, map_menu, permission, run_line};
+use super::{act, arrange, flights, map_menu, permission, run_line};
 use crate::telemetry::InFlightCommand;
 use crate::ui::action::Action;
 use crate::ui::app_state::AppState;
@@ -64,6 +64,7 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) 
             }
             _ => Vec::new(),
         },
+        Some(Popup::Layout) => arrange::key(state, event, found),
         Some(Popup::Quit) => quit_key(state, event),
         Some(Popup::Permission) => match event.code {
             KeyCode::Char('y' | 'Y') => permission::permit(state),

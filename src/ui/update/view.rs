@@ -12,7 +12,9 @@ pub(super) fn focus(state: &mut AppState, panel: Panel) -> Vec<Effect> {
         state.panels.of_mut(panel).visit();
     }
     state.shared.focus = panel;
-    state.shared.slots.visit(panel);
+    // The place counts, which another panel may have swapped.
+    let place = state.shared.arrangement.place_of(panel);
+    state.shared.slots.visit(place);
     Vec::new()
 }
 
