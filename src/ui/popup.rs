@@ -33,7 +33,7 @@ pub(super) enum Outcome<T> {
 }
 
 /// A popup over the panels. The last one opened gets the keys first.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, strum::VariantNames)]
 pub enum Popup {
     /// The keys and their effects.
     Help(Help),

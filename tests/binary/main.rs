@@ -61,4 +61,6 @@ mod sweep;
 mod terminal;
 #[cfg(unix)]
 mod timeline;
+#[cfg(unix)]
+mod typed_ahead;
 mod verdict;

@@ -1,12 +1,13 @@
 //! Every panel and every popup at the four sizes that the screen is designed for, and at any other size without a panic.
 
 use betadeck::telemetry::NavState;
-use betadeck::ui::editor::{Entry, FileReply, Listing};
+use betadeck::ui::editor::{Conversion, ConversionLosses, EditorPopup, Entry, FileReply, FormKind, Listing};
 use betadeck::ui::{AppState, Msg, Panel, Popup, draw, update};
 use crossterm::event::{KeyCode, KeyModifiers};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use ratatui::layout::Position;
+use strum::VariantNames as _;
 
 use crate::fixture;
 use crate::hands;
@@ -159,6 +160,12 @@ fn everything_open() -> Vec<Open> {
         ": 'w",
         ": 'set",
         "?",
+        "? / 'fly",
+        "3 / 'arrived",
+        "6 / 'vel",
+        "6 /",
+        "ctrl-l",
+        "ctrl-l s",
         "6 enter",
         "2 o",
         "2 s 'name",
@@ -216,9 +223,21 @@ fn everything_open() -> Vec<Open> {
         update(&mut state, Msg::Flights(Ok(crate::flights::library())));
         open.push((format!("{name}, listed"), state));
     }
-    let (_, mut asked) = flying("");
-    asked.popups.push(Popup::Permission);
-    open.push(("permission".to_owned(), asked));
+    for popup in [Popup::Permission, Popup::Guards { selected: 0 }, Popup::ResetSettings] {
+        let (_, mut asked) = flying("");
+        open.push((variant(&popup), {
+            asked.popups.push(popup);
+            asked
+        }));
+    }
+    let (_, mut lossy) = waiting("2");
+    let losses = ConversionLosses {
+        conversion: Conversion::Open("/home/pilot/plans/survey.waypoints".into()),
+        lines: (0..40).map(|number| format!("waypoint {number}: a dropped value")).collect(),
+        summary: "40 values are dropped".to_owned(),
+    };
+    update(&mut lossy, Msg::Files(FileReply::Losses(Box::new(losses))));
+    open.push(("losses".to_owned(), lossy));
     let (_, mut state) = flying("");
     hands::mouse_button(
         &mut state,
@@ -233,6 +252,30 @@ fn everything_open() -> Vec<Open> {
     update(&mut noticed, Msg::Files(FileReply::Failed("A sentence that is longer than a line. ".repeat(9))));
     open.push(("notice".to_owned(), noticed));
     open
+}
+
+/// Returns the name of the variant of a value.
+fn variant(value: &impl std::fmt::Debug) -> String {
+    format!("{value:?}").chars().take_while(|c| c.is_alphanumeric()).collect()
+}
+
+#[test]
+fn no_popup_and_no_form_is_left_out_of_the_storm() {
+    let open = everything_open();
+    let seen = |is: &dyn Fn(&AppState) -> bool| open.iter().any(|(_, state)| is(state));
+    for name in Popup::VARIANTS {
+        assert!(seen(&|state| state.popups.iter().any(|popup| variant(popup) == *name)), "{name}");
+    }
+    // The popup of the editor is not public.
+    let editors: Vec<String> = open.iter().map(|(_, state)| format!("{:?}", state.shared.editor)).collect();
+    for name in EditorPopup::VARIANTS {
+        let text = format!("popup: Some({name}(");
+        assert!(editors.iter().any(|editor| editor.contains(&text)), "{name}");
+    }
+    for name in FormKind::VARIANTS {
+        let text = format!("popup: Some(Form(Form {{ kind: {name}");
+        assert!(editors.iter().any(|editor| editor.contains(&text)), "{name}");
+    }
 }
 
 /// Draws in a window of this size, regardless of the size in the state. The cursor must be in the window.

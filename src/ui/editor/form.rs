@@ -8,7 +8,7 @@ use crate::ui::text_field::TextField;
 use crate::ui::units::Units;
 
 /// The purpose of a form.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::VariantNames)]
 pub enum FormKind {
     /// Edits of the selected waypoints.
     Bulk,

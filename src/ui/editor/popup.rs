@@ -6,7 +6,7 @@ use super::form::{Form, FormKind};
 use super::question::Question;
 
 /// A popup of the editor, which receives the keys.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, strum::VariantNames)]
 pub enum EditorPopup {
     Form(Form),
     Browser(Browser),

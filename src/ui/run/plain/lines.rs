@@ -136,6 +136,10 @@ impl<W: Write> Lines<W> {
                 state.popups.clear();
                 self.list_commands()?;
             }
+            Some(Popup::Layout) => {
+                state.popups.clear();
+                self.write("A layout arranges the panels of the screen, and there is none here.")?;
+            }
             Some(Popup::Guards { .. }) => {
                 state.popups.clear();
                 let guards = state.shared.view.vehicle.nav.iter().flat_map(|nav| &nav.guards);

@@ -1,0 +1,38 @@
+//! Keys typed ahead, as over a slow line: many of them arrive in one piece and act in order on what they were meant for.
+
+use crate::pty::Terminal;
+use crate::support::Sandbox;
+
+#[test]
+fn keys_that_arrive_in_one_piece_act_in_order_on_popups_fields_and_panels() {
+    let sandbox = Sandbox::new();
+    let state = sandbox.path("state").display().to_string();
+    let mut terminal = Terminal::betadeck(120, 40, &["--no-ports", "--state-dir", &state]);
+    terminal.until_shown("DISARMED");
+    // Two command lines, a waypoint added to the plan, the settings searched, the panels arranged, a layout saved from
+    // there and another one shown, and the search of the log found by its letters and used. Each letter is a key of its own
+    // elsewhere.
+    terminal.send(concat!(
+        ":wind 5@270\r",
+        ":speed 4\r",
+        "2i",
+        "9/fence\r",
+        "\x0csw",
+        "mine\r",
+        ":layout x\x15layout debugging\r",
+        "\x10units\x15show log\rGPS\r",
+    ));
+    let kept = |name: &str| std::fs::read_to_string(sandbox.path(name)).unwrap_or_default();
+    terminal.until("the search of the log, at four times real time", |terminal| {
+        terminal.screen().contains("▸8 Log — /GPS") && terminal.row(1).contains("4×")
+    });
+    terminal.until("the rest", |terminal| {
+        kept("state/screen.json").contains("wind=5@270")
+            && kept("state/layouts.jsonl").contains("\"mine\"")
+            && terminal.screen().contains("7 World")
+    });
+    terminal.send("2");
+    terminal.until("the plan with one more waypoint", |terminal| terminal.screen().contains("  4  LAND"));
+    terminal.send("9");
+    terminal.until("the searched settings", |terminal| terminal.screen().contains("ap_max_distance_from"));
+}
