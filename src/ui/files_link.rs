@@ -2,7 +2,7 @@
 #![allow(clippy::disallowed_methods, reason = "the shell of the user interface waits in wall-clock time")]
 
 use std::sync::mpsc::Sender;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use tokio::sync::{mpsc, watch};
 use tokio::time::timeout;
@@ -11,6 +11,9 @@ use super::editor::{FileReply, FileRequest};
 
 /// The longest wait for an edit to be kept. A slow disk must not block the screen.
 const PATIENCE: Duration = Duration::from_millis(100);
+
+/// The longest time that keys wait for the answer to the request of an earlier key.
+const TYPED_AHEAD: Duration = Duration::from_millis(500);
 
 /// The user interface's link to the plan files.
 #[derive(Debug)]
@@ -22,6 +25,8 @@ pub struct FilesLink {
     asked: u64,
     /// The number of the newest edit among the requests.
     edited: u64,
+    /// The number of the newest request whose answer changes the meaning of the keys after it, and its time.
+    decisive: Option<(u64, Instant)>,
 }
 
 impl FilesLink {
@@ -32,7 +37,7 @@ impl FilesLink {
         replies: mpsc::UnboundedReceiver<FileReply>,
         done: watch::Receiver<u64>,
     ) -> Self {
-        Self { requests, replies, done, asked: 0, edited: 0 }
+        Self { requests, replies, done, asked: 0, edited: 0, decisive: None }
     }
 
     /// Sends a request. Returns `false` if nobody receives it.
@@ -41,7 +46,18 @@ impl FilesLink {
         if matches!(request, FileRequest::Journal(..)) {
             self.edited = self.asked;
         }
+        let is_decisive =
+            matches!(request, FileRequest::List(_) | FileRequest::Open { .. } | FileRequest::Save { .. });
+        if is_decisive {
+            self.decisive = Some((self.asked, Instant::now()));
+        }
         self.requests.send(request).is_ok()
+    }
+
+    /// Returns `true` while the keys typed ahead are meant for the answer to a request. A slow disk does not hold them for
+    /// long.
+    pub(super) fn holds_keys(&self) -> bool {
+        self.decisive.is_some_and(|(number, at)| *self.done.borrow() < number && at.elapsed() < TYPED_AHEAD)
     }
 
     /// Waits until the newest edit is kept, so that the edits on the screen survive the program.

@@ -151,19 +151,21 @@ async fn run_loop(
 
     loop {
         let frame_at = due.unwrap_or(drawn + FADE_FRAME);
+        let takes_keys = !files.holds_keys();
         let wake = tokio::select! {
             // Keys first: the user gets an answer before the flight is shown.
             biased;
             () = &mut stop => Wake::End(Ending::Signal),
             Some(()) = suspend.recv() => Wake::Suspend,
             Some(()) = resume.recv() => Wake::Resume,
-            key = keys.next() => match key {
+            // An answer that keys typed ahead are meant for comes before them.
+            Some(reply) = files.replies.recv() => Wake::Msg(Msg::Files(reply)),
+            key = keys.next(), if takes_keys => match key {
                 Some(Ok(event)) => terminal_message(event).map_or(Wake::Time, Wake::Msg),
                 Some(Err(error)) => return Err(error),
                 None => Wake::End(Ending::TerminalLost),
             },
             Some(msg) = replies.recv() => Wake::Msg(msg),
-            Some(reply) = files.replies.recv() => Wake::Msg(Msg::Files(reply)),
             Some(msg) = second_flight(&mut link.other) => Wake::Msg(msg),
             () = sleep(frame_at.saturating_duration_since(Instant::now())) => Wake::Time,
             received = link.events.recv_many(&mut events, BATCH) => match received {

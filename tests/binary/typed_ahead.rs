@@ -36,3 +36,24 @@ fn keys_that_arrive_in_one_piece_act_in_order_on_popups_fields_and_panels() {
     terminal.send("9");
     terminal.until("the searched settings", |terminal| terminal.screen().contains("ap_max_distance_from"));
 }
+
+const PLAN: &str = "waypoint insert 0 40.4640000 -79.5175000 1000 0 FLYOVER 0 NONE\nwaypoint insert 1 40.4636 -79.5182 1000 0 LAND 0 NONE\n";
+
+#[test]
+fn keys_typed_ahead_of_a_listing_choose_the_file_there_and_edit_the_plan_that_it_opens() {
+    let sandbox = Sandbox::new();
+    std::fs::create_dir(sandbox.path("plans")).unwrap();
+    sandbox.write("plans/a.txt", PLAN);
+    sandbox.write("plans/b.txt", PLAN);
+    let plan = sandbox.path("plans/a.txt").display().to_string();
+    let mut terminal = Terminal::betadeck(120, 40, &["--no-ports", "--fresh", &plan]);
+    terminal.until_shown("Plan — a.txt");
+    // Opens the other plan of that directory, deletes its first waypoint, and saves it there under a third name.
+    terminal.send("2ob.txt\rdSc.txt\r");
+    terminal.until_shown("2/2 — c.txt");
+    let saved = sandbox.read("plans/c.txt");
+    assert!(saved.contains("LAND") && !saved.contains("FLYOVER"), "{saved}");
+    assert_eq!(sandbox.read("plans/a.txt"), PLAN);
+    terminal.send("q");
+    assert_eq!(terminal.end(), 0);
+}
