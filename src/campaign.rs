@@ -17,6 +17,7 @@ mod forecast;
 mod record;
 mod shard;
 mod statistics;
+mod weather;
 
 pub use answer::{
     Answer, AnswerBuilder, Cause, Causes, Distribution, FailureClass, GoalOutcome, JudgedGoal,
@@ -27,6 +28,7 @@ pub use forecast::{Forecast, ForecastAnswer};
 pub use record::{InputValue, Instant, Record, Side, Standing};
 pub use shard::{Shard, ShardError};
 pub use statistics::{Rule, Significance, Split, Summary, wilson};
+pub use weather::wind_around;
 
 #[cfg(test)]
 mod tests;

@@ -20,6 +20,7 @@
 //! assert_eq!(end.verdict.result, FlightResult::Complete);
 //! ```
 
+mod craft_at_boot;
 pub mod forecast;
 mod judge;
 pub mod setup;
@@ -28,6 +29,7 @@ mod truth_check;
 mod verdict;
 mod waiting;
 
+pub use craft_at_boot::craft_at_boot;
 pub use judge::{Judge, JudgeFacts};
 pub use setup::FlightSetup;
 pub use verdict::{FlightResult, Verdict};

@@ -23,6 +23,7 @@ mod runtime;
 mod seek;
 mod simulator;
 pub mod sitl;
+mod surveyor;
 mod waker;
 
 pub use command::{Command, Seek, SessionView};
@@ -40,3 +41,4 @@ pub use request_handler::{Handled, RequestHandler};
 pub use runner::{Flying, Runner, Stopped, Subscriber};
 pub use runtime::{Endpoints, FlownBefore, Handle, SessionConfig, Subscription, start, start_at};
 pub use simulator::SimulatorNotice;
+pub use surveyor::{SurveyJob, SurveyNews, SurveyReply, SurveyRequest, SurveyedPlan, Surveyor};

@@ -287,6 +287,18 @@ impl Vehicle {
         }
     }
 
+    /// Returns the same craft with its present settings at boot, in the present air and without faults; `None` if the flight
+    /// controller or the physics is another program. `change` may change the seed and the air before.
+    ///
+    /// # Errors
+    /// Fails if a changed value is not allowed.
+    pub fn again(&self, change: impl FnOnce(&mut WorldConfig)) -> Result<Option<Self>, WorldError> {
+        let Some(firmware) = self.embedded() else { return Ok(None) };
+        let Some(physics) = self.physics.again(change)? else { return Ok(None) };
+        let controller = embedded(firmware.configuration().clone(), firmware.options());
+        Ok(Some(Self::build(controller, physics, false)))
+    }
+
     /// Handles the restart of a remote flight controller by itself: the craft of the simulated world is at home
     /// again, disarmed.
     pub fn remote_restarted(&mut self) {

@@ -63,6 +63,7 @@ impl DemoFlight {
             cli: CliHelp { complete: |line| cli::complete(line).lines(line), ..CliHelp::default() },
             given_settings: Vec::new(),
             sentence: |event| sentence::text(&event.kind).unwrap_or_default(),
+            go_sentence: |_, _| String::new(),
             plan: OpenPlan::new(PlanId(1), None, History::new(file.into(), true)),
             mouse: true,
             is_first_start: false,

@@ -61,7 +61,7 @@ pub struct CampaignArgs {
     /// Flies a plan with this fault at every second of the flight instead, such as gps-loss,6 or motor,,2:0.7, and shows
     /// when and where it is fatal
     #[arg(
-        long, value_name = "NAME[,FOR][,VALUE]", value_parser = value::timeless_fault, help_heading = "Which",
+        long, value_name = "NAME[,FOR][,VALUE]", value_parser = ScheduledFault::without_time, help_heading = "Which",
         conflicts_with_all = ["flights", "design", "seeds", "vary", "expect", "shard", "vs", "vs_settings", "vs_firmware",
             "out", "junit", "markdown"]
     )]

@@ -159,17 +159,6 @@ pub(super) fn fault(text: &str) -> Result<ScheduledFault, String> {
     text.parse().map_err(|error: ParseError| error.problem().to_owned())
 }
 
-/// Reads a fault without its time, `NAME[,FOR][,VALUE]`.
-pub(super) fn timeless_fault(text: &str) -> Result<ScheduledFault, String> {
-    let (name, rest) = text.split_once(',').map_or((text, None), |(name, rest)| (name, Some(rest)));
-    if name.contains('@') {
-        return Err(
-            "leave the time out: the fault begins at every second; write NAME[,FOR][,VALUE]".to_owned()
-        );
-    }
-    fault(&rest.map_or_else(|| format!("{name}@0"), |rest| format!("{name}@0,{rest}")))
-}
-
 /// Reads the loss of the RC link at `T[,FOR]`.
 pub(super) fn rx_loss(text: &str) -> Result<ScheduledFault, String> {
     fault(&format!("rx-loss@{text}"))

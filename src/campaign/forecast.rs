@@ -31,6 +31,13 @@ pub struct ForecastAnswer {
 }
 
 impl Forecast {
+    /// The usual number of flights.
+    pub const FLIGHTS: u64 = 100;
+    /// The usual charge that must be left, as a share of the capacity.
+    pub const RESERVE: f64 = 0.2;
+    /// The usual share of successes for go.
+    pub const GO_FROM: f64 = 0.95;
+
     /// Returns the forecast of no flights. `reserve` is the charge that must be left, as a share of the capacity.
     pub fn new(scenario: &Scenario, wanted: u64, reserve: f64) -> Self {
         let builder = AnswerBuilder::new(scenario, wanted, false);

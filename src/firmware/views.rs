@@ -17,7 +17,7 @@ use super::estimate::Estimate;
 use super::modes::BoxSet;
 use super::parameters::{Parameters, RescueAltitude};
 use super::rx::{Receiver, channels};
-use super::{Firmware, battery};
+use super::{Firmware, FirmwareOptions, battery};
 
 /// The margin above the threshold at which a throttle stick is put as raised, µs.
 const RAISED_MARGIN_US: f64 = 12.5;
@@ -151,6 +151,11 @@ impl Firmware {
     /// Returns what the last step noted for a log; `None` if logs are off.
     pub fn log_step(&self) -> Option<LogStep<'_>> {
         self.recorder.as_deref().map(Recorder::last_step)
+    }
+
+    /// Returns the options that the firmware was created with.
+    pub fn options(&self) -> FirmwareOptions {
+        self.setup.options
     }
 
     /// Returns the configuration in memory.

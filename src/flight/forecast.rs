@@ -24,7 +24,7 @@ use crate::firmware::cli::RefusedLine;
 use crate::plan::FlightPlan;
 use crate::signals::SimTime;
 use crate::sim::WorldCommand;
-use crate::telemetry::{AbortReason, Refusal};
+use crate::telemetry::{AbortReason, Mode, Refusal};
 use crate::vehicle::Vehicle;
 use endless::EndlessWatch;
 use observer::Observer;
@@ -33,6 +33,8 @@ use setting_change::Unchanged;
 
 /// The altitude from which a craft without ground contact counts as in the air, m. A bounce stays below it.
 const IN_THE_AIR_M: f64 = 1.0;
+/// The reason why an empty plan is not flown.
+pub(super) const NO_WAYPOINTS: &str = "No waypoints, so there is nothing to fly.";
 /// The longest flight that a forecast follows, simulated s.
 pub const LIMIT_S: f64 = 1800.0;
 
@@ -62,7 +64,7 @@ impl ForecastRun {
         takeoff_m: f64,
     ) -> Result<Self, String> {
         if plan.waypoints.is_empty() {
-            return Err("No waypoints, so there is nothing to fly.".to_owned());
+            return Err(NO_WAYPOINTS.to_owned());
         }
         let Some(firmware) = vehicle.embedded_mut() else { return Err(CONTROLLER_IS_REMOTE.to_owned()) };
         firmware.upload(plan, settings).map_err(|refused| refusal(&refused))?;
@@ -70,9 +72,7 @@ impl ForecastRun {
         vehicle.transmitter_mut().inputs_mut().clear();
         vehicle.transmitter_mut().set_cut(false);
         vehicle.reset_craft();
-        vehicle.start_pilot(takeoff_m).map_err(|mode| {
-            format!("The scripted pilot needs a switch for {mode}: assign one with the CLI command aux.")
-        })?;
+        vehicle.start_pilot(takeoff_m).map_err(no_switch)?;
         Self::begin(ForecastKind::PlanEstimate, vehicle, takeoff_m)
     }
 
@@ -208,7 +208,13 @@ fn check_flies(vehicle: &Vehicle) -> Result<(), String> {
     Ok(())
 }
 
-fn refusal(RefusedLine { line, reply }: &RefusedLine) -> String {
+/// Returns the reason for a refused start of the scripted pilot, as a sentence.
+pub(super) fn no_switch(mode: Mode) -> String {
+    format!("The scripted pilot needs a switch for {mode}: assign one with the CLI command aux.")
+}
+
+/// Returns the refusal of a line of an upload, as a sentence.
+pub(super) fn refusal(RefusedLine { line, reply }: &RefusedLine) -> String {
     format!("The craft refuses `{line}`: {reply}")
 }
 

@@ -10,7 +10,8 @@
 
 use nalgebra::Vector2;
 
-use super::{Flight, FlightEnd, FlightResult};
+use super::forecast::no_switch;
+use super::{Flight, FlightEnd, FlightOptions, FlightResult, craft_at_boot};
 use crate::plan::{FlightPlan, WaypointType};
 use crate::signals::SimTime;
 use crate::sim::{FaultStart, ScheduledFault, WorldCommand};
@@ -67,6 +68,24 @@ impl Sweep {
     /// Returns the sweep of a flight that is at home. The start of `fault` does not matter.
     pub fn new(flight: Flight, fault: ScheduledFault) -> Self {
         Self { flight, fault, second: 0, end: None }
+    }
+
+    /// Returns the sweep of `plan` with its `settings` from boot, flown by the craft of `vehicle` in the present air by the
+    /// scripted pilot, who first climbs to `takeoff_m`.
+    ///
+    /// # Errors
+    /// Fails with the reason why nothing can be flown, as a sentence.
+    pub fn of_plan(
+        vehicle: &Vehicle,
+        plan: &FlightPlan,
+        settings: &[String],
+        takeoff_m: f64,
+        fault: ScheduledFault,
+    ) -> Result<Self, String> {
+        let vehicle = craft_at_boot(vehicle, plan, settings, |_| {})?;
+        let options = FlightOptions { takeoff_m, ..FlightOptions::default() };
+        let flight = Flight::new(vehicle, &options).map_err(no_switch)?;
+        Ok(Self::new(flight, fault))
     }
 
     /// Flies to the next second and returns the branch of it; `None` when the flight is over, or when `is_stopped`.

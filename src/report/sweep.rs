@@ -39,8 +39,7 @@ impl SweptFlight<'_> {
 
     /// Returns the fault without its time: `gps-loss,6`.
     pub(super) fn fault_name(&self) -> String {
-        let text = self.at(0).to_string();
-        text.replacen("@0", "", 1)
+        self.fault.timeless()
     }
 
     /// Returns the fault at a second.

@@ -110,7 +110,7 @@ impl Forecaster {
 
 /// Lowers the priority of this thread. If that is impossible, the flight still gets its time, because it
 /// sleeps most of it.
-fn yield_to_the_flight() {
+pub(super) fn yield_to_the_flight() {
     #[cfg(target_os = "linux")]
     // No process is named, so this affects only the calling thread.
     let _ = rustix::process::setpriority_process(None, NICENESS);

@@ -132,6 +132,11 @@ impl Air {
         self.wind_fault.unwrap_or(self.wind)
     }
 
+    /// Returns the wind that was set, whatever a fault makes of it.
+    pub(super) fn wind_that_was_set(&self) -> Wind {
+        self.wind
+    }
+
     /// Sets the mean wind, which changes over two seconds.
     pub(super) fn change_wind(&mut self, wind: Wind, now: SimTime) {
         self.wind = wind;

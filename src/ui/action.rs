@@ -11,7 +11,7 @@ mod table;
 
 pub use edit::EditAction;
 pub use enabled::enabled;
-pub(super) use enabled::is_wrecked;
+pub(super) use enabled::{flies, is_wrecked};
 pub use general::Action;
 pub use panels::PanelAction;
 pub use table::ACTIONS;

@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use crate::campaign::ForecastAnswer;
 use crate::fc::RemoteNotice;
 use crate::session::{Event, ReplayNotice, SessionEvent, SessionView};
 use crate::signals::SimTime;
@@ -26,6 +27,8 @@ pub struct AppState {
     pub panels: Panels,
     /// Returns an event as a sentence.
     pub sentence: fn(&Event) -> String,
+    /// Returns the answer of many flights of a plan as a sentence.
+    pub go_sentence: fn(&str, &ForecastAnswer) -> String,
     pub popups: Vec<Popup>,
     /// The tutorial, while it is shown.
     pub tutorial: Option<Tutorial>,
@@ -72,6 +75,7 @@ impl AppState {
             panels: Panels::new(&config.entered.cli),
             command_line: CommandLine::with_history(&config.entered.commands),
             sentence: config.sentence,
+            go_sentence: config.go_sentence,
             popups: Vec::new(),
             tutorial: None,
             permission: Permission::default(),

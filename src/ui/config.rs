@@ -11,6 +11,7 @@ use super::layout::SavedLayouts;
 use super::settings::GivenSetting;
 use super::theme::Theme;
 use super::units::Units;
+use crate::campaign::ForecastAnswer;
 use crate::session::Event;
 use crate::terrain::Tiles;
 
@@ -31,6 +32,8 @@ pub struct UiConfig {
     pub given_settings: Vec<GivenSetting>,
     /// Returns an event as a sentence; empty for events that nobody needs to read.
     pub sentence: fn(&Event) -> String,
+    /// Returns the answer of many flights of the plan with this name as a sentence: go or no-go.
+    pub go_sentence: fn(&str, &ForecastAnswer) -> String,
     /// The plan that is open at start.
     pub plan: OpenPlan,
     /// `true` to use the mouse.
@@ -70,6 +73,7 @@ impl UiConfig {
             cli: CliHelp::default(),
             given_settings: Vec::new(),
             sentence: |_| String::new(),
+            go_sentence: |_, _| String::new(),
             plan: OpenPlan::new(PlanId::default(), None, History::new(PlanDocument::default(), true)),
             mouse: false,
             entered: EnteredLines::default(),

@@ -7,7 +7,7 @@ use ratatui::style::Color;
 use ratatui::text::Line;
 use ratatui::widgets::{Block, BorderType, Widget as _};
 
-use super::action::Action;
+use super::action::{self, Action};
 use super::app_state::AppState;
 use super::ascii;
 use super::formatting;
@@ -22,7 +22,7 @@ use super::settings;
 use super::shared::Shared;
 use super::text_wrap::wrapped;
 use super::theme::{Charset, Role};
-use super::{hint_bar, notice, panel_bar, permission, status_bar, timeline, tutorial};
+use super::{hint_bar, notice, panel_bar, permission, status_bar, survey, timeline, tutorial};
 use crate::text::printable;
 
 /// Draws the state; it only reads.
@@ -44,7 +44,10 @@ pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
             if let Some(area) = screen.timeline {
                 timeline::draw(shared, area, buffer);
             }
-            let foot = screen.timeline.unwrap_or(screen.hints);
+            if let Some(area) = screen.sweep {
+                survey::draw(shared, area, buffer);
+            }
+            let foot = screen.sweep.or(screen.timeline).unwrap_or(screen.hints);
             tutorial::draw(state.tutorial, shared, foot, buffer);
             notice::draw(shared, tutorial::rows(state.tutorial, shared, foot), foot, buffer);
             cursor
@@ -83,7 +86,9 @@ fn draw_popup(state: &AppState, popup: &Popup, area: Rect, buffer: &mut Buffer) 
         Popup::Help(help) => return help::draw(shared, help, area, buffer),
         Popup::GoTo(question) => go_to::draw(shared, question, area, buffer),
         Popup::MapMenu(menu) => map_menu::draw(&shared.theme, menu, area, buffer),
-        Popup::WhatIf { selected } => what_if::draw(&shared.theme, *selected, area, buffer),
+        Popup::WhatIf { selected } => {
+            what_if::draw(&shared.theme, action::flies(shared).is_ok(), *selected, area, buffer);
+        }
         Popup::Guards { selected } => guards::draw(shared, *selected, area, buffer),
         Popup::Actions(menu) => action_menu::draw(shared, menu, area, buffer),
         Popup::ResetSettings => reset_question(shared, area, buffer),

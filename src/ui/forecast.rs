@@ -19,8 +19,8 @@ use super::editor::PlanId;
 use super::formatting::within;
 use super::message::Effect;
 use super::settings::Assignment;
-use estimate_basis::EstimateBasis;
 
+pub(super) use estimate_basis::EstimateBasis;
 pub(super) use estimate_line::lines as estimate_lines;
 pub(super) use ghost::ghost;
 pub(super) use requests::{

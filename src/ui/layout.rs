@@ -46,6 +46,8 @@ pub struct Screen {
     pub borders: Vec<Border>,
     /// The line of the timeline, if it is shown.
     pub timeline: Option<Rect>,
+    /// The line of the sweep, if one is shown.
+    pub sweep: Option<Rect>,
     pub hints: Rect,
     /// The place of the generator's form, beside the map.
     pub form: Option<Rect>,
@@ -117,7 +119,9 @@ pub fn divided(state: &Shared, (width, height): (u16, u16)) -> Option<Screen> {
     }
     let has_timeline = state.view.timeline.is_some() && (state.is_rewound() || height >= TIMELINE_ROWS);
     let timeline = has_timeline.then(|| Rect::new(0, height - 2, width, 1));
-    let body = Rect::new(0, 2, width, height - 3 - u16::from(has_timeline));
+    let has_sweep = state.survey.sweep().is_some();
+    let sweep = has_sweep.then(|| Rect::new(0, height - 2 - u16::from(has_timeline), width, 1));
+    let body = Rect::new(0, 2, width, height - 3 - u16::from(has_timeline) - u16::from(has_sweep));
     let form = state.editor.is_generating().then(|| {
         let form = FORM_COLUMNS.min(width - MAP_COLUMNS);
         columns(body, [width - form, form])
@@ -142,7 +146,7 @@ pub fn divided(state: &Shared, (width, height): (u16, u16)) -> Option<Screen> {
     let Places { panels, borders } = places;
     let hints = Rect::new(0, height - 1, width, 1);
     let form = form.map(|[_, form]| form);
-    Some(Screen { status: Rect::new(0, 0, width, 2), panels, borders, timeline, hints, form })
+    Some(Screen { status: Rect::new(0, 0, width, 2), panels, borders, timeline, sweep, hints, form })
 }
 
 /// The least width and height of a panel with its frame.

@@ -18,7 +18,7 @@ use crate::fc::{CraftSettings, UploadReport};
 use crate::plan::{Altitude, FlightPlan};
 use crate::replay::{Curve, CurvesRequest, Overview};
 use crate::session::command::{CliOutput, Command, SessionView};
-use crate::session::{Event, ForecastJob, ForecastReply};
+use crate::session::{Event, ForecastJob, ForecastReply, SurveyJob, SurveyReply};
 use crate::telemetry::snapshot::WorldView;
 use crate::vehicle::VehicleCommand;
 
@@ -77,6 +77,8 @@ pub enum Msg {
     },
     /// A forecast, or the reason for its refusal.
     Forecast(ForecastReply),
+    /// A step of a survey.
+    Survey(SurveyReply),
     /// The craft answered a download.
     DownloadReply {
         /// The open plan that receives it.
@@ -249,6 +251,10 @@ pub enum Effect {
     Curves(CurvesRequest),
     /// Fly ahead on a copy of the vehicle; the forecast comes back as [`Msg::Forecast`].
     Forecast(ForecastJob),
+    /// Fly many flights on copies of the vehicle; the steps come back as [`Msg::Survey`].
+    Survey(SurveyJob),
+    /// End the survey; this revision is the newest now.
+    EndSurvey(u64),
     Files(FileRequest),
     /// Read the plan of the craft into this open plan; the reply comes back as [`Msg::DownloadReply`].
     Download(PlanId),

@@ -52,8 +52,9 @@ fn intent_of(effect: &Effect) -> Intent {
         Effect::Upload { .. } => Intent::Upload,
         Effect::SaveToFlash => Intent::Save,
         Effect::World(_) => Intent::World,
-        Effect::Forecast(_) => Intent::Forecast,
+        Effect::Forecast(_) | Effect::Survey(_) => Intent::Forecast,
         Effect::Files(_)
+        | Effect::EndSurvey(_)
         | Effect::Curves(_)
         | Effect::WriteFlight { .. }
         | Effect::WriteRecording { .. }

@@ -14,7 +14,7 @@ use super::command;
 use super::editor::{ConversionLosses, EditorPopup, OpenPlan, Question};
 use super::message::{Effect, Msg};
 use super::permission;
-use super::popup::Popup;
+use super::popup::{Popup, what_if};
 use super::settings::changes::reset_question;
 use super::update::update;
 
@@ -62,7 +62,8 @@ fn of_popup(state: &AppState) -> Option<Vec<String>> {
             Some(list(format!("{title} which waypoint?"), waypoints))
         }
         Popup::WhatIf { .. } => {
-            let choices = (1..).zip(WHAT_IFS).map(|(number, what_if)| format!("{number} {}", what_if.title));
+            let titles = WHAT_IFS.iter().map(|what_if| what_if.title).chain([what_if::GO_NO_GO]);
+            let choices = (1..).zip(titles).map(|(number, title)| format!("{number} {title}"));
             Some(list("What if, from this instant on?".to_owned(), choices))
         }
         Popup::Quit => Some(vec!["The craft is armed and flying ends here. Quit? y yes, n no.".to_owned()]),

@@ -15,7 +15,7 @@ use tokio::sync::{mpsc, oneshot, watch};
 use tokio::time::sleep;
 
 use crate::replay::Overview;
-use crate::session::{Command, Event, Forecaster, SessionView};
+use crate::session::{Command, Event, SessionView};
 use crate::timeline::RecordedFlight;
 
 use super::app_state::AppState;
@@ -31,7 +31,7 @@ mod effects;
 mod flights;
 mod plain;
 
-use effects::{Answers, carry_out};
+use effects::{Answers, Threads, carry_out};
 use flights::Shown;
 pub use plain::run_plain;
 
@@ -140,9 +140,9 @@ async fn run_loop(
     tui.draw(&state)?;
 
     let (answers, mut replies) = Answers::channel();
-    let forecaster = Forecaster::start(answers.of_forecasts())?;
+    let threads = Threads::start(&answers)?;
     for effect in restored {
-        carry_out(effect, &link, &forecaster, &mut files, &answers);
+        carry_out(effect, &link, &threads, &mut files, &answers);
     }
     let mut events = Vec::with_capacity(BATCH);
     let mut drawn = Instant::now();
@@ -182,7 +182,7 @@ async fn run_loop(
         let (msg, frame) = match wake {
             Wake::End(ending) => {
                 if let Some(effect) = keep(&mut state) {
-                    carry_out(effect, &link, &forecaster, &mut files, &answers);
+                    carry_out(effect, &link, &threads, &mut files, &answers);
                 }
                 link.commands.try_send(Command::Quit).ok();
                 return Ok(ending);
@@ -234,7 +234,7 @@ async fn run_loop(
                     update(&mut state, Msg::Resize(size.width, size.height));
                     update(&mut state, Msg::FlightsShown(result));
                 }
-                carry_out(effect, &link, &forecaster, &mut files, &answers);
+                carry_out(effect, &link, &threads, &mut files, &answers);
             }
         }
         let wanted = drawn + frame;

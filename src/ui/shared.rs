@@ -30,6 +30,7 @@ use super::other_flight::{Alignment, OtherFlight};
 use super::panel::Panel;
 use super::settings::SettingsState;
 use super::stick_recording::StickRecording;
+use super::survey::SurveyState;
 use super::theme::Theme;
 use super::track::{KeptTracks, Track};
 use super::units::Units;
@@ -97,6 +98,8 @@ pub struct Shared {
     pub forecast: ForecastState,
     /// All settings of the craft.
     pub settings: SettingsState,
+    /// Many flights of the open plan.
+    pub survey: SurveyState,
     pub log: LogState,
     /// The names chosen in the palette.
     pub used: UsedNames,
@@ -147,6 +150,7 @@ impl Shared {
             past_flights: KeptTracks::default(),
             forecast: ForecastState::default(),
             settings: SettingsState::new(config.given_settings),
+            survey: SurveyState::default(),
             log: LogState::default(),
             used: UsedNames::of(&config.entered.palette),
             notice: None,

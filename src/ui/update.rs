@@ -2,6 +2,7 @@
 
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind};
 
+use crate::flight::forecast::WHAT_IFS;
 use crate::session::{Command, SessionView};
 use crate::telemetry::InFlightCommand;
 use crate::vehicle::VehicleCommand;
@@ -23,6 +24,7 @@ use super::past_flight;
 use super::popup::{GoTo, Help, Palette, Popup};
 use super::settings;
 use super::stick_recording::keys::advance;
+use super::survey;
 use super::track::TrackPoint;
 use super::transmitter;
 use super::transmitter::TWICE_WITHIN;
@@ -67,6 +69,7 @@ pub fn update(state: &mut AppState, msg: Msg) -> Vec<Effect> {
     if is_followed {
         tutorial::follow(&mut state.tutorial, &mut state.shared);
         effects.extend(forecast::follow_plan(&mut state.shared));
+        effects.extend(survey::follow(&mut state.shared));
         effects.extend(ground::follow_plan(&mut state.shared));
         effects.extend(series::follow(&mut state.shared));
         ground::follow_clearance(&mut state.shared);
@@ -133,6 +136,7 @@ fn take(state: &mut AppState, msg: Msg) -> Vec<Effect> {
             return uploaded(&mut state.shared, id, count, result);
         }
         Msg::Forecast(reply) => forecast::take_answer(&mut state.shared, reply),
+        Msg::Survey(reply) => survey::take_reply(&mut state.shared, reply, state.go_sentence),
         Msg::DownloadReply { id, result } => return plan::downloaded(&mut state.shared, id, result),
         Msg::FlightWritten { what, result } => plan::flight_written(&mut state.shared, what, result),
         Msg::Flights(list) => return flights::listed(state, list),
@@ -258,9 +262,10 @@ fn cancel(state: &mut AppState) -> Vec<Effect> {
     let input = field || state.shared.focus == Panel::Cli && state.panels.cli.console.cancel();
     let upload = state.shared.editor.fly_after_upload.take().is_some();
     let edit = state.shared.editor.cancel() | map_edit::leave(&mut state.shared);
-    let what = if popup || input || upload || edit { "Cancelled. " } else { "" };
+    let survey = survey::dismiss(&mut state.shared);
+    let what = if popup || input || upload || edit || survey.is_some() { "Cancelled. " } else { "" };
     state.shared.notify(Severity::Info, format!("{what}Ctrl-C again within 2 s quits."));
-    Vec::new()
+    survey.into_iter().collect()
 }
 
 /// Carries out an action of the plan editor.
@@ -388,9 +393,18 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
             state.shared.sticks_sent = None;
             return vec![VehicleCommand::ResetCraft.into()];
         }
-        Action::LookAhead => return forecast::toggle_look_ahead(&mut state.shared),
         Action::Layout => state.popups.push(Popup::Layout),
-        Action::WhatIf => state.popups.push(Popup::WhatIf { selected: 0 }),
+        Action::LookAhead => {
+            let survey = survey::dismiss(&mut state.shared);
+            return survey.into_iter().chain(forecast::toggle_look_ahead(&mut state.shared)).collect();
+        }
+        Action::WhatIf => {
+            // Without a flight only the last row is possible.
+            let selected = if action::flies(&state.shared).is_ok() { 0 } else { WHAT_IFS.len() };
+            state.popups.push(Popup::WhatIf { selected });
+        }
+        Action::WhereMay => return survey::toggle_sweep(&mut state.shared),
+        Action::GoNoGo => return survey::ask_go_no_go(&mut state.shared),
         Action::Pause => return vec![Effect::Send(Command::Pause(!state.shared.view.paused))],
         Action::Step => return timeline::step(&state.shared, state.step_ticks),
         Action::Tick => return timeline::step(&state.shared, 1),
@@ -428,6 +442,8 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
                 focus(state, Panel::Map);
             } else if let Some(requests) = state.panels.of_mut(focus_now).go_back(&state.shared) {
                 return carry_out(state, requests);
+            } else if let Some(effect) = survey::dismiss(&mut state.shared) {
+                return vec![effect];
             } else if !state.shared.forecast.dismiss()
                 && !state.shared.editor.cancel()
                 && !map_edit::leave(&mut state.shared)

@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 
 use crate::geo::LocalFrame;
 use crate::signals::{MotorCommand, SensorFrame};
-use crate::sim::{Airframe, Clock, Noise, Truth, World, WorldCommand, WorldError, WorldStatus};
+use crate::sim::{Airframe, Clock, Noise, Truth, World, WorldCommand, WorldConfig, WorldError, WorldStatus};
 use crate::telemetry::snapshot::{BatteryView, FaultView, TruthView, WindView, WorldView};
 
 /// The name of the airframe if an external simulator has it.
@@ -27,6 +27,17 @@ impl Physics {
         match self {
             Self::World(world) => world.sensors(),
             Self::External(external) => external.sensors(),
+        }
+    }
+
+    /// Returns the world at boot again, as [`World::again`] does; `None` for an external simulator.
+    ///
+    /// # Errors
+    /// Fails if a changed value is not allowed.
+    pub(super) fn again(&self, change: impl FnOnce(&mut WorldConfig)) -> Result<Option<Self>, WorldError> {
+        match self {
+            Self::World(world) => Ok(Some(Self::World(Box::new(world.again(change)?)))),
+            Self::External(_) => Ok(None),
         }
     }
 

@@ -8,7 +8,8 @@ mod shell;
 use self::extract::Shown;
 
 /// Words of the pages that represent something else, and an example for each.
-const PLACEHOLDERS: [(&str, &str); 11] = [
+const PLACEHOLDERS: [(&str, &str); 12] = [
+    ("FAULT", "gps-loss,6"),
     ("COMMAND", "fly"),
     ("FILE", "my-test.toml"),
     ("N", "0"),

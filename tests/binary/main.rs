@@ -56,6 +56,7 @@ mod state_files;
 #[cfg(unix)]
 mod streams;
 mod support;
+mod survey;
 mod sweep;
 #[cfg(unix)]
 mod terminal;

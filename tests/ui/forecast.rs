@@ -190,13 +190,17 @@ fn a_look_ahead_ends_with_the_flight() {
 #[test]
 fn there_is_nothing_to_look_ahead_to_on_the_ground() {
     let (mut state, _) = ready((80, 24));
-    for c in ['L', 'w'] {
-        assert!(press(&mut state, c).is_empty());
-        assert!(
-            state.shared.notice.as_ref().is_some_and(|notice| notice.text.contains("`F` flies the plan"))
-        );
-        assert!(state.popups.is_empty());
-    }
+    let refused = |state: &AppState| {
+        state.shared.notice.as_ref().is_some_and(|notice| notice.text.contains("`F` flies the plan"))
+    };
+    assert!(press(&mut state, 'L').is_empty());
+    assert!(refused(&state) && state.popups.is_empty());
+    // Only the flights from home are possible.
+    press(&mut state, 'w');
+    key(&mut state, KeyCode::Up);
+    assert!(!refused(&state));
+    assert!(key(&mut state, KeyCode::Enter).is_empty());
+    assert!(refused(&state) && state.popups.is_empty());
 }
 
 #[test]

@@ -28,6 +28,7 @@ mod screens;
 mod searches;
 mod session_rig;
 mod settings;
+mod survey;
 mod terrain;
 mod twelve_tasks;
 mod uploads;

@@ -18,12 +18,6 @@ use crate::report::campaign::{Reported, forecast_json, forecast_reason, forecast
 use crate::report::flight::Verdict;
 use crate::report::html::{CampaignPage, campaign_page};
 
-/// The usual number of flights.
-const FLIGHTS: u64 = 100;
-/// The usual reserve and the usual share of successes for go, per cent.
-const RESERVE_PCT: f64 = 20.0;
-const GO_FROM_PCT: f64 = 95.0;
-
 /// Flies and answers. The exit code is 0 if the answer is go.
 pub(super) fn run(args: &ForecastArgs, repeat: &[String]) -> Result<u8, AppError> {
     let Wanted::Plan(definition, sources) = definition::read(&campaign_of(args))? else {
@@ -42,7 +36,7 @@ pub(super) fn run(args: &ForecastArgs, repeat: &[String]) -> Result<u8, AppError
     };
     let page = args.report.as_deref().map(FinalOutput::begin).transpose()?;
     let flights = loaded.header.flights;
-    let reserve = args.reserve.unwrap_or(RESERVE_PCT) / 100.0;
+    let reserve = args.reserve.map_or(Forecast::RESERVE, |reserve| reserve / 100.0);
     let mut forecast = Forecast::new(loaded.campaign.scenario(), flights, reserve);
 
     let interrupted = interrupt_flag()?;
@@ -68,7 +62,8 @@ pub(super) fn run(args: &ForecastArgs, repeat: &[String]) -> Result<u8, AppError
     progress.clear();
     trouble?;
 
-    let (name, go_from) = (&loaded.header.name, args.go_from.unwrap_or(GO_FROM_PCT) / 100.0);
+    let (name, go_from) =
+        (&loaded.header.name, args.go_from.map_or(Forecast::GO_FROM, |share| share / 100.0));
     let answer = forecast.answer();
     let object = || forecast_json(name, &answer, go_from) + "\n";
     match args.json {
@@ -126,7 +121,7 @@ fn campaign_of(args: &ForecastArgs) -> CampaignArgs {
     }));
     CampaignArgs {
         what: Some(args.plan.clone()),
-        flights: Some(args.flights.unwrap_or(FLIGHTS)),
+        flights: Some(args.flights.unwrap_or(Forecast::FLIGHTS)),
         vary,
         jobs: args.jobs,
         mission: args.mission.clone(),

@@ -90,6 +90,29 @@ pub const FAULTS: [FaultInfo; 28] = [
 /// The longest permitted time, s: a century, so that microseconds never overflow.
 pub(in crate::sim) const MAX_TIME_S: f64 = 3.2e9;
 
+impl ScheduledFault {
+    /// Reads a fault without its time, `NAME[,FOR][,VALUE]`. It begins at the engagement.
+    ///
+    /// # Errors
+    /// Fails with a sentence.
+    pub fn without_time(text: &str) -> Result<Self, String> {
+        let (name, rest) = text.split_once(',').map_or((text, None), |(name, rest)| (name, Some(rest)));
+        if name.contains('@') {
+            return Err(
+                "leave the time out: the fault begins at every second; write NAME[,FOR][,VALUE]".to_owned()
+            );
+        }
+        let timed = rest.map_or_else(|| format!("{name}@0"), |rest| format!("{name}@0,{rest}"));
+        timed.parse().map_err(|error: ParseError| error.problem().to_owned())
+    }
+
+    /// Returns the fault without its time.
+    pub fn timeless(&self) -> String {
+        let at_engagement = Self { start: FaultStart::Engagement(0.0), ..*self };
+        at_engagement.to_string().replacen("@0", "", 1)
+    }
+}
+
 impl FromStr for ScheduledFault {
     type Err = ParseError;
 

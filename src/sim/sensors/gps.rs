@@ -113,6 +113,11 @@ impl Gps {
         }
     }
 
+    /// Returns the number of solutions per second.
+    pub(crate) fn rate_hz(&self) -> u8 {
+        self.rate_hz
+    }
+
     /// Sets the number of solutions per second, 1…20.
     pub(crate) fn set_rate(&mut self, rate_hz: u8) {
         self.rate_hz = rate_hz;

@@ -12,7 +12,7 @@ use crate::sim::battery::Battery;
 use crate::sim::body::BodyState;
 use crate::sim::clock::{Clock, FaultHost as _};
 use crate::sim::command::{check_wind, in_range};
-use crate::sim::config::{Wind, WorldConfig, WorldError};
+use crate::sim::config::{Home, Wind, WorldConfig, WorldError};
 use crate::sim::fault::FaultLink;
 use crate::sim::landform::{Landform, LocalRelief};
 use crate::sim::plant::Plant;
@@ -23,7 +23,7 @@ use crate::sim::touchdown::TouchdownDetector;
 use crate::sim::truth::{Truth, level_attitude};
 use crate::terrain::Relief;
 
-use super::World;
+use super::{World, WorldStatus};
 
 impl World {
     /// Returns a world at boot, with the craft on its legs at home.
@@ -32,10 +32,47 @@ impl World {
     /// Fails if a value of the configuration is not allowed.
     pub fn new(config: WorldConfig) -> Result<Self, WorldError> {
         check(&config)?;
+        let relief = relief(&config);
+        Self::build(config, relief)
+    }
+
+    /// Returns the same craft at boot at the same place, in the present air with the present switches and without faults.
+    /// `change` may change these values before; terrain stays as it is.
+    ///
+    /// # Errors
+    /// Fails if a changed value is not allowed.
+    pub fn again(&self, change: impl FnOnce(&mut WorldConfig)) -> Result<Self, WorldError> {
+        let frame = self.local_frame();
+        let WorldStatus { gust_mps, turbulence, noise, switches, .. } = self.status();
+        let mut config = WorldConfig {
+            airframe: self.airframe.clone(),
+            home: Home {
+                lat_deg: frame.lat_deg,
+                lon_deg: frame.lon_deg,
+                alt_amsl_m: frame.alt_amsl_m,
+                heading_deg: self.heading_deg,
+            },
+            rate_hz: (1_000_000 / self.clock.step_us()) as u32,
+            seed: self.clock.seed(),
+            noise,
+            wind: self.air.wind_that_was_set(),
+            gust_mps,
+            turbulence,
+            switches,
+            faults: Vec::new(),
+            terrain: None,
+        };
+        change(&mut config);
+        check(&config)?;
+        let mut world = Self::build(config, self.relief.clone())?;
+        world.sensors.gps.set_rate(self.sensors.gps.rate_hz());
+        Ok(world)
+    }
+
+    fn build(config: WorldConfig, relief: Option<LocalRelief>) -> Result<Self, WorldError> {
         let clock = Clock::new(config.rate_hz, config.seed, FaultLink::Embedded, config.faults.clone())?;
         let step_s = clock.step_us() as f64 * 1e-6;
         let heading_deg = config.home.heading_deg;
-        let relief = relief(&config);
         let landform = Landform::new(config.switches.ground, relief.as_ref())?;
         let start = standing(&config.airframe, &landform, &Vector2::zeros(), heading_deg);
         let mut plant = Plant::new(&config.airframe, step_s);

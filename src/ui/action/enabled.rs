@@ -5,7 +5,7 @@ use crate::session::policy::{self, Facts, NOT_KNOWN_YET, Refusal};
 use crate::telemetry::{Mode, NavState};
 use crate::ui::shared::Shared;
 use crate::ui::stick_recording::keys as stick_recording;
-use crate::ui::transmitter;
+use crate::ui::{survey, transmitter};
 
 use super::intent::intent_of;
 use super::{Action, PanelAction};
@@ -37,18 +37,11 @@ fn can_do(state: &Shared, action: Action) -> Result<(), String> {
         },
         Action::GoTo | Action::HoldHere | Action::Resume => can_command(state, action),
         Action::LookAhead if state.forecast.looks_ahead() => Ok(()),
-        Action::LookAhead | Action::WhatIf if !craft.is_armed() && state.view.pilot.is_none() => {
-            if state.is_disarmed_in_the_air() {
-                let reset = state.key(Action::ResetCraft);
-                return Err(format!(
-                    "The craft falls disarmed, so there is no flight to look ahead to: `{reset}` puts it back home."
-                ));
-            }
-            let fly = state.key(Action::Fly);
-            Err(format!(
-                "The craft stands disarmed, so there is no flight to look ahead to: `{fly}` flies the plan."
-            ))
-        }
+        // The list has the flights of the plan from home, too.
+        Action::WhatIf if survey::can_ask(state).is_ok() => Ok(()),
+        Action::WhereMay if state.survey.sweep().is_some() => Ok(()),
+        Action::WhereMay | Action::GoNoGo => survey::can_ask(state),
+        Action::LookAhead | Action::WhatIf => flies(state),
         Action::Arm => transmitter::can_arm(state).map_err(|why| or_not_known_yet(state, why)),
         Action::Autopilot => {
             let switch = transmitter::switch(state, Mode::Autopilot);
@@ -92,6 +85,24 @@ fn can_do(state: &Shared, action: Action) -> Result<(), String> {
         }
         _ => Ok(()),
     }
+}
+
+/// Checks that there is a flight to look ahead to.
+///
+/// # Errors
+/// Returns the reason and the way out, in one sentence.
+pub(in crate::ui) fn flies(state: &Shared) -> Result<(), String> {
+    if state.view.vehicle.craft.is_armed() || state.view.pilot.is_some() {
+        return Ok(());
+    }
+    if state.is_disarmed_in_the_air() {
+        let reset = state.key(Action::ResetCraft);
+        return Err(format!(
+            "The craft falls disarmed, so there is no flight to look ahead to: `{reset}` puts it back home."
+        ));
+    }
+    let fly = state.key(Action::Fly);
+    Err(format!("The craft stands disarmed, so there is no flight to look ahead to: `{fly}` flies the plan."))
 }
 
 /// Replaces the reason for a missing switch while the remote firmware has not yet reported its switches.

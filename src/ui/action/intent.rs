@@ -32,7 +32,9 @@ pub(super) fn intent_of(state: &Shared, action: Action) -> Intent {
         Action::Edit(EditAction::SaveToFlash) => Intent::Save,
         // Ending it needs no flight.
         Action::LookAhead if state.forecast.looks_ahead() => Intent::Read,
-        Action::LookAhead | Action::WhatIf => Intent::Forecast,
+        // So does ending the survey.
+        Action::WhereMay if state.survey.sweep().is_some() => Intent::Read,
+        Action::LookAhead | Action::WhatIf | Action::WhereMay | Action::GoNoGo => Intent::Forecast,
         Action::Panel(action) => of_panel(action),
         _ => Intent::Read,
     }

@@ -1,14 +1,18 @@
 //! Flight commands with a choice. Without an argument they open the same list as their keys.
 
 use super::did_you_mean_end;
-use crate::flight::forecast::WHAT_IFS;
+use crate::flight::forecast::{WHAT_IFS, WhatIf};
 use crate::session::Command;
+use crate::sim::{FAULTS, FaultInfo, ScheduledFault};
 use crate::telemetry::InFlightCommand;
 use crate::ui::action::{self, Action};
-use crate::ui::forecast;
 use crate::ui::message::{Effect, Request, requests};
 use crate::ui::shared::Shared;
+use crate::ui::{forecast, survey};
 use crate::vehicle::VehicleCommand;
+
+/// The name of the row of the what-ifs that flies a hundred flights of the plan.
+const GO_NO_GO: &str = "go";
 
 /// Runs `go-to 2`.
 pub(super) fn go_to(state: &mut Shared, _: &str, argument: &str) -> Result<Vec<Request>, String> {
@@ -44,14 +48,20 @@ fn waypoints(state: &Shared) -> Vec<String> {
 /// Runs `what-if gps-loss`.
 pub(super) fn what_if(state: &mut Shared, _: &str, argument: &str) -> Result<Vec<Request>, String> {
     action::enabled(state, Action::WhatIf)?;
+    if argument == GO_NO_GO {
+        return Ok(vec![Request::Act(Action::GoNoGo)]);
+    }
     if argument.is_empty() {
         return Ok(vec![Request::Act(Action::WhatIf)]);
     }
     Ok(requests(ask_what_if(state, argument)?))
 }
 
-/// Flies ahead with the what-if of this name, or of this number in the list.
+/// Flies ahead with the what-if of this name, or of this number in the list. The last one flies a hundred flights.
 pub(in crate::ui) fn ask_what_if(state: &mut Shared, name: &str) -> Result<Vec<Effect>, String> {
+    if name == GO_NO_GO || name.parse() == Ok(WHAT_IFS.len() + 1) {
+        return Ok(survey::ask_go_no_go(state));
+    }
     let numbered = name.parse::<usize>().ok().and_then(|number| number.checked_sub(1));
     let found = match numbered {
         Some(at) => WHAT_IFS.get(at),
@@ -64,11 +74,36 @@ pub(in crate::ui) fn ask_what_if(state: &mut Shared, name: &str) -> Result<Vec<E
             _ => format!("There is no what-if {name}; there are {}.", names.join(", ")),
         }
     })?;
-    Ok(forecast::ask_what_if(state, found))
+    Ok(fly_what_if(state, found))
+}
+
+/// Flies ahead with a what-if, in place of a survey.
+pub(in crate::ui) fn fly_what_if(state: &mut Shared, what_if: WhatIf) -> Vec<Effect> {
+    let survey = survey::dismiss(state);
+    survey.into_iter().chain(forecast::ask_what_if(state, what_if)).collect()
+}
+
+/// Runs `where gps-loss,6`.
+pub(super) fn where_may(state: &mut Shared, _: &str, argument: &str) -> Result<Vec<Request>, String> {
+    if argument.is_empty() {
+        action::enabled(state, Action::WhereMay)?;
+        return Ok(vec![Request::Act(Action::WhereMay)]);
+    }
+    // A sweep that is shown gives way to the new one.
+    action::enabled(state, Action::GoNoGo)?;
+    let fault =
+        ScheduledFault::without_time(argument).map_err(|problem| format!("where {argument}: {problem}."))?;
+    Ok(requests(survey::ask_sweep(state, fault)))
+}
+
+/// Returns the matching names of faults.
+pub(super) fn complete_where(_: &Shared, _: &str, typed: &str) -> Vec<String> {
+    let names = FAULTS.iter().map(FaultInfo::name);
+    names.filter(|name| name.starts_with(typed)).map(str::to_owned).collect()
 }
 
 /// Returns the matching names of what-ifs.
 pub(super) fn complete_what_if(_: &Shared, _: &str, typed: &str) -> Vec<String> {
-    let names = WHAT_IFS.iter().map(|what_if| what_if.name);
+    let names = WHAT_IFS.iter().map(|what_if| what_if.name).chain([GO_NO_GO]);
     names.filter(|name| name.starts_with(typed)).map(str::to_owned).collect()
 }

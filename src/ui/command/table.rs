@@ -47,6 +47,8 @@ commands! {
         flight::go_to, flight::complete_go_to;
     "what-if" "NAME" "How the flight would end with a fault now; without a name: choose one"
         flight::what_if, flight::complete_what_if;
+    "where" "FAULT" "Where this fault may be fatal, such as gps-loss,6; without a fault: the one of before"
+        flight::where_may, flight::complete_where;
     "speed" "FACTOR or max" "Times real time" time::speed, time::complete_speed;
     "world" "NAME=VALUE" "A rare switch of the simulated world" world::switch, world::complete_switch;
     "theme" "NAME" "The colours: dark, light, high-contrast, 16, mono" display::theme, display::complete_theme;

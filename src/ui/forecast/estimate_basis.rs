@@ -1,7 +1,7 @@
 //! The input of a flown estimate, as far as the screen knows it.
 
 use crate::plan::FlightPlan;
-use crate::session::ForecastRequest;
+use crate::session::{ForecastRequest, SurveyedPlan};
 use crate::telemetry::Turbulence;
 use crate::telemetry::snapshot::{SettingsView, WindView};
 use crate::ui::editor::settings_in_force;
@@ -13,7 +13,7 @@ const WIND_DEG: f64 = 10.0;
 
 /// The input of an estimate.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct EstimateBasis {
+pub(in crate::ui) struct EstimateBasis {
     plan: FlightPlan,
     settings: Vec<String>,
     craft: Option<SettingsView>,
@@ -32,7 +32,7 @@ struct Air {
 
 impl EstimateBasis {
     /// Returns the input for the open plan now.
-    pub(super) fn of(state: &Shared) -> Self {
+    pub(in crate::ui) fn of(state: &Shared) -> Self {
         let world = &state.view.vehicle.world;
         Self {
             plan: state.plan().clone(),
@@ -49,12 +49,22 @@ impl EstimateBasis {
     }
 
     /// Returns `true` if an estimate for this input still fits the open plan, apart from small changes of the wind.
-    pub(super) fn still_holds(&self, state: &Shared) -> bool {
-        let world = &state.view.vehicle.world;
+    pub(in crate::ui) fn still_holds(&self, state: &Shared) -> bool {
         self.plan == *state.plan()
             && self.settings == to_upload(state)
             && self.craft == state.view.vehicle.settings.map(chosen)
-            && self.air.airframe == world.airframe
+            && self.has_air_of(state)
+    }
+
+    /// Returns `true` if the craft has got the settings of the plan, and the input is the same else.
+    pub(in crate::ui) fn is_uploaded(&self, state: &Shared) -> bool {
+        let has_come = !self.settings.is_empty() && to_upload(state).is_empty();
+        has_come && self.plan == *state.plan() && self.has_air_of(state)
+    }
+
+    fn has_air_of(&self, state: &Shared) -> bool {
+        let world = &state.view.vehicle.world;
+        self.air.airframe == world.airframe
             && self.air.turbulence == world.turbulence
             && self.air.noise == world.noise
             && (self.air.gust_mps - world.gust_mps).abs() < WIND_MPS
@@ -64,6 +74,11 @@ impl EstimateBasis {
     /// Returns `true` if the plan has waypoints to fly.
     pub(super) fn has_waypoints(&self) -> bool {
         !self.plan.waypoints.is_empty()
+    }
+
+    /// Returns the plan for a survey.
+    pub(in crate::ui) fn surveyed(&self) -> SurveyedPlan {
+        SurveyedPlan { plan: self.plan.clone(), settings: self.settings.clone() }
     }
 
     /// Returns the request for this input.

@@ -13,14 +13,25 @@ use crate::ui::panel::{line, row};
 
 /// The width of the inside.
 const WIDTH: u16 = 34;
+/// The last row.
+pub(crate) const GO_NO_GO: &str = "go or no-go (100 noisy flights)";
+
+/// A row of the list.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Choice {
+    WhatIf(WhatIf),
+    /// A hundred noisy flights of the plan, from home.
+    GoNoGo,
+}
 
 /// Handles a key for the list; `selected` is the selected row.
-pub(crate) fn key(selected: &mut usize, event: KeyEvent) -> Outcome<WhatIf> {
+pub(crate) fn key(selected: &mut usize, event: KeyEvent) -> Outcome<Choice> {
     match event.code {
         KeyCode::Up | KeyCode::Char('k') => *selected = selected.saturating_sub(1),
-        KeyCode::Down | KeyCode::Char('j') => *selected = (*selected + 1).min(WHAT_IFS.len() - 1),
+        KeyCode::Down | KeyCode::Char('j') => *selected = (*selected + 1).min(WHAT_IFS.len()),
         KeyCode::Enter => {
-            return WHAT_IFS.get(*selected).map_or(Outcome::Left, |&chosen| Outcome::Chosen(chosen));
+            let what_if = WHAT_IFS.get(*selected);
+            return Outcome::Chosen(what_if.map_or(Choice::GoNoGo, |&chosen| Choice::WhatIf(chosen)));
         }
         KeyCode::Esc | KeyCode::Char('w' | 'q') => return Outcome::Left,
         _ => {}
@@ -28,13 +39,19 @@ pub(crate) fn key(selected: &mut usize, event: KeyEvent) -> Outcome<WhatIf> {
     Outcome::Open
 }
 
-/// Draws the popup; `selected` is the selected row.
-pub(crate) fn draw(theme: &Theme, selected: usize, area: Rect, buffer: &mut Buffer) {
-    let height = WHAT_IFS.len() as u16 + 2;
+/// Draws the popup; `selected` is the selected row. Without a flight only the last row is possible.
+pub(crate) fn draw(theme: &Theme, flies: bool, selected: usize, area: Rect, buffer: &mut Buffer) {
+    let height = WHAT_IFS.len() as u16 + 3;
     let inside = popup(theme, area, (WIDTH, height), "What if, from this instant on:", buffer);
-    for (at, what_if) in WHAT_IFS.iter().enumerate() {
-        let (mark, role) = if at == selected { ("▸", Role::Selected) } else { (" ", Role::Text) };
-        row(buffer, inside, at as u16, theme, role, &format!("{mark} {}", what_if.title));
+    let rows = WHAT_IFS.iter().map(|what_if| what_if.title).chain([GO_NO_GO]);
+    for (at, title) in rows.enumerate() {
+        let is_possible = flies || at == WHAT_IFS.len();
+        let (mark, role) = match (at == selected, is_possible) {
+            (true, _) => ("▸", Role::Selected),
+            (false, true) => (" ", Role::Text),
+            (false, false) => (" ", Role::Dim),
+        };
+        row(buffer, inside, at as u16, theme, role, &format!("{mark} {title}"));
     }
     let keys = [(" ↑ ↓", " choose  "), ("Enter", " fly  "), ("Esc", " close")];
     line(buffer, inside, height - 1, &key_line(theme, &keys));

@@ -8,7 +8,7 @@ use tokio::sync::mpsc;
 
 use super::{SessionLink, flights};
 use crate::session::command::VehicleCopy;
-use crate::session::{Command, ForecastReply, Forecaster, ReplyTo};
+use crate::session::{Command, ForecastReply, Forecaster, ReplyTo, SurveyNews, SurveyReply, Surveyor};
 use crate::timeline::RecordedFlight;
 use crate::ui::editor::FileReply;
 use crate::ui::files_link::FilesLink;
@@ -28,6 +28,12 @@ impl Answers {
     pub(super) fn of_forecasts(&self) -> impl FnMut(ForecastReply) + Send + 'static + use<> {
         let answers = self.clone();
         move |reply| answers.send(Msg::Forecast(reply))
+    }
+
+    /// Returns the receiver of the surveyor's replies.
+    pub(super) fn of_surveys(&self) -> impl FnMut(SurveyReply) + Send + 'static + use<> {
+        let answers = self.clone();
+        move |reply| answers.send(Msg::Survey(reply))
     }
 
     pub(super) fn send(&self, msg: Msg) {
@@ -51,11 +57,29 @@ impl Answers {
     }
 }
 
+/// The threads that fly copies of the vehicle.
+#[derive(Debug)]
+pub(super) struct Threads {
+    forecaster: Forecaster,
+    surveyor: Surveyor,
+}
+
+impl Threads {
+    /// Starts them.
+    ///
+    /// # Errors
+    /// Returns an error if the system cannot start a thread.
+    pub(super) fn start(answers: &Answers) -> io::Result<Self> {
+        let forecaster = Forecaster::start(answers.of_forecasts())?;
+        Ok(Self { forecaster, surveyor: Surveyor::start(answers.of_surveys())? })
+    }
+}
+
 /// Carries out an effect; answers come back as messages.
 pub(super) fn carry_out(
     effect: Effect,
     link: &SessionLink,
-    forecaster: &Forecaster,
+    threads: &Threads,
     files: &mut FilesLink,
     answers: &Answers,
 ) {
@@ -145,7 +169,7 @@ pub(super) fn carry_out(
             Command::CopyRecording(reply)
         }
         Effect::Forecast(job) => {
-            let (forecaster, answers) = (forecaster.clone(), answers.clone());
+            let (forecaster, answers) = (threads.forecaster.clone(), answers.clone());
             Command::CopyVehicle(ReplyTo::new(move |copy: Option<Result<VehicleCopy, String>>| match copy {
                 Some(Ok(copy)) => forecaster.order(job, copy),
                 Some(Err(reason)) => {
@@ -155,6 +179,23 @@ pub(super) fn carry_out(
                 // The session ends.
                 None => {}
             }))
+        }
+        Effect::Survey(job) => {
+            threads.surveyor.want(job.revision);
+            let (surveyor, answers) = (threads.surveyor.clone(), answers.clone());
+            Command::CopyVehicle(ReplyTo::new(move |copy: Option<Result<VehicleCopy, String>>| match copy {
+                Some(Ok(copy)) => surveyor.order(job, copy),
+                Some(Err(reason)) => {
+                    let news = SurveyNews::Refused(reason);
+                    answers.send(Msg::Survey(SurveyReply { revision: job.revision, news }));
+                }
+                // The session ends.
+                None => {}
+            }))
+        }
+        Effect::EndSurvey(revision) => {
+            threads.surveyor.want(revision);
+            return;
         }
     };
     // A command that is not delivered is dropped after this message.

@@ -5,10 +5,10 @@ use std::time::Instant;
 
 use tokio::sync::mpsc;
 
-use super::effects::{Answers, carry_out};
+use super::effects::{Answers, Threads, carry_out};
 use super::{Ending, SessionLink, flights, second_flight};
 use crate::flight::forecast::ForecastKind;
-use crate::session::{Command, Forecaster};
+use crate::session::Command;
 use crate::ui::app_state::AppState;
 use crate::ui::config::UiConfig;
 use crate::ui::editor::{FileReply, FileRequest};
@@ -55,7 +55,7 @@ async fn run_loop(
     let view = link.view.borrow_and_update().clone();
     let mut state = AppState::new(config, SIZE, view);
     let (answers, mut replies) = Answers::channel();
-    let forecaster = Forecaster::start(answers.of_forecasts())?;
+    let threads = Threads::start(&answers)?;
     let mut awaited = 0_usize;
     let mut has_ended = false;
     let ending = loop {
@@ -123,9 +123,13 @@ async fn run_loop(
                 Effect::ShowFlights { files, again } => {
                     lines.write(&flights::command(&link, &files, again))?;
                 }
+                Effect::EndSurvey(_) => {
+                    awaited = awaited.saturating_sub(1);
+                    carry_out(effect, &link, &threads, &mut files, &answers);
+                }
                 effect => {
                     awaited += usize::from(is_question(&effect));
-                    carry_out(effect, &link, &forecaster, &mut files, &answers);
+                    carry_out(effect, &link, &threads, &mut files, &answers);
                 }
             }
         }
@@ -151,7 +155,8 @@ fn is_question(effect: &Effect) -> bool {
         | Effect::WriteFlight { .. }
         | Effect::WriteRecording { .. }
         | Effect::DeleteFlight(_)
-        | Effect::SaveToFlash => true,
+        | Effect::SaveToFlash
+        | Effect::Survey(_) => true,
         Effect::ListFlights { after } => after.is_zero(),
         Effect::Files(request) => {
             matches!(
@@ -165,6 +170,7 @@ fn is_question(effect: &Effect) -> bool {
         }
         Effect::Forecast(job) => job.request.kind() != ForecastKind::PlanEstimate,
         Effect::Send(_)
+        | Effect::EndSurvey(_)
         | Effect::Curves(_)
         | Effect::ShowFlights { .. }
         | Effect::ReadSettings
@@ -188,6 +194,7 @@ fn is_answer(msg: &Msg) -> bool {
         | Msg::Flights(_)
         | Msg::Busy => true,
         Msg::Forecast(reply) => reply.kind != ForecastKind::PlanEstimate,
+        Msg::Survey(reply) => reply.news.is_last(),
         Msg::Files(reply) => !matches!(
             reply,
             FileReply::Changed(_)

@@ -4,16 +4,17 @@ use crossterm::event::{KeyCode, KeyEvent};
 
 use super::{act, arrange, flights, map_menu, permission, run_line};
 use crate::telemetry::InFlightCommand;
-use crate::ui::action::Action;
+use crate::ui::action::{self, Action};
 use crate::ui::app_state::AppState;
+use crate::ui::command;
 use crate::ui::editor::FileRequest;
 use crate::ui::event_log::Severity;
-use crate::ui::forecast;
 use crate::ui::history::LineField;
 use crate::ui::message::Effect;
 use crate::ui::panel::graphs;
 use crate::ui::popup::palette::Entry;
 use crate::ui::popup::signal_list::SignalKey;
+use crate::ui::popup::what_if::Choice;
 use crate::ui::popup::{Outcome, Popup, command_line, guards, palette, signal_list, what_if};
 use crate::ui::settings;
 use crate::vehicle::VehicleCommand;
@@ -33,8 +34,14 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) 
         }
         Some(Popup::WhatIf { selected }) => {
             let outcome = what_if::key(selected, event);
-            let what_if = chosen(&mut state.popups, outcome);
-            what_if.map_or_else(Vec::new, |what_if| forecast::ask_what_if(&mut state.shared, what_if))
+            match chosen(&mut state.popups, outcome) {
+                None => Vec::new(),
+                Some(Choice::GoNoGo) => act(state, Action::GoNoGo),
+                Some(Choice::WhatIf(what_if)) => match action::flies(&state.shared) {
+                    Ok(()) => command::flight::fly_what_if(&mut state.shared, what_if),
+                    Err(reason) => state.shared.only_notify(Severity::Warn, reason),
+                },
+            }
         }
         Some(Popup::Guards { selected }) => {
             let mut chosen = *selected;

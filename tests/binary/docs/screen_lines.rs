@@ -5,7 +5,7 @@ use super::filled_in;
 use crate::pty::Terminal;
 
 /// The beginning of a line, and the words on the screen after it was carried out.
-const CARRIED_OUT: [(&str, &str); 16] = [
+const CARRIED_OUT: [(&str, &str); 18] = [
     (":allow-changes", "changes need no permission"),
     (":arm", "● ARMED"),
     (":backdrop field.geojson", "is under the plan: 10 vertices"),
@@ -13,6 +13,7 @@ const CARRIED_OUT: [(&str, &str); 16] = [
     (":fault gps-loss", "Fault gps-loss begins."),
     (":fault teleport", "Fault teleport 90,90,0 begins."),
     (":flight.home", "Nothing to bring home"),
+    (":layout save ", "kept for this run only"),
     (":log ", "No log was written: the craft was not armed"),
     (":record ", "so far is recorded as"),
     (":scenario ", "The flight is written as"),
@@ -21,6 +22,7 @@ const CARRIED_OUT: [(&str, &str); 16] = [
     (":set ap_", " set to "),
     (":speed 4", " 4×"),
     (":tutorial", "▸ 1/5"),
+    (":where ", " at every second: "),
     (":wind 5@270", "wind=5@270"),
 ];
 

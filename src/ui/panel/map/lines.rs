@@ -3,6 +3,7 @@
 use ratatui::style::Color;
 use ratatui::widgets::canvas::{Context, Line as CanvasLine};
 
+use crate::flight::sweep::Fate;
 use crate::plan::{Approach, HoldPattern, Waypoint};
 use crate::telemetry::NavTelemetry;
 use crate::telemetry::snapshot::SettingsView;
@@ -14,7 +15,7 @@ use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
 use crate::ui::track::TrackPoint;
 use crate::ui::viewport::Viewport;
-use crate::ui::{forecast, map_edit};
+use crate::ui::{forecast, map_edit, survey};
 
 use super::track_line::TrackLine;
 use super::{PlacedWaypoint, Scene};
@@ -158,10 +159,18 @@ pub(super) fn paint(state: &Shared, scene: &Scene, context: &mut Context<'_>) {
         for (number, spots) in scene.preview.iter().enumerate() {
             legs(if number == 0 { home_or_last } else { scene.home }, spots, painter);
         }
-        if let Some(ghost) = forecast::ghost(state).filter(|_| scene.preview.is_empty()) {
+        let is_free = scene.preview.is_empty() && state.survey.sweep().is_none();
+        if let Some(ghost) = forecast::ghost(state).filter(|_| is_free) {
             painter.dotted(ghost.path.iter().map(|point| MapPoint::new(point.n, point.e)));
         }
     });
+    if let Some(sweep) = state.survey.sweep().filter(|_| scene.preview.is_empty()) {
+        for fate in [Fate::Home, Fate::Off, Fate::Lost] {
+            layer(survey::role(fate), &mut |painter| {
+                sweep.legs(fate).for_each(|(from, to)| painter.line(from, to));
+            });
+        }
+    }
     // The track is bright up to the shown instant. The part after it, abandoned branches and earlier flights are faint.
     let (points, later) = state.track.points().split_at(state.track_points_shown());
     layer(Role::Dim, &mut |painter| {

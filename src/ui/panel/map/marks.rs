@@ -24,7 +24,8 @@ pub(super) fn write(state: &Shared, scene: &Scene, buffer: &mut Buffer) {
     let mut labels = Labels::new(theme, scene.view, buffer);
     frame_notes(state, &mut labels);
     let ghost = forecast::ghost(state).filter(|_| scene.preview.is_empty());
-    let ghost_line = ghost.map(|ghost| format!("··· {}", ghost.line));
+    let sweep = state.survey.sweep().filter(|_| scene.preview.is_empty());
+    let ghost_line = state.survey.line().or(ghost.map(|ghost| format!("··· {}", ghost.line)));
     if let Some(line) = &ghost_line {
         labels.top(line, Role::Predicted);
     }
@@ -34,6 +35,9 @@ pub(super) fn write(state: &Shared, scene: &Scene, buffer: &mut Buffer) {
     }
     if let Some(place) = scene.planned_home {
         labels.mark(place, "⌂", Role::Dim);
+    }
+    for (place, mark, role) in sweep.iter().flat_map(|sweep| sweep.marks()) {
+        labels.mark(place, mark, role);
     }
     for spot in &scene.spots {
         let role = if Some(spot.index) == scene.current { Role::Target } else { Role::Title };

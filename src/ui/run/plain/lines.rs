@@ -10,7 +10,7 @@ use crate::ui::message::{Effect, Msg};
 use crate::ui::panel::{Panel, in_words};
 use crate::ui::popup::Popup;
 use crate::ui::update::{self, run_line, update};
-use crate::ui::{command, forecast, prompt, status_bar};
+use crate::ui::{command, forecast, prompt, status_bar, survey};
 
 /// The output, and the question written last.
 #[derive(Debug)]
@@ -121,6 +121,18 @@ impl<W: Write> Lines<W> {
                 update(state, Msg::Flights(list));
                 state.shared.flights.rest();
                 Ok(Vec::new())
+            }
+            Msg::Survey(reply) => {
+                let is_last = reply.news.is_last();
+                let effects = update(state, Msg::Survey(reply));
+                if let Some(line) = state.shared.survey.completed_line() {
+                    self.write(&line)?;
+                }
+                if is_last {
+                    // Once for each request.
+                    survey::dismiss(&mut state.shared);
+                }
+                Ok(effects)
             }
             msg => Ok(update(state, msg)),
         }
