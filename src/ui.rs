@@ -18,7 +18,8 @@
 //!   [`command`] takes an argument and returns requests, which `update` carries out.
 //! * `panel` has one file per panel, `popup` the windows over them, `keymap` the keys of the configuration file.
 //!   `transmitter` is the user's virtual RC transmitter, `stick_recording` records its sticks, `forecast` holds the
-//!   results of flights flown ahead of time, `survey` those of many flights of the plan, `settings` those of the craft, `graphs` the history of the graphs' signals,
+//!   results of flights flown ahead of time, `survey` those of many flights of the plan, `diff` puts two versions of a plan
+//!   or of the settings beside each other, `settings` holds those of the craft, `graphs` the history of the graphs' signals,
 //!   `ground` the elevation tiles, `flights` is the library of recorded flights, `past_flight` shows a recorded flight at
 //!   once, `other_flight` a second one beside it,
 //!   `map_point` the places on the map, `viewport` its window, `map_edit` the edits on it, `backdrop` the files under it,
@@ -45,6 +46,7 @@ mod completion;
 mod config;
 mod console;
 mod curve;
+mod diff;
 mod draw;
 mod drawing;
 pub mod editor;

@@ -234,10 +234,7 @@ impl PlanFiles {
             }
             FileRequest::Backdrop(id, path) => vec![self.read_backdrop(id, &path, true)],
             FileRequest::NoBackdrop(id) => {
-                if let Some(file) = self.open.get_mut(&id) {
-                    file.backdrop.clear();
-                }
-                self.keep_backdrop(id);
+                self.forget_backdrop(id);
                 Vec::new()
             }
             FileRequest::List(directory) => vec![self.list(directory)],
@@ -246,6 +243,7 @@ impl PlanFiles {
                 self.lines.append(field, &line);
                 Vec::new()
             }
+            FileRequest::ReadDisk { id, path, home } => vec![on_disk::compared(id, &path, home)],
             FileRequest::SaveSettings { path, text, count } => vec![settings_file::save(path, &text, count)],
             FileRequest::KeepLayout(line) => {
                 self.layouts.append(&line).err().map(FileReply::Failed).into_iter().collect()

@@ -24,6 +24,33 @@ impl fmt::Display for Difference {
     }
 }
 
+/// A waypoint of one plan beside its counterpart in another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Pair {
+    /// The number in the first plan; `None` if only the second one has it.
+    pub from: Option<usize>,
+    /// The number in the second plan; `None` if only the first one has it.
+    pub to: Option<usize>,
+}
+
+/// Returns the waypoints of two plans beside each other. Equal waypoints at the beginning and at the end belong
+/// together, so that one that was inserted or deleted does not shift the others. Those between them are paired in their
+/// order.
+pub fn pairs(from: &FlightPlan, to: &FlightPlan) -> Vec<Pair> {
+    let (a, b) = (&from.waypoints, &to.waypoints);
+    let shorter = a.len().min(b.len());
+    let before = std::iter::zip(a, b).take_while(|(a, b)| a == b).count();
+    let after = std::iter::zip(a.iter().rev(), b.iter().rev()).take_while(|(a, b)| a == b).count();
+    let after = after.min(shorter - before);
+    let both = shorter - before - after;
+    let pair = |from, to| Pair { from: Some(from), to: Some(to) };
+    let firsts = (0..before + both).map(|at| pair(at, at));
+    let only_from = (before + both..a.len() - after).map(|at| Pair { from: Some(at), to: None });
+    let only_to = (before + both..b.len() - after).map(|at| Pair { from: None, to: Some(at) });
+    let lasts = (0..after).map(|at| pair(a.len() - after + at, b.len() - after + at));
+    firsts.chain(only_from).chain(only_to).chain(lasts).collect()
+}
+
 /// Returns the differences of the plan `to` from the plan `from`, in the order of the waypoints.
 pub fn differences(from: &FlightPlan, to: &FlightPlan) -> Vec<Difference> {
     let (from, to) = (from.records(), to.records());
@@ -77,6 +104,8 @@ fn of_waypoint(waypoint: usize, a: &WaypointRecord, b: &WaypointRecord) -> Vec<D
 mod tests {
     use super::super::format::{Format, parse};
     use super::*;
+    use crate::plan::{Altitude, Waypoint};
+    use proptest::prelude::*;
 
     fn plan(lines: &str) -> FlightPlan {
         parse("p.txt", lines, Format::CliText).unwrap().plan
@@ -84,6 +113,40 @@ mod tests {
 
     fn lines(from: &FlightPlan, to: &FlightPlan) -> Vec<String> {
         differences(from, to).iter().map(ToString::to_string).collect()
+    }
+
+    fn with_altitudes(altitudes: &[u16]) -> FlightPlan {
+        let waypoint = |altitude: &u16| Waypoint {
+            altitude: Altitude::above_home(f64::from(*altitude)),
+            ..Waypoint::default()
+        };
+        FlightPlan { waypoints: altitudes.iter().map(waypoint).collect() }
+    }
+
+    #[test]
+    fn an_inserted_waypoint_does_not_shift_the_others() {
+        let pair = |from, to| Pair { from, to };
+        assert_eq!(
+            pairs(&with_altitudes(&[1, 2, 3]), &with_altitudes(&[1, 9, 2, 3])),
+            [pair(Some(0), Some(0)), pair(None, Some(1)), pair(Some(1), Some(2)), pair(Some(2), Some(3))]
+        );
+        assert_eq!(
+            pairs(&with_altitudes(&[1, 1]), &with_altitudes(&[1])),
+            [pair(Some(0), Some(0)), pair(Some(1), None)]
+        );
+    }
+
+    proptest! {
+        #[test]
+        fn every_waypoint_of_both_plans_is_in_one_pair(
+            a in prop::collection::vec(0_u16..3, 0..8),
+            b in prop::collection::vec(0_u16..3, 0..8),
+        ) {
+            let found = pairs(&with_altitudes(&a), &with_altitudes(&b));
+            let of = |number: fn(&Pair) -> Option<usize>| found.iter().filter_map(number).collect::<Vec<_>>();
+            prop_assert_eq!(of(|pair| pair.from), (0..a.len()).collect::<Vec<_>>());
+            prop_assert_eq!(of(|pair| pair.to), (0..b.len()).collect::<Vec<_>>());
+        }
     }
 
     #[test]

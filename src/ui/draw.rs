@@ -15,8 +15,8 @@ use super::layout::{self, SMALLEST};
 use super::panel::{self, Panel, span};
 use super::popup::frame::{key_line, popup};
 use super::popup::{
-    Popup, action_menu, command_line, flights_list, go_to, guards, help, layout_bar, map_menu, palette,
-    signal_list, what_if,
+    Popup, action_menu, command_line, diff_view, flights_list, go_to, guards, help, layout_bar, map_menu,
+    palette, signal_list, what_if,
 };
 use super::settings;
 use super::shared::Shared;
@@ -84,6 +84,7 @@ fn draw_popup(state: &AppState, popup: &Popup, area: Rect, buffer: &mut Buffer) 
         Popup::Signals(list) => return signal_list::draw(shared, list, area, buffer),
         Popup::Palette(palette) => return palette::draw(shared, palette, area, buffer),
         Popup::Help(help) => return help::draw(shared, help, area, buffer),
+        Popup::Diff(view) => diff_view::draw(shared, view, area, buffer),
         Popup::GoTo(question) => go_to::draw(shared, question, area, buffer),
         Popup::MapMenu(menu) => map_menu::draw(&shared.theme, menu, area, buffer),
         Popup::WhatIf { selected } => {

@@ -64,6 +64,8 @@ pub struct Editor {
     pub(super) quitting: bool,
     /// `true` if edits cannot be kept, so that they are lost when the program is killed.
     pub(super) loses_edits: bool,
+    /// A plan whose file was read for a comparison, and the document in the file, or the reason why there is none.
+    pub(super) on_disk: Option<(PlanId, Result<Box<PlanDocument>, String>)>,
     /// The result that the open generator form would give.
     generator: Option<GeneratorFoot>,
     /// The findings about the zones of the backdrop.
@@ -108,6 +110,7 @@ impl Editor {
             dragged_altitude: None,
             quitting: false,
             loses_edits: false,
+            on_disk: None,
             generator: None,
             zones: ZoneReview::default(),
         }

@@ -9,7 +9,7 @@ pub(super) mod graphs;
 mod horizon;
 pub(super) mod in_words;
 mod log;
-mod map;
+pub(super) mod map;
 mod plan;
 pub(super) mod rc;
 mod settings;

@@ -2,6 +2,7 @@
 
 pub(super) mod action_menu;
 pub(super) mod command_line;
+pub(super) mod diff_view;
 pub(super) mod flights_list;
 pub(super) mod frame;
 pub(super) mod go_to;
@@ -15,6 +16,7 @@ pub(super) mod what_if;
 
 pub(super) use action_menu::ActionMenu;
 pub use command_line::CommandLine;
+pub(super) use diff_view::DiffView;
 pub use flights_list::FlightsList;
 pub(super) use go_to::GoTo;
 pub(super) use help::Help;
@@ -37,6 +39,8 @@ pub(super) enum Outcome<T> {
 pub enum Popup {
     /// The keys and their effects.
     Help(Help),
+    /// Two versions beside each other.
+    Diff(DiffView),
     /// The choice of a waypoint to go to.
     GoTo(GoTo),
     /// The menu of a place on the map.

@@ -14,9 +14,9 @@ use super::command;
 use super::editor::{ConversionLosses, EditorPopup, OpenPlan, Question};
 use super::message::{Effect, Msg};
 use super::permission;
-use super::popup::{Popup, what_if};
+use super::popup::{Popup, diff_view, what_if};
 use super::settings::changes::reset_question;
-use super::update::update;
+use super::update::{compare, update};
 
 /// The last line of a list of choices.
 const NONE: &str = "A number chooses, an empty line leaves it.";
@@ -70,6 +70,10 @@ fn of_popup(state: &AppState) -> Option<Vec<String>> {
         Popup::ResetSettings => Some(vec![format!("{} Go on? y yes, n no.", reset_question(&state.shared))]),
         Popup::Permission => Some(vec![format!("{} y yes, n no.", permission::question(&state.shared))]),
         Popup::Flights(open) => flights::question(state, open),
+        Popup::Diff(view) => {
+            let lines = diff_view::lines(&state.shared, view);
+            Some(lines.into_iter().chain([diff_view::answers(&state.shared)]).collect())
+        }
         Popup::Plots { .. } => Some(graphs::plots(state)),
         Popup::Signals(_) => Some(graphs::signals(state)),
         Popup::Help(_)
@@ -144,6 +148,10 @@ pub(super) fn answer(state: &mut AppState, line: &str) -> Result<Answered, Strin
             return Err("Answer y to go on, n to change nothing.".to_owned());
         }
         Some(Popup::Flights(_)) => return flights::answer(state, line),
+        Some(Popup::Diff(_)) if !line.is_empty() => {
+            let against = diff_view::named(&state.shared, line)?;
+            return Ok(compare(state, against).into());
+        }
         Some(Popup::Plots { .. }) if !line.is_empty() => return graphs::choose_plot(state, line),
         Some(Popup::Signals(_)) if !line.is_empty() => return graphs::choose_signal(state, line),
         None => return Ok(field::answer(state, line).into()),

@@ -32,6 +32,7 @@ use super::tutorial;
 
 mod arrange;
 mod change;
+mod diff;
 mod flight;
 mod flights;
 mod kept;
@@ -51,6 +52,7 @@ use flight::{fly, speed, upload, uploaded};
 use paste::paste;
 use view::{focus, focus_neighbour, scroll};
 
+pub(super) use diff::compare;
 pub(super) use kept::{keep, restore};
 pub(super) use permission::hold;
 
@@ -223,7 +225,11 @@ fn key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
     match state.popups.last() {
         _ if found == Some(Action::Cancel) => cancel(state),
         Some(_) => popup::key(state, event, found),
-        None if state.shared.editor.popup.is_some() => plan_popup::key(&mut state.shared, event),
+        None if state.shared.editor.popup.is_some() => {
+            let compared =
+                matches!(event.code, KeyCode::Char('v' | 'V')).then(|| diff::instead_of_question(state));
+            compared.flatten().unwrap_or_else(|| plan_popup::key(&mut state.shared, event))
+        }
         None if state.shared.focus == Panel::Plan && state.shared.editor.field().is_some() => {
             plan::field_key(&mut state.shared, event)
         }
@@ -275,6 +281,7 @@ fn edit(state: &mut AppState, action: EditAction) -> Vec<Effect> {
         EditAction::Redo => plan::undo(&mut state.shared, true),
         EditAction::Earlier => plan::go_in_time(&mut state.shared, false),
         EditAction::Later => plan::go_in_time(&mut state.shared, true),
+        EditAction::Compare => diff::open(state),
         EditAction::Open => plan::open_browser(&mut state.shared),
         EditAction::Save => plan::save(&mut state.shared),
         EditAction::SaveAs => plan::save_as(&mut state.shared),

@@ -73,15 +73,26 @@ impl Viewport {
             let waypoints = waypoints.chain(preview).map(|wp| wp.position);
             waypoints.chain(home).map(|position| to_map(frame, position))
         });
-        let mut low = MapPoint::default();
-        let mut high = MapPoint::default();
         let craft = craft(&state.view);
         // A recorded flight is shown as a whole.
         let past = state.view.replay.as_ref().map_or(&[][..], |_| state.track.points());
         let other = state.other.as_ref().map_or(&[][..], OtherFlight::track);
         let flown = past.iter().chain(other).map(|point| MapPoint::new(point.n, point.e));
+        let boot = std::iter::once(MapPoint::default());
+        Self::around((area, up_rad), craft, boot.chain(places).chain(craft).chain(flown))
+    }
+
+    /// Returns the window of an area that shows these places. The craft is never pushed out.
+    pub(super) fn around(
+        (area, up_rad): (Rect, f64),
+        craft: Option<MapPoint>,
+        places: impl Iterator<Item = MapPoint>,
+    ) -> Self {
         let turned = |place: MapPoint| place.turned(up_rad);
-        for place in places.chain(craft).chain(flown).map(turned) {
+        let mut places = places.map(turned);
+        let mut low = places.next().unwrap_or_default();
+        let mut high = low;
+        for place in places {
             low = MapPoint::new(low.n.min(place.n), low.e.min(place.e));
             high = MapPoint::new(high.n.max(place.n), high.e.max(place.e));
         }

@@ -121,3 +121,35 @@ fn a_plan_from_nothing_to_the_ground_at_80x24() {
 fn a_plan_from_nothing_to_the_ground_at_120x40() {
     from_nothing_to_the_ground(120, 40);
 }
+
+#[test]
+fn a_plan_is_compared_with_the_craft_its_changed_file_and_its_revisions() {
+    let sandbox = Sandbox::new();
+    sandbox.write("mine.txt", PLAN);
+    let plan = sandbox.path("mine.txt").display().to_string();
+    let state = sandbox.path("state").display().to_string();
+    let mut terminal = Terminal::betadeck(80, 24, &[&plan, "--no-ports", "--state-dir", &state]);
+    terminal.until_shown("DISARMED");
+    terminal.send("2V");
+    terminal.until_shown("+ WP0 FLYOVER");
+    terminal.send("V\x1b[C\x1b[C\x1b[C+");
+    terminal.until_shown("[11.0]");
+    sandbox.write("mine.txt", &PLAN.replace("1000 0 FLYOVER", "2000 0 FLYOVER"));
+    terminal.until_shown("changed on disk: `V` compares");
+    terminal.send("V");
+    terminal.until("the altitude in the file beside the edited one", |terminal| {
+        let screen = terminal.screen();
+        let row = screen.lines().find(|line| line.contains("≠   altitude")).unwrap_or_default();
+        screen.contains("▸file") && row.contains("20 m") && row.contains("11 m")
+    });
+    terminal.send("\tm");
+    terminal.until_shown("╌╌ revision 1 (now) ··· ○ as opened");
+    terminal.send("\t");
+    terminal.until("the settings of the craft", |terminal| {
+        terminal.screen().contains("▸settings") && terminal.screen().contains("= gyro_lpf1_type")
+    });
+    terminal.send("V:quit\r");
+    terminal.until_shown("has edits that no file holds");
+    terminal.send("d");
+    assert_eq!(terminal.end(), 0);
+}

@@ -53,6 +53,7 @@ fn every_popup() {
         ("command_line", ":"),
         ("plots", "6 enter"),
         ("unsaved", "2 i q"),
+        ("diff", "2 i V"),
     ];
     for (name, opened) in typed {
         let seen = at_four_sizes(|size| {
@@ -166,6 +167,11 @@ fn everything_open() -> Vec<Open> {
         "6 /",
         "ctrl-l",
         "ctrl-l s",
+        "2 i V",
+        "2 i V m",
+        "2 i V tab",
+        "2 i V tab tab",
+        "2 i V tab tab tab",
         "6 enter",
         "2 o",
         "2 s 'name",
@@ -192,7 +198,9 @@ fn everything_open() -> Vec<Open> {
     .collect();
     let in_flight = ["G", "w", "q", "2 i q", "5 'get", "G enter", "ctrl-p 'go", ": 'go", "6 enter", "m"];
     open.extend(in_flight.into_iter().map(flying));
-    for typed in ["", "/ 'vel", "/ 'zzzz enter", "enter", "enter 'x enter", "w '9", "f", "f f", "X", "z"] {
+    for typed in
+        ["", "/ 'vel", "/ 'zzzz enter", "enter", "enter 'x enter", "w '9", "f", "f f", "V", "V f", "X", "z"]
+    {
         open.push((format!("settings, {typed}"), settings::opened_with((120, 40), typed)));
     }
     let mut menu = settings::opened_with((120, 40), "");

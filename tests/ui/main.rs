@@ -4,6 +4,7 @@ mod altitudes;
 mod commands;
 mod connect;
 mod conversions;
+mod diff;
 mod editor;
 mod first_minutes;
 mod fixture;

@@ -22,6 +22,14 @@ impl PlanFiles {
         replies
     }
 
+    /// Forgets the files under a plan.
+    pub(super) fn forget_backdrop(&mut self, id: PlanId) {
+        if let Some(file) = self.open.get_mut(&id) {
+            file.backdrop.clear();
+        }
+        self.keep_backdrop(id);
+    }
+
     /// Reads the files that are remembered with a plan.
     pub(super) fn remembered_backdrop(&mut self, id: PlanId) -> Vec<FileReply> {
         let Some(file) = self.open.get(&id).filter(|file| file.backdrop.is_empty()) else {

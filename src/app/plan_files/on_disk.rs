@@ -9,7 +9,7 @@ use crate::plan::edit::PlanDocument;
 use crate::plan::format::loss::LossReport;
 use crate::plan::format::{self, Format, HomePosition, PlanFile, ReadOptions, Written};
 use crate::storage::link_target;
-use crate::ui::editor::{Entry, Listing};
+use crate::ui::editor::{Entry, FileReply, Listing, PlanId};
 
 /// The contents of a file. They show a change by another program; time stamp and length do not show every change.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -78,6 +78,11 @@ pub(super) fn read(path: &Path, home: Option<HomePosition>) -> Result<Read, Stri
     let notes = std::mem::take(&mut file.notes).iter().map(ToString::to_string).collect();
     let losses = std::mem::take(&mut file.losses);
     Ok(Read { document: file.into(), notes, losses, content: Content::Bytes(contents) })
+}
+
+/// Reads the document of a plan's file for a comparison.
+pub(super) fn compared(id: PlanId, path: &Path, home: Option<HomePosition>) -> FileReply {
+    FileReply::OnDisk { id, document: read(path, home).map(|read| Box::new(read.document)) }
 }
 
 fn parse(path: &Path, contents: &[u8], home: Option<HomePosition>) -> Result<PlanFile, String> {

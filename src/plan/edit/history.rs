@@ -77,6 +77,25 @@ impl History {
         if history.go_to(self.saved?) { Some(history.document) } else { None }
     }
 
+    /// Returns the document of a revision.
+    pub fn document_at(&self, revision: usize) -> Option<PlanDocument> {
+        if revision > self.len() {
+            return None;
+        }
+        let (here, there) = (self.path(self.at), self.path(revision));
+        // Both descend to the opened document.
+        let is_on = |path: &[usize], at: &usize| path.binary_search_by(|on| at.cmp(on)).is_ok();
+        let mut document = self.document.clone();
+        for at in here.iter().take_while(|at| !is_on(&there, at)) {
+            document = self.revisions.get(at.checked_sub(1)?)?.change.inverse().apply(&document)?;
+        }
+        let behind = there.iter().take_while(|at| !is_on(&here, at)).collect::<Vec<_>>();
+        for at in behind.into_iter().rev() {
+            document = self.revisions.get(at.checked_sub(1)?)?.change.apply(&document)?;
+        }
+        Some(document)
+    }
+
     /// Returns the current revision.
     pub fn at(&self) -> usize {
         self.at
@@ -255,6 +274,11 @@ mod tests {
         assert_eq!(history.undo(), Some("b"));
         assert_eq!(history.redo(), Some("b"), "redo follows the newest");
         assert_eq!(history.newest_beside(), Some(1));
+        let names = (0..4).map(|revision| history.document_at(revision).map(|document| document.name));
+        assert_eq!(
+            names.collect::<Vec<_>>(),
+            [Some("0"), Some("a"), Some("b"), None].map(|name| name.map(str::to_owned))
+        );
         assert_eq!((history.label(0), history.label(1), history.label(2)), (None, Some("a"), Some("b")));
         assert!(history.go_to(1));
         assert_eq!(history.document().name, "a");

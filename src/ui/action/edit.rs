@@ -19,6 +19,8 @@ actions! {
             "The revision made before this one, in any branch" ["alt-u"];
         Later Global "plan.later" "later revision"
             "The revision made after this one, in any branch" ["alt-U"];
+        Compare Global "plan.compare" "differences"
+            "The plan beside the craft's, its file or a revision, with a map" ["V"];
         Open Global "plan.open" "open" "Open a plan file" ["o"];
         Save Global "plan.save" "save" "Save the plan in its file" ["s"];
     }

@@ -88,6 +88,8 @@ actions! {
         SettingRedo SETTINGS "settings.redo" "redo" "Redo the change that was undone" ["ctrl-r"];
         SettingCompare SETTINGS "settings.compare" "differences"
             "Only what differs from the defaults, from the plan, from the craft's flash; all again" ["f"];
+        SettingsBeside SETTINGS "settings.beside" "side by side"
+            "The settings beside the defaults, the plan's or the craft's flash" ["V"];
         CopySettings SETTINGS "settings.copy" "copy" "Copy the changed or found settings as CLI lines" ["y"];
         SettingIntoPlan SETTINGS "settings.into-plan" "into plan" "The plan sets this one at its upload" ["p"];
         SettingsIntoPlan SETTINGS "settings.all-into-plan" "all into plan"

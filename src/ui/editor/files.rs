@@ -57,6 +57,13 @@ pub enum FileRequest {
     KeepScreen(String),
     /// Append this line to the layouts that the user saved.
     KeepLayout(String),
+    /// Read the file of a plan for a comparison. The open plan stays as it is.
+    ReadDisk {
+        id: PlanId,
+        path: PathBuf,
+        /// The home for a file that has none, or none with its altitude above sea level.
+        home: Option<HomePosition>,
+    },
     /// Read the elevation tiles under a plan and its way home.
     Ground { home: LatLon, plan: Box<FlightPlan> },
     /// Begin the journal of a new plan.
@@ -83,6 +90,11 @@ pub enum FileReply {
         revision: usize,
         /// The differences between the plan and the file, one line each.
         lost: Vec<String>,
+    },
+    /// The document in the file of a plan, or the reason why it could not be read, a sentence.
+    OnDisk {
+        id: PlanId,
+        document: Result<Box<PlanDocument>, String>,
     },
     /// This many settings were written in a file.
     SavedSettings {

@@ -31,9 +31,13 @@ impl Question {
     /// Returns the answers: the key and its effect.
     pub fn answers(&self) -> &'static [(char, &'static str)] {
         match self {
-            Self::Replace { changed: true, .. } => {
-                &[('y', "replace it"), ('r', "read it again"), ('o', "other name"), ('n', "leave it")]
-            }
+            Self::Replace { changed: true, .. } => &[
+                ('v', "compare"),
+                ('y', "replace it"),
+                ('r', "read it again"),
+                ('o', "other name"),
+                ('n', "leave it"),
+            ],
             Self::Replace { changed: false, .. } => {
                 &[('y', "replace it"), ('o', "other name"), ('n', "leave it")]
             }

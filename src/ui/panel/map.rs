@@ -25,6 +25,7 @@ use crate::ui::viewport::Viewport;
 use crate::ui::viewport::moves::{self, ZOOM_STEP};
 
 mod backdrop;
+pub(in crate::ui) mod compared;
 mod grid;
 mod in_words;
 mod labels;

@@ -10,10 +10,11 @@ use ratatui::layout::{Position, Rect};
 
 use crate::fc::{CraftSetting, cli_block};
 use crate::ui::action::{Action, PanelAction};
+use crate::ui::diff::Against;
 use crate::ui::event_log::Severity;
 use crate::ui::message::{Change, Effect, Request};
 use crate::ui::panel::{Content, Hint, Panel};
-use crate::ui::popup::{ActionMenu, Popup};
+use crate::ui::popup::{ActionMenu, DiffView, Popup};
 use crate::ui::settings::listing::{Choice, Comparison, Row, rows};
 use crate::ui::settings::{Assignment, SettingsChange, Step};
 use crate::ui::shared::Shared;
@@ -34,7 +35,7 @@ pub(in crate::ui) struct SettingsPanel {
 }
 
 /// The actions of the menu of a setting.
-const MENU: [PanelAction; 14] = [
+const MENU: [PanelAction; 15] = [
     PanelAction::SettingEdit,
     PanelAction::SettingMore,
     PanelAction::SettingLess,
@@ -43,6 +44,7 @@ const MENU: [PanelAction; 14] = [
     PanelAction::SettingUndo,
     PanelAction::SettingRedo,
     PanelAction::SettingCompare,
+    PanelAction::SettingsBeside,
     PanelAction::SettingSearch,
     PanelAction::CopySettings,
     PanelAction::SettingIntoPlan,
@@ -268,6 +270,13 @@ impl Content for SettingsPanel {
             PanelAction::SettingUndo => return vec![Change::Settings(SettingsChange::Undo).into()],
             PanelAction::SettingRedo => return vec![Change::Settings(SettingsChange::Redo).into()],
             PanelAction::SettingCompare => self.compare(),
+            PanelAction::SettingsBeside => {
+                let comparison = match self.choice.comparison {
+                    Comparison::All => Comparison::Defaults,
+                    other => other,
+                };
+                return vec![Request::Open(Popup::Diff(DiffView::new(Against::Settings(comparison))))];
+            }
             PanelAction::CopySettings => return self.copy(state),
             PanelAction::SettingIntoPlan => return self.put_in_plan(state, false),
             PanelAction::SettingsIntoPlan => return self.put_in_plan(state, true),

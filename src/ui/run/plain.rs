@@ -163,6 +163,7 @@ fn is_question(effect: &Effect) -> bool {
                 request,
                 FileRequest::Open { .. }
                     | FileRequest::Save { .. }
+                    | FileRequest::ReadDisk { .. }
                     | FileRequest::SaveSettings { .. }
                     | FileRequest::List(_)
                     | FileRequest::Backdrop(..)

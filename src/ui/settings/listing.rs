@@ -32,6 +32,19 @@ impl Comparison {
         }
     }
 
+    /// Returns the next comparison with only differences; the first follows the last.
+    pub(in crate::ui) fn other_next(self) -> Self {
+        match self.next() {
+            Self::All => Self::Defaults,
+            other => other,
+        }
+    }
+
+    /// Returns the comparison with only differences before this one; the last comes before the first.
+    pub(in crate::ui) fn other_previous(self) -> Self {
+        self.other_next().other_next()
+    }
+
     /// Returns the name of the other values, for the title and the head of their column.
     pub(in crate::ui) fn name(self, state: &Shared) -> &'static str {
         match self {

@@ -10,7 +10,7 @@ use crate::ui::{hint_bar, layout, notice, panel_bar, tutorial};
 
 use super::popup::{chosen, take_entry};
 use super::view::focus;
-use super::{act, arrange, carry_out, flights, map_menu, timeline};
+use super::{act, arrange, carry_out, diff, flights, map_menu, timeline};
 
 /// The number of lines of the help per step of the wheel.
 const WHEEL_LINES: isize = 3;
@@ -125,6 +125,10 @@ fn popup(state: &mut AppState, event: MouseEvent) -> Option<Vec<Effect>> {
         Popup::Flights(list) => {
             let result = list.mouse(&state.shared.flights, size, event);
             flights::take(state, result)
+        }
+        Popup::Diff(view) => {
+            let result = view.mouse(&state.shared, event);
+            diff::take(state, result)
         }
         Popup::Actions(menu) => {
             let outcome = if is_press { menu.click(size, cell) } else { Outcome::Open };

@@ -17,7 +17,8 @@ pub(super) fn paste(state: &mut AppState, text: &str) -> Vec<Effect> {
         Some(Popup::Flights(list)) => list.deleting.is_none().then_some(&mut list.query),
         Some(Popup::Help(help)) => help.is_typing.then_some(&mut help.search),
         Some(
-            Popup::GoTo(_)
+            Popup::Diff(_)
+            | Popup::GoTo(_)
             | Popup::MapMenu(_)
             | Popup::Plots { .. }
             | Popup::WhatIf { .. }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crossterm::event::{KeyCode, KeyEvent};
 
-use super::flight::upload_now;
+use super::{diff, flight::upload_now};
 use crate::ui::action::{Action, EditAction};
 use crate::ui::editor::{
     Browser, BrowserKey, Conversion, EditorPopup, FileReply, FileRequest, Form, FormKey, LossList, PlanId,
@@ -195,6 +195,7 @@ pub(super) fn answered(state: &mut Shared, reply: FileReply) -> Vec<Effect> {
                 return quit(state);
             }
         }
+        FileReply::OnDisk { id, document } => state.editor.on_disk = Some((id, document)),
         FileReply::SavedSettings { path, count } => {
             let name = shown(&path);
             state.notify(Severity::Good, format!("Saved {count} settings in {name}."));
@@ -204,9 +205,16 @@ pub(super) fn answered(state: &mut Shared, reply: FileReply) -> Vec<Effect> {
         }
         FileReply::Changed(id) => {
             if let Some(title) = state.editor.changed_on_disk(id) {
-                let save = state.key(Action::Edit(EditAction::Save));
-                let text = format!("{title} changed on disk: `{save}` asks before it replaces it.");
+                let [save, compare] =
+                    [EditAction::Save, EditAction::Compare].map(|action| state.key(Action::Edit(action)));
+                let text = format!(
+                    "{title} changed on disk: `{compare}` compares, `{save}` asks before it replaces it."
+                );
                 state.notify(Severity::Warn, text);
+            }
+            // A comparison with the file goes on with its present contents.
+            if state.editor.on_disk.as_ref().is_some_and(|(compared, _)| *compared == id) {
+                return diff::read_file(state).into_iter().collect();
             }
         }
         FileReply::Backdrop { id, layer, is_new } => {

@@ -2,7 +2,7 @@
 
 use crossterm::event::{KeyCode, KeyEvent};
 
-use super::{act, arrange, flights, map_menu, permission, run_line};
+use super::{act, arrange, diff, flights, map_menu, permission, run_line};
 use crate::telemetry::InFlightCommand;
 use crate::ui::action::{self, Action};
 use crate::ui::app_state::AppState;
@@ -108,6 +108,10 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) 
         Some(Popup::Flights(list)) => {
             let result = list.key(&state.shared.flights, event);
             flights::take(state, result)
+        }
+        Some(Popup::Diff(view)) => {
+            let result = view.key(&state.shared, event);
+            diff::take(state, result)
         }
         Some(Popup::CommandLine) => {
             let outcome = command_line::key(&mut state.command_line, &state.shared, event);

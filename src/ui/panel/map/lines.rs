@@ -202,6 +202,22 @@ pub(super) fn paint(state: &Shared, scene: &Scene, context: &mut Context<'_>) {
     });
 }
 
+/// Draws the legs of the open plan dashed, and those of another plan dotted.
+pub(super) fn paint_two(
+    state: &Shared,
+    (view, home): (Viewport, MapPoint),
+    [other, current]: [&[PlacedWaypoint]; 2],
+    context: &mut Context<'_>,
+) {
+    let dot_m = view.scale / 2.0;
+    let [dotted, dashed] = [Role::Predicted, Role::Track].map(|role| state.theme.colour(role));
+    let path = std::iter::once(home).chain(other.iter().map(|spot| spot.place));
+    LinePainter { context: &mut *context, view, colour: dotted, dot_m }.dotted(path);
+    context.layer();
+    legs(home, current, &mut LinePainter { context: &mut *context, view, colour: dashed, dot_m });
+    context.layer();
+}
+
 /// Draws the legs in flight order, from a place on.
 fn legs(mut from: MapPoint, spots: &[PlacedWaypoint], painter: &mut LinePainter<'_, '_>) {
     for spot in spots {

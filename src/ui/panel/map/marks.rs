@@ -117,7 +117,7 @@ pub(super) fn write(state: &Shared, scene: &Scene, buffer: &mut Buffer) {
 }
 
 /// Returns the mark of a waypoint.
-fn glyph(kind: WaypointType) -> &'static str {
+pub(super) fn glyph(kind: WaypointType) -> &'static str {
     match kind {
         WaypointType::Flyover => "◆",
         WaypointType::Flyby => "◇",

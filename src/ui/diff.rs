@@ -1,0 +1,170 @@
+//! The open plan, or the settings of the craft, beside another version of them, row by row.
+
+mod rows;
+
+use super::action::{Action, EditAction, PanelAction};
+use super::settings::listing::Comparison;
+use super::shared::Shared;
+use crate::plan::FlightPlan;
+
+/// The other version.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Against {
+    /// The plan that the craft stores.
+    Craft,
+    /// The file of the plan as it is on disk now.
+    File,
+    /// A revision of the plan.
+    Revision(usize),
+    /// Other values of the settings of the craft.
+    Settings(Comparison),
+}
+
+/// The state of a row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Mark {
+    Same,
+    /// Both versions have it, with different values.
+    Changed,
+    /// Only the current version has it.
+    Added,
+    /// Only the other version has it.
+    Removed,
+}
+
+/// A row: the same thing in both versions.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct DiffRow {
+    pub(super) mark: Mark,
+    pub(super) label: String,
+    /// The value in the other version.
+    pub(super) other: String,
+    /// The value in the current version.
+    pub(super) current: String,
+    /// The waypoint of the current version, for a row about one.
+    pub(super) waypoint: Option<usize>,
+    /// `true` for a value of the row before it.
+    pub(super) is_part: bool,
+}
+
+/// Two versions beside each other.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Diff {
+    /// The name of the other version.
+    pub(super) other: String,
+    /// The name of the current version.
+    pub(super) current: String,
+    pub(super) rows: Vec<DiffRow>,
+    /// The other plan, for the map; `None` if settings are compared.
+    pub(super) plan: Option<FlightPlan>,
+}
+
+impl Diff {
+    /// Compares with another version.
+    ///
+    /// # Errors
+    /// Returns the reason why it cannot be compared, a sentence.
+    pub(super) fn of(state: &Shared, against: Against) -> Result<Self, String> {
+        let open = state.editor.plan();
+        let history = open.history();
+        match against {
+            Against::Craft => {
+                let stored = state.view.vehicle.stored_plan.as_ref().ok_or_else(|| {
+                    let key = state.key(Action::Edit(EditAction::Download));
+                    format!("The plan of the craft is not known: `{key}` reads it.")
+                })?;
+                let mut rows = rows::of_plans(stored, state.plan(), state.units);
+                rows.extend(rows::of_plan_settings(state));
+                let plan = Some(stored.clone());
+                Ok(Self { other: "craft".to_owned(), current: "this plan".to_owned(), rows, plan })
+            }
+            Against::File => {
+                if open.file().is_none() {
+                    return Err("This plan has no file yet.".to_owned());
+                }
+                let on_disk = state.editor.on_disk.as_ref().filter(|(id, _)| *id == open.id());
+                let (_, read) = on_disk.ok_or_else(|| "Reading the file …".to_owned())?;
+                let document = read.as_ref().map_err(Clone::clone)?;
+                let rows = rows::of_documents(document, open.document(), state.units);
+                let plan = Some(document.plan.clone());
+                Ok(Self { other: "file".to_owned(), current: "this plan".to_owned(), rows, plan })
+            }
+            Against::Revision(revision) => {
+                let document = history.document_at(revision).ok_or("There is no such revision.")?;
+                let rows = rows::of_documents(&document, open.document(), state.units);
+                let other = match history.label(revision) {
+                    Some(label) => format!("revision {revision}: {label}"),
+                    None => "as opened".to_owned(),
+                };
+                let current = format!("revision {} (now)", history.at());
+                Ok(Self { other, current, rows, plan: Some(document.plan) })
+            }
+            Against::Settings(comparison) => {
+                let key = || state.key(Action::Panel(PanelAction::ReadSettings));
+                let craft = state.settings.craft().ok_or_else(|| match state.settings.refusal() {
+                    Some(refusal) => refusal.to_owned(),
+                    None if state.settings.is_reading() => "Reading the settings …".to_owned(),
+                    None => format!("The settings of the craft were not read yet: `{}` reads them.", key()),
+                })?;
+                let rows = rows::of_settings(state, &craft.all, comparison);
+                let other = comparison.name(state).to_owned();
+                Ok(Self { other, current: "craft".to_owned(), rows, plan: None })
+            }
+        }
+    }
+
+    /// Returns the number of differing waypoints, texts and settings, in words.
+    pub(super) fn summary(&self) -> String {
+        let count = |mark| self.rows.iter().filter(|row| !row.is_part && row.mark == mark).count();
+        let [same, changed, added, removed] =
+            [Mark::Same, Mark::Changed, Mark::Added, Mark::Removed].map(count);
+        if changed + added + removed == 0 {
+            return format!("No difference in {same} rows.");
+        }
+        format!("≠ {changed} changed   + {added} only now   - {removed} only there   = {same} the same")
+    }
+}
+
+impl Mark {
+    /// Returns the character of the mark.
+    pub(super) fn symbol(self) -> char {
+        match self {
+            Self::Same => '=',
+            Self::Changed => '≠',
+            Self::Added => '+',
+            Self::Removed => '-',
+        }
+    }
+}
+
+/// Returns the comparisons that are possible now, in the order of their tabs.
+pub(super) fn possible(state: &Shared) -> Vec<Against> {
+    let plan = state.editor.plan();
+    let file = plan.file().map(|_| Against::File);
+    let revision = other_revision(state, plan.history().at(), false).map(Against::Revision);
+    let settings = Some(Against::Settings(Comparison::Defaults));
+    [Some(Against::Craft), file, revision, settings].into_iter().flatten().collect()
+}
+
+/// Returns the comparison to begin with: what the title of the plan warns about, else the last edit.
+pub(super) fn most_useful(state: &Shared) -> Against {
+    let plan = state.editor.plan();
+    let stored = state.view.vehicle.stored_plan.as_ref();
+    let is_other =
+        stored.is_some_and(|stored| !stored.waypoints.is_empty() && *stored != plan.document().plan);
+    match other_revision(state, plan.history().at(), false) {
+        _ if plan.is_changed_on_disk() => Against::File,
+        _ if is_other => Against::Craft,
+        Some(revision) => Against::Revision(revision),
+        None => Against::Craft,
+    }
+}
+
+/// Returns the next revision before a revision, or after it, that is not the current one. From the first one it goes on
+/// to a later one.
+pub(super) fn other_revision(state: &Shared, from: usize, later: bool) -> Option<usize> {
+    let history = state.editor.plan().history();
+    let is_other = |revision: &usize| *revision != history.at();
+    let after = || (from + 1..=history.len()).find(is_other);
+    if later { after() } else { (0..from).rev().find(is_other).or_else(after) }
+}

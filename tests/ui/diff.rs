@@ -1,0 +1,147 @@
+//! Two versions beside each other: the plan and the craft's, its file and its revisions, and the settings.
+
+use std::sync::Arc;
+
+use betadeck::ui::editor::{FileReply, FileRequest};
+use betadeck::ui::{AppState, Effect, Msg, Popup, theme, update};
+use crossterm::event::{KeyCode, KeyModifiers, MouseButton, MouseEventKind};
+
+use crate::fixture;
+use crate::hands::{keys, mouse, mouse_button, place_of, press, screen, state_with_fix};
+use crate::settings;
+
+/// Returns a craft with the square, and an open plan that moves one waypoint, raises another and adds one.
+fn edited(size: (u16, u16), theme: theme::Theme) -> AppState {
+    let mut state = fixture::state(size, theme);
+    let flight = fixture::SimpleFlight { time_s: 8.0, fix: true, ..fixture::SimpleFlight::default() };
+    update(&mut state, Msg::View(fixture::view(&flight)));
+    keys(&mut state, "2 right right right shift-up down left shift-up shift-up i");
+    state
+}
+
+fn compared(size: (u16, u16)) -> AppState {
+    let mut state = edited(size, fixture::colour());
+    keys(&mut state, "V");
+    state
+}
+
+#[test]
+fn the_plan_is_beside_that_of_the_craft_with_a_map() {
+    for (name, size) in [("80x24", (80, 24)), ("200x60", (200, 60))] {
+        insta::assert_snapshot!(format!("diff_craft_{name}"), screen(&compared(size)));
+    }
+    let mut state = edited((80, 24), fixture::plain());
+    keys(&mut state, "V");
+    insta::assert_snapshot!("diff_craft_mono_80x24", screen(&state));
+    keys(&mut state, "m");
+    insta::assert_snapshot!("diff_craft_map_80x24", screen(&state));
+}
+
+#[test]
+fn both_plans_are_told_apart_on_the_map_without_colours() {
+    let mut state = edited((120, 40), fixture::plain());
+    keys(&mut state, "V m");
+    let seen = screen(&state);
+    assert!(seen.contains("-- this plan ... o craft"), "{seen}");
+    assert!(seen.contains("o1 FLYBY"), "the place on the craft: {seen}");
+    keys(&mut state, "m");
+    let seen = screen(&state);
+    assert!(seen.contains("! WP1 FLYBY") && seen.contains("+ WP2 FLYBY") && seen.contains("= WP2"), "{seen}");
+}
+
+#[test]
+fn a_file_changed_on_disk_is_compared_before_it_is_replaced() {
+    let mut state = edited((120, 40), fixture::colour());
+    let id = state.shared.editor.plan().id();
+    update(&mut state, Msg::Files(FileReply::Changed(id)));
+    assert!(screen(&state).contains("`V` compares"), "{}", screen(&state));
+    let effects = keys(&mut state, "V");
+    assert!(screen(&state).contains("Reading the file …"), "{}", screen(&state));
+    assert!(matches!(&effects[..], [Effect::Files(FileRequest::ReadDisk { .. })]), "{effects:?}");
+    let mut document = state.shared.editor.plan().document().clone();
+    document.name = "of another program".to_owned();
+    document.settings = vec!["ap_max_velocity = 3".to_owned()];
+    document.plan.waypoints.pop();
+    let document = Ok(Box::new(document));
+    update(&mut state, Msg::Files(FileReply::OnDisk { id, document }));
+    let seen = screen(&state);
+    assert!(seen.contains("≠ name") && seen.contains("of another program"), "{seen}");
+    assert!(seen.contains("- ap_max_velocity") && seen.contains("+ WP4 LAND"), "{seen}");
+    // Another change is read, too.
+    let effects = update(&mut state, Msg::Files(FileReply::Changed(id)));
+    assert!(matches!(&effects[..], [Effect::Files(FileRequest::ReadDisk { .. })]), "{effects:?}");
+}
+
+#[test]
+fn the_question_about_a_changed_file_offers_the_comparison() {
+    let mut state = edited((80, 24), fixture::colour());
+    let id = state.shared.editor.plan().id();
+    let path = state.shared.editor.plan().file().unwrap().to_owned();
+    update(&mut state, Msg::Files(FileReply::Occupied { id, path, changed: true }));
+    assert!(screen(&state).contains("v compare"), "{}", screen(&state));
+    let effects = keys(&mut state, "v");
+    assert!(matches!(&effects[..], [Effect::Files(FileRequest::ReadDisk { .. })]), "{effects:?}");
+    assert!(matches!(state.popups[..], [Popup::Diff(_)]));
+}
+
+#[test]
+fn revisions_are_compared_in_time() {
+    let mut state = edited((120, 40), fixture::colour());
+    keys(&mut state, "V tab tab");
+    let seen = screen(&state);
+    assert!(seen.contains("▸revision") && seen.contains("revision 3: longitude"), "{seen}");
+    assert!(seen.contains("╌╌ revision 4 (now)") && seen.contains("○ revision 3 "), "{seen}");
+    keys(&mut state, "left left");
+    assert!(screen(&state).contains("revision 1: altitude"), "{}", screen(&state));
+    keys(&mut state, "left");
+    assert!(screen(&state).contains("as opened"), "{}", screen(&state));
+    keys(&mut state, "right");
+    assert!(screen(&state).contains("revision 1: altitude"), "{}", screen(&state));
+}
+
+#[test]
+fn settings_are_beside_the_defaults_the_plans_and_the_saved_ones() {
+    for (name, size) in [("80x24", (80, 24)), ("200x60", (200, 60))] {
+        let mut state = settings::opened_with(size, "V f");
+        insta::assert_snapshot!(format!("diff_settings_{name}"), screen(&state));
+        keys(&mut state, "right");
+        assert!(screen(&state).contains("plan"), "{}", screen(&state));
+        keys(&mut state, "right right f");
+        assert!(screen(&state).contains("= "), "{}", screen(&state));
+    }
+}
+
+#[test]
+fn the_selected_difference_leads_to_its_waypoint() {
+    let mut state = compared((80, 24));
+    keys(&mut state, "N enter");
+    assert!(state.popups.is_empty() && screen(&state).contains("▸2 Plan"), "{}", screen(&state));
+    assert_eq!(state.shared.editor.row(), 2, "the added one");
+}
+
+#[test]
+fn the_mouse_chooses_tabs_and_rows() {
+    let mut state = compared((200, 60));
+    let row = place_of(&state, "+ WP2");
+    mouse(&mut state, MouseEventKind::Down, row);
+    mouse_button(&mut state, MouseEventKind::ScrollDown, row);
+    let tab = place_of(&state, " revision  ");
+    mouse(&mut state, MouseEventKind::Down, (tab.0 + 2, tab.1));
+    assert!(screen(&state).contains("▸revision"), "{}", screen(&state));
+    mouse_button(&mut state, MouseEventKind::Down(MouseButton::Left), (0, 0));
+    assert!(state.popups.is_empty());
+}
+
+#[test]
+fn a_craft_whose_plan_is_unknown_is_said_to_be_so() {
+    let mut state = state_with_fix((80, 24));
+    Arc::make_mut(&mut state.shared.view.vehicle).stored_plan = None;
+    keys(&mut state, "2 V");
+    assert!(
+        screen(&state).contains("The plan of the craft is not known: `D` reads it."),
+        "{}",
+        screen(&state)
+    );
+    press(&mut state, KeyCode::Esc, KeyModifiers::NONE);
+    assert!(state.popups.is_empty());
+}
