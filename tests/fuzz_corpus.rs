@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use fuzz_bodies::{
     airframe, betaloop, blackbox, cli, configuration, door, eeprom, fc_client, fdm, history, journal,
-    msp_stream, plan_file, rc, recording, scenario, servo, settings_file,
+    msp_stream, plan_file, rc, recording, scenario, screen, servo, settings_file,
 };
 
 /// The longest stored case, in bytes, whose beginnings are all tested too.
@@ -210,6 +210,11 @@ fn configuration_files() {
 #[test]
 fn history_files() {
     check("history", history::run, 400);
+}
+
+#[test]
+fn kept_screens_and_layouts() {
+    check("screen", screen::run, 400);
 }
 
 #[test]

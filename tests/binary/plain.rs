@@ -194,7 +194,7 @@ fn every_panel_is_written_by_its_name() {
         "2 Plan — square",
         "40.4640000  -79.5175000     50.0",
         "4 RC — ",
-        "THROTTLE  1000",
+        "THROTTLE ",
         "7 World — airframe iris",
         "wind speed        0.0 m/s",
         "6 Graphs — ",

@@ -19,5 +19,6 @@ pub mod plan_file;
 pub mod rc;
 pub mod recording;
 pub mod scenario;
+pub mod screen;
 pub mod servo;
 pub mod settings_file;

@@ -4,7 +4,7 @@ use betadeck::plan::Altitude;
 use betadeck::session::{Command, Event, ForecastRequest, SessionEvent};
 use betadeck::signals::SimTime;
 use betadeck::telemetry::{EventKind, FirmwareEvent, NavEvent, NavState, Refusal};
-use betadeck::ui::{AppState, Effect, Msg, update};
+use betadeck::ui::{AppState, Effect, Msg, Panel, layout, update};
 
 use crate::fixture;
 use crate::hands::{screen, state_with_fix};
@@ -95,11 +95,13 @@ fn check(user: &mut User, task: &str, keys: &[String]) {
             let seen = screen(&user.state);
             assert!(seen.contains("Refused") && seen.contains("15043"), "{seen}");
         }
-        "make the map large" => {
+        "make the map wider" => {
+            let width = |state: &AppState| {
+                layout::screen(&state.shared).and_then(|screen| screen.panel(Panel::Map)).map(|map| map.width)
+            };
+            let before = width(&user.state);
             user.press(keys);
-            let seen = screen(&user.state);
-            assert!(seen.contains("▸1 Map") && !seen.contains("┌3 State"), "{seen}");
-            user.press(&["z".to_owned()]);
+            assert!(width(&user.state) > before && before.is_some(), "{}", screen(&user.state));
         }
         "let the wind blow at 5 m/s" => {
             let effects = user.press(keys);
