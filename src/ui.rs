@@ -98,6 +98,7 @@ mod tutorial;
 pub mod units;
 mod update;
 mod viewport;
+mod world_history;
 
 pub use app_state::AppState;
 pub use config::{GroundConfig, UiConfig};

@@ -41,12 +41,13 @@ pub(super) enum Knob {
 
 /// Returns the knobs that have an effect in the current world, in display order.
 pub(super) fn knobs(state: &Shared) -> Vec<Knob> {
-    let external = state.view.simulator.is_some();
-    let faults = FAULTS.iter().filter(|fault| external || !fault.needs_link()).map(Knob::Fault);
-    [Knob::WindSpeed, Knob::WindFrom, Knob::Gust, Knob::Turbulence, Knob::Noise]
-        .into_iter()
-        .chain(faults)
-        .collect()
+    knobs_of(state.view.simulator.is_some()).collect()
+}
+
+/// Returns the knobs of a world with an external simulator, or without one, in display order.
+pub(super) fn knobs_of(external: bool) -> impl Iterator<Item = Knob> {
+    let faults = FAULTS.iter().filter(move |fault| external || !fault.needs_link()).map(Knob::Fault);
+    [Knob::WindSpeed, Knob::WindFrom, Knob::Gust, Knob::Turbulence, Knob::Noise].into_iter().chain(faults)
 }
 
 /// Returns the active fault of this kind, if there is one.
@@ -68,10 +69,14 @@ impl Knob {
 
     /// Returns its value with the unit, or a dash if nothing reports it.
     pub(super) fn value(self, state: &Shared) -> String {
-        let world = &state.view.vehicle.world;
+        self.value_in(&state.view.vehicle.world, state.units)
+    }
+
+    /// Returns its value in a world.
+    pub(super) fn value_in(self, world: &WorldView, units: Units) -> String {
         let speed = |speed: Option<f64>| {
-            let shown = speed.map(|speed| state.units.speed(speed));
-            format!("{} {}", fixed(shown, 6, 1), state.units.speed_unit())
+            let shown = speed.map(|speed| units.speed(speed));
+            format!("{} {}", fixed(shown, 6, 1), units.speed_unit())
         };
         match self {
             Self::WindSpeed => speed(world.wind.map(|wind| wind.speed_mps)),

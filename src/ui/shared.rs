@@ -34,6 +34,7 @@ use super::survey::SurveyState;
 use super::theme::Theme;
 use super::track::{KeptTracks, Track};
 use super::units::Units;
+use super::world_history::WorldHistory;
 
 /// The altitude from which a craft that touches nothing counts as in the air, m. A bounce stays below it.
 const IN_THE_AIR_M: f64 = 1.0;
@@ -101,6 +102,8 @@ pub struct Shared {
     /// Many flights of the open plan.
     pub survey: SurveyState,
     pub log: LogState,
+    /// The changes of the air and the faults.
+    pub world_history: WorldHistory,
     /// The names chosen in the palette.
     pub used: UsedNames,
     pub notice: Option<Notice>,
@@ -152,6 +155,7 @@ impl Shared {
             settings: SettingsState::new(config.given_settings),
             survey: SurveyState::default(),
             log: LogState::default(),
+            world_history: WorldHistory::default(),
             used: UsedNames::of(&config.entered.palette),
             notice: None,
             pinned: Vec::new(),

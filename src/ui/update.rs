@@ -177,6 +177,11 @@ fn take_view(state: &mut AppState, view: SessionView) {
     {
         plan::craft_plan_changed(&mut state.shared, was, &now);
     }
+    if !state.shared.is_rewound() && !before.is_rewound() {
+        let (time, world) = (state.shared.view.vehicle.time, &state.shared.view.vehicle.world);
+        state.shared.world_history.forget_after(time);
+        state.shared.world_history.follow(time, &before.vehicle.world, world, state.shared.units);
+    }
     state.shared.forecast.take_view();
     past_flight::follow(&mut state.shared);
     other_flight::follow(&mut state.shared);

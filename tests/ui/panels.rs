@@ -415,3 +415,24 @@ fn every_popup_and_panel_is_drawn_at_every_size() {
         }
     }
 }
+
+#[test]
+fn the_world_alone_on_the_screen_shows_its_changes_in_this_flight() {
+    let mut state = windy((80, 24));
+    press(&mut state, 'z');
+    let seen = screen(&state);
+    assert!(seen.contains("Changes in this flight") && seen.contains("none"), "{seen}");
+    let mut view = state.shared.view.clone();
+    let vehicle = std::sync::Arc::make_mut(&mut view.vehicle);
+    vehicle.time.0 += 5_000_000;
+    vehicle.world.wind = Some(WindView { speed_mps: 5.0, from_deg: 270.0 });
+    vehicle.world.faults.clear();
+    let time = vehicle.time;
+    update(&mut state, Msg::View(view));
+    let seen = screen(&state);
+    let clock = format!("{:02}:{:02}", time.0 / 60_000_000, time.0 / 1_000_000 % 60);
+    assert!(seen.contains(&format!("{clock}.0 wind speed      5.0 m/s")), "{clock} {seen}");
+    assert!(seen.contains(&format!("{clock}.0 gps-loss        —")), "{clock} {seen}");
+    press(&mut state, 'z');
+    assert!(!screen(&state).contains("Changes in this flight"), "beside others it has no room");
+}

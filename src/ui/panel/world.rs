@@ -5,7 +5,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::ui::action::{Action, PanelAction};
-use crate::ui::formatting::cut;
+use crate::ui::formatting::{clock, cut};
 use crate::ui::knobs::{Knob, KnobsState, knobs};
 use crate::ui::message::Request;
 use crate::ui::panel::{Content, Hint, Panel};
@@ -18,6 +18,9 @@ use super::row;
 
 /// The width of a name with its mark.
 const NAME: usize = 18;
+/// The width of the knobs beside the history of the flight, and the width from which there is room for both.
+const KNOBS: u16 = 38;
+const WITH_HISTORY: u16 = 76;
 
 /// The state of the World panel.
 #[derive(Debug, Default)]
@@ -51,6 +54,10 @@ impl Content for WorldPanel {
             return None;
         }
         let rows = usize::from(area.height.checked_sub(1)?);
+        let (list, history) = divided(state, area);
+        if let Some(history) = history {
+            draw_history(state, history, buffer);
+        }
         let all = knobs(state);
         let focused = state.focus == Panel::World;
         let mut cursor = None;
@@ -75,12 +82,12 @@ impl Content for WorldPanel {
             let typed = own.field.as_ref().filter(|_| is_selected);
             match typed {
                 Some(field) => {
-                    row(buffer, area, line, theme, role, &name);
-                    let width = area.width.saturating_sub(NAME as u16);
-                    let place = Rect::new(area.x + NAME as u16, area.y + line, width, 1);
-                    cursor = field.draw(theme, place.intersection(area), buffer);
+                    row(buffer, list, line, theme, role, &name);
+                    let width = list.width.saturating_sub(NAME as u16);
+                    let place = Rect::new(list.x + NAME as u16, list.y + line, width, 1);
+                    cursor = field.draw(theme, place.intersection(list), buffer);
                 }
-                None => row(buffer, area, line, theme, role, &format!("{name}{}", knob.value(state))),
+                None => row(buffer, list, line, theme, role, &format!("{name}{}", knob.value(state))),
             }
         }
         let help = match all.get(own.selected) {
@@ -143,7 +150,8 @@ impl Content for WorldPanel {
     }
 
     fn press(&mut self, state: &Shared, area: Rect, event: &MouseEvent) -> Vec<Request> {
-        if let Some(knob) = knob_at(&self.knobs, state, area, event.row) {
+        let is_knob = event.column < divided(state, area).0.right();
+        if let Some(knob) = knob_at(&self.knobs, state, area, event.row).filter(|_| is_knob) {
             self.knobs.field = None;
             self.knobs.selected = knob;
         }
@@ -163,4 +171,31 @@ fn knob_at(own: &KnobsState, state: &Shared, area: Rect, line: u16) -> Option<us
     let at = usize::from(line.checked_sub(area.y)?);
     let index = first(own, state, rows) + at;
     (at < rows && index < knobs(state).len()).then_some(index)
+}
+
+/// Divides the inside into the knobs and, if the panel is zoomed and wide enough, the history of the flight.
+fn divided(state: &Shared, area: Rect) -> (Rect, Option<Rect>) {
+    if !state.zoomed || area.width < WITH_HISTORY {
+        return (area, None);
+    }
+    let history = Rect { x: area.x + KNOBS, width: area.width - KNOBS, ..area };
+    (Rect { width: KNOBS - 1, ..area }, Some(history))
+}
+
+/// Draws the changes up to the shown instant, the newest on top.
+fn draw_history(state: &Shared, area: Rect, buffer: &mut Buffer) {
+    let theme = &state.theme;
+    row(buffer, area, 0, theme, Role::Title, "Changes in this flight");
+    let rows = area.height.saturating_sub(2);
+    let changes = state.world_history.until(state.view.vehicle.time);
+    let mut shown = 0;
+    for (at, change) in (1..=rows).zip(changes) {
+        let (name, value) = (change.knob.name(), &change.value);
+        let text = format!("{} {name:<15} {value}", clock(change.time));
+        row(buffer, area, at, theme, Role::Text, &cut(&text, usize::from(area.width)));
+        shown = at;
+    }
+    if shown == 0 {
+        row(buffer, area, 1, theme, Role::Dim, "none");
+    }
 }
