@@ -60,7 +60,7 @@ impl Recorded {
 
 /// Flies the case to its end and opens the screen at the instant.
 pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
-    tui::require_terminal(false)?;
+    tui::require_terminal(args.plain)?;
     let mut notices = Vec::new();
     if let Some(recording) = of_recording::read(args)? {
         return of_recording::run(args, &recording, keymap);
@@ -131,7 +131,7 @@ fn open_screen(args: &OpenArgs, finished: Finished, keymap: Keymap) -> Result<u8
         notices,
         review: ReviewArgs::default(),
         tiles: None,
-        plain: false,
+        plain: args.plain,
         display: &args.display,
         terrain: &flight_args.terrain,
         source: Source::Flight(Box::new(LiveFlight {

@@ -22,6 +22,12 @@ pub struct OpenArgs {
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = value::seed)]
     pub seed: Option<u64>,
 
+    /// No screen: the events as sentences on standard output, commands of the `:` line on standard input
+    ///
+    /// Needs no terminal. After the end of the input the flight waits, until `quit` or a signal ends it.
+    #[arg(long, help_heading = "Screen")]
+    pub plain: bool,
+
     /// The choice of the firmware.
     #[command(flatten)]
     pub firmware: FirmwareArgs,

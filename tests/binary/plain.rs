@@ -258,3 +258,21 @@ fn settings_and_signals_are_found_by_a_line() {
     flight.say("quit");
     assert_eq!(flight.end(), Some(0));
 }
+
+#[test]
+fn an_instant_of_a_scenario_is_read_without_a_screen() {
+    let sandbox = Sandbox::new();
+    let arguments = ["open", "guide-1", "--at", "30", "--plain"];
+    let mut flight = Dialogue::start(&sandbox, &arguments);
+    flight.hear("Booted: ");
+    flight.say("view.state");
+    flight.hear("Rewound by ");
+    flight.hear("State: APPROACHING.");
+    flight.say("view.map");
+    flight.hear("flown now.");
+    flight.say("time.state");
+    flight.say("view.state");
+    flight.hear("State: ");
+    flight.say("quit");
+    assert_eq!(flight.end(), Some(0));
+}

@@ -5,6 +5,7 @@ use crate::ui::formatting::compass;
 use crate::ui::map_edit;
 use crate::ui::map_point::origin::origin;
 use crate::ui::map_point::{self, MapPoint, to_map};
+use crate::ui::panel::in_words::number;
 use crate::ui::shared::Shared;
 
 /// Returns the map as lines of text.
@@ -62,7 +63,9 @@ fn motion(state: &Shared) -> String {
         alt_m.map(|alt_m| format!("{} above home", units.length_text(alt_m, 1))),
         heading_deg.map(|degrees| format!("heading {:03.0}°", compass(degrees))),
         estimate.ground_speed_mps.map(|mps| units.speed_text(mps, 1)),
-        estimate.climb_mps.map(|mps| format!("climb {}", units.speed_text(mps, 1))),
+        estimate
+            .climb_mps
+            .map(|mps| format!("climb {} {}", number(Some(units.speed(mps)), 1), units.speed_unit())),
     ];
     parts.into_iter().flatten().map(|part| format!(", {part}")).collect()
 }
