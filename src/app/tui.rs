@@ -43,7 +43,7 @@ use crate::session::{FlownBefore, Handle, ReplayConfig, SessionView, start_repla
 use crate::storage::Store;
 use crate::terrain::Tiles;
 use crate::ui::backdrop::BackdropLayer;
-use crate::ui::editor::FileReply;
+use crate::ui::editor::{FileReply, Opened};
 use crate::ui::flights::FlightShelf;
 use crate::ui::keymap::Keymap;
 use crate::ui::settings::GivenSetting;
@@ -196,7 +196,9 @@ fn first_plan(
     if let Some(plan) = &args.plan {
         return Ok((plan.clone(), setup::read_plan(plan, args.flight.home)?));
     }
-    if let Some(path) = kept.and_then(KeptScreen::shown_plan) {
+    let shown = kept.and_then(KeptScreen::shown_plan);
+    let others = kept.into_iter().flat_map(KeptScreen::plans).filter(|path| path.exists());
+    for path in shown.into_iter().chain(others.filter(|_| shown.is_some())) {
         let plan = PlanArg::File(path.to_owned(), None);
         match setup::read_plan(&plan, args.flight.home) {
             Ok(file) => return Ok((plan, file)),
@@ -240,8 +242,14 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
     for opened in &recovered {
         backdrop.extend(files.begin_with_backdrop(opened.id, Vec::new()));
     }
+    // Edits of a built-in plan have no file.
+    let is_edited = |plan: &&Opened| {
+        let same_name = plan.history.document().name == opened.history.document().name;
+        plan.file.is_none() && opened.file.is_none() && same_name
+    };
+    let edited = recovered.iter().rev().find(is_edited).map(|plan| plan.id);
     let before = screen.kept.before();
-    let reopened = before.map_or_else(Vec::new, |before| files.open_kept(before, opened.id));
+    let reopened = before.map_or_else(Vec::new, |before| files.open_kept(before, opened.id, edited));
     let history = LineHistory::new(screen.directory.as_deref());
     notices.extend(history.problems());
     let entered = history.read();

@@ -111,13 +111,13 @@ impl Surveyor {
             while let Ok(Order { job, copy }) = incoming.recv() {
                 let revision = job.revision;
                 let is_stopped = || newest.load(Ordering::Relaxed) != revision;
-                let mut tell = |news| {
+                let mut report = |news| {
                     if !is_stopped() {
                         answer(SurveyReply { revision, news });
                     }
                 };
-                if let Err(reason) = fly(&job, &copy, &is_stopped, &mut tell) {
-                    tell(SurveyNews::Refused(reason));
+                if let Err(reason) = fly(&job, &copy, &is_stopped, &mut report) {
+                    report(SurveyNews::Refused(reason));
                 }
             }
         })?;
@@ -140,11 +140,11 @@ fn fly(
     job: &SurveyJob,
     copy: &VehicleCopy,
     is_stopped: &impl Fn() -> bool,
-    tell: &mut impl FnMut(SurveyNews),
+    report: &mut impl FnMut(SurveyNews),
 ) -> Result<(), String> {
     match job.request {
-        SurveyRequest::Sweep(fault) => sweep(&job.plan, copy, fault, is_stopped, tell),
-        SurveyRequest::GoNoGo => go_no_go::fly(&job.plan, copy, is_stopped, tell),
+        SurveyRequest::Sweep(fault) => sweep(&job.plan, copy, fault, is_stopped, report),
+        SurveyRequest::GoNoGo => go_no_go::fly(&job.plan, copy, is_stopped, report),
     }
 }
 
@@ -153,14 +153,14 @@ fn sweep(
     VehicleCopy { vehicle, takeoff_m }: &VehicleCopy,
     fault: ScheduledFault,
     is_stopped: &impl Fn() -> bool,
-    tell: &mut impl FnMut(SurveyNews),
+    report: &mut impl FnMut(SurveyNews),
 ) -> Result<(), String> {
     let mut sweep = Sweep::of_plan(vehicle, plan, settings, *takeoff_m, fault)?;
     while let Some(branch) = sweep.next_branch(is_stopped)? {
         let Some(point) = branch.fly(is_stopped) else { return Ok(()) };
-        tell(SurveyNews::Point(Box::new(point)));
+        report(SurveyNews::Point(Box::new(point)));
     }
-    tell(SurveyNews::SweepEnd);
+    report(SurveyNews::SweepEnd);
     Ok(())
 }
 

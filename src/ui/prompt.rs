@@ -16,7 +16,7 @@ use super::message::{Effect, Msg};
 use super::permission;
 use super::popup::{Popup, diff_view, what_if};
 use super::settings::changes::reset_question;
-use super::update::{compare, update};
+use super::update::{compare, run_line, update};
 
 /// The last line of a list of choices.
 const NONE: &str = "A number chooses, an empty line leaves it.";
@@ -130,6 +130,20 @@ pub(super) fn answer(state: &mut AppState, line: &str) -> Result<Answered, Strin
             return Ok(press(state, KeyCode::Char(key)).into());
         }
         None => {}
+    }
+    let is_list = matches!(
+        state.popups.last(),
+        Some(
+            Popup::GoTo(_)
+                | Popup::WhatIf { .. }
+                | Popup::Plots { .. }
+                | Popup::Signals(_)
+                | Popup::Flights(_)
+        )
+    );
+    if quits && is_list {
+        state.popups.clear();
+        return Ok(run_line(state, line)?.into());
     }
     match state.popups.last() {
         Some(Popup::Quit) if quits || line == "y" || line == "yes" => {

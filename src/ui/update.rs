@@ -46,6 +46,7 @@ mod popup;
 mod series;
 mod timeline;
 mod view;
+mod world_changes;
 
 use change::change;
 use flight::{fly, speed, upload, uploaded};
@@ -178,9 +179,7 @@ fn take_view(state: &mut AppState, view: SessionView) {
         plan::craft_plan_changed(&mut state.shared, was, &now);
     }
     if !state.shared.is_rewound() && !before.is_rewound() {
-        let (time, world) = (state.shared.view.vehicle.time, &state.shared.view.vehicle.world);
-        state.shared.world_history.forget_after(time);
-        state.shared.world_history.follow(time, &before.vehicle.world, world, state.shared.units);
+        world_changes::follow(&mut state.shared, &before.vehicle.world);
     }
     state.shared.forecast.take_view();
     past_flight::follow(&mut state.shared);

@@ -20,7 +20,9 @@ fn the_screen_comes_back_as_it_was_left() {
     let mut terminal = Terminal::betadeck(120, 40, &[&[plan.as_str()], &arguments[..]].concat());
     terminal.until_shown("DISARMED");
     terminal.send(":wind 5@270\r");
-    terminal.send("]]6z");
+    terminal.send("]");
+    terminal.until("twice real time", |terminal| terminal.row(1).contains("2×"));
+    terminal.send("]6z");
     terminal.until("zoomed graphs at four times real time", |terminal| {
         is_zoomed_on_graphs(terminal) && terminal.row(1).contains("4×")
     });
@@ -126,5 +128,32 @@ fn panels_are_resized_by_keys_and_by_the_mouse_and_a_saved_layout_comes_back() {
     terminal.send(":layout mine\r");
     terminal.until("the saved one", |terminal| edge(terminal) == Some(before - 4));
     terminal.send("q");
+    assert_eq!(terminal.end(), 0);
+}
+
+#[test]
+fn edits_of_a_plan_without_a_file_are_shown_first_after_a_restart() {
+    let sandbox = Sandbox::new();
+    let state = sandbox.path("state").display().to_string();
+    let arguments = ["--no-ports", "--state-dir", &state];
+    let mut terminal = Terminal::betadeck(120, 40, &arguments);
+    terminal.until_shown("DISARMED");
+    terminal.send("2\x1b[C\x1b[C\x1b[C+");
+    terminal.until_shown("[51.0]");
+    let file = sandbox.path("state/screen.json");
+    terminal.until("the screen is kept", |_| {
+        std::fs::read_to_string(&file).unwrap_or_default().contains("\"Plan\"")
+    });
+    terminal.signal("KILL");
+    terminal.end();
+
+    let mut terminal = Terminal::betadeck(120, 40, &arguments);
+    terminal.until("the edited plan", |terminal| {
+        let screen = terminal.screen();
+        screen.contains("▸2 Plan 2/2 — square") && screen.contains("51.0")
+    });
+    terminal.send("u");
+    terminal.until("the plan as it was", |terminal| !terminal.screen().contains("51.0"));
+    terminal.send("qy");
     assert_eq!(terminal.end(), 0);
 }

@@ -274,5 +274,7 @@ fn an_instant_of_a_scenario_is_read_without_a_screen() {
     flight.say("view.state");
     flight.hear("State: ");
     flight.say("quit");
+    flight.hear("The craft is armed and flying ends here. Quit?");
+    flight.say("y");
     assert_eq!(flight.end(), Some(0));
 }

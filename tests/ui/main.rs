@@ -24,6 +24,7 @@ mod panels;
 mod plan_panel;
 mod remapped;
 mod replay;
+mod revisions;
 mod rewind;
 mod screens;
 mod searches;

@@ -14,7 +14,7 @@ pub(super) fn fly(
     plan: &SurveyedPlan,
     copy: &VehicleCopy,
     is_stopped: &impl Fn() -> bool,
-    tell: &mut impl FnMut(SurveyNews),
+    report: &mut impl FnMut(SurveyNews),
 ) -> Result<(), String> {
     let craft = craft_at_boot(&copy.vehicle, &plan.plan, &plan.settings, |_| {})?;
     let mean = craft.world_status().map(|world| world.wind).unwrap_or_default();
@@ -23,9 +23,9 @@ pub(super) fn fly(
     for flight in (1..).map_while(|number| campaign.flight(number)) {
         let Some(record) = record(&flight, plan, copy, is_stopped)? else { return Ok(()) };
         answer.add(record);
-        tell(SurveyNews::Flown(flight.number));
+        report(SurveyNews::Flown(flight.number));
     }
-    tell(SurveyNews::GoNoGo(Box::new(answer.answer())));
+    report(SurveyNews::GoNoGo(Box::new(answer.answer())));
     Ok(())
 }
 

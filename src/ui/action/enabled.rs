@@ -102,7 +102,7 @@ pub(in crate::ui) fn flies(state: &Shared) -> Result<(), String> {
         ));
     }
     let fly = state.key(Action::Fly);
-    Err(format!("The craft stands disarmed, so there is no flight to look ahead to: `{fly}` flies the plan."))
+    Err(format!("The craft is disarmed, so there is no flight to look ahead to: `{fly}` flies the plan."))
 }
 
 /// Replaces the reason for a missing switch while the remote firmware has not yet reported its switches.
@@ -160,7 +160,7 @@ mod tests {
         let vehicle = std::sync::Arc::make_mut(&mut view.vehicle);
         vehicle.craft.armed = Some(false);
         let mut state = Shared::bare((80, 24), view.clone());
-        assert!(enabled(&state, Action::LookAhead).unwrap_err().contains("stands disarmed"));
+        assert!(enabled(&state, Action::LookAhead).unwrap_err().contains("is disarmed"));
         let truth = crate::telemetry::snapshot::TruthView { alt: 30.0, ..Default::default() };
         std::sync::Arc::make_mut(&mut state.view.vehicle).truth = Some(truth);
         let reported = enabled(&state, Action::LookAhead).unwrap_err();

@@ -33,7 +33,7 @@ actions! {
         LookAhead Global "forecast.look-ahead" "look ahead" "How this flight would end" ["L"];
         WhatIf Global "forecast.what-if" "what if" "How it would end with a fault now; go or no-go" ["w"];
         WhereMay Global "forecast.where" "where" "Where a fault may be fatal: at every second of the plan" ["M"];
-        GoNoGo Global "forecast.go" "go or no-go" "Whether to fly: a hundred noisy flights of the plan" ["ctrl-g"];
+        GoNoGo Global "forecast.go" "go or no-go" "Go or no-go: a hundred noisy flights of the plan" ["ctrl-g"];
         Pause Global "sim.pause" "pause" "Pause, or go on" ["space"];
         Step Global "sim.step" "step" "Pause and advance by 10 ms, one navigator update" ["."];
         Tick Global "sim.tick" "tick" "Pause and advance by one tick" ["alt-."];

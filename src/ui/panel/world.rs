@@ -190,7 +190,7 @@ fn draw_history(state: &Shared, area: Rect, buffer: &mut Buffer) {
     let changes = state.world_history.until(state.view.vehicle.time);
     let mut shown = 0;
     for (at, change) in (1..=rows).zip(changes) {
-        let (name, value) = (change.knob.name(), &change.value);
+        let (name, value) = (change.name, &change.value);
         let text = format!("{} {name:<15} {value}", clock(change.time));
         row(buffer, area, at, theme, Role::Text, &cut(&text, usize::from(area.width)));
         shown = at;

@@ -32,7 +32,7 @@ const PAGE: isize = 10;
 pub struct DiffView {
     against: Against,
     selected: usize,
-    /// `true` to leave out what is the same.
+    /// `true` to leave out equal rows.
     only_differences: bool,
     /// `true` if the map has the whole place.
     is_map: bool,

@@ -19,7 +19,7 @@ const FIRST_FAULT: &str = "gps-loss,6";
 /// Returns the reason for a refusal, in a sentence.
 pub(in crate::ui) fn can_ask(state: &Shared) -> Result<(), String> {
     if state.plan().waypoints.is_empty() {
-        return Err("No plan is open, so there is nothing to fly.".to_owned());
+        return Err("The plan has no waypoints, so there is nothing to fly.".to_owned());
     }
     Ok(())
 }

@@ -165,7 +165,8 @@ pub(super) fn answered(state: &mut Shared, reply: FileReply) -> Vec<Effect> {
                 let note = state.keymap.in_force(note);
                 state.notify(Severity::Info, note);
             }
-            let name = opened.file.as_ref().map_or_else(String::new, |file| shown(file.as_path()));
+            let of_plan = || format!("the plan {}", opened.history.document().name);
+            let name = opened.file.as_ref().map_or_else(of_plan, |file| shown(file.as_path()));
             let reported = if opened.recovered {
                 let [undo, save] =
                     [EditAction::Undo, EditAction::Save].map(|action| state.key(Action::Edit(action)));
