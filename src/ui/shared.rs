@@ -7,7 +7,7 @@ use std::time::Duration;
 use crate::fc::{RemoteView, UploadView};
 use crate::plan::FlightPlan;
 use crate::replay::{Overview, Series};
-use crate::session::SessionView;
+use crate::session::{Command, SessionView};
 use crate::signals::{RcFrame, SimTime};
 use crate::telemetry::PlanSource;
 
@@ -38,6 +38,8 @@ use super::world_history::WorldHistory;
 
 /// The altitude from which a craft that touches nothing counts as in the air, m. A bounce stays below it.
 const IN_THE_AIR_M: f64 = 1.0;
+/// The time within which the session confirms a speed.
+const SPEED_CONFIRMED_WITHIN: Duration = Duration::from_secs(1);
 
 /// The time for which the map shows another revision of the plan while the craft flies.
 const REVISION_SHOWN: Duration = Duration::from_secs(8);
@@ -112,6 +114,8 @@ pub struct Shared {
     pub stick_recording: StickRecording,
     /// The sticks sent but not yet confirmed by the session, and the time of sending.
     pub sticks_sent: Option<(RcFrame, Duration)>,
+    /// The speed that was requested but not yet confirmed by the session, and the time of the request.
+    pub(super) speed_sent: Option<(f64, Duration)>,
     /// The time at which the key that arms was pressed in the air, wall clock.
     pub disarm_asked: Option<Duration>,
 }
@@ -161,7 +165,25 @@ impl Shared {
             pinned: Vec::new(),
             stick_recording: StickRecording::default(),
             sticks_sent: None,
+            speed_sent: None,
             disarm_asked: None,
+        }
+    }
+
+    /// Requests a speed, times real time. The next request counts from it.
+    pub(super) fn request_speed(&mut self, factor: f64) -> Effect {
+        self.view.speed_wanted = factor;
+        self.speed_sent = Some((factor, self.now));
+        Effect::Send(Command::Speed(factor))
+    }
+
+    /// Puts the requested speed into a picture from before the session got the request.
+    pub(super) fn keep_requested_speed(&mut self, view: &mut SessionView) {
+        let Some((factor, at)) = self.speed_sent else { return };
+        if view.speed_wanted.to_bits() == factor.to_bits() || !within(self.now, at, SPEED_CONFIRMED_WITHIN) {
+            self.speed_sent = None;
+        } else {
+            view.speed_wanted = factor;
         }
     }
 

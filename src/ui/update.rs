@@ -154,7 +154,8 @@ fn take(state: &mut AppState, msg: Msg) -> Vec<Effect> {
     Vec::new()
 }
 
-fn take_view(state: &mut AppState, view: SessionView) {
+fn take_view(state: &mut AppState, mut view: SessionView) {
+    state.shared.keep_requested_speed(&mut view);
     if state.shared.sticks_sent.is_some_and(|(frame, _)| frame == view.sticks) {
         state.shared.sticks_sent = None;
     }

@@ -109,6 +109,26 @@ fn the_hand_takes_over_from_the_pilot() {
 }
 
 #[test]
+fn a_second_press_of_a_speed_key_counts_from_the_first_whatever_is_on_its_way() {
+    let mut state = fixture::state((120, 40), fixture::colour());
+    let before = state.shared.view.clone();
+    let asked = |effects: &[Effect]| {
+        effects.iter().find_map(|effect| match effect {
+            Effect::Send(Command::Speed(factor)) => Some(*factor),
+            _ => None,
+        })
+    };
+    assert_eq!(asked(&press(&mut state, ']')), Some(2.0));
+    // A picture of before the request.
+    update(&mut state, Msg::View(before.clone()));
+    assert_eq!(asked(&press(&mut state, ']')), Some(4.0));
+    // A session that does not follow has the last word.
+    update(&mut state, Msg::Clock(Duration::from_secs(5)));
+    update(&mut state, Msg::View(before));
+    assert_eq!(asked(&press(&mut state, ']')), Some(2.0));
+}
+
+#[test]
 fn time_keys_pause_step_and_change_speed() {
     let mut state = ready();
     assert!(matches!(press(&mut state, ' ')[..], [Effect::Send(Command::Pause(true))]));

@@ -2,9 +2,10 @@
 
 use betadeck::campaign::{Forecast, InputValue, Record, Side, Standing};
 use betadeck::flight::FlightResult;
+use betadeck::flight::forecast::{self as flight_ahead, ForecastEnd, ForecastKind};
 use betadeck::flight::sweep::{Fate, SweepPoint};
 use betadeck::scenario::{BuiltinFiles, read};
-use betadeck::session::{SurveyJob, SurveyNews, SurveyReply, SurveyRequest};
+use betadeck::session::{ForecastJob, ForecastReply, SurveyJob, SurveyNews, SurveyReply, SurveyRequest};
 use betadeck::ui::{AppState, Effect, Msg, run_line, update};
 use crossterm::event::{KeyCode, KeyModifiers};
 
@@ -216,4 +217,35 @@ fn without_a_plan_nothing_is_flown() {
         assert!(keys(&mut state, key).iter().all(|effect| !matches!(effect, Effect::Survey(_))));
         assert!(state.shared.notice.as_ref().is_some_and(|notice| notice.text.contains("nothing to fly")));
     }
+}
+
+#[test]
+fn a_plan_that_fails_anyway_is_not_blamed_on_the_fault() {
+    let mut state = state_with_fix((120, 40));
+    let effects = keys(&mut state, "2 right right right +");
+    let revision = effects.iter().rev().find_map(|effect| match effect {
+        Effect::Forecast(ForecastJob { revision, .. }) => Some(*revision),
+        _ => None,
+    });
+    let forecast = flight_ahead::Forecast {
+        kind: ForecastKind::PlanEstimate,
+        end: ForecastEnd::Flight(FlightResult::Aborted),
+        reason: "the mission was given up".to_owned(),
+        time_s: 40.0,
+        battery_used_pct: 5.0,
+        worst_xte: None,
+        fence_margin_m: None,
+        legs: Vec::new(),
+        moved_m: 10.0,
+        path: Vec::new(),
+        unchanged: None,
+    };
+    let revision = revision.expect("an estimate is asked for");
+    let forecast = Ok(Box::new(forecast));
+    update(&mut state, Msg::Forecast(ForecastReply { revision, kind: ForecastKind::PlanEstimate, forecast }));
+    let asked = ask(&mut state, 'M');
+    fly(&mut state, asked.revision, 40..45);
+    reply(&mut state, asked.revision, SurveyNews::SweepEnd);
+    let noticed = state.shared.notice.as_ref().map(|notice| notice.text.clone()).unwrap_or_default();
+    assert!(noticed.ends_with("The plan fails without the fault, too."), "{noticed}");
 }

@@ -1,8 +1,8 @@
 //! Commands about time.
 
+use crate::session::SPEED_RANGE;
 use crate::session::policy::{self, Facts, Intent};
-use crate::session::{Command, SPEED_RANGE};
-use crate::ui::message::{Effect, Request};
+use crate::ui::message::Request;
 use crate::ui::shared::Shared;
 
 /// Runs `speed 4` or `speed max`.
@@ -16,8 +16,7 @@ pub(super) fn speed(state: &mut Shared, _: &str, argument: &str) -> Result<Vec<R
                 format!("Write a factor from {slowest} to {fastest} times real time, or max.")
             })?,
         };
-    state.view.speed_wanted = factor;
-    Ok(vec![Effect::Send(Command::Speed(factor)).into()])
+    Ok(vec![state.request_speed(factor).into()])
 }
 
 pub(super) fn complete_speed(_: &Shared, _: &str, typed: &str) -> Vec<String> {

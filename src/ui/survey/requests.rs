@@ -2,6 +2,7 @@
 
 use super::{Shown, SurveyState, Surveyed, SweepSoFar};
 use crate::campaign::{Forecast, ForecastAnswer};
+use crate::flight::forecast::{FlightResult, ForecastEnd};
 use crate::flight::sweep::Fate;
 use crate::session::{SurveyJob, SurveyNews, SurveyReply, SurveyRequest};
 use crate::sim::ScheduledFault;
@@ -96,7 +97,11 @@ pub(in crate::ui) fn take_reply(
     match (reply.news, &mut shown.what) {
         (SurveyNews::Point(point), Surveyed::Sweep(sweep)) => sweep.points.push(*point),
         (SurveyNews::SweepEnd, Surveyed::Sweep(sweep)) => {
-            let text = sweep.sentence();
+            let mut text = sweep.sentence();
+            let flown = state.forecast.estimate().filter(|_| !state.forecast.is_estimating());
+            if flown.is_some_and(|flown| flown.end != ForecastEnd::Flight(FlightResult::Complete)) {
+                text.push_str(" The plan fails without the fault, too.");
+            }
             let is_lost = sweep.points.iter().any(|point| point.fate == Fate::Lost);
             state.notify(if is_lost { Severity::Warn } else { Severity::Good }, text);
         }

@@ -141,9 +141,7 @@ pub(super) fn speed(state: &mut Shared, step: i32) -> Vec<Effect> {
         _ => SPEEDS.into_iter().rev().find(|&speed| speed < wanted * 0.99),
     };
     let Some(next) = next else { return Vec::new() };
-    // Until the session confirms, so that a second press counts from here.
-    state.view.speed_wanted = next;
-    let mut effects = vec![Effect::Send(Command::Speed(next))];
+    let mut effects = vec![state.request_speed(next)];
     if step == 0 && state.view.paused {
         effects.push(Effect::Send(Command::Pause(false)));
     }
