@@ -80,6 +80,7 @@ mod popup;
 mod prompt;
 mod raster;
 mod run;
+mod search;
 pub mod settings;
 mod shared;
 mod status_bar;

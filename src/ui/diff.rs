@@ -7,6 +7,9 @@ use super::settings::listing::Comparison;
 use super::shared::Shared;
 use crate::plan::FlightPlan;
 
+/// The name of the open plan as it is now.
+const THIS: &str = "this plan";
+
 /// The other version.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Against {
@@ -52,6 +55,8 @@ pub(super) struct DiffRow {
 pub(super) struct Diff {
     /// The name of the other version.
     pub(super) other: String,
+    /// The edit that made the other version; empty if there is none.
+    pub(super) label: String,
     /// The name of the current version.
     pub(super) current: String,
     pub(super) rows: Vec<DiffRow>,
@@ -76,7 +81,13 @@ impl Diff {
                 let mut rows = rows::of_plans(stored, state.plan(), state.units);
                 rows.extend(rows::of_plan_settings(state));
                 let plan = Some(stored.clone());
-                Ok(Self { other: "craft".to_owned(), current: "this plan".to_owned(), rows, plan })
+                Ok(Self {
+                    other: "craft".to_owned(),
+                    label: String::new(),
+                    current: THIS.to_owned(),
+                    rows,
+                    plan,
+                })
             }
             Against::File => {
                 if open.file().is_none() {
@@ -87,17 +98,20 @@ impl Diff {
                 let document = read.as_ref().map_err(Clone::clone)?;
                 let rows = rows::of_documents(document, open.document(), state.units);
                 let plan = Some(document.plan.clone());
-                Ok(Self { other: "file".to_owned(), current: "this plan".to_owned(), rows, plan })
+                Ok(Self {
+                    other: "file".to_owned(),
+                    label: String::new(),
+                    current: THIS.to_owned(),
+                    rows,
+                    plan,
+                })
             }
             Against::Revision(revision) => {
                 let document = history.document_at(revision).ok_or("There is no such revision.")?;
                 let rows = rows::of_documents(&document, open.document(), state.units);
-                let other = match history.label(revision) {
-                    Some(label) => format!("revision {revision}: {label}"),
-                    None => "as opened".to_owned(),
-                };
-                let current = format!("revision {} (now)", history.at());
-                Ok(Self { other, current, rows, plan: Some(document.plan) })
+                let label = history.label(revision).unwrap_or("as opened").to_owned();
+                let other = format!("revision {revision}");
+                Ok(Self { other, label, current: THIS.to_owned(), rows, plan: Some(document.plan) })
             }
             Against::Settings(comparison) => {
                 let key = || state.key(Action::Panel(PanelAction::ReadSettings));
@@ -108,20 +122,29 @@ impl Diff {
                 })?;
                 let rows = rows::of_settings(state, &craft.all, comparison);
                 let other = comparison.name(state).to_owned();
-                Ok(Self { other, current: "craft".to_owned(), rows, plan: None })
+                Ok(Self { other, label: String::new(), current: "craft".to_owned(), rows, plan: None })
             }
         }
     }
 
-    /// Returns the number of differing waypoints, texts and settings, in words.
-    pub(super) fn summary(&self) -> String {
+    /// Returns the number of differing waypoints, texts and settings, in words that fit into so many columns.
+    pub(super) fn summary(&self, columns: usize) -> String {
         let count = |mark| self.rows.iter().filter(|row| !row.is_part && row.mark == mark).count();
-        let [same, changed, added, removed] =
-            [Mark::Same, Mark::Changed, Mark::Added, Mark::Removed].map(count);
-        if changed + added + removed == 0 {
-            return format!("No difference in {same} rows.");
+        let all = [Mark::Changed, Mark::Added, Mark::Removed, Mark::Same].map(|mark| (mark, count(mark)));
+        if self.rows.iter().all(|row| row.mark == Mark::Same) {
+            return format!("No difference in {} rows.", count(Mark::Same));
         }
-        format!("≠ {changed} changed   + {added} only now   - {removed} only there   = {same} the same")
+        let texts = |words: [&str; 4]| {
+            let shown = std::iter::zip(all, words).filter(|((_, count), _)| *count > 0);
+            let texts = shown.map(|((mark, count), words)| format!("{} {count} {words}", mark.symbol()));
+            texts.collect::<Vec<_>>().join("   ")
+        };
+        let only = |name: &str| format!("only in {name}");
+        let long = texts(["changed", &only(&self.current), &only(&self.other), "the same"]);
+        if long.chars().count() <= columns {
+            return long;
+        }
+        texts(["changed", &self.current, &self.other, "same"])
     }
 }
 

@@ -84,7 +84,7 @@ fn draw_popup(state: &AppState, popup: &Popup, area: Rect, buffer: &mut Buffer) 
         Popup::Signals(list) => return signal_list::draw(shared, list, area, buffer),
         Popup::Palette(palette) => return palette::draw(shared, palette, area, buffer),
         Popup::Help(help) => return help::draw(shared, help, area, buffer),
-        Popup::Diff(view) => diff_view::draw(shared, view, area, buffer),
+        Popup::Diff(view) => return diff_view::draw(shared, view, area, buffer),
         Popup::GoTo(question) => go_to::draw(shared, question, area, buffer),
         Popup::MapMenu(menu) => map_menu::draw(&shared.theme, menu, area, buffer),
         Popup::WhatIf { selected } => {

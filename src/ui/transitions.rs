@@ -8,8 +8,8 @@ use crossterm::event::{KeyCode, KeyEvent};
 use crate::signals::SimTime;
 use crate::telemetry::{NavState, TransitionReason};
 
+use super::search::Search;
 use super::shared::Shared;
-use super::text_field::TextField;
 
 /// The number of transitions kept.
 const MAX_TRANSITIONS: usize = 200;
@@ -34,9 +34,7 @@ pub struct Transitions {
     /// The first visible transition, counted from the newest.
     pub scroll: usize,
     /// The words that the shown transitions have.
-    pub(super) search: TextField,
-    /// `true` while the search is typed.
-    pub(super) is_typing: bool,
+    pub(super) search: Search,
 }
 
 impl Transitions {
@@ -47,31 +45,19 @@ impl Transitions {
         self.list.push_back(transition);
     }
 
-    /// Returns `true` while the transitions are searched.
-    pub(super) fn is_searched(&self) -> bool {
-        self.is_typing || !self.search.is_empty()
-    }
-
     pub(super) fn begin_search(&mut self) {
-        self.end_search();
-        self.is_typing = true;
+        (self.search, self.scroll) = (Search::begun(), 0);
     }
 
     pub(super) fn end_search(&mut self) {
-        self.search = TextField::default();
-        self.is_typing = false;
-        self.scroll = 0;
+        (self.search, self.scroll) = (Search::default(), 0);
     }
 
     /// Handles a key while the search is typed.
     pub(super) fn search_key(&mut self, event: KeyEvent) {
-        match event.code {
-            KeyCode::Esc => self.end_search(),
-            KeyCode::Enter => self.is_typing = false,
-            _ => {
-                self.search.key(event);
-                self.scroll = 0;
-            }
+        self.search.key(event);
+        if event.code != KeyCode::Enter {
+            self.scroll = 0;
         }
     }
 

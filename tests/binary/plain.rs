@@ -232,6 +232,49 @@ fn a_plan_is_edited_line_by_line() {
 }
 
 #[test]
+fn the_plan_is_compared_with_the_craft_its_file_and_its_revisions_line_by_line() {
+    let sandbox = Sandbox::new();
+    let text = "waypoint insert 0 40.4640000 -79.5175000 1000 0 FLYOVER 0 NONE\n\
+                waypoint insert 1 40.4636 -79.5182 1000 0 LAND 0 NONE\n";
+    sandbox.write("two.txt", text);
+    let mut flight =
+        Dialogue::start(&sandbox, &["--plain", "--fresh", "--no-ports", "--speed=max", "two.txt"]);
+    flight.hear("GPS fix");
+    // The craft and the file keep the first altitude.
+    for line in ["upload", "plan.right", "right", "right", "edit", "25"] {
+        flight.say(line);
+    }
+    flight.hear("[25.0]");
+    flight.say("plan.compare");
+    let heard = flight.hear("Compare with: craft, file, revision NUMBER, settings (defaults, plan or saved)");
+    let has = |heard: &[String], text: &str| heard.iter().any(|line| line.contains(text));
+    assert!(has(&heard, "craft | this plan: ≠ 1 changed   = 1 the same"), "{heard:#?}");
+    assert!(
+        has(&heard, "≠ WP0 FLYOVER: 40.4640000 -79.5175000 10 m | 40.4640000 -79.5175000 25 m"),
+        "{heard:#?}"
+    );
+    assert!(has(&heard, "  ≠ altitude: 10 m | 25 m"), "{heard:#?}");
+    flight.say("file");
+    flight.hear("file | this plan: ≠ 1 changed");
+    flight.hear("  ≠ altitude: 10 m | 25 m");
+    flight.say("revision 0");
+    flight.hear("revision 0 (as opened) | this plan: ≠ 1 changed");
+    flight.hear("  ≠ altitude: 10 m | 25 m");
+    flight.say("revision 9");
+    flight.hear("Compare with: craft, file, revision NUMBER");
+    flight.say("");
+    // Another program writes the file.
+    sandbox.write("two.txt", &text.replace(" 1000 ", " 3000 "));
+    flight.hear("changed on disk");
+    flight.say("plan.compare");
+    flight.hear("  ≠ altitude: 30 m | 25 m");
+    flight.say("");
+    flight.say("quit");
+    flight.say("d");
+    assert_eq!(flight.end(), Some(0));
+}
+
+#[test]
 fn settings_and_signals_are_found_by_a_line() {
     let sandbox = Sandbox::new();
     let mut flight = Dialogue::start(&sandbox, &["--plain", "--fresh", "--no-ports"]);

@@ -89,14 +89,58 @@ fn revisions_are_compared_in_time() {
     let mut state = edited((120, 40), fixture::colour());
     keys(&mut state, "V tab tab");
     let seen = screen(&state);
-    assert!(seen.contains("▸revision") && seen.contains("revision 3: longitude"), "{seen}");
-    assert!(seen.contains("╌╌ revision 4 (now)") && seen.contains("○ revision 3 "), "{seen}");
+    assert!(seen.contains("▸revision   settings  longitude"), "the edit of it: {seen}");
+    assert!(seen.contains("╌╌ this plan") && seen.contains("○ revision 3 "), "{seen}");
+    let shown = |state: &AppState, revision: &str, label: &str| {
+        let seen = screen(state);
+        assert!(seen.contains(revision) && seen.contains(&format!("settings  {label}")), "{seen}");
+    };
     keys(&mut state, "left left");
-    assert!(screen(&state).contains("revision 1: altitude"), "{}", screen(&state));
+    shown(&state, "revision 1", "altitude");
     keys(&mut state, "left");
-    assert!(screen(&state).contains("as opened"), "{}", screen(&state));
+    shown(&state, "revision 0", "as opened");
     keys(&mut state, "right");
-    assert!(screen(&state).contains("revision 1: altitude"), "{}", screen(&state));
+    shown(&state, "revision 1", "altitude");
+}
+
+#[test]
+fn rows_are_found_by_their_words_and_n_goes_on_in_them() {
+    for size in [(60, 20), (80, 24), (200, 60)] {
+        let mut state = edited(size, fixture::colour());
+        keys(&mut state, "V");
+        assert!(screen(&state).contains("Differences — / searches"), "{}", screen(&state));
+        keys(&mut state, "/ 'wp1");
+        let seen = screen(&state);
+        assert!(seen.contains("Differences — Enter keeps the search") && seen.contains("/wp1"), "{seen}");
+        assert!(seen.contains("≠ WP1") && seen.contains("≠   longitude") && !seen.contains("WP0 "), "{seen}");
+        keys(&mut state, "enter");
+        assert!(screen(&state).contains("Differences — /wp1, Esc shows all"), "{}", screen(&state));
+        assert!(screen(&state).contains("n N match"), "{}", screen(&state));
+        keys(&mut state, "/ 'altitude enter n n N");
+        assert!(screen(&state).contains("≠   altitude"), "a value leads to its waypoint: {}", screen(&state));
+        keys(&mut state, "/ 'qqqq");
+        assert!(screen(&state).contains("None has these words."), "{}", screen(&state));
+        keys(&mut state, "esc");
+        let seen = screen(&state);
+        assert!(seen.contains("≠ WP0") && seen.contains("n N difference"), "all rows are back: {seen}");
+        keys(&mut state, "esc");
+        assert!(state.popups.is_empty());
+    }
+}
+
+#[test]
+fn the_line_below_names_both_versions_as_their_columns_do() {
+    for (size, wanted) in [
+        ((60, 20), "+ 1 only in this plan"),
+        ((80, 24), "≠ 2 changed   + 1 only in this plan   = 2 the same"),
+    ] {
+        let seen = screen(&compared(size));
+        assert!(seen.contains(wanted), "{seen}");
+    }
+    let mut state = edited((80, 24), fixture::colour());
+    keys(&mut state, "d V tab tab");
+    let seen = screen(&state);
+    assert!(seen.contains("- 1 only in revision 4   = "), "{seen}");
 }
 
 #[test]

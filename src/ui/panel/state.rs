@@ -61,7 +61,7 @@ impl Content for StatePanel {
     }
 
     fn draw(&self, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
-        if self.transitions.is_searched() {
+        if self.transitions.search.is_on() {
             return transition_list::draw_search(&self.transitions, state, area, buffer);
         }
         draw(&self.transitions, state, area, buffer);
@@ -73,7 +73,7 @@ impl Content for StatePanel {
     }
 
     fn hints(&self, _: &Shared) -> Vec<Hint> {
-        if self.transitions.is_searched() {
+        if self.transitions.search.is_on() {
             let next =
                 &[Action::Panel(PanelAction::NextTransition), Action::Panel(PanelAction::PreviousTransition)];
             return vec![(next, "next match"), (&[Action::Back], "end search")];
@@ -103,7 +103,8 @@ impl Content for StatePanel {
     }
 
     fn field(&mut self) -> Option<&mut TextField> {
-        self.transitions.is_typing.then_some(&mut self.transitions.search)
+        let search = &mut self.transitions.search;
+        search.is_typing.then_some(&mut search.field)
     }
 
     fn close_field(&mut self) {
@@ -111,7 +112,7 @@ impl Content for StatePanel {
     }
 
     fn go_back(&mut self, _: &Shared) -> Option<Vec<Request>> {
-        self.transitions.is_searched().then(|| {
+        self.transitions.search.is_on().then(|| {
             self.transitions.end_search();
             Vec::new()
         })

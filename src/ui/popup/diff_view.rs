@@ -2,8 +2,8 @@
 
 use crossterm::event::{KeyCode, KeyEvent, MouseButton, MouseEvent, MouseEventKind};
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
-use ratatui::text::Line;
+use ratatui::layout::{Position, Rect};
+use ratatui::text::{Line, Span};
 
 use crate::ui::diff::{self, Against, Diff, DiffRow, Mark};
 use crate::ui::formatting::cut;
@@ -11,6 +11,7 @@ use crate::ui::layout;
 use crate::ui::panel::map::compared;
 use crate::ui::panel::{line, row, span};
 use crate::ui::popup::frame::{framed, key_line};
+use crate::ui::search::{Search, has_all};
 use crate::ui::settings::listing::Comparison;
 use crate::ui::shared::Shared;
 use crate::ui::text_wrap::wrapped;
@@ -34,6 +35,8 @@ pub struct DiffView {
     selected: usize,
     /// `true` to leave out equal rows.
     only_differences: bool,
+    /// The words that a shown row has.
+    pub(in crate::ui) search: Search,
     /// `true` if the map has the whole place.
     is_map: bool,
 }
@@ -51,7 +54,7 @@ pub(in crate::ui) enum DiffKey {
 
 impl DiffView {
     pub(in crate::ui) fn new(against: Against) -> Self {
-        Self { against, selected: 0, only_differences: false, is_map: false }
+        Self { against, selected: 0, only_differences: false, search: Search::default(), is_map: false }
     }
 
     /// Shows another comparison.
@@ -63,15 +66,28 @@ impl DiffView {
     /// Handles a key.
     pub(in crate::ui) fn key(&mut self, state: &Shared, event: KeyEvent) -> DiffKey {
         match event.code {
-            KeyCode::Esc | KeyCode::Char('q' | 'V') => return DiffKey::Left,
-            KeyCode::Up | KeyCode::Char('k') => self.scroll(state, -1),
-            KeyCode::Down | KeyCode::Char('j') => self.scroll(state, 1),
+            KeyCode::Up => self.scroll(state, -1),
+            KeyCode::Down => self.scroll(state, 1),
             KeyCode::PageUp => self.scroll(state, -PAGE),
-            KeyCode::PageDown | KeyCode::Char(' ') => self.scroll(state, PAGE),
+            KeyCode::PageDown => self.scroll(state, PAGE),
+            KeyCode::Enter if self.search.is_typing => self.search.is_typing = false,
+            KeyCode::Esc if self.search.is_on() => (self.search, self.selected) = (Search::default(), 0),
+            _ if self.search.is_typing => {
+                self.search.key(event);
+                self.selected = 0;
+            }
+            KeyCode::Char('/') => {
+                // The rows have the place while they are searched.
+                (self.search, self.selected, self.is_map) = (Search::begun(), 0, false);
+            }
+            KeyCode::Esc | KeyCode::Char('q' | 'V') => return DiffKey::Left,
+            KeyCode::Char('k') => self.scroll(state, -1),
+            KeyCode::Char('j') => self.scroll(state, 1),
+            KeyCode::Char(' ') => self.scroll(state, PAGE),
             KeyCode::Home => self.scroll(state, isize::MIN),
             KeyCode::End => self.scroll(state, isize::MAX),
-            KeyCode::Char('n') => self.next_difference(state, false),
-            KeyCode::Char('N') => self.next_difference(state, true),
+            KeyCode::Char('n') => self.next(state, false),
+            KeyCode::Char('N') => self.next(state, true),
             KeyCode::Char('f') => {
                 (self.only_differences, self.selected) = (!self.only_differences, 0);
             }
@@ -120,9 +136,22 @@ impl DiffView {
         Diff::of(state, self.against).map_or_else(|_| Vec::new(), |diff| self.shown(diff.rows))
     }
 
+    /// Returns the rows that are shown. The value of a row before it is found by the words of both, and keeps that row.
     fn shown(&self, mut rows: Vec<DiffRow>) -> Vec<DiffRow> {
         rows.retain(|row| !self.only_differences || row.mark != Mark::Same);
-        rows
+        let words = self.search.words();
+        if words.is_empty() {
+            return rows;
+        }
+        let groups = rows.chunk_by(|_, next| next.is_part);
+        let found = groups.flat_map(|group| {
+            let head = group.first().map(text_of).unwrap_or_default();
+            let is_found = |row: &&DiffRow| has_all(&format!("{head} {}", text_of(row)), &words);
+            let parts: Vec<&DiffRow> = group.iter().skip(1).filter(is_found).collect();
+            let is_shown = !parts.is_empty() || has_all(&head, &words);
+            group.iter().take(usize::from(is_shown)).chain(parts)
+        });
+        found.cloned().collect()
     }
 
     fn has_map(&self, state: &Shared) -> bool {
@@ -134,15 +163,17 @@ impl DiffView {
         self.selected = self.selected.saturating_add_signed(by).min(last);
     }
 
-    /// Selects the next difference, or the one before; the first follows the last.
-    fn next_difference(&mut self, state: &Shared, back: bool) {
+    /// Selects the next difference, of a search the next match, or the one before; the first follows the last.
+    fn next(&mut self, state: &Shared, back: bool) {
         let rows = self.rows(state);
-        let is_difference =
-            |at: &usize| rows.get(*at).is_some_and(|row| row.mark != Mark::Same && !row.is_part);
+        let is_searched = self.search.is_on();
+        let is_wanted = |at: &usize| {
+            rows.get(*at).is_some_and(|row| is_searched || (row.mark != Mark::Same && !row.is_part))
+        };
         let found = if back {
-            (0..self.selected).rev().chain((self.selected..rows.len()).rev()).find(is_difference)
+            (0..self.selected).rev().chain((self.selected..rows.len()).rev()).find(is_wanted)
         } else {
-            (self.selected + 1..rows.len()).chain(0..rows.len()).find(is_difference)
+            (self.selected + 1..rows.len()).chain(0..rows.len()).find(is_wanted)
         };
         self.selected = found.unwrap_or(self.selected);
     }
@@ -191,6 +222,11 @@ impl DiffView {
             (usize::from(column) < end).then_some(tab)
         })
     }
+}
+
+/// Returns the text of a row that is searched, in lower case.
+fn text_of(row: &DiffRow) -> String {
+    format!("{} {} {}", row.label, row.other, row.current).to_lowercase()
 }
 
 fn is_same_tab(a: Against, b: Against) -> bool {
@@ -243,10 +279,16 @@ fn place(area: Rect) -> Rect {
     Rect { y: area.y + FREE.min(area.height), height: area.height.saturating_sub(FREE + 1), ..area }
 }
 
-/// Draws the comparison.
-pub(in crate::ui) fn draw(state: &Shared, view: &DiffView, area: Rect, buffer: &mut Buffer) {
+/// Draws the comparison. Returns the position of the cursor while a search is typed.
+pub(in crate::ui) fn draw(
+    state: &Shared,
+    view: &DiffView,
+    area: Rect,
+    buffer: &mut Buffer,
+) -> Option<Position> {
     let theme = &state.theme;
-    let inside = framed(theme, place(area), "Differences — Tab other, Esc closes", buffer);
+    let title = view.search.title("Differences", "Tab other, Esc closes");
+    let inside = framed(theme, place(area), &title, buffer);
     let diff = Diff::of(state, view.against);
     let has_map = diff.as_ref().is_ok_and(|diff| diff.plan.is_some());
     let parts = Parts::of(inside, view, has_map);
@@ -254,22 +296,23 @@ pub(in crate::ui) fn draw(state: &Shared, view: &DiffView, area: Rect, buffer: &
         let role = if tab == view.against { Role::Focus } else { Role::Dim };
         span(theme, role, text)
     });
-    line(buffer, parts.tabs, 0, &Line::from(tabs.collect::<Vec<_>>()));
+    let mut tabs: Vec<Span<'_>> = tabs.collect();
     let diff = match diff {
         Ok(diff) => diff,
         Err(why) => {
             for (at, text) in wrapped(&why, usize::from(inside.width)).iter().enumerate() {
                 row(buffer, inside, 2 + at as u16, theme, Role::Dim, text);
             }
-            return;
+            line(buffer, parts.tabs, 0, &Line::from(tabs));
+            return None;
         }
     };
-    let summary = diff.summary();
+    tabs.push(span(theme, Role::Text, diff.label.as_str()));
+    line(buffer, parts.tabs, 0, &Line::from(tabs));
+    let summary = diff.summary(usize::from(inside.width));
     let (other, current) = (diff.other.clone(), diff.current.clone());
     if let Some(plan) = diff.plan.as_ref().filter(|_| parts.map.width > 0) {
-        // The description of a revision stays in the head of the rows.
-        let short = other.split(": ").next().unwrap_or(&other);
-        compared::draw_compared(state, plan, (short, &current), parts.map, buffer);
+        compared::draw_compared(state, plan, (&other, &current), parts.map, buffer);
     }
     let rows = view.shown(diff.rows);
     if parts.list.width > 0 {
@@ -280,18 +323,32 @@ pub(in crate::ui) fn draw(state: &Shared, view: &DiffView, area: Rect, buffer: &
     }
     row(buffer, parts.foot, 0, theme, Role::Text, &summary);
     let more = match view.against {
-        Against::Revision(_) => " revision   ",
-        Against::Settings(_) => " other values   ",
+        Against::Revision(_) => " revision  ",
+        Against::Settings(_) => " other values  ",
         Against::Craft | Against::File => "",
     };
-    let keys: [(&str, &str); 5] = [
-        ("n N", " difference   "),
-        ("f", if view.only_differences { " all   " } else { " only differences   " }),
-        if has_map { ("m", if view.is_map { " rows   " } else { " map   " }) } else { ("", "") },
-        if more.is_empty() { ("", "") } else { ("← →", more) },
-        if has_map { ("Enter", " to the waypoint") } else { ("", "") },
+    let keys = [
+        ("n N", if view.search.is_on() { " match  " } else { " difference  " }),
+        ("f", if view.only_differences { " all  " } else { " only differences  " }),
+        ("m", if view.is_map { " rows  " } else { " map  " }),
+        ("← →", more),
+        ("Enter", " to the waypoint"),
     ];
+    let mut room = usize::from(inside.width);
+    let fits = |(key, does): &(&str, &str)| {
+        let is_possible = match *key {
+            "← →" => !more.is_empty(),
+            "m" | "Enter" => has_map,
+            _ => true,
+        };
+        let width = key.chars().count() + does.trim_end().chars().count();
+        let is_shown = is_possible && width <= room;
+        room = room.saturating_sub(if is_shown { key.chars().count() + does.chars().count() } else { 0 });
+        is_shown
+    };
+    let keys: Vec<(&str, &str)> = keys.into_iter().filter(fits).collect();
     line(buffer, parts.foot, 1, &key_line(theme, &keys));
+    view.search.draw_in_border(theme, place(area), buffer)
 }
 
 /// The widths of the columns.
@@ -324,7 +381,8 @@ fn draw_rows(
 ) {
     let theme = &state.theme;
     if rows.is_empty() {
-        row(buffer, area, 0, theme, Role::Dim, "Nothing differs.");
+        let text = if view.search.is_on() { "None has these words." } else { "Nothing differs." };
+        row(buffer, area, 0, theme, Role::Dim, text);
     }
     let first = view.first(rows.len(), area.height);
     for (at, found) in rows.iter().enumerate().skip(first).take(usize::from(area.height)) {
@@ -384,7 +442,8 @@ pub(in crate::ui) fn lines(state: &Shared, view: &DiffView) -> Vec<String> {
         Ok(diff) => diff,
         Err(why) => return vec![why],
     };
-    let head = format!("{} | {}: {}", diff.other, diff.current, diff.summary());
+    let label = if diff.label.is_empty() { String::new() } else { format!(" ({})", diff.label) };
+    let head = format!("{}{label} | {}: {}", diff.other, diff.current, diff.summary(usize::MAX));
     let differing = diff.rows.iter().filter(|row| row.mark != Mark::Same);
     let line = |row: &DiffRow| {
         let indent = if row.is_part { "  " } else { "" };

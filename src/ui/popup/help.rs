@@ -7,11 +7,11 @@ use ratatui::text::Line;
 
 use crate::ui::action::{ACTIONS, Action, Context, Spec};
 use crate::ui::layout;
-use crate::ui::panel::{line, row, span};
+use crate::ui::panel::{line, span};
 use crate::ui::popup::Outcome;
 use crate::ui::popup::frame::{framed, place};
+use crate::ui::search::Search;
 use crate::ui::shared::Shared;
-use crate::ui::text_field::TextField;
 use crate::ui::text_wrap::wrapped;
 use crate::ui::theme::{Role, Theme};
 
@@ -25,9 +25,7 @@ const PAGE: isize = 10;
 pub struct Help {
     scroll: usize,
     /// The words that a line must have.
-    pub(in crate::ui) search: TextField,
-    /// `true` while the search is typed.
-    pub(in crate::ui) is_typing: bool,
+    pub(in crate::ui) search: Search,
 }
 
 /// A line of the help, and the action that it explains.
@@ -36,19 +34,19 @@ type Entry = (Line<'static>, Option<Action>);
 impl Help {
     /// Handles a key. `None` means a key that closes the help and may trigger its action.
     pub(in crate::ui) fn key(&mut self, event: KeyEvent) -> Option<Outcome<Action>> {
-        let is_searched = !self.search.is_empty();
+        let is_searched = self.search.is_on();
         match event.code {
             KeyCode::Up => self.scroll_by(-1),
             KeyCode::Down => self.scroll_by(1),
             KeyCode::PageUp => self.scroll_by(-PAGE),
             KeyCode::PageDown => self.scroll_by(PAGE),
-            KeyCode::Esc if self.is_typing || is_searched => *self = Self::default(),
-            KeyCode::Enter if self.is_typing => self.is_typing = false,
-            _ if self.is_typing => {
+            KeyCode::Esc if is_searched => *self = Self::default(),
+            KeyCode::Enter if self.search.is_typing => self.search.is_typing = false,
+            _ if self.search.is_typing => {
                 self.search.key(event);
                 self.scroll = 0;
             }
-            KeyCode::Char('/') => *self = Self { is_typing: true, ..Self::default() },
+            KeyCode::Char('/') => *self = Self { search: Search::begun(), scroll: 0 },
             KeyCode::Char('k') => self.scroll_by(-1),
             KeyCode::Char('j') => self.scroll_by(1),
             KeyCode::Char(' ') => self.scroll_by(PAGE),
@@ -89,7 +87,7 @@ impl Help {
     fn entries(&self, state: &Shared, width: u16) -> Vec<Entry> {
         let theme = &state.theme;
         let columns = usize::from(width.saturating_sub(2));
-        let words: Vec<String> = self.search.value().split_whitespace().map(str::to_lowercase).collect();
+        let words = self.search.words();
         let is_found = |keys: &str, text: &str| {
             let text = text.to_lowercase();
             words.iter().all(|word| text.contains(word.as_str()) || keys.to_lowercase() == *word)
@@ -149,22 +147,12 @@ pub(in crate::ui) fn draw(state: &Shared, help: &Help, area: Rect, buffer: &mut 
     let theme = &state.theme;
     let entries = help.entries(state, area.width);
     let (place, first) = help.place(&entries, area);
-    let title = match (help.is_typing, help.search.is_empty()) {
-        (true, _) => "Keys — Enter keeps the search, Esc ends it".to_owned(),
-        (false, true) => "Keys — / searches, any other key closes, ↑ ↓ scroll".to_owned(),
-        (false, false) => format!("Keys — /{}, Esc shows all", help.search.value()),
-    };
+    let title = help.search.title("Keys", "any other key closes, ↑ ↓ scroll");
     let inside = framed(theme, place, &title, buffer);
     for (at, (text, _)) in entries.iter().skip(first).take(usize::from(inside.height)).enumerate() {
         line(buffer, inside, at as u16, text);
     }
-    if !help.is_typing {
-        return None;
-    }
-    let foot = Rect { y: place.bottom().checked_sub(1)?, height: 1, x: place.x + 1, ..inside };
-    row(buffer, foot, 0, theme, Role::Key, &format!("/{}", " ".repeat(usize::from(foot.width))));
-    let field = Rect { x: foot.x + 1, width: foot.width.checked_sub(1)?, ..foot };
-    help.search.draw(theme, field.intersection(area), buffer)
+    help.search.draw_in_border(theme, place, buffer)
 }
 
 /// Returns keys and their explanation, in as many lines as it takes at this width.

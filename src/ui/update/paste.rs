@@ -7,6 +7,8 @@ use crate::ui::event_log::Severity;
 use crate::ui::message::Effect;
 use crate::ui::panel::Panel;
 use crate::ui::popup::Popup;
+use crate::ui::search::Search;
+use crate::ui::text_field::TextField;
 
 /// Inserts pasted text into the field with the focus; a field of a single line gets the first line.
 pub(super) fn paste(state: &mut AppState, text: &str) -> Vec<Effect> {
@@ -15,10 +17,10 @@ pub(super) fn paste(state: &mut AppState, text: &str) -> Vec<Effect> {
         Some(Popup::Palette(palette)) => Some(&mut palette.query),
         Some(Popup::Signals(list)) => Some(&mut list.query),
         Some(Popup::Flights(list)) => list.deleting.is_none().then_some(&mut list.query),
-        Some(Popup::Help(help)) => help.is_typing.then_some(&mut help.search),
+        Some(Popup::Help(help)) => typed(&mut help.search),
+        Some(Popup::Diff(view)) => typed(&mut view.search),
         Some(
-            Popup::Diff(_)
-            | Popup::GoTo(_)
+            Popup::GoTo(_)
             | Popup::MapMenu(_)
             | Popup::Plots { .. }
             | Popup::WhatIf { .. }
@@ -53,4 +55,9 @@ pub(super) fn paste(state: &mut AppState, text: &str) -> Vec<Effect> {
     }
     state.panels.cli.console.paste(text);
     state.panels.cli.console.next_effect().into_iter().collect()
+}
+
+/// Returns the field of a search while its words are typed.
+fn typed(search: &mut Search) -> Option<&mut TextField> {
+    search.is_typing.then_some(&mut search.field)
 }

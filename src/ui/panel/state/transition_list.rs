@@ -10,6 +10,7 @@ use crate::ui::event_log::Severity;
 use crate::ui::formatting::{clock, cut};
 use crate::ui::message::{Change, Request};
 use crate::ui::panel::{Panel, line, row, span};
+use crate::ui::search::has_all;
 use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
 use crate::ui::transitions::{Transition, Transitions};
@@ -22,17 +23,16 @@ pub(super) fn found<'a>(
     own: &'a Transitions,
     state: &'a Shared,
 ) -> impl Iterator<Item = &'a Transition> + 'a {
-    let words: Vec<String> = own.search.value().split_whitespace().map(str::to_lowercase).collect();
+    let words = own.search.words();
     own.shown(state).rev().filter(move |step| {
         let text = format!("{} {} → {} {}", clock(step.time), step.from, step.to, why(step, LONG));
-        let text = text.to_lowercase();
-        words.iter().all(|word| text.contains(word.as_str()))
+        has_all(&text.to_lowercase(), &words)
     })
 }
 
 /// Goes to the next older match, or to the next newer one.
 pub(super) fn next(own: &mut Transitions, state: &Shared, older: isize) -> Vec<Request> {
-    if own.search.is_empty() {
+    if own.search.field.is_empty() {
         let key = state.key(Action::Panel(PanelAction::SearchTransitions));
         return vec![Change::Notify(Severity::Info, format!("No search yet: `{key}` begins.")).into()];
     }
@@ -40,7 +40,7 @@ pub(super) fn next(own: &mut Transitions, state: &Shared, older: isize) -> Vec<R
     let to = own.scroll.saturating_add_signed(older).min(last);
     if to == own.scroll {
         let end = if older > 0 { "older" } else { "newer" };
-        let text = format!("No {end} transition has {:?}.", own.search.value());
+        let text = format!("No {end} transition has {:?}.", own.search.field.value());
         return vec![Change::Say(Severity::Info, text).into()];
     }
     own.scroll = to;
@@ -65,7 +65,7 @@ pub(super) fn draw_search(
     }
     row(buffer, area, list.height, theme, Role::Key, "/");
     let field = Rect { x: area.x + 1, y: area.y + list.height, width: area.width.checked_sub(1)?, height: 1 };
-    own.search.draw(theme, field.intersection(area), buffer).filter(|_| own.is_typing)
+    own.search.field.draw(theme, field.intersection(area), buffer).filter(|_| own.search.is_typing)
 }
 
 /// Draws the last transitions below their heading.
