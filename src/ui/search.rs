@@ -10,7 +10,7 @@ use super::theme::{Role, Theme};
 
 /// The words that a line must have, and whether they are being typed.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Search {
+pub(super) struct Search {
     pub(super) field: TextField,
     /// `true` while the words are typed.
     pub(super) is_typing: bool,

@@ -246,7 +246,15 @@ fn the_plan_is_compared_with_the_craft_its_file_and_its_revisions_line_by_line()
     }
     flight.hear("[25.0]");
     flight.say("plan.compare");
-    let heard = flight.hear("Compare with: craft, file, revision NUMBER, settings (defaults, plan or saved)");
+    let answers = "Compare with: craft, file, revision NUMBER, settings (defaults, plan or saved)";
+    let mut heard = flight.hear(answers);
+    while !heard.iter().any(|line| line.starts_with("craft | ")) {
+        // The picture with the uploaded plan may come after the answer.
+        for line in ["", "plan.compare"] {
+            flight.say(line);
+        }
+        heard = flight.hear(answers);
+    }
     let has = |heard: &[String], text: &str| heard.iter().any(|line| line.contains(text));
     assert!(has(&heard, "craft | this plan: ≠ 1 changed   = 1 the same"), "{heard:#?}");
     assert!(
