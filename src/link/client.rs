@@ -25,6 +25,9 @@ const IDLE_TIMEOUT: Duration = Duration::from_secs(120);
 const WRITE_TIMEOUT: Duration = Duration::from_secs(10);
 /// The longest time that closing may take.
 const CLOSE_TIMEOUT: Duration = Duration::from_secs(1);
+/// The time for a websocket client to process the announcement of a restart before its link is closed. A browser reports a
+/// message after it has decoded it, and may report the end of the link first.
+const RESTART_DELAY: Duration = Duration::from_secs(1);
 
 /// The channels that all clients of the doors share.
 #[derive(Debug, Clone)]
@@ -39,6 +42,8 @@ pub(super) struct SharedChannels {
 enum Stop {
     /// The session is gone, or the link must close.
     Ended,
+    /// The firmware restarts at the request of this client, which was informed.
+    Restarted,
     /// The client cannot be reached.
     Failed,
     /// The client does not take its answers in time.
@@ -96,6 +101,7 @@ impl Client {
         let door = self.stream.door();
         match stop {
             Stop::Ended => {}
+            Stop::Restarted => self.wait_for_end().await,
             Stop::Failed | Stop::Evicted => self.stats.error(),
             Stop::Deaf => {
                 self.stats.error();
@@ -181,7 +187,7 @@ impl Client {
                 SerialRequest::Flush => self.flush().await?,
                 SerialRequest::Restart => {
                     self.send(Request::Restart { client: self.id }).await?;
-                    return Err(Stop::Ended);
+                    return Err(Stop::Restarted);
                 }
                 SerialRequest::LeftCli => self.send(Request::LeftCli { client: self.id }).await?,
                 SerialRequest::Ignored { word } => {
@@ -199,7 +205,19 @@ impl Client {
     async fn run(&mut self, line: String, source: LineSource) -> Result<(), Stop> {
         let client = self.id;
         let answer = self.request(|reply| Request::Cli { client, line, source, reply }).await?;
-        if self.session.answer(&answer) { Err(Stop::Ended) } else { Ok(()) }
+        if self.session.answer(&answer) { Err(Stop::Restarted) } else { Ok(()) }
+    }
+
+    /// Waits until the client ends the link, a while at most, if its messages may arrive after the end of the link.
+    async fn wait_for_end(&mut self) {
+        if !self.stream.is_websocket() {
+            return;
+        }
+        let read = async { while let Ok(Some(_ignored)) = self.stream.read().await {} };
+        tokio::select! {
+            () = self.channels.shutdown.cancelled() => {}
+            _ended = tokio::time::timeout(RESTART_DELAY, read) => {}
+        }
     }
 
     async fn request<T>(&self, request: impl FnOnce(oneshot::Sender<T>) -> Request) -> Result<T, Stop> {

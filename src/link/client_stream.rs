@@ -64,6 +64,11 @@ impl ClientStream {
         }
     }
 
+    /// Returns `true` for a websocket.
+    pub(super) fn is_websocket(&self) -> bool {
+        matches!(self, Self::WebSocket(_))
+    }
+
     pub(super) async fn close(&mut self) -> io::Result<()> {
         match self {
             Self::Tcp(stream) => stream.shutdown().await,

@@ -132,6 +132,22 @@ async fn an_interactive_save_reboots_and_a_framed_one_keeps_the_link() {
 }
 
 #[tokio::test]
+async fn a_browser_reads_that_the_craft_reboots_before_its_link_ends() {
+    let house = House::usual().await;
+    let mut app = house.websocket().await;
+    app.enter_cli().await;
+    app.send(b"exit\n").await;
+    assert!(app.receive_until("Rebooting").await.ends_with("unsaved changes lost\r\n\r\nRebooting"));
+    // A browser decodes a message on another thread, and reports the end of a link at once.
+    let end = tokio::time::timeout(Duration::from_millis(30), app.receive()).await;
+    assert!(end.is_err(), "the link ended right after the message");
+    // A restart of the client's own does not disturb the firmware again.
+    app.send(&unhex("244d3c004444")).await;
+    assert!(app.is_closed().await);
+    house.websocket().await.assert_speaks_msp().await;
+}
+
+#[tokio::test]
 async fn megabytes_without_a_line_end_are_one_line_at_most() {
     let house = House::usual().await;
     for websocket in [false, true] {
