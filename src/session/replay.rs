@@ -85,6 +85,8 @@ struct ReplaySession {
     commands: mpsc::Receiver<Command>,
     /// A command that was taken from the queue and is carried out next.
     held_back: Option<Command>,
+    /// `true` if all commands were taken, so that the next one wakes the thread.
+    is_idle: bool,
     events: EventSender,
     changed: bool,
     quit: bool,
@@ -108,6 +110,7 @@ impl ReplaySession {
             player: None,
             commands,
             held_back: None,
+            is_idle: false,
             events,
             changed: true,
             quit: false,
@@ -139,7 +142,8 @@ impl ReplaySession {
                 self.changed = false;
                 view.send_replace(self.view());
             }
-            if self.held_back.is_none() && self.commands.is_empty() {
+            // A queue that only looks empty would not wake the thread.
+            if self.is_idle {
                 let is_playing = self.player.as_ref().is_some_and(Player::is_playing);
                 std::thread::park_timeout(if is_playing { VIEW_INTERVAL } else { LONGEST_SLEEP });
             }
@@ -257,7 +261,9 @@ impl ReplaySession {
         if let Some(command) = self.held_back.take() {
             return Some(command);
         }
-        match self.commands.poll_recv(context) {
+        let received = self.commands.poll_recv(context);
+        self.is_idle = received.is_pending();
+        match received {
             Poll::Ready(Some(command)) => Some(command),
             Poll::Ready(None) => {
                 self.quit = true;

@@ -1,5 +1,7 @@
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, Sender};
 use std::sync::{Arc, Mutex};
+use std::task::{Wake, Waker};
 
 use super::*;
 use crate::replay::{Curve, CurvesRequest, Moment, Overview, PastEvent, PastFlight, Picture, Progress};
@@ -233,6 +235,42 @@ fn a_jump_by_time_keeps_playing_and_a_jump_to_an_event_stops() {
     assert!(rig.session.view().paused);
     rig.send(Command::Step(3));
     assert!((rig.shown_s() - 15.012).abs() < 1e-9, "three records: {}", rig.shown_s());
+}
+
+/// Counts how often it woke a thread.
+#[derive(Default)]
+struct CountedWakes(AtomicUsize);
+
+impl Wake for CountedWakes {
+    fn wake(self: Arc<Self>) {
+        self.0.fetch_add(1, Ordering::Relaxed);
+    }
+}
+
+#[test]
+fn a_key_after_any_other_wakes_a_paused_replay() {
+    let first = [
+        Command::Seek(Seek::Newest),
+        Command::Seek(Seek::Forward { states_only: false }),
+        Command::Seek(Seek::Seconds(-3.0)),
+        Command::ShowFlight(1),
+        Command::Pause(true),
+    ];
+    for command in first {
+        let name = format!("{command:?}");
+        let mut rig = Rig::new(2, Some(ReplayStart::Seconds(1.0)));
+        let wakes = Arc::new(CountedWakes::default());
+        let waker = Waker::from(Arc::clone(&wakes));
+        let mut context = Context::from_waker(&waker);
+        rig.commands.try_send(command).unwrap();
+        rig.session.is_idle = false;
+        while !rig.session.is_idle {
+            rig.session.take_commands(rig.now, &mut context);
+        }
+        let before = wakes.0.load(Ordering::Relaxed);
+        rig.commands.try_send(Command::Seek(Seek::Seconds(-1.0))).unwrap();
+        assert_eq!(wakes.0.load(Ordering::Relaxed), before + 1, "after {name}");
+    }
 }
 
 #[test]
