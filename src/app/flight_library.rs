@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 use super::named_file::stem;
+use super::parallel;
 use crate::recording::{Header, Listed, ReadError, Summary, TAIL, read_summary, seen_s};
 use crate::storage::state_file::{self, Access};
 
@@ -44,16 +45,21 @@ impl Known {
     /// Returns the error of the system if the folder cannot be read. A missing folder is empty.
     pub(super) fn list(&mut self, state: &Path) -> io::Result<Vec<Listed>> {
         let mut before = std::mem::take(&mut self.0);
+        let mut changed = Vec::new();
         for path in files(&state.join(FOLDER))? {
             let fingerprint = path.symlink_metadata().ok().map(|there| (there.len(), there.modified().ok()));
             let Some(fingerprint) = fingerprint else { continue };
             let same =
                 before.remove(&path).filter(|(then, listed)| *then == fingerprint && !listed.is_growing);
-            let listed = same.map(|(_, listed)| listed).or_else(|| look(&path));
-            if let Some(listed) = listed {
-                self.0.insert(path, (fingerprint, listed));
+            match same {
+                Some(same) => drop(self.0.insert(path, same)),
+                None => changed.push((path, fingerprint)),
             }
         }
+        let looked = look_at_all(&changed)?;
+        let changed = changed.into_iter().zip(looked);
+        self.0
+            .extend(changed.filter_map(|((path, fingerprint), listed)| Some((path, (fingerprint, listed?)))));
         Ok(newest_first(self.0.values().map(|(_, listed)| listed.clone()).collect()))
     }
 }
@@ -95,6 +101,18 @@ fn files(folder: &Path) -> io::Result<Vec<PathBuf>> {
 
 fn is_recording(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending == ENDING)
+}
+
+/// Returns what a list shows of files, in their order. A recording without an end is read whole, so several are read at
+/// once.
+fn look_at_all(files: &[(PathBuf, Fingerprint)]) -> io::Result<Vec<Option<Listed>>> {
+    let paths: Vec<&Path> = files.iter().map(|(path, _)| path.as_path()).collect();
+    let mut looked = Vec::with_capacity(paths.len());
+    let look = |_, path: &Path| Some(look(path));
+    let done =
+        parallel::all(&paths, parallel::threads(None), &|| false, look, |listed, _| looked.push(listed));
+    done.map_err(|error| io::Error::other(error.message))?;
+    Ok(looked)
 }
 
 /// Returns what a list shows of a file; `None` if it is gone or no regular file.

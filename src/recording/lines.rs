@@ -53,8 +53,10 @@ pub(super) fn each(
         };
         left -= text.len().min(left);
         // A line without its end may be a part of one.
-        let whole = text.iter().rposition(|&byte| byte == b'\n').map_or(0, |last| last + 1);
-        for line in text.get(..whole).unwrap_or_default().split(|&byte| byte == b'\n') {
+        let mut start = 0;
+        for end in memchr::memchr_iter(b'\n', &text) {
+            let line = text.get(start..end).unwrap_or_default();
+            start = end + 1;
             if !line.is_empty() && take(line).is_break() {
                 return Ok(rest);
             }

@@ -94,6 +94,10 @@ fn end(tail: &[u8]) -> Option<End> {
     }
 }
 
+/// The beginnings of two kinds of lines.
+const PICTURE: &[u8] = b"{\"picture\"";
+const BRANCH: &[u8] = b"{\"branch\"";
+
 /// A picture as far as it says when the craft was armed.
 #[derive(Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -112,17 +116,61 @@ struct Craft {
 /// Fails if the source cannot be read.
 pub fn seen_s(source: impl BufRead) -> io::Result<f64> {
     let (mut armed_at, mut last) = (None, SimTime::ZERO);
+    let mut newest = Vec::new();
+    // Only pictures that may be the first after the arming are read: that takes most of the time.
+    let mut is_read = true;
     each(source, |line| {
-        let is_picture = line.starts_with(b"{\"picture\"");
-        if let Some(Ok(Timed::Picture { t, craft })) = is_picture.then(|| serde_json::from_slice(line)) {
-            last = t;
-            // The flight may have continued from an instant before the arming.
-            armed_at = armed_at.filter(|armed_at| *armed_at <= t);
-            if craft.armed == Some(true) {
-                armed_at.get_or_insert(t);
+        if line.starts_with(BRANCH) {
+            // The flight may continue from an instant before the arming.
+            is_read = true;
+        } else if line.starts_with(PICTURE) {
+            newest.clear();
+            newest.extend_from_slice(line);
+            if let Some(Timed::Picture { t, craft }) = is_read.then(|| timed(line)).flatten() {
+                last = t;
+                armed_at = armed_at.filter(|armed_at| *armed_at <= t);
+                if craft.armed == Some(true) {
+                    armed_at.get_or_insert(t);
+                }
+                is_read = armed_at.is_none();
             }
         }
         ControlFlow::Continue(())
     })?;
+    if let Some(Timed::Picture { t, .. }) = timed(&newest) {
+        last = t;
+    }
     Ok(armed_at.map_or(0.0, |armed_at| last.seconds_since(armed_at)))
+}
+
+fn timed(line: &[u8]) -> Option<Timed> {
+    serde_json::from_slice(line).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write as _;
+
+    use super::*;
+
+    #[test]
+    fn a_flight_that_was_continued_before_its_arming_is_seen_from_the_next_one() {
+        let picture = |t_s: u64, armed| {
+            format!("{{\"picture\":{{\"t\":{},\"craft\":{{\"armed\":{armed}}}}}}}\n", t_s * 1_000_000)
+        };
+        let seen = |lines: &[String]| {
+            let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+            encoder.write_all(lines.concat().as_bytes()).unwrap();
+            seen_s(&encoder.finish().unwrap()[..]).unwrap()
+        };
+        let branch = "{\"branch\":{\"t\":1000000,\"inputs\":3}}\n".to_owned();
+        let mut lines = vec![picture(1, false), picture(2, true), picture(3, true), picture(9, true)];
+        assert!((seen(&lines) - 7.0).abs() < 1e-9);
+        lines.extend([branch.clone(), picture(1, false), picture(4, true), picture(6, true)]);
+        assert!((seen(&lines) - 2.0).abs() < 1e-9);
+        // The arming stays that of the flight before.
+        lines.extend([branch.replace('1', "5"), picture(5, true), picture(7, false)]);
+        assert!((seen(&lines) - 3.0).abs() < 1e-9);
+        assert!(seen(&[picture(1, false), picture(8, false)]).abs() < 1e-9);
+    }
 }
