@@ -1,8 +1,6 @@
 //! A flight of the guide's square as the user interface sees it: pictures and events, without firmware or physics.
 
-#![allow(dead_code, reason = "tests and the bench share this file and use different parts")]
-
-use std::time::Duration;
+#![allow(dead_code, unused_imports, reason = "tests and the bench share this file and use different parts")]
 
 use betadeck::geo::{LatLon, LocalFrame};
 use betadeck::link::endpoint::{ClientStats, EndpointKind, EndpointState, EndpointStatus, PacketStats};
@@ -12,15 +10,19 @@ use betadeck::session::{Event, SessionEvent, SessionView};
 use betadeck::signals::{RcFrame, RcSource, SimTime};
 use betadeck::telemetry::snapshot::{ModeRange, SettingsView, TruthView};
 use betadeck::telemetry::{
-    ArmingFlag, DisarmReason, EventKind, FirmwareEvent, Guard, GuardName, GuardOp, L1Mode, Mode, ModeFlags,
-    NavEvent, NavState, Snapshot, TransitionReason,
+    ArmingFlag, EventKind, FirmwareEvent, Guard, L1Mode, Mode, ModeFlags, NavEvent, NavState, Snapshot,
 };
-use betadeck::timeline::{Mark, MarkKind, TimelineView};
 use betadeck::ui::editor::PlanId;
 use betadeck::ui::keymap::Keymap;
 use betadeck::ui::theme::{Charset, Palette};
 use betadeck::ui::{AppState, CliHelp, EnteredLines, Msg, OpenPlan, Theme, UiConfig, Units, update};
 use nalgebra::{Vector2, Vector3};
+
+// Also correct for the bench, which names this file by its path.
+#[path = "fixture/course.rs"]
+mod course;
+
+pub(crate) use course::{approach, branch, complete, land, orbit, rewind};
 
 /// The position of the craft at boot.
 pub(crate) const HOME: LatLon = LatLon::new(404_635_000, -795_182_000);
@@ -295,208 +297,4 @@ pub(crate) fn view(flight: &SimpleFlight) -> SessionView {
 pub(crate) fn hear(state: &mut AppState, time_s: f64, kind: EventKind) {
     let event = Event { time: SimTime::from_secs_f64(time_s), kind: SessionEvent::Vehicle(kind) };
     update(state, Msg::Event(event));
-}
-
-fn transition(
-    state: &mut AppState,
-    time_s: f64,
-    from: NavState,
-    to: NavState,
-    wp: u8,
-    reason: TransitionReason,
-) {
-    let event = NavEvent::State {
-        from,
-        to,
-        wp,
-        kind: Some(square().waypoints[usize::from(wp)].kind),
-        reason,
-        guard: None,
-        target: square().waypoints[usize::from(wp)].position,
-        target_alt_m: 50.0,
-    };
-    hear(state, time_s, EventKind::Firmware(FirmwareEvent::Nav(event)));
-}
-
-/// Flies to the middle of the leg to WP1.
-pub(crate) fn approach(state: &mut AppState) {
-    update(state, Msg::Clock(Duration::from_secs(60)));
-    let boot = EventKind::Boot { seed: 1, rate_hz: 1000, airframe: "iris".to_owned(), live: false };
-    hear(state, 0.0, boot);
-    hear(state, 29.5, EventKind::Firmware(FirmwareEvent::Armed));
-    transition(state, 31.02, NavState::Idle, NavState::Approaching, 0, TransitionReason::Reset);
-    for step in 0..=40 {
-        let t = f64::from(step) / 40.0;
-        fly(state, 31.02 + t * 27.0, (55.5 * t, 59.4 * t), 45.0, 0);
-    }
-    transition(state, 58.31, NavState::Approaching, NavState::Arrived, 0, TransitionReason::Plane);
-    transition(state, 58.32, NavState::Arrived, NavState::Approaching, 1, TransitionReason::Advance);
-    for step in 0..=20 {
-        let t = f64::from(step) / 20.0;
-        fly(state, 58.32 + t * 9.7, (55.5 - 48.7 * t, 59.4 + 3.0 * (t * 3.1).sin()), 180.0, 1);
-    }
-}
-
-fn fly(state: &mut AppState, time_s: f64, (n, e): (f64, f64), heading_deg: f64, wp: u8) {
-    let guard = |name, value, limit, op| Guard { name, value, limit, op };
-    let guards = match wp {
-        0 => vec![
-            guard(GuardName::Plane, -62.4, 0.0, GuardOp::AtLeast),
-            guard(GuardName::Beside, 0.31, 5.0, GuardOp::AtMost),
-        ],
-        _ => vec![
-            guard(GuardName::TurnRadius, 62.4, 5.47, GuardOp::AtMost),
-            guard(GuardName::Plane, -62.4, 0.0, GuardOp::AtLeast),
-        ],
-    };
-    let flight = SimpleFlight {
-        time_s,
-        n,
-        e,
-        alt: 50.2,
-        heading_deg,
-        speed: 5.0,
-        armed: true,
-        fix: true,
-        state: NavState::Approaching,
-        wp,
-        guards,
-        hold_s: 0.0,
-    };
-    update(state, Msg::View(view(&flight)));
-}
-
-/// Circles at WP2.
-pub(crate) fn orbit(state: &mut AppState) {
-    approach(state);
-    transition(state, 90.0, NavState::Holding, NavState::Orbiting, 2, TransitionReason::Pattern);
-    let guard = Guard { name: GuardName::HoldTime, value: 11.6, limit: 30.0, op: GuardOp::AtLeast };
-    let flight = SimpleFlight {
-        time_s: 101.6,
-        n: -47.0,
-        e: -62.0,
-        alt: 50.0,
-        heading_deg: 90.0,
-        speed: 0.5,
-        armed: true,
-        fix: true,
-        state: NavState::Orbiting,
-        wp: 2,
-        guards: vec![guard],
-        hold_s: 18.4,
-    };
-    update(state, Msg::View(view(&flight)));
-}
-
-/// Circles at WP2, then rewinds to the leg to WP0.
-pub(crate) fn rewind(state: &mut AppState) {
-    orbit(state);
-    let mark = |time_s, kind| Mark { time: SimTime::from_secs_f64(time_s), kind };
-    let marks = vec![
-        mark(9.2, MarkKind::Recovery),
-        mark(29.5, MarkKind::Armed),
-        mark(31.02, MarkKind::State(NavState::Approaching)),
-        mark(58.31, MarkKind::State(NavState::Arrived)),
-        mark(58.32, MarkKind::State(NavState::Approaching)),
-        mark(72.0, MarkKind::Alarm),
-        mark(89.9, MarkKind::State(NavState::Holding)),
-        mark(90.0, MarkKind::State(NavState::Orbiting)),
-    ];
-    let flight = SimpleFlight {
-        time_s: 45.21,
-        n: 29.2,
-        e: 31.2,
-        alt: 50.1,
-        heading_deg: 45.0,
-        speed: 5.0,
-        armed: true,
-        fix: true,
-        state: NavState::Approaching,
-        ..SimpleFlight::default()
-    };
-    let timeline = TimelineView {
-        head: SimTime::from_secs_f64(101.6),
-        head_is_armed: true,
-        rewound: true,
-        marks: std::sync::Arc::new(marks),
-        ..TimelineView::default()
-    };
-    update(state, Msg::View(SessionView { paused: true, timeline: Some(timeline), ..view(&flight) }));
-}
-
-/// Flies on from the earlier instant, to another place.
-pub(crate) fn branch(state: &mut AppState) {
-    rewind(state);
-    let rewound = state.shared.view.timeline.clone().expect("a timeline");
-    let time = state.shared.view.vehicle.time;
-    let kind = SessionEvent::Branch { number: 1, left: rewound.head };
-    update(state, Msg::Event(Event { time, kind }));
-    for step in 1..=20 {
-        let t = f64::from(step);
-        let flight = SimpleFlight {
-            time_s: 45.21 + t,
-            n: 29.2 - 1.5 * t,
-            e: 31.2 + 2.0 * t,
-            alt: 50.1,
-            heading_deg: 135.0,
-            speed: 2.5,
-            armed: true,
-            fix: true,
-            ..SimpleFlight::default()
-        };
-        let timeline = TimelineView {
-            head: SimTime::from_secs_f64(45.21 + t),
-            rewound: false,
-            branch: 1,
-            branched_at: time,
-            ..rewound.clone()
-        };
-        update(state, Msg::View(SessionView { timeline: Some(timeline), ..view(&flight) }));
-    }
-}
-
-/// Comes down at WP3.
-pub(crate) fn land(state: &mut AppState) {
-    orbit(state);
-    transition(state, 190.0, NavState::Arrived, NavState::Landing, 3, TransitionReason::Land);
-    let guard = |name, value, limit, op| Guard { name, value, limit, op };
-    let flight = SimpleFlight {
-        time_s: 200.0,
-        n: 55.5,
-        e: -67.8,
-        alt: 35.1,
-        speed: 0.3,
-        armed: true,
-        fix: true,
-        state: NavState::Landing,
-        wp: 3,
-        guards: vec![
-            guard(GuardName::TouchdownAltitude, 35.1, 4.0, GuardOp::Below),
-            guard(GuardName::TouchdownSpeed, 0.3, 0.5, GuardOp::Below),
-            guard(GuardName::TouchdownThrottle, 1501.5, 1400.0, GuardOp::Below),
-            guard(GuardName::TouchdownSink, -0.5, -0.1, GuardOp::Above),
-            guard(GuardName::Descent, 15.1, 0.5, GuardOp::AtLeast),
-            guard(GuardName::BelowHover, 2.7, 50.0, GuardOp::AtLeast),
-            guard(GuardName::TouchdownTime, 0.0, 1.0, GuardOp::AtLeast),
-        ],
-        ..SimpleFlight::default()
-    };
-    update(state, Msg::View(view(&flight)));
-}
-
-/// Lands at WP3 and completes the mission.
-pub(crate) fn complete(state: &mut AppState) {
-    orbit(state);
-    transition(state, 260.0, NavState::Landing, NavState::Complete, 3, TransitionReason::Touchdown);
-    hear(state, 260.0, EventKind::Firmware(FirmwareEvent::Disarmed(DisarmReason::Landing)));
-    let flight = SimpleFlight {
-        time_s: 262.0,
-        n: 55.5,
-        e: -67.8,
-        fix: true,
-        state: NavState::Complete,
-        wp: 3,
-        ..SimpleFlight::default()
-    };
-    update(state, Msg::View(view(&flight)));
 }
