@@ -90,18 +90,41 @@ impl LogWriter<'_> {
 
     /// Writes a number with seven bits a byte, the lowest first.
     #[inline]
-    pub fn unsigned_vb(&mut self, mut value: u32) {
-        while value > 0x7f {
-            self.byte(value as u8 | 0x80);
-            value >>= 7;
+    pub fn unsigned_vb(&mut self, value: u32) {
+        if value <= 0x7f {
+            return self.byte(value as u8);
         }
-        self.byte(value as u8);
+        let v = u64::from(value);
+        let spread = v & 0x7f
+            | (v & 0x3f80) << 1
+            | (v & 0x1f_c000) << 2
+            | (v & 0xfe0_0000) << 3
+            | (v & 0xf000_0000) << 4;
+        let count = (38 - value.leading_zeros()) / 7;
+        let more = 0x80_8080_8080 & ((1_u64 << (8 * (count - 1))) - 1);
+        self.first((spread | more).to_le_bytes(), count as usize);
+    }
+
+    /// Writes numbers as [`Self::signed_vb`] does.
+    #[inline]
+    pub fn all_signed_vb(&mut self, values: &[i32]) {
+        let (groups, rest) = values.as_chunks::<4>();
+        for group in groups {
+            let codes = group.map(zigzag);
+            let [a, b, c, d] = codes;
+            if (a | b | c | d) <= 0x7f {
+                self.first(codes.map(|code| code as u8), 4);
+            } else {
+                codes.into_iter().for_each(|code| self.unsigned_vb(code));
+            }
+        }
+        rest.iter().for_each(|value| self.signed_vb(*value));
     }
 
     /// Writes a number by its zigzag code, which is small for small numbers of both signs.
     #[inline]
     pub fn signed_vb(&mut self, value: i32) {
-        self.unsigned_vb((value << 1 ^ value >> 31).cast_unsigned());
+        self.unsigned_vb(zigzag(value));
     }
 
     /// Writes the lowest 14 bits of the negated number.
@@ -109,6 +132,11 @@ impl LogWriter<'_> {
     pub fn neg_14bit(&mut self, value: i32) {
         self.unsigned_vb(value.wrapping_neg().cast_unsigned() & 0x3fff);
     }
+}
+
+/// Returns a code that is small for small numbers of both signs.
+fn zigzag(value: i32) -> u32 {
+    (value << 1 ^ value >> 31).cast_unsigned()
 }
 
 /// Returns the written bytes.

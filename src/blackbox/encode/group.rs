@@ -36,7 +36,7 @@ impl Coding {
     /// Writes values of consecutive fields.
     pub(super) fn write(self, values: &[i32], log: &mut LogWriter<'_>) {
         match self {
-            Self::SignedVb => values.iter().for_each(|value| log.signed_vb(*value)),
+            Self::SignedVb => log.all_signed_vb(values),
             Self::UnsignedVb => values.iter().for_each(|value| log.unsigned_vb(value.cast_unsigned())),
             Self::Neg14Bit => values.iter().for_each(|value| log.neg_14bit(*value)),
             Self::Tag8_8Svb => log.tag8_8svb(values),

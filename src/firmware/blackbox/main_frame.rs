@@ -115,13 +115,67 @@ impl MainState {
         whole(100.0 * self.voltage_v)
     }
 
-    /// Returns the values of these fields. `scale` is the units of a degree per second and of a stick unit.
-    pub(super) fn values(&self, fields: &LoggedFields, scale: f64) -> FrameValues {
+    /// Returns the values of all fields, in the order of [`MainFields`], also of those that a log does not have. `scale` is
+    /// the units of a degree per second and of a stick unit.
+    pub(super) fn values(&self, scale: f64) -> FrameValues {
+        let (terms, sticks, rates) = (&self.terms, &self.sticks, &self.rates);
+        let [d_roll, d_pitch, d_yaw] = signed(terms.d);
         let mut values = Values { values: [0; MAX_FIELDS], len: 0 };
-        for fields in fields {
-            fields.put(self, scale, &mut values);
-        }
+        values.push(self.iteration.cast_signed());
+        // The counter of microseconds starts again after 71 minutes.
+        values.push(self.time.0 as i32);
+        values.all(signed(terms.p));
+        values.all(signed(terms.i));
+        values.all([d_roll, d_pitch, d_yaw]);
+        values.all(signed(terms.f));
+        values.all(signed([sticks.roll, sticks.pitch, sticks.yaw]).map(|stick| scale * stick));
+        values.push(whole(scale * sticks.throttle_us));
+        values.all(signed(self.setpoint_dps).map(|rate| scale * rate));
+        values.push(whole(1000.0 * self.throttle));
+        values.push(self.volts());
+        values.push(whole(100.0 * self.current_a));
+        values.all(self.mag_flu.into());
+        values.push(whole(100.0 * self.baro_alt_m));
+        values.push(self.rssi.into());
+        values.all(signed(self.gyro_dps).map(|rate| scale * rate));
+        let raw = [rates.roll, rates.pitch_down, rates.yaw];
+        values.all(signed(raw).map(|rate| scale * rate.to_degrees()));
+        values.all((self.force_flu * (ACC_COUNTS_PER_G / GRAVITY)).into());
+        values.all(attitude(&self.attitude).map(|part| QUATERNION_COUNTS * part));
+        self.debug.into_iter().for_each(|value| values.push(value));
+        values.all(self.motors_us);
         values.values
+    }
+}
+
+/// The places of the fields of a log among [`MainState::values`].
+#[derive(Debug, Clone)]
+pub(super) struct FieldPlaces(ArrayVec<u8, MAX_FIELDS>);
+
+impl FieldPlaces {
+    pub(super) fn new(logged: &LoggedFields) -> Self {
+        let mut places = ArrayVec::new();
+        let mut next = 0;
+        for fields in MainFields::iter() {
+            let count = fields.group().names.len() as u8;
+            if logged.contains(&fields) {
+                for place in next..next + count {
+                    // A frame has room for all fields.
+                    let _full = places.try_push(place);
+                }
+            }
+            next += count;
+        }
+        Self(places)
+    }
+
+    /// Returns the values of the fields of a log, in the order of its frames.
+    pub(super) fn of(&self, all: &FrameValues) -> FrameValues {
+        let mut values = [0; MAX_FIELDS];
+        for (value, place) in values.iter_mut().zip(&self.0) {
+            *value = all[usize::from(*place) % MAX_FIELDS];
+        }
+        values
     }
 }
 
@@ -138,6 +192,7 @@ struct Values {
 }
 
 impl Values {
+    #[inline]
     fn push(&mut self, value: i32) {
         if let Some(place) = self.values.get_mut(self.len) {
             *place = value;
@@ -145,6 +200,7 @@ impl Values {
         }
     }
 
+    #[inline]
     fn all<const N: usize>(&mut self, values: [f64; N]) {
         values.into_iter().for_each(|value| self.push(whole(value)));
     }
@@ -225,48 +281,6 @@ impl MainFields {
             Self::Attitude => config.has(8),
             Self::Debug => config.has(10) && config.debug.is_some(),
             Self::Motor0 | Self::OtherMotors => config.has(11),
-        }
-    }
-
-    fn put(self, state: &MainState, scale: f64, values: &mut Values) {
-        let terms = &state.terms;
-        match self {
-            Self::LoopIteration => values.push(state.iteration.cast_signed()),
-            // The counter of microseconds starts again after 71 minutes.
-            Self::Time => values.push(state.time.0 as i32),
-            Self::P => values.all(signed(terms.p)),
-            Self::I => values.all(signed(terms.i)),
-            Self::DRoll => values.push(whole(terms.d[0])),
-            Self::DPitch => values.push(whole(terms.d[1])),
-            Self::DYaw => values.push(whole(-terms.d[2])),
-            Self::F => values.all(signed(terms.f)),
-            Self::RcCommand => {
-                let sticks = &state.sticks;
-                values.all(signed([sticks.roll, sticks.pitch, sticks.yaw]).map(|stick| scale * stick));
-            }
-            Self::RcThrottle => values.push(whole(scale * state.sticks.throttle_us)),
-            Self::Setpoint => {
-                values.all(signed(state.setpoint_dps).map(|rate| scale * rate));
-                values.push(whole(1000.0 * state.throttle));
-            }
-            Self::Voltage => values.push(state.volts()),
-            Self::Current => values.push(whole(100.0 * state.current_a)),
-            Self::Mag => values.all(state.mag_flu.into()),
-            Self::Baro => values.push(whole(100.0 * state.baro_alt_m)),
-            Self::Rssi => values.push(state.rssi.into()),
-            Self::Gyro => values.all(signed(state.gyro_dps).map(|rate| scale * rate)),
-            Self::GyroUnfiltered => {
-                let Rates { roll, pitch_down, yaw } = state.rates;
-                values.all(signed([roll, pitch_down, yaw]).map(|rate| scale * rate.to_degrees()));
-            }
-            Self::Acc => values.all((state.force_flu * (ACC_COUNTS_PER_G / GRAVITY)).into()),
-            Self::Attitude => values.all(attitude(&state.attitude).map(|part| QUATERNION_COUNTS * part)),
-            Self::Debug => state.debug.into_iter().for_each(|value| values.push(value)),
-            Self::Motor0 => values.push(whole(state.motors_us[0])),
-            Self::OtherMotors => {
-                let [_, others @ ..] = state.motors_us;
-                values.all(others);
-            }
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Turns what the recorder noted into bytes.
 
 use super::log::{LogDefinition, LogPart};
-use super::main_frame::{LoggedFields, MainState};
+use super::main_frame::{FieldPlaces, MainState};
 use super::recorder::LogStep;
 use crate::blackbox::encode::{FrameValues, LogBuffer, LogEncoder, MAX_FIELDS};
 
@@ -15,7 +15,7 @@ pub struct LogStream {
 #[derive(Debug, Clone)]
 struct Open {
     encoder: LogEncoder,
-    fields: LoggedFields,
+    places: FieldPlaces,
     scale: f64,
 }
 
@@ -24,17 +24,17 @@ impl LogStream {
     pub fn begin(&mut self, definition: &LogDefinition) {
         self.log = Some(Open {
             encoder: LogEncoder::new(&definition.layout, definition.constants),
-            fields: definition.fields.clone(),
+            places: FieldPlaces::new(&definition.fields),
             scale: definition.scale,
         });
     }
 
     /// Writes a part of the log that was begun last. `main` is the state for main frames.
     pub fn part(&mut self, part: &LogPart, main: &MainState, buffer: &mut LogBuffer) {
-        let Some(Open { encoder, fields, scale }) = &mut self.log else { return };
+        let Some(Open { encoder, places, scale }) = &mut self.log else { return };
         match part {
-            LogPart::Intra => encoder.intra(&main.values(fields, *scale), buffer),
-            LogPart::Inter => encoder.inter(&main.values(fields, *scale), buffer),
+            LogPart::Intra => encoder.intra(&places.of(&main.values(*scale)), buffer),
+            LogPart::Inter => encoder.inter(&places.of(&main.values(*scale)), buffer),
             LogPart::Slow(values) => encoder.slow(&frame(values), buffer),
             LogPart::Home(values) => encoder.home(&frame(values), buffer),
             LogPart::Gps(values) => encoder.gps(&frame(values), buffer),
