@@ -143,32 +143,39 @@ impl LowPass {
     }
 }
 
-/// The state of a [`LowPass`].
+/// The state of a [`LowPass`] of roll, pitch and yaw, by stage. The axes are computed together, which is faster than one
+/// by one.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LowPassState {
-    stages: [f64; 3],
+    stages: [[f64; 3]; 3],
 }
 
 impl LowPassState {
-    pub fn apply(&mut self, input: f64, filter: &LowPass) -> f64 {
+    #[inline(always)]
+    pub fn apply(&mut self, input: &[f64; 3], filter: &LowPass) -> [f64; 3] {
+        let mut values = *input;
         match filter {
-            LowPass::Off => input,
+            LowPass::Off => {}
             LowPass::Stages { count, gain } => {
-                let mut value = input;
                 for stage in self.stages.iter_mut().take(usize::from(*count)) {
-                    *stage += gain * (value - *stage);
-                    value = *stage;
+                    for (stage, value) in stage.iter_mut().zip(&mut values) {
+                        *stage += gain * (*value - *stage);
+                        *value = *stage;
+                    }
                 }
-                value
             }
             // Transposed direct form II; the third slot is unused.
             LowPass::Biquad([b0, b1, b2, a1, a2]) => {
-                let output = b0 * input + self.stages[0];
-                self.stages[0] = b1 * input - a1 * output + self.stages[1];
-                self.stages[1] = b2 * input - a2 * output;
-                output
+                let [first, second, _] = &mut self.stages;
+                for ((first, second), value) in first.iter_mut().zip(second).zip(&mut values) {
+                    let input = *value;
+                    *value = b0 * input + *first;
+                    *first = b1 * input - a1 * *value + *second;
+                    *second = b2 * input - a2 * *value;
+                }
             }
         }
+        values
     }
 }
 
@@ -179,7 +186,8 @@ mod tests {
     /// Returns the amplitude of the output for a sine of `hz` at 8 kHz.
     fn amplitude(filter: &LowPass, hz: f64) -> f64 {
         let (dt, mut state) = (1.0 / 8000.0, LowPassState::default());
-        let answers = (0..16_000).map(|n| state.apply((2.0 * PI * hz * f64::from(n) * dt).sin(), filter));
+        let answers =
+            (0..16_000).map(|n| state.apply(&[(2.0 * PI * hz * f64::from(n) * dt).sin(); 3], filter)[0]);
         answers.skip(8000).fold(0.0, |greatest: f64, value| greatest.max(value.abs()))
     }
 
@@ -198,7 +206,7 @@ mod tests {
         assert_eq!(LowPass::new(LowPassKind::Biquad, 0.0, 0.001), LowPass::Off);
         let filter = LowPass::new(LowPassKind::Biquad, 1000.0, 0.0025);
         let mut state = LowPassState::default();
-        let last = (0..1000).fold(0.0, |_, _| state.apply(1.0, &filter));
-        assert!((last - 1.0).abs() < 1e-6);
+        let last = (0..1000).fold([0.0; 3], |_, _| state.apply(&[1.0; 3], &filter));
+        assert!(last.iter().all(|value| (value - 1.0).abs() < 1e-6));
     }
 }

@@ -188,7 +188,7 @@ impl Firmware {
         })
     }
 
-    /// Returns modes, arming, receiver, battery.
+    /// Returns modes, arming, receiver, battery. The mode ranges are left out, because they need memory from the heap.
     pub fn craft_view(&self) -> CraftView {
         let gps = &self.estimate().gps;
         let battery = self.battery().sample();
@@ -219,7 +219,7 @@ impl Firmware {
             failsafe_stage: Some(self.navigation.failsafe.stage()),
             failsafe_ahead: self.failsafe_ahead(),
             commanded: Some(self.navigation.orders.is_commanded()),
-            mode_ranges: Some(self.mode_ranges()),
+            mode_ranges: None,
         }
     }
 

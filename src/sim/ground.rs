@@ -54,6 +54,15 @@ pub struct GroundContact {
     pub plane: TangentPlane,
 }
 
+/// The heights of the contact points above the ground, m; high up, lower bounds.
+struct Heights {
+    lowest_leg: f64,
+    highest_leg: f64,
+    lowest_hull: f64,
+    /// `true` if the craft lies on its back.
+    is_inverted: bool,
+}
+
 /// Place and velocity of one contact point, ENU, and its distance from the ground.
 struct Point {
     place: Vector3<f64>,
@@ -146,35 +155,40 @@ impl Ground {
     }
 
     /// Returns the ground contact in a state.
+    // Inlined, because the result would else be copied through memory in every step.
+    #[inline(always)]
     pub fn contact(&self, state: &BodyState) -> GroundContact {
         let plane = self.landform.tangent_at(&state.pos_enu);
         let centre_m = plane.distance_m(&state.pos_enu);
-        if centre_m >= 2.0 * self.reach {
-            return GroundContact {
-                any_leg: false,
-                all_legs: false,
-                hull: false,
-                clearance_m: centre_m - self.reach,
-                plane,
-            };
+        let heights = if centre_m >= 2.0 * self.reach {
+            let lowest = centre_m - self.reach;
+            Heights { lowest_leg: lowest, highest_leg: lowest, lowest_hull: lowest, is_inverted: false }
+        } else {
+            self.heights(state, &plane, centre_m)
+        };
+        GroundContact {
+            any_leg: heights.lowest_leg < 0.0,
+            all_legs: heights.highest_leg < 0.0,
+            hull: heights.is_inverted || heights.lowest_hull < 0.0,
+            clearance_m: heights.lowest_leg.min(heights.lowest_hull),
+            plane,
         }
+    }
+
+    /// Returns the heights of a craft whose centre of mass is `centre_m` above the plane.
+    #[inline(never)]
+    fn heights(&self, state: &BodyState, plane: &TangentPlane, centre_m: f64) -> Heights {
         let up = state.attitude.inverse_transform_vector(plane.normal());
         let height = |arm: &Vector3<f64>| centre_m + up.dot(arm);
         let (legs, hull) = self.points.split_at(self.legs);
         let lowest_hull = hull.iter().map(height).fold(f64::INFINITY, f64::min);
-        let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
+        let (mut lowest_leg, mut highest_leg) = (f64::INFINITY, f64::NEG_INFINITY);
         for height in legs.iter().map(height) {
-            lowest = height.min(lowest);
-            highest = height.max(highest);
+            lowest_leg = height.min(lowest_leg);
+            highest_leg = height.max(highest_leg);
         }
-        let inverted = up.z < 0.0 && centre_m <= INVERTED_HULL_M;
-        GroundContact {
-            any_leg: lowest < 0.0,
-            all_legs: highest < 0.0,
-            hull: inverted || lowest_hull < 0.0,
-            clearance_m: lowest.min(lowest_hull),
-            plane,
-        }
+        let is_inverted = up.z < 0.0 && centre_m <= INVERTED_HULL_M;
+        Heights { lowest_leg, highest_leg, lowest_hull, is_inverted }
     }
 
     fn normal_force(&self, plane: &TangentPlane, point: &Point) -> f64 {
@@ -264,7 +278,7 @@ mod tests {
 
         /// Returns the number of points that friction holds.
         fn held(&self) -> usize {
-            self.craft.anchors().iter().flatten().count()
+            self.craft.anchors.iter().flatten().count()
         }
     }
 

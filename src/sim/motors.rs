@@ -44,7 +44,7 @@ pub(super) struct Motors {
 /// The rotors in one step. All speeds are in rad/s.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RotorStep<'a> {
-    motors: &'a Motors,
+    lags: [&'a Lag; ROTORS],
     start: [f64; ROTORS],
     gap: [f64; ROTORS],
 }
@@ -58,7 +58,8 @@ impl Motors {
     /// Returns the step from the given rotor speeds towards the target speeds, rad/s.
     #[inline]
     pub(super) fn step(&self, start: &[f64; ROTORS], target: &[f64; ROTORS]) -> RotorStep<'_> {
-        RotorStep { motors: self, start: *start, gap: std::array::from_fn(|i| target[i] - start[i]) }
+        let gap: [f64; ROTORS] = std::array::from_fn(|i| target[i] - start[i]);
+        RotorStep { lags: gap.map(|gap| if gap > 0.0 { &self.up } else { &self.down }), start: *start, gap }
     }
 }
 
@@ -101,8 +102,7 @@ impl RotorStep<'_> {
     /// Returns a number of each rotor's lag.
     #[inline]
     fn by_rotor(&self, number: impl Fn(&Lag) -> f64) -> [f64; ROTORS] {
-        let (up, down) = (number(&self.motors.up), number(&self.motors.down));
-        self.gap.map(|gap| if gap > 0.0 { up } else { down })
+        self.lags.map(number)
     }
 }
 

@@ -141,6 +141,8 @@ impl Plant {
     }
 
     /// Returns the loads on a craft now, for the accelerometer and for the next step.
+    // Inlined, because the result would else be copied through memory in every step.
+    #[inline(always)]
     pub fn present(&self, craft: &Craft, air: &AirSample) -> Present {
         let Craft { body, rotors, anchors, .. } = craft;
         let rotation = rotation(&body.attitude);
@@ -161,11 +163,8 @@ impl Plant {
         let trend = (is_simple && self.h <= LONGEST_STEP_S).then(|| {
             let steady = self.rotors.static_loads_of(&sums, air.density_ratio);
             let momentum = self.momentum(&body.rate_flu, sums.spin);
-            Trend {
-                turn: loads.torque_flu - steady.torque_flu - body.rate_flu.cross(&momentum),
-                acc: self.acceleration(&rotation, &loads.force_flu),
-                thrust: steady.force_flu.z,
-            }
+            let turn = loads.torque_flu - steady.torque_flu - body.rate_flu.cross(&momentum);
+            Trend::new(&turn, steady.force_flu.z, &self.acceleration(&rotation, &loads.force_flu))
         });
         Present { loads, rotation, sums, trend }
     }
@@ -173,8 +172,8 @@ impl Plant {
     /// Makes one step with constant motor targets (rad/s) and air. `now` are the loads at its start.
     pub fn step(&self, craft: &mut Craft, target: &[f64; ROTORS], air: &AirSample, now: &Present) {
         let rotors = self.motors.step(&craft.rotors, target);
-        match (&now.trend, craft.past.as_slice()) {
-            (Some(trend), [first, second, third]) => {
+        match (&now.trend, craft.past()) {
+            (Some(trend), Some([first, second, third])) => {
                 let trends = [trend, first, second, third];
                 craft.body = self.fly(&craft.body, &rotors, air, now, trends);
             }
@@ -191,6 +190,7 @@ impl Plant {
     }
 
     /// Returns `true` if no part of the craft can touch the ground within a step.
+    #[inline]
     fn is_aloft(&self, body: &BodyState) -> bool {
         let BodyState { pos_enu, vel_enu, .. } = body;
         let way_m = self.h * (vel_enu.x.abs() + vel_enu.y.abs() + vel_enu.z.abs());
@@ -223,7 +223,8 @@ impl Plant {
     }
 
     /// Returns the loads without the ground, and `true` if those of the rotors follow from their sums.
-    #[inline]
+    // Inlined, because the result would else be copied through memory in every step.
+    #[inline(always)]
     fn air_loads(&self, moment: &Moment<'_>, air: &AirSample) -> (Loads, bool) {
         let va = moment.rotation.tr_mul(&(moment.vel - air.wind_enu));
         let rho = air.density_ratio;

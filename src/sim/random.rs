@@ -69,10 +69,13 @@ impl Normals {
     }
 
     /// Returns one deviate with mean 0 and standard deviation 1.
+    #[inline]
     pub(super) fn next(&mut self) -> f64 {
         ziggurat::normal(&mut self.0)
     }
 
+    // Inlined, because the result would else be copied through memory in every step.
+    #[inline(always)]
     pub(super) fn next3(&mut self) -> nalgebra::Vector3<f64> {
         let x = self.next();
         let y = self.next();

@@ -85,6 +85,7 @@ impl Sensors {
     /// Reads every sensor that is due at the present instant.
     pub(super) fn read(&mut self, inputs: &SensorInputs<'_>, frame: &mut SensorFrame) {
         let truth = inputs.truth;
+        let (rate, force) = (truth.rate_flu, truth.specific_force_flu);
         frame.time = truth.time;
         frame.truth_attitude = Some(truth.attitude);
         frame.pressure_pa = None;
@@ -95,7 +96,7 @@ impl Sensors {
             self.read_slow(tick, inputs, frame);
         }
         if !inputs.effects.imu_freeze {
-            (frame.rate_flu, frame.specific_force_flu) = self.imu.read(inputs, self.noise);
+            (frame.rate_flu, frame.specific_force_flu) = self.imu.read(rate, force, inputs, self.noise);
         }
     }
 

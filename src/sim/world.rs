@@ -100,11 +100,11 @@ impl World {
                 full_speed * self.clock.effects.stuck[i].unwrap_or(self.command[i])
             }
         });
-        let anchors = *self.craft.anchors();
         self.plant.step(&mut self.craft, &target, &self.air_now, &self.present);
         if let Some(cause) = divergence(self.craft.body()) {
             // The last sane state is also that of the truth.
-            self.craft = Craft::held(*before, self.truth.rotor_speeds, anchors);
+            self.craft = Craft::new(*before);
+            self.craft.set_rotors(self.truth.rotor_speeds);
             self.diverged = true;
             self.clock.emit(WorldEventKind::Diverged { cause });
         }
@@ -151,7 +151,7 @@ impl World {
     /// tick.
     fn update_outputs_on(&mut self, slow_tick: Option<u64>) {
         self.air_now = self.air.sample(self.clock.time);
-        self.refresh_loads();
+        self.present = self.plant.present(&self.craft, &self.air_now);
         let body = self.craft.body();
         self.contact = self.plant.ground().contact(body);
         let truth = &mut self.truth;

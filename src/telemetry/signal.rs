@@ -67,6 +67,15 @@ macro_rules! signals {
                 read: |$observed| $value,
             },)*
         ];
+
+        impl SignalValues {
+            /// Returns the values of all signals.
+            pub fn of(observed: &Observed<'_>) -> Self {
+                // Without the table, so that the compiler sees all reads at once.
+                let rounded = |value: Option<f64>| value.map_or(f32::NAN, |value| value as f32);
+                Self([$(rounded((|$observed: &Observed<'_>| -> Option<f64> { $value })(observed)),)*])
+            }
+        }
     };
 }
 
@@ -194,12 +203,6 @@ pub struct SignalValues([f32; Signal::COUNT]);
 
 impl SignalValues {
     pub const UNKNOWN: Self = Self([f32::NAN; Signal::COUNT]);
-
-    /// Returns the values of all signals.
-    pub fn of(observed: &Observed<'_>) -> Self {
-        let value = |at: usize| SIGNALS[at].signal.read(observed).map_or(f32::NAN, |value| value as f32);
-        Self(std::array::from_fn(value))
-    }
 
     /// Returns the value of a signal, NaN if it is unknown.
     pub fn get(&self, signal: Signal) -> f64 {

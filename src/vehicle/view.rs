@@ -13,12 +13,16 @@ impl Vehicle {
     pub fn snapshot(&self) -> Snapshot {
         let nav = self.nav_view();
         let engaged = nav.as_ref().is_some_and(|nav| nav.engaged);
+        let mut craft = self.controller.craft_view();
+        if let Some(firmware) = self.embedded() {
+            craft.mode_ranges = Some(firmware.mode_ranges());
+        }
         Snapshot {
             time: self.time(),
             origin: self.local_frame().map(|frame| LatLon::from_degrees(frame.lat_deg, frame.lon_deg)),
             truth: self.truth_view(),
             estimate: self.estimate_view(),
-            craft: self.controller.craft_view(),
+            craft,
             active_plan: engaged.then(|| self.active_plan.as_deref().cloned()).flatten(),
             nav,
             stored_plan: self.controller.stored_plan().cloned(),

@@ -125,6 +125,7 @@ impl Controller {
     }
 
     /// Runs one step of `dt` seconds.
+    #[inline(always)]
     pub fn step(&mut self, input: &ControlInput, estimate: &Estimate, dt: f64) -> &ControlState {
         let dt = if dt > 0.0 { dt.min(LONGEST_STEP_S) } else { self.derived.dt };
         if (dt - self.derived.dt).abs() > STEP_TOLERANCE * self.derived.dt {
@@ -157,6 +158,7 @@ impl Controller {
     }
 
     /// Returns the smoothed setpoints (°/s) and throttle (0…1) of the sticks.
+    #[inline(always)]
     fn sticks(&mut self, input: &ControlInput, estimate: &Estimate, dt: f64) -> [f64; 4] {
         let (mut roll, mut pitch) = (input.stick_roll, input.stick_pitch);
         if let Some(reference) = input.headfree_reference_rad {
@@ -209,6 +211,7 @@ impl Controller {
     }
 
     /// Lets the angle loop change the setpoints. Returns `true` for each axis that it controls fully.
+    #[inline(always)]
     fn levelling(&mut self, input: &ControlInput, estimate: &Estimate, setpoint: &mut [f64; 3]) -> [bool; 3] {
         if input.lean.is_none() && input.mode == StickMode::Acro {
             self.level.release();
@@ -260,6 +263,7 @@ impl Controller {
         [0, 1].map(|axis| limit * (setpoint[axis] / self.full_rates[axis]).clamp(-1.0, 1.0))
     }
 
+    #[inline(always)]
     fn fly(&mut self, input: &ControlInput, setpoint: [f64; 3], lift: f64, levelled: [bool; 3]) {
         let is_held = input.throttle.is_some();
         let (lead, gain_boost) = self.throttle_boost.step(lift, &self.tuning.boost, &self.derived);

@@ -35,8 +35,6 @@ pub(super) struct RateDemand {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct Axis {
     integral: f64,
-    d_filters: [LowPassState; 2],
-    last_d_input: f64,
     last_setpoint: f64,
     slow_setpoint: Pt1,
     slow_gyro: Pt1,
@@ -48,6 +46,8 @@ struct Axis {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct RateLoop {
     axes: [Axis; 3],
+    d_filters: [LowPassState; 2],
+    last_d_input: [f64; 3],
     terms: PidTerms,
 }
 
@@ -87,6 +87,7 @@ impl RateLoop {
         if tuning.iterm_rotation {
             self.rotate_iterms(&demand.gyro, derived.pid_dt);
         }
+        let slopes = self.slopes(&demand.gyro, rate_hz, derived);
         for (index, (axis, sum)) in self.axes.iter_mut().zip(&mut sums).enumerate() {
             let gains = &tuning.gains[index];
             let (setpoint, gyro) = (demand.setpoint[index], demand.gyro[index]);
@@ -114,7 +115,7 @@ impl RateLoop {
             let d = if gains.d == 0.0 && tuning.d_max.most[index] == 0.0 {
                 0.0
             } else {
-                let slope = axis.slope(gyro, rate_hz, derived);
+                let slope = slopes[index];
                 let moved = slope.abs().max(tuning.d_max.setpoint_share * setpoint_rate.abs());
                 -axis.d_gain(gains.d, index, moved, &tuning.d_max, derived) * slope * demand.tpa
             };
@@ -133,18 +134,18 @@ impl RateLoop {
         }
         sums
     }
+
+    /// Returns the slopes of the filtered gyro rates, °/s².
+    #[inline]
+    fn slopes(&mut self, gyro: &[f64; 3], rate_hz: f64, derived: &Derived) -> [f64; 3] {
+        let [first, second] = &mut self.d_filters;
+        let filtered = second.apply(&first.apply(gyro, &derived.d_lpf1), &derived.d_lpf2);
+        let last = std::mem::replace(&mut self.last_d_input, filtered);
+        std::array::from_fn(|axis| (filtered[axis] - last[axis]) * rate_hz)
+    }
 }
 
 impl Axis {
-    /// Returns the filtered acceleration, °/s².
-    fn slope(&mut self, gyro: f64, rate_hz: f64, derived: &Derived) -> f64 {
-        let first = self.d_filters[0].apply(gyro, &derived.d_lpf1);
-        let filtered = self.d_filters[1].apply(first, &derived.d_lpf2);
-        let slope = (filtered - self.last_d_input) * rate_hz;
-        self.last_d_input = filtered;
-        slope
-    }
-
     /// Returns the D gain between its base and its maximum, depending on the movement of the craft, °/s².
     fn d_gain(&mut self, base: f64, index: usize, moved: f64, d_max: &DMax, derived: &Derived) -> f64 {
         let most = d_max.most[index];

@@ -25,6 +25,8 @@ const LONGEST_STEP_S: f64 = 0.05;
 /// The largest plausible sensor readings, rad/s and m/s². Beyond them the sensor is broken.
 const RATE_LIMIT: f64 = 60.0;
 const FORCE_LIMIT: f64 = 500.0;
+/// The body rate below which a sensor that repeats a sample may be at rest, rad/s.
+const MOVING: f64 = 0.01;
 /// The factor by which the tilt follows the accelerometer faster on the ground.
 const PARKED_FACTOR: f64 = 10.0;
 /// The same factor in the air after the GPS was lost or before the heading is known: slower. The tilt is correct then,
@@ -197,7 +199,7 @@ impl Estimator {
         let now = frame.time;
         let dt = self.time.map_or(0.0, |last| now.seconds_since(last)).min(LONGEST_STEP_S);
         let is_first = self.time.replace(now).is_none();
-        self.take_inertial(frame, dt);
+        let rate = self.take_inertial(frame, dt);
         if is_first {
             self.attitude.align(&self.last_force);
             self.slow_time = now;
@@ -209,7 +211,6 @@ impl Estimator {
                 self.estimate.heading_valid = true;
             }
             _ => {
-                let rate = self.last_rate - self.gyro.bias;
                 self.attitude.integrate(&rate, dt);
             }
         }
@@ -223,28 +224,28 @@ impl Estimator {
         due
     }
 
-    /// Takes the gyro and accelerometer samples of this step. A broken sample repeats the last good one.
-    fn take_inertial(&mut self, frame: &SensorFrame, dt: f64) {
+    /// Takes the gyro and accelerometer samples of this step. A broken sample repeats the last good one. Returns the body
+    /// rates without the bias.
+    fn take_inertial(&mut self, frame: &SensorFrame, dt: f64) -> Vector3<f64> {
         let (rate, force) = (frame.rate_flu, frame.specific_force_flu);
         let is_same = rate == self.last_rate && force == self.last_force + self.tuning.acc_offset_flu;
         // At rest, the samples of an ideal sensor repeat, too.
-        self.same_s = if is_same && rate.norm() > 0.01 { self.same_s + dt } else { 0.0 };
+        self.same_s = if is_same && rate.norm_squared() > MOVING * MOVING { self.same_s + dt } else { 0.0 };
         self.estimate.imu_frozen = self.same_s > FROZEN_S;
-        if rate.norm() <= RATE_LIMIT {
-            self.last_rate = rate;
-        }
-        if force.norm() <= FORCE_LIMIT {
-            self.last_force = force - self.tuning.acc_offset_flu;
-        }
+        let rate = if rate.norm_squared() <= RATE_LIMIT * RATE_LIMIT { rate } else { self.last_rate };
+        let is_sound = force.norm_squared() <= FORCE_LIMIT * FORCE_LIMIT;
+        let force = if is_sound { force - self.tuning.acc_offset_flu } else { self.last_force };
+        (self.last_rate, self.last_force) = (rate, force);
         if !self.gyro.done && dt > 0.0 {
             let tuning = &self.tuning;
-            self.gyro.feed(&self.last_rate, dt, tuning.gyro_calibration_s, tuning.gyro_noise_limit);
+            self.gyro.feed(&rate, dt, tuning.gyro_calibration_s, tuning.gyro_noise_limit);
         }
-        self.force_sum += self.last_force;
+        self.force_sum += force;
         self.force_samples += 1.0;
-        let rate = self.last_rate - self.gyro.bias + self.attitude.rate_correction();
-        self.estimate.rates = Rates::from_flu(&rate);
-        self.estimate.force_flu = self.last_force;
+        self.estimate.force_flu = force;
+        let rate = rate - self.gyro.bias;
+        self.estimate.rates = Rates::from_flu(&(rate + self.attitude.rate_correction()));
+        rate
     }
 
     /// Stores samples that do not come with every frame for the next slow step.

@@ -40,27 +40,27 @@ impl Plant {
 
         // Angular momentum, and the body rates that it leaves to the body.
         let momentum = self.momentum(rate, now.sums.spin);
-        let turn = weighted(&MEAN, trends.map(|trend| trend.turn));
-        let (end, accelerations) = (rotors.at_end(), rotors.accelerations());
+        let (turns, accelerations) = (trends.map(|trend| &trend.turn), trends.map(|trend| &trend.acc));
+        let (turn, thrust) = weighted(&MEAN, turns);
+        let (end, spin_up) = (rotors.at_end(), rotors.accelerations());
         let end_momentum = momentum + (turn + mean.torque_flu) * h;
         let end_rate = self.rate(&end_momentum, self.rotors.spin(&end));
 
         // The attitude, by Magnus: the angle from both rates and their derivatives, and what the turn of the axis adds.
         let at_start = now.loads.torque_flu - rate.cross(&momentum);
         let end_squares = std::array::from_fn(|i| end[i] * end[i]);
-        let at_end = self.rotors.static_loads(&end_squares, air.density_ratio).torque_flu
-            + weighted(&END, trends.map(|trend| trend.turn));
-        let [rate_dot, end_rate_dot] = [(at_start, accelerations[0]), (at_end, accelerations[1])]
+        let at_end =
+            self.rotors.static_loads(&end_squares, air.density_ratio).torque_flu + weighted(&END, turns).0;
+        let [rate_dot, end_rate_dot] = [(at_start, spin_up[0]), (at_end, spin_up[1])]
             .map(|(torque, acceleration)| self.rate(&torque, self.rotors.spin(&acceleration)));
         let angle = (rate + end_rate) * (0.5 * h)
             + (rate_dot - end_rate_dot + rate.cross(&end_rate)) * (h * h / 12.0);
 
         // Velocity and position. The thrust that the mean of the trends misses acts along the axis at half the step.
-        let acc = weighted(&MEAN, trends.map(|trend| trend.acc));
-        let thrust = MEAN.iter().zip(trends).map(|(weight, trend)| weight * trend.thrust).sum::<f64>();
+        let (acc, _) = weighted(&MEAN, accelerations);
         let missing = (mean.force_flu.z - thrust) * self.mass_inv;
         let axis = now.rotation * Vector3::new(0.5 * h * rate.y, -0.5 * h * rate.x, 1.0);
-        let twice = weighted(&TWICE, trends.map(|trend| trend.acc));
+        let (twice, _) = weighted(&TWICE, accelerations);
         BodyState {
             pos_enu: pos_enu + (vel_enu + twice * h) * h,
             vel_enu: vel_enu + (acc + axis * missing) * h,
@@ -70,12 +70,14 @@ impl Plant {
     }
 }
 
-/// Returns the weighted sum of four vectors.
+/// Returns the weighted sum of four rows: a vector and a number.
 #[inline]
-fn weighted(weights: &[f64; PAST + 1], vectors: [Vector3<f64>; PAST + 1]) -> Vector3<f64> {
+fn weighted(weights: &[f64; PAST + 1], rows: [&[f64; 4]; PAST + 1]) -> (Vector3<f64>, f64) {
     let [a, b, c, d] = weights;
-    let [first, second, third, fourth] = vectors;
-    first * *a + second * *b + third * *c + fourth * *d
+    let [first, second, third, fourth] = rows;
+    let [x, y, z, number] =
+        std::array::from_fn(|i| first[i] * a + second[i] * b + third[i] * c + fourth[i] * d);
+    (Vector3::new(x, y, z), number)
 }
 
 /// Returns an attitude after a turn about body axes, rad.

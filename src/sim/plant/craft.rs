@@ -1,6 +1,5 @@
 //! The moving craft: its state, and what the next step takes from the steps before.
 
-use arrayvec::ArrayVec;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::sim::airframe::ROTORS;
@@ -11,26 +10,33 @@ use super::rotors::RotorSums;
 
 /// The number of earlier instants that a step of a craft in the air uses.
 pub(super) const PAST: usize = 3;
+/// The places in the ring of earlier instants, a power of two.
+const RING: usize = 4;
 
 /// A craft in motion. A clone continues identically.
 #[derive(Debug, Clone)]
 pub struct Craft {
     pub(super) body: BodyState,
     pub(super) rotors: [f64; ROTORS],
-    pub(super) anchors: ContactAnchors,
-    /// The instants before the present one, newest first.
-    pub(super) past: ArrayVec<Trend, PAST>,
+    /// The places where friction holds the contact points.
+    pub(in crate::sim) anchors: ContactAnchors,
+    /// The instants before the present one, in a ring, and the place of the newest. The `known` newest of them count.
+    past: [Trend; RING],
+    newest: usize,
+    known: usize,
 }
 
 impl Craft {
     /// Returns a craft with stopped rotors that friction does not hold yet.
     pub fn new(body: BodyState) -> Self {
-        Self::held(body, [0.0; ROTORS], NO_ANCHORS)
-    }
-
-    /// Returns a craft that friction holds at the given places.
-    pub(in crate::sim) fn held(body: BodyState, rotors: [f64; ROTORS], anchors: ContactAnchors) -> Self {
-        Self { body, rotors, anchors, past: ArrayVec::new() }
+        Self {
+            body,
+            rotors: [0.0; ROTORS],
+            anchors: NO_ANCHORS,
+            past: [Trend::default(); RING],
+            newest: 0,
+            known: 0,
+        }
     }
 
     /// Returns the state of the body.
@@ -41,11 +47,6 @@ impl Craft {
     /// Returns the rotor speeds, rad/s.
     pub fn rotors(&self) -> &[f64; ROTORS] {
         &self.rotors
-    }
-
-    /// Returns where friction holds the contact points.
-    pub(in crate::sim) fn anchors(&self) -> &ContactAnchors {
-        &self.anchors
     }
 
     /// Sets the rotor speeds, rad/s.
@@ -67,14 +68,23 @@ impl Craft {
     }
 
     /// Adds what changed the motion at the start of a step that is over.
+    #[inline]
     pub(super) fn remember(&mut self, trend: Trend) {
-        self.past.truncate(PAST - 1);
-        self.past.insert(0, trend);
+        self.newest = (self.newest + 1) % RING;
+        self.past[self.newest] = trend;
+        self.known = (self.known + 1).min(PAST);
+    }
+
+    /// Returns the instants before the present one, newest first, if a step can be made from them.
+    #[inline]
+    pub(super) fn past(&self) -> Option<[&Trend; PAST]> {
+        let past = |age: usize| &self.past[(self.newest + RING - age) % RING];
+        (self.known == PAST).then(|| [past(0), past(1), past(2)])
     }
 
     /// Forgets the motion so far. To be called where the loads jump, because a step assumes that they do not.
     pub fn forget(&mut self) {
-        self.past.clear();
+        self.known = 0;
     }
 }
 
@@ -89,13 +99,19 @@ pub struct Present {
     pub(super) trend: Option<Trend>,
 }
 
-/// The changes of the motion of a craft in the air at one instant.
-#[derive(Debug, Clone, Copy)]
+/// The changes of the motion of a craft in the air at one instant, in rows, since a step sums rows with weights.
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Trend {
-    /// The derivative of the angular momentum in body axes without the static torque of the rotors, N·m.
-    pub(super) turn: Vector3<f64>,
-    /// Acceleration, ENU, m/s².
-    pub(super) acc: Vector3<f64>,
-    /// The static thrust of the rotors, N.
-    pub(super) thrust: f64,
+    /// The derivative of the angular momentum in body axes without the static torque of the rotors (N·m), and the static
+    /// thrust of the rotors (N).
+    pub(super) turn: [f64; 4],
+    /// The acceleration, ENU, m/s², and zero.
+    pub(super) acc: [f64; 4],
+}
+
+impl Trend {
+    #[inline]
+    pub(super) fn new(turn: &Vector3<f64>, thrust: f64, acc: &Vector3<f64>) -> Self {
+        Self { turn: [turn.x, turn.y, turn.z, thrust], acc: [acc.x, acc.y, acc.z, 0.0] }
+    }
 }

@@ -17,6 +17,10 @@ pub(super) struct Rotors {
     z: [f64; ROTORS],
     /// 1 for a rotor that turns anticlockwise, −1 for the others.
     spin: [f64; ROTORS],
+    /// One, x, y and z of each rotor.
+    places: [[f64; 4]; ROTORS],
+    /// One, x, y and the spin of each rotor.
+    lifts: [[f64; 4]; ROTORS],
     efficiency: [f64; ROTORS],
     thrust_coeff: f64,
     torque_per_thrust: f64,
@@ -31,8 +35,8 @@ pub(super) struct Rotors {
 pub(super) struct RotorSums {
     /// Of the speeds, times one, x, y and z.
     speed: [f64; 4],
-    /// Of the effective speeds, times one, x and y.
-    effective: [f64; 3],
+    /// Of the effective speeds, times one, x, y and the spin.
+    effective: [f64; 4],
     /// Of the effective squares, times one, x, y and the spin.
     squares: [f64; 4],
     /// Of the speeds, anticlockwise positive.
@@ -49,6 +53,8 @@ impl Rotors {
             y: places.map(|place| place.y),
             z: places.map(|place| place.z),
             spin: airframe.spin_sign,
+            places: places.map(|place| [1.0, place.x, place.y, place.z]),
+            lifts: std::array::from_fn(|i| [1.0, places[i].x, places[i].y, airframe.spin_sign[i]]),
             efficiency: [1.0; ROTORS],
             thrust_coeff: airframe.thrust_coeff,
             torque_per_thrust: airframe.torque_per_thrust_m,
@@ -79,13 +85,13 @@ impl Rotors {
     }
 
     /// Returns the sums at the given speeds, rad/s.
-    #[inline]
+    #[inline(always)]
     pub(super) fn sums(&self, speed: &[f64; ROTORS]) -> RotorSums {
         let effective: [f64; ROTORS] = std::array::from_fn(|i| self.efficiency[i] * speed[i]);
         let [a, b, c, d] = *speed;
         RotorSums {
-            speed: [sum(speed), dot(&self.x, speed), dot(&self.y, speed), dot(&self.z, speed)],
-            effective: [sum(&effective), dot(&self.x, &effective), dot(&self.y, &effective)],
+            speed: weighted(&self.places, speed),
+            effective: weighted(&self.lifts, &effective),
             squares: self.squares(&std::array::from_fn(|i| speed[i] * speed[i])),
             spin: self.spin(speed),
             lowest: a.min(b).min(c.min(d)),
@@ -96,7 +102,7 @@ impl Rotors {
     #[inline]
     fn squares(&self, squares: &[f64; ROTORS]) -> [f64; 4] {
         let effective: [f64; ROTORS] = std::array::from_fn(|i| self.efficiency[i] * squares[i]);
-        [sum(&effective), dot(&self.x, &effective), dot(&self.y, &effective), dot(&self.spin, &effective)]
+        weighted(&self.lifts, &effective)
     }
 
     /// Returns `true` if the loads follow from the sums, in air that flows past with `va` (m/s, FLU).
@@ -130,8 +136,8 @@ impl Rotors {
     #[inline]
     pub(super) fn flow_loads(&self, sums: &RotorSums, va: &Vector3<f64>, rho: f64) -> Loads {
         let inflow = rho * self.inflow_coeff * va.z;
-        let lost = sums.effective.map(|sum| -inflow * sum);
-        self.with_drag(sums, va, rho, lost)
+        let [thrust, thrust_x, thrust_y, _] = sums.effective.map(|sum| -inflow * sum);
+        self.with_drag(sums, va, rho, [thrust, thrust_x, thrust_y])
     }
 
     /// Returns all loads, rotor by rotor. The centre of mass is `height_m` above the ground, whose normal in body axes
@@ -182,15 +188,17 @@ impl Rotors {
     }
 }
 
+/// Returns the sums over the rotors of a number of each, times its weights.
 #[inline]
-fn sum(numbers: &[f64; ROTORS]) -> f64 {
-    let [a, b, c, d] = numbers;
-    (a + c) + (b + d)
+fn weighted(weights: &[[f64; 4]; ROTORS], numbers: &[f64; ROTORS]) -> [f64; 4] {
+    let ([first, second, third, fourth], [a, b, c, d]) = (weights, numbers);
+    std::array::from_fn(|i| (first[i] * a + third[i] * c) + (second[i] * b + fourth[i] * d))
 }
 
 #[inline]
 fn dot(a: &[f64; ROTORS], b: &[f64; ROTORS]) -> f64 {
-    sum(&std::array::from_fn(|i| a[i] * b[i]))
+    let [first, second, third, fourth] = std::array::from_fn(|i| a[i] * b[i]);
+    (first + third) + (second + fourth)
 }
 
 /// Returns the thrust near the ground over the thrust far from it, after Cheeseman and Bennett: 1/(1 − (R/4z)²), for

@@ -114,14 +114,21 @@ impl Imu {
         };
     }
 
-    /// Returns the measured body rates (rad/s) and specific force (m/s²), FLU.
-    pub(super) fn read(&mut self, inputs: &SensorInputs<'_>, noise: Noise) -> (Vector3<f64>, Vector3<f64>) {
+    /// Returns the measured body rates (rad/s) and specific force (m/s²) for the true ones, FLU.
+    #[inline]
+    pub(super) fn read(
+        &mut self,
+        true_rate: Vector3<f64>,
+        true_force: Vector3<f64>,
+        inputs: &SensorInputs<'_>,
+        noise: Noise,
+    ) -> (Vector3<f64>, Vector3<f64>) {
         let (truth, effects) = (inputs.truth, inputs.effects);
-        let mut rate = truth.rate_flu + effects.gyro_bias;
-        let mut force = truth.specific_force_flu + effects.acc_bias;
+        let mut rate = true_rate + effects.gyro_bias;
+        let mut force = true_force + effects.acc_bias;
         if self.position_m != Vector3::zeros() {
-            let rate_dot = (truth.rate_flu - inputs.rate_before_flu) / self.step_s;
-            force += lever_arm_acceleration(truth.rate_flu, rate_dot, self.position_m);
+            let rate_dot = (true_rate - inputs.rate_before_flu) / self.step_s;
+            force += lever_arm_acceleration(true_rate, rate_dot, self.position_m);
         }
         if effects.imbalance_mps2 != [0.0; ROTORS] {
             force += self.imbalance(&truth.rotor_speeds, &effects.imbalance_mps2);
