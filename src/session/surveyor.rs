@@ -1,4 +1,4 @@
-//! Flies many flights of the open plan on copies of the session's vehicle, in a thread of its own.
+//! Flies many flights of the open plan on copies of the session's vehicle, in threads of lower priority.
 //!
 //! Only the newest job counts. It ends an older one, as does the end of the last handle.
 
@@ -10,6 +10,8 @@ use std::thread;
 
 use super::command::VehicleCopy;
 use super::forecaster::yield_to_the_flight;
+use super::parallel;
+use super::sweep_flights::fly_sweep;
 use crate::campaign::ForecastAnswer;
 use crate::flight::sweep::{Sweep, SweepPoint};
 use crate::plan::FlightPlan;
@@ -107,6 +109,7 @@ impl Surveyor {
         let newest = Arc::new(AtomicU64::new(NONE));
         let wanted = Arc::new(Wanted(newest.clone()));
         thread::Builder::new().name("survey".to_owned()).spawn(move || {
+            // The threads that this one starts have its priority.
             yield_to_the_flight();
             while let Ok(Order { job, copy }) = incoming.recv() {
                 let revision = job.revision;
@@ -139,7 +142,7 @@ impl Surveyor {
 fn fly(
     job: &SurveyJob,
     copy: &VehicleCopy,
-    is_stopped: &impl Fn() -> bool,
+    is_stopped: &(impl Fn() -> bool + Sync),
     report: &mut impl FnMut(SurveyNews),
 ) -> Result<(), String> {
     match job.request {
@@ -152,16 +155,21 @@ fn sweep(
     SurveyedPlan { plan, settings }: &SurveyedPlan,
     VehicleCopy { vehicle, takeoff_m }: &VehicleCopy,
     fault: ScheduledFault,
-    is_stopped: &impl Fn() -> bool,
+    is_stopped: &(impl Fn() -> bool + Sync),
     report: &mut impl FnMut(SurveyNews),
 ) -> Result<(), String> {
     let mut sweep = Sweep::of_plan(vehicle, plan, settings, *takeoff_m, fault)?;
-    while let Some(branch) = sweep.next_branch(is_stopped)? {
-        let Some(point) = branch.fly(is_stopped) else { return Ok(()) };
-        report(SurveyNews::Point(Box::new(point)));
+    fly_sweep(&mut sweep, threads(), is_stopped, |point| report(SurveyNews::Point(Box::new(point))))
+        .map_err(|problem| problem.to_string())?;
+    if !is_stopped() {
+        report(SurveyNews::SweepEnd);
     }
-    report(SurveyNews::SweepEnd);
     Ok(())
+}
+
+/// Returns the number of flights at once: all processors but one, which stays for the flight of the session.
+fn threads() -> usize {
+    parallel::processors().saturating_sub(1).max(1)
 }
 
 #[cfg(test)]

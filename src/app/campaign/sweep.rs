@@ -1,7 +1,6 @@
 //! Flies a plan with a fault at every second of the flight.
 
 use std::sync::atomic::Ordering;
-use std::sync::{Mutex, PoisonError};
 
 use super::definition::{self, Wanted};
 use super::loaded::Loaded;
@@ -15,15 +14,13 @@ use crate::app::parallel;
 use crate::app::report;
 use crate::args::{CampaignArgs, OutputFile};
 use crate::flight::Flight;
-use crate::flight::sweep::{Branch, Fate, Sweep, SweepPoint};
+use crate::flight::sweep::{Fate, Sweep, SweepPoint};
 use crate::report::flight::FlightReport;
 use crate::report::html::{SweepPage, sweep_page};
 use crate::report::sweep::{SweptFlight, sweep_csv, sweep_json, sweep_sentences};
 use crate::scenario::CaseFlight;
+use crate::session::{SweepProblem, fly_sweep};
 use crate::sim::ScheduledFault;
-
-/// The most branches that wait in memory at the same time.
-const WAITING: usize = 64;
 
 /// Flies and reports. The exit code is 0 if the craft is lost at no second.
 pub(super) fn run(args: &CampaignArgs, fault: ScheduledFault, repeat: &[String]) -> Result<u8, AppError> {
@@ -58,25 +55,14 @@ pub(super) fn run(args: &CampaignArgs, fault: ScheduledFault, repeat: &[String])
     let threads = parallel::threads(args.jobs);
     let mut points: Vec<SweepPoint> = Vec::new();
     let mut progress = Progress::new(None, 0);
-    loop {
-        let mut branches = Vec::with_capacity(WAITING);
-        while branches.len() < WAITING
-            && let Some(branch) = sweep.next_branch(&is_stopped).map_err(AppError::input)?
-        {
-            branches.push(Mutex::new(Some(branch)));
-        }
-        let fly = |_, index: u64| take(&branches, index)?.fly(&is_stopped);
-        parallel::in_order(0..branches.len() as u64, threads, &is_stopped, fly, |point, _| {
-            // A point after one that was stopped would be in the wrong place.
-            if point.second as usize == points.len() {
-                points.push(point);
-            }
-            progress.show(points.len() as u64, count(&points, Fate::Lost));
-        })?;
-        if branches.len() < WAITING || is_stopped() {
-            break;
-        }
-    }
+    let flown = fly_sweep(&mut sweep, threads, &is_stopped, |point| {
+        points.push(point);
+        progress.show(points.len() as u64, count(&points, Fate::Lost));
+    });
+    flown.map_err(|problem| match problem {
+        SweepProblem::Refused(reason) => AppError::input(reason),
+        SweepProblem::Panicked(panicked) => AppError::internal(panicked),
+    })?;
     progress.clear();
 
     let end = sweep.end().map(|end| (end.verdict.result.to_string(), end.verdict.reason.as_str()));
@@ -142,10 +128,6 @@ fn flight(loaded: &Loaded) -> Result<Flight, AppError> {
     }
     let flight = CaseFlight::new(&first.case, &first.air).map_err(AppError::input)?;
     Ok(flight.into_flight())
-}
-
-fn take(branches: &[Mutex<Option<Branch>>], index: u64) -> Option<Branch> {
-    branches.get(index as usize)?.lock().unwrap_or_else(PoisonError::into_inner).take()
 }
 
 fn count(points: &[SweepPoint], fate: Fate) -> u64 {

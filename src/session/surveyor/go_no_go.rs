@@ -1,11 +1,14 @@
 //! Go or no-go: the campaign of `forecast`, with the plan in a hundred winds around the present one.
 
-use super::{SurveyNews, SurveyedPlan};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::{SurveyNews, SurveyedPlan, threads};
 use crate::campaign::{Campaign, CampaignFlight, Forecast, Record, Side, wind_around};
 use crate::flight::{FlightOptions, craft_at_boot};
 use crate::plan::format::PlanFile;
 use crate::scenario::{CaseFlight, FORMAT, Files, Flights, MAX_FLIGHTS, Request, read_request};
 use crate::session::command::VehicleCopy;
+use crate::session::parallel::{self, Panicked};
 use crate::session::runner::Runner;
 use crate::sim::{Noise, Wind};
 
@@ -13,19 +16,35 @@ use crate::sim::{Noise, Wind};
 pub(super) fn fly(
     plan: &SurveyedPlan,
     copy: &VehicleCopy,
-    is_stopped: &impl Fn() -> bool,
+    is_stopped: &(impl Fn() -> bool + Sync),
     report: &mut impl FnMut(SurveyNews),
 ) -> Result<(), String> {
     let craft = craft_at_boot(&copy.vehicle, &plan.plan, &plan.settings, |_| {})?;
     let mean = craft.world_status().map(|world| world.wind).unwrap_or_default();
     let campaign = campaign(plan, copy.takeoff_m, mean)?;
     let mut answer = Forecast::new(campaign.scenario(), campaign.count(), Forecast::RESERVE);
-    for flight in (1..).map_while(|number| campaign.flight(number)) {
-        let Some(record) = record(&flight, plan, copy, is_stopped)? else { return Ok(()) };
-        answer.add(record);
-        report(SurveyNews::Flown(flight.number));
+    let (has_failed, mut problem) = (AtomicBool::new(false), None);
+    let gives_up = || is_stopped() || has_failed.load(Ordering::Relaxed);
+    let fly = |_, number| record(&campaign.flight(number)?, plan, copy, &gives_up).transpose();
+    let mut flown = 0;
+    parallel::in_order(1..campaign.count() + 1, threads(), &gives_up, fly, |record, _| match record {
+        Ok(record) => {
+            answer.add(record);
+            flown += 1;
+            report(SurveyNews::Flown(flown));
+        }
+        Err(reason) => {
+            has_failed.store(true, Ordering::Relaxed);
+            problem.get_or_insert(reason);
+        }
+    })
+    .map_err(|Panicked| Panicked.to_string())?;
+    if let Some(reason) = problem {
+        return Err(reason);
     }
-    report(SurveyNews::GoNoGo(Box::new(answer.answer())));
+    if !is_stopped() {
+        report(SurveyNews::GoNoGo(Box::new(answer.answer())));
+    }
     Ok(())
 }
 
