@@ -2,6 +2,7 @@
 
 mod arming;
 pub mod command;
+mod command_queue;
 mod event;
 mod flight_feed;
 mod flight_logs;

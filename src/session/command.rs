@@ -172,6 +172,8 @@ pub struct SessionView {
     pub timeline: Option<TimelineView>,
     /// The recorded flight that is shown; `None` if a vehicle flies.
     pub replay: Option<Arc<ReplayView>>,
+    /// The number of commands that were carried out before this view.
+    pub commands_taken: u64,
 }
 
 impl SessionView {
@@ -194,6 +196,7 @@ impl SessionView {
             live: false,
             timeline: None,
             replay: None,
+            commands_taken: 0,
         }
     }
 

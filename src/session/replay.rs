@@ -8,12 +8,13 @@ mod notice;
 mod player;
 mod view;
 
-use std::task::{Context, Poll};
+use std::task::Context;
 use std::time::{Duration, Instant};
 
 use tokio::sync::{mpsc, watch};
 
 use super::command::{Command, Seek, SessionView};
+use super::command_queue::CommandQueue;
 use super::event::{Event, EventSender, SessionEvent};
 use super::policy::{self, Facts, Intent};
 use super::runtime::{Handle, refuse_command};
@@ -82,11 +83,7 @@ struct ReplaySession {
     speed: f64,
     /// The flight that is shown; `None` until it is read.
     player: Option<Player>,
-    commands: mpsc::Receiver<Command>,
-    /// A command that was taken from the queue and is carried out next.
-    held_back: Option<Command>,
-    /// `true` if all commands were taken, so that the next one wakes the thread.
-    is_idle: bool,
+    commands: CommandQueue,
     events: EventSender,
     changed: bool,
     quit: bool,
@@ -108,9 +105,7 @@ impl ReplaySession {
             start: config.start,
             speed: config.speed,
             player: None,
-            commands,
-            held_back: None,
-            is_idle: false,
+            commands: CommandQueue::new(commands),
             events,
             changed: true,
             quit: false,
@@ -142,8 +137,7 @@ impl ReplaySession {
                 self.changed = false;
                 view.send_replace(self.view());
             }
-            // A queue that only looks empty would not wake the thread.
-            if self.is_idle {
+            if self.commands.is_idle() {
                 let is_playing = self.player.as_ref().is_some_and(Player::is_playing);
                 std::thread::park_timeout(if is_playing { VIEW_INTERVAL } else { LONGEST_SLEEP });
             }
@@ -232,17 +226,7 @@ impl ReplaySession {
 
     /// Takes the commands that wait. Returns the way to another flight to show.
     fn take_commands(&mut self, now: Duration, context: &mut Context<'_>) -> Option<isize> {
-        while let Some(mut command) = self.next_command(context) {
-            // A held key repeats faster than instants are shown.
-            while let Command::Seek(Seek::Seconds(way)) = &mut command {
-                match self.next_command(context) {
-                    Some(Command::Seek(Seek::Seconds(more))) if more.signum() == way.signum() => *way += more,
-                    other => {
-                        self.held_back = other;
-                        break;
-                    }
-                }
-            }
+        while let Some(command) = self.commands.take(context) {
             self.changed = true;
             match command {
                 Command::ShowFlight(further) => return Some(further),
@@ -254,23 +238,8 @@ impl ReplaySession {
                 command => self.carry_out(command, now),
             }
         }
+        self.quit |= self.commands.has_ended();
         None
-    }
-
-    fn next_command(&mut self, context: &mut Context<'_>) -> Option<Command> {
-        if let Some(command) = self.held_back.take() {
-            return Some(command);
-        }
-        let received = self.commands.poll_recv(context);
-        self.is_idle = received.is_pending();
-        match received {
-            Poll::Ready(Some(command)) => Some(command),
-            Poll::Ready(None) => {
-                self.quit = true;
-                None
-            }
-            Poll::Pending => None,
-        }
     }
 
     /// Shows the flight this many further, or the next one in this direction that can be shown.
@@ -366,10 +335,12 @@ impl ReplaySession {
     }
 
     fn view(&self) -> SessionView {
-        let Some(player) = &self.player else {
-            return view::while_reading(self.flights.name(), 0.0, self.speed);
+        let name = self.flights.name();
+        let view = match &self.player {
+            Some(player) => view::of(player, (name, self.number.unwrap_or_default(), self.flights.count())),
+            None => view::while_reading(name, 0.0, self.speed),
         };
-        view::of(player, (self.flights.name(), self.number.unwrap_or_default(), self.flights.count()))
+        SessionView { commands_taken: self.commands.taken(), ..view }
     }
 }
 

@@ -19,6 +19,7 @@ use tokio::sync::{mpsc, watch};
 
 use super::arming::ArmingWatch;
 use super::command::{Command, SessionView};
+use super::command_queue::CommandQueue;
 use super::event::{Event, EventSender, SessionEvent};
 use super::flight_feed::FlightFeed;
 use super::fly_again::{FlyAgain, FlyingAgain};
@@ -168,9 +169,7 @@ struct Session {
     takeoff_m: f64,
     simulator: Option<Simulator>,
     endpoints: Option<Endpoints>,
-    commands: mpsc::Receiver<Command>,
-    /// A command that was taken from the queue and is carried out next.
-    held_back: Option<Command>,
+    commands: CommandQueue,
     events: EventSender,
     arming: ArmingWatch,
     interface: Interface,
@@ -239,8 +238,7 @@ impl Session {
             takeoff_m: config.takeoff_m,
             simulator: simulator.map(|link| Simulator::new(link, incoming, Instant::now())),
             endpoints: config.endpoints,
-            commands,
-            held_back: None,
+            commands: CommandQueue::new(commands),
             events: EventSender::new(events),
             arming: ArmingWatch::default(),
             interface: Interface::default(),
@@ -320,7 +318,7 @@ impl Session {
                 }
                 view.send_replace(view_now);
             }
-            if ticks < SLICE && !self.more_waits && !self.has_commands() {
+            if ticks < SLICE && !self.more_waits && self.commands.is_idle() {
                 std::thread::park_timeout(self.sleep_from(now, start.elapsed()));
             }
         }
@@ -461,6 +459,7 @@ impl Session {
             remote: link.map(|link| link.remote().view()),
             live: self.endpoints.is_some(),
             timeline: self.timeline_view(),
+            commands_taken: self.commands.taken(),
             ..SessionView::of_recorded(vehicle)
         }
     }

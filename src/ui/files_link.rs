@@ -46,8 +46,15 @@ impl FilesLink {
         if matches!(request, FileRequest::Journal(..)) {
             self.edited = self.asked;
         }
-        let is_decisive =
-            matches!(request, FileRequest::List(_) | FileRequest::Open { .. } | FileRequest::Save { .. });
+        let is_decisive = matches!(
+            request,
+            FileRequest::List(_)
+                | FileRequest::Open { .. }
+                | FileRequest::Save { .. }
+                | FileRequest::SaveSettings { .. }
+                | FileRequest::ReadDisk { .. }
+                | FileRequest::Backdrop(..)
+        );
         if is_decisive {
             self.decisive = Some((self.asked, Instant::now()));
         }

@@ -30,10 +30,12 @@ use super::update::{keep, restore, update};
 mod effects;
 mod flights;
 mod plain;
+mod typed_ahead;
 
 use effects::{Answers, Threads, carry_out};
 use flights::Shown;
 pub use plain::run_plain;
+use typed_ahead::{Input, TypedAhead};
 
 /// The shortest time between two frames after a key.
 const KEY_FRAME: Duration = Duration::from_millis(16);
@@ -41,6 +43,8 @@ const KEY_FRAME: Duration = Duration::from_millis(16);
 const FLIGHT_FRAME: Duration = Duration::from_millis(50);
 /// The longest time without a frame while something on the screen fades.
 const FADE_FRAME: Duration = Duration::from_millis(500);
+/// The time after which keys that wait are looked at again.
+const HELD: Duration = Duration::from_millis(50);
 /// The number of events processed at once.
 const BATCH: usize = 256;
 
@@ -141,8 +145,11 @@ async fn run_loop(
 
     let (answers, mut replies) = Answers::channel();
     let threads = Threads::start(&answers)?;
+    let mut ahead = TypedAhead::default();
     for effect in restored {
-        carry_out(effect, &link, &threads, &mut files, &answers);
+        if carry_out(effect, &link, &threads, &mut files, &answers) {
+            ahead.sends(false, started);
+        }
     }
     let mut events = Vec::with_capacity(BATCH);
     let mut drawn = Instant::now();
@@ -150,18 +157,24 @@ async fn run_loop(
     let mut due: Option<Instant> = None;
 
     loop {
-        let frame_at = due.unwrap_or(drawn + FADE_FRAME);
-        let takes_keys = !files.holds_keys();
+        let is_held =
+            ahead.holds_keys(state.shared.view.commands_taken, Instant::now()) || files.holds_keys();
+        let frame_at = due.unwrap_or(drawn + if is_held { HELD } else { FADE_FRAME });
+        let early = ahead.next(is_held);
         let wake = tokio::select! {
             // Keys first: the user gets an answer before the flight is shown.
             biased;
             () = &mut stop => Wake::End(Ending::Signal),
+            Some(event) = std::future::ready(early) => terminal_message(event).map_or(Wake::Time, Wake::Msg),
             Some(()) = suspend.recv() => Wake::Suspend,
             Some(()) = resume.recv() => Wake::Resume,
             // An answer that keys typed ahead are meant for comes before them.
             Some(reply) = files.replies.recv() => Wake::Msg(Msg::Files(reply)),
-            key = keys.next(), if takes_keys => match key {
-                Some(Ok(event)) => terminal_message(event).map_or(Wake::Time, Wake::Msg),
+            key = keys.next(), if ahead.reads_keys(is_held) => match key {
+                Some(Ok(event)) => match ahead.let_through(event, is_held) {
+                    Some(event) => terminal_message(event).map_or(Wake::Time, Wake::Msg),
+                    None => continue,
+                },
                 Some(Err(error)) => return Err(error),
                 None => Wake::End(Ending::TerminalLost),
             },
@@ -205,7 +218,11 @@ async fn run_loop(
             if matches!(msg, Msg::Resize(..)) {
                 tui.lose_screen();
             }
-            for effect in update(&mut state, msg) {
+            let input = Input::of(&msg);
+            ahead.hears(&msg);
+            let effects = update(&mut state, msg);
+            let is_awaited = ahead.takes(input, &effects, now);
+            for effect in effects {
                 if matches!(effect, Effect::Quit) {
                     link.commands.try_send(Command::Quit).ok();
                     return Ok(Ending::Quit);
@@ -234,7 +251,9 @@ async fn run_loop(
                     update(&mut state, Msg::Resize(size.width, size.height));
                     update(&mut state, Msg::FlightsShown(result));
                 }
-                carry_out(effect, &link, &threads, &mut files, &answers);
+                if carry_out(effect, &link, &threads, &mut files, &answers) {
+                    ahead.sends(is_awaited, now);
+                }
             }
         }
         let wanted = drawn + frame;

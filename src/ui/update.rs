@@ -65,6 +65,7 @@ pub fn update(state: &mut AppState, msg: Msg) -> Vec<Effect> {
     // These messages have no effects: the loop would not carry them out.
     let is_followed = !matches!(msg, Msg::Clock(_) | Msg::Resize(..));
     let is_picture = matches!(msg, Msg::View(_));
+    let is_key = matches!(msg, Msg::Key(_));
     let connection = state.shared.real_craft().map(|remote| remote.connection);
     let effects = take(state, msg);
     let mut effects = permission::hold(state, effects);
@@ -81,6 +82,9 @@ pub fn update(state: &mut AppState, msg: Msg) -> Vec<Effect> {
     }
     if is_picture {
         effects.extend(forecast::repeat(&mut state.shared));
+    }
+    // A key that shows the settings asks for them at once, so that the keys after it act on them.
+    if is_picture || is_key && state.shared.settings.craft().is_none() {
         let reads = settings::reading::follow(&mut state.shared);
         effects.extend(permission::hold(state, reads.into_iter().collect()));
     }

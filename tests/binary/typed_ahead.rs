@@ -57,3 +57,36 @@ fn keys_typed_ahead_of_a_listing_choose_the_file_there_and_edit_the_plan_that_it
     terminal.send("q");
     assert_eq!(terminal.end(), 0);
 }
+
+#[test]
+fn keys_typed_ahead_of_a_download_edit_the_plan_of_the_craft() {
+    let sandbox = Sandbox::new();
+    sandbox.write("a.txt", PLAN);
+    let plan = sandbox.path("a.txt").display().to_string();
+    let mut terminal = Terminal::betadeck(120, 40, &["--no-ports", "--fresh", &plan]);
+    terminal.until_shown("Plan — a.txt");
+    // The plan gets a third waypoint and goes to the craft. One of the three is deleted, the plan of the craft comes back,
+    // and one of its waypoints is deleted.
+    terminal.send("2iUdDd");
+    terminal.until_shown("Downloaded 3 waypoints");
+    terminal.until_shown("1 [LAND]");
+    terminal.send("qd");
+    assert_eq!(terminal.end(), 0);
+}
+
+#[test]
+fn keys_typed_ahead_of_the_settings_and_of_an_earlier_instant_act_there() {
+    let mut terminal = Terminal::betadeck(120, 40, &["--no-ports", "--fresh"]);
+    terminal.until_shown("DISARMED");
+    // The first reading of the settings, the search, and two changes in place.
+    terminal.send("9/fence\r++");
+    terminal.until_shown("200            m");
+    terminal.send("F]]]");
+    terminal.until("the mission", |terminal| terminal.screen().contains("◆ APPROACHING"));
+    // Back by one event and on from there: without the earlier instant there is nothing to fly on from.
+    terminal.send(",b");
+    terminal.until_shown("Flying on from here");
+    terminal.until("the flight", |terminal| !terminal.screen().contains("REWOUND"));
+    terminal.send("qy");
+    assert_eq!(terminal.end(), 0);
+}

@@ -1,6 +1,6 @@
 //! Carries out the commands of the user interface.
 
-use std::task::{Context, Poll};
+use std::task::Context;
 use std::time::Duration;
 
 use super::Session;
@@ -8,7 +8,7 @@ use super::interface::UploadTo;
 use super::limits::refuse_command;
 use crate::fc::Access;
 use crate::flight::forecast;
-use crate::session::command::{Command, Seek, VehicleCopy};
+use crate::session::command::{Command, VehicleCopy};
 use crate::session::flight_feed::FlightPart;
 use crate::session::policy::{self, Facts, Intent, RemoteFacts};
 use crate::session::simulator::Simulator;
@@ -18,18 +18,7 @@ use crate::vehicle::{Answer, Reply, VehicleCommand, VehicleRefusal};
 
 impl Session {
     pub(super) fn take_commands(&mut self, now: Duration, context: &mut Context<'_>) {
-        while let Some(mut command) = self.next_command(context) {
-            // A held key repeats faster than an instant is found. Consecutive seeks in one direction are
-            // combined.
-            while let Command::Seek(Seek::Seconds(way)) = &mut command {
-                match self.next_command(context) {
-                    Some(Command::Seek(Seek::Seconds(more))) if more.signum() == way.signum() => *way += more,
-                    other => {
-                        self.held_back = other;
-                        break;
-                    }
-                }
-            }
+        while let Some(command) = self.commands.take(context) {
             self.changed = true;
             let seeks = matches!(command, Command::Seek(_));
             self.carry_out(command, now);
@@ -38,25 +27,7 @@ impl Session {
                 return;
             }
         }
-    }
-
-    fn next_command(&mut self, context: &mut Context<'_>) -> Option<Command> {
-        if let Some(command) = self.held_back.take() {
-            return Some(command);
-        }
-        match self.commands.poll_recv(context) {
-            Poll::Ready(Some(command)) => Some(command),
-            Poll::Ready(None) => {
-                self.quit = true;
-                None
-            }
-            Poll::Pending => None,
-        }
-    }
-
-    /// Returns `true` if a command is waiting.
-    pub(super) fn has_commands(&self) -> bool {
-        self.held_back.is_some() || !self.commands.is_empty()
+        self.quit |= self.commands.has_ended();
     }
 
     fn carry_out(&mut self, command: Command, now: Duration) {

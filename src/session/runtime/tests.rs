@@ -234,16 +234,16 @@ fn a_held_rewind_key_is_one_way_and_each_other_instant_is_shown_before_the_next(
     (0..20).for_each(|_| rig.seek(Seek::Seconds(-1.0)));
     rig.seek(Seek::Seconds(5.0));
     rig.seek(Seek::Time(SimTime(7_000_000)));
-    let (sent, begun) = (ReplyTo::channel(), rig.session.has_commands());
+    let (sent, begun) = (ReplyTo::channel(), !rig.session.commands.is_idle());
     rig.commands.try_send(Command::Save { reply: sent.0 }).unwrap();
     assert!(begun, "the loop does not sleep");
     for expected_s in [40.0, 45.0, 7.0] {
-        assert!(rig.session.has_commands());
+        assert!(!rig.session.commands.is_idle());
         rig.take_commands();
         assert!((shown_s(&rig) - expected_s).abs() < 1e-3, "{} for {expected_s}", shown_s(&rig));
     }
     rig.take_commands();
-    assert!(!rig.session.has_commands(), "whatever comes behind is not forgotten");
+    assert!(rig.session.commands.is_idle(), "whatever comes behind is not forgotten");
     drop(sent.1);
 }
 

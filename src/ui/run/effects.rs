@@ -75,14 +75,14 @@ impl Threads {
     }
 }
 
-/// Carries out an effect; answers come back as messages.
+/// Carries out an effect; answers come back as messages. Returns `true` if the session gets a command.
 pub(super) fn carry_out(
     effect: Effect,
     link: &SessionLink,
     threads: &Threads,
     files: &mut FilesLink,
     answers: &Answers,
-) {
+) -> bool {
     const MISSING: &str = "the session did not answer.";
     let command = match effect {
         Effect::Files(request) => {
@@ -90,23 +90,23 @@ pub(super) fn carry_out(
                 let gone = "Plan files cannot be read or written any more: restart the program.".to_owned();
                 answers.send(Msg::Files(FileReply::Failed(gone)));
             }
-            return;
+            return false;
         }
         Effect::Copy(text) => {
             // Terminals without this feature show nothing; the editor keeps its own copy.
             execute!(io::stdout(), CopyToClipboard::to_clipboard_from(text)).ok();
-            return;
+            return false;
         }
         Effect::ListFlights { after } => {
             flights::list(link.shelf.clone(), after, answers.clone());
-            return;
+            return false;
         }
         Effect::DeleteFlight(file) => {
             flights::delete(link.shelf.clone(), file, answers.clone());
-            return;
+            return false;
         }
         // These need the terminal.
-        Effect::ShowFlights { .. } | Effect::Suspend | Effect::Quit => return,
+        Effect::ShowFlights { .. } | Effect::Suspend | Effect::Quit => return false,
         Effect::Send(command) => command,
         Effect::Cli(line) => Command::Cli { line, reply: answers.reply(Msg::CliReply) },
         Effect::ReadSettings => Command::ReadSettings { reply: answers.result(MISSING, Msg::SettingsReply) },
@@ -195,11 +195,13 @@ pub(super) fn carry_out(
         }
         Effect::EndSurvey(revision) => {
             threads.surveyor.want(revision);
-            return;
+            return false;
         }
     };
     // A command that is not delivered is dropped after this message.
-    if let Err(_undelivered) = link.commands.try_send(command) {
+    let is_delivered = link.commands.try_send(command).is_ok();
+    if !is_delivered {
         answers.send(Msg::Busy);
     }
+    is_delivered
 }
