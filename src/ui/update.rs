@@ -65,7 +65,6 @@ pub fn update(state: &mut AppState, msg: Msg) -> Vec<Effect> {
     // These messages have no effects: the loop would not carry them out.
     let is_followed = !matches!(msg, Msg::Clock(_) | Msg::Resize(..));
     let is_picture = matches!(msg, Msg::View(_));
-    let is_key = matches!(msg, Msg::Key(_));
     let connection = state.shared.real_craft().map(|remote| remote.connection);
     let effects = take(state, msg);
     let mut effects = permission::hold(state, effects);
@@ -82,9 +81,6 @@ pub fn update(state: &mut AppState, msg: Msg) -> Vec<Effect> {
     }
     if is_picture {
         effects.extend(forecast::repeat(&mut state.shared));
-    }
-    // A key that shows the settings asks for them at once, so that the keys after it act on them.
-    if is_picture || is_key && state.shared.settings.craft().is_none() {
         let reads = settings::reading::follow(&mut state.shared);
         effects.extend(permission::hold(state, reads.into_iter().collect()));
     }
@@ -439,7 +435,7 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
         Action::Slower => return speed(&mut state.shared, -1),
         Action::Faster => return speed(&mut state.shared, 1),
         Action::RealTime => return speed(&mut state.shared, 0),
-        Action::Show(panel) => return focus(state, panel),
+        Action::Show(panel) => return view::show(state, panel),
         Action::Next => return focus_neighbour(state, 1),
         Action::Previous => return focus_neighbour(state, -1),
         Action::Zoom => state.shared.zoomed = !state.shared.zoomed,

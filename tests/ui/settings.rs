@@ -88,7 +88,7 @@ impl Craft {
 /// Returns a screen of this size with the settings of a craft on it.
 pub(crate) fn opened(size: (u16, u16), lines: &[&str]) -> (AppState, Craft) {
     let (mut state, mut craft) = (state_with_fix(size), Craft::with(lines));
-    keys(&mut state, "9");
+    craft.press(&mut state, "9");
     craft.go_on(&mut state);
     (state, craft)
 }

@@ -5,6 +5,7 @@ use crate::ui::app_state::AppState;
 use crate::ui::layout;
 use crate::ui::message::Effect;
 use crate::ui::panel::Panel;
+use crate::ui::settings::reading;
 
 /// Gives a panel the focus.
 pub(super) fn focus(state: &mut AppState, panel: Panel) -> Vec<Effect> {
@@ -16,6 +17,15 @@ pub(super) fn focus(state: &mut AppState, panel: Panel) -> Vec<Effect> {
     let place = state.shared.arrangement.place_of(panel);
     state.shared.slots.visit(place);
     Vec::new()
+}
+
+/// Gives a panel the focus, and asks for the settings if it shows them for the first time: keys typed ahead act on them.
+pub(super) fn show(state: &mut AppState, panel: Panel) -> Vec<Effect> {
+    let mut effects = focus(state, panel);
+    if panel == Panel::Settings && state.shared.settings.craft().is_none() {
+        effects.extend(reading::follow(&mut state.shared));
+    }
+    effects
 }
 
 /// Gives the focus to the panel before or after the focused one in the order of numbers.
