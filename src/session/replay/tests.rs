@@ -263,8 +263,8 @@ fn a_key_after_any_other_wakes_a_paused_replay() {
         let waker = Waker::from(Arc::clone(&wakes));
         let mut context = Context::from_waker(&waker);
         rig.commands.try_send(command).unwrap();
-        rig.session.is_idle = false;
-        while !rig.session.is_idle {
+        rig.session.take_commands(rig.now, &mut context);
+        while !rig.session.commands.is_idle() {
             rig.session.take_commands(rig.now, &mut context);
         }
         let before = wakes.0.load(Ordering::Relaxed);
