@@ -271,7 +271,8 @@ impl Log {
     fn note_slow_if_due(&mut self, firmware: &Firmware, notes: &mut Notes) {
         let boxes = self.box_mask(firmware);
         let values = side_frames::slow_values(firmware, boxes);
-        if self.frames.slow != Some(values) || self.frames.since_slow >= SLOW_EVERY {
+        let is_known = |known: SlowValues| std::iter::zip(known, values).all(|(known, value)| known == value);
+        if !self.frames.slow.is_some_and(is_known) || self.frames.since_slow >= SLOW_EVERY {
             notes.add(LogPart::Slow(values));
             self.frames.slow = Some(values);
             self.frames.since_slow = 0;

@@ -82,6 +82,8 @@ pub struct MainState {
 
 impl MainState {
     /// Returns the present state, in the loop with this number.
+    // Inlined, because the result would else be copied through memory in every step.
+    #[inline(always)]
     pub(super) fn of(firmware: &Firmware, iteration: u32) -> Self {
         let (control, estimate) = (firmware.control(), firmware.estimate());
         let (parameters, receiver) = (firmware.parameters(), firmware.receiver());
