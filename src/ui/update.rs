@@ -44,6 +44,7 @@ mod permission;
 mod plan_popup;
 mod popup;
 mod series;
+mod shown_keys;
 mod timeline;
 mod view;
 mod world_changes;

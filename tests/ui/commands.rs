@@ -2,16 +2,18 @@
 
 use betadeck::session::Command;
 use betadeck::ui::action::{ACTIONS, Action, enabled};
+use betadeck::ui::command;
 use betadeck::ui::editor::FileRequest;
 use betadeck::ui::keymap::KeyPress;
 use betadeck::ui::{AppState, Effect, EnteredLines, FlightForm, LineField, Msg, Panel, Popup, draw, update};
 use betadeck::vehicle::VehicleCommand;
-use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
+use crossterm::event::{KeyCode, KeyEvent, KeyModifiers, MouseEventKind};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 
 use crate::fixture;
 use crate::fixture::SimpleFlight;
+use crate::hands::{mouse, mouse_button, place_of};
 
 fn key(state: &mut AppState, code: KeyCode) -> Vec<Effect> {
     let mut effects = update(state, Msg::Key(KeyEvent::new(code, KeyModifiers::NONE)));
@@ -38,7 +40,11 @@ fn enter(state: &mut AppState, line: &str) -> Vec<Effect> {
 }
 
 fn ready() -> AppState {
-    let mut state = fixture::state((120, 40), fixture::colour());
+    ready_at((120, 40))
+}
+
+fn ready_at(size: (u16, u16)) -> AppState {
+    let mut state = fixture::state(size, fixture::colour());
     let view = fixture::view(&SimpleFlight { time_s: 8.0, fix: true, ..SimpleFlight::default() });
     update(&mut state, Msg::View(view));
     state
@@ -97,6 +103,49 @@ fn every_action_does_the_same_by_key_palette_and_name() {
         assert!(shown.contains(spec.name), "{}\n{shown}", spec.name);
         let effects = key(&mut by_palette, KeyCode::Enter);
         assert_eq!(outcome(&by_palette, &effects), wanted, "{} by the palette", spec.name);
+    }
+}
+
+/// Returns a screen with the palette, opened and scrolled by the mouse so that this entry is selected, and the row of it.
+fn scrolled_to(focus: Panel, entry: usize) -> (AppState, (u16, u16)) {
+    let mut state = ready_at((200, 60));
+    state.shared.focus = focus;
+    state.shared.slots.visit(focus);
+    mouse(&mut state, MouseEventKind::Down, (4, 0));
+    assert!(matches!(state.popups[..], [Popup::Palette(_)]), "a click on the status opens the palette");
+    for _ in 0..entry {
+        mouse_button(&mut state, MouseEventKind::ScrollDown, (100, 30));
+    }
+    let prompt = place_of(&state, "│> ");
+    (state, (prompt.0 + 4, prompt.1 + 1 + entry.min(13) as u16))
+}
+
+#[test]
+fn every_command_is_reached_by_the_mouse_alone() {
+    let actions = ACTIONS.iter().filter(|spec| spec.action != Action::Palette);
+    let mut count = 0;
+    for (at, spec) in actions.enumerate() {
+        let applies = |panel: &Panel| spec.context.applies(*panel) && *panel != Panel::Cli;
+        let focus = Panel::ALL.into_iter().find(applies).unwrap_or_else(|| panic!("{}", spec.name));
+        let mut by_name = ready_at((200, 60));
+        by_name.shared.focus = focus;
+        by_name.shared.slots.visit(focus);
+        let effects = enter(&mut by_name, spec.name);
+        let wanted = outcome(&by_name, &effects);
+        let (mut by_mouse, cell) = scrolled_to(focus, at);
+        let shown: String = spec.name.chars().take(20).collect();
+        assert_eq!(place_of(&by_mouse, &format!(" {shown}")).1, cell.1, "{shown} is where it is clicked");
+        let mut effects = mouse(&mut by_mouse, MouseEventKind::Down, cell);
+        effects.retain(|effect| !matches!(effect, Effect::Files(FileRequest::KeepLine(..))));
+        assert_eq!(outcome(&by_mouse, &effects), wanted, "{} by the mouse", spec.name);
+        count = at + 1;
+    }
+    // Those with a value open the line that takes it.
+    for (at, command) in command::all().enumerate() {
+        let (mut state, cell) = scrolled_to(Panel::Map, count + at);
+        mouse(&mut state, MouseEventKind::Down, cell);
+        let line = state.command_line.field.value().trim_end();
+        assert!(state.popups.is_empty() || line == command.name, "{}: {line}", command.name);
     }
 }
 

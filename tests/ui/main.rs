@@ -22,6 +22,7 @@ mod mistyped;
 mod orientation;
 mod panels;
 mod plan_panel;
+mod popups_by_mouse;
 mod remapped;
 mod replay;
 mod revisions;

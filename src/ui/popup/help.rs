@@ -133,8 +133,10 @@ impl Help {
 }
 
 /// The uses of the mouse.
-const MOUSE: [(&str, &str); 6] = [
+const MOUSE: [(&str, &str); 8] = [
     ("click", "Focus a panel, set a channel; run a hint, or a line of this help"),
+    ("top lines", "A click finds any command"),
+    ("windows", "A click on a key presses it, on a row chooses it, outside closes"),
     ("double", "Add a waypoint on the map"),
     ("drag", "Move the map"),
     ("right", "What can be done at a place of the map, and with a setting"),

@@ -2,6 +2,7 @@
 
 use crossterm::event::{MouseButton, MouseEvent, MouseEventKind};
 
+use crate::ui::action::Action;
 use crate::ui::app_state::AppState;
 use crate::ui::message::{Effect, Request};
 use crate::ui::panel::Panel;
@@ -10,7 +11,7 @@ use crate::ui::{hint_bar, layout, notice, panel_bar, tutorial};
 
 use super::popup::{chosen, take_entry};
 use super::view::focus;
-use super::{act, arrange, carry_out, diff, flights, map_menu, timeline};
+use super::{act, arrange, carry_out, diff, flights, map_menu, shown_keys, timeline};
 
 /// The number of lines of the help per step of the wheel.
 const WHEEL_LINES: isize = 3;
@@ -25,9 +26,16 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
     }
     let arranges = matches!(state.popups.last(), Some(Popup::Layout));
     if !arranges && (!state.popups.is_empty() || state.shared.editor.popup.is_some()) {
-        return Vec::new();
+        return shown_keys::mouse(state, event);
     }
-    if event.kind == MouseEventKind::Down(MouseButton::Left)
+    let is_click = event.kind == MouseEventKind::Down(MouseButton::Left);
+    if arranges
+        && is_click
+        && let Some(effects) = shown_keys::press_shown(state, (event.column, event.row))
+    {
+        return effects;
+    }
+    if is_click
         && let Some(screen) = layout::screen(&state.shared)
         && let foot = screen.timeline.unwrap_or(screen.hints)
         && let above = tutorial::rows(state.tutorial, &state.shared, foot)
@@ -35,9 +43,7 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
     {
         return Vec::new();
     }
-    if event.kind == MouseEventKind::Down(MouseButton::Left)
-        && let Some(effects) = timeline::click(&state.shared, event.column, event.row)
-    {
+    if is_click && let Some(effects) = timeline::click(&state.shared, event.column, event.row) {
         return effects;
     }
     let Some(screen) = layout::screen(&state.shared) else { return Vec::new() };
@@ -46,20 +52,19 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
         return Vec::new();
     }
     let cell = (event.column, event.row);
-    if !arranges && event.kind == MouseEventKind::Down(MouseButton::Left) {
+    if !arranges && is_click && screen.status.contains(cell.into()) {
+        return act(state, Action::Palette);
+    }
+    if !arranges && is_click {
         let hints = state.panels.of(state.shared.focus).hints(&state.shared);
         if let Some(action) = hint_bar::action_at(&hints, &state.shared, screen.hints, cell) {
             return act(state, action);
         }
     }
-    if event.kind == MouseEventKind::Down(MouseButton::Left)
-        && let Some(panel) = panel_bar::panel_at(&state.shared, &screen, (event.column, event.row))
-    {
+    if is_click && let Some(panel) = panel_bar::panel_at(&state.shared, &screen, (event.column, event.row)) {
         return focus(state, panel);
     }
-    if event.kind == MouseEventKind::Down(MouseButton::Left)
-        && let Some(border) = arrange::border_at(&screen, event.column, event.row)
-    {
+    if is_click && let Some(border) = arrange::border_at(&screen, event.column, event.row) {
         state.dragged = Some(border);
         let panel = screen.at(event.column, event.row).map(|(panel, _)| panel);
         return panel.map_or_else(Vec::new, |panel| focus(state, panel));
