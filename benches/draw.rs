@@ -45,6 +45,27 @@ fn orbiting(size: (u16, u16)) -> AppState {
 /// Returns a craft that has flown ten kilometres on a widening spiral, with the whole track recorded.
 fn with_long_track(size: (u16, u16)) -> AppState {
     let mut state = orbiting(size);
+    fly_a_spiral(&mut state, 0.0);
+    state
+}
+
+/// Returns a craft after four such flights, the last one in full and the others faintly, with six graphs.
+fn with_past_tracks_and_six_graphs(size: (u16, u16)) -> AppState {
+    let mut state = orbiting(size);
+    for flight in 0..4 {
+        fly_a_spiral(&mut state, 30.0 * f64::from(flight));
+    }
+    press(&mut state, '6');
+    let down = std::iter::repeat_n(KeyCode::Down, 5);
+    for code in std::iter::once(KeyCode::Enter).chain(down).chain([KeyCode::Char(' '), KeyCode::Esc]) {
+        update(&mut state, Msg::Key(KeyEvent::new(code, KeyModifiers::NONE)));
+    }
+    assert_eq!(state.shared.past_flights.tracks().len(), 3);
+    state
+}
+
+/// Flies a widening spiral around a point so far east, m. The jump to its beginning ends the flight before.
+fn fly_a_spiral(state: &mut AppState, east_m: f64) {
     let started_s = state.shared.view.vehicle.time.as_secs_f64();
     let mut angle = 0.0_f64;
     for point in 0..POINTS {
@@ -53,7 +74,7 @@ fn with_long_track(size: (u16, u16)) -> AppState {
         let flight = fixture::SimpleFlight {
             time_s: started_s + STEP.1 * f64::from(point),
             n: radius_m * angle.cos(),
-            e: radius_m * angle.sin(),
+            e: radius_m * angle.sin() + east_m,
             alt: 50.0,
             speed: STEP.0 / STEP.1,
             armed: true,
@@ -62,14 +83,10 @@ fn with_long_track(size: (u16, u16)) -> AppState {
             wp: 2,
             ..fixture::SimpleFlight::default()
         };
-        update(&mut state, Msg::View(fixture::view(&flight)));
+        update(state, Msg::View(fixture::view(&flight)));
     }
-    assert!(
-        state.shared.track.points().len() >= POINTS as usize - 100,
-        "{}",
-        state.shared.track.points().len()
-    );
-    state
+    let points = state.shared.track.points().len();
+    assert!(points >= POINTS as usize - 100, "{points}");
 }
 
 fn press(state: &mut AppState, key: char) {
@@ -92,6 +109,17 @@ fn frame(bencher: Bencher<'_, '_>, size: (u16, u16)) {
 #[divan::bench(args = [(80, 24), (120, 40), (200, 60)])]
 fn full_redraw_with_a_long_track(bencher: Bencher<'_, '_>, size: (u16, u16)) {
     let state = with_long_track(size);
+    let mut terminal = terminal(size);
+    bencher.bench_local(|| {
+        terminal.clear()?;
+        terminal.draw(|frame| draw(&state, frame)).map(|_| ())
+    });
+}
+
+/// The same after three more flights, whose tracks are shown faintly, with six graphs.
+#[divan::bench(args = [(120, 40), (200, 60)])]
+fn full_redraw_with_past_tracks_and_six_graphs(bencher: Bencher<'_, '_>, size: (u16, u16)) {
+    let state = with_past_tracks_and_six_graphs(size);
     let mut terminal = terminal(size);
     bencher.bench_local(|| {
         terminal.clear()?;

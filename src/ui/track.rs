@@ -69,7 +69,7 @@ impl KeptTracks {
         self.tracks.clear();
     }
 
-    pub(super) fn tracks(&self) -> &[Vec<TrackPoint>] {
+    pub fn tracks(&self) -> &[Vec<TrackPoint>] {
         &self.tracks
     }
 }

@@ -143,7 +143,7 @@ fn a_plan_is_compared_with_the_craft_its_changed_file_and_its_revisions() {
         screen.contains("▸file") && row.contains("20 m") && row.contains("11 m")
     });
     terminal.send("\tm");
-    terminal.until_shown("╌╌ revision 1 (now) ··· ○ as opened");
+    terminal.until_shown("╌╌ this plan ··· ○ revision 0");
     terminal.send("\t");
     terminal.until("the settings of the craft", |terminal| {
         terminal.screen().contains("▸settings") && terminal.screen().contains("= gyro_lpf1_type")

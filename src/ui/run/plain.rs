@@ -156,6 +156,7 @@ fn is_question(effect: &Effect) -> bool {
         | Effect::WriteRecording { .. }
         | Effect::DeleteFlight(_)
         | Effect::SaveToFlash
+        | Effect::ReadSettings
         | Effect::Survey(_) => true,
         Effect::ListFlights { after } => after.is_zero(),
         Effect::Files(request) => {
@@ -174,7 +175,6 @@ fn is_question(effect: &Effect) -> bool {
         | Effect::EndSurvey(_)
         | Effect::Curves(_)
         | Effect::ShowFlights { .. }
-        | Effect::ReadSettings
         | Effect::Copy(_)
         | Effect::Suspend
         | Effect::Quit => false,
@@ -186,6 +186,7 @@ fn is_answer(msg: &Msg) -> bool {
     match msg {
         Msg::CliReply(_)
         | Msg::SetReply { .. }
+        | Msg::SettingsReply(_)
         | Msg::WorldReply { .. }
         | Msg::UploadReply { .. }
         | Msg::DownloadReply { .. }
@@ -215,7 +216,6 @@ fn is_answer(msg: &Msg) -> bool {
         | Msg::OtherFlight { .. }
         | Msg::FlightsShown(_)
         | Msg::Curves { .. }
-        | Msg::SettingsReply(_)
         | Msg::Event(_) => false,
     }
 }
