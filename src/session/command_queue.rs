@@ -55,7 +55,7 @@ impl CommandQueue {
         next
     }
 
-    /// Returns `true` if the thread may sleep: the next command wakes it. A queue that only looks empty would not.
+    /// Returns `true` if the thread may sleep: the next command wakes it. It may not while a command is on its way.
     pub(super) fn is_idle(&self) -> bool {
         self.is_idle
     }

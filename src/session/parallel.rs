@@ -1,5 +1,5 @@
-//! Flies on several threads and passes on the results in the order of the flights.
-#![allow(clippy::disallowed_methods, reason = "threads for independent flights")]
+//! Works on several threads and passes on the results in the order of the jobs, which are flights or recordings.
+#![allow(clippy::disallowed_methods, reason = "threads for independent jobs")]
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -13,9 +13,9 @@ const AHEAD: u64 = 512;
 /// The longest time after which a waiting thread looks whether it should stop.
 const PATIENCE: Duration = Duration::from_millis(50);
 
-/// A flight panicked, which is a fault of this program.
+/// A job panicked, which is a fault of this program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("a flight panicked")]
+#[error("a flight or the reading of a recording panicked")]
 pub struct Panicked;
 
 /// Returns the number of processors.
@@ -23,11 +23,11 @@ pub fn processors() -> usize {
     std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
 }
 
-/// Flies the jobs with these numbers by `fly`, which gets the number of its thread, on `threads` threads. `reported` gets
-/// each result in the order of the jobs, with the number of finished flights; a flight that was interrupted has none.
+/// Does the jobs with these numbers on `threads` threads. `fly` gets the number of its thread and of the job. `reported`
+/// gets each result in the order of the jobs, with the number of finished jobs; a job that was interrupted has none.
 ///
 /// # Errors
-/// Fails if a flight panicked. The other threads end.
+/// Fails if a job panicked. The other threads end.
 pub fn in_order<T: Send>(
     jobs: Range<u64>,
     threads: usize,

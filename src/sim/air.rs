@@ -88,7 +88,7 @@ impl Air {
     }
 
     /// Returns the air at a time after the last tick.
-    // Inlined, because the result would else be copied through memory in every step.
+    // Inlined, because the result would otherwise be copied through memory in every step.
     #[inline(always)]
     pub(super) fn sample(&self, time: SimTime) -> AirSample {
         let part = (time.0 % AIR_TICK_US) as f64 * (1.0 / AIR_TICK_US as f64);

@@ -155,7 +155,7 @@ impl Ground {
     }
 
     /// Returns the ground contact in a state.
-    // Inlined, because the result would else be copied through memory in every step.
+    // Inlined, because the result would otherwise be copied through memory in every step.
     #[inline(always)]
     pub fn contact(&self, state: &BodyState) -> GroundContact {
         let plane = self.landform.tangent_at(&state.pos_enu);

@@ -141,7 +141,7 @@ impl Plant {
     }
 
     /// Returns the loads on a craft now, for the accelerometer and for the next step.
-    // Inlined, because the result would else be copied through memory in every step.
+    // Inlined, because the result would otherwise be copied through memory in every step.
     #[inline(always)]
     pub fn present(&self, craft: &Craft, air: &AirSample) -> Present {
         let Craft { body, rotors, anchors, .. } = craft;
@@ -223,7 +223,7 @@ impl Plant {
     }
 
     /// Returns the loads without the ground, and `true` if those of the rotors follow from their sums.
-    // Inlined, because the result would else be copied through memory in every step.
+    // Inlined, because the result would otherwise be copied through memory in every step.
     #[inline(always)]
     fn air_loads(&self, moment: &Moment<'_>, air: &AirSample) -> (Loads, bool) {
         let va = moment.rotation.tr_mul(&(moment.vel - air.wind_enu));

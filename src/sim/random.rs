@@ -74,7 +74,7 @@ impl Normals {
         ziggurat::normal(&mut self.0)
     }
 
-    // Inlined, because the result would else be copied through memory in every step.
+    // Inlined, because the result would otherwise be copied through memory in every step.
     #[inline(always)]
     pub(super) fn next3(&mut self) -> nalgebra::Vector3<f64> {
         let x = self.next();

@@ -238,8 +238,11 @@ async fn run_loop(
                     update(&mut state, Msg::Resize(size.width, size.height));
                 }
                 if let Effect::ShowFlights { files, again } = &effect {
-                    // The reader of the terminal ends, so that the keys go to the other program.
+                    // The reader of the terminal ends, so that the keys go to the other program. What it has read
+                    // already was meant for that program and would act on this one.
                     keys = EventStream::new();
+                    drop_typed_keys()?;
+                    ahead.drop_key();
                     tui.leave();
                     let shown = flights::show(link.shelf.as_ref(), files, *again, &mut stop).await;
                     tui.resume()?;
@@ -265,6 +268,16 @@ async fn run_loop(
             due = None;
         }
     }
+}
+
+/// Drops what was typed so far.
+fn drop_typed_keys() -> io::Result<()> {
+    /// The time for which a reader that ends may still hold the terminal.
+    const READER_ENDS: Duration = Duration::from_millis(20);
+    while crossterm::event::poll(READER_ENDS)? {
+        crossterm::event::read()?;
+    }
+    Ok(())
 }
 
 /// Waits for the second flight. Returns its message once; without one, or after it, `None` at once.

@@ -405,7 +405,8 @@ impl FlightController {
         }
     }
 
-    /// Returns modes, arming, receiver and battery.
+    /// Returns modes, arming, receiver and battery. Those of an embedded controller come without the mode ranges, which
+    /// need memory from the heap: see [`Self::mode_ranges`].
     pub fn craft_view(&self) -> CraftView {
         match self {
             Self::Embedded(embedded) => embedded.firmware.craft_view(),

@@ -38,9 +38,10 @@ fn a_flight_of_the_library_is_shown_compared_and_deleted_on_the_screen() {
         Terminal::start_in(with_library(), 80, 24, crate::support::PROGRAM, &["--no-ports", state]);
     terminal.until_shown("DISARMED");
     // A flight on this screen, by keys typed ahead of the list, and back to the list.
-    terminal.send("\u{6}windy\r");
+    terminal.send("\u{6}windy\r>>");
     terminal.until_shown("REPLAY");
     terminal.send("q");
+    // The keys typed ahead of the replay are not in the search field.
     terminal.until_shown("Recorded flights — 1 of 3");
     // Two of them beside each other.
     terminal.send("\u{7f}\u{7f}\u{7f}\u{7f}\u{7f}");

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use betadeck::fc::CraftSettings;
+use betadeck::fc::{CraftSettings, UploadReport};
 use betadeck::firmware::cli::Interpreter;
 use betadeck::firmware::{Firmware, FirmwareOptions, config::Configuration};
 use betadeck::flight::forecast::{FlightResult, Forecast, ForecastEnd, ForecastKind, WorstXte};
@@ -378,5 +378,22 @@ fn the_panel_at_four_sizes() {
     {
         let seen = [(60, 20), (80, 24), (120, 40), (200, 60)].map(|size| screen(&opened_with(size, typed)));
         insta::assert_snapshot!(format!("settings_{name}"), seen.join("\n"));
+    }
+}
+
+#[test]
+fn the_key_of_the_panel_and_a_comparison_ask_for_settings_that_an_upload_may_have_changed() {
+    let asks = |effects: &[Effect]| effects.iter().any(|effect| matches!(effect, Effect::ReadSettings));
+    let (mut state, mut craft) = opened((120, 40), &[]);
+    for shows in ["9", "2 V"] {
+        keys(&mut state, "1");
+        assert!(!asks(&keys(&mut state, "9")), "they are known");
+        keys(&mut state, "1");
+        let id = state.shared.editor.plan().id();
+        update(&mut state, Msg::UploadReply { id, count: 4, result: Ok(UploadReport::default()) });
+        let effects = keys(&mut state, shows);
+        assert!(asks(&effects), "{shows}");
+        craft.answer(&mut state, effects);
+        keys(&mut state, "esc");
     }
 }

@@ -82,7 +82,7 @@ pub struct MainState {
 
 impl MainState {
     /// Returns the present state, in the loop with this number.
-    // Inlined, because the result would else be copied through memory in every step.
+    // Inlined, because the result would otherwise be copied through memory in every step.
     #[inline(always)]
     pub(super) fn of(firmware: &Firmware, iteration: u32) -> Self {
         let (control, estimate) = (firmware.control(), firmware.estimate());

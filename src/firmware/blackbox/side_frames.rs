@@ -67,7 +67,7 @@ pub type HomeValues = [i32; 4];
 pub type GpsValues = [i32; 11];
 
 /// Returns the present modes and states. `boxes` are the switched boxes as bits.
-// Inlined, because the result would else be compared through memory in every loop with a frame.
+// Inlined, because the result would otherwise be compared through memory in every loop with a frame.
 #[inline(always)]
 pub(super) fn slow_values(firmware: &Firmware, boxes: u32) -> SlowValues {
     let (failsafe, receiver) = (&firmware.navigation.failsafe, firmware.receiver());

@@ -63,6 +63,11 @@ impl TypedAhead {
         }
     }
 
+    /// Forgets the key that waits.
+    pub(super) fn drop_key(&mut self) {
+        self.early = None;
+    }
+
     /// Takes the answer to a question.
     pub(super) fn hears(&mut self, msg: &Msg) {
         if matches!(msg, Msg::Busy) {
@@ -132,7 +137,7 @@ fn asked(effect: &Effect) -> Option<Question> {
         Effect::Set(_) => Some(Question::Set),
         Effect::ListFlights { after } => after.is_zero().then_some(Question::Flights),
         Effect::DeleteFlight(_) => Some(Question::Deletion),
-        // Of those of files, the link to the files knows which are answered.
+        // The link to the files counts its questions itself.
         Effect::Files(_) => None,
         // Their outcome is in the next picture of the session.
         Effect::Send(_) | Effect::World(_) => None,

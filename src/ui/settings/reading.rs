@@ -26,7 +26,12 @@ pub(in crate::ui) fn follow(state: &mut Shared) -> Option<Effect> {
         state.settings = SettingsState { connection, ..SettingsState::new(given) };
     }
     let is_shown = layout::screen(state).is_some_and(|screen| screen.panel(Panel::Settings).is_some());
-    if !is_shown || !is_due(state) {
+    if is_shown { refresh(state) } else { None }
+}
+
+/// Requests the settings if they are unknown or may be outdated.
+pub(in crate::ui) fn refresh(state: &mut Shared) -> Option<Effect> {
+    if !is_due(state) {
         return None;
     }
     if let Err(why) = can_read(state) {

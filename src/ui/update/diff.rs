@@ -7,7 +7,7 @@ use crate::ui::message::Effect;
 use crate::ui::panel::Panel;
 use crate::ui::popup::diff_view::DiffKey;
 use crate::ui::popup::{DiffView, Popup};
-use crate::ui::settings::{SettingsChange, changes};
+use crate::ui::settings::reading;
 use crate::ui::shared::Shared;
 
 use super::view::focus;
@@ -62,10 +62,9 @@ fn begin(state: &mut AppState, against: Against) -> Vec<Effect> {
 fn read(state: &mut Shared, against: Against) -> Vec<Effect> {
     match against {
         Against::File => read_file(state).into_iter().collect(),
-        Against::Settings(_) if state.settings.craft().is_none() => {
-            changes::change(state, SettingsChange::Read)
-        }
-        Against::Settings(_) | Against::Craft | Against::Revision(_) => Vec::new(),
+        // The craft has settings of the plan, too.
+        Against::Settings(_) | Against::Craft => reading::refresh(state).into_iter().collect(),
+        Against::Revision(_) => Vec::new(),
     }
 }
 

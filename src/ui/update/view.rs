@@ -19,10 +19,11 @@ pub(super) fn focus(state: &mut AppState, panel: Panel) -> Vec<Effect> {
     Vec::new()
 }
 
-/// Gives a panel the focus, and asks for the settings if it shows them for the first time: keys typed ahead act on them.
+/// Gives a panel the focus, and asks for the settings if it shows them and they may be outdated: keys typed ahead act on
+/// the newest.
 pub(super) fn show(state: &mut AppState, panel: Panel) -> Vec<Effect> {
     let mut effects = focus(state, panel);
-    if panel == Panel::Settings && state.shared.settings.craft().is_none() {
+    if panel == Panel::Settings {
         effects.extend(reading::follow(&mut state.shared));
     }
     effects
