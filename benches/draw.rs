@@ -1,7 +1,8 @@
 //! The time of a frame, and the time from a key or the mouse to the frame that shows the effect.
 //!
-//! `cargo bench --bench draw`. Goals: a frame at 200x60 with a track of 20 000 points below 2 ms, with a backdrop of
-//! 200 000 vertices below 4 ms, input to frame below 33 ms.
+//! `cargo bench --bench draw`. Goals: a frame at 200x60 with a track of 20 000 points below 2 ms, also with three past
+//! tracks and six graphs, with a backdrop of
+//! 200 000 vertices below 4 ms, input to frame below 25 ms.
 
 use betadeck::geo::GroundPlane;
 use betadeck::plan::feature::{Feature, Shape, Vertex, Zone};
@@ -60,7 +61,8 @@ fn with_past_tracks_and_six_graphs(size: (u16, u16)) -> AppState {
     for code in std::iter::once(KeyCode::Enter).chain(down).chain([KeyCode::Char(' '), KeyCode::Esc]) {
         update(&mut state, Msg::Key(KeyEvent::new(code, KeyModifiers::NONE)));
     }
-    assert_eq!(state.shared.past_flights.tracks().len(), 3);
+    let long = state.shared.past_flights.tracks().iter().filter(|track| track.len() > POINTS as usize / 2);
+    assert_eq!(long.count(), 3);
     state
 }
 
