@@ -9,7 +9,7 @@ use unicode_width::UnicodeWidthStr as _;
 use super::drawing;
 use super::event_log::Severity;
 use super::formatting::{cut, within};
-use super::shared::Shared;
+use super::shared::{Notice, Shared};
 use super::text_wrap::wrapped;
 
 /// How long a notice stays.
@@ -32,12 +32,21 @@ struct Row {
     is_pinned: bool,
 }
 
+/// Returns the newest notice for a moment.
+fn newest(state: &Shared) -> Option<&Notice> {
+    state.notice.as_ref().filter(|notice| within(state.now, notice.at, NOTICE_FOR))
+}
+
+/// Returns `true` while the newest notice is shown.
+pub(super) fn is_shown(state: &Shared) -> bool {
+    newest(state).is_some()
+}
+
 /// Lays out the newest notice for a moment, in the frame of the lowest panels, and in the row above it when it is long; all of
 /// it above the `above` rows of the tutorial. Above it is the oldest of those that stay.
 fn rows(state: &Shared, above: u16, hints: Rect) -> Vec<Row> {
     let width = usize::from(hints.width.saturating_sub(6));
-    let newest = state.notice.as_ref().filter(|notice| within(state.now, notice.at, NOTICE_FOR));
-    let newest = newest.map(|notice| (notice.severity, notice.text.clone(), NOTICE_ROWS));
+    let newest = newest(state).map(|notice| (notice.severity, notice.text.clone(), NOTICE_ROWS));
     let pinned =
         state.pinned.first().map(|text| (Severity::Fault, format!("{text} {CLOSED_BY}"), PINNED_ROWS));
     let mut above = 1 + above;

@@ -19,19 +19,21 @@ struct Line {
 }
 
 impl SavedLayouts {
-    /// Reads the lines of the file. Lines that are damaged or of a later version are left out.
-    pub fn of_lines(text: &str) -> Self {
+    /// Reads the lines of the file. Returns the layouts, and the numbers of the lines that are left out because they are
+    /// damaged or of a later version. Lines are counted from 1.
+    pub fn of_lines(text: &str) -> (Self, Vec<usize>) {
         let mut layouts = Self::default();
-        for Line { name, layout } in text.lines().filter_map(|line| serde_json::from_str(line).ok()) {
-            match layout {
-                Some(layout) if layouts.has_room(&name) && is_name(&name) => {
+        let mut left_out = Vec::new();
+        for (number, line) in (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty()) {
+            match serde_json::from_str(line) {
+                Ok(Line { name, layout: None }) => drop(layouts.0.remove(&name)),
+                Ok(Line { name, layout: Some(layout) }) if layouts.has_room(&name) && is_name(&name) => {
                     layouts.0.insert(name, layout);
                 }
-                Some(_) => {}
-                None => drop(layouts.0.remove(&name)),
+                _ => left_out.push(number),
             }
         }
-        layouts
+        (layouts, left_out)
     }
 
     /// Returns `true` if a layout with this name can be saved.
@@ -76,21 +78,22 @@ mod tests {
             layouts.remove("mine"),
         ];
         let text: String = lines.map(|line| line.expect("a line") + "\n").concat();
-        assert_eq!(SavedLayouts::of_lines(&text), layouts);
+        assert_eq!(SavedLayouts::of_lines(&text), (layouts.clone(), Vec::new()));
         assert_eq!(layouts.names().collect::<Vec<_>>(), ["wide"]);
         assert_eq!(layouts.remove("mine"), None);
     }
 
     #[test]
-    fn damaged_lines_and_impossible_names_lose_no_other_layout() {
+    fn damaged_lines_and_impossible_names_are_counted_and_lose_no_other_layout() {
         let mut layouts = SavedLayouts::default();
         let line = layouts.insert("mine", NamedLayout::default()).expect("a line");
         let text = format!(
             "{}\n\u{fffd}\n{line}\n{{\"name\": \"two words\", \"layout\": {{}}}}\n{{\"name\": 3}}\n{{\"name\": \"x",
             &line[..line.len() / 2]
         );
-        assert_eq!(SavedLayouts::of_lines(&text), layouts);
+        assert_eq!(SavedLayouts::of_lines(&text), (layouts, vec![1, 2, 4, 5, 6]));
         let many: String = (0..100).map(|n| format!("{{\"name\": \"n{n}\", \"layout\": {{}}}}\n")).collect();
-        assert_eq!(SavedLayouts::of_lines(&many).names().count(), MOST_LAYOUTS);
+        let (layouts, left_out) = SavedLayouts::of_lines(&many);
+        assert_eq!((layouts.names().count(), left_out.len()), (MOST_LAYOUTS, 100 - MOST_LAYOUTS));
     }
 }

@@ -6,6 +6,7 @@ use ratatui::text::{Line, Span};
 
 use crate::ui::drawing;
 use crate::ui::layout::named;
+use crate::ui::notice;
 use crate::ui::panel::span;
 use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
@@ -24,7 +25,10 @@ pub(in crate::ui) fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {
         return;
     }
     draw_line(state, area, 1, &keys, buffer);
-    draw_line(state, area, 2, &names, buffer);
+    // A notice is in the row of the names until the next key.
+    if !notice::is_shown(state) {
+        draw_line(state, area, 2, &names, buffer);
+    }
 }
 
 /// Draws keys and their effects in a row counted from below, as many as have room. Returns `true` if all have.

@@ -44,7 +44,6 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) 
             }
         }
         KeyCode::Char('w') => {
-            state.popups.pop();
             state.command_line.field = TextField::new("layout save ");
             state.popups.push(Popup::CommandLine);
         }
@@ -133,6 +132,8 @@ pub(super) fn drag(state: &mut Shared, screen: &Screen, dragged: Border, event: 
 mod tests {
     use super::*;
     use crate::session::SessionView;
+    use crate::ui::message::Msg;
+    use crate::ui::update::update;
 
     fn arranging(size: (u16, u16)) -> AppState {
         let mut state = AppState::bare(size, SessionView::default());
@@ -202,6 +203,36 @@ mod tests {
                 }
             }
         }
+    }
+
+    fn enter(state: &mut AppState, line: &str) {
+        for c in line.chars() {
+            update(state, Msg::Key(KeyCode::Char(c).into()));
+        }
+        update(state, Msg::Key(KeyCode::Enter.into()));
+    }
+
+    fn is_arranging(state: &AppState) -> bool {
+        matches!(state.popups[..], [Popup::Layout])
+    }
+
+    #[test]
+    fn a_refused_name_is_explained_and_the_layout_can_be_named_again() {
+        let mut state = arranging((80, 24));
+        for (name, reason) in
+            [("flying", "taken by the program"), ("two words", "1 to 20 letters"), ("", "1 to 20")]
+        {
+            enter(&mut state, &format!("w{name}"));
+            assert!(is_arranging(&state), "{name}: {:?}", state.popups);
+            let notice = state.shared.notice.as_ref().expect("a reason");
+            assert!(notice.text.contains(reason), "{name}: {}", notice.text);
+        }
+        update(&mut state, Msg::Key(KeyCode::Char('w').into()));
+        update(&mut state, Msg::Key(KeyCode::Esc.into()));
+        assert!(is_arranging(&state), "leaving the line leaves the name only");
+        enter(&mut state, "wmine");
+        assert_eq!(state.popups.len(), 0);
+        assert_eq!(state.shared.layouts.names().collect::<Vec<_>>(), ["mine"]);
     }
 
     #[test]

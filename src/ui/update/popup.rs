@@ -116,7 +116,14 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) 
         Some(Popup::CommandLine) => {
             let outcome = command_line::key(&mut state.command_line, &state.shared, event);
             let Some((line, is_new)) = chosen(&mut state.popups, outcome) else { return Vec::new() };
-            let mut effects = run(state, &line);
+            let layout = state.popups.pop_if(|below| matches!(below, Popup::Layout));
+            let mut effects = run_line(state, &line).unwrap_or_else(|sentence| {
+                let sentence = state.shared.keymap.in_force(&sentence);
+                state.shared.notify(Severity::Warn, sentence);
+                // The user names the layout again.
+                state.popups.extend(layout);
+                Vec::new()
+            });
             if is_new {
                 // Before the line's own effects, so that `quit` is kept, too.
                 effects.insert(0, Effect::Files(FileRequest::KeepLine(LineField::Command, line)));
@@ -175,15 +182,6 @@ pub(super) fn chosen<T>(popups: &mut Vec<Popup>, outcome: Outcome<T>) -> Option<
 pub(super) fn open_command_line(state: &mut AppState, text: &str) {
     state.command_line.open(text);
     state.popups.push(Popup::CommandLine);
-}
-
-/// Runs the entered line, or notifies the user of the reason for its refusal.
-fn run(state: &mut AppState, line: &str) -> Vec<Effect> {
-    run_line(state, line).unwrap_or_else(|sentence| {
-        let sentence = state.shared.keymap.in_force(&sentence);
-        state.shared.notify(Severity::Warn, sentence);
-        Vec::new()
-    })
 }
 
 fn quit_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
