@@ -132,19 +132,15 @@ impl FromStr for ScheduledFault {
         let start = parts.next().unwrap_or_default();
         let duration = parts.next().unwrap_or_default();
         let value = parts.next();
-        let start = match start.strip_prefix("boot+") {
-            Some(seconds) => FaultStart::Boot(number_in("time T", seconds, 0.0, MAX_TIME_S).map_err(error)?),
-            None => {
-                FaultStart::Engagement(number_in("time T", start, 0.0, MAX_TIME_S).map_err(|problem| {
-                    error(format!("{problem} (seconds from engagement, or boot+SECONDS)"))
-                })?)
-            }
-        };
-        let for_s = if duration.is_empty() {
-            None
-        } else {
-            Some(number_in("duration FOR", duration, 0.0, MAX_TIME_S).map_err(error)?)
-        };
+        let start =
+            match start.strip_prefix("boot+") {
+                Some(after) => FaultStart::Boot(seconds("time T", after).map_err(error)?),
+                None => FaultStart::Engagement(number_in("time T", start, 0.0, MAX_TIME_S).map_err(
+                    |problem| error(format!("{problem} (seconds from engagement, or boot+SECONDS)")),
+                )?),
+            };
+        let for_s =
+            if duration.is_empty() { None } else { Some(seconds("duration FOR", duration).map_err(error)?) };
         let fault = parse_value(info, value).map_err(error)?;
         if for_s.is_some() && fault.is_instant() {
             return Err(error(format!(
@@ -194,6 +190,14 @@ impl FromStr for FaultKey {
             return Err(error(format!("{name} is not a fault of one motor; write {name} alone")));
         }
         Ok(Self { kind: info.kind, motor })
+    }
+}
+
+/// Reads a time in seconds. The error names the unit and what is allowed.
+fn seconds(name: &str, text: &str) -> Result<f64, String> {
+    match number(name, text)? {
+        value if (0.0..=MAX_TIME_S).contains(&value) => Ok(value),
+        value => Err(format!("{name} {value} s is out of range; allowed are 0 to {MAX_TIME_S} s")),
     }
 }
 
@@ -354,6 +358,8 @@ mod tests {
             ("gps-loss@x", "time T x is not a number (seconds from engagement, or boot+SECONDS)"),
             ("gps-loss@-1", "time T -1 is out of range"),
             ("gps-loss@1,y", "duration FOR y is not a number"),
+            ("gps-loss@1,-5", "duration FOR -5 s is out of range; allowed are 0 to 3200000000 s"),
+            ("gps-loss@boot+-5", "time T -5 s is out of range; allowed are 0 to 3200000000 s"),
             ("gps-loss@1,,7", "gps-loss has no value"),
             ("motor@1,,5:0.5", "5 is not a motor; allowed are 1 to 4"),
             ("motor@1,,2:1.5", "efficiency 1.5 is out of range; allowed are 0 to 1"),
