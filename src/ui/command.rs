@@ -49,6 +49,11 @@ pub(super) fn named(state: &Shared, line: &str) -> Option<Action> {
     (!is_command && argument.is_empty()).then_some(action)
 }
 
+/// Returns `true` if a line arranges the panels of the screen.
+pub(super) fn arranges(line: &str) -> bool {
+    matches!(split(line).0, "layout" | "view.layout")
+}
+
 /// Splits a line into its word and its argument.
 fn split(line: &str) -> (&str, &str) {
     let line = line.trim().trim_start_matches(':').trim_start();

@@ -34,6 +34,10 @@ impl<W: Write> Lines<W> {
     /// Handles a line of input: as the answer to the question if there is one, else as a command. Writes the panel that
     /// it names, and the lines of a panel that it changes.
     pub(super) fn enter(&mut self, state: &mut AppState, line: &str) -> io::Result<Vec<Effect>> {
+        if !prompt::is_open(state) && command::arranges(line) {
+            self.write("A layout arranges the panels of the screen, and there is none here.")?;
+            return Ok(Vec::new());
+        }
         let named = if prompt::is_open(state) { None } else { command::named(&state.shared, line) };
         let panel = named.and_then(panel_of);
         let mut effects = match named.and_then(spec_of).map(|spec| spec.context) {
@@ -148,10 +152,6 @@ impl<W: Write> Lines<W> {
                 state.popups.clear();
                 self.list_commands()?;
             }
-            Some(Popup::Layout) => {
-                state.popups.clear();
-                self.write("A layout arranges the panels of the screen, and there is none here.")?;
-            }
             Some(Popup::Guards { .. }) => {
                 state.popups.clear();
                 let guards = state.shared.view.vehicle.nav.iter().flat_map(|nav| &nav.guards);
@@ -201,4 +201,26 @@ fn panel_of(action: Action) -> Option<Panel> {
 
 fn lines_of(state: &AppState, panel: Panel) -> Vec<String> {
     state.panels.of(panel).in_words(&state.shared)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::SessionView;
+
+    #[test]
+    fn every_line_about_layouts_is_answered_by_one_sentence_and_changes_nothing() {
+        for line in ["layout flying", "layout", ":layout save mine", "view.layout"] {
+            let mut state = AppState::bare((80, 24), SessionView::default());
+            let mut lines = Lines::new(Vec::new());
+            assert!(lines.enter(&mut state, line).unwrap().is_empty());
+            lines.follow(&mut state).unwrap();
+            assert_eq!(
+                String::from_utf8(lines.output).unwrap(),
+                "A layout arranges the panels of the screen, and there is none here.\n",
+                "{line}"
+            );
+            assert_eq!(state.shared.layouts.names().count(), 0);
+        }
+    }
 }
