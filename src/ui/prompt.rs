@@ -104,20 +104,21 @@ fn yes_or_no(losses: &ConversionLosses) -> String {
 pub(super) fn answer(state: &mut AppState, line: &str) -> Result<Answered, String> {
     let line = line.trim();
     let quits = line == "quit" || line == "app.quit";
+    let loses_edits = state.shared.editor.loses_edits;
     match &state.shared.editor.popup {
         Some(EditorPopup::Form(_)) => return form::answer(state, line),
         Some(EditorPopup::Browser(_)) => return file::answer(state, line),
         // The journals keep the edits for the next start.
-        Some(EditorPopup::Question(Question::Unsaved { quits: true, .. })) if quits => {
+        Some(EditorPopup::Question(question)) if quits && question.offers_later(loses_edits) => {
             return Ok(vec![Effect::Quit].into());
         }
         Some(EditorPopup::Question(question)) => {
-            let answers = question.answers();
+            let answers = question.answers(loses_edits);
             let found = answers.iter().find(|(key, what)| line == key.to_string() || line == *what);
             let key = match found {
                 Some((key, _)) => *key,
                 None if line.is_empty() => 'n',
-                None => return Err(format!("Answer {}.", choices(question))),
+                None => return Err(format!("Answer {}.", choices(question, loses_edits))),
             };
             return Ok(press(state, KeyCode::Char(key)).into());
         }
@@ -188,6 +189,7 @@ fn list(title: String, choices: impl Iterator<Item = String>) -> Vec<String> {
 }
 
 fn decision(state: &AppState, question: &Question) -> Vec<String> {
+    let loses_edits = state.shared.editor.loses_edits;
     let text = match question {
         Question::Replace { path, changed: true, .. } => {
             format!("{} was changed elsewhere since it was read.", path.display())
@@ -196,19 +198,16 @@ fn decision(state: &AppState, question: &Question) -> Vec<String> {
         Question::MovesTarget { change, .. } => change.clone(),
         Question::Unsaved { id, .. } => {
             let title = state.shared.editor.plan_of(*id).map_or_else(String::new, OpenPlan::title);
-            format!("{title} has edits that no file holds.")
+            question.unsaved(&title, loses_edits)
         }
     };
-    let later = match question {
-        Question::Unsaved { quits: true, .. } => "; quit once more ends, too",
-        _ => "",
-    };
-    vec![format!("{text} Answer {}{later}.", choices(question))]
+    let later = if question.offers_later(loses_edits) { "; quit once more ends, too" } else { "" };
+    vec![format!("{text} Answer {}{later}.", choices(question, loses_edits))]
 }
 
 /// Returns the choices of a question, such as `s save, d discard, n stay`.
-fn choices(question: &Question) -> String {
-    let answers = question.answers().iter().map(|(key, what)| format!("{key} {what}"));
+fn choices(question: &Question, loses_edits: bool) -> String {
+    let answers = question.answers(loses_edits).iter().map(|(key, what)| format!("{key} {what}"));
     answers.collect::<Vec<_>>().join(", ")
 }
 

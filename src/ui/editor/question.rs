@@ -28,8 +28,24 @@ pub enum Question {
 }
 
 impl Question {
-    /// Returns the answers: the key and its effect.
-    pub fn answers(&self) -> &'static [(char, &'static str)] {
+    /// Returns `true` if the program can end and keep the edits for the next start. `loses_edits` says that edits cannot be
+    /// kept.
+    pub fn offers_later(&self, loses_edits: bool) -> bool {
+        matches!(self, Self::Unsaved { quits: true, .. }) && !loses_edits
+    }
+
+    /// Returns the sentence about a plan with unsaved edits.
+    pub fn unsaved(&self, title: &str, loses_edits: bool) -> String {
+        let lost = if matches!(self, Self::Unsaved { quits: true, .. }) && loses_edits {
+            ", and they cannot be kept for later"
+        } else {
+            ""
+        };
+        format!("{title} has edits that no file holds{lost}.")
+    }
+
+    /// Returns the answers: the key and its effect. `loses_edits` says that edits cannot be kept.
+    pub fn answers(&self, loses_edits: bool) -> &'static [(char, &'static str)] {
         match self {
             Self::Replace { changed: true, .. } => &[
                 ('v', "compare"),
@@ -42,10 +58,10 @@ impl Question {
                 &[('y', "replace it"), ('o', "other name"), ('n', "leave it")]
             }
             Self::MovesTarget { .. } => &[('y', "upload it"), ('n', "leave it")],
-            Self::Unsaved { quits: true, .. } => {
+            Self::Unsaved { .. } if self.offers_later(loses_edits) => {
                 &[('s', "save"), ('d', "discard"), ('y', "quit, keep the edits for later"), ('n', "stay")]
             }
-            Self::Unsaved { quits: false, .. } => &[('s', "save"), ('d', "discard"), ('n', "stay")],
+            Self::Unsaved { .. } => &[('s', "save"), ('d', "discard"), ('n', "stay")],
         }
     }
 }

@@ -162,7 +162,7 @@ fn question(state: &Shared, question: &Question, area: Rect, buffer: &mut Buffer
         Question::Replace { path, changed: false, .. } => ("Replace?", format!("{} exists.", path.display())),
         Question::MovesTarget { change, .. } => ("Upload in flight?", change.clone()),
         Question::Unsaved { id, .. } => {
-            ("Unsaved", format!("{} has edits that no file holds.", title_of(*id)))
+            ("Unsaved", question.unsaved(&title_of(*id), state.editor.loses_edits))
         }
     };
     let lines = wrapped(&format!("▲ {text}"), 58);
@@ -170,8 +170,11 @@ fn question(state: &Shared, question: &Question, area: Rect, buffer: &mut Buffer
     for (at, text) in lines.iter().enumerate() {
         row(buffer, inside, at as u16, theme, Role::Warn, &format!(" {text}"));
     }
-    let answers: Vec<(String, &str)> =
-        question.answers().iter().map(|(key, what)| (key.to_string(), *what)).collect();
+    let answers: Vec<(String, &str)> = question
+        .answers(state.editor.loses_edits)
+        .iter()
+        .map(|(key, what)| (key.to_string(), *what))
+        .collect();
     let answers: Vec<(&str, &str)> = answers.iter().map(|(key, what)| (key.as_str(), *what)).collect();
     line(buffer, inside, lines.len() as u16 + 1, &keys(state, &answers));
 }

@@ -135,6 +135,26 @@ fn unsaved_plans_are_asked_for_and_quitting_twice_keeps_them() {
 }
 
 #[test]
+fn edits_that_cannot_be_kept_are_not_offered_for_later() {
+    let mut state = state();
+    update(&mut state, Msg::Files(FileReply::NotKept("No space is left.".to_owned())));
+    state.shared.editor.edit("a name", |document| document.name = "mine".to_owned());
+    assert!(perform(&mut state, Action::Quit).is_empty());
+    assert_eq!(
+        asked(&mut state),
+        [
+            "mine has edits that no file holds, and they cannot be kept for later. Answer s save, d discard, n stay."
+        ]
+    );
+    for line in ["quit", "y"] {
+        assert_eq!(answer(&mut state, line).unwrap_err(), "Answer s save, d discard, n stay.");
+        assert!(question(&mut state).is_some(), "{line}");
+    }
+    update(&mut state, Msg::Files(FileReply::KeptAgain));
+    assert!(matches!(answer(&mut state, "y").unwrap().effects[..], [Effect::Quit]));
+}
+
+#[test]
 fn an_armed_craft_is_asked_about() {
     let mut state = state();
     std::sync::Arc::make_mut(&mut state.shared.view.vehicle).craft.armed = Some(true);
