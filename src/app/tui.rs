@@ -37,7 +37,7 @@ use crate::plan::builtin::{BuiltinPlan, DEMO};
 use crate::plan::format::PlanFile;
 use crate::recording::Setup;
 use crate::replay::Overview;
-use crate::report::campaign::forecast_sentence;
+use crate::report::campaign::forecast_notice;
 use crate::report::sentence;
 use crate::session::{FlownBefore, Handle, ReplayConfig, SessionView, start_replay};
 use crate::storage::Store;
@@ -272,7 +272,7 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
         },
         given_settings: screen.given_settings,
         sentence: |event| sentence::text(&event.kind).unwrap_or_default(),
-        go_sentence: |name, answer| forecast_sentence(name, answer, Forecast::GO_FROM),
+        go_sentence: |name, answer| forecast_notice(name, answer, Forecast::GO_FROM),
         plan: OpenPlan::new(opened.id, opened.file, opened.history),
         mouse: true,
         entered,

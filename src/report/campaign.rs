@@ -13,7 +13,7 @@ pub(super) mod shown;
 use crate::campaign::{Answer, Shard};
 
 pub use csv::CsvTable;
-pub use forecast::{forecast_json, forecast_reason, forecast_sentence};
+pub use forecast::{forecast_json, forecast_notice, forecast_reason, forecast_sentence};
 pub use header::{Contents, Definition, OtherSide, RunHeader};
 pub use json::answer_json;
 pub use junit::answer_junit;

@@ -106,7 +106,7 @@ pub(crate) fn state_after(
         },
         given_settings: Vec::new(),
         sentence,
-        go_sentence: |name, answer| betadeck::report::campaign::forecast_sentence(name, answer, 0.95),
+        go_sentence: |name, answer| betadeck::report::campaign::forecast_notice(name, answer, 0.95),
         plan: open(plan),
         mouse: true,
         entered,

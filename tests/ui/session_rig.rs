@@ -69,7 +69,7 @@ impl Rig {
             cli: CliHelp::default(),
             given_settings: Vec::new(),
             sentence: |event| sentence::text(&event.kind).unwrap_or_default(),
-            go_sentence: |name, answer| betadeck::report::campaign::forecast_sentence(name, answer, 0.95),
+            go_sentence: |name, answer| betadeck::report::campaign::forecast_notice(name, answer, 0.95),
             plan: OpenPlan::new(PlanId(1), None, History::new(demo.into(), true)),
             mouse: true,
             entered: EnteredLines::default(),

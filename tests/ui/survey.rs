@@ -196,9 +196,17 @@ fn the_last_what_if_flies_a_hundred_flights_and_answers_in_a_line() {
         assert!(screen(&state).contains("go or no-go: 37 of 100 flights"), "{}", screen(&state));
         reply(&mut state, asked.revision, SurveyNews::GoNoGo(Box::new(answer.answer())));
         let noticed = state.shared.notice.as_ref().map(|notice| notice.text.clone()).unwrap_or_default();
-        assert!(noticed.starts_with("NO-GO ") && noticed.contains("79.0 % complete with more than 20 %"));
-        assert!(noticed.contains("at least 12.5 m from the fence; to change: wait for a wind of at most "));
-        screen(&state)
+        assert!(
+            noticed.starts_with("NO-GO 79.0 %: 79 of 100 complete with more than 20 % left; "),
+            "{noticed}"
+        );
+        assert!(
+            noticed.contains("; to change: wait for a wind of at most ")
+                && noticed.contains("at least 12.5 m from the fence")
+        );
+        let shown = screen(&state);
+        assert!(shown.contains("wait for a wind"), "{shown}");
+        shown
     });
     insta::assert_snapshot!(seen.join("\n"));
 }

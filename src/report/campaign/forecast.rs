@@ -12,11 +12,32 @@ pub fn forecast_sentence(name: &str, forecast: &ForecastAnswer, go_from: f64) ->
     format!("{word} {name}: {}", forecast_reason(forecast))
 }
 
+/// Returns the answer for a screen with little room: the verdict, the share of successful flights and the advice first.
+pub fn forecast_notice(name: &str, forecast: &ForecastAnswer, go_from: f64) -> String {
+    let success = &forecast.answer.success;
+    let Some(share) = success.share() else { return forecast_sentence(name, forecast, go_from) };
+    let word = if forecast.is_go(go_from) { "GO" } else { "NO-GO" };
+    let mut parts = vec![format!(
+        "{word} {}: {} of {} complete with more than {} left",
+        percent(share),
+        success.passed,
+        success.judged,
+        whole(forecast.reserve)
+    )];
+    parts.extend(change(forecast).map(|change| format!("to change: {change}")));
+    parts.extend(margins(forecast));
+    parts.push(format!(
+        "{} to {} with 95 % confidence; plan {name}",
+        percent(success.low),
+        percent(success.high)
+    ));
+    parts.join("; ")
+}
+
 /// Returns the reason of the answer.
 pub fn forecast_reason(forecast: &ForecastAnswer) -> String {
     let answer = &forecast.answer;
     let success = &answer.success;
-    let whole = |share: f64| format!("{:.0} %", 100.0 * share);
     let reserve = whole(forecast.reserve);
     let Some(share) = success.share() else { return "no flight could be judged".to_owned() };
     let mut parts = vec![format!(
@@ -27,16 +48,26 @@ pub fn forecast_reason(forecast: &ForecastAnswer) -> String {
         percent(success.low),
         percent(success.high)
     )];
-    parts.extend(forecast.least_left.map(|left| format!("at least {} left", whole(left))));
-    parts.extend(fence_margin(forecast).map(|margin| {
+    parts.extend(margins(forecast));
+    parts.extend(change(forecast).map(|change| format!("to change: {change}")));
+    parts.join("; ")
+}
+
+/// Returns the least charge and the least distance to the fence.
+fn margins(forecast: &ForecastAnswer) -> impl Iterator<Item = String> {
+    let left = forecast.least_left.map(|left| format!("at least {} left", whole(left)));
+    let fence = fence_margin(forecast).map(|margin| {
         if margin < 0.0 {
             format!("up to {:.1} m beyond the fence", -margin)
         } else {
             format!("at least {margin:.1} m from the fence")
         }
-    }));
-    parts.extend(change(forecast).map(|change| format!("to change: {change}")));
-    parts.join("; ")
+    });
+    left.into_iter().chain(fence)
+}
+
+fn whole(share: f64) -> String {
+    format!("{:.0} %", 100.0 * share)
 }
 
 /// Returns the answer as one JSON object. Shares are between 0 and 1, lengths in metres.
@@ -154,6 +185,24 @@ mod tests {
             forecast_sentence("land", &answer, 0.95),
             "GO land: 100 % complete with more than 20 % of the battery left (100 of 100; 96.3 % to 100 % with 95 % \
              confidence); at least 45 % left; at least 16.0 m from the fence"
+        );
+    }
+
+    #[test]
+    fn the_notice_begins_with_the_verdict_and_two_rows_hold_the_advice() {
+        let answer = forecast((1..=100).map(|n| flight(n, n as f64 / 10.0, 0.9)));
+        let notice = forecast_notice("a_plan_with_a_long_name_that_takes_a_row", &answer, 0.95);
+        assert!(
+            notice.starts_with("NO-GO 80.0 %: 80 of 100 complete with more than 20 % left; "),
+            "{notice}"
+        );
+        let rows: String = notice.chars().take(140).collect();
+        assert!(rows.contains("; to change: wait for a wind of at most 8.1 m/s ("), "{notice}");
+        let calm = forecast((1..=100).map(|n| flight(n, 4.0, 0.9)));
+        assert_eq!(
+            forecast_notice("land", &calm, 0.95),
+            "GO 100 %: 100 of 100 complete with more than 20 % left; at least 45 % left; at least 16.0 m from the \
+             fence; 96.3 % to 100 % with 95 % confidence; plan land"
         );
     }
 
