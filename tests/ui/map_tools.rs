@@ -228,6 +228,7 @@ fn arrows_at_the_edge_lead_to_craft_and_home() {
     keys(&mut state, "1 z");
     let seen = screen(&state);
     assert!(seen.contains("craft 900 m") && seen.contains("home 900 m"), "{seen}");
+    assert!(seen.contains("craft 900 m↓↓home 900 m"), "neither arrow hides the other\n{seen}");
     assert_eq!(place_of(&state, "↓").1, 20, "above the line with the scale\n{seen}");
     state.shared.map.mode = MapMode::Free { n: 0.0, e: -5000.0, scale: 1.0 };
     let seen = screen(&state);

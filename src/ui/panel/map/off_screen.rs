@@ -13,18 +13,37 @@ use super::marks::arrow;
 pub(super) fn write(state: &Shared, scene: &Scene, is_home_known: bool, labels: &mut Labels<'_>) {
     let view = *labels.view();
     let home = is_home_known.then_some(scene.home);
+    let mut marks: Vec<((u16, u16), String, String, Role)> = Vec::new();
     for (place, name, role) in [(scene.craft, "craft", Role::Craft), (home, "home", Role::Title)] {
         let Some(place) = place.filter(|&place| view.screen_cell(place).is_none()) else { continue };
-        let Some(edge) = edge(&view, place) else { continue };
+        let Some(mut cell) = edge(&view, place) else { continue };
+        if marks.iter().any(|(taken, ..)| *taken == cell) {
+            cell = next_on_edge(&view, cell);
+        }
         let (north, east) = (place.n - view.centre.n, place.e - view.centre.e);
         let distance = state.units.length_text(north.hypot(east), 0);
-        labels.mark(edge, arrow((east.atan2(north) - view.up_rad).to_degrees()), role);
-        labels.beside(edge, &format!("{name} {distance}"), &distance, role);
+        labels.mark(view.place(cell.0, cell.1), arrow((east.atan2(north) - view.up_rad).to_degrees()), role);
+        marks.push((cell, format!("{name} {distance}"), distance, role));
+    }
+    // A label leaves the cells of all marks free.
+    for ((column, row), long, short, role) in marks {
+        labels.beside(view.place(column, row), &long, &short, role);
     }
 }
 
-/// Returns the place at the edge in the direction of another place. The bottom line is left free.
-fn edge(view: &Viewport, place: MapPoint) -> Option<MapPoint> {
+/// Returns the next cell at the edge. The bottom line is left free.
+fn next_on_edge(view: &Viewport, (column, row): (u16, u16)) -> (u16, u16) {
+    let area = view.area;
+    let step = |at: u16, end: u16| if at + 1 < end { at + 1 } else { at.saturating_sub(1) };
+    if column == area.left() || column + 1 == area.right() {
+        (column, step(row, area.bottom() - 1))
+    } else {
+        (step(column, area.right()), row)
+    }
+}
+
+/// Returns the cell at the edge in the direction of a place. The bottom line is left free.
+fn edge(view: &Viewport, place: MapPoint) -> Option<(u16, u16)> {
     let (width, height) = (f64::from(view.area.width), f64::from(view.area.height));
     let middle = (width / 2.0, height / 2.0);
     let (column, row) = view.cell(place);
@@ -41,7 +60,7 @@ fn edge(view: &Viewport, place: MapPoint) -> Option<MapPoint> {
     let cell =
         |middle: f64, way: f64, cells: f64| (middle + way * share.min(1.0)).clamp(0.0, cells - 1.0) as u16;
     let (column, row) = (cell(middle.0, across, width), cell(middle.1, down, height - 1.0));
-    Some(view.place(view.area.x + column, view.area.y + row))
+    Some((view.area.x + column, view.area.y + row))
 }
 
 #[cfg(test)]
@@ -58,10 +77,14 @@ mod tests {
             let area = Rect::new(2, 3, width, height);
             let view = Viewport { area, centre: MapPoint::new(5.0, -3.0), scale: 0.5, up_rad: 0.7 };
             prop_assume!(view.screen_cell(MapPoint::new(n, e)).is_none());
-            let (column, row) = edge(&view, MapPoint::new(n, e)).and_then(|edge| view.screen_cell(edge)).unwrap();
-            prop_assert!(row < area.bottom() - 1);
-            let at_side = column == area.left() || column == area.right() - 1;
-            prop_assert!(at_side || row == area.top() || row == area.bottom() - 2, "{column} {row}");
+            let first = edge(&view, MapPoint::new(n, e)).unwrap();
+            let next = next_on_edge(&view, first);
+            prop_assert_ne!(first, next);
+            for (column, row) in [first, next] {
+                prop_assert!(area.contains((column, row).into()) && row < area.bottom() - 1);
+                let at_side = column == area.left() || column == area.right() - 1;
+                prop_assert!(at_side || row == area.top() || row == area.bottom() - 2, "{column} {row}");
+            }
         }
     }
 }
