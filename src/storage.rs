@@ -152,7 +152,7 @@ impl Store {
             && self.refusal().is_none()
             && let Err(error) = self.save(&configuration)
         {
-            findings.push(error.to_string());
+            findings.push(format!("Not saved: {error}."));
         }
         Loaded { configuration, findings, first_boot }
     }

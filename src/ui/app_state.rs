@@ -147,3 +147,30 @@ impl AppState {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn notice_text(event: &Event) -> String {
+        match &event.kind {
+            SessionEvent::Notice(text) => text.clone(),
+            _ => String::new(),
+        }
+    }
+
+    #[test]
+    fn at_the_first_start_a_warning_is_shown_rather_than_the_way_to_the_tutorial() {
+        for warning in ["Not saved: cannot write the file.", "`save` cannot work: the directory is in use."] {
+            let config = UiConfig { is_first_start: true, sentence: notice_text, ..UiConfig::bare() };
+            let mut state = AppState::new(config, (80, 24), SessionView::default());
+            let shown = |state: &AppState| state.shared.notice.as_ref().map(|notice| notice.text.clone());
+            for (said, begins) in [("Doors open.", "New here?"), (warning, warning)] {
+                let kind = SessionEvent::Notice(said.to_owned());
+                state.take_event(&Event { time: SimTime(0), kind });
+                let shown = shown(&state).expect("a notice");
+                assert!(shown.starts_with(begins), "{said}: {shown}");
+            }
+        }
+    }
+}
