@@ -1,6 +1,7 @@
 //! The built executable, run as a user runs it: flights, plans, the command line, and the user interface in a
 //! pseudo-terminal.
 
+mod by_mouse;
 mod campaign;
 mod check;
 mod cli;

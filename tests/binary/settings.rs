@@ -107,14 +107,14 @@ fn a_change_in_flight_is_flown_at_once() {
 }
 
 /// Sends a press and a release of a mouse button (0 left, 2 right) at a cell.
-fn click(terminal: &mut Terminal, button: u8, (column, row): (usize, usize)) {
+pub(crate) fn click(terminal: &mut Terminal, button: u8, (column, row): (usize, usize)) {
     terminal.send(&format!("\x1b[<{button};{};{}M", column + 1, row + 1));
     terminal.send(&format!("\x1b[<{button};{};{}m", column + 1, row + 1));
 }
 
 /// Returns the cell where a text begins.
 #[track_caller]
-fn place(terminal: &mut Terminal, text: &str) -> (usize, usize) {
+pub(crate) fn place(terminal: &mut Terminal, text: &str) -> (usize, usize) {
     terminal.until_shown(text);
     let screen = terminal.screen();
     let (row, line) = screen.lines().enumerate().find(|(_, line)| line.contains(text)).expect(text);
