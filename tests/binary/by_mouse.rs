@@ -43,7 +43,7 @@ fn a_flight_is_started_rewound_searched_and_left_by_the_mouse() {
     let time = place(&mut terminal, "00:00.0 I");
     click(&mut terminal, LEFT, (time.0 + 30, time.1));
     terminal.until_shown("REWOUND");
-    click_on(&mut terminal, "e end");
+    click_on(&mut terminal, "e end  ,");
     terminal.until("the present", |terminal| !terminal.screen().contains("REWOUND"));
     // The question of the end, answered by its key on the screen.
     click_on(&mut terminal, "q quit");
