@@ -99,6 +99,15 @@ fn mouse(state: &mut AppState, kind: MouseEventKind, (column, row): (u16, u16)) 
     update(state, Msg::Mouse(MouseEvent { kind, column, row, modifiers: KeyModifiers::NONE }));
 }
 
+/// Draws every cell again and again.
+fn redraw(bencher: Bencher<'_, '_>, state: &AppState, size: (u16, u16)) {
+    let mut terminal = terminal(size);
+    bencher.bench_local(|| {
+        terminal.clear()?;
+        terminal.draw(|frame| draw(state, frame)).map(|_| ())
+    });
+}
+
 /// A whole frame: draw and compare with the frame before.
 #[divan::bench(args = [(80, 24), (120, 40), (200, 60)])]
 fn frame(bencher: Bencher<'_, '_>, size: (u16, u16)) {
@@ -111,22 +120,14 @@ fn frame(bencher: Bencher<'_, '_>, size: (u16, u16)) {
 #[divan::bench(args = [(80, 24), (120, 40), (200, 60)])]
 fn full_redraw_with_a_long_track(bencher: Bencher<'_, '_>, size: (u16, u16)) {
     let state = with_long_track(size);
-    let mut terminal = terminal(size);
-    bencher.bench_local(|| {
-        terminal.clear()?;
-        terminal.draw(|frame| draw(&state, frame)).map(|_| ())
-    });
+    redraw(bencher, &state, size);
 }
 
 /// The same after three more flights, whose tracks are shown faintly, with six graphs.
 #[divan::bench(args = [(120, 40), (200, 60)])]
 fn full_redraw_with_past_tracks_and_six_graphs(bencher: Bencher<'_, '_>, size: (u16, u16)) {
     let state = with_past_tracks_and_six_graphs(size);
-    let mut terminal = terminal(size);
-    bencher.bench_local(|| {
-        terminal.clear()?;
-        terminal.draw(|frame| draw(&state, frame)).map(|_| ())
-    });
+    redraw(bencher, &state, size);
 }
 
 /// The same with the map on the whole screen, so near that no two points of the track fall together.
@@ -137,11 +138,7 @@ fn zoomed_map_with_a_long_track(bencher: Bencher<'_, '_>, size: (u16, u16)) {
     press(&mut state, 'z');
     press(&mut state, '+');
     press(&mut state, '+');
-    let mut terminal = terminal(size);
-    bencher.bench_local(|| {
-        terminal.clear()?;
-        terminal.draw(|frame| draw(&state, frame)).map(|_| ())
-    });
+    redraw(bencher, &state, size);
 }
 
 /// Returns two recorded flights of some 20 000 places each.
@@ -181,11 +178,7 @@ fn with_two_recorded_flights(size: (u16, u16)) -> AppState {
 #[divan::bench(args = [(80, 24), (200, 60)])]
 fn full_redraw_with_two_recorded_flights(bencher: Bencher<'_, '_>, size: (u16, u16)) {
     let state = with_two_recorded_flights(size);
-    let mut terminal = terminal(size);
-    bencher.bench_local(|| {
-        terminal.clear()?;
-        terminal.draw(|frame| draw(&state, frame)).map(|_| ())
-    });
+    redraw(bencher, &state, size);
 }
 
 /// Returns a plan over a town: 200 000 vertices in 2000 winding lines and areas, a tenth of them with names.
@@ -228,11 +221,7 @@ fn full_redraw_with_a_backdrop(bencher: Bencher<'_, '_>, metres_per_column: f64)
     let mut state = over_a_town((200, 60));
     press(&mut state, 'z');
     state.shared.map.mode = MapMode::Free { n: 0.0, e: 0.0, scale: metres_per_column };
-    let mut terminal = terminal((200, 60));
-    bencher.bench_local(|| {
-        terminal.clear()?;
-        terminal.draw(|frame| draw(&state, frame)).map(|_| ())
-    });
+    redraw(bencher, &state, (200, 60));
 }
 
 /// A key moves the focus, and the frame shows it.

@@ -270,11 +270,12 @@ async fn run_loop(
     }
 }
 
-/// Drops what was typed so far.
+/// Drops what was typed so far. A mouse that keeps moving does not hold it up.
 fn drop_typed_keys() -> io::Result<()> {
     /// The time for which a reader that ends may still hold the terminal.
     const READER_ENDS: Duration = Duration::from_millis(20);
-    while crossterm::event::poll(READER_ENDS)? {
+    let end = Instant::now() + 5 * READER_ENDS;
+    while Instant::now() < end && crossterm::event::poll(READER_ENDS)? {
         crossterm::event::read()?;
     }
     Ok(())
