@@ -8,7 +8,7 @@ use super::drawing;
 use super::text_field::TextField;
 use super::theme::{Role, Theme};
 
-/// The words that a line must have, and whether they are being typed.
+/// The words that a line must have.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(super) struct Search {
     pub(super) field: TextField,

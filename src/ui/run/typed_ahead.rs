@@ -24,7 +24,7 @@ enum Question {
     Deletion,
 }
 
-/// The keys that wait, and what for.
+/// The keys that wait, and the outcomes that they wait for.
 #[derive(Debug, Default)]
 pub(super) struct TypedAhead {
     /// The number of commands that the session got.
@@ -94,7 +94,7 @@ impl TypedAhead {
         self.early.is_none() && (!is_held || self.repeated.is_some())
     }
 
-    /// Returns what came from the terminal, unless it has to wait.
+    /// Returns the event, unless it has to wait.
     pub(super) fn let_through(&mut self, event: TerminalEvent, is_held: bool) -> Option<TerminalEvent> {
         let is_repeated = matches!(&event, TerminalEvent::Key(key) if Some(*key) == self.repeated);
         if !is_held || is_repeated {
@@ -104,7 +104,7 @@ impl TypedAhead {
         None
     }
 
-    /// Returns what has waited, once it may act.
+    /// Returns the event that has waited, once it may act.
     pub(super) fn next(&mut self, is_held: bool) -> Option<TerminalEvent> {
         if is_held { None } else { self.early.take() }
     }
