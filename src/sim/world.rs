@@ -100,11 +100,14 @@ impl World {
                 full_speed * self.clock.effects.stuck[i].unwrap_or(self.command[i])
             }
         });
+        // In the air a step does not change them.
+        let anchors = (!self.present.is_free()).then(|| self.craft.anchors);
         self.plant.step(&mut self.craft, &target, &self.air_now, &self.present);
         if let Some(cause) = divergence(self.craft.body()) {
             // The last sane state is also that of the truth.
-            self.craft = Craft::new(*before);
+            self.craft.set_body(*before);
             self.craft.set_rotors(self.truth.rotor_speeds);
+            self.craft.anchors = anchors.unwrap_or(self.craft.anchors);
             self.diverged = true;
             self.clock.emit(WorldEventKind::Diverged { cause });
         }

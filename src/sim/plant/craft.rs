@@ -99,6 +99,13 @@ pub struct Present {
     pub(super) trend: Option<Trend>,
 }
 
+impl Present {
+    /// Returns `true` if the craft is free in the air.
+    pub(in crate::sim) fn is_free(&self) -> bool {
+        self.trend.is_some()
+    }
+}
+
 /// The changes of the motion of a craft in the air at one instant, in rows, since a step sums rows with weights.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Trend {
