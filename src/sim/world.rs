@@ -101,7 +101,7 @@ impl World {
             }
         });
         // In the air a step does not change them.
-        let anchors = (!self.present.is_free()).then(|| self.craft.anchors);
+        let anchors = if self.present.is_free() { None } else { Some(self.craft.anchors) };
         self.plant.step(&mut self.craft, &target, &self.air_now, &self.present);
         if let Some(cause) = divergence(self.craft.body()) {
             // The last sane state is also that of the truth.
