@@ -19,12 +19,12 @@ mod question;
 pub(super) mod settings_in_force;
 pub(super) mod zones;
 
-pub(super) use browser::BrowserKey;
 pub use browser::{Browser, Purpose};
+pub(super) use browser::{BrowserKey, BrowserPlace};
 pub use column::Column;
 pub use files::{Conversion, ConversionLosses, Entry, FileReply, FileRequest, Listing, Opened};
-pub(super) use form::FormKey;
 pub use form::{Form, FormField, FormKind};
+pub(super) use form::{FormClick, FormKey};
 use form_edits::GeneratorFoot;
 pub use open_plan::{OpenPlan, PlanId};
 pub use popup::{EditorPopup, LossList};

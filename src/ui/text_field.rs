@@ -87,6 +87,13 @@ impl TextField {
         self.input.handle_event(&TerminalEvent::Key(event)).is_some()
     }
 
+    /// Puts the cursor at a column of the text as [`Self::draw`] shows it in a row of this width.
+    pub fn click(&mut self, column: u16, width: u16) {
+        self.selected = false;
+        let scroll = self.input.visual_scroll(usize::from(width.saturating_sub(1)));
+        self.input.handle(InputRequest::SetCursor(scroll + usize::from(column)));
+    }
+
     /// Draws the text in the first row of the area, scrolled so that the cursor is visible. Returns the position of the
     /// cursor.
     pub fn draw(&self, theme: &Theme, area: Rect, buffer: &mut Buffer) -> Option<Position> {

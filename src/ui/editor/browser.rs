@@ -48,7 +48,18 @@ pub struct Browser {
     pub at: Option<usize>,
 }
 
-/// The effect of a key.
+/// A place in the browser.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::ui) enum BrowserPlace {
+    /// The path of the directory.
+    Directory,
+    /// This column of the typed text, in a row of so many columns.
+    Text { column: u16, width: u16 },
+    /// The visible entry with this index.
+    Entry(usize),
+}
+
+/// The effect of a key or a click.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(in crate::ui) enum BrowserKey {
     Edited,
@@ -97,6 +108,21 @@ impl Browser {
                     self.at = None;
                 }
             }
+        }
+        BrowserKey::Edited
+    }
+
+    /// Handles a click: the first one selects an entry, a click on the selected one chooses it. A click on the directory goes
+    /// to the one above.
+    pub(in crate::ui) fn click(&mut self, place: BrowserPlace) -> BrowserKey {
+        match place {
+            BrowserPlace::Directory => return self.parent(),
+            BrowserPlace::Text { column, width } => {
+                self.text.click(column, width);
+                self.at = None;
+            }
+            BrowserPlace::Entry(at) if self.at == Some(at) => return self.enter(),
+            BrowserPlace::Entry(at) => self.at = Some(at),
         }
         BrowserKey::Edited
     }

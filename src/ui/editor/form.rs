@@ -65,6 +65,17 @@ pub struct Form {
     pub problem: Option<String>,
 }
 
+/// A click on a row of a form.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::ui) struct FormClick {
+    /// The index of the field.
+    pub(in crate::ui) field: usize,
+    /// The column in the value, from its first one on; `None` beside the value.
+    pub(in crate::ui) column: Option<u16>,
+    /// The columns of the value.
+    pub(in crate::ui) width: u16,
+}
+
 /// The effect of a key on a form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::ui) enum FormKey {
@@ -174,6 +185,31 @@ impl Form {
             }
         }
         FormKey::Edited
+    }
+
+    /// Handles a click: the first one selects the field. A click on the selected one puts the cursor into its value or
+    /// takes its next choice. A click on an arrow of a choice takes the choice on that side.
+    pub(in crate::ui) fn click(&mut self, click: FormClick) {
+        let was_selected = self.at == click.field;
+        self.problem = None;
+        if !was_selected {
+            self.go_to(click.field);
+        }
+        let Some(field) = self.fields.get_mut(click.field) else { return };
+        if field.choices.is_empty() {
+            if let Some(column) = click.column.filter(|_| was_selected) {
+                field.text.click(column, click.width);
+            }
+            return;
+        }
+        // `◂ word ▸`
+        let last = field.text.value().chars().count() as u16 + 3;
+        match click.column {
+            Some(0) => field.choose(-1),
+            Some(column) if column == last => field.choose(1),
+            _ if was_selected => field.choose(1),
+            _ => {}
+        }
     }
 
     /// Inserts pasted text into the field with the cursor. Returns `true` if that field takes typed text.

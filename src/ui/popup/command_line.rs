@@ -13,6 +13,7 @@ use crate::ui::history::History;
 use crate::ui::layout;
 use crate::ui::panel::{line, row, span};
 use crate::ui::popup::Outcome;
+use crate::ui::popup::frame::key_line;
 use crate::ui::shared::Shared;
 use crate::ui::text_field::TextField;
 use crate::ui::text_wrap::wrapped;
@@ -22,6 +23,10 @@ use crate::ui::theme::Role;
 const MOST: usize = 8;
 /// The width of a suggested word.
 const WORD: usize = 21;
+
+/// The keys at the foot of the suggestions.
+const KEYS: [(&str, &str); 4] =
+    [(" Enter", " runs  "), ("Tab", " completes  "), ("↑ ↓", " history  "), ("Esc", " leaves ")];
 
 /// The line and its history.
 #[derive(Debug, Default)]
@@ -58,11 +63,7 @@ pub(in crate::ui) fn key(line: &mut CommandLine, state: &Shared, event: KeyEvent
     match event.code {
         KeyCode::Esc => return Outcome::Left,
         KeyCode::Backspace if line.field.is_empty() => return Outcome::Left,
-        KeyCode::Enter => {
-            let entered = line.field.take();
-            let is_new = line.history.remember(&entered);
-            return Outcome::Chosen((entered, is_new));
-        }
+        KeyCode::Enter => return enter(line),
         KeyCode::Tab => {
             let suggestions = command::suggestions(state, line.field.value());
             line.complete(&suggestions);
@@ -80,6 +81,62 @@ pub(in crate::ui) fn key(line: &mut CommandLine, state: &Shared, event: KeyEvent
         }
     }
     Outcome::Open
+}
+
+fn enter(line: &mut CommandLine) -> Outcome<(String, bool)> {
+    let entered = line.field.take();
+    let is_new = line.history.remember(&entered);
+    Outcome::Chosen((entered, is_new))
+}
+
+/// Handles a click on a screen of this size: the first one on a suggestion completes the line, a click on the completed one
+/// runs it. Returns `None` beside the suggestions.
+pub(in crate::ui) fn click(
+    entered: &mut CommandLine,
+    state: &Shared,
+    size: (u16, u16),
+    cell: (u16, u16),
+) -> Option<Outcome<(String, bool)>> {
+    let typed = entered.field.value();
+    let list = List::of(state, typed, Rect::new(0, 0, size.0, size.1.checked_sub(1)?))?;
+    let inside = layout::inner(list.place);
+    let rows = Rect { height: list.shown as u16, ..inside };
+    if !rows.contains(cell.into()) {
+        return None;
+    }
+    let suggestion = list.suggestions.get(usize::from(cell.1 - rows.y))?;
+    if suggestion.line == typed {
+        return Some(enter(entered));
+    }
+    entered.field = TextField::new(suggestion.line.clone());
+    Some(Outcome::Open)
+}
+
+/// The suggestions for a line, and the hint about it.
+struct List {
+    suggestions: Vec<Suggestion>,
+    /// The number of suggestions that have a row.
+    shown: usize,
+    hint: Vec<String>,
+    place: Rect,
+}
+
+impl List {
+    /// Returns the list in an area above the line; `None` if there is nothing to show, or no room.
+    fn of(state: &Shared, typed: &str, above: Rect) -> Option<Self> {
+        let suggestions = command::suggestions(state, typed);
+        let width = above.width.min(78);
+        let inside = usize::from(width.saturating_sub(2));
+        let hint = command::hint(state, typed).map_or_else(Vec::new, |hint| wrapped(&hint, inside));
+        let shown = suggestions.len().min(MOST);
+        let more = usize::from(suggestions.len() > shown);
+        let height = (shown + more + hint.len() + 2) as u16;
+        if shown + hint.len() == 0 || height > above.height || inside < WORD + 4 {
+            return None;
+        }
+        let place = Rect::new(above.x, above.y + above.height - height, width, height);
+        Some(Self { suggestions, shown, hint, place })
+    }
 }
 
 /// Draws the line in the last row and the suggestions above it. Returns the position of the cursor.
@@ -101,24 +158,13 @@ pub(in crate::ui) fn draw(
 
 fn draw_suggestions(state: &Shared, typed: &str, above: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
-    let suggestions = command::suggestions(state, typed);
-    let width = above.width.min(78);
-    let inside = usize::from(width.saturating_sub(2));
-    let hint = command::hint(state, typed).map_or_else(Vec::new, |hint| wrapped(&hint, inside));
-    let shown = suggestions.len().min(MOST);
-    let more = usize::from(suggestions.len() > shown);
-    let height = (shown + more + hint.len() + 2) as u16;
-    if shown + hint.len() == 0 || height > above.height || inside < WORD + 4 {
-        return;
-    }
-    let place = Rect::new(above.x, above.y + above.height - height, width, height);
-    Clear.render(place, buffer);
-    let title = " Tab completes  ↑ ↓ history  Esc leaves ";
-    Block::bordered()
-        .border_style(theme.style(Role::Dim))
-        .title_bottom(Line::from(span(theme, Role::Dim, cut(title, inside))))
-        .render(place, buffer);
+    let Some(List { suggestions, shown, hint, place }) = List::of(state, typed, above) else { return };
     let area = layout::inner(place);
+    let inside = usize::from(area.width);
+    Clear.render(place, buffer);
+    let keys = key_line(theme, &KEYS);
+    let keys = Some(keys).filter(|keys| keys.width() <= inside).unwrap_or_default();
+    Block::bordered().border_style(theme.style(Role::Dim)).title_bottom(keys).render(place, buffer);
     for (at, suggestion) in suggestions.iter().take(shown).enumerate() {
         let room = inside.saturating_sub(WORD + 1);
         let keys = cut(&suggestion.keys, room);
@@ -131,11 +177,11 @@ fn draw_suggestions(state: &Shared, typed: &str, above: Rect, buffer: &mut Buffe
         ];
         line(buffer, area, at as u16, &Line::from(spans));
     }
+    let more = suggestions.len() - shown;
     if more > 0 {
-        let text = format!("… {} more", suggestions.len() - shown);
-        row(buffer, area, shown as u16, theme, Role::Dim, &text);
+        row(buffer, area, shown as u16, theme, Role::Dim, &format!("… {more} more"));
     }
     for (at, text) in hint.iter().enumerate() {
-        row(buffer, area, (shown + more + at) as u16, theme, Role::Title, text);
+        row(buffer, area, (shown + usize::from(more > 0) + at) as u16, theme, Role::Title, text);
     }
 }

@@ -6,12 +6,12 @@ use crate::ui::action::Action;
 use crate::ui::app_state::AppState;
 use crate::ui::message::{Effect, Request};
 use crate::ui::panel::Panel;
-use crate::ui::popup::{Outcome, Popup, palette};
+use crate::ui::popup::{Outcome, Popup, command_line, palette};
 use crate::ui::{hint_bar, layout, notice, panel_bar, tutorial};
 
-use super::popup::{chosen, take_entry};
+use super::popup::{chosen, enter, take_entry};
 use super::view::focus;
-use super::{act, arrange, carry_out, diff, flights, map_menu, shown_keys, timeline};
+use super::{act, arrange, carry_out, diff, flights, map_menu, plan_popup, shown_keys, timeline};
 
 /// The number of lines of the help per step of the wheel.
 const WHEEL_LINES: isize = 3;
@@ -24,11 +24,17 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
     if let Some(effects) = popup(state, event) {
         return effects;
     }
+    let is_click = event.kind == MouseEventKind::Down(MouseButton::Left);
+    if is_click
+        && state.popups.is_empty()
+        && let Some(effects) = plan_popup::click(&mut state.shared, (event.column, event.row))
+    {
+        return effects;
+    }
     let arranges = matches!(state.popups.last(), Some(Popup::Layout));
     if !arranges && (!state.popups.is_empty() || state.shared.editor.popup.is_some()) {
         return shown_keys::mouse(state, event);
     }
-    let is_click = event.kind == MouseEventKind::Down(MouseButton::Left);
     if arranges
         && is_click
         && let Some(effects) = shown_keys::press_shown(state, (event.column, event.row))
@@ -150,6 +156,10 @@ fn popup(state: &mut AppState, event: MouseEvent) -> Option<Vec<Effect>> {
                 Outcome::Open
             };
             take_entry(state, outcome)
+        }
+        Popup::CommandLine if event.kind == MouseEventKind::Down(MouseButton::Left) => {
+            let outcome = command_line::click(&mut state.command_line, &state.shared, size, cell)?;
+            enter(state, outcome)
         }
         Popup::Help(help) if wheel != 0 => {
             help.scroll_by(wheel * WHEEL_LINES);

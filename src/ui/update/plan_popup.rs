@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crossterm::event::{KeyCode, KeyEvent};
+use ratatui::layout::Rect;
 
 use super::{diff, flight::upload_now};
 use crate::ui::action::{Action, EditAction};
@@ -12,7 +13,9 @@ use crate::ui::editor::{
 };
 use crate::ui::event_log::Severity;
 use crate::ui::ground;
+use crate::ui::layout;
 use crate::ui::message::Effect;
+use crate::ui::panel::editor_popup;
 use crate::ui::shared::Shared;
 
 /// The lines of differences that a page key scrolls.
@@ -26,6 +29,28 @@ pub(super) fn key(state: &mut Shared, event: KeyEvent) -> Vec<Effect> {
         Some(EditorPopup::Question(question)) => question_key(state, question, event),
         Some(EditorPopup::Losses(list)) => losses_key(state, list, event),
         None => Vec::new(),
+    }
+}
+
+/// Handles a click on a row of a form or of the browser. Returns `None` if there is no such row at the cell.
+pub(super) fn click(state: &mut Shared, cell: (u16, u16)) -> Option<Vec<Effect>> {
+    let area = Rect::new(0, 0, state.size.0, state.size.1);
+    match &state.editor.popup {
+        Some(EditorPopup::Form(form)) => {
+            let beside = layout::screen(state).and_then(|screen| screen.form);
+            let click = editor_popup::field_at(state, form, area, beside, cell)?;
+            if let Some(EditorPopup::Form(form)) = &mut state.editor.popup {
+                form.click(click);
+            }
+            Some(Vec::new())
+        }
+        Some(EditorPopup::Browser(browser)) => {
+            let place = editor_popup::place_at(browser, area, cell)?;
+            let Some(EditorPopup::Browser(mut browser)) = state.editor.popup.take() else { return None };
+            let result = browser.click(place);
+            Some(take_browser(state, browser, result))
+        }
+        Some(EditorPopup::Question(_) | EditorPopup::Losses(_)) | None => None,
     }
 }
 
@@ -49,6 +74,11 @@ fn form_key(state: &mut Shared, mut form: Form, event: KeyEvent) -> Vec<Effect> 
 
 fn browser_key(state: &mut Shared, mut browser: Browser, event: KeyEvent) -> Vec<Effect> {
     let key = browser.key(event);
+    take_browser(state, browser, key)
+}
+
+/// Carries out the result of a key or a click in the browser, which stays open unless it chose a file or was left.
+fn take_browser(state: &mut Shared, browser: Browser, key: BrowserKey) -> Vec<Effect> {
     match key {
         BrowserKey::Cancel => {
             state.editor.quitting = false;

@@ -115,20 +115,7 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) 
         }
         Some(Popup::CommandLine) => {
             let outcome = command_line::key(&mut state.command_line, &state.shared, event);
-            let Some((line, is_new)) = chosen(&mut state.popups, outcome) else { return Vec::new() };
-            let layout = state.popups.pop_if(|below| matches!(below, Popup::Layout));
-            let mut effects = run_line(state, &line).unwrap_or_else(|sentence| {
-                let sentence = state.shared.keymap.in_force(&sentence);
-                state.shared.notify(Severity::Warn, sentence);
-                // The user names the layout again.
-                state.popups.extend(layout);
-                Vec::new()
-            });
-            if is_new {
-                // Before the line's own effects, so that `quit` is kept, too.
-                effects.insert(0, Effect::Files(FileRequest::KeepLine(LineField::Command, line)));
-            }
-            effects
+            enter(state, outcome)
         }
         Some(Popup::Palette(palette)) => {
             let outcome = palette::key(palette, &state.shared.used, event);
@@ -149,6 +136,24 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) 
             }
         },
     }
+}
+
+/// Runs the line entered in the `:` line.
+pub(super) fn enter(state: &mut AppState, outcome: Outcome<(String, bool)>) -> Vec<Effect> {
+    let Some((line, is_new)) = chosen(&mut state.popups, outcome) else { return Vec::new() };
+    let layout = state.popups.pop_if(|below| matches!(below, Popup::Layout));
+    let mut effects = run_line(state, &line).unwrap_or_else(|sentence| {
+        let sentence = state.shared.keymap.in_force(&sentence);
+        state.shared.notify(Severity::Warn, sentence);
+        // The user names the layout again.
+        state.popups.extend(layout);
+        Vec::new()
+    });
+    if is_new {
+        // Before the line's own effects, so that `quit` is kept, too.
+        effects.insert(0, Effect::Files(FileRequest::KeepLine(LineField::Command, line)));
+    }
+    effects
 }
 
 /// Runs the entry chosen in the palette, and remembers it.

@@ -10,7 +10,6 @@ use ratatui::style::Modifier;
 
 use crate::ui::app_state::AppState;
 use crate::ui::draw::draw;
-use crate::ui::editor::EditorPopup;
 use crate::ui::keymap::KeyPress;
 use crate::ui::layout;
 use crate::ui::message::Effect;
@@ -34,7 +33,7 @@ pub(super) fn mouse(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
         MouseEventKind::ScrollDown => press(state, KeyCode::Down),
         MouseEventKind::Down(MouseButton::Left) => match click(state, (event.column, event.row)) {
             Some(Click::Key(key)) => super::key(state, key),
-            Some(Click::Row(0)) if !is_form(state) => press(state, KeyCode::Enter),
+            Some(Click::Row(0)) => press(state, KeyCode::Enter),
             Some(Click::Row(below)) => {
                 let key = if below < 0 { KeyCode::Up } else { KeyCode::Down };
                 (0..below.unsigned_abs()).flat_map(|_| press(state, key)).collect()
@@ -58,11 +57,6 @@ fn press(state: &mut AppState, code: KeyCode) -> Vec<Effect> {
     super::key(state, KeyEvent::new(code, KeyModifiers::NONE))
 }
 
-/// Returns `true` if `Enter` accepts all fields and not the one with the cursor.
-fn is_form(state: &AppState) -> bool {
-    state.popups.is_empty() && matches!(state.shared.editor.popup, Some(EditorPopup::Form(_)))
-}
-
 /// Returns `true` for a popup that asks nothing and holds nothing that was typed.
 fn closes_outside(state: &AppState) -> bool {
     let question = matches!(
@@ -84,6 +78,10 @@ fn click(state: &mut AppState, (column, row): (u16, u16)) -> Option<Click> {
     }
     if let Some(key) = key_at(state, &with, place, (column, row)) {
         return Some(Click::Key(key));
+    }
+    // The rows of the editor's popups have their own use.
+    if state.popups.is_empty() {
+        return Some(Click::Nothing);
     }
     let is_selected =
         |y: &u16| (place.left()..place.right()).any(|x| with[(x, *y)].modifier.contains(Modifier::REVERSED));
