@@ -37,6 +37,16 @@ fn the_help_shows_only_the_keys_that_are_searched() {
 }
 
 #[test]
+fn a_search_in_the_help_finds_the_keys_of_all_panels() {
+    let mut state = state_with_fix((80, 24));
+    keys(&mut state, "1 ? / 'CLI enter");
+    let seen = screen(&state);
+    assert!(seen.contains("In 9 Settings") && !seen.contains("Nothing found"), "{seen}");
+    keys(&mut state, "esc");
+    assert!(!screen(&state).contains("In 9 Settings"), "{}", screen(&state));
+}
+
+#[test]
 fn n_and_capital_n_go_on_in_the_found_keys() {
     let mut state = state_with_fix((80, 24));
     keys(&mut state, "? / 'the enter");

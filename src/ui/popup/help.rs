@@ -1,4 +1,4 @@
-//! The help popup: the keys of the focused panel and the general ones, from the action table.
+//! The help popup, from the action table: the keys of the focused panel and the general ones. A search finds all keys.
 
 use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::buffer::Buffer;
@@ -7,7 +7,7 @@ use ratatui::text::Line;
 
 use crate::ui::action::{ACTIONS, Action, Context, Spec};
 use crate::ui::layout;
-use crate::ui::panel::{line, span};
+use crate::ui::panel::{Panel, line, span};
 use crate::ui::popup::Outcome;
 use crate::ui::popup::frame::{framed, place};
 use crate::ui::search::Search;
@@ -92,18 +92,23 @@ impl Help {
             let text = text.to_lowercase();
             words.iter().all(|word| text.contains(word.as_str()) || keys.to_lowercase() == *word)
         };
-        let own = |context: Context| {
-            matches!(context, Context::In(_) | Context::Lists) && context.applies(state.focus)
+        let is_in = |section: Option<Panel>, context: Context| match (section, context) {
+            (None, Context::Global | Context::Always) => true,
+            (Some(panel), Context::In(own)) => panel == own,
+            (Some(panel), Context::Lists) => panel == state.focus && context.applies(panel),
+            _ => false,
         };
-        let general = |context: Context| matches!(context, Context::Global | Context::Always);
-        let sections: [(String, &dyn Fn(Context) -> bool); 2] =
-            [(format!("In {}", state.panel_title(state.focus)), &own), ("Everywhere".to_owned(), &general)];
+        // A search also finds the keys of the panels without the focus.
+        let others = Panel::ALL.into_iter().filter(|panel| !words.is_empty() && *panel != state.focus);
+        let sections = [Some(state.focus), None].into_iter().chain(others.map(Some));
         let mut entries: Vec<Entry> = Vec::new();
-        for (title, wanted) in sections {
+        for section in sections {
+            let title = section
+                .map_or_else(|| "Everywhere".to_owned(), |panel| format!("In {}", state.panel_title(panel)));
             let keys = |spec: &Spec| state.keymap.shown_keys(spec.action).join(" ");
             let rows: Vec<&Spec> = ACTIONS
                 .iter()
-                .filter(|spec| wanted(spec.context))
+                .filter(|spec| is_in(section, spec.context))
                 .filter(|spec| is_found(&keys(spec), &format!("{} {} {}", spec.name, spec.title, spec.help)))
                 .collect();
             if rows.is_empty() {
