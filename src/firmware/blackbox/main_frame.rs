@@ -119,32 +119,27 @@ impl MainState {
 
     /// Returns the values of all fields, in the order of [`MainFields`], also of those that a log does not have. `scale` is
     /// the units of a degree per second and of a stick unit.
-    pub(super) fn values(&self, scale: f64) -> FrameValues {
+    fn values(&self, scale: f64) -> FrameValues {
         let (terms, sticks, rates) = (&self.terms, &self.sticks, &self.rates);
-        let [d_roll, d_pitch, d_yaw] = signed(terms.d);
         let mut values = Values { values: [0; MAX_FIELDS], len: 0 };
-        values.push(self.iteration.cast_signed());
         // The counter of microseconds starts again after 71 minutes.
-        values.push(self.time.0 as i32);
+        values.all([self.iteration.cast_signed(), self.time.0 as i32].map(f64::from));
         values.all(signed(terms.p));
         values.all(signed(terms.i));
-        values.all([d_roll, d_pitch, d_yaw]);
+        values.all(signed(terms.d));
         values.all(signed(terms.f));
         values.all(signed([sticks.roll, sticks.pitch, sticks.yaw]).map(|stick| scale * stick));
-        values.push(whole(scale * sticks.throttle_us));
+        values.all([scale * sticks.throttle_us]);
         values.all(signed(self.setpoint_dps).map(|rate| scale * rate));
-        values.push(whole(1000.0 * self.throttle));
-        values.push(self.volts());
-        values.push(whole(100.0 * self.current_a));
+        values.all([1000.0 * self.throttle, 100.0 * self.voltage_v, 100.0 * self.current_a]);
         values.all(self.mag_flu.into());
-        values.push(whole(100.0 * self.baro_alt_m));
-        values.push(self.rssi.into());
+        values.all([100.0 * self.baro_alt_m, self.rssi.into()]);
         values.all(signed(self.gyro_dps).map(|rate| scale * rate));
         let raw = [rates.roll, rates.pitch_down, rates.yaw];
         values.all(signed(raw).map(|rate| scale * rate.to_degrees()));
         values.all((self.force_flu * (ACC_COUNTS_PER_G / GRAVITY)).into());
         values.all(attitude(&self.attitude).map(|part| QUATERNION_COUNTS * part));
-        self.debug.into_iter().for_each(|value| values.push(value));
+        values.all(self.debug.map(f64::from));
         values.all(self.motors_us);
         values.values
     }
@@ -171,8 +166,10 @@ impl FieldPlaces {
         Self(places)
     }
 
-    /// Returns the values of the fields of a log, in the order of its frames.
-    pub(super) fn of(&self, all: &FrameValues) -> FrameValues {
+    /// Returns the values of the fields of a log, in the order of its frames. `scale` is the units of a degree per second
+    /// and of a stick unit.
+    pub(super) fn values(&self, state: &MainState, scale: f64) -> FrameValues {
+        let all = state.values(scale);
         let mut values = [0; MAX_FIELDS];
         for (value, place) in values.iter_mut().zip(&self.0) {
             *value = all[usize::from(*place) % MAX_FIELDS];
@@ -181,10 +178,14 @@ impl FieldPlaces {
     }
 }
 
-/// Rounds to a unit of a log.
+/// A sum with this number has the nearest whole number in its lower half.
+const TO_WHOLE: f64 = (3_u64 << 51) as f64;
+
+/// Rounds to a unit of a log, halves to the even one.
+#[inline]
 fn whole(value: f64) -> i32 {
     // `f64::round` calls a library function on processors without an instruction for it.
-    (value + 0.5_f64.copysign(value)) as i32
+    (value.clamp(i32::MIN.into(), i32::MAX.into()) + TO_WHOLE).to_bits() as i32
 }
 
 /// The values of a frame in their order.
@@ -194,17 +195,13 @@ struct Values {
 }
 
 impl Values {
-    #[inline]
-    fn push(&mut self, value: i32) {
-        if let Some(place) = self.values.get_mut(self.len) {
-            *place = value;
-            self.len += 1;
+    /// Adds numbers, rounded. All of them at once, because the processor rounds several in one instruction.
+    #[inline(always)]
+    fn all<const N: usize>(&mut self, numbers: [f64; N]) {
+        if let Some(places) = self.values.get_mut(self.len..).and_then(|free| free.first_chunk_mut()) {
+            *places = numbers.map(whole);
+            self.len += N;
         }
-    }
-
-    #[inline]
-    fn all<const N: usize>(&mut self, values: [f64; N]) {
-        values.into_iter().for_each(|value| self.push(whole(value)));
     }
 }
 
@@ -306,7 +303,7 @@ mod tests {
 
     #[test]
     fn values_are_rounded_to_the_nearest_unit() {
-        assert_eq!([-1.5, -0.6, -0.4, 0.0, 0.4, 0.5, 1.6].map(whole), [-2, -1, 0, 0, 0, 1, 2]);
+        assert_eq!([-1.5, -0.6, -0.4, 0.0, 0.4, 0.5, 1.6].map(whole), [-2, -1, 0, 0, 0, 0, 2]);
         assert_eq!(whole(f64::NAN), 0);
         assert_eq!(whole(1e12), i32::MAX);
     }

@@ -33,8 +33,8 @@ impl LogStream {
     pub fn part(&mut self, part: &LogPart, main: &MainState, buffer: &mut LogBuffer) {
         let Some(Open { encoder, places, scale }) = &mut self.log else { return };
         match part {
-            LogPart::Intra => encoder.intra(&places.of(&main.values(*scale)), buffer),
-            LogPart::Inter => encoder.inter(&places.of(&main.values(*scale)), buffer),
+            LogPart::Intra => encoder.intra(&places.values(main, *scale), buffer),
+            LogPart::Inter => encoder.inter(&places.values(main, *scale), buffer),
             LogPart::Slow(values) => encoder.slow(&frame(values), buffer),
             LogPart::Home(values) => encoder.home(&frame(values), buffer),
             LogPart::Gps(values) => encoder.gps(&frame(values), buffer),
