@@ -109,7 +109,7 @@ pub use editor::OpenPlan;
 pub use event_log::Severity;
 pub use files_link::FilesLink;
 pub use history::{EnteredLines, LineField};
-pub use kept_screen::{KeptScreen, KeptScreens, Unread};
+pub use kept_screen::{KeptOf, KeptPlace, KeptScreen, KeptScreens, KeptTexts, Unread};
 pub use layout::SavedLayouts;
 pub use map_state::MapMode;
 pub use message::{Effect, FlightForm, Msg};

@@ -6,7 +6,9 @@ use std::time::Instant;
 use super::AppError;
 use super::backdrop_file;
 use super::flight_recorder::RecordedStart;
+use super::last_plan;
 use super::live::LiveArgs;
+use super::screen_file::{ScreenFile, ScreenStart, Subject};
 use super::setup;
 use super::tui::{self, LiveFlight, Screen, Source};
 use crate::args::{ConnectArgs, PlanArg, TuiArgs};
@@ -14,25 +16,34 @@ use crate::fc::{RemoteEnds, RemoteLink};
 use crate::link::{FcPlace, FcStream};
 use crate::plan::format::PlanFile;
 use crate::storage::Store;
-use crate::ui::KeptScreens;
 use crate::ui::keymap::Keymap;
 use crate::vehicle::Vehicle;
 
 /// Opens the user interface for the flight controller at `place`, and returns the exit code after the user leaves it.
 pub(super) fn run(args: &TuiArgs, place: &FcPlace, keymap: Keymap) -> Result<u8, AppError> {
-    let plan = match &args.plan {
-        Some(plan) => setup::read_plan(plan, args.flight.home)?,
-        // The plan of the craft is downloaded.
-        None => PlanFile { name: "new".to_owned(), ..PlanFile::default() },
+    let directory = setup::store_directory(&args.flight)?;
+    let mut notices = Vec::new();
+    let start = ScreenStart { plain: args.plain, fresh: args.fresh_screen };
+    let (screen_file, kept) =
+        ScreenFile::open(directory.as_deref(), Subject::Craft(place), start, &mut notices);
+    let home = args.flight.home;
+    let (chosen, plan) = match &args.plan {
+        Some(plan) => (Some(plan.clone()), setup::read_plan(plan, home)?),
+        None => match last_plan::read(kept.before(), home, &mut notices) {
+            Some((last, plan)) => (Some(last), plan),
+            // The plan of the craft is downloaded.
+            None => (None, PlanFile { name: "new".to_owned(), ..PlanFile::default() }),
+        },
     };
-    let mut notices = plan.notices();
+    notices.extend(plan.notices());
     notices.extend(ConnectArgs::idle_options(&args.doors, &args.firmware.link, &args.physics, &args.flight));
     let screen = Screen {
         plan,
-        path: args.plan.as_ref().and_then(PlanArg::path),
+        path: chosen.as_ref().and_then(PlanArg::path),
         backdrop: backdrop_file::read_all(&args.backdrop.backdrop)?,
-        directory: setup::store_directory(&args.flight)?,
-        kept: KeptScreens::none(),
+        directory,
+        screen_file,
+        kept,
         was_used: true,
         given_settings: Vec::new(),
         notices,

@@ -11,6 +11,7 @@ use super::firmware::{self, Beside, RemoteFirmware, reported};
 use super::flight_recorder::RecordedStart;
 use super::interrupt::interrupt_flag;
 use super::live::LiveArgs;
+use super::screen_file::{ScreenFile, ScreenStart, Subject};
 use super::setup;
 use super::tui::{self, LiveFlight, Screen, Source};
 use crate::args::{DoorArgs, FlightArgs, Instant, OpenArgs, PhysicsArgs, ReviewArgs};
@@ -24,9 +25,9 @@ use crate::signals::fdm::FirmwareClock;
 use crate::storage::Store;
 use crate::text::did_you_mean;
 use crate::timeline::Timeline;
-use crate::ui::KeptScreens;
 use crate::ui::keymap::Keymap;
 use crate::ui::settings::GivenSetting;
+use crate::ui::{KeptScreen, KeptScreens};
 use crate::vehicle::{Vehicle, VehicleCommand};
 
 /// The pictures for each simulated second of the finished flight. Tracks and graphs are made from them.
@@ -79,6 +80,7 @@ pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
         }
     };
     notices.extend(wanted.map(|wanted| wanted.compared(flown.hash)));
+    let flown_hash = flown.hash;
     let Flown { flight, timeline, recorded: Recorded { events, past }, .. } = flown;
     let is_repeatable =
         |firmware: &RemoteFirmware| firmware.executable.is_some() && firmware.clock == FirmwareClock::Sim;
@@ -86,7 +88,9 @@ pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
         let case = case.clone();
         FlyAgain::new(move |until, progress| fly_again(&case, &air, &firmware, until, progress))
     });
-    let show = instant(args.at, flight.trace().engaged_at, flight.vehicle().time())?;
+    let end = flight.vehicle().time();
+    let kept = Kept::open(args, flown_hash, &mut notices);
+    let show = kept.instant_or(instant(args.at, flight.trace().engaged_at, end)?, end);
     notices.push(format!(
         "{name}, seed {}, was flown to its end: `,` and `<` go back, Space plays it, `b` flies on from here.",
         air.seed
@@ -99,6 +103,7 @@ pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
         recorded,
         flown: FlownBefore { timeline, events, show, again },
         past,
+        kept,
         notices,
     };
     open_screen(args, finished, keymap)
@@ -113,11 +118,39 @@ struct Finished {
     recorded: RecordedStart,
     flown: FlownBefore,
     past: Vec<SessionView>,
+    kept: Kept,
     notices: Vec<String>,
 }
 
+/// The kept screen of a finished flight.
+struct Kept {
+    file: ScreenFile,
+    screens: KeptScreens,
+}
+
+impl Kept {
+    /// Reads the screen of the flight with this number, without its place if the options name an instant.
+    fn open(args: &OpenArgs, number: u64, notices: &mut Vec<String>) -> Self {
+        // Without a home directory nothing is kept.
+        let directory = setup::store_directory(&FlightArgs::default()).ok().flatten();
+        let start = ScreenStart { plain: args.plain, fresh: args.fresh_screen };
+        let (file, mut screens) =
+            ScreenFile::open(directory.as_deref(), Subject::Flown(number), start, notices);
+        if args.at.is_some() {
+            screens.forget_place();
+        }
+        Self { file, screens }
+    }
+
+    /// Returns the instant to show: the one that was left, else `otherwise`.
+    fn instant_or(&self, otherwise: SimTime, end: SimTime) -> SimTime {
+        let left = self.screens.before().and_then(KeptScreen::place).and_then(|place| place.at_us);
+        left.map_or(otherwise, |at_us| SimTime(at_us).min(end))
+    }
+}
+
 fn open_screen(args: &OpenArgs, finished: Finished, keymap: Keymap) -> Result<u8, AppError> {
-    let Finished { plan, given_settings, vehicle, recorded, flown, past, notices } = finished;
+    let Finished { plan, given_settings, vehicle, recorded, flown, past, kept, notices } = finished;
     let doors = DoorArgs { no_ports: true, ..DoorArgs::default() };
     let (physics, flight_args) = (PhysicsArgs::default(), FlightArgs::default());
     let screen = Screen {
@@ -125,7 +158,8 @@ fn open_screen(args: &OpenArgs, finished: Finished, keymap: Keymap) -> Result<u8
         path: None,
         backdrop: Vec::new(),
         directory: None,
-        kept: KeptScreens::none(),
+        screen_file: kept.file,
+        kept: kept.screens,
         was_used: true,
         given_settings,
         notices,

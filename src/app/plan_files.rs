@@ -111,7 +111,7 @@ impl PlanFiles {
             reported: false,
             lost: Vec::new(),
             lines: LineHistory::new(state),
-            screen: ScreenFile::new(state),
+            screen: ScreenFile::default(),
             layouts: LayoutFile::new(state),
             ground: TerrainFiles::default(),
             tiles: Arc::default(),
@@ -248,8 +248,8 @@ impl PlanFiles {
             FileRequest::KeepLayout(line) => {
                 self.layouts.append(&line).err().map(FileReply::Failed).into_iter().collect()
             }
-            FileRequest::KeepScreen(text) => {
-                self.screen.write(&text);
+            FileRequest::KeepScreen(texts) => {
+                self.screen.write(&texts);
                 Vec::new()
             }
             FileRequest::Ground { home, plan } => {

@@ -10,16 +10,19 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::error::{self, AppError};
+use super::file_identity;
 use super::interrupt::interrupt_flag;
+use super::last_plan;
+use super::screen_file::{ScreenFile, ScreenStart, Subject};
 use super::setup;
 use super::tui::{self, Screen, SecondFlight, Source};
-use crate::args::{FlightArgs, RecordInstant, ReplayArgs, ReviewArgs, TerrainArgs};
+use crate::args::{FlightArgs, PlanArg, RecordInstant, ReplayArgs, ReviewArgs, TerrainArgs};
 use crate::plan::format::PlanFile;
 use crate::replay::{Overview, PastFlights};
 use crate::session::{ReplayConfig, ReplayStart};
 use crate::signals::SimTime;
-use crate::ui::KeptScreens;
 use crate::ui::keymap::Keymap;
+use crate::ui::{KeptPlace, KeptScreen, KeptScreens};
 use opened::Opened;
 
 /// Writes the files of the options, or shows the flights. With `--plain` it does both.
@@ -48,23 +51,30 @@ pub(super) fn run(args: &ReplayArgs, repeat: &[String], keymap: Keymap) -> Resul
             return Ok(0);
         }
     }
+    let (terrain, flight_args) = (TerrainArgs::default(), FlightArgs::default());
+    let directory = setup::store_directory(&flight_args)?;
+    let mut notices = Vec::new();
+    let (screen_file, mut kept) = kept_screen(args, first, directory.as_deref(), &mut notices);
+    let left = place_left(args, &mut kept);
     let config = ReplayConfig {
         flights: flights.into(),
-        number: args.number(),
-        start: args.at.map(start),
+        number: left.map(|left| left.flight).or(args.number()),
+        is_left: left.is_some(),
+        start: args.at.map(start).or(left.and_then(|left| left.at_us).map(SimTime).map(ReplayStart::Clock)),
         speed: 1.0,
         notices: Vec::new(),
     };
-    let (terrain, flight_args) = (TerrainArgs::default(), FlightArgs::default());
+    let (chosen, plan) = last_plan::read(kept.before(), None, &mut notices).unzip();
     let screen = Screen {
-        plan: PlanFile { name: "new".to_owned(), ..PlanFile::default() },
-        path: None,
+        plan: plan.unwrap_or_else(|| PlanFile { name: "new".to_owned(), ..PlanFile::default() }),
+        path: chosen.as_ref().and_then(PlanArg::path),
         backdrop: Vec::new(),
-        directory: setup::store_directory(&flight_args)?,
-        kept: KeptScreens::none(),
+        directory,
+        screen_file,
+        kept,
         was_used: true,
         given_settings: Vec::new(),
-        notices: Vec::new(),
+        notices,
         review: ReviewArgs::default(),
         tiles: None,
         plain: args.plain,
@@ -74,6 +84,28 @@ pub(super) fn run(args: &ReplayArgs, repeat: &[String], keymap: Keymap) -> Resul
         other: second.map(beside),
     };
     tui::show(screen, keymap)
+}
+
+/// Reads the kept screen of a file.
+fn kept_screen(
+    args: &ReplayArgs,
+    file: &Path,
+    state: Option<&Path>,
+    notices: &mut Vec<String>,
+) -> (ScreenFile, KeptScreens) {
+    let of = Subject::Record(file_identity::of(file).unwrap_or_default());
+    ScreenFile::open(state, of, ScreenStart { plain: args.plain, fresh: args.fresh_screen }, notices)
+}
+
+/// Returns the place that was left, unless the options name another.
+fn place_left(args: &ReplayArgs, kept: &mut KeptScreens) -> Option<KeptPlace> {
+    let is_wanted =
+        |left: &KeptPlace| args.at.is_none() && args.number().is_none_or(|number| number == left.flight);
+    let left = kept.before().and_then(KeptScreen::place).filter(is_wanted);
+    if left.is_none() {
+        kept.forget_place();
+    }
+    left
 }
 
 fn start(at: RecordInstant) -> ReplayStart {

@@ -15,6 +15,7 @@ use super::flight_recorder::{self, FlightRecorder, RecordedStart};
 use super::flight_shelf::Shelf;
 use super::flown_log;
 use super::input_lines;
+use super::last_plan;
 use super::layout_file::LayoutFile;
 use super::line_history::LineHistory;
 use super::live::{self, LiveArgs};
@@ -22,7 +23,7 @@ use super::plan_files::PlanFiles;
 use super::recording_file;
 use super::runtime;
 use super::scenario_file;
-use super::screen_file::ScreenFile;
+use super::screen_file::{ScreenFile, ScreenStart, Subject};
 use super::setup;
 use super::stop_signal;
 use super::terrain::{TerrainFiles, with_terrain};
@@ -63,6 +64,8 @@ pub(super) struct Screen<'a> {
     pub(super) backdrop: Vec<BackdropLayer>,
     /// The directory for edits.
     pub(super) directory: Option<PathBuf>,
+    /// The files with the kept screen.
+    pub(super) screen_file: ScreenFile,
     /// The screen of the run before.
     pub(super) kept: KeptScreens,
     /// `true` if the program was used before. The first steps are then known.
@@ -124,7 +127,8 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
     let backdrop = backdrop_file::read_all(&args.backdrop.backdrop)?;
     let directory = setup::store_directory(&args.flight)?;
     let mut notices = Vec::new();
-    let kept = kept_screens(args, directory.as_deref(), &mut notices);
+    let start = ScreenStart { plain: args.plain, fresh: args.fresh_screen };
+    let (screen_file, kept) = ScreenFile::open(directory.as_deref(), Subject::Flight, start, &mut notices);
     let (chosen, plan) = first_plan(args, kept.before(), &mut notices)?;
     notices.extend(plan.notices());
     let mut store = setup::open_store(&args.flight)?;
@@ -149,6 +153,7 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
         path: chosen.path(),
         backdrop,
         directory,
+        screen_file,
         kept,
         was_used: was_stored,
         given_settings,
@@ -178,15 +183,6 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
     show(screen, keymap)
 }
 
-/// Returns the screens that are kept: none without a screen.
-fn kept_screens(args: &TuiArgs, directory: Option<&Path>, notices: &mut Vec<String>) -> KeptScreens {
-    if args.plain {
-        return KeptScreens::none();
-    }
-    let kept = ScreenFile::new(directory).read(notices);
-    if args.fresh_screen { kept.fresh() } else { kept }
-}
-
 /// Returns the plan that is open at start: that of the command line, else the one that was shown last, else the demo.
 fn first_plan(
     args: &TuiArgs,
@@ -196,17 +192,8 @@ fn first_plan(
     if let Some(plan) = &args.plan {
         return Ok((plan.clone(), setup::read_plan(plan, args.flight.home)?));
     }
-    let shown = kept.and_then(KeptScreen::shown_plan);
-    let others = kept.into_iter().flat_map(KeptScreen::plans).filter(|path| path.exists());
-    for path in shown.into_iter().chain(others.filter(|_| shown.is_some())) {
-        let plan = PlanArg::File(path.to_owned(), None);
-        match setup::read_plan(&plan, args.flight.home) {
-            Ok(file) => return Ok((plan, file)),
-            Err(error) => {
-                let why = error.message.lines().next().unwrap_or_default();
-                notices.push(format!("The plan of the last run is not open: {}.", why.trim_end_matches('.')));
-            }
-        }
+    if let Some(last) = last_plan::read(kept, args.flight.home, notices) {
+        return Ok(last);
     }
     let demo = BuiltinPlan::find(DEMO).ok_or_else(|| AppError::internal("the demo plan is missing"))?;
     let demo = PlanArg::Builtin(demo);
@@ -229,6 +216,7 @@ pub(super) fn require_terminal(plain: bool) -> Result<(), AppError> {
 pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
     let mut notices = screen.notices;
     let mut files = PlanFiles::new(screen.directory.as_deref());
+    files.keep_screen_in(screen.screen_file);
     let ground = TerrainFiles::new(screen.terrain)?;
     let has_ground = ground.is_somewhere();
     files.read_ground(ground, screen.tiles.clone().unwrap_or_default());

@@ -30,6 +30,10 @@ pub struct ReplayArgs {
     #[arg(long, help_heading = "Screen")]
     pub plain: bool,
 
+    /// Start with a clean screen: not with the panels and the map of the last run, and the place and speed in this flight
+    #[arg(long, help_heading = "Screen")]
+    pub fresh_screen: bool,
+
     /// Writes the values as CSV instead of showing them, with units in the header; - is standard output
     #[arg(long, value_name = "FILE|-", help_heading = "Output")]
     pub csv: Option<OutputFile>,

@@ -47,11 +47,14 @@ pub struct ReplayConfig {
     pub flights: Box<dyn PastFlights>,
     /// The first flight to show, numbered from zero; `None` for the first that can be shown.
     pub number: Option<usize>,
+    /// `true` if the flight and its instant were left in an earlier run: if the file has no such flight, the first one that
+    /// can be shown is shown.
+    pub is_left: bool,
     /// The first instant to show, with time paused. `None` plays the flight from its beginning.
     pub start: Option<ReplayStart>,
     /// The multiple of real time at the start.
     pub speed: f64,
-    /// The notices that are reported first.
+    /// The notices that are reported once the first flight is shown.
     pub notices: Vec<String>,
 }
 
@@ -79,12 +82,15 @@ struct ReplaySession {
     flights: Box<dyn PastFlights>,
     /// The number of the flight that is shown, or of the first one to show.
     number: Option<usize>,
+    is_left: bool,
     start: Option<ReplayStart>,
     speed: f64,
     /// The flight that is shown; `None` until it is read.
     player: Option<Player>,
     commands: CommandQueue,
     events: EventSender,
+    /// The notices that wait for the first flight, whose beginning clears the log.
+    notices: Vec<String>,
     changed: bool,
     quit: bool,
 }
@@ -95,18 +101,16 @@ impl ReplaySession {
         commands: mpsc::Receiver<Command>,
         events: mpsc::UnboundedSender<Event>,
     ) -> Self {
-        let mut events = EventSender::new(events);
-        for text in config.notices {
-            events.send(&Event::notice(SimTime::ZERO, text));
-        }
         Self {
             number: config.number,
+            is_left: config.is_left,
             flights: config.flights,
             start: config.start,
             speed: config.speed,
             player: None,
             commands: CommandQueue::new(commands),
-            events,
+            events: EventSender::new(events),
+            notices: config.notices,
             changed: true,
             quit: false,
         }
@@ -123,6 +127,7 @@ impl ReplaySession {
             Ok(false) => return None,
             Err(why) => return Some(why),
         }
+        std::mem::take(&mut self.notices).into_iter().for_each(|text| self.notice(text));
         let mut published = Duration::ZERO;
         while !self.quit {
             let further = self.take_commands(clock.elapsed(), &mut context);
@@ -162,10 +167,13 @@ impl ReplaySession {
             return Ok(false);
         }
         let now = clock.elapsed();
-        match self.number {
-            Some(number) => self.show_flight(number, now)?,
-            None => self.show_first_of(0..self.flights.count(), now)?,
+        if let Some(number) = self.number {
+            match self.show_flight(number, now) {
+                Err(_) if self.is_left => self.start = None,
+                shown => return shown.map(|()| true),
+            }
         }
+        self.show_first_of(0..self.flights.count(), now)?;
         Ok(true)
     }
 

@@ -93,6 +93,9 @@ impl AppState {
         let shared = &mut self.shared;
         let text = shared.keymap.in_force(&(self.sentence)(event));
         let severity = Severity::of(&event.kind);
+        if matches!(event.kind, SessionEvent::Branch { .. } | SessionEvent::Restarted) {
+            self.kept.has_left = true;
+        }
         if let SessionEvent::Branch { .. } = event.kind {
             // The flight continues from there.
             shared.log.leave_behind(event.time);

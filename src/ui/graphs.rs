@@ -52,6 +52,8 @@ pub struct GraphsState {
     /// The signals that a recorded flight has; `None` while a vehicle flies.
     recorded: Option<Vec<Signal>>,
     span: usize,
+    /// `true` if the plots and the span are those of an earlier run.
+    is_restored: bool,
     cursor_s: Option<f64>,
 }
 
@@ -68,6 +70,7 @@ impl Default for GraphsState {
             has_series: false,
             recorded: None,
             span: FIRST_SPAN,
+            is_restored: false,
             cursor_s: None,
         }
     }
@@ -76,7 +79,7 @@ impl Default for GraphsState {
 impl GraphsState {
     /// Shows the whole of a recorded flight. What was chosen for the one before stays chosen.
     pub(super) fn load(&mut self, overview: &Overview) {
-        if self.recorded.is_none() {
+        if self.recorded.is_none() && !self.is_restored {
             self.shown = std::array::from_fn(|plot| plot < 7);
         }
         let is_recorded =

@@ -1,7 +1,8 @@
 //! The part of the screen that comes back with the next start: the focus and the places of the panels, the window of the
-//! map, the graphs, the open plans and the row of the shown one, the speed, and the air.
+//! map, the graphs, the open plans and the row of the shown one, the speed, the air, and the place in a flight that is over.
 //!
-//! It is kept in the state directory while the program runs, so that it also comes back after a kill.
+//! It is kept in the state directory while the program runs, so that it also comes back after a kill. Each kind of session
+//! has its own screen, because their panels differ in use. Plans, place and speed are kept for each craft and each flight.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -27,11 +28,39 @@ pub enum Unread {
     Later,
 }
 
-/// The part of the screen that comes back. A missing part of a file has its default.
+/// The session whose screen is kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum KeptOf {
+    /// A flight of this program.
+    #[default]
+    Flight,
+    /// A remote flight controller.
+    Craft,
+    /// A flight that was flown to its end before the screen opened, and can be flown on.
+    Flown,
+    /// A recorded flight.
+    Record,
+}
+
+impl KeptOf {
+    /// Returns `true` if plans, place and speed belong to one craft or one flight, not to the next of its kind.
+    pub(super) fn has_subject(self) -> bool {
+        self != Self::Flight
+    }
+}
+
+/// The screen that comes back.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct KeptScreen {
+    /// `None` if they are unknown.
+    pub(super) panels: Option<KeptPanels>,
+    pub(super) subject: KeptSubject,
+}
+
+/// The panels. A missing part of a file has its default.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
-pub struct KeptScreen {
-    pub(super) version: u32,
+pub(super) struct KeptPanels {
     /// The name of the panel with the focus.
     pub(super) focus: String,
     pub(super) zoomed: bool,
@@ -41,16 +70,56 @@ pub struct KeptScreen {
     pub(super) arrangement: Arrangement,
     pub(super) map: KeptMap,
     pub(super) graphs: ChosenGraphs,
+}
+
+/// The part of the screen that belongs to its craft or its flight.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub(super) struct KeptSubject {
     /// The files of the open plans.
     pub(super) plans: Vec<PathBuf>,
     /// The file of the shown plan, and its row with the cursor.
     pub(super) shown: Option<PathBuf>,
     pub(super) row: usize,
+    /// The name of the shown plan if it has no file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) shown_name: Option<String>,
     /// The speed, times real time, if it is not real time.
     pub(super) speed: Option<f64>,
     /// The lines that make the air of a calm world.
     pub(super) air: Vec<String>,
+    /// The shown place in a flight that is over.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) place: Option<KeptPlace>,
+    /// The window of the map that the user chose, if it has a meaning for this craft or flight only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) window: Option<MapMode>,
 }
+
+/// A place in the flights of a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct KeptPlace {
+    /// The number of the flight, from zero.
+    pub flight: usize,
+    /// The time of the instant on the craft's clock, µs; `None` if it is the beginning or the end.
+    pub at_us: Option<u64>,
+}
+
+/// The file form of all parts, or of one of them.
+#[derive(Default, Serialize, Deserialize)]
+#[serde(default)]
+struct KeptFile<Panels, Subject> {
+    version: u32,
+    #[serde(flatten)]
+    panels: Panels,
+    #[serde(flatten)]
+    subject: Subject,
+}
+
+/// No part of a file.
+#[derive(Default, Serialize)]
+struct Nothing {}
 
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
@@ -61,13 +130,26 @@ pub(super) struct KeptMap {
     pub(super) hides_past: bool,
 }
 
+/// The texts of the files of a screen; `None` for a file that stays as it is.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct KeptTexts {
+    pub screen: Option<String>,
+    /// The part that belongs to the craft or the flight, if it has a file of its own.
+    pub subject: Option<String>,
+}
+
 /// The screen of the run before, and the one that is kept for the next run.
 #[derive(Debug, Default)]
 pub struct KeptScreens {
     /// `true` if the screen is kept.
     pub(super) is_kept: bool,
+    pub(super) of: KeptOf,
     /// The screen that comes back, until it does.
     pub(super) before: Option<KeptScreen>,
+    /// The shown place in a flight that is over.
+    pub(super) place: Option<KeptPlace>,
+    /// `true` once another flight has begun on this screen. Its instants are no places in the first one.
+    pub(super) has_left: bool,
     /// The screen that was kept last.
     pub(super) last: Option<KeptScreen>,
     /// The time of the last look for a change.
@@ -88,28 +170,63 @@ impl KeptScreen {
         if serde_json::from_str(text).is_ok_and(is_later) {
             return Err(Unread::Later);
         }
-        serde_json::from_str(text).map_err(|_| Unread::Damaged)
+        let read: serde_json::Result<KeptFile<KeptPanels, KeptSubject>> = serde_json::from_str(text);
+        let KeptFile { panels, subject, .. } = read.map_err(|_| Unread::Damaged)?;
+        Ok(Self { panels: Some(panels), subject })
     }
 
-    /// Returns the text from which the screen can be read again.
-    pub(super) fn text(&self) -> Option<String> {
-        serde_json::to_string_pretty(self).ok()
+    /// Returns the panels of one screen with the subject of another.
+    pub fn joined(panels: Option<Self>, subject: Option<Self>) -> Option<Self> {
+        if panels.is_none() && subject.is_none() {
+            return None;
+        }
+        let panels = panels.and_then(|screen| screen.panels);
+        Some(Self { panels, subject: subject.map(|screen| screen.subject).unwrap_or_default() })
+    }
+
+    /// Returns the texts from which the screen can be read again, without those that `last` has too.
+    pub(super) fn texts(&self, of: KeptOf, last: Option<&Self>) -> KeptTexts {
+        let is_new_panels = last.is_none_or(|last| last.panels != self.panels);
+        let is_new_subject = last.is_none_or(|last| last.subject != self.subject);
+        let (panels, subject) = (&self.panels, &self.subject);
+        if of.has_subject() {
+            KeptTexts {
+                screen: is_new_panels.then(|| text(panels, Nothing {})).flatten(),
+                subject: is_new_subject.then(|| text(Nothing {}, subject)).flatten(),
+            }
+        } else {
+            let is_new = is_new_panels || is_new_subject;
+            KeptTexts { screen: is_new.then(|| text(panels, subject)).flatten(), subject: None }
+        }
     }
 
     /// Returns the file of the plan that was shown.
     pub fn shown_plan(&self) -> Option<&Path> {
-        self.shown.as_deref()
+        self.subject.shown.as_deref()
     }
 
-    /// Returns the row that had the cursor, if the plan of this file was shown.
-    pub fn row_of(&self, path: Option<&Path>) -> Option<usize> {
-        path.filter(|path| self.shown_plan() == Some(*path)).map(|_| self.row)
+    /// Returns the row that had the cursor, if the plan of this file was shown, or without a file, that of this name.
+    pub fn row_of(&self, path: Option<&Path>, name: &str) -> Option<usize> {
+        let is_it = match path {
+            Some(path) => self.shown_plan() == Some(path),
+            None => self.subject.shown_name.as_deref() == Some(name),
+        };
+        is_it.then_some(self.subject.row)
     }
 
     /// Returns the files of the open plans.
     pub fn plans(&self) -> impl Iterator<Item = &Path> {
-        self.plans.iter().take(MOST_PLANS).map(PathBuf::as_path)
+        self.subject.plans.iter().take(MOST_PLANS).map(PathBuf::as_path)
     }
+
+    /// Returns the place in the flights of the file.
+    pub fn place(&self) -> Option<KeptPlace> {
+        self.subject.place
+    }
+}
+
+fn text(panels: impl Serialize, subject: impl Serialize) -> Option<String> {
+    serde_json::to_string_pretty(&KeptFile { version: VERSION, panels, subject }).ok()
 }
 
 impl KeptScreens {
@@ -119,14 +236,23 @@ impl KeptScreens {
     }
 
     /// Returns screens that are kept, with the one of the run before.
-    pub fn after(before: Option<KeptScreen>) -> Self {
-        Self { is_kept: true, before, ..Self::default() }
+    pub fn after(of: KeptOf, before: Option<KeptScreen>) -> Self {
+        let place = before.as_ref().and_then(KeptScreen::place);
+        Self { is_kept: true, of, before, place, ..Self::default() }
     }
 
     /// Returns screens that are kept as before, but of which none comes back.
     #[must_use]
     pub fn fresh(self) -> Self {
-        Self { before: None, ..self }
+        Self { before: None, place: None, ..self }
+    }
+
+    /// Leaves the place out of the screen that comes back, because the command line names another.
+    pub fn forget_place(&mut self) {
+        self.place = None;
+        if let Some(before) = &mut self.before {
+            before.subject.place = None;
+        }
     }
 
     /// Returns `true` if the screen is kept for the next run.

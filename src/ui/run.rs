@@ -25,7 +25,7 @@ use super::files_link::FilesLink;
 use super::flights::FlightShelf;
 use super::message::{Effect, Msg};
 use super::terminal::{Tui, can_be_continued};
-use super::update::{keep, restore, update};
+use super::update::{follow_screen, keep, restore, update};
 
 mod effects;
 mod flights;
@@ -200,7 +200,13 @@ async fn run_loop(
                 link.commands.try_send(Command::Quit).ok();
                 return Ok(ending);
             }
-            Wake::Time => (None, Duration::ZERO),
+            Wake::Time => {
+                // Nothing else looks at a screen that waits.
+                if let Some(effect) = follow_screen(&mut state) {
+                    carry_out(effect, &link, &threads, &mut files, &answers);
+                }
+                (None, Duration::ZERO)
+            }
             Wake::Suspend | Wake::Resume => {
                 if matches!(wake, Wake::Suspend) {
                     tui.suspend()?;

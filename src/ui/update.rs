@@ -55,7 +55,7 @@ use paste::paste;
 use view::{focus, focus_neighbour, scroll};
 
 pub(super) use diff::compare;
-pub(super) use kept::{keep, restore};
+pub(super) use kept::{follow as follow_screen, keep, restore};
 pub(super) use permission::hold;
 
 /// The time of a step in a recorded flight, µs.

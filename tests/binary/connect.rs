@@ -20,14 +20,14 @@ use crate::support::Sandbox;
 const NEVER: Duration = Duration::from_secs(60);
 
 /// The embedded firmware at a TCP door. It is killed when dropped.
-struct Craft {
+pub(crate) struct Craft {
     child: Child,
-    address: SocketAddr,
+    pub(crate) address: SocketAddr,
     _home: Sandbox,
 }
 
 impl Craft {
-    fn start() -> Self {
+    pub(crate) fn start() -> Self {
         let home = Sandbox::new();
         let ports = ["--tcp-port=0", "--ws-port=0", "--udp-ports=0,0,0,0"];
         let mut command = home.command(&[&["serve", "--fresh"][..], &ports].concat());

@@ -25,6 +25,7 @@ mod free_port;
 mod hostile;
 mod inputs;
 #[cfg(unix)]
+mod kept_place;
 mod kept_screen;
 #[cfg(unix)]
 mod library;

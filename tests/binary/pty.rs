@@ -95,6 +95,11 @@ impl Terminal {
         &self.home
     }
 
+    /// Returns the home directory of a program that has ended, for the next one.
+    pub(crate) fn into_home(mut self) -> Sandbox {
+        std::mem::replace(&mut self.home, Sandbox::new())
+    }
+
     /// Blocks the output of the program, as a terminal does after Ctrl-S.
     pub(crate) fn hold_output(&self) {
         let name = self.master.tty_name().expect("a name");

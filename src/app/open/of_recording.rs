@@ -4,8 +4,9 @@ use std::io::{BufReader, Read as _, Seek as _};
 use std::path::Path;
 use std::sync::atomic::Ordering;
 
-use super::{Finished, Recorded, instant, open_screen};
+use super::{Finished, Kept, Recorded, instant, open_screen};
 use crate::app::error::{self, AppError};
+use crate::app::file_identity;
 use crate::app::flight_recorder::RecordedStart;
 use crate::app::input_file;
 use crate::app::interrupt::interrupt_flag;
@@ -73,7 +74,8 @@ pub(super) fn run(args: &OpenArgs, recording: &Recording, keymap: Keymap) -> Res
             at.as_secs_f64()
         ),
     });
-    let show_at = instant(args.at, engaged_at, end)?;
+    let kept = Kept::open(args, file_identity::of(file).unwrap_or_default(), &mut notices);
+    let show_at = kept.instant_or(instant(args.at, engaged_at, end)?, end);
     let start = RecordedStart {
         setup: recording.setup().cloned().ok_or_else(|| "the start of the flight is not in it".to_owned()),
         earlier: repeat.earlier().to_vec(),
@@ -87,7 +89,7 @@ pub(super) fn run(args: &OpenArgs, recording: &Recording, keymap: Keymap) -> Res
     let flown = FlownBefore { timeline, events, show: show_at, again: None };
     open_screen(
         args,
-        Finished { plan, given_settings, vehicle, recorded: start, flown, past, notices },
+        Finished { plan, given_settings, vehicle, recorded: start, flown, past, kept, notices },
         keymap,
     )
 }

@@ -117,7 +117,8 @@ impl Rig {
     fn new(count: usize, start: Option<ReplayStart>) -> Self {
         let is_there = Arc::new(Mutex::new(true));
         let flights = Box::new(File { count, is_there: Arc::clone(&is_there) });
-        let config = ReplayConfig { flights, number: None, start, speed: 1.0, notices: Vec::new() };
+        let config =
+            ReplayConfig { flights, number: None, is_left: false, start, speed: 1.0, notices: Vec::new() };
         let (commands, taken) = mpsc::channel(32);
         let (sent, events) = mpsc::unbounded_channel();
         let session = ReplaySession::new(config, taken, sent);
@@ -374,7 +375,8 @@ fn the_curves_of_a_flight_are_read() {
 #[test]
 fn the_thread_shows_views_until_its_commands_end() {
     let flights = Box::new(File { count: 1, is_there: Arc::new(Mutex::new(true)) });
-    let config = ReplayConfig { flights, number: None, start: None, speed: 1.0, notices: Vec::new() };
+    let config =
+        ReplayConfig { flights, number: None, is_left: false, start: None, speed: 1.0, notices: Vec::new() };
     let mut handle = start_replay(config).unwrap();
     let runtime = tokio::runtime::Builder::new_current_thread().build().unwrap();
     runtime.block_on(async {
@@ -392,9 +394,39 @@ fn the_thread_shows_views_until_its_commands_end() {
 #[test]
 fn a_flight_that_cannot_be_read_ends_the_session_with_the_reason() {
     let flights = Box::new(File { count: 3, is_there: Arc::new(Mutex::new(true)) });
-    let config = ReplayConfig { flights, number: Some(2), start: None, speed: 1.0, notices: Vec::new() };
+    let config = ReplayConfig {
+        flights,
+        number: Some(2),
+        is_left: false,
+        start: None,
+        speed: 1.0,
+        notices: Vec::new(),
+    };
     let handle = start_replay(config).unwrap();
     assert_eq!(handle.thread.join().unwrap().as_deref(), Some("Flight 3 has no frame."));
+}
+
+#[test]
+fn a_flight_that_was_left_and_is_not_in_the_file_any_more_is_the_first_one_and_notices_come_after_its_beginning()
+ {
+    let flights = Box::new(File { count: 3, is_there: Arc::new(Mutex::new(true)) });
+    let start = Some(ReplayStart::Clock(at_s(12.0)));
+    let notices = vec!["A notice.".to_owned()];
+    let config = ReplayConfig { flights, number: Some(2), is_left: true, start, speed: 1.0, notices };
+    let mut handle = start_replay(config).unwrap();
+    let runtime = tokio::runtime::Builder::new_current_thread().build().unwrap();
+    runtime.block_on(async {
+        let begins = handle.events.recv().await.expect("the beginning");
+        assert!(matches!(begins.kind, SessionEvent::Replay(ReplayNotice::Begins(_))), "{begins:?}");
+        while handle.events.recv().await.expect("a notice").kind
+            != SessionEvent::Notice("A notice.".to_owned())
+        {}
+        handle.view.changed().await.unwrap();
+        let view = handle.view.borrow();
+        assert!(!view.paused && view.replay.as_ref().is_some_and(|replay| replay.number == 0));
+    });
+    drop(handle.commands);
+    assert_eq!(handle.thread.join().unwrap(), None);
 }
 
 /// A file that takes long to read.
@@ -432,7 +464,8 @@ impl PastFlights for Slow {
 fn reading_a_large_file_ends_when_the_screen_leaves() {
     let ((go, gone), (begin, begun)) = (std::sync::mpsc::channel(), std::sync::mpsc::channel());
     let flights = Box::new(Slow(gone, begin));
-    let config = ReplayConfig { flights, number: None, start: None, speed: 1.0, notices: Vec::new() };
+    let config =
+        ReplayConfig { flights, number: None, is_left: false, start: None, speed: 1.0, notices: Vec::new() };
     let handle = start_replay(config).unwrap();
     assert_eq!(handle.view.borrow().replay.as_ref().and_then(|replay| replay.reading), Some(0.0));
     begun.recv().unwrap();

@@ -12,6 +12,7 @@ use crate::plan::format::loss::LossReport;
 use crate::terrain::Tiles;
 use crate::ui::backdrop::BackdropLayer;
 use crate::ui::history::LineField;
+use crate::ui::kept_screen::KeptTexts;
 
 #[derive(Debug, Clone, PartialEq)]
 pub enum FileRequest {
@@ -54,7 +55,7 @@ pub enum FileRequest {
         count: usize,
     },
     /// Keep the screen, so that it comes back with the next start.
-    KeepScreen(String),
+    KeepScreen(KeptTexts),
     /// Append this line to the layouts that the user saved.
     KeepLayout(String),
     /// Read the file of a plan for a comparison. The open plan stays as it is.

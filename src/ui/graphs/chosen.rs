@@ -41,8 +41,9 @@ impl GraphsState {
         self.shown = std::array::from_fn(|plot| chosen.plots.iter().any(|name| *name == PLOTS[plot].name));
         self.series = chosen.signals.iter().take(MOST_NAMES).cloned().collect();
         let same = |span: &f64| (span - chosen.span_s).abs() < 1e-9;
+        // The shortest ones are only for recorded flights, whose series may not be read yet.
         self.span = SPANS_S.iter().position(same).unwrap_or(FIRST_SPAN);
-        self.change_span(0);
+        self.is_restored = true;
     }
 }
 
@@ -61,5 +62,19 @@ mod tests {
         again.choose(&graphs.chosen());
         assert_eq!(again.chosen(), graphs.chosen());
         assert!(!again.is_shown(0) && again.is_shown(7) && again.shows_series("force"));
+    }
+
+    #[test]
+    fn chosen_graphs_stay_when_the_recorded_flight_is_read() {
+        let series = vec![crate::replay::Series { name: "debug[0]".to_owned(), unit: "" }];
+        let overview = crate::replay::Overview { series, ..crate::replay::Overview::default() };
+        let mut graphs = GraphsState::default();
+        graphs.load(&overview);
+        graphs.toggle(2);
+        graphs.change_span(-5);
+        let mut again = GraphsState::default();
+        again.choose(&graphs.chosen());
+        again.load(&overview);
+        assert_eq!(again.chosen(), graphs.chosen());
     }
 }

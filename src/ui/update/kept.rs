@@ -3,15 +3,20 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use crate::session::Command;
+use crate::session::{Command, SessionView};
+use crate::signals::SimTime;
 use crate::ui::app_state::AppState;
 use crate::ui::editor::FileRequest;
 use crate::ui::event_log::Severity;
-use crate::ui::kept_screen::{KeptMap, KeptScreen, MOST_PLANS, VERSION};
+use crate::ui::kept_screen::{
+    KeptMap, KeptOf, KeptPanels, KeptPlace, KeptScreen, KeptSubject, KeptTexts, MOST_PLANS,
+};
 use crate::ui::knobs;
 use crate::ui::layout::Slots;
+use crate::ui::map_state::MapMode;
 use crate::ui::message::Effect;
 use crate::ui::panel::Panel;
+use crate::ui::shared::Shared;
 
 /// The shortest time between two looks for a change.
 const INTERVAL: Duration = Duration::from_secs(1);
@@ -20,41 +25,69 @@ const AIR: [&str; 4] = ["wind=", "gust=", "turbulence=", "noise="];
 /// The speeds that come back, times real time.
 const SPEEDS: (f64, f64) = (0.01, 1000.0);
 
-/// Returns the present screen.
-fn present(state: &AppState) -> KeptScreen {
-    let shared = &state.shared;
-    let file = |path: &Path| path.to_str().map(PathBuf::from);
-    let plans = shared.editor.plans().iter().filter_map(|plan| plan.file().and_then(file));
-    let speed = Some(shared.view.speed_wanted).filter(|speed| is_another_speed(*speed));
+/// Returns the present screen; `None` while the recorded flight is not there yet.
+fn present(state: &mut AppState) -> Option<KeptScreen> {
+    let (shared, kept) = (&state.shared, &mut state.kept);
+    if !kept.has_left && matches!(kept.of, KeptOf::Flown | KeptOf::Record) {
+        kept.place = Some(place(&shared.view)?);
+    }
     let map = &shared.map;
-    KeptScreen {
-        version: VERSION,
+    let mode = map.mode.possible();
+    let is_of_subject = kept.of.has_subject() && matches!(mode, MapMode::Free { .. } | MapMode::Near { .. });
+    let panels = KeptPanels {
         focus: shared.focus.name().to_owned(),
         zoomed: shared.zoomed,
         places: shared.slots.panels().map(|panel| panel.name().to_owned()).to_vec(),
         arrangement: shared.arrangement.clone(),
         map: KeptMap {
-            mode: map.mode.possible(),
+            mode: if is_of_subject { MapMode::default() } else { mode },
             grid: map.grid,
             course_up: map.course_up,
             hides_past: map.hides_past,
         },
         graphs: shared.graphs.chosen(),
+    };
+    let file = |path: &Path| path.to_str().map(PathBuf::from);
+    let plans = shared.editor.plans().iter().filter_map(|plan| plan.file().and_then(file));
+    let plan = shared.editor.plan();
+    let speed = Some(shared.view.speed_wanted).filter(|speed| is_another_speed(*speed));
+    let subject = KeptSubject {
         plans: plans.take(MOST_PLANS).collect(),
-        shown: shared.editor.plan().file().and_then(file),
+        shown: plan.file().and_then(file),
         row: shared.editor.row(),
-        speed: speed.filter(|_| is_simulated(state)),
-        air: if is_simulated(state) { knobs::lines(&shared.view.vehicle.world) } else { Vec::new() },
+        shown_name: plan.file().is_none().then(|| plan.document().name.clone()),
+        speed: speed.filter(|_| has_speed(shared, kept.of)),
+        air: if has_air(shared, kept.of) { knobs::lines(&shared.view.vehicle.world) } else { Vec::new() },
+        place: kept.place,
+        window: is_of_subject.then_some(mode),
+    };
+    Some(KeptScreen { panels: Some(panels), subject })
+}
+
+/// Returns the shown place in the flights of a file; `None` while the file is read.
+fn place(view: &SessionView) -> Option<KeptPlace> {
+    let replay = view.replay.as_deref();
+    if replay.is_some_and(|replay| replay.reading.is_some()) {
+        return None;
     }
+    let timeline = view.timeline.as_ref()?;
+    let at = view.vehicle.time;
+    let is_within = timeline.rewound && at > timeline.first;
+    Some(KeptPlace { flight: replay.map_or(0, |replay| replay.number), at_us: is_within.then_some(at.0) })
 }
 
 fn is_another_speed(speed: f64) -> bool {
     speed.is_finite() && (SPEEDS.0..=SPEEDS.1).contains(&speed) && (speed - 1.0).abs() > 1e-9
 }
 
-/// Returns `true` if the speed and the air are those of the embedded simulator.
-fn is_simulated(state: &AppState) -> bool {
-    state.shared.view.remote.is_none() && state.shared.view.simulator.is_none()
+/// Returns `true` if this program determines the speed.
+fn has_speed(shared: &Shared, of: KeptOf) -> bool {
+    of != KeptOf::Craft && shared.view.remote.is_none() && shared.view.simulator.is_none()
+}
+
+/// Returns `true` if the air is the one that the user has made, rather than that of a flight that is over.
+fn has_air(shared: &Shared, of: KeptOf) -> bool {
+    of == KeptOf::Flight && has_speed(shared, of)
 }
 
 fn panel_of(name: &str) -> Option<Panel> {
@@ -64,38 +97,32 @@ fn panel_of(name: &str) -> Option<Panel> {
 /// Shows the screen of the run before. Returns the requests for the speed and the air, if the options of this run left
 /// them at their defaults.
 pub(in crate::ui) fn restore(state: &mut AppState) -> Vec<Effect> {
-    let Some(before) = state.kept.before.take() else { return Vec::new() };
-    let shared = &mut state.shared;
-    if let Some(focus) = panel_of(&before.focus) {
-        shared.focus = focus;
+    let Some(KeptScreen { panels, subject }) = state.kept.before.take() else { return Vec::new() };
+    let (shared, of) = (&mut state.shared, state.kept.of);
+    if let Some(panels) = panels {
+        arrange(shared, panels);
     }
-    shared.zoomed = before.zoomed;
-    let places: Vec<Panel> = before.places.iter().filter_map(|name| panel_of(name)).collect();
-    if let Some(slots) = <[Panel; 3]>::try_from(places).ok().and_then(Slots::of) {
-        shared.slots = slots;
+    if let Some(window) = subject.window {
+        shared.map.mode = window.possible();
     }
-    shared.arrangement = before.arrangement;
-    let KeptMap { mode, grid, course_up, hides_past } = before.map;
-    (shared.map.mode, shared.map.grid) = (mode.possible(), grid);
-    (shared.map.course_up, shared.map.hides_past) = (course_up, hides_past);
-    shared.graphs.choose(&before.graphs);
     let mut effects = Vec::new();
     let mut said = Vec::new();
-    if is_simulated(state) {
-        let shared = &state.shared;
-        if let Some(speed) = before.speed.filter(|speed| is_another_speed(*speed))
-            && !is_another_speed(shared.view.speed_wanted)
-        {
-            said.push(format!("speed {speed}×"));
-            effects.push(Effect::Send(Command::Speed(speed)));
-        }
-        if knobs::lines(&shared.view.vehicle.world).is_empty() {
-            // The file may have been written by anybody.
-            let is_air = |line: &&String| AIR.iter().any(|name| line.starts_with(name));
-            let air: Vec<String> = before.air.iter().filter(is_air).take(AIR.len()).cloned().collect();
-            said.extend(air.iter().cloned());
-            effects.extend(air.into_iter().map(Effect::World));
-        }
+    if let Some(at_us) = subject.place.and_then(|place| place.at_us) {
+        said.push(format!("at {:.1} s since boot", SimTime(at_us).as_secs_f64()));
+    }
+    if has_speed(shared, of)
+        && let Some(speed) = subject.speed.filter(|speed| is_another_speed(*speed))
+        && !is_another_speed(shared.view.speed_wanted)
+    {
+        said.push(format!("speed {speed}×"));
+        effects.push(Effect::Send(Command::Speed(speed)));
+    }
+    if has_air(shared, of) && knobs::lines(&shared.view.vehicle.world).is_empty() {
+        // The file may have been written by anybody.
+        let is_air = |line: &&String| AIR.iter().any(|name| line.starts_with(name));
+        let air: Vec<String> = subject.air.iter().filter(is_air).take(AIR.len()).cloned().collect();
+        said.extend(air.iter().cloned());
+        effects.extend(air.into_iter().map(Effect::World));
     }
     if !said.is_empty() {
         let text = format!("As you left it: {}. `--fresh-screen` starts clean.", said.join(", "));
@@ -104,8 +131,25 @@ pub(in crate::ui) fn restore(state: &mut AppState) -> Vec<Effect> {
     effects
 }
 
+/// Shows the panels as they were.
+fn arrange(shared: &mut Shared, panels: KeptPanels) {
+    if let Some(focus) = panel_of(&panels.focus) {
+        shared.focus = focus;
+    }
+    shared.zoomed = panels.zoomed;
+    let places: Vec<Panel> = panels.places.iter().filter_map(|name| panel_of(name)).collect();
+    if let Some(slots) = <[Panel; 3]>::try_from(places).ok().and_then(Slots::of) {
+        shared.slots = slots;
+    }
+    shared.arrangement = panels.arrangement;
+    let KeptMap { mode, grid, course_up, hides_past } = panels.map;
+    (shared.map.mode, shared.map.grid) = (mode.possible(), grid);
+    (shared.map.course_up, shared.map.hides_past) = (course_up, hides_past);
+    shared.graphs.choose(&panels.graphs);
+}
+
 /// Returns the request to keep the screen, if it has changed. It looks only now and then.
-pub(super) fn follow(state: &mut AppState) -> Option<Effect> {
+pub(in crate::ui) fn follow(state: &mut AppState) -> Option<Effect> {
     if state.shared.now.saturating_sub(state.kept.looked) < INTERVAL {
         return None;
     }
@@ -119,33 +163,54 @@ pub(in crate::ui) fn keep(state: &mut AppState) -> Option<Effect> {
         return None;
     }
     state.kept.looked = state.shared.now;
-    let screen = present(state);
-    if state.kept.last.as_ref() == Some(&screen) {
-        return None;
-    }
-    let text = screen.text()?;
-    state.kept.last = Some(screen);
-    Some(Effect::Files(FileRequest::KeepScreen(text)))
+    let screen = present(state)?;
+    let kept = &mut state.kept;
+    let texts = screen.texts(kept.of, kept.last.as_ref());
+    kept.last = Some(screen);
+    (texts != KeptTexts::default()).then_some(Effect::Files(FileRequest::KeepScreen(texts)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::SessionView;
+    use crate::session::{Event, ReplayView, SessionEvent};
+    use crate::telemetry::snapshot::WindView;
+    use crate::timeline::TimelineView;
     use crate::ui::kept_screen::{KeptScreens, Unread};
-    use crate::ui::map_state::MapMode;
+    use std::sync::Arc;
 
     fn state() -> AppState {
-        let mut state = AppState::bare((120, 40), SessionView::default());
-        state.kept = KeptScreens::after(None);
+        state_of(KeptOf::Flight, None)
+    }
+
+    fn state_of(of: KeptOf, before: Option<KeptScreen>) -> AppState {
+        let mut state =
+            AppState::bare((120, 40), SessionView { speed_wanted: 1.0, ..SessionView::default() });
+        state.kept = KeptScreens::after(of, before);
         state
     }
 
-    fn kept(state: &mut AppState) -> Option<String> {
+    fn kept(state: &mut AppState) -> Option<KeptTexts> {
         match keep(state)? {
-            Effect::Files(FileRequest::KeepScreen(text)) => Some(text),
+            Effect::Files(FileRequest::KeepScreen(texts)) => Some(texts),
             other => panic!("{other:?}"),
         }
+    }
+
+    fn read(text: Option<String>) -> Option<KeptScreen> {
+        text.map(|text| KeptScreen::parse(&text).expect("a screen"))
+    }
+
+    /// Shows an instant of a flight of 40 s.
+    fn show(state: &mut AppState, at_s: f64) {
+        let view = &mut state.shared.view;
+        Arc::make_mut(&mut view.vehicle).time = SimTime::from_secs_f64(at_s);
+        let head = SimTime::from_secs_f64(40.0);
+        view.timeline = Some(TimelineView { head, rewound: at_s < 40.0, ..TimelineView::default() });
+    }
+
+    fn shown_place(state: &mut AppState) -> Option<u64> {
+        present(state).and_then(|screen| screen.subject.place).and_then(|place| place.at_us)
     }
 
     #[test]
@@ -157,32 +222,102 @@ mod tests {
         before.shared.map.mode = MapMode::Free { n: 3.5, e: -7.0, scale: 0.5 };
         before.shared.map.course_up = true;
         before.shared.graphs.toggle(6);
-        let text = kept(&mut before).expect("a changed screen is kept");
+        let texts = kept(&mut before).expect("a changed screen is kept");
+        assert_eq!(texts.subject, None, "a flight has one file");
         assert_eq!(kept(&mut before), None, "once");
-        let mut after = state();
-        after.kept = KeptScreens::after(KeptScreen::parse(&text).ok());
+        let mut after = state_of(KeptOf::Flight, read(texts.screen));
         assert!(restore(&mut after).is_empty(), "real time in calm air");
-        assert_eq!(present(&after), present(&before));
+        assert_eq!(present(&mut after), present(&mut before));
         assert_eq!(after.shared.focus, Panel::Graphs);
     }
 
     #[test]
+    fn the_place_the_speed_and_the_window_of_the_map_are_those_of_one_recorded_flight() {
+        let mut before = state_of(KeptOf::Record, None);
+        let reading = ReplayView { reading: Some(0.5), ..ReplayView::default() };
+        before.shared.view.replay = Some(Arc::new(reading));
+        assert_eq!(kept(&mut before), None, "nothing is shown yet");
+        before.shared.view.replay =
+            Some(Arc::new(ReplayView { number: 2, count: 3, ..ReplayView::default() }));
+        before.shared.map.mode = MapMode::Free { n: 3.5, e: -7.0, scale: 0.5 };
+        before.shared.view.speed_wanted = 0.5;
+        before.shared.zoomed = true;
+        show(&mut before, 12.5);
+        let KeptTexts { screen, subject } = kept(&mut before).expect("a changed screen is kept");
+        show(&mut before, 13.0);
+        let later = kept(&mut before).expect("another place");
+        assert!(later.screen.is_none() && later.subject.is_some(), "the panels stay as they are");
+
+        let both = KeptScreen::joined(read(screen.clone()), read(subject.clone()));
+        let mut after = state_of(KeptOf::Record, both);
+        let place = KeptPlace { flight: 2, at_us: Some(12_500_000) };
+        assert_eq!(after.kept.before().and_then(KeptScreen::place), Some(place));
+        let effects = restore(&mut after);
+        assert!(matches!(&effects[..], [Effect::Send(Command::Speed(0.5))]), "{effects:?}");
+        assert_eq!(after.shared.map.mode, before.shared.map.mode);
+        let said = after.shared.notice.as_ref().map(|notice| notice.text.as_str());
+        assert_eq!(
+            said,
+            Some("As you left it: at 12.5 s since boot, speed 0.5×. `--fresh-screen` starts clean.")
+        );
+
+        let mut other = state_of(KeptOf::Record, KeptScreen::joined(read(screen), None));
+        assert!(restore(&mut other).is_empty() && other.shared.zoomed);
+        assert_eq!(other.shared.map.mode, MapMode::Fit);
+    }
+
+    #[test]
+    fn the_beginning_and_the_end_of_a_flight_are_no_places_to_return_to() {
+        let mut state = state_of(KeptOf::Flown, None);
+        for (at_s, place) in [(0.0, None), (7.0, Some(7_000_000)), (40.0, None)] {
+            show(&mut state, at_s);
+            assert_eq!(shown_place(&mut state), place, "{at_s}");
+        }
+    }
+
+    #[test]
+    fn a_flight_that_is_flown_on_keeps_the_place_that_was_left() {
+        let mut state = state_of(KeptOf::Flown, None);
+        show(&mut state, 7.0);
+        assert_eq!(shown_place(&mut state), Some(7_000_000));
+        state.take_event(&Event { time: SimTime(7_000_000), kind: SessionEvent::Restarted });
+        show(&mut state, 9.0);
+        assert_eq!(shown_place(&mut state), Some(7_000_000), "9 s is an instant of another flight");
+    }
+
+    #[test]
+    fn neither_speed_nor_air_is_kept_of_a_craft_and_no_air_of_a_flight_that_is_over() {
+        for (of, speed) in [(KeptOf::Craft, None), (KeptOf::Flown, Some(4.0)), (KeptOf::Record, Some(4.0))] {
+            let mut state = state_of(of, None);
+            show(&mut state, 7.0);
+            state.shared.view.speed_wanted = 4.0;
+            let vehicle = Arc::make_mut(&mut state.shared.view.vehicle);
+            vehicle.world.wind = Some(WindView { speed_mps: 5.0, from_deg: 270.0 });
+            let screen = present(&mut state).expect("a screen");
+            assert_eq!((screen.subject.speed, screen.subject.air.len()), (speed, 0), "{of:?}");
+            let subject = KeptSubject { air: vec!["wind=5@270".to_owned()], ..screen.subject };
+            let mut after = state_of(of, Some(KeptScreen { panels: None, subject }));
+            let effects = restore(&mut after);
+            assert!(effects.iter().all(|effect| matches!(effect, Effect::Send(Command::Speed(_)))), "{of:?}");
+        }
+    }
+
+    #[test]
     fn speed_and_air_come_back_unless_the_options_set_them() {
-        let screen =
-            KeptScreen { speed: Some(4.0), air: vec!["wind=5@270".to_owned()], ..KeptScreen::default() };
-        let mut state = state();
-        state.kept = KeptScreens::after(Some(screen.clone()));
-        state.shared.view.speed_wanted = 1.0;
+        let air = vec!["wind=5@270".to_owned()];
+        let subject = KeptSubject { speed: Some(4.0), air, ..KeptSubject::default() };
+        let screen = KeptScreen { panels: None, subject };
+        let mut state = state_of(KeptOf::Flight, Some(screen.clone()));
         let effects = restore(&mut state);
         assert!(
             matches!(&effects[..], [Effect::Send(Command::Speed(4.0)), Effect::World(line)] if line == "wind=5@270"),
             "{effects:?}"
         );
-        state.kept = KeptScreens::after(Some(screen));
+        state.kept = KeptScreens::after(KeptOf::Flight, Some(screen));
         state.shared.view.speed_wanted = 2.0;
-        std::sync::Arc::make_mut(&mut state.shared.view.vehicle).world.gust_mps = 3.0;
-        std::sync::Arc::make_mut(&mut state.shared.view.vehicle).world.wind =
-            Some(crate::telemetry::snapshot::WindView { speed_mps: 0.0, from_deg: 0.0 });
+        let world = &mut Arc::make_mut(&mut state.shared.view.vehicle).world;
+        world.gust_mps = 3.0;
+        world.wind = Some(WindView { speed_mps: 0.0, from_deg: 0.0 });
         assert!(restore(&mut state).is_empty());
     }
 
@@ -191,9 +326,7 @@ mod tests {
         let text = r#"{"version": 1, "focus": "Radar", "places": ["Map"], "graphs": {"plots": ["none"]},
             "map": {"mode": {"Free": {"n": 1e300, "e": 0.0, "scale": 1.0}}}, "row": 4000000, "speed": -1.0,
             "air": ["thermal=9", "wind=3@90"]}"#;
-        let mut state = state();
-        state.shared.view.speed_wanted = 1.0;
-        state.kept = KeptScreens::after(KeptScreen::parse(text).ok());
+        let mut state = state_of(KeptOf::Flight, KeptScreen::parse(text).ok());
         let effects = restore(&mut state);
         assert!(matches!(&effects[..], [Effect::World(line)] if line == "wind=3@90"), "{effects:?}");
         assert_eq!((state.shared.focus, state.shared.map.mode), (Panel::Map, MapMode::Fit));
