@@ -52,6 +52,8 @@ pub struct SettingsState {
     refusal: Option<String>,
     /// `true` while a reading is on its way.
     is_asked: bool,
+    /// `true` if the user asked for the reading and is told about its end.
+    is_reported: bool,
     /// The time of the newest answer, wall clock.
     read_at: Option<Duration>,
     /// `true` if something may have changed the settings since.

@@ -177,6 +177,16 @@ impl Shared {
         Effect::Send(Command::Speed(factor))
     }
 
+    /// Reports a requested speed that the status line does not show, because the flight is paused.
+    pub(super) fn say_speed_in_pause(&mut self, factor: f64) {
+        if self.view.paused {
+            let go_on = self.key(Action::Pause);
+            let speed =
+                if factor.is_finite() { format!("at {factor}×") } else { "as fast as it can".to_owned() };
+            self.say(Severity::Info, format!("`{go_on}` goes on {speed}."));
+        }
+    }
+
     /// Puts the requested speed into a picture from before the session got the request.
     pub(super) fn keep_requested_speed(&mut self, view: &mut SessionView) {
         let Some((factor, at)) = self.speed_sent else { return };

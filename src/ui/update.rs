@@ -453,6 +453,9 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
             let focus_now = state.shared.focus;
             if focus_now.takes_text() {
                 focus(state, Panel::Map);
+            } else if state.panels.of_mut(focus_now).field().is_some() {
+                // Esc goes to the field itself, but a command of the palette comes here.
+                state.panels.of_mut(focus_now).close_field();
             } else if let Some(requests) = state.panels.of_mut(focus_now).go_back(&state.shared) {
                 return carry_out(state, requests);
             } else if let Some(effect) = survey::dismiss(&mut state.shared) {

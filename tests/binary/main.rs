@@ -1,6 +1,8 @@
 //! The built executable, run as a user runs it: flights, plans, the command line, and the user interface in a
 //! pseudo-terminal.
 
+#[cfg(unix)]
+mod all_commands;
 mod by_mouse;
 mod campaign;
 mod check;

@@ -154,6 +154,11 @@ impl Terminal {
         self.screen().lines().nth(row).unwrap_or("").to_owned()
     }
 
+    /// Returns the colour of the background at the top left.
+    pub(crate) fn background(&self) -> vt100::Color {
+        self.parser.screen().cell(0, 0).map_or(vt100::Color::Default, vt100::Cell::bgcolor)
+    }
+
     /// Returns all bytes so far.
     pub(crate) fn raw(&self) -> String {
         String::from_utf8_lossy(&self.raw).into_owned()

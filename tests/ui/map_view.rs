@@ -122,9 +122,15 @@ fn the_track_of_the_flight_before_stays_faintly_on_the_map() {
     arm(&mut state, 41.0);
     let with_past = screen(&state);
     assert_ne!(with_past, empty);
-    keys(&mut state, "v");
-    let without = screen(&state);
+    // The notice about it is above the frame of the map.
+    let toggled = |state: &mut AppState, told: &str| {
+        keys(state, "v");
+        assert!(screen(state).contains(told), "{}", screen(state));
+        state.shared.notice = None;
+        screen(state)
+    };
+    let without = toggled(&mut state, "The tracks of earlier flights are hidden.");
     assert_ne!(without, with_past, "hidden on request");
-    keys(&mut state, "v");
-    assert_eq!(screen(&state), with_past);
+    let shown = toggled(&mut state, "The tracks of earlier flights are shown.");
+    assert_eq!(shown, with_past);
 }

@@ -16,6 +16,7 @@ pub(super) fn speed(state: &mut Shared, _: &str, argument: &str) -> Result<Vec<R
                 format!("Write a factor from {slowest} to {fastest} times real time, or max.")
             })?,
         };
+    state.say_speed_in_pause(factor);
     Ok(vec![state.request_speed(factor).into()])
 }
 

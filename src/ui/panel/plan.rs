@@ -65,7 +65,11 @@ impl Content for PlanPanel {
             }
             None => " — on the craft?".to_owned(),
         };
-        format!("{}{which} — {}{unsaved}{kept}{disk}{craft}", state.panel_title(Panel::Plan), plan.title())
+        let selection = state.editor.selection().filter(|_| !state.plan().waypoints.is_empty());
+        let selected = selection
+            .map_or_else(String::new, |rows| format!(" · {} selected", rows.end() - rows.start() + 1));
+        let title = plan.title();
+        format!("{}{which} — {title}{selected}{unsaved}{kept}{disk}{craft}", state.panel_title(Panel::Plan))
     }
 
     /// Draws the inside. Returns the position of the cursor while a cell is typed.

@@ -43,6 +43,7 @@ pub(in crate::ui) fn refresh(state: &mut Shared) -> Option<Effect> {
 
 /// Requests the settings again, because the user asked for them.
 pub(super) fn read_again(state: &mut Shared) -> Vec<Effect> {
+    state.settings.is_reported = true;
     if state.settings.is_asked {
         return Vec::new();
     }
@@ -99,11 +100,16 @@ pub(in crate::ui) fn take(state: &mut Shared, reply: Result<Box<CraftSettings>, 
                 with_first(&mut settings.first, &mut craft);
             }
             settings.refusal = None;
+            let count = craft.all.len();
             settings.craft = Some(craft);
+            if std::mem::take(&mut settings.is_reported) {
+                state.say(Severity::Good, format!("All {count} settings of the craft were read."));
+            }
         }
         Err(sentence) => {
             let sentence = state.keymap.in_force(&sentence);
-            let is_new = state.settings.refusal.as_ref() != Some(&sentence);
+            let is_asked_for = std::mem::take(&mut state.settings.is_reported);
+            let is_new = is_asked_for || state.settings.refusal.as_ref() != Some(&sentence);
             state.settings.refusal = Some(sentence.clone());
             if is_new {
                 state.notify(Severity::Warn, sentence);

@@ -1,6 +1,7 @@
 //! Changes the state that all panels share, as a panel requests it.
 
 use crate::ui::editor::actions as plan;
+use crate::ui::event_log::Severity;
 use crate::ui::map_edit::actions as map_edit;
 use crate::ui::map_edit::measure;
 use crate::ui::message::{Change, Effect};
@@ -28,8 +29,25 @@ pub(super) fn change(state: &mut Shared, change: Change) -> Vec<Effect> {
         Change::MeasurePoint(place) => measure::set_point(state, Some(place)),
         Change::MeasureTo(place) => measure::drag_to(state, place),
         Change::MapGrid => state.map.grid = !state.map.grid,
-        Change::CourseUp => state.map.course_up = !state.map.course_up,
-        Change::PastTracks => state.map.hides_past = !state.map.hides_past,
+        Change::CourseUp => {
+            state.map.course_up = !state.map.course_up;
+            let text = if state.map.course_up {
+                "The course of the craft is up, or its heading while it stands."
+            } else {
+                "North is up."
+            };
+            state.say(Severity::Info, text);
+        }
+        Change::PastTracks => {
+            state.map.hides_past = !state.map.hides_past;
+            let text = match (state.map.hides_past, state.past_flights.tracks().len()) {
+                (true, 0) => "Tracks of earlier flights will be hidden; there is none yet.",
+                (false, 0) => "Tracks of earlier flights will be shown; there is none yet.",
+                (true, _) => "The tracks of earlier flights are hidden.",
+                (false, _) => "The tracks of earlier flights are shown.",
+            };
+            state.say(Severity::Info, text);
+        }
         Change::MapWaypoint(by) => return map_edit::to_waypoint(state, by),
         Change::ChooseBackdrop => return plan::choose_backdrop(state),
         Change::NoBackdrop => return plan::remove_backdrop(state),

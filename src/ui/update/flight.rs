@@ -140,7 +140,14 @@ pub(super) fn speed(state: &mut Shared, step: i32) -> Vec<Effect> {
         1.. => SPEEDS.into_iter().find(|&speed| speed > wanted * 1.01),
         _ => SPEEDS.into_iter().rev().find(|&speed| speed < wanted * 0.99),
     };
-    let Some(next) = next else { return Vec::new() };
+    let Some(next) = next else {
+        let text = if step > 0 { "This is the fastest speed." } else { "This is the slowest speed." };
+        state.say(Severity::Info, text);
+        return Vec::new();
+    };
+    if step != 0 {
+        state.say_speed_in_pause(next);
+    }
     let mut effects = vec![state.request_speed(next)];
     if step == 0 && state.view.paused {
         effects.push(Effect::Send(Command::Pause(false)));

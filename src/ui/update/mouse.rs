@@ -21,6 +21,13 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
     if let MouseEventKind::Up(_) = event.kind {
         return release(state);
     }
+    let has_keys_and_rows = matches!(state.popups.last(), Some(Popup::Flights(_) | Popup::Diff(_)));
+    if event.kind == MouseEventKind::Down(MouseButton::Left)
+        && has_keys_and_rows
+        && let Some(effects) = shown_keys::press_shown(state, (event.column, event.row))
+    {
+        return effects;
+    }
     if let Some(effects) = popup(state, event) {
         return effects;
     }

@@ -1,0 +1,66 @@
+//! The plan and its editor.
+
+use std::cmp::Ordering;
+
+use super::seen::Seen::{Hides, Moves, Shows, Turns};
+use super::walk::Group;
+use super::walk::Step::{Act, Again, Close};
+
+pub(super) const GROUP: Group = Group {
+    name: "editing",
+    steps: &[
+        Again("sim.pause", Shows("‖")),
+        Act("view.plan", Shows("▸2 Plan")),
+        Act("plan.right", Turns("0 [FLYOVER]", "[40.4640000]")),
+        Act("plan.left", Turns("[40.4640000]", "0 [FLYOVER]")),
+        Again("plan.right", Shows("[40.4640000]")),
+        Again("plan.right", Shows("[-79.5175000]")),
+        Again("plan.right", Shows("[50.0]")),
+        Act("plan.raise", Turns("[50.0]", "[51.0]")),
+        Act("plan.lower", Turns("[51.0]", "[50.0]")),
+        Act("plan.raise-much", Turns("[50.0]", "[60.0]")),
+        Act("plan.lower-much", Turns("[60.0]", "[50.0]")),
+        Again("plan.right", Hides("[50.0]")),
+        Act("plan.edit", Shows("up to 655.35")),
+        Act("app.back", Hides("up to 655.35")),
+        Act("plan.insert", Turns("● 4 not on", "● 5 not on")),
+        Act("plan.duplicate", Turns("● 5 not on", "● 6 not on")),
+        Act("plan.delete", Turns("● 6 not on", "● 5 not on")),
+        // The waypoint above changes places with it.
+        Act("plan.move-up", Moves("40.4643074", Ordering::Equal, Ordering::Greater)),
+        Act("plan.move-down", Moves("40.4643074", Ordering::Equal, Ordering::Less)),
+        Act("plan.undo", Shows("Undone: move in order.")),
+        Act("plan.redo", Shows("Redone: move in order.")),
+        Act("plan.earlier", Shows("Revision 8 of 9")),
+        Act("plan.later", Shows("Revision 9 of 9")),
+        Act("plan.select", Shows("· 1 selected")),
+        Again("plan.select", Hides("· 1 selected")),
+        Act("plan.select-all", Shows("· 5 selected")),
+        Act("plan.copy", Shows("Copied 5 waypoints")),
+        Act("plan.paste", Turns("● 5 not on", "● 10 not on")),
+        Act("plan.fix", Turns("● 10 not on", "● 5 not on")),
+        Act("plan.change", Shows("Change waypoints")),
+        Close(Some("Esc close"), Hides("Change waypoints")),
+        Act("plan.generate", Shows("Generate a pattern")),
+        Close(Some("Esc close"), Hides("Generate a pattern")),
+        Act("plan.properties", Shows("Name, home, settings")),
+        Close(Some("Esc close"), Hides("Name, home, settings")),
+        Act("plan.compare", Shows("Differences — ")),
+        Close(Some("Esc closes"), Hides("Differences — ")),
+        Act("plan.save", Shows("Save as")),
+        Close(Some("Esc close"), Hides("Save as")),
+        Act("plan.save-as", Shows("Save as")),
+        Close(Some("Esc close"), Hides("Save as")),
+        Act("plan.open", Shows("Open a plan")),
+        Close(Some("Esc close"), Hides("Open a plan")),
+        Act("plan.new", Shows("A new plan: `i` inserts")),
+        Act("plan.next", Turns("2/2 — new", "1/2 — square")),
+        Act("plan.previous", Turns("1/2 — square", "2/2 — new")),
+        Act("plan.close", Turns("2/2 — new", "Plan — square")),
+        Act("plan.upload", Turns("not on the craft", "✓ on the craft")),
+        Act("plan.download", Shows("The craft has the same plan.")),
+        Act("plan.flash", Shows("Saved in the craft's flash: 5 waypoints")),
+        Act("replay.next", Shows("Only a file with recorded flights has others")),
+        Act("replay.shift-later", Shows("There is no second flight to shift")),
+    ],
+};
