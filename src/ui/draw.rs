@@ -40,7 +40,11 @@ pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
                 cursor = cursor.or(framed_panel(state, panel, area, buffer));
             }
             panel_bar::draw(shared, &screen, buffer);
-            hint_bar::draw(&state.panels.of(shared.focus).hints(shared), shared, screen.hints, buffer);
+            if matches!(state.popups.last(), Some(Popup::Diff(_))) {
+                hint_bar::draw_doors(shared, screen.hints, buffer);
+            } else {
+                hint_bar::draw(&state.panels.of(shared.focus).hints(shared), shared, screen.hints, buffer);
+            }
             if let Some(area) = screen.timeline {
                 timeline::draw(shared, area, buffer);
             }

@@ -30,6 +30,11 @@ pub(super) fn draw(own: &[Hint], state: &Shared, area: Rect, buffer: &mut Buffer
     sides(buffer, area, &spans(&left), &right);
 }
 
+/// Draws the line without keys, while a popup over the whole screen has all of them.
+pub(super) fn draw_doors(state: &Shared, area: Rect, buffer: &mut Buffer) {
+    sides(buffer, area, &[], &doors(state, area.width));
+}
+
 /// A hint on the screen: its keys, each with the action that a click on it triggers, and its label.
 struct Shown {
     keys: Vec<(String, Option<Action>)>,

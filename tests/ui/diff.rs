@@ -189,3 +189,45 @@ fn a_craft_whose_plan_is_unknown_is_said_to_be_so() {
     press(&mut state, KeyCode::Esc, KeyModifiers::NONE);
     assert!(state.popups.is_empty());
 }
+
+/// Returns a row of the screen, counted from the last one.
+fn row_from_below(state: &AppState, back: usize) -> String {
+    screen(state).lines().nth(usize::from(state.shared.size.1) - 1 - back).unwrap_or_default().to_owned()
+}
+
+#[test]
+fn while_words_are_typed_the_last_line_has_their_keys_and_counts_what_they_find() {
+    let mut state = compared((120, 40));
+    let keys_at = 2;
+    assert!(row_from_below(&state, keys_at).contains("f only differences"), "{}", screen(&state));
+    keys(&mut state, "/ 'wp1");
+    let typed = row_from_below(&state, keys_at);
+    assert!(!typed.contains("f only differences") && typed.contains("Enter keep"), "{}", screen(&state));
+    let found = screen(&state).lines().filter(|line| line.contains("WP1 ")).count();
+    assert!(found > 0 && row_from_below(&state, keys_at + 1).contains("found"), "{}", screen(&state));
+    keys(&mut state, "enter");
+    let kept = row_from_below(&state, keys_at);
+    assert!(kept.contains("n N match") && kept.contains("f only differences"), "{}", screen(&state));
+    keys(&mut state, "esc");
+    assert!(!row_from_below(&state, keys_at + 1).contains("found"), "{}", screen(&state));
+}
+
+#[test]
+fn the_large_map_comes_back_after_a_search() {
+    let mut state = compared((80, 24));
+    keys(&mut state, "m");
+    let map = screen(&state);
+    keys(&mut state, "/ 'wp1 enter");
+    assert_ne!(screen(&state), map, "the rows have the place");
+    keys(&mut state, "/ esc");
+    assert_eq!(screen(&state), map);
+}
+
+#[test]
+fn no_key_of_the_panel_behind_is_below_the_comparison() {
+    let mut state = compared((120, 40));
+    let hints = row_from_below(&state, 0);
+    assert!(!hints.contains("insert") && !hints.contains("quit") && hints.contains("ws"), "{hints}");
+    keys(&mut state, "esc");
+    assert!(row_from_below(&state, 0).contains("q quit"), "{}", screen(&state));
+}

@@ -39,6 +39,8 @@ pub struct DiffView {
     pub(in crate::ui) search: Search,
     /// `true` if the map has the whole place.
     is_map: bool,
+    /// `true` if the map had the whole place before the search.
+    had_map: bool,
 }
 
 /// The result of a key or of the mouse.
@@ -54,7 +56,14 @@ pub(in crate::ui) enum DiffKey {
 
 impl DiffView {
     pub(in crate::ui) fn new(against: Against) -> Self {
-        Self { against, selected: 0, only_differences: false, search: Search::default(), is_map: false }
+        Self {
+            against,
+            selected: 0,
+            only_differences: false,
+            search: Search::default(),
+            is_map: false,
+            had_map: false,
+        }
     }
 
     /// Shows another comparison.
@@ -71,14 +80,18 @@ impl DiffView {
             KeyCode::PageUp => self.scroll(state, -PAGE),
             KeyCode::PageDown => self.scroll(state, PAGE),
             KeyCode::Enter if self.search.is_typing => self.search.is_typing = false,
-            KeyCode::Esc if self.search.is_on() => (self.search, self.selected) = (Search::default(), 0),
+            KeyCode::Esc if self.search.is_on() => {
+                (self.search, self.selected) = (Search::default(), 0);
+                self.is_map |= std::mem::take(&mut self.had_map);
+            }
             _ if self.search.is_typing => {
                 self.search.key(event);
                 self.selected = 0;
             }
             KeyCode::Char('/') => {
                 // The rows have the place while they are searched.
-                (self.search, self.selected, self.is_map) = (Search::begun(), 0, false);
+                (self.search, self.selected) = (Search::begun(), 0);
+                self.had_map |= std::mem::take(&mut self.is_map);
             }
             KeyCode::Esc | KeyCode::Char('q' | 'V') => return DiffKey::Left,
             KeyCode::Char('k') => self.scroll(state, -1),
@@ -309,12 +322,15 @@ pub(in crate::ui) fn draw(
     };
     tabs.push(span(theme, Role::Text, diff.label.as_str()));
     line(buffer, parts.tabs, 0, &Line::from(tabs));
-    let summary = diff.summary(usize::from(inside.width));
+    let count = |rows: &[DiffRow]| rows.iter().filter(|row| !row.is_part).count();
+    let (all, summary) = (count(&diff.rows), diff.summary(usize::from(inside.width)));
     let (other, current) = (diff.other.clone(), diff.current.clone());
     if let Some(plan) = diff.plan.as_ref().filter(|_| parts.map.width > 0) {
         compared::draw_compared(state, plan, (&other, &current), parts.map, buffer);
     }
     let rows = view.shown(diff.rows);
+    let summary =
+        if view.search.is_on() { format!("{} of {all} rows found.", count(&rows)) } else { summary };
     if parts.list.width > 0 {
         let head = Rect { y: inside.y + 1, height: 1, ..parts.list };
         let columns = Columns::of(usize::from(parts.list.width));
@@ -346,7 +362,11 @@ pub(in crate::ui) fn draw(
         room = room.saturating_sub(if is_shown { key.chars().count() + does.chars().count() } else { 0 });
         is_shown
     };
-    let keys: Vec<(&str, &str)> = keys.into_iter().filter(fits).collect();
+    let keys: Vec<(&str, &str)> = if view.search.is_typing {
+        [("↑ ↓", " choose  "), ("Enter", " keep the search  "), ("Esc", " end it")].to_vec()
+    } else {
+        keys.into_iter().filter(fits).collect()
+    };
     line(buffer, parts.foot, 1, &key_line(theme, &keys));
     view.search.draw_in_border(theme, place(area), buffer)
 }
