@@ -15,13 +15,14 @@ use crate::args::is_descriptor;
 /// The name of standard input in messages.
 const STDIN: &str = "standard input";
 /// A plan or settings.
-const TEXT: Kind = Kind { most: 4 << 20, too_large: "neither a plan nor settings" };
-const TILE: Kind = Kind { most: 64 << 20, too_large: "no elevation tile" };
+const TEXT: Kind =
+    Kind { most: 4 << 20, too_large: "neither a plan nor settings", or_stdin: ", or - for standard input" };
+const TILE: Kind = Kind { most: 64 << 20, too_large: "no elevation tile", or_stdin: "" };
 /// A blackbox log, which is read in parts.
-const LOG: Kind = Kind { most: u64::MAX, too_large: "no log" };
-const MAP: Kind = Kind { most: 64 << 20, too_large: "too much for a map" };
+const LOG: Kind = Kind { most: u64::MAX, too_large: "no log", or_stdin: "" };
+const MAP: Kind = Kind { most: 64 << 20, too_large: "too much for a map", or_stdin: "" };
 /// A recording. Its reader has bounds of its own.
-const RECORDING: Kind = Kind { most: 1 << 30, too_large: "no recording of a flight" };
+const RECORDING: Kind = Kind { most: 1 << 30, too_large: "no recording of a flight", or_stdin: "" };
 /// A file for a syntax tree. The tree takes a hundred times as much memory.
 const TREE: Kind = Kind { most: 512 << 10, ..TEXT };
 
@@ -32,6 +33,8 @@ struct Kind {
     most: u64,
     /// The end of the sentence about a larger one.
     too_large: &'static str,
+    /// The words for standard input in place of a file, if it can be that.
+    or_stdin: &'static str,
 }
 
 /// Reads a plan file.
@@ -115,13 +118,12 @@ fn open(path: &Path, name: &str, kind: Kind) -> Result<File, AppError> {
     let metadata = file.metadata().map_err(cannot_open)?;
     if !metadata.is_file() {
         let what = if metadata.is_dir() { "a directory" } else { "a device or a pipe" };
-        return Err(AppError::input(format!(
-            "{name} is {what}, not a file: name a file, or - for standard input"
-        )));
+        return Err(AppError::input(format!("{name} is {what}, not a file: name a file{}", kind.or_stdin)));
     }
     if is_of_system(&file) {
         return Err(AppError::input(format!(
-            "{name} is a system file, which describes this machine: name a file of your own, or - for standard input"
+            "{name} is a system file, which describes this machine: name a file of your own{}",
+            kind.or_stdin
         )));
     }
     if metadata.len() > kind.most {
@@ -171,7 +173,7 @@ fn read_bytes(source: impl Read, name: &str, kind: Kind) -> Result<Vec<u8>, AppE
 }
 
 fn too_large(name: &str, kind: Kind) -> AppError {
-    let Kind { most, too_large } = kind;
+    let Kind { most, too_large, .. } = kind;
     let most = if most < 1 << 20 { format!("{} KiB", most >> 10) } else { format!("{} MiB", most >> 20) };
     AppError::input(format!("{name} is larger than {most}: that is {too_large}"))
 }

@@ -207,8 +207,8 @@ pub(super) fn require_terminal(plain: bool) -> Result<(), AppError> {
         return Ok(());
     }
     Err(AppError::environment(
-        "the user interface needs a terminal: run betadeck in one, or fly without a screen with \
-         `betadeck --plain` or `betadeck fly PLAN`",
+        "the user interface needs a terminal: run betadeck in one, add `--plain` for sentences instead of a screen, or \
+         fly with `betadeck fly PLAN`",
     ))
 }
 
@@ -217,6 +217,11 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
     let mut notices = screen.notices;
     let mut files = PlanFiles::new(screen.directory.as_deref());
     files.keep_screen_in(screen.screen_file);
+    let is_replay = matches!(screen.source, Source::Replay(_));
+    if is_replay {
+        // The edits of another run do not belong to a recorded flight.
+        files.without_journals();
+    }
     let ground = TerrainFiles::new(screen.terrain)?;
     let has_ground = ground.is_somewhere();
     files.read_ground(ground, screen.tiles.clone().unwrap_or_default());
@@ -289,7 +294,6 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
     let files = FilesLink::new(requests, replies, kept);
     let shelf = screen.directory.as_deref().map(|state| Arc::new(Shelf::new(state, screen.display)));
     let shelf = shelf.map(|shelf| -> Arc<dyn FlightShelf> { shelf });
-    let is_replay = matches!(screen.source, Source::Replay(_));
     let runtime = runtime::with_threads(1)?;
     let ending = runtime.block_on(async {
         let started = start(screen.source, notices, screen.directory.as_deref(), unrecorded).await?;

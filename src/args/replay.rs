@@ -21,7 +21,7 @@ pub struct ReplayArgs {
     pub at: Option<RecordInstant>,
 
     /// The flight of a file with several logs, counted from 1 [default: the first that can be shown]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = value::log_number)]
     pub log: Option<NonZeroUsize>,
 
     /// No screen: the events as sentences on standard output, commands of the `:` line on standard input

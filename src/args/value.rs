@@ -1,5 +1,6 @@
 //! Values of options, with the messages for invalid ones.
 
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -224,6 +225,11 @@ pub(super) fn record_instant(text: &str) -> Result<RecordInstant, String> {
         Some(seconds) => bounded(seconds, 0.0, 1e9, "s").map(RecordInstant::Boot),
         None => bounded(text, 0.0, 1e9, "s").map(RecordInstant::Start),
     }
+}
+
+/// Reads the number of a flight in a file, from 1.
+pub(super) fn log_number(text: &str) -> Result<NonZeroUsize, String> {
+    text.parse().map_err(|_| "flights are counted from 1: write 1, 2 and so on".to_owned())
 }
 
 /// Reads the number of rows of a table a second.

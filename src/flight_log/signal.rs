@@ -122,8 +122,13 @@ impl SignalTable {
         for (kind, frame) in kinds {
             for (at, field) in header.fields(kind).iter().enumerate() {
                 let scale = scales.scale(field).unwrap_or(Scale::RAW);
+                // The main frames have a time, too.
+                let name = match (frame, field.name.as_str()) {
+                    (SignalFrame::Gps, "time") => "GPS_time",
+                    (_, name) => name,
+                };
                 table.signals.push(LogSignal {
-                    name: field.name.clone(),
+                    name: name.to_owned(),
                     unit: scale.unit,
                     decimals: scale.decimals(),
                     frame: Some(frame),

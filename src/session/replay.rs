@@ -288,7 +288,13 @@ impl ReplaySession {
                 reply.send(player.map_or_else(none, |player| player.curves(&request)));
             }
             Command::RecordedFlight(reply) => {
-                reply.send(Err("The inputs of this flight were not recorded.".to_owned()));
+                let name = self.flights.name();
+                reply.send(Err(format!(
+                    "{name} is shown, not flown: `betadeck open` flies a recording again."
+                )));
+            }
+            Command::CopyRecording(reply) => {
+                reply.send(Err(format!("the flight is recorded already, in {}.", self.flights.name())));
             }
             Command::Speed(speed) => {
                 self.speed = speed;

@@ -196,11 +196,13 @@ impl GraphsState {
         self.history.between(from_s, to_s)
     }
 
-    /// Returns the sample for a time, or the newest one without a time.
-    pub(super) fn sample_at(&self, time_s: Option<f64>) -> Option<&Picture> {
-        match time_s {
-            Some(time_s) => self.history.at(time_s),
-            None => self.history.newest(),
+    /// Returns the values at the user's cursor, else at the instant on the screen.
+    pub(super) fn sample_now(&self, view: &SessionView) -> Option<Picture> {
+        match self.cursor_s {
+            Some(time_s) => self.history.at(time_s).copied(),
+            // The history has ten samples a second, the picture on the screen is of the instant itself.
+            None if view.is_rewound() => Some(Picture::of(&view.vehicle)),
+            None => self.history.newest().copied(),
         }
     }
 }

@@ -63,7 +63,7 @@ impl<'a> Named<'a> {
         match self {
             Self::Recorded(index, _) => state.series_value(index),
             Self::Signal(info) => {
-                let sample = state.graphs.sample_at(state.graphs.cursor_s(&state.view))?;
+                let sample = state.graphs.sample_now(&state.view)?;
                 Some(sample.value(info.signal)? / scale(info))
             }
         }

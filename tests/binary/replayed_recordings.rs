@@ -36,6 +36,23 @@ fn a_recording_is_shown_with_the_states_of_its_autopilot() {
 }
 
 #[test]
+fn a_replay_leaves_the_unsaved_edits_of_another_run_alone() {
+    let mut terminal = Terminal::start_in(with_recording(), 120, 40, PROGRAM, &["--no-ports", "square"]);
+    terminal.until_shown("DISARMED");
+    terminal.send("2i");
+    terminal.until_shown("unsaved");
+    terminal.send("qy");
+    assert_eq!(terminal.end(), 0);
+    let mut terminal = started(terminal.into_home(), &["a.flight", "--at", "boot+24"]);
+    terminal.until_shown("▐APPROACHING▌");
+    assert!(!terminal.screen().contains("unsaved"), "{}", terminal.screen());
+    terminal.send("q");
+    assert_eq!(terminal.end(), 0);
+    let mut terminal = Terminal::start_in(terminal.into_home(), 120, 40, PROGRAM, &["--no-ports", "square"]);
+    terminal.until_shown("Unsaved edits of this plan were restored");
+}
+
+#[test]
 fn a_recording_and_a_log_are_beside_each_other() {
     let sandbox = with_recording();
     std::fs::write(sandbox.path("b.bbl"), MadeLog::default().bytes()).expect("a writable directory");

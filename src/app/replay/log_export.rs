@@ -9,7 +9,7 @@ use crate::app::error::{self, AppError};
 use crate::app::log_source::FileSource;
 use crate::args::ReplayArgs;
 use crate::flight_log::LogFlight;
-use crate::replay::{LogFlights, PastFlights as _, log_damage};
+use crate::replay::{LogFlights, PastFlights as _, log_cut, log_damage};
 use crate::report::log_export::{log_gpx, log_track, write_csv};
 
 /// Writes the files of the options from the chosen log. Returns `false` if the user ended it; then no file is written.
@@ -36,8 +36,8 @@ pub(super) fn run(
             log.number()
         ));
     }
-    if let Some(damage) = log_damage(&log) {
-        error::tell(&damage);
+    for notice in [log_damage(&log), log_cut(&log)].into_iter().flatten() {
+        error::tell(&notice);
     }
     let has_track = args.gpx.is_some() || args.kml.is_some();
     if has_track && log.track().is_empty() {

@@ -41,11 +41,11 @@ pub fn log_cut(log: &LogFlight) -> Option<String> {
     if log.is_complete() {
         return None;
     }
-    let rest = match log.cut_bytes() {
-        0 => String::new(),
-        bytes => format!("; its last {bytes} bytes are no whole frame"),
-    };
-    Some(format!("The log was cut: it has no end{rest}."))
+    Some(match log.cut_bytes() {
+        // A log of a flight that was left in the air looks the same as one that lost its power.
+        0 => "The log has no end: the flight went on, or the power was lost.".to_owned(),
+        bytes => format!("The log was cut: it has no end; its last {bytes} bytes are no whole frame."),
+    })
 }
 
 /// Returns the date of a log. A craft without a clock writes the year 0000.

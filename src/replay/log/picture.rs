@@ -7,6 +7,8 @@ use crate::telemetry::{ModeBox, Snapshot};
 
 /// The middle of a stick, µs.
 const MIDDLE_US: f64 = 1500.0;
+/// The pulse of no throttle, µs.
+const ZERO_US: f64 = 1050.0;
 
 /// Returns the craft of a sample. Places count from home.
 pub(super) fn of(sample: &LogSample, home: Option<LogHome>, drawn_mah: Option<f64>) -> Snapshot {
@@ -49,13 +51,18 @@ fn craft(sample: &LogSample, home: Option<LogHome>, drawn_mah: Option<f64>) -> C
         battery_v: sample.battery_v,
         battery_a: sample.battery_a,
         battery_mah: drawn_mah,
-        throttle_us: sample.rc_throttle_us,
+        throttle_us: sample.setpoint_throttle.map(mixer_us).or(sample.rc_throttle_us),
         motors: sample.motors.first_chunk().copied(),
         channels: channels(sample),
         rc_link: sample.rx_signal,
         failsafe_stage: sample.failsafe_phase.map(stage),
         ..CraftView::default()
     }
+}
+
+/// Returns the pulse of a throttle setpoint, µs. Logs lack the pulse of no throttle, so it is the default of `min_check`.
+fn mixer_us(setpoint: f64) -> f64 {
+    ZERO_US + setpoint * (2000.0 - ZERO_US)
 }
 
 /// Returns the channels of the sticks. The switches are not in a log; they are zero.
@@ -108,6 +115,7 @@ mod tests {
             n: Some(12.0),
             rc_command: Some([100.0, -50.0, 20.0]),
             rc_throttle_us: Some(1400.0),
+            setpoint_throttle: Some(0.4),
             motors: [0.1, 0.2, 0.3, 0.4].into_iter().collect(),
             boxes: Some(BoxFlags { bits: 0b11, order: BoxOrder::of_betaflight((4, 5, 0)) }),
             failsafe_phase: Some(FailsafePhase::Landing),
@@ -118,6 +126,7 @@ mod tests {
         assert_eq!((estimate.n, estimate.pitch_deg, estimate.alt), (Some(12.0), Some(-4.0), None));
         let channels = craft.channels.unwrap();
         assert_eq!(channels[..5], [1600, 1450, 1400, 1480, 0], "yaw to the left is a smaller pulse");
+        assert_eq!(craft.throttle_us, Some(1430.0), "that of the mixer, not of the stick");
         assert_eq!((craft.armed, craft.motors), (Some(true), Some([0.1, 0.2, 0.3, 0.4])));
         assert!(craft.is_active(Mode::Angle) && !craft.is_active(Mode::Horizon));
         assert_eq!((craft.failsafe_stage, craft.battery_mah, nav), (Some(2), Some(250.0), None));

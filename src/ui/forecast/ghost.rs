@@ -2,6 +2,7 @@
 
 use super::setting_change;
 use crate::flight::forecast::{Forecast, PathPoint};
+use crate::ui::settings::listing::planned;
 use crate::ui::shared::Shared;
 use crate::ui::units::Units;
 
@@ -32,7 +33,11 @@ pub(in crate::ui) fn ghost(state: &Shared) -> Option<Ghost<'_>> {
         let unchanged = flown.and_then(|flown| flown.unchanged.as_deref());
         let difference = flown.and_then(|flown| setting_change::difference(flown, state.units));
         let ghost = asked(state.units, &tried.assignment.line(), flown);
-        let line = [Some(ghost.line), difference].into_iter().flatten().collect::<Vec<_>>().join("; ");
+        let planned = planned(state, &tried.assignment.name).filter(|_| !state.plan_is_on_craft());
+        let planned =
+            planned.map(|value| format!("compared with {value}, which the plan sets at its upload"));
+        let line =
+            [Some(ghost.line), difference, planned].into_iter().flatten().collect::<Vec<_>>().join("; ");
         return Some(Ghost { unchanged: unchanged.map_or(&[], |unchanged| &unchanged.path), line, ..ghost });
     }
     let estimate = forecast.estimate().filter(|_| !is_flown)?;

@@ -10,7 +10,8 @@ pub(in crate::ui) fn difference(flown: &Forecast, units: Units) -> Option<String
     let seconds = (flown.time_s - unchanged.time_s).round() as i64;
     let sign = if seconds < 0 { '−' } else { '+' };
     let (minutes, rest) = (seconds.abs() / 60, seconds.abs() % 60);
-    let used_pct = flown.battery_used_pct - unchanged.battery_used_pct;
+    // Rounded before the sign is taken.
+    let used_pct = (10.0 * (flown.battery_used_pct - unchanged.battery_used_pct)).round() / 10.0;
     let sign_pct = if used_pct < 0.0 { '−' } else { '+' };
     let xte = |forecast: &Forecast| {
         forecast.worst_xte.map_or_else(|| "—".to_owned(), |worst| units.length_text(worst.xte_m, 1))
@@ -52,12 +53,18 @@ mod tests {
     #[test]
     fn time_battery_and_cross_track_are_compared() {
         let unchanged = Box::new(forecast(132.0, 40.0, Some(0.9)));
-        let flown = Forecast { unchanged: Some(unchanged), ..forecast(112.4, 42.25, Some(1.4)) };
+        let flown = Forecast { unchanged: Some(unchanged), ..forecast(112.4, 42.24, Some(1.4)) };
         assert_eq!(
             difference(&flown, Units::Metric).unwrap(),
             "time −0:20, battery used +2.2 %, worst xte 0.9 m → 1.4 m"
         );
         assert_eq!(difference(&forecast(1.0, 1.0, None), Units::Metric), None);
+        let same =
+            Forecast { unchanged: Some(Box::new(forecast(10.0, 1.01, None))), ..forecast(10.0, 1.0, None) };
+        assert_eq!(
+            difference(&same, Units::Metric).unwrap(),
+            "time +0:00, battery used +0.0 %, worst xte — → —"
+        );
     }
 
     #[test]

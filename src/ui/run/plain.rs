@@ -11,7 +11,7 @@ use crate::flight::forecast::ForecastKind;
 use crate::session::Command;
 use crate::ui::app_state::AppState;
 use crate::ui::config::UiConfig;
-use crate::ui::editor::{FileReply, FileRequest};
+use crate::ui::editor::{EditorPopup, FileReply, FileRequest, Question};
 use crate::ui::files_link::FilesLink;
 use crate::ui::message::{Effect, Msg};
 use crate::ui::update::update;
@@ -92,7 +92,7 @@ async fn run_loop(
                 }
                 Err(_) => break Ending::SessionEnded,
             },
-            line = input.recv(), if awaited == 0 && !has_ended => {
+            line = input.recv(), if awaited == 0 && !has_ended && !is_reading(&state) => {
                 update(&mut state, Msg::Clock(started.elapsed()));
                 match line {
                     None => {
@@ -110,7 +110,8 @@ async fn run_loop(
         lines.follow(&mut state)?;
         // After the end of the input a flight goes on. A recorded one is over once its events are written.
         let is_over = awaited == 0 && link.other.is_none() && link.events.is_empty() && is_read(&state);
-        if has_ended && is_over {
+        // Nobody answers the question about unsaved edits any more. They are kept for the next start.
+        if has_ended && (is_over || awaited == 0 && asks_before_it_quits(&state)) {
             break Ending::Quit;
         }
         if effects.iter().any(|effect| matches!(effect, Effect::Quit)) {
@@ -137,6 +138,17 @@ async fn run_loop(
     files.keep_edits().await;
     link.commands.try_send(Command::Quit).ok();
     Ok(ending)
+}
+
+/// Returns `true` while a recorded flight is read.
+fn is_reading(state: &AppState) -> bool {
+    state.shared.view.replay.as_ref().is_some_and(|replay| replay.reading.is_some())
+}
+
+/// Returns `true` if `quit` waits for an answer about unsaved edits.
+fn asks_before_it_quits(state: &AppState) -> bool {
+    let question = state.shared.editor.popup.as_ref();
+    matches!(question, Some(EditorPopup::Question(Question::Unsaved { quits: true, .. })))
 }
 
 /// Returns `true` if a recorded flight is shown that was read to its end.

@@ -56,7 +56,7 @@ fn main_signal(plot: &Plot) -> Option<Signal> {
 
 fn of_plot(state: &Shared, plot: &Plot, (from, to): (f64, f64)) -> Chart {
     let (factor, unit, decimals) = unit(state, plot.dimension());
-    let now = state.graphs.sample_at(state.graphs.cursor_s(&state.view));
+    let now = state.graphs.sample_now(&state.view);
     let samples: Vec<&Picture> = state.graphs.samples(from, to).collect();
     let value_in = |sample: &Picture, signal| sample.value(signal).map(|value| value * factor);
     let known = plot.curves.iter().enumerate().filter(|(_, (signal, ..))| state.graphs.has(*signal));
@@ -65,7 +65,7 @@ fn of_plot(state: &Shared, plot: &Plot, (from, to): (f64, f64)) -> Chart {
         role: role(plot, at),
         stroke: *stroke,
         points: samples.iter().map(|sample| point(sample.time_s(), value_in(sample, *signal))).collect(),
-        now: now.and_then(|sample| value_in(sample, *signal)),
+        now: now.as_ref().and_then(|sample| value_in(sample, *signal)),
     });
     // The other flight is drawn first, below the shown one.
     let other = state.other_flight().zip(main_signal(plot)).map(|((other, offset_s), signal)| Strand {
@@ -102,7 +102,7 @@ fn of_difference(state: &Shared, plot: &Plot, (from, to): (f64, f64)) -> Option<
         let is_direction = signal == Signal::EstHeading;
         Some(if is_direction { shortest_turn(difference) } else { difference } * factor)
     };
-    let now = state.graphs.sample_at(state.graphs.cursor_s(&state.view));
+    let now = state.graphs.sample_now(&state.view);
     let points = state.graphs.samples(from, to).map(|own| point(own.time_s(), between(own))).collect();
     Some(Chart {
         title: format!("Δ {} {unit}", plot.name),
@@ -113,7 +113,7 @@ fn of_difference(state: &Shared, plot: &Plot, (from, to): (f64, f64)) -> Option<
             role: Role::Warn,
             stroke: Stroke::Solid,
             points,
-            now: now.and_then(between),
+            now: now.as_ref().and_then(between),
         }],
     })
 }
