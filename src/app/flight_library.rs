@@ -12,6 +12,7 @@ use std::time::SystemTime;
 use super::named_file::stem;
 use super::parallel;
 use crate::recording::{Header, Listed, ReadError, Summary, TAIL, read_summary, seen_s};
+use crate::session::parallel::beside_a_flight;
 use crate::storage::state_file::{self, Access};
 
 /// The folder in the state directory.
@@ -109,8 +110,9 @@ fn look_at_all(files: &[(PathBuf, Fingerprint)]) -> io::Result<Vec<Option<Listed
     let paths: Vec<&Path> = files.iter().map(|(path, _)| path.as_path()).collect();
     let mut looked = Vec::with_capacity(paths.len());
     let look = |_, path: &Path| Some(look(path));
-    let done =
-        parallel::all(&paths, parallel::threads(None), &|| false, look, |listed, _| looked.push(listed));
+    // The screen lists them while it flies.
+    let threads = beside_a_flight();
+    let done = parallel::all(&paths, threads, &|| false, look, |listed, _| looked.push(listed));
     done.map_err(|error| io::Error::other(error.message))?;
     Ok(looked)
 }

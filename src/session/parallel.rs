@@ -23,6 +23,15 @@ pub fn processors() -> usize {
     std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
 }
 
+/// Returns the number of threads for work beside a flight: all processors but one, which stays for the flight.
+pub fn beside_a_flight() -> usize {
+    but_one(processors())
+}
+
+fn but_one(processors: usize) -> usize {
+    processors.saturating_sub(1).max(1)
+}
+
 /// Does the jobs with these numbers on `threads` threads. `fly` gets the number of its thread and of the job. `reported`
 /// gets each result in the order of the jobs, with the number of finished jobs; a job that was interrupted has none.
 ///
@@ -134,6 +143,11 @@ mod tests {
         let mut seen = Vec::new();
         in_order(0..3 * AHEAD, 2, &|| false, fly, |index, _| seen.push(index)).expect("no panic");
         assert_eq!(seen, (0..3 * AHEAD).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn a_processor_stays_for_the_flight_if_there_are_two() {
+        assert_eq!([0, 1, 2, 8].map(but_one), [1, 1, 1, 7]);
     }
 
     #[test]

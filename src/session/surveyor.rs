@@ -159,17 +159,14 @@ fn sweep(
     report: &mut impl FnMut(SurveyNews),
 ) -> Result<(), String> {
     let mut sweep = Sweep::of_plan(vehicle, plan, settings, *takeoff_m, fault)?;
-    fly_sweep(&mut sweep, threads(), is_stopped, |point| report(SurveyNews::Point(Box::new(point))))
-        .map_err(|problem| problem.to_string())?;
+    fly_sweep(&mut sweep, parallel::beside_a_flight(), is_stopped, |point| {
+        report(SurveyNews::Point(Box::new(point)));
+    })
+    .map_err(|problem| problem.to_string())?;
     if !is_stopped() {
         report(SurveyNews::SweepEnd);
     }
     Ok(())
-}
-
-/// Returns the number of flights at once: all processors but one, which stays for the flight of the session.
-fn threads() -> usize {
-    parallel::processors().saturating_sub(1).max(1)
 }
 
 #[cfg(test)]

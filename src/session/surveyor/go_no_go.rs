@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::{SurveyNews, SurveyedPlan, threads};
+use super::{SurveyNews, SurveyedPlan};
 use crate::campaign::{Campaign, CampaignFlight, Forecast, Record, Side, wind_around};
 use crate::flight::{FlightOptions, craft_at_boot};
 use crate::plan::format::PlanFile;
@@ -27,15 +27,17 @@ pub(super) fn fly(
     let gives_up = || is_stopped() || has_failed.load(Ordering::Relaxed);
     let fly = |_, number| record(&campaign.flight(number)?, plan, copy, &gives_up).transpose();
     let mut flown = 0;
-    parallel::in_order(1..campaign.count() + 1, threads(), &gives_up, fly, |record, _| match record {
-        Ok(record) => {
-            answer.add(record);
-            flown += 1;
-            report(SurveyNews::Flown(flown));
-        }
-        Err(reason) => {
-            has_failed.store(true, Ordering::Relaxed);
-            problem.get_or_insert(reason);
+    parallel::in_order(1..campaign.count() + 1, parallel::beside_a_flight(), &gives_up, fly, |record, _| {
+        match record {
+            Ok(record) => {
+                answer.add(record);
+                flown += 1;
+                report(SurveyNews::Flown(flown));
+            }
+            Err(reason) => {
+                has_failed.store(true, Ordering::Relaxed);
+                problem.get_or_insert(reason);
+            }
         }
     })
     .map_err(|Panicked| Panicked.to_string())?;
