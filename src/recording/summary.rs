@@ -116,7 +116,8 @@ struct Craft {
 /// Fails if the source cannot be read.
 pub fn seen_s(source: impl BufRead) -> io::Result<f64> {
     let (mut armed_at, mut last) = (None, SimTime::ZERO);
-    let mut newest = Vec::new();
+    // The newest line may be torn.
+    let (mut newest, mut before) = (Vec::new(), Vec::new());
     // Only pictures that may be the first after the arming are read: that takes most of the time.
     let mut is_read = true;
     each(source, |line| {
@@ -124,6 +125,7 @@ pub fn seen_s(source: impl BufRead) -> io::Result<f64> {
             // The flight may continue from an instant before the arming.
             is_read = true;
         } else if line.starts_with(PICTURE) {
+            std::mem::swap(&mut newest, &mut before);
             newest.clear();
             newest.extend_from_slice(line);
             if let Some(Timed::Picture { t, craft }) = is_read.then(|| timed(line)).flatten() {
@@ -137,7 +139,7 @@ pub fn seen_s(source: impl BufRead) -> io::Result<f64> {
         }
         ControlFlow::Continue(())
     })?;
-    if let Some(Timed::Picture { t, .. }) = timed(&newest) {
+    if let Some(Timed::Picture { t, .. }) = timed(&newest).or_else(|| timed(&before)) {
         last = t;
     }
     Ok(armed_at.map_or(0.0, |armed_at| last.seconds_since(armed_at)))
@@ -172,5 +174,17 @@ mod tests {
         lines.extend([branch.replace('1', "5"), picture(5, true), picture(7, false)]);
         assert!((seen(&lines) - 3.0).abs() < 1e-9);
         assert!(seen(&[picture(1, false), picture(8, false)]).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_torn_last_picture_leaves_the_time_up_to_the_one_before() {
+        let picture = |t_s: u64| {
+            format!("{{\"picture\":{{\"t\":{},\"craft\":{{\"armed\":true}}}}}}\n", t_s * 1_000_000)
+        };
+        let lines = [picture(2), picture(3), picture(9), "{\"picture\":{\"t\":10000000,\"cra\n".to_owned()];
+        let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+        encoder.write_all(lines.concat().as_bytes()).unwrap();
+        let seen_s = seen_s(&encoder.finish().unwrap()[..]).unwrap();
+        assert!((seen_s - 7.0).abs() < 1e-9, "{seen_s}");
     }
 }
