@@ -104,7 +104,10 @@ impl AnswerBuilder {
         let key = record.badness();
         let order = |a: &(u8, f64), b: &(u8, f64)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1));
         let at = self.worst.partition_point(|(known, _)| order(known, &key).is_le());
-        if record.standing == Standing::Skipped || at >= WORST {
+        // Of a flight that passed only its margin says how close it came.
+        let has_passed = record.standing == Standing::Passed;
+        let is_left_out = record.standing == Standing::Skipped || has_passed && record.margin.is_none();
+        if is_left_out || at >= WORST {
             return;
         }
         let worst = Worst {
@@ -113,7 +116,7 @@ impl AnswerBuilder {
             result: record.result.clone(),
             complaint: record.complaint(),
             at: record.worst_at,
-            has_passed: record.standing == Standing::Passed,
+            has_passed,
             margin: record.margin,
         };
         self.worst.insert(at, (key, worst));
