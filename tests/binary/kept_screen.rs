@@ -157,3 +157,16 @@ fn edits_of_a_plan_without_a_file_are_shown_first_after_a_restart() {
     terminal.send("qy");
     assert_eq!(terminal.end(), 0);
 }
+
+#[test]
+fn edits_that_are_kept_nowhere_are_not_offered_for_later() {
+    let mut terminal = Terminal::betadeck(120, 40, &["--no-ports", "--fresh"]);
+    terminal.until_shown("DISARMED");
+    terminal.send("2\x1b[C\x1b[C\x1b[C+");
+    terminal.until_shown("[51.0]");
+    terminal.send("q");
+    terminal.until_shown("cannot be");
+    assert!(!terminal.screen().contains("keep the edits"), "{}", terminal.screen());
+    terminal.send("d");
+    assert_eq!(terminal.end(), 0);
+}

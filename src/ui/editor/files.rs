@@ -136,6 +136,8 @@ pub enum FileReply {
     KeptAgain,
     /// Edits of an earlier run could not be read. One or two sentences name them and where they are kept.
     EditsLost(String),
+    /// Edits are kept nowhere, because the user wants it so.
+    KeepsNothing,
 }
 
 /// The differences between a file and a plan, before the user accepts them.
