@@ -91,10 +91,7 @@ pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
     let end = flight.vehicle().time();
     let kept = Kept::open(args, flown_hash, &mut notices);
     let show = kept.instant_or(instant(args.at, flight.trace().engaged_at, end)?, end);
-    notices.push(format!(
-        "{name}, seed {}, was flown to its end: `,` and `<` go back, Space plays it, `b` flies on from here.",
-        air.seed
-    ));
+    notices.push(format!("{name}, seed {}, was flown to its end: {}.", air.seed, ways_to_go(args.plain)));
     let recorded = recorded_start(&case, &air, flight.vehicle());
     let finished = Finished {
         plan: case.setup.plan.clone(),
@@ -107,6 +104,15 @@ pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
         notices,
     };
     open_screen(args, finished, keymap)
+}
+
+/// Returns the ways to go on from the end of a flight: by keys, or without a screen by commands.
+fn ways_to_go(plain: bool) -> &'static str {
+    if plain {
+        "`time.event-back` and `time.earlier` go back, `sim.pause` plays it, `time.fly-on` flies on from here"
+    } else {
+        "`,` and `<` go back, Space plays it, `b` flies on from here"
+    }
 }
 
 /// A finished flight for the screen.

@@ -312,6 +312,22 @@ fn settings_and_signals_are_found_by_a_line() {
 }
 
 #[test]
+fn an_opened_flight_names_commands_rather_than_keys_without_a_screen() {
+    let sandbox = Sandbox::new();
+    sandbox.write("near.txt", "waypoint insert 0 40.4635 -79.5182 500 0 LAND 0 NONE\n");
+    sandbox.write("near.toml", "format = 1\n[plan]\nfile = \"near.txt\"\n[craft]\ntakeoff_m = 5\n");
+    sandbox.run(&["fly", "near.txt", "--record", "near.flight"]).exits(0);
+    for file in ["near.toml", "near.flight"] {
+        let said = sandbox.run_with(&["open", file, "--plain"], "quit\n").exits(0).out;
+        assert!(
+            said.contains("`time.event-back` and `time.earlier` go back, `sim.pause` plays it"),
+            "{said}"
+        );
+        assert!(!said.contains("`<`"), "{said}");
+    }
+}
+
+#[test]
 fn an_instant_of_a_scenario_is_read_without_a_screen() {
     let sandbox = Sandbox::new();
     let arguments = ["open", "guide-1", "--at", "30", "--plain"];

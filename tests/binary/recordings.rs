@@ -216,6 +216,18 @@ fn a_recorded_flight_opens_on_the_screen_and_is_flown_on() {
     assert_eq!(fly_again(&read(&sandbox, "flown-on.flight")), None);
 }
 
+#[test]
+fn a_log_that_is_opened_is_refused_with_the_command_that_shows_it() {
+    let sandbox = Sandbox::new();
+    std::fs::write(sandbox.path("a.bbl"), crate::made_log::MadeLog::default().bytes()).expect("a file");
+    let ran = sandbox.run(&["open", "a.bbl", "--plain"]).exits(2);
+    assert!(
+        ran.err.contains("a.bbl is a blackbox log") && ran.err.contains("`betadeck replay a.bbl`"),
+        "{}",
+        ran.err
+    );
+}
+
 #[cfg(unix)]
 #[test]
 fn a_file_that_is_no_recording_is_refused_with_the_reason() {

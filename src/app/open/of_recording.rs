@@ -4,7 +4,7 @@ use std::io::{BufReader, Read as _, Seek as _};
 use std::path::Path;
 use std::sync::atomic::Ordering;
 
-use super::{Finished, Kept, Recorded, instant, open_screen};
+use super::{Finished, Kept, Recorded, instant, open_screen, ways_to_go};
 use crate::app::error::{self, AppError};
 use crate::app::file_identity;
 use crate::app::flight_recorder::RecordedStart;
@@ -14,6 +14,7 @@ use crate::app::recording_file::GZIP;
 use crate::app::setup;
 use crate::app::terrain::with_terrain;
 use crate::args::{OpenArgs, TerrainArgs};
+use crate::blackbox::FIRST_LINE;
 use crate::flight::FlightSetup;
 use crate::recording::{Recording, Repeat, Setup};
 use crate::session::{Event, FlownBefore};
@@ -23,6 +24,8 @@ use crate::text::printable;
 use crate::ui::keymap::Keymap;
 use crate::ui::settings::GivenSetting;
 
+/// The first bytes of a file in which a blackbox log begins.
+const LOOKED_AT: u64 = 64 << 10;
 /// The ticks between two looks at a request to stop.
 const SLICE: usize = 4096;
 
@@ -33,8 +36,15 @@ pub(super) fn read(args: &OpenArgs) -> Result<Option<Recording>, AppError> {
         return Ok(None);
     }
     let mut file = input_file::open_recording(path)?;
-    let mut first = [0; GZIP.len()];
-    if file.read_exact(&mut first).is_err() || first != GZIP {
+    let mut head = Vec::new();
+    file.by_ref().take(LOOKED_AT).read_to_end(&mut head).ok();
+    if memchr::memmem::find(&head, FIRST_LINE.as_bytes()).is_some() {
+        return Err(AppError::input(format!(
+            "{0} is a blackbox log, from which no flight can be flown again; `betadeck replay {0}` shows it",
+            args.scenario
+        )));
+    }
+    if !head.starts_with(&GZIP) {
         return Ok(None);
     }
     let given = [
@@ -66,7 +76,8 @@ pub(super) fn run(args: &OpenArgs, recording: &Recording, keymap: Keymap) -> Res
     let end = repeat.vehicle().time();
     notices.push(match repeat.differs() {
         None => format!(
-            "{name} was flown again, the same to the last bit: `,` and `<` go back, Space plays it, `b` flies on from here."
+            "{name} was flown again, the same to the last bit: {}.",
+            ways_to_go(args.plain)
         ),
         Some(at) => format!(
             "{name} flies differently from {:.1} s since boot on, and is shown up to there. Another version of betadeck \
