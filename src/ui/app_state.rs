@@ -16,7 +16,7 @@ use super::layout::Border;
 use super::panel::{Panel, Panels};
 use super::permission::Permission;
 use super::popup::{CommandLine, Popup};
-use super::shared::{Notice, Shared};
+use super::shared::Shared;
 use super::transitions::Transition;
 use super::tutorial::Tutorial;
 
@@ -119,7 +119,7 @@ impl AppState {
             shared.log.push(event.time, severity, text.clone());
         }
         if matches!(severity, Severity::Warn | Severity::Fault) && !text.is_empty() {
-            shared.notice = Some(Notice { text, severity, at: shared.now });
+            shared.notice_event(severity, text);
         }
         if let SessionEvent::Vehicle(kind) = &event.kind {
             self.follow_vehicle(event.time, kind);
@@ -175,5 +175,36 @@ mod tests {
                 assert!(shown.starts_with(begins), "{said}: {shown}");
             }
         }
+    }
+
+    #[test]
+    fn the_answer_to_a_key_is_read_before_an_event_takes_its_place() {
+        let mut state = AppState::new(
+            UiConfig { sentence: notice_text, ..UiConfig::bare() },
+            (80, 24),
+            SessionView::default(),
+        );
+        let shown = |state: &AppState| state.shared.notice.as_ref().map(|notice| notice.text.clone());
+        let warning = |text: &str| Event {
+            time: SimTime(0),
+            kind: SessionEvent::Notice(format!("Not saved: {text}.")),
+        };
+        state.take_event(&warning("one"));
+        assert_eq!(shown(&state).as_deref(), Some("Not saved: one."), "nothing was pressed");
+        let at = |state: &mut AppState, ms| {
+            crate::ui::update::update(state, crate::ui::message::Msg::Clock(Duration::from_millis(ms)));
+        };
+        at(&mut state, 20_000);
+        state.shared.pressed_at = Some(state.shared.now);
+        at(&mut state, 20_100);
+        state.shared.notify(Severity::Info, "Saved.");
+        at(&mut state, 20_105);
+        state.take_event(&warning("two"));
+        at(&mut state, 22_000);
+        assert_eq!(shown(&state).as_deref(), Some("Saved."));
+        at(&mut state, 22_101);
+        assert_eq!(shown(&state).as_deref(), Some("Not saved: two."));
+        at(&mut state, 40_000);
+        assert_eq!(state.shared.notice.as_ref().map(|notice| notice.at.as_millis()), Some(22_101), "once");
     }
 }

@@ -44,6 +44,11 @@ const SPEED_CONFIRMED_WITHIN: Duration = Duration::from_secs(1);
 /// The time for which the map shows another revision of the plan while the craft flies.
 const REVISION_SHOWN: Duration = Duration::from_secs(8);
 
+/// The time for which the answer to a key stays before an event takes its place.
+const ANSWER_FOR: Duration = Duration::from_secs(2);
+/// The time after a key in which a notice is its answer.
+const ANSWERED_IN: Duration = Duration::from_millis(500);
+
 /// A sentence that is shown for a moment.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Notice {
@@ -51,6 +56,8 @@ pub struct Notice {
     pub severity: Severity,
     /// The time at which it appeared, wall clock.
     pub at: Duration,
+    /// `true` for the answer to a key.
+    pub(super) is_answer: bool,
 }
 
 /// The state that every panel may read.
@@ -109,6 +116,10 @@ pub struct Shared {
     /// The names chosen in the palette.
     pub used: UsedNames,
     pub notice: Option<Notice>,
+    /// The event that is shown after the answer to a key.
+    pub(super) next_notice: Option<Notice>,
+    /// The time of the last key, wall clock.
+    pub(super) pressed_at: Option<Duration>,
     /// Notices that stay until Esc clears them, the oldest first.
     pub pinned: Vec<String>,
     pub stick_recording: StickRecording,
@@ -162,6 +173,8 @@ impl Shared {
             world_history: WorldHistory::default(),
             used: UsedNames::of(&config.entered.palette),
             notice: None,
+            next_notice: None,
+            pressed_at: None,
             pinned: Vec::new(),
             stick_recording: StickRecording::default(),
             sticks_sent: None,
@@ -217,7 +230,7 @@ impl Shared {
     pub fn notify(&mut self, severity: Severity, text: impl Into<String>) {
         let text = text.into();
         self.log.push(self.view.vehicle.time, severity, text.clone());
-        self.notice = Some(Notice { text, severity, at: self.now });
+        self.say(severity, text);
     }
 
     /// Shows a notice in place of effects.
@@ -239,7 +252,32 @@ impl Shared {
 
     /// Shows a notice for a moment without keeping it in the log.
     pub(super) fn say(&mut self, severity: Severity, text: impl Into<String>) {
-        self.notice = Some(Notice { text: text.into(), severity, at: self.now });
+        let is_answer = self.pressed_at.is_some_and(|at| within(self.now, at, ANSWERED_IN));
+        self.notice = Some(Notice { text: text.into(), severity, at: self.now, is_answer });
+    }
+
+    /// Shows an event for a moment, after the answer to a key that was shown just now. A fault does not wait.
+    pub(super) fn notice_event(&mut self, severity: Severity, text: String) {
+        let event = Notice { text, severity, at: self.now, is_answer: false };
+        if severity == Severity::Fault || !self.shows_answer() {
+            self.notice = Some(event);
+        } else if self.next_notice.as_ref().is_none_or(|next| next.severity <= severity) {
+            self.next_notice = Some(event);
+        }
+    }
+
+    /// Shows the event that waits, once the answer to the key was shown long enough.
+    pub(super) fn follow_notices(&mut self) {
+        if !self.shows_answer()
+            && let Some(next) = self.next_notice.take()
+        {
+            self.notice = Some(Notice { at: self.now, ..next });
+        }
+    }
+
+    fn shows_answer(&self) -> bool {
+        let notice = self.notice.as_ref().filter(|notice| notice.is_answer);
+        notice.is_some_and(|notice| within(self.now, notice.at, ANSWER_FOR))
     }
 
     /// Returns `true` while the plan is edited on the map.

@@ -96,9 +96,15 @@ pub fn update(state: &mut AppState, msg: Msg) -> Vec<Effect> {
 
 fn take(state: &mut AppState, msg: Msg) -> Vec<Effect> {
     match msg {
-        Msg::Clock(now) => state.shared.now = now,
+        Msg::Clock(now) => {
+            state.shared.now = now;
+            state.shared.follow_notices();
+        }
         Msg::Key(event) if event.kind == KeyEventKind::Release => {}
-        Msg::Key(event) => return key(state, event),
+        Msg::Key(event) => {
+            state.shared.pressed_at = Some(state.shared.now);
+            return key(state, event);
+        }
         Msg::Mouse(event) => return mouse::update(state, event),
         Msg::Paste(text) => return paste(state, &text),
         Msg::Resize(columns, rows) => state.shared.size = (columns, rows),
