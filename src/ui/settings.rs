@@ -52,7 +52,7 @@ pub struct SettingsState {
     refusal: Option<String>,
     /// `true` while a reading is on its way.
     is_asked: bool,
-    /// `true` if the user asked for the reading and is told about its end.
+    /// `true` if the user asked for the reading and waits for its end.
     is_reported: bool,
     /// The time of the newest answer, wall clock.
     read_at: Option<Duration>,

@@ -1,4 +1,4 @@
-//! The file browser: its rows, and what is at a cell.
+//! The file browser: its rows, and the part of it at a cell.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Margin, Position, Rect};
@@ -33,7 +33,7 @@ fn first(browser: &Browser, rows: usize) -> usize {
     browser.at.unwrap_or(0).saturating_sub(rows.saturating_sub(1))
 }
 
-/// Returns what of the browser is at a cell of the screen.
+/// Returns the part of the browser at a cell of the screen.
 pub(crate) fn place_at(browser: &Browser, area: Rect, cell: (u16, u16)) -> Option<BrowserPlace> {
     let inside = frame_in(area).inner(Margin::new(1, 1));
     if !inside.contains(cell.into()) {
