@@ -119,11 +119,6 @@ impl PlanFiles {
         }
     }
 
-    /// Keeps no journals, and leaves those of other programs alone.
-    pub(super) fn without_journals(&mut self) {
-        self.journals = None;
-    }
-
     /// Reads elevation tiles from these directories; `tiles` were read before.
     pub(super) fn read_ground(&mut self, ground: TerrainFiles, tiles: Arc<Tiles>) {
         (self.ground, self.tiles) = (ground, tiles);

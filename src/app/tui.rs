@@ -277,7 +277,7 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
     let (requests, asked) = std::sync::mpsc::channel();
     let (done, kept) = tokio::sync::watch::channel(0);
     let (answers, replies) = tokio::sync::mpsc::unbounded_channel();
-    if screen.directory.is_none() {
+    if is_replay || screen.directory.is_none() {
         answers.send(FileReply::KeepsNothing).ok();
     }
     for lost in files.take_losses() {

@@ -24,8 +24,8 @@ fly as fast as the machine allows: once, because each of their flights is the sa
 on the wall clock flies --repeat times. Each flight starts from defaults, an executable in an empty folder each time.
 attach uses a running firmware as it is, and once.
 
-Exit codes: 0 every flight completed (with --log: both were measured), 1 one did not, 2 wrong usage or input,
-3 file or port trouble, 4 internal error, 130 interrupted.
+Exit codes: 0 every flight completed (with --log: both were measured), 1 one did not,
+2 wrong usage or input, 3 file or port trouble, 4 internal error, 130 interrupted.
 
 Each option can also be set in the configuration file (wind = \"5@270\") and in the environment
 (BETADECK_WIND=5@270); the command line overrides the environment, which overrides the file.";

@@ -64,6 +64,8 @@ pub struct Editor {
     pub(super) quitting: bool,
     /// `true` if edits cannot be kept, so that they are lost when the program is killed.
     pub(super) loses_edits: bool,
+    /// `true` if that is so because the user wants nothing kept.
+    pub(super) keeps_nothing: bool,
     /// A plan whose file was read for a comparison, and the document in the file, or the reason why there is none.
     pub(super) on_disk: Option<(PlanId, Result<Box<PlanDocument>, String>)>,
     /// The result that the open generator form would give.
@@ -110,6 +112,7 @@ impl Editor {
             dragged_altitude: None,
             quitting: false,
             loses_edits: false,
+            keeps_nothing: false,
             on_disk: None,
             generator: None,
             zones: ZoneReview::default(),

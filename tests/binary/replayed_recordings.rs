@@ -49,7 +49,7 @@ fn a_replay_leaves_the_unsaved_edits_of_another_run_alone() {
     terminal.send("q");
     assert_eq!(terminal.end(), 0);
     let mut terminal = Terminal::start_in(terminal.into_home(), 120, 40, PROGRAM, &["--no-ports", "square"]);
-    terminal.until_shown("Unsaved edits of this plan were restored");
+    terminal.until_shown("✎ unsaved");
 }
 
 #[test]

@@ -6,6 +6,11 @@ use crate::ui::KeptScreen;
 use crate::ui::editor::{FileReply, FileRequest, PlanId};
 
 impl PlanFiles {
+    /// Keeps no journals, and leaves those of other programs alone.
+    pub(in crate::app) fn without_journals(&mut self) {
+        self.journals = None;
+    }
+
     /// Keeps the screen in these files.
     pub(in crate::app) fn keep_screen_in(&mut self, screen: ScreenFile) {
         self.screen = screen;

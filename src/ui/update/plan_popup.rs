@@ -271,7 +271,7 @@ pub(super) fn answered(state: &mut Shared, reply: FileReply) -> Vec<Effect> {
             state.editor.loses_edits = true;
             state.notify(Severity::Fault, sentence);
         }
-        FileReply::KeepsNothing => state.editor.loses_edits = true,
+        FileReply::KeepsNothing => (state.editor.loses_edits, state.editor.keeps_nothing) = (true, true),
         FileReply::NotRecorded(sentence) => state.notify(Severity::Warn, sentence),
         FileReply::KeptAgain => {
             state.editor.loses_edits = false;
