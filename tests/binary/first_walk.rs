@@ -101,7 +101,8 @@ fn a_new_user_flies_a_plan_from_nothing_and_makes_a_scenario_of_it() {
         terminal.send("q");
         // The craft has landed, whatever instant is shown.
         terminal.until_shown("square has edits that no file holds");
-        terminal.send("d");
+        // The plan from nothing has edits, too.
+        terminal.send("dd");
         assert_eq!(terminal.end(), 0, "{}", terminal.screen());
         let seen = terminal.screen();
         let judged = seen.split("1 of 1 flight passed; ").nth(1).unwrap_or_else(|| panic!("{seen}"));
