@@ -5,7 +5,13 @@ use std::io;
 use std::os::unix::fs::FileExt as _;
 use std::sync::Arc;
 
+use crate::blackbox::FIRST_LINE;
 use crate::blackbox::decode::LogSource;
+
+/// Returns `true` if a blackbox log begins in these first bytes of a file.
+pub(super) fn has_log(head: &[u8]) -> bool {
+    memchr::memmem::find(head, FIRST_LINE.as_bytes()).is_some()
+}
 
 /// An open file. Copies share it.
 #[derive(Debug, Clone)]

@@ -62,9 +62,9 @@ pub struct Editor {
     pub(super) dragged_altitude: Option<(usize, Altitude)>,
     /// `true` if the program ends as soon as every plan is saved or given up.
     pub(super) quitting: bool,
-    /// `true` if edits cannot be kept, so that they are lost when the program is killed.
-    pub(super) loses_edits: bool,
-    /// `true` if that is so because the user wants nothing kept.
+    /// `true` while edits cannot be kept because their journal cannot be written.
+    pub(super) journal_fails: bool,
+    /// `true` if the user wants no edits kept.
     pub(super) keeps_nothing: bool,
     /// A plan whose file was read for a comparison, and the document in the file, or the reason why there is none.
     pub(super) on_disk: Option<(PlanId, Result<Box<PlanDocument>, String>)>,
@@ -111,12 +111,17 @@ impl Editor {
             popup: None,
             dragged_altitude: None,
             quitting: false,
-            loses_edits: false,
+            journal_fails: false,
             keeps_nothing: false,
             on_disk: None,
             generator: None,
             zones: ZoneReview::default(),
         }
+    }
+
+    /// Returns `true` if edits are not kept, so that they are lost when the program is killed.
+    pub(super) fn loses_edits(&self) -> bool {
+        self.journal_fails || self.keeps_nothing
     }
 
     /// Returns the shown plan.

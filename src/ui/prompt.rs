@@ -104,7 +104,7 @@ fn yes_or_no(losses: &ConversionLosses) -> String {
 pub(super) fn answer(state: &mut AppState, line: &str) -> Result<Answered, String> {
     let line = line.trim();
     let quits = line == "quit" || line == "app.quit";
-    let loses_edits = state.shared.editor.loses_edits;
+    let loses_edits = state.shared.editor.loses_edits();
     match &state.shared.editor.popup {
         Some(EditorPopup::Form(_)) => return form::answer(state, line),
         Some(EditorPopup::Browser(_)) => return file::answer(state, line),
@@ -189,7 +189,7 @@ fn list(title: String, choices: impl Iterator<Item = String>) -> Vec<String> {
 }
 
 fn decision(state: &AppState, question: &Question) -> Vec<String> {
-    let loses_edits = state.shared.editor.loses_edits;
+    let loses_edits = state.shared.editor.loses_edits();
     let text = match question {
         Question::Replace { path, changed: true, .. } => {
             format!("{} was changed elsewhere since it was read.", path.display())

@@ -123,9 +123,9 @@ fn the_track_of_the_flight_before_stays_faintly_on_the_map() {
     let with_past = screen(&state);
     assert_ne!(with_past, empty);
     // The notice about it is above the frame of the map.
-    let toggled = |state: &mut AppState, told: &str| {
+    let toggled = |state: &mut AppState, notice: &str| {
         keys(state, "v");
-        assert!(screen(state).contains(told), "{}", screen(state));
+        assert!(screen(state).contains(notice), "{}", screen(state));
         state.shared.notice = None;
         screen(state)
     };

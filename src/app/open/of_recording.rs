@@ -10,11 +10,11 @@ use crate::app::file_identity;
 use crate::app::flight_recorder::RecordedStart;
 use crate::app::input_file;
 use crate::app::interrupt::interrupt_flag;
+use crate::app::log_source::has_log;
 use crate::app::recording_file::GZIP;
 use crate::app::setup;
 use crate::app::terrain::with_terrain;
 use crate::args::{OpenArgs, TerrainArgs};
-use crate::blackbox::FIRST_LINE;
 use crate::flight::FlightSetup;
 use crate::recording::{Recording, Repeat, Setup};
 use crate::session::{Event, FlownBefore};
@@ -38,7 +38,7 @@ pub(super) fn read(args: &OpenArgs) -> Result<Option<Recording>, AppError> {
     let mut file = input_file::open_recording(path)?;
     let mut head = Vec::new();
     file.by_ref().take(LOOKED_AT).read_to_end(&mut head).ok();
-    if memchr::memmem::find(&head, FIRST_LINE.as_bytes()).is_some() {
+    if has_log(&head) {
         return Err(AppError::input(format!(
             "{0} is a blackbox log, from which no flight can be flown again; `betadeck replay {0}` shows it",
             args.scenario

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::shown_name;
 use crate::app::error::AppError;
 use crate::app::input_file;
-use crate::app::log_source::FileSource;
+use crate::app::log_source::{FileSource, has_log};
 use crate::app::recording_file::GZIP;
 use crate::blackbox::FIRST_LINE;
 use crate::blackbox::decode::LogSource as _;
@@ -44,7 +44,7 @@ pub(super) fn open(path: &Path) -> Result<Opened, AppError> {
     if head.starts_with(&GZIP) {
         return Ok(Opened::Recording(RecordedFlights::new(&name, source)));
     }
-    if contains(&head, FIRST_LINE.as_bytes()) || size > LOOKED_AT as u64 {
+    if has_log(&head) || size > LOOKED_AT as u64 {
         return Ok(Opened::Logs(LogFlights::new(&name, source)));
     }
     Err(AppError::input(format!(
@@ -65,8 +65,4 @@ fn head(source: &mut FileSource) -> std::io::Result<Vec<u8>> {
     }
     head.truncate(length);
     Ok(head)
-}
-
-fn contains(bytes: &[u8], wanted: &[u8]) -> bool {
-    bytes.windows(wanted.len()).any(|window| window == wanted)
 }

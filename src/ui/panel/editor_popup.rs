@@ -51,7 +51,7 @@ fn question(state: &Shared, question: &Question, area: Rect, buffer: &mut Buffer
         Question::Replace { path, changed: false, .. } => ("Replace?", format!("{} exists.", path.display())),
         Question::MovesTarget { change, .. } => ("Upload in flight?", change.clone()),
         Question::Unsaved { id, .. } => {
-            ("Unsaved", question.unsaved(&title_of(*id), state.editor.loses_edits))
+            ("Unsaved", question.unsaved(&title_of(*id), state.editor.loses_edits()))
         }
     };
     let lines = wrapped(&format!("▲ {text}"), 58);
@@ -60,7 +60,7 @@ fn question(state: &Shared, question: &Question, area: Rect, buffer: &mut Buffer
         row(buffer, inside, at as u16, theme, Role::Warn, &format!(" {text}"));
     }
     let answers: Vec<(String, &str)> = question
-        .answers(state.editor.loses_edits)
+        .answers(state.editor.loses_edits())
         .iter()
         .map(|(key, what)| (key.to_string(), *what))
         .collect();

@@ -43,8 +43,7 @@ impl Content for PlanPanel {
         let which =
             if count > 1 { format!(" {}/{count}", state.editor.current() + 1) } else { String::new() };
         let unsaved = if plan.is_unsaved() { " ✎ unsaved" } else { "" };
-        let is_failure = state.editor.loses_edits && !state.editor.keeps_nothing;
-        let kept = if is_failure { " ✗ edits not kept" } else { "" };
+        let kept = if state.editor.journal_fails { " ✗ edits not kept" } else { "" };
         let disk = if plan.is_changed_on_disk() { " ▲ changed on disk" } else { "" };
         // It is temporary, so it is in front, where it is not cut off.
         if let Some(upload) = state.upload_of(plan.id()) {

@@ -110,7 +110,7 @@ async fn run_loop(
         lines.follow(&mut state)?;
         // After the end of the input a flight goes on. A recorded one is over once its events are written.
         let is_over = awaited == 0 && link.other.is_none() && link.events.is_empty() && is_read(&state);
-        // Nobody answers the question about unsaved edits any more. They are kept for the next start.
+        // Nobody answers the question about unsaved edits any more. They are kept for the next start, if edits are kept.
         if has_ended && (is_over || awaited == 0 && asks_before_it_quits(&state)) {
             break Ending::Quit;
         }

@@ -131,7 +131,7 @@ fn question_key(state: &mut Shared, question: Question, event: KeyEvent) -> Vec<
             }
             effects
         }
-        (Question::Unsaved { quits: true, .. }, 'y') if !state.editor.loses_edits => vec![Effect::Quit],
+        (Question::Unsaved { quits: true, .. }, 'y') if !state.editor.loses_edits() => vec![Effect::Quit],
         (question, answer) => {
             if matches!((&question, answer), (Question::Unsaved { quits: true, .. }, 'y')) {
                 let text = "Edits are not kept: `s` saves this plan, `d` discards its edits.";
@@ -268,13 +268,13 @@ pub(super) fn answered(state: &mut Shared, reply: FileReply) -> Vec<Effect> {
             }
         }
         FileReply::NotKept(sentence) => {
-            state.editor.loses_edits = true;
+            state.editor.journal_fails = true;
             state.notify(Severity::Fault, sentence);
         }
-        FileReply::KeepsNothing => (state.editor.loses_edits, state.editor.keeps_nothing) = (true, true),
+        FileReply::KeepsNothing => state.editor.keeps_nothing = true,
         FileReply::NotRecorded(sentence) => state.notify(Severity::Warn, sentence),
         FileReply::KeptAgain => {
-            state.editor.loses_edits = false;
+            state.editor.journal_fails = false;
             state.notify(Severity::Good, "Edits are kept again.");
         }
         FileReply::Ground { tiles, problems } => ground::read(state, tiles, problems),
