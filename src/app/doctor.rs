@@ -9,6 +9,7 @@ use std::path::Path;
 use super::error::{self, AppError};
 use super::keys;
 use super::layers::{self, Outside};
+use super::tui::is_dumb;
 use super::usage;
 use crate::args::{self, DoorArgs, Layers};
 use crate::ui::Theme;
@@ -85,8 +86,16 @@ fn state_directory(report: &mut Report, path: &Path) {
 /// Checks the terminal. Only the user interface needs one, so a missing terminal is not a fault.
 fn terminal(report: &mut Report) {
     const TERMINAL: &str = "terminal";
+    if is_dumb() {
+        report.line(
+            true,
+            TERMINAL,
+            "TERM=dumb has no screen: betadeck needs --plain here; betadeck fly needs none",
+        );
+        return;
+    }
     if !std::io::stdout().is_terminal() {
-        report.line(true, TERMINAL, "none here; betadeck fly needs none");
+        report.line(true, TERMINAL, "none here; betadeck fly and betadeck --plain need none");
         return;
     }
     match crossterm::terminal::size() {

@@ -201,9 +201,23 @@ fn first_plan(
     Ok((demo, file))
 }
 
-/// Refuses the screen without a terminal.
+/// Returns `true` if the environment says that the terminal takes no escape sequences.
+pub(super) fn is_dumb() -> bool {
+    std::env::var_os("TERM").is_some_and(|term| term == "dumb")
+}
+
+/// Refuses the screen without a terminal, or on one that cannot show it.
 pub(super) fn require_terminal(plain: bool) -> Result<(), AppError> {
-    if plain || std::io::stdout().is_terminal() && std::io::stdin().is_terminal() {
+    if plain {
+        return Ok(());
+    }
+    if is_dumb() {
+        return Err(AppError::environment(
+            "this terminal cannot place characters (TERM=dumb): add `--plain` for sentences instead of a screen, or set \
+             TERM to its kind",
+        ));
+    }
+    if std::io::stdout().is_terminal() && std::io::stdin().is_terminal() {
         return Ok(());
     }
     Err(AppError::environment(

@@ -26,7 +26,7 @@ pub(super) fn most_useful_flag(flags: ArmingFlags) -> Option<ArmingFlag> {
 /// Returns the advice for an arming disable flag, with the key for it.
 pub(super) fn arming_hint(state: &Shared, flag: ArmingFlag) -> String {
     let (action, does) = match flag {
-        ArmingFlag::RxLoss => (Action::CutRc, "restores the link"),
+        ArmingFlag::RxLoss if state.view.rc_cut => (Action::CutRc, "restores the link"),
         ArmingFlag::NotDisarmed | ArmingFlag::ArmSwitch => (Action::Arm, "moves the switch"),
         ArmingFlag::Throttle => (Action::Throttle, "does it"),
         ArmingFlag::AltHoldSwitch | ArmingFlag::PosHoldSwitch => (Action::Throttle, "up and down does it"),

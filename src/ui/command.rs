@@ -16,6 +16,7 @@ pub use suggestion::{Suggestion, hint, suggestions};
 pub use table::{Command, all};
 
 use super::action::{self, ACTIONS, Action, Context, Spec};
+use super::keymap::KeyPress;
 use super::message::Request;
 use super::panel::Panel;
 use super::shared::Shared;
@@ -33,7 +34,8 @@ pub fn run(state: &mut Shared, line: &str) -> Result<Vec<Request>, String> {
     if let Some(command) = all().find(|command| command.name == word) {
         return (command.run)(state, command.name, argument);
     }
-    let action = action_named(word, state.focus)?;
+    let action =
+        action_named(word, state.focus).map_err(|unknown| named_by_key(state, word).unwrap_or(unknown))?;
     if !argument.is_empty() {
         return Err(format!("{word} takes no argument."));
     }
@@ -62,7 +64,7 @@ fn split(line: &str) -> (&str, &str) {
 }
 
 /// Returns the part of an action's name after the dot.
-fn short_name(spec: &Spec) -> &'static str {
+pub(super) fn short_name(spec: &Spec) -> &'static str {
     spec.name.rsplit_once('.').map_or(spec.name, |(_, short)| short)
 }
 
@@ -93,6 +95,31 @@ fn action_named(word: &str, focus: Panel) -> Result<Action, String> {
             }
         }
     }
+}
+
+/// Returns the sentence about a key that was typed as a command.
+fn named_by_key(state: &Shared, word: &str) -> Option<String> {
+    let action = state.keymap.action(KeyPress::parse(word)?, state.focus)?;
+    let name = action::spec_of(action)?.name;
+    Some(format!("{word} is a key of the screen; its command is {name}."))
+}
+
+/// Returns the command whose name is the first word of a line.
+pub(super) fn with_value(line: &str) -> Option<Command> {
+    let word = split(line).0;
+    all().find(|command| command.name == word)
+}
+
+/// Returns the line for the firmware's command line if its panel has the focus and the line is not rather a command.
+pub(super) fn for_firmware<'a>(state: &Shared, line: &'a str) -> Option<&'a str> {
+    let line = line.trim();
+    let word = line.split([' ', '=']).next().filter(|word| !word.is_empty() && !word.starts_with(':'))?;
+    if !state.focus.takes_text() {
+        return None;
+    }
+    let knows = |word: &str| (state.cli_help.complete)(word).iter().any(|known| known.trim_end() == word);
+    let is_ours = with_value(line).is_some() || action_named(word, state.focus).is_ok();
+    (knows(word) || !is_ours).then_some(line)
 }
 
 /// Returns the end of a sentence about an unknown word.

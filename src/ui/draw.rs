@@ -123,10 +123,18 @@ fn paint_background(state: &Shared, buffer: &mut Buffer) {
 fn clean(buffer: &mut Buffer) {
     for cell in &mut buffer.content {
         // Most cells are one byte, which the buffer itself keeps free of control characters.
-        if cell.symbol().len() > 1 && !cell.symbol().chars().all(printable::is_printable) {
+        let symbol = cell.symbol();
+        if symbol.len() > 1 && (!symbol.chars().all(printable::is_printable) || is_joined(symbol)) {
             cell.set_symbol("?");
         }
     }
+}
+
+/// Returns `true` for characters that some terminals join to one picture and others show beside each other, so that the rest
+/// of the row would move.
+fn is_joined(symbol: &str) -> bool {
+    let is_modifier = |c: char| matches!(c, '\u{200d}' | '\u{fe0f}' | '\u{1f3fb}'..='\u{1f3ff}' | '\u{1f1e6}'..='\u{1f1ff}');
+    symbol.chars().any(is_modifier)
 }
 
 /// Draws a panel with its frame. Returns the position of the cursor if it is in this panel.
@@ -170,16 +178,12 @@ fn quit_question(state: &Shared, area: Rect, buffer: &mut Buffer) {
 }
 
 fn reset_question(state: &Shared, area: Rect, buffer: &mut Buffer) {
-    let inside = popup(&state.theme, area, (56, 3), "Defaults?", buffer);
     let theme = &state.theme;
-    panel::row(
-        buffer,
-        inside,
-        0,
-        theme,
-        Role::Warn,
-        &format!(" ▲ {}", settings::changes::reset_question(state)),
-    );
+    let text = wrapped(&format!("▲ {}", settings::changes::reset_question(state)), 54);
+    let inside = popup(theme, area, (56, text.len() as u16 + 2), "Defaults?", buffer);
+    for (at, text) in (0..).zip(&text) {
+        panel::row(buffer, inside, at, theme, Role::Warn, &format!(" {text}"));
+    }
     let answers = [(" y", " reset   "), ("n", " change nothing")];
-    panel::line(buffer, inside, 2, &key_line(theme, &answers));
+    panel::line(buffer, inside, text.len() as u16 + 1, &key_line(theme, &answers));
 }

@@ -26,7 +26,7 @@ pub(super) fn compass(degrees: f64) -> f64 {
 }
 
 /// Returns 0 instead of a value that would print as "-0.0".
-fn without_negative_zero(value: f64, decimals: usize) -> f64 {
+pub(super) fn without_negative_zero(value: f64, decimals: usize) -> f64 {
     let floor = 0.5 * 0.1_f64.powi(decimals as i32);
     if value.abs() < floor { 0.0 } else { value }
 }

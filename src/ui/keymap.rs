@@ -123,6 +123,8 @@ impl fmt::Display for KeyPress {
 #[derive(Debug, Clone)]
 pub struct Keymap {
     bindings: Vec<(Context, KeyPress, Action)>,
+    /// `true` if sentences name the commands in place of the keys, because nobody presses keys.
+    names_commands: bool,
 }
 
 impl Default for Keymap {
@@ -134,25 +136,29 @@ impl Default for Keymap {
                 spec.keys.iter().filter_map(|key| Some((spec.context, KeyPress::parse(key)?, spec.action)))
             })
             .collect();
-        Self { bindings }
+        Self { bindings, names_commands: false }
     }
 }
 
 impl Keymap {
-    /// Returns the keys of an action as text.
+    /// Returns the same keys for input that is lines of text: sentences name commands, and no key is shown.
+    #[must_use]
+    pub(super) fn without_a_screen(self) -> Self {
+        Self { names_commands: true, ..self }
+    }
+
+    /// Returns the keys of an action as text; none where commands are named.
     pub fn shown_keys(&self, action: Action) -> Vec<String> {
-        self.bindings
-            .iter()
-            .filter(|binding| binding.2 == action)
-            .map(|binding| binding.1.to_string())
-            .collect()
+        let bindings = self.bindings.iter().filter(|_| !self.names_commands);
+        bindings.filter(|binding| binding.2 == action).map(|binding| binding.1.to_string()).collect()
     }
 
     /// Returns the first key of an action, or the command that triggers it if it has no key.
     pub fn key(&self, action: Action) -> String {
         let first = self.shown_keys(action).into_iter().next();
-        let name = || spec_of(action).map_or_else(String::new, |spec| format!(":{}", spec.name));
-        first.unwrap_or_else(name)
+        let name = || spec_of(action).map_or("", |spec| spec.name);
+        let command = || if self.names_commands { name().to_owned() } else { format!(":{}", name()) };
+        first.unwrap_or_else(command)
     }
 
     /// Replaces the default keys in backquotes in a sentence of the session with the current keys.

@@ -16,6 +16,8 @@ use crate::telemetry::{FaultValue, Turbulence};
 const SPEED_STEP: f64 = 0.5;
 /// The strongest wind that the user can set, m/s.
 const MOST_MPS: f64 = 60.0;
+/// The height above the ground from which the mean wind is the given one, m. It is weaker below.
+const FULL_WIND_M: f64 = 10.0;
 /// A step of the wind's direction, degrees.
 const DIRECTION_STEP: f64 = 15.0;
 
@@ -115,7 +117,11 @@ impl Knob {
     pub(super) fn help(self, units: Units) -> String {
         match self {
             Self::WindSpeed => {
-                format!("the mean wind, 0 to {}, over two seconds", units.speed_text(MOST_MPS, 0))
+                let most = units.speed_text(MOST_MPS, 0);
+                format!(
+                    "the mean wind from {} up, 0 to {most}, over two seconds",
+                    units.length_text(FULL_WIND_M, 0)
+                )
             }
             Self::WindFrom => "the direction it blows from, degrees".to_owned(),
             Self::Gust => format!("strength of random gusts, 0 to {}", units.speed_text(MOST_MPS, 0)),

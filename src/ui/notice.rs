@@ -37,6 +37,11 @@ fn newest(state: &Shared) -> Option<&Notice> {
     state.notice.as_ref().filter(|notice| within(state.now, notice.at, NOTICE_FOR))
 }
 
+/// Returns the alarm above it for as long as it would have been shown alone.
+fn alarm(state: &Shared) -> Option<&Notice> {
+    state.alarm.as_ref().filter(|notice| within(state.now, notice.at, NOTICE_FOR))
+}
+
 /// Returns `true` while the newest notice is shown.
 pub(super) fn is_shown(state: &Shared) -> bool {
     newest(state).is_some()
@@ -49,9 +54,11 @@ fn rows(state: &Shared, above: u16, hints: Rect) -> Vec<Row> {
     let newest = newest(state).map(|notice| (notice.severity, notice.text.clone(), NOTICE_ROWS));
     let pinned =
         state.pinned.first().map(|text| (Severity::Fault, format!("{text} {CLOSED_BY}"), PINNED_ROWS));
+    let alarm = alarm(state).map(|notice| (notice.severity, notice.text.clone(), NOTICE_ROWS));
     let mut above = 1 + above;
     let mut rows = Vec::new();
-    for (is_pinned, notice) in newest.map(|it| (false, it)).into_iter().chain(pinned.map(|it| (true, it))) {
+    let passing = newest.into_iter().chain(alarm).map(|it| (false, it));
+    for (is_pinned, notice) in passing.chain(pinned.map(|it| (true, it))) {
         let (severity, text, most) = notice;
         let mut lines = wrapped(&format!("{} {text}", severity.glyph()), width);
         if lines.len() > most {
@@ -86,6 +93,7 @@ pub(super) fn close_at(state: &mut Shared, above: u16, hints: Rect, cell: (u16, 
         state.pinned.remove(0);
     } else {
         state.notice = None;
+        state.alarm = None;
     }
     true
 }

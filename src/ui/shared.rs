@@ -41,6 +41,9 @@ const IN_THE_AIR_M: f64 = 1.0;
 /// The time within which the session confirms a speed.
 const SPEED_CONFIRMED_WITHIN: Duration = Duration::from_secs(1);
 
+/// The time by which a view may be older than the newest event, s.
+const VIEW_LAG_S: f64 = 1.0;
+
 /// The time for which the map shows another revision of the plan while the craft flies.
 const REVISION_SHOWN: Duration = Duration::from_secs(8);
 
@@ -116,6 +119,8 @@ pub struct Shared {
     /// The names chosen in the palette.
     pub used: UsedNames,
     pub notice: Option<Notice>,
+    /// The warning or fault that a lighter notice would have covered; it is shown above it.
+    pub(super) alarm: Option<Notice>,
     /// The event that is shown after the answer to a key.
     pub(super) next_notice: Option<Notice>,
     /// The time of the last key, wall clock.
@@ -127,8 +132,8 @@ pub struct Shared {
     pub sticks_sent: Option<(RcFrame, Duration)>,
     /// The speed that was requested but not yet confirmed by the session, and the time of the request.
     pub(super) speed_sent: Option<(f64, Duration)>,
-    /// The time at which the key that arms was pressed in the air, wall clock.
-    pub disarm_asked: Option<Duration>,
+    /// The key that ends the flight and was pressed once in the air, and the time of that, wall clock.
+    pub asked_in_flight: Option<(Action, Duration)>,
 }
 
 #[cfg(test)]
@@ -179,7 +184,8 @@ impl Shared {
             stick_recording: StickRecording::default(),
             sticks_sent: None,
             speed_sent: None,
-            disarm_asked: None,
+            asked_in_flight: None,
+            alarm: None,
         }
     }
 
@@ -229,8 +235,16 @@ impl Shared {
     /// Shows a notice for a moment and keeps it in the log.
     pub fn notify(&mut self, severity: Severity, text: impl Into<String>) {
         let text = text.into();
-        self.log.push(self.view.vehicle.time, severity, text.clone());
+        self.log.push(self.log_time(), severity, text.clone());
         self.say(severity, text);
+    }
+
+    /// Returns the time of a line about now: that of the view, or of a newer event that the view does not show yet.
+    fn log_time(&self) -> SimTime {
+        let shown = self.view.vehicle.time;
+        let newest = self.log.newest_first().find(|line| !line.left_behind).map(|line| line.time);
+        let newest = newest.filter(|newest| !self.is_rewound() && newest.seconds_since(shown) < VIEW_LAG_S);
+        newest.map_or(shown, |newest| newest.max(shown))
     }
 
     /// Shows a notice in place of effects.
@@ -241,26 +255,37 @@ impl Shared {
 
     /// Adds a line to the log only.
     pub(super) fn log_only(&mut self, severity: Severity, text: impl Into<String>) {
-        self.log.push(self.view.vehicle.time, severity, text.into());
+        self.log.push(self.log_time(), severity, text.into());
     }
 
     /// Reports a loss in the log, and on the screen until Esc clears it.
     pub(super) fn pin(&mut self, text: String) {
-        self.log.push(self.view.vehicle.time, Severity::Fault, text.clone());
+        self.log.push(self.log_time(), Severity::Fault, text.clone());
         self.pinned.push(text);
     }
 
     /// Shows a notice for a moment without keeping it in the log.
     pub(super) fn say(&mut self, severity: Severity, text: impl Into<String>) {
         let is_answer = self.pressed_at.is_some_and(|at| within(self.now, at, ANSWERED_IN));
-        self.notice = Some(Notice { text: text.into(), severity, at: self.now, is_answer });
+        self.show(Notice { text: text.into(), severity, at: self.now, is_answer });
+    }
+
+    /// Shows a notice. A warning or fault that it would cover stays above it.
+    fn show(&mut self, notice: Notice) {
+        let covered = self.notice.replace(notice);
+        let is_lighter = |covered: &Notice| {
+            self.notice.as_ref().is_some_and(|notice| notice.severity < Severity::Warn.min(covered.severity))
+        };
+        if let Some(alarm) = covered.filter(|covered| !covered.is_answer && is_lighter(covered)) {
+            self.alarm = Some(alarm);
+        }
     }
 
     /// Shows an event for a moment, after the answer to a key that was shown just now. A fault does not wait.
     pub(super) fn notice_event(&mut self, severity: Severity, text: String) {
         let event = Notice { text, severity, at: self.now, is_answer: false };
         if severity == Severity::Fault || !self.shows_answer() {
-            self.notice = Some(event);
+            self.show(event);
         } else if self.next_notice.as_ref().is_none_or(|next| next.severity <= severity) {
             self.next_notice = Some(event);
         }
@@ -271,7 +296,7 @@ impl Shared {
         if !self.shows_answer()
             && let Some(next) = self.next_notice.take()
         {
-            self.notice = Some(Notice { at: self.now, ..next });
+            self.show(Notice { at: self.now, ..next });
         }
     }
 

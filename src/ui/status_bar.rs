@@ -5,7 +5,9 @@ use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 use unicode_width::UnicodeWidthStr as _;
 
+use crate::session::SessionView;
 use crate::signals::RcSource;
+use crate::telemetry::snapshot::CraftView;
 use crate::telemetry::{LinkState, Mode, NavState, NavTelemetry};
 
 use super::drawing;
@@ -16,6 +18,8 @@ use super::past_flight;
 use super::shared::Shared;
 use super::theme::Role;
 use super::units::Units;
+
+pub(super) mod in_words;
 
 /// The voltage of an empty and a full cell, V.
 const CELL_V: (f64, f64) = (3.3, 4.2);
@@ -57,15 +61,7 @@ fn craft(state: &Shared) -> Vec<Span<'static>> {
         Some(false) => span(theme, Role::Ok, " ○ DISARMED "),
         None => span(theme, Role::Dim, " ○ — "),
     }];
-    let mut modes: Vec<Mode> =
-        craft.modes.unwrap_or_default().iter().filter(|mode| *mode != Mode::Arm).collect();
-    modes.sort_by_key(|mode| match mode {
-        Mode::Failsafe => 0,
-        Mode::Autopilot => 1,
-        Mode::GpsRescue => 2,
-        _ => 3,
-    });
-    for mode in modes {
+    for mode in modes(craft) {
         let role = match mode {
             Mode::Failsafe => Role::Fault,
             Mode::Autopilot | Mode::GpsRescue => Role::Target,
@@ -76,6 +72,19 @@ fn craft(state: &Shared) -> Vec<Span<'static>> {
         spans.push(span(theme, role, format!("{name} ")));
     }
     spans
+}
+
+/// Returns the modes beside ARM, the most important first.
+fn modes(craft: &CraftView) -> Vec<Mode> {
+    let mut modes: Vec<Mode> =
+        craft.modes.unwrap_or_default().iter().filter(|mode| *mode != Mode::Arm).collect();
+    modes.sort_by_key(|mode| match mode {
+        Mode::Failsafe => 0,
+        Mode::Autopilot => 1,
+        Mode::GpsRescue => 2,
+        _ => 3,
+    });
+    modes
 }
 
 /// Returns GPS, battery and RC.
@@ -143,11 +152,7 @@ fn mission(state: &Shared, room: usize) -> Vec<Span<'static>> {
     let theme = &state.theme;
     let vehicle = &state.view.vehicle;
     let nav = vehicle.nav.as_ref();
-    let name = match nav {
-        None => "—".to_owned(),
-        Some(nav) if nav.climbing => "CLIMBING".to_owned(),
-        Some(nav) => nav.state.to_string(),
-    };
+    let name = state_name(nav);
     let role = match nav.map(|nav| nav.state) {
         None | Some(NavState::Idle) => Role::Dim,
         Some(NavState::Complete) => Role::Ok,
@@ -164,12 +169,7 @@ fn mission(state: &Shared, room: usize) -> Vec<Span<'static>> {
     let speed = |value: Option<f64>| value.map(|speed| units.speed(speed));
     let estimate = &vehicle.estimate;
     let leg = engaged.map_or_else(Vec::new, |nav| leg(nav, units));
-    // Places in a recorded flight count from home.
-    let recorded_m = || {
-        let (n, e) = estimate.n.zip(estimate.e).filter(|_| state.view.replay.is_some())?;
-        Some(n.hypot(e))
-    };
-    let home_m = nav.and_then(|nav| nav.home_distance_m).or_else(recorded_m);
+    let home_m = home_m(state);
     let agl = ground::agl_m(state)
         .map(|agl_m| (3, "  agl", fixed(Some(units.length(agl_m)), 6, 1), format!(" {m}")));
     // Rank (a low one is kept longest), label, value, unit.
@@ -198,12 +198,51 @@ fn mission(state: &Shared, room: usize) -> Vec<Span<'static>> {
     spans
 }
 
+/// Returns the state of the autopilot; a dash if it is not known.
+fn state_name(nav: Option<&NavTelemetry>) -> String {
+    match nav {
+        None => "—".to_owned(),
+        Some(nav) if nav.climbing => "CLIMBING".to_owned(),
+        Some(nav) => nav.state.to_string(),
+    }
+}
+
+/// Returns the distance to home, m.
+fn home_m(state: &Shared) -> Option<f64> {
+    let vehicle = &state.view.vehicle;
+    // Places in a recorded flight count from home.
+    let recorded_m = || {
+        let estimate = &vehicle.estimate;
+        let (n, e) = estimate.n.zip(estimate.e).filter(|_| state.view.replay.is_some())?;
+        Some(n.hypot(e))
+    };
+    vehicle.nav.as_ref().and_then(|nav| nav.home_distance_m).or_else(recorded_m)
+}
+
+/// The numbers of the leg that is flown.
+struct LegNumbers {
+    distance_m: Option<f64>,
+    bearing_deg: Option<f64>,
+    /// The rest of a hold.
+    hold_left_s: Option<f64>,
+    xte_m: Option<f64>,
+}
+
+fn leg_numbers(nav: &NavTelemetry) -> LegNumbers {
+    LegNumbers {
+        distance_m: nav.distance_m,
+        bearing_deg: nav.bearing_rad.map(|rad| rad.to_degrees().rem_euclid(360.0)),
+        hold_left_s: nav.hold_remaining_s.filter(|left_s| *left_s > 0.0),
+        xte_m: nav.xte_m,
+    }
+}
+
 /// Returns the numbers of the leg: rank, label, value, unit.
 fn leg(nav: &NavTelemetry, units: Units) -> Vec<(u8, &'static str, String, String)> {
     let m = || format!(" {}", units.length_unit());
     let length = |value: Option<f64>| value.map(|metres| units.length(metres));
-    let bearing = nav.bearing_rad.map(|rad| rad.to_degrees().rem_euclid(360.0));
-    let last = if let Some(left_s) = nav.hold_remaining_s.filter(|left_s| *left_s > 0.0) {
+    let numbers = leg_numbers(nav);
+    let last = if let Some(left_s) = numbers.hold_left_s {
         let text = if left_s.is_finite() {
             fixed(Some(left_s), 4, 0).trim_start().to_owned()
         } else {
@@ -211,12 +250,12 @@ fn leg(nav: &NavTelemetry, units: Units) -> Vec<(u8, &'static str, String, Strin
         };
         (4, " hold ", format!("{text:>3}"), " s".to_owned())
     } else {
-        let xte = signed(length(nav.xte_m), 5, 1);
+        let xte = signed(length(numbers.xte_m), 5, 1);
         (4, " xte ", format!("{:>4}", xte.trim_start()), m())
     };
     vec![
-        (0, "", fixed(length(nav.distance_m), 5, 1), m()),
-        (3, "", fixed(bearing.map(compass), 4, 0), "°".to_owned()),
+        (0, "", fixed(length(numbers.distance_m), 5, 1), m()),
+        (3, "", fixed(numbers.bearing_deg.map(compass), 4, 0), "°".to_owned()),
         last,
     ]
 }
@@ -257,6 +296,16 @@ fn time(state: &Shared) -> Vec<Span<'static>> {
     if view.paused {
         return vec![span(theme, Role::Active, format!(" {} ‖ ", clock_ms(view.vehicle.time)))];
     }
+    let (speed, keeps_up) = speed(view);
+    let role = if keeps_up || view.speed_wanted.is_infinite() { Role::Text } else { Role::Warn };
+    vec![
+        span(theme, Role::Text, format!(" {}", clock(view.vehicle.time))),
+        span(theme, role, format!(" {speed:>3} ")),
+    ]
+}
+
+/// Returns the speed of time, and `true` if the flight keeps up with the wanted one.
+fn speed(view: &SessionView) -> (String, bool) {
     // There is no measured speed in the first second after a start or a pause.
     let measured = view.speed_achieved > 0.0;
     let keeps_up = !measured || view.speed_achieved >= 0.9 * view.speed_wanted;
@@ -265,9 +314,5 @@ fn time(state: &Shared) -> Vec<Span<'static>> {
     } else {
         factor(view.speed_wanted)
     };
-    let role = if keeps_up || view.speed_wanted.is_infinite() { Role::Text } else { Role::Warn };
-    vec![
-        span(theme, Role::Text, format!(" {}", clock(view.vehicle.time))),
-        span(theme, role, format!(" {speed:>3} ")),
-    ]
+    (speed, keeps_up)
 }

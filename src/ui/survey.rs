@@ -74,12 +74,12 @@ impl SurveyState {
         let shown = self.shown.as_ref()?;
         Some(match &shown.what {
             Surveyed::Sweep(sweep) => {
-                let so_far = if shown.is_over { "" } else { " so far …" };
+                let so_far = if shown.is_over { "" } else { " so far…" };
                 format!("{} at every second: {}{so_far}", sweep.fault.timeless(), sweep.counts())
             }
             Surveyed::GoNoGo(_, Some(sentence)) => sentence.clone(),
             Surveyed::GoNoGo(flown, None) => {
-                format!("go or no-go: {flown} of {} flights …", Forecast::FLIGHTS)
+                format!("go or no-go: {flown} of {} flights…", Forecast::FLIGHTS)
             }
         })
     }

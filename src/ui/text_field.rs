@@ -104,7 +104,16 @@ impl TextField {
         // The last column is for the cursor after a full row.
         let room = usize::from(area.width - 1);
         let scroll = self.input.visual_scroll(room);
-        let visible: String = self.value().chars().skip(scroll).take(room).collect();
+        let mut visible: Vec<char> = self.value().chars().skip(scroll).take(room).collect();
+        // Marks the ends that are out of sight.
+        let goes_on = self.value().chars().count() > scroll + room;
+        if let Some(first) = visible.first_mut().filter(|_| scroll > 0) {
+            *first = '…';
+        }
+        if let Some(last) = visible.last_mut().filter(|_| goes_on) {
+            *last = '…';
+        }
+        let visible: String = visible.into_iter().collect();
         let role = if self.selected { Role::Selected } else { Role::Text };
         drawing::text_within(buffer, area.x, area.y, visible, room, theme.style(role));
         let column = self.input.visual_cursor().saturating_sub(scroll).min(room);
@@ -141,6 +150,20 @@ mod tests {
         assert!(!press(&mut field, KeyCode::Enter) && !press(&mut field, KeyCode::Tab));
         assert_eq!(field.take(), "acd");
         assert!(field.is_empty());
+    }
+
+    #[test]
+    fn ends_that_are_out_of_sight_are_marked() {
+        let drawn = |field: &TextField| {
+            let mut buffer = Buffer::empty(Rect::new(0, 0, 9, 1));
+            field.draw(&Theme::default(), buffer.area, &mut buffer);
+            buffer.content.iter().map(ratatui::buffer::Cell::symbol).collect::<String>()
+        };
+        let mut field = TextField::new("40.4635000,-79.5182000");
+        assert_eq!(drawn(&field), "…5182000 ");
+        press(&mut field, KeyCode::Home);
+        assert_eq!(drawn(&field), "40.4635… ");
+        assert_eq!(drawn(&TextField::new("40.46")), "40.46    ");
     }
 
     #[test]

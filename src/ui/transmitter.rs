@@ -194,15 +194,34 @@ pub(super) fn toggle_arm(state: &mut Shared) -> Vec<Effect> {
 
 /// Like [`toggle_arm`], but in the air the key disarms only if it is pressed again within [`TWICE_WITHIN`].
 pub(super) fn arm_key(state: &mut Shared) -> Vec<Effect> {
-    let was_asked = state.disarm_asked.take().is_some_and(|at| within(state.now, at, TWICE_WITHIN));
-    if !is_airborne(state) || was_asked {
+    if ends_flight_at_once(state, Action::Arm, "The motors would stop, and the craft fall", "disarm") {
         return toggle_arm(state);
     }
-    state.disarm_asked = Some(state.now);
-    let key = state.key(Action::Arm);
-    let text = format!("The motors would stop, and the craft fall: `{key}` again within 2 s disarms.");
-    state.notify(Severity::Warn, text);
     Vec::new()
+}
+
+/// Puts the craft back home; in the air only if the key is pressed again within [`TWICE_WITHIN`].
+pub(super) fn reset_key(state: &mut Shared) -> Vec<Effect> {
+    if !ends_flight_at_once(state, Action::ResetCraft, "The flight would end", "put the craft back home") {
+        return Vec::new();
+    }
+    state.track.await_reset();
+    state.sticks_sent = None;
+    vec![VehicleCommand::ResetCraft.into()]
+}
+
+/// Returns `true` on the ground, and in the air if the same key was pressed just before. Else it says what the key does, and
+/// waits for the second press.
+fn ends_flight_at_once(state: &mut Shared, action: Action, consequence: &str, does: &str) -> bool {
+    let asked = state.asked_in_flight.take();
+    let was_asked = asked.is_some_and(|(about, at)| about == action && within(state.now, at, TWICE_WITHIN));
+    if !is_airborne(state) || was_asked {
+        return true;
+    }
+    state.asked_in_flight = Some((action, state.now));
+    let key = state.key(action);
+    state.notify(Severity::Warn, format!("{consequence}: press `{key}` again within 2 s to {does}."));
+    false
 }
 
 /// Moves the AUTOPILOT switch. Engaging also switches on the hold modes, which take over when the autopilot is switched

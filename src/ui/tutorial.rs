@@ -136,6 +136,9 @@ fn text(state: &Shared, tutorial: Tutorial) -> String {
     format!("{}/{} {text}", tutorial.step + 1, STEPS.len())
 }
 
+/// The rows of the bar of the panels, in the frame above the hints.
+const BAR: u16 = 1;
+
 /// The greatest number of rows of a step.
 const ROWS: usize = 2;
 
@@ -151,18 +154,21 @@ fn lines(tutorial: Option<Tutorial>, state: &Shared, hints: Rect) -> Vec<String>
     lines
 }
 
-/// Returns the number of rows of the tutorial above the hints.
+/// Returns the number of rows above the hints that the tutorial and the bar of the panels take.
 pub(super) fn rows(tutorial: Option<Tutorial>, state: &Shared, hints: Rect) -> u16 {
-    lines(tutorial, state, hints).len() as u16
+    match lines(tutorial, state, hints).len() as u16 {
+        0 => 0,
+        rows => rows + BAR,
+    }
 }
 
-/// Draws the step in the frame above the hints, and also in the row above it if it is long.
+/// Draws the step above the bar of the panels, whose keys it names, in one or two rows.
 pub(super) fn draw(tutorial: Option<Tutorial>, state: &Shared, hints: Rect, buffer: &mut Buffer) {
     let lines = lines(tutorial, state, hints);
-    let widest = lines.iter().map(|line| line.width()).max().unwrap_or(0);
+    let width = usize::from(hints.width.saturating_sub(6));
     for (at, line) in lines.iter().enumerate() {
-        let above = (lines.len() - at) as u16;
-        let fill = " ".repeat(widest - line.width());
+        let above = (lines.len() - at) as u16 + BAR;
+        let fill = " ".repeat(width - line.width().min(width));
         let mark = if at == 0 { "▸" } else { " " };
         let text = format!(" {mark} {line}{fill} ");
         let y = hints.y.saturating_sub(above);

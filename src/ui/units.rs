@@ -2,6 +2,8 @@
 
 use crate::telemetry::GuardUnit;
 
+use super::formatting::without_negative_zero;
+
 /// Feet per metre.
 const FEET: f64 = 1.0 / 0.3048;
 /// Miles per hour in a metre per second.
@@ -46,12 +48,16 @@ impl Units {
 
     /// Formats a length with its unit and this many decimals.
     pub fn length_text(self, metres: f64, digits: usize) -> String {
-        format!("{:.digits$} {}", self.length(metres), self.length_unit())
+        format!("{:.digits$} {}", without_negative_zero(self.length(metres), digits), self.length_unit())
     }
 
     /// Formats a speed with its unit and this many decimals.
     pub fn speed_text(self, metres_a_second: f64, digits: usize) -> String {
-        format!("{:.digits$} {}", self.speed(metres_a_second), self.speed_unit())
+        format!(
+            "{:.digits$} {}",
+            without_negative_zero(self.speed(metres_a_second), digits),
+            self.speed_unit()
+        )
     }
 
     /// Returns a length changed by whole steps of the shown unit: metres or feet.

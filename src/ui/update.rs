@@ -407,11 +407,7 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
         }
         Action::Upload => return upload(&mut state.shared),
         Action::Edit(action) => return edit(state, action),
-        Action::ResetCraft => {
-            state.shared.track.await_reset();
-            state.shared.sticks_sent = None;
-            return vec![VehicleCommand::ResetCraft.into()];
-        }
+        Action::ResetCraft => return transmitter::reset_key(&mut state.shared),
         Action::Layout => state.popups.push(Popup::Layout),
         Action::LookAhead => {
             let survey = survey::dismiss(&mut state.shared);

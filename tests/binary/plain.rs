@@ -83,16 +83,29 @@ fn commands_are_read_and_answered_in_their_order() {
         let at = rest.find(part).unwrap_or_else(|| panic!("no {part} in its place\n{}", ran.out));
         rest = &rest[at + part.len()..];
     }
-    assert!(ran.out.lines().any(|line| line.contains(" s  Booted: airframe iris")), "{}", ran.out);
+    assert!(ran.out.lines().any(|line| line.starts_with("00:00.000 Booted: airframe iris")), "{}", ran.out);
     assert!(!ran.out.contains('\u{1b}'), "no escape sequence\n{}", ran.out);
     assert_eq!(sandbox.names(), Vec::<String>::new());
 }
 
 #[test]
-fn help_lists_the_commands_and_a_wrong_plan_is_an_input_error() {
+fn help_lists_the_topics_explains_each_and_a_wrong_plan_is_an_input_error() {
     let sandbox = Sandbox::new();
-    let ran = sandbox.run_with(&PLAIN, "help\nquit\n").exits(0);
-    assert!(ran.out.contains("wind SPEED@FROM") && ran.out.contains("flight.fly — "), "{}", ran.out);
+    let ran = sandbox.run_with(&PLAIN, "help\nhelp flight\nhelp fly\nhelp wind\nhelp wnd\nquit\n").exits(0);
+    let mut rest = ran.out.as_str();
+    for part in [
+        "flight: fly, arm, ",
+        "Commands with a value: set, cli, ",
+        "flight.fly — Fly the whole plan",
+        "flight.arm — ",
+        "flight.fly — Fly the whole plan",
+        "wind SPEED@FROM or calm — ",
+        "There is no command or topic wnd; did you mean wind?",
+    ] {
+        let at = rest.find(part).unwrap_or_else(|| panic!("no {part} in its place\n{}", ran.out));
+        rest = &rest[at + part.len()..];
+    }
+    assert!(ran.out.lines().count() < 60, "a list to listen to is short\n{}", ran.out);
     sandbox.run_with(&["--plain", "no-such-file.toml"], "").exits(3);
 }
 
@@ -182,22 +195,22 @@ fn every_panel_is_written_by_its_name() {
     let ran = sandbox.run_with(&arguments, &input).exits(0);
     let mut rest = ran.out.as_str();
     for part in [
-        "1 Map\n",
+        "Map\n",
         "Fence: 500 m around home, the craft is 500 m inside.",
         "WP2 HOLD: ",
-        "3 State\n",
+        "State\n",
         "State: IDLE.",
-        "2 Plan — square",
+        "Plan — square",
         "40.4640000  -79.5175000     50.0",
-        "4 RC — ",
-        "THROTTLE ",
-        "7 World — airframe iris",
+        "RC — ",
+        "THROTTLE: ",
+        "World — airframe iris",
         "wind speed        0.0 m/s",
-        "6 Graphs — ",
+        "Graphs — ",
         "altitude m, estimate: ",
-        "8 Log\n",
+        "Log\n",
         "Booted: airframe iris",
-        "9 Settings — reading …\n",
+        "Settings — reading …\n",
         "gyro_lpf1_type ",
     ] {
         let at = rest.find(part).unwrap_or_else(|| panic!("no {part} in its place\n{}", ran.out));
@@ -341,4 +354,76 @@ fn an_instant_of_a_scenario_is_read_without_a_screen() {
     flight.hear("The craft is armed and flying ends here. Quit?");
     flight.say("y");
     assert_eq!(flight.end(), Some(0));
+}
+
+fn ask(flight: &mut Dialogue, line: &str, answer: &str) -> Vec<String> {
+    flight.say(line);
+    flight.hear(answer)
+}
+
+#[test]
+fn without_a_screen_sentences_name_commands_and_nothing_is_drawn_for_the_eye() {
+    let sandbox = Sandbox::new();
+    let mut flight = Dialogue::start(&sandbox, &["--plain", "--fresh", "--no-ports", "--speed=max"]);
+    let mut said = flight.hear("Booted: ");
+    said.extend(ask(&mut flight, "F", "F is a key of the screen; its command is flight.fly."));
+    said.extend(ask(&mut flight, "view.state", "flight.fly "));
+    said.extend(ask(&mut flight, "view.rc", "; AUTOPILOT off, on from 1700 to 2100."));
+    said.extend(ask(&mut flight, "view.rc", "AUX12: "));
+    said.extend(ask(&mut flight, "flight.fly", "Disarmed: landed."));
+    said.extend(ask(&mut flight, "view.log", "Touchdown"));
+    // The picture follows the events.
+    while said.last().is_none_or(|line| line != "State: COMPLETE.") {
+        flight.say("view.state");
+        said.extend(flight.hear("State: "));
+    }
+    said.extend(ask(&mut flight, "view.state", "flight.fly flies again."));
+    said.extend(ask(&mut flight, "qwertyuiop", "`app.palette` lists all."));
+    let drawn = |c: char| "─█░┼▮▯⊕⇄○●◆·✓▲✗".contains(c);
+    for line in &said {
+        assert!(!line.contains(drawn), "{line}");
+        for key in ["`F`", " F ", " R ", "`]`", "Ctrl-P", "Esc"] {
+            assert!(!line.contains(key) || line.contains("is a key of the screen"), "{key}: {line}");
+        }
+    }
+    // Events and the log have the same clock.
+    let stamp = |line: &String| line.split(' ').next().map(str::to_owned);
+    let touchdowns: Vec<_> = said.iter().filter(|line| line.contains(" Touchdown")).map(stamp).collect();
+    assert_eq!(touchdowns.len(), 2, "{said:#?}");
+    assert_eq!(touchdowns[0], touchdowns[1]);
+    flight.say("quit");
+    assert_eq!(flight.end(), Some(0));
+}
+
+#[test]
+fn once_the_firmware_s_command_line_is_named_lines_go_to_it() {
+    let sandbox = Sandbox::new();
+    let input = "view.cli\nget ap_max_angle\nfoo\nspeed max\n:help wind\nsave\nview.state\nfoo\nquit\n";
+    let ran = sandbox.run_with(&PLAIN, input).exits(0);
+    let mut rest = ran.out.as_str();
+    for part in [
+        "until another panel is named",
+        "ap_max_angle = ",
+        "UNKNOWN COMMAND",
+        "wind SPEED@FROM or calm — ",
+        "Rebooting",
+        "There is no command foo",
+    ] {
+        let at = rest.find(part).unwrap_or_else(|| panic!("no {part} in its place\n{}", ran.out));
+        rest = &rest[at + part.len()..];
+    }
+}
+
+#[test]
+fn a_terminal_that_is_dumb_is_refused_with_the_option_that_helps() {
+    let sandbox = Sandbox::new();
+    let mut command = sandbox.command(&["--fresh", "--no-ports"]);
+    let ran = command.env("TERM", "dumb").stdin(Stdio::null()).output().expect("it runs");
+    let said = String::from_utf8_lossy(&ran.stderr);
+    assert!(
+        ran.status.code() == Some(3) && said.contains("TERM=dumb") && said.contains("`--plain`"),
+        "{said}"
+    );
+    let doctor = sandbox.command(&["doctor"]).env("TERM", "dumb").output().expect("it runs");
+    assert!(String::from_utf8_lossy(&doctor.stdout).contains("betadeck needs --plain here"), "{doctor:?}");
 }

@@ -141,7 +141,7 @@ async fn disarming_in_flight_says_how_to_take_it_back() {
     rig.keys("F").await;
     rig.fly_to(NavState::Approaching).await;
     rig.keys("a").await;
-    rig.assert_shown(&["▲ The motors would stop", "`a` again within 2 s disarms."]);
+    rig.assert_shown(&["▲ The motors would stop", "press `a` again within 2 s to disarm."]);
     assert_eq!(rig.picture().craft.armed, Some(true));
     rig.keys("a").await;
     step_until(&mut rig, |state| state.shared.view.vehicle.craft.armed == Some(false)).await;

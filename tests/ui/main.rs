@@ -31,6 +31,7 @@ mod screens;
 mod searches;
 mod session_rig;
 mod settings;
+mod short_answers;
 mod survey;
 mod terrain;
 mod twelve_tasks;

@@ -117,7 +117,7 @@ fn a_sweep_shows_what_it_has_so_far() {
     assert_eq!(asked.plan.plan, *state.shared.plan());
     fly(&mut state, asked.revision, 0..42);
     let seen = screen(&state);
-    assert!(seen.contains("· 40 home, o 0 landed off, X 2 lost so far …"), "{seen}");
+    assert!(seen.contains("· 40 home, o 0 landed off, X 2 lost so far…"), "{seen}");
     // Replies to another request do not count.
     reply(&mut state, asked.revision + 7, SurveyNews::Point(Box::new(point(70))));
     assert!(screen(&state).contains("o 0 landed off"));

@@ -13,9 +13,10 @@ pub(super) fn set(_: &mut Shared, _: &str, argument: &str) -> Result<Vec<Request
         return Err("Write :set NAME=VALUE, such as :set ap_max_angle=25.".to_owned());
     }
     let line = match argument.split_once(['=', ' ']) {
-        Some((name, value)) => {
-            format!("set {} = {}", name.trim(), value.trim().trim_start_matches('=').trim_start())
-        }
+        Some((name, value)) => match value.trim().trim_start_matches('=').trim_start() {
+            "" => format!("get {}", name.trim()),
+            value => format!("set {} = {value}", name.trim()),
+        },
         None => format!("get {argument}"),
     };
     Ok(vec![Request::Cli { line, is_reported: true }])
@@ -24,7 +25,9 @@ pub(super) fn set(_: &mut Shared, _: &str, argument: &str) -> Result<Vec<Request
 /// Returns the matching names of settings and their values.
 pub(super) fn complete_set(state: &Shared, _: &str, typed: &str) -> Vec<String> {
     let lines = (state.cli_help.complete)(&format!("set {typed}"));
-    lines.iter().filter_map(|line| line.strip_prefix("set ")).map(str::to_owned).collect()
+    let arguments = lines.iter().filter_map(|line| line.strip_prefix("set "));
+    // After a name, only its value can follow.
+    arguments.map(|line| if line.contains('=') { line.to_owned() } else { format!("{line}=") }).collect()
 }
 
 /// Runs a line of the firmware's command line and shows the CLI panel with the answer. Without an argument it only

@@ -64,6 +64,8 @@ pub(in crate::ui) enum BrowserPlace {
 pub(in crate::ui) enum BrowserKey {
     Edited,
     List(PathBuf),
+    /// Nothing was typed or selected, so there is nothing to choose.
+    NothingChosen,
     /// The user chose this file.
     Chosen(PathBuf),
     Cancel,
@@ -145,7 +147,7 @@ impl Browser {
             return if entry.is_directory { self.list(path) } else { BrowserKey::Chosen(path) };
         }
         if typed.is_empty() {
-            return BrowserKey::Edited;
+            return BrowserKey::NothingChosen;
         }
         let is_directory = self.listing.entries.iter().any(|entry| entry.is_directory && entry.name == typed);
         // An absolute path replaces the directory.
@@ -219,7 +221,7 @@ mod tests {
         let mut save = browser(Purpose::Save(PlanId(1)), "mine.txt");
         assert_eq!(press(&mut save, KeyCode::Enter), BrowserKey::Chosen("/plans/mine.txt".into()));
         let mut save = browser(Purpose::Save(PlanId(1)), "");
-        assert_eq!(press(&mut save, KeyCode::Enter), BrowserKey::Edited, "nothing was typed");
+        assert_eq!(press(&mut save, KeyCode::Enter), BrowserKey::NothingChosen);
         assert_eq!(press(&mut save, KeyCode::Esc), BrowserKey::Cancel);
     }
 }

@@ -8,7 +8,7 @@ use crate::geo::LatLon;
 use crate::plan::FlightPlan;
 use crate::plan::edit::{History, JournalLine, PlanDocument};
 use crate::plan::format::HomePosition;
-use crate::plan::format::loss::LossReport;
+use crate::plan::format::loss::{Finding, LossReport};
 use crate::terrain::Tiles;
 use crate::ui::backdrop::BackdropLayer;
 use crate::ui::history::LineField;
@@ -145,7 +145,7 @@ pub enum FileReply {
 pub struct ConversionLosses {
     /// The request that is sent again with `accepted`.
     pub conversion: Conversion,
-    /// One line for each difference.
+    /// One line for each difference, the gravest first.
     pub lines: Vec<String>,
     /// The numbers of differences.
     pub summary: String,
@@ -154,7 +154,24 @@ pub struct ConversionLosses {
 impl ConversionLosses {
     /// Returns the differences that a conversion makes.
     pub fn of(conversion: Conversion, losses: &LossReport) -> Self {
-        let lines = losses.findings.iter().map(ToString::to_string).collect();
+        let mut findings: Vec<&Finding> = losses.findings.iter().collect();
+        findings.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
+        let mut lines: Vec<String> = Vec::new();
+        let mut seen: Vec<(Finding, usize)> = Vec::new();
+        for finding in findings {
+            // The item of a loop is a waypoint in each round.
+            let item = Finding { waypoint: None, ..finding.clone() };
+            match seen.iter_mut().find(|(known, _)| finding.item.is_some() && *known == item) {
+                Some((_, repeats)) => *repeats += 1,
+                None => {
+                    lines.push(finding.to_string());
+                    seen.push((item, 0));
+                }
+            }
+        }
+        for (line, (_, repeats)) in lines.iter_mut().zip(seen).filter(|(_, (_, repeats))| *repeats > 0) {
+            line.push_str(&format!(" (and {repeats} more of this item)"));
+        }
         Self { conversion, lines, summary: losses.counts() }
     }
 }
@@ -223,4 +240,26 @@ pub struct Entry {
     pub name: String,
     /// `true` for a directory.
     pub is_directory: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::format::loss::Severity;
+
+    #[test]
+    fn the_gravest_difference_comes_first_and_an_item_of_a_loop_once() {
+        let finding = |severity, why: &str| Finding::new(severity, "speed", why);
+        let mut losses = LossReport::default();
+        losses.add(finding(Severity::Changed, "as fast as the craft").at(1).item(5));
+        losses.add(finding(Severity::Changed, "as fast as the craft").at(4).item(5));
+        losses.add(finding(Severity::Changed, "as fast as the craft").at(7).item(5));
+        losses.add(finding(Severity::Changed, "as fast as the craft").at(8).item(6));
+        losses.add(finding(Severity::Lost, "no camera"));
+        let lines = ConversionLosses::of(Conversion::Open("a.plan".into()), &losses).lines;
+        assert_eq!(lines.len(), 3, "{lines:#?}");
+        assert!(lines[0].contains("no camera"), "{lines:#?}");
+        assert!(lines[1].contains("WP 1") && lines[1].ends_with("(and 2 more of this item)"), "{lines:#?}");
+        assert!(lines[2].contains("WP 8"), "{lines:#?}");
+    }
 }

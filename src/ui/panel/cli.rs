@@ -28,6 +28,10 @@ const PROMPT: &str = "# ";
 const WELCOME: &str =
     "The firmware's own command line. Type `help`, paste a `diff all`; Tab completes, Esc leaves.";
 
+/// The description without a screen, where the answers were written before.
+const IN_WORDS: &str = "The firmware's own command line: a line goes to it, such as `diff all`, until another panel is \
+                        named. A line that begins with a colon is a command of the program.";
+
 /// The state of the CLI panel.
 #[derive(Debug, Default)]
 pub struct CliPanel {
@@ -93,6 +97,10 @@ impl Content for CliPanel {
         let prompt = PROMPT.len() as u16;
         let place = Rect::new(area.x + prompt, area.y + prompt_row, area.width - prompt, 1);
         cli.input.draw(theme, place.intersection(area), buffer)
+    }
+
+    fn in_words(&self, _: &Shared) -> Vec<String> {
+        vec![IN_WORDS.to_owned()]
     }
 
     fn key(&mut self, state: &Shared, event: KeyEvent) -> Vec<Request> {

@@ -4,7 +4,7 @@ use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
 
 use crate::ui::ascii;
-use crate::ui::formatting::fixed;
+use crate::ui::formatting::{fixed, signed};
 use crate::ui::shared::Shared;
 use crate::ui::theme::Charset;
 
@@ -28,6 +28,11 @@ pub(in crate::ui) fn drawn(state: &Shared, rows: u16, draw: impl FnOnce(Rect, &m
 const NUMBER: usize = 24;
 
 /// Returns a number without blanks; a dash if it is unknown.
-pub(super) fn number(value: Option<f64>, decimals: usize) -> String {
+pub(in crate::ui) fn number(value: Option<f64>, decimals: usize) -> String {
     fixed(value, NUMBER, decimals).trim().to_owned()
+}
+
+/// Returns a number with its sign and without blanks; a dash if it is unknown.
+pub(in crate::ui) fn signed_number(value: Option<f64>, decimals: usize) -> String {
+    signed(value, NUMBER, decimals).trim().to_owned()
 }

@@ -6,7 +6,7 @@ use ratatui::layout::{Position, Rect};
 use ratatui::text::{Line, Span};
 
 use crate::ui::action::{Action, PanelAction};
-use crate::ui::event_log::LogLine;
+use crate::ui::event_log::{LogLine, Severity};
 use crate::ui::formatting::clock_ms;
 use crate::ui::log_view::LogView;
 use crate::ui::message::Request;
@@ -16,14 +16,14 @@ use crate::ui::text_field::TextField;
 use crate::ui::theme::Role;
 
 use super::content::scrolled;
-use super::{in_words, line, row, span};
+use super::{line, row, span};
 use crate::ui::text_wrap::{fitting, wrapped};
 
 /// The width of time and mark before the text.
 const STAMP: usize = 12;
 
 /// The number of lines shown in words.
-const ROWS_IN_WORDS: u16 = 20;
+const LINES_IN_WORDS: usize = 20;
 
 /// The state of the Log panel.
 #[derive(Debug, Default)]
@@ -71,9 +71,12 @@ impl Content for LogPanel {
 
     /// Returns the first lines of the list; the keys of lists scroll it.
     fn in_words(&self, state: &Shared) -> Vec<String> {
-        in_words::drawn(state, ROWS_IN_WORDS, |area, buffer| {
-            self.draw(state, area, buffer);
-        })
+        let view = &self.view;
+        if view.newest_first(&state.log).next().is_none() {
+            return vec![no_lines(view, state)];
+        }
+        let lines = view.newest_first(&state.log).skip(view.scroll + view.later_above(state));
+        lines.take(LINES_IN_WORDS).map(|line| in_words(state, line)).collect()
     }
 
     fn hints(&self, _: &Shared) -> Vec<Hint> {
@@ -143,18 +146,34 @@ fn last_scroll(view: &LogView, state: &Shared, area: Rect) -> usize {
     view.newest_first(&state.log).count().saturating_sub(fitting)
 }
 
+/// Returns the reason for an empty list.
+fn no_lines(view: &LogView, state: &Shared) -> String {
+    match (state.log.len(), view.filter_name()) {
+        (0, _) => "Nothing has happened yet.".to_owned(),
+        _ if !view.search.is_empty() => format!("No line has {:?}.", view.search.value()),
+        (_, filter) => {
+            format!("No {filter}: `{}` shows everything.", state.key(Action::Panel(PanelAction::Filter)))
+        }
+    }
+}
+
+/// Returns a line with its time and, if it is a warning or a fault, that word.
+fn in_words(state: &Shared, line: &LogLine) -> String {
+    let branch = if line.left_behind { "left branch: " } else { "" };
+    let later = if state.is_later_than_shown(line.time) { "later: " } else { "" };
+    let severity = match line.severity {
+        Severity::Info | Severity::Step | Severity::Good => "",
+        Severity::Warn => "warning: ",
+        Severity::Fault => "fault: ",
+    };
+    format!("{} {branch}{later}{severity}{}", clock_ms(line.time), line.text)
+}
+
 fn draw_lines(view: &LogView, state: &Shared, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let mut entries = view.newest_first(&state.log).peekable();
     if entries.peek().is_none() {
-        let text = match (state.log.len(), view.filter_name()) {
-            (0, _) => "Nothing has happened yet.".to_owned(),
-            _ if !view.search.is_empty() => format!("No line has {:?}.", view.search.value()),
-            (_, filter) => {
-                format!("No {filter}: `{}` shows everything.", state.key(Action::Panel(PanelAction::Filter)))
-            }
-        };
-        row(buffer, area, 0, theme, Role::Dim, &text);
+        row(buffer, area, 0, theme, Role::Dim, &no_lines(view, state));
         return;
     }
     let first = (view.scroll + view.later_above(state)).min(last_scroll(view, state, area));

@@ -18,6 +18,8 @@ use super::row;
 
 /// The width of name and value before the bar.
 const LABEL: u16 = 17;
+/// The channels of the sticks.
+const STICKS: [&str; 4] = ["ROLL", "PITCH", "THROTTLE", "YAW"];
 /// The ends of the bars, µs.
 const SPAN_US: (f64, f64) = (900.0, 2100.0);
 
@@ -64,6 +66,10 @@ impl Content for RcPanel {
     fn draw(&self, state: &Shared, area: Rect, buffer: &mut Buffer) -> Option<Position> {
         draw(self.channel, state, area, buffer);
         None
+    }
+
+    fn in_words(&self, state: &Shared) -> Vec<String> {
+        (0..RC_CHANNELS).map(|channel| channel_in_words(self.channel, state, channel)).collect()
     }
 
     fn hints(&self, _: &Shared) -> Vec<Hint> {
@@ -178,22 +184,42 @@ fn ranges(craft: &CraftView, channel: usize) -> impl Iterator<Item = &ModeRange>
         .filter(move |range| usize::from(range.channel) == channel && range.start_us < range.end_us)
 }
 
+/// Returns the name of a channel without its modes.
+fn plain_name(channel: usize) -> String {
+    match STICKS.get(channel) {
+        Some(stick) => (*stick).to_owned(),
+        None => format!("AUX{}", channel + 1 - STICKS.len()),
+    }
+}
+
 /// Returns the name of a channel: the stick, or its first mode and the number of further ones.
 fn name(craft: &CraftView, channel: usize) -> String {
-    match channel {
-        0 => "ROLL".to_owned(),
-        1 => "PITCH".to_owned(),
-        2 => "THROTTLE".to_owned(),
-        3 => "YAW".to_owned(),
-        _ => {
-            let mut names = ranges(craft, channel).map(|range| <&'static str>::from(range.mode_box));
-            match (names.next(), names.count()) {
-                (None, _) => format!("AUX{}", channel - 3),
-                (Some(first), 0) => first.to_owned(),
-                (Some(first), more) => format!("{} +{more}", cut(first, 7)),
-            }
-        }
+    let mut names = ranges(craft, channel).map(|range| <&'static str>::from(range.mode_box));
+    match (names.next(), names.count()) {
+        _ if channel < STICKS.len() => plain_name(channel),
+        (None, _) => plain_name(channel),
+        (Some(first), 0) => first.to_owned(),
+        (Some(first), more) => format!("{} +{more}", cut(first, 7)),
     }
+}
+
+/// Returns a channel with its value, and its modes with the values that switch them on.
+fn channel_in_words(selected_channel: usize, state: &Shared, channel: usize) -> String {
+    let craft = &state.view.vehicle.craft;
+    let mark = if state.focus == Panel::Rc && channel == selected_channel { "▸ " } else { "" };
+    let us = craft.channels.and_then(|channels| channels.get(channel).copied()).filter(|us| *us > 0);
+    let value = us.map_or_else(|| "not known".to_owned(), |us| us.to_string());
+    let modes = ranges(craft, channel).map(|range| {
+        let is_on = us.is_some_and(|us| (range.start_us..range.end_us).contains(&us));
+        let name: &'static str = range.mode_box.into();
+        format!(
+            "; {name} {}, on from {} to {}",
+            if is_on { "on" } else { "off" },
+            range.start_us,
+            range.end_us
+        )
+    });
+    format!("{mark}{}: {value}{}.", plain_name(channel), modes.collect::<String>())
 }
 
 fn draw(selected_channel: usize, state: &Shared, area: Rect, buffer: &mut Buffer) {

@@ -16,7 +16,7 @@ use crate::ui::message::{Change, Effect, Request};
 use crate::ui::panel::{Content, Hint, Panel};
 use crate::ui::popup::{ActionMenu, DiffView, Popup};
 use crate::ui::settings::listing::{Choice, Comparison, Row, rows};
-use crate::ui::settings::{Assignment, SettingsChange, Step};
+use crate::ui::settings::{Assignment, SettingsChange, Step, changes};
 use crate::ui::shared::Shared;
 use crate::ui::text_field::TextField;
 use editing::{Edit, Purpose};
@@ -266,7 +266,12 @@ impl Content for SettingsPanel {
                 let value = self.setting(state).and_then(|setting| setting.default.clone());
                 return self.set(state, value);
             }
-            PanelAction::AllDefault => return vec![Request::Open(Popup::ResetSettings)],
+            PanelAction::AllDefault => {
+                return vec![match changes::nothing_to_reset(state) {
+                    Some(why) => Change::Say(Severity::Info, why.to_owned()).into(),
+                    None => Request::Open(Popup::ResetSettings),
+                }];
+            }
             PanelAction::SettingUndo => return vec![Change::Settings(SettingsChange::Undo).into()],
             PanelAction::SettingRedo => return vec![Change::Settings(SettingsChange::Redo).into()],
             PanelAction::SettingCompare => self.compare(),

@@ -21,8 +21,8 @@ use crate::ui::theme::Role;
 
 /// The greatest number of suggestions shown.
 const MOST: usize = 8;
-/// The width of a suggested word.
-const WORD: usize = 21;
+/// The least and the greatest width of the column of suggested words.
+const WORD: (usize, usize) = (21, 44);
 
 /// The keys at the foot of the suggestions.
 const KEYS: [(&str, &str); 4] =
@@ -131,7 +131,7 @@ impl List {
         let shown = suggestions.len().min(MOST);
         let more = usize::from(suggestions.len() > shown);
         let height = (shown + more + hint.len() + 2) as u16;
-        if shown + hint.len() == 0 || height > above.height || inside < WORD + 4 {
+        if shown + hint.len() == 0 || height > above.height || inside < WORD.0 + 4 {
             return None;
         }
         let place = Rect::new(above.x, above.y + above.height - height, width, height);
@@ -165,13 +165,15 @@ fn draw_suggestions(state: &Shared, typed: &str, above: Rect, buffer: &mut Buffe
     let keys = key_line(theme, &KEYS);
     let keys = Some(keys).filter(|keys| keys.width() <= inside).unwrap_or_default();
     Block::bordered().border_style(theme.style(Role::Dim)).title_bottom(keys).render(place, buffer);
+    let widest = suggestions.iter().take(shown).map(|suggestion| suggestion.word.chars().count()).max();
+    let word = widest.unwrap_or(0).clamp(WORD.0, WORD.1.min(inside));
     for (at, suggestion) in suggestions.iter().take(shown).enumerate() {
-        let room = inside.saturating_sub(WORD + 1);
+        let room = inside.saturating_sub(word + 1);
         let keys = cut(&suggestion.keys, room);
         let help = cut(suggestion.help, room.saturating_sub(keys.chars().count() + 1));
         let fill = room.saturating_sub(help.chars().count() + keys.chars().count());
         let spans = vec![
-            span(theme, Role::Text, format!("{:<WORD$} ", cut(&suggestion.word, WORD))),
+            span(theme, Role::Text, format!("{:<word$} ", cut(&suggestion.word, word))),
             span(theme, Role::Dim, format!("{help}{}", " ".repeat(fill))),
             span(theme, Role::Key, keys),
         ];

@@ -13,6 +13,7 @@ use crate::ui::app_state::AppState;
 use crate::ui::config::UiConfig;
 use crate::ui::editor::{EditorPopup, FileReply, FileRequest, Question};
 use crate::ui::files_link::FilesLink;
+use crate::ui::formatting::clock_ms;
 use crate::ui::message::{Effect, Msg};
 use crate::ui::update::update;
 use lines::Lines;
@@ -44,7 +45,7 @@ pub async fn run_plain(
 async fn run_loop(
     mut link: SessionLink,
     mut files: FilesLink,
-    config: UiConfig,
+    mut config: UiConfig,
     mut input: mpsc::UnboundedReceiver<Result<String, String>>,
     output: impl Write,
     stop: impl Future<Output = ()>,
@@ -53,6 +54,7 @@ async fn run_loop(
     let mut stop = std::pin::pin!(stop);
     let mut lines = Lines::new(output);
     let view = link.view.borrow_and_update().clone();
+    config.keymap = config.keymap.without_a_screen();
     let mut state = AppState::new(config, SIZE, view);
     let (answers, mut replies) = Answers::channel();
     let threads = Threads::start(&answers)?;
@@ -77,7 +79,8 @@ async fn run_loop(
                 Some(event) => {
                     let text = (state.sentence)(&event);
                     if !text.is_empty() {
-                        lines.write(&format!("{:>7.1} s  {text}", event.time.as_secs_f64()))?;
+                        let text = state.shared.keymap.in_force(&text);
+                        lines.write(&format!("{} {text}", clock_ms(event.time)))?;
                     }
                     let effects = update(&mut state, Msg::Event(event));
                     // The notice has the same sentence.

@@ -148,11 +148,26 @@ pub(in crate::ui) fn reset_all(state: &Shared) -> SettingsChange {
     })
 }
 
+/// Returns the reason if no setting can get its default, a sentence.
+pub(in crate::ui) fn nothing_to_reset(state: &Shared) -> Option<&'static str> {
+    match (state.settings.craft(), changed_count(state)) {
+        (None, _) => Some("The settings of the craft are not read yet."),
+        (Some(_), 0) => Some("Every setting has its default, so there is nothing to reset."),
+        (Some(_), _) => None,
+    }
+}
+
+/// Returns the number of settings that differ from their defaults.
+fn changed_count(state: &Shared) -> usize {
+    let settings = state.settings.craft().into_iter().flat_map(|craft| &craft.all);
+    settings.filter(|setting| setting.is_changed()).count()
+}
+
 /// Returns the question before all settings get their defaults, a sentence.
 pub(in crate::ui) fn reset_question(state: &Shared) -> String {
-    let changed = state.settings.craft().into_iter().flat_map(|craft| &craft.all);
-    let count = changed.filter(|setting| setting.is_changed()).count();
-    format!("This changes {count} settings of the craft, and can be undone.")
+    let count = changed_count(state);
+    let settings = if count == 1 { "setting" } else { "settings" };
+    format!("This changes {count} {settings} of the craft, and can be undone.")
 }
 
 /// Writes settings into the open plan, in place of its own values for them.

@@ -91,6 +91,9 @@ fn take_browser(state: &mut Shared, browser: Browser, key: BrowserKey) -> Vec<Ef
                 Purpose::Backdrop(id) => vec![Effect::Files(FileRequest::Backdrop(id, path))],
             };
         }
+        BrowserKey::NothingChosen => {
+            state.say(Severity::Info, "No file is chosen: type a name, or select one with ↓.");
+        }
         BrowserKey::Edited | BrowserKey::List(_) => {}
     }
     state.editor.popup = Some(EditorPopup::Browser(browser));

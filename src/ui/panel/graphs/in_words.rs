@@ -27,11 +27,11 @@ fn of_chart(chart: &Chart) -> impl Iterator<Item = String> {
         if least.is_none() {
             return format!("{}, {}: not known.", chart.title.trim(), strand.name);
         }
+        let now = strand.now.map_or_else(|| "none now".to_owned(), |value| number(Some(value)));
         format!(
-            "{}, {}: {}, from {} to {}.",
+            "{}, {}: {now}, from {} to {}.",
             chart.title.trim(),
             strand.name,
-            number(strand.now),
             number(least),
             number(greatest)
         )

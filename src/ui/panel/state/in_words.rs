@@ -3,7 +3,7 @@
 use super::transition_list::why;
 use super::{is_watch, short, short_name, time_of_leg};
 use crate::telemetry::Guard;
-use crate::ui::formatting::clock;
+use crate::ui::formatting::clock_ms;
 use crate::ui::panel::in_words::number;
 use crate::ui::shared::Shared;
 use crate::ui::status_message;
@@ -28,11 +28,9 @@ pub(super) fn lines(transitions: &Transitions, state: &Shared) -> Vec<String> {
         lines.push(format!("Rest of the leg: {} s.", number(Some(seconds), 0)));
     }
     let shown = transitions.shown(state);
-    lines.extend(
-        shown.rev().take(TRANSITIONS).map(|step| {
-            format!("{} {} → {}: {}.", clock(step.time), step.from, step.to, why(step, usize::MAX))
-        }),
-    );
+    lines.extend(shown.rev().take(TRANSITIONS).map(|step| {
+        format!("{} {} → {}: {}.", clock_ms(step.time), step.from, step.to, why(step, usize::MAX))
+    }));
     lines
 }
 

@@ -4,13 +4,15 @@ use std::io::{self, Write};
 
 use crate::flight::forecast::ForecastKind;
 use crate::text::printable;
-use crate::ui::action::{ACTIONS, Action, Context, EditAction, spec_of};
+use crate::ui::action::{Action, Context, EditAction, spec_of};
 use crate::ui::app_state::AppState;
 use crate::ui::message::{Effect, Msg};
-use crate::ui::panel::{Panel, in_words};
+use crate::ui::panel::Panel;
 use crate::ui::popup::Popup;
 use crate::ui::update::{self, run_line, update};
 use crate::ui::{command, forecast, prompt, status_bar, survey};
+
+mod help;
 
 /// The output, and the question written last.
 #[derive(Debug)]
@@ -34,6 +36,19 @@ impl<W: Write> Lines<W> {
     /// Handles a line of input: as the answer to the question if there is one, else as a command. Writes the panel that
     /// it names, and the lines of a panel that it changes.
     pub(super) fn enter(&mut self, state: &mut AppState, line: &str) -> io::Result<Vec<Effect>> {
+        if !prompt::is_open(state)
+            && let Some(line) = command::for_firmware(&state.shared, line)
+        {
+            return self.said(state, |state| run_line(state, &format!("cli {line}")));
+        }
+        if !prompt::is_open(state)
+            && let Some(topic) = help::topic(line)
+        {
+            for line in help::lines(topic) {
+                self.write(&line)?;
+            }
+            return Ok(Vec::new());
+        }
         if !prompt::is_open(state) && command::arranges(line) {
             self.write("A layout arranges the panels of the screen, and there is none here.")?;
             return Ok(Vec::new());
@@ -67,21 +82,15 @@ impl<W: Write> Lines<W> {
 
     /// Writes the two lines at the top of the screen.
     fn write_status(&mut self, state: &AppState) -> io::Result<()> {
-        let lines = in_words::drawn(&state.shared, 2, |area, buffer| {
-            status_bar::draw(&state.shared, area, buffer);
-        });
-        for line in lines {
-            self.write(&line.split_whitespace().collect::<Vec<_>>().join(" "))?;
-        }
-        Ok(())
+        status_bar::in_words::lines(&state.shared).iter().try_for_each(|line| self.write(line))
     }
 
     fn carry_out(&mut self, state: &mut AppState, line: &str) -> io::Result<Vec<Effect>> {
         if !prompt::is_open(state) {
-            let effects = self.said(run_line(state, line))?;
+            let effects = self.said(state, |state| run_line(state, line))?;
             return Ok(update::hold(state, effects));
         }
-        let answered = self.said(prompt::answer(state, line))?;
+        let answered = self.said(state, |state| prompt::answer(state, line))?;
         if let Some(reported) = answered.reported {
             self.write(&reported)?;
             // The question is not written again.
@@ -90,9 +99,14 @@ impl<W: Write> Lines<W> {
         Ok(answered.effects)
     }
 
-    fn said<T: Default>(&mut self, result: Result<T, String>) -> io::Result<T> {
-        result.or_else(|sentence| {
-            self.write(&sentence)?;
+    /// Writes the refusal, with the names of commands in it.
+    fn said<T: Default>(
+        &mut self,
+        state: &mut AppState,
+        act: impl FnOnce(&mut AppState) -> Result<T, String>,
+    ) -> io::Result<T> {
+        act(state).or_else(|sentence| {
+            self.write(&state.shared.keymap.in_force(&sentence))?;
             Ok(T::default())
         })
     }
@@ -150,7 +164,9 @@ impl<W: Write> Lines<W> {
         match state.popups.last() {
             Some(Popup::Help(_) | Popup::Palette(_) | Popup::CommandLine) => {
                 state.popups.clear();
-                self.list_commands()?;
+                for line in help::lines("") {
+                    self.write(&line)?;
+                }
             }
             Some(Popup::Guards { .. }) => {
                 state.popups.clear();
@@ -173,18 +189,6 @@ impl<W: Write> Lines<W> {
                 self.write(line)?;
             }
             self.asked = asked;
-        }
-        Ok(())
-    }
-
-    fn list_commands(&mut self) -> io::Result<()> {
-        for command in command::all() {
-            self.write(&format!("{} {} — {}", command.name, command.argument, command.help))?;
-        }
-        let everywhere = ACTIONS.iter().filter(|spec| spec.context == Context::Global);
-        let of_panels = ACTIONS.iter().filter(|spec| matches!(spec.context, Context::In(_) | Context::Lists));
-        for spec in everywhere.chain(of_panels) {
-            self.write(&format!("{} — {}", spec.name, spec.help))?;
         }
         Ok(())
     }
