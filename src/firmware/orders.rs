@@ -1,7 +1,8 @@
 //! The sources of the navigator's orders: the AUTOPILOT switch, the GPS RESCUE switch, commands, and the failsafe.
 //!
-//! Priority: failsafe procedure, then commands and rescue, then the switch. Orders by command and rescue stay until
-//! touchdown, disarming, a cancel, or the AUTOPILOT switch going off.
+//! Priority: failsafe procedure, then commands and rescue (the later one), then the AUTOPILOT switch. A command stays until
+//! touchdown, disarming, a cancel, or the AUTOPILOT switch going off. A rescue by switch stays while its switch is on,
+//! whatever the AUTOPILOT switch does, and begins again after a command or a failsafe that took its place.
 
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::rx_loss::{RxLossAction, RxLossFacts, decide};
@@ -142,6 +143,13 @@ impl Orders {
         }
         self.switch_spent = facts.autopilot_switch && (self.switch_spent || was_armed && !inputs.armed);
         if facts.failsafe_active {
+            let is_replaced = matches!(
+                facts.failsafe_mission,
+                Some(Response::EmergencyLand | Response::Procedure(Procedure::GpsRescue))
+            );
+            if self.by_rescue_switch && is_replaced {
+                self.cancel();
+            }
             if facts.failsafe_mission.is_none() && navigator.is_flying() {
                 navigator.disengage();
             }
@@ -152,7 +160,7 @@ impl Orders {
         }
         let released =
             std::mem::replace(&mut self.switch_was, facts.autopilot_switch) && !facts.autopilot_switch;
-        if released {
+        if released && !self.by_rescue_switch {
             self.cancel();
             navigator.disengage();
         }
@@ -189,15 +197,27 @@ impl Orders {
         facts: &OrderFacts,
     ) {
         let was = std::mem::replace(&mut self.rescue_was, facts.rescue_switch);
-        if facts.rescue_switch && !was {
-            let flight = self.rescue_flight(rescue, inputs, RescueCause::Switch);
-            self.by_rescue_switch = self.return_to_home(navigator, inputs, params, Some(flight)).is_ok();
-        } else if was && !facts.rescue_switch && self.by_rescue_switch {
-            self.cancel();
-            if facts.autopilot_switch {
-                // Restarts the mission that the rescue replaced.
-                navigator.disengage();
+        if !facts.rescue_switch {
+            if self.by_rescue_switch {
+                self.cancel();
+                if facts.autopilot_switch {
+                    // Restarts the mission that the rescue replaced.
+                    navigator.disengage();
+                }
             }
+            return;
+        }
+        // The switch takes the place of a command, and waits for the end of a later one. A fix that has just come back may
+        // be lost again at once.
+        let waits = self.order.is_some() || inputs.fix && !navigator.has_fix_back(inputs);
+        if was && waits {
+            return;
+        }
+        let flight = self.rescue_flight(rescue, inputs, RescueCause::Switch);
+        match self.return_to_home(navigator, inputs, params, Some(flight)) {
+            Ok(()) => self.by_rescue_switch = true,
+            Err(refusal) if !navigator.is_flying() => navigator.refuse(refusal),
+            Err(_) => {}
         }
     }
 

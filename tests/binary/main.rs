@@ -5,6 +5,7 @@
 mod all_commands;
 mod by_mouse;
 mod campaign;
+mod cases;
 mod check;
 mod cli;
 mod compare;

@@ -18,6 +18,8 @@ pub struct ModeFacts {
     pub failsafe_active: bool,
     /// `true` while the navigator flies and the failsafe does not control the flight.
     pub autopilot: bool,
+    /// `true` while the navigator flies home by the GPS RESCUE switch.
+    pub rescue: bool,
     /// The holds that an aborted mission leaves on.
     pub after_abort: AfterAbort,
 }
@@ -60,6 +62,7 @@ pub fn flight_modes(facts: &ModeFacts) -> ModeFlags {
     modes.set(Mode::PosHold, pos_hold);
     modes.set(Mode::Failsafe, facts.failsafe_shown);
     modes.set(Mode::Autopilot, autopilot);
+    modes.set(Mode::GpsRescue, autopilot && facts.rescue);
     modes
 }
 
@@ -101,6 +104,11 @@ mod tests {
             (with(&[1, 3, 11], |f| f.armed = false), "ANGLE"),
             (with(&[], |f| f.autopilot = true), "ARM+ANGLE+ALTHOLD+POS HOLD+AUTOPILOT"),
             (with(&[2], |f| f.autopilot = true), "ARM+ANGLE+ALTHOLD+POS HOLD+AUTOPILOT"),
+            (
+                with(&[46], |f| (f.autopilot, f.rescue) = (true, true)),
+                "ARM+ANGLE+ALTHOLD+POS HOLD+GPS RESCUE+AUTOPILOT",
+            ),
+            (with(&[46], keep), "ARM"),
             (with(&[56], keep), "ARM"),
             (
                 with(&[56], |f| {

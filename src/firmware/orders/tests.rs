@@ -349,3 +349,121 @@ fn rescue_that_does_not_come_nearer_is_given_up_when_watched() {
         assert!(flight.navigator.is_flying());
     }
 }
+
+#[test]
+fn a_rescue_goes_on_when_the_autopilot_switch_goes_off() {
+    let mut flight = Flight::engaged();
+    let both = OrderFacts { autopilot_switch: true, rescue_switch: true, ..CALM };
+    flight.update(both);
+    flight.update(OrderFacts { autopilot_switch: false, ..both });
+    assert_eq!(flight.navigator.source(), PlanSource::Rth);
+    assert!(flight.navigator.is_flying() && flight.orders.is_rescue_by_switch());
+    flight.update(CALM);
+    assert!(!flight.navigator.is_flying(), "both switches are off");
+}
+
+/// What a pilot, a ground station, the radio and the GPS do before an update.
+#[derive(Debug, Clone, Copy)]
+enum Deed {
+    Autopilot(bool),
+    Rescue(bool),
+    Signal(bool),
+    /// The failsafe flies this, or nothing of the navigator's (`None`).
+    Failsafe(Option<Response>),
+    FailsafeEnds,
+    Fix(bool),
+    Raised(bool),
+    Armed(bool),
+    ReturnHome,
+    Land,
+    Cancel,
+    /// Nothing happens for this number of updates.
+    Wait(u16),
+}
+
+fn deed() -> impl proptest::strategy::Strategy<Value = Deed> {
+    use proptest::prelude::*;
+    let response = prop_oneof![
+        Just(Response::Continue),
+        Just(Response::EmergencyLand),
+        Just(Response::KeepLanding),
+        Just(Response::Procedure(Procedure::GpsRescue)),
+    ];
+    prop_oneof![
+        4 => any::<bool>().prop_map(Deed::Autopilot),
+        4 => any::<bool>().prop_map(Deed::Rescue),
+        2 => any::<bool>().prop_map(Deed::Signal),
+        1 => proptest::option::of(response).prop_map(Deed::Failsafe),
+        2 => Just(Deed::FailsafeEnds),
+        2 => any::<bool>().prop_map(Deed::Fix),
+        1 => any::<bool>().prop_map(Deed::Raised),
+        1 => prop_oneof![4 => Just(true), 1 => Just(false)].prop_map(Deed::Armed),
+        1 => Just(Deed::ReturnHome),
+        1 => Just(Deed::Land),
+        2 => Just(Deed::Cancel),
+        4 => (1_u16..300).prop_map(Deed::Wait),
+    ]
+}
+
+proptest::proptest! {
+    #[test]
+    fn while_a_rescue_is_asked_for_and_possible_it_is_flown(
+        deeds in proptest::collection::vec(deed(), 1..60),
+    ) {
+        let mut flight = Flight::new();
+        let mut facts = CALM;
+        // Updates since the last deed that may delay a rescue.
+        let mut fix_for = 0_u32;
+        for deed in deeds {
+            let mut updates = 1;
+            match deed {
+                Deed::Autopilot(on) => facts.autopilot_switch = on,
+                Deed::Rescue(on) => facts.rescue_switch = on,
+                Deed::Signal(on) => facts.signal = on,
+                Deed::Failsafe(mission) => {
+                    let params = Params::default();
+                    match mission {
+                        Some(Response::EmergencyLand) => {
+                            flight.navigator.emergency_land(&flight.inputs).ok();
+                        }
+                        Some(Response::Procedure(_)) => {
+                            flight.navigator.return_to_home(&flight.inputs, &params, None).ok();
+                        }
+                        _ => {}
+                    }
+                    (facts.failsafe_active, facts.failsafe_mission) = (true, mission);
+                }
+                Deed::FailsafeEnds => (facts.failsafe_active, facts.failsafe_mission) = (false, None),
+                Deed::Fix(fix) => flight.inputs.fix = fix,
+                Deed::Raised(raised) => flight.inputs.throttle_raised = raised,
+                Deed::Armed(armed) => flight.inputs.armed = armed,
+                Deed::ReturnHome => {
+                    let Flight { orders, navigator, inputs, .. } = &mut flight;
+                    orders.return_to_home(navigator, inputs, &Params::default(), None).ok();
+                }
+                Deed::Land => {
+                    let Flight { orders, navigator, inputs, .. } = &mut flight;
+                    orders.emergency_land(navigator, inputs).ok();
+                }
+                Deed::Cancel => flight.orders.take_back(&mut flight.navigator),
+                Deed::Wait(count) => updates = count,
+            }
+            for _ in 0..updates {
+                flight.update(facts);
+                fix_for = if flight.inputs.fix { fix_for + 1 } else { 0 };
+            }
+            let heard = facts.signal && !facts.failsafe_active;
+            let possible = flight.inputs.armed && flight.inputs.throttle_raised && fix_for > 201;
+            let orders = &flight.orders;
+            if heard && facts.rescue_switch && possible && !orders.is_commanded() {
+                proptest::prop_assert!(orders.is_rescue_by_switch() && flight.navigator.is_flying(), "{deed:?}");
+                proptest::prop_assert_eq!(flight.navigator.source(), PlanSource::Rth);
+            }
+            if heard && !facts.rescue_switch {
+                proptest::prop_assert!(!orders.is_rescue_by_switch(), "after {deed:?}");
+                let wanted = facts.autopilot_switch || orders.is_commanded();
+                proptest::prop_assert!(wanted || !flight.navigator.is_flying(), "{deed:?}");
+            }
+        }
+    }
+}

@@ -273,6 +273,7 @@ impl Navigation {
             failsafe_shown: self.failsafe.shown(),
             failsafe_active: self.failsafe.active(),
             autopilot: self.navigator.is_flying() && !under_failsafe,
+            rescue: self.orders.is_rescue_by_switch(),
             after_abort: self.orders.after_abort(&self.navigator),
         }
     }

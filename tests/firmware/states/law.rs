@@ -6,12 +6,14 @@ use betadeck::autopilot::Params;
 use betadeck::firmware::Firmware;
 use betadeck::firmware::failsafe::Procedure;
 use betadeck::firmware::modes::boxes;
-use betadeck::telemetry::{FirmwareEvent, Mode, NavEvent, NavState, TransitionReason};
+use betadeck::telemetry::{FirmwareEvent, Mode, NavEvent, NavState, PlanSource, TransitionReason};
 
 /// The number of updates that a changed limit may take to be in force.
 const SETTLE: u32 = 300;
 /// The number of updates that a switch may take to have its effect or its refusal.
 const REACTION: u32 = 30;
+/// The number of updates that the GPS RESCUE switch may take, while a fix comes back.
+const RESCUE_REACTION: u32 = REACTION + 200;
 /// The slack of the longest AUTO-LAND, updates.
 const LANDING_SLACK: u32 = 10;
 
@@ -81,6 +83,7 @@ pub(crate) struct Law {
     armed_before: bool,
     ignored_for: u32,
     unarmed_for: u32,
+    unrescued_for: u32,
     pub(crate) armings: u32,
     pub(crate) seen: BTreeSet<String>,
 }
@@ -279,6 +282,17 @@ impl Law {
             && firmware.nav().refusal.is_none();
         self.ignored_for = if ignored { self.ignored_for + 1 } else { 0 };
         assert!(self.ignored_for < REACTION, "AUTOPILOT is on, nothing flies, and nothing says why");
+        let unrescued = listens
+            && armed
+            && switches.has(boxes::GPS_RESCUE)
+            && firmware.parameters().arming.rescue_configured
+            && !firmware.craft_view().is_commanded()
+            && (firmware.active_plan().is_none() && firmware.nav().refusal.is_none()
+                || firmware.active_plan().is_some() && firmware.nav().source == PlanSource::Stored);
+        self.unrescued_for = if unrescued { self.unrescued_for + 1 } else { 0 };
+        // A rescue that was asked for without a fix begins when the fix has been back for two seconds.
+        let patience = if firmware.nav().refusal.is_some() { u32::MAX } else { RESCUE_REACTION };
+        assert!(self.unrescued_for < patience, "GPS RESCUE is on, and neither flown nor refused");
         let unarmed = listens && !armed && switches.has(boxes::ARM) && firmware.arming_flags().is_empty();
         self.unarmed_for = if unarmed { self.unarmed_for + 1 } else { 0 };
         assert!(self.unarmed_for < REACTION, "ARM is on, nothing blocks it, and it is not armed");
