@@ -94,10 +94,15 @@ fn outcome(arguments: Vec<OsString>) -> u8 {
             Err(AppError { code: error::FAILED, message: usage_error })
         }
         Err(error) => {
-            if error.use_stderr() {
-                output_file::remove_results_of(&arguments);
-            }
             usage::print(&error, &arguments, &known.layers);
+            if error.use_stderr() {
+                // Without the right options it is not known which of them this command may replace.
+                for file in output_file::named_outputs(&arguments) {
+                    error::tell(&format!(
+                        "note: {file} is as it was before this command: nothing was written"
+                    ));
+                }
+            }
             Ok(u8::try_from(error.exit_code()).unwrap_or(error::USAGE))
         }
     };

@@ -1,6 +1,6 @@
 //! Creates the output files of the options, but never over a file that the program reads or stores.
 
-mod stale;
+mod own;
 mod whole;
 
 use std::ffi::OsString;
@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use super::{AppError, flight_library};
 use crate::storage;
-pub(super) use stale::{remove_results, remove_results_of};
+pub(super) use own::{Writer, may_replace, named_outputs, remove_results};
 pub(super) use whole::{FinalOutput, StreamedOutput, replace};
 
 /// Files of a state directory other than the stored configuration.

@@ -55,6 +55,10 @@ pub struct FlyArgs {
     #[arg(long, value_name = "FILE|DIR", value_parser = value::output_path, help_heading = "Output")]
     pub blackbox: Option<PathBuf>,
 
+    /// Replaces files that are not outputs of an earlier flight, too
+    #[arg(long, help_heading = "Output")]
+    pub force: bool,
+
     /// Points a second of simulated time in the KML and GeoJSON tracks [default: 1]
     #[arg(long, value_name = "HZ", value_parser = value::track_rate, help_heading = "Output")]
     pub track_hz: Option<f64>,

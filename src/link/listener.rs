@@ -1,5 +1,5 @@
-//! The TCP and the websocket door: listens, admits clients, and refuses web pages of foreign origins and
-//! foreign hosts.
+//! The TCP and the websocket port: listens, admits clients, and refuses web pages of foreign origins and
+//! foreign hosts. The TCP port takes a websocket handshake, too: without Web Serial, the App connects to it in this way.
 
 #![allow(clippy::disallowed_methods, reason = "the doors wait for people and programs")]
 
@@ -17,8 +17,9 @@ use tokio_util::task::TaskTracker;
 use super::client::{Client, SharedChannels};
 use super::client_stream::{ClientStream, MESSAGE_MAX};
 use super::endpoint_stats::EndpointStats;
-use super::notices::Notices;
+use super::notices::{Notices, Stranger};
 use super::origin::{self, Refusal};
+use super::proto::first_line::ForeignProtocol;
 use super::request::ClientId;
 use super::seats::{CLIENTS_MAX, Seat, Seats};
 
@@ -31,6 +32,10 @@ const READ_BUFFER: usize = 16 * 1024;
 /// The maximum number of bytes that a websocket holds until the client takes them: one message and the
 /// answers to control frames.
 const WRITE_BUFFER_MAX: usize = 2 * MESSAGE_MAX;
+/// The first bytes of a websocket handshake.
+const HTTP: [u8; 4] = *b"GET ";
+/// The time after which the rest of these bytes is looked for.
+const REST_OF_HANDSHAKE: Duration = Duration::from_millis(5);
 /// The sub-protocol of the Betaflight App.
 const BINARY: &str = "binary";
 /// The next client number, shared by all doors.
@@ -39,26 +44,31 @@ static NEXT_CLIENT: AtomicU64 = AtomicU64::new(1);
 /// The protocol below the serial session.
 #[derive(Debug, Clone)]
 pub(super) enum ListenerKind {
+    /// MSP and command line as they are, or below a websocket if the client begins with a handshake.
     Tcp,
-    WebSocket {
-        /// Origins that are served in addition to the usual ones.
-        allow_origin: Arc<[String]>,
-    },
+    WebSocket,
 }
 
 impl ListenerKind {
     pub(super) fn name(&self) -> &'static str {
         match self {
             Self::Tcp => "TCP",
-            Self::WebSocket { .. } => "websocket",
+            Self::WebSocket => "websocket",
         }
     }
 }
 
-/// Admits clients until the doors close.
+/// A kind of port, and the origins that it serves in addition to the usual ones.
+#[derive(Debug, Clone)]
+pub(super) struct ListenerRules {
+    pub(super) kind: ListenerKind,
+    pub(super) allow_origin: Arc<[String]>,
+}
+
+/// Admits clients until the listeners close.
 pub(super) async fn listen(
     listener: TcpListener,
-    kind: ListenerKind,
+    rules: ListenerRules,
     channels: SharedChannels,
     notices: Notices,
     stats: Arc<EndpointStats>,
@@ -81,17 +91,17 @@ pub(super) async fn listen(
             stats.error();
             notices.tell(format!(
                 "The {} door serves {CLIENTS_MAX} clients at once: another one was refused.",
-                kind.name()
+                rules.kind.name()
             ));
             continue;
         };
         stats.client_connected();
-        let (kind, channels, stats) = (kind.clone(), channels.clone(), Arc::clone(&stats));
+        let (rules, channels, stats) = (rules.clone(), channels.clone(), Arc::clone(&stats));
         let notices = notices.clone();
         tasks.spawn(async move {
             // An interactive line consists of small packets in both directions.
             let _only_slower = stream.set_nodelay(true);
-            match admit(stream, &kind, &channels, &notices, &seat).await {
+            match admit(stream, &rules, &channels, &notices, &seat).await {
                 Some(stream) => {
                     Client::new(seat, stream, channels, notices, Arc::clone(&stats)).serve().await;
                 }
@@ -108,14 +118,22 @@ pub(super) async fn listen(
 /// Returns the client's stream once it is admitted.
 async fn admit(
     stream: TcpStream,
-    kind: &ListenerKind,
+    rules: &ListenerRules,
     channels: &SharedChannels,
     notices: &Notices,
     seat: &Seat,
 ) -> Option<ClientStream> {
-    let ListenerKind::WebSocket { allow_origin } = kind else {
-        return Some(ClientStream::Tcp(stream));
-    };
+    if matches!(rules.kind, ListenerKind::Tcp) {
+        let is_handshake = tokio::select! {
+            () = channels.shutdown.cancelled() => return None,
+            () = seat.evicted() => return None,
+            is_handshake = begins_with_handshake(&stream) => is_handshake,
+        };
+        if !is_handshake {
+            return Some(ClientStream::Tcp(stream));
+        }
+    }
+    let allow_origin = &rules.allow_origin;
     let own_address = stream.local_addr().ok()?.ip();
     let mut refused = None;
     #[expect(clippy::result_large_err, reason = "the type of the handshake's callback is given")]
@@ -136,12 +154,34 @@ async fn admit(
     let accepted = tokio::select! {
         () = channels.shutdown.cancelled() => return None,
         () = seat.evicted() => return None,
-        accepted = tokio::time::timeout(HANDSHAKE_TIMEOUT, handshake) => accepted.ok()?,
+        accepted = tokio::time::timeout(HANDSHAKE_TIMEOUT, handshake) => accepted.ok().and_then(Result::ok),
     };
-    if let Some(refusal) = refused {
-        notices.tell(refusal.to_string());
+    match refused {
+        Some(refusal) => notices.tell(refusal.to_string()),
+        None if accepted.is_none() && matches!(rules.kind, ListenerKind::Tcp) => {
+            notices.count_stranger(rules.kind.name(), Stranger::Began(ForeignProtocol::Http));
+        }
+        None => {}
     }
-    accepted.ok().map(|socket| ClientStream::WebSocket(Box::new(socket)))
+    accepted.map(|socket| ClientStream::WebSocket(Box::new(socket)))
+}
+
+/// Waits for the first bytes of a client and leaves them in the stream. Returns `true` if they are those of an HTTP request.
+/// MSP and the command line begin otherwise, so that only a client that sends a part of these bytes waits for a moment.
+async fn begins_with_handshake(stream: &TcpStream) -> bool {
+    let deadline = tokio::time::Instant::now() + HANDSHAKE_TIMEOUT;
+    let mut first = [0; HTTP.len()];
+    loop {
+        match stream.peek(&mut first).await {
+            Ok(count) if count == HTTP.len() => return first == HTTP,
+            Ok(count) if count > 0 && HTTP.starts_with(&first[..count]) => {}
+            Ok(_) | Err(_) => return false,
+        }
+        if tokio::time::Instant::now() >= deadline {
+            return false;
+        }
+        tokio::time::sleep(REST_OF_HANDSHAKE).await;
+    }
 }
 
 /// Checks the origin and the host of a handshake. Every copy of a repeated header must pass.

@@ -14,7 +14,7 @@ use tokio_util::task::TaskTracker;
 
 use super::client::SharedChannels;
 use super::endpoint_stats::EndpointStats;
-use super::listener::{self, ListenerKind};
+use super::listener::{self, ListenerKind, ListenerRules};
 use super::notices::Notices;
 use super::request::Request;
 use super::seats::Seats;
@@ -120,14 +120,15 @@ impl Listeners {
             states: None,
         };
         let channels = SharedChannels { requests, shutdown: listeners.shutdown.clone(), restarts: restarted };
+        let allow_origin: Arc<[String]> = config.allow_origin.clone().into();
+        let rules = |kind| ListenerRules { kind, allow_origin: Arc::clone(&allow_origin) };
         if let Some(port) = config.ws_port {
-            let kind = ListenerKind::WebSocket { allow_origin: config.allow_origin.clone().into() };
-            listeners.open_stream(EndpointKind::WebSocket, config.listen, port, &kind, &channels).await;
+            let rules = rules(ListenerKind::WebSocket);
+            listeners.open_stream(EndpointKind::WebSocket, config.listen, port, &rules, &channels).await;
         }
         if let Some(port) = config.tcp_port {
-            listeners
-                .open_stream(EndpointKind::Tcp, config.listen, port, &ListenerKind::Tcp, &channels)
-                .await;
+            let rules = rules(ListenerKind::Tcp);
+            listeners.open_stream(EndpointKind::Tcp, config.listen, port, &rules, &channels).await;
         }
         if let Some(port) = config.fdm_port {
             listeners.open_datagrams(EndpointKind::Fdm, config.listen, port, Datagrams::Fdm, &channels);
@@ -144,7 +145,7 @@ impl Listeners {
         kind: EndpointKind,
         listen: Option<IpAddr>,
         port: u16,
-        server: &ListenerKind,
+        rules: &ListenerRules,
         channels: &SharedChannels,
     ) {
         let stats = Arc::new(EndpointStats::new(Instant::now()));
@@ -152,12 +153,12 @@ impl Listeners {
         let address = SocketAddr::new(listen.unwrap_or(IpAddr::V4(Ipv4Addr::LOCALHOST)), port);
         let place = match bind_tcp(kind, address).await {
             Ok((listener, place)) => {
-                self.spawn_listener(listener, server, channels, &shared);
+                self.spawn_listener(listener, rules, channels, &shared);
                 if listen.is_none() {
                     // A machine without IPv6 has no such address.
                     let six = SocketAddr::new(IpAddr::V6(Ipv6Addr::LOCALHOST), place.port());
                     if let Ok((listener, _)) = bind_tcp(kind, six).await {
-                        self.spawn_listener(listener, server, channels, &shared);
+                        self.spawn_listener(listener, rules, channels, &shared);
                     }
                 }
                 Ok(place)
@@ -170,13 +171,13 @@ impl Listeners {
     fn spawn_listener(
         &self,
         listener: TcpListener,
-        server: &ListenerKind,
+        rules: &ListenerRules,
         channels: &SharedChannels,
         (notices, seats, stats): &(Notices, Seats, Arc<EndpointStats>),
     ) {
         let (notices, seats, stats) = (notices.clone(), seats.clone(), Arc::clone(stats));
-        let (server, channels, tasks) = (server.clone(), channels.clone(), self.tasks.clone());
-        self.tasks.spawn(listener::listen(listener, server, channels, notices, stats, seats, tasks));
+        let (rules, channels, tasks) = (rules.clone(), channels.clone(), self.tasks.clone());
+        self.tasks.spawn(listener::listen(listener, rules, channels, notices, stats, seats, tasks));
     }
 
     fn open_datagrams(

@@ -6,8 +6,8 @@
 
 use std::net::IpAddr;
 
-/// The page of the hosted App.
-const APP: &str = "https://app.betaflight.com";
+/// The host of the hosted App. Its test versions are below it.
+const APP: &str = "app.betaflight.com";
 
 /// The maximum number of characters of an origin or a host in a notice.
 const SHOWN_MAX: usize = 100;
@@ -38,7 +38,7 @@ pub(super) enum Refusal {
 /// Checks the origin of a page. Clients other than browsers do not name one.
 pub(super) fn judge_origin(origin: &str, allowed: &[String]) -> Result<(), Refusal> {
     let origin = origin.trim().trim_end_matches('/');
-    let is_served = origin.eq_ignore_ascii_case(APP)
+    let is_served = is_app(origin)
         || allowed.iter().any(|allowed| allowed.trim_end_matches('/').eq_ignore_ascii_case(origin))
         || host(origin).is_some_and(is_loopback);
     if is_served {
@@ -96,6 +96,16 @@ fn host_of_authority(authority: &str) -> Option<&str> {
     (port.is_none_or(is_port) && host.bytes().all(in_host)).then_some(host)
 }
 
+/// Returns `true` for the pages of the hosted App and of its test versions, by https and at the usual port.
+fn is_app(origin: &str) -> bool {
+    let origin = origin.to_ascii_lowercase();
+    let Some(name) = origin.strip_prefix("https://").filter(|name| host(&origin) == Some(*name)) else {
+        return false;
+    };
+    let below = name.strip_suffix(APP).and_then(|below| below.strip_suffix('.'));
+    name == APP || below.is_some_and(|below| below.split('.').all(|label| !label.is_empty()))
+}
+
 /// Returns `true` for this machine by name or address. Names below `localhost` belong to this machine too:
 /// the App's desktop and mobile shells use them, under their own schemes.
 fn is_loopback(host: &str) -> bool {
@@ -124,6 +134,8 @@ mod tests {
             "http://127.9.9.9",
             "http://[::1]:8000",
             "https://app.betaflight.com",
+            "https://master.app.betaflight.com",
+            "https://Master.Dev.App.Betaflight.com/",
             "tauri://localhost",
             "http://tauri.localhost",
             "https://tauri.localhost",
@@ -145,6 +157,17 @@ mod tests {
             "http://app.betaflight.com",
             "https://app.betaflight.com.evil.example",
             "https://app.betaflight.com:444",
+            "http://master.app.betaflight.com",
+            "https://master.app.betaflight.com:444",
+            "https://evilapp.betaflight.com",
+            "https://evil.example.app.betaflight.com.evil.example",
+            "https://.app.betaflight.com",
+            "https://a..app.betaflight.com",
+            "https://user@app.betaflight.com",
+            "https://user@master.app.betaflight.com",
+            "https://evil.example/.app.betaflight.com",
+            "https://evil.example#.app.betaflight.com",
+            "https://betaflight.com",
             "http://localhost.evil.example",
             "http://notlocalhost",
             "http://localhost@evil.example",

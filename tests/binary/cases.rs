@@ -13,7 +13,7 @@ fn case(name: &str) -> PathBuf {
 fn folder(names: &[&str]) -> Sandbox {
     let sandbox = Sandbox::new();
     for name in names {
-        sandbox.write(name, std::fs::read(case(name)).expect("a case"));
+        std::fs::copy(case(name), sandbox.path(name)).expect("a case");
     }
     sandbox
 }
@@ -22,4 +22,29 @@ fn folder(names: &[&str]) -> Sandbox {
 fn a_rescue_by_switch_goes_on_when_the_autopilot_switch_goes_off() {
     let sandbox = folder(&["rescue-then-autopilot-off.toml", "guide.txt"]);
     sandbox.run(&["check", "rescue-then-autopilot-off.toml"]).exits(0);
+}
+
+#[test]
+fn an_inav_file_with_missions_whose_indices_begin_again_is_read_whole() {
+    let sandbox = folder(&["inav-6765.txt"]);
+    for (mission, latitude) in [("1", "40.4640000"), ("2", "40.4641000"), ("3", "40.4642000")] {
+        let home = "40.4635,-79.5182";
+        let ran = sandbox.run(&[
+            "convert",
+            "inav-6765.txt",
+            "out.toml",
+            "--mission",
+            mission,
+            "--force",
+            "--home",
+            home,
+        ]);
+        let plan = sandbox.read("out.toml");
+        assert!(plan.contains(latitude), "{mission}: {plan}\n{ran:?}");
+        let said = format!("{}{}", ran.out, ran.err);
+        for (other, count) in [("1", 4), ("2", 5), ("3", 3)] {
+            let named = format!("mission {other} ({count} items)");
+            assert_eq!(said.contains(&named), other != mission, "{named} of {mission}: {said}");
+        }
+    }
 }

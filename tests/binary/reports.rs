@@ -64,8 +64,6 @@ fn a_check_that_cannot_start_leaves_no_reports_of_an_earlier_run() {
         &["check", "broken.toml"][..],
         &["check", "missing.toml"],
         &["check", "stand.toml", "--filter", "nothing-of-that-name"],
-        &["check", "stand.toml", "--bogus"],
-        &["check", "stand.toml", "--jobs", "many"],
         &["check", "stand.toml", "--firmware", "missing.elf"],
     ] {
         let sandbox = after_a_run();
@@ -75,6 +73,86 @@ fn a_check_that_cannot_start_leaves_no_reports_of_an_earlier_run() {
         for file in FILES {
             assert!(!sandbox.path(file).exists(), "{line:?}: {file} is that of the earlier run");
         }
+    }
+}
+
+#[test]
+fn a_mistake_in_the_options_removes_nothing_and_says_that_the_files_are_old() {
+    let sandbox = after_a_run();
+    let before: Vec<String> = FILES.iter().map(|file| sandbox.read(file)).collect();
+    for line in [&["check", "stand.toml", "--bogus"][..], &["check", "stand.toml", "--jobs", "many"]] {
+        let ran = sandbox.run(&[line, &OPTIONS].concat()).exits(2);
+        for (file, text) in FILES.iter().zip(&before) {
+            assert_eq!(&sandbox.read(file), text, "{line:?}");
+            assert!(ran.err.contains(&format!("{file} is as it was before this command")), "{}", ran.err);
+        }
+    }
+}
+
+/// Returns the bytes of all files in the folder.
+fn all_files(sandbox: &Sandbox) -> Vec<(String, Vec<u8>)> {
+    let names = sandbox.names();
+    names
+        .into_iter()
+        .map(|name| (name.clone(), std::fs::read(sandbox.path(&name)).unwrap_or_default()))
+        .collect()
+}
+
+#[test]
+fn no_mistake_deletes_a_file_that_the_right_command_would_not_write() {
+    let sandbox = Sandbox::new();
+    let plan = "waypoint insert 0 40.4635901 -79.5182000 2000 500 LAND 0 NONE\n";
+    sandbox.write("plan.txt", plan);
+    let outputs = ["--json", "run.jsonl", "--record", "a.flight", "--blackbox", "a.bbl", "--gpx", "plan.gpx"];
+    sandbox.run(&[&["fly", "plan.txt", "--timeout", "1"][..], &outputs].concat());
+    sandbox.run(&["campaign", "plan.txt", "--flights", "2", "--timeout", "1", "--out", "c.jsonl"]);
+    std::os::unix::fs::symlink("run.jsonl", sandbox.path("link.jsonl")).expect("a link");
+    sandbox.write("betadeck.toml", "nonsense = 1\n");
+    let before = all_files(&sandbox);
+    assert!(before.len() >= 6, "{:?}", sandbox.names());
+    for line in [
+        &["fly", "square", "--record", "a.flight", "--bogus"][..],
+        &["fly", "square", "--record=a.flight", "--seed", "x"],
+        &["fly", "square", "--blackbox", "a.bbl", "--bogus"],
+        &["fly", "plan.gpx", "--gpx", "plan.gpx", "--bogus"],
+        &["check", "missing.toml", "--report", "a.flight"],
+        &["check", "missing.toml", "--report", "a.flight", "--bogus"],
+        &["fly", "nosuch.toml", "--json", "c.jsonl"],
+        &["fly", "square", "--json", "c.jsonl", "--bogus"],
+        &["fly", "nosuch.toml", "--json", "link.jsonl"],
+        &["fly", "square", "--report", "plan.gpx", "--backdrop", "plan.gpx", "--bogus"],
+        &["campaign", "merge", "c.jsonl", "--csv", "c.jsonl", "--bogus"],
+        &["campaign", "merge", "c.jsonl", "--out", "d.jsonl", "--csv", "c.jsonl"],
+    ] {
+        let ran = sandbox.run(line);
+        assert!(matches!(ran.code, Some(2 | 3)), "{line:?}: {ran:?}");
+        assert!(all_files(&sandbox) == before, "{line:?}: {:?}", sandbox.names());
+    }
+    let mut wrong = sandbox.command(&["fly", "square", "--record", "a.flight"]);
+    let ran = wrong.env("BETADECK_SPEED", "fast").env("BETADECK_FLY_SEED", "x").output().expect("it runs");
+    if ran.status.code() == Some(2) {
+        assert!(all_files(&sandbox) == before, "{ran:?}");
+    }
+}
+
+#[test]
+fn an_output_of_fly_replaces_only_what_such_an_option_wrote_unless_forced() {
+    let sandbox = Sandbox::new();
+    sandbox.write("plan.txt", "waypoint insert 0 40.4635901 -79.5182000 2000 500 LAND 0 NONE\n");
+    for (option, other) in
+        [("--record", "--json"), ("--report", "--markdown"), ("--blackbox", "--csv"), ("--json", "--csv")]
+    {
+        sandbox.write("mine", "my notes\n");
+        let fly = |option: &str| sandbox.run(&["fly", "plan.txt", "--timeout", "8", option, "mine"]);
+        let ran = fly(option).exits(2);
+        assert!(ran.err.contains("name another file, or add --force"), "{}", ran.err);
+        assert_eq!(sandbox.read("mine"), "my notes\n");
+        sandbox.run(&["fly", "plan.txt", "--timeout", "8", "--force", option, "mine"]).exits(1);
+        let written = std::fs::read(sandbox.path("mine")).expect("the output");
+        assert!(written != b"my notes\n", "{option}");
+        fly(option).exits(1);
+        fly(other).exits(2);
+        std::fs::remove_file(sandbox.path("mine")).expect("removed");
     }
 }
 
@@ -166,7 +244,6 @@ fn a_flight_that_cannot_start_leaves_no_files_of_an_earlier_one() {
         &["fly", "empty.txt"][..],
         &["fly", "missing.toml"],
         &["fly", "land", "--set", "nonsense=1"],
-        &["fly", "land", "--bogus"],
         &["fly", "land", "--state-dir", "missing"],
         &["fly", "land", "--firmware", "missing.elf"],
     ] {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::loaded::Loaded;
 use crate::app::error::{self, AppError};
-use crate::app::output_file::{self, FinalOutput, KeptFiles, StreamedOutput};
+use crate::app::output_file::{FinalOutput, KeptFiles, StreamedOutput};
 use crate::app::{report, setup};
 use crate::args::{CampaignOutputArgs, OutputFile};
 use crate::campaign::{Answer, AnswerBuilder, Record, Shard, Standing};
@@ -178,7 +178,6 @@ impl Table {
                 metrics.push(measure.name.clone());
             }
         }
-        output_file::remove_results(path);
         let table = CsvTable::new(inputs, metrics);
         let mut csv = Self { path: path.to_owned(), output: StreamedOutput::begin(path)?, table };
         csv.write(&csv.table.head())?;

@@ -7,7 +7,7 @@ use super::Loaded;
 use super::progress::Progress;
 use crate::app::error::{self, AppError};
 use crate::app::log_output::LogFiles;
-use crate::app::output_file::{self, FinalOutput, KeptFiles};
+use crate::app::output_file::{self, FinalOutput, KeptFiles, Writer};
 use crate::app::patient_output::PatientOutput;
 use crate::app::{report, setup};
 use crate::args::{CheckArgs, OutputFile};
@@ -87,7 +87,7 @@ pub(super) fn log_files(
 pub(super) fn remove_earlier(args: &CheckArgs) -> Result<(), AppError> {
     let inputs: Vec<PathBuf> = args.what.iter().map(PathBuf::from).collect();
     claim(args, &inputs)?;
-    files(args).for_each(|(_, path)| output_file::remove_results(path));
+    files(args).for_each(|(option, path)| output_file::remove_results(Writer::Check, option, path));
     Ok(())
 }
 

@@ -253,6 +253,48 @@ async fn web_pages_of_strangers_are_turned_away_with_a_notice() {
 }
 
 #[tokio::test]
+async fn the_app_connects_by_a_websocket_to_the_tcp_port_too_under_the_same_rules() {
+    let mut house = House::usual().await;
+    for kind in [EndpointKind::Tcp, EndpointKind::WebSocket] {
+        for origin in [None, Some("https://master.app.betaflight.com"), Some("tauri://localhost")] {
+            for path in ["/", "/serial", "/serial?baud=115200"] {
+                let (socket, protocol) =
+                    house.handshake_at(kind, path, origin, Some("binary")).await.unwrap();
+                assert_eq!(protocol.as_deref(), Some("binary"));
+                let mut client = Client::WebSocket(Box::new(socket));
+                client.send(&unhex(API_VERSION)).await;
+                assert!(client.receive().await.starts_with(b"$M>"), "{kind:?} {origin:?} {path}");
+            }
+        }
+        let Err(Error::Http(response)) =
+            house.handshake_at(kind, "/", Some("https://evil.example"), None).await
+        else {
+            panic!("a stranger was served at {kind:?}")
+        };
+        assert_eq!(response.status(), StatusCode::FORBIDDEN);
+        let Some(Request::Notice(notice)) = house.others.recv().await else { panic!("no notice") };
+        assert!(notice.contains("https://evil.example"), "{notice}");
+    }
+}
+
+#[tokio::test]
+async fn a_client_that_begins_slowly_or_with_letters_of_a_handshake_loses_no_bytes() {
+    let house = House::usual().await;
+    let mut client = house.tcp().await;
+    for byte in unhex(API_VERSION) {
+        client.send(&[byte]).await;
+    }
+    assert!(client.receive().await.starts_with(b"$M>"));
+    // Nothing but a command line or MSP is served, also if it begins as a handshake does.
+    for start in ["G", "GET", "GE#", "GET\t/"] {
+        let mut stranger = house.tcp().await;
+        stranger.send(start.as_bytes()).await;
+        stranger.send(b"X#\r\n").await;
+        assert!(stranger.receive().await.is_empty(), "{start}");
+    }
+}
+
+#[tokio::test]
 async fn a_door_that_is_full_turns_the_next_away_with_a_notice() {
     let mut house = House::usual().await;
     let mut clients = Vec::new();

@@ -200,8 +200,19 @@ impl House {
         origin: Option<&str>,
         protocol: Option<&str>,
     ) -> Result<(WebSocketStream<TcpStream>, Option<String>), Error> {
-        let address = self.address(EndpointKind::WebSocket);
-        let mut request = format!("ws://{address}/").into_client_request().unwrap();
+        self.handshake_at(EndpointKind::WebSocket, "/", origin, protocol).await
+    }
+
+    /// Does the same at this port, with this path.
+    pub(crate) async fn handshake_at(
+        &self,
+        kind: EndpointKind,
+        path: &str,
+        origin: Option<&str>,
+        protocol: Option<&str>,
+    ) -> Result<(WebSocketStream<TcpStream>, Option<String>), Error> {
+        let address = self.address(kind);
+        let mut request = format!("ws://{address}{path}").into_client_request().unwrap();
         if let Some(origin) = origin {
             request.headers_mut().insert("Origin", HeaderValue::from_str(origin).unwrap());
         }

@@ -145,7 +145,7 @@ async fn a_flood_of_strangers_gives_one_notice_with_their_number() {
         assert!(say(&house, EndpointKind::Tcp, &stun_up_to_hash()).await.is_closed().await);
     }
     // The next notice reports a different event.
-    assert!(say(&house, EndpointKind::Tcp, b"GET / HTTP/1.1\r\n").await.is_closed().await);
+    assert!(say(&house, EndpointKind::Tcp, b"GET / HTTP/1.1\r\n\r\n").await.is_closed().await);
     let notice = next_notice(&mut house).await;
     assert!(notice.contains("HTTP"), "{notice}");
 }

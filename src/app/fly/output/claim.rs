@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::app::error::AppError;
 use crate::app::log_output::{self, file_of_one};
-use crate::app::output_file;
+use crate::app::output_file::{self, Writer};
 use crate::app::setup;
 use crate::args::{FlyArgs, OutputFile, PlanArg};
 
@@ -21,8 +21,22 @@ pub(in crate::app::fly) fn claim(args: &FlyArgs) -> Result<(), AppError> {
     let log = log_file(args);
     let files = || files(args).chain(log.as_deref().map(|path| (log_output::OPTION, path)));
     files().try_for_each(|(option, path)| kept.claim(option, path))?;
-    files().for_each(|(_, path)| output_file::remove_results(path));
+    if !args.force {
+        files().try_for_each(|(option, path)| refuse_to_replace(option, path))?;
+    }
+    files().for_each(|(option, path)| output_file::remove_results(Writer::Fly, option, path));
     Ok(())
+}
+
+/// Refuses to replace a file that no flight wrote.
+fn refuse_to_replace(option: &str, path: &Path) -> Result<(), AppError> {
+    if output_file::may_replace(option, path) {
+        return Ok(());
+    }
+    Err(AppError::input(format!(
+        "{option} {} would overwrite a file that is not the {option} of an earlier flight: name another file, or add --force",
+        path.display()
+    )))
 }
 
 /// Returns the file of the blackbox log, if one is wanted.

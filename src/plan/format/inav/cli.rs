@@ -67,7 +67,10 @@ pub(in crate::plan::format) fn read(
 
 #[derive(Default)]
 struct Lines {
-    items: BTreeMap<usize, Found>,
+    /// The items by their indices. A block whose indices begin again after the last item of a mission is a map of its own.
+    blocks: Vec<BTreeMap<usize, Found>>,
+    /// `true` if the item before was the last one of its mission.
+    after_last: bool,
     findings: Vec<Finding>,
     /// The numbers of other lines: fences, the approaches of fixed wings, safe homes, all others.
     others: [usize; 4],
@@ -106,7 +109,7 @@ impl Lines {
     fn wp(&mut self, values: &[&str], span: Range<usize>, problems: &mut Problems<'_>) {
         match values {
             [] => return,
-            [operation] if operation.eq_ignore_ascii_case("reset") => return self.items.clear(),
+            [operation] if operation.eq_ignore_ascii_case("reset") => return self.blocks.clear(),
             [operation, ..] if OPERATIONS.iter().any(|known| operation.eq_ignore_ascii_case(known)) => return,
             _ => {}
         }
@@ -126,7 +129,24 @@ impl Lines {
             return;
         }
         if let Some(item) = self.item(index, values, span.clone(), problems) {
-            self.items.insert(index, Found { item, number: index, label: index, span });
+            let is_last = item.flag == LAST;
+            self.keep(Found { item, number: index, label: index, span }, problems);
+            self.after_last = is_last;
+        }
+    }
+
+    /// Keeps an item. The later one of two with an index counts, unless its indices begin again with another mission.
+    fn keep(&mut self, found: Found, problems: &Problems<'_>) {
+        let is_known = |block: &BTreeMap<usize, Found>| block.contains_key(&found.number);
+        if self.blocks.is_empty() || self.after_last && self.blocks.last().is_some_and(is_known) {
+            self.blocks.push(BTreeMap::new());
+        }
+        let Some(block) = self.blocks.last_mut() else { return };
+        let (index, line) = (found.number, problems.line_at(found.span.start));
+        if let Some(earlier) = block.insert(index, found) {
+            let why = format!("line {line} has the same index and counts");
+            let place = Place::Line { line: problems.line_at(earlier.span.start) };
+            self.findings.push(Finding::new(Severity::Lost, "item", why).item(index).place(place));
         }
     }
 
@@ -172,18 +192,23 @@ impl Lines {
 
     fn contents(self) -> Contents {
         let mut missions = Vec::new();
-        let mut open = Mission::default();
-        for (_, found) in self.items {
-            let is_last = found.item.flag == LAST;
-            // Jumps count from the beginning of their mission.
-            let found = Found { number: open.items.len(), ..found };
-            open.items.push(found);
-            if is_last {
-                missions.push(std::mem::take(&mut open));
+        for block in self.blocks {
+            let mut open = Mission::default();
+            for found in block.into_values() {
+                let is_last = found.item.flag == LAST;
+                // Jumps count from the beginning of their mission.
+                let found = Found { number: open.items.len(), ..found };
+                open.items.push(found);
+                if is_last {
+                    missions.push(std::mem::take(&mut open));
+                }
+            }
+            if !open.items.is_empty() {
+                missions.push(open);
             }
         }
-        if !open.items.is_empty() || missions.is_empty() {
-            missions.push(open);
+        if missions.is_empty() {
+            missions.push(Mission::default());
         }
         let mut findings = self.findings;
         let whys = [
