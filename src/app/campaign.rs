@@ -1,5 +1,6 @@
 //! `betadeck campaign`: many flights of a scenario or a plan on all processors, and their answer.
 
+mod consent;
 mod definition;
 mod fly;
 mod forecast;
@@ -15,6 +16,7 @@ mod sweep;
 
 use super::error::AppError;
 use crate::args::{CampaignArgs, CampaignCommand, ForecastArgs};
+pub(super) use consent::Consent;
 pub(super) use loaded::{OneFlight, open_flight};
 
 /// Flies, or merges the parts of a campaign. `repeat` has the words that give the run again. The exit code is 0 if every

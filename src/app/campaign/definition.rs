@@ -101,7 +101,6 @@ fn refuse_options_of_run(args: &CampaignArgs, name: &str) -> Result<(), AppError
         ("--design", args.design.is_some()),
         ("--seeds", args.seeds.is_some()),
         ("--vs", args.has_two_sides()),
-        ("--firmware", args.firmware.firmware.is_some()),
         ("--out", args.out.is_some()),
         ("--shard", args.shard.is_some()),
     ];

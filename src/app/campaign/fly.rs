@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use super::consent::Consent;
 use super::definition::{self, Wanted};
 use super::loaded::Loaded;
 use super::outputs::{self, Outputs, Titles};
@@ -25,6 +26,7 @@ const ATTEMPTS: u32 = 3;
 /// Flies and answers. The exit code is 0 if every goal was met.
 pub(super) fn run(args: &CampaignArgs, repeat: &[String]) -> Result<u8, AppError> {
     let shard = shard::of(args.shard)?;
+    let mut of_file = None;
     let (loaded, out, shard) = match definition::read(args)? {
         Wanted::Scenario(definition, sources) | Wanted::Plan(definition, sources) => {
             let inputs = inputs(&definition.file, &sources);
@@ -34,6 +36,7 @@ pub(super) fn run(args: &CampaignArgs, repeat: &[String]) -> Result<u8, AppError
         Wanted::Run(path, header) => {
             outputs::claim(&args.output, Some(&path), &[])?;
             let shard = header.part().map_err(AppError::input)?;
+            of_file = Some(path.clone());
             (Loaded::of_run(*header)?, Some(path), shard)
         }
     };
@@ -53,7 +56,16 @@ pub(super) fn run(args: &CampaignArgs, repeat: &[String]) -> Result<u8, AppError
     let before = file.as_ref().map_or(0, RunFile::lines);
     let flights = shard.flights(header.flights);
     let lines = (flights.start() - 1) * header.sides()..flights.end() * header.sides();
-    refuse_two_versions(&loaded, out.as_deref(), lines.start + before < lines.end)?;
+    let is_unfinished = lines.start + before < lines.end;
+    refuse_two_versions(&loaded, out.as_deref(), is_unfinished)?;
+    if let Some(file) = of_file.filter(|_| is_unfinished) {
+        let consent = Consent { firmware: args.firmware.firmware.as_ref(), yes: args.yes };
+        let definition = &loaded.header.definition;
+        let other = definition.versus.iter().map(|side| &side.firmware);
+        std::iter::once(&definition.firmware)
+            .chain(other)
+            .try_for_each(|options| consent.check(&file, options))?;
+    }
     let mut run = Run {
         progress: Progress::new(Some(lines.end - lines.start), before),
         next: lines.start + before,

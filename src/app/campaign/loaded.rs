@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use super::consent::Consent;
 use super::definition::{check_other_side, firmware_of};
 use super::run_file::RunReader;
 use super::sources::Sources;
@@ -181,7 +182,7 @@ fn campaign(definition: &Definition, sources: &mut Sources) -> Result<Campaign, 
 
 /// Returns the flight that `RUN.jsonl:1234` names, or `None` if the text names no file of a run. `1234b` is the flight of
 /// the other side of a comparison.
-pub(in crate::app) fn open_flight(text: &str) -> Result<Option<OneFlight>, AppError> {
+pub(in crate::app) fn open_flight(text: &str, consent: Consent<'_>) -> Result<Option<OneFlight>, AppError> {
     let Some((file, number)) = text.rsplit_once(':') else { return Ok(None) };
     let path = Path::new(file);
     if !path.is_file() {
@@ -202,6 +203,12 @@ pub(in crate::app) fn open_flight(text: &str) -> Result<Option<OneFlight>, AppEr
     let record = reader.find(number, side)?.ok_or_else(|| {
         AppError::input(format!("{file} has no flight {number}: the campaign has {} flights", header.flights))
     })?;
+    let definition = &header.definition;
+    let options = match (side, &definition.versus) {
+        (Side::B, Some(other)) if other.has_firmware => &other.firmware,
+        _ => &definition.firmware,
+    };
+    consent.check(path, options)?;
     let loaded = Loaded::of_run(header)?;
     let flight = loaded.of_side(number, side).ok_or_else(|| AppError::internal("a flight without a case"))?;
     let [own, other] = loaded.firmware;

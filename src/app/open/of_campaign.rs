@@ -2,7 +2,7 @@
 
 use super::Opened;
 use crate::app::AppError;
-use crate::app::campaign::{OneFlight, open_flight};
+use crate::app::campaign::{Consent, OneFlight, open_flight};
 use crate::args::OpenArgs;
 
 /// A flight as it was flown in a campaign.
@@ -28,13 +28,14 @@ impl FlownInCampaign {
 
 /// Reads the flight of a campaign; `None` if the options name a scenario.
 pub(super) fn read(args: &OpenArgs) -> Result<Option<Opened>, AppError> {
-    let Some(OneFlight { flight, name, firmware, record }) = open_flight(&args.scenario)? else {
+    let consent = Consent { firmware: args.firmware.firmware.as_ref(), yes: args.yes };
+    let Some(OneFlight { flight, name, firmware, record }) = open_flight(&args.scenario, consent)? else {
         return Ok(None);
     };
     let given = [
         ("--case", args.case.is_some()),
         ("--seed", args.seed.is_some()),
-        ("--firmware", args.firmware.firmware.is_some()),
+        ("--firmware", args.firmware.firmware.is_some() && firmware.is_none()),
     ];
     if let Some((option, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
         return Err(AppError::input(format!(
