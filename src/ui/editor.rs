@@ -21,6 +21,7 @@ pub(super) mod zones;
 
 pub use browser::{Browser, Purpose};
 pub(super) use browser::{BrowserKey, BrowserPlace};
+use clipboard::Pasted;
 pub use column::Column;
 pub use files::{Conversion, ConversionLosses, Entry, FileReply, FileRequest, Listing, Opened};
 pub use form::{Form, FormField, FormKind};
@@ -443,11 +444,17 @@ impl Editor {
         self.insert("paste", &waypoints)
     }
 
-    /// Inserts the waypoints of a pasted text. Returns their number.
-    pub(super) fn paste_text(&mut self, text: &str) -> Result<(usize, Vec<Effect>), String> {
-        let file = clipboard::from_text(text)?;
-        let count = file.plan.waypoints.len();
-        Ok((count, self.insert("paste", &file.plan.waypoints)?))
+    /// Inserts the waypoints of a pasted text; a text with `waypoint clear` replaces those of the plan.
+    pub(super) fn paste_text(&mut self, text: &str) -> Result<(Pasted, Vec<Effect>), String> {
+        let pasted = clipboard::from_text(text)?;
+        let effects = if pasted.replaces {
+            self.anchor = None;
+            self.row = 0;
+            self.edit("paste", |document| document.plan = pasted.file.plan.clone())
+        } else {
+            self.insert("paste", &pasted.file.plan.waypoints)?
+        };
+        Ok((pasted, effects))
     }
 }
 

@@ -195,7 +195,9 @@ fn decision(state: &AppState, question: &Question) -> Vec<String> {
             format!("{} was changed elsewhere since it was read.", path.display())
         }
         Question::Replace { path, changed: false, .. } => format!("{} exists.", path.display()),
-        Question::MovesTarget { change, .. } => change.clone(),
+        Question::MovesTarget { change: text, .. } | Question::FliesWhich { difference: text, .. } => {
+            text.clone()
+        }
         Question::Unsaved { id, .. } => {
             let title = state.shared.editor.plan_of(*id).map_or_else(String::new, OpenPlan::title);
             question.unsaved(&title, loses_edits)

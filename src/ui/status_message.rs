@@ -8,7 +8,7 @@ use crate::telemetry::{
 
 use super::action::{Action, EditAction};
 use super::arming_hint::{arming_hint, most_useful_flag};
-use super::editor::findings;
+use super::editor::{findings, settings_in_force};
 use super::event_log::Severity;
 use super::panel::Panel;
 use super::shared::Shared;
@@ -194,7 +194,16 @@ pub fn current(state: &Shared) -> Option<StatusMessage> {
         return message(Severity::Warn, "No switch arms the craft.", action);
     }
     let by_hand = [Action::Arm, Action::Throttle, Action::Autopilot].map(key).join(", ");
-    message(Severity::Good, "Ready.", format!("{} flies the plan; by hand: {by_hand}", key(Action::Fly)))
+    let fly = key(Action::Fly);
+    let flies = if settings_in_force::craft_has_another(state) {
+        let title = state.editor.plan().title();
+        format!("{fly} asks: the craft does not have {title} as edited")
+    } else if state.plan().waypoints.is_empty() {
+        format!("{fly} flies the craft's plan")
+    } else {
+        format!("{fly} flies the plan")
+    };
+    message(Severity::Good, "Ready.", format!("{flies}; by hand: {by_hand}"))
 }
 
 /// Returns the message for a recorded flight.

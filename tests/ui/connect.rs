@@ -324,3 +324,14 @@ fn a_child_is_brought_home_only_with_a_switch_for_it() {
     assert!(why.contains("GPS RESCUE"), "{why}");
     assert_eq!(can_return(&[Mode::Arm, Mode::Autopilot, Mode::GpsRescue]), Ok(()));
 }
+
+#[test]
+fn f_over_a_real_craft_asks_for_no_plan_and_sends_nothing() {
+    let mut state = connected(|_| {});
+    for key in ['2', '+'] {
+        press(&mut state, KeyCode::Char(key));
+    }
+    assert!(press(&mut state, KeyCode::Char('F')).is_empty());
+    assert!(!text(&state).contains("Fly which plan?") && !is_asked(&state), "{}", text(&state));
+    assert!(text(&state).contains("This craft is real"), "{}", text(&state));
+}

@@ -136,6 +136,31 @@ fn waypoints_go_out_as_cli_lines_and_come_back_by_paste() {
 }
 
 #[test]
+fn a_pasted_block_with_waypoint_clear_replaces_the_plan_in_one_step() {
+    let block = include_str!("../../plans/guide-square.txt");
+    let mut state = state((120, 40));
+    keys(&mut state, "2 i i +");
+    let before = state.shared.plan().clone();
+    // Also while a value is typed: a block of lines is none.
+    for open_field in ["", "right right right enter"] {
+        keys(&mut state, open_field);
+        assert_eq!(state.shared.editor.takes_text(), !open_field.is_empty());
+        update(&mut state, Msg::Paste(format!("{block}set ap_max_angle = 30\n")));
+        let pasted = state.shared.plan();
+        assert_eq!(pasted.waypoints.len(), 4, "{pasted:?}");
+        assert_eq!(pasted.waypoints[3].position, betadeck::geo::LatLon::new(404_640_000, -795_190_000));
+        let seen = screen(&state).split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(seen.contains("Replaced the 6 waypoints of the plan by 4 pasted ones"), "{seen}");
+        let log = state.shared.log.newest_first().next().expect("a line").text.clone();
+        for part in ["Skipped 1 `save` line", "Skipped 1 `set` line"] {
+            assert!(log.contains(part), "{log}");
+        }
+        keys(&mut state, "u");
+        assert_eq!(*state.shared.plan(), before, "one step brings it back");
+    }
+}
+
+#[test]
 fn a_waypoint_is_dragged_on_the_map_by_the_mouse_as_one_edit() {
     let mut state = state((120, 40));
     keys(&mut state, "z");

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use betadeck::fc::UploadReport;
 use betadeck::fc::UploadView;
+use betadeck::session::Command;
 use betadeck::ui::editor::{FileReply, PlanId};
 use betadeck::ui::{AppState, Effect, Msg, Severity, update};
 
@@ -146,4 +147,48 @@ fn what_went_wrong_stays_while_keys_are_pressed_until_esc_or_its_time_is_over() 
     update(&mut state, Msg::Clock(later));
     keys(&mut state, "j");
     assert!(!screen(&state).contains("It failed."), "{}", screen(&state));
+}
+
+/// Returns `true` if the effects start the scripted pilot.
+fn starts_pilot(effects: &[Effect]) -> bool {
+    effects.iter().any(|effect| matches!(effect, Effect::Send(Command::StartPilot)))
+}
+
+#[test]
+fn f_after_an_edit_asks_which_plan_it_flies() {
+    for size in [(80, 24), (120, 40), (200, 60)] {
+        let mut state = state(size);
+        assert!(starts_pilot(&keys(&mut state, "F")), "the craft has the open plan");
+        keys(&mut state, "2 +");
+        assert!(screen(&state).contains("F asks: the craft does"), "{}", screen(&state));
+        assert!(!starts_pilot(&keys(&mut state, "F")), "nothing flies before the answer");
+        let seen = screen(&state);
+        assert!(seen.contains("The plan in the craft is not square.toml."), "{seen}");
+        assert!(seen.contains("y upload, fly") && seen.contains("c fly the craft's"), "{seen}");
+        assert!(keys(&mut state, "esc").is_empty() && !screen(&state).contains("Fly which plan?"));
+        keys(&mut state, "F");
+        assert!(starts_pilot(&keys(&mut state, "c")));
+        keys(&mut state, "F");
+        let effects = keys(&mut state, "y");
+        let [Effect::Upload { id, plan, .. }] = &effects[..] else { panic!("{effects:?}") };
+        assert_eq!(**plan, *state.shared.plan());
+        let result = Ok(UploadReport::default());
+        assert!(starts_pilot(&update(&mut state, Msg::UploadReply { id: *id, count: 4, result })));
+        keys(&mut state, "F");
+        assert!(screen(&state).contains("edited since its upload"), "{}", screen(&state));
+    }
+}
+
+#[test]
+fn f_with_an_edited_fence_names_the_fence_that_it_replaces() {
+    let mut state = state((120, 40));
+    let mut document = state.shared.editor.document().clone();
+    document.settings = vec!["ap_max_distance_from_home = 150".to_owned()];
+    let history = betadeck::plan::edit::History::new(document, true);
+    let id = PlanId(7);
+    let plan = betadeck::ui::editor::OpenPlan::new(id, None, history);
+    state.shared.editor = betadeck::ui::editor::Editor::new(plan);
+    keys(&mut state, "2 + F");
+    let seen = screen(&state);
+    assert!(seen.contains("The plan sets the") && seen.contains("fence to 150 m (it was 500 m)."), "{seen}");
 }

@@ -14,7 +14,7 @@ actions! {
         Show(Panel),
     }
     FLIGHT {
-        Fly Global "flight.fly" "fly" "Fly the whole plan: arm, climb, engage (again: stop the pilot)" ["F"];
+        Fly Global "flight.fly" "fly" "Fly the plan; asks if the craft has another (again: stops)" ["F"];
         Arm Global "flight.arm" "arm" "Arm or disarm by the ARM switch" ["a"];
         Throttle Global "flight.throttle" "throttle"
             "Throttle up and hold the place; in the air come down; else low" ["t"];

@@ -6,6 +6,7 @@ use nalgebra::Vector2;
 use crate::geo::{GroundPlane, LatLon, distance_bearing};
 use crate::plan::differences::differences;
 use crate::plan::edit::PlanDocument;
+use crate::plan::format::{NoteKind, PlanFile};
 use crate::plan::{Altitude, FlightPlan, HoldPattern, Seconds, Waypoint, WaypointType};
 use crate::ui::action::{Action, EditAction};
 use crate::ui::editor::{
@@ -148,18 +149,56 @@ pub(in crate::ui) fn paste_copied(state: &mut Shared) -> Vec<Effect> {
 
 /// Inserts text pasted by the terminal.
 pub(in crate::ui) fn paste_text(state: &mut Shared, text: &str) -> Vec<Effect> {
-    if let Some(field) = state.editor.field_mut() {
+    // A block of lines is no value of a field.
+    let is_value = text.trim().lines().count() <= 1;
+    if let Some(field) = state.editor.field_mut().filter(|_| is_value) {
         field.text.insert(text.trim());
         return Vec::new();
     }
+    let before = state.plan().waypoints.len();
     match state.editor.paste_text(text) {
-        Ok((count, effects)) => {
+        Ok((pasted, effects)) => {
             let undo = state.key(Action::Edit(EditAction::Undo));
-            state.notify(Severity::Good, format!("Pasted {count} waypoints; `{undo}` removes them again."));
+            let count = pasted.file.plan.waypoints.len();
+            let done = if pasted.replaces {
+                state.map.revision_at = Some(state.now);
+                format!(
+                    "Replaced the {before} waypoints of the plan by {count} pasted ones (`waypoint clear`); `{undo}` brings \
+                     them back."
+                )
+            } else {
+                format!("Pasted {count} waypoints; `{undo}` removes them again.")
+            };
+            let text = [done].into_iter().chain(skipped(state, &pasted.file)).collect::<Vec<_>>().join(" ");
+            state.notify(Severity::Good, text);
             effects
         }
         Err(sentence) => state.only_notify(Severity::Warn, sentence),
     }
+}
+
+/// Returns sentences about the lines of a pasted text that the plan does not take. Writes the differences of a plan file
+/// into the log.
+fn skipped(state: &mut Shared, file: &PlanFile) -> Vec<String> {
+    let mut sentences = Vec::new();
+    for note in &file.notes {
+        match &note.kind {
+            NoteKind::Comment => {}
+            NoteKind::Setting => {
+                let lines = if note.count == 1 { "line" } else { "lines" };
+                sentences
+                    .push(format!("Skipped {} `set` {lines}: they belong into the CLI panel.", note.count));
+            }
+            _ => sentences.push(format!("{note}.")),
+        }
+    }
+    for difference in &file.losses.findings {
+        state.log_only(Severity::Warn, difference.to_string());
+    }
+    if !file.losses.findings.is_empty() {
+        sentences.push("The log has the differences from the file.".to_owned());
+    }
+    sentences
 }
 
 fn reported(state: &mut Shared, done: Result<Vec<Effect>, String>) -> Vec<Effect> {

@@ -10,14 +10,23 @@ pub(super) fn to_text(waypoints: &[Waypoint]) -> String {
     plan_lines(&plan).skip(1).map(|line| line + "\n").collect()
 }
 
-/// Parses the waypoints of a text: CLI lines with any numbers, or a whole plan file.
+/// A pasted text.
+pub(in crate::ui) struct Pasted {
+    pub(in crate::ui) file: PlanFile,
+    /// `true` if the text begins with an empty plan (`waypoint clear`), so that it replaces the open one.
+    pub(in crate::ui) replaces: bool,
+}
+
+/// Parses the waypoints of a text: CLI lines with any numbers, or a whole plan file. CLI lines with `waypoint clear` are read
+/// as from a file.
 ///
 /// # Errors
 /// Returns the reason in one sentence if there are no waypoints.
-pub(super) fn from_text(text: &str) -> Result<PlanFile, String> {
+pub(super) fn from_text(text: &str) -> Result<Pasted, String> {
     let text = text.replace("\r\n", "\n").replace('\r', "\n");
     let format = Format::of_contents(text.as_bytes());
-    let text = if format == Format::CliText { renumbered(&text) } else { text };
+    let replaces = format == Format::CliText && text.lines().any(is_clear);
+    let text = if format == Format::CliText && !replaces { renumbered(&text) } else { text };
     let file = format::parse("the pasted text", &text, format).map_err(|errors| {
         // Only the first line of the error: the marker below it needs rows of its own.
         let first = errors.first().map(ToString::to_string);
@@ -29,7 +38,13 @@ pub(super) fn from_text(text: &str) -> Result<PlanFile, String> {
             "The pasted text has no waypoints: `waypoint insert …` lines or a plan file are.".to_owned()
         );
     }
-    Ok(file)
+    Ok(Pasted { file, replaces })
+}
+
+/// Returns `true` for the line that empties a plan.
+fn is_clear(line: &str) -> bool {
+    let code = line.split('#').next().unwrap_or_default().to_ascii_lowercase();
+    code.split_whitespace().eq(["waypoint", "clear"])
 }
 
 /// Renumbers the waypoints of the lines from 0, so that a part of a list can be pasted as well as a whole one.
@@ -70,10 +85,10 @@ mod tests {
             .collect();
         let text = to_text(&waypoints);
         assert_eq!(text.lines().count(), 3);
-        assert_eq!(from_text(&text).unwrap().plan.waypoints.as_slice(), waypoints);
+        assert_eq!(from_text(&text).unwrap().file.plan.waypoints.as_slice(), waypoints);
         let tail: String = text.lines().skip(1).map(|line| format!("{line}\r\n")).collect();
         assert_eq!(
-            from_text(&tail).unwrap().plan.waypoints.as_slice(),
+            from_text(&tail).unwrap().file.plan.waypoints.as_slice(),
             &waypoints[1..],
             "a part, from a terminal"
         );
@@ -82,7 +97,7 @@ mod tests {
     #[test]
     fn a_file_that_is_no_plan_says_so() {
         for text in ["", "hello", "set a = 5", "waypoint insert 0 4O 1 2 3 FLYOVER 0 NONE"] {
-            assert!(!from_text(text).unwrap_err().is_empty(), "{text}");
+            assert!(from_text(text).is_err_and(|reason| !reason.is_empty()), "{text}");
         }
     }
 }

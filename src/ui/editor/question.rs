@@ -1,4 +1,5 @@
-//! Questions of the editor before an edit or a file is lost, or before an upload changes the current target.
+//! Questions of the editor before an edit or a file is lost, before an upload changes the current target, or before a
+//! flight of another plan than the open one.
 
 use std::path::PathBuf;
 
@@ -18,6 +19,12 @@ pub enum Question {
         id: PlanId,
         /// The change of that waypoint, a sentence.
         change: String,
+    },
+    /// The plan that was asked to be flown is not on the craft as it is now.
+    FliesWhich {
+        id: PlanId,
+        /// The difference, in sentences.
+        difference: String,
     },
     /// The plan to be closed has edits that no file holds.
     Unsaved {
@@ -58,6 +65,7 @@ impl Question {
                 &[('y', "replace it"), ('o', "other name"), ('n', "leave it")]
             }
             Self::MovesTarget { .. } => &[('y', "upload it"), ('n', "leave it")],
+            Self::FliesWhich { .. } => &[('y', "upload, fly"), ('c', "fly the craft's"), ('n', "do not fly")],
             Self::Unsaved { .. } if self.offers_later(loses_edits) => {
                 &[('s', "save"), ('d', "discard"), ('y', "quit, keep the edits for later"), ('n', "stay")]
             }

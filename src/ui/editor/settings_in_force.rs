@@ -20,6 +20,11 @@ pub(crate) fn has_settings_to_upload(state: &Shared) -> bool {
     state.plan_is_on_craft() && !to_upload(state, state.editor.document()).is_empty()
 }
 
+/// Returns `true` if the craft does not have the open plan with its latest edits. An empty plan is none.
+pub(crate) fn craft_has_another(state: &Shared) -> bool {
+    !state.plan().waypoints.is_empty() && (!state.plan_is_on_craft() || has_settings_to_upload(state))
+}
+
 /// Returns the limits the plan is judged by, and whose the fence among them is.
 pub(crate) fn assumptions(state: &Shared, document: &PlanDocument) -> Assumptions {
     let max_alt_m = Some(state.max_altitude_m);

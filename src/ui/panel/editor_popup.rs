@@ -50,6 +50,7 @@ fn question(state: &Shared, question: &Question, area: Rect, buffer: &mut Buffer
         }
         Question::Replace { path, changed: false, .. } => ("Replace?", format!("{} exists.", path.display())),
         Question::MovesTarget { change, .. } => ("Upload in flight?", change.clone()),
+        Question::FliesWhich { difference, .. } => ("Fly which plan?", difference.clone()),
         Question::Unsaved { id, .. } => {
             ("Unsaved", question.unsaved(&title_of(*id), state.editor.loses_edits()))
         }

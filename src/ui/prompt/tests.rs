@@ -42,6 +42,19 @@ fn a_waypoint_to_go_to_is_chosen_by_its_number() {
 }
 
 #[test]
+fn which_plan_is_flown_is_answered_by_a_letter() {
+    let mut state = state();
+    let waypoint = Waypoint { kind: WaypointType::Flyover, ..Waypoint::default() };
+    state.shared.editor.insert("insert", &[waypoint]).expect("room for a waypoint");
+    assert!(perform(&mut state, Action::Fly).is_empty());
+    let lines = asked(&mut state);
+    let choices = "Answer y upload, fly, c fly the craft's, n do not fly.";
+    assert!(lines[0].contains("The plan in the craft is not") && lines[0].ends_with(choices), "{lines:?}");
+    answer(&mut state, "n").unwrap();
+    assert_eq!(question(&mut state), None);
+}
+
+#[test]
 fn what_may_go_wrong_is_chosen_by_number_or_name() {
     for line in ["1", "gps-loss"] {
         let mut state = state();

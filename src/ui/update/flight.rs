@@ -19,7 +19,8 @@ const FENCE_SETTING: &str = "ap_max_distance_from_home";
 /// The speeds `[` and `]` go through.
 const SPEEDS: [f64; 12] = [0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, f64::INFINITY];
 
-/// Starts or stops the scripted pilot; a craft without a plan gets the open one first.
+/// Starts or stops the scripted pilot. A craft without a plan gets the open one first; if it has another, the user is
+/// asked which one to fly.
 pub(super) fn fly(state: &mut Shared) -> Vec<Effect> {
     if state.view.pilot.is_some() {
         return vec![Effect::Send(Command::Vehicle(VehicleCommand::StopPilot))];
@@ -29,21 +30,10 @@ pub(super) fn fly(state: &mut Shared) -> Vec<Effect> {
         state.notify(Severity::Info, text);
     }
     if state.view.vehicle.stored_plan.as_ref().is_some_and(|plan| !plan.waypoints.is_empty()) {
-        if let Some(refusal) = findings::refusal_of_the_stored(state) {
-            return not_flown(state, &refusal);
-        }
-        let upload = state.key(Action::Upload);
-        let title = state.editor.plan().title();
-        if !state.plan().waypoints.is_empty() && !state.plan_is_on_craft() {
-            let text = format!("Flying the plan in the craft, which is not {title}: {upload} uploads it.");
-            state.notify(Severity::Info, text);
-        } else if settings_in_force::has_settings_to_upload(state) {
-            let text = format!(
-                "Flying with the craft's settings: {upload} uploads those of {title} that you changed."
-            );
-            state.notify(Severity::Info, text);
-        }
-        return vec![Effect::Send(Command::StartPilot)];
+        let Some(difference) = difference_from_the_craft(state) else { return fly_stored(state) };
+        let id = state.editor.plan().id();
+        state.editor.popup = Some(EditorPopup::Question(Question::FliesWhich { id, difference }));
+        return Vec::new();
     }
     if state.plan().waypoints.is_empty() {
         let insert = state.key(Action::Edit(EditAction::Insert));
@@ -54,6 +44,36 @@ pub(super) fn fly(state: &mut Shared) -> Vec<Effect> {
         );
         return state.only_notify(Severity::Warn, text);
     }
+    upload_and_fly(state)
+}
+
+/// Returns the difference of the open plan from the one that the craft stores; `None` if there is none, or no open plan.
+fn difference_from_the_craft(state: &Shared) -> Option<String> {
+    if !settings_in_force::craft_has_another(state) {
+        return None;
+    }
+    let title = state.editor.plan().title();
+    let difference = if settings_in_force::has_settings_to_upload(state) {
+        format!("Settings of {title} that you changed are not on the craft.")
+    } else if state.editor.uploaded_last() == Some(state.editor.plan().id()) {
+        format!("{title} was edited since its upload: the craft has the older plan.")
+    } else {
+        format!("The plan in the craft is not {title}.")
+    };
+    let fence = settings_in_force::replaced_fence(state, state.editor.document());
+    Some(fence.map_or_else(|| difference.clone(), |fence| format!("{difference} {fence}")))
+}
+
+/// Starts the scripted pilot on the plan that the craft stores.
+pub(super) fn fly_stored(state: &mut Shared) -> Vec<Effect> {
+    if let Some(refusal) = findings::refusal_of_the_stored(state) {
+        return not_flown(state, &refusal);
+    }
+    vec![Effect::Send(Command::StartPilot)]
+}
+
+/// Uploads the open plan, and starts the scripted pilot on it when the craft has it.
+pub(super) fn upload_and_fly(state: &mut Shared) -> Vec<Effect> {
     let limits = settings_in_force::assumptions(state, state.editor.document());
     if let Some(refusal) = findings::refusal(state, state.plan(), &limits) {
         return not_flown(state, &refusal);
@@ -79,6 +99,7 @@ pub(super) fn upload(state: &mut Shared) -> Vec<Effect> {
     vec![upload_now(state)]
 }
 
+/// Returns the upload of the open plan.
 pub(super) fn upload_now(state: &mut Shared) -> Effect {
     state.editor.replaced_fence = settings_in_force::replaced_fence(state, state.editor.document());
     state.editor.remember_upload();
@@ -122,14 +143,20 @@ pub(super) fn uploaded(
             if fly { vec![Effect::Send(Command::StartPilot)] } else { Vec::new() }
         }
         Err(sentence) => {
-            state.editor.forget_upload(id);
-            state.editor.replaced_fence = None;
+            forget_upload(state, id);
             state.only_notify(
                 Severity::Fault,
                 format!("Uploading {title} failed: {}", state.keymap.in_force(&sentence)),
             )
         }
     }
+}
+
+/// Forgets an upload that failed or was declined, and the flight that was to follow it.
+pub(super) fn forget_upload(state: &mut Shared, id: PlanId) {
+    state.editor.forget_upload(id);
+    state.editor.fly_after_upload.take_if(|asked| *asked == id);
+    state.editor.replaced_fence = None;
 }
 
 /// Steps through the speeds; 0 = real time.

@@ -1,5 +1,6 @@
 //! Asks before a real remote craft is changed.
 
+use super::flight;
 use crate::session::Command;
 use crate::ui::app_state::AppState;
 use crate::ui::event_log::Severity;
@@ -54,6 +55,11 @@ pub(super) fn decline(state: &mut AppState) {
     if held.iter().any(|effect| matches!(effect, Effect::ReadSettings)) {
         settings::reading::take(&mut state.shared, Err(NOT_READ.to_owned()));
     }
+    for effect in &held {
+        if let Effect::Upload { id, .. } = effect {
+            flight::forget_upload(&mut state.shared, *id);
+        }
+    }
     state.shared.notify(Severity::Info, "Nothing was changed.");
 }
 
@@ -68,4 +74,23 @@ pub(super) fn follow(state: &mut AppState, connection_before: Option<u32>) {
 
 fn close(state: &mut AppState) {
     state.popups.retain(|popup| *popup != Popup::Permission);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::SessionView;
+
+    #[test]
+    fn a_declined_upload_is_not_remembered_as_on_the_craft() {
+        let mut state = AppState::bare((80, 24), SessionView::default());
+        let id = state.shared.editor.plan().id();
+        state.shared.editor.fly_after_upload = Some(id);
+        let effect = flight::upload_now(&mut state.shared);
+        assert_eq!(state.shared.editor.uploaded_last(), Some(id));
+        state.permission.held.push(effect);
+        decline(&mut state);
+        assert_eq!(state.shared.editor.uploaded_last(), None);
+        assert_eq!(state.shared.editor.fly_after_upload, None, "and no later upload flies");
+    }
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::layout::Rect;
 
-use super::{diff, flight::upload_now};
+use super::{diff, flight};
 use crate::ui::action::{Action, EditAction};
 use crate::ui::editor::{
     Browser, BrowserKey, Conversion, EditorPopup, FileReply, FileRequest, Form, FormKey, LossList, PlanId,
@@ -121,8 +121,13 @@ fn question_key(state: &mut Shared, question: Question, event: KeyEvent) -> Vec<
         (Question::Replace { .. }, 'o') => plan::save_as(state),
         (Question::MovesTarget { id, .. }, 'y') => {
             state.editor.show_plan(id);
-            vec![upload_now(state)]
+            vec![flight::upload_now(state)]
         }
+        (Question::FliesWhich { id, .. }, 'y') => {
+            state.editor.show_plan(id);
+            flight::upload_and_fly(state)
+        }
+        (Question::FliesWhich { .. }, 'c') => flight::fly_stored(state),
         (Question::Unsaved { id, quits }, 's') => {
             state.editor.quitting = quits;
             save_plan(state, id)
