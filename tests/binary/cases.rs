@@ -48,3 +48,15 @@ fn an_inav_file_with_missions_whose_indices_begin_again_is_read_whole() {
         }
     }
 }
+
+#[test]
+fn an_implausible_home_costs_a_finding_and_a_change_of_the_altitude_s_reference_is_reported() {
+    let sandbox = folder(&["tower-481.waypoints", "mp-953.waypoints"]);
+    let ran = sandbox.run(&["convert", "tower-481.waypoints", "tower.toml"]);
+    let said = format!("{}{}", ran.out, ran.err);
+    assert!(said.contains("29064.96") && said.contains("allowed: -500 to 9000 m"), "{said}");
+    assert_eq!(sandbox.read("tower.toml").matches("[[waypoint]]").count(), 2, "{said}");
+    let ran = sandbox.run(&["convert", "mp-953.waypoints", "mp.toml"]);
+    let said = format!("{}{}", ran.out, ran.err);
+    assert!(said.contains("30 m above sea level → 10 m above home"), "{said}");
+}

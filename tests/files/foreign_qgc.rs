@@ -128,6 +128,9 @@ fn a_table_of_qgroundcontrol() {
     check(
         &findings,
         &[
+            "info     WP 0 (item 1, line 3) altitude reference: 503.07 m above sea level → 15 m above home",
+            "info     WP 1 (item 2, line 4) altitude reference: 518.07 m above sea level → 30 m above home",
+            "info     WP 2 (item 4, line 6) altitude reference: 518.07 m above sea level → 30 m above home",
             "changed  WP 3 (item 5, line 7) altitude: 488.07 m → 30 m",
             "assumed  waypoint type: 1 item → FLYBY",
         ],

@@ -79,7 +79,15 @@ impl Reference {
                          add --home LAT,LON,AMSL"
                     )
                 })?;
-                Ok((Altitude::above_home(metres - home_m), None))
+                let above_m = metres - home_m;
+                let shown = |metres: f64| (metres * 100.0).round() / 100.0;
+                let finding =
+                    Finding::new(Severity::Info, "altitude reference", "altitudes of a plan are above home");
+                let values = finding.values(
+                    format!("{} m above sea level", shown(metres)),
+                    format!("{} m above home", shown(above_m)),
+                );
+                Ok((Altitude::above_home(above_m), Some(values)))
             }
             Self::Ground if flat => Ok((Altitude::above_home(metres), None)),
             Self::Ground => {

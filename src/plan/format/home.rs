@@ -3,7 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::field;
+use super::loss::{Finding, LossReport, Place, Severity};
+use super::{bounds, field};
 use crate::geo::LatLon;
 
 /// A start position: `LAT,LON` or `LAT,LON,AMSL`.
@@ -36,6 +37,34 @@ pub(super) fn amsl_m(text: &str) -> Result<f64, String> {
         Ok(value) if value.is_finite() => Err(format!("altitude {text} is out of range")),
         _ => Err(format!("altitude {text} is not a number")),
     }
+}
+
+/// Returns the home of a file of another program. A value that no home has is left out with a finding: the plan does
+/// not depend on it.
+pub(super) fn of_file(
+    lat_deg: f64,
+    lon_deg: f64,
+    amsl_m: Option<f64>,
+    place: Option<&Place>,
+    losses: &mut LossReport,
+) -> Option<HomePosition> {
+    let mut leave_out = |field: &str, message: &str, from: String| {
+        let why = format!("{message}: add --home LAT,LON,AMSL");
+        let finding = Finding { place: place.cloned(), ..Finding::new(Severity::Lost, field, why) };
+        losses.add(finding.values(from, "unknown"));
+    };
+    let position = match bounds::position(lat_deg, lon_deg) {
+        Ok((position, _)) => position,
+        Err(message) => {
+            leave_out("home", &message, format!("{lat_deg},{lon_deg}"));
+            return None;
+        }
+    };
+    let kept = amsl_m.filter(|metres| AMSL_RANGE_M.contains(metres));
+    if let (Some(metres), None) = (amsl_m, kept) {
+        leave_out("home altitude", AMSL_HINT, format!("{metres} m"));
+    }
+    Some(HomePosition { position, amsl_m: kept })
 }
 
 /// The values that [`amsl_m`] accepts.

@@ -3,7 +3,7 @@
 use super::bounds::MAX_ITEMS;
 use super::loss::{Finding, LossReport, Place, Severity};
 use super::mission_item::{self, ABOVE_SEA, Mission, MissionItem, NO_PLACE};
-use super::{HomePosition, PlanFile, Problems, ReadOptions, bounds, home};
+use super::{HomePosition, PlanFile, Problems, ReadOptions, home};
 use crate::plan::estimate::Assumptions;
 use crate::plan::{FlightPlan, MAX_WAYPOINTS};
 
@@ -65,7 +65,7 @@ pub(super) fn read(text: &str, options: &ReadOptions, problems: &mut Problems<'_
         if !problems.is_empty() && (problems.is_full() || table.items.len() > MAX_ITEMS) {
             break;
         }
-        table.row(&record, at, problems);
+        table.row(&record, at, &mut losses, problems);
     }
     if !problems.is_empty() {
         return PlanFile::default();
@@ -126,7 +126,13 @@ impl Table {
         }
     }
 
-    fn row(&mut self, record: &csv::StringRecord, at: usize, problems: &mut Problems<'_>) {
+    fn row(
+        &mut self,
+        record: &csv::StringRecord,
+        at: usize,
+        losses: &mut LossReport,
+        problems: &mut Problems<'_>,
+    ) {
         let length = record.as_slice().len() + record.len();
         let mut is_right = true;
         if self.delimiter == b',' && record.len() > COLUMNS.len() {
@@ -166,11 +172,9 @@ impl Table {
             return;
         };
         if index == 0 {
-            match read_home(lat_deg, lon_deg, altitude_m) {
-                Ok(home) => self.home = home,
-                Err(message) => {
-                    problems.add(at..at + length, format!("row 0: {message}"), "row 0 is the home");
-                }
+            if let (Some(lat_deg), Some(lon_deg)) = (lat_deg, lon_deg) {
+                let place = Place::Line { line: problems.line_at(at) };
+                self.home = home::of_file(lat_deg, lon_deg, altitude_m, Some(&place), losses);
             }
             return;
         }
@@ -197,17 +201,6 @@ impl Table {
             place: Some(Place::Line { line: problems.line_at(at) }),
         });
     }
-}
-
-fn read_home(
-    lat: Option<f64>,
-    lon: Option<f64>,
-    metres: Option<f64>,
-) -> Result<Option<HomePosition>, String> {
-    let (Some(lat), Some(lon)) = (lat, lon) else { return Ok(None) };
-    let (position, _) = bounds::position(lat, lon)?;
-    let amsl_m = metres.map(|metres| home::amsl_m(&metres.to_string())).transpose()?;
-    Ok(Some(HomePosition { position, amsl_m }))
 }
 
 #[cfg(test)]

@@ -11,10 +11,10 @@ mod write;
 
 use serde_json::Value;
 
-use super::loss::{Finding, LossReport, Severity};
+use super::loss::{Finding, LossReport, Place, Severity};
 use super::mission_item::{self, Mission, MissionItem};
 use super::setting::{SettingFault, setting_line};
-use super::{HomePosition, PlanFile, Problems, ReadOptions, bounds, home, json};
+use super::{HomePosition, PlanFile, Problems, ReadOptions, home, json};
 use crate::plan::estimate::Assumptions;
 use crate::plan::feature::Feature;
 use crate::plan::{FlightPlan, MAX_WAYPOINTS};
@@ -44,7 +44,7 @@ pub fn qgc_fences(text: &str) -> Vec<Feature> {
     let mut problems = Problems::new("", text);
     let Some(value) = json::parse(text, &mut problems) else { return Vec::new() };
     let mut source = Source::new(text, &mut problems);
-    let home = planned_home(&value["mission"], &mut source);
+    let home = planned_home(&value["mission"], &mut source, &mut LossReport::default());
     let fences = fence::read(&value, home, &mut source);
     if problems.is_empty() { fences.features } else { Vec::new() }
 }
@@ -61,7 +61,7 @@ fn read_file(
         source.fault("/mission", "the mission has no list of items", "a plan has /mission/items");
         return None;
     };
-    let file_home = planned_home(mission, source);
+    let file_home = planned_home(mission, source, &mut file.losses);
     file.home = mission_item::home(file_home, options);
     let mut items = Vec::new();
     items::read(list, source, &mut items, &mut file.losses);
@@ -154,7 +154,11 @@ fn check_kind(value: &Value, source: &mut Source<'_, '_>) -> Option<()> {
 }
 
 /// Reads the home. Its altitude may be null.
-fn planned_home(mission: &Value, source: &mut Source<'_, '_>) -> Option<HomePosition> {
+fn planned_home(
+    mission: &Value,
+    source: &mut Source<'_, '_>,
+    losses: &mut LossReport,
+) -> Option<HomePosition> {
     let at = "/mission/plannedHomePosition";
     let value = &mission["plannedHomePosition"];
     // Old files have an item here.
@@ -171,21 +175,11 @@ fn planned_home(mission: &Value, source: &mut Source<'_, '_>) -> Option<HomePosi
     };
     let lat = source.number(&values[0], &format!("{at}/0"), "latitude")?;
     let lon = source.number(&values[1], &format!("{at}/1"), "longitude")?;
-    let position = match bounds::position(lat, lon) {
-        Ok((position, _)) => position,
-        Err(message) => {
-            source.fault(&at, message, "");
-            return None;
-        }
-    };
     let altitude = values.get(2).unwrap_or(&Value::Null);
     let amsl_m = source.number(altitude, &format!("{at}/2"), "altitude");
     // A micrometre is enough, and survives the way through text.
     let amsl_m = amsl_m.map(|metres| (metres * 1e6).round() / 1e6);
-    if let Some(Err(message)) = amsl_m.map(|metres| home::amsl_m(&metres.to_string())) {
-        source.fault(&format!("{at}/2"), message, home::AMSL_HINT);
-    }
-    Some(HomePosition { position, amsl_m })
+    home::of_file(lat, lon, amsl_m, Some(&Place::Pointer { pointer: at }), losses)
 }
 
 /// Returns the settings of the private data that this craft has.

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::ops::Range;
 
-use super::bounds::{self, MAX_ITEMS};
+use super::bounds::MAX_ITEMS;
 use super::loss::{Finding, LossReport, Place, Severity};
 use super::mission_item::{self, Mission, MissionItem, Sent, send, written_position};
 use super::{HomePosition, PlanFile, Problems, ReadOptions, Written, home};
@@ -46,7 +46,7 @@ pub(super) fn read(text: &str, options: &ReadOptions, problems: &mut Problems<'_
     }
     let mut losses = LossReport::default();
     let first = lines.first().filter(|line| line.item.is_home());
-    let file_home = first.and_then(|line| read_home(line, problems));
+    let file_home = first.and_then(|line| read_home(&line.item, &mut losses));
     let before = usize::from(first.is_some());
     if before == 0 && !lines.is_empty() {
         let why = "the file does not begin with the home: its first item is a waypoint";
@@ -183,22 +183,8 @@ fn parse(field: &str, may_be_nan: bool) -> Result<f64, (&'static str, &'static s
 }
 
 /// Reads the home item. The home of a file without one is 0,0.
-fn read_home(line: &Line, problems: &mut Problems<'_>) -> Option<HomePosition> {
-    let (lat, lon) = (line.item.lat_deg?, line.item.lon_deg?);
-    let metres = line.item.altitude_m?;
-    let position = bounds::position(lat, lon).map(|(position, _)| position);
-    let amsl_m = home::amsl_m(&metres.to_string());
-    match (position, amsl_m) {
-        (Ok(position), Ok(amsl_m)) => Some(HomePosition { position, amsl_m: Some(amsl_m) }),
-        (Err(message), _) => {
-            problems.add(line.span.clone(), format!("item 0: {message}"), "item 0 is the home");
-            None
-        }
-        (_, Err(message)) => {
-            problems.add(line.span.clone(), format!("item 0: {message}"), home::AMSL_HINT);
-            None
-        }
-    }
+fn read_home(item: &MissionItem, losses: &mut LossReport) -> Option<HomePosition> {
+    home::of_file(item.lat_deg?, item.lon_deg?, item.altitude_m, item.place.as_ref(), losses)
 }
 
 /// Returns the sentence for a file of ArduPilot with the same first line that has no mission.

@@ -87,7 +87,7 @@ fn all_points_count_if_none_is_marked_else_a_line() {
     let both = collection(&[LINE.to_owned(), point(1.0, ""), point(2.0, "")]);
     let file = read_with(&both, &options);
     assert_eq!((file.plan.waypoints.len(), file.plan.waypoints[0].altitude.cm()), (2, 5000));
-    assert_eq!(file.losses.counts(), "2 assumed");
+    assert_eq!(file.losses.counts(), "2 assumed, 1 info");
     let line = ReadOptions { feature: Some("l".to_owned()), ..options.clone() };
     assert_eq!(read_with(&both, &line).plan.waypoints.len(), 3);
     assert_eq!(read_with(&collection(&[LINE.to_owned()]), &options).plan.waypoints.len(), 3);

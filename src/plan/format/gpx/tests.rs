@@ -77,7 +77,7 @@ fn elevations_are_above_sea_level() {
     let file = read_with(text, &options);
     let cm: Vec<i32> = file.plan.waypoints.iter().map(|waypoint| waypoint.altitude.cm()).collect();
     assert_eq!(cm, [5000, 1000]);
-    assert_eq!(file.losses.counts(), "2 assumed");
+    assert_eq!(file.losses.counts(), "2 assumed, 1 info");
 }
 
 #[test]

@@ -76,14 +76,16 @@ fn home(of_file: Option<LatLon>, known: Option<HomePosition>, options: &ReadOpti
 /// Names the missions that are not read.
 fn others(missions: &[Mission], chosen: usize) -> Finding {
     const MOST_NAMED: usize = 20;
-    let others: Vec<String> = (1..)
-        .zip(missions)
-        .filter(|&(number, _)| number != chosen)
-        .map(|(number, mission)| format!("mission {number} ({} items)", mission.items.len()))
+    let others: Vec<(usize, usize)> = (1..)
+        .zip(missions.iter().map(|mission| mission.items.len()))
+        .filter(|&(number, _)| number != chosen.max(1))
         .collect();
-    let mut named = others[..others.len().min(MOST_NAMED)].join(", ");
-    if others.len() > MOST_NAMED {
-        named.push_str(" and more");
+    let (first, rest) = others.split_at(others.len().min(MOST_NAMED));
+    let words = first.iter().map(|(number, items)| format!("mission {number} ({items} items)"));
+    let mut named = words.collect::<Vec<_>>().join(", ");
+    if !rest.is_empty() {
+        let items: usize = rest.iter().map(|(_, items)| items).sum();
+        named.push_str(&format!(" and {} more ({items} items)", rest.len()));
     }
     let why = "a plan is one mission: choose it with --mission N";
     Finding::new(Severity::Lost, "missions", why).values(named, "")

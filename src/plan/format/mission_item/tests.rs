@@ -230,7 +230,9 @@ fn other_commands_are_counted_or_refused() {
 fn frames_give_the_reference() {
     let altitude = |frame| map(&[item(1, 19, frame, [1.0, 0.0, 0.0, 0.0], (40.0, -79.0, 350.0))]);
     for frame in [0, 5] {
-        assert_eq!(altitude(frame), (vec!["HOLD NONE 50 0 1".to_owned()], vec![]));
+        let said = "info     WP 0 (item 1, line 3) altitude reference: 350 m above sea level → 50 m above home: \
+                    altitudes of a plan are above home";
+        assert_eq!(altitude(frame), (vec!["HOLD NONE 50 0 1".to_owned()], vec![said.to_owned()]));
     }
     for frame in [3, 6] {
         assert_eq!(altitude(frame), (vec!["HOLD NONE 350 0 1".to_owned()], vec![]));

@@ -204,8 +204,6 @@ fn wrong_files_give_a_sentence_with_its_place() {
         (("/mission/items/0/command", json!(70_000)), "command 70000 is out of range"),
         (("/mission/items/0/command", json!(null)), "the item has no command"),
         (("/mission/items/0/frame", json!(1)), "item 1: frame 1 is not one of a plan"),
-        (("/mission/plannedHomePosition", json!([91, 2, 3])), "latitude 91 is out of range"),
-        (("/mission/plannedHomePosition", json!([1, 2, 99_999])), "altitude 99999 is out of range"),
         (("/geoFence/circles/0/circle/radius", json!(-5)), "radius -5 m is out of range"),
         (("/geoFence/polygons", json!([{"polygon": [[1, 2]]}])), "a polygon of 1 points is no area"),
     ] {
@@ -219,6 +217,19 @@ fn wrong_files_give_a_sentence_with_its_place() {
     assert!(fault(&many).ends_with("waypoint 30 does not fit: the file has 31"), "{}", fault(&many));
     let too_many = edited(&[("/mission/items", vec![item; 10_001].into())]);
     assert!(fault(&too_many).ends_with("the mission has 10001 items, at most 10000 are read"));
+}
+
+#[test]
+fn an_implausible_home_costs_a_finding_not_the_plan() {
+    for (home, line) in [
+        (json!([91, 2, 3]), "home: 91,2 → unknown: latitude 91 is out of range"),
+        (json!([1, 2, 99_999]), "home altitude: 99999 m → unknown: allowed: -500 to 9000 m"),
+    ] {
+        let file = read_text(&edited(&[("/mission/plannedHomePosition", home)]));
+        assert!(!file.plan.waypoints.is_empty());
+        let all: Vec<String> = file.losses.findings.iter().map(ToString::to_string).collect();
+        assert!(all.iter().any(|finding| finding.contains(line)), "{all:?}");
+    }
 }
 
 #[test]

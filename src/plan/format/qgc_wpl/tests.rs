@@ -92,7 +92,6 @@ fn wrong_files_give_one_sentence_with_its_place() {
         (&line("x 0 3 16 0 0 0 0 1 2 50 1"), "x:3:1: sequence number x is not a number"),
         (&line("1 0 3 -16 0 0 0 0 1 2 50 1"), "x:3:1: command -16 is out of range"),
         (&line("1 0 1 16 0 0 0 0 1 2 50 1"), "x:3:1: item 1: frame 1 is not one of a plan"),
-        (&line("1 0 3 16 0 0 0 0 1 2 50 1").replace("300", "1e9"), "x:2:1: item 0: altitude"),
     ] {
         let said = fault(text);
         assert!(said.starts_with(sentence), "{said}\n{sentence}");
@@ -101,6 +100,23 @@ fn wrong_files_give_one_sentence_with_its_place() {
     assert!(fault(&many).contains("more than 10000 items"));
     let many = "QGC WPL 110\n".to_owned() + &"1 0 3 16 0 0 0 0 1 2 50 1\n".repeat(500);
     assert!(fault(&many).contains("waypoint 30 does not fit: the file has 500"));
+}
+
+#[test]
+fn an_implausible_home_costs_a_finding_not_the_plan() {
+    let plan = "QGC WPL 110\n0 1 0 16 0 0 0 0 40.4635 -79.5182 29064.960852 1\n1 0 3 16 0 0 0 0 40.461 -79.5173 1.8288 1\n";
+    for (text, line) in [
+        (plan.to_owned(), "lost     line 2 home altitude: 29064.960852 m → unknown: allowed: -500 to 9000 m"),
+        (
+            plan.replace("40.4635", "140"),
+            "lost     line 2 home: 140,-79.5182 → unknown: latitude 140 is out of range",
+        ),
+    ] {
+        let file = read_text(&text);
+        assert_eq!(file.plan.waypoints.len(), 1);
+        let findings: Vec<String> = file.losses.findings.iter().map(ToString::to_string).collect();
+        assert!(findings.iter().any(|finding| finding.starts_with(line)), "{findings:?}");
+    }
 }
 
 #[test]
