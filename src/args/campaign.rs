@@ -32,10 +32,6 @@ pub struct CampaignArgs {
     #[arg(value_name = "FILE|PLAN", required = true)]
     pub what: Option<String>,
 
-    /// Starts the executable that the file of an earlier --out names
-    #[arg(long, help_heading = "Which")]
-    pub yes: bool,
-
     /// Number of flights [default: the one of the file; a plan: 1000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=MAX_CAMPAIGN), help_heading = "Which")]
     pub flights: Option<u64>,

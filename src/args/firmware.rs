@@ -109,7 +109,8 @@ pub struct FirmwareLinkArgs {
     #[arg(long, value_name = "FILE", conflicts_with = "firmware", help_heading = "Firmware")]
     pub betaloop: Option<PathBuf>,
 
-    /// Changes the stored configuration of a remote firmware without a question
+    /// Changes the stored configuration of a remote firmware, and starts the executable that the file of a campaign names,
+    /// without a question
     #[arg(long, help_heading = "Firmware")]
     pub yes: bool,
 

@@ -22,10 +22,6 @@ pub struct OpenArgs {
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = value::seed)]
     pub seed: Option<u64>,
 
-    /// Starts the executable that the file of a campaign names
-    #[arg(long)]
-    pub yes: bool,
-
     /// No screen: the events as sentences on standard output, commands of the `:` line on standard input
     ///
     /// Needs no terminal. After the end of the input the flight waits, until `quit` or a signal ends it.

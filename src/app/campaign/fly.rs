@@ -59,7 +59,7 @@ pub(super) fn run(args: &CampaignArgs, repeat: &[String]) -> Result<u8, AppError
     let is_unfinished = lines.start + before < lines.end;
     refuse_two_versions(&loaded, out.as_deref(), is_unfinished)?;
     if let Some(file) = of_file.filter(|_| is_unfinished) {
-        let consent = Consent { firmware: args.firmware.firmware.as_ref(), yes: args.yes };
+        let consent = Consent { firmware: args.firmware.firmware.as_ref(), yes: args.firmware.link.yes };
         let definition = &loaded.header.definition;
         let other = definition.versus.iter().map(|side| &side.firmware);
         std::iter::once(&definition.firmware)

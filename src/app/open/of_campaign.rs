@@ -28,7 +28,7 @@ impl FlownInCampaign {
 
 /// Reads the flight of a campaign; `None` if the options name a scenario.
 pub(super) fn read(args: &OpenArgs) -> Result<Option<Opened>, AppError> {
-    let consent = Consent { firmware: args.firmware.firmware.as_ref(), yes: args.yes };
+    let consent = Consent { firmware: args.firmware.firmware.as_ref(), yes: args.firmware.link.yes };
     let Some(OneFlight { flight, name, firmware, record }) = open_flight(&args.scenario, consent)? else {
         return Ok(None);
     };
