@@ -27,7 +27,8 @@
 //! * [`run`] is the shell around it: it waits for the terminal, the session and the clock, and carries out the effects.
 //!
 //! `editor` holds the open plans. `update` handles messages, one file per subject. `prompt` asks the questions of the
-//! popups line by line in `--plain` mode, which has no screen. `permission` asks before a real craft is changed, and
+//! popups line by line in `--plain` mode, which has no screen. `status_bar` draws the two lines at the top and says them in
+//! words. `permission` asks before a real craft is changed, and
 //! `status_message` suggests the next step.
 //!
 //! At most five files import each other, not counting parent and child; `tests/rooms` measures it.
