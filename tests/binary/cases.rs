@@ -60,3 +60,49 @@ fn an_implausible_home_costs_a_finding_and_a_change_of_the_altitude_s_reference_
     let said = format!("{}{}", ran.out, ran.err);
     assert!(said.contains("30 m above sea level → 10 m above home"), "{said}");
 }
+
+#[test]
+fn the_results_of_a_campaign_start_no_executable_unasked() {
+    let sandbox = Sandbox::new();
+    let plan = "waypoint insert 0 40.4635901 -79.5182000 2000 500 LAND 0 NONE\n";
+    sandbox.write("plan.txt", plan);
+    sandbox.run(&["campaign", "plan.txt", "--flights", "2", "--timeout", "1", "--out", "run.jsonl"]);
+    let run = sandbox.read("run.jsonl");
+    let mut lines = run.lines();
+    let header: serde_json::Value = serde_json::from_str(lines.next().expect("a header")).expect("JSON");
+    let flight = lines.next().expect("a flight");
+    let evil = sandbox.path("evil.sh");
+    std::fs::write(&evil, format!("#!/bin/sh\ntouch {}\n", sandbox.path("STARTED").display()))
+        .expect("written");
+    std::fs::set_permissions(&evil, std::os::unix::fs::PermissionsExt::from_mode(0o755)).expect("executable");
+    sandbox.write("bl.txt", &format!("[Betaloop]\nBetaflightElf={}\n", evil.display()));
+    let (evil, list) = (evil.display().to_string(), sandbox.path("bl.txt").display().to_string());
+    for words in [
+        vec!["--firmware".to_owned(), evil.clone()],
+        vec![format!("--firmware={evil}")],
+        vec![format!("--betaloop={list}")],
+        vec!["--firmware-arg".to_owned(), "./mine.elf".to_owned(), format!("--firmware={evil}")],
+        vec![format!("--firmware={evil}"), "--yes".to_owned()],
+    ] {
+        for is_versus in [false, true] {
+            let mut edited = header.clone();
+            let definition = &mut edited["definition"];
+            if is_versus {
+                definition["versus"] =
+                    serde_json::json!({ "settings": [], "has_firmware": true, "firmware": words });
+            } else {
+                definition["firmware"] = serde_json::json!(words);
+            }
+            sandbox.write("evil.jsonl", &format!("{edited}\n{flight}\n"));
+            for line in [
+                &["campaign", "evil.jsonl"][..],
+                &["campaign", "evil.jsonl", "--firmware", "./mine.elf"],
+                &["open", "evil.jsonl:1", "--plain"],
+            ] {
+                let ran = sandbox.run(line);
+                assert!(!sandbox.path("STARTED").exists(), "{words:?} {line:?}: {ran:?}");
+                assert!(is_versus || matches!(ran.code, Some(2 | 3)), "{words:?} {line:?}: {ran:?}");
+            }
+        }
+    }
+}

@@ -8,7 +8,9 @@ use super::of_plan;
 use super::sources::Sources;
 use crate::app::firmware::{Beside, Chosen, RemoteFirmware};
 use crate::app::{AppError, error, firmware, input_file, setup};
-use crate::args::{CampaignArgs, FirmwareArgs, FlightArgs, PhysicsArgs, PlanArg};
+use crate::args::{
+    CampaignArgs, FirmwareArgs, FirmwareChoice, FirmwarePortArgs, FlightArgs, PhysicsArgs, PlanArg,
+};
 use crate::design::fingerprint;
 use crate::plan::builtin::BuiltinPlan;
 use crate::report::campaign::{Contents, Definition, OtherSide, RunHeader};
@@ -224,6 +226,9 @@ fn of_firmware(firmware: Option<&RemoteFirmware>) -> Result<(Vec<String>, Option
 
 /// Returns the fingerprint of a file.
 pub(super) fn print_of(path: &Path) -> Result<String, AppError> {
+    if !path.is_file() {
+        return Err(AppError::environment(format!("cannot read {}: it is not a file", path.display())));
+    }
     let bytes = std::fs::read(path)
         .map_err(|error| AppError::environment(format!("cannot read {}: {error}", path.display())))?;
     Ok(format!("{:016x}", fingerprint(&bytes)))
@@ -231,10 +236,7 @@ pub(super) fn print_of(path: &Path) -> Result<String, AppError> {
 
 /// Returns the firmware that these options choose; `None` = the embedded one.
 pub(super) fn firmware_of(words: &[String], print: Option<&str>) -> Result<Option<RemoteFirmware>, AppError> {
-    if words.is_empty() {
-        return Ok(None);
-    }
-    let (args, ports): (FirmwareArgs, _) = crate::args::firmware_options(words).map_err(AppError::input)?;
+    let Some((args, ports)) = named_firmware(words)? else { return Ok(None) };
     let (flight, physics) = (FlightArgs::default(), PhysicsArgs::default());
     let beside = Beside { ports: (&ports).into(), flight: &flight, physics: &physics };
     let firmware = firmware::choose(&args, beside, &mut Vec::new())?;
@@ -247,7 +249,41 @@ pub(super) fn firmware_of(words: &[String], print: Option<&str>) -> Result<Optio
             executable.display()
         )));
     }
+    // The same check as that of the options that began the campaign.
+    of_firmware(firmware.as_ref())?;
     Ok(firmware)
+}
+
+/// Parses the options of a firmware that a definition holds; `None` for the embedded one. A campaign writes the path of an
+/// executable and its link only, so that other options are refused: who wrote a file must not choose how it is started.
+///
+/// # Errors
+/// Returns a sentence with the options.
+fn named_firmware(words: &[String]) -> Result<Option<(FirmwareArgs, FirmwarePortArgs)>, AppError> {
+    if words.is_empty() {
+        return Ok(None);
+    }
+    let (args, ports) = crate::args::firmware_options(words).map_err(AppError::input)?;
+    let is_executable = matches!(args.firmware, Some(FirmwareChoice::Executable(_)));
+    if !is_executable || args.link.betaloop.is_some() || args.link.yes || args.link.clock.is_some() {
+        return Err(AppError::input(format!(
+            "the campaign names its firmware by options that no campaign writes, {}: allowed are --firmware PATH and the \
+             options of its link",
+            words.join(" ")
+        )));
+    }
+    Ok(Some((args, ports)))
+}
+
+/// Returns the executable that the options of a definition name.
+///
+/// # Errors
+/// Returns a sentence about options that no campaign writes.
+pub(super) fn executable_of(words: &[String]) -> Result<Option<PathBuf>, AppError> {
+    Ok(named_firmware(words)?.and_then(|(args, _)| match args.firmware {
+        Some(FirmwareChoice::Executable(path)) => Some(path),
+        _ => None,
+    }))
 }
 
 /// Checks that the embedded firmware accepts the settings of the other side.

@@ -61,10 +61,10 @@ pub(super) fn run(args: &CampaignArgs, repeat: &[String]) -> Result<u8, AppError
     if let Some(file) = of_file.filter(|_| is_unfinished) {
         let consent = Consent { firmware: args.firmware.firmware.as_ref(), yes: args.firmware.link.yes };
         let definition = &loaded.header.definition;
-        let other = definition.versus.iter().map(|side| &side.firmware);
-        std::iter::once(&definition.firmware)
-            .chain(other)
-            .try_for_each(|options| consent.check(&file, options))?;
+        consent.check(&file, &definition.firmware, definition.firmware_print.as_deref())?;
+        if let Some(side) = &definition.versus {
+            consent.check(&file, &side.firmware, side.firmware_print.as_deref())?;
+        }
     }
     let mut run = Run {
         progress: Progress::new(Some(lines.end - lines.start), before),

@@ -204,11 +204,11 @@ pub(in crate::app) fn open_flight(text: &str, consent: Consent<'_>) -> Result<Op
         AppError::input(format!("{file} has no flight {number}: the campaign has {} flights", header.flights))
     })?;
     let definition = &header.definition;
-    let options = match (side, &definition.versus) {
-        (Side::B, Some(other)) if other.has_firmware => &other.firmware,
-        _ => &definition.firmware,
+    let (options, print) = match (side, &definition.versus) {
+        (Side::B, Some(other)) if other.has_firmware => (&other.firmware, &other.firmware_print),
+        _ => (&definition.firmware, &definition.firmware_print),
     };
-    consent.check(path, options)?;
+    consent.check(path, options, print.as_deref())?;
     let loaded = Loaded::of_run(header)?;
     let flight = loaded.of_side(number, side).ok_or_else(|| AppError::internal("a flight without a case"))?;
     let [own, other] = loaded.firmware;
