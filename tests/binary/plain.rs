@@ -96,9 +96,9 @@ fn help_lists_the_topics_explains_each_and_a_wrong_plan_is_an_input_error() {
     for part in [
         "flight: fly, arm, ",
         "Commands with a value: set, cli, ",
-        "flight.fly — Fly the whole plan",
+        "flight.fly — Fly the plan",
         "flight.arm — ",
-        "flight.fly — Fly the whole plan",
+        "flight.fly — Fly the plan",
         "wind SPEED@FROM or calm — ",
         "There is no command or topic wnd; did you mean wind?",
     ] {

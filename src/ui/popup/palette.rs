@@ -220,7 +220,7 @@ mod tests {
         assert_eq!(first("cut rc"), Some("rc.cut"));
         assert_eq!(first("wind"), Some("wind"));
         assert!(
-            entries("whole plan", &UsedNames::default()).iter().any(|entry| entry.name() == "flight.fly")
+            entries("asks if", &UsedNames::default()).iter().any(|entry| entry.name() == "flight.fly")
         );
         assert_eq!(first("zzzz"), None);
     }
