@@ -118,10 +118,7 @@ impl Knob {
         match self {
             Self::WindSpeed => {
                 let most = units.speed_text(MOST_MPS, 0);
-                format!(
-                    "the mean wind from {} up, 0 to {most}, over two seconds",
-                    units.length_text(FULL_WIND_M, 0)
-                )
+                format!("wind from {} up, 0 to {most}, over two seconds", units.length_text(FULL_WIND_M, 0))
             }
             Self::WindFrom => "the direction it blows from, degrees".to_owned(),
             Self::Gust => format!("strength of random gusts, 0 to {}", units.speed_text(MOST_MPS, 0)),

@@ -219,9 +219,7 @@ mod tests {
         assert_eq!(first("rtime"), Some("sim.real-time"));
         assert_eq!(first("cut rc"), Some("rc.cut"));
         assert_eq!(first("wind"), Some("wind"));
-        assert!(
-            entries("asks if", &UsedNames::default()).iter().any(|entry| entry.name() == "flight.fly")
-        );
+        assert!(entries("asks if", &UsedNames::default()).iter().any(|entry| entry.name() == "flight.fly"));
         assert_eq!(first("zzzz"), None);
     }
 

@@ -48,7 +48,7 @@ pub(super) const GROUP: Group = Group {
         Act("settings.save", Shows(":settings-file")),
         Close(None, Hides(":settings-file")),
         Act("settings.read", Shows("settings of the craft were read.")),
-        Act("settings.default-all", Shows("Defaults?")),
-        Close(Some("n change nothing"), Hides("Defaults?")),
+        // No setting differs from its default any more.
+        Act("settings.default-all", Shows("there is nothing to reset")),
     ],
 };

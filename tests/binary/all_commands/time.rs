@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use super::seen::Seen::{Clock, Hides, Shows, Turns};
+use super::seen::Seen::{Clock, Hides, Shows};
 use super::walk::Group;
 use super::walk::Step::{Act, Again, Wait};
 
@@ -33,7 +33,7 @@ pub(super) const GROUP: Group = Group {
         Act("time.end", Hides("REWOUND")),
         Again("time.state-back", Shows("REWOUND")),
         Act("time.fly-on", Hides("REWOUND")),
-        Act("craft.reset", Turns("● ARMED", "○ DISARMED")),
+        Act("craft.reset", Shows("The flight would end")),
         Act("craft.allow-changes", Shows("changes need no permission")),
     ],
 };
