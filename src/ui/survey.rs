@@ -79,7 +79,7 @@ impl SurveyState {
             }
             Surveyed::GoNoGo(_, Some(sentence)) => sentence.clone(),
             Surveyed::GoNoGo(flown, None) => {
-                format!("go or no-go: {flown} of {} flights…", Forecast::FLIGHTS)
+                format!("go or no-go: {flown} of {} flights …", Forecast::FLIGHTS)
             }
         })
     }
