@@ -203,7 +203,19 @@ fn a_firmware_that_does_not_run_is_not_waited_for_for_ever_and_old_files_stay() 
     let [json, gpx] = ["old.json", "old.gpx"].map(|name| write(directory.path(), name, "old"));
     let ports = free_ports();
     let [udp, tcp] = port_options(ports);
-    let options = ["--json", &json, "--gpx", &gpx, "--attitude", "truth", "--firmware", "attach", &udp, &tcp];
+    let options = [
+        "--force",
+        "--json",
+        &json,
+        "--gpx",
+        &gpx,
+        "--attitude",
+        "truth",
+        "--firmware",
+        "attach",
+        &udp,
+        &tcp,
+    ];
     let (code, said) = end_said(Program::start(&[&["fly", "square"][..], &options].concat()));
     assert_eq!(code, 3, "{said}");
     let sentence =
@@ -219,7 +231,8 @@ fn an_interrupt_before_the_flight_leaves_no_broken_file() {
     let directory = tempfile::tempdir().unwrap();
     let gpx = write(directory.path(), "old.gpx", "old");
     let [udp, tcp] = port_options(free_ports());
-    let mut program = Program::start(&["fly", "square", "--gpx", &gpx, "--firmware", "attach", &udp, &tcp]);
+    let mut program =
+        Program::start(&["fly", "square", "--force", "--gpx", &gpx, "--firmware", "attach", &udp, &tcp]);
     program.wait("notice", |line| line.contains("No connection to ").then_some(()));
     let id = rustix::process::Pid::from_raw(program.id() as i32).unwrap();
     rustix::process::kill_process(id, rustix::process::Signal::INT).unwrap();
