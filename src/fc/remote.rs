@@ -64,6 +64,8 @@ pub enum Input<'a> {
     SentMotors,
     /// Its program cannot be started, for this reason.
     NotStarted(&'a str),
+    /// Its program cannot be used any more, for this reason, which follows its name.
+    Unusable(&'a str),
     /// Its program has ended in this way, as part of a sentence. It starts again by itself.
     Ended {
         how: &'a str,
@@ -158,6 +160,9 @@ impl Remote {
             Input::SentMotors => self.sends_motors = true,
             Input::NotStarted(reason) => {
                 self.give_up(format!("{} cannot be started: {reason}.", self.craft.name));
+            }
+            Input::Unusable(why) => {
+                self.give_up(format!("{} {why}: is it a SITL executable of Betaflight?", self.craft.name));
             }
             Input::Ended { how, .. } if self.first_answer.answers == 0 => self.give_up(format!(
                 "{} ended {how} before it answered: is it a SITL executable of Betaflight, and are its ports free?",

@@ -240,6 +240,7 @@ impl RemoteLink {
                     self.remote.handle(Input::Lost("it restarts"), since);
                 }
                 StepEvent::NotStarted(reason) => self.remote.handle(Input::NotStarted(&reason), since),
+                StepEvent::Unusable(why) => self.remote.handle(Input::Unusable(why), since),
                 StepEvent::Notice(notice) => self.notices.push(notice),
             }
         }

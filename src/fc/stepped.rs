@@ -53,6 +53,8 @@ pub(super) enum StepEvent {
     },
     /// It cannot be started, for this reason.
     NotStarted(String),
+    /// It cannot be used any more, for this reason, which follows its name.
+    Unusable(&'static str),
     Notice(RemoteNotice),
 }
 
@@ -152,13 +154,17 @@ impl Stepped {
                     mailbox.into_iter().for_each(|mailbox| mailbox.deliver_motors(motors));
                 }
                 match lockstep.received() {
-                    Ok(bytes) if bytes.is_empty() => {}
-                    Ok(bytes) => self.events.push_back(StepEvent::Received(bytes)),
-                    Err(_) => self.is_connected = false,
+                    Some(bytes) if bytes.is_empty() => {}
+                    Some(bytes) => self.events.push_back(StepEvent::Received(bytes)),
+                    None => self.is_connected = false,
                 }
                 self.connect();
             }
             Err(NoReport::Stopped) => self.note_wait(now),
+            Err(NoReport::Silent) => {
+                self.become_unusable("has not ended its step for 10 s, although it is not stopped")
+            }
+            Err(NoReport::Faulty(why)) => self.become_unusable(why),
             Err(NoReport::Ended(end)) => self.restart(end.to_string(), end.is_reboot(), mailbox),
             Err(NoReport::Hung) => {
                 let how = "because it computed for 2 s without an end of its step".to_owned();
@@ -181,6 +187,11 @@ impl Stepped {
     /// Returns the next event of the process's output.
     pub(super) fn take_output(&mut self) -> Option<ChildEvent> {
         self.lockstep.as_mut()?.take_event()
+    }
+
+    fn become_unusable(&mut self, why: &'static str) {
+        self.events.push_back(StepEvent::Unusable(why));
+        self.give_up();
     }
 
     fn connect(&mut self) {

@@ -4,6 +4,10 @@
 #![allow(clippy::disallowed_methods, reason = "other processes live by the wall clock")]
 
 mod child;
+mod faults;
+#[allow(dead_code, reason = "the tests write reports only")]
+#[path = "../../src/link/sitl_child/lockstep/frames.rs"]
+mod frames;
 #[path = "../port_support/free_port.rs"]
 mod free_port;
 mod library;

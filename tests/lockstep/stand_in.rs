@@ -17,10 +17,13 @@ use std::process::Command;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
+use super::frames::{MOTOR_BYTES, Report, SERIAL_PORTS};
 use super::serial_port::{Effect, SerialPort};
 
 /// The file in its folder with its ports: states, RC, motors, serial.
 pub(crate) const PORTS_FILE: &str = "ports.txt";
+/// The file in its folder that makes it close its first connection, and sleep.
+pub(crate) const CLOSES_FILE: &str = "closes.txt";
 /// The argument that makes this test program the stand-in.
 pub(crate) const ARGUMENT: &str = "stand-in";
 
@@ -32,6 +35,7 @@ struct Time {
 }
 
 unsafe extern "C" {
+    fn fork() -> i32;
     fn clock_gettime(id: i32, time: *mut Time) -> i32;
     fn nanosleep(length: *const Time, left: *mut Time) -> i32;
     fn select(
@@ -93,8 +97,40 @@ fn begin_late() {
     BEGUN.fetch_add(1, Ordering::SeqCst);
 }
 
+/// Reports a step with so many bytes over the serial ports, as a program that does not keep to the messages.
+fn report(sent: u64) {
+    let target = |entry: &std::fs::DirEntry| {
+        std::fs::read_link(entry.path()).is_ok_and(|to| to.to_string_lossy().starts_with("pipe:"))
+    };
+    let is_reports = |entry: &std::fs::DirEntry| {
+        let number = entry.file_name().to_string_lossy().parse::<i32>().unwrap();
+        let flags = std::fs::read_to_string(format!("/proc/self/fdinfo/{number}")).unwrap_or_default();
+        number > 2
+            && target(entry)
+            && flags.lines().any(|line| line.starts_with("flags:") && line.ends_with('1'))
+    };
+    let entries: Vec<_> = std::fs::read_dir("/proc/self/fd").unwrap().flatten().collect();
+    let pipe = entries.iter().find(|entry| is_reports(entry)).unwrap().path();
+    let bytes = Report {
+        now_ns: 0,
+        motor_packets: 0,
+        motors: [0; MOTOR_BYTES],
+        run: 0,
+        sent,
+        ports: [1; SERIAL_PORTS],
+    }
+    .to_bytes();
+    std::fs::File::options().write(true).open(pipe).unwrap().write_all(&bytes).unwrap();
+}
+
 /// `true` once its threads must end.
 static STOPS: AtomicBool = AtomicBool::new(false);
+
+/// `true` once the thread of the serial port must end its connection.
+static CLOSES: AtomicBool = AtomicBool::new(false);
+
+/// `true` once the thread of the states must take in no further state.
+static HOLDS: AtomicBool = AtomicBool::new(false);
 
 /// The newest packet of a port, and the number of packets.
 struct Newest<const N: usize>(Mutex<([u8; N], u64)>);
@@ -107,6 +143,9 @@ fn take_packets<const N: usize>(socket: &UdpSocket, newest: &Newest<N>) {
             continue;
         }
         let mut bytes = [0; N];
+        if HOLDS.load(Ordering::SeqCst) {
+            std::thread::park();
+        }
         let (mut from, mut from_size) = ([0_u8; 16], 16);
         // SAFETY: the bytes and the address are writable.
         let size = unsafe { recvfrom(fd, bytes.as_mut_ptr(), N, 0, from.as_mut_ptr(), &raw mut from_size) };
@@ -130,11 +169,19 @@ fn serve(listener: &TcpListener, serial: &Serial) {
     let mut unsent = Vec::new();
     while !STOPS.load(Ordering::SeqCst) {
         unsent.append(&mut serial.to_send.lock().unwrap());
+        if CLOSES.swap(false, Ordering::SeqCst) {
+            client = None;
+        }
         let descriptors: Vec<i32> =
             std::iter::once(listener.as_raw_fd()).chain(client.as_ref().map(AsRawFd::as_raw_fd)).collect();
         let ready = wait(&descriptors, client.is_some() && !unsent.is_empty(), 10_000);
         if ready.contains(&listener.as_raw_fd()) {
             let (stream, _) = listener.accept().unwrap();
+            if std::path::Path::new(CLOSES_FILE).exists() {
+                drop(stream);
+                std::thread::park();
+                continue;
+            }
             stream.set_nonblocking(true).unwrap();
             client = Some(stream);
             continue;
@@ -184,14 +231,17 @@ fn run() {
             scope.spawn(|| {
                 begin_late();
                 serve(&listener, &serial);
+                println!("the serial thread ends");
             }),
             scope.spawn(|| {
                 begin_late();
                 take_packets(&states_in, &state);
+                println!("the state thread ends");
             }),
             scope.spawn(|| {
                 begin_late();
                 take_packets(&rc_in, &rc);
+                println!("the RC thread ends");
             }),
         ];
         // The threads of the executable share data with its main thread, which must not go on before them.
@@ -229,9 +279,9 @@ fn run() {
                 match text.as_str() {
                     "save" => std::process::exit(0),
                     "join" => {
-                        // Upstream waits for its threads before it replaces itself.
+                        // Upstream waits for two of its threads before it replaces itself or ends.
                         STOPS.store(true, Ordering::SeqCst);
-                        threads.drain(..).for_each(|thread| thread.join().unwrap());
+                        threads.drain(..2).for_each(|thread| thread.join().unwrap());
                         drop(Command::new(std::env::current_exe().unwrap()).arg(ARGUMENT).exec());
                     }
                     "exec" => drop(Command::new(std::env::current_exe().unwrap()).arg(ARGUMENT).exec()),
@@ -243,6 +293,23 @@ fn run() {
                     }
                     "print" => println!("printed at {} µs", (now_ns - started_ns) / 1000),
                     "crash" => std::process::abort(),
+                    "overstate" => report(u64::MAX),
+                    "promise" => report(100_000),
+                    "flood" => {
+                        HOLDS.store(true, Ordering::SeqCst);
+                        loop {
+                            report(0);
+                        }
+                    }
+                    "sleep" => std::thread::park(),
+                    "fork" => {
+                        // SAFETY: the copy only sleeps.
+                        if unsafe { fork() } == 0 {
+                            std::thread::park();
+                        }
+                        std::process::exit(7);
+                    }
+                    "close" => CLOSES.store(true, Ordering::SeqCst),
                     "hang" => loop {
                         std::hint::spin_loop();
                     },

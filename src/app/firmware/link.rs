@@ -188,7 +188,7 @@ fn boot(
             Ok(_) => return Ok(Err("it has opened no serial port of the number of --tcp-port")),
             Err(NoReport::Replaced) => {}
             Err(NoReport::Stopped) if started.elapsed() < BOOTS_WITHIN => {}
-            Err(NoReport::Stopped | NoReport::Hung) => {
+            Err(NoReport::Stopped | NoReport::Silent | NoReport::Hung | NoReport::Faulty(_)) => {
                 return Ok(Err("it does not wait for its clock as a SITL of Betaflight does"));
             }
             Err(NoReport::Ended(end)) => {

@@ -13,7 +13,7 @@ mod library;
 mod process;
 
 use std::io::{self, ErrorKind, Read as _, Write as _};
-use std::net::{Ipv4Addr, TcpStream};
+use std::net::{Ipv4Addr, SocketAddr, TcpStream};
 use std::time::{Duration, Instant};
 
 pub use frames::{FDM_BYTES, MOTOR_BYTES, RC_BYTES};
@@ -36,8 +36,12 @@ const BOOT: Duration = Duration::from_secs(3);
 const SERIAL_EVERY: u32 = 5;
 /// The steps between two reports of the lines that the executable prints.
 const OUTPUT_EVERY: u32 = 20;
-/// The longest wait for bytes that the executable has sent.
-const BYTES_WITHIN: Duration = Duration::from_secs(5);
+/// The most bytes that the executable can send over its serial port in a step. The longest answers have some 100 kB.
+const SENT_MAX: u64 = 1 << 20;
+/// The longest wait for a connection to its serial port.
+const CONNECTS_WITHIN: Duration = Duration::from_secs(1);
+/// The looks for bytes that the executable says to have sent after which they count as not sent: 5 s.
+const BYTES_WITHIN: u32 = 100;
 
 /// The ports for which the executable asks. It gets others, which the system chooses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -79,7 +83,13 @@ pub struct Lockstep {
     totals: SerialTotals,
     /// The bytes read from this process over all connections.
     read: u64,
+    /// Bytes from the serial port that were not taken yet.
+    received: Vec<u8>,
+    /// `true` if the process has ended the connection.
+    is_lost: bool,
     newest: Option<Report>,
+    /// A report whose bytes have not all arrived, and the looks for them.
+    incomplete: Option<(Report, u32)>,
     /// The number of times that the process has replaced itself.
     run: u32,
     /// `true` if the thread of the serial ports has something to take in.
@@ -119,7 +129,10 @@ impl Lockstep {
             serial: None,
             totals: SerialTotals::default(),
             read: 0,
+            received: Vec::new(),
+            is_lost: false,
             newest: None,
+            incomplete: None,
             run: 0,
             has_news: false,
             steps: 0,
@@ -140,8 +153,9 @@ impl Lockstep {
 
     /// Forgets what belongs to a process that has ended.
     fn forget_process(&mut self) {
-        (self.serial, self.newest, self.has_news) = (None, None, false);
-        (self.totals, self.read) = (SerialTotals::default(), 0);
+        (self.serial, self.newest, self.incomplete, self.has_news) = (None, None, None, false);
+        (self.totals, self.read, self.is_lost) = (SerialTotals::default(), 0, false);
+        self.received.clear();
     }
 
     /// Waits until the executable has used up its time, for a short time at most. Returns its newest motor packet, if it
@@ -150,27 +164,76 @@ impl Lockstep {
     /// # Errors
     /// Returns the reason why it has not.
     pub fn wait(&mut self) -> Result<Option<[u8; MOTOR_BYTES]>, NoReport> {
-        let report = match self.process.wait() {
-            Ok(report) => report,
-            Err(reason) => {
-                if matches!(reason, NoReport::Ended(_)) {
-                    self.process.finish_output(&self.events, self.now());
-                }
-                return Err(reason);
-            }
+        let (report, looks) = match self.incomplete.take() {
+            Some(incomplete) => incomplete,
+            None => (self.process.wait().map_err(|reason| self.noted(reason))?, 0),
         };
-        if self.steps.is_multiple_of(OUTPUT_EVERY) {
+        let is_replaced = self.run != report.run;
+        if is_replaced || self.steps.is_multiple_of(OUTPUT_EVERY) {
             self.process.report_output(&self.events, self.now());
         }
-        if self.run != report.run {
+        if is_replaced {
             self.run = report.run;
             self.forget_process();
             self.newest = Some(report);
             return Err(NoReport::Replaced);
         }
+        if !self.read_serial(report.sent)? {
+            if looks == BYTES_WITHIN {
+                return Err(NoReport::Faulty("reports bytes over its serial port that it has not sent"));
+            }
+            self.incomplete = Some((report, looks + 1));
+            return Err(self.process.no_report()).map_err(|reason| self.noted(reason));
+        }
         let motors = (report.motor_packets > 0).then_some(report.motors);
         self.newest = Some(report);
         Ok(motors)
+    }
+
+    /// Reports the last lines of a process that has ended.
+    fn noted(&mut self, reason: NoReport) -> NoReport {
+        if matches!(reason, NoReport::Ended(_)) {
+            self.process.finish_output(&self.events, self.now());
+        }
+        reason
+    }
+
+    /// Reads what the executable has sent over the serial port, of which it has sent this much since it started. Returns
+    /// `false` if a part has not arrived yet.
+    fn read_serial(&mut self, sent: u64) -> Result<bool, NoReport> {
+        let Some(serial) = &mut self.serial else { return Ok(true) };
+        if sent.saturating_sub(self.read) > SENT_MAX {
+            return Err(NoReport::Faulty("reports more bytes over its serial port than a step can carry"));
+        }
+        let mut bytes = [0; 4096];
+        while self.read < sent {
+            let most = bytes.len().min((sent - self.read) as usize);
+            match serial.stream.read(&mut bytes[..most]) {
+                Ok(0) => {
+                    self.lose_serial();
+                    break;
+                }
+                Ok(read) => {
+                    self.received.extend_from_slice(&bytes[..read]);
+                    self.read += read as u64;
+                }
+                Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                Err(error) if error.kind() == ErrorKind::WouldBlock => {
+                    if !process::is_readable(&serial.stream) {
+                        return Ok(false);
+                    }
+                }
+                Err(_) => {
+                    self.lose_serial();
+                    break;
+                }
+            }
+        }
+        Ok(true)
+    }
+
+    fn lose_serial(&mut self) {
+        (self.serial, self.is_lost) = (None, true);
     }
 
     /// Lets the executable compute one step. Call [`Self::wait`] next.
@@ -188,12 +251,15 @@ impl Lockstep {
     /// # Errors
     /// Returns the system's error.
     pub fn connect(&mut self) -> io::Result<bool> {
-        let Some(port) = self.newest.as_ref().map(|report| report.ports[0]).filter(|port| *port != 0) else {
+        let Some(newest) = self.newest.as_ref().filter(|report| report.ports[0] != 0) else {
             return Ok(false);
         };
-        let stream = TcpStream::connect((Ipv4Addr::LOCALHOST, port))?;
+        let address = SocketAddr::from((Ipv4Addr::LOCALHOST, newest.ports[0]));
+        let stream = TcpStream::connect_timeout(&address, CONNECTS_WITHIN)?;
         stream.set_nodelay(true)?;
-        stream.set_read_timeout(Some(BYTES_WITHIN))?;
+        stream.set_nonblocking(true)?;
+        // What it has sent so far went to connections before this one.
+        (self.read, self.is_lost) = (newest.sent, false);
         self.totals.connections += 1;
         self.has_news = true;
         self.serial = Some(Serial { stream, waiting: Vec::new() });
@@ -243,16 +309,10 @@ impl Lockstep {
         }
     }
 
-    /// Returns the bytes that the executable has sent over the serial port up to its last report.
-    ///
-    /// # Errors
-    /// Returns an error if the connection has ended.
-    pub fn received(&mut self) -> io::Result<Vec<u8>> {
-        let (Some(serial), Some(report)) = (&mut self.serial, &self.newest) else { return Ok(Vec::new()) };
-        let mut bytes = vec![0; usize::try_from(report.sent.saturating_sub(self.read)).unwrap_or(0)];
-        serial.stream.read_exact(&mut bytes)?;
-        self.read = report.sent;
-        Ok(bytes)
+    /// Returns the bytes that the executable has sent over the serial port up to its last report. Returns `None` after them
+    /// if it has ended the connection.
+    pub fn received(&mut self) -> Option<Vec<u8>> {
+        (!self.is_lost || !self.received.is_empty()).then(|| std::mem::take(&mut self.received))
     }
 
     /// Returns the next event of the process.
@@ -268,8 +328,9 @@ impl Lockstep {
     /// Writes the waiting bytes as far as the connection takes them.
     fn write_waiting(&mut self) {
         let Some(serial) = self.serial.as_mut().filter(|serial| !serial.waiting.is_empty()) else { return };
-        if serial.stream.set_nonblocking(true).is_err() {
-            return;
+        // The executable would wait for bytes that a connection which it has ended cannot carry.
+        if serial.stream.peek(&mut [0]).is_ok_and(|size| size == 0) {
+            return self.lose_serial();
         }
         while !serial.waiting.is_empty() {
             match serial.stream.write(&serial.waiting) {
@@ -283,6 +344,5 @@ impl Lockstep {
                 Err(_) => break,
             }
         }
-        drop(serial.stream.set_nonblocking(false));
     }
 }

@@ -1,7 +1,7 @@
 //! The process of an executable in lockstep, and the pipes that carry grants and reports.
 
 use std::io::{ErrorKind, PipeReader, PipeWriter, Read as _, Write as _};
-use std::os::fd::AsRawFd as _;
+use std::os::fd::{AsFd, AsRawFd as _};
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
@@ -15,6 +15,9 @@ use crate::link::sitl_child::{ChildConfig, ChildEnd, group};
 const LOOK: Duration = Duration::from_millis(50);
 /// The processor time within a step after which the process counts as hung.
 const HUNG_AFTER: Duration = Duration::from_secs(2);
+/// The looks in a row at a process that sleeps after which it counts as silent: 10 s. Looks are counted rather than the
+/// time, because the machine may sleep, too.
+const SILENT_AFTER: u32 = 200;
 
 /// A running executable. It ends when this is dropped.
 #[derive(Debug)]
@@ -30,6 +33,10 @@ pub(super) struct Process {
     arrived: usize,
     /// The processor time that it had used when this step first took long.
     used: Option<Duration>,
+    /// The looks in a row at which it slept.
+    asleep: u32,
+    /// `true` if it does not take the grants in.
+    is_full: bool,
 }
 
 /// The reason why there is no report.
@@ -41,8 +48,12 @@ pub enum NoReport {
     Replaced,
     /// It computes, but does not end its step.
     Hung,
-    /// It does not compute: the host or a debugger has stopped it. The next wait continues.
+    /// It does not compute: the host or a debugger has stopped it, or the machine is busy. The next wait continues.
     Stopped,
+    /// It sleeps, and has not ended its step for 10 s.
+    Silent,
+    /// It breaks a rule of the messages; its fault as the rest of a sentence.
+    Faulty(&'static str),
 }
 
 impl Process {
@@ -53,6 +64,8 @@ impl Process {
         let pipe = format!("/proc/{}/fd/{}", std::process::id(), reports_end.as_raw_fd());
         let mut child = launch::spawn(config, Stdio::from(grants_end), Some((preload, &pipe)))?;
         let output = SteppedOutput::of(&mut child).map_err(failed)?;
+        // A process that does not read its grants must not hold this thread.
+        rustix::io::ioctl_fionbio(&grants, true).map_err(|error| failed(error.into()))?;
         Ok(Self {
             child,
             output,
@@ -62,6 +75,8 @@ impl Process {
             bytes: [0; REPORT_BYTES],
             arrived: 0,
             used: None,
+            asleep: 0,
+            is_full: false,
         })
     }
 
@@ -72,7 +87,9 @@ impl Process {
 
     /// Sends a grant. A process that has ended takes none; the wait for its report says so.
     pub(super) fn grant(&mut self, grant: &Grant) {
-        drop(self.grants.write_all(&grant.to_bytes()));
+        // The system takes a message of this size whole or not at all.
+        let written = self.grants.write(&grant.to_bytes());
+        self.is_full = written.is_err_and(|error| error.kind() == ErrorKind::WouldBlock);
     }
 
     /// Waits until the executable waits for the next grant, for a short time at most.
@@ -80,6 +97,9 @@ impl Process {
     /// # Errors
     /// Returns the reason why there is no report.
     pub(super) fn wait(&mut self) -> Result<Report, NoReport> {
+        if self.is_full {
+            return Err(NoReport::Faulty("reports steps without reading the messages that grant them"));
+        }
         loop {
             if !is_readable(&self.reports) {
                 // A child that has printed much cannot go on until this is read.
@@ -92,7 +112,7 @@ impl Process {
                     self.arrived += read;
                     if self.arrived == REPORT_BYTES {
                         self.arrived = 0;
-                        self.used = None;
+                        (self.used, self.asleep) = (None, 0);
                         self.reports_end = None;
                         return Ok(Report::from_bytes(&self.bytes));
                     }
@@ -114,16 +134,22 @@ impl Process {
         self.output.finish(events, now);
     }
 
-    /// Returns the reason why no report has come for some time.
-    fn no_report(&mut self) -> NoReport {
-        // Until the first report this program has an end of the pipe, too, so that the pipe stays open.
-        if self.reports_end.is_some() && group::has_ended(&mut self.child).unwrap_or(true) {
+    /// Returns the reason why nothing has come from it for some time.
+    pub(super) fn no_report(&mut self) -> NoReport {
+        // A copy of the process, or this program until the first report, may hold the pipe open after its end.
+        if group::has_ended(&mut self.child).unwrap_or(true) {
             return NoReport::Ended(self.end());
         }
-        let now_used = processor_time(self.child.id());
+        let Status { is_asleep, used: now_used } = Status::of(self.child.id());
         let used = *self.used.get_or_insert(now_used);
-        let is_hung = now_used.saturating_sub(used) >= HUNG_AFTER;
-        if is_hung { NoReport::Hung } else { NoReport::Stopped }
+        self.asleep = if is_asleep { self.asleep + 1 } else { 0 };
+        if now_used.saturating_sub(used) >= HUNG_AFTER {
+            NoReport::Hung
+        } else if self.asleep >= SILENT_AFTER {
+            NoReport::Silent
+        } else {
+            NoReport::Stopped
+        }
     }
 
     /// Waits for the end of a process that has closed its pipe, and returns it.
@@ -139,19 +165,31 @@ impl Drop for Process {
 }
 
 /// Waits until something can be read, for a short time at most.
-fn is_readable(pipe: &PipeReader) -> bool {
+pub(super) fn is_readable(source: &impl AsFd) -> bool {
     use rustix::event::{PollFd, PollFlags, Timespec, poll};
     let longest = Timespec { tv_sec: 0, tv_nsec: LOOK.as_nanos() as i64 };
     // The end of the other side counts as readable. An interrupted wait is like one that ended early.
-    poll(&mut [PollFd::new(pipe, PollFlags::IN)], Some(&longest)).is_ok_and(|ready| ready > 0)
+    poll(&mut [PollFd::new(source, PollFlags::IN)], Some(&longest)).is_ok_and(|ready| ready > 0)
 }
 
-/// Returns the processor time that a process has used; zero if the system does not say.
-fn processor_time(id: u32) -> Duration {
-    const TICK: Duration = Duration::from_millis(10);
-    let text = std::fs::read_to_string(format!("/proc/{id}/stat")).unwrap_or_default();
-    // The name of the program, in parentheses, may contain spaces.
-    let fields = text.rsplit_once(')').map_or("", |(_, fields)| fields).split_ascii_whitespace();
-    let ticks: u32 = fields.skip(11).take(2).filter_map(|field| field.parse::<u32>().ok()).sum();
-    TICK * ticks
+/// The status of a process as the system reports it.
+#[derive(Debug, Default)]
+struct Status {
+    /// `true` if its main thread waits for something other than the processor, a disk or a debugger.
+    is_asleep: bool,
+    /// The processor time of all its threads.
+    used: Duration,
+}
+
+impl Status {
+    /// Returns the status of a process; the default if the system does not report it.
+    fn of(id: u32) -> Self {
+        const TICK: Duration = Duration::from_millis(10);
+        let text = std::fs::read_to_string(format!("/proc/{id}/stat")).unwrap_or_default();
+        // The name of the program, in parentheses, may contain spaces.
+        let mut fields = text.rsplit_once(')').map_or("", |(_, fields)| fields).split_ascii_whitespace();
+        let is_asleep = fields.next() == Some("S");
+        let ticks: u32 = fields.skip(10).take(2).filter_map(|field| field.parse::<u32>().ok()).sum();
+        Self { is_asleep, used: TICK * ticks }
+    }
 }

@@ -3,7 +3,7 @@
 
 use core::ffi::{c_int, c_void};
 use core::sync::atomic::Ordering::SeqCst;
-use core::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize};
+use core::sync::atomic::{AtomicU32, AtomicUsize};
 
 use super::intake::RC;
 use super::is_main_thread;
@@ -20,7 +20,8 @@ const SECOND_NS: i64 = 1_000_000_000;
 const LOOKS: u32 = 5000;
 const LOOK_NS: i64 = 50_000;
 
-static IS_ENDING: AtomicBool = AtomicBool::new(false);
+/// The thread for whose end the main thread waits; 0 = none.
+static JOINED: AtomicUsize = AtomicUsize::new(0);
 /// The thread that waits for a grant; 0 = none.
 static WAITING: AtomicUsize = AtomicUsize::new(0);
 
@@ -58,9 +59,11 @@ pub unsafe extern "C" fn pthread_create(
     result
 }
 
-/// Returns `true` once the main thread waits for the end of the others. No thread waits for its turn any more.
+/// Returns `true` once the main thread waits for the end of this thread, which then waits for no turn any more. The others
+/// still wait, so that what the threads print at their ends has one order.
 pub(crate) fn is_ending() -> bool {
-    IS_ENDING.load(SeqCst)
+    // SAFETY: has no conditions.
+    JOINED.load(SeqCst) == unsafe { pthread_self() }
 }
 
 /// Records that this thread waits for a grant, or does no longer.
@@ -71,7 +74,7 @@ pub(crate) fn note_wait_for_grant(waits: bool) {
 
 extern "C" fn interrupted(_: c_int) {}
 
-/// Replaces the function of this name: if the main thread waits for another thread, all threads go on.
+/// Replaces the function of this name: if the main thread waits for another thread, that thread goes on.
 ///
 /// # Safety
 /// As for the C library's function.
@@ -80,7 +83,7 @@ pub unsafe extern "C" fn pthread_join(thread: usize, result: *mut *mut c_void) -
     if !is_main_thread() {
         return real!(pthread_join: fn(usize, *mut *mut c_void) -> c_int; thread, result);
     }
-    IS_ENDING.store(true, SeqCst);
+    JOINED.store(thread, SeqCst);
     // SAFETY: the handler does nothing.
     unsafe {
         signal(SIGNAL, interrupted as extern "C" fn(c_int) as usize);
@@ -91,7 +94,7 @@ pub unsafe extern "C" fn pthread_join(thread: usize, result: *mut *mut c_void) -
         wake(&SERIAL.wanted);
         RC.wake();
         let waiting = WAITING.load(SeqCst);
-        if waiting != 0 {
+        if waiting == thread {
             // SAFETY: a thread that waits exists.
             unsafe { pthread_kill(waiting, SIGNAL) };
         }
