@@ -50,6 +50,7 @@ mod replay;
 mod report;
 mod runtime;
 mod scenario_file;
+mod scenario_folder;
 mod screen_file;
 mod serve;
 mod set_aside;

@@ -207,7 +207,7 @@ struct Opened {
 
 /// Reads the scenario and the firmware of the options.
 fn of_scenario(args: &OpenArgs, notices: &mut Vec<String>) -> Result<Opened, AppError> {
-    let scenario = check::load_one(&args.scenario, args.seed)?;
+    let scenario = check::load_one(&args.scenario, args.seed, args.any_folder)?;
     let (case, air) = choose(&scenario, args)?;
     let beside = Beside {
         ports: (&args.firmware_ports).into(),

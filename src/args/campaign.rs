@@ -36,6 +36,10 @@ pub struct CampaignArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=MAX_CAMPAIGN), help_heading = "Which")]
     pub flights: Option<u64>,
 
+    /// Lets a scenario name files that are not in its folder: plans, settings, airframes
+    #[arg(long, help_heading = "Which")]
+    pub any_folder: bool,
+
     /// How the flights are spread over the inputs: grid, monte-carlo, latin-hypercube, sobol [default: the one of the
     /// file; lists only: grid, else monte-carlo]
     #[arg(long, value_name = "DESIGN", value_parser = design, help_heading = "Which")]

@@ -43,6 +43,10 @@ pub struct CheckArgs {
     #[arg(long, help_heading = "Which")]
     pub slow: bool,
 
+    /// Lets a scenario name files that are not in its folder: plans, settings, airframes
+    #[arg(long, help_heading = "Which")]
+    pub any_folder: bool,
+
     /// Flies each case with these seeds, such as 1..20, instead of its own
     #[arg(long, value_name = "A..B", value_parser = value::seeds, help_heading = "Which")]
     pub seeds: Option<value::Seeds>,

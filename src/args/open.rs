@@ -22,6 +22,10 @@ pub struct OpenArgs {
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = value::seed)]
     pub seed: Option<u64>,
 
+    /// Lets a scenario name files that are not in its folder: plans, settings, airframes
+    #[arg(long)]
+    pub any_folder: bool,
+
     /// No screen: the events as sentences on standard output, commands of the `:` line on standard input
     ///
     /// Needs no terminal. After the end of the input the flight waits, until `quit` or a signal ends it.

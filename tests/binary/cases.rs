@@ -106,3 +106,49 @@ fn the_results_of_a_campaign_start_no_executable_unasked() {
         }
     }
 }
+
+#[test]
+fn a_scenario_shows_no_text_of_a_file_that_is_no_plan_and_reads_none_of_another_folder_unasked() {
+    let sandbox = Sandbox::new();
+    let [credentials, key] = [
+        "[default]\naws_access_key_id = SECRET\naws_secret_access_key = \"SECRET\"\n",
+        "12 SECRET 4\n-----BEGIN KEY-----\nSECRET==\n",
+    ];
+    std::fs::create_dir(sandbox.path("from-others")).expect("a folder");
+    sandbox.write("credentials.toml", credentials);
+    sandbox.write("plan.txt", "waypoint insert 0 40.4640000 -79.5182000 2000 500 LAND 0 NONE\n");
+    sandbox.write("from-others/credentials", credentials);
+    sandbox.write("from-others/key", key);
+    let end = "[[expect]]\nresult = \"complete\"\n";
+    let named = |name: &str| {
+        [
+            format!("format = 1\n[plan]\nfile = \"{name}\"\n{end}"),
+            format!(
+                "format = 1\n[plan]\nbuiltin = \"square\"\n[[input]]\nat = \"1 s\"\ndo = \"upload {name}\"\n{end}"
+            ),
+            format!("format = 1\n[plan]\nbuiltin = \"square\"\n[craft]\nsettings_file = \"{name}\"\n{end}"),
+            format!("format = 1\n[plan]\nbuiltin = \"square\"\n[craft]\nairframe = \"{name}\"\n{end}"),
+        ]
+    };
+    for name in ["credentials", "key", "../credentials.toml", "../../../../../etc/passwd", "/etc/passwd"] {
+        for (kind, scenario) in named(name).iter().enumerate() {
+            sandbox.write("from-others/s.toml", scenario);
+            let is_outside = name.starts_with(['.', '/']) && (kind != 3 || name.ends_with(".toml"));
+            for line in [
+                &["check", "from-others/s.toml"][..],
+                &["campaign", "from-others/s.toml", "--flights", "2"],
+                &["open", "from-others/s.toml", "--plain"],
+            ] {
+                let ran = sandbox.run(line);
+                assert_eq!(ran.code, Some(2), "{scenario} {line:?} {ran:?}");
+                let all = format!("{}{}", ran.out, ran.err);
+                assert!(!all.contains("SECRET") && !all.contains("root:"), "{scenario} {line:?} {all}");
+                assert_eq!(all.contains("--any-folder"), is_outside, "{scenario} {line:?} {all}");
+            }
+        }
+    }
+    let [scenario, ..] = named("../plan.txt");
+    sandbox.write("from-others/s.toml", &scenario);
+    sandbox.run(&["check", "from-others/s.toml", "--list"]).exits(2);
+    sandbox.run(&["check", "from-others/s.toml", "--list", "--any-folder"]).exits(0);
+}

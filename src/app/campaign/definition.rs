@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use super::of_plan;
 use super::sources::Sources;
 use crate::app::firmware::{Beside, Chosen, RemoteFirmware};
+use crate::app::scenario_folder::ScenarioFolder;
 use crate::app::{AppError, error, firmware, input_file, setup};
 use crate::args::{
     CampaignArgs, FirmwareArgs, FirmwareChoice, FirmwarePortArgs, FlightArgs, PhysicsArgs, PlanArg,
@@ -40,13 +41,14 @@ pub(super) fn read(args: &CampaignArgs) -> Result<Wanted, AppError> {
         }
         return of_plan(args, &PlanArg::Builtin(plan), None);
     }
+    let place = |scenario: &Path| ScenarioFolder::of(scenario, args.any_folder);
     if let Some(scenario) = BuiltinScenario::find(name) {
         return of_scenario(args, scenario.name, scenario.text.to_owned(), None);
     }
     if name == "-" {
         let bytes = input_file::read_stdin()?;
         return match scenario_text(&bytes) {
-            Some(text) => of_scenario(args, STANDARD_INPUT, text, Some(PathBuf::new())),
+            Some(text) => of_scenario(args, STANDARD_INPUT, text, Some(place("".as_ref()))),
             None => of_plan(args, &PlanArg::Stdin(None), Some(&bytes)),
         };
     }
@@ -65,8 +67,7 @@ pub(super) fn read(args: &CampaignArgs) -> Result<Wanted, AppError> {
     }
     let bytes = input_file::read_plan(path)?;
     if let Some(text) = scenario_text(&bytes) {
-        let place = path.parent().map(Path::to_owned).unwrap_or_default();
-        return of_scenario(args, name, text, Some(place));
+        return of_scenario(args, name, text, Some(place(path)));
     }
     let plan = name.parse().map_err(|error| AppError::input(format!("{name}: {error}")))?;
     of_plan(args, &plan, Some(&bytes))
@@ -119,7 +120,7 @@ fn of_scenario(
     args: &CampaignArgs,
     name: &str,
     text: String,
-    place: Option<PathBuf>,
+    place: Option<ScenarioFolder>,
 ) -> Result<Wanted, AppError> {
     if let Some(option) = args.of_plan().first() {
         return Err(AppError::input(format!(
@@ -132,7 +133,8 @@ fn of_scenario(
 
 /// Returns the campaign of a plan, whose bytes were read unless it is built in.
 fn of_plan(args: &CampaignArgs, plan: &PlanArg, bytes: Option<&[u8]>) -> Result<Wanted, AppError> {
-    let mut sources = Sources { place: Some(PathBuf::new()), ..Sources::default() };
+    let place = ScenarioFolder { names_any: true, ..ScenarioFolder::default() };
+    let mut sources = Sources { place: Some(place), ..Sources::default() };
     let file = bytes.map(|bytes| {
         let name = match plan {
             // Without an ending the contents show the format.

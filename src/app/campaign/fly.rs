@@ -85,7 +85,7 @@ pub(super) fn run(args: &CampaignArgs, repeat: &[String]) -> Result<u8, AppError
 /// Returns the files that are read for a campaign.
 pub(super) fn inputs(file: &str, sources: &super::sources::Sources) -> Vec<PathBuf> {
     let place = sources.place.clone().unwrap_or_default();
-    let named = sources.contents.keys().map(|name| place.join(name));
+    let named = sources.contents.keys().map(|name| place.folder.join(name));
     std::iter::once(PathBuf::from(file)).chain(named).collect()
 }
 

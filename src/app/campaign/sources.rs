@@ -1,11 +1,10 @@
 //! The files that a campaign names, from the disk or from the file of a run.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 
+use crate::app::scenario_folder::{self, ScenarioFolder};
 use crate::app::{error, input_file};
-use crate::flight::setup::check_setting;
-use crate::plan::format::{self, Format, PlanFile, ReadOptions};
+use crate::plan::format::PlanFile;
 use crate::report::campaign::Contents;
 use crate::scenario::{BuiltinFiles, Files};
 
@@ -13,7 +12,7 @@ use crate::scenario::{BuiltinFiles, Files};
 #[derive(Debug, Default)]
 pub(super) struct Sources {
     /// The place of the other files; `None` = there are no others.
-    pub(super) place: Option<PathBuf>,
+    pub(super) place: Option<ScenarioFolder>,
     pub(super) contents: BTreeMap<String, Contents>,
 }
 
@@ -25,7 +24,7 @@ impl Sources {
         let bytes = match &self.place {
             None => BuiltinFiles.text(name)?.into_bytes(),
             Some(place) => {
-                let path = place.join(name);
+                let path = place.path(name)?;
                 let read = if is_plan {
                     input_file::read_plan(&path)
                 } else {
@@ -43,13 +42,9 @@ impl Files for Sources {
     fn plan(&mut self, name: &str) -> Result<PlanFile, String> {
         let is_new = !self.contents.contains_key(name);
         let contents = self.bytes(name, true)?;
-        let (format, finding) = Format::detect(name, &contents);
-        let options = ReadOptions { check: check_setting, ..ReadOptions::default() };
-        let plan = format::read(name, &contents, format, &options)
-            .map_err(|errors| format::report(&errors).trim_end().to_owned())?;
+        let (plan, findings) = scenario_folder::read_plan(name, &contents)?;
         if is_new {
-            let found = finding.iter().chain(&plan.losses.findings);
-            found.for_each(|found| error::tell(&format!("{name}: {found}")));
+            findings.iter().for_each(|found| error::tell(&format!("{name}: {found}")));
         }
         Ok(plan)
     }

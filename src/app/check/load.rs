@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::app::scenario_folder::{self, ScenarioFolder};
 use crate::app::{AppError, error, input_file};
 use crate::args::{CheckArgs, MOST_FLIGHTS};
-use crate::flight::setup::check_setting;
-use crate::plan::format::{self, Format, PlanFile, ReadOptions};
+use crate::plan::format::{self, PlanFile};
 use crate::report::check::STANDARD_INPUT;
 use crate::scenario::{
     self, BuiltinFiles, BuiltinScenario, Files, Flights, Request, SCENARIOS, Scenario, read_request,
@@ -41,7 +41,7 @@ pub(super) fn load(args: &CheckArgs) -> Result<Loaded, AppError> {
     let mut problems = Vec::new();
     let seeds = args.seeds.as_ref().map(|seeds| seeds.0.as_slice());
     for (source, is_named) in sources(args)? {
-        match read(&source, seeds, args.most_flights(), &mut loaded.files) {
+        match read(&source, seeds, args.most_flights(), args.any_folder, &mut loaded.files) {
             Ok(scenario) if scenario.slow && !args.slow && !is_named => loaded.left_out += 1,
             Ok(scenario) => loaded.scenarios.push(scenario),
             Err(error) if error.code == crate::app::error::USAGE => problems.push(error.message),
@@ -52,10 +52,10 @@ pub(super) fn load(args: &CheckArgs) -> Result<Loaded, AppError> {
 }
 
 /// Reads the scenario with a name, as for `open`. A seed replaces those of the file.
-pub(in crate::app) fn load_one(name: &str, seed: Option<u64>) -> Result<Scenario, AppError> {
+pub(in crate::app) fn load_one(name: &str, seed: Option<u64>, names_any: bool) -> Result<Scenario, AppError> {
     let (source, _) = source(name)?;
     // `open` shows only one of the flights, so the user's limit does not apply.
-    read(&source, seed.as_ref().map(std::slice::from_ref), MOST_FLIGHTS as usize, &mut Vec::new())
+    read(&source, seed.as_ref().map(std::slice::from_ref), MOST_FLIGHTS as usize, names_any, &mut Vec::new())
 }
 
 /// Returns the sources in the arguments, each with `true` if the argument is the scenario itself.
@@ -131,6 +131,7 @@ fn read(
     source: &Source,
     seeds: Option<&[u64]>,
     max_flights: usize,
+    names_any: bool,
     read: &mut Vec<PathBuf>,
 ) -> Result<Scenario, AppError> {
     let request = |file, text| Request { file, text, seeds, max_flights, flights: Flights::Listed };
@@ -138,13 +139,14 @@ fn read(
         Source::Builtin(builtin) => read_request(&request(builtin.name, builtin.text), &mut BuiltinFiles),
         Source::Stdin => {
             let text = input_file::read_stdin_text()?;
-            let mut beside = Beside { place: PathBuf::new(), read };
+            let place = ScenarioFolder { names_any, ..ScenarioFolder::default() };
+            let mut beside = Beside { place, read };
             read_request(&request(STANDARD_INPUT, &text), &mut beside)
         }
         Source::File(path) => {
             let text = input_file::read_small(path)?;
             read.push(path.clone());
-            let place = path.parent().map(Path::to_owned).unwrap_or_default();
+            let place = ScenarioFolder::of(path, names_any);
             let name = path.display().to_string();
             read_request(&request(&name, &text), &mut Beside { place, read })
         }
@@ -154,28 +156,22 @@ fn read(
 
 /// Reads files with names relative to the place of a scenario.
 struct Beside<'f> {
-    place: PathBuf,
+    place: ScenarioFolder,
     read: &'f mut Vec<PathBuf>,
 }
 
 impl Files for Beside<'_> {
     fn plan(&mut self, name: &str) -> Result<PlanFile, String> {
-        let path = self.place.join(name);
+        let path = self.place.path(name)?;
         let contents = input_file::read_plan(&path).map_err(|error| error.message)?;
         self.read.push(path);
-        let (format, finding) = Format::detect(name, &contents);
-        let options = ReadOptions { check: check_setting, ..ReadOptions::default() };
-        let plan = format::read(name, &contents, format, &options)
-            .map_err(|errors| format::report(&errors).trim_end().to_owned())?;
-        finding
-            .iter()
-            .chain(&plan.losses.findings)
-            .for_each(|found| error::tell(&format!("{name}: {found}")));
+        let (plan, findings) = scenario_folder::read_plan(name, &contents)?;
+        findings.iter().for_each(|found| error::tell(&format!("{name}: {found}")));
         Ok(plan)
     }
 
     fn text(&mut self, name: &str) -> Result<String, String> {
-        let path = self.place.join(name);
+        let path = self.place.path(name)?;
         let text = input_file::read_small(&path).map_err(|error| error.message)?;
         self.read.push(path);
         Ok(text)

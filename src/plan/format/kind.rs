@@ -230,6 +230,20 @@ impl Format {
         }
     }
 
+    /// Returns `true` if contents have the mark of a plan: that of their format, or in TOML and CLI text, whose forms other
+    /// files have, too, a waypoint.
+    pub fn is_recognised(contents: &[u8]) -> bool {
+        let has_line = |starts: &[&str]| {
+            let text = super::encoding::decode(contents).unwrap_or_default();
+            text.lines().any(|line| starts.iter().any(|start| line.trim_start().starts_with(start)))
+        };
+        match Self::of_contents(contents) {
+            Self::Toml => has_line(&["[[waypoint", "waypoint =", "waypoint=", "waypoints"]),
+            Self::CliText => has_line(&["waypoint "]),
+            _ => true,
+        }
+    }
+
     /// Returns the endings that can be written, for messages: `.toml, .txt`.
     pub fn endings() -> String {
         let endings =
@@ -302,6 +316,19 @@ mod tests {
         }
         for text in ["", "# dump\nbatch start", "waypoint insert 0 1 2", "set name = x", "=", "x = 1"] {
             assert_eq!(Format::of_contents(text.as_bytes()), Format::CliText, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_file_of_another_kind_is_not_recognised_as_a_plan() {
+        for text in
+            ["[default]\nkey = SECRET", "TOKEN=SECRET", "root:x:0:0", "{\"a\": 1}", "<a/>", "a,b\n1,2", ""]
+        {
+            assert!(!Format::is_recognised(text.as_bytes()), "{text}");
+        }
+        for text in ["name = 'x'\n[[waypoint]]\n", "# mine\nwaypoint insert 0 1 2", "QGC WPL 110\n", "<kml/>"]
+        {
+            assert!(Format::is_recognised(text.as_bytes()), "{text}");
         }
     }
 
