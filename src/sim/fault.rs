@@ -123,12 +123,16 @@ faults! {
     GpsGlitch(f64, f64);
     /// The same solution is repeated.
     GpsFreeze;
+    /// Solutions arrive later by this many seconds, and state their usual age.
+    GpsDelay(f64);
     /// All GPS errors are multiplied by this factor.
     GpsNoise(f64);
     /// The pressure drifts by this many Pa/s.
     BaroDrift(f64);
     /// One sample per second is off by this many Pa.
     BaroSpike(f64);
+    /// The same pressure is repeated.
+    BaroFreeze;
     MagOff;
     /// The measured heading is off by this many degrees, clockwise positive.
     MagBias(f64);
@@ -168,6 +172,9 @@ faults! {
     FdmJitter(f64);
 }
 
+/// The longest delay of GPS solutions, s.
+pub(in crate::sim) const MAX_GPS_DELAY_S: f64 = 2.0;
+
 impl Fault {
     /// Returns the name on the command line.
     pub fn name(&self) -> &'static str {
@@ -177,10 +184,15 @@ impl Fault {
     /// Returns the value for display.
     pub fn value(&self) -> FaultValue {
         match *self {
-            Self::RxLoss | Self::GpsLoss | Self::GpsFreeze | Self::MagOff | Self::ImuFreeze | Self::Stall => {
-                FaultValue::None
-            }
+            Self::RxLoss
+            | Self::GpsLoss
+            | Self::GpsFreeze
+            | Self::BaroFreeze
+            | Self::MagOff
+            | Self::ImuFreeze
+            | Self::Stall => FaultValue::None,
             Self::RxJitter(value)
+            | Self::GpsDelay(value)
             | Self::GpsNoise(value)
             | Self::BaroDrift(value)
             | Self::BaroSpike(value)

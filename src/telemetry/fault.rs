@@ -26,10 +26,14 @@ pub enum FaultKind {
     GpsGlitch,
     /// The GPS repeats the same solution.
     GpsFreeze,
+    /// GPS solutions arrive late, without a word of it in them.
+    GpsDelay,
     GpsNoise,
     BaroDrift,
     /// Single pressure samples are off.
     BaroSpike,
+    /// The barometer repeats the same sample.
+    BaroFreeze,
     MagOff,
     /// The magnetic heading is off.
     MagBias,

@@ -17,6 +17,8 @@ pub(in crate::sim) struct Effects {
     pub gps: GpsFaults,
     pub baro_drift_pa_per_s: f64,
     pub baro_spike_pa: f64,
+    /// `true` to repeat the last pressure.
+    pub baro_freeze: bool,
     pub mag_off: bool,
     pub mag_bias_rad: f64,
     pub gyro_bias: Vector3<f64>,
@@ -40,6 +42,8 @@ pub(crate) struct GpsFaults {
     pub shift_enu: Vector3<f64>,
     /// `true` to repeat the last solution.
     pub freeze: bool,
+    /// The additional age of each solution, s.
+    pub delay_s: f64,
     pub noise_factor: f64,
 }
 
@@ -65,10 +69,12 @@ impl Effects {
             loss: false,
             shift_enu: Vector3::new(0.0, 0.0, 0.0),
             freeze: false,
+            delay_s: 0.0,
             noise_factor: 1.0,
         },
         baro_drift_pa_per_s: 0.0,
         baro_spike_pa: 0.0,
+        baro_freeze: false,
         mag_off: false,
         mag_bias_rad: 0.0,
         gyro_bias: Vector3::new(0.0, 0.0, 0.0),
@@ -95,9 +101,11 @@ impl Effects {
                 self.gps.shift_enu = Vector3::new(metres * east, metres * north, 0.0);
             }
             Fault::GpsFreeze => self.gps.freeze = true,
+            Fault::GpsDelay(delay_s) => self.gps.delay_s = delay_s,
             Fault::GpsNoise(factor) => self.gps.noise_factor = factor,
             Fault::BaroDrift(rate) => self.baro_drift_pa_per_s = rate,
             Fault::BaroSpike(size) => self.baro_spike_pa = size,
+            Fault::BaroFreeze => self.baro_freeze = true,
             Fault::MagOff => self.mag_off = true,
             Fault::MagBias(degrees) => self.mag_bias_rad = degrees.to_radians(),
             Fault::GyroBias(degrees) => self.gyro_bias.x = degrees.to_radians(),

@@ -9,7 +9,9 @@ use crate::sim::value_text::{ParseError, number, number_in};
 use crate::telemetry::FaultKind;
 use crate::text::did_you_mean;
 
-use super::{BatteryFault, Direction, Fault, FaultKey, FaultStart, MotorNumber, ScheduledFault};
+use super::{
+    BatteryFault, Direction, Fault, FaultKey, FaultStart, MAX_GPS_DELAY_S, MotorNumber, ScheduledFault,
+};
 
 /// One kind of fault: name, form of its value, meaning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,15 +43,17 @@ const fn info(kind: FaultKind, value: &'static str, default: &'static str, help:
 }
 
 /// All faults, for parsing, help and completion.
-pub const FAULTS: [FaultInfo; 28] = [
+pub const FAULTS: [FaultInfo; 30] = [
     info(FaultKind::RxLoss, "", "", "RC frames stop"),
     info(FaultKind::RxJitter, "fraction 0 to 1", "0.5", "RC frames are dropped at random"),
     info(FaultKind::GpsLoss, "", "", "no GPS solution, no satellites"),
     info(FaultKind::GpsGlitch, "METRES@BEARING", "30@90", "GPS position shifted, velocity honest"),
     info(FaultKind::GpsFreeze, "", "", "the same GPS solution repeated"),
+    info(FaultKind::GpsDelay, "s, 0 to 2", "0.5", "GPS solutions later than they say"),
     info(FaultKind::GpsNoise, "factor 0 to 1000", "5", "all GPS errors times a factor"),
     info(FaultKind::BaroDrift, "Pa/s, -1000 to 1000", "1", "pressure ramps"),
     info(FaultKind::BaroSpike, "Pa, -100000 to 100000", "100", "one-sample pressure spikes, one a second"),
+    info(FaultKind::BaroFreeze, "", "", "the same pressure repeated"),
     info(FaultKind::MagOff, "", "", "no magnetometer samples"),
     info(FaultKind::MagBias, "degrees, -180 to 180", "20", "magnetic heading off, clockwise positive"),
     info(FaultKind::GyroBias, "°/s, -2000 to 2000", "2", "step on the gyro's x axis"),
@@ -235,9 +239,11 @@ fn build(kind: FaultKind, text: &str) -> Result<Fault, String> {
             Fault::GpsGlitch(metres, number("bearing", bearing)?.rem_euclid(360.0))
         }
         FaultKind::GpsFreeze => Fault::GpsFreeze,
+        FaultKind::GpsDelay => Fault::GpsDelay(range(0.0, MAX_GPS_DELAY_S)?),
         FaultKind::GpsNoise => Fault::GpsNoise(range(0.0, 1000.0)?),
         FaultKind::BaroDrift => Fault::BaroDrift(range(-1000.0, 1000.0)?),
         FaultKind::BaroSpike => Fault::BaroSpike(range(-100_000.0, 100_000.0)?),
+        FaultKind::BaroFreeze => Fault::BaroFreeze,
         FaultKind::MagOff => Fault::MagOff,
         FaultKind::MagBias => Fault::MagBias(range(-180.0, 180.0)?),
         FaultKind::GyroBias => Fault::GyroBias(range(-2000.0, 2000.0)?),

@@ -24,6 +24,8 @@ pub(super) struct Barometer {
     since_spike: u32,
     /// Pressure at the last sampling instant, Pa. The sampling period is the latency.
     last: Option<f64>,
+    /// The newest sample, Pa.
+    sample: Option<f64>,
 }
 
 impl Barometer {
@@ -36,6 +38,7 @@ impl Barometer {
             ramp: 0.0,
             since_spike: SPIKE_EVERY - 1,
             last: None,
+            sample: None,
         }
     }
 
@@ -55,7 +58,7 @@ impl Barometer {
         let late = self.last.replace(pressure).unwrap_or(pressure);
         self.ramp += effects.baro_drift_pa_per_s * PERIOD_S;
         let faults = self.ramp + self.spike(effects.baro_spike_pa);
-        match noise {
+        let sample = match noise {
             Noise::None => pressure + faults,
             Noise::Real => {
                 if switches.sensor_bias {
@@ -64,7 +67,10 @@ impl Barometer {
                 let drift = if switches.sensor_bias { self.drift } else { 0.0 };
                 (late + drift + SIGMA_PA * self.normals.next() + faults).round()
             }
-        }
+        };
+        let shown = self.sample.filter(|_| effects.baro_freeze).unwrap_or(sample);
+        self.sample = Some(shown);
+        shown
     }
 
     fn spike(&mut self, size: f64) -> f64 {

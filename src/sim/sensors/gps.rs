@@ -6,7 +6,7 @@ use rand::RngExt;
 use crate::geo::{LatLon, LocalFrame};
 use crate::signals::GpsSample;
 use crate::sim::config::Noise;
-use crate::sim::fault::GpsFaults;
+use crate::sim::fault::{GpsFaults, MAX_GPS_DELAY_S};
 use crate::sim::random::{GaussMarkov, Normals, Stream};
 use crate::sim::truth::Truth;
 
@@ -39,6 +39,8 @@ const FIX_HDOP: f64 = 2.5;
 const FIX_ERROR_FACTOR: f64 = 3.0;
 /// The default rate, Hz.
 const DEFAULT_RATE_HZ: u8 = 10;
+/// The highest rate, Hz.
+const MAX_RATE_HZ: usize = 20;
 
 /// The receiver's view of the sky.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -75,6 +77,9 @@ impl Sky {
     }
 }
 
+/// The longest delay, solutions: that of the fault at the highest rate.
+const MAX_DELAY: usize = (MAX_GPS_DELAY_S as usize) * MAX_RATE_HZ;
+
 /// Position and velocity at a slow tick, ENU, m and m/s.
 type Moment = (Vector3<f64>, Vector3<f64>);
 
@@ -92,6 +97,9 @@ pub(in crate::sim) struct Gps {
     past: [Moment; LATENCY_TICKS + 1],
     /// Nominal time at which the last loss ended, s after boot.
     lost_until_s: Option<f64>,
+    /// The newest solutions, a ring, and the number of solutions so far.
+    solutions: [GpsSample; MAX_DELAY + 1],
+    count: usize,
     last: GpsSample,
 }
 
@@ -109,6 +117,8 @@ impl Gps {
             acquisition_scale: Stream::GpsAcquisition.rng(seed).random_range(spread),
             past: [(Vector3::zeros(), Vector3::zeros()); LATENCY_TICKS + 1],
             lost_until_s: None,
+            solutions: [GpsSample::default(); MAX_DELAY + 1],
+            count: 0,
             last: GpsSample::default(),
         }
     }
@@ -159,9 +169,13 @@ impl Gps {
         let moment = self.past[((tick + slots - latency) % slots) as usize];
         let mut sample = self.solve(tick, moment, local, faults, noise);
         sample.latency_s = latency as f64 / TICKS_PER_S as f64;
+        let slots = self.solutions.len();
+        self.solutions[self.count % slots] = sample;
+        let delay = (faults.delay_s * f64::from(self.rate_hz)).round() as usize;
         if !faults.freeze {
-            self.last = sample;
+            self.last = self.solutions[(self.count - delay.min(self.count).min(MAX_DELAY)) % slots];
         }
+        self.count += 1;
         Some(self.last)
     }
 

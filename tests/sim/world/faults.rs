@@ -72,6 +72,46 @@ fn gps_freeze_repeats_the_last_solution() {
 }
 
 #[test]
+fn gps_delay_shows_where_the_craft_was_and_ends_without_a_gap() {
+    let (mut world, hover) = hovering();
+    run(&mut world, 4.0, hover);
+    put_on(&mut world, "teleport=50,0,0", None);
+    put_on(&mut world, "gps-delay=0.5", Some(2.0));
+    let mut seen = Vec::new();
+    let home = (betadeck::sim::Home::default().lat_deg * 1e7) as i32;
+    for _ in 0..3000 {
+        run(&mut world, 0.001, hover);
+        seen.extend(world.sensors().gps.map(|gps| (gps.position.lat_e7 - home, gps.latency_s)));
+    }
+    let is_there = |(lat_e7, _): &(i32, f64)| *lat_e7 > 2000;
+    let first = seen.iter().position(is_there).expect("the new place");
+    assert!((4..=6).contains(&first), "{seen:?}");
+    assert!(
+        seen[first..].iter().all(is_there) && seen.iter().all(|(_, latency)| *latency == 0.0),
+        "{seen:?}"
+    );
+}
+
+#[test]
+fn baro_freeze_repeats_the_last_pressure() {
+    let (mut world, hover) = hovering();
+    let pressures = |world: &mut World, seconds: f64| {
+        let mut seen = Vec::new();
+        for _ in 0..(seconds * 1000.0) as usize {
+            run(world, 0.001, hover);
+            seen.extend(world.sensors().pressure_pa);
+        }
+        seen
+    };
+    let before = *pressures(&mut world, 0.1).last().expect("a sample");
+    put_on(&mut world, "baro-freeze", Some(1.0));
+    put_on(&mut world, "teleport=0,0,30", None);
+    let seen = pressures(&mut world, 2.0);
+    assert!(seen[..45].iter().all(|pressure| *pressure == before), "{before} {seen:?}");
+    assert!(seen[55..].iter().all(|pressure| before - pressure > 300.0), "{before} {seen:?}");
+}
+
+#[test]
 fn gps_noise_multiplies_the_errors() {
     let sigma = |noisy: bool| {
         let mut world = fixed(WorldConfig::default());
