@@ -222,7 +222,7 @@ impl Firmware {
     /// Runs the part that is due a hundred times a second: failsafe, navigator, touchdown, modes, holds.
     fn update_navigation(&mut self) {
         self.keep_calibrations();
-        self.sensing.watch_heading(&mut self.outbox);
+        self.sensing.watch_doubts(&mut self.outbox);
         self.sensing.watch_fix(&self.setup.parameters, &mut self.outbox);
         self.navigation.observe(
             self.now,

@@ -37,6 +37,7 @@ mod heading;
 mod history;
 mod horizontal;
 mod kalman;
+mod lean_check;
 mod schedule;
 mod straight;
 mod tuning;
@@ -78,6 +79,8 @@ pub struct Estimate {
     pub heading_valid: bool,
     /// The difference of the magnetometer from the course over ground, rad, while it is doubted because of it.
     pub heading_doubt_rad: Option<f64>,
+    /// The error of the lean at which gyro and accelerometer began to disagree, rad, while they do.
+    pub lean_doubt_rad: Option<f64>,
     /// The roll angle, rad, right positive.
     pub roll_rad: f64,
     /// The pitch angle, rad, nose down positive.
@@ -127,6 +130,7 @@ impl Default for Estimate {
             attitude_valid: false,
             heading_valid: false,
             heading_doubt_rad: None,
+            lean_doubt_rad: None,
             roll_rad: 0.0,
             pitch_down_rad: 0.0,
             heading_rad: 0.0,

@@ -92,6 +92,13 @@ fn firmware(event: &FirmwareEvent) -> Option<String> {
             format!("The compass is {:.0}° off the GPS course: the course is used instead.", error_deg.abs())
         }
         FirmwareEvent::HeadingDoubt { on: false, .. } => "The compass agrees with the GPS course.".to_owned(),
+        FirmwareEvent::LeanDoubt { on: true, error_deg } => {
+            format!(
+                "Gyro and accelerometer disagree with the speed of the GPS: the estimated lean is off by {error_deg:.0}° \
+                 (a step of the gyro, or a late GPS)."
+            )
+        }
+        FirmwareEvent::LeanDoubt { on: false, .. } => "Gyro, accelerometer and GPS agree again.".to_owned(),
         FirmwareEvent::Battery { state, cell_v } => battery(*state, *cell_v),
         FirmwareEvent::Notice(notice) => notice.to_string(),
     })

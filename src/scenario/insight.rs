@@ -138,6 +138,7 @@ impl EventName {
             | Self::Battery
             | Self::CannotHold
             | Self::HeadingDoubt
+            | Self::LeanDoubt
             | Self::Limited
             | Self::Climbing
             | Self::Notice

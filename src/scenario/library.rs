@@ -36,6 +36,7 @@ scenarios! {
     "bias"
     "strong-wind"
     "takeoff"
+    "hill"
     "alt-change"
     "delay"
     "yaw-rate"

@@ -43,8 +43,8 @@ pub const NO_FILE: &str = "Only a file with recorded flights has others to show.
 pub const REWOUND: &str = "An earlier instant is shown: `b` flies on from here, `e` goes back to the end.";
 
 /// The refusal for a flight controller without waypoints.
-const NO_PLANS: &str = "This flight controller has no waypoints: build its firmware with flight plans, \
-                        EXTRA_FLAGS=\"-DENABLE_FLIGHT_PLANNING=1\" (board or SITL).";
+const NO_PLANS: &str = "This flight controller has no waypoints: today's master has flight plans (board \
+                        or SITL), older firmware does not.";
 
 /// The refusal for orders to the navigator of another program.
 const NO_ORDERS: &str = "A remote firmware takes no such order in flight: switch the autopilot off and fly there, or upload another plan.";

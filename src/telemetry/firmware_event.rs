@@ -81,6 +81,13 @@ pub enum FirmwareEvent {
         /// The magnetic heading minus the heading by the course, degrees.
         error_deg: f64,
     },
+    /// Gyro and accelerometer disagree on the lean, or agree again.
+    LeanDoubt {
+        /// `true` if the lean is doubted, and corrected faster.
+        on: bool,
+        /// The error of the lean at its beginning, degrees.
+        error_deg: f64,
+    },
     /// A notice for the pilot. It has no stored form: recordings keep its sentence.
     #[serde(skip)]
     Notice(FirmwareNotice),

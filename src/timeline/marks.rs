@@ -57,12 +57,14 @@ impl MarkKind {
             }
             FirmwareEvent::GpsFix { .. }
             | FirmwareEvent::RxRecovered
-            | FirmwareEvent::HeadingDoubt { on: false, .. } => Self::Recovery,
+            | FirmwareEvent::HeadingDoubt { on: false, .. }
+            | FirmwareEvent::LeanDoubt { on: false, .. } => Self::Recovery,
             FirmwareEvent::Disarmed(_)
             | FirmwareEvent::GpsLost { .. }
             | FirmwareEvent::RxLoss
             | FirmwareEvent::Failsafe { .. }
             | FirmwareEvent::HeadingDoubt { on: true, .. }
+            | FirmwareEvent::LeanDoubt { on: true, .. }
             | FirmwareEvent::Battery {
                 state: BatteryAlarm::Warning | BatteryAlarm::Critical | BatteryAlarm::Empty,
                 ..

@@ -25,6 +25,12 @@ fn a_rescue_by_switch_goes_on_when_the_autopilot_switch_goes_off() {
 }
 
 #[test]
+fn a_craft_whose_gyro_steps_is_held_and_says_that_gyro_and_accelerometer_disagree() {
+    let sandbox = folder(&["bf-15724-gyro-step.toml", "guide.txt"]);
+    sandbox.run(&["check", "bf-15724-gyro-step.toml"]).exits(0);
+}
+
+#[test]
 fn an_inav_file_with_missions_whose_indices_begin_again_is_read_whole() {
     let sandbox = folder(&["inav-6765.txt"]);
     for (mission, latitude) in [("1", "40.4640000"), ("2", "40.4641000"), ("3", "40.4642000")] {

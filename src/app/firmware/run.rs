@@ -209,7 +209,8 @@ impl RemoteRun {
         let name = &remote.craft().name;
         if !remote.observer().has_plans() {
             return Err(AppError::environment(format!(
-                "{name} has no waypoints: build it with EXTRA_FLAGS=\"-DENABLE_FLIGHT_PLANNING=1\""
+                "{name} has no waypoints: build today's master, or the branch of the test guide with \
+                 EXTRA_FLAGS=\"-DENABLE_FLIGHT_PLANNING=1\""
             ))
             .into());
         }

@@ -12,7 +12,7 @@ const STEADY_PART: f64 = 0.1;
 /// The turn rate (rad/s) above which the integral of the correction stops.
 const INTEGRAL_RATE_LIMIT: f64 = 20.0 * std::f64::consts::PI / 180.0;
 /// The largest integral, rad/s.
-const INTEGRAL_LIMIT: f64 = 0.1;
+const INTEGRAL_LIMIT: f64 = 0.4;
 
 /// The gains of the correction towards the measured vertical.
 #[derive(Debug, Clone, Copy, PartialEq)]

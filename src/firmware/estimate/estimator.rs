@@ -8,6 +8,7 @@ use super::compass::{CompassCheck, CompassVerdict};
 use super::gps::GpsMonitor;
 use super::heading::{CourseComparison, MagTrust, magnetic_error};
 use super::horizontal::Horizontal;
+use super::lean_check::LeanCheck;
 use super::schedule::Schedule;
 use super::straight::StraightFlight;
 use super::tuning::{AttitudeSource, EstimatorOptions, EstimatorTuning};
@@ -15,6 +16,7 @@ use super::vertical::{AltitudeSource, Vertical, pressure_altitude_m};
 use super::{DueTasks, Estimate, Rates};
 use crate::firmware::filter::{Pt1, Pt2, pt1_gain};
 use crate::geo::{GRAVITY, LatLon, wrap_pi};
+use crate::math;
 use crate::signals::{GpsSample, SensorFrame, SimTime};
 
 /// The nominal step of the slow part, s.
@@ -81,6 +83,7 @@ pub struct Estimator {
     vertical: Vertical,
     course: CourseComparison,
     compass: CompassCheck,
+    lean: LeanCheck,
     straight: StraightFlight,
     /// The angle of the estimated heading clockwise from that of the newest magnetometer sample, rad.
     mag_error: f64,
@@ -127,6 +130,7 @@ impl Estimator {
             vertical: Vertical::new(),
             course: CourseComparison::new(),
             compass: CompassCheck::default(),
+            lean: LeanCheck::default(),
             straight: StraightFlight::default(),
             mag_error: 0.0,
             solution_at: SimTime::ZERO,
@@ -151,6 +155,7 @@ impl Estimator {
         self.armed = true;
         self.was_aided = false;
         self.compass.reset();
+        self.lean = LeanCheck::default();
         self.vertical.zero();
         self.shown_alt.reset(0.0);
         if let Some(origin) = home.or_else(|| self.estimate.place()) {
@@ -440,7 +445,8 @@ impl Estimator {
         self.was_aided |= is_aided;
         let (missing, gains) = if is_aided {
             let missing = self.horizontal.accel_error();
-            let kp = self.tuning.kp * AIDED_FACTOR;
+            self.lean.update(math::atan2(missing.norm(), GRAVITY), dt);
+            let kp = self.tuning.kp * AIDED_FACTOR * urgency(missing.norm());
             let gains = VerticalGains { kp, ki: self.tuning.ki + AIDED_INTEGRAL * kp * kp };
             (Vector3::new(missing.y, missing.x, 0.0), gains)
         } else {
@@ -476,6 +482,13 @@ impl Estimator {
         estimate.baro_alt_m = self.vertical.baro_altitude();
         estimate.gps = self.gps.status;
         estimate.heading_doubt_rad = self.compass.doubt();
+        estimate.lean_doubt_rad = self.lean.doubt();
         estimate.calibrating = !self.gyro.done || self.acc.is_some() || self.mag.is_some();
     }
+}
+
+/// Returns the factor by which the tilt follows a missing acceleration of this size faster, m/s². Beyond what wind, noise and a
+/// usual gyro offset leave, a gyro has stepped, and the craft falls before the usual correction has found that.
+fn urgency(missing: f64) -> f64 {
+    1.0 + (missing - 1.0).clamp(0.0, 2.0)
 }

@@ -37,6 +37,7 @@ pub(super) enum Fields<'a> {
     Touchdown { impact_mps: Milli, peak_mps2: Milli },
     Crash { cause: String },
     HeadingDoubt { on: bool, error_deg: Milli },
+    LeanDoubt { on: bool, error_deg: Milli },
     Battery { state: String, cell_v: Milli },
     Doors { ws: Option<SocketAddr>, tcp: Option<SocketAddr>, fdm: Option<SocketAddr>, rc: Option<SocketAddr> },
     Notice { text: Cow<'a, str> },
@@ -143,6 +144,9 @@ impl<'a> Fields<'a> {
             FirmwareEvent::Nav(event) => return Self::of_nav(event),
             FirmwareEvent::HeadingDoubt { on, error_deg } => {
                 ("heading_doubt", Self::HeadingDoubt { on: *on, error_deg: Decimals(*error_deg) })
+            }
+            FirmwareEvent::LeanDoubt { on, error_deg } => {
+                ("lean_doubt", Self::LeanDoubt { on: *on, error_deg: Decimals(*error_deg) })
             }
             FirmwareEvent::Battery { state, cell_v } => Self::of_battery(*state, *cell_v),
             FirmwareEvent::Notice(notice) => ("notice", Self::Notice { text: notice.to_string().into() }),

@@ -58,6 +58,9 @@ impl Log {
             FirmwareEvent::HeadingDoubt { on, error_deg } => {
                 Happening::event(time, EventName::HeadingDoubt, &[on_off(*on)]).with(Field::Error, *error_deg)
             }
+            FirmwareEvent::LeanDoubt { on, error_deg } => {
+                Happening::event(time, EventName::LeanDoubt, &[on_off(*on)]).with(Field::Error, *error_deg)
+            }
             FirmwareEvent::Notice(notice) => plain(EventName::Notice).saying(notice.to_string()),
         };
         trace.happenings.push(happening);
