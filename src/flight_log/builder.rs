@@ -11,7 +11,9 @@ use super::scale::Scales;
 use super::signal::{Newest, SignalTable};
 use super::track_log::TrackLog;
 use super::tracker::Tracker;
-use crate::blackbox::decode::{FirmwareName, Frame, Header, LogReader, LogSource, ResumePoint};
+use crate::blackbox::decode::{
+    FirmwareName, Frame, Header, HeaderFinding, LogReader, LogSource, ResumePoint,
+};
 use crate::blackbox::{FrameKind, LogEvent};
 use crate::signals::SimTime;
 
@@ -19,6 +21,7 @@ use crate::signals::SimTime;
 #[derive(Debug)]
 pub(super) struct FlightBuilder {
     header: Arc<Header>,
+    findings: Vec<HeaderFinding>,
     table: SignalTable,
     tracker: Tracker,
     block_size: u64,
@@ -45,8 +48,10 @@ pub(super) fn tracker(header: &Header) -> Tracker {
 
 impl FlightBuilder {
     pub(super) fn new(header: Arc<Header>, file_size: u64) -> Self {
-        let table = SignalTable::of(&header, &Scales::of(&header));
+        let scales = Scales::of(&header);
+        let table = SignalTable::of(&header, &scales);
         Self {
+            findings: scales.findings().to_vec(),
             block_size: block_size(file_size, table.signals.len()),
             extents: Extents::new(table.signals.len()),
             tracker: tracker(&header),
@@ -152,6 +157,7 @@ impl FlightBuilder {
             cut_bytes: self.skipped,
             is_complete: self.is_complete,
             header: self.header,
+            findings: self.findings,
             table: self.table,
             blocks: self.blocks,
             extents: self.extents,

@@ -10,7 +10,7 @@ use super::mark::LogMark;
 use super::place::{LogHome, TrackFix};
 use super::sample::LogSample;
 use super::signal::{Extent, LogSignal, SignalTable};
-use crate::blackbox::decode::{Header, LogSource};
+use crate::blackbox::decode::{Header, HeaderFinding, LogSource};
 use crate::signals::SimTime;
 
 /// The numbers of frames and bytes in a log.
@@ -31,6 +31,7 @@ pub struct LogCounts {
 pub struct LogFlight {
     pub(super) number: usize,
     pub(super) header: Arc<Header>,
+    pub(super) findings: Vec<HeaderFinding>,
     pub(super) first: SimTime,
     pub(super) last: SimTime,
     pub(super) table: SignalTable,
@@ -52,6 +53,11 @@ impl LogFlight {
 
     pub fn header(&self) -> &Header {
         &self.header
+    }
+
+    /// Returns what is wrong with the header, and what is assumed.
+    pub fn findings(&self) -> &[HeaderFinding] {
+        &self.findings
     }
 
     /// Returns the time of the first main frame.

@@ -9,7 +9,7 @@ use crate::app::error::{self, AppError};
 use crate::app::log_source::FileSource;
 use crate::args::ReplayArgs;
 use crate::flight_log::LogFlight;
-use crate::replay::{LogFlights, PastFlights as _, log_cut, log_damage};
+use crate::replay::{LogFlights, PastFlights as _, log_notices};
 use crate::report::log_export::{log_gpx, log_track, write_csv};
 
 /// Writes the files of the options from the chosen log. Returns `false` if the user ended it; then no file is written.
@@ -36,12 +36,13 @@ pub(super) fn run(
             log.number()
         ));
     }
-    for notice in [log_damage(&log), log_cut(&log)].into_iter().flatten() {
+    for notice in log_notices(&log) {
         error::tell(&notice);
     }
     let has_track = args.gpx.is_some() || args.kml.is_some();
     if has_track && log.track().is_empty() {
-        return Err(AppError::input(format!("{name} has no GPS, so there is no track to write")));
+        let why = if log.counts().gps > 0 { "no place with a fix and a home" } else { "no GPS" };
+        return Err(AppError::input(format!("{name} has {why}, so there is no track to write")));
     }
     if let Some(output) = &args.csv {
         let (source, every_us) = (logs.source().clone(), args.row_every_us());

@@ -210,6 +210,10 @@ impl<S: LogSource> LogReader<S> {
                 Step::Event { event, length } => (length, Some(Found::Event { event, offset })),
                 Step::UselessFrame { length } => (length, None),
                 Step::StrayByte => (1, None),
+                Step::UndefinedFrame { length } => {
+                    self.window.advance(length);
+                    continue;
+                }
                 Step::More => {
                     self.window.fill()?;
                     continue;

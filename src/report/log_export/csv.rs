@@ -26,9 +26,11 @@ impl<W: Write> LogCsv<W> {
     pub fn new(out: W, flight: &LogFlight) -> io::Result<Self> {
         let signals = flight.signals().to_vec();
         let mut rows = ::csv::Writer::from_writer(out);
-        let names = signals.iter().map(|signal| match signal.unit {
-            "" => signal.name.clone(),
-            unit => format!("{} ({unit})", signal.name),
+        let names = signals.iter().map(|signal| match (signal.unit, signal.is_assumed) {
+            ("", false) => signal.name.clone(),
+            ("", true) => format!("{} (assumed)", signal.name),
+            (unit, false) => format!("{} ({unit})", signal.name),
+            (unit, true) => format!("{} ({unit}, assumed)", signal.name),
         });
         rows.write_record(FIRST.map(str::to_owned).into_iter().chain(names))?;
         Ok(Self { first: flight.first(), signals, rows })
