@@ -95,6 +95,18 @@ enum Source {
     Field(FrameKind, Place),
 }
 
+impl Source {
+    /// Returns the value, if it is known.
+    fn read(&self, newest: &Newest<'_>) -> Option<f64> {
+        match self {
+            Self::Derived(read) => read(&newest.state.sample, newest.state.drawn_mah),
+            Self::Field(FrameKind::Slow, place) => place.read(newest.slow).filter(|_| newest.state.has_slow),
+            Self::Field(FrameKind::Gps, place) => place.read(newest.gps).filter(|_| newest.state.has_gps),
+            Self::Field(_, place) => place.read(newest.main),
+        }
+    }
+}
+
 /// The newest values of a log.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Newest<'a> {
@@ -157,14 +169,12 @@ impl SignalTable {
 
     /// Returns the value of a signal, if it is known.
     pub(super) fn read(&self, signal: usize, newest: &Newest<'_>) -> Option<f64> {
-        match self.sources.get(signal)? {
-            Source::Derived(read) => read(&newest.state.sample, newest.state.drawn_mah),
-            Source::Field(FrameKind::Slow, place) => {
-                place.read(newest.slow).filter(|_| newest.state.has_slow)
-            }
-            Source::Field(FrameKind::Gps, place) => place.read(newest.gps).filter(|_| newest.state.has_gps),
-            Source::Field(_, place) => place.read(newest.main),
-        }
+        self.sources.get(signal)?.read(newest)
+    }
+
+    /// Returns the values of all signals; NaN for an unknown one.
+    pub(super) fn values(&self, newest: Newest<'_>) -> impl Iterator<Item = f64> {
+        self.sources.iter().map(move |source| source.read(&newest).unwrap_or(f64::NAN))
     }
 
     /// Widens the extents of the signals that change with a frame of this kind.

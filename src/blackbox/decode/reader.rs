@@ -126,6 +126,12 @@ impl<S: LogSource> LogReader<S> {
         self.window.offset()
     }
 
+    /// Leaves the log being read: the next item is in the next log.
+    pub fn leave_log(&mut self) {
+        (self.log, self.waiting, self.is_over) = (None, None, false);
+        self.passed = Passed::default();
+    }
+
     /// Returns the next item; `None` at the end of the file.
     ///
     /// # Errors

@@ -1,6 +1,6 @@
 //! Sentences about a log as a whole.
 
-use crate::flight_log::LogFlight;
+use crate::flight_log::{LogEnd, LogFlight};
 use crate::replay::PastEventKind;
 
 /// Returns sentences about a log: who wrote it, and what is missing or damaged.
@@ -18,19 +18,19 @@ pub(super) fn of(log: &LogFlight) -> Vec<PastEventKind> {
         let why = if log.counts().gps > 0 { "no place with a fix and a home" } else { "no GPS" };
         about.push(PastEventKind::Notice(format!("The log has {why}: the map shows no track.")));
     }
-    about.extend(log_assumptions(log).into_iter().chain(log_damage(log)).map(PastEventKind::Warning));
-    about.extend(log_cut(log).map(PastEventKind::Notice));
+    about.extend(log_assumptions(log).into_iter().chain(log_damage(log.end())).map(PastEventKind::Warning));
+    about.extend(log_cut(log.end()).map(PastEventKind::Notice));
     about
 }
 
-/// Returns sentences about a log for standard error: what its header lacks, what is damaged, whether its end is missing.
-pub fn log_notices(log: &LogFlight) -> impl Iterator<Item = String> {
-    log_assumptions(log).into_iter().chain(log_damage(log)).chain(log_cut(log))
+/// Returns sentences about what was found once a log was read to its end: what is damaged, whether its end is missing.
+pub fn log_end_notices(end: LogEnd) -> impl Iterator<Item = String> {
+    log_damage(end).into_iter().chain(log_cut(end))
 }
 
 /// Returns sentences about the lines that the header lacks, about those that are damaged, and about the values that rest on
 /// what is assumed instead.
-fn log_assumptions(log: &LogFlight) -> Vec<String> {
+pub fn log_assumptions(log: &LogFlight) -> Vec<String> {
     let mut all: Vec<String> = log.findings().iter().map(ToString::to_string).collect();
     let mut names: Vec<&str> = Vec::new();
     for signal in log.signals().iter().filter(|signal| signal.is_assumed) {
@@ -46,8 +46,8 @@ fn log_assumptions(log: &LogFlight) -> Vec<String> {
 }
 
 /// Returns a sentence with the number of the damaged bytes and frames of a log, if it has any.
-fn log_damage(log: &LogFlight) -> Option<String> {
-    let counts = log.counts();
+fn log_damage(end: LogEnd) -> Option<String> {
+    let counts = end.counts;
     if counts.skipped_bytes == 0 && counts.skipped_frames == 0 {
         return None;
     }
@@ -60,11 +60,11 @@ fn log_damage(log: &LogFlight) -> Option<String> {
 }
 
 /// Returns a sentence about the missing end of a log, if it was cut.
-fn log_cut(log: &LogFlight) -> Option<String> {
-    if log.is_complete() {
+fn log_cut(end: LogEnd) -> Option<String> {
+    if end.is_complete {
         return None;
     }
-    Some(match log.cut_bytes() {
+    Some(match end.cut_bytes {
         // A log of a flight that was left in the air looks the same as one that lost its power.
         0 => "The log has no end: the flight went on, or the power was lost.".to_owned(),
         bytes => format!("The log was cut: it has no end; its last {bytes} bytes are no whole frame."),
