@@ -78,3 +78,16 @@ impl<'a> Named<'a> {
 pub(super) fn scale(info: &SignalInfo) -> f64 {
     info.dimension.unit().map_or(1.0, |unit| unit.scale)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_question_mark_follows_the_unit_of_values_that_rest_on_an_assumption() {
+        let known = Series::new("gyroADC[0]", "°/s");
+        let assumed = Series { is_assumed: true, ..known.clone() };
+        let unit = |series| Named::Recorded(0, series).unit().into_owned();
+        assert_eq!((unit(&known), unit(&assumed)), ("°/s".to_owned(), "°/s?".to_owned()));
+    }
+}
