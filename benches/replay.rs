@@ -1,7 +1,11 @@
-//! The time to open a long blackbox log, to show any of its instants, and to draw its series.
+//! The time to open a long blackbox log, to show any of its instants, to draw its series, and to write its table.
 //!
 //! `cargo bench --bench replay`. Goals, for 20 minutes at 4 kHz: any instant within 50 ms, a curve within 100 ms, memory
 //! beside the file below 100 MB.
+//!
+//! The table is measured against a decoder in C if `BETADECK_C_DECODER` has the path of its program, `blackbox_decode` of
+//! betaflight/blackbox-tools, built with `-O3`. `BETADECK_LOG` has the path of a log to measure with; without it a log is
+//! made. The goal is a ratio below 1.
 #![allow(
     clippy::unwrap_used,
     clippy::disallowed_methods,
@@ -9,12 +13,15 @@
     reason = "a bench may stop, measures time and prints it"
 )]
 
-use std::io;
+use std::fs::File;
+use std::io::{self, Write as _};
+use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use betadeck::blackbox::decode::LogSource;
 use betadeck::replay::{CurvesRequest, LogFlights, PastFlight, PastFlights as _};
+use betadeck::report::log_export::write_csv;
 use betadeck::signals::SimTime;
 
 #[path = "../tests/log_support/made_log.rs"]
@@ -26,6 +33,8 @@ use made_log::MadeLog;
 const SEEKS: u64 = 400;
 /// The shown times of the curves, s.
 const SPANS_S: [f64; 6] = [0.1, 1.0, 10.0, 60.0, 300.0, 1200.0];
+/// The tables that are written; the fastest one counts.
+const TABLES: usize = 3;
 
 /// A file in memory.
 #[derive(Debug, Clone)]
@@ -56,6 +65,7 @@ fn resident_mb() -> f64 {
 }
 
 fn main() {
+    table();
     let bytes = MadeLog { seconds: 1200, hz: 4000, ..MadeLog::default() }.bytes();
     let file_mb = bytes.len() as f64 / 1e6;
     println!("20 minutes at 4 kHz: {file_mb:.0} MB");
@@ -77,6 +87,34 @@ fn main() {
         let (curves, took) = timed(|| flight.curves(&request).unwrap());
         println!("a curve of {span_s:>6} s on the screen: {took:>9.2?}, {} curve", curves.len());
     }
+}
+
+/// Writes the table of a log, and lets the decoder in C do the same.
+fn table() {
+    let given = std::env::var_os("BETADECK_LOG").map(|path| std::fs::read(path).unwrap());
+    let bytes = given.unwrap_or_else(|| MadeLog { seconds: 224, hz: 4000, ..MadeLog::default() }.bytes());
+    let mut file = tempfile::NamedTempFile::new().unwrap();
+    file.write_all(&bytes).unwrap();
+    let flights = LogFlights::new("table.bbl", Memory(Arc::new(bytes)));
+    let fastest = |run: &dyn Fn() -> u64| {
+        let all = (0..TABLES).map(|_| timed(run));
+        all.map(|(frames, took)| (took, frames)).min().unwrap()
+    };
+    let (own, frames) = fastest(&|| {
+        let log = flights.start(None).unwrap();
+        let null = File::create("/dev/null").unwrap();
+        write_csv(&log, flights.source().clone(), None, null, || false).unwrap().log.counts.main
+    });
+    println!("a table of {frames} frames: {own:.2?}");
+    let Some(decoder) = std::env::var_os("BETADECK_C_DECODER") else { return };
+    let (other, _) = fastest(&|| {
+        let mut command = Command::new(&decoder);
+        command.arg("--stdout").arg(file.path()).stdout(Stdio::null()).stderr(Stdio::null());
+        assert!(command.status().unwrap().success(), "the decoder failed");
+        0
+    });
+    let ratio = own.as_secs_f64() / other.as_secs_f64();
+    println!("the decoder in C: {other:.2?}; ratio {ratio:.2}");
 }
 
 /// Shows instants all over the flight, none near the one before.

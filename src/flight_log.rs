@@ -34,7 +34,7 @@ mod tracker;
 pub use boxes::{BoxFlags, BoxOrder};
 pub use cursor::FlightCursor;
 pub use failsafe_phase::FailsafePhase;
-pub use flight::{LogCounts, LogFlight};
+pub use flight::{LogCounts, LogEnd, LogFlight};
 pub use index::{IndexProgress, Indexer, LogFile, RefusedLog};
 pub use mark::{LogMark, LogMarkKind};
 pub use place::{LogHome, TrackFix};

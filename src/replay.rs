@@ -15,7 +15,7 @@ mod picture;
 mod recorded;
 
 pub use curve::Curve;
-pub use log::{LogFlights, log_cut, log_damage};
+pub use log::{LogFlights, log_assumptions, log_end_notices};
 pub use overview::{Overview, PastEvent, PastEventKind, Series};
 pub use past_flight::{CurvesRequest, Moment, PastFlight, PastFlights, Progress};
 pub use picture::Picture;

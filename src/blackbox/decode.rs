@@ -24,6 +24,6 @@ mod tests;
 mod window;
 
 pub use decoder::DecoderState;
-pub use header::{FirmwareName, Header, HeaderError, Version};
+pub use header::{FirmwareName, Header, HeaderError, HeaderFinding, Version};
 pub use reader::{Frame, Item, LogReader, ResumePoint};
 pub use source::LogSource;

@@ -5,13 +5,15 @@ use std::sync::Arc;
 use super::block::{Block, Extents, block_size};
 use super::boxes::BoxOrder;
 use super::fields::Fields;
-use super::flight::{LogCounts, LogFlight};
+use super::flight::{LogCounts, LogEnd, LogFlight};
 use super::mark_log::{Flags, MarkLog};
 use super::scale::Scales;
 use super::signal::{Newest, SignalTable};
 use super::track_log::TrackLog;
 use super::tracker::Tracker;
-use crate::blackbox::decode::{FirmwareName, Frame, Header, LogReader, LogSource, ResumePoint};
+use crate::blackbox::decode::{
+    FirmwareName, Frame, Header, HeaderFinding, LogReader, LogSource, ResumePoint,
+};
 use crate::blackbox::{FrameKind, LogEvent};
 use crate::signals::SimTime;
 
@@ -19,6 +21,7 @@ use crate::signals::SimTime;
 #[derive(Debug)]
 pub(super) struct FlightBuilder {
     header: Arc<Header>,
+    findings: Vec<HeaderFinding>,
     table: SignalTable,
     tracker: Tracker,
     block_size: u64,
@@ -27,6 +30,8 @@ pub(super) struct FlightBuilder {
     marks: MarkLog,
     track: TrackLog,
     counts: LogCounts,
+    /// What was skipped before the first main frame.
+    start: LogCounts,
     first: Option<SimTime>,
     last: SimTime,
     /// Bytes that were skipped after the last frame.
@@ -45,8 +50,10 @@ pub(super) fn tracker(header: &Header) -> Tracker {
 
 impl FlightBuilder {
     pub(super) fn new(header: Arc<Header>, file_size: u64) -> Self {
-        let table = SignalTable::of(&header, &Scales::of(&header));
+        let scales = Scales::of(&header);
+        let table = SignalTable::of(&header, &scales);
         Self {
+            findings: scales.findings().to_vec(),
             block_size: block_size(file_size, table.signals.len()),
             extents: Extents::new(table.signals.len()),
             tracker: tracker(&header),
@@ -56,6 +63,7 @@ impl FlightBuilder {
             marks: MarkLog::default(),
             track: TrackLog::default(),
             counts: LogCounts::default(),
+            start: LogCounts::default(),
             first: None,
             last: SimTime::ZERO,
             skipped: 0,
@@ -94,8 +102,17 @@ impl FlightBuilder {
         frame.kind == FrameKind::Intra && (self.blocks.is_empty() || frame.offset - begin >= self.block_size)
     }
 
+    /// Returns `true` once a block has begun.
+    pub(super) fn has_begun(&self) -> bool {
+        !self.blocks.is_empty()
+    }
+
     /// Begins a block with the frame that was just taken.
     pub(super) fn begin_block(&mut self, point: ResumePoint) {
+        if self.blocks.is_empty() {
+            let LogCounts { skipped_bytes, skipped_frames, .. } = self.counts;
+            self.start = LogCounts { skipped_bytes, skipped_frames, ..LogCounts::default() };
+        }
         let state = self.tracker.state.clone();
         self.blocks.push(Block { time: state.sample.time, point, state });
         self.extents.begin();
@@ -148,10 +165,10 @@ impl FlightBuilder {
             marks: self.marks.finish(first),
             track: self.track.finish(),
             home: self.tracker.state.home,
-            counts: self.counts,
-            cut_bytes: self.skipped,
-            is_complete: self.is_complete,
+            start: self.start,
+            end: LogEnd { counts: self.counts, cut_bytes: self.skipped, is_complete: self.is_complete },
             header: self.header,
+            findings: self.findings,
             table: self.table,
             blocks: self.blocks,
             extents: self.extents,

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::block::Block;
 use super::builder::tracker;
+use super::flight::{LogCounts, LogEnd};
 use super::sample::LogSample;
 use super::signal::{Newest, SignalTable};
 use super::tracker::Tracker;
@@ -23,6 +24,8 @@ pub struct FlightCursor<'a, S> {
     /// The next main frame and its values; `None` at the end of the log.
     next: Option<NextFrame>,
     next_main: Vec<i32>,
+    /// What was found up to here, without the number of other frames than main frames.
+    end: LogEnd,
 }
 
 /// A main frame without its values.
@@ -34,17 +37,20 @@ struct NextFrame {
 }
 
 impl<'a, S: LogSource> FlightCursor<'a, S> {
-    /// Returns a cursor at the first frame of a block.
+    /// Returns a cursor at the first frame of a block. `before` counts what was skipped before it.
     pub(super) fn new(
         header: &Arc<Header>,
         table: &'a SignalTable,
         block: &Block,
         source: S,
+        before: LogCounts,
     ) -> io::Result<Self> {
         let mut tracker = tracker(header);
         tracker.state = block.state.clone();
         let reader = LogReader::resumed(source, Arc::clone(header), &block.point);
-        let mut cursor = Self { reader, table, tracker, main: Vec::new(), next: None, next_main: Vec::new() };
+        let (main, next_main) = (Vec::new(), Vec::new());
+        let end = LogEnd { counts: before, ..LogEnd::default() };
+        let mut cursor = Self { reader, table, tracker, main, next: None, next_main, end };
         cursor.read_ahead()?;
         cursor.advance()?;
         Ok(cursor)
@@ -83,10 +89,33 @@ impl<'a, S: LogSource> FlightCursor<'a, S> {
 
     /// Returns the sample with the values of all signals.
     pub fn sample(&self) -> LogSample {
-        let newest = self.newest();
-        let signals = 0..self.table.signals.len();
-        let values = signals.map(|signal| self.table.read(signal, &newest).unwrap_or(f64::NAN)).collect();
+        let values = self.values().collect();
         LogSample { values, ..self.tracker.state.sample.clone() }
+    }
+
+    /// Returns the values of all signals, in the order of the list of the log; NaN for an unknown one.
+    pub fn values(&self) -> impl Iterator<Item = f64> {
+        self.table.values(self.newest())
+    }
+
+    /// Returns what was found from the start of the cursor on, once it is at the end of the log.
+    pub fn end(&self) -> LogEnd {
+        self.end
+    }
+
+    /// Returns the number of logs after this one, readable or not.
+    ///
+    /// # Errors
+    ///
+    /// Returns the error of the source.
+    pub fn count_logs_after(mut self) -> io::Result<usize> {
+        let mut count = 0;
+        self.reader.leave_log();
+        while self.reader.next_item()?.is_some() {
+            count += 1;
+            self.reader.leave_log();
+        }
+        Ok(count)
     }
 
     /// Returns the sample without the values of the signals.
@@ -123,13 +152,19 @@ impl<'a, S: LogSource> FlightCursor<'a, S> {
                     self.next_main.clear();
                     self.next_main.extend_from_slice(values);
                     self.next = Some(NextFrame { time_us, offset, has_home });
+                    self.end.counts.main += 1;
+                    self.end.counts.skipped_bytes += std::mem::take(&mut self.end.cut_bytes);
                     return Ok(());
                 }
                 Some(Item::Frame(frame)) => self.tracker.take(&frame),
                 Some(Item::Event { event: Some(LogEvent::FlightMode { new, .. }), .. }) => {
                     self.tracker.take_flags(new);
                 }
-                Some(Item::Event { .. } | Item::Skipped { .. }) => {}
+                Some(Item::Event { event, .. }) => self.end.is_complete |= event == Some(LogEvent::End),
+                Some(Item::Skipped { bytes, frames, .. }) => {
+                    self.end.cut_bytes += bytes;
+                    self.end.counts.skipped_frames += frames;
+                }
             }
         }
     }

@@ -10,7 +10,7 @@ use super::mark::LogMark;
 use super::place::{LogHome, TrackFix};
 use super::sample::LogSample;
 use super::signal::{Extent, LogSignal, SignalTable};
-use crate::blackbox::decode::{Header, LogSource};
+use crate::blackbox::decode::{Header, HeaderFinding, LogSource};
 use crate::signals::SimTime;
 
 /// The numbers of frames and bytes in a log.
@@ -26,20 +26,31 @@ pub struct LogCounts {
     pub skipped_bytes: u64,
 }
 
+/// What is known once a log was read to its end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct LogEnd {
+    pub counts: LogCounts,
+    /// The bytes after the last whole frame that belong to no frame.
+    pub cut_bytes: u64,
+    /// `true` if the log ends with the event of its end, and `false` if it is cut.
+    pub is_complete: bool,
+}
+
 /// One log of a file. Times are those of the craft's clock, from [`Self::first`] to [`Self::last`].
 #[derive(Debug)]
 pub struct LogFlight {
     pub(super) number: usize,
     pub(super) header: Arc<Header>,
+    pub(super) findings: Vec<HeaderFinding>,
     pub(super) first: SimTime,
     pub(super) last: SimTime,
     pub(super) table: SignalTable,
     pub(super) marks: Vec<LogMark>,
     pub(super) track: Vec<TrackFix>,
     pub(super) home: Option<LogHome>,
-    pub(super) counts: LogCounts,
-    pub(super) cut_bytes: u64,
-    pub(super) is_complete: bool,
+    /// What was skipped before the first main frame.
+    pub(super) start: LogCounts,
+    pub(super) end: LogEnd,
     pub(super) blocks: Vec<Block>,
     pub(super) extents: Extents,
 }
@@ -52,6 +63,11 @@ impl LogFlight {
 
     pub fn header(&self) -> &Header {
         &self.header
+    }
+
+    /// Returns what is wrong with the header, and what is assumed.
+    pub fn findings(&self) -> &[HeaderFinding] {
+        &self.findings
     }
 
     /// Returns the time of the first main frame.
@@ -101,17 +117,22 @@ impl LogFlight {
     }
 
     pub fn counts(&self) -> LogCounts {
-        self.counts
+        self.end.counts
+    }
+
+    /// Returns what is known at the end of the log.
+    pub fn end(&self) -> LogEnd {
+        self.end
     }
 
     /// Returns `true` if the log ends with the event of its end, and `false` if it is cut.
     pub fn is_complete(&self) -> bool {
-        self.is_complete
+        self.end.is_complete
     }
 
     /// Returns the number of bytes after the last whole frame that belong to no frame.
     pub fn cut_bytes(&self) -> u64 {
-        self.cut_bytes
+        self.end.cut_bytes
     }
 
     /// Returns a cursor at the last main frame not after `time`, or at the first one. Returns `None` if the log is empty.
@@ -120,8 +141,10 @@ impl LogFlight {
     ///
     /// Returns the error of the source.
     pub fn cursor<S: LogSource>(&self, source: S, time: SimTime) -> io::Result<Option<FlightCursor<'_, S>>> {
-        let Some(block) = self.blocks.get(self.block_at(time)) else { return Ok(None) };
-        let mut cursor = FlightCursor::new(&self.header, &self.table, block, source)?;
+        let at = self.block_at(time);
+        let Some(block) = self.blocks.get(at) else { return Ok(None) };
+        let before = if at == 0 { self.start } else { LogCounts::default() };
+        let mut cursor = FlightCursor::new(&self.header, &self.table, block, source, before)?;
         cursor.advance_to(time)?;
         Ok(Some(cursor))
     }

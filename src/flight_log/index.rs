@@ -77,6 +77,23 @@ impl<S: LogSource> Indexer<S> {
         self.found
     }
 
+    /// Reads only until a log can be read with a cursor: the one with this number, from 1, or the first one with a frame. What is
+    /// known at the end of that log is missing.
+    ///
+    /// # Errors
+    ///
+    /// Returns the error of the source.
+    pub fn run_to_start(mut self, number: Option<usize>) -> io::Result<LogFile> {
+        while self.item()? {
+            let is_wanted = number.is_none_or(|number| number == self.begun);
+            if is_wanted && let Some(building) = self.building.take_if(|building| building.has_begun()) {
+                self.found.flights.push(building.finish(self.begun));
+                break;
+            }
+        }
+        Ok(self.found)
+    }
+
     /// Reads the whole file.
     ///
     /// # Errors

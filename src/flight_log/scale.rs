@@ -1,7 +1,7 @@
 //! The units of a log's fields, by their names and the lines of the header.
 
-use crate::blackbox::Field;
-use crate::blackbox::decode::{FirmwareName, Header};
+use crate::blackbox::decode::{FirmwareName, Header, HeaderFinding};
+use crate::blackbox::{Field, FrameKind, Predictor};
 use crate::geo::GRAVITY;
 use crate::math;
 
@@ -43,8 +43,10 @@ impl Scale {
 }
 
 /// The numbers of a header that units depend on.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct Scales {
+    /// What is wrong with the header, and what is assumed.
+    findings: Vec<HeaderFinding>,
     firmware: FirmwareName,
     version: (u32, u32, u32),
     /// °/s.
@@ -61,20 +63,77 @@ pub(super) struct Scales {
 
 impl Scales {
     pub(super) fn of(header: &Header) -> Self {
+        let mut findings = header.findings().to_vec();
+        let has = |prefixes: &[&str]| {
+            let fields = [FrameKind::Intra, FrameKind::Gps].into_iter().flat_map(|kind| header.fields(kind));
+            fields.into_iter().any(|field| prefixes.iter().any(|prefix| field.name.starts_with(prefix)))
+        };
+        let mut assumed = |is_needed: bool, line: &str, what: &str| {
+            if is_needed && findings.iter().all(|finding| finding.line() != line) {
+                findings.push(header.finding(line, what));
+            }
+        };
         let number = |name: &str| header.number(name).map(f64::from);
         let positive = |name: &str| number(name).filter(|value| *value > 0.0);
         let bits = header.number("gyro_scale").or_else(|| header.number("gyro.scale"));
         let gyro = bits.map(|bits| f64::from(f32::from_bits(bits as u32))).filter(|scale| scale.is_normal());
-        Self {
+        assumed(gyro.is_none() && has(&["gyro"]), "gyro_scale", "1 °/s for a step of the gyro is assumed");
+        let acc_1g = positive("acc_1G");
+        assumed(acc_1g.is_none() && has(&["accSmooth"]), "acc_1G", "the accelerometer has no unit");
+        let motors = motor_range(header);
+        let range = "1000 for idling motors and 2000 for full thrust are assumed";
+        assumed(motors.is_none() && has(&["motor["]), "motorOutput", range);
+        let motor_poles = positive("motor_poles");
+        assumed(motor_poles.is_none() && has(&["eRPM"]), "motor_poles", "14 poles are assumed");
+        let vbat_scale = positive("vbat_scale").or_else(|| positive("vbatscale"));
+        let mut scales = Self {
+            findings: Vec::new(),
             firmware: header.firmware,
             version: header.version,
             gyro: gyro.unwrap_or(1.0),
-            acc_1g: positive("acc_1G"),
+            acc_1g,
             resolution: if positive("blackbox_high_resolution").is_some() { 10.0 } else { 1.0 },
-            vbat_scale: positive("vbat_scale").or_else(|| positive("vbatscale")).unwrap_or(110.0),
-            motors: motor_range(header),
-            motor_poles: positive("motor_poles").unwrap_or(14.0),
-        }
+            vbat_scale: vbat_scale.unwrap_or(110.0),
+            motors: motors.unwrap_or((1000.0, 2000.0)),
+            motor_poles: motor_poles.unwrap_or(14.0),
+        };
+        let needs_scale = scales.counts_converter_steps() && has(&["vbat"]);
+        assumed(vbat_scale.is_none() && needs_scale, "vbat_scale", "110 is assumed");
+        scales.findings = findings;
+        scales
+    }
+
+    /// Returns what is wrong with the header, and what is assumed.
+    pub(super) fn findings(&self) -> &[HeaderFinding] {
+        &self.findings
+    }
+
+    /// Returns `true` if the values of a field rest on an assumption.
+    pub(super) fn is_assumed(&self, kind: FrameKind, field: &Field) -> bool {
+        let name = field.name.split_once('[').map_or(field.name.as_str(), |(name, _)| name);
+        let of_unit = match name {
+            "loopIteration" => &["I interval", "P interval"][..],
+            "gyroADC" | "gyroUnfilt" | "gyroRaw" => &["gyro_scale"],
+            "accSmooth" => &["acc_1G"],
+            "vbatLatest" | "vbat" => &["Firmware revision", "Firmware type", "vbat_scale"],
+            "GPS_altitude" => &["Firmware revision", "Firmware type"],
+            "flightModeFlags" => &["Firmware revision", "Firmware type"],
+            "motor" => &["motorOutput"],
+            "eRPM" => &["motor_poles"],
+            _ => &[],
+        };
+        let of_prediction = match field.predictor {
+            Predictor::MinThrottle => "minthrottle",
+            Predictor::VbatReference => "vbatref",
+            Predictor::MinMotor | Predictor::Motor0 => "motorOutput",
+            Predictor::HomeCoordinate => "Field H",
+            _ => "Data version",
+        };
+        let definition = format!("Field {} ", char::from(kind.letter()));
+        self.findings
+            .iter()
+            .map(HeaderFinding::line)
+            .any(|line| of_unit.contains(&line) || line == of_prediction || line.starts_with(&definition))
     }
 
     fn is_betaflight_from(&self, version: (u32, u32, u32)) -> bool {
@@ -119,15 +178,31 @@ impl Scales {
         })
     }
 
+    /// Returns `true` if a voltage is logged in tenths.
+    fn counts_tenths(&self) -> bool {
+        self.firmware == FirmwareName::EmuFlight
+            || self.is_betaflight_from((3, 1, 0))
+            || self.firmware == FirmwareName::Cleanflight && self.version >= (2, 0, 0)
+    }
+
+    /// Returns `true` if a voltage is logged in hundredths.
+    fn counts_hundredths(&self) -> bool {
+        self.is_betaflight_from((4, 0, 0))
+            || matches!(self.firmware, FirmwareName::Inav | FirmwareName::Rotorflight)
+    }
+
+    /// Returns `true` if a voltage is logged in steps of the converter.
+    fn counts_converter_steps(&self) -> bool {
+        !self.counts_tenths() && !self.counts_hundredths()
+    }
+
     fn voltage(&self) -> Scale {
-        let is_tenths = self.is_betaflight_from((3, 1, 0))
-            || self.firmware == FirmwareName::Cleanflight && self.version >= (2, 0, 0);
-        let factor = match self.firmware {
-            FirmwareName::Betaflight if self.version >= (4, 0, 0) => 0.01,
-            FirmwareName::Inav | FirmwareName::Rotorflight => 0.01,
-            FirmwareName::EmuFlight => 0.1,
-            _ if is_tenths => 0.1,
-            _ => ADC_MV / ADC_MAX * self.vbat_scale / 10_000.0,
+        let factor = if self.counts_hundredths() {
+            0.01
+        } else if self.counts_tenths() {
+            0.1
+        } else {
+            ADC_MV / ADC_MAX * self.vbat_scale / 10_000.0
         };
         Scale::of(factor, "V")
     }
@@ -142,8 +217,8 @@ impl Scales {
     }
 }
 
-/// Returns the numbers for idle and for full thrust.
-fn motor_range(header: &Header) -> (f64, f64) {
+/// Returns the numbers for idle and for full thrust, if the header has them.
+fn motor_range(header: &Header) -> Option<(f64, f64)> {
     let pair = |name: &str| {
         let (low, high) = header.value(name)?.split_once(',')?;
         Some((low.trim().parse().ok()?, high.trim().parse().ok()?))
@@ -151,7 +226,7 @@ fn motor_range(header: &Header) -> (f64, f64) {
     let limits = header.number("minthrottle").zip(header.number("maxthrottle"));
     let range: Option<(f64, f64)> =
         pair("motorOutput").or(limits.map(|(low, high)| (low.into(), high.into())));
-    range.filter(|(low, high)| high > low).unwrap_or((1000.0, 2000.0))
+    range.filter(|(low, high)| high > low)
 }
 
 #[cfg(test)]

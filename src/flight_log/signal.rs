@@ -20,6 +20,8 @@ pub struct LogSignal {
     pub decimals: u8,
     /// The frame that has the field; `None` if the value is derived.
     pub frame: Option<SignalFrame>,
+    /// `true` if the values rest on something that the header lacks, so that it is assumed.
+    pub is_assumed: bool,
 }
 
 /// The digits after the point of derived signals.
@@ -65,22 +67,25 @@ impl Extent {
 /// Reads a derived value; it is given the charge drawn, mAh.
 type Derived = fn(&LogSample, f64) -> Option<f64>;
 
-/// The derived signals: name, unit, source.
-const DERIVED: &[(&str, &str, Derived)] = &[
-    ("roll", "°", |sample, _| sample.attitude.map(|attitude| attitude.roll_deg)),
-    ("pitch", "°", |sample, _| sample.attitude.map(|attitude| attitude.pitch_deg)),
-    ("heading", "°", |sample, _| sample.attitude.map(|attitude| attitude.heading_deg)),
-    ("north", "m", |sample, _| sample.n),
-    ("east", "m", |sample, _| sample.e),
-    ("altitude", "m", |sample, _| sample.alt),
-    ("home_distance", "m", |sample, _| Some(math::hypot(sample.n?, sample.e?))),
-    ("speed", "m/s", |sample, _| sample.ground_speed_mps),
-    ("climb", "m/s", |sample, _| sample.climb_mps),
-    ("course", "°", |sample, _| sample.course_deg),
-    ("satellites", "", |sample, _| sample.sats.map(f64::from)),
-    ("battery", "V", |sample, _| sample.battery_v),
-    ("current", "A", |sample, _| sample.battery_a),
-    ("charge", "mAh", |sample, drawn_mah| sample.battery_a.map(|_| drawn_mah)),
+/// The fields that give the attitude.
+const ATTITUDE: &[&str] = &["imuQuaternion", "attitude", "gyroADC"];
+
+/// The derived signals: name, unit, the fields of which the first one that a log has is their source, and how to read them.
+const DERIVED: &[(&str, &str, &[&str], Derived)] = &[
+    ("roll", "°", ATTITUDE, |sample, _| sample.attitude.map(|attitude| attitude.roll_deg)),
+    ("pitch", "°", ATTITUDE, |sample, _| sample.attitude.map(|attitude| attitude.pitch_deg)),
+    ("heading", "°", ATTITUDE, |sample, _| sample.attitude.map(|attitude| attitude.heading_deg)),
+    ("north", "m", &["GPS_coord"], |sample, _| sample.n),
+    ("east", "m", &["GPS_coord"], |sample, _| sample.e),
+    ("altitude", "m", &["baroAlt", "BaroAlt", "GPS_altitude"], |sample, _| sample.alt),
+    ("home_distance", "m", &["GPS_coord"], |sample, _| Some(math::hypot(sample.n?, sample.e?))),
+    ("speed", "m/s", &["GPS_speed"], |sample, _| sample.ground_speed_mps),
+    ("climb", "m/s", &["GPS_velned"], |sample, _| sample.climb_mps),
+    ("course", "°", &["GPS_ground_course"], |sample, _| sample.course_deg),
+    ("satellites", "", &["GPS_numSat"], |sample, _| sample.sats.map(f64::from)),
+    ("battery", "V", &["vbat"], |sample, _| sample.battery_v),
+    ("current", "A", &["amperage"], |sample, _| sample.battery_a),
+    ("charge", "mAh", &["amperage"], |sample, drawn_mah| sample.battery_a.map(|_| drawn_mah)),
 ];
 
 /// The source of a signal.
@@ -88,6 +93,18 @@ const DERIVED: &[(&str, &str, Derived)] = &[
 enum Source {
     Derived(Derived),
     Field(FrameKind, Place),
+}
+
+impl Source {
+    /// Returns the value, if it is known.
+    fn read(&self, newest: &Newest<'_>) -> Option<f64> {
+        match self {
+            Self::Derived(read) => read(&newest.state.sample, newest.state.drawn_mah),
+            Self::Field(FrameKind::Slow, place) => place.read(newest.slow).filter(|_| newest.state.has_slow),
+            Self::Field(FrameKind::Gps, place) => place.read(newest.gps).filter(|_| newest.state.has_gps),
+            Self::Field(_, place) => place.read(newest.main),
+        }
+    }
 }
 
 /// The newest values of a log.
@@ -109,9 +126,9 @@ pub(super) struct SignalTable {
 impl SignalTable {
     pub(super) fn of(header: &Header, scales: &Scales) -> Self {
         let mut table = Self { signals: Vec::new(), sources: Vec::new() };
-        for (name, unit, read) in DERIVED {
-            let decimals = DERIVED_DECIMALS;
-            table.signals.push(LogSignal { name: (*name).to_owned(), unit, decimals, frame: None });
+        for (name, unit, _, read) in DERIVED {
+            let (name, decimals) = ((*name).to_owned(), DERIVED_DECIMALS);
+            table.signals.push(LogSignal { name, unit, decimals, frame: None, is_assumed: false });
             table.sources.push(Source::Derived(*read));
         }
         let kinds = [
@@ -132,9 +149,15 @@ impl SignalTable {
                     unit: scale.unit,
                     decimals: scale.decimals(),
                     frame: Some(frame),
+                    is_assumed: scales.is_assumed(kind, field),
                 });
                 table.sources.push(Source::Field(kind, Place { at, signed: field.signed, scale }));
             }
+        }
+        let (derived, fields) = table.signals.split_at_mut(DERIVED.len());
+        for (signal, (_, _, sources, _)) in derived.iter_mut().zip(DERIVED) {
+            let source = |prefix: &&str| fields.iter().find(|field| field.name.starts_with(*prefix));
+            signal.is_assumed = sources.iter().find_map(source).is_some_and(|field| field.is_assumed);
         }
         table
     }
@@ -146,14 +169,12 @@ impl SignalTable {
 
     /// Returns the value of a signal, if it is known.
     pub(super) fn read(&self, signal: usize, newest: &Newest<'_>) -> Option<f64> {
-        match self.sources.get(signal)? {
-            Source::Derived(read) => read(&newest.state.sample, newest.state.drawn_mah),
-            Source::Field(FrameKind::Slow, place) => {
-                place.read(newest.slow).filter(|_| newest.state.has_slow)
-            }
-            Source::Field(FrameKind::Gps, place) => place.read(newest.gps).filter(|_| newest.state.has_gps),
-            Source::Field(_, place) => place.read(newest.main),
-        }
+        self.sources.get(signal)?.read(newest)
+    }
+
+    /// Returns the values of all signals; NaN for an unknown one.
+    pub(super) fn values(&self, newest: Newest<'_>) -> impl Iterator<Item = f64> {
+        self.sources.iter().map(move |source| source.read(&newest).unwrap_or(f64::NAN))
     }
 
     /// Widens the extents of the signals that change with a frame of this kind.

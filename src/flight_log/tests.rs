@@ -6,7 +6,7 @@ mod units;
 
 use std::io;
 
-use super::{FailsafePhase, Indexer, LogFile, LogFlight, LogMarkKind, LogSample};
+use super::{FailsafePhase, Indexer, LogFile, LogFlight, LogMarkKind, LogSample, LogSignal};
 use crate::blackbox::AdjustedValue;
 use crate::signals::SimTime;
 use crate::telemetry::{DisarmReason, Mode, ModeBox};
@@ -236,4 +236,40 @@ fn an_error_of_the_source_is_passed_on() {
     assert!(Indexer::new(Broken).run().is_err());
     let bytes = long(1);
     assert!(only(&bytes).sample(Broken, SimTime(0)).is_err());
+}
+
+#[test]
+fn a_log_of_a_few_frames_is_not_empty() {
+    for frames in [1, 2, 15] {
+        let mut maker = Maker::default();
+        maker.begin(&header());
+        for frame in 0..frames {
+            maker.main(frame, 1_000_000 + 1000 * frame, 0, 0);
+        }
+        let flight = only(&maker.bytes);
+        assert_eq!((flight.is_empty(), flight.counts().main), (false, u64::from(frames)));
+    }
+}
+
+#[test]
+fn values_that_rest_on_a_missing_line_are_marked() {
+    let assumed = |without: &str| {
+        let lines = header() + "H P interval:1\n";
+        let mut maker = Maker::default();
+        maker.begin(&lines.replace(without, "H a:1")).main(7, 1_000_000, 10, 1234);
+        let flight = only(&maker.bytes);
+        let found: Vec<_> = flight.findings().iter().map(|finding| finding.line().to_owned()).collect();
+        let named = |signal: &LogSignal| signal.is_assumed.then(|| signal.name.clone());
+        (found.join(" "), flight.signals().iter().filter_map(named).collect::<Vec<_>>().join(" "))
+    };
+    let of = |found: &str, names: &str| (found.to_owned(), names.to_owned());
+    assert_eq!(assumed("H nothing"), of("", ""));
+    let motors = of("motorOutput", "motor[0] motor[1]");
+    assert_eq!(assumed("H motorOutput:1000,2000"), motors);
+    let gyro = of("gyro_scale", "roll pitch heading gyroADC[0] gyroADC[1] gyroADC[2]");
+    assert_eq!(assumed("H gyro_scale:0x3f800000"), gyro);
+    let revision = "H Firmware revision:Betaflight 4.5.2 (024f8e13d) SITL";
+    let (found, names) = assumed(revision);
+    assert_eq!(found, "Firmware revision vbat_scale");
+    assert_eq!(names, "battery vbatLatest flightModeFlags GPS_altitude");
 }

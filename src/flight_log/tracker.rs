@@ -145,6 +145,13 @@ impl Tracker {
         self.state.sample.sats = read(&fields.sats).and_then(|sats| u8::try_from(sats as i64).ok());
         let is_placed = has_fix && (frame.has_home || !fields.is_relative);
         let place = fields.coordinates.filter(|_| is_placed).and_then(|places| position(&places, values));
+        // The speed of a fix needs no home.
+        if place.is_some() || has_fix && !is_placed {
+            let sample = &mut self.state.sample;
+            sample.ground_speed_mps = read(&fields.speed);
+            sample.course_deg = read(&fields.course).map(attitude::heading);
+            sample.climb_mps = read(&fields.sinking).map(|sinking| -sinking);
+        }
         let Some(place) = place else { return };
         let alt_amsl_m = read(&fields.altitude);
         // Without a home in the log, or without its altitude, the first fix counts.
@@ -155,9 +162,6 @@ impl Tracker {
         let ne = north_east(&home, place);
         (sample.position, sample.n, sample.e) = (Some(place), Some(ne.x), Some(ne.y));
         sample.alt_amsl_m = alt_amsl_m;
-        sample.ground_speed_mps = read(&fields.speed);
-        sample.course_deg = read(&fields.course).map(attitude::heading);
-        sample.climb_mps = read(&fields.sinking).map(|sinking| -sinking);
         if !has_barometer {
             sample.alt = alt_amsl_m.zip(home.alt_amsl_m).map(|(alt, home)| alt - home);
         }

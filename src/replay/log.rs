@@ -9,5 +9,5 @@ mod flight;
 mod happenings;
 mod picture;
 
-pub use about::{log_cut, log_damage};
+pub use about::{log_assumptions, log_end_notices};
 pub use file::LogFlights;

@@ -30,6 +30,15 @@ pub struct Series {
     pub name: String,
     /// The unit; empty if there is none, or if it is unknown.
     pub unit: &'static str,
+    /// `true` if the values rest on something that the record lacks, so that it is assumed.
+    pub is_assumed: bool,
+}
+
+impl Series {
+    /// Returns a series whose values rest on no assumption.
+    pub fn new(name: &str, unit: &'static str) -> Self {
+        Self { name: name.to_owned(), unit, is_assumed: false }
+    }
 }
 
 /// What a display needs of the whole flight.

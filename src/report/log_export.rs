@@ -5,9 +5,10 @@
 
 mod csv;
 mod date;
+mod number;
 #[cfg(test)]
 mod tests;
 mod track;
 
-pub use csv::{LogCsv, write_csv};
+pub use csv::{TableEnd, write_csv};
 pub use track::{log_gpx, log_track};

@@ -248,7 +248,7 @@ mod tests {
             graphs.change_span(-1);
         }
         assert_eq!(graphs.span_s(), 10.0);
-        let series = vec![crate::replay::Series { name: "debug[0]".to_owned(), unit: "" }];
+        let series = vec![crate::replay::Series::new("debug[0]", "")];
         graphs.load(&Overview { series, ..Overview::default() });
         for _ in 0..20 {
             graphs.change_span(-1);

@@ -1,5 +1,7 @@
 //! The series and signals that can be shown as a graph of their own, by name.
 
+use std::borrow::Cow;
+
 use super::shared::Shared;
 use crate::replay::Series;
 use crate::telemetry::signal::{SIGNALS, Signal, SignalInfo};
@@ -45,11 +47,13 @@ impl<'a> Named<'a> {
         }
     }
 
-    /// Returns the unit of the values; empty for counts and shares.
-    pub(super) fn unit(self) -> &'a str {
+    /// Returns the unit of the values; empty for counts and shares. A question mark follows it if the values rest on something
+    /// that the record lacks.
+    pub(super) fn unit(self) -> Cow<'a, str> {
         match self {
-            Self::Recorded(_, series) => series.unit,
-            Self::Signal(info) => info.dimension.unit().map_or("", |unit| unit.name),
+            Self::Recorded(_, series) if series.is_assumed => Cow::Owned(format!("{}?", series.unit)),
+            Self::Recorded(_, series) => Cow::Borrowed(series.unit),
+            Self::Signal(info) => Cow::Borrowed(info.dimension.unit().map_or("", |unit| unit.name)),
         }
     }
 
@@ -73,4 +77,17 @@ impl<'a> Named<'a> {
 /// Returns the size of the unit in SI units.
 pub(super) fn scale(info: &SignalInfo) -> f64 {
     info.dimension.unit().map_or(1.0, |unit| unit.scale)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_question_mark_follows_the_unit_of_values_that_rest_on_an_assumption() {
+        let known = Series::new("gyroADC[0]", "°/s");
+        let assumed = Series { is_assumed: true, ..known.clone() };
+        let unit = |series| Named::Recorded(0, series).unit().into_owned();
+        assert_eq!((unit(&known), unit(&assumed)), ("°/s".to_owned(), "°/s?".to_owned()));
+    }
 }

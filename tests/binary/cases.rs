@@ -158,3 +158,79 @@ fn a_scenario_shows_no_text_of_a_file_that_is_no_plan_and_reads_none_of_another_
     sandbox.run(&["check", "from-others/s.toml", "--list"]).exits(2);
     sandbox.run(&["check", "from-others/s.toml", "--list", "--any-folder"]).exits(0);
 }
+
+/// Writes the table of a log of `tests/cases`. Returns what was said and the cells by row; the first row has the names.
+fn table(name: &str) -> (String, Vec<Vec<String>>) {
+    let sandbox = folder(&[name]);
+    let ran = sandbox.run(&["replay", name, "--csv", "values.csv"]).exits(0);
+    let text = sandbox.read("values.csv");
+    let mut rows = csv::ReaderBuilder::new().has_headers(false).from_reader(text.as_bytes());
+    let cells = |row: csv::Result<csv::StringRecord>| row.expect("a row").iter().map(str::to_owned).collect();
+    (ran.err, rows.records().map(cells).collect())
+}
+
+/// Returns the cells of a column below its name.
+fn column<'a>(rows: &'a [Vec<String>], name: &str) -> Vec<&'a str> {
+    let at = rows[0].iter().position(|known| known == name);
+    let at = at.unwrap_or_else(|| panic!("{name} is not in {:?}", rows[0]));
+    rows[1..].iter().map(|row| row[at].as_str()).collect()
+}
+
+#[test]
+fn a_log_without_the_encodings_of_its_gps_frames_is_read_and_the_missing_line_is_named() {
+    let (said, rows) = table("bbl-inav42-no-g-encoding.bfl");
+    assert!(said.contains("The header has no line `Field G encoding`: "), "{said}");
+    assert!(said.contains("assumed for G frames") && !said.contains("damaged"), "{said}");
+    let places = column(&rows, "GPS_coord[0] (°, assumed)");
+    assert!(
+        rows.len() > 120 && places.last().is_some_and(|place| place.starts_with("40.4635")),
+        "{places:?}"
+    );
+}
+
+#[test]
+fn a_log_with_an_interval_of_zero_is_read_and_what_is_assumed_is_named() {
+    let (said, rows) = table("bbl-253-p-interval-zero.bfl");
+    assert!(said.contains("`P interval:1/0`") && said.contains("an interval of 4 is assumed"), "{said}");
+    assert!(said.contains("These values rest on what is assumed: loopIteration."), "{said}");
+    let iterations: Vec<u32> =
+        column(&rows, "loopIteration (assumed)").iter().map(|cell| cell.parse().expect("a number")).collect();
+    assert!(
+        iterations.len() > 100 && iterations.windows(2).all(|pair| pair[1] - pair[0] == 4),
+        "{iterations:?}"
+    );
+}
+
+#[test]
+fn gps_frames_of_a_log_without_a_home_are_no_gap_and_stay_raw() {
+    let (said, rows) = table("bbl-157-no-home-fields.bfl");
+    assert!(
+        said.contains("`Field H …`: H frames are passed, and places count from an unknown home"),
+        "{said}"
+    );
+    assert!(!said.contains("damaged"), "{said}");
+    let (_, whole) = table("bbl-253-p-interval-zero.bfl");
+    assert_eq!(column(&rows, "motor[0] (%)"), column(&whole, "motor[0] (%)"));
+    assert_eq!(column(&rows, "speed (m/s)"), column(&whole, "speed (m/s)"));
+    let place = column(&rows, "GPS_coord[0] (°, assumed)");
+    assert!(place.last().is_some_and(|place| place.starts_with("0.00000")), "{place:?}");
+    assert_eq!(column(&rows, "north (m, assumed)").concat(), "");
+}
+
+#[test]
+fn a_gap_in_a_header_is_named_with_the_lines_that_it_took() {
+    let (said, rows) = table("header-gap.bbl");
+    assert!(said.contains("The line `Firmware type:Be` of the header"), "{said}");
+    for line in
+        ["Firmware revision", "I interval", "P interval", "vbatref", "motorOutput", "gyro_scale", "acc_1G"]
+    {
+        assert!(said.contains(&format!("The header has no line `{line}`: ")), "{line} in {said}");
+    }
+    assert!(said.contains("These values rest on what is assumed: battery, loopIteration, "), "{said}");
+    let assumed = ["motor[0] (%, assumed)", "gyroADC[0] (°/s, assumed)", "accSmooth[0] (assumed)"];
+    assert!(assumed.iter().all(|name| rows[0].iter().any(|known| known == name)), "{:?}", rows[0]);
+    assert!(rows.len() > 100 && column(&rows, "motor[0] (%, assumed)")[9].starts_with('5'), "{rows:?}");
+    let sandbox = folder(&["header-gap.bbl"]);
+    let shown = sandbox.run(&["replay", "header-gap.bbl", "--plain", "--at", "0"]);
+    assert!(shown.out.contains("`Firmware type:Be`"), "{}", shown.out);
+}

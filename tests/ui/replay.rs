@@ -86,7 +86,7 @@ impl Circle {
             origin: self.has_gps.then_some(fixture::HOME),
             marks,
             pictures: times.map(|time_s| Picture::of(&self.picture(time_s))).collect(),
-            series: series.map(|(name, unit)| Series { name: name.to_owned(), unit }).to_vec(),
+            series: series.map(|(name, unit)| Series::new(name, unit)).to_vec(),
             ..Overview::default()
         }
     }

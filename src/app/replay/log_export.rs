@@ -1,6 +1,5 @@
 //! Writes a blackbox log as files: its values as a table, its places as a track, a page about its flight.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::outputs;
@@ -9,8 +8,8 @@ use crate::app::error::{self, AppError};
 use crate::app::log_source::FileSource;
 use crate::args::ReplayArgs;
 use crate::flight_log::LogFlight;
-use crate::replay::{LogFlights, PastFlights as _, log_cut, log_damage};
-use crate::report::log_export::{log_gpx, log_track, write_csv};
+use crate::replay::{LogFlights, PastFlights as _, log_assumptions, log_end_notices};
+use crate::report::log_export::{TableEnd, log_gpx, log_track, write_csv};
 
 /// Writes the files of the options from the chosen log. Returns `false` if the user ended it; then no file is written.
 ///
@@ -24,32 +23,35 @@ pub(super) fn run(
 ) -> Result<bool, AppError> {
     let report = Report::prepare(args, repeat)?;
     let is_stopped = || stop.load(Ordering::Relaxed);
-    if !logs.read(&mut |_| !is_stopped()).map_err(AppError::input)? {
+    // A table alone needs no index of the file.
+    let needs_index = args.gpx.is_some() || args.kml.is_some() || report.is_some();
+    if needs_index && !logs.read(&mut |_| !is_stopped()).map_err(AppError::input)? {
         return Ok(false);
     }
-    let (number, log) = chosen(args, logs)?;
+    let number = args.number();
+    let log = if needs_index { logs.chosen(number) } else { logs.start(number) }.map_err(AppError::input)?;
     let name = logs.name().to_owned();
-    if args.number().is_none() && logs.count() > 1 {
-        error::tell(&format!(
-            "{name} has {} logs: log {} is written; --log N chooses another one",
-            logs.count(),
-            log.number()
-        ));
-    }
-    for notice in [log_damage(&log), log_cut(&log)].into_iter().flatten() {
-        error::tell(&notice);
-    }
+    log_assumptions(&log).iter().for_each(|notice| error::tell(notice));
     let has_track = args.gpx.is_some() || args.kml.is_some();
     if has_track && log.track().is_empty() {
-        return Err(AppError::input(format!("{name} has no GPS, so there is no track to write")));
+        let why = if log.counts().gps > 0 { "no place with a fix and a home" } else { "no GPS" };
+        return Err(AppError::input(format!("{name} has {why}, so there is no track to write")));
     }
     if let Some(output) = &args.csv {
         let (source, every_us) = (logs.source().clone(), args.row_every_us());
-        let write =
-            |out: &mut dyn std::io::Write| write_csv(&log, source, every_us, out, is_stopped).map(drop);
+        let mut end = None;
+        let write = |out: &mut dyn std::io::Write| {
+            end = Some(write_csv(&log, source, every_us, out, is_stopped)?);
+            Ok(())
+        };
         if !outputs::table(output, stop, write)? {
             return Ok(false);
         }
+        // A reader that had enough leaves the end unknown.
+        end.into_iter().for_each(|end| tell_end(&name, &log, end, number.is_none()));
+    } else {
+        let logs_after = logs.count().saturating_sub(log.number());
+        tell_end(&name, &log, TableEnd { log: log.end(), logs_after }, number.is_none());
     }
     if let Some(path) = &args.gpx {
         outputs::file(path, |out| log_gpx(&log, &name, out).map(drop))?;
@@ -58,7 +60,7 @@ pub(super) fn run(
         outputs::file(path, |out| out.write_all(log_track(&log, &name).kml().as_bytes()))?;
     }
     if let Some(report) = report {
-        let past = logs.open(number).map_err(AppError::input)?;
+        let past = logs.open(log.number() - 1).map_err(AppError::input)?;
         if is_stopped() {
             return Ok(false);
         }
@@ -68,12 +70,13 @@ pub(super) fn run(
     Ok(!is_stopped())
 }
 
-/// Returns the log of the options, or the first that can be shown, with its number from zero.
-fn chosen(args: &ReplayArgs, logs: &LogFlights<FileSource>) -> Result<(usize, Arc<LogFlight>), AppError> {
-    let numbered = |number| logs.log(number).map(|log| (number, log));
-    if let Some(number) = args.number() {
-        return numbered(number).map_err(AppError::input);
+/// Tells what was found in a file that was read to its end.
+fn tell_end(name: &str, log: &LogFlight, end: TableEnd, is_first: bool) {
+    let (number, count) = (log.number(), log.number() + end.logs_after);
+    if is_first && count > 1 {
+        error::tell(&format!(
+            "{name} has {count} logs: log {number} is written; --log N chooses another one"
+        ));
     }
-    let first = (0..logs.count()).map(numbered).find_map(Result::ok);
-    first.map_or_else(|| numbered(0), Ok).map_err(AppError::input)
+    log_end_notices(end.log).for_each(|notice| error::tell(&notice));
 }

@@ -46,9 +46,14 @@ impl Clock {
         self.last
     }
 
+    /// Returns `true` if a stamp follows the last one.
+    pub(super) fn is_next(&self, stamp: Stamp) -> bool {
+        self.last.is_some_and(|last| stamp.follows(last))
+    }
+
     /// Takes the stamp of a frame with differences. Returns `false` and does nothing if it does not follow the last one.
     pub(super) fn step(&mut self, stamp: Stamp) -> bool {
-        let follows = self.last.is_some_and(|last| stamp.follows(last));
+        let follows = self.is_next(stamp);
         if follows {
             self.advance(stamp);
         }

@@ -13,6 +13,8 @@ use super::predict::Context;
 
 /// The number of frames in a row after skipped bytes from which on frames without whole values are taken, too.
 const TRUSTED: u32 = 3;
+/// The most bytes of a frame that the header does not define.
+const MAX_UNDEFINED: usize = 128;
 
 /// The values of a log that outlast a frame: all that is needed to go on at a whole main frame.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -38,6 +40,10 @@ pub(super) enum Step {
     },
     /// A frame whose values cannot be used.
     UselessFrame {
+        length: usize,
+    },
+    /// A frame that the header does not define.
+    UndefinedFrame {
         length: usize,
     },
     /// A byte that belongs to no frame.
@@ -140,6 +146,7 @@ impl Decoder {
         let mut found = None;
         let header = Arc::clone(&self.header);
         match header.layout(kind) {
+            None if kind != FrameKind::Event => return self.undefined(input, is_whole),
             None => found = event(&mut bytes, header.firmware)?,
             Some(layout) => self.decode(kind, layout, &mut bytes)?,
         }
@@ -168,7 +175,62 @@ impl Decoder {
     /// Returns the kind of frame that begins with this byte in this log.
     fn kind(&self, letter: u8) -> Option<FrameKind> {
         let kind = FrameKind::from_letter(letter)?;
-        (kind == FrameKind::Event || self.header.layout(kind).is_some()).then_some(kind)
+        let header = &self.header;
+        let is_known =
+            kind == FrameKind::Event || header.layout(kind).is_some() || header.may_have_undefined(kind);
+        is_known.then_some(kind)
+    }
+
+    /// Finds the end of a frame that the header does not define: the frames of the log go on there.
+    fn undefined(&mut self, input: &[u8], is_whole: bool) -> Result<Step, Stop> {
+        if !self.is_trusted() {
+            return Err(Stop::Wrong);
+        }
+        for length in 1..input.len().min(MAX_UNDEFINED) {
+            match self.goes_on(&input[length..], is_whole) {
+                Ok(()) => return Ok(Step::UndefinedFrame { length }),
+                Err(Stop::Short) => return Err(Stop::Short),
+                Err(Stop::Wrong) => {}
+            }
+        }
+        Err(if input.len() < MAX_UNDEFINED { Stop::Short } else { Stop::Wrong })
+    }
+
+    /// Returns `Ok` if frames that follow the last main frame begin here.
+    fn goes_on(&mut self, input: &[u8], is_whole: bool) -> Result<(), Stop> {
+        let mut rest = input;
+        let mut has_main = false;
+        for _ in 0..TRUSTED {
+            let Some(letter) = rest.first() else {
+                return if is_whole { Ok(()) } else { Err(Stop::Short) };
+            };
+            let kind = self.kind(*letter).ok_or(Stop::Wrong)?;
+            let mut bytes = Bytes::new(&rest[1..]);
+            let header = Arc::clone(&self.header);
+            match header.layout(kind) {
+                // Its end is found in its turn.
+                None if kind != FrameKind::Event && has_main => return Ok(()),
+                None if kind != FrameKind::Event => return Err(Stop::Wrong),
+                None if event(&mut bytes, header.firmware)? == Some(LogEvent::End) => return Ok(()),
+                None => {}
+                Some(layout) => {
+                    let read = self.decode(kind, layout, &mut bytes);
+                    // The log may be cut inside a frame.
+                    if read == Err(Stop::Short) && is_whole && has_main {
+                        return Ok(());
+                    }
+                    read?;
+                }
+            }
+            let is_main = matches!(kind, FrameKind::Intra | FrameKind::Inter);
+            // What follows that frame is predicted from it, so only its own values are right.
+            if is_main && !has_main && !self.state.clock.is_next(self.stamp()) {
+                return Err(Stop::Wrong);
+            }
+            has_main |= is_main;
+            rest = &rest[rest.len() - bytes.remaining()..];
+        }
+        if has_main { Ok(()) } else { Err(Stop::Wrong) }
     }
 
     /// Decodes a frame into its place for a frame that is not taken yet.
@@ -194,9 +256,14 @@ impl Decoder {
         layout.decode(bytes, values, &context)
     }
 
-    fn take_main(&mut self, kind: FrameKind) -> bool {
+    /// Returns the stamp of the main frame being decoded.
+    fn stamp(&self) -> Stamp {
         let value = |at: usize| self.main[0].get(at).copied().unwrap_or_default() as u32;
-        let stamp = Stamp { iteration: value(self.header.iteration_at), time: value(self.header.time_at) };
+        Stamp { iteration: value(self.header.iteration_at), time: value(self.header.time_at) }
+    }
+
+    fn take_main(&mut self, kind: FrameKind) -> bool {
+        let stamp = self.stamp();
         let clock = &mut self.state.clock;
         self.is_first = kind == FrameKind::Intra;
         self.is_synchronised =

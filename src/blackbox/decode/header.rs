@@ -1,20 +1,31 @@
 //! The header of a log: text lines before the first frame.
 
 mod error;
+mod finding;
 mod firmware;
+mod interval;
 mod lines;
+#[cfg(test)]
+mod tests;
 
-use super::super::field::{Field, FrameKind};
+use super::super::field::{Field, FrameKind, Predictor};
 use super::layout::Layout;
 use lines::Lines;
 
+pub(super) use interval::Interval;
+
 pub use error::HeaderError;
+pub use finding::HeaderFinding;
 pub use firmware::{FirmwareName, Version};
 
 /// The most bytes of a header. Real ones have at most 10 kB.
 pub(super) const MAX_HEADER: usize = 32 * 1024;
 /// The most lines of a header. Real ones have at most 300.
 const MAX_LINES: usize = 1000;
+/// The value of `minthrottle` if a header lacks it: the default of most firmwares.
+const MIN_THROTTLE: i32 = 1070;
+/// The lower value of `motorOutput` if a header lacks it: that of PWM.
+const MIN_MOTOR: i32 = 1000;
 
 /// The header of a log.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -33,16 +44,9 @@ pub struct Header {
     /// The places of loopIteration and time in main frames.
     pub(super) iteration_at: usize,
     pub(super) time_at: usize,
-}
-
-/// The loop iterations that are logged.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Interval {
-    /// The distance of whole main frames.
-    intra: u64,
-    /// `shown` of `of` iterations are logged.
-    shown: u64,
-    of: u64,
+    /// The kinds of frames that the log may have without their definition.
+    undefined: Vec<FrameKind>,
+    findings: Vec<HeaderFinding>,
 }
 
 /// The header's numbers to which predictors add.
@@ -61,8 +65,10 @@ impl Header {
     /// Returns the reason for which the log cannot be read.
     pub(super) fn read(bytes: &[u8], is_whole: bool) -> Result<(Self, usize), HeaderError> {
         let (lines, length) = Lines::read(bytes)?;
+        let mut findings = lines.damaged().to_vec();
         match lines.value("Data version") {
-            None | Some("2") => {}
+            Some("2") => {}
+            None => findings.push(HeaderFinding::of(&lines, "Data version", "version 2 is assumed")),
             Some(other) => return Err(HeaderError::DataVersion(other.to_owned())),
         }
         let rest = &bytes[length..];
@@ -71,28 +77,71 @@ impl Header {
             return Err(HeaderError::Cut);
         }
         let cut = |error| if is_whole && rest.is_empty() { HeaderError::Cut } else { error };
-        let intra = lines.layout('I', 'I').map_err(cut)?;
+        let mut intra = lines.layout('I', 'I').map_err(cut)?;
         let inter = lines.layout('I', 'P').map_err(cut)?;
         let place = |name: &'static str| intra.place(name).ok_or(HeaderError::NoField(name));
         let (iteration_at, time_at) = (place("loopIteration")?, place("time")?);
-        // Without the definition of another frame its frames are skipped.
-        let other = |letter| lines.layout(letter, letter).ok();
-        let (firmware, version) = firmware::of(&lines);
-        let header = Self {
+        let (firmware, version) = firmware::of(&lines, &mut findings);
+        let interval = Interval::of(&lines, &mut findings);
+        let constants = Constants::of(&lines, &mut intra, &mut findings);
+        let [slow, home, gps] = ['S', 'H', 'G'].map(|frame| lines.side_layout(frame, &mut findings));
+        let mut header = Self {
             firmware,
             version,
             iteration_at,
             time_at,
-            slow: other('S'),
-            home: other('H'),
-            gps: other('G'),
-            interval: Interval::of(&lines),
-            constants: Constants::of(&lines),
+            slow,
+            home,
+            gps,
+            interval,
+            constants,
             intra,
             inter,
             lines,
+            undefined: Vec::new(),
+            findings,
         };
+        header.find_undefined();
         Ok((header, length))
+    }
+
+    /// Finds the kinds of frames that the log may have without their definition: a part of it is there, or frames that need them
+    /// are defined, or the header is damaged.
+    fn find_undefined(&mut self) {
+        let is_damaged = !self.lines.damaged().is_empty();
+        let coordinates = self.gps.as_ref().is_some_and(|gps| gps.predicts(Predictor::HomeCoordinate));
+        let has_home = self.home.is_some();
+        for (kind, is_needed) in
+            [(FrameKind::Slow, false), (FrameKind::GpsHome, coordinates), (FrameKind::Gps, has_home)]
+        {
+            let letter = char::from(kind.letter());
+            let has_part = self.lines().any(|(name, _)| name.starts_with(&format!("Field {letter} ")));
+            if self.layout(kind).is_some() || !(has_part || is_needed || is_damaged) {
+                continue;
+            }
+            self.undefined.push(kind);
+            if has_part || is_needed {
+                let is_home = kind == FrameKind::GpsHome && coordinates;
+                let rest = if is_home { ", and places count from an unknown home" } else { "" };
+                self.findings.push(HeaderFinding::undefined(letter, rest));
+            }
+        }
+    }
+
+    /// Returns what is wrong with the lines, and what is assumed for decoding. A unit may rest on more lines.
+    pub fn findings(&self) -> &[HeaderFinding] {
+        &self.findings
+    }
+
+    /// Returns a finding about a line that is missing, or whose value cannot be used. `assumed` is a clause without its full
+    /// stop.
+    pub fn finding(&self, line: &str, assumed: &str) -> HeaderFinding {
+        HeaderFinding::of(&self.lines, line, assumed)
+    }
+
+    /// Returns `true` if the log may have frames of this kind although the header does not define them.
+    pub(super) fn may_have_undefined(&self, kind: FrameKind) -> bool {
+        self.undefined.contains(&kind)
     }
 
     /// Returns the value of the first line with this name, as it is in the log.
@@ -127,66 +176,40 @@ impl Header {
     }
 }
 
-impl Interval {
-    fn of(lines: &Lines) -> Self {
-        let positive =
-            |value: Option<i32>| value.and_then(|value| u64::try_from(value).ok()).unwrap_or(1).max(1);
-        let intra = positive(lines.number("I interval"));
-        // Old firmwares write a fraction.
-        let text = lines.value("P interval").unwrap_or_default();
-        let (shown, of) = text.split_once('/').unwrap_or(("1", text));
-        let [shown, of] = [shown, of].map(|part| positive(part.trim().parse().ok()));
-        Self { intra, shown, of }
-    }
-
-    /// Returns the number of iterations after `iteration` that are not logged.
-    pub(super) fn skipped_after(self, iteration: u32) -> u32 {
-        let place = (u64::from(iteration) + 1) % self.intra;
-        let phase = (place + self.shown - 1) % self.of;
-        let skipped = if phase < self.shown { 0 } else { (self.of - phase).min(self.intra - place) };
-        u32::try_from(skipped).unwrap_or(u32::MAX)
-    }
-}
-
 impl Constants {
-    fn of(lines: &Lines) -> Self {
+    /// Returns the numbers of the predictors that whole main frames have.
+    fn of(lines: &Lines, intra: &mut Layout, findings: &mut Vec<HeaderFinding>) -> Self {
+        let mut number = |predictor, line: &str, otherwise: i32, assumed: &str| {
+            lines.number(line).unwrap_or_else(|| {
+                if intra.predicts(predictor) {
+                    findings.push(HeaderFinding::of(lines, line, assumed));
+                    // A difference from an unknown number may be below zero.
+                    if otherwise == 0 {
+                        intra.sign(predictor);
+                    }
+                }
+                otherwise
+            })
+        };
         Self {
-            min_throttle: lines.number("minthrottle").unwrap_or_default(),
-            vbat_reference: lines.number("vbatref").unwrap_or_default(),
-            min_motor: lines.number("motorOutput").unwrap_or_default(),
+            min_throttle: number(
+                Predictor::MinThrottle,
+                "minthrottle",
+                MIN_THROTTLE,
+                &format!("{MIN_THROTTLE} is assumed"),
+            ),
+            vbat_reference: number(
+                Predictor::VbatReference,
+                "vbatref",
+                0,
+                "the voltage at arming is unknown, and voltages are differences from it",
+            ),
+            min_motor: number(
+                Predictor::MinMotor,
+                "motorOutput",
+                MIN_MOTOR,
+                &format!("{MIN_MOTOR} for idling motors and 2000 for full thrust are assumed"),
+            ),
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn interval(intra: u64, shown: u64, of: u64) -> Interval {
-        Interval { intra, shown, of }
-    }
-
-    /// Counts one by one.
-    fn counted(of: Interval, iteration: u32) -> u32 {
-        let is_shown = |at: u64| (at % of.intra + of.shown - 1) % of.of < of.shown;
-        (0..).find(|more| is_shown(u64::from(iteration) + 1 + u64::from(*more))).unwrap()
-    }
-
-    #[test]
-    fn iterations_that_are_not_logged_are_counted() {
-        for (intra, shown, of) in
-            [(32, 1, 4), (32, 1, 1), (32, 2, 3), (32, 5, 3), (32, 1, 64), (1, 1, 1), (30, 1, 7)]
-        {
-            let interval = interval(intra, shown, of);
-            for iteration in 0..200 {
-                assert_eq!(
-                    interval.skipped_after(iteration),
-                    counted(interval, iteration),
-                    "{interval:?} {iteration}"
-                );
-            }
-        }
-        assert_eq!(interval(32, 1, 4).skipped_after(u32::MAX), 0);
-        assert_eq!(interval(i32::MAX as u64, 1, i32::MAX as u64).skipped_after(0), i32::MAX as u32 - 1);
     }
 }

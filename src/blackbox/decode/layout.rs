@@ -70,6 +70,17 @@ impl Layout {
         self.fields.iter().position(|field| field.name == name)
     }
 
+    /// Returns `true` if a field has this predictor.
+    pub(super) fn predicts(&self, predictor: Predictor) -> bool {
+        self.fields.iter().any(|field| field.predictor == predictor)
+    }
+
+    /// Makes the fields with this predictor signed.
+    pub(super) fn sign(&mut self, predictor: Predictor) {
+        let fields = self.fields.iter_mut().filter(|field| field.predictor == predictor);
+        fields.for_each(|field| field.signed = true);
+    }
+
     /// Decodes a frame after its letter into `values`, one for each field.
     pub(super) fn decode(
         &self,

@@ -126,6 +126,12 @@ impl<S: LogSource> LogReader<S> {
         self.window.offset()
     }
 
+    /// Leaves the log being read: the next item is in the next log.
+    pub fn leave_log(&mut self) {
+        (self.log, self.waiting, self.is_over) = (None, None, false);
+        self.passed = Passed::default();
+    }
+
     /// Returns the next item; `None` at the end of the file.
     ///
     /// # Errors
@@ -210,6 +216,10 @@ impl<S: LogSource> LogReader<S> {
                 Step::Event { event, length } => (length, Some(Found::Event { event, offset })),
                 Step::UselessFrame { length } => (length, None),
                 Step::StrayByte => (1, None),
+                Step::UndefinedFrame { length } => {
+                    self.window.advance(length);
+                    continue;
+                }
                 Step::More => {
                     self.window.fill()?;
                     continue;

@@ -1,10 +1,11 @@
 //! A file of blackbox logs.
 
+use std::io;
 use std::sync::Arc;
 
 use super::flight::PastLog;
 use crate::blackbox::decode::LogSource;
-use crate::flight_log::{Indexer, LogFlight, RefusedLog};
+use crate::flight_log::{Indexer, LogFile, LogFlight, RefusedLog};
 use crate::replay::{PastFlight, PastFlights, Progress};
 
 /// The most logs that are named in the sentence about a file.
@@ -51,6 +52,10 @@ impl<S> LogFlights<S> {
         }
     }
 
+    fn unreadable(&self, error: &io::Error) -> String {
+        format!("{} cannot be read: {error}.", self.name)
+    }
+
     /// Returns a sentence that names the logs of a file with several, with the length of each.
     fn list(&self) -> Option<String> {
         if self.logs.len() < 2 {
@@ -70,9 +75,47 @@ impl<S> LogFlights<S> {
         Some(format!("{} has {} logs: {}.", self.name, self.logs.len(), named.join(", ")))
     }
 
+    /// Returns the log with this number, from zero, or the first one that can be shown.
+    ///
+    /// # Errors
+    /// Returns a sentence if it cannot be shown.
+    pub fn chosen(&self, number: Option<usize>) -> Result<Arc<LogFlight>, String> {
+        if let Some(number) = number {
+            return self.log(number);
+        }
+        let first = (0..self.logs.len()).find_map(|number| self.log(number).ok());
+        first.map_or_else(|| self.log(0), Ok)
+    }
+
+    fn take(&mut self, found: LogFile) -> Result<(), String> {
+        self.left_out = found.left_out;
+        let logs = found.flights.into_iter().map(|log| (log.number(), Found::Log(Arc::new(log))));
+        let refused = found.refused.into_iter().map(|log| (log.number, Found::Refused(log)));
+        let mut all: Vec<_> = logs.chain(refused).collect();
+        all.sort_by_key(|(number, _)| *number);
+        self.logs = all.into_iter().map(|(_, found)| found).collect();
+        if self.logs.is_empty() { Err(format!("{} has no blackbox log.", self.name)) } else { Ok(()) }
+    }
+
     /// Returns the bytes of the file.
     pub fn source(&self) -> &S {
         &self.source
+    }
+}
+
+impl<S: LogSource + Clone> LogFlights<S> {
+    /// Returns the log with this number, from zero, or the first one that can be shown, as soon as a cursor can read it. The rest
+    /// of the file is not read, so what is known at the end of the log is missing.
+    ///
+    /// # Errors
+    /// Returns a sentence if the file cannot be read, or the log cannot be shown.
+    pub fn start(&self, number: Option<usize>) -> Result<Arc<LogFlight>, String> {
+        let indexer = Indexer::new(self.source.clone());
+        let found =
+            indexer.run_to_start(number.map(|number| number + 1)).map_err(|error| self.unreadable(&error))?;
+        let mut start = LogFlights::new(&self.name, ());
+        start.take(found)?;
+        start.chosen(number)
     }
 }
 
@@ -87,7 +130,7 @@ impl<S: LogSource + Clone + Send + 'static> PastFlights for LogFlights<S> {
         }
         let mut indexer = Indexer::new(self.source.clone());
         loop {
-            let step = indexer.step().map_err(|error| format!("{} cannot be read: {error}.", self.name))?;
+            let step = indexer.step().map_err(|error| self.unreadable(&error))?;
             if step.is_done {
                 break;
             }
@@ -95,16 +138,7 @@ impl<S: LogSource + Clone + Send + 'static> PastFlights for LogFlights<S> {
                 return Ok(false);
             }
         }
-        let found = indexer.finish();
-        self.left_out = found.left_out;
-        let logs = found.flights.into_iter().map(|log| (log.number(), Found::Log(Arc::new(log))));
-        let refused = found.refused.into_iter().map(|log| (log.number, Found::Refused(log)));
-        let mut all: Vec<_> = logs.chain(refused).collect();
-        all.sort_by_key(|(number, _)| *number);
-        self.logs = all.into_iter().map(|(_, found)| found).collect();
-        if self.logs.is_empty() {
-            return Err(format!("{} has no blackbox log.", self.name));
-        }
+        self.take(indexer.finish())?;
         Ok(true)
     }
 

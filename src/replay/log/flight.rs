@@ -99,8 +99,10 @@ impl<S: LogSource + Send> PastLog<S> {
         let armed_at =
             pictures.iter().find(|snapshot| snapshot.craft.armed == Some(true)).map(|snapshot| snapshot.time);
         let happenings = happenings::of(log.marks(), armed_at);
-        let series =
-            log.signals().iter().map(|signal| Series { name: signal.name.clone(), unit: signal.unit });
+        let series = log
+            .signals()
+            .iter()
+            .map(|signal| Series { is_assumed: signal.is_assumed, ..Series::new(&signal.name, signal.unit) });
         let length_us = log.last().0.saturating_sub(log.first().0);
         Overview {
             first: log.first(),

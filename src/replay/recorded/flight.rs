@@ -108,7 +108,7 @@ fn value(picture: &Recorded, signal: Signal) -> Option<f64> {
 }
 
 fn series(info: &SignalInfo) -> Series {
-    Series { name: info.name.to_owned(), unit: info.dimension.unit().map_or("", |unit| unit.name) }
+    Series::new(info.name, info.dimension.unit().map_or("", |unit| unit.name))
 }
 
 fn kind(what: &Happened) -> PastEventKind {

@@ -2,64 +2,92 @@
 
 use std::io::{self, Write};
 
+use super::number;
 use crate::blackbox::decode::LogSource;
-use crate::flight_log::{LogFlight, LogSample, LogSignal};
+use crate::flight_log::{BoxFlags, FlightCursor, LogEnd, LogFlight};
 use crate::signals::SimTime;
 
 /// The columns before the signals: the time since the first frame, the time on the craft's clock, and the boxes that are on.
 const FIRST: [&str; 3] = ["time (s)", "boot_time (s)", "modes"];
+/// The most bytes of rows in memory, about.
+const MAX_TEXT: usize = 64 * 1024;
 
-/// Writes a header and one row a sample. A value that is not known is an empty cell.
+/// What is known of a file after the table of a log is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct TableEnd {
+    pub log: LogEnd,
+    /// The number of logs after this one, readable or not.
+    pub logs_after: usize,
+}
+
+/// Writes a header and one row a frame. A value that is not known is an empty cell.
 #[derive(Debug)]
-pub struct LogCsv<W: Write> {
+struct LogCsv<W: Write> {
     first: SimTime,
-    signals: Vec<LogSignal>,
-    rows: ::csv::Writer<W>,
+    /// The decimals of each signal.
+    decimals: Vec<u8>,
+    /// The boxes of the last row, and their cell.
+    modes: (Option<BoxFlags>, Vec<u8>),
+    text: Vec<u8>,
+    out: W,
 }
 
 impl<W: Write> LogCsv<W> {
-    /// Writes the header.
-    ///
-    /// # Errors
-    ///
-    /// Returns the error of the output.
-    pub fn new(out: W, flight: &LogFlight) -> io::Result<Self> {
-        let signals = flight.signals().to_vec();
-        let mut rows = ::csv::Writer::from_writer(out);
-        let names = signals.iter().map(|signal| match signal.unit {
-            "" => signal.name.clone(),
-            unit => format!("{} ({unit})", signal.name),
+    /// Begins with the header.
+    fn new(out: W, flight: &LogFlight) -> io::Result<Self> {
+        let signals = flight.signals();
+        let names = signals.iter().map(|signal| match (signal.unit, signal.is_assumed) {
+            ("", false) => signal.name.clone(),
+            ("", true) => format!("{} (assumed)", signal.name),
+            (unit, false) => format!("{} ({unit})", signal.name),
+            (unit, true) => format!("{} ({unit}, assumed)", signal.name),
         });
-        rows.write_record(FIRST.map(str::to_owned).into_iter().chain(names))?;
-        Ok(Self { first: flight.first(), signals, rows })
+        let text = record(FIRST.map(str::to_owned).into_iter().chain(names))?;
+        let decimals = signals.iter().map(|signal| signal.decimals).collect();
+        Ok(Self { first: flight.first(), decimals, modes: (None, Vec::new()), text, out })
     }
 
-    /// Writes the row of a sample.
-    ///
-    /// # Errors
-    ///
-    /// Returns the error of the output.
-    pub fn row(&mut self, sample: &LogSample) -> io::Result<()> {
-        let seconds = |time_us: u64| format!("{}.{:06}", time_us / 1_000_000, time_us % 1_000_000);
-        let modes =
-            sample.boxes.map(|boxes| boxes.names().collect::<Vec<_>>().join(" + ")).unwrap_or_default();
-        self.rows.write_field(seconds(sample.time.0 - self.first.0.min(sample.time.0)))?;
-        self.rows.write_field(seconds(sample.time.0))?;
-        self.rows.write_field(modes)?;
-        for (signal, value) in self.signals.iter().zip(&sample.values) {
-            self.rows.write_field(cell(*value, signal.decimals))?;
+    /// Writes the row of the frame at which a cursor is.
+    fn row<S: LogSource>(&mut self, cursor: &FlightCursor<'_, S>) -> io::Result<()> {
+        let (time, boxes) = (cursor.time(), cursor.latest().boxes);
+        if self.modes.0 != boxes {
+            self.modes = (boxes, modes(boxes)?);
         }
-        Ok(self.rows.write_record(None::<&[u8]>)?)
+        let text = &mut self.text;
+        number::append_seconds(text, time.0.saturating_sub(self.first.0));
+        text.push(b',');
+        number::append_seconds(text, time.0);
+        text.push(b',');
+        text.extend_from_slice(&self.modes.1);
+        for (value, decimals) in cursor.values().zip(&self.decimals) {
+            text.push(b',');
+            number::append(text, value, *decimals);
+        }
+        text.push(b'\n');
+        if text.len() >= MAX_TEXT { self.flush() } else { Ok(()) }
     }
 
-    /// Writes the rows that are still in memory, and returns the output.
-    ///
-    /// # Errors
-    ///
-    /// Returns the error of the output.
-    pub fn finish(self) -> io::Result<W> {
-        self.rows.into_inner().map_err(::csv::IntoInnerError::into_error)
+    /// Writes the rows that are still in memory.
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.write_all(&self.text)?;
+        self.text.clear();
+        Ok(())
     }
+}
+
+/// Returns a line of cells.
+fn record(cells: impl IntoIterator<Item = String>) -> io::Result<Vec<u8>> {
+    let mut line = ::csv::Writer::from_writer(Vec::new());
+    line.write_record(cells)?;
+    line.into_inner().map_err(::csv::IntoInnerError::into_error)
+}
+
+/// Returns the cell of boxes.
+fn modes(boxes: Option<BoxFlags>) -> io::Result<Vec<u8>> {
+    let Some(boxes) = boxes else { return Ok(Vec::new()) };
+    // A line with a single empty cell would have quotes.
+    let line = record([String::new(), boxes.names().collect::<Vec<_>>().join(" + ")])?;
+    Ok(line.trim_ascii().get(1..).unwrap_or_default().to_vec())
 }
 
 /// Writes the main frames of a log: all of them, or the first one in each interval of so many microseconds. `is_stopped` is
@@ -74,13 +102,16 @@ pub fn write_csv<S: LogSource, W: Write>(
     interval_us: Option<u64>,
     out: W,
     is_stopped: impl Fn() -> bool,
-) -> io::Result<W> {
+) -> io::Result<TableEnd> {
     let mut table = LogCsv::new(out, flight)?;
     let mut due = flight.first();
-    let Some(mut cursor) = flight.cursor(source, due)? else { return table.finish() };
+    let Some(mut cursor) = flight.cursor(source, due)? else {
+        table.flush()?;
+        return Ok(TableEnd::default());
+    };
     while !is_stopped() {
         if cursor.time() >= due {
-            table.row(&cursor.sample())?;
+            table.row(&cursor)?;
             if let Some(interval_us) = interval_us.filter(|interval_us| *interval_us > 0) {
                 let since = cursor.time().0 - flight.first().0;
                 due = SimTime(flight.first().0 + (since / interval_us + 1) * interval_us);
@@ -90,29 +121,6 @@ pub fn write_csv<S: LogSource, W: Write>(
             break;
         }
     }
-    table.finish()
-}
-
-/// Returns a number with at most so many decimals; empty for an unknown one.
-fn cell(value: f64, decimals: u8) -> String {
-    if !value.is_finite() {
-        return String::new();
-    }
-    let text = format!("{value:.*}", usize::from(decimals));
-    let short = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    if short == "-0" { "0".to_owned() } else { short.to_owned() }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn cells_are_short_and_without_a_negative_zero() {
-        assert_eq!(cell(1.25, 3), "1.25");
-        assert_eq!(cell(-0.0001, 3), "0");
-        assert_eq!(cell(1200.0, 0), "1200");
-        assert_eq!(cell(40.464_000_1, 7), "40.4640001");
-        assert_eq!(cell(f64::NAN, 3), "");
-    }
+    table.flush()?;
+    Ok(TableEnd { log: cursor.end(), logs_after: cursor.count_logs_after()? })
 }

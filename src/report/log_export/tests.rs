@@ -1,7 +1,7 @@
 //! A stored log as a table and as tracks.
 
 use super::{log_gpx, log_track, write_csv};
-use crate::flight_log::{Indexer, LogFlight};
+use crate::flight_log::{Indexer, LogEnd, LogFlight};
 use crate::plan::feature::Shape;
 use crate::plan::format::read_features;
 
@@ -12,9 +12,15 @@ fn flight(bytes: &[u8]) -> LogFlight {
     Indexer::new(bytes).run().unwrap().flights.remove(0)
 }
 
+fn written(interval_us: Option<u64>, is_stopped: bool) -> Vec<u8> {
+    let mut text = Vec::new();
+    write_csv(&flight(LOG), LOG, interval_us, &mut text, || is_stopped).unwrap();
+    text
+}
+
 /// Returns the rows of a table.
 fn table(interval_us: Option<u64>) -> Vec<csv::StringRecord> {
-    let text = write_csv(&flight(LOG), LOG, interval_us, Vec::new(), || false).unwrap();
+    let text = written(interval_us, false);
     let mut rows = csv::ReaderBuilder::new().has_headers(false).from_reader(text.as_slice());
     rows.records().map(Result::unwrap).collect()
 }
@@ -42,8 +48,32 @@ fn rows_may_be_an_interval_apart() {
 
 #[test]
 fn a_table_that_is_stopped_has_the_rows_so_far() {
-    let text = write_csv(&flight(LOG), LOG, None, Vec::new(), || true).unwrap();
+    let text = written(None, true);
     assert_eq!(text.iter().filter(|byte| **byte == b'\n').count(), 1, "only the header");
+}
+
+#[test]
+fn a_table_needs_no_index_and_gives_what_is_known_at_the_end() {
+    let file = include_bytes!("../../../tests/corpus/blackbox/damaged.bbl");
+    let frames = LOG.windows(3).position(|bytes| bytes == b"\nE\0").unwrap() + 1;
+    let early = [&LOG[..frames], b"?????", &LOG[frames..]].concat();
+    for (bytes, number) in [(LOG, None), (&file[..], None), (&early, None), (&[file, LOG].concat(), Some(2))]
+    {
+        let whole = Indexer::new(bytes).run().unwrap().flights;
+        let at = number.unwrap_or(1) - 1;
+        let start = Indexer::new(bytes).run_to_start(number).unwrap().flights.pop().unwrap();
+        let (mut with_index, mut without) = (Vec::new(), Vec::new());
+        let end = write_csv(&whole[at], bytes, None, &mut with_index, || false).unwrap();
+        assert_eq!(write_csv(&start, bytes, None, &mut without, || false).unwrap(), end);
+        assert!(with_index == without && without.len() > 100);
+        let LogEnd { counts, cut_bytes, is_complete } = whole[at].end();
+        assert_eq!((end.log.cut_bytes, end.log.is_complete), (cut_bytes, is_complete));
+        assert_eq!(
+            (end.log.counts.main, end.log.counts.skipped_bytes, end.log.counts.skipped_frames),
+            (counts.main, counts.skipped_bytes, counts.skipped_frames)
+        );
+        assert_eq!(end.logs_after, whole.len() - at - 1);
+    }
 }
 
 #[test]

@@ -66,7 +66,7 @@ mod tests {
 
     #[test]
     fn chosen_graphs_stay_when_the_recorded_flight_is_read() {
-        let series = vec![crate::replay::Series { name: "debug[0]".to_owned(), unit: "" }];
+        let series = vec![crate::replay::Series::new("debug[0]", "")];
         let overview = crate::replay::Overview { series, ..crate::replay::Overview::default() };
         let mut graphs = GraphsState::default();
         graphs.load(&overview);

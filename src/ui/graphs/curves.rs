@@ -67,7 +67,7 @@ mod tests {
     use crate::replay::Overview;
 
     fn series() -> Vec<Series> {
-        ["gyroADC[0]", "motor[0]"].map(|name| Series { name: name.to_owned(), unit: "" }).to_vec()
+        ["gyroADC[0]", "motor[0]"].map(|name| Series::new(name, "")).to_vec()
     }
 
     fn graphs() -> GraphsState {

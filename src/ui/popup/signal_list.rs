@@ -88,7 +88,7 @@ pub(in crate::ui) fn draw(
         let mark = if state.graphs.shows_series(named.name()) { "✓" } else { " " };
         let value = named.value(state).map_or_else(|| "—".to_owned(), |value| format!("{value:.2}"));
         let name = cut(named.name(), 26);
-        let text = format!(" {mark} {name:<26} {value:>10} {:<18}", cut(named.unit(), 8));
+        let text = format!(" {mark} {name:<26} {value:>10} {:<18}", cut(&named.unit(), 8));
         row(buffer, inside, 1 + (at - first) as u16, theme, role, &text);
     }
     if let Some(help) = found.get(list.selected).and_then(|named| named.help()) {

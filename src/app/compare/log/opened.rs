@@ -7,7 +7,7 @@ use crate::app::AppError;
 use crate::app::input_file;
 use crate::app::log_source::FileSource;
 use crate::flight_log::{Indexer, LogFile, LogFlight, LogHome, LogSample, LogSticks};
-use crate::replay::{log_cut, log_damage};
+use crate::replay::{log_assumptions, log_end_notices};
 use crate::text::printable;
 
 /// A log and the bytes of its file.
@@ -44,7 +44,7 @@ impl OpenLog {
                 flight.number()
             ));
         }
-        notices.extend([log_damage(&flight), log_cut(&flight)].into_iter().flatten());
+        notices.extend(log_assumptions(&flight).into_iter().chain(log_end_notices(flight.end())));
         Ok(Self { name, source, flight })
     }
 

@@ -1,5 +1,6 @@
 //! The firmware that wrote a log.
 
+use super::finding::HeaderFinding;
 use super::lines::Lines;
 
 /// The version of a firmware: major, minor, patch.
@@ -19,20 +20,30 @@ pub enum FirmwareName {
     Unknown,
 }
 
-/// Returns the firmware that a header names. Forks of Cleanflight write their own name only into the revision.
-pub(super) fn of(lines: &Lines) -> (FirmwareName, Version) {
+/// Returns the firmware that a header names, and adds what is assumed of it. Forks of Cleanflight write their own name only into
+/// the revision.
+pub(super) fn of(lines: &Lines, findings: &mut Vec<HeaderFinding>) -> (FirmwareName, Version) {
     use strum::IntoEnumIterator as _;
     let revision = lines.value("Firmware revision").unwrap_or_default();
     let (word, rest) = revision.trim_start().split_once(' ').unwrap_or((revision, ""));
     let called =
         |name: &str| FirmwareName::iter().find(|known| <&str>::from(known).eq_ignore_ascii_case(name));
-    match called(word) {
-        Some(name) => (name, version(rest)),
-        None => (
-            called(lines.value("Firmware type").unwrap_or_default()).unwrap_or(FirmwareName::Unknown),
-            (0, 0, 0),
-        ),
+    if let Some(name) = called(word) {
+        return (name, version(rest));
     }
+    let name = called(lines.value("Firmware type").unwrap_or_default());
+    if name.is_none() {
+        findings.push(HeaderFinding::of(
+            lines,
+            "Firmware type",
+            "the units of an unknown firmware are assumed",
+        ));
+    }
+    if revision.is_empty() {
+        let assumed = "the units of an unknown version are assumed, and modes have no names";
+        findings.push(HeaderFinding::of(lines, "Firmware revision", assumed));
+    }
+    (name.unwrap_or(FirmwareName::Unknown), (0, 0, 0))
 }
 
 /// Returns the version at the start of a text such as `4.5.2 (024f8e13d)` or `2026.12.0-alpha`.
@@ -49,7 +60,7 @@ mod tests {
 
     fn named(revision: &str, kind: &str) -> (FirmwareName, Version) {
         let text = format!("H Firmware type:{kind}\nH Firmware revision:{revision}\n");
-        of(&Lines::read(text.as_bytes()).unwrap().0)
+        of(&Lines::read(text.as_bytes()).unwrap().0, &mut Vec::new())
     }
 
     #[test]

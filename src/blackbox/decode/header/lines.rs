@@ -2,34 +2,71 @@
 
 use super::super::super::field::{Encoding, Field, Predictor};
 use super::super::layout::Layout;
+use super::finding::HeaderFinding;
 use super::{HeaderError, MAX_HEADER, MAX_LINES};
 
 /// The most bytes of a line. Firmwares write less than 1024.
 const MAX_LINE: usize = 8192;
 /// The most fields of a frame.
 const MAX_FIELDS: usize = 256;
+/// The most damaged lines that are named.
+const MAX_DAMAGED: usize = 20;
+/// The lines with free text, which may have a colon.
+const FREE_TEXT: [&str; 9] = [
+    "Product",
+    "Firmware revision",
+    "Firmware date",
+    "Board information",
+    "Log start datetime",
+    "Craft name",
+    "Pilot name",
+    "Log writer",
+    "DeviceUID",
+];
 
 /// The lines of a header, each as name and value.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Lines(Vec<(String, String)>);
+pub(super) struct Lines {
+    all: Vec<(String, String)>,
+    /// The lines that are not of the known form.
+    damaged: Vec<HeaderFinding>,
+}
 
 impl Lines {
     /// Reads the lines at the start of `bytes`. Returns them with their length.
     pub(super) fn read(bytes: &[u8]) -> Result<(Self, usize), HeaderError> {
-        let mut lines = Vec::new();
+        let (mut all, mut damaged) = (Vec::new(), Vec::new());
         let mut at = 0;
-        while let Some((name, value, length)) = line(&bytes[at..]) {
-            lines.push((text(name), text(value)));
-            at += length;
-            if at > MAX_HEADER || lines.len() > MAX_LINES {
+        // The line before the first one of these names the format.
+        for number in 2.. {
+            let rest = &bytes[at..];
+            at += if let Some((name, value, length)) = line(rest) {
+                let (name, value) = (text(name), text(value));
+                if !is_known_form(&name, &value) {
+                    damaged.push(HeaderFinding::joined(number, &name, &value));
+                }
+                all.push((name, value));
+                length
+            } else if let Some(length) = damaged_length(rest) {
+                damaged.push(HeaderFinding::damaged(number, &rest[..length]));
+                length
+            } else {
+                break;
+            };
+            if at > MAX_HEADER || all.len() > MAX_LINES {
                 return Err(HeaderError::TooLong { bytes: MAX_HEADER, lines: MAX_LINES });
             }
         }
-        Ok((Self(lines), at))
+        damaged.truncate(MAX_DAMAGED);
+        Ok((Self { all, damaged }, at))
     }
 
     pub(super) fn iter(&self) -> impl Iterator<Item = (&str, &str)> {
-        self.0.iter().map(|(name, value)| (name.as_str(), value.as_str()))
+        self.all.iter().map(|(name, value)| (name.as_str(), value.as_str()))
+    }
+
+    pub(super) fn damaged(&self) -> &[HeaderFinding] {
+        &self.damaged
     }
 
     pub(super) fn value(&self, name: &str) -> Option<&str> {
@@ -53,6 +90,62 @@ impl Lines {
             _ => return Err(HeaderError::NoLine(name)),
         };
         if list.len() > MAX_FIELDS { Err(HeaderError::TooManyFields(MAX_FIELDS)) } else { Ok(list) }
+    }
+
+    /// Returns the layout of a frame other than a main frame, and adds what is assumed of it. If one of its four lines cannot be
+    /// used, it is assumed from the others, as firmwares write them.
+    pub(super) fn side_layout(&self, frame: char, findings: &mut Vec<HeaderFinding>) -> Option<Layout> {
+        let prefix = format!("Field {frame} ");
+        let given = || self.iter().filter(|(name, _)| name.starts_with(&prefix));
+        given().next()?;
+        if let Ok(layout) = self.layout(frame, frame) {
+            return Some(layout);
+        }
+        for what in ["name", "signed", "predictor", "encoding"] {
+            let line = format!("{prefix}{what}");
+            let mut mended = Self {
+                all: given().map(|(name, value)| (name.to_owned(), value.to_owned())).collect(),
+                damaged: Vec::new(),
+            };
+            mended.all.retain(|(name, _)| *name != line);
+            let Some(value) = mended.assumed(frame, what) else { continue };
+            mended.all.push((line.clone(), value));
+            if let Ok(layout) = mended.layout(frame, frame) {
+                let assumed =
+                    format!("the one that firmwares write for such fields is assumed for {frame} frames");
+                findings.push(HeaderFinding::of(self, &line, &assumed));
+                return Some(layout);
+            }
+        }
+        None
+    }
+
+    /// Returns the values that firmwares write in one of the lines that define a frame, from the other lines.
+    fn assumed(&self, frame: char, what: &str) -> Option<String> {
+        let list = |what: &str| self.list(frame, what).ok();
+        let value = |at: usize| -> Option<String> {
+            let name = || list("name")?.get(at).copied();
+            Some(match what {
+                "name" => format!("{frame}[{at}]"),
+                "signed" => u8::from(*list("encoding")?.get(at)? == "0").to_string(),
+                "predictor" => match (frame, name()?) {
+                    ('G', "time") => Predictor::LastMainFrameTime as u8,
+                    (_, "GPS_coord[0]" | "GPS_coord[1]") => Predictor::HomeCoordinate as u8,
+                    _ => Predictor::Zero as u8,
+                }
+                .to_string(),
+                _ => match name()? {
+                    "failsafePhase" | "rxSignalReceived" | "rxFlightChannelsValid" => {
+                        Encoding::Tag2_3S32 as u8
+                    }
+                    _ if *list("signed")?.get(at)? == "0" => Encoding::UnsignedVb as u8,
+                    _ => Encoding::SignedVb as u8,
+                }
+                .to_string(),
+            })
+        };
+        let count = if what == "name" { list("encoding") } else { list("name") }?.len();
+        Some((0..count).map(value).collect::<Option<Vec<_>>>()?.join(","))
     }
 
     /// Returns the layout of a frame: names and signs from the lines of one letter, predictors and encodings from those of
@@ -99,6 +192,30 @@ fn line(bytes: &[u8]) -> Option<(&[u8], &[u8], usize)> {
     let end = bytes.iter().take(MAX_LINE).position(|byte| *byte == b'\n')?;
     let colon = bytes[..end].iter().position(|byte| *byte == b':')?;
     Some((&bytes[..colon], &bytes[colon + 1..end], end + 3))
+}
+
+/// Returns `false` if a line has parts of two lines, or characters that no firmware writes.
+fn is_known_form(name: &str, value: &str) -> bool {
+    let is_setting = !name.starts_with(|first: char| first.is_ascii_uppercase())
+        || name.starts_with("Field ")
+        || ["Data version", "Firmware type", "I interval", "P interval", "P ratio"].contains(&name);
+    let has_room = |text: &str| !text.contains(|letter: char| letter.is_control() || letter == '\u{fffd}');
+    let is_name = name.bytes().all(|byte| (b' '..=b'~').contains(&byte));
+    let is_free = FREE_TEXT.contains(&name);
+    is_name && (is_free || has_room(value)) && !(is_setting && value.contains(':'))
+}
+
+/// Returns the length of the bytes before the next line of a header, if they are the rest of damaged lines and no frames: a gap
+/// leaves text, or the bytes of a card that was never written.
+fn damaged_length(bytes: &[u8]) -> Option<usize> {
+    let is_left = |byte: u8| matches!(byte, b' '..=b'~' | b'\t' | b'\r' | b'\n' | 0 | 0xff);
+    let within = bytes.iter().take(MAX_LINE).take_while(|byte| is_left(**byte)).count();
+    let ends = bytes[..within].iter().enumerate().filter(|(_, byte)| **byte == b'\n').map(|(at, _)| at + 1);
+    let is_line = |at: &usize| {
+        let next = line(&bytes[*at..]).map(|(name, value, _)| (text(name), text(value)));
+        next.is_some_and(|(name, value)| !name.is_empty() && is_known_form(&name, &value))
+    };
+    ends.into_iter().find(is_line)
 }
 
 fn text(bytes: &[u8]) -> String {

@@ -63,6 +63,15 @@ proptest! {
     }
 
     #[test]
+    fn any_bytes_after_a_header_without_all_definitions_are_read_to_their_end(
+        bytes in almost_frames(),
+        missing in prop::sample::select(vec!["H Field H", "H Field G name", "H Field G encoding", "H Field S"]),
+    ) {
+        let lines: String = HEADER.split_inclusive('\n').filter(|line| !line.starts_with(missing)).collect();
+        assert_laws(&[lines.as_bytes(), &bytes].concat());
+    }
+
+    #[test]
     fn any_change_of_a_log_is_read_to_its_end(
         at in any::<prop::sample::Index>(),
         change in 1..=255_u8,
