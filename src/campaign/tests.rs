@@ -124,6 +124,42 @@ fn a_grid_of_another_size_than_asked_for_is_refused() {
     assert_eq!(problem, "the grid has 2 flights, not 5: leave the number out, or choose another design");
 }
 
+/// Returns the sentence that refuses the flights of a campaign, if they are equal.
+fn equal_flights(text: &str, count: u64) -> Option<String> {
+    let text = format!("{text}\n{PLAN}");
+    let flights = Flights::OfCampaign { is_drawn: true };
+    let request = Request { file: "test.toml", text: &text, seeds: None, max_flights: 10, flights };
+    let scenario =
+        read_request(&request, &mut NoFiles).unwrap_or_else(|errors| panic!("{}", report(&errors)));
+    Campaign::new(scenario, Some(count), None).unwrap().refuse_equal_flights().err()
+}
+
+#[test]
+fn twenty_flights_in_which_nothing_varies_are_refused_with_the_option_that_helps() {
+    let one = "nothing varies: the 20 flights would be one and the same flight: ";
+    let seeds = format!("{one}fly other seeds, --seeds 1..20, or vary an input");
+    assert_eq!(equal_flights("seeds = 1", 20), Some(seeds.clone()));
+    assert_eq!(equal_flights("vary = { wind = '5@270' }\nseeds = 1", 20), Some(seeds));
+    let few = equal_flights("seeds = '1..4'", 20).unwrap();
+    assert!(
+        few.starts_with("only 4 of the 20 flights would differ: ") && few.contains("--seeds 1..20"),
+        "{few}"
+    );
+    let calm = equal_flights("air = { noise = 'none' }\nseeds = '1..'", 20).unwrap();
+    assert!(calm.starts_with(&format!("{one}a seed changes nothing without noise")), "{calm}");
+    for (text, count) in [
+        ("seeds = 1", 1),
+        ("seeds = '1..'", 20),
+        ("seeds = '3..22'", 20),
+        ("", 20),
+        ("vary = { mass_pct = '+- 3' }\nseeds = 1", 20),
+        ("vary = { wind = '5@0..360' }\nair = { noise = 'none' }\nseeds = 1", 20),
+        ("air = { noise = 'none', wind = '{seed % 9}@270' }", 20),
+    ] {
+        assert_eq!(equal_flights(text, count), None, "{text}");
+    }
+}
+
 /// Returns the record of a flight with these inputs.
 fn record(number: u64, side: Side, fails: bool, inputs: &[(&str, f64)]) -> Record {
     let campaign = campaign("");

@@ -57,6 +57,13 @@ impl Loaded {
         let definition = &header.definition;
         let mut sources = Sources { place: None, contents: definition.files.clone() };
         let campaign = campaign(definition, &mut sources)?;
+        if campaign.count() != header.flights {
+            return Err(AppError::input(format!(
+                "the first line of the run is damaged: it says {} flights, and its campaign has {}",
+                header.flights,
+                campaign.count()
+            )));
+        }
         Self::with_header(header, campaign)
     }
 
