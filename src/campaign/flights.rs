@@ -37,6 +37,14 @@ pub struct CampaignFlight {
     pub problem: Option<String>,
 }
 
+impl CampaignFlight {
+    /// Returns the reason why the flight cannot be flown, as far as it is known without building its world.
+    pub fn impossible(&self) -> Option<String> {
+        let world = || self.case.setup_in(&self.air).world.check().err().map(|error| error.to_string());
+        self.problem.clone().or_else(world)
+    }
+}
+
 impl Campaign {
     /// Returns the flights of a scenario. `flights` and `design` take the place of those in the file.
     ///

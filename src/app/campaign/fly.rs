@@ -33,6 +33,7 @@ pub(super) fn run(args: &CampaignArgs, repeat: &[String]) -> Result<u8, AppError
             outputs::claim(&args.output, args.out.as_deref(), &inputs)?;
             let loaded = Loaded::new(*definition, sources)?;
             loaded.campaign.refuse_equal_flights().map_err(AppError::input)?;
+            loaded.refuse_impossible_flights()?;
             (loaded, args.out.clone(), shard)
         }
         Wanted::Run(path, header) => {
