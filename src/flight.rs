@@ -23,6 +23,7 @@
 mod craft_at_boot;
 pub mod forecast;
 mod judge;
+mod progress;
 pub mod setup;
 pub mod sweep;
 mod truth_check;
@@ -31,8 +32,9 @@ mod waiting;
 
 pub use craft_at_boot::craft_at_boot;
 pub use judge::{Judge, JudgeFacts};
+use progress::Progress;
 pub use setup::FlightSetup;
-pub use verdict::{FlightResult, Verdict};
+pub use verdict::{Crash, FlightResult, Verdict};
 
 use nalgebra::Vector2;
 use truth_check::{CraftTruth, TruthCheck, agreement};
@@ -41,7 +43,8 @@ use crate::firmware::Firmware;
 use crate::plan::{FlightPlan, WaypointType};
 use crate::signals::SimTime;
 use crate::telemetry::{
-    Event, EventKind, FirmwareEvent, FlightTruth, Mode, NavEvent, NavTelemetry, PlanSource,
+    CrashCause, Event, EventKind, FirmwareEvent, FlightTruth, Mode, NavEvent, NavState, NavTelemetry,
+    PlanSource,
 };
 use crate::vehicle::Vehicle;
 
@@ -81,6 +84,8 @@ pub struct Flight {
     /// True altitude at which the craft was armed, m.
     armed_alt_m: f64,
     battery_empty_at: Option<SimTime>,
+    crash: Option<Crash>,
+    progress: Progress,
     next_look: SimTime,
 }
 
@@ -125,6 +130,8 @@ impl Flight {
             nav_events: Vec::with_capacity(8),
             armed_alt_m,
             battery_empty_at: None,
+            crash: None,
+            progress: Progress::default(),
             next_look: SimTime::ZERO,
         }
     }
@@ -154,7 +161,7 @@ impl Flight {
         self.vehicle.tick();
         let (touched_down, nav_events) = (&mut self.touched_down, &mut self.nav_events);
         let battery_empty_at = &mut self.battery_empty_at;
-        let (mut was_armed, mut happened) = (false, false);
+        let (mut was_armed, mut happened, mut impact) = (false, false, None);
         self.vehicle.drain_events(|event| {
             happened = true;
             match &event.kind {
@@ -165,11 +172,11 @@ impl Flight {
                 }
                 EventKind::Firmware(FirmwareEvent::Nav(event)) => nav_events.push(event.clone()),
                 EventKind::BatteryEmpty { .. } => *battery_empty_at = Some(event.time),
+                EventKind::Crash { cause } => impact = Some(*cause),
                 EventKind::Boot { .. }
                 | EventKind::Firmware(_)
                 | EventKind::Fault { .. }
                 | EventKind::Contact { .. }
-                | EventKind::Crash { .. }
                 | EventKind::Notice(_) => {}
             }
             report(event);
@@ -177,12 +184,16 @@ impl Flight {
         if was_armed {
             self.armed_alt_m = self.true_alt_m();
         }
+        if impact.is_some() {
+            self.crash = Some(self.crash_of(impact));
+        }
         let now = self.vehicle.time();
         if !happened && now < self.next_look {
             return None;
         }
         self.next_look = SimTime((now.0 / LOOK_US + 1) * LOOK_US);
         self.check_truth();
+        self.follow_progress();
         let verdict = self.judge.look(&self.facts())?;
         Some(self.end(verdict))
     }
@@ -213,6 +224,11 @@ impl Flight {
                     verdict.reason = format!("{}: {waiting}", verdict.reason);
                 }
             }
+            FlightResult::Aborted if verdict.reason == judge::UNEXPLAINED => {
+                if let Some(progress) = self.progress.sentence() {
+                    verdict.reason = format!("{}; {progress}", verdict.reason);
+                }
+            }
             _ => {}
         }
         if let Some(remark) = self.battery_remark() {
@@ -234,6 +250,35 @@ impl Flight {
             }
         }
         self.truth_check.look(&craft);
+    }
+
+    /// Returns a crash at the present instant.
+    fn crash_of(&self, cause: Option<CrashCause>) -> Crash {
+        let nav = self.vehicle.controller().nav();
+        let truth = self.vehicle.truth();
+        Crash {
+            cause,
+            state: nav.map_or(NavState::Idle, |nav| nav.state),
+            wp: nav.map_or(0, |nav| nav.wp),
+            source: nav.map_or(PlanSource::Stored, |nav| nav.source),
+            attitude_deg: truth.map(|truth| [truth.roll_deg(), truth.pitch_deg()]),
+        }
+    }
+
+    /// Notes how the craft gets on towards its waypoint.
+    fn follow_progress(&mut self) {
+        let Some(nav) = self.vehicle.controller().nav().filter(|nav| nav.state != NavState::Idle) else {
+            return;
+        };
+        let (Some(truth), Some(frame)) = (self.vehicle.truth(), self.vehicle.local_frame()) else { return };
+        let planned =
+            self.vehicle.controller().stored_plan().and_then(|plan| plan.waypoints.get(usize::from(nav.wp)));
+        let Some(waypoint) = planned.filter(|_| nav.source == PlanSource::Stored) else { return };
+        let target = truth_check::place(frame, waypoint.position);
+        let place = Vector2::new(truth.pos_enu.y, truth.pos_enu.x);
+        let course = Vector2::new(truth.vel_enu.y, truth.vel_enu.x);
+        let heading_deg = truth.heading_deg();
+        self.progress.look(self.vehicle.time(), nav.wp, target - place, course, heading_deg);
     }
 
     fn craft_truth(&self) -> Option<CraftTruth> {
@@ -287,7 +332,7 @@ impl Flight {
             ends_in_land: self.ends_in_land,
             lift_share: waiting::lift_share(&self.vehicle),
             touched_down: self.touched_down,
-            crashed: self.vehicle.crashed(),
+            crash: self.crash.or_else(|| self.vehicle.crashed().then(|| self.crash_of(None))),
             diverged: self.vehicle.diverged(),
         }
     }

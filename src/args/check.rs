@@ -24,7 +24,7 @@ const FIRMWARE_OPTIONS: [&str; 10] = [
 pub const MOST_FLIGHTS: i64 = 1_000_000;
 
 /// The options of `check`.
-#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[derive(Debug, Clone, PartialEq, Default, clap::Args)]
 #[command(after_help = help::CHECK)]
 pub struct CheckArgs {
     /// Scenarios: built-in names, files, directories, - for standard input [default: all built-in ones but the slow]

@@ -20,7 +20,7 @@ pub use versus::{MetricDifference, Versus};
 pub struct Answer {
     /// The number of flights that were asked for.
     pub wanted: u64,
-    /// The number of flights that were flown, of one side.
+    /// The number of flights that are over, of one side.
     pub flown: u64,
     /// The simulated seconds of all flights.
     pub flown_s: f64,
@@ -32,6 +32,8 @@ pub struct Answer {
     pub causes: Causes,
     /// The worst flights, the worst first.
     pub worst: Vec<Worst>,
+    /// The reasons why flights could not be flown, with the number of flights of each, the most frequent first.
+    pub not_flown: Vec<(String, u64)>,
     /// The comparison with the other side, if there is one.
     pub versus: Option<Versus>,
     /// The judged goals, in their order.
@@ -46,6 +48,8 @@ pub struct Success {
     pub judged: u64,
     /// The number of flights in which nothing could be judged.
     pub skipped: u64,
+    /// The number of flights that could not be flown.
+    pub not_flown: u64,
     /// Wilson's interval, with 95 % confidence.
     pub low: f64,
     pub high: f64,
@@ -92,10 +96,21 @@ pub struct Worst {
     pub complaint: String,
     /// The instant to look at; `None` = the end.
     pub at: Option<Instant>,
+    /// The number of failed flights with the same complaint, its numbers apart, this one among them.
+    pub alike: u64,
     /// `true` if it passed and is only the tightest.
     pub has_passed: bool,
     /// The least margin of a flight that passed, as a share of the allowed range.
     pub margin: Option<f64>,
+}
+
+impl Worst {
+    /// Returns `true` if another flight failed for the same reason, its numbers apart.
+    pub fn is_like(&self, other: &Self) -> bool {
+        self.side == other.side
+            && builder::alike(&self.result, &self.complaint)
+                == builder::alike(&other.result, &other.complaint)
+    }
 }
 
 impl Answer {
@@ -104,8 +119,12 @@ impl Answer {
         self.flown == self.wanted
     }
 
-    /// Returns `true` if no goal failed. Without goals, every judged flight must have passed.
+    /// Returns `true` if every flight could be flown and no goal failed. Without goals, every judged flight must have
+    /// passed.
     pub fn is_met(&self) -> bool {
+        if self.success.not_flown > 0 {
+            return false;
+        }
         if self.goals.is_empty() {
             return self.success.judged > 0 && self.success.passed == self.success.judged;
         }

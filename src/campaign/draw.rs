@@ -111,3 +111,13 @@ pub(super) fn grid_levels(input: &VariedInput, levels: u64) -> u64 {
         Spread::Number(..) | Spread::Wind { .. } | Spread::Table(_) => levels,
     }
 }
+
+/// Returns `true` if flights may have different values of an input.
+pub(super) fn varies(input: &VariedInput) -> bool {
+    match &input.spread {
+        Spread::Choice(choices) => choices.len() > 1,
+        Spread::Number(_, distribution) => distribution.value().is_none(),
+        Spread::Wind { speed, from } => speed.value().is_none() || from.value().is_none(),
+        Spread::Table(_) => true,
+    }
+}

@@ -1,6 +1,6 @@
 //! The flights of a campaign by their numbers.
 
-use super::draw::{CASE, Drawn, Place, grid_levels};
+use super::draw::{CASE, Drawn, Place, grid_levels, varies};
 use super::record::InputValue;
 use crate::design::{Design, Points};
 use crate::scenario::{Air, CampaignSpec, Case, Change, FlightSeeds, MAX_CAMPAIGN, Scenario, USUAL_FLIGHTS};
@@ -35,6 +35,14 @@ pub struct CampaignFlight {
     pub inputs: Vec<(String, InputValue)>,
     /// The reason why the flight cannot be flown.
     pub problem: Option<String>,
+}
+
+impl CampaignFlight {
+    /// Returns the reason why the flight cannot be flown, as far as it is known without building its world.
+    pub fn impossible(&self) -> Option<String> {
+        let world = || self.case.setup_in(&self.air).world.check().err().map(|error| error.to_string());
+        self.problem.clone().or_else(world)
+    }
 }
 
 impl Campaign {
@@ -76,6 +84,41 @@ impl Campaign {
         let first = winds.next();
         let has_winds = winds.any(|wind| Some(wind) != first);
         Self { scenario, flights: Flights::Listed(firsts), count, has_winds }
+    }
+
+    /// Checks that the flights differ. Equal flights say nothing more than one of them, and their share has no interval.
+    ///
+    /// # Errors
+    /// Returns a sentence with the way to let them differ.
+    pub fn refuse_equal_flights(&self) -> Result<(), String> {
+        let Some(spec) = self.scenario.campaign.as_ref().filter(|_| self.design() != Some(Design::Grid))
+        else {
+            return Ok(());
+        };
+        let count = self.count;
+        let different =
+            spec.airs.iter().take(self.scenario.cases.len()).fold(0_u64, |sum, (template, seeds)| {
+                let of_case = match seeds {
+                    _ if !template.is_random() => 1,
+                    FlightSeeds::From(_) => count,
+                    FlightSeeds::Range(_) | FlightSeeds::List(_) => seeds.count(),
+                };
+                sum.saturating_add(of_case)
+            });
+        if spec.inputs.iter().any(varies) || different >= count {
+            return Ok(());
+        }
+        let problem = match different {
+            1 => format!("nothing varies: the {count} flights would be one and the same flight"),
+            _ => format!("only {different} of the {count} flights would differ"),
+        };
+        let way_out = if spec.airs.iter().any(|(template, _)| template.is_random()) {
+            format!("fly other seeds, --seeds 1..{count}, or vary an input")
+        } else {
+            "a seed changes nothing without noise, gusts and turbulence; add one of them, or vary an input"
+                .to_owned()
+        };
+        Err(format!("{problem}: {way_out}"))
     }
 
     /// Returns the scenario of the flights.

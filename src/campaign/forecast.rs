@@ -79,6 +79,8 @@ impl Forecast {
 impl ForecastAnswer {
     /// Returns `true` if at least this share of the flights succeeded, and all of them were flown.
     pub fn is_go(&self, from: f64) -> bool {
-        self.answer.is_whole() && self.answer.success.share().is_some_and(|share| share >= from)
+        self.answer.is_whole()
+            && self.answer.success.not_flown == 0
+            && self.answer.success.share().is_some_and(|share| share >= from)
     }
 }

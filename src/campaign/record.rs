@@ -60,6 +60,9 @@ pub enum Standing {
     Failed,
     /// Nothing could be judged, because the firmware reports too little.
     Skipped,
+    /// The flight could not be flown, for the reason in [`Record::problem`]: it is neither a success nor a failure.
+    #[strum(serialize = "not_flown")]
+    NotFlown,
 }
 
 /// An instant of a flight.
@@ -107,7 +110,7 @@ impl Record {
             side,
             seed: flight.air.seed,
             inputs: flight.inputs.clone(),
-            standing: Standing::Failed,
+            standing: Standing::NotFlown,
             problem: Some(short(problem)),
             result: String::new(),
             reason: String::new(),
@@ -172,10 +175,12 @@ impl Record {
 
     /// Returns why it failed, as one sentence.
     pub fn complaint(&self) -> String {
+        // An expectation of the result repeats the result and the reason.
+        let of_result = format!("it ended {}: {}", self.result, self.reason);
         match (&self.problem, self.failures.first()) {
             (Some(problem), _) => problem.clone(),
-            (None, Some(failure)) => failure.clone(),
-            (None, None) => self.reason.clone(),
+            (None, Some(failure)) if !failure.ends_with(&of_result) => failure.clone(),
+            _ => self.reason.clone(),
         }
     }
 
@@ -185,7 +190,7 @@ impl Record {
         let miss = || -self.metric("waypoint_miss").or_else(|| self.metric("cross_track")).unwrap_or(0.0);
         match (self.standing, self.result.as_str()) {
             (Standing::Passed, _) => (4, self.margin.unwrap_or(1.0)),
-            (Standing::Skipped, _) => (5, 0.0),
+            (Standing::Skipped | Standing::NotFlown, _) => (5, 0.0),
             (Standing::Failed, "crashed" | "diverged") => (0, miss()),
             (Standing::Failed, "complete" | "stopped") => (3, miss()),
             (Standing::Failed, "missed") => (2, miss()),

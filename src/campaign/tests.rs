@@ -124,6 +124,42 @@ fn a_grid_of_another_size_than_asked_for_is_refused() {
     assert_eq!(problem, "the grid has 2 flights, not 5: leave the number out, or choose another design");
 }
 
+/// Returns the sentence that refuses the flights of a campaign, if they are equal.
+fn equal_flights(text: &str, count: u64) -> Option<String> {
+    let text = format!("{text}\n{PLAN}");
+    let flights = Flights::OfCampaign { is_drawn: true };
+    let request = Request { file: "test.toml", text: &text, seeds: None, max_flights: 10, flights };
+    let scenario =
+        read_request(&request, &mut NoFiles).unwrap_or_else(|errors| panic!("{}", report(&errors)));
+    Campaign::new(scenario, Some(count), None).unwrap().refuse_equal_flights().err()
+}
+
+#[test]
+fn twenty_flights_in_which_nothing_varies_are_refused_with_the_option_that_helps() {
+    let one = "nothing varies: the 20 flights would be one and the same flight: ";
+    let seeds = format!("{one}fly other seeds, --seeds 1..20, or vary an input");
+    assert_eq!(equal_flights("seeds = 1", 20), Some(seeds.clone()));
+    assert_eq!(equal_flights("vary = { wind = '5@270' }\nseeds = 1", 20), Some(seeds));
+    let few = equal_flights("seeds = '1..4'", 20).unwrap();
+    assert!(
+        few.starts_with("only 4 of the 20 flights would differ: ") && few.contains("--seeds 1..20"),
+        "{few}"
+    );
+    let calm = equal_flights("air = { noise = 'none' }\nseeds = '1..'", 20).unwrap();
+    assert!(calm.starts_with(&format!("{one}a seed changes nothing without noise")), "{calm}");
+    for (text, count) in [
+        ("seeds = 1", 1),
+        ("seeds = '1..'", 20),
+        ("seeds = '3..22'", 20),
+        ("", 20),
+        ("vary = { mass_pct = '+- 3' }\nseeds = 1", 20),
+        ("vary = { wind = '5@0..360' }\nair = { noise = 'none' }\nseeds = 1", 20),
+        ("air = { noise = 'none', wind = '{seed % 9}@270' }", 20),
+    ] {
+        assert_eq!(equal_flights(text, count), None, "{text}");
+    }
+}
+
 /// Returns the record of a flight with these inputs.
 fn record(number: u64, side: Side, fails: bool, inputs: &[(&str, f64)]) -> Record {
     let campaign = campaign("");
@@ -199,4 +235,57 @@ fn two_sides_are_compared_flight_by_flight() {
     let cross_track = &versus.metrics[0];
     assert!((cross_track.difference + 0.5).abs() < 1e-9 && cross_track.significance.unwrap().is_real());
     assert_eq!((answer.flown, answer.success.passed), (60, 45), "the answer is that of side A");
+}
+
+#[test]
+fn flights_that_could_not_be_flown_are_neither_successes_nor_failures() {
+    let mut builder = builder("", 40, false);
+    for number in 1..=40 {
+        let mut record = record(number, Side::A, false, &[("inertia_pct", number as f64 - 20.0)]);
+        if number % 10 < 3 {
+            record.standing = Standing::NotFlown;
+            record.result = String::new();
+            record.problem = Some("airframe iris: too strong".to_owned());
+        }
+        builder.add(&record);
+    }
+    let answer = builder.answer();
+    let Success { passed, judged, not_flown, .. } = answer.success;
+    assert_eq!((passed, judged, not_flown), (28, 28, 12));
+    assert_eq!(answer.not_flown, [("airframe iris: too strong".to_owned(), 12)]);
+    assert_eq!((answer.causes.flights, answer.causes.failures), (28, 0));
+    assert!(answer.worst.is_empty() && answer.is_whole() && !answer.is_met());
+    assert_eq!(answer.results[1], ("not flown".to_owned(), 12));
+}
+
+#[test]
+fn a_flight_that_cannot_be_flown_is_known_before_the_start() {
+    let campaign = campaign("[vary]\nmass_pct = '600..800'\n[campaign]\nflights = 5\n");
+    let problem = campaign.flight(1).unwrap().impossible().unwrap();
+    assert!(problem.starts_with("airframe iris: omega_max_rads gives"), "{problem}");
+    let flies = super::tests::campaign("[vary]\ninertia_pct = '-20..20'\n[campaign]\nflights = 50\n");
+    assert!((1..=50).all(|number| flies.flight(number).unwrap().impossible().is_none()));
+}
+
+#[test]
+fn equal_complaints_are_counted_and_the_result_is_said_once() {
+    let mut builder = builder("", 30, false);
+    for number in 1..=30 {
+        let mut record = record(number, Side::A, number > 5, &[]);
+        record.result = "crashed".to_owned();
+        record.reason = format!("the craft crashed: it hit the ground sinking at {}.1 m/s", number);
+        record.failures = vec![format!(
+            "result complete: the flight should end complete, it ended crashed: {}",
+            record.reason
+        )];
+        builder.add(&record);
+    }
+    let answer = builder.answer();
+    let worst = &answer.worst[0];
+    assert_eq!(worst.alike, 25);
+    assert_eq!(
+        worst.complaint,
+        format!("the craft crashed: it hit the ground sinking at {}.1 m/s", worst.number)
+    );
+    assert!(answer.worst.iter().all(|other| other.is_like(worst)));
 }

@@ -1,6 +1,8 @@
 //! Decides when a headless flight is over, and judges its result.
 
-use super::verdict::{FlightResult, Verdict};
+use std::borrow::Cow;
+
+use super::verdict::{Crash, FlightResult, Verdict};
 use crate::signals::SimTime;
 use crate::telemetry::{AbortReason, DisarmReason, NavState, PlanSource, Refusal, TransitionReason};
 
@@ -44,9 +46,13 @@ pub struct JudgeFacts {
     pub lift_share: Option<f64>,
     /// `true` if the craft is at rest on the ground.
     pub touched_down: bool,
-    pub crashed: bool,
+    /// The crash; `None` while the craft is whole.
+    pub crash: Option<Crash>,
     pub diverged: bool,
 }
+
+/// The reason of a mission that the firmware gave up without one.
+pub(super) const UNEXPLAINED: &str = "mission given up: the firmware gives no reason";
 
 #[derive(Debug, Clone)]
 pub struct Judge {
@@ -142,19 +148,19 @@ impl Judge {
     }
 
     fn judge_ground(&mut self, facts: &JudgeFacts) -> Option<Verdict> {
-        let over = facts.crashed || (self.was_armed && !facts.armed);
+        let over = facts.crash.is_some() || (self.was_armed && !facts.armed);
         if !over {
             self.over_at = None;
             return None;
         }
         let since = *self.over_at.get_or_insert(facts.time);
-        let landed = facts.last_disarm == Some(DisarmReason::Landing) && !facts.crashed;
+        let landed = facts.last_disarm == Some(DisarmReason::Landing) && facts.crash.is_none();
         let settled = facts.time.seconds_since(since) >= AFTERMATH_S;
         if !(settled || landed && facts.touched_down) {
             return None;
         }
-        if facts.crashed {
-            return verdict(FlightResult::Crashed, "the craft crashed");
+        if let Some(crash) = facts.crash {
+            return Some(Verdict::new(FlightResult::Crashed, crash.to_string()));
         }
         if landed && self.lands_without_fix {
             return verdict(FlightResult::Landed, "landed without a GPS fix");
@@ -242,13 +248,20 @@ impl Judge {
             self.idle_since = Some((since, facts.alt_m));
         }
         (facts.time.seconds_since(since) >= IDLE_S).then(|| {
-            let why = match facts.refusal {
+            let why: Cow<'static, str> = match facts.refusal {
+                // Its sentence begins with the giving up.
+                Some(Refusal::Aborted(AbortReason::Stalled)) => {
+                    "the craft made no progress: cycle the switch.".into()
+                }
+                Some(Refusal::Aborted(AbortReason::Flyaway)) => {
+                    "the craft moved away from its waypoint: cycle the switch.".into()
+                }
                 Some(refusal) => refusal.sentence(),
                 None if facts.failsafe => "a failsafe procedure flies.".into(),
                 None if facts.entered_for == Some(TransitionReason::Disengage) => {
                     "the AUTOPILOT switch was turned off; turned on again it resumes.".into()
                 }
-                None => "no reason given".into(),
+                None => return Verdict::new(FlightResult::Aborted, UNEXPLAINED),
             };
             Verdict::new(FlightResult::Aborted, format!("mission given up: {why}"))
         })
@@ -274,6 +287,7 @@ fn verdict(result: FlightResult, reason: &str) -> Option<Verdict> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::telemetry::CrashCause;
 
     fn facts(seconds: f64) -> JudgeFacts {
         JudgeFacts {
@@ -291,7 +305,7 @@ mod tests {
             ends_in_land: true,
             lift_share: None,
             touched_down: false,
-            crashed: false,
+            crash: None,
             diverged: false,
         }
     }
@@ -419,10 +433,25 @@ mod tests {
         assert_eq!(disarmed.look(&down(20.0)), None);
         assert_eq!(disarmed.look(&down(21.0)).map(|v| v.result), Some(FlightResult::Disarmed));
 
+        let crash = Crash {
+            cause: Some(CrashCause::SidewaysLanding(3.34)),
+            state: NavState::Landing,
+            wp: 3,
+            attitude_deg: Some([-0.2, 12.4]),
+            ..Crash::default()
+        };
         let mut crashed = judge();
-        let wreck = |s| JudgeFacts { crashed: true, ..facts(s) };
+        let wreck = |s| JudgeFacts { crash: Some(crash), ..facts(s) };
         assert_eq!(crashed.look(&wreck(20.0)), None);
-        assert_eq!(crashed.look(&wreck(21.0)).map(|v| v.result), Some(FlightResult::Crashed));
+        let verdict = crashed.look(&wreck(21.0)).unwrap();
+        assert_eq!(
+            (verdict.result, verdict.reason.as_str()),
+            (
+                FlightResult::Crashed,
+                "the craft crashed LANDING at waypoint 3: it touched the ground moving sideways at 3.3 m/s, roll 0°, pitch 12°"
+            )
+        );
+        assert_eq!(Crash::default().to_string(), "the craft crashed");
 
         let verdict = judge().look(&facts(100.0)).unwrap();
         assert_eq!(verdict.result, FlightResult::Timeout);

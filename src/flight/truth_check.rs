@@ -205,7 +205,7 @@ pub(super) fn agreement(truth: &FlightTruth) -> Option<String> {
 }
 
 /// Returns a place north and east of the boot place in the world's projection, m.
-fn place(frame: &LocalFrame, position: LatLon) -> Vector2<f64> {
+pub(super) fn place(frame: &LocalFrame, position: LatLon) -> Vector2<f64> {
     let enu = frame.to_enu(position.lat_deg(), position.lon_deg(), frame.alt_amsl_m);
     Vector2::new(enu.y, enu.x)
 }

@@ -1,5 +1,7 @@
 //! The result of a flight.
 
+use crate::telemetry::{CrashCause, NavState, PlanSource};
+
 /// The result of a flight. `Display` gives the word of the `end` event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display)]
 #[strum(serialize_all = "lowercase")]
@@ -30,6 +32,43 @@ pub struct Verdict {
     pub result: FlightResult,
     /// Reason, as a sentence.
     pub reason: String,
+}
+
+/// A crash, with all that is known of it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Crash {
+    pub cause: Option<CrashCause>,
+    /// The state of the navigator before it, with the waypoint and the origin of the plan; IDLE if it did not fly.
+    pub state: NavState,
+    pub wp: u8,
+    pub source: PlanSource,
+    /// True roll to the right and pitch up at the impact, degrees.
+    pub attitude_deg: Option<[f64; 2]>,
+}
+
+impl std::fmt::Display for Crash {
+    /// Writes the sentence of a verdict, without its full stop.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("the craft crashed")?;
+        if self.state != NavState::Idle {
+            write!(f, " {} at waypoint {}", self.state, self.wp)?;
+            match self.source {
+                PlanSource::Stored => {}
+                PlanSource::Rth => f.write_str(" of the return home")?,
+                PlanSource::Emergency => f.write_str(" of the emergency landing")?,
+            }
+        }
+        if let Some(cause) = self.cause {
+            write!(f, ": it {}", cause.of_it())?;
+        }
+        match self.attitude_deg {
+            // Avoids `-0°`.
+            Some([roll, pitch]) => {
+                write!(f, ", roll {:.0}°, pitch {:.0}°", roll.round() + 0.0, pitch.round() + 0.0)
+            }
+            None => Ok(()),
+        }
+    }
 }
 
 impl Verdict {

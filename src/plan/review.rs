@@ -273,9 +273,9 @@ pub fn review(plan: &FlightPlan, home: LatLon, assumptions: &Assumptions) -> Vec
     findings
 }
 
-/// Returns the smallest number of decimals, at most two, with which two lengths read differently.
+/// Returns the smallest number of decimals with which two lengths read differently; two if they are equal.
 fn decimals_apart(one_m: f64, other_m: f64) -> usize {
-    (0..2).find(|&decimals| format!("{one_m:.decimals$}") != format!("{other_m:.decimals$}")).unwrap_or(2)
+    (0..10).find(|&decimals| format!("{one_m:.decimals$}") != format!("{other_m:.decimals$}")).unwrap_or(2)
 }
 
 /// Returns the legs that are flown below home.
@@ -325,6 +325,8 @@ mod tests {
         assert_eq!(decimals_apart(150.0, 100.0), 0);
         assert_eq!(decimals_apart(50.4, 50.0), 1);
         assert_eq!(decimals_apart(50.04, 50.0), 2);
+        assert_eq!(decimals_apart(50.0004, 50.0), 4);
+        assert_eq!(decimals_apart(50.0, 50.0), 2);
         let from = SettingSource::Craft;
         let finding = Finding::OutsideFence { index: 0, distance_m: 50.4, limit_m: 50.0, from };
         assert!(finding.reason().contains("50.4 m from home") && finding.reason().ends_with("is 50.0 m"));

@@ -1,7 +1,7 @@
 //! The verdict on a flight that nobody judged, from its events.
 
 use super::event::{Happened, RecordedEvent};
-use crate::flight::{FlightResult, Verdict};
+use crate::flight::{Crash, FlightResult, Verdict};
 use crate::telemetry::{
     DisarmReason, EventKind, FirmwareEvent, NavEvent, NavState, PlanSource, VehicleNotice,
 };
@@ -10,7 +10,9 @@ use crate::telemetry::{
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Ending {
     diverged: bool,
-    crashed: bool,
+    crash: Option<Crash>,
+    /// The last reported state of the navigator, with its waypoint.
+    state: (NavState, u8),
     /// The origin of the plan that the autopilot flies.
     source: PlanSource,
     /// The origin of the plan that it has completed since the arming.
@@ -33,7 +35,11 @@ impl Ending {
 
     fn note(&mut self, event: &EventKind) {
         match event {
-            EventKind::Crash { .. } => self.crashed = true,
+            EventKind::Crash { cause } => {
+                let (state, wp) = self.state;
+                self.crash =
+                    Some(Crash { cause: Some(*cause), state, wp, source: self.source, attitude_deg: None });
+            }
             EventKind::Touchdown { .. } => self.touched_down = true,
             EventKind::Notice(VehicleNotice::Diverged(_)) => self.diverged = true,
             EventKind::Firmware(FirmwareEvent::Armed) => {
@@ -41,8 +47,11 @@ impl Ending {
             }
             EventKind::Firmware(FirmwareEvent::Disarmed(reason)) => self.disarmed = Some(*reason),
             EventKind::Firmware(FirmwareEvent::Nav(NavEvent::Plan { source, .. })) => self.source = *source,
-            EventKind::Firmware(FirmwareEvent::Nav(NavEvent::State { to: NavState::Complete, .. })) => {
-                self.completed = Some(self.source);
+            EventKind::Firmware(FirmwareEvent::Nav(NavEvent::State { to, wp, .. })) => {
+                self.state = (*to, *wp);
+                if *to == NavState::Complete {
+                    self.completed = Some(self.source);
+                }
             }
             _ => {}
         }
@@ -53,8 +62,8 @@ impl Ending {
         if self.diverged {
             return Verdict::new(FlightResult::Diverged, "the simulation diverged");
         }
-        if self.crashed {
-            return Verdict::new(FlightResult::Crashed, "the craft crashed");
+        if let Some(crash) = self.crash {
+            return Verdict::new(FlightResult::Crashed, crash.to_string());
         }
         let Some(reason) = self.disarmed else {
             return Verdict::new(FlightResult::Interrupted, "the recording ends in flight");
@@ -130,7 +139,7 @@ mod tests {
         assert_eq!(verdict(&[armed.clone(), switched_off.clone()]), "disarmed: disarmed by SWITCH");
         assert_eq!(
             verdict(&[armed.clone(), crash.clone(), switched_off.clone()]),
-            "crashed: the craft crashed"
+            "crashed: the craft crashed: it touched the ground with its hull"
         );
         // What came before the arming does not count.
         assert_eq!(verdict(&[crash, armed.clone(), landed.clone()]), "landed: landed, but not by the plan");

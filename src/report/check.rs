@@ -279,7 +279,7 @@ pub fn complaint(judgement: &Judgement) -> String {
             format!("{}: {sentence}; {guard}", judgement.label)
         }
         Outcome::NeverJudged(why) => format!("{}: never judged, {why}", judgement.label),
-        Outcome::Skipped(needed) => format!("{}: skipped, {}", judgement.label, needed.missing()),
+        Outcome::Skipped(needed) => format!("{}: not judged, {}", judgement.label, needed.missing()),
     }
 }
 

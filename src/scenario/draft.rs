@@ -125,7 +125,14 @@ mod tests {
     fn a_plan_becomes_a_scenario_that_passes() {
         let plan = BuiltinPlan::find("land").unwrap().read().unwrap();
         let text = Draft::of_plan(&plan).finish().unwrap();
-        for part in ["format = 1", "[plan]", "LANDING", "\"disarmed LANDING\"", "no_event = \"crash\""] {
+        for part in [
+            "format = 1",
+            "seeds = \"1..\"",
+            "[plan]",
+            "LANDING",
+            "\"disarmed LANDING\"",
+            "no_event = \"crash\"",
+        ] {
             assert!(text.contains(part), "{part}\n{text}");
         }
         let scenario = parse("land", &text).unwrap();

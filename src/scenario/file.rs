@@ -25,7 +25,7 @@ use keys::{ALLOW_KEYS, CASE_KEYS, COMPARE_KEYS, FILE_KEYS, INPUT_KEYS};
 use reader::{Layers, Reader};
 use vary::Variant;
 
-pub use air::seed_range;
+pub use air::{MAX_SEEDS, seed_range};
 #[cfg(test)]
 pub(super) use bounds::BOUNDS;
 pub use keys::TABLES;

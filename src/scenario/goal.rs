@@ -76,13 +76,17 @@ impl Subject {
         }
     }
 
-    /// Returns a value for people: shares as per cent.
-    pub fn shown(&self, value: f64) -> String {
-        let is_share = match self {
+    /// Returns `true` if the number is a share.
+    pub fn is_share(&self) -> bool {
+        match self {
             Self::Success | Self::Share(_) => true,
             Self::Statistic(_, quantity) => Metric::find(&quantity.name).is_some_and(Metric::is_share),
-        };
-        if is_share { percent(value) } else { shown(value, self.dimension()) }
+        }
+    }
+
+    /// Returns a value for people: shares as per cent.
+    pub fn shown(&self, value: f64) -> String {
+        if self.is_share() { percent(value) } else { shown(value, self.dimension()) }
     }
 }
 

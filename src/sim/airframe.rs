@@ -163,9 +163,13 @@ impl Airframe {
         }
     }
 
-    /// Returns the first rule that this airframe breaks, as a sentence that names the key, or `None` if it can fly.
-    pub fn fault(&self) -> Option<String> {
-        check::findings(self).into_iter().next().map(|finding| format!("{} {}", finding.key, finding.text))
+    /// Returns the first rule that this airframe breaks, as a sentence that names the key, or `None` if it can fly with
+    /// steps of `step_s`.
+    pub fn fault(&self, step_s: f64) -> Option<String> {
+        check::findings(self, step_s)
+            .into_iter()
+            .next()
+            .map(|finding| format!("{} {}", finding.key, finding.text))
     }
 
     /// Returns the rotor speed at which four rotors carry the weight at the reference density, rad/s.
@@ -226,7 +230,7 @@ mod tests {
         for name in BUILTIN_NAMES {
             let airframe: Airframe = name.parse().unwrap();
             assert_eq!(airframe.name, name);
-            assert_eq!(check::findings(&airframe), Vec::new());
+            assert_eq!(check::findings(&airframe, 0.0025), Vec::new());
         }
     }
 

@@ -66,6 +66,16 @@ pub enum CrashCause {
     HullContact,
 }
 
+impl CrashCause {
+    /// Returns the end of a sentence about the craft, after `it`.
+    pub fn of_it(&self) -> String {
+        match self {
+            Self::HardLanding(_) | Self::SidewaysLanding(_) => self.to_string(),
+            Self::HullContact => "touched the ground with its hull".to_owned(),
+        }
+    }
+}
+
 impl std::fmt::Display for CrashCause {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {

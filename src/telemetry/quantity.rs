@@ -117,13 +117,39 @@ pub fn shown(value: f64, dimension: Dimension) -> String {
     format!("{}{space}{}", number(value / unit.scale), unit.name)
 }
 
+/// The most decimals that are added to tell two numbers apart.
+const MORE_DECIMALS: usize = 10;
+
+/// Returns a value and a limit in their unit, with the decimal that tells them apart.
+pub fn shown_apart(value: f64, limit: f64, dimension: Dimension) -> [String; 2] {
+    let scale = dimension.unit().map_or(1.0, |unit| unit.scale);
+    let both = |more| {
+        [value, limit].map(|of| {
+            let of = of / scale;
+            number_with(of, decimals(of) + more)
+        })
+    };
+    let more = (0..MORE_DECIMALS).find(|&more| value == limit || both(more)[0] != both(more)[1]).unwrap_or(0);
+    both(more).map(|number| match dimension.unit() {
+        None => number,
+        Some(unit) => format!("{number}{}{}", if unit.name == "°" { "" } else { " " }, unit.name),
+    })
+}
+
 /// Returns a number with as many decimals as are useful.
 fn number(value: f64) -> String {
-    let decimals = match value.abs() {
+    number_with(value, decimals(value))
+}
+
+fn decimals(value: f64) -> usize {
+    match value.abs() {
         size if size >= 100.0 => 1,
         size if size >= 0.095 => 2,
         _ => 3,
-    };
+    }
+}
+
+fn number_with(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     // −0.000 becomes 0.
     if text.trim_start_matches('-').chars().all(|c| c == '0' || c == '.') {
@@ -136,6 +162,15 @@ fn number(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_value_that_rounds_to_its_limit_shows_the_digit_that_decides() {
+        let shown = |value| shown_apart(value, 50.0, Dimension::LENGTH);
+        assert_eq!(shown(50.0004), ["50.0004 m", "50.0000 m"]);
+        assert_eq!(shown(50.0), ["50.00 m", "50.00 m"]);
+        assert_eq!(shown(51.0), ["51.00 m", "50.00 m"]);
+        assert_eq!(shown_apart(0.990_000_1, 0.99, Dimension::NONE), ["0.9900001", "0.9900000"]);
+    }
 
     #[test]
     fn values_are_shown_in_their_units() {

@@ -98,11 +98,12 @@ impl Refusal {
             )
             .into(),
             Self::NoHome => "Fence is set but home is unknown: arm with a fix.".into(),
-            Self::Geofence { wp, distance_cm, limit_m } => format!(
-                "Waypoint {wp} is {:.0} m from home, the fence is {limit_m} m.",
-                f64::from(*distance_cm) / 100.0
-            )
-            .into(),
+            Self::Geofence { wp, distance_cm, limit_m } => {
+                let distance_m = f64::from(*distance_cm) / 100.0;
+                // A distance that rounds to the fence shows the digits that decide.
+                let decimals = if distance_m.round() == f64::from(*limit_m) { 2 } else { 0 };
+                format!("Waypoint {wp} is {distance_m:.decimals$} m from home, the fence is {limit_m} m.").into()
+            }
             Self::ThrottleMin { throttle_min_us, hover_us } => format!(
                 "ap_throttle_min is {throttle_min_us} µs, but this craft hovers at about {hover_us} µs and could not descend: set \
                  ap_throttle_min = {} or less.",

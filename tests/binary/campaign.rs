@@ -238,3 +238,33 @@ fn a_flight_of_a_campaign_is_opened_on_the_screen_bit_by_bit() {
     let ran = sandbox.run(&["open", "run.jsonl:4"]);
     assert_ne!(ran.code, Some(0), "a screen needs a terminal");
 }
+
+#[test]
+fn twenty_times_the_same_flight_are_no_campaign() {
+    let sandbox = Sandbox::new();
+    let standing = "ends = \"1 s after boot\"\n[plan]\nbuiltin = \"square\"\n[craft]\npilot = \"none\"\n";
+    sandbox.write("one.toml", &format!("format = 1\nseeds = 1\n{standing}"));
+    let refused = sandbox.run(&["campaign", "one.toml", "--flights", "20", "--out", "t.jsonl"]).exits(2);
+    assert!(
+        refused.err.contains("nothing varies") && refused.err.contains("--seeds 1..20"),
+        "{}",
+        refused.err
+    );
+    assert!(!sandbox.path("t.jsonl").exists());
+    sandbox.run(&["campaign", "one.toml", "--flights", "3", "--seeds", "1..3"]).exits(0);
+    sandbox.write("all.toml", &format!("format = 1\nseeds = \"1..\"\n{standing}"));
+    sandbox.run(&["check", "all.toml"]).exits(0);
+    sandbox.run(&["campaign", "all.toml", "--flights", "3", "--out", "all.jsonl"]).exits(0);
+    let text = sandbox.read("all.jsonl");
+    for (seed, line) in (1..).zip(text.lines().skip(1)) {
+        assert_eq!(json(line)["seed"], seed);
+    }
+    // The file of a run has the bounds of the option.
+    let more = text.replacen("\"flights\":3", "\"flights\":18446744073709551615", 2);
+    sandbox.write("more.jsonl", &more);
+    let refused = sandbox.run(&["campaign", "more.jsonl"]).exits(2);
+    assert!(refused.err.contains("allowed: 1 to 10000000"), "{}", refused.err);
+    sandbox.write("more.jsonl", &text.replacen("\"flights\":3", "\"flights\":30", 1));
+    let refused = sandbox.run(&["campaign", "more.jsonl"]).exits(2);
+    assert!(refused.err.contains("it says 30 flights, and its campaign has 3"), "{}", refused.err);
+}

@@ -53,7 +53,7 @@ pub(super) fn read(args: &CampaignArgs) -> Result<Wanted, AppError> {
         };
     }
     let path = Path::new(name);
-    if let Some(header) = run_header(path) {
+    if let Some(header) = run_header(path)? {
         refuse_options_of_run(args, name)?;
         return Ok(Wanted::Run(path.to_owned(), Box::new(header)));
     }
@@ -74,7 +74,14 @@ pub(super) fn read(args: &CampaignArgs) -> Result<Wanted, AppError> {
 }
 
 /// Returns the header if a path leads to the file of a run.
-fn run_header(path: &Path) -> Option<RunHeader> {
+fn run_header(path: &Path) -> Result<Option<RunHeader>, AppError> {
+    let Some(line) = first_line(path).filter(|line| RunHeader::begins(line)) else { return Ok(None) };
+    let read = RunHeader::read(line.trim_end());
+    read.map(Some).map_err(|problem| AppError::input(format!("{} {problem}", path.display())))
+}
+
+/// Returns the first line of a file that may be JSON.
+fn first_line(path: &Path) -> Option<String> {
     let file = File::open(path).ok().filter(|_| path.is_file())?;
     let mut line = Vec::new();
     let mut reader = BufReader::new(file.take(MAX_HEADER));
@@ -83,7 +90,7 @@ fn run_header(path: &Path) -> Option<RunHeader> {
         return None;
     }
     reader.read_until(b'\n', &mut line).ok()?;
-    RunHeader::read(std::str::from_utf8(&line).ok()?.trim_end()).ok()
+    String::from_utf8(line).ok()
 }
 
 /// Returns the text if it is that of a scenario.

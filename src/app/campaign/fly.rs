@@ -31,7 +31,10 @@ pub(super) fn run(args: &CampaignArgs, repeat: &[String]) -> Result<u8, AppError
         Wanted::Scenario(definition, sources) | Wanted::Plan(definition, sources) => {
             let inputs = inputs(&definition.file, &sources);
             outputs::claim(&args.output, args.out.as_deref(), &inputs)?;
-            (Loaded::new(*definition, sources)?, args.out.clone(), shard)
+            let loaded = Loaded::new(*definition, sources)?;
+            loaded.campaign.refuse_equal_flights().map_err(AppError::input)?;
+            loaded.refuse_impossible_flights()?;
+            (loaded, args.out.clone(), shard)
         }
         Wanted::Run(path, header) => {
             outputs::claim(&args.output, Some(&path), &[])?;

@@ -24,6 +24,8 @@ use crate::session::Runner;
 
 /// The most flights of a file of `check`.
 const MAX_LISTED: usize = 1_000_000;
+/// The most flights that are looked at before the start.
+const LOOKED_AT: u64 = 2000;
 
 /// A campaign that can be flown.
 pub(super) struct Loaded {
@@ -57,6 +59,13 @@ impl Loaded {
         let definition = &header.definition;
         let mut sources = Sources { place: None, contents: definition.files.clone() };
         let campaign = campaign(definition, &mut sources)?;
+        if campaign.count() != header.flights {
+            return Err(AppError::input(format!(
+                "the first line of the run is damaged: it says {} flights, and its campaign has {}",
+                header.flights,
+                campaign.count()
+            )));
+        }
         Self::with_header(header, campaign)
     }
 
@@ -76,6 +85,30 @@ impl Loaded {
             }
         };
         Ok(Self { header, campaign, firmware: [own, other] })
+    }
+
+    /// Checks, before the start, that the flights can be flown: all of a small campaign, some of a large one.
+    ///
+    /// # Errors
+    /// Returns a sentence with the first flight that cannot be flown, and the number of them.
+    pub(super) fn refuse_impossible_flights(&self) -> Result<(), AppError> {
+        let flights = self.header.flights;
+        let stride = flights.div_ceil(LOOKED_AT).max(1);
+        let (mut looked_at, mut impossible, mut first) = (0_u64, 0_u64, None);
+        for number in (1..=flights).step_by(stride as usize) {
+            looked_at += 1;
+            let sides = [Side::A, Side::B].into_iter().take(self.header.sides() as usize);
+            let problem = sides.filter_map(|side| self.of_side(number, side)?.impossible()).next();
+            impossible += u64::from(problem.is_some());
+            first = first.or(problem.map(|problem| (number, problem)));
+        }
+        let Some((number, problem)) = first else { return Ok(()) };
+        let inputs = self.campaign.flight(number).map(|flight| flight.inputs).unwrap_or_default();
+        let inputs: Vec<String> = inputs.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+        let with = if inputs.is_empty() { String::new() } else { format!(" ({})", inputs.join(", ")) };
+        Err(AppError::input(format!(
+            "{impossible} of {looked_at} flights cannot be flown; flight {number}{with}: {problem}; let the inputs vary less"
+        )))
     }
 
     /// Returns the flight of a line, from 0, and its side.

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::run::is_wanted;
 use crate::app::scenario_folder::{self, ScenarioFolder};
 use crate::app::{AppError, error, input_file};
 use crate::args::{CheckArgs, MOST_FLIGHTS};
@@ -43,6 +44,8 @@ pub(super) fn load(args: &CheckArgs) -> Result<Loaded, AppError> {
     for (source, is_named) in sources(args)? {
         match read(&source, seeds, args.most_flights(), args.any_folder, &mut loaded.files) {
             Ok(scenario) if scenario.slow && !args.slow && !is_named => loaded.left_out += 1,
+            // Of many thousand scenarios only those that are flown are kept.
+            Ok(scenario) if !scenario.cases.iter().any(|case| is_wanted(&scenario, case, args)) => {}
             Ok(scenario) => loaded.scenarios.push(scenario),
             Err(error) if error.code == crate::app::error::USAGE => problems.push(error.message),
             Err(error) => return Err(error),
@@ -175,5 +178,22 @@ impl Files for Beside<'_> {
         let text = input_file::read_small(&path).map_err(|error| error.message)?;
         self.read.push(path);
         Ok(text)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_the_scenarios_of_the_filter_are_kept() {
+        let all = CheckArgs { slow: true, ..CheckArgs::default() };
+        let wanted = SCENARIOS[3].name;
+        let one = CheckArgs { filter: Some(wanted.to_owned()), ..all.clone() };
+        let kept = load(&one).unwrap().scenarios;
+        assert!(kept.iter().any(|scenario| scenario.name == wanted));
+        assert!(kept.len() < load(&all).unwrap().scenarios.len() / 2, "{}", kept.len());
+        let none = CheckArgs { filter: Some("no such name".to_owned()), ..all };
+        assert!(load(&none).unwrap().scenarios.is_empty());
     }
 }

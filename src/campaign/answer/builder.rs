@@ -14,6 +14,8 @@ use crate::scenario::{Goal, Metric, Quantity, Scenario};
 
 /// The number of worst flights.
 const WORST: usize = 10;
+/// The most different complaints and reasons that are counted.
+const COMPLAINTS: usize = 1000;
 /// The most flights whose inputs and metrics are kept for the causes and comparisons.
 const KEPT: u64 = 50_000;
 /// The confidence of the interval of the success.
@@ -32,6 +34,9 @@ pub struct AnswerBuilder {
     causes: CauseTable,
     pairs: Option<Pairs>,
     worst: Vec<((u8, f64), Worst)>,
+    /// The number of failed flights with each complaint, without its numbers.
+    complaints: BTreeMap<(Side, String), u64>,
+    not_flown: BTreeMap<String, u64>,
 }
 
 /// The flights of one side.
@@ -42,6 +47,7 @@ struct OneSide {
     passed: u64,
     judged: u64,
     skipped: u64,
+    not_flown: u64,
     results: BTreeMap<String, u64>,
     summaries: BTreeMap<String, Summary>,
 }
@@ -66,6 +72,8 @@ impl AnswerBuilder {
             causes: CauseTable::default(),
             pairs: has_two_sides.then(Pairs::default),
             worst: Vec::new(),
+            complaints: BTreeMap::new(),
+            not_flown: BTreeMap::new(),
         }
     }
 
@@ -79,8 +87,16 @@ impl AnswerBuilder {
                 side.passed += 1;
                 side.judged += 1;
             }
-            Standing::Failed => side.judged += 1,
+            Standing::Failed => {
+                side.judged += 1;
+                let complaint = alike(&record.result, &record.complaint());
+                count(&mut self.complaints, (record.side, complaint));
+            }
             Standing::Skipped => side.skipped += 1,
+            Standing::NotFlown => {
+                side.not_flown += 1;
+                count(&mut self.not_flown, record.complaint());
+            }
         }
         let result = if record.result.is_empty() { "not flown" } else { record.result.as_str() };
         *side.results.entry(result.to_owned()).or_default() += 1;
@@ -106,7 +122,8 @@ impl AnswerBuilder {
         let at = self.worst.partition_point(|(known, _)| order(known, &key).is_le());
         // Of a flight that passed only its margin says how close it came.
         let has_passed = record.standing == Standing::Passed;
-        let is_left_out = record.standing == Standing::Skipped || has_passed && record.margin.is_none();
+        let is_left_out = matches!(record.standing, Standing::Skipped | Standing::NotFlown)
+            || has_passed && record.margin.is_none();
         if is_left_out || at >= WORST {
             return;
         }
@@ -116,6 +133,7 @@ impl AnswerBuilder {
             result: record.result.clone(),
             complaint: record.complaint(),
             at: record.worst_at,
+            alike: 1,
             has_passed,
             margin: record.margin,
         };
@@ -130,25 +148,42 @@ impl AnswerBuilder {
         let numbers = Numbers {
             passed: side.passed,
             judged: side.judged,
-            flown: side.flown,
+            flown: side.flown - side.not_flown,
             results: &side.results,
             summaries: &side.summaries,
         };
         let mut results: Vec<(String, u64)> =
             side.results.iter().map(|(result, count)| (result.clone(), *count)).collect();
         results.sort_by(|a, b| b.1.cmp(&a.1).then(a.0.cmp(&b.0)));
+        let mut not_flown: Vec<(String, u64)> =
+            self.not_flown.iter().map(|(reason, count)| (reason.clone(), *count)).collect();
+        not_flown.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
         Answer {
             wanted: self.wanted,
             flown: side.flown,
             flown_s: self.sides.iter().map(|side| side.flown_s).sum(),
-            success: Success { passed: side.passed, judged: side.judged, skipped: side.skipped, low, high },
+            success: Success {
+                passed: side.passed,
+                judged: side.judged,
+                skipped: side.skipped,
+                not_flown: side.not_flown,
+                low,
+                high,
+            },
             results,
             distributions: self.distributions(side),
             causes: self.causes.causes(),
-            worst: self.worst.iter().map(|(_, worst)| worst.clone()).collect(),
+            worst: self.worst.iter().map(|(_, worst)| self.with_alike(worst)).collect(),
+            not_flown,
             versus: self.pairs.as_ref().map(|pairs| pairs.versus(&self.quantities)),
             goals: self.goals.iter().map(|goal| goals::judge(goal, &numbers)).collect(),
         }
+    }
+
+    /// Returns one of the worst flights with the number of those that failed like it.
+    fn with_alike(&self, worst: &Worst) -> Worst {
+        let alike = self.complaints.get(&(worst.side, alike(&worst.result, &worst.complaint))).copied();
+        Worst { alike: alike.filter(|_| !worst.has_passed).unwrap_or(1), ..worst.clone() }
     }
 
     fn distributions(&self, side: &OneSide) -> Vec<Distribution> {
@@ -172,5 +207,25 @@ impl AnswerBuilder {
             })
         };
         self.quantities.iter().filter_map(distribution).collect()
+    }
+}
+
+/// Returns a complaint without its numbers: equal for flights that fail for the same reason.
+pub(super) fn alike(result: &str, complaint: &str) -> String {
+    let mut text = format!("{result}, ");
+    for c in complaint.chars() {
+        match c {
+            '0'..='9' if text.ends_with('#') => {}
+            '.' if text.ends_with('#') => {}
+            '0'..='9' => text.push('#'),
+            c => text.push(c),
+        }
+    }
+    text
+}
+
+fn count<K: Ord>(counts: &mut BTreeMap<K, u64>, of: K) {
+    if counts.len() < COMPLAINTS || counts.contains_key(&of) {
+        *counts.entry(of).or_default() += 1;
     }
 }

@@ -57,7 +57,7 @@ struct Column {
 
 impl CauseTable {
     pub(super) fn add(&mut self, record: &Record) {
-        if record.standing == Standing::Skipped {
+        if matches!(record.standing, Standing::Skipped | Standing::NotFlown) {
             return;
         }
         let row = self.failed.len();

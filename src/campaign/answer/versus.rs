@@ -51,6 +51,7 @@ struct Counts {
     passed: u64,
     judged: u64,
     skipped: u64,
+    not_flown: u64,
 }
 
 #[derive(Debug, Clone, Default)]
@@ -79,6 +80,7 @@ impl Pairs {
                 }
                 Standing::Failed => counts.judged += 1,
                 Standing::Skipped => counts.skipped += 1,
+                Standing::NotFlown => counts.not_flown += 1,
             }
         }
         match pair.map(|record| record.standing) {
@@ -99,9 +101,9 @@ impl Pairs {
     }
 
     pub(super) fn versus(&self, quantities: &[Quantity]) -> Versus {
-        let [a, b] = self.sides.map(|Counts { passed, judged, skipped }| {
+        let [a, b] = self.sides.map(|Counts { passed, judged, skipped, not_flown }| {
             let (low, high) = wilson(passed, judged, CONFIDENCE);
-            Success { passed, judged, skipped, low, high }
+            Success { passed, judged, skipped, not_flown, low, high }
         });
         let [only_a, only_b] = self.only;
         let median = |summary: &Summary| summary.quantiles([0.5]).map(|[median]| median);

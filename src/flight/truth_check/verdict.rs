@@ -71,7 +71,13 @@ fn parked_misses(parked: &ParkedTruth, tolerance_m: f64) -> [Option<Miss>; 2] {
 
 fn miss(value_m: f64, allowed_m: f64, reported: &str) -> Option<Miss> {
     let excess_m = value_m - allowed_m;
-    (excess_m > 0.0).then(|| Miss { excess_m, sentence: format!("{reported}; {allowed_m:.1} m are allowed") })
+    // A miss that rounds to what is allowed shows by how much it is more.
+    let more = match excess_m {
+        excess_m if excess_m < 0.1 => format!(", {:.3} mm less", 1000.0 * excess_m),
+        _ => String::new(),
+    };
+    (excess_m > 0.0)
+        .then(|| Miss { excess_m, sentence: format!("{reported}; {allowed_m:.1} m are allowed{more}") })
 }
 
 /// `19.7 m too low`.
@@ -110,6 +116,8 @@ mod tests {
             beside.as_deref(),
             Some("waypoint 2 (FLYOVER) was missed, the craft passed 15.2 m from it; 15.0 m are allowed")
         );
+        let close = worst(&[flown(WaypointType::Flyover, 15.000_4, Some(0.0))]).unwrap();
+        assert!(close.ends_with("15.0 m from it; 15.0 m are allowed, 0.400 mm less"), "{close}");
         let below = worst(&[flown(WaypointType::Hold, 0.0, Some(-19.7))]);
         assert_eq!(
             below.as_deref(),

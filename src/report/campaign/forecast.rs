@@ -39,7 +39,13 @@ pub fn forecast_reason(forecast: &ForecastAnswer) -> String {
     let answer = &forecast.answer;
     let success = &answer.success;
     let reserve = whole(forecast.reserve);
-    let Some(share) = success.share() else { return "no flight could be judged".to_owned() };
+    let unflown = match (success.not_flown, answer.not_flown.first()) {
+        (0, _) | (_, None) => None,
+        (count, Some((reason, _))) => Some(format!("{count} could not be flown: {reason}")),
+    };
+    let Some(share) = success.share() else {
+        return unflown.unwrap_or_else(|| "no flight could be judged".to_owned());
+    };
     let mut parts = vec![format!(
         "{} complete with more than {reserve} of the battery left ({} of {}; {} to {} with 95 % confidence)",
         percent(share),
@@ -48,6 +54,7 @@ pub fn forecast_reason(forecast: &ForecastAnswer) -> String {
         percent(success.low),
         percent(success.high)
     )];
+    parts.extend(unflown);
     parts.extend(margins(forecast));
     parts.extend(change(forecast).map(|change| format!("to change: {change}")));
     parts.join("; ")

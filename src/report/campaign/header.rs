@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::campaign::Shard;
 use crate::design::fingerprint;
+use crate::scenario::{MAX_CAMPAIGN, MAX_SEEDS};
 
 /// The version of the file format.
 const FORMAT: u32 = 1;
@@ -154,6 +155,11 @@ impl RunHeader {
         serde_json::to_string(self).unwrap_or_default()
     }
 
+    /// Returns `true` if a line begins as that of a campaign.
+    pub fn begins(line: &str) -> bool {
+        line.starts_with(&format!("{{\"event\":\"{EVENT}\""))
+    }
+
     /// Reads the first line of a file.
     ///
     /// # Errors
@@ -171,6 +177,17 @@ impl RunHeader {
             ));
         }
         header.part()?;
+        let flights = [Some(header.flights), header.definition.flights];
+        if let Some(flights) =
+            flights.into_iter().flatten().find(|flights| !(1..=MAX_CAMPAIGN).contains(flights))
+        {
+            return Err(format!("has {flights} flights (allowed: 1 to {MAX_CAMPAIGN})"));
+        }
+        if let Some((first, last)) = header.definition.seeds
+            && !(first..first.saturating_add(MAX_SEEDS)).contains(&last)
+        {
+            return Err(format!("has the seeds {first}..{last} (allowed: 1 to {MAX_SEEDS} seeds)"));
+        }
         Ok(header)
     }
 }
@@ -196,6 +213,24 @@ mod tests {
         let part = header.of_shard(Shard::new(3, 7).unwrap());
         assert_eq!((part.id.as_str(), part.part()), (header.id.as_str(), Ok(Shard::new(3, 7).unwrap())));
         assert_eq!(part.of_shard(Shard::WHOLE), header);
+    }
+
+    #[test]
+    fn numbers_of_flights_and_seeds_beyond_those_of_the_options_are_refused() {
+        let read = |flights, of_option, seeds| {
+            let definition = Definition { flights: of_option, seeds, ..Definition::default() };
+            RunHeader::read(&RunHeader::new(definition, "0.1.0", "a", flights).line()).err()
+        };
+        assert_eq!(read(10_000_000, None, Some((5, 1_000_004))), None);
+        assert_eq!(
+            read(10, None, Some((u64::MAX, u64::MAX))),
+            Some(format!("has the seeds {0}..{0} (allowed: 1 to 1000000 seeds)", u64::MAX))
+        );
+        for (flights, of_option) in [(0, None), (10_000_001, None), (5, Some(u64::MAX))] {
+            let problem = read(flights, of_option, None).expect("refused");
+            assert!(problem.ends_with("flights (allowed: 1 to 10000000)"), "{problem}");
+        }
+        assert!(read(5, None, Some((1, 1_000_001))).is_some() && read(5, None, Some((2, 1))).is_some());
     }
 
     #[test]

@@ -44,6 +44,7 @@ pub fn answer_json(reported: &Reported<'_>) -> String {
                 "passed": worst.has_passed,
                 "result": worst.result,
                 "complaint": worst.complaint,
+                "alike": worst.alike,
                 "open": shown::open_command(reported, worst),
             })
         })
@@ -60,6 +61,7 @@ pub fn answer_json(reported: &Reported<'_>) -> String {
         "met": answer.is_met(),
         "success": success(&answer.success),
         "results": results,
+        "not_flown": answer.not_flown.iter().map(|(reason, count)| json!({"reason": reason, "flights": count})).collect::<Vec<_>>(),
         "distributions": distributions,
         "causes": answer.causes.of_failures.iter().map(cause).collect::<Vec<_>>(),
         "causes_flights": answer.causes.flights,
@@ -77,6 +79,7 @@ fn success(success: &Success) -> Value {
         "passed": success.passed,
         "judged": success.judged,
         "skipped": success.skipped,
+        "not_flown": success.not_flown,
         "low": success.low,
         "high": success.high,
         "confidence": 0.95,

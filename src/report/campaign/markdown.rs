@@ -1,6 +1,6 @@
 //! The answer of a campaign as Markdown, for a pull request.
 
-use super::sentences::{found, success};
+use super::sentences::{found, not_flown, success};
 use super::{Reported, shown};
 use crate::campaign::GoalOutcome;
 use crate::report::markdown::{cell, code, line};
@@ -10,6 +10,12 @@ pub fn answer_markdown(reported: &Reported<'_>) -> String {
     let answer = reported.answer;
     let word = if answer.is_met() { "✅" } else { "❌" };
     let mut text = format!("### {word} {}\n\n", line(&success(reported)));
+    for reason in not_flown(answer) {
+        text.push_str(&format!("- {}\n", line(&reason)));
+    }
+    if !answer.not_flown.is_empty() {
+        text.push('\n');
+    }
     if !answer.goals.is_empty() {
         text.push_str("| goal | found |\n| --- | --- |\n");
         for judged in &answer.goals {
@@ -63,17 +69,19 @@ pub fn answer_markdown(reported: &Reported<'_>) -> String {
             ));
         }
     }
-    let failed: Vec<_> = answer.worst.iter().filter(|worst| !worst.has_passed).collect();
+    let failed: Vec<_> = answer.worst.iter().filter(|worst| !worst.has_passed).cloned().collect();
     if !failed.is_empty() {
         text.push_str("\n#### The worst flights\n\n");
     }
-    for worst in failed {
+    for alike in shown::alike(&failed) {
+        let [worst, others @ ..] = alike.as_slice() else { continue };
         text.push_str(&format!(
             "- **{}** {}\n",
             shown::flight_name(reported, worst),
             line(&shown::complaint(worst))
         ));
         text.extend(shown::open_command(reported, worst).map(|command| format!("  - {}\n", code(&command))));
+        text.extend(shown::others(reported, worst, others).map(|more| format!("  - {more}\n")));
     }
     text
 }

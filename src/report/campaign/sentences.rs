@@ -8,12 +8,15 @@ use crate::scenario::percent;
 
 /// The most causes that are named.
 const CAUSES: usize = 3;
+/// The most reasons that are named why flights could not be flown.
+const REASONS: usize = 3;
 
 /// Returns the answer.
 pub fn answer_sentences(reported: &Reported<'_>) -> Vec<String> {
     let answer = reported.answer;
     let mut lines = vec![format!("{}.", success(reported))];
     lines.extend(results(answer));
+    lines.extend(not_flown(answer));
     lines.extend(distributions(answer));
     lines.extend(touchdown(answer));
     lines.extend(causes(&answer.causes));
@@ -35,6 +38,23 @@ pub(in crate::report) fn results(answer: &Answer) -> Option<String> {
     (results.len() > 1).then(|| format!("Results: {}.", results.join(", ")))
 }
 
+/// Returns the reasons why flights could not be flown.
+pub(in crate::report) fn not_flown(answer: &Answer) -> Vec<String> {
+    let all = answer.success.not_flown;
+    let mut lines: Vec<String> = answer
+        .not_flown
+        .iter()
+        .take(REASONS)
+        .map(|(reason, count)| format!("Not flown, {count} of {all}: {reason}."))
+        .collect();
+    if answer.not_flown.len() > REASONS {
+        lines.push(
+            "Not flown, the others: for more reasons, in the file of the run (--out) or --csv.".to_owned(),
+        );
+    }
+    lines
+}
+
 /// Returns the first sentence, without its full stop.
 pub(super) fn success(reported: &Reported<'_>) -> String {
     let answer = reported.answer;
@@ -52,14 +72,17 @@ pub(super) fn success(reported: &Reported<'_>) -> String {
 
 /// Returns the share of successful flights with its interval.
 pub(in crate::report) fn share(success: &Success) -> String {
-    let skipped = match success.skipped {
+    let mut others = match success.skipped {
         0 => String::new(),
         skipped => format!("; {skipped} could not be judged"),
     };
-    let Some(share) = success.share() else { return format!("nothing was judged{skipped}") };
+    if success.not_flown > 0 {
+        others.push_str(&format!("; {} could not be flown", success.not_flown));
+    }
+    let Some(share) = success.share() else { return format!("nothing was judged{others}") };
     let Success { passed, judged, low, high, .. } = *success;
     format!(
-        "{} succeeded ({passed} of {judged}; {} to {} with 95 % confidence){skipped}",
+        "{} succeeded ({passed} of {judged}; {} to {} with 95 % confidence){others}",
         percent(share),
         percent(low),
         percent(high)
@@ -157,9 +180,13 @@ fn worst(reported: &Reported<'_>) -> Vec<String> {
     let all_passed = worst.iter().all(|worst| worst.has_passed);
     let title = if all_passed { "The tightest flights:" } else { "The worst flights:" };
     let mut lines = vec![String::new(), title.to_owned()];
-    for one in worst {
+    for alike in shown::alike(worst) {
+        let [one, others @ ..] = alike.as_slice() else { continue };
         lines.push(format!("  {}: {}", shown::flight_name(reported, one), shown::complaint(one)));
         lines.extend(shown::open_command(reported, one).map(|command| format!("      {command}")));
+        if let Some(more) = shown::others(reported, one, others) {
+            lines.push(format!("      {more}"));
+        }
     }
     if reported.run.is_none() {
         lines.push(
@@ -235,5 +262,89 @@ pub(in crate::report) fn found(judged: &JudgedGoal) -> String {
             format!("{} (too few flights for this confidence)", subject.shown(found))
         }
         (Some(found), _, None) => subject.shown(found),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::campaign::{Side, Worst};
+
+    /// Returns the lines of the worst flights, of which the last two fail for the same reason.
+    fn lines() -> Vec<String> {
+        let scenario = crate::scenario::BuiltinScenario::find("guide-1").unwrap();
+        let request = crate::scenario::Request {
+            file: scenario.name,
+            text: scenario.text,
+            seeds: None,
+            max_flights: 100,
+            flights: crate::scenario::Flights::Listed,
+        };
+        let scenario = crate::scenario::read_request(&request, &mut crate::scenario::BuiltinFiles).unwrap();
+        let mut answer = crate::campaign::AnswerBuilder::new(&scenario, 40, false).answer();
+        let worst = |number, result: &str, complaint: &str, alike| Worst {
+            number,
+            side: Side::A,
+            result: result.to_owned(),
+            complaint: complaint.to_owned(),
+            at: None,
+            alike,
+            has_passed: false,
+            margin: None,
+        };
+        answer.worst = vec![
+            worst(7, "crashed", "the craft crashed: it hit the ground sinking at 3.1 m/s", 1),
+            worst(9, "aborted", "mission given up: no fix for 20 s", 12),
+            worst(4, "aborted", "mission given up: no fix for 21 s", 12),
+        ];
+        answer.success.not_flown = 3;
+        answer.not_flown = vec![("airframe iris: too heavy".to_owned(), 3)];
+        let reported = Reported {
+            answer: &answer,
+            name: "x",
+            version: "0",
+            design: None,
+            run: Some("run.jsonl"),
+            sides: None,
+            shard: None,
+        };
+        answer_sentences(&reported)
+    }
+
+    #[test]
+    fn equal_reasons_are_one_line_with_their_number() {
+        let lines = lines();
+        let at = lines.iter().position(|line| line == "The worst flights:").unwrap();
+        assert_eq!(
+            lines[at + 1..],
+            [
+                "  7: the craft crashed: it hit the ground sinking at 3.1 m/s",
+                "      betadeck open run.jsonl:7",
+                "  9: aborted, mission given up: no fix for 20 s",
+                "      betadeck open run.jsonl:9",
+                "      and 11 more like it, the worst of them 4",
+            ]
+        );
+    }
+
+    #[test]
+    fn flights_that_could_not_be_flown_are_in_the_first_line() {
+        let lines = lines();
+        assert!(lines[0].contains("; 3 could not be flown"), "{}", lines[0]);
+        assert!(lines.contains(&"Not flown, 3 of 3: airframe iris: too heavy.".to_owned()), "{lines:?}");
+    }
+
+    #[test]
+    fn thresholds_have_three_digits() {
+        for (value, text) in [
+            (12.2705, "12.3"),
+            (-4.6617, "-4.66"),
+            (0.012_345, "0.0123"),
+            (412.7, "413"),
+            (1500.0, "1500"),
+            (2.5, "2.5"),
+        ] {
+            assert_eq!(shown::number(value), text);
+        }
     }
 }

@@ -39,10 +39,44 @@ pub(in crate::report) fn split(split: &Split) -> String {
     format!("{failed} of {flights} such flights failed, {others_failed} of the other {others}")
 }
 
-/// Returns a number with at most four digits behind the point.
+/// Returns a number with three significant digits; a whole number keeps all of its digits.
 pub(in crate::report) fn number(value: f64) -> String {
-    let text = format!("{value:.4}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    if value == 0.0 || !value.is_finite() || value.fract() == 0.0 {
+        return format!("{value}");
+    }
+    let decimals = (2 - value.abs().log10().floor() as i32).clamp(0, 9) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+/// Returns the worst flights by their complaints, its numbers apart: the worst flight of each complaint first.
+pub(in crate::report) fn alike(worst: &[Worst]) -> Vec<Vec<&Worst>> {
+    let mut groups: Vec<Vec<&Worst>> = Vec::new();
+    for one in worst {
+        let same = groups.iter_mut().find(|group| {
+            group.first().is_some_and(|first| !one.has_passed && !first.has_passed && first.is_like(one))
+        });
+        match same {
+            Some(group) => group.push(one),
+            None => groups.push(vec![one]),
+        }
+    }
+    groups
+}
+
+/// Returns how many flights failed like one of the worst flights, with the next worst of them; `None` if it is the only one.
+pub(in crate::report) fn others(reported: &Reported<'_>, one: &Worst, listed: &[&Worst]) -> Option<String> {
+    let more = one.alike.saturating_sub(1);
+    if more == 0 {
+        return None;
+    }
+    let listed: Vec<String> = listed.iter().map(|other| flight_name(reported, other)).collect();
+    let next = match listed.len() as u64 {
+        0 => String::new(),
+        all if all == more => format!(": {}", listed.join(", ")),
+        _ => format!(", the worst of them {}", listed.join(", ")),
+    };
+    Some(format!("and {more} more like it{next}"))
 }
 
 /// Returns the command that opens a flight at its worst instant; `None` if the flights were not kept.
@@ -67,7 +101,10 @@ pub(in crate::report) fn flight_name(reported: &Reported<'_>, worst: &Worst) -> 
 /// Returns what is wrong with one of the worst flights, or how close it came.
 pub(in crate::report) fn complaint(worst: &Worst) -> String {
     match (worst.has_passed, worst.margin) {
-        (false, _) if worst.result.is_empty() => worst.complaint.clone(),
+        // The sentence of a crash begins with the result.
+        (false, _) if worst.result.is_empty() || worst.complaint.starts_with("the craft crashed") => {
+            worst.complaint.clone()
+        }
         (false, _) => format!("{}, {}", worst.result, worst.complaint),
         (true, Some(margin)) => format!("passed, with {} of a margin left", percent(margin)),
         (true, None) => "passed".to_owned(),

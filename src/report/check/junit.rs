@@ -1,4 +1,5 @@
-//! Checked flights as a JUnit file: one testsuite for each scenario, one testcase for each case and seed.
+//! Checked flights as a JUnit file: one testsuite for each scenario, one testcase for each case and seed. Scenarios of
+//! the same name in several files have the file in their class names.
 
 use super::{CheckedFlight, Compared, Summary, complaint, is_skipped};
 use crate::report::xml::escaped;
@@ -22,7 +23,11 @@ pub fn junit(summary: &Summary) -> String {
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"betadeck\" tests=\"{tests}\" failures=\"{failures}\" skipped=\"{skipped}\" time=\"{:.3}\">\n",
         summary.wall_s
     );
-    for (scenario, file) in scenarios {
+    for &(scenario, file) in &scenarios {
+        let class = match scenarios.iter().filter(|(other, _)| *other == scenario).count() {
+            1 => scenario.to_owned(),
+            _ => format!("{scenario} ({file})"),
+        };
         let flights: Vec<&CheckedFlight> = summary
             .flights
             .iter()
@@ -43,21 +48,21 @@ pub fn junit(summary: &Summary) -> String {
             escaped(scenario),
             flights.len() + compared.len()
         ));
-        flights.iter().for_each(|flight| text.push_str(&testcase(flight)));
-        compared.iter().for_each(|compared| text.push_str(&comparison(compared)));
+        flights.iter().for_each(|flight| text.push_str(&testcase(&class, flight)));
+        compared.iter().for_each(|compared| text.push_str(&comparison(&class, compared)));
         text.push_str("  </testsuite>\n");
     }
     text.push_str("</testsuites>\n");
     text
 }
 
-fn testcase(flight: &CheckedFlight) -> String {
+fn testcase(class: &str, flight: &CheckedFlight) -> String {
     let case = if flight.case.is_empty() { "flight" } else { &flight.case };
     let repetition =
         if flight.repetition > 0 { format!(" repetition {}", flight.repetition + 1) } else { String::new() };
     let head = format!(
         "    <testcase classname=\"{}\" name=\"{} seed {}{repetition}\" time=\"{:.3}\"",
-        escaped(&flight.scenario),
+        escaped(class),
         escaped(case),
         flight.seed,
         flight.wall_s
@@ -81,11 +86,11 @@ fn testcase(flight: &CheckedFlight) -> String {
     failure(&head, &lines, open.as_deref())
 }
 
-fn comparison(compared: &Compared) -> String {
+fn comparison(class: &str, compared: &Compared) -> String {
     let variant = if compared.variant.is_empty() { String::new() } else { format!("{}, ", compared.variant) };
     let head = format!(
         "    <testcase classname=\"{}\" name=\"{} ({}seed {})\" time=\"0\"",
-        escaped(&compared.scenario),
+        escaped(class),
         escaped(&compared.judgement.label),
         escaped(&variant),
         compared.seed

@@ -14,11 +14,11 @@ pub fn markdown(summary: &Summary) -> String {
     // Only a remote flight controller causes skipped expectations.
     let with_skipped = skipped > 0;
     let reported = if with_skipped {
-        format!(", {skipped_flights} skipped whole, {skipped} expectations skipped")
+        format!(", {skipped_flights} not judged at all, {skipped} expectations not judged")
     } else {
         String::new()
     };
-    let (title, line_below) = if with_skipped { ("| skipped ", "| --- ") } else { ("", "") };
+    let (title, line_below) = if with_skipped { ("| not judged ", "| --- ") } else { ("", "") };
     let mut text = format!(
         "### {word}\n\n{} of {} flights passed{reported}; {:.0} s flown in {:.1} s.\n\n| scenario | passed {title}| tightest expectation | left |\n| --- | --- {line_below}| --- | --- |\n",
         summary.passed_flights(),

@@ -45,7 +45,7 @@ pub fn flight_lines(flight: &CheckedFlight) -> Vec<String> {
     lines
 }
 
-/// Returns the number of skipped expectations and the reason, as the end of a line.
+/// Returns the number of expectations that were not judged and the reason, as the end of a line.
 fn skipped(flight: &CheckedFlight) -> String {
     let needed = flight.judgements.iter().filter_map(|judgement| match judgement.outcome {
         Outcome::Skipped(needed) => Some(needed),
@@ -53,7 +53,7 @@ fn skipped(flight: &CheckedFlight) -> String {
     });
     needed.max().map_or_else(String::new, |needed| {
         let (skipped, all) = (flight.skipped(), flight.judgements.len());
-        format!("; {skipped} of {all} expectations skipped, {}", needed.missing())
+        format!("; {skipped} of {all} expectations not judged, {}", needed.missing())
     })
 }
 
@@ -126,9 +126,9 @@ pub fn summary_lines(summary: &Summary) -> Vec<String> {
     }
     match summary.skipped() {
         (0, 0) => {}
-        (0, expectations) => last.push_str(&format!(", {} skipped", counted(expectations))),
+        (0, expectations) => last.push_str(&format!(", {} not judged", counted(expectations))),
         (flights, expectations) => {
-            last.push_str(&format!(", {flights} skipped whole, {} skipped", counted(expectations)));
+            last.push_str(&format!(", {flights} not judged at all, {} not judged", counted(expectations)));
         }
     }
     if summary.flights.len() < summary.wanted {

@@ -165,11 +165,11 @@ fn skipped_expectations_are_counted_in_every_form() {
     assert!(half.passed() && !half.is_skipped() && whole.passed() && whole.is_skipped());
     assert!(
         flight_lines(&half)[0]
-            .ends_with("; 1 of 2 expectations skipped, only the embedded firmware shows it")
+            .ends_with("; 1 of 2 expectations not judged, only the embedded firmware shows it")
     );
     assert_eq!(
         flight_lines(&whole)[0],
-        "– a <b> & \"c\" | *d* · one, noise real · seed 2: not flown; 2 of 2 expectations skipped, only the embedded \
+        "– a <b> & \"c\" | *d* · one, noise real · seed 2: not flown; 2 of 2 expectations not judged, only the embedded \
          firmware shows it"
     );
     let line: serde_json::Value = serde_json::from_str(&flight_line(&half)).unwrap();
@@ -177,15 +177,36 @@ fn skipped_expectations_are_counted_in_every_form() {
     let summary = Summary::new(vec![half, whole], Vec::new(), 2, 0, 1.0);
     assert!(summary.passed());
     let last = summary_lines(&summary).pop().unwrap();
-    assert!(last.starts_with("1 of 2 flights passed, 1 skipped whole, 3 expectations skipped; "), "{last}");
+    assert!(
+        last.starts_with("1 of 2 flights passed, 1 not judged at all, 3 expectations not judged; "),
+        "{last}"
+    );
     let xml = junit(&summary);
     assert!(xml.contains("tests=\"2\" failures=\"0\" skipped=\"1\""), "{xml}");
-    assert!(xml.contains("<skipped message=\"a: skipped, only the embedded firmware shows it\"/>"), "{xml}");
-    assert!(xml.contains("<system-out>throttle &lt; 1900 µs: skipped, only"), "{xml}");
+    assert!(
+        xml.contains("<skipped message=\"a: not judged, only the embedded firmware shows it\"/>"),
+        "{xml}"
+    );
+    assert!(xml.contains("<system-out>throttle &lt; 1900 µs: not judged, only"), "{xml}");
     let text = markdown(&summary);
-    assert!(text.contains("| scenario | passed | skipped | tightest expectation | left |"), "{text}");
+    assert!(text.contains("| scenario | passed | not judged | tightest expectation | left |"), "{text}");
     assert!(text.contains("| 3 of 4 |"), "{text}");
-    assert!(!markdown(&self::summary([1.0].into_iter())).contains("skipped"));
+    assert!(!markdown(&self::summary([1.0].into_iter())).contains("not judged"));
+}
+
+#[test]
+fn scenarios_of_the_same_name_in_two_folders_have_class_names_of_their_own() {
+    let of = |file: &str| CheckedFlight { file: file.to_owned(), ..failed_flight(file, "") };
+    let classes = |files: &[&str]| -> Vec<String> {
+        let xml = junit(&summary_of(files.iter().map(|file| of(file)).collect()));
+        let names = xml.split("classname=\"").skip(1);
+        names.filter_map(|rest| Some(rest.split_once('"')?.0.to_owned())).collect()
+    };
+    assert_eq!(classes(&["calm/square.toml"]), ["square"], "one is named as before");
+    assert_eq!(
+        classes(&["calm/square.toml", "wind/square.toml"]),
+        ["square (calm/square.toml)", "square (wind/square.toml)"]
+    );
 }
 
 /// Returns a flight without a judgement.
@@ -216,7 +237,7 @@ fn a_run_of_which_nothing_was_judged_does_not_say_that_it_passed() {
     assert!(text.starts_with("### – Nothing was judged\n"), "{text}");
     assert!(text.contains("| – a &lt;b>") && text.contains("| 0 of 2 |") && !text.contains('✅'), "{text}");
     let last = summary_lines(&summary).pop().unwrap();
-    assert!(last.starts_with("nothing was judged: 0 of 2 flights passed, 2 skipped whole, "), "{last}");
+    assert!(last.starts_with("nothing was judged: 0 of 2 flights passed, 2 not judged at all, "), "{last}");
     let failed = summary_of(vec![unjudged(1), flight(2, 11.0)]);
     assert!(markdown(&failed).starts_with("### ❌ Some flights failed"));
     assert_eq!(summary_lines(&failed)[0], "a <b> & \"c\" | *d* · one, noise real: 0 of 2");

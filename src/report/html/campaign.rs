@@ -92,6 +92,7 @@ fn body(reported: &Reported<'_>, detail: Detail) -> Body {
 fn said(answer: &Answer) -> Vec<String> {
     let mut said = vec![format!("{}.", sentences::share(&answer.success))];
     said.extend(sentences::results(answer));
+    said.extend(sentences::not_flown(answer));
     said.extend(sentences::touchdown(answer));
     // The causes are a table, the sentence that there is none is not.
     let is_explained = answer.causes.of_failures.iter().any(|cause| cause.is_real);
@@ -111,6 +112,7 @@ fn verdict(answer: &Answer) -> Verdict {
         (Some(true), true, _) => "every flight succeeded",
         (Some(true), false, _) => "as expected",
         (Some(false), _, false) => "not finished",
+        (Some(false), ..) if answer.success.not_flown > 0 => "some flights could not be flown",
         (Some(false), true, _) => "some flights failed",
         (Some(false), false, _) => "not as expected",
     };

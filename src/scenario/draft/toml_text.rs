@@ -25,7 +25,8 @@ pub(super) fn text(draft: &Draft, expectations: &[Block]) -> String {
     if !draft.description.is_empty() {
         line(format!("description = {}", quoted(&draft.description)));
     }
-    line(format!("seeds = {}", draft.seed));
+    // A campaign of the file then flies a seed of its own in each flight.
+    line(format!("seeds = {}", quoted(&format!("{}..", draft.seed))));
     if let Some(ends) = &draft.ends {
         line(format!("ends = {}", quoted(&after_boot(*ends))));
         line(format!("time_limit_s = {}", ends.as_secs_f64().ceil() + 60.0));

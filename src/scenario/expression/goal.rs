@@ -6,7 +6,7 @@ use strum::IntoEnumIterator as _;
 
 use super::Scope;
 use super::cursor::{Cursor, SyntaxError};
-use super::number::read_number;
+use super::number::{bare, read_number};
 use crate::scenario::goal::{Goal, GoalLimit, GoalStatistic, Quantity, Subject};
 use crate::scenario::happening::RESULTS;
 use crate::scenario::metric::Metric;
@@ -37,7 +37,8 @@ pub fn read_goal(
     } else {
         return Err(cursor.error("a comparison is expected here", "write <=, >=, < or >"));
     };
-    let value = read_value(cursor, subject.dimension())?;
+    let value =
+        if subject.is_share() { read_share(cursor)? } else { read_value(cursor, subject.dimension())? };
     let confidence = read_confidence(cursor, &subject)?;
     let limit = GoalLimit { value, is_least, is_strict };
     Ok(Goal { label: String::new(), line: 0, subject, limit, confidence })
@@ -98,6 +99,22 @@ fn statistic(word: &str) -> Option<GoalStatistic> {
     })
 }
 
+/// Reads a share with its unit: 99 without one would be 9900 %.
+fn read_share(cursor: &mut Cursor<'_>) -> Result<f64, SyntaxError> {
+    let start = cursor.at();
+    let (number, _) = read_number(&mut cursor.clone(), &Scope::default())?;
+    if bare(&number) {
+        let value = read_value(cursor, Dimension::NONE)?;
+        let hint = format!("allowed: %; write {value} %");
+        return Err(cursor.error_since(
+            start,
+            "a number without a unit does not fit: shares are compared",
+            hint,
+        ));
+    }
+    read_value(cursor, Dimension::NONE)
+}
+
 fn read_value(cursor: &mut Cursor<'_>, dimension: Dimension) -> Result<f64, SyntaxError> {
     let start = cursor.at();
     let (number, found) = read_number(cursor, &Scope::default())?;
@@ -117,7 +134,7 @@ fn read_confidence(cursor: &mut Cursor<'_>, subject: &Subject) -> Result<Option<
         return Ok(None);
     }
     // 95 % is 0.95 and not the product of 95 and a hundredth.
-    let share = (read_value(cursor, Dimension::NONE)? * 1e9).round() / 1e9;
+    let share = (read_share(cursor)? * 1e9).round() / 1e9;
     if !cursor.take_keyword("confidence") {
         return Err(cursor.error("confidence is expected here", "write with 95 % confidence"));
     }
@@ -173,6 +190,14 @@ mod tests {
             ("p95(touchdown) = 2 m", "a comparison is expected here"),
             ("p95(touchdown) <= 2 s", "seconds do not fit: metres are compared"),
             ("p100(touchdown) <= 2 m", "p100 is not a number of a campaign"),
+            ("success >= 99", "a number without a unit does not fit: shares are compared"),
+            ("success>=0.99", "a number without a unit does not fit: shares are compared"),
+            ("share(crashed) <= 0", "a number without a unit does not fit: shares are compared"),
+            ("min(battery_left) >= -20", "a number without a unit does not fit: shares are compared"),
+            (
+                "success >= 99 % with 95 confidence",
+                "a number without a unit does not fit: shares are compared",
+            ),
             ("success >= 99 % with 20 % confidence", "this is no confidence"),
             ("success >= 99 % with 95 %", "confidence is expected here"),
             (
@@ -184,5 +209,6 @@ mod tests {
             assert!(error.message.starts_with(message), "{text}: {}", error.message);
             assert!(!error.hint.is_empty(), "{text}");
         }
+        assert_eq!(read("success >= 99").unwrap_err().hint, "allowed: %; write 99 %");
     }
 }

@@ -73,7 +73,7 @@ pub(super) fn share_unit(left: Typed, right: Typed) -> (Typed, Typed) {
     }
 }
 
-fn bare(number: &Number) -> bool {
+pub(super) fn bare(number: &Number) -> bool {
     match number {
         Number::Literal(_, unit) => unit.is_none(),
         Number::Negative(inner) => bare(inner),

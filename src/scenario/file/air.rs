@@ -14,7 +14,7 @@ use crate::telemetry::Turbulence;
 use toml::de::DeValue;
 
 /// The most seeds of a case.
-const MAX_SEEDS: u64 = 1_000_000;
+pub const MAX_SEEDS: u64 = 1_000_000;
 
 /// Returns the air of each seed.
 pub(super) fn read(layers: &Layers<'_, '_>, reader: &mut Reader<'_, '_>) -> Vec<Air> {
@@ -107,10 +107,13 @@ pub(super) fn word<T>(
     parse(&text).map_err(|problem| reader.problem(value.span(), problem, "")).ok()
 }
 
-/// Reads `seeds = 3`, `[1, 2]` or `"1..5"`.
-/// At most `most` seeds are allowed.
+/// Reads `seeds = 3`, `[1, 2]` or `"1..5"`. Of `"5.."`, which a campaign takes on and on, only the first is taken. At most
+/// `most` seeds are allowed.
 fn read_seeds<'s>(value: &Value<'_>, most: usize, reader: &mut Reader<'_, '_>) -> Seeds<'s> {
     let hint = "write seeds = 3, [1, 2, 3] or \"1..5\"";
+    if let Some(first) = first_of_all(value) {
+        return Seeds::One(first);
+    }
     match value.get_ref() {
         DeValue::Array(values) if values.is_empty() => {
             reader.problem(value.span(), "there is no seed", hint);
@@ -146,8 +149,7 @@ fn read_seeds<'s>(value: &Value<'_>, most: usize, reader: &mut Reader<'_, '_>) -
 
 /// Reads the seeds of a campaign's flights: as [`read_seeds`], or `"5.."` for all seeds from 5 on.
 fn read_flight_seeds(value: &Value<'_>, reader: &mut Reader<'_, '_>) -> FlightSeeds {
-    let first = value.get_ref().as_str().and_then(|text| text.trim().strip_suffix(".."));
-    if let Some(first) = first.and_then(|first| first.trim().parse().ok()) {
+    if let Some(first) = first_of_all(value) {
         return FlightSeeds::From(first);
     }
     match read_seeds(value, MAX_SEEDS as usize, reader) {
@@ -156,6 +158,11 @@ fn read_flight_seeds(value: &Value<'_>, reader: &mut Reader<'_, '_>) -> FlightSe
         Seeds::List(seeds) => FlightSeeds::List(seeds),
         Seeds::Given(seeds) => FlightSeeds::List(seeds.to_vec()),
     }
+}
+
+/// Returns the first seed of `"5.."`.
+fn first_of_all(value: &Value<'_>) -> Option<u64> {
+    value.get_ref().as_str()?.trim().strip_suffix("..")?.trim().parse().ok()
 }
 
 /// Returns `true` if the count is at most `max`; otherwise notes a problem.

@@ -4,7 +4,7 @@ use crate::scenario::Insight;
 use crate::scenario::expression::Verdict;
 use crate::scenario::trace::Trace;
 use crate::signals::SimTime;
-use crate::telemetry::quantity::{Dimension, shown};
+use crate::telemetry::quantity::{Dimension, shown, shown_apart};
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct Judgement {
@@ -105,6 +105,10 @@ impl Margin {
 pub(super) fn describe(verdict: &Verdict) -> String {
     let Verdict { value, low, high, dimension, strict } = *verdict;
     let show = |number| shown(number, dimension);
+    // A value that rounds to the bound it is compared with shows the digit that decides.
+    let near = if (value - low).abs() < (value - high).abs() { low } else { high };
+    let [value_text, near_text] = shown_apart(value, near, dimension);
+    let show = |number: f64| if number == near { near_text.clone() } else { show(number) };
     let allowed = match (low.is_finite(), high.is_finite()) {
         (true, true) if low < high => format!("{} to {}", show(low), show(high)),
         (true, true) => format!("exactly {}", show(low)),
@@ -113,7 +117,7 @@ pub(super) fn describe(verdict: &Verdict) -> String {
         (true, false) if strict => format!("above {}", show(low)),
         (true, false) => format!("at least {}", show(low)),
     };
-    format!("{}, {allowed}", show(value))
+    format!("{value_text}, {allowed}")
 }
 
 pub(super) fn met(margin: Option<Margin>) -> Outcome {

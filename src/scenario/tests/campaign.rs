@@ -268,3 +268,33 @@ fn a_flight_can_be_given_up_some_time_after_boot() {
     let flown = crate::scenario::CaseFlight::new(case, &case.airs[0]).unwrap().fly();
     assert_eq!((flown.result.as_str(), flown.ended_at.as_secs_f64().round()), ("timeout", 2.0));
 }
+
+#[test]
+fn an_iris_with_moments_of_inertia_twenty_per_cent_off_flies_and_lands() {
+    for percent in [-20.0, 20.0] {
+        let text = format!(
+            "format = 1\n[plan]\nwaypoints = [\"0 40.4635 -79.5182 500 0 LAND 0 NONE\"]\n[craft]\nairframe = \"iris\"\ntakeoff_m = 5\ninertia_pct = {percent}\n"
+        );
+        let scenario = crate::scenario::read("test.toml", &text, None, &mut NoFiles)
+            .unwrap_or_else(|errors| panic!("{}", crate::plan::format::report(&errors)));
+        let case = &scenario.cases[0];
+        let flown = crate::scenario::CaseFlight::new(case, &case.airs[0]).unwrap().fly();
+        assert_eq!(flown.result, "complete", "{percent}: {}", flown.reason);
+    }
+}
+
+#[test]
+fn every_built_in_craft_takes_every_tolerance_of_twenty_per_cent() {
+    use strum::IntoEnumIterator as _;
+    for name in crate::sim::BUILTIN_NAMES {
+        for (of, percent) in Tolerance::iter().flat_map(|of| [(of, -20.0), (of, 20.0)]) {
+            let mut world = crate::sim::WorldConfig::default();
+            world.airframe = name.parse().unwrap();
+            of.apply(percent, &mut world.airframe, &mut world.switches);
+            for rate_hz in [400, 500, 1000, 8000] {
+                world.rate_hz = rate_hz;
+                assert_eq!(world.check(), Ok(()), "{name} {} {percent} {rate_hz}", of.key());
+            }
+        }
+    }
+}

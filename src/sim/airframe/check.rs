@@ -9,12 +9,10 @@ use crate::math;
 const MIN_THRUST_TO_WEIGHT: f64 = 1.3;
 /// The minimum motor time constant, s. Below it the equation of the motors is unstable at the longest step.
 const MIN_MOTOR_TAU_S: f64 = 0.002;
-/// The longest step of the integrator, s.
-const LONGEST_STEP_S: f64 = 0.0025;
 /// The maximum product of leg frequency and step for a craft that is at rest on the ground.
 const MAX_LEG_PHASE: f64 = 1.2;
-/// The maximum product of leg damping rate and step for a craft that is at rest on the ground.
-const MAX_LEG_DECAY: f64 = 1.5;
+/// The maximum product of leg damping rate and step for a craft that is at rest on the ground. The integrator takes 2.78.
+const MAX_LEG_DECAY: f64 = 2.0;
 /// The spin of M1…M4 that the mixer of the flight controller expects.
 const SPIN: [f64; ROTORS] = [-1.0, 1.0, 1.0, -1.0];
 /// The signs of x and y of M1…M4.
@@ -32,8 +30,8 @@ pub(super) struct Finding {
     pub text: String,
 }
 
-/// Returns everything wrong with an airframe, empty if it can fly.
-pub(super) fn findings(airframe: &Airframe) -> Vec<Finding> {
+/// Returns everything wrong with an airframe, empty if it can fly with steps of `step_s`.
+pub(super) fn findings(airframe: &Airframe, step_s: f64) -> Vec<Finding> {
     let mut found = Findings(Vec::new());
     found.above("mass_kg", airframe.mass_kg, 0.0);
     found.inertia(airframe.inertia_kgm2);
@@ -57,7 +55,7 @@ pub(super) fn findings(airframe: &Airframe) -> Vec<Finding> {
     found.battery(airframe);
     if found.0.is_empty() {
         found.thrust(airframe);
-        found.leg_stability(airframe);
+        found.leg_stability(airframe, step_s);
     }
     found.0
 }
@@ -148,31 +146,25 @@ impl Findings {
         }
     }
 
-    /// Checks the legs as springs on the mass and, through their lever, on the inertias, at the longest step.
-    fn leg_stability(&mut self, airframe: &Airframe) {
+    /// Checks the legs as springs on the mass and, through their lever, on the inertias.
+    fn leg_stability(&mut self, airframe: &Airframe, step_s: f64) {
+        let step = format!("steps of {} ms with this mass and inertia", step_s * 1e3);
         let legs = &airframe.legs_m;
         let lever = |arm: fn(&Vector3<f64>) -> f64, j: f64| legs.iter().map(arm).sum::<f64>() / j;
         let per_unit = (legs.len() as f64 / airframe.mass_kg)
             .max(lever(|r| r.y * r.y + r.z * r.z, airframe.inertia_kgm2.x))
             .max(lever(|r| r.x * r.x + r.z * r.z, airframe.inertia_kgm2.y))
             .max(lever(|r| r.x * r.x + r.y * r.y, airframe.inertia_kgm2.z));
-        let phase = (airframe.leg_stiffness * per_unit).sqrt() * LONGEST_STEP_S;
+        let phase = (airframe.leg_stiffness * per_unit).sqrt() * step_s;
         if phase > MAX_LEG_PHASE {
-            let limit = math::powi(MAX_LEG_PHASE / LONGEST_STEP_S, 2) / per_unit;
-            self.add(
-                "k_n_N_per_m_per_point",
-                format!(
-                    "is too stiff for steps of 2.5 ms with this mass and inertia: use at most {limit:.0} N/m"
-                ),
-            );
+            let limit = math::powi(MAX_LEG_PHASE / step_s, 2) / per_unit;
+            self.add("k_n_N_per_m_per_point", format!("is too stiff for {step}: use at most {limit:.0} N/m"));
         }
-        if airframe.leg_damping * per_unit * LONGEST_STEP_S > MAX_LEG_DECAY {
-            let limit = MAX_LEG_DECAY / LONGEST_STEP_S / per_unit;
+        if airframe.leg_damping * per_unit * step_s > MAX_LEG_DECAY {
+            let limit = MAX_LEG_DECAY / step_s / per_unit;
             self.add(
                 "c_n_Ns_per_m_per_point",
-                format!(
-                    "is too strong for steps of 2.5 ms with this mass and inertia: use at most {limit:.1} N·s/m"
-                ),
+                format!("is too strong for {step}: use at most {limit:.1} N·s/m"),
             );
         }
     }
@@ -185,7 +177,7 @@ mod tests {
     fn keys(change: impl FnOnce(&mut Airframe)) -> Vec<&'static str> {
         let mut airframe = Airframe::iris();
         change(&mut airframe);
-        findings(&airframe).into_iter().map(|finding| finding.key).collect()
+        findings(&airframe, 0.0025).into_iter().map(|finding| finding.key).collect()
     }
 
     #[test]
@@ -201,6 +193,15 @@ mod tests {
         assert_eq!(keys(|a| a.leg_stiffness = 1e5), ["k_n_N_per_m_per_point"]);
         assert_eq!(keys(|a| a.leg_damping = 100.0), ["c_n_Ns_per_m_per_point"]);
         assert_eq!(keys(|a| a.battery.resistance_ohm = 0.0), ["battery.resistance_ohm"]);
+    }
+
+    #[test]
+    fn the_legs_are_judged_at_the_step_that_is_flown() {
+        let mut airframe = Airframe::iris();
+        airframe.leg_damping = 30.0;
+        assert_eq!(findings(&airframe, 0.001), []);
+        let found = findings(&airframe, 0.0025);
+        assert!(found[0].text.starts_with("is too strong for steps of 2.5 ms"), "{found:?}");
     }
 
     #[test]
@@ -221,11 +222,11 @@ mod tests {
                 airframe.legs_m.push(Vector3::new(x, y, -z));
             }
             let stiffest = (1.2_f64 / 0.0025).powi(2) / per_unit;
-            let strongest = 1.5 / 0.0025 / per_unit;
+            let strongest = 2.0 / 0.0025 / per_unit;
             (airframe.leg_stiffness, airframe.leg_damping) = (0.999 * stiffest, 0.999 * strongest);
-            assert_eq!(findings(&airframe), [], "{x}, {y}, {z}");
+            assert_eq!(findings(&airframe, 0.0025), [], "{x}, {y}, {z}");
             (airframe.leg_stiffness, airframe.leg_damping) = (1.001 * stiffest, 1.001 * strongest);
-            let found = findings(&airframe);
+            let found = findings(&airframe, 0.0025);
             assert_eq!(found.len(), 2, "{x}, {y}, {z}: {found:?}");
             assert!(found[0].text.contains(&format!("at most {stiffest:.0} N/m")), "{found:?}");
             assert!(found[1].text.contains(&format!("at most {strongest:.1} N·s/m")), "{found:?}");

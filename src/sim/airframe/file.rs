@@ -68,6 +68,8 @@ const KEYS: [Key; 27] = [
 ];
 
 /// The name of the table with the battery keys.
+/// The step of a flight without another `--rate`, s. A flight with a longer one judges the legs again.
+const USUAL_STEP_S: f64 = 0.001;
 const BATTERY: &str = "battery";
 /// The nominal voltage of a cell if the file gives none for the pack, V.
 const NOMINAL_CELL_V: f64 = 3.7;
@@ -129,7 +131,7 @@ impl Reading<'_> {
             airframe.battery.nominal_v = NOMINAL_CELL_V * f64::from(airframe.battery.cells);
         }
         if self.problems.is_empty() {
-            for finding in check::findings(&airframe) {
+            for finding in check::findings(&airframe, USUAL_STEP_S) {
                 let place = places.get(finding.key).cloned().unwrap_or(0..0);
                 self.problem(place, format!("{} {}", finding.key, finding.text));
             }

@@ -12,7 +12,7 @@ use crate::sim::battery::Battery;
 use crate::sim::body::BodyState;
 use crate::sim::clock::{Clock, FaultHost as _};
 use crate::sim::command::{check_wind, in_range};
-use crate::sim::config::{Home, Wind, WorldConfig, WorldError};
+use crate::sim::config::{Home, Wind, WorldConfig, WorldError, step_us};
 use crate::sim::fault::FaultLink;
 use crate::sim::landform::{Landform, LocalRelief};
 use crate::sim::plant::Plant;
@@ -31,7 +31,7 @@ impl World {
     /// # Errors
     /// Fails if a value of the configuration is not allowed.
     pub fn new(config: WorldConfig) -> Result<Self, WorldError> {
-        check(&config)?;
+        config.check()?;
         let relief = relief(&config);
         Self::build(config, relief)
     }
@@ -63,7 +63,7 @@ impl World {
             terrain: None,
         };
         change(&mut config);
-        check(&config)?;
+        config.check()?;
         let mut world = Self::build(config, self.relief.clone())?;
         world.sensors.gps.set_rate(self.sensors.gps.rate_hz());
         Ok(world)
@@ -118,14 +118,21 @@ impl World {
     }
 }
 
-fn check(config: &WorldConfig) -> Result<(), WorldError> {
-    if let Some(fault) = config.airframe.fault() {
-        return Err(WorldError::Airframe(config.airframe.name.clone(), fault));
+impl WorldConfig {
+    /// Checks the values without building the world.
+    ///
+    /// # Errors
+    /// Fails if a value is not allowed.
+    pub fn check(&self) -> Result<(), WorldError> {
+        let step_s = step_us(self.rate_hz)? as f64 * 1e-6;
+        if let Some(fault) = self.airframe.fault(step_s) {
+            return Err(WorldError::Airframe(self.airframe.name.clone(), fault));
+        }
+        self.home.check()?;
+        check_wind(self.wind)?;
+        in_range("gust", self.gust_mps, 0.0, Wind::MAX_MPS)?;
+        self.switches.check()
     }
-    config.home.check()?;
-    check_wind(config.wind)?;
-    in_range("gust", config.gust_mps, 0.0, Wind::MAX_MPS)?;
-    config.switches.check()
 }
 
 /// Returns the relief around home, if there are tiles that know its height.

@@ -310,3 +310,23 @@ fn the_status_shows_what_is_set() {
     assert_eq!(world.clock().active_faults().collect::<Vec<_>>(), [(Fault::GpsLoss, Some(2.0))]);
     assert!((world.truth().wind_enu.x + 3.0 * 0.396).abs() < 1.0);
 }
+
+#[test]
+fn the_built_in_craft_stand_still_at_every_step_with_moments_of_inertia_twenty_per_cent_off() {
+    for airframe in [Airframe::iris(), Airframe::five_inch()] {
+        for (inertia, mass) in [(0.8, 0.8), (0.8, 1.2), (1.2, 0.8), (1.2, 1.2)] {
+            for rate_hz in [400, 1000] {
+                let mut airframe = airframe.clone();
+                airframe.inertia_kgm2 *= inertia;
+                airframe.mass_kg *= mass;
+                let name = format!("{} {inertia} {mass} {rate_hz}", airframe.name);
+                let mut world = lifted(WorldConfig { airframe, rate_hz, ..ideal() }, 0.02);
+                run(&mut world, 5.0, [0.0; 4]);
+                let truth = world.truth();
+                assert!(!world.diverged, "{name}");
+                assert!(truth.on_ground && truth.vel_enu.norm() < 1e-3, "{name}: {}", truth.vel_enu);
+                assert!(truth.rate_flu.norm() < 1e-3, "{name}: {}", truth.rate_flu);
+            }
+        }
+    }
+}

@@ -100,12 +100,17 @@ pub(super) fn distributions_note(answer: &Answer) -> String {
 }
 
 pub(super) fn worst(reported: &Reported<'_>) -> Vec<WorstRow> {
-    let row = |worst: &crate::campaign::Worst| WorstRow {
-        name: shown::flight_name(reported, worst),
-        class: if worst.has_passed { "" } else { "failed" },
-        complaint: text::line(&shown::complaint(worst)),
-        open: shown::open_command(reported, worst)
-            .and_then(|command| text::command(&command).map(str::to_owned)),
+    let row = |alike: Vec<&crate::campaign::Worst>| {
+        let [worst, others @ ..] = alike.as_slice() else { return None };
+        let more = shown::others(reported, worst, others);
+        let more = more.map_or_else(String::new, |more| format!("; {more}"));
+        Some(WorstRow {
+            name: shown::flight_name(reported, worst),
+            class: if worst.has_passed { "" } else { "failed" },
+            complaint: text::line(&format!("{}{more}", shown::complaint(worst))),
+            open: shown::open_command(reported, worst)
+                .and_then(|command| text::command(&command).map(str::to_owned)),
+        })
     };
-    reported.answer.worst.iter().map(row).collect()
+    shown::alike(&reported.answer.worst).into_iter().filter_map(row).collect()
 }

@@ -80,7 +80,7 @@ mod tests {
                 legs_m: iris.legs_m.iter().map(|leg| leg * scale).collect(),
                 ..iris
             };
-            prop_assume!(airframe.fault().is_none());
+            prop_assume!(airframe.fault(0.001).is_none());
             prop_assert_eq!(Airframe::from_toml(&airframe.to_toml()), Ok(airframe));
         }
     }

@@ -1,0 +1,92 @@
+//! How a craft gets on towards its waypoint, for a mission that is given up without a reason.
+
+use nalgebra::Vector2;
+
+use crate::math;
+use crate::signals::SimTime;
+
+/// The way by which a craft must come closer to count as getting on, m.
+const CLOSER_M: f64 = 1.0;
+/// The shortest time without getting on that is worth a word, s.
+const STALLED_S: f64 = 5.0;
+/// The shortest way away from the waypoint that is worth a word, m.
+const AWAY_M: f64 = 5.0;
+/// The speed from which the course has a meaning, m/s, and the angle between it and the heading that is worth a word,
+/// degrees.
+const MOVING_MPS: f64 = 1.0;
+const AGAINST_DEG: f64 = 90.0;
+
+/// The progress towards the present waypoint.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Progress {
+    wp: Option<u8>,
+    closest_m: f64,
+    closest_at: SimTime,
+    now: SimTime,
+    distance_m: f64,
+    /// The angle between heading and course, if the craft moves, degrees.
+    against_deg: Option<f64>,
+}
+
+impl Progress {
+    /// Takes the way to the waypoint and the velocity (north, east), and the heading.
+    pub(super) fn look(
+        &mut self,
+        now: SimTime,
+        wp: u8,
+        way: Vector2<f64>,
+        velocity: Vector2<f64>,
+        heading_deg: f64,
+    ) {
+        self.distance_m = way.norm();
+        self.now = now;
+        if self.wp != Some(wp) || self.distance_m <= self.closest_m - CLOSER_M {
+            (self.wp, self.closest_m, self.closest_at) = (Some(wp), self.distance_m, now);
+        }
+        let course_deg = math::atan2(velocity.y, velocity.x).to_degrees();
+        let apart_deg = (heading_deg - course_deg + 180.0).rem_euclid(360.0) - 180.0;
+        self.against_deg = (velocity.norm() >= MOVING_MPS).then_some(apart_deg.abs());
+    }
+
+    /// Returns what the last look before the end showed; `None` if the craft got on as it should.
+    pub(super) fn sentence(&self) -> Option<String> {
+        let wp = self.wp?;
+        let mut parts = Vec::new();
+        let away_m = self.distance_m - self.closest_m;
+        let stalled_s = self.now.seconds_since(self.closest_at);
+        if away_m >= AWAY_M {
+            parts.push(format!("moved away from waypoint {wp} by {away_m:.0} m"));
+        }
+        if stalled_s >= STALLED_S {
+            parts.push(format!("came no closer to waypoint {wp} for {stalled_s:.0} s"));
+        }
+        if let Some(against) = self.against_deg.filter(|against| *against >= AGAINST_DEG) {
+            parts.push(format!("pointed {against:.0}° away from its course"));
+        }
+        (!parts.is_empty()).then(|| format!("before that the craft {}", parts.join(", ")))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn after(seconds: u64, way_m: impl Fn(f64) -> f64, north_mps: f64) -> Option<String> {
+        let mut progress = Progress::default();
+        for second in 0..=seconds {
+            let way = Vector2::new(way_m(second as f64), 0.0);
+            progress.look(SimTime(second * 1_000_000), 2, way, Vector2::new(north_mps, 0.0), 0.0);
+        }
+        progress.sentence()
+    }
+
+    #[test]
+    fn a_mission_given_up_without_a_reason_says_what_the_craft_did() {
+        assert_eq!(after(30, |s| 100.0 - 3.0 * s, 3.0), None);
+        let stalled = "before that the craft came no closer to waypoint 2 for 30 s";
+        assert_eq!(after(30, |_| 50.0, 0.0).as_deref(), Some(stalled));
+        let away = "before that the craft moved away from waypoint 2 by 40 m, came no closer to waypoint 2 for 20 s, pointed \
+                    180° away from its course";
+        assert_eq!(after(20, |s| 10.0 + 2.0 * s, -2.0).as_deref(), Some(away));
+    }
+}
