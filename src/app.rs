@@ -120,14 +120,18 @@ fn reads_layers(command: Option<&Command>) -> bool {
     match command {
         None
         | Some(
-            Command::Fly(_) | Command::Compare(_) | Command::Serve(_) | Command::Sitl(_) | Command::Replay(_),
+            Command::Fly(_)
+            | Command::Compare(_)
+            | Command::Serve(_)
+            | Command::Sitl(_)
+            | Command::Open(_)
+            | Command::Replay(_)
+            | Command::Flights(_),
         ) => true,
         Some(
             Command::Check(_)
             | Command::Campaign(_)
             | Command::Forecast(_)
-            | Command::Open(_)
-            | Command::Flights(_)
             | Command::Plan(_)
             | Command::Convert(_)
             | Command::Config(_)

@@ -10,6 +10,7 @@ use super::{PlanArg, PlanArgError};
 
 /// The options of `convert`.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(override_usage = "betadeck convert [OPTIONS] <IN> <OUT>\n       betadeck convert --list")]
 pub struct ConvertArgs {
     /// Plan to read: a built-in plan's name, a file, or - for standard input
     #[arg(value_name = "IN", required_unless_present = "list")]
