@@ -19,6 +19,7 @@ mod doctor;
 mod doors;
 pub mod entered_lines;
 mod error;
+mod examples;
 mod file_identity;
 mod firmware;
 mod flight_library;
@@ -135,6 +136,7 @@ fn reads_layers(command: Option<&Command>) -> bool {
             | Command::Plan(_)
             | Command::Convert(_)
             | Command::Config(_)
+            | Command::Examples { .. }
             | Command::Doctor
             | Command::Completions { .. }
             | Command::Man,
@@ -162,6 +164,7 @@ fn may_start_firmware(command: Option<&Command>) -> bool {
             | Command::Plan(_)
             | Command::Convert(_)
             | Command::Config(_)
+            | Command::Examples { .. }
             | Command::Doctor
             | Command::Completions { .. }
             | Command::Man,
@@ -191,6 +194,7 @@ fn dispatch(cli: Cli, keymap: Keymap) -> Result<u8, AppError> {
         }
         Some(Command::Convert(args)) => convert::run(&args),
         Some(Command::Config(command)) => config::run(command),
+        Some(Command::Examples { folder }) => examples::run(&folder),
         Some(Command::Doctor) => doctor::run(),
         Some(Command::Completions { shell }) => error::write_stdout(&args::completions(shell)),
         Some(Command::Man) => error::write_stdout(&args::man_page().map_err(AppError::internal)?),

@@ -52,6 +52,7 @@ use std::borrow::Cow;
 use super::FlightPlan;
 use loss::{LossReport, Severity};
 
+pub use encoding::decode as decode_text;
 pub use field::degrees_e7;
 pub use home::{HomeError, HomePosition};
 pub use kind::{Format, FormatInfo};
