@@ -227,11 +227,12 @@ impl<'c, 'a> Collector<'c, 'a> {
         if is_known || did_you_mean::closest(word, ZONES).is_none() {
             return;
         }
+        let unknown = format!("zone {word} is not known{}", did_you_mean::suffix(word, ZONES));
         let message = match &feature.place {
-            Some(Place::Pointer { pointer }) => format!("{pointer}: zone {word} is not known"),
-            _ => format!("zone {word} is not known"),
+            Some(Place::Pointer { pointer }) => format!("{pointer}: {unknown}"),
+            _ => unknown,
         };
-        self.problems.add(feature.at..feature.at + 1, message, did_you_mean::hint(word, ZONES));
+        self.problems.add(feature.at..feature.at + 1, message, format!("allowed: {}", ZONES.join(", ")));
     }
 }
 
