@@ -132,7 +132,7 @@ struct FileError {
 /// Returns the error of an output. That of a [`StreamedOutput`] names its file.
 #[expect(clippy::needless_pass_by_value, reason = "a map_err argument")]
 pub(super) fn write_failed(error: io::Error) -> AppError {
-    let is_named = error.get_ref().is_some_and(|inner| inner.is::<FileError>());
+    let is_named = error.get_ref().and_then(|inner| inner.downcast_ref::<FileError>()).is_some();
     AppError::environment(if is_named {
         error.to_string()
     } else {

@@ -167,9 +167,7 @@ mod tests {
     #[test]
     fn a_part_ends_where_the_craft_only_passes() {
         let mut all = long(40).waypoints();
-        for index in 25..32 {
-            all[index].kind = WaypointType::Hold;
-        }
+        all[25..32].iter_mut().for_each(|waypoint| waypoint.kind = WaypointType::Hold);
         let mut file = PlanFile::default();
         file.take(all.clone());
         assert_eq!(file.parts().iter().map(|part| part.plan.waypoints.len()).collect::<Vec<_>>(), [25, 16]);
