@@ -19,6 +19,7 @@ mod doctor;
 mod doors;
 pub mod entered_lines;
 mod error;
+mod examples;
 mod file_identity;
 mod firmware;
 mod flight_library;
@@ -121,17 +122,22 @@ fn reads_layers(command: Option<&Command>) -> bool {
     match command {
         None
         | Some(
-            Command::Fly(_) | Command::Compare(_) | Command::Serve(_) | Command::Sitl(_) | Command::Replay(_),
+            Command::Fly(_)
+            | Command::Compare(_)
+            | Command::Serve(_)
+            | Command::Sitl(_)
+            | Command::Open(_)
+            | Command::Replay(_)
+            | Command::Flights(_),
         ) => true,
         Some(
             Command::Check(_)
             | Command::Campaign(_)
             | Command::Forecast(_)
-            | Command::Open(_)
-            | Command::Flights(_)
             | Command::Plan(_)
             | Command::Convert(_)
             | Command::Config(_)
+            | Command::Examples { .. }
             | Command::Doctor
             | Command::Completions { .. }
             | Command::Man,
@@ -159,6 +165,7 @@ fn may_start_firmware(command: Option<&Command>) -> bool {
             | Command::Plan(_)
             | Command::Convert(_)
             | Command::Config(_)
+            | Command::Examples { .. }
             | Command::Doctor
             | Command::Completions { .. }
             | Command::Man,
@@ -188,6 +195,7 @@ fn dispatch(cli: Cli, keymap: Keymap) -> Result<u8, AppError> {
         }
         Some(Command::Convert(args)) => convert::run(&args),
         Some(Command::Config(command)) => config::run(command),
+        Some(Command::Examples { folder }) => examples::run(&folder),
         Some(Command::Doctor) => doctor::run(),
         Some(Command::Completions { shell }) => error::write_stdout(&args::completions(shell)),
         Some(Command::Man) => error::write_stdout(&args::man_page().map_err(AppError::internal)?),

@@ -33,6 +33,7 @@ mod trouble;
 mod value;
 
 use std::ffi::OsString;
+use std::path::PathBuf;
 
 use clap::error::ErrorKind;
 use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
@@ -255,6 +256,16 @@ pub enum Command {
     #[command(subcommand, disable_help_subcommand = true)]
     Config(ConfigCommand),
 
+    /// Writes the files that the commands of the documentation name: a plan, a craft, a scenario, a campaign, logs
+    #[command(before_help = help::examples(&[
+        ("betadeck examples try", "into the new folder try; then run the commands of a page in it, in their order"),
+    ]))]
+    Examples {
+        /// Folder for the files, which is created; no file is replaced
+        #[arg(value_name = "DIR", default_value = ".")]
+        folder: PathBuf,
+    },
+
     /// Checks directories, ports, the terminal and versions
     Doctor,
 
@@ -329,6 +340,7 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>, layers: &Layers) -> 
             | Command::Flights(_)
             | Command::Plan(_)
             | Command::Config(_)
+            | Command::Examples { .. }
             | Command::Doctor
             | Command::Completions { .. }
             | Command::Man,

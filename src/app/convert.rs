@@ -2,7 +2,7 @@
 
 use std::fs::{File, OpenOptions};
 use std::io::{ErrorKind, Write as _};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use strum::IntoEnumIterator as _;
 
@@ -11,8 +11,8 @@ use super::output_file::{self, KeptFiles};
 use super::setup;
 use crate::args::{ConvertArgs, OutputFile, PlanArg};
 use crate::flight::setup::check_setting;
-use crate::plan::format::loss::Severity;
-use crate::plan::format::{self, Format, PlanFile, ReadOptions};
+use crate::plan::format::loss::{Finding, LossReport, Severity};
+use crate::plan::format::{self, Format, PlanFile, ReadOptions, Written};
 use crate::report::conversion::Conversion;
 use crate::storage::link_target;
 use crate::text::printable;
@@ -46,23 +46,34 @@ pub(super) fn run(args: &ConvertArgs) -> Result<u8, AppError> {
         error::tell(&note.to_string());
     }
     let file = PlanFile { home: file.home.or(options.home), ..file };
-    let written = format::write_with(&file, target, &args.write_options());
-    let is_refused = written.is_refused();
+    let parts = if args.split { file.parts() } else { vec![file.clone()] };
+    let written: Vec<Written> =
+        parts.iter().map(|part| format::write_with(part, target, &args.write_options())).collect();
+    let is_refused = written.iter().any(Written::is_refused);
     let output = args.output();
     match &output {
         _ if is_refused => {}
-        OutputFile::Stdout => error::write_stdout(&written.contents).map(drop)?,
+        OutputFile::Stdout => {
+            for part in &written {
+                error::write_stdout(&part.contents)?;
+            }
+        }
         OutputFile::File(path) => {
+            let paths = paths(path, parts.len());
             let mut kept = KeptFiles::default();
             if let PlanArg::File(input, _) = &source {
                 kept.keep("the plan that was read", input);
             }
             setup::keep_own_files(&mut kept);
-            kept.claim("the output", path)?;
-            write(path, &written.contents, args.force)?;
+            paths.iter().try_for_each(|path| kept.claim("the output", path))?;
+            // Either all parts are written, or none.
+            paths.iter().try_for_each(|path| refuse_to_replace(path, args.force))?;
+            for (path, part) in paths.iter().zip(&written) {
+                write(path, &part.contents, args.force)?;
+            }
         }
     }
-    let conversion = Conversion::new(format, &file, target, written.losses);
+    let conversion = Conversion::new(format, &file, target, joined(written));
     if !args.json {
         conversion.lines().iter().for_each(|line| error::tell(line));
     } else {
@@ -73,6 +84,36 @@ pub(super) fn run(args: &ConvertArgs) -> Result<u8, AppError> {
         Some(worst) if args.strict && worst > Severity::Info => CHANGED,
         _ => 0,
     })
+}
+
+/// Returns the file of each part: the named one for a single part, else with `-1`, `-2` and so on before its ending.
+fn paths(path: &Path, parts: usize) -> Vec<PathBuf> {
+    let numbered = |number: usize| {
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        let ending =
+            path.extension().map_or_else(String::new, |ending| format!(".{}", ending.to_string_lossy()));
+        path.with_file_name(format!("{stem}-{number}{ending}"))
+    };
+    if parts == 1 { vec![path.to_owned()] } else { (1..=parts).map(numbered).collect() }
+}
+
+/// Returns the losses of all parts as those of one file.
+fn joined(written: Vec<Written>) -> LossReport {
+    let parts = written.len();
+    let mut all = LossReport::default();
+    for (number, Written { losses, .. }) in (1..).zip(written) {
+        all.items += losses.items;
+        all.waypoints += losses.waypoints;
+        all.findings.extend(losses.findings.into_iter().map(|finding| match parts {
+            1 => finding,
+            _ => Finding { field: format!("part {number}, {}", finding.field), ..finding },
+        }));
+    }
+    if parts > 1 {
+        let why = "a plan holds at most 30 waypoints: each part begins where the one before ends";
+        all.add(Finding::new(Severity::Info, "parts", why).values("", parts.to_string()));
+    }
+    all
 }
 
 /// Prints the report: on standard error if standard output is for the plan.
@@ -103,20 +144,28 @@ fn list() -> String {
         .collect()
 }
 
+/// Returns `true` for a file with contents to lose; pipes and devices have none.
+fn holds_data(path: &Path) -> bool {
+    std::fs::metadata(path).is_ok_and(|there| there.is_file())
+}
+
+fn refuse_to_replace(path: &Path, force: bool) -> Result<(), AppError> {
+    if holds_data(path) && !force {
+        let name = path.display();
+        return Err(AppError::environment(format!(
+            "{name} exists: name another file, or replace it with --force"
+        )));
+    }
+    Ok(())
+}
+
 /// Writes the file. An existing file may be the work of the user, so it is replaced only on request.
 fn write(path: &Path, contents: &[u8], force: bool) -> Result<(), AppError> {
     let problem = |error| AppError::environment(format!("cannot write {}: {error}", path.display()));
     let file = match OpenOptions::new().write(true).create_new(true).open(path) {
         Err(error) if error.kind() == ErrorKind::AlreadyExists => {
-            // Pipes and devices have no contents to lose.
-            let holds_data = std::fs::metadata(path).map_err(problem)?.is_file();
-            if holds_data && !force {
-                return Err(AppError::environment(format!(
-                    "{} exists: name another file, or replace it with --force",
-                    path.display()
-                )));
-            }
-            if holds_data {
+            refuse_to_replace(path, force)?;
+            if holds_data(path) {
                 // A full disk leaves the old contents.
                 return output_file::replace(&link_target(path), contents).map_err(problem);
             }

@@ -119,7 +119,15 @@ fn look_at_all(files: &[(PathBuf, Fingerprint)]) -> io::Result<Vec<Option<Listed
 
 /// Returns what a list shows of a file; `None` if it is gone or no regular file.
 fn look(path: &Path) -> Option<Listed> {
-    let mut file = state_file::open(path, Access::Read).ok()?;
+    let there = path.symlink_metadata().ok().filter(std::fs::Metadata::is_file)?;
+    let mut file = match state_file::open(path, Access::Read) {
+        Err(error) if error.kind() == ErrorKind::NotFound => return None,
+        Err(error) => {
+            let (bytes, summary) = (there.len(), Err(error.to_string()));
+            return Some(Listed { file: path.to_owned(), bytes, is_growing: false, summary });
+        }
+        Ok(file) => file,
+    };
     let bytes = file.metadata().ok()?.len();
     let is_growing = matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock));
     let summary = summary(&mut file, bytes).map_err(|error| error.to_string());

@@ -1,7 +1,7 @@
 //! `betadeck flights`: lists the library of recorded flights.
 
 use super::error::{self, AppError};
-use super::{flight_library, layers};
+use super::{flight_library, setup};
 use crate::args::FlightsArgs;
 use crate::report::flights::{json_line, table};
 use crate::text::printable;
@@ -15,8 +15,7 @@ pub(super) fn run(args: &FlightsArgs) -> Result<u8, AppError> {
                 "--state-dir {name} is not a directory: name one that the screen used"
             )));
         }
-        Some(directory) => directory.clone(),
-        None => layers::directories()?.state,
+        named => setup::state_directory(named.as_deref())?,
     };
     let flights = flight_library::list(&state).map_err(|error| {
         let folder = state.join(flight_library::FOLDER);

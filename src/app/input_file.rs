@@ -11,6 +11,7 @@ use rustix::fs::{Mode, OFlags};
 
 use super::AppError;
 use crate::args::is_descriptor;
+use crate::plan::format::decode_text;
 
 /// The name of standard input in messages.
 const STDIN: &str = "standard input";
@@ -157,7 +158,10 @@ fn is_of_system(_: &File) -> bool {
 
 fn read_text(source: impl Read, name: &str, kind: Kind) -> Result<String, AppError> {
     let bytes = read_bytes(source, name, kind)?;
-    String::from_utf8(bytes).map_err(|_| AppError::input(format!("{name} is not a text file (UTF-8)")))
+    match decode_text(&bytes) {
+        Ok(text) => Ok(text.into_owned()),
+        Err(_) => Err(AppError::input(format!("{name} is not a text file (UTF-8)"))),
+    }
 }
 
 fn read_bytes(source: impl Read, name: &str, kind: Kind) -> Result<Vec<u8>, AppError> {

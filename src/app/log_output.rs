@@ -6,7 +6,7 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use super::AppError;
-use super::output_file::{StreamedOutput, cannot_write};
+use super::output_file::{StreamedOutput, write_failed};
 use crate::blackbox::encode::LogBuffer;
 use crate::firmware::Firmware;
 use crate::firmware::blackbox::LogStream;
@@ -61,16 +61,16 @@ impl LogOutput {
         let Some(step) = step.filter(|step| !step.is_empty()) else { return Ok(()) };
         self.buffer.clear();
         self.stream.step(&step, &mut self.buffer);
-        if !std::mem::replace(&mut self.has_log, true) {
-            self.file = self.file.take().map(StreamedOutput::named).transpose()?;
-        }
-        let Some(file) = &mut self.file else { return Ok(()) };
+        let Some(mut file) = self.file.take() else { return Ok(()) };
         let mut written = file.write_all(self.buffer.bytes());
         if step.ends || vehicle.time().0 >= self.flushed_at.0 + FLUSH_US {
             self.flushed_at = vehicle.time();
             written = written.and_then(|()| file.flush());
         }
-        written.map_err(|error| cannot_write(&self.path, &error))
+        written.map_err(write_failed)?;
+        // It gets its name with its first bytes in it: a full disk leaves no empty log.
+        self.file = Some(if std::mem::replace(&mut self.has_log, true) { file } else { file.named()? });
+        Ok(())
     }
 
     /// Ends the file. Without a log there is none, and a sentence says so.

@@ -138,7 +138,7 @@ impl Kept {
     /// Reads the screen of the flight with this number, without its place if the options name an instant.
     fn open(args: &OpenArgs, number: u64, notices: &mut Vec<String>) -> Self {
         // Without a home directory nothing is kept.
-        let directory = setup::store_directory(&FlightArgs::default()).ok().flatten();
+        let directory = setup::state_directory(args.state_dir.as_deref()).ok();
         let start = ScreenStart { plain: args.plain, fresh: args.fresh_screen };
         let (file, mut screens) =
             ScreenFile::open(directory.as_deref(), Subject::Flown(number), start, notices);

@@ -121,6 +121,25 @@ pub(super) fn cannot_write(path: &Path, error: &io::Error) -> AppError {
     AppError::environment(format!("cannot write {}: {error}", path.display()))
 }
 
+/// The error of an output file, with its name.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot write {}: {source}", path.display())]
+struct FileError {
+    path: PathBuf,
+    source: io::Error,
+}
+
+/// Returns the error of an output. That of a [`StreamedOutput`] names its file.
+#[expect(clippy::needless_pass_by_value, reason = "a map_err argument")]
+pub(super) fn write_failed(error: io::Error) -> AppError {
+    let is_named = error.get_ref().and_then(|inner| inner.downcast_ref::<FileError>()).is_some();
+    AppError::environment(if is_named {
+        error.to_string()
+    } else {
+        format!("cannot write the output: {error}")
+    })
+}
+
 /// Returns the directory of a path.
 fn directory_of(path: &Path) -> &Path {
     path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))

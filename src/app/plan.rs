@@ -7,11 +7,14 @@ use super::terrain::TerrainFiles;
 use super::{backdrop_file, setup};
 use crate::args::{BackdropArgs, PlanArg, ReviewArgs, TerrainArgs};
 use crate::flight::FlightSetup;
-use crate::geo::LatLon;
+use crate::flight::setup::check_setting;
+use crate::geo::{LatLon, distance_bearing};
 use crate::plan::builtin::PLANS;
 use crate::plan::estimate::Assumptions;
-use crate::plan::format;
+use crate::plan::feature::Feature;
+use crate::plan::format::{self, PlanFile, ReadOptions};
 use crate::plan::review::{Clearances, Finding, clearances, review, zone_findings};
+use crate::plan::{MAX_WAYPOINTS, Waypoint};
 use crate::sim::density_ratio;
 use crate::terrain::Relief;
 
@@ -38,13 +41,51 @@ pub(super) fn show(
     maps: &BackdropArgs,
     terrain: &TerrainArgs,
 ) -> Result<u8, AppError> {
-    let file = setup::read_plan(plan, None)?;
+    let options = ReadOptions { check: check_setting, long: true, ..ReadOptions::default() };
+    let (_, file) = setup::read_plan_with(plan, &options)?;
     let mut zones = Vec::new();
     let own = plan.path().filter(|path| backdrop_file::has_fences(path));
     for path in maps.backdrop.iter().map(PathBuf::as_path).chain(own) {
         zones
             .extend(backdrop_file::read_features(path)?.into_iter().filter(|feature| feature.zone.is_some()));
     }
+    let parts = file.parts();
+    if let [part] = &parts[..] {
+        return show_part(part, limits, &zones, terrain);
+    }
+    error::print(&format!(
+        "{} waypoints, {:.2} km in all: a plan holds at most {MAX_WAYPOINTS}, so {} parts are shown, each of which begins \
+         where the one before ends. To fly it, `betadeck convert` with --simplify METRES leaves out points near the line, \
+         with --split it writes the parts.\n",
+        file.plan.waypoints.len() + file.rest.len(),
+        length_m(&file.waypoints()) / 1000.0,
+        parts.len()
+    ))?;
+    for part in parts {
+        error::print("\n")?;
+        show_part(&part, limits, &zones, terrain)?;
+    }
+    // No craft takes the whole.
+    Ok(error::USAGE)
+}
+
+/// Returns the length of the way through all places, m.
+fn length_m(waypoints: &[Waypoint]) -> f64 {
+    let places: Vec<LatLon> = waypoints
+        .iter()
+        .filter(|waypoint| waypoint.kind.uses_position())
+        .map(|waypoint| waypoint.position)
+        .collect();
+    places.windows(2).map(|leg| distance_bearing(leg[0], leg[1]).0).sum()
+}
+
+/// Prints a plan that fits into a craft.
+fn show_part(
+    file: &PlanFile,
+    limits: ReviewArgs,
+    zones: &[Feature],
+    terrain: &TerrainArgs,
+) -> Result<u8, AppError> {
     let setup = FlightSetup { plan: file.clone(), ..FlightSetup::default() };
     let (home, notice) = setup.boot_home();
     let density = density_ratio(home.alt_amsl_m);
@@ -54,8 +95,8 @@ pub(super) fn show(
         ..Assumptions::from_settings(&file.settings)
     };
     let home = LatLon::from_degrees(home.lat_deg, home.lon_deg);
-    let mut text = format::table(&file, home, &assumptions);
-    for finding in zone_findings(&file.plan, home, &zones) {
+    let mut text = format::table(file, home, &assumptions);
+    for finding in zone_findings(&file.plan, home, zones) {
         text.push_str(&format!("{finding}\n"));
     }
     if let Some(notice) = notice {

@@ -16,7 +16,7 @@ use super::last_plan;
 use super::screen_file::{ScreenFile, ScreenStart, Subject};
 use super::setup;
 use super::tui::{self, Screen, SecondFlight, Source};
-use crate::args::{FlightArgs, PlanArg, RecordInstant, ReplayArgs, ReviewArgs, TerrainArgs};
+use crate::args::{PlanArg, RecordInstant, ReplayArgs, ReviewArgs, TerrainArgs};
 use crate::plan::format::PlanFile;
 use crate::replay::{Overview, PastFlights};
 use crate::session::{ReplayConfig, ReplayStart};
@@ -51,8 +51,8 @@ pub(super) fn run(args: &ReplayArgs, repeat: &[String], keymap: Keymap) -> Resul
             return Ok(0);
         }
     }
-    let (terrain, flight_args) = (TerrainArgs::default(), FlightArgs::default());
-    let directory = setup::store_directory(&flight_args)?;
+    let terrain = TerrainArgs::default();
+    let directory = Some(setup::state_directory(args.state_dir.as_deref())?);
     let mut notices = Vec::new();
     let (screen_file, mut kept) = kept_screen(args, first, directory.as_deref(), &mut notices);
     let left = place_left(args, &mut kept);

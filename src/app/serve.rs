@@ -85,18 +85,19 @@ async fn report(
 struct Output {
     lines: BufWriter<Box<dyn Write>>,
     json: bool,
+    /// The name of the file for messages.
+    name: String,
 }
 
 fn open_output(args: &ServeArgs) -> Result<Output, AppError> {
-    let (target, json): (Box<dyn Write>, bool) = match &args.json {
-        None => (Box::new(std::io::stdout()), false),
-        Some(OutputFile::Stdout) => (Box::new(std::io::stdout()), true),
+    let (target, name): (Box<dyn Write>, String) = match &args.json {
+        None | Some(OutputFile::Stdout) => (Box::new(std::io::stdout()), "the output".to_owned()),
         Some(OutputFile::File(path)) => {
             setup::kept_files(&args.flight, None).claim("--json", path)?;
-            (Box::new(output_file::create(path)?), true)
+            (Box::new(output_file::create(path)?), path.display().to_string())
         }
     };
-    Ok(Output { lines: BufWriter::new(target), json })
+    Ok(Output { lines: BufWriter::new(target), json: args.json.is_some(), name })
 }
 
 impl Output {
@@ -108,7 +109,7 @@ impl Output {
         match writeln!(self.lines, "{line}").and_then(|()| self.lines.flush()) {
             Ok(()) => Ok(()),
             Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Err(Ok(0)),
-            Err(error) => Err(Err(AppError::environment(format!("cannot write the output: {error}")))),
+            Err(error) => Err(Err(AppError::environment(format!("cannot write {}: {error}", self.name)))),
         }
     }
 }

@@ -229,9 +229,14 @@ pub(super) fn store_directory(args: &FlightArgs) -> Result<Option<PathBuf>, AppE
     if args.fresh {
         return Ok(None);
     }
-    match &args.state_dir {
-        Some(directory) => Ok(Some(directory.clone())),
-        None => super::layers::directories().map(|directories| Some(directories.state)),
+    state_directory(args.state_dir.as_deref()).map(Some)
+}
+
+/// Returns this directory, or the user's.
+pub(super) fn state_directory(named: Option<&Path>) -> Result<PathBuf, AppError> {
+    match named {
+        Some(directory) => Ok(directory.to_owned()),
+        None => super::layers::directories().map(|directories| directories.state),
     }
 }
 

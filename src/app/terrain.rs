@@ -9,10 +9,15 @@ use crate::args::TerrainArgs;
 use crate::flight::FlightSetup;
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
-use crate::terrain::{Grid, HGT_SIDES, HOME_UNKNOWN, Square, Tiles, decode_geotiff, decode_hgt, squares_of};
+use crate::terrain::{
+    Grid, HGT_SIDES, HOME_UNKNOWN, Square, Tiles, decode_geotiff, decode_hgt, squares_of, unpacked_hgt,
+};
 
 /// The largest number of tiles. Nine of the largest ones take 470 MB.
 const MOST_TILES: usize = 9;
+
+/// What the names of packed `.hgt` tiles end with.
+const PACKED: [&str; 2] = [".zip", ".gz"];
 
 /// The directories of the tiles, the first one first.
 #[derive(Debug, Clone, Default)]
@@ -104,7 +109,10 @@ impl TerrainFiles {
 
     /// Reads the first readable file of a tile.
     fn tile(&self, square: Square, notices: &mut Vec<String>) -> Option<Grid> {
-        let names = [square.hgt_name(), square.copernicus_name(10), square.copernicus_name(30)];
+        let hgt = square.hgt_name();
+        let packed = PACKED.map(|ending| format!("{hgt}{ending}"));
+        let names = [hgt, square.copernicus_name(10), square.copernicus_name(30)].into_iter().chain(packed);
+        let names: Vec<String> = names.collect();
         let paths = self.directories.iter().flat_map(|folder| names.iter().map(|name| folder.join(name)));
         paths.filter(|path| path.exists()).find_map(|path| {
             read(&path, square)
@@ -141,7 +149,11 @@ fn read(path: &Path, square: Square) -> Result<Grid, String> {
     let name = path.display();
     let bytes = input_file::read_tile(path).map_err(|error| error.to_string())?;
     let is_tiff = path.extension().is_some_and(|ending| ending == "tif");
-    let grid = if is_tiff { decode_geotiff(&bytes, square) } else { decode_hgt(&bytes, square, &HGT_SIDES) };
+    let grid = if is_tiff {
+        decode_geotiff(&bytes, square)
+    } else {
+        unpacked_hgt(bytes).and_then(|bytes| decode_hgt(&bytes, square, &HGT_SIDES))
+    };
     grid.map_err(|error| format!("{name}: {error}"))
 }
 
@@ -188,6 +200,20 @@ mod tests {
             "{notices:?}"
         );
         assert_eq!(notices.len(), 2);
+    }
+
+    #[test]
+    fn a_packed_tile_is_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let constant: Vec<u8> = 300_i16.to_be_bytes().repeat(1201 * 1201);
+        let mut packed = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+        std::io::Write::write_all(&mut packed, &constant).unwrap();
+        std::fs::write(folder.path().join("N40W080.hgt.gz"), packed.finish().unwrap()).unwrap();
+        let files = TerrainFiles { directories: vec![folder.path().to_owned()] };
+        let home = LatLon::from_degrees(40.4635, -79.5182);
+        let mut notices = Vec::new();
+        let tiles = files.read(home, &plan(&[(40.47, -79.52)]), &mut notices).unwrap();
+        assert_eq!((tiles.elevation(home), notices), (Some(300.0), Vec::new()));
     }
 
     #[test]

@@ -10,6 +10,7 @@ use super::{PlanArg, PlanArgError};
 
 /// The options of `convert`.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(override_usage = "betadeck convert [OPTIONS] <IN> <OUT>\n       betadeck convert --list")]
 pub struct ConvertArgs {
     /// Plan to read: a built-in plan's name, a file, or - for standard input
     #[arg(value_name = "IN", required_unless_present = "list")]
@@ -67,9 +68,15 @@ pub struct ConvertArgs {
     #[arg(long, value_name = "METRES", allow_hyphen_values = true, value_parser = value::altitude)]
     altitude: Option<f64>,
 
-    /// Leaves out the points of a line that are nearer than this to the line without them, m
+    /// Leaves out the points that are nearer than this to the line without them, m
     #[arg(long, value_name = "METRES", value_parser = value::spacing)]
     simplify: Option<f64>,
+
+    /// Writes several plans if the waypoints do not fit into one: OUT with -1, -2 and so on before its ending
+    ///
+    /// Each part begins with the waypoint with which the one before ends.
+    #[arg(long)]
+    pub split: bool,
 
     /// The ground is flat: an altitude above ground is one above home
     #[arg(long)]
@@ -157,6 +164,7 @@ impl ConvertArgs {
             altitude_m: self.altitude,
             simplify_m: self.simplify,
             flat: self.flat,
+            long: true,
             ..ReadOptions::default()
         }
     }
@@ -173,6 +181,9 @@ impl ConvertArgs {
         }
         let input = self.input.as_deref().unwrap_or("-");
         self.source().map_err(|error| format!("{input}: {error}"))?;
+        if self.split && self.output() == OutputFile::Stdout {
+            return Err("--split writes several files: name a file as OUT".to_owned());
+        }
         self.target().map(drop)
     }
 }

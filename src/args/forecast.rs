@@ -100,14 +100,18 @@ impl FromStr for Charge {
                 format!("{text:?} is not a number; write the charge in per cent, such as 92% or 90+-5%")
             })
         };
-        let (percent, deviation) = (number(charge)?, number(deviation)?);
+        // Messages repeat the text: a number such as 1e308 would have hundreds of digits.
+        let (percent, spread) = (number(charge)?, number(deviation)?);
         if !(10.0..=100.0).contains(&percent) {
-            return Err(format!("{percent} % is out of range: 10 to 100 are allowed"));
+            return Err(format!("{} % is out of range: 10 to 100 are allowed", charge.trim()));
         }
-        if !(0.0..=30.0).contains(&deviation) {
-            return Err(format!("a deviation of {deviation} % is out of range: 0 to 30 are allowed"));
+        if !(0.0..=30.0).contains(&spread) {
+            return Err(format!(
+                "a deviation of {} % is out of range: 0 to 30 are allowed",
+                deviation.trim()
+            ));
         }
-        Ok(Self { percent, deviation })
+        Ok(Self { percent, deviation: spread })
     }
 }
 
@@ -133,6 +137,14 @@ mod tests {
         }
         for text in ["", "full", "5%", "101%", "NaN", "90+-50", "90+-"] {
             assert!(text.parse::<Charge>().is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_charge_out_of_range_is_refused_in_one_line() {
+        for text in ["90+-1e308%", "1e308%", "-1e308", "90+--1e308"] {
+            let error = text.parse::<Charge>().expect_err("refused");
+            assert!(error.len() < 80 && error.contains("1e308") && error.contains("are allowed"), "{error}");
         }
     }
 }

@@ -1,8 +1,8 @@
 //! The layers below the command line: environment and configuration file.
 //!
 //! Every long option of a command that flies is a key in the file (`wind = "5@270"`) and a variable in the
-//! environment (`BETADECK_WIND`). For `check` and `campaign` these are the options of the firmware, for `replay` those of
-//! the screen, for `flights` the state directory, for `plan show` all options. A value from a layer for an option that no
+//! environment (`BETADECK_WIND`). For `check` and `campaign` these are the options of the firmware, for `open` and
+//! `replay` those of the screen, for `flights` the state directory, for `plan show` all options. A value from a layer for an option that no
 //! higher layer gave is parsed by the option's own parser, as if someone typed it.
 
 use std::collections::BTreeMap;
@@ -37,8 +37,8 @@ pub(super) const FLYING: [&str; 5] = ["", "fly", "compare", "serve", "sitl"];
 /// The commands that take only the firmware from all layers. The scenario, or the command line of a campaign, gives the
 /// rest of a flight.
 const FIRMWARE_ONLY: [&str; 2] = ["check", "campaign"];
-/// The command that takes only the options of the screen from all layers: its files say the rest.
-const REPLAY: &str = "replay";
+/// The commands that take only the options of the screen from all layers: their files say the rest.
+const SCREEN_ONLY: [&str; 2] = ["open", "replay"];
 /// The command that takes only the state directory from all layers, and the option for it.
 const STATE_ONLY: (&str, &str) = ("flights", "state-dir");
 /// The command and the subcommand that judge a plan without a flight.
@@ -61,7 +61,7 @@ pub(super) fn apply(
     let nested = typed.subcommand().filter(|(nested, _)| (name, *nested) == PLAN_SHOW);
     // Merging the parts of a campaign flies nothing.
     let is_firmware_only = FIRMWARE_ONLY.contains(&name) && typed.subcommand().is_none();
-    let is_partial = is_firmware_only || name == REPLAY || name == STATE_ONLY.0;
+    let is_partial = is_firmware_only || SCREEN_ONLY.contains(&name) || name == STATE_ONLY.0;
     if FLYING.contains(&name) || is_partial || nested.is_some() {
         let unknown = layers.unknown_keys(command);
         if !unknown.is_empty() {
@@ -87,7 +87,7 @@ pub(super) fn apply(
 pub(super) fn options(command: &clap::Command) -> impl Iterator<Item = &Arg> {
     let only = match command.get_name() {
         name if FIRMWARE_ONLY.contains(&name) => Some(FIRMWARE),
-        REPLAY => Some(SCREEN),
+        name if SCREEN_ONLY.contains(&name) => Some(SCREEN),
         _ => None,
     };
     let of_state_only = command.get_name() == STATE_ONLY.0;

@@ -1,5 +1,7 @@
 //! The options of `open`.
 
+use std::path::PathBuf;
+
 use super::firmware::{FirmwareArgs, FirmwarePortArgs};
 use super::{DisplayArgs, value};
 
@@ -35,6 +37,10 @@ pub struct OpenArgs {
     /// Start with a clean screen: not with the panels and the map of the last run, and the place and speed in this flight
     #[arg(long, help_heading = "Screen")]
     pub fresh_screen: bool,
+
+    /// State directory: the screen comes back as it was left [default: the one of the user]
+    #[arg(long, value_name = "DIR", help_heading = "Screen")]
+    pub state_dir: Option<PathBuf>,
 
     /// The choice of the firmware.
     #[command(flatten)]

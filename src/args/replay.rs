@@ -34,6 +34,10 @@ pub struct ReplayArgs {
     #[arg(long, help_heading = "Screen")]
     pub fresh_screen: bool,
 
+    /// State directory: the screen comes back as it was left [default: the one of the user]
+    #[arg(long, value_name = "DIR", help_heading = "Screen")]
+    pub state_dir: Option<PathBuf>,
+
     /// Writes the values as CSV instead of showing them, with units in the header; - is standard output
     #[arg(long, value_name = "FILE|-", help_heading = "Output")]
     pub csv: Option<OutputFile>,

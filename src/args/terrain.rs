@@ -5,7 +5,7 @@ use std::path::PathBuf;
 /// The directory of the elevation tiles.
 #[derive(Debug, Clone, Default, PartialEq, Eq, clap::Args)]
 pub struct TerrainArgs {
-    /// Directory of elevation tiles: N40W080.hgt or Copernicus_DSM_COG_10_N40_00_W080_00_DEM.tif [default:
+    /// Directory of elevation tiles: N40W080.hgt (also .hgt.zip and .hgt.gz) or Copernicus_DSM_COG_10_N40_00_W080_00_DEM.tif [default:
     /// betadeck/terrain in the user's data directory, if it exists]
     ///
     /// With tiles, plans are checked for their clearance above the ground (--clearance), the screen shows the ground, and

@@ -277,6 +277,15 @@ fn the_flights_are_listed_from_the_state_directory_that_the_screen_uses() {
     let flights = of("betadeck flights", &file);
     assert_eq!((flights.state_dir.as_deref(), flights.json), (Some(Path::new("x")), false));
     assert_eq!(of("betadeck flights --state-dir y", &file).state_dir.as_deref(), Some(Path::new("y")));
+    // So are the screens of flights that are over.
+    for (line, expected) in [("open hold", "x"), ("replay a.bbl", "x"), ("open hold --state-dir y", "y")] {
+        let state_dir = match parse_line(&format!("betadeck {line}"), &file).unwrap().command {
+            Some(Command::Open(open)) => open.state_dir,
+            Some(Command::Replay(replay)) => replay.state_dir,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(state_dir.as_deref(), Some(Path::new(expected)), "{line}");
+    }
     let most = |layers: &Layers| parse_line("betadeck", layers).unwrap().tui.recordings.most_bytes();
     assert_eq!(most(&layers(&[], "")), 200 << 20);
     assert_eq!(most(&layers(&[], "recordings_max_mb = 5")), 5 << 20);

@@ -120,7 +120,12 @@ impl FlightSetup {
             BootLines::settings(format!("settings of plan {}", self.plan.name), &self.plan.settings);
         for lines in std::iter::once(&of_plan).chain(&self.boot_lines) {
             let reported = lines.apply(&mut configuration).map_err(SetupError::BootLines)?;
-            notices.extend(reported.into_iter().map(SetupNotice::Firmware));
+            // Two sources may give the same value.
+            for notice in reported.into_iter().map(SetupNotice::Firmware) {
+                if !notices.contains(&notice) {
+                    notices.push(notice);
+                }
+            }
         }
         notices.extend(configuration.starter_modes().then_some(SetupNotice::StarterModes));
         Ok((configuration, notices))
@@ -213,6 +218,14 @@ mod tests {
         assert_eq!(notices.len(), 1, "{notices:?}");
         assert!(notices[0].starts_with("ap_position_cutoff = 5 is taken here"), "{notices:?}");
         assert_eq!(reported("set ap_position_cutoff = 30"), [""; 0]);
+    }
+
+    #[test]
+    fn a_value_that_two_sources_give_is_reported_once() {
+        let mut setup = with_lines("set ap_position_cutoff = 5");
+        setup.boot_lines.push(BootLines::settings("--set", &["ap_position_cutoff = 5".to_owned()]));
+        let notices = setup.build().unwrap().1;
+        assert_eq!(notices.iter().filter(|notice| notice.to_string().contains("is taken here")).count(), 1);
     }
 
     #[test]

@@ -25,6 +25,7 @@ mod kml;
 #[cfg(test)]
 mod law;
 mod litchi;
+mod long;
 pub mod loss;
 mod map_choice;
 mod map_data;
@@ -49,9 +50,10 @@ mod xml;
 
 use std::borrow::Cow;
 
-use super::FlightPlan;
+use super::{FlightPlan, Waypoint};
 use loss::{LossReport, Severity};
 
+pub use encoding::decode as decode_text;
 pub use field::degrees_e7;
 pub use home::{HomeError, HomePosition};
 pub use kind::{Format, FormatInfo};
@@ -77,6 +79,8 @@ pub struct PlanFile {
     /// The settings for the plan, as `name = value`, in the order in which they are applied.
     pub settings: Vec<String>,
     pub plan: FlightPlan,
+    /// The waypoints for which a plan has no room. A plan that is flown has none.
+    pub rest: Vec<Waypoint>,
     /// The lines that the reader skipped.
     pub notes: Vec<Note>,
     /// The differences between the file and this plan.
@@ -177,13 +181,13 @@ pub fn read(
             problems.add(0..0, message, "a plan has at most 30 waypoints: is this the right file?");
             PlanFile::default()
         }
-        Format::Toml => native_read::read(text, options.check, &mut problems),
+        Format::Toml => native_read::read(text, options, &mut problems),
         Format::CliText => {
             if let Some(other) = foreign(text) {
                 let hint = format!("the formats of plans are {}", Format::names(false));
                 problems.add(0..0, format!("this is {other}, but not a plan"), hint);
             }
-            cli_text::read(text, &mut problems)
+            cli_text::read(text, options.long, &mut problems)
         }
         Format::QgcPlan => qgc_plan::read(text, options, &mut problems),
         Format::QgcWpl => qgc_wpl::read(text, options, &mut problems),
@@ -203,8 +207,13 @@ pub fn read(
     if file.name.is_empty() {
         file.name = stem(name);
     }
+    // The lines of a map are simplified when their points are read.
+    let is_map = matches!(format, Format::Kml | Format::Kmz | Format::Gpx | Format::GeoJson);
+    if let Some(tolerance_m) = options.simplify_m.filter(|_| !is_map) {
+        file.simplify(tolerance_m);
+    }
     if file.losses.items > 0 {
-        file.losses.waypoints = file.plan.waypoints.len();
+        file.losses.waypoints = file.plan.waypoints.len() + file.rest.len();
     }
     Ok(file)
 }
@@ -226,6 +235,10 @@ pub fn write(file: &PlanFile, format: Format) -> Written {
 /// Writes a plan file in its canonical form. Reading it gives the same plan but for the fields of the findings, and
 /// writing that plan gives the same bytes.
 pub fn write_with(file: &PlanFile, format: Format, options: &WriteOptions) -> Written {
+    if !file.rest.is_empty() {
+        let count = file.plan.waypoints.len() + file.rest.len();
+        return Written::refused(format!("the file has {count} waypoints, {}", long::hint()));
+    }
     let mut written = match format {
         Format::Toml => native_write::write(file),
         Format::CliText => cli_text::write(file),

@@ -50,7 +50,7 @@ impl Conversion {
             from: Some(from),
             to,
             read: Some(file.losses.items).filter(|&items| items > 0),
-            waypoints: file.plan.waypoints.len(),
+            waypoints: file.plan.waypoints.len() + file.rest.len(),
             written: written.items,
             losses,
         }

@@ -79,6 +79,9 @@ pub fn table(flights: &[Listed]) -> String {
         let line =
             format!("{:<19}  {of_plan:<plan$}  {of_verdict:<verdict$}  {duration:>8}  {file}", shown(date));
         text.push_str(&printable::line(&line));
+        if listed.summary.is_err() {
+            text.push_str(&printable::line(&format!(": {}", row.reason)));
+        }
         text.push('\n');
     }
     text

@@ -9,6 +9,7 @@ mod cursor;
 mod evaluate;
 mod goal;
 mod instant;
+mod lookup;
 mod number;
 mod place;
 
@@ -27,6 +28,7 @@ pub use evaluate::{Evaluator, Verdict};
 pub use goal::read_goal;
 pub(super) use instant::mode_of as read_mode;
 pub use instant::{Search, read_instant, read_pattern, read_span_from};
+pub use lookup::Lookups;
 pub use number::{MAX_NAME, read_number, read_quantity};
 
 /// The meaning of names while an expression is read.

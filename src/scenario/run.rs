@@ -6,7 +6,7 @@ mod log;
 mod recorder;
 
 use super::case::{Air, Case};
-use super::expression::{Evaluator, Search};
+use super::expression::{Evaluator, Lookups, Search};
 use super::happening::{EventName, Happening};
 use super::insight::Insight;
 use super::trace::Trace;
@@ -46,6 +46,8 @@ pub struct CaseFlight<'a> {
     inputs: Inputs<'a>,
     recorder: Recorder,
     ends: Option<Search<'a>>,
+    /// What the inputs and the end have looked up.
+    lookups: Lookups,
     end: Option<FlightEnd>,
     /// The word for the result and the reason, if the scenario ended the flight.
     stopped: Option<(&'static str, String)>,
@@ -83,6 +85,7 @@ impl<'a> CaseFlight<'a> {
             inputs: Inputs::new(&case.inputs),
             recorder,
             ends: case.ends.as_ref().map(Search::new),
+            lookups: Lookups::default(),
             end: None,
             stopped: None,
             is_over: false,
@@ -131,7 +134,7 @@ impl<'a> CaseFlight<'a> {
     pub fn prepare(&mut self) {
         if self.inputs.is_due(self.flight.vehicle().time()) {
             let (trace, names) = (&mut self.recorder.trace, self.case.parameters.as_slice());
-            self.inputs.carry_out(self.flight.vehicle_mut(), trace, names);
+            self.inputs.carry_out(self.flight.vehicle_mut(), trace, (names, &self.lookups));
         }
     }
 
@@ -150,7 +153,7 @@ impl<'a> CaseFlight<'a> {
         }
         if self.recorder.after_tick(&self.flight) {
             let names = self.case.parameters.as_slice();
-            self.inputs.look(&Evaluator::new(&self.recorder.trace, names));
+            self.inputs.look(&Evaluator::in_flight(&self.recorder.trace, names, &self.lookups));
             self.check_end(self.flight.vehicle().time());
         }
     }
@@ -164,7 +167,8 @@ impl<'a> CaseFlight<'a> {
         }
         let names = self.case.parameters.as_slice();
         if let Some(search) = &mut self.ends
-            && let Some(due) = search.advance(&Evaluator::new(&self.recorder.trace, names))
+            && let Some(due) =
+                search.advance(&Evaluator::in_flight(&self.recorder.trace, names, &self.lookups))
             && now.0 as i64 >= due
         {
             self.is_over = true;

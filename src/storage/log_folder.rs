@@ -11,8 +11,8 @@ const MOST: u32 = 99_999;
 #[derive(Debug)]
 pub struct LogFolder {
     directory: PathBuf,
-    /// The log under way.
-    file: Option<BufWriter<File>>,
+    /// The log under way, with its path.
+    file: Option<(BufWriter<File>, PathBuf)>,
 }
 
 impl LogFolder {
@@ -35,7 +35,7 @@ impl LogFolder {
             let path = self.directory.join(format!("LOG{number:05}.BFL"));
             match File::create_new(&path) {
                 Ok(file) => {
-                    self.file = Some(BufWriter::new(file));
+                    self.file = Some((BufWriter::new(file), path.clone()));
                     return Ok(path);
                 }
                 // Another process began it meanwhile.
@@ -77,12 +77,16 @@ impl LogFolder {
     }
 
     fn with_file(&mut self, act: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<()> {
-        let done = self.file.as_mut().map_or(Ok(()), act);
+        let done = self.file.as_mut().map_or(Ok(()), |(file, _)| act(file));
         if done.is_err()
-            && let Some(file) = self.file.take()
+            && let Some((file, path)) = self.file.take()
         {
             // A second attempt to write what is left would fail, too.
             let _unwritten = file.into_parts();
+            // A full disk takes the name of a file, but not its first byte.
+            if path.metadata().is_ok_and(|there| there.len() == 0) {
+                std::fs::remove_file(path).ok();
+            }
         }
         done
     }

@@ -19,7 +19,7 @@ const MAX_IMAGE: usize = MAX_SIDE * MAX_SIDE * 8;
 /// Reads the tile of a square degree.
 ///
 /// # Errors
-/// Fails if the bytes are not a GeoTIFF with one band of heights on this square.
+/// Fails if the bytes are not a GeoTIFF with one band of heights of the ground on this square.
 pub fn decode(bytes: &[u8], square: Square) -> Result<Grid, TileError> {
     let mut limits = Limits::default();
     limits.decoding_buffer_size = MAX_IMAGE;
@@ -59,7 +59,7 @@ pub fn decode(bytes: &[u8], square: Square) -> Result<Grid, TileError> {
     if count != rows * cols {
         return Err(TileError::Tiff("it has more than one band".to_owned()));
     }
-    if is_on(&grid, square) { Ok(grid) } else { Err(TileError::Elsewhere) }
+    if is_on(&grid, square) { grid.checked() } else { Err(TileError::Elsewhere) }
 }
 
 fn problem(error: &tiff::TiffError) -> TileError {
@@ -110,6 +110,11 @@ mod tests {
     /// Returns a tile with four rows and columns and the corners of the Copernicus tiles, of which each sample is its
     /// row times ten plus its column.
     fn tile(north_deg: f64, keys: &[u16]) -> Vec<u8> {
+        tile_with(north_deg, keys, 0.0)
+    }
+
+    /// Returns the same tile with this first sample.
+    fn tile_with(north_deg: f64, keys: &[u16], first: f32) -> Vec<u8> {
         let mut bytes = Cursor::new(Vec::new());
         let mut encoder = TiffEncoder::new(&mut bytes).unwrap();
         let mut image = encoder.new_image::<colortype::Gray32Float>(4, 4).unwrap();
@@ -122,6 +127,7 @@ mod tests {
         tags.write_tag(Tag::GdalNodata, "-9999").unwrap();
         let mut metres: Vec<f32> = (0..16).map(|index| (index / 4 * 10 + index % 4) as f32).collect();
         metres[15] = -9999.0;
+        metres[0] = first;
         image.write_data(&metres).unwrap();
         bytes.into_inner()
     }
@@ -156,6 +162,10 @@ mod tests {
     #[test]
     fn a_tile_elsewhere_and_other_files_are_refused() {
         assert_eq!(decode(&tile(42.0, &AREA), SQUARE), Err(TileError::Elsewhere));
+        for first in [-9998.0, 9000.6, 1e30] {
+            let damaged = decode(&tile_with(41.0, &AREA, first), SQUARE);
+            assert_eq!(damaged, Err(TileError::Height(first.round() as i32)), "a height of no ground");
+        }
         let grid = decode(&tile(41.0, &POINT), SQUARE).unwrap();
         assert!((grid.north_deg - 41.0).abs() < 1e-9, "a point is at its place");
         for bytes in [&b""[..], b"II*\0", b"PK\x03\x04", &tile(41.0, &AREA)[..200]] {

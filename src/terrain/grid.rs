@@ -1,5 +1,6 @@
 //! The samples of one tile.
 
+use super::{HIGHEST_M, LOWEST_M, TileError};
 use crate::math;
 
 /// The distance, in samples, within which the nearest valid sample replaces a void.
@@ -47,6 +48,22 @@ impl Grid {
                 metres.get(index).copied().filter(|metres| metres.is_finite()).map(f64::from)
             }
         }
+    }
+
+    /// Returns the grid if every height can be one of the ground.
+    pub(super) fn checked(self) -> Result<Self, TileError> {
+        let is_ground = |metres: f64| (LOWEST_M..=HIGHEST_M).contains(&metres);
+        let odd = match &self.samples {
+            Samples::Metres(metres) => {
+                let mut heights = metres.iter().filter(|metres| **metres != i16::MIN).copied().map(f64::from);
+                heights.find(|metres| !is_ground(*metres))
+            }
+            Samples::Floats(metres) => {
+                let mut heights = metres.iter().copied().map(f64::from).filter(|metres| metres.is_finite());
+                heights.find(|metres| !is_ground(*metres))
+            }
+        };
+        odd.map_or(Ok(self), |metres| Err(TileError::Height(metres.round() as i32)))
     }
 
     /// Returns the row and column of a place, with fractions.

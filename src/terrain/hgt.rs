@@ -10,14 +10,14 @@ pub const HGT_SIDES: [usize; 2] = [3601, 1201];
 /// Reads a tile whose side is one of `sides`.
 ///
 /// # Errors
-/// Fails if the length is not that of a tile.
+/// Fails if the length is not that of a tile, or if a height is none of the ground.
 pub fn decode(bytes: &[u8], square: Square, sides: &[usize]) -> Result<Grid, TileError> {
     let side = sides.iter().copied().find(|&side| side > 1 && bytes.len() == side * side * 2);
     let side = side.ok_or(TileError::Length(bytes.len()))?;
     // The void of the format, −32768, is that of the grid.
     let metres = bytes.chunks_exact(2).map(|pair| i16::from_be_bytes([pair[0], pair[1]])).collect();
     let step_deg = 1.0 / (side - 1) as f64;
-    Ok(Grid {
+    let grid = Grid {
         rows: side,
         cols: side,
         north_deg: f64::from(square.lat_deg) + 1.0,
@@ -25,7 +25,8 @@ pub fn decode(bytes: &[u8], square: Square, sides: &[usize]) -> Result<Grid, Til
         lat_step_deg: step_deg,
         lon_step_deg: step_deg,
         samples: Samples::Metres(metres),
-    })
+    };
+    grid.checked()
 }
 
 #[cfg(test)]
@@ -73,6 +74,24 @@ mod tests {
         far.insert(SQUARE, decode(&bytes, SQUARE, &[9]).unwrap());
         assert_eq!(far.elevation(LatLon::from_degrees(40.75, -79.75)), Some(7.0), "2.8 samples away");
         assert_eq!(far.elevation(LatLon::from_degrees(40.5, -79.75)), None, "farther than three samples");
+    }
+
+    #[test]
+    fn a_tile_with_a_height_that_no_ground_has_is_damaged() {
+        for (metres, is_ground) in
+            [(-500, true), (9000, true), (-501, false), (9001, false), (i16::MAX, false)]
+        {
+            let mut bytes = [0_u8; 18];
+            bytes[8..10].copy_from_slice(&i16::to_be_bytes(metres));
+            let decoded = decode(&bytes, SQUARE, &[3]);
+            assert_eq!(decoded.is_ok(), is_ground, "{metres}");
+            if let Err(error) = decoded {
+                let expected = format!(
+                    "it is damaged: it has a height of {metres} m, and the ground lies between -500 and 9000 m"
+                );
+                assert_eq!(error.to_string(), expected);
+            }
+        }
     }
 
     #[test]

@@ -457,8 +457,15 @@ fn a_full_disk_is_exit_code_3() {
     if !std::path::Path::new("/dev/full").exists() {
         return;
     }
-    let ran = Sandbox::new().run(&["fly", "square", "--json", "/dev/full", "--samples", "100"]).exits(3);
-    assert!(ran.err.contains("cannot write"), "{}", ran.err);
+    let sandbox = Sandbox::new();
+    for option in
+        ["--json", "--csv", "--gpx", "--kml", "--geojson", "--record", "--blackbox", "--report", "--markdown"]
+    {
+        let ran = sandbox.run(&["fly", "land", "--timeout=12", option, "/dev/full"]).exits(3);
+        assert!(ran.err.contains("cannot write /dev/full: No space left"), "{option}: {}", ran.err);
+    }
+    let ran = sandbox.run(&["serve", "--no-ports", "--fresh", "--json", "/dev/full"]).exits(3);
+    assert!(ran.err.contains("cannot write /dev/full: No space left"), "{}", ran.err);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 mod extract;
 mod firmware_lines;
+mod order;
 mod screen_lines;
 mod shell;
 

@@ -130,3 +130,41 @@ fn a_format_without_a_home_needs_one_for_altitudes_above_sea_level() {
     assert_eq!(ran.code, Some(0), "{}", ran.err);
     assert!(sandbox.read("route.toml").contains("alt_m = 20\n"), "{}", sandbox.read("route.toml"));
 }
+
+#[test]
+fn a_file_with_75_waypoints_is_shown_simplified_and_split_and_not_flown() {
+    let sandbox = Sandbox::new();
+    let line = |index: u32| {
+        let east = index % 2;
+        format!("waypoint insert {index} 40.46{index:02}000 -79.51820{east}0 3000 0 FLYBY 0 NONE\n")
+    };
+    sandbox.write("long.txt", &(0..75).map(line).collect::<String>());
+    let shown = sandbox.run(&["plan", "show", "long.txt"]).exits(2).out;
+    assert!(
+        shown.starts_with("75 waypoints, 8.24 km in all: a plan holds at most 30, so 3 parts"),
+        "{shown}"
+    );
+    assert!(shown.contains("long 1\n") && shown.contains("\n17 waypoints, "), "{shown}");
+    for command in
+        [&["fly", "long.txt"][..], &["check", "--new", "long.txt"], &["convert", "long.txt", "x.toml"]]
+    {
+        let ran = sandbox.run(command).exits(2);
+        assert!(ran.err.contains("75") && ran.err.contains("--simplify METRES"), "{command:?}: {}", ran.err);
+        assert!(ran.err.contains("with --split it writes several plans"), "{command:?}: {}", ran.err);
+    }
+    sandbox.run(&["convert", "long.txt", "near.toml", "--simplify", "2"]).exits(0);
+    assert_eq!(sandbox.read("near.toml").matches("[[waypoint]]").count(), 2);
+    sandbox.run(&["convert", "long.txt", "part.toml", "--split"]).exits(0);
+    let part = |number: u32| sandbox.read(&format!("part-{number}.toml"));
+    let counts = [1, 2, 3].map(|number| part(number).matches("[[waypoint]]").count());
+    assert_eq!(counts, [30, 30, 17]);
+    assert!(part(1).contains("40.4629000") && part(2).contains("40.4629000"), "the joint is in both");
+    sandbox.run(&["plan", "show", "part-2.toml"]).exits(0);
+    std::fs::remove_file(sandbox.path("part-1.toml")).expect("removed");
+    let ran = sandbox.run(&["convert", "long.txt", "part.toml", "--split"]).exits(3);
+    assert!(ran.err.contains("part-2.toml exists"), "{}", ran.err);
+    assert!(!sandbox.path("part-1.toml").exists(), "all parts are written, or none");
+    let one = ["convert", "part-2.toml", "one.txt", "--split"];
+    sandbox.run(&one).exits(0);
+    assert!(sandbox.path("one.txt").exists(), "a plan that fits is one file");
+}

@@ -1,5 +1,6 @@
 //! Blackbox logs as files: of flights, of scenarios, of comparisons, and of a craft that is served.
 
+use std::io::{BufRead as _, BufReader};
 use std::path::Path;
 use std::process::Stdio;
 
@@ -7,7 +8,7 @@ use betadeck::blackbox::FrameKind;
 use betadeck::blackbox::decode::{Item, LogReader};
 
 use crate::streams::until;
-use crate::support::{Sandbox, plan};
+use crate::support::{PROGRAM, Sandbox, plan};
 
 /// A scenario whose craft stays on the ground for two seconds, and logs from boot on.
 const LOGGED: &str = "format = 1
@@ -193,4 +194,31 @@ fn a_comparison_logs_the_flights_of_the_embedded_firmware() {
         assert!(path.exists(), "{name}: {}", ran.err);
         assert!(read(&path).frames > 500, "{name}");
     }
+}
+
+#[test]
+fn a_full_disk_leaves_no_empty_log() {
+    let sandbox = Sandbox::new();
+    sandbox.write("log.txt", "set blackbox_device = VIRTUAL\nset blackbox_mode = ALWAYS\n");
+    // No file of the program may have a byte, as on a full disk.
+    let full = |line: &str| {
+        let script = format!("trap '' XFSZ; ulimit -f 0; exec {PROGRAM} {line}");
+        let mut shell = std::process::Command::new("/bin/sh");
+        shell.env_clear().envs(sandbox.environment()).current_dir(sandbox.path("."));
+        shell.args(["-c", &script]);
+        shell
+    };
+    let flown = full("fly land --takeoff 3 --timeout 12 --blackbox new.bbl").output().expect("a shell");
+    let said = String::from_utf8_lossy(&flown.stderr);
+    assert_eq!(flown.status.code(), Some(3), "{said}");
+    assert!(said.contains("cannot write new.bbl: "), "{said}");
+    let mut serve = full("serve --no-ports --state-dir state --settings log.txt --speed 10");
+    let mut child = serve.stdin(Stdio::null()).stdout(Stdio::piped()).spawn().expect("a shell");
+    let mut lines = BufReader::new(child.stdout.take().expect("an output")).lines().map_while(Result::ok);
+    assert!(lines.any(|line| line.contains("The blackbox log cannot be written")));
+    child.kill().expect("killed");
+    child.wait().expect("an end");
+    let logs: Vec<_> = betadeck::storage::logs_in(&sandbox.path("state")).collect();
+    assert_eq!(logs, Vec::<std::path::PathBuf>::new());
+    assert!(!sandbox.path("new.bbl").exists());
 }

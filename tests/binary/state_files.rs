@@ -1,7 +1,7 @@
 //! Foreign files in the state directory and among the temporary files, and files that are neither settings
 //! nor plans.
 
-use std::os::unix::fs::symlink;
+use std::os::unix::fs::{PermissionsExt as _, symlink};
 use std::process::Stdio;
 
 use crate::free_port::free_port;
@@ -202,6 +202,8 @@ fn the_folder_of_a_firmware_whose_program_was_killed_is_removed_at_the_next_star
     killed.kill().expect("killed");
     killed.wait().expect("its end");
     let left = temporary(&sandbox);
+    let mode = sandbox.path(&format!("tmp/{}", left[0])).metadata().expect("there").permissions().mode();
+    assert_eq!(mode & 0o777, 0o700, "it is for its owner only");
     assert!(left.len() == 1 && left[0].starts_with("betadeck-firmware-"), "{left:?}");
     let flown = with_temporary_files(&sandbox, &["fly", "land", "--timeout=2"]).status().expect("it runs");
     assert_eq!(flown.code(), Some(1));

@@ -1,6 +1,5 @@
 //! `betadeck campaign merge`: the files of all shards as one.
 
-use std::io::Write as _;
 use std::path::PathBuf;
 
 use super::loaded::{Loaded, differs};
@@ -27,12 +26,7 @@ pub(super) fn run(args: &MergeArgs, repeat: &[String]) -> Result<u8, AppError> {
     let loaded = Loaded::of_run(header.clone())?;
     let mut outputs = Outputs::begin(&args.output, &loaded, Shard::WHOLE)?;
     let mut out = StreamedOutput::begin(&args.out)?;
-    let name = args.out.display().to_string();
-    let mut write = |text: &str| {
-        out.write_all(text.as_bytes())
-            .and_then(|()| out.write_all(b"\n"))
-            .map_err(|error| AppError::environment(format!("cannot write {name}: {error}")))
-    };
+    let mut write = |text: &str| out.add(format!("{text}\n").as_bytes());
     write(&header.line())?;
     let mut lost = Vec::new();
     for (path, mut part) in parts {

@@ -1,6 +1,5 @@
 //! The outputs of a campaign: the table of its flights, and the answer in all its forms.
 
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use super::loaded::Loaded;
@@ -29,7 +28,6 @@ pub(super) struct Outputs {
 }
 
 struct Table {
-    path: PathBuf,
     table: CsvTable,
     output: StreamedOutput,
 }
@@ -179,14 +177,12 @@ impl Table {
             }
         }
         let table = CsvTable::new(inputs, metrics);
-        let mut csv = Self { path: path.to_owned(), output: StreamedOutput::begin(path)?, table };
+        let mut csv = Self { output: StreamedOutput::begin(path)?, table };
         csv.write(&csv.table.head())?;
         Ok(csv)
     }
 
     fn write(&mut self, bytes: &[u8]) -> Result<(), AppError> {
-        self.output
-            .write_all(bytes)
-            .map_err(|error| AppError::environment(format!("cannot write {}: {error}", self.path.display())))
+        self.output.add(bytes)
     }
 }

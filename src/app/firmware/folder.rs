@@ -1,13 +1,13 @@
 //! The folder of a firmware that keeps nothing. It is removed at the end of the program, or at the next start after a
 //! kill.
 
-use std::fs::{File, TryLockError};
+use std::fs::{File, Permissions, TryLockError};
 use std::io;
-use std::os::unix::fs::MetadataExt as _;
+use std::os::unix::fs::{MetadataExt as _, PermissionsExt as _};
 use std::path::{Path, PathBuf};
 
 use rustix::fs::{Mode, OFlags};
-use tempfile::TempDir;
+use tempfile::{Builder, TempDir};
 
 /// The start of the names of these folders.
 const PREFIX: &str = "betadeck-firmware-";
@@ -29,7 +29,8 @@ pub(in crate::app) struct FirmwareFolder {
 impl FirmwareFolder {
     pub(super) fn make() -> io::Result<Self> {
         for _ in 0..ATTEMPTS {
-            let directory = TempDir::with_prefix(PREFIX)?;
+            let for_owner = Permissions::from_mode(0o700);
+            let directory = Builder::new().prefix(PREFIX).permissions(for_owner).tempdir()?;
             // Until it is locked, another program that starts now may treat the folder as abandoned.
             let Ok(lock) = open(directory.path()) else { continue };
             let work = directory.path().join(WORK);

@@ -9,6 +9,8 @@ use crate::app::output_file::KeptFiles;
 
 /// The ending of the files in a folder.
 const ENDING: &str = "bbl";
+/// The endings of logs. A missing path with one of them is meant as a file.
+const OF_LOGS: [&str; 3] = [ENDING, "bfl", "txt"];
 
 /// The files of the logs of a run, by the number of the flight.
 #[derive(Debug)]
@@ -49,7 +51,8 @@ fn make_folder(path: &Path, flights: usize) -> Result<(), AppError> {
     if path.is_dir() {
         return Ok(());
     }
-    if path.exists() {
+    let ending = path.extension().unwrap_or_default();
+    if path.exists() || OF_LOGS.iter().any(|log| ending.eq_ignore_ascii_case(log)) {
         return Err(AppError::input(format!(
             "{OPTION} {name} is not a folder, and each of the {flights} flights has a log: name a folder"
         )));
@@ -114,8 +117,11 @@ mod tests {
         std::fs::write(at("file"), "").expect("written");
         let flights = ["a".to_owned(), "b".to_owned()];
         let kept = KeptFiles::default();
-        let error = LogFiles::claim(&at("file"), &flights, &kept).expect_err("refused");
-        assert!(error.to_string().contains("each of the 2 flights has a log: name a folder"), "{error}");
+        for name in ["file", "new.bbl", "new.BFL"] {
+            let error = LogFiles::claim(&at(name), &flights, &kept).expect_err("refused");
+            assert!(error.to_string().contains("each of the 2 flights has a log: name a folder"), "{error}");
+            assert!(!at(name).is_dir(), "{name}");
+        }
         let files = LogFiles::claim(&at("new"), &flights, &kept).expect("created");
         assert_eq!(files.of(1), Some(at("new/b.bbl").as_path()));
         assert_eq!(files.of(2), None);

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use rustix::fs::{Access, access};
 use tempfile::NamedTempFile;
 
-use super::{cannot_write, directory_of};
+use super::{FileError, cannot_write, directory_of, write_failed};
 use crate::app::AppError;
 use crate::storage::{self, state_file};
 
@@ -131,7 +131,7 @@ impl StreamedOutput {
     /// # Errors
     /// Returns the reason why they cannot be written, with the name of the file.
     pub(in crate::app) fn add(&mut self, bytes: &[u8]) -> Result<(), AppError> {
-        self.write_all(bytes).map_err(|error| cannot_write(&self.path, &error))
+        self.write_all(bytes).map_err(write_failed)
     }
 
     /// Gives the file its name. Until then there is no file with that name.
@@ -143,14 +143,19 @@ impl StreamedOutput {
     }
 }
 
+/// Each error names the file.
 impl Write for StreamedOutput {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.writer.write(bytes)
+        self.writer.write(bytes).map_err(|source| named_error(&self.path, source))
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        self.writer.flush()
+        self.writer.flush().map_err(|source| named_error(&self.path, source))
     }
+}
+
+fn named_error(path: &Path, source: io::Error) -> io::Error {
+    io::Error::new(source.kind(), FileError { path: path.to_owned(), source })
 }
 
 impl Write for Stream {

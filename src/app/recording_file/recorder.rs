@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::{header, recorded};
 use crate::app::error::AppError;
-use crate::app::output_file::StreamedOutput;
+use crate::app::output_file::{StreamedOutput, write_failed};
 use crate::flight::FlightSetup;
 use crate::recording::{Cadence, End, FlightPrint, Setup, Writer};
 use crate::session::Event;
@@ -70,12 +70,7 @@ impl Recorder {
     pub(in crate::app) fn finish(mut self, end: End) -> Result<(), AppError> {
         let hash = (!self.is_unknown).then(|| self.print.text());
         let bytes = self.writer.finish(End { hash, ..end });
-        self.file.write_all(&bytes).map_err(write_failed)?;
+        self.file.add(&bytes)?;
         self.file.finish()
     }
-}
-
-#[expect(clippy::needless_pass_by_value, reason = "a map_err argument")]
-fn write_failed(error: std::io::Error) -> AppError {
-    AppError::environment(format!("cannot write the recording: {error}"))
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::app::error::AppError;
-use crate::app::output_file::{KeptFiles, StreamedOutput};
+use crate::app::output_file::{KeptFiles, StreamedOutput, write_failed};
 use crate::app::patient_output::PatientOutput;
 use crate::args::{OutputFile, ReplayArgs};
 
@@ -41,14 +41,14 @@ pub(super) fn table(
             match write(&mut out).and_then(|()| out.flush()) {
                 // The reader of the pipe has what it wanted.
                 Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-                    return Err(failed("standard output", &error));
+                    return Err(write_failed(error));
                 }
                 Ok(()) | Err(_) => {}
             }
         }
         OutputFile::File(path) => {
             let mut out = StreamedOutput::begin(path)?;
-            write(&mut out).map_err(|error| failed(&path.display().to_string(), &error))?;
+            write(&mut out).map_err(write_failed)?;
             if stop.load(Ordering::Relaxed) {
                 return Ok(false);
             }
@@ -67,10 +67,6 @@ pub(super) fn file(
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), AppError> {
     let mut out = StreamedOutput::begin(path)?;
-    write(&mut out).map_err(|error| failed(&path.display().to_string(), &error))?;
+    write(&mut out).map_err(write_failed)?;
     out.finish()
-}
-
-fn failed(output: &str, error: &io::Error) -> AppError {
-    AppError::environment(format!("cannot write the recorded flight to {output}: {error}"))
 }

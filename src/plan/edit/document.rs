@@ -19,7 +19,7 @@ pub struct PlanDocument {
 
 impl From<PlanFile> for PlanDocument {
     fn from(file: PlanFile) -> Self {
-        let PlanFile { name, description, home, settings, plan, notes: _, losses: _ } = file;
+        let PlanFile { name, description, home, settings, plan, rest: _, notes: _, losses: _ } = file;
         Self { name, description, home, settings, plan }
     }
 }

@@ -6,10 +6,11 @@
 use std::ops::Range;
 
 use super::field::{self, FieldError};
+use super::long::hint;
 use super::loss::{Finding, LossReport, Severity};
 use super::{Note, NoteKind, PlanFile, Problems, WaypointRecord, Written};
 use crate::geo::LatLon;
-use crate::plan::{FlightPlan, MAX_WAYPOINTS, Waypoint, plan_lines};
+use crate::plan::{MAX_WAYPOINTS, Waypoint, plan_lines};
 use crate::text::did_you_mean;
 
 /// The values of `waypoint insert` and `waypoint update`, by name.
@@ -46,7 +47,7 @@ struct Reader<'p, 'a> {
 type Word<'a> = (&'a str, Range<usize>);
 
 /// Reads the text and adds problems to `problems`.
-pub(super) fn read(text: &str, problems: &mut Problems<'_>) -> PlanFile {
+pub(super) fn read(text: &str, long: bool, problems: &mut Problems<'_>) -> PlanFile {
     let mut reader =
         Reader { problems, waypoints: Vec::new(), notes: Vec::new(), overflow: None, gave_up: false };
     let mut start = 0;
@@ -56,20 +57,19 @@ pub(super) fn read(text: &str, problems: &mut Problems<'_>) -> PlanFile {
     }
     let most = reader.waypoints.len();
     let at_least = if reader.gave_up { "more than " } else { "" };
-    if let Some(span) = reader.overflow.take() {
-        let hint = format!("a plan holds at most {MAX_WAYPOINTS} waypoints");
+    if let Some(span) = reader.overflow.take().filter(|_| !long || reader.gave_up) {
         reader.problems.add(
             span,
             format!("waypoint {MAX_WAYPOINTS} does not fit: {at_least}{most} are inserted"),
-            hint,
+            hint(),
         );
     }
     if reader.waypoints.is_empty() && reader.problems.is_empty() {
         reader.note(NoteKind::NoWaypoints, 1);
     }
-    let mut plan = FlightPlan::default();
-    plan.waypoints.extend(reader.waypoints.into_iter().take(MAX_WAYPOINTS));
-    PlanFile { plan, notes: reader.notes, ..PlanFile::default() }
+    let mut file = PlanFile { notes: reader.notes, ..PlanFile::default() };
+    file.take(reader.waypoints);
+    file
 }
 
 impl Reader<'_, '_> {
@@ -294,7 +294,7 @@ mod tests {
         ));
         let kinds: Vec<_> = file.plan.waypoints.iter().map(|waypoint| waypoint.kind).collect();
         assert_eq!(kinds, [WaypointType::Takeoff, WaypointType::Flyby]);
-        assert_eq!(read_text(&format!("{TWO}waypoint clear")).plan, FlightPlan::default());
+        assert_eq!(read_text(&format!("{TWO}waypoint clear")).plan, crate::plan::FlightPlan::default());
     }
 
     #[test]

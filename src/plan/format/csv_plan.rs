@@ -2,11 +2,12 @@
 //! YAW_RATE has the column `yaw_rate_dps`, too.
 
 use super::csv_table::{self, Row, Table};
+use super::long::hint;
 use super::loss::{Finding, LossReport, Place, Severity};
 use super::number::decimal;
 use super::{PlanFile, Problems, ReadOptions, Written, bounds, field};
 use crate::geo::Degrees7;
-use crate::plan::{Altitude, FlightPlan, LegSpeed, MAX_WAYPOINTS, Seconds, Waypoint, WaypointType};
+use crate::plan::{Altitude, LegSpeed, MAX_WAYPOINTS, Seconds, Waypoint, WaypointType};
 
 /// The columns, in the order in which they are written.
 const COLUMNS: [&str; 7] = ["type", "lat_deg", "lon_deg", "alt_m", "speed_mps", "duration_s", "pattern"];
@@ -38,23 +39,25 @@ pub(super) fn read(text: &str, options: &ReadOptions, problems: &mut Problems<'_
         let why = "a plan has no such values";
         reader.losses.add(Finding::new(Severity::Info, "columns", why).values(unknown.join(", "), ""));
     }
-    let mut plan = FlightPlan::default();
+    let mut waypoints = Vec::new();
     let mut too_many = None;
     while let Some(row) = table.next_row(problems) {
         let waypoint = reader.waypoint(&row, problems);
-        if plan.waypoints.try_push(waypoint.unwrap_or_default()).is_err() && too_many.is_none() {
+        if waypoints.len() == MAX_WAYPOINTS {
             too_many = Some(row.span.clone());
         }
+        waypoints.push(waypoint.unwrap_or_default());
         reader.losses.items = row.number;
         if problems.is_full() {
             break;
         }
     }
-    if let Some(span) = too_many.filter(|_| !table.is_too_long()) {
-        let hint = format!("a plan holds at most {MAX_WAYPOINTS} waypoints");
-        problems.add(span, format!("the table has {} waypoints", reader.losses.items), hint);
+    if let Some(span) = too_many.filter(|_| !options.long && !table.is_too_long()) {
+        problems.add(span, format!("the table has {} waypoints", reader.losses.items), hint());
     }
-    PlanFile { plan, home: options.home, losses: reader.losses, ..PlanFile::default() }
+    let mut file = PlanFile { home: options.home, losses: reader.losses, ..PlanFile::default() };
+    file.take(waypoints);
+    file
 }
 
 struct TableReader {

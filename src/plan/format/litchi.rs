@@ -2,13 +2,14 @@
 
 use super::bounds::{self, Reference};
 use super::csv_table::{self, Row, Table};
+use super::long::hint;
 use super::loss::{Finding, LossReport, Place, Severity};
 use super::number::decimal;
 use super::{PlanFile, Problems, ReadOptions};
 use crate::geo::{Degrees7, GRAVITY};
 use crate::math;
 use crate::plan::estimate::Assumptions;
-use crate::plan::{FlightPlan, LegSpeed, MAX_WAYPOINTS, Seconds, Waypoint, WaypointType};
+use crate::plan::{LegSpeed, MAX_WAYPOINTS, Seconds, Waypoint, WaypointType};
 
 /// The columns that a file must have. All others may be missing.
 const NEEDED: [&str; 3] = ["latitude", "longitude", "altitude(m)"];
@@ -104,14 +105,14 @@ pub(super) fn read(text: &str, options: &ReadOptions, problems: &mut Problems<'_
             break;
         }
     }
-    if reader.losses.items > MAX_WAYPOINTS && !table.is_too_long() {
-        let hint = format!("a plan holds at most {MAX_WAYPOINTS} waypoints");
+    if reader.losses.items > MAX_WAYPOINTS && !options.long && !table.is_too_long() {
         let message = format!("the mission has {} waypoints", reader.losses.items);
-        problems.add(first.unwrap_or(0..0), message, hint);
+        problems.add(first.unwrap_or(0..0), message, hint());
     }
     reader.whole_file();
-    let plan = FlightPlan { waypoints: reader.waypoints.into_iter().take(MAX_WAYPOINTS).collect() };
-    PlanFile { home: options.home, plan, losses: reader.losses, ..PlanFile::default() }
+    let mut file = PlanFile { home: options.home, losses: reader.losses, ..PlanFile::default() };
+    file.take(reader.waypoints);
+    file
 }
 
 impl LitchiReader {

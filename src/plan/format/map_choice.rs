@@ -88,6 +88,12 @@ impl<'m> Builder<'m, '_, '_> {
                     let finding = Finding::new(Severity::Info, "lines", why);
                     self.finding(finding.values(others.to_string(), ""));
                 }
+                let beside = points(self.map).count();
+                if beside > 0 {
+                    let why = "points beside the line are not part of the plan";
+                    let finding = Finding::new(Severity::Info, "points", why);
+                    self.finding(finding.values(beside.to_string(), ""));
+                }
                 Choice::Line(*one)
             }
             ([], None) => Choice::None,

@@ -154,8 +154,9 @@ fn is_closed(line: &[crate::plan::feature::Vertex]) -> bool {
 
 /// Returns the meaning that the properties give an area.
 pub(super) fn zone(properties: &Properties) -> Option<Zone> {
-    let is =
-        |key: &str, value: &str| properties.get(key).is_some_and(|text| text.eq_ignore_ascii_case(value));
+    let is = |key: &str, value: &str| {
+        properties.get(key).is_some_and(|text| text.trim().eq_ignore_ascii_case(value))
+    };
     if is("zone", "exclusion") {
         Some(Zone::Exclusion)
     } else if is("zone", "inclusion") {

@@ -1,6 +1,7 @@
 //! Plans from the features of a map: our own waypoints, plain points, or one chosen line.
 
 use super::bounds::{Reference, altitude_m};
+use super::long::hint;
 use super::loss::{Finding, LossReport, Place, Severity};
 use super::map_choice::Candidate;
 use super::map_data::{self, HOME, VERSION};
@@ -9,7 +10,7 @@ use super::thinned::thinned;
 use super::{HomePosition, PlanFile, Problems, ReadOptions, setting_line};
 use crate::geo::distance_bearing;
 use crate::plan::feature::{Shape, Vertex};
-use crate::plan::{Altitude, FlightPlan, MAX_WAYPOINTS, Waypoint, WaypointType};
+use crate::plan::{Altitude, MAX_WAYPOINTS, Waypoint, WaypointType};
 
 /// The altitude above home of a point without one, m.
 const DEFAULT_ALTITUDE_M: f64 = 10.0;
@@ -325,9 +326,12 @@ impl<'m, 'p, 'a> Builder<'m, 'p, 'a> {
         let tolerance_m = self.options.simplify_m;
         let kept = match tolerance_m {
             None => (0..line.len()).collect(),
-            Some(tolerance_m) => thinned(line, tolerance_m, MAX_WAYPOINTS + 1).kept,
+            Some(tolerance_m) => {
+                let most = if self.options.long { line.len() } else { MAX_WAYPOINTS + 1 };
+                thinned(line, tolerance_m, most).kept
+            }
         };
-        if kept.len() > MAX_WAYPOINTS {
+        if kept.len() > MAX_WAYPOINTS && !self.options.long {
             let count = line.len();
             let remain = match tolerance_m {
                 Some(metres) => format!(", more than {MAX_WAYPOINTS} remain with --simplify {metres}"),
@@ -337,7 +341,10 @@ impl<'m, 'p, 'a> Builder<'m, 'p, 'a> {
             let enough_m = (thinned(line, 0.0, MAX_WAYPOINTS).distance_m * 10.0).floor() / 10.0 + 0.1;
             let message =
                 format!("the line has {count} points{remain}, a plan holds at most {MAX_WAYPOINTS}");
-            let hint = format!("leave out points near the line: --simplify {enough_m:.1} (metres) is enough");
+            let hint = format!(
+                "`betadeck convert` with --simplify {enough_m:.1} (metres) leaves out enough points near the line, with \
+                 --split it writes several plans"
+            );
             self.problem(at, place, message, &hint);
             return;
         }
@@ -372,9 +379,9 @@ impl<'m, 'p, 'a> Builder<'m, 'p, 'a> {
     /// Returns the plan with name, description, home and settings of the file.
     pub(super) fn finish(mut self) -> PlanFile {
         let count = self.waypoints.len();
-        if count > MAX_WAYPOINTS {
+        if count > MAX_WAYPOINTS && !self.options.long {
             let message = format!("the file has {count} waypoints, a plan holds at most {MAX_WAYPOINTS}");
-            self.problem(0, None, message, "remove some of the points");
+            self.problem(0, None, message, &hint());
         }
         if count == 0 && self.problems.is_empty() && !self.is_own_file() {
             self.problem(
@@ -394,18 +401,17 @@ impl<'m, 'p, 'a> Builder<'m, 'p, 'a> {
                 "the data of the whole plan are missing: another program wrote the file without its settings";
             self.losses.add(Finding::new(Severity::Assumed, "settings", why));
         }
-        let mut plan = FlightPlan::default();
-        plan.waypoints.extend(self.waypoints.drain(..).take(MAX_WAYPOINTS));
         let settings = if self.reads_own_data() { self.settings() } else { Vec::new() };
-        PlanFile {
+        let mut file = PlanFile {
             name: self.map.name.clone(),
             description: self.map.description.clone(),
             home: self.home.map(|home| self.with_amsl(home)),
             settings,
-            plan,
-            notes: Vec::new(),
             losses: self.losses,
-        }
+            ..PlanFile::default()
+        };
+        file.take(self.waypoints);
+        file
     }
 
     /// Returns a home of the file, with the altitude of that of the user if both are at the same place.

@@ -7,11 +7,12 @@ use toml::de::{DeTable, DeValue};
 
 use super::field::{self, FieldError};
 use super::home::{self, HomePosition};
+use super::long::hint;
 use super::setting::{SettingCheck, SettingPart, setting_line};
 use super::toml_table::{TomlTable, Value};
-use super::{PlanFile, Problems, WaypointRecord};
+use super::{PlanFile, Problems, ReadOptions, WaypointRecord};
 use crate::geo::LatLon;
-use crate::plan::{FlightPlan, HoldPattern, MAX_WAYPOINTS, TimeUse, Waypoint, WaypointType};
+use crate::plan::{HoldPattern, MAX_WAYPOINTS, TimeUse, Waypoint, WaypointType};
 
 /// Keys of the whole file.
 pub(super) const FILE_KEYS: &[&str] = &["name", "description", "settings", "home", "waypoint"];
@@ -24,7 +25,7 @@ const WAYPOINT_KEYS: &[&str] =
     &["type", "lat_deg", "lon_deg", "alt_m", "speed_mps", "yaw_rate_dps", "duration_s", "pattern"];
 
 /// Reads the text and adds problems to `problems`.
-pub(super) fn read(text: &str, check: SettingCheck, problems: &mut Problems<'_>) -> PlanFile {
+pub(super) fn read(text: &str, options: &ReadOptions, problems: &mut Problems<'_>) -> PlanFile {
     let (document, syntax) = DeTable::parse_recoverable(text);
     for error in &syntax {
         let message = error.message().replace('\n', ", ");
@@ -37,17 +38,19 @@ pub(super) fn read(text: &str, check: SettingCheck, problems: &mut Problems<'_>)
     let span = document.span();
     let file = TomlTable::of_document("the plan file", document.get_ref(), span);
     file.refuse_unknown(FILE_KEYS, problems);
-    PlanFile {
+    let mut read = PlanFile {
         name: file.string("name", problems).unwrap_or_default(),
         description: file.string("description", problems).unwrap_or_default(),
         home: file.get("home").and_then(|value| read_home(value, problems)),
         settings: file
             .get("settings")
-            .map(|value| read_settings(value, text, check, problems))
+            .map(|value| read_settings(value, text, options.check, problems))
             .unwrap_or_default(),
-        plan: file.get("waypoint").map(|value| read_waypoints(value, problems)).unwrap_or_default(),
         ..PlanFile::default()
-    }
+    };
+    let waypoints = file.get("waypoint").map(|value| read_waypoints(value, options.long, problems));
+    read.take(waypoints.unwrap_or_default());
+    read
 }
 
 fn read_home(value: &Value<'_>, problems: &mut Problems<'_>) -> Option<HomePosition> {
@@ -99,31 +102,29 @@ fn place_of(part: &str, text: &str, quoted: Range<usize>) -> Range<usize> {
     found.map_or(quoted.clone(), |at| quoted.start + at..quoted.start + at + part.len())
 }
 
-fn read_waypoints(value: &Value<'_>, problems: &mut Problems<'_>) -> FlightPlan {
-    let mut plan = FlightPlan::default();
+fn read_waypoints(value: &Value<'_>, long: bool, problems: &mut Problems<'_>) -> Vec<Waypoint> {
+    let mut waypoints = Vec::new();
     let DeValue::Array(tables) = value.get_ref() else {
         problems.add(
             value.span(),
             "waypoint is not a list of tables",
             "start each waypoint with [[waypoint]]",
         );
-        return plan;
+        return waypoints;
     };
     for (index, value) in tables.iter().enumerate() {
-        if index == MAX_WAYPOINTS {
+        if index == MAX_WAYPOINTS && !long {
             problems.add(
                 value.span(),
                 format!("waypoint {index} does not fit: the file has {}", tables.len()),
-                format!("a plan holds at most {MAX_WAYPOINTS} waypoints"),
+                hint(),
             );
         }
         if let Some(table) = TomlTable::new(format!("waypoint {index}"), value, problems) {
-            let waypoint = read_waypoint(&table, problems);
-            // If the plan is full, the problem above covers all following waypoints.
-            let _ = plan.waypoints.try_push(waypoint);
+            waypoints.push(read_waypoint(&table, problems));
         }
     }
-    plan
+    waypoints
 }
 
 fn read_waypoint(table: &TomlTable<'_, '_>, problems: &mut Problems<'_>) -> Waypoint {

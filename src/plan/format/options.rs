@@ -24,6 +24,8 @@ pub struct ReadOptions {
     pub simplify_m: Option<f64>,
     /// The ground is flat: an altitude above ground is one above home.
     pub flat: bool,
+    /// Reads more waypoints than a plan holds, too.
+    pub long: bool,
 }
 
 impl Default for ReadOptions {
@@ -38,6 +40,7 @@ impl Default for ReadOptions {
             altitude_m: None,
             simplify_m: None,
             flat: false,
+            long: false,
         }
     }
 }

@@ -5,7 +5,6 @@ use super::loss::{Finding, LossReport, Place, Severity};
 use super::mission_item::{self, ABOVE_SEA, Mission, MissionItem, NO_PLACE};
 use super::{HomePosition, PlanFile, Problems, ReadOptions, home};
 use crate::plan::estimate::Assumptions;
-use crate::plan::{FlightPlan, MAX_WAYPOINTS};
 
 /// The columns.
 const COLUMNS: [&str; 12] = [
@@ -84,14 +83,15 @@ pub(super) fn read(text: &str, options: &ReadOptions, problems: &mut Problems<'_
         flat: options.flat,
     };
     let mapping = mission.map();
-    for fault in mapping.faults.iter().chain(&mapping.too_many()) {
+    for fault in mapping.faults.iter().chain(&mapping.too_many().filter(|_| !options.long)) {
         let at = table.places[fault.item];
         problems.add(at..line_end(text, at), fault.message.clone(), fault.hint.clone());
     }
     losses.items = table.items.len();
     losses.findings.extend(mapping.findings);
-    let waypoints = mapping.waypoints.into_iter().take(MAX_WAYPOINTS).map(|(waypoint, _)| waypoint);
-    PlanFile { home, plan: FlightPlan { waypoints: waypoints.collect() }, losses, ..PlanFile::default() }
+    let mut file = PlanFile { home, losses, ..PlanFile::default() };
+    file.take(mapping.waypoints.into_iter().map(|(waypoint, _)| waypoint));
+    file
 }
 
 fn line_end(text: &str, at: usize) -> usize {

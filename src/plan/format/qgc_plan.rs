@@ -11,13 +11,14 @@ mod write;
 
 use serde_json::Value;
 
+use super::long::hint;
 use super::loss::{Finding, LossReport, Place, Severity};
 use super::mission_item::{self, Mission, MissionItem};
 use super::setting::{SettingFault, setting_line};
 use super::{HomePosition, PlanFile, Problems, ReadOptions, home, json};
+use crate::plan::MAX_WAYPOINTS;
 use crate::plan::estimate::Assumptions;
 use crate::plan::feature::Feature;
-use crate::plan::{FlightPlan, MAX_WAYPOINTS};
 use source::Source;
 pub(super) use write::write;
 
@@ -93,20 +94,16 @@ fn read_file(
     let restored = private::restore(mapping, private, &mission);
     file.losses.findings.extend(restored.findings);
     file.losses.items = items.len();
-    if restored.waypoints.len() > MAX_WAYPOINTS && source.is_clean() {
+    if restored.waypoints.len() > MAX_WAYPOINTS && !options.long && source.is_clean() {
         match too_many {
             Some(fault) => source.fault(&pointer(&items[fault.item]), fault.message, fault.hint),
             None => {
                 let message = format!("the file has {} waypoints", restored.waypoints.len());
-                source.fault(
-                    "/mission/items",
-                    message,
-                    format!("a plan holds at most {MAX_WAYPOINTS} waypoints"),
-                );
+                source.fault("/mission/items", message, hint());
             }
         }
     }
-    file.plan = FlightPlan { waypoints: restored.waypoints.into_iter().take(MAX_WAYPOINTS).collect() };
+    file.take(restored.waypoints);
     fences.report(&file.plan, &mut file.losses);
     report_rally_points(value, &mut file.losses);
     Some(())

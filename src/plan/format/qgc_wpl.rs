@@ -9,7 +9,6 @@ use super::mission_item::{self, Mission, MissionItem, Sent, send, written_positi
 use super::{HomePosition, PlanFile, Problems, ReadOptions, Written, home};
 use crate::geo::{Degrees7, LatLon};
 use crate::plan::estimate::Assumptions;
-use crate::plan::{FlightPlan, MAX_WAYPOINTS};
 
 /// The first line of a file.
 pub(super) const HEADER: &str = "QGC WPL 110";
@@ -68,13 +67,14 @@ pub(super) fn read(text: &str, options: &ReadOptions, problems: &mut Problems<'_
         flat: options.flat,
     };
     let mapping = mission.map();
-    for fault in mapping.faults.iter().chain(&mapping.too_many()) {
+    for fault in mapping.faults.iter().chain(&mapping.too_many().filter(|_| !options.long)) {
         problems.add(spans[fault.item].clone(), fault.message.clone(), fault.hint.clone());
     }
     losses.items = items.len();
     losses.findings.extend(mapping.findings);
-    let waypoints = mapping.waypoints.into_iter().take(MAX_WAYPOINTS).map(|(waypoint, _)| waypoint);
-    PlanFile { home, plan: FlightPlan { waypoints: waypoints.collect() }, losses, ..PlanFile::default() }
+    let mut file = PlanFile { home, losses, ..PlanFile::default() };
+    file.take(mapping.waypoints.into_iter().map(|(waypoint, _)| waypoint));
+    file
 }
 
 /// Reads the lines. Comments and empty lines are skipped.

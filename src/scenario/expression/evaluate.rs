@@ -1,9 +1,6 @@
 //! Values of numbers, conditions and instants in a recorded flight.
 
-use std::cell::RefCell;
-use std::collections::BTreeMap;
-
-use super::instant::Search;
+use super::lookup::Lookups;
 use super::{Bound, Comparison, Condition, Function, Instant, Number, Place};
 use crate::math;
 use crate::scenario::flag::Flag;
@@ -60,14 +57,30 @@ impl Verdict {
 pub struct Evaluator<'a> {
     trace: &'a Trace,
     names: &'a [(String, f64)],
-    /// The instants looked up so far.
-    found: RefCell<BTreeMap<*const Instant, Option<i64>>>,
+    /// The instants looked up so far, if they are not those of a flight in progress.
+    own: Lookups,
+    in_flight: Option<&'a Lookups>,
+    /// The number of conditions judged.
+    #[cfg(test)]
+    pub(super) judged: std::cell::Cell<usize>,
 }
 
 impl<'a> Evaluator<'a> {
     /// Creates an evaluator for a flight with these parameters and measures.
     pub fn new(trace: &'a Trace, names: &'a [(String, f64)]) -> Self {
-        Self { trace, names, found: RefCell::default() }
+        Self {
+            trace,
+            names,
+            own: Lookups::default(),
+            in_flight: None,
+            #[cfg(test)]
+            judged: std::cell::Cell::default(),
+        }
+    }
+
+    /// Creates an evaluator for a flight in progress, which goes on with its lookups.
+    pub fn in_flight(trace: &'a Trace, names: &'a [(String, f64)], lookups: &'a Lookups) -> Self {
+        Self { in_flight: Some(lookups), ..Self::new(trace, names) }
     }
 
     pub fn trace(&self) -> &'a Trace {
@@ -76,13 +89,7 @@ impl<'a> Evaluator<'a> {
 
     /// Returns the time of an instant, µs since boot; `None` if it did not come.
     pub fn instant(&self, instant: &Instant) -> Option<i64> {
-        let key = std::ptr::from_ref(instant);
-        if let Some(&found) = self.found.borrow().get(&key) {
-            return found;
-        }
-        let found = Search::new(instant).finish(self);
-        self.found.borrow_mut().insert(key, found);
-        found
+        self.in_flight.unwrap_or(&self.own).find(instant, self)
     }
 
     /// Returns a number at a sample; NaN = unknown.
@@ -218,6 +225,8 @@ impl<'a> Evaluator<'a> {
         happening: Option<&Happening>,
     ) -> Option<bool> {
         let sample = self.trace.samples.get(index)?;
+        #[cfg(test)]
+        self.judged.update(|judged| judged + 1);
         Some(match condition {
             Condition::Compare(comparison) => self.compare(comparison, index, happening)?.holds(),
             Condition::Flag(flag) => sample.has(*flag),

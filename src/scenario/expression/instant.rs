@@ -264,6 +264,12 @@ pub(in crate::scenario) fn mode_of(cursor: &mut Cursor<'_>) -> Result<Mode, Synt
 pub struct Search<'a> {
     instant: &'a Instant,
     after: Option<Box<Search<'a>>>,
+    progress: Progress,
+}
+
+/// The state of a search.
+#[derive(Debug)]
+pub(super) struct Progress {
     /// The number of samples or happenings looked at.
     looked_at: usize,
     /// The number of matches so far.
@@ -280,51 +286,43 @@ impl<'a> Search<'a> {
     /// Creates a search that has looked at nothing yet.
     pub fn new(instant: &'a Instant) -> Self {
         let after = instant.after.as_deref().map(|after| Box::new(Search::new(after)));
-        Self {
-            instant,
-            after,
-            looked_at: 0,
-            seen: 0,
-            wanted: instant.occurrence,
-            held: false,
-            found_us: None,
-        }
-    }
-
-    /// Returns the time of the instant in a finished flight, µs since boot.
-    pub(super) fn finish(&mut self, evaluator: &Evaluator<'_>) -> Option<i64> {
-        self.look(evaluator);
-        self.result()
+        Self { instant, after, progress: Progress::new(instant.occurrence) }
     }
 
     /// Looks for the next match after the one that was found.
     pub(in crate::scenario) fn go_on(&mut self) {
-        self.found_us = None;
-        self.wanted = Occurrence::Nth(self.seen + 1);
+        self.progress.found_us = None;
+        self.progress.wanted = Occurrence::Nth(self.progress.seen + 1);
     }
 
     /// Looks at the new part of the flight. Returns the time of the instant if it is known, µs since boot.
     pub fn advance(&mut self, evaluator: &Evaluator<'_>) -> Option<i64> {
-        if self.found_us.is_none() {
-            self.look(evaluator);
+        if self.progress.found_us.is_none() {
+            let earliest = match &mut self.after {
+                None => i64::MIN,
+                Some(after) => after.advance(evaluator)?,
+            };
+            self.progress.look(self.instant, earliest, evaluator);
         }
-        self.result()
+        self.progress.result(self.instant)
+    }
+}
+
+impl Progress {
+    /// Creates the state of a search that has looked at nothing yet.
+    pub(super) fn new(wanted: Occurrence) -> Self {
+        Self { looked_at: 0, seen: 0, wanted, held: false, found_us: None }
     }
 
-    fn result(&self) -> Option<i64> {
-        self.found_us.map(|us| us + (self.instant.offset_s * 1e6).round() as i64)
+    /// Returns the time of the instant if it is known, µs since boot.
+    pub(super) fn result(&self, instant: &Instant) -> Option<i64> {
+        self.found_us.map(|us| us + (instant.offset_s * 1e6).round() as i64)
     }
 
-    fn look(&mut self, evaluator: &Evaluator<'_>) {
-        let earliest = match &mut self.after {
-            None => i64::MIN,
-            Some(after) => match after.advance(evaluator) {
-                Some(us) => us,
-                None => return,
-            },
-        };
+    /// Looks at the new part of the flight. Matches before `earliest`, µs since boot, do not count.
+    pub(super) fn look(&mut self, instant: &Instant, earliest: i64, evaluator: &Evaluator<'_>) {
         let trace = evaluator.trace();
-        match &self.instant.anchor {
+        match &instant.anchor {
             Anchor::Boot => self.found_us = Some(0),
             Anchor::Last => self.found_us = Some(trace.end().0 as i64),
             Anchor::Happening(pattern) => {

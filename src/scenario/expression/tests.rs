@@ -255,3 +255,46 @@ proptest::proptest! {
         let _ = read_instant(&mut cursor, &scope());
     }
 }
+
+/// Returns what an instant inside a condition is at each sample of the flight, and the number of conditions judged
+/// for it.
+fn during_the_flight(instant: &Instant, lookups: Option<&Lookups>) -> (Vec<Option<i64>>, usize) {
+    let whole = climb_to_the_north();
+    let mut trace = Trace { samples: Vec::new(), ..climb_to_the_north() };
+    let mut judged = 0;
+    let found = whole.samples.iter().map(|sample| {
+        trace.samples.push(sample.clone());
+        let evaluator = match lookups {
+            None => Evaluator::new(&trace, &[]),
+            Some(lookups) => Evaluator::in_flight(&trace, &[], lookups),
+        };
+        let found = evaluator.instant(instant);
+        judged += evaluator.judged.get();
+        found
+    });
+    (found.collect(), judged)
+}
+
+#[test]
+fn nested_instants_cost_no_more_than_linear_time_in_flight_and_are_the_same() {
+    let samples = climb_to_the_north().samples.len();
+    for text in [
+        "when altitude > 6 m",
+        "when since(when altitude > 3 m) > 1 s",
+        "when since(when since(when altitude > 3 m) > 0.5 s) > 0.5 s after when north >= 2 m",
+        "when since(when since(when altitude > 3 m) > -1 s) > -0.5 s",
+        "when distance(place at when altitude > 5 m) > 1 m",
+        "second when at(altitude, when altitude > 2 m) < 3 m",
+        "last when since(last when altitude > 3 m) > 1 s",
+    ] {
+        let mut cursor = Cursor::new(text);
+        let Ok(instant) = read_instant(&mut cursor, &scope()) else { panic!("{text}") };
+        let lookups = Lookups::default();
+        let (found, judged) = during_the_flight(&instant, Some(&lookups));
+        let (expected, again) = during_the_flight(&instant, None);
+        assert_eq!(found, expected, "{text}");
+        // A lookup begins again when an instant that it uses comes.
+        assert!(judged <= 6 * samples, "{text}: {judged} conditions at {samples} samples");
+        assert!(again >= 20 * samples || found.iter().flatten().count() > samples / 2, "{text}: {again}");
+    }
+}

@@ -2,7 +2,7 @@
 
 use crate::firmware::cli::RefusedLine;
 use crate::pilot::StickInput;
-use crate::scenario::expression::{Evaluator, Search};
+use crate::scenario::expression::{Evaluator, Lookups, Search};
 use crate::scenario::happening::{EventName, Happening};
 use crate::scenario::input::{Action, TimedInput};
 use crate::scenario::trace::Trace;
@@ -52,10 +52,15 @@ impl<'a> Inputs<'a> {
     }
 
     /// Carries out the due actions, in the order of the file.
-    pub(super) fn carry_out(&mut self, vehicle: &mut Vehicle, trace: &mut Trace, names: &[(String, f64)]) {
+    pub(super) fn carry_out(
+        &mut self,
+        vehicle: &mut Vehicle,
+        trace: &mut Trace,
+        (names, lookups): (&[(String, f64)], &Lookups),
+    ) {
         let now = vehicle.time();
         if now == SimTime::ZERO {
-            self.look(&Evaluator::new(trace, names));
+            self.look(&Evaluator::in_flight(trace, names, lookups));
         }
         if self.restore_at.is_some_and(|at| now >= at) {
             self.restore_at = None;

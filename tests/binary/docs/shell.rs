@@ -11,10 +11,10 @@ use clap::error::ErrorKind;
 
 use super::extract::{Shown, commands, is_screen, pages};
 use super::filled_in;
+use super::order::{examples, files};
 use crate::free_port::free_port;
-use crate::made_log::MadeLog;
 use crate::pty::Terminal;
-use crate::support::{PROGRAM, Sandbox, plan};
+use crate::support::{PROGRAM, Sandbox};
 
 /// Programs of other people, which are not run here.
 const OTHERS: [(&str, &str); 7] = [
@@ -74,7 +74,7 @@ impl Kind {
             Some("serve" | "sitl" | "--plain") => Self::Runs,
             Some(
                 "fly" | "plan" | "convert" | "completions" | "man" | "check" | "campaign" | "forecast"
-                | "config" | "compare" | "doctor" | "flights",
+                | "config" | "compare" | "doctor" | "examples" | "flights",
             ) => Self::ByItself,
             _ if is_remote => Self::ScreenWithFirmware,
             _ => Self::Screen,
@@ -82,8 +82,8 @@ impl Kind {
     }
 }
 
-/// Returns the words of a line up to a redirection; single quotes keep words together.
-fn words(line: &str) -> Vec<String> {
+/// Returns the words of a line; single quotes keep words together.
+pub(super) fn words(line: &str) -> Vec<String> {
     let mut words = Vec::new();
     for (part, text) in line.split('\'').enumerate() {
         if part % 2 == 1 {
@@ -92,6 +92,12 @@ fn words(line: &str) -> Vec<String> {
             words.extend(text.split_whitespace().map(str::to_owned));
         }
     }
+    words
+}
+
+/// Returns the words of a line up to a redirection.
+fn arguments(line: &str) -> Vec<String> {
+    let mut words = words(line);
     let end = words.iter().position(|word| ["<", ">", ">>", "|"].contains(&word.as_str()));
     words.truncate(end.unwrap_or(words.len()));
     words
@@ -114,26 +120,14 @@ impl Desk {
     fn new(kind: Kind) -> Self {
         let needs_firmware = matches!(kind, Kind::RunsFirmware | Kind::ScreenWithFirmware);
         let sandbox = Sandbox::new();
-        let guide = std::fs::read_to_string(plan("guide-square.txt")).expect("the guide's block");
-        for file in ["my-plan.txt", "diff.txt"] {
-            sandbox.write(file, &guide);
-        }
-        for folder in ["flight-tests", "tests", "obj/main", "betaloop"] {
+        for folder in ["flight-tests", "obj/main", "betaloop"] {
             std::fs::create_dir_all(sandbox.path(folder)).expect("a writable directory");
         }
-        let scenario = sandbox.run(&["check", "--new", "my-plan.txt"]).exits(0).out;
-        for file in ["my-test.toml", "flight-tests/one.toml", "tests/one.toml"] {
-            sandbox.write(file, &scenario.replace("my-plan.txt", &plan("guide-square.txt")));
+        for file in files(examples()).into_iter().filter(|file| !file.ends_with('/')) {
+            std::fs::copy(examples().join(&file), sandbox.path(&file)).expect("a writable directory");
         }
+        // The flights of the page's campaign take a minute each.
         sandbox.write("my-campaign.toml", CAMPAIGN);
-        for file in ["LOG00001.BFL", "before.bbl", "after.bbl", "flights.bbl"] {
-            let log = MadeLog::default().bytes();
-            let logs = if file == "flights.bbl" { [log.clone(), log].concat() } else { log };
-            std::fs::write(sandbox.path(file), logs).expect("a writable directory");
-        }
-        sandbox.write("theirs.plan", include_str!("../../exchange/square.plan"));
-        sandbox.write("field.geojson", include_str!("../../exchange/field.geojson"));
-        sandbox.write("my-plan.toml", &std::fs::read_to_string(plan("square.toml")).expect("the square"));
         let (tcp, udp) = if needs_firmware { free_ports() } else { ("0".to_owned(), "0,0,0,0".to_owned()) };
         let script = format!(
             "#!/bin/sh\nexec {PROGRAM} sitl --udp-ports={udp} --tcp-port={tcp} --ws-port=0 >>{} 2>&1\n",
@@ -188,10 +182,6 @@ impl Desk {
         };
         if line.contains("open square.flight") || line.contains("replay square.flight") {
             self.sandbox.run(&["fly", "land", "--record", "square.flight"]).exits(0);
-        }
-        if line.contains("convert ") {
-            // It never replaces a file unless it is asked to.
-            drop(std::fs::remove_file(self.sandbox.path("my-plan.toml")));
         }
         let line = &self.of_campaign(line);
         // The exit code is that of the command, and the shell reads it after a Ctrl-C, too.
@@ -248,7 +238,7 @@ fn runnable(shown: &Shown) -> Result<Option<(String, Kind)>, String> {
     let is_variable = |word: &String| {
         word.split_once('=').is_some_and(|(name, _)| name.chars().all(|c| c.is_ascii_uppercase() || c == '_'))
     };
-    let mut words: Vec<String> = words(&line).into_iter().skip_while(is_variable).collect();
+    let mut words: Vec<String> = arguments(&line).into_iter().skip_while(is_variable).collect();
     let program = words.first().map(String::as_str).unwrap_or_default();
     if OTHERS.iter().any(|(name, _)| *name == program) {
         return Ok(None);

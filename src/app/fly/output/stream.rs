@@ -3,7 +3,7 @@
 use std::io::{BufWriter, Write};
 
 use crate::app::error::AppError;
-use crate::app::output_file::StreamedOutput;
+use crate::app::output_file::{StreamedOutput, write_failed};
 use crate::app::patient_output::PatientOutput;
 use crate::args::OutputFile;
 
@@ -68,9 +68,4 @@ pub(super) fn if_read<T>(written: std::io::Result<T>) -> Result<Option<T>, AppEr
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(None),
         Err(error) => Err(write_failed(error)),
     }
-}
-
-#[expect(clippy::needless_pass_by_value, reason = "a map_err argument")]
-pub(super) fn write_failed(error: std::io::Error) -> AppError {
-    AppError::environment(format!("cannot write the output: {error}"))
 }

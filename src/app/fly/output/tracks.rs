@@ -3,9 +3,8 @@
 use std::path::PathBuf;
 
 use super::pace::Pace;
-use super::stream::write_failed;
 use crate::app::error::AppError;
-use crate::app::output_file::StreamedOutput;
+use crate::app::output_file::{StreamedOutput, write_failed};
 use crate::args::FlyArgs;
 use crate::plan::format::PlanFile;
 use crate::report::{GpxHeader, GpxPoint, GpxWriter, Track, TrackPoint, UtcSeconds};

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use super::super::bounds::{self, MAX_ITEMS};
+use super::super::home::of_file;
 use super::super::loss::{Finding, LossReport, Place, Severity};
 use super::super::number::decimal;
 use super::super::xml::{Element, Part, Parts};
@@ -169,12 +170,15 @@ impl Document {
         let (Some(lat), Some(lon)) = (element.attribute("home-y"), element.attribute("home-x")) else {
             return;
         };
-        let both = decimal("home-y", lat).and_then(|lat| Ok((lat, decimal("home-x", lon)?)));
-        match both.and_then(|(lat, lon)| bounds::position(lat, lon)) {
-            // 0,0 is that of a mission without a home.
-            Ok((home, _)) if home == LatLon::default() => {}
-            Ok((home, _)) => self.open.home = Some(home),
-            Err(message) => problems.add(element.span.clone(), message, "this is the home of the mission"),
+        // A text that is no number is a home that nobody has, too.
+        let number = |text: &str| decimal("home", text).unwrap_or(f64::NAN);
+        let place = Place::Line { line: problems.line_at(element.span.start) };
+        let mut losses = LossReport::default();
+        let home = of_file(number(lat), number(lon), None, Some(&place), &mut losses);
+        self.findings.append(&mut losses.findings);
+        // 0,0 is that of a mission without a home.
+        if let Some(home) = home.map(|home| home.position).filter(|home| *home != LatLon::default()) {
+            self.open.home = Some(home);
         }
     }
 

@@ -38,7 +38,7 @@ pub(super) fn restore(
         return Err("they are too large for a plan and are not used");
     }
     let mut problems = Problems::new("private data", text);
-    let mut file = native_read::read(text, options.check, &mut problems);
+    let mut file = native_read::read(text, options, &mut problems);
     if !problems.is_empty() {
         return Err("they cannot be read and are not used");
     }

@@ -229,6 +229,20 @@ fn a_mission_is_chosen() {
 }
 
 #[test]
+fn a_home_that_no_place_has_costs_a_finding_not_the_plan() {
+    for (was, wrong, from) in [
+        ("home-y=\"40.4635000\"", "home-y=\"404.635\"", "404.635,-79.5182"),
+        ("home-x=\"-79.5182000\"", "home-x=\"\"", "40.4635,NaN"),
+    ] {
+        let file = read_text(&EXAMPLE.replace(was, wrong), Format::MwXml);
+        assert_eq!((file.home, file.plan.waypoints.len()), (None, 3));
+        let found = findings(&file).concat();
+        assert!(found.contains("lost     line 4 home: ") && found.contains(from), "{found}");
+        assert!(found.contains("add --home LAT,LON,AMSL"), "{found}");
+    }
+}
+
+#[test]
 fn faults_have_their_place_and_value() {
     let text = EXAMPLE
         .replace("lat=\"40.4640000\" lon=\"-79.5175000\"", "lat=\"91\" lon=\"-79.5175000\"")
@@ -236,12 +250,10 @@ fn faults_have_their_place_and_value() {
             "lon=\"-79.5190000\" alt=\"50\" parameter1=\"30\"",
             "lon=\"-79,5\" alt=\"nan\" parameter1=\"3.5\"",
         )
-        .replace("action=\"LAND\"", "action=\"LNAD\"")
-        .replace("home-x=\"-79.5182000\"", "home-x=\"\"");
+        .replace("action=\"LAND\"", "action=\"LNAD\"");
     assert_eq!(
         try_read(&text, Format::MwXml, &ReadOptions::default()).unwrap_err(),
         [
-            "a:4:3: home-x is missing",
             "a:5:3: latitude 91 is out of range, allowed: -90 to 90",
             "a:6:3: lon -79,5 has a decimal comma: write a point",
             "a:6:3: alt nan is not a number",

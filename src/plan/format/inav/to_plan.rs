@@ -1,7 +1,8 @@
 //! INAV items as a plan.
 
-use super::super::bounds::Reference;
+use super::super::bounds::{MAX_ITEMS, Reference};
 use super::super::dropped::dropped;
+use super::super::long::hint;
 use super::super::loss::{Finding, LossReport, Place, Severity};
 use super::super::{HomePosition, PlanFile, Problems, ReadOptions};
 use super::private::Restored;
@@ -52,17 +53,19 @@ pub(super) fn plan_file(
         Some(Ok(Restored { file, has_plan: false })) => {
             losses.add(not_used(private::EDITED));
             private_plan = file.plan.clone();
-            known = PlanFile { plan: FlightPlan::default(), ..file };
+            known = PlanFile { plan: FlightPlan::default(), rest: Vec::new(), ..file };
         }
         Some(Err(why)) => losses.add(not_used(why)),
     }
     let home = home(mission.home, known.home, options);
     let mut reader = ItemReader { options, problems, home, losses, waypoints: Vec::new(), plain: 0 };
     reader.mission(&mission.items);
-    let plan = reader.plan(&mission.items);
-    let mut losses = reader.losses;
-    losses.findings.extend(dropped(&private_plan.waypoints, &plan.waypoints, Severity::Lost));
-    PlanFile { home, plan, losses, ..known }
+    reader.check_length(&mission.items);
+    let (waypoints, mut losses) = (reader.waypoints, reader.losses);
+    losses.findings.extend(dropped(&private_plan.waypoints, &waypoints, Severity::Lost));
+    let mut file = PlanFile { home, losses, ..known };
+    file.take(waypoints);
+    file
 }
 
 /// Returns the home: that of the file, with the altitude that it lacks.
@@ -103,7 +106,8 @@ struct ItemReader<'o, 'p, 't> {
 
 impl ItemReader<'_, '_, '_> {
     fn mission(&mut self, items: &[Found]) {
-        let order = match flight_order(items) {
+        let most = if self.options.long { MAX_ITEMS } else { MAX_WAYPOINTS };
+        let order = match flight_order(items, most) {
             Ok(order) => order,
             Err(BadJump { index, message }) => {
                 self.problems.add(items[index].span.clone(), message, "plans have no jumps");
@@ -130,15 +134,13 @@ impl ItemReader<'_, '_, '_> {
         }
     }
 
-    /// Returns the plan. A plan that has no room for the mission is a problem.
-    fn plan(&mut self, items: &[Found]) -> FlightPlan {
+    /// Refuses a mission for which a plan has no room, if only a plan is wanted.
+    fn check_length(&mut self, items: &[Found]) {
         let count = self.waypoints.len();
-        if count > MAX_WAYPOINTS {
+        if count > MAX_WAYPOINTS && !self.options.long {
             let span = items.first().map_or(0..0, |found| found.span.clone());
-            let hint = format!("a plan holds at most {MAX_WAYPOINTS} waypoints");
-            self.problems.add(span, format!("the mission has {count} waypoints"), hint);
+            self.problems.add(span, format!("the mission has {count} waypoints"), hint());
         }
-        FlightPlan { waypoints: self.waypoints.iter().copied().take(MAX_WAYPOINTS).collect() }
     }
 
     fn after_rth(&mut self, rth: &Found, rest: usize) {

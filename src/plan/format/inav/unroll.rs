@@ -2,7 +2,6 @@
 
 use super::super::bounds::MAX_ITEMS;
 use super::{Action, Found};
-use crate::plan::MAX_WAYPOINTS;
 
 /// A jump that cannot be carried out.
 #[derive(Debug, PartialEq, Eq)]
@@ -12,12 +11,12 @@ pub(super) struct BadJump {
     pub(super) message: String,
 }
 
-/// Returns the indices of the items in flight order, up to an RTH.
+/// Returns the indices of the items in flight order, up to an RTH; at most `most` of them are places.
 ///
 /// # Errors
 ///
-/// Returns the first jump that has no target or no end, or that gives more waypoints than a plan holds.
-pub(super) fn flight_order(items: &[Found]) -> Result<Vec<usize>, BadJump> {
+/// Returns the first jump that has no target or no end, or that gives more places.
+pub(super) fn flight_order(items: &[Found], most: usize) -> Result<Vec<usize>, BadJump> {
     // The repeats that are left of each jump that was reached.
     let mut left: Vec<Option<i32>> = vec![None; items.len()];
     let mut order = Vec::new();
@@ -44,8 +43,8 @@ pub(super) fn flight_order(items: &[Found]) -> Result<Vec<usize>, BadJump> {
             break;
         }
         at = next;
-        if let Some(index) = last_jump.filter(|_| places > MAX_WAYPOINTS || steps > MAX_ITEMS) {
-            let message = format!("the repeats of this JUMP give more than {MAX_WAYPOINTS} waypoints");
+        if let Some(index) = last_jump.filter(|_| places > most || steps > 2 * MAX_ITEMS) {
+            let message = format!("the repeats of this JUMP give more than {most} waypoints");
             return Err(BadJump { index, message });
         }
     }
@@ -97,7 +96,8 @@ mod tests {
 
     fn places(jumps: &[Option<(i32, i32)>], label: usize) -> Result<Vec<usize>, String> {
         let items = items(jumps, label);
-        let order = flight_order(&items).map_err(|fault| format!("{}: {}", fault.index, fault.message))?;
+        let order =
+            flight_order(&items, 30).map_err(|fault| format!("{}: {}", fault.index, fault.message))?;
         Ok(order.into_iter().filter(|&at| jumps[at].is_none()).map(|at| at + 1).collect())
     }
 

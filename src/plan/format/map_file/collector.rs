@@ -6,6 +6,7 @@ use crate::plan::feature::{Shape, Vertex};
 use crate::plan::format::Problems;
 use crate::plan::format::bounds::{self, altitude_m};
 use crate::plan::format::loss::Place;
+use crate::text::did_you_mean;
 
 /// The keys of properties that are kept.
 const KEYS: &[&str] = &[
@@ -29,6 +30,9 @@ const KEYS: &[&str] = &[
     "zone",
     "inclusion",
 ];
+
+/// The words for `zone`: a no-fly zone, and one that must not be left.
+const ZONES: [&str; 2] = ["exclusion", "inclusion"];
 
 /// Limits for a file.
 #[derive(Debug, Clone, Copy)]
@@ -208,8 +212,27 @@ impl<'c, 'a> Collector<'c, 'a> {
             return Err(format!("the file has more than {} shapes", self.limits.features));
         }
         feature.is_wrapped = std::mem::take(&mut self.counter.is_wrapped);
+        if !self.limits.is_plan {
+            self.check_zone(&feature);
+        }
         (self.take)(feature);
         Ok(())
+    }
+
+    /// Reports a slip in the word for a zone: the area would be an outline that nothing keeps out of. Other words are
+    /// the data of other programs.
+    fn check_zone(&mut self, feature: &MapFeature) {
+        let Some(word) = feature.properties.get("zone").map(str::trim) else { return };
+        let is_known = ZONES.iter().any(|zone| zone.eq_ignore_ascii_case(word));
+        if is_known || did_you_mean::closest(word, ZONES).is_none() {
+            return;
+        }
+        let unknown = format!("zone {word} is not known{}", did_you_mean::suffix(word, ZONES));
+        let message = match &feature.place {
+            Some(Place::Pointer { pointer }) => format!("{pointer}: {unknown}"),
+            _ => unknown,
+        };
+        self.problems.add(feature.at..feature.at + 1, message, format!("allowed: {}", ZONES.join(", ")));
     }
 }
 

@@ -119,6 +119,26 @@ fn geojson_shapes_are_read() {
 }
 
 #[test]
+fn a_misspelt_zone_is_named_and_a_foreign_word_is_none() {
+    let area = |zone: &str| {
+        format!(
+            r#"{{"type":"Feature","properties":{{"name":"f","zone":"{zone}"}},"geometry":{{"type":"Polygon",
+            "coordinates":[[[0,0],[9,0],[9,9],[0,0]]]}}}}"#
+        )
+    };
+    for word in ["exclusin", "Exlcusion", "exclusions"] {
+        let found = faults(area(word)).concat();
+        assert!(found.contains(&format!("zone {word} is not known; did you mean exclusion?")), "{found}");
+    }
+    assert_eq!(short(&read(&area(" EXCLUSION "))), ["f: area [3] Exclusion"]);
+    assert_eq!(short(&read(&area("residential"))), ["f: area [3]"]);
+    let kml = "<kml><Placemark><ExtendedData><Data name='zone'><value>inclsion</value></Data></ExtendedData>\
+        <Polygon><outerBoundaryIs><LinearRing><coordinates>0,0 9,0 9,9 0,0</coordinates></LinearRing>\
+        </outerBoundaryIs></Polygon></Placemark></kml>";
+    assert!(faults(kml).concat().contains("did you mean inclusion?"));
+}
+
+#[test]
 fn hostile_geojson_is_one_sentence() {
     let geometry = |text: &str| faults(format!("{{\"type\":\"Feature\",\"geometry\":{text}}}"));
     assert_eq!(

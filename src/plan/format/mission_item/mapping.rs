@@ -1,5 +1,6 @@
 //! The waypoints of a mission, and the items that cannot be taken.
 
+use crate::plan::format::long::hint;
 use crate::plan::format::loss::Finding;
 use crate::plan::{MAX_WAYPOINTS, Waypoint};
 
@@ -23,7 +24,7 @@ impl Mapping {
             Some(jump) => (jump, format!("with its jumps the mission has {count} waypoints")),
             None => (first, format!("waypoint {MAX_WAYPOINTS} does not fit: the file has {count}")),
         };
-        Some(Fault { item, message, hint: format!("a plan holds at most {MAX_WAYPOINTS} waypoints") })
+        Some(Fault { item, message, hint: hint() })
     }
 }
 
