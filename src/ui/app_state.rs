@@ -40,6 +40,8 @@ pub struct AppState {
     pub cancelled: Option<Duration>,
     /// The screen that is kept.
     pub kept: KeptScreens,
+    /// The panel that had the focus before one that takes text.
+    pub before_text: Panel,
     /// The number of ticks of one navigator update.
     pub step_ticks: u32,
     /// The panel on which the mouse button went down, while it is down.
@@ -81,6 +83,7 @@ impl AppState {
             permission: Permission::default(),
             cancelled: None,
             kept: std::mem::take(&mut config.kept),
+            before_text: Panel::Map,
             step_ticks: 10,
             pressed: None,
             dragged: None,

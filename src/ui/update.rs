@@ -454,7 +454,7 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
             // Leave the text first, so that the next keys are not typed.
             let focus_now = state.shared.focus;
             if focus_now.takes_text() {
-                focus(state, Panel::Map);
+                focus(state, state.before_text);
             } else if state.panels.of_mut(focus_now).field().is_some() {
                 // Esc goes to the field itself, but a command of the palette comes here.
                 state.panels.of_mut(focus_now).close_field();
