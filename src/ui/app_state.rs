@@ -42,6 +42,8 @@ pub struct AppState {
     pub kept: KeptScreens,
     /// The panel that had the focus before one that takes text.
     pub before_text: Panel,
+    /// `true` after a key that moved to a value of the focused panel.
+    pub has_chosen: bool,
     /// The number of ticks of one navigator update.
     pub step_ticks: u32,
     /// The panel on which the mouse button went down, while it is down.
@@ -84,6 +86,7 @@ impl AppState {
             cancelled: None,
             kept: std::mem::take(&mut config.kept),
             before_text: Panel::Map,
+            has_chosen: false,
             step_ticks: 10,
             pressed: None,
             dragged: None,
@@ -94,7 +97,7 @@ impl AppState {
     /// Processes an event.
     pub fn take_event(&mut self, event: &Event) {
         let shared = &mut self.shared;
-        let text = shared.keymap.in_force(&(self.sentence)(event));
+        let text = shared.units.in_sentence(shared.keymap.in_force(&(self.sentence)(event)));
         let severity = Severity::of(&event.kind);
         if matches!(event.kind, SessionEvent::Branch { .. } | SessionEvent::Restarted) {
             self.kept.has_left = true;

@@ -4,6 +4,8 @@ use crate::telemetry::GuardUnit;
 
 use super::formatting::without_negative_zero;
 
+mod in_sentence;
+
 /// Feet per metre.
 const FEET: f64 = 1.0 / 0.3048;
 /// Miles per hour in a metre per second.
