@@ -8,6 +8,7 @@ use super::{Asked, ChosenWhatIf, TriedSetting};
 use crate::flight::forecast::{ForecastKind, WhatIf};
 use crate::session::policy::{self, Facts, Intent};
 use crate::session::{ForecastReply, ForecastRequest};
+use crate::ui::action;
 use crate::ui::event_log::Severity;
 use crate::ui::formatting::within;
 use crate::ui::message::Effect;
@@ -80,13 +81,16 @@ pub(in crate::ui) fn toggle_look_ahead(state: &mut Shared) -> Vec<Effect> {
 
 /// Requests a flight ahead with something going wrong now.
 pub(in crate::ui) fn ask_what_if(state: &mut Shared, what_if: WhatIf) -> Vec<Effect> {
-    let now = state.now;
+    let (now, settings) = (state.now, to_upload(state));
+    let from_home = if action::flies(state).is_ok() { "" } else { ", flown from home" };
+    let title = format!("{}{from_home}", what_if.title);
+    let request = ForecastRequest::WhatIf { what_if, plan: Box::new(state.plan().clone()), settings };
     let forecast = &mut state.forecast;
     forecast.dismiss();
-    let effect = forecast.job(ForecastRequest::WhatIf(what_if));
+    let effect = forecast.job(request);
     let mut asked = Asked::default();
     asked.ask(forecast.revision, now);
-    forecast.what_if = Some(ChosenWhatIf { what_if, asked });
+    forecast.what_if = Some(ChosenWhatIf { title, asked });
     vec![effect]
 }
 
