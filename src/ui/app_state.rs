@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use crossterm::event::KeyEvent;
+
 use crate::campaign::ForecastAnswer;
 use crate::fc::RemoteNotice;
 use crate::session::{Event, ReplayNotice, SessionEvent, SessionView};
@@ -44,6 +46,8 @@ pub struct AppState {
     pub before_text: Panel,
     /// `true` after a key that moved to a value of the focused panel.
     pub has_chosen: bool,
+    /// The keys for settings that are still being read.
+    pub waiting_keys: Vec<KeyEvent>,
     /// The number of ticks of one navigator update.
     pub step_ticks: u32,
     /// The panel on which the mouse button went down, while it is down.
@@ -87,6 +91,7 @@ impl AppState {
             kept: std::mem::take(&mut config.kept),
             before_text: Panel::Map,
             has_chosen: false,
+            waiting_keys: Vec::new(),
             step_ticks: 10,
             pressed: None,
             dragged: None,

@@ -1,5 +1,7 @@
 //! The series and signals that can be shown as a graph of their own, by name.
 
+use std::borrow::Cow;
+
 use super::shared::Shared;
 use crate::replay::Series;
 use crate::telemetry::signal::{SIGNALS, Signal, SignalInfo};
@@ -54,8 +56,11 @@ impl<'a> Named<'a> {
     }
 
     /// Returns the meaning, if the table of signals has the name.
-    pub(super) fn help(self) -> Option<&'static str> {
-        Signal::find(self.name()).map(|signal| signal.info().help)
+    pub(super) fn help(self, state: &Shared) -> Option<Cow<'static, str>> {
+        let help = Signal::find(self.name())?.info().help;
+        // A log has the values that the craft measured.
+        let is_measured = matches!(self, Self::Recorded(..)) && state.view.vehicle.truth.is_none();
+        Some(if is_measured { help.replacen("true ", "measured ", 1).into() } else { help.into() })
     }
 
     /// Returns the value at the cursor, in the unit, if it is known.
@@ -73,4 +78,28 @@ impl<'a> Named<'a> {
 /// Returns the size of the unit in SI units.
 pub(super) fn scale(info: &SignalInfo) -> f64 {
     info.dimension.unit().map_or(1.0, |unit| unit.scale)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Arc;
+
+    use crate::replay::Overview;
+    use crate::session::{ReplayView, SessionView};
+    use crate::telemetry::snapshot::TruthView;
+
+    #[test]
+    fn what_a_log_has_measured_is_not_called_true() {
+        let series = vec![Series { name: "roll".to_owned(), unit: "°" }];
+        let overview = Arc::new(Overview { series, ..Overview::default() });
+        let replay = Some(Arc::new(ReplayView { overview, ..ReplayView::default() }));
+        let mut state = Shared::bare((120, 40), SessionView { replay, ..SessionView::default() });
+        let help = |state: &Shared| {
+            Named::find(state, "roll").and_then(|named| named.help(state).map(Cow::into_owned))
+        };
+        assert_eq!(help(&state).as_deref(), Some("measured roll, right positive"));
+        Arc::make_mut(&mut state.view.vehicle).truth = Some(TruthView::default());
+        assert_eq!(help(&state).as_deref(), Some("true roll, right positive"));
+    }
 }

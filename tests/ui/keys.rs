@@ -392,6 +392,18 @@ fn z_zooms_the_focused_panel_and_esc_ends_it() {
 }
 
 #[test]
+fn a_key_draws_the_whole_screen_again_wherever_one_is() {
+    for before in ["", "5", ":", "?", "G"] {
+        let mut state = ready();
+        for c in before.chars() {
+            press(&mut state, c);
+        }
+        let effects = update(&mut state, Msg::Key(KeyEvent::new(KeyCode::Char('r'), KeyModifiers::ALT)));
+        assert!(matches!(effects[..], [Effect::Redraw]), "{before}: {effects:?}");
+    }
+}
+
+#[test]
 fn the_cli_panel_zooms_by_the_key_of_its_hint_and_esc_returns_to_the_panel_before() {
     let mut state = ready();
     for panel in ['3', '8'] {

@@ -73,6 +73,7 @@ actions! {
         Back Always "app.back" "back" "One step back: close, leave a text field or the CLI panel, end zoom" ["esc"];
         Quit Global "app.quit" "quit" "Quit (asks while the craft is armed or a plan has unsaved edits)" ["q"];
         Cancel Always "app.cancel" "cancel" "Cancel what is going on; twice within 2 s: quit" ["ctrl-c"];
+        Redraw Always "app.redraw" "redraw" "Draw the whole screen again" ["alt-r"];
         Suspend Always "app.suspend" "suspend" "Back to the shell, `fg` returns" ["ctrl-z"];
     }
     LISTS {

@@ -12,6 +12,7 @@ pub(super) fn focus(state: &mut AppState, panel: Panel) -> Vec<Effect> {
     let before = state.shared.focus;
     if before != panel {
         state.panels.of_mut(panel).visit();
+        state.has_chosen = false;
         if !before.takes_text() {
             state.before_text = before;
         }
