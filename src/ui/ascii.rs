@@ -85,7 +85,6 @@ fn plain(c: char) -> char {
 mod tests {
     use super::*;
     use ratatui::layout::Rect;
-    use ratatui::style::Style;
 
     #[test]
     fn an_arrow_between_two_states_is_drawn_as_two_characters() {
@@ -98,9 +97,11 @@ mod tests {
             ("5.5 ≤ 5.5", "5.5 <=5.5"),
         ] {
             let mut buffer = Buffer::empty(Rect::new(0, 0, 20, 1));
-            buffer.set_string(0, 0, drawn, Style::new());
+            for (cell, c) in buffer.content.iter_mut().zip(drawn.chars()) {
+                cell.set_char(c);
+            }
             replace(&mut buffer);
-            let text: String = buffer.content.iter().map(|cell| cell.symbol()).collect();
+            let text: String = buffer.content.iter().map(ratatui::buffer::Cell::symbol).collect();
             assert_eq!(text.trim_end(), shown);
         }
     }

@@ -64,7 +64,7 @@ fn of_popup(state: &AppState) -> Option<Vec<String>> {
         Popup::WhatIf { .. } => {
             let titles = WHAT_IFS.into_iter().map(|what_if| what_if.title).chain([what_if::GO_NO_GO.into()]);
             let choices = (1..).zip(titles).map(|(number, title)| format!("{number} {title}"));
-            Some(list(what_if::title(super::action::flies(&state.shared).is_ok()).replace(':', "?"), choices))
+            Some(list(what_if::title(command::flight::flies(&state.shared)).replace(':', "?"), choices))
         }
         Popup::Quit => Some(vec!["The craft is armed and flying ends here. Quit? y yes, n no.".to_owned()]),
         Popup::ResetSettings => Some(vec![format!("{} Go on? y yes, n no.", reset_question(&state.shared))]),

@@ -3,6 +3,7 @@
 use super::Draft;
 use super::past::Past;
 use super::toml_text::{after_boot, quoted};
+use crate::firmware::Firmware;
 use crate::geo::LatLon;
 use crate::pilot::{RcTransmitter, channel_name};
 use crate::plan::format::{HomePosition, setting_line};
@@ -144,9 +145,7 @@ fn effect(craft: &mut Vehicle, line: &str) -> Effect {
     let reply = craft.apply(&VehicleCommand::single_line(line));
     let is_done = matches!(&reply, Answer::Now(Reply::Line(reply)) if !reply.failed);
     match setting_line(line).filter(|_| is_done && line.starts_with("set ")) {
-        Some(_) if craft.embedded().map(|firmware| firmware.configuration()) == before.as_ref() => {
-            Effect::None
-        }
+        Some(_) if craft.embedded().map(Firmware::configuration) == before.as_ref() => Effect::None,
         Some(setting) => Effect::Sets(setting),
         None => Effect::Lasts,
     }

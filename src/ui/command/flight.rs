@@ -96,8 +96,13 @@ fn no_what_if(name: &str) -> String {
 
 /// Flies ahead with a what-if, in place of a survey.
 pub(in crate::ui) fn fly_what_if(state: &mut Shared, what_if: WhatIf) -> Vec<Effect> {
-    let survey = survey::dismiss(state);
-    survey.into_iter().chain(forecast::ask_what_if(state, what_if)).collect()
+    let (survey, flies) = (survey::dismiss(state), flies(state));
+    survey.into_iter().chain(forecast::ask_what_if(state, what_if, flies)).collect()
+}
+
+/// Returns `true` if there is a flight to look ahead to. On the ground a what-if is flown from home.
+pub(in crate::ui) fn flies(state: &Shared) -> bool {
+    action::flies(state).is_ok()
 }
 
 /// Runs `where gps-loss,6`.

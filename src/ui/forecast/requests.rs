@@ -8,7 +8,6 @@ use super::{Asked, ChosenWhatIf, TriedSetting};
 use crate::flight::forecast::{ForecastKind, WhatIf};
 use crate::session::policy::{self, Facts, Intent};
 use crate::session::{ForecastReply, ForecastRequest};
-use crate::ui::action;
 use crate::ui::event_log::Severity;
 use crate::ui::formatting::within;
 use crate::ui::message::Effect;
@@ -79,10 +78,10 @@ pub(in crate::ui) fn toggle_look_ahead(state: &mut Shared) -> Vec<Effect> {
     vec![ask_look_ahead(state)]
 }
 
-/// Requests a flight ahead with something going wrong now.
-pub(in crate::ui) fn ask_what_if(state: &mut Shared, what_if: WhatIf) -> Vec<Effect> {
+/// Requests a flight ahead with something going wrong now, or if nothing flies, from home.
+pub(in crate::ui) fn ask_what_if(state: &mut Shared, what_if: WhatIf, flies: bool) -> Vec<Effect> {
     let (now, settings) = (state.now, to_upload(state));
-    let from_home = if action::flies(state).is_ok() { "" } else { ", flown from home" };
+    let from_home = if flies { "" } else { ", flown from home" };
     let title = format!("{}{from_home}", what_if.title);
     let request = ForecastRequest::WhatIf { what_if, plan: Box::new(state.plan().clone()), settings };
     let forecast = &mut state.forecast;
