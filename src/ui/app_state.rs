@@ -168,7 +168,7 @@ mod tests {
 
     fn notice_text(event: &Event) -> String {
         match &event.kind {
-            SessionEvent::Notice(text) => text.clone(),
+            SessionEvent::Notice(text) | SessionEvent::Warning(text) => text.clone(),
             _ => String::new(),
         }
     }
@@ -179,8 +179,12 @@ mod tests {
             let config = UiConfig { is_first_start: true, sentence: notice_text, ..UiConfig::bare() };
             let mut state = AppState::new(config, (80, 24), SessionView::default());
             let shown = |state: &AppState| state.shared.notice.as_ref().map(|notice| notice.text.clone());
-            for (said, begins) in [("Doors open.", "New here?"), (warning, warning)] {
-                let kind = SessionEvent::Notice(said.to_owned());
+            for (kind, begins) in [
+                // A text alone is no warning.
+                (SessionEvent::Notice(format!("{warning} (an old line)")), "New here?"),
+                (SessionEvent::Warning(warning.to_owned()), warning),
+            ] {
+                let said = format!("{kind:?}");
                 state.take_event(&Event { time: SimTime(0), kind });
                 let shown = shown(&state).expect("a notice");
                 assert!(shown.starts_with(begins), "{said}: {shown}");
@@ -198,7 +202,7 @@ mod tests {
         let shown = |state: &AppState| state.shared.notice.as_ref().map(|notice| notice.text.clone());
         let warning = |text: &str| Event {
             time: SimTime(0),
-            kind: SessionEvent::Notice(format!("Not saved: {text}.")),
+            kind: SessionEvent::Warning(format!("Not saved: {text}.")),
         };
         state.take_event(&warning("one"));
         assert_eq!(shown(&state).as_deref(), Some("Not saved: one."), "nothing was pressed");
