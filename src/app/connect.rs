@@ -56,6 +56,7 @@ pub(super) fn run(args: &TuiArgs, place: &FcPlace, keymap: Keymap) -> Result<u8,
             vehicle: Vehicle::elsewhere().map_err(AppError::internal)?,
             // The craft keeps its configuration itself.
             store: Store::in_memory(),
+            warnings: Vec::new(),
             recorded: RecordedStart::at_boot(Err("a remote flight controller flew it".to_owned())),
             recordings_most: args.recordings.most_bytes(),
             flown: None,

@@ -34,7 +34,15 @@ pub(super) fn ended_by_itself() -> AppError {
     AppError::internal("the session ended by itself")
 }
 
-/// Opens the doors and starts the session; `notices` are reported first, and `feed` records its flights. With
+/// The sentences with which a session begins.
+#[derive(Default)]
+pub(super) struct Reports {
+    pub(super) notices: Vec<String>,
+    /// The problems of the store.
+    pub(super) warnings: Vec<String>,
+}
+
+/// Opens the doors and starts the session; the sentences are reported first, and `feed` records its flights. With
 /// `--no-ports` there are no doors. A returned directory belongs to the remote firmware, and must be kept until the session
 /// has ended.
 ///
@@ -45,7 +53,7 @@ pub(super) async fn start(
     args: LiveArgs<'_>,
     mut vehicle: Vehicle,
     store: Store,
-    mut notices: Vec<String>,
+    Reports { mut notices, warnings }: Reports,
     flown: Option<FlownBefore>,
     feed: Option<FlightFeed>,
 ) -> Result<(Handle, Option<OpenDoors>, Option<FirmwareFolder>), AppError> {
@@ -69,6 +77,7 @@ pub(super) async fn start(
         vehicle.transmitter_mut().set_cut(!gets_sticks);
     }
     let (remote, directory) = opened.map(|opened| (opened.link, opened.directory)).unzip();
+    first_events.extend(warnings.into_iter().map(SessionEvent::Warning));
     first_events.extend(notices.into_iter().map(SessionEvent::Notice));
     let config = SessionConfig {
         vehicle,

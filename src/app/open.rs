@@ -177,6 +177,7 @@ fn open_screen(args: &OpenArgs, finished: Finished, keymap: Keymap) -> Result<u8
         source: Source::Flight(Box::new(LiveFlight {
             vehicle,
             store: Store::in_memory(),
+            warnings: Vec::new(),
             recorded,
             recordings_most: 0,
             flown: Some((flown, past)),

@@ -4,7 +4,7 @@ use std::io::{BufWriter, Write};
 
 use super::error::{self, AppError};
 use super::firmware::{self, Beside};
-use super::live::{self, LiveArgs};
+use super::live::{self, LiveArgs, Reports};
 use super::output_file;
 use super::runtime;
 use super::setup;
@@ -18,14 +18,14 @@ use crate::text::printable;
 
 /// Serves until a signal. Every event is a line of output.
 pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
-    let mut notices = Vec::new();
+    let (mut notices, mut warnings) = (Vec::new(), Vec::new());
     let mut store = setup::open_store(&args.flight)?;
-    notices.extend(setup::storage_notice(&store));
+    warnings.extend(setup::storage_notice(&store));
     let beside =
         Beside { ports: (&args.doors, &args.physics).into(), flight: &args.flight, physics: &args.physics };
     let firmware = firmware::choose(&args.firmware, beside, &mut notices)?;
     notices.extend(args.physics.idle_options(&args.flight, firmware.is_some()));
-    let stored = setup::stored(&mut store, &mut notices);
+    let stored = setup::stored(&mut store, &mut warnings);
     let no_plan = PlanFile::default();
     let mut setup = setup::for_session(&args.flight, &args.physics, &args.doors, no_plan, stored)?;
     setup = with_terrain(setup, &args.flight.terrain, &mut notices)?;
@@ -44,7 +44,8 @@ pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
             flight: &args.flight,
             has_screen: false,
         };
-        let (session, doors, _directory) = live::start(options, vehicle, store, notices, None, None).await?;
+        let (session, doors, _directory) =
+            live::start(options, vehicle, store, Reports { notices, warnings }, None, None).await?;
         let outcome = report(session, &mut output, stop).await;
         if let Some(doors) = doors {
             doors.close().await;

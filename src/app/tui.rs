@@ -18,7 +18,7 @@ use super::input_lines;
 use super::last_plan;
 use super::layout_file::LayoutFile;
 use super::line_history::LineHistory;
-use super::live::{self, LiveArgs};
+use super::live::{self, LiveArgs, Reports};
 use super::plan_files::PlanFiles;
 use super::recording_file;
 use super::runtime;
@@ -98,8 +98,9 @@ pub(super) enum Source<'a> {
 /// A vehicle that flies.
 pub(super) struct LiveFlight<'a> {
     pub(super) vehicle: Vehicle,
-    /// The store for `save`.
+    /// The store for `save`, and its problems as sentences.
     pub(super) store: Store,
+    pub(super) warnings: Vec<String>,
     /// The start of the flights for their recordings.
     pub(super) recorded: RecordedStart,
     /// The bound of the library of recorded flights, bytes; 0 = none.
@@ -132,12 +133,12 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
     let (chosen, plan) = first_plan(args, kept.before(), &mut notices)?;
     notices.extend(plan.notices());
     let mut store = setup::open_store(&args.flight)?;
-    notices.extend(setup::storage_notice(&store));
+    let mut warnings: Vec<String> = setup::storage_notice(&store).into_iter().collect();
     let beside =
         Beside { ports: (&args.doors, &args.physics).into(), flight: &args.flight, physics: &args.physics };
     let firmware = firmware::choose(&args.firmware, beside, &mut notices)?;
     notices.extend(args.physics.idle_options(&args.flight, firmware.is_some()));
-    let (stored, was_stored) = setup::stored_before(&mut store, &mut notices);
+    let (stored, was_stored) = setup::stored_before(&mut store, &mut warnings);
     // The plan's settings go to the craft with the upload.
     let on_the_ground = PlanFile { settings: Vec::new(), ..plan.clone() };
     let mut setup = setup::for_session(&args.flight, &args.physics, &args.doors, on_the_ground, stored)?;
@@ -166,6 +167,7 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
         source: Source::Flight(Box::new(LiveFlight {
             vehicle,
             store,
+            warnings,
             recorded,
             recordings_most: args.recordings.most_bytes(),
             flown: None,
@@ -381,7 +383,7 @@ async fn start(
 ) -> Result<Started, AppError> {
     match source {
         Source::Flight(flight) => {
-            let LiveFlight { vehicle, store, recorded, recordings_most, flown, live } = *flight;
+            let LiveFlight { vehicle, store, warnings, recorded, recordings_most, flown, live } = *flight;
             let report = move |problem| {
                 unrecorded.send(FileReply::NotRecorded(problem)).ok();
             };
@@ -389,7 +391,7 @@ async fn start(
                 flight_recorder::start(recorded, state, recordings_most, report)?;
             let (flown, past) = flown.unzip();
             let (session, doors, directory) =
-                live::start(live, vehicle, store, notices, flown, Some(feed)).await?;
+                live::start(live, vehicle, store, Reports { notices, warnings }, flown, Some(feed)).await?;
             let past = past.unwrap_or_default();
             Ok(Started { session, recorder: Some(thread), doors, past, directory })
         }

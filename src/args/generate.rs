@@ -2,17 +2,52 @@
 
 use std::io::{self, Write};
 
-use clap::CommandFactory as _;
+use clap::builder::PossibleValuesParser;
+use clap::{Arg, Command, CommandFactory as _};
+use clap_complete::Shell;
+use strum::VariantNames as _;
 
 use super::Cli;
+use crate::plan::builtin::PLANS;
+use crate::scenario::SCENARIOS;
+use crate::sim::Noise;
+use crate::telemetry::Turbulence;
 
 /// Returns the completion script of a shell.
-pub fn completions(shell: clap_complete::Shell) -> Vec<u8> {
+pub fn completions(shell: Shell) -> Vec<u8> {
     let mut script = Vec::new();
     let mut command = Cli::command();
+    // Bash offers file names, too, if no word matches. The other shells would offer the words only.
+    if shell == Shell::Bash {
+        command = with_words(command);
+    }
     let name = command.get_name().to_owned();
     clap_complete::generate(shell, &mut command, name, &mut script);
     script
+}
+
+/// Returns a command whose arguments name the words that they take.
+fn with_words(command: Command) -> Command {
+    let named = command.mut_args(|arg| {
+        let words = words(&arg);
+        if words.is_empty() { arg } else { arg.value_parser(PossibleValuesParser::new(words)) }
+    });
+    named.mut_subcommands(with_words)
+}
+
+/// Returns the words that an argument takes: levels, built-in plans and scenarios.
+fn words(arg: &Arg) -> Vec<&'static str> {
+    let plans = || PLANS.iter().map(|plan| plan.name);
+    let scenarios = || SCENARIOS.iter().map(|scenario| scenario.name);
+    let value = arg.get_value_names().and_then(|names| names.first()).map_or("", |name| name.as_str());
+    match (arg.get_long(), value) {
+        (Some("turbulence"), _) => Turbulence::VARIANTS.to_vec(),
+        (Some("noise"), _) => Noise::VARIANTS.to_vec(),
+        (None, "PLAN") => plans().collect(),
+        (None, "FILE|PLAN") => plans().chain(scenarios()).collect(),
+        (None, "NAME|FILE|DIR|-" | "SCENARIO|RUN:N|RECORDING") => scenarios().collect(),
+        _ => Vec::new(),
+    }
 }
 
 /// Returns the manual page with all commands, in roff.
@@ -77,7 +112,7 @@ fn leaves(command: &clap::Command) -> Vec<&clap::Command> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::ValueEnum as _;
+    use clap::{Parser as _, ValueEnum as _};
 
     #[test]
     fn every_shell_gets_a_script() {
@@ -87,6 +122,34 @@ mod tests {
                 assert!(script.contains(word), "{shell} {word}");
             }
         }
+    }
+
+    #[test]
+    fn bash_offers_levels_plans_and_scenarios_that_the_command_line_takes() {
+        let script = String::from_utf8(completions(Shell::Bash)).unwrap();
+        for offered in ["compgen -W \"none light moderate severe\"", "compgen -W \"real none\""] {
+            assert!(script.contains(offered), "{offered}");
+        }
+        let command = with_words(Cli::command());
+        let of = |name: &str| {
+            let sub = command.find_subcommand(name).unwrap_or(&command);
+            let offered = sub.get_positionals().flat_map(Arg::get_possible_values);
+            offered.map(|word| word.get_name().to_owned()).collect::<Vec<_>>()
+        };
+        assert!(of("fly").contains(&"square".to_owned()) && of("check").contains(&"guide-1".to_owned()));
+        for (name, word) in ["fly", "check", "campaign", "open"]
+            .into_iter()
+            .flat_map(|name| of(name).into_iter().map(move |word| (name, word)))
+        {
+            assert!(Cli::try_parse_from(["betadeck", name, &word]).is_ok(), "{name} {word}");
+        }
+        for (option, words) in [("--noise", Noise::VARIANTS), ("--turbulence", Turbulence::VARIANTS)] {
+            for word in words {
+                assert!(Cli::try_parse_from(["betadeck", "fly", "square", option, word]).is_ok(), "{word}");
+            }
+        }
+        let words = script.split("betadeck__subcmd__fly)").last().unwrap_or_default();
+        assert!(words.lines().nth(1).is_some_and(|line| line.contains(" square ")), "{words}");
     }
 
     #[test]

@@ -49,6 +49,8 @@ pub struct ForecastRun {
     observer: Observer,
     /// The same flight without the changed settings. It is flown first.
     unchanged: Option<Unchanged>,
+    /// The change of the world that begins at the engagement.
+    at_engagement: Option<WorldCommand>,
 }
 
 impl ForecastRun {
@@ -85,15 +87,30 @@ impl ForecastRun {
         Self::begin(ForecastKind::LookAhead, vehicle, FlightOptions::default().takeoff_m)
     }
 
-    /// Does the same as [`Self::look_ahead`], with a failure at this instant.
+    /// Does the same as [`Self::look_ahead`], with a failure at this instant. If the craft does not fly, it forecasts a
+    /// flight of the plan from home like [`Self::plan_estimate`]: in another wind, or with a failure at the engagement.
     ///
     /// # Errors
     /// Fails with the reason why no forecast is possible, as a sentence.
-    pub fn what_if(mut vehicle: Vehicle, what_if: &WhatIf) -> Result<Self, String> {
-        check_flies(&vehicle)?;
+    pub fn what_if(
+        mut vehicle: Vehicle,
+        what_if: &WhatIf,
+        PlanWithSettings { plan, settings }: PlanWithSettings<'_>,
+        takeoff_m: f64,
+    ) -> Result<Self, String> {
+        check_possible(&vehicle)?;
         let wind = vehicle.world_status().map(|world| world.wind).unwrap_or_default();
-        change(&mut vehicle, what_if.command(wind)?)?;
-        Self::begin(ForecastKind::WhatIf, vehicle, FlightOptions::default().takeoff_m)
+        let command = what_if.command(wind)?;
+        let flies = check_flies(&vehicle).is_ok();
+        let begins_now = flies || matches!(command, WorldCommand::SetWind(_));
+        if begins_now {
+            change(&mut vehicle, command.clone())?;
+        }
+        if flies {
+            return Self::begin(ForecastKind::WhatIf, vehicle, FlightOptions::default().takeoff_m);
+        }
+        let at_engagement = (!begins_now).then_some(command);
+        Ok(Self { at_engagement, ..Self::plan_estimate(vehicle, plan, settings, takeoff_m)? })
     }
 
     fn begin(kind: ForecastKind, mut vehicle: Vehicle, takeoff_m: f64) -> Result<Self, String> {
@@ -113,6 +130,7 @@ impl ForecastRun {
             endless: EndlessWatch::default(),
             observer,
             unchanged: None,
+            at_engagement: None,
         })
     }
 
@@ -130,6 +148,12 @@ impl ForecastRun {
     fn tick(&mut self) -> Option<Forecast> {
         let mut happened = false;
         let end = self.flight.tick(|_| happened = true);
+        if self.flight.engaged_at().is_some()
+            && let Some(command) = self.at_engagement.take()
+        {
+            // It was read already. A world that has no such fault flies on without it.
+            let _done = self.flight.vehicle_mut().change_world(command);
+        }
         let vehicle = self.flight.vehicle();
         self.observer.look(vehicle);
         let (end, reason) = match end {

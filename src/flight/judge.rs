@@ -179,6 +179,10 @@ impl Judge {
                 (None, _) => verdict(FlightResult::Landed, "landed, but not by the plan"),
             };
         }
+        // Firmwares other than the embedded one also disarm for this reason after a landing that their failsafe flew.
+        if facts.last_disarm == Some(DisarmReason::Failsafe) && facts.touched_down {
+            return verdict(FlightResult::Landed, "landed under failsafe, and disarmed by it");
+        }
         let reason = facts.last_disarm.map_or_else(|| "unknown".to_owned(), |reason| reason.to_string());
         Some(Verdict {
             result: FlightResult::Disarmed,

@@ -84,6 +84,9 @@ impl Ending {
             (None, DisarmReason::Landing) => {
                 Verdict::new(FlightResult::Landed, "landed, but not by the plan")
             }
+            (None, DisarmReason::Failsafe) if self.touched_down => {
+                Verdict::new(FlightResult::Landed, "landed under failsafe, and disarmed by it")
+            }
             (None, reason) if self.touched_down => {
                 Verdict::new(FlightResult::Landed, format!("landed, disarmed by {reason}"))
             }
@@ -136,6 +139,13 @@ mod tests {
             verdict(&[armed.clone(), touchdown, switched_off.clone()]),
             "landed: landed, disarmed by SWITCH"
         );
+        let failsafe = firmware(Disarmed(DisarmReason::Failsafe));
+        let touchdown = EventKind::Touchdown { impact_mps: 0.4, peak_mps2: 12.0 };
+        assert_eq!(
+            verdict(&[armed.clone(), touchdown, failsafe.clone()]),
+            "landed: landed under failsafe, and disarmed by it"
+        );
+        assert_eq!(verdict(&[armed.clone(), failsafe]), "disarmed: disarmed by FAILSAFE");
         assert_eq!(verdict(&[armed.clone(), switched_off.clone()]), "disarmed: disarmed by SWITCH");
         assert_eq!(
             verdict(&[armed.clone(), crash.clone(), switched_off.clone()]),

@@ -18,7 +18,9 @@ pub fn text(kind: &SessionEvent) -> Option<String> {
     match kind {
         SessionEvent::Vehicle(event) => vehicle(event),
         SessionEvent::Endpoints(addresses) => Some(endpoints(addresses)),
-        SessionEvent::Notice(notice) | SessionEvent::ArmingBlocked(notice) => Some(sentence_end(notice)),
+        SessionEvent::Notice(notice)
+        | SessionEvent::Warning(notice)
+        | SessionEvent::ArmingBlocked(notice) => Some(sentence_end(notice)),
         SessionEvent::Remote(notice) => Some(notice.to_string()),
         SessionEvent::Replay(notice) => Some(sentence_end(&notice.to_string())),
         SessionEvent::Simulator(remark) => Some(sentence_end(&remark.to_string())),

@@ -211,6 +211,9 @@ mod tests {
         let (top, inputs) = text.split_once("[[input]]").unwrap();
         assert!(top.contains("0 40.4640000 -79.5175000 5000"), "{text}");
         assert_eq!(inputs.matches("cli waypoint insert").count(), 1, "{text}");
+        // Nor does one set what the craft has from the start.
+        assert!(top.contains("ap_position_p = 40") && !inputs.contains("cli set ap_position_p"), "{text}");
+        assert!(!top.contains("battery_profile") && !text.contains("000 s after boot"), "{text}");
         let (again, unmet) = checked(&text);
         assert!(unmet.is_empty(), "{unmet:?}");
         let end = again.trace.samples.iter().find(|sample| sample.time == flown.time()).unwrap();

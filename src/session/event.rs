@@ -5,6 +5,7 @@ use std::net::SocketAddr;
 use tokio::sync::mpsc;
 
 use super::flight_feed::{FeedSender, FlightPart};
+use super::notice::Notice;
 use super::replay::ReplayNotice;
 use super::simulator::SimulatorNotice;
 use crate::fc::RemoteNotice;
@@ -26,6 +27,8 @@ pub enum SessionEvent {
     Vehicle(EventKind),
     /// A notice for the user, as a sentence.
     Notice(String),
+    /// A notice about something that went wrong or will, such as a failed save.
+    Warning(String),
     /// A notice about the remote flight controller.
     Remote(RemoteNotice),
     /// The reason why a craft does not arm although its script holds the ARM switch on, as a sentence.
@@ -72,10 +75,16 @@ pub struct EndpointAddresses {
     pub rc: Option<SocketAddr>,
 }
 
+impl From<Notice> for SessionEvent {
+    fn from(Notice { text, is_warning }: Notice) -> Self {
+        if is_warning { Self::Warning(text) } else { Self::Notice(text) }
+    }
+}
+
 impl Event {
     /// Creates a notice at this time.
-    pub fn notice(time: SimTime, text: impl Into<String>) -> Self {
-        Self { time, kind: SessionEvent::Notice(text.into()) }
+    pub fn notice(time: SimTime, notice: impl Into<Notice>) -> Self {
+        Self { time, kind: notice.into().into() }
     }
 }
 
@@ -138,8 +147,8 @@ impl EventSender {
     }
 
     /// Sends a notice after the earlier events of the vehicle.
-    pub(super) fn notice(&mut self, vehicle: &mut Vehicle, text: impl Into<String>) {
-        self.report(vehicle, SessionEvent::Notice(text.into()));
+    pub(super) fn notice(&mut self, vehicle: &mut Vehicle, notice: impl Into<Notice>) {
+        self.report(vehicle, notice.into().into());
     }
 
     /// Sends any event, in the same way as [`Self::notice`].
@@ -149,8 +158,8 @@ impl EventSender {
     }
 
     /// Sends a notice about an earlier instant.
-    pub(super) fn notice_at(&mut self, time: SimTime, text: impl Into<String>) {
-        self.send(&Event::notice(time, text));
+    pub(super) fn notice_at(&mut self, time: SimTime, notice: impl Into<Notice>) {
+        self.send(&Event::notice(time, notice));
     }
 
     pub(super) fn send(&mut self, event: &Event) {

@@ -31,8 +31,13 @@ pub enum ForecastRequest {
     },
     /// The current flight if nothing changes.
     LookAhead,
-    /// The current flight with a failure or change that begins now.
-    WhatIf(WhatIf),
+    /// The current flight with a failure or change that begins now; while nothing flies, the plan from home.
+    WhatIf {
+        what_if: WhatIf,
+        plan: Box<FlightPlan>,
+        /// Setting lines that come with the plan, without `set `.
+        settings: Vec<String>,
+    },
     /// The current flight with other settings and without them; while nothing flies, the plan from home.
     SettingChange {
         /// The changed setting lines, without `set `.
@@ -48,7 +53,7 @@ impl ForecastRequest {
         match self {
             Self::PlanEstimate { .. } => ForecastKind::PlanEstimate,
             Self::LookAhead => ForecastKind::LookAhead,
-            Self::WhatIf(_) => ForecastKind::WhatIf,
+            Self::WhatIf { .. } => ForecastKind::WhatIf,
             Self::SettingChange { .. } => ForecastKind::SettingChange,
         }
     }
@@ -164,7 +169,10 @@ impl<A: FnMut(ForecastReply)> Worker<A> {
                 ForecastRun::plan_estimate(*vehicle, &plan, &settings, takeoff_m)
             }
             ForecastRequest::LookAhead => ForecastRun::look_ahead(*vehicle),
-            ForecastRequest::WhatIf(what_if) => ForecastRun::what_if(*vehicle, &what_if),
+            ForecastRequest::WhatIf { what_if, plan, settings } => {
+                let plan = PlanWithSettings { plan: &plan, settings: &settings };
+                ForecastRun::what_if(*vehicle, &what_if, plan, takeoff_m)
+            }
             ForecastRequest::SettingChange { changed, plan, settings } => {
                 let plan = PlanWithSettings { plan: &plan, settings: &settings };
                 ForecastRun::setting_change(*vehicle, &changed, plan, takeoff_m)

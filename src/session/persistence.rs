@@ -2,6 +2,7 @@
 //! console alike, and keeps its logs. A remote flight controller stores both itself.
 
 use super::flight_logs::FlightLogs;
+use super::notice::Notice;
 use crate::firmware::cli::{CliAction, CliReply};
 use crate::firmware::config::Configuration;
 use crate::storage::Store;
@@ -27,7 +28,7 @@ pub(super) struct CarriedOut {
     /// `Some` if the flight controller restarted, with `true` if the clients' links are closed.
     pub restarted: Option<bool>,
     /// Sentences for the user.
-    pub notices: Vec<String>,
+    pub notices: Vec<Notice>,
 }
 
 impl Persistence {
@@ -82,7 +83,7 @@ impl Persistence {
             && let Err(notice) = self.save(controller)
         {
             reply.refuse_save(&notice);
-            done.notices.push(notice);
+            done.notices.push(Notice::warning(notice));
         }
         let restart = reply.actions.iter().find_map(|action| match action {
             CliAction::Restart { close_links } => Some(*close_links),
@@ -98,15 +99,15 @@ impl Persistence {
     /// Restarts the flight controller on the configuration that was saved last, or the one at boot. Returns
     /// sentences for the user: the faults of the stored configuration, and that the craft got the starter
     /// modes.
-    pub(super) fn restart(&mut self, controller: &mut FlightController) -> Vec<String> {
+    pub(super) fn restart(&mut self, controller: &mut FlightController) -> Vec<Notice> {
         let mut notices = Vec::new();
         controller.restart(|| {
             let loaded = self.store.load();
-            notices = loaded.findings;
+            notices = loaded.findings.into_iter().map(Notice::warning).collect();
             let mut configuration =
                 self.at_boot.as_deref().map_or(loaded.configuration, Configuration::clone);
             if self.starter_modes && configuration.starter_modes() {
-                notices.push(Configuration::STARTER_MODES_NOTICE.to_owned());
+                notices.push(Configuration::STARTER_MODES_NOTICE.into());
             }
             configuration
         });

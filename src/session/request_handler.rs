@@ -8,6 +8,7 @@ use tokio::sync::oneshot;
 
 use super::host_status::HostStatus;
 use super::late_answers::{LateAnswers, no_answer_line};
+use super::notice::Notice;
 use super::persistence::Persistence;
 use crate::firmware::cli::{COMMANDS, CliAction, CliMode, CliReply, complete};
 use crate::firmware::msp::{MspAction, Outcome, UtcTime, flash_reply};
@@ -25,7 +26,7 @@ const RC_FRESH: Duration = Duration::from_millis(150);
 #[derive(Debug, Default)]
 pub struct Handled {
     /// Sentences for the user.
-    pub notices: Vec<String>,
+    pub notices: Vec<Notice>,
     /// `true` if the flight controller restarts.
     pub restarted: bool,
     /// A datagram from a simulator, which is not meant for the flight controller, with its time of arrival.
@@ -131,7 +132,9 @@ impl RequestHandler {
                 }
             }
             Request::Ignored { word, .. } => {
-                handled.notices.extend(ignored_in_flight(&word, vehicle.controller()));
+                handled
+                    .notices
+                    .extend(ignored_in_flight(&word, vehicle.controller()).into_iter().map(Notice::from));
             }
             Request::Complete { line, reply } => answer(reply, completion(&line)),
             Request::LeftCli { client } => {
@@ -150,7 +153,7 @@ impl RequestHandler {
                 vehicle.apply(&VehicleCommand::Rc(frame, RcSource::Udp));
             }
             Request::Fdm { datagram, at, .. } => handled.fdm = Some((datagram, at)),
-            Request::Notice(text) => handled.notices.push(text),
+            Request::Notice(text) => handled.notices.push(text.into()),
         }
         handled
     }
@@ -211,14 +214,14 @@ impl RequestHandler {
         match outcome.action {
             Some(MspAction::Save) => {
                 if let Err(notice) = persistence.save(vehicle.controller_mut()) {
-                    handled.notices.push(notice);
+                    handled.notices.push(Notice::warning(notice));
                     return None;
                 }
             }
             Some(MspAction::Reboot) => self.restart(true, vehicle, persistence, handled),
             Some(MspAction::SaveAndReboot) => {
                 if let Err(notice) = persistence.save(vehicle.controller_mut()) {
-                    handled.notices.push(notice);
+                    handled.notices.push(Notice::warning(notice));
                     return None;
                 }
                 self.restart(true, vehicle, persistence, handled);
@@ -262,7 +265,7 @@ impl RequestHandler {
             match *action {
                 CliAction::PlanChanged if !self.reported_altitude_units => {
                     self.reported_altitude_units = true;
-                    handled.notices.push("Waypoint altitudes are above home, in centimetres.".to_owned());
+                    handled.notices.push("Waypoint altitudes are above home, in centimetres.".into());
                 }
                 CliAction::MotorTest { .. } => self.bench = Some(client),
                 CliAction::Save | CliAction::Restart { .. } | CliAction::PlanChanged | CliAction::Leave => {}

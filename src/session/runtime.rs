@@ -24,6 +24,7 @@ use super::event::{Event, EventSender, SessionEvent};
 use super::flight_feed::FlightFeed;
 use super::fly_again::{FlyAgain, FlyingAgain};
 use super::host_status::HostStatus;
+use super::notice::Notice;
 use super::persistence::Persistence;
 use super::real_time::RealTime;
 use super::request_handler::RequestHandler;
@@ -476,14 +477,14 @@ impl Session {
         }
     }
 
-    fn notices(&mut self, texts: impl IntoIterator<Item = String>) {
-        texts.into_iter().for_each(|text| self.notice(text));
+    fn notices(&mut self, notices: impl IntoIterator<Item = impl Into<Notice>>) {
+        notices.into_iter().for_each(|notice| self.notice(notice));
     }
 
-    fn notice(&mut self, text: impl Into<String>) {
+    fn notice(&mut self, notice: impl Into<Notice>) {
         match self.timeline.as_ref().and_then(Timeline::shown) {
-            Some(shown) => self.events.notice_at(shown.time(), text),
-            None => self.events.notice(&mut self.vehicle, text),
+            Some(shown) => self.events.notice_at(shown.time(), notice),
+            None => self.events.notice(&mut self.vehicle, notice),
         }
     }
 }

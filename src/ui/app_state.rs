@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use crossterm::event::KeyEvent;
+
 use crate::campaign::ForecastAnswer;
 use crate::fc::RemoteNotice;
 use crate::session::{Event, ReplayNotice, SessionEvent, SessionView};
@@ -40,6 +42,12 @@ pub struct AppState {
     pub cancelled: Option<Duration>,
     /// The screen that is kept.
     pub kept: KeptScreens,
+    /// The panel that had the focus before one that takes text.
+    pub before_text: Panel,
+    /// `true` after a key that moved to a value of the focused panel.
+    pub has_chosen: bool,
+    /// The keys for settings that are still being read.
+    pub waiting_keys: Vec<KeyEvent>,
     /// The number of ticks of one navigator update.
     pub step_ticks: u32,
     /// The panel on which the mouse button went down, while it is down.
@@ -81,6 +89,9 @@ impl AppState {
             permission: Permission::default(),
             cancelled: None,
             kept: std::mem::take(&mut config.kept),
+            before_text: Panel::Map,
+            has_chosen: false,
+            waiting_keys: Vec::new(),
             step_ticks: 10,
             pressed: None,
             dragged: None,
@@ -91,7 +102,7 @@ impl AppState {
     /// Processes an event.
     pub fn take_event(&mut self, event: &Event) {
         let shared = &mut self.shared;
-        let text = shared.keymap.in_force(&(self.sentence)(event));
+        let text = shared.units.in_sentence(shared.keymap.in_force(&(self.sentence)(event)));
         let severity = Severity::of(&event.kind);
         if matches!(event.kind, SessionEvent::Branch { .. } | SessionEvent::Restarted) {
             self.kept.has_left = true;
@@ -157,7 +168,7 @@ mod tests {
 
     fn notice_text(event: &Event) -> String {
         match &event.kind {
-            SessionEvent::Notice(text) => text.clone(),
+            SessionEvent::Notice(text) | SessionEvent::Warning(text) => text.clone(),
             _ => String::new(),
         }
     }
@@ -168,8 +179,12 @@ mod tests {
             let config = UiConfig { is_first_start: true, sentence: notice_text, ..UiConfig::bare() };
             let mut state = AppState::new(config, (80, 24), SessionView::default());
             let shown = |state: &AppState| state.shared.notice.as_ref().map(|notice| notice.text.clone());
-            for (said, begins) in [("Doors open.", "New here?"), (warning, warning)] {
-                let kind = SessionEvent::Notice(said.to_owned());
+            for (kind, begins) in [
+                // A text alone is no warning.
+                (SessionEvent::Notice(format!("{warning} (an old line)")), "New here?"),
+                (SessionEvent::Warning(warning.to_owned()), warning),
+            ] {
+                let said = format!("{kind:?}");
                 state.take_event(&Event { time: SimTime(0), kind });
                 let shown = shown(&state).expect("a notice");
                 assert!(shown.starts_with(begins), "{said}: {shown}");
@@ -187,7 +202,7 @@ mod tests {
         let shown = |state: &AppState| state.shared.notice.as_ref().map(|notice| notice.text.clone());
         let warning = |text: &str| Event {
             time: SimTime(0),
-            kind: SessionEvent::Notice(format!("Not saved: {text}.")),
+            kind: SessionEvent::Warning(format!("Not saved: {text}.")),
         };
         state.take_event(&warning("one"));
         assert_eq!(shown(&state).as_deref(), Some("Not saved: one."), "nothing was pressed");

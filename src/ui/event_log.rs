@@ -10,8 +10,6 @@ use crate::telemetry::{BatteryAlarm, DisarmReason, EventKind, FirmwareEvent, Nav
 use super::theme::Role;
 
 const MAX_LINES: usize = 5000;
-/// The beginnings of the store's notices about a save that failed or will fail.
-const NOT_SAVED: [&str; 2] = ["Not saved: ", "`save` cannot work: "];
 
 /// The severity of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -29,7 +27,7 @@ impl Severity {
     pub fn of(kind: &SessionEvent) -> Self {
         match kind {
             SessionEvent::Vehicle(event) => Self::of_vehicle(event),
-            SessionEvent::Notice(text) if NOT_SAVED.iter().any(|start| text.starts_with(start)) => Self::Warn,
+            SessionEvent::Warning(_) => Self::Warn,
             SessionEvent::Branch { .. } => Self::Step,
             SessionEvent::Remote(RemoteNotice::Lost(_) | RemoteNotice::Restarted(_)) => Self::Warn,
             SessionEvent::Remote(RemoteNotice::Failed(_)) | SessionEvent::Replay(ReplayNotice::Failed(_)) => {

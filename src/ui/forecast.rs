@@ -11,7 +11,7 @@ mod setting_change;
 
 use std::time::Duration;
 
-use crate::flight::forecast::{Forecast, PathPoint, WhatIf};
+use crate::flight::forecast::{Forecast, PathPoint};
 use crate::session::{ForecastJob, ForecastRequest};
 use crate::signals::SimTime;
 
@@ -72,7 +72,7 @@ struct LookAhead {
 /// The chosen what-if.
 #[derive(Debug)]
 struct ChosenWhatIf {
-    what_if: WhatIf,
+    title: String,
     asked: Asked,
 }
 

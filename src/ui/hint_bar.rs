@@ -43,8 +43,7 @@ struct Shown {
 
 impl Shown {
     fn of(state: &Shared, actions: &[Action], label: &'static str) -> Self {
-        let first =
-            |&action: &Action| Some((state.keymap.shown_keys(action).into_iter().next()?, Some(action)));
+        let first = |&action: &Action| Some((state.keymap.shown_key_in(action, state.focus)?, Some(action)));
         Self { keys: actions.iter().filter_map(first).collect(), label }
     }
 
@@ -73,9 +72,14 @@ fn shown(own: &[Hint], state: &Shared, width: u16) -> Vec<Shown> {
     let permanent: usize = permanent_hints(state).iter().map(Shown::width).sum();
     let mut room = usize::from(width).saturating_sub(permanent + Line::from(doors(state, width)).width());
     let hints: Vec<Shown> = if state.focus == Panel::Cli {
-        [("Enter", "run"), ("Tab", "complete"), ("↑ ↓", "history"), ("PgUp PgDn", "scroll")]
-            .map(|(keys, label)| Shown { keys: vec![(keys.to_owned(), None)], label })
-            .into()
+        let own = |keys: &str, label| Shown { keys: vec![(keys.to_owned(), None)], label };
+        vec![
+            own("Enter", "run"),
+            own("Tab", "complete"),
+            Shown::of(state, &[Action::Zoom], if state.zoomed { "all panels" } else { "zoom" }),
+            own("↑ ↓", "history"),
+            own("PgUp PgDn", "scroll"),
+        ]
     } else {
         hint_actions(own, state).iter().map(|(actions, label)| Shown::of(state, actions, label)).collect()
     };

@@ -175,12 +175,14 @@ impl KeptScreen {
         Ok(Self { panels: Some(panels), subject })
     }
 
-    /// Returns the panels of one screen with the subject of another.
-    pub fn joined(panels: Option<Self>, subject: Option<Self>) -> Option<Self> {
-        if panels.is_none() && subject.is_none() {
+    /// Returns the screen of a craft or a flight. Without panels of its own it has those of the last one of its kind.
+    pub fn joined(kind: Option<Self>, subject: Option<Self>) -> Option<Self> {
+        if kind.is_none() && subject.is_none() {
             return None;
         }
-        let panels = panels.and_then(|screen| screen.panels);
+        let own = subject.as_ref().and_then(|screen| screen.panels.clone());
+        let own = own.filter(|panels| *panels != KeptPanels::default());
+        let panels = own.or(kind.and_then(|screen| screen.panels));
         Some(Self { panels, subject: subject.map(|screen| screen.subject).unwrap_or_default() })
     }
 
@@ -192,7 +194,8 @@ impl KeptScreen {
         if of.has_subject() {
             KeptTexts {
                 screen: is_new_panels.then(|| text(panels, Nothing {})).flatten(),
-                subject: is_new_subject.then(|| text(Nothing {}, subject)).flatten(),
+                // Another program of the kind may show other panels meanwhile.
+                subject: (is_new_panels || is_new_subject).then(|| text(panels, subject)).flatten(),
             }
         } else {
             let is_new = is_new_panels || is_new_subject;

@@ -44,6 +44,17 @@ impl KeyPress {
         KeyEvent::new(self.code, self.modifiers)
     }
 
+    /// Returns `true` if the key triggers its action of this context while `focus` has the focus.
+    fn applies(self, context: Context, focus: Panel) -> bool {
+        // Function keys are never text, nor are characters with Alt.
+        let is_no_text = match self.code {
+            KeyCode::F(_) => true,
+            KeyCode::Char(_) => self.modifiers.contains(KeyModifiers::ALT),
+            _ => false,
+        };
+        context.applies(focus) || is_no_text && context == Context::Global
+    }
+
     /// Parses a key from text: `a`, `F`, `space`, `ctrl-c`, `shift-tab`, `f1`. Names may be written in capitals, too.
     pub fn parse(text: &str) -> Option<Self> {
         let lower = text.to_ascii_lowercase();
@@ -153,6 +164,13 @@ impl Keymap {
         bindings.filter(|binding| binding.2 == action).map(|binding| binding.1.to_string()).collect()
     }
 
+    /// Returns the first key that triggers an action while `focus` has the focus.
+    pub(super) fn shown_key_in(&self, action: Action, focus: Panel) -> Option<String> {
+        let mut bindings = self.bindings.iter().filter(|_| !self.names_commands);
+        let found = bindings.find(|(context, key, of)| *of == action && key.applies(*context, focus))?;
+        Some(found.1.to_string())
+    }
+
     /// Returns the first key of an action, or the command that triggers it if it has no key.
     pub fn key(&self, action: Action) -> String {
         let first = self.shown_keys(action).into_iter().next();
@@ -189,10 +207,7 @@ impl Keymap {
     /// Returns the action of a key while `focus` has the focus. The panel's own actions come before the general ones.
     pub fn action(&self, key: KeyPress, focus: Panel) -> Option<Action> {
         let own = |context: &Context| matches!(context, Context::In(_) | Context::Lists);
-        // Function keys are never text.
-        let function = matches!(key.code, KeyCode::F(_));
-        let applies = |context: Context| context.applies(focus) || (function && context == Context::Global);
-        let mut hits = self.bindings.iter().filter(|(context, k, _)| *k == key && applies(*context));
+        let mut hits = self.bindings.iter().filter(|(context, k, _)| *k == key && k.applies(*context, focus));
         let first = hits.next()?;
         let best = if own(&first.0) { first } else { hits.find(|hit| own(&hit.0)).unwrap_or(first) };
         Some(best.2)

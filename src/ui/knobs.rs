@@ -194,6 +194,11 @@ impl KnobsState {
         }
     }
 
+    /// Returns `true` if the value of the selected knob is a number.
+    pub(super) fn is_number(&self, state: &Shared) -> bool {
+        matches!(self.selected(state), Some(Knob::WindSpeed | Knob::WindFrom | Knob::Gust))
+    }
+
     /// Opens the field for a value of the selected knob.
     pub(super) fn edit(&mut self) -> Vec<Request> {
         self.field = Some(TextField::default());

@@ -290,6 +290,8 @@ pub enum Effect {
     },
     /// Copy text to the terminal's clipboard.
     Copy(String),
+    /// Draw the whole screen again, not only the part that changed.
+    Redraw,
     /// Restore the terminal and stop until the shell continues the program.
     Suspend,
     /// Restore the terminal and end the program.

@@ -58,8 +58,11 @@ impl<'a> Named<'a> {
     }
 
     /// Returns the meaning, if the table of signals has the name.
-    pub(super) fn help(self) -> Option<&'static str> {
-        Signal::find(self.name()).map(|signal| signal.info().help)
+    pub(super) fn help(self, state: &Shared) -> Option<Cow<'static, str>> {
+        let help = Signal::find(self.name())?.info().help;
+        // A log has the values that the craft measured.
+        let is_measured = matches!(self, Self::Recorded(..)) && state.view.vehicle.truth.is_none();
+        Some(if is_measured { help.replacen("true ", "measured ", 1).into() } else { help.into() })
     }
 
     /// Returns the value at the cursor, in the unit, if it is known.
@@ -82,6 +85,11 @@ pub(super) fn scale(info: &SignalInfo) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::Arc;
+
+    use crate::replay::Overview;
+    use crate::session::{ReplayView, SessionView};
+    use crate::telemetry::snapshot::TruthView;
 
     #[test]
     fn a_question_mark_follows_the_unit_of_values_that_rest_on_an_assumption() {
@@ -89,5 +97,19 @@ mod tests {
         let assumed = Series { is_assumed: true, ..known.clone() };
         let unit = |series| Named::Recorded(0, series).unit().into_owned();
         assert_eq!((unit(&known), unit(&assumed)), ("°/s".to_owned(), "°/s?".to_owned()));
+    }
+
+    #[test]
+    fn what_a_log_has_measured_is_not_called_true() {
+        let series = vec![Series::new("roll", "°")];
+        let overview = Arc::new(Overview { series, ..Overview::default() });
+        let replay = Some(Arc::new(ReplayView { overview, ..ReplayView::default() }));
+        let mut state = Shared::bare((120, 40), SessionView { replay, ..SessionView::default() });
+        let help = |state: &Shared| {
+            Named::find(state, "roll").and_then(|named| named.help(state).map(Cow::into_owned))
+        };
+        assert_eq!(help(&state).as_deref(), Some("measured roll, right positive"));
+        Arc::make_mut(&mut state.view.vehicle).truth = Some(TruthView::default());
+        assert_eq!(help(&state).as_deref(), Some("true roll, right positive"));
     }
 }

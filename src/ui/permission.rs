@@ -62,6 +62,7 @@ fn intent_of(effect: &Effect) -> Intent {
         | Effect::DeleteFlight(_)
         | Effect::ShowFlights { .. }
         | Effect::Copy(_)
+        | Effect::Redraw
         | Effect::Suspend
         | Effect::Quit => Intent::Read,
     }

@@ -62,9 +62,9 @@ fn of_popup(state: &AppState) -> Option<Vec<String>> {
             Some(list(format!("{title} which waypoint?"), waypoints))
         }
         Popup::WhatIf { .. } => {
-            let titles = WHAT_IFS.iter().map(|what_if| what_if.title).chain([what_if::GO_NO_GO]);
+            let titles = WHAT_IFS.into_iter().map(|what_if| what_if.title).chain([what_if::GO_NO_GO.into()]);
             let choices = (1..).zip(titles).map(|(number, title)| format!("{number} {title}"));
-            Some(list("What if, from this instant on?".to_owned(), choices))
+            Some(list(what_if::title(command::flight::flies(&state.shared)).replace(':', "?"), choices))
         }
         Popup::Quit => Some(vec!["The craft is armed and flying ends here. Quit? y yes, n no.".to_owned()]),
         Popup::ResetSettings => Some(vec![format!("{} Go on? y yes, n no.", reset_question(&state.shared))]),

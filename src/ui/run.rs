@@ -233,6 +233,9 @@ async fn run_loop(
                     link.commands.try_send(Command::Quit).ok();
                     return Ok(Ending::Quit);
                 }
+                if matches!(effect, Effect::Redraw) {
+                    tui.lose_screen();
+                }
                 if matches!(effect, Effect::Suspend) && !can_be_continued() {
                     state.shared.notify(
                         Severity::Warn,

@@ -234,7 +234,7 @@ impl Shared {
 
     /// Shows a notice for a moment and keeps it in the log.
     pub fn notify(&mut self, severity: Severity, text: impl Into<String>) {
-        let text = text.into();
+        let text = self.units.in_sentence(text.into());
         self.log.push(self.log_time(), severity, text.clone());
         self.say(severity, text);
     }
@@ -255,11 +255,12 @@ impl Shared {
 
     /// Adds a line to the log only.
     pub(super) fn log_only(&mut self, severity: Severity, text: impl Into<String>) {
-        self.log.push(self.log_time(), severity, text.into());
+        self.log.push(self.log_time(), severity, self.units.in_sentence(text.into()));
     }
 
     /// Reports a loss in the log, and on the screen until Esc clears it.
     pub(super) fn pin(&mut self, text: String) {
+        let text = self.units.in_sentence(text);
         self.log.push(self.log_time(), Severity::Fault, text.clone());
         self.pinned.push(text);
     }
@@ -267,7 +268,8 @@ impl Shared {
     /// Shows a notice for a moment without keeping it in the log.
     pub(super) fn say(&mut self, severity: Severity, text: impl Into<String>) {
         let is_answer = self.pressed_at.is_some_and(|at| within(self.now, at, ANSWERED_IN));
-        self.show(Notice { text: text.into(), severity, at: self.now, is_answer });
+        let text = self.units.in_sentence(text.into());
+        self.show(Notice { text, severity, at: self.now, is_answer });
     }
 
     /// Shows a notice. A warning or fault that it would cover stays above it.

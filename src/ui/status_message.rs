@@ -34,8 +34,13 @@ fn message(
     Some(StatusMessage { severity, condition: condition.into(), action: action.into() })
 }
 
-/// Returns the current message; `None` while the mission flies.
+/// Returns the current message in the shown units; `None` while the mission flies.
 pub fn current(state: &Shared) -> Option<StatusMessage> {
+    let StatusMessage { severity, condition, action } = metric(state)?;
+    message(severity, state.units.in_sentence(condition), state.units.in_sentence(action))
+}
+
+fn metric(state: &Shared) -> Option<StatusMessage> {
     let vehicle = &state.view.vehicle;
     let craft = &vehicle.craft;
     let key = |action| state.key(action);
@@ -160,7 +165,16 @@ pub fn current(state: &Shared) -> Option<StatusMessage> {
     if let Some(flag) = most_useful_flag(craft.arming_flags()) {
         return message(Severity::Warn, format!("Arming is blocked: {flag}."), arming_hint(state, flag));
     }
+    let refused_open = findings::refusal_of_the_open(state).map(|refusal| {
+        let title = state.editor.plan().title();
+        let plan = key(Action::Show(Panel::Plan));
+        let condition = format!("The autopilot would refuse {title}: {}.", refusal.reason());
+        (condition, format!("{plan} edits the plan"))
+    });
     if vehicle.stored_plan.as_ref().is_some_and(|plan| plan.waypoints.is_empty()) {
+        if let Some((condition, action)) = refused_open {
+            return message(Severity::Warn, condition, action);
+        }
         let action = if state.plan().waypoints.is_empty() {
             {
                 let (opens, inserts) =
@@ -168,10 +182,10 @@ pub fn current(state: &Shared) -> Option<StatusMessage> {
                 format!("{opens} opens the plan editor: `{inserts}` inserts a waypoint")
             }
         } else {
-            {
-                let (upload, fly) = (key(Action::Upload), key(Action::Fly));
-                format!("{upload} uploads {}; {fly} does it and flies", state.editor.plan().title())
-            }
+            let (upload, fly) = (key(Action::Upload), key(Action::Fly));
+            let fence = settings_in_force::replaced_fence(state, state.editor.document());
+            let fence = fence.map_or_else(String::new, |fence| format!(". {}", fence.trim_end_matches('.')));
+            format!("{upload} uploads {}; {fly} does it and flies{fence}", state.editor.plan().title())
         };
         return message(Severity::Warn, "The craft has no plan.", action);
     }
@@ -192,6 +206,14 @@ pub fn current(state: &Shared) -> Option<StatusMessage> {
             }
         };
         return message(Severity::Warn, "No switch arms the craft.", action);
+    }
+    if let Some((condition, action)) = refused_open {
+        let fly = key(Action::Fly);
+        return message(
+            Severity::Warn,
+            condition,
+            format!("{action}; {fly} asks, the craft has another plan"),
+        );
     }
     let by_hand = [Action::Arm, Action::Throttle, Action::Autopilot].map(key).join(", ");
     let fly = key(Action::Fly);

@@ -2,7 +2,6 @@
 
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind};
 
-use crate::flight::forecast::WHAT_IFS;
 use crate::session::{Command, SessionView};
 use crate::telemetry::InFlightCommand;
 use crate::vehicle::VehicleCommand;
@@ -46,7 +45,9 @@ mod popup;
 mod series;
 mod shown_keys;
 mod timeline;
+mod typed_digit;
 mod view;
+mod waiting_keys;
 mod world_changes;
 
 use change::change;
@@ -118,7 +119,7 @@ fn take(state: &mut AppState, msg: Msg) -> Vec<Effect> {
         Msg::Event(event) => state.take_event(&event),
         Msg::OtherFlight { name, result } => other_flight::take(&mut state.shared, name, result),
         Msg::Curves { request, result } => series::take(&mut state.shared, request, result),
-        Msg::SettingsReply(reply) => settings::reading::take(&mut state.shared, reply),
+        Msg::SettingsReply(reply) => return waiting_keys::take_settings(state, reply),
         Msg::SetReply { line, output } => {
             state.panels.cli.console.record(line, output.as_ref());
             return settings::changes::take_answer(&mut state.shared, output.as_ref());
@@ -227,6 +228,9 @@ fn key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
     {
         state.shared.notice = None;
     }
+    if waiting_keys::hold(state, event, found) {
+        return Vec::new();
+    }
     let focused = state.shared.focus;
     let types = state.panels.of_mut(focused).field().is_some();
     // Esc first closes an open popup or field.
@@ -236,6 +240,7 @@ fn key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
     }
     match state.popups.last() {
         _ if found == Some(Action::Cancel) => cancel(state),
+        _ if found == Some(Action::Redraw) => vec![Effect::Redraw],
         Some(_) => popup::key(state, event, found),
         None if state.shared.editor.popup.is_some() => {
             let compared =
@@ -246,11 +251,11 @@ fn key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
             plan::field_key(&mut state.shared, event)
         }
         None if types && takes_as_text(found) => type_key(state, event),
-        None => match found {
+        None => typed_digit::take(state, event, found).unwrap_or_else(|| match found {
             Some(action) => act(state, action),
             None if focused.takes_text() => type_key(state, event),
             None => Vec::new(),
-        },
+        }),
     }
 }
 
@@ -262,7 +267,7 @@ fn type_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
 
 /// Returns `true` if an open text field gets a key with this action. Keys that leave the field do not belong to it.
 fn takes_as_text(found: Option<Action>) -> bool {
-    !matches!(found, Some(Action::Palette | Action::Suspend | Action::Previous))
+    !matches!(found, Some(Action::Palette | Action::Redraw | Action::Suspend | Action::Previous))
 }
 
 /// Handles Ctrl-C: the first press cancels, the second quits.
@@ -347,6 +352,7 @@ fn act(state: &mut AppState, action: Action) -> Vec<Effect> {
         state.shared.notify(Severity::Warn, reason);
         return Vec::new();
     }
+    typed_digit::follow(state, action);
     perform(state, action)
 }
 
@@ -413,11 +419,7 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
             let survey = survey::dismiss(&mut state.shared);
             return survey.into_iter().chain(forecast::toggle_look_ahead(&mut state.shared)).collect();
         }
-        Action::WhatIf => {
-            // Without a flight only the last row is possible.
-            let selected = if action::flies(&state.shared).is_ok() { 0 } else { WHAT_IFS.len() };
-            state.popups.push(Popup::WhatIf { selected });
-        }
+        Action::WhatIf => state.popups.push(Popup::WhatIf { selected: 0 }),
         Action::WhereMay => return survey::toggle_sweep(&mut state.shared),
         Action::GoNoGo => return survey::ask_go_no_go(&mut state.shared),
         Action::Pause => return vec![Effect::Send(Command::Pause(!state.shared.view.paused))],
@@ -454,7 +456,7 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
             // Leave the text first, so that the next keys are not typed.
             let focus_now = state.shared.focus;
             if focus_now.takes_text() {
-                focus(state, Panel::Map);
+                focus(state, state.before_text);
             } else if state.panels.of_mut(focus_now).field().is_some() {
                 // Esc goes to the field itself, but a command of the palette comes here.
                 state.panels.of_mut(focus_now).close_field();
@@ -476,6 +478,7 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
         }
         Action::Quit => return plan_popup::quit(&mut state.shared),
         Action::Cancel => return cancel(state),
+        Action::Redraw => return vec![Effect::Redraw],
         Action::Suspend => return vec![Effect::Suspend],
         Action::Panel(own) => {
             let panel = match action::spec_of(action).map(|spec| spec.context) {

@@ -36,6 +36,17 @@ fn a_recording_is_shown_with_the_states_of_its_autopilot() {
 }
 
 #[test]
+fn the_last_instant_of_a_recorded_flight_is_complete_and_disarmed() {
+    let sandbox = Sandbox::new();
+    sandbox.run(&["fly", "land", "--record", "a.flight"]).exits(0);
+    let at_the_end = ["replay", "a.flight", "--at", "boot+999", "--plain"];
+    let seen = sandbox.run_with(&at_the_end, "view.state\nquit\n").exits(0).out;
+    for line in ["The end of the recorded flight a.flight.", "State: COMPLETE.", "Disarmed, ANGLE;"] {
+        assert!(seen.contains(line), "{line} in {seen}");
+    }
+}
+
+#[test]
 fn a_replay_leaves_the_unsaved_edits_of_another_run_alone() {
     let mut terminal = Terminal::start_in(with_recording(), 120, 40, PROGRAM, &["--no-ports", "square"]);
     terminal.until_shown("DISARMED");

@@ -103,6 +103,7 @@ fn name(kind: &SessionEvent) -> Option<&'static str> {
         SessionEvent::Endpoints(_) => Some("doors"),
         SessionEvent::Branch { .. } => Some("branch"),
         SessionEvent::Notice(_)
+        | SessionEvent::Warning(_)
         | SessionEvent::ArmingBlocked(_)
         | SessionEvent::Replay(_)
         | SessionEvent::Simulator(_)

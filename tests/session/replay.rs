@@ -84,6 +84,13 @@ fn an_instant_shows_the_craft_as_it_was_logged() {
 }
 
 #[test]
+fn the_last_instant_of_a_log_that_ends_by_a_disarming_is_disarmed() {
+    let (mut flight, overview) = opened(MadeLog::default());
+    let mut armed = |time| flight.at(time).unwrap().snapshot.craft.armed;
+    assert_eq!((armed(after(19.0)), armed(overview.last)), (Some(true), Some(false)));
+}
+
+#[test]
 fn the_whole_track_and_all_events_are_known_at_once() {
     let (_, overview) = opened(MadeLog::default());
     assert_eq!((overview.first, overview.last), (after(0.0), after(19.995)));

@@ -294,7 +294,8 @@ async fn what_cannot_be_saved_is_reported_in_a_sentence() {
     let handled = bench.handle(Request::Msp { client: ClientId(1), code: 250, payload: Vec::new(), reply });
     assert_eq!(answer.try_recv().unwrap(), None);
     let [notice] = &handled.notices[..] else { panic!("{:?}", handled.notices) };
-    assert!(notice.starts_with("Not saved: ") && notice.ends_with('.'), "{notice}");
+    assert!(notice.text.starts_with("Not saved: ") && notice.text.ends_with('.'), "{notice:?}");
+    assert!(notice.is_warning);
 }
 
 #[tokio::test]
@@ -408,7 +409,9 @@ async fn a_restart_that_gives_the_starter_modes_says_so() {
     let restart = |bench: &mut Bench, line: &str| {
         let (reply, _answer) = oneshot::channel();
         let line = line.to_owned();
-        bench.handle(Request::Cli { client: ClientId(1), line, source: LineSource::Prompt, reply }).notices
+        let handled =
+            bench.handle(Request::Cli { client: ClientId(1), line, source: LineSource::Prompt, reply });
+        handled.notices.into_iter().map(|notice| notice.text).collect::<Vec<_>>()
     };
     assert_eq!(restart(&mut bench, "exit"), [""; 0], "ARM was given");
     assert!(bench.enter(1, true));

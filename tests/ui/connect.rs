@@ -335,3 +335,28 @@ fn f_over_a_real_craft_asks_for_no_plan_and_sends_nothing() {
     assert!(!text(&state).contains("Fly which plan?") && !is_asked(&state), "{}", text(&state));
     assert!(text(&state).contains("This craft is real"), "{}", text(&state));
 }
+
+#[test]
+fn keys_after_the_settings_panel_wait_until_the_craft_has_told_its_settings() {
+    let mut state = connected(|_| {});
+    let asked = press(&mut state, KeyCode::Char('9'));
+    assert!(matches!(asked[..], [Effect::ReadSettings]), "{asked:?}");
+    for key in ['/', 'f', 'e', 'n'] {
+        assert!(press(&mut state, KeyCode::Char(key)).is_empty(), "{key} waits");
+    }
+    let read = betadeck::fc::CraftSettings::of_configuration(
+        &betadeck::firmware::config::Configuration::default(),
+        None,
+    );
+    update(&mut state, Msg::SettingsReply(Ok(Box::new(read.clone()))));
+    let seen = text(&state);
+    assert!(seen.contains("fen") && seen.contains("geofence"), "{seen}");
+    // Esc is not kept waiting, and takes back what waits.
+    let mut state = connected(|_| {});
+    for key in ['9', '/', 'f'] {
+        press(&mut state, KeyCode::Char(key));
+    }
+    press(&mut state, KeyCode::Esc);
+    update(&mut state, Msg::SettingsReply(Ok(Box::new(read))));
+    assert!(!text(&state).contains("/f"), "{}", text(&state));
+}

@@ -212,7 +212,7 @@ fn a_what_if_is_chosen_flown_shown_and_dismissed() {
     key(&mut state, KeyCode::Up);
     let effects = key(&mut state, KeyCode::Enter);
     let chosen = job(&effects).expect("a what-if").clone();
-    assert_eq!(chosen.request, ForecastRequest::WhatIf(WHAT_IFS[0]));
+    assert!(matches!(&chosen.request, ForecastRequest::WhatIf { what_if, .. } if *what_if == WHAT_IFS[0]));
     assert!(state.popups.is_empty() && text(&state).contains("GPS lost here: …"));
     let drifts = Forecast {
         end: ForecastEnd::Flight(FlightResult::Aborted),
@@ -300,4 +300,35 @@ fn an_upload_in_flight_takes_effect_at_the_next_engagement_or_by_going_there() {
     assert!(shown.contains("G fly the new plan") && shown.contains("new plan, for the next"), "{shown}");
     press(&mut state, 'G');
     assert!(text(&state).contains("Continue on the new plan from"));
+}
+
+/// Types a line of the `:` line and presses Enter.
+fn enter(state: &mut AppState, line: &str) -> Vec<Effect> {
+    for c in line.chars() {
+        press(state, c);
+    }
+    key(state, KeyCode::Enter)
+}
+
+#[test]
+fn what_if_takes_values_and_works_on_the_ground() {
+    let mut state = crate::hands::state_with_fix((120, 40));
+    for value in ["wind,,14@270", "motor,,3:0.5", "payload,,0.4"] {
+        let effects = enter(&mut state, &format!(":what-if {value}"));
+        let request = &job(&effects).unwrap_or_else(|| panic!("{value}: {effects:?}")).request;
+        assert!(matches!(request, ForecastRequest::WhatIf { plan, .. } if **plan == *state.shared.plan()));
+    }
+    assert!(text(&state).contains("payload,,0.4, flown from home: …"), "{}", text(&state));
+    for (line, said) in [
+        (":what-if wind,5,14@270", "has no duration"),
+        (":what-if wnd,,14@270", "There is no what-if wnd,,14@270"),
+    ] {
+        assert!(job(&enter(&mut state, line)).is_none(), "{line}");
+        assert!(text(&state).contains(said), "{}", text(&state));
+        key(&mut state, KeyCode::Esc);
+        key(&mut state, KeyCode::Esc);
+    }
+    press(&mut state, 'w');
+    assert!(text(&state).contains("What if, flown from home:"), "{}", text(&state));
+    assert!(job(&key(&mut state, KeyCode::Enter)).is_some());
 }

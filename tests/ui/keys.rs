@@ -13,6 +13,7 @@ use crossterm::event::{KeyCode, KeyEvent, KeyModifiers, MouseButton, MouseEvent,
 
 use crate::fixture;
 use crate::fixture::SimpleFlight;
+use crate::hands::screen;
 
 fn key(state: &mut AppState, code: KeyCode) -> Vec<Effect> {
     let mut effects = update(state, Msg::Key(KeyEvent::new(code, KeyModifiers::NONE)));
@@ -388,6 +389,39 @@ fn z_zooms_the_focused_panel_and_esc_ends_it() {
     assert_eq!(screen.panels.len(), 1);
     key(&mut state, KeyCode::Esc);
     assert!(layout::screen(&state.shared).is_some_and(|screen| screen.panels.len() > 1));
+}
+
+#[test]
+fn a_key_draws_the_whole_screen_again_wherever_one_is() {
+    for before in ["", "5", ":", "?", "G"] {
+        let mut state = ready();
+        for c in before.chars() {
+            press(&mut state, c);
+        }
+        let effects = update(&mut state, Msg::Key(KeyEvent::new(KeyCode::Char('r'), KeyModifiers::ALT)));
+        assert!(matches!(effects[..], [Effect::Redraw]), "{before}: {effects:?}");
+    }
+}
+
+#[test]
+fn the_cli_panel_zooms_by_the_key_of_its_hint_and_esc_returns_to_the_panel_before() {
+    let mut state = ready();
+    for panel in ['3', '8'] {
+        press(&mut state, panel);
+        let before = state.shared.focus;
+        press(&mut state, '5');
+        assert!(screen(&state).contains("Alt-z zoom"), "{}", screen(&state));
+        let alt_z = KeyEvent::new(KeyCode::Char('z'), KeyModifiers::ALT);
+        for zoomed in [true, false] {
+            update(&mut state, Msg::Key(alt_z));
+            assert_eq!((state.shared.zoomed, state.shared.focus), (zoomed, Panel::Cli));
+        }
+        press(&mut state, 'z');
+        assert_eq!((state.panels.cli.console.input.value(), state.shared.zoomed), ("z", false), "text");
+        key(&mut state, KeyCode::Backspace);
+        key(&mut state, KeyCode::Esc);
+        assert_eq!(state.shared.focus, before);
+    }
 }
 
 #[test]

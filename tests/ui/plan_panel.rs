@@ -3,8 +3,10 @@
 use std::sync::Arc;
 
 use betadeck::plan::Altitude;
-use betadeck::session::SessionView;
-use betadeck::ui::{AppState, Msg, Units, update};
+use betadeck::session::{Event, SessionEvent, SessionView};
+use betadeck::signals::SimTime;
+use betadeck::ui::editor::PlanId;
+use betadeck::ui::{AppState, Msg, Panel, Severity, Units, update};
 use crossterm::event::MouseEventKind;
 
 use crate::fixture;
@@ -123,4 +125,45 @@ fn a_climb_above_the_plan_is_seen_in_the_profile() {
     }
     let seen = screen(&state);
     assert!(seen.contains("** flown") && seen.contains("  80 "), "{seen}");
+}
+
+#[test]
+fn with_imperial_units_the_log_and_the_toasts_are_in_feet_and_miles_an_hour() {
+    let mut state = imperial((120, 40));
+    state.sentence = |_| "Geofence: 174.0 m from home, the fence is 150 m; sinks at 0.50 m/s.".to_owned();
+    state.take_event(&Event { time: SimTime(0), kind: SessionEvent::Notice(String::new()) });
+    state.shared.notify(Severity::Warn, "The fence is 100 m.");
+    keys(&mut state, "8 z");
+    let seen = screen(&state);
+    assert!(seen.contains("570.9 ft from home, the fence is 492 ft; sinks at 1.12 mph."), "{seen}");
+    assert!(seen.contains("The fence is 328 ft."), "{seen}");
+}
+
+#[test]
+fn a_digit_on_a_value_that_was_chosen_edits_it_and_shows_a_panel_otherwise() {
+    let mut state = state_with_fix((120, 40));
+    keys(&mut state, "2 3");
+    assert_eq!(state.shared.focus, Panel::State, "nothing was chosen");
+    keys(&mut state, "2 right right right '60 enter");
+    assert_eq!(state.shared.plan().waypoints[0].altitude, Altitude::above_home(60.0));
+    keys(&mut state, "3 2 1");
+    assert_eq!(state.shared.focus, Panel::Map, "the edit is over");
+    // A word has no digits.
+    keys(&mut state, "2 left left left down 3");
+    assert_eq!(state.shared.focus, Panel::State);
+    keys(&mut state, "7 down up '4");
+    assert!(state.panels.world.knobs.field.is_some() && state.shared.focus == Panel::World);
+}
+
+#[test]
+fn a_plan_that_would_be_refused_is_said_before_anything_is_ready() {
+    let mut state = state_with_fix((120, 40));
+    let mut document = state.shared.editor.document().clone();
+    document.settings = vec!["ap_max_distance_from_home = 20".to_owned()];
+    let history = betadeck::plan::edit::History::new(document, true);
+    let open = betadeck::ui::editor::OpenPlan::new(PlanId(7), None, history);
+    state.shared.editor = betadeck::ui::editor::Editor::new(open);
+    keys(&mut state, "2 right right right +");
+    let seen = screen(&state);
+    assert!(seen.contains("The autopilot would refuse") && !seen.contains("Ready."), "{seen}");
 }

@@ -179,16 +179,33 @@ fn f_after_an_edit_asks_which_plan_it_flies() {
     }
 }
 
-#[test]
-fn f_with_an_edited_fence_names_the_fence_that_it_replaces() {
+/// Returns a screen whose open plan has these settings, on a craft that has another plan.
+fn with_settings(lines: &[&str]) -> AppState {
     let mut state = state((120, 40));
     let mut document = state.shared.editor.document().clone();
-    document.settings = vec!["ap_max_distance_from_home = 150".to_owned()];
+    document.settings = lines.iter().map(|line| (*line).to_owned()).collect();
     let history = betadeck::plan::edit::History::new(document, true);
-    let id = PlanId(7);
-    let plan = betadeck::ui::editor::OpenPlan::new(id, None, history);
+    let plan = betadeck::ui::editor::OpenPlan::new(PlanId(7), None, history);
     state.shared.editor = betadeck::ui::editor::Editor::new(plan);
+    state
+}
+
+#[test]
+fn f_with_an_edited_fence_names_the_fence_that_it_replaces() {
+    let mut state = with_settings(&["ap_max_distance_from_home = 150", "ap_geofence_action = RTH"]);
     keys(&mut state, "2 + F");
     let seen = screen(&state);
     assert!(seen.contains("The plan sets the") && seen.contains("fence to 150 m (it was 500 m)."), "{seen}");
+    assert!(seen.contains("fence to RTH."), "{seen}");
+}
+
+#[test]
+fn a_first_upload_says_before_it_that_it_sets_a_fence_where_there_was_none() {
+    let mut state = with_settings(&["ap_max_distance_from_home = 150"]);
+    let vehicle = std::sync::Arc::make_mut(&mut state.shared.view.vehicle);
+    vehicle.stored_plan.as_mut().expect("a plan").waypoints.clear();
+    vehicle.settings.as_mut().expect("settings").fence_m = None;
+    let seen: String =
+        screen(&state).split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ");
+    assert!(seen.contains("The craft has no plan.") && seen.contains("sets a fence of 150 m"), "{seen}");
 }

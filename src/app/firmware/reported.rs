@@ -9,7 +9,7 @@ pub(in crate::app) fn sentence(event: &Event) -> Option<String> {
     match &event.kind {
         SessionEvent::Remote(RemoteNotice::Output(_)) => None,
         SessionEvent::Remote(notice) => Some(notice.to_string()),
-        SessionEvent::Notice(notice) => Some(notice.clone()),
+        SessionEvent::Notice(notice) | SessionEvent::Warning(notice) => Some(notice.clone()),
         _ => None,
     }
 }

@@ -99,7 +99,7 @@ impl Output {
             table.sample(flight)?;
         }
         if let Some(recorder) = &mut self.recorder {
-            recorder.after_tick(flight.vehicle())?;
+            recorder.after_tick(flight.vehicle(), flight.end().is_some())?;
         }
         if let Some(report) = &mut self.report {
             report.after_tick(flight.vehicle());

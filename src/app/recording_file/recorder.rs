@@ -7,7 +7,7 @@ use super::{header, recorded};
 use crate::app::error::AppError;
 use crate::app::output_file::{StreamedOutput, write_failed};
 use crate::flight::FlightSetup;
-use crate::recording::{Cadence, End, FlightPrint, Setup, Writer};
+use crate::recording::{Cadence, End, FlightPrint, Seen, Setup, Writer};
 use crate::session::Event;
 use crate::signals::SimTime;
 use crate::vehicle::Vehicle;
@@ -49,9 +49,9 @@ impl Recorder {
         vehicle.take_inputs(|input| self.writer.input(now, &input));
     }
 
-    /// Records a picture if one is due, and writes what there is once a second.
-    pub(in crate::app) fn after_tick(&mut self, vehicle: &Vehicle) -> Result<(), AppError> {
-        if let Some(seen) = self.cadence.due(vehicle) {
+    /// Records a picture if one is due or if it is the last one, and writes what there is once a second.
+    pub(in crate::app) fn after_tick(&mut self, vehicle: &Vehicle, is_last: bool) -> Result<(), AppError> {
+        if let Some(seen) = self.cadence.due(vehicle).or_else(|| is_last.then(|| Seen::of(vehicle))) {
             match seen.print {
                 Some(print) => self.print.add(vehicle.time(), print),
                 None => self.is_unknown = true,

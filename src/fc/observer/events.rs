@@ -93,9 +93,11 @@ impl EventObserver {
         } else {
             None
         };
+        // Under CONTINUE a mission lands while the failsafe is on. Any other failsafe ends AUTOPILOT first.
+        let goes_on = self.modes.has(Mode::Failsafe) && self.modes.has(Mode::Autopilot);
         let reason = match (self.state, by_other) {
             // Its own touchdown disarms it. That is the end of the mission.
-            (NavState::Landing, None) => {
+            (NavState::Landing, by_other) if by_other.is_none() || goes_on => {
                 self.enter(NavState::Complete, self.wp, TransitionReason::Touchdown, plan, events);
                 DisarmReason::Landing
             }
@@ -302,7 +304,7 @@ mod tests {
     }
 
     #[test]
-    fn a_landing_that_the_pilot_or_the_failsafe_cuts_short_is_no_touchdown() {
+    fn a_landing_that_the_pilot_or_the_failsafe_cuts_short_is_no_touchdown_and_one_under_continue_is() {
         use NavState::Landing;
         let arm = ModeRange { mode_box: Mode::Arm.into(), channel: 4, start_us: 1700, end_us: 2100 };
         let craft = |armed: bool, arm_us: u16, failsafe: bool| {
@@ -322,8 +324,9 @@ mod tests {
         for (before, at_the_end, reason, to) in [
             (craft(true, 1900, false), craft(false, 1900, false), DisarmReason::Landing, NavState::Complete),
             (craft(true, 1900, false), craft(false, 1000, false), DisarmReason::Switch, NavState::Idle),
-            (craft(true, 1900, true), craft(false, 1900, false), DisarmReason::Failsafe, NavState::Idle),
-            (craft(true, 1900, true), craft(false, 1000, true), DisarmReason::Failsafe, NavState::Idle),
+            (craft(true, 1900, false), craft(false, 1900, true), DisarmReason::Failsafe, NavState::Idle),
+            (craft(true, 1900, true), craft(false, 1900, false), DisarmReason::Landing, NavState::Complete),
+            (craft(true, 1900, true), craft(false, 1000, true), DisarmReason::Landing, NavState::Complete),
         ] {
             let mut observer = EventObserver::default();
             let nav = NavTelemetry { state: Landing, wp: 3, ..NavTelemetry::default() };

@@ -151,9 +151,25 @@ fn a_look_ahead_is_what_then_happens() {
 #[test]
 fn a_lost_fix_makes_another_end() {
     let flying = in_flight(vehicle("square", Noise::None), 5.0);
-    let forecast = end(ForecastRun::what_if(flying, &WHAT_IFS[0]).unwrap());
+    let plan = PlanWithSettings { plan: &FlightPlan::default(), settings: &[] };
+    let forecast = end(ForecastRun::what_if(flying, &WHAT_IFS[0], plan, 10.0).unwrap());
     assert_eq!(forecast.end, ForecastEnd::Flight(FlightResult::Aborted), "{}", forecast.reason);
     assert!(forecast.line(metres).starts_with("drifts "), "{}", forecast.line(metres));
+}
+
+#[test]
+fn on_the_ground_a_what_if_flies_the_plan_from_home_and_fails_at_the_engagement() {
+    let (vehicle, land) = (vehicle("land", Noise::None), plan("land"));
+    let plan = PlanWithSettings { plan: &land, settings: &[] };
+    let flown = |text: &str| {
+        let what_if = WhatIf::parse(text).unwrap();
+        end(ForecastRun::what_if(vehicle.clone(), &what_if, plan, 10.0).unwrap())
+    };
+    let calm = flown("wind,,0@270");
+    assert!(calm.is_complete(), "{}", calm.reason);
+    assert!(flown("wind,,6@270").battery_used_pct > calm.battery_used_pct);
+    let without_gps = flown("gps-loss");
+    assert_ne!(without_gps.end, calm.end, "{}", without_gps.reason);
 }
 
 #[test]

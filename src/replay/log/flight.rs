@@ -138,7 +138,12 @@ impl<S: LogSource + Send> PastFlight for PastLog<S> {
     fn at(&mut self, time: SimTime) -> Result<Moment, String> {
         let read = self.log.sample(&mut self.source, time);
         let sample = read.map_err(|error| self.sentence(&error))?.unwrap_or_default();
-        Ok(Moment { snapshot: self.snapshot(&sample), values: sample.values })
+        let mut snapshot = self.snapshot(&sample);
+        // The last frame of a log is from before the disarming that ends it.
+        if happenings::is_disarmed(self.log.marks(), time) {
+            snapshot.craft.armed = Some(false);
+        }
+        Ok(Moment { snapshot, values: sample.values })
     }
 
     fn curves(&mut self, request: &CurvesRequest) -> Result<Vec<Curve>, String> {

@@ -114,6 +114,19 @@ impl Happenings {
     }
 }
 
+/// Returns `true` if the craft was disarmed before or at `time`, and was not armed again since.
+pub(super) fn is_disarmed(log: &[LogMark], time: SimTime) -> bool {
+    let change = |mark: &LogMark| match mark.kind {
+        LogMarkKind::Armed => Some(false),
+        LogMarkKind::Disarmed(_) => Some(true),
+        LogMarkKind::Boxes { old, new } if old.has(ModeBox::Arm) != new.has(ModeBox::Arm) => {
+            Some(!new.has(ModeBox::Arm))
+        }
+        _ => None,
+    };
+    log.iter().take_while(|mark| mark.time <= time).filter_map(change).last().unwrap_or(false)
+}
+
 /// Returns `true` if a log has the event of a disarming close to this time.
 fn has_disarming_near(log: &[LogMark], time: SimTime) -> bool {
     log.iter()

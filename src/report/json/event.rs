@@ -85,7 +85,7 @@ impl<'a> Fields<'a> {
             SessionEvent::Endpoints(EndpointAddresses { ws, tcp, fdm, rc }) => {
                 ("doors", Self::Doors { ws: *ws, tcp: *tcp, fdm: *fdm, rc: *rc })
             }
-            SessionEvent::Notice(text) | SessionEvent::ArmingBlocked(text) => {
+            SessionEvent::Notice(text) | SessionEvent::Warning(text) | SessionEvent::ArmingBlocked(text) => {
                 ("notice", Self::Notice { text: text.into() })
             }
             SessionEvent::Remote(notice) => ("notice", Self::Notice { text: notice.to_string().into() }),

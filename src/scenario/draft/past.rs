@@ -17,6 +17,8 @@ pub(super) struct Past {
     pub(super) plan: FlightPlan,
     /// The number of inputs before that. The draft leaves out those that uploaded the plan.
     pub(super) inputs_before: usize,
+    /// The number of inputs before the first arming, or zero if one of them resets the craft's settings.
+    inputs_before_arming: usize,
     /// The time at which all activity was over.
     pub(super) until: SimTime,
 }
@@ -27,7 +29,7 @@ impl Past {
         let mut vehicle = flight.start.clone();
         vehicle.keep_inputs(false);
         vehicle.drain_events(drop);
-        let mut begun = None;
+        let (mut begun, mut armed) = (None, None);
         let mut next = 0;
         let mut active_at = vehicle.time();
         while vehicle.time() < flight.until {
@@ -47,6 +49,9 @@ impl Past {
             if navigates {
                 begun.get_or_insert_with(|| (stored_plan(&vehicle), next));
             }
+            if vehicle.controller().is_armed() {
+                armed.get_or_insert(next);
+            }
             if !vehicle.is_idle() {
                 active_at = vehicle.time();
             }
@@ -59,11 +64,23 @@ impl Past {
         let (plan, inputs_before) = begun.unwrap_or_else(|| (stored_plan(&vehicle), next));
         // A later `defaults` would empty a plan stored at boot, and a scenario cannot begin with a refused plan.
         let is_reset = |(_, input): &(SimTime, VehicleCommand)| matches!(input, VehicleCommand::Line(line) if is_defaults(&line.line));
+        let inputs_before_arming = armed.unwrap_or(next);
         let is_refused = !plan.waypoints.is_empty() && check_plan(&plan).is_err();
         if is_refused || flight.inputs.iter().take(inputs_before).any(is_reset) {
-            return Self { plan: stored_plan(&flight.start), inputs_before: 0, until };
+            return Self {
+                plan: stored_plan(&flight.start),
+                inputs_before: 0,
+                inputs_before_arming: 0,
+                until,
+            };
         }
-        Self { plan, inputs_before, until }
+        Self { plan, inputs_before, inputs_before_arming, until }
+    }
+
+    /// Returns `true` if the input with this number came before the craft was armed, so that its settings may be those of
+    /// the start.
+    pub(super) fn is_before_arming(&self, number: usize) -> bool {
+        number < self.inputs_before_arming
     }
 
     /// Returns `true` if this sentence of the input with this number is already part of the plan.

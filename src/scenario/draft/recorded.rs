@@ -3,6 +3,7 @@
 use super::Draft;
 use super::past::Past;
 use super::toml_text::{after_boot, quoted};
+use crate::firmware::Firmware;
 use crate::geo::LatLon;
 use crate::pilot::{RcTransmitter, channel_name};
 use crate::plan::format::{HomePosition, setting_line};
@@ -14,7 +15,7 @@ use crate::timeline::RecordedFlight;
 use crate::vehicle::{Answer, Reply, Vehicle, VehicleCommand};
 
 /// Lines of `diff all` that set nothing on the craft, or that the scenario gives in another place.
-const PASSED_OVER: [&str; 11] = [
+const PASSED_OVER: [&str; 12] = [
     "#",
     "batch",
     "defaults",
@@ -26,6 +27,7 @@ const PASSED_OVER: [&str; 11] = [
     "save",
     "profile",
     "rateprofile",
+    "battery_profile",
 ];
 /// Command lines that change nothing.
 const READING: [&str; 14] = [
@@ -103,13 +105,49 @@ impl Draft {
             draft.takeoff_m = pilot.takeoff_m();
         }
         for (number, (at, input)) in inputs.iter().enumerate() {
-            let what = sentences(input, &mut hands)?.into_iter();
             let at = after_boot(since(*at, start_at));
-            let later = what.filter(|what| !past.is_in_plan(number, what));
-            draft.inputs.extend(later.map(|what| (at.clone(), what)));
+            for what in sentences(input, &mut hands)? {
+                match what.strip_prefix("cli ").map_or(Effect::Lasts, |line| effect(&mut start, line)) {
+                    _ if past.is_in_plan(number, &what) => {}
+                    Effect::None => {}
+                    Effect::Sets(setting) if past.is_before_arming(number) => draft.set(setting),
+                    Effect::Sets(_) | Effect::Lasts => draft.inputs.push((at.clone(), what)),
+                }
+            }
         }
         draft.ends = Some(since(past.until, start_at));
         Ok(draft)
+    }
+}
+
+impl Draft {
+    /// Adds a setting of the craft in place of an earlier value.
+    fn set(&mut self, setting: String) {
+        let name = |line: &str| line.split('=').next().map(|name| name.trim().to_ascii_lowercase());
+        self.settings.retain(|earlier| name(earlier) != name(&setting));
+        self.settings.push(setting);
+    }
+}
+
+/// The effect of a command line on the configuration of the craft.
+enum Effect {
+    /// It sets what the craft has already.
+    None,
+    /// It sets another value: a line of settings.
+    Sets(String),
+    /// It is another line, or is refused.
+    Lasts,
+}
+
+/// Runs a line on a craft that only follows the configuration.
+fn effect(craft: &mut Vehicle, line: &str) -> Effect {
+    let before = craft.embedded().map(|firmware| firmware.configuration().clone());
+    let reply = craft.apply(&VehicleCommand::single_line(line));
+    let is_done = matches!(&reply, Answer::Now(Reply::Line(reply)) if !reply.failed);
+    match setting_line(line).filter(|_| is_done && line.starts_with("set ")) {
+        Some(_) if craft.embedded().map(Firmware::configuration) == before.as_ref() => Effect::None,
+        Some(setting) => Effect::Sets(setting),
+        None => Effect::Lasts,
     }
 }
 

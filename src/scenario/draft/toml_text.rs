@@ -12,7 +12,11 @@ pub(super) fn quoted(text: &str) -> String {
 
 /// `12.34 s after boot`.
 pub(super) fn after_boot(at: SimTime) -> String {
-    let decimals = if at.0.is_multiple_of(10_000) { 2 } else { 6 };
+    let decimals = match at.0 {
+        us if us.is_multiple_of(10_000) => 2,
+        us if us.is_multiple_of(1000) => 3,
+        _ => 6,
+    };
     format!("{:.decimals$} s after boot", at.as_secs_f64())
 }
 

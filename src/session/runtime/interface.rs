@@ -12,6 +12,7 @@ use crate::plan::{AltitudeReference, FlightPlan};
 use crate::session::command::CliOutput;
 use crate::session::host_status::HostStatus;
 use crate::session::late_answers::{LateAnswers, NO_ANSWER, no_answer_line};
+use crate::session::notice::Notice;
 use crate::session::persistence::Persistence;
 use crate::session::request_handler::RequestHandler;
 use crate::session::{ReplyTo, hazards};
@@ -257,13 +258,13 @@ fn settings_of(said: &CliReply) -> Result<Box<CraftSettings>, String> {
 /// The notices of a request for the user, and its answer, which follows them.
 #[derive(Default)]
 pub(super) struct Outcome {
-    pub(super) notices: Vec<String>,
+    pub(super) notices: Vec<Notice>,
     /// Sends the answer, if it is known.
     pub(super) answer: Option<Box<dyn FnOnce()>>,
 }
 
 impl Outcome {
-    fn new(notices: Vec<String>, answer: impl FnOnce() + 'static) -> Self {
+    fn new(notices: Vec<Notice>, answer: impl FnOnce() + 'static) -> Self {
         Self { notices, answer: Some(Box::new(answer)) }
     }
 }
@@ -282,7 +283,7 @@ fn uploaded(
     craft: &UploadTo<'_>,
 ) -> Outcome {
     let hazards = if result.is_ok() { hazards(craft.vehicle, craft.takeoff_m, None) } else { Vec::new() };
-    Outcome::new(hazards, move || reply.send(result))
+    Outcome::new(hazards.into_iter().map(Notice::from).collect(), move || reply.send(result))
 }
 
 /// Begins a new session of the command line, after a restart of the flight controller.

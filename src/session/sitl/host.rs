@@ -235,7 +235,9 @@ fn print_event(event: &Event, print: &mut impl FnMut(OutputLine)) {
             print(OutputLine::Out(lines::first_rc_line(*stamp_s, frame)));
         }
         SessionEvent::Restarted => print(OutputLine::Out(lines::RESET_LINE.to_owned())),
-        SessionEvent::Notice(notice) => print(OutputLine::Err(notice.clone())),
+        SessionEvent::Notice(notice) | SessionEvent::Warning(notice) => {
+            print(OutputLine::Err(notice.clone()));
+        }
         SessionEvent::Simulator(SimulatorNotice::Adapted(notice)) => {
             print(OutputLine::Err(notice.to_string()));
         }

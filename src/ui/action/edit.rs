@@ -33,7 +33,7 @@ actions! {
     PLAN {
         Left PLAN_PANEL "plan.left" "left" "The value to the left" ["left", "h"];
         Right PLAN_PANEL "plan.right" "right" "The value to the right" ["right", "l"];
-        Cell PLAN_PANEL "plan.edit" "edit" "Type the value; a type or pattern goes on to the next" ["enter"];
+        Cell PLAN_PANEL "plan.edit" "edit" "Type the value, as a digit does; a type or pattern goes on to the next" ["enter"];
         Raise PLAN_PANEL "plan.raise" "raise" "Raise the value: 1 m, 0.5 m/s, 1 s (1 ft, 1 mph)" ["+", "="];
         Lower PLAN_PANEL "plan.lower" "lower" "Lower the value" ["-"];
         RaiseMuch PLAN_PANEL "plan.raise-much" "raise much" "Raise the value ten times as much" ["shift-up"];

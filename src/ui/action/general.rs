@@ -58,7 +58,7 @@ actions! {
     SCREEN {
         Next Global "view.next" "next panel" "Focus the next panel" ["tab"];
         Previous Always "view.previous" "previous panel" "Focus the previous panel" ["shift-tab"];
-        Zoom Global "view.zoom" "zoom" "The focused panel alone, or all again" ["z"];
+        Zoom Global "view.zoom" "zoom" "The focused panel alone, or all again" ["z", "alt-z"];
         WriteScenario Global "flight.scenario" "write test"
             "Write the flight just flown as a scenario for `betadeck check`" ["T"];
         WriteRecording Global "flight.record" "write recording"
@@ -70,9 +70,10 @@ actions! {
         Help Global "app.help" "help" "The keys of this place" ["?"];
         CommandLine Global "app.command" "command" "A command by its name, such as :speed 4" [":"];
         Palette Always "app.palette" "palette" "Search all commands" ["ctrl-p"];
-        Back Always "app.back" "back" "One step back: close, leave a text field, end zoom" ["esc"];
+        Back Always "app.back" "back" "One step back: close, leave a text field or the CLI panel, end zoom" ["esc"];
         Quit Global "app.quit" "quit" "Quit (asks while the craft is armed or a plan has unsaved edits)" ["q"];
         Cancel Always "app.cancel" "cancel" "Cancel what is going on; twice within 2 s: quit" ["ctrl-c"];
+        Redraw Always "app.redraw" "redraw" "Draw the whole screen again" ["alt-r"];
         Suspend Always "app.suspend" "suspend" "Back to the shell, `fg` returns" ["ctrl-z"];
     }
     LISTS {

@@ -72,7 +72,7 @@ actions! {
         PreviousSetting SETTINGS "settings.previous" "previous match" "To the previous match" ["N"];
         NextGroup SETTINGS "settings.next-group" "next group" "To the next group" [")"];
         PreviousGroup SETTINGS "settings.previous-group" "previous group" "To the previous group" ["("];
-        SettingEdit SETTINGS "settings.edit" "edit" "Type a value, or switch a switch" ["enter"];
+        SettingEdit SETTINGS "settings.edit" "edit" "Type a value, as a digit does, or switch a switch" ["enter"];
         SettingType SETTINGS "settings.type" "type" "Type a value" ["="];
         SettingMore SETTINGS "settings.raise" "raise" "Raise the value, or take the next word" ["+", "right", "l"];
         SettingLess SETTINGS "settings.lower" "lower" "Lower the value, or take the word before" ["-", "left", "h"];

@@ -45,7 +45,7 @@ fn waypoints(state: &Shared) -> Vec<String> {
     stored.filter(|(_, waypoint)| waypoint.kind.is_positional()).map(|(index, _)| index.to_string()).collect()
 }
 
-/// Runs `what-if gps-loss`.
+/// Runs `what-if gps-loss` or `what-if wind,,14@270`.
 pub(super) fn what_if(state: &mut Shared, _: &str, argument: &str) -> Result<Vec<Request>, String> {
     action::enabled(state, Action::WhatIf)?;
     if argument == GO_NO_GO {
@@ -64,23 +64,45 @@ pub(in crate::ui) fn ask_what_if(state: &mut Shared, name: &str) -> Result<Vec<E
     }
     let numbered = name.parse::<usize>().ok().and_then(|number| number.checked_sub(1));
     let found = match numbered {
-        Some(at) => WHAT_IFS.get(at),
-        None => WHAT_IFS.iter().find(|what_if| what_if.name == name),
-    };
-    let found = found.copied().ok_or_else(|| {
-        let names = WHAT_IFS.map(|what_if| what_if.name);
-        match did_you_mean_end(name, names) {
-            guess if guess.ends_with('?') => format!("There is no what-if {name}{guess}"),
-            _ => format!("There is no what-if {name}; there are {}.", names.join(", ")),
+        Some(at) => WHAT_IFS.into_iter().nth(at).ok_or_else(|| no_what_if(name))?,
+        None => {
+            let word = name.split_once(',').map_or(name, |(word, _)| word);
+            if !what_if_names().any(|known| known == word) {
+                return Err(no_what_if(name));
+            }
+            WhatIf::parse(name).map_err(|problem| format!("what-if {name}: {problem}."))?
         }
-    })?;
+    };
     Ok(fly_what_if(state, found))
+}
+
+/// Returns the names of the what-ifs, then those of the other faults.
+fn what_if_names() -> impl Iterator<Item = &'static str> {
+    let listed = WHAT_IFS.map(|what_if| what_if.name);
+    let faults = FAULTS.iter().map(FaultInfo::name);
+    listed.into_iter().chain(faults.filter(move |name| !listed.contains(name)))
+}
+
+/// Returns the sentence for a name that is no what-if.
+fn no_what_if(name: &str) -> String {
+    match did_you_mean_end(name, what_if_names()) {
+        guess if guess.ends_with('?') => format!("There is no what-if {name}{guess}"),
+        _ => {
+            let names: Vec<&str> = what_if_names().collect();
+            format!("There is no what-if {name}; there are {}.", names.join(", "))
+        }
+    }
 }
 
 /// Flies ahead with a what-if, in place of a survey.
 pub(in crate::ui) fn fly_what_if(state: &mut Shared, what_if: WhatIf) -> Vec<Effect> {
-    let survey = survey::dismiss(state);
-    survey.into_iter().chain(forecast::ask_what_if(state, what_if)).collect()
+    let (survey, flies) = (survey::dismiss(state), flies(state));
+    survey.into_iter().chain(forecast::ask_what_if(state, what_if, flies)).collect()
+}
+
+/// Returns `true` if there is a flight to look ahead to. On the ground a what-if is flown from home.
+pub(in crate::ui) fn flies(state: &Shared) -> bool {
+    action::flies(state).is_ok()
 }
 
 /// Runs `where gps-loss,6`.
@@ -104,6 +126,6 @@ pub(super) fn complete_where(_: &Shared, _: &str, typed: &str) -> Vec<String> {
 
 /// Returns the matching names of what-ifs.
 pub(super) fn complete_what_if(_: &Shared, _: &str, typed: &str) -> Vec<String> {
-    let names = WHAT_IFS.iter().map(|what_if| what_if.name).chain([GO_NO_GO]);
+    let names = what_if_names().chain([GO_NO_GO]);
     names.filter(|name| name.starts_with(typed)).map(str::to_owned).collect()
 }

@@ -45,7 +45,7 @@ commands! {
         plan::backdrop, plan::complete_backdrop;
     "go-to" "WAYPOINT" "Go now to a waypoint of the craft's plan; without a number: choose one"
         flight::go_to, flight::complete_go_to;
-    "what-if" "NAME" "How the flight would end with a fault now; without a name: choose one"
+    "what-if" "NAME[,FOR][,VALUE]" "How the flight would end with this now, such as wind,,14@270; without a name: choose"
         flight::what_if, flight::complete_what_if;
     "where" "FAULT" "Where this fault may be fatal, such as gps-loss,6; without a fault: the one of before"
         flight::where_may, flight::complete_where;

@@ -79,6 +79,14 @@ pub(crate) fn refusal_of_the_stored(state: &Shared) -> Option<Finding> {
     refusal(state, stored, &settings_in_force::of_the_craft(state)?)
 }
 
+/// Returns the finding for which the autopilot would refuse the open plan, if the craft does not have it.
+pub(crate) fn refusal_of_the_open(state: &Shared) -> Option<Finding> {
+    if !settings_in_force::craft_has_another(state) {
+        return None;
+    }
+    refusal(state, state.plan(), &settings_in_force::assumptions(state, state.editor.document()))
+}
+
 /// Returns the shown finding (about the waypoint under the cursor, else the first) and its fix.
 pub(crate) fn shown(state: &Shared, findings: &[Finding]) -> Option<(Finding, Option<Fix>)> {
     let here = findings.iter().find(|finding| waypoint_of(finding) == Some(state.editor.row()));

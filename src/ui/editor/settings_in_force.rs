@@ -4,6 +4,9 @@ use crate::plan::edit::PlanDocument;
 use crate::plan::estimate::{Assumptions, SettingSource};
 use crate::ui::shared::Shared;
 
+/// The setting of what happens at the fence.
+const FENCE_ACTION: &str = "ap_geofence_action";
+
 /// Returns the lines of the plan that its upload would set. A craft that has the plan is flown without another upload: only
 /// the lines edited since this editor uploaded it, or opened it, are left.
 pub(crate) fn to_upload<'a>(state: &Shared, document: &'a PlanDocument) -> Vec<&'a str> {
@@ -76,17 +79,31 @@ pub(crate) fn differing(state: &Shared, document: &PlanDocument) -> Vec<String> 
     lines.map(|(_, line)| line).filter(|line| differs(line)).cloned().collect()
 }
 
-/// Returns a sentence if the upload of the plan replaces a fence that the craft has by another.
+/// Returns sentences if the upload of the plan changes the fence of the craft, or its action.
 pub(crate) fn replaced_fence(state: &Shared, document: &PlanDocument) -> Option<String> {
     let craft = state.view.vehicle.settings.as_ref()?.assumptions();
     let (old_m, new_m) = (craft.fence_m, craft.with_settings(&document.settings).fence_m);
     let length = |metres: f64| state.units.length_text(metres, 0);
-    match (old_m, new_m) {
+    let radius = match (old_m, new_m) {
         (Some(old_m), Some(new_m)) if old_m != new_m => {
             Some(format!("The plan sets the fence to {} (it was {}).", length(new_m), length(old_m)))
         }
         (Some(old_m), None) => Some(format!("The plan switches the fence off (it was {}).", length(old_m))),
+        (None, Some(new_m)) => Some(format!("The plan sets a fence of {} (there was none).", length(new_m))),
         _ => None,
+    };
+    let sentences: Vec<String> = radius.into_iter().chain(replaced_fence_action(state, document)).collect();
+    (!sentences.is_empty()).then(|| sentences.join(" "))
+}
+
+/// Returns a sentence if the plan sets another action of the fence than the craft is known to have.
+fn replaced_fence_action(state: &Shared, document: &PlanDocument) -> Option<String> {
+    let own = document.settings.iter().rev().find(|line| name_of(line) == FENCE_ACTION)?;
+    let new = own.split_once('=')?.1.trim();
+    match state.settings.find(FENCE_ACTION).map(|setting| setting.value.as_str()) {
+        Some(old) if old.eq_ignore_ascii_case(new) => None,
+        Some(old) => Some(format!("The plan sets the action of the fence to {new} (it was {old}).")),
+        None => Some(format!("The plan sets the action of the fence to {new}.")),
     }
 }
 

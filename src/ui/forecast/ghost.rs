@@ -21,7 +21,7 @@ pub(in crate::ui) struct Ghost<'a> {
 pub(in crate::ui) fn ghost(state: &Shared) -> Option<Ghost<'_>> {
     let forecast = &state.forecast;
     if let Some(chosen) = &forecast.what_if {
-        return Some(asked(state.units, chosen.what_if.title, chosen.asked.forecast()));
+        return Some(asked(state.units, &chosen.title, chosen.asked.forecast()));
     }
     if let Some(look_ahead) = &forecast.look_ahead {
         return Some(asked(state.units, "look-ahead", look_ahead.asked.forecast()));

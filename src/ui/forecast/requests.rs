@@ -78,15 +78,18 @@ pub(in crate::ui) fn toggle_look_ahead(state: &mut Shared) -> Vec<Effect> {
     vec![ask_look_ahead(state)]
 }
 
-/// Requests a flight ahead with something going wrong now.
-pub(in crate::ui) fn ask_what_if(state: &mut Shared, what_if: WhatIf) -> Vec<Effect> {
-    let now = state.now;
+/// Requests a flight ahead with something going wrong now, or if nothing flies, from home.
+pub(in crate::ui) fn ask_what_if(state: &mut Shared, what_if: WhatIf, flies: bool) -> Vec<Effect> {
+    let (now, settings) = (state.now, to_upload(state));
+    let from_home = if flies { "" } else { ", flown from home" };
+    let title = format!("{}{from_home}", what_if.title);
+    let request = ForecastRequest::WhatIf { what_if, plan: Box::new(state.plan().clone()), settings };
     let forecast = &mut state.forecast;
     forecast.dismiss();
-    let effect = forecast.job(ForecastRequest::WhatIf(what_if));
+    let effect = forecast.job(request);
     let mut asked = Asked::default();
     asked.ask(forecast.revision, now);
-    forecast.what_if = Some(ChosenWhatIf { what_if, asked });
+    forecast.what_if = Some(ChosenWhatIf { title, asked });
     vec![effect]
 }
 

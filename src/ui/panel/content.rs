@@ -47,6 +47,11 @@ pub(in crate::ui) trait Content {
         Vec::new()
     }
 
+    /// Returns the action that begins to type a number in place of the selected value.
+    fn typing(&self, _: &Shared) -> Option<Action> {
+        None
+    }
+
     /// Handles a key that is text here.
     fn key(&mut self, _: &Shared, _: KeyEvent) -> Vec<Request> {
         Vec::new()

@@ -110,6 +110,11 @@ impl Content for PlanPanel {
         ]
     }
 
+    fn typing(&self, state: &Shared) -> Option<Action> {
+        let is_word = matches!(state.editor.column(), Column::Type | Column::Pattern);
+        (!is_word).then_some(Action::Edit(EditAction::Cell))
+    }
+
     fn scroll(&mut self, _: &Shared, _: Rect, by: isize) -> Vec<Request> {
         vec![Change::PlanRows(by).into()]
     }
@@ -241,5 +246,5 @@ fn said_below(state: &Shared, findings: &[Finding], width: usize) -> Vec<Line<'s
     };
     let key = state.key(Action::Edit(EditAction::Fix));
     let fix = fix.map(|fix| format!(" — {key}: {}", fix.title)).unwrap_or_default();
-    said(role, &format!("{mark} {finding}{more}{fix}"))
+    said(role, &state.units.in_sentence(format!("{mark} {finding}{more}{fix}")))
 }

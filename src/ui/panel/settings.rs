@@ -8,7 +8,7 @@ use crossterm::event::{KeyEvent, MouseEvent};
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::fc::{CraftSetting, cli_block};
+use crate::fc::{Allowed, CraftSetting, cli_block};
 use crate::ui::action::{Action, PanelAction};
 use crate::ui::diff::Against;
 use crate::ui::event_log::Severity;
@@ -241,6 +241,11 @@ impl Content for SettingsPanel {
             (&[Action::Panel(PanelAction::SettingCompare)], "differences"),
             (&[Action::Panel(PanelAction::SettingUndo)], "undo"),
         ]
+    }
+
+    fn typing(&self, state: &Shared) -> Option<Action> {
+        let is_number = matches!(self.setting(state)?.allowed, Allowed::Number { .. } | Allowed::Numbers(_));
+        is_number.then_some(Action::Panel(PanelAction::SettingType))
     }
 
     fn act(&mut self, state: &Shared, action: PanelAction) -> Vec<Request> {

@@ -129,6 +129,10 @@ impl Content for WorldPanel {
         }
     }
 
+    fn typing(&self, state: &Shared) -> Option<Action> {
+        self.knobs.is_number(state).then_some(Action::Panel(PanelAction::KnobEdit))
+    }
+
     fn key(&mut self, state: &Shared, event: KeyEvent) -> Vec<Request> {
         self.knobs.field_key(state, event)
     }

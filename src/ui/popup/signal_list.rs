@@ -36,7 +36,7 @@ pub(in crate::ui) enum SignalKey {
 /// it.
 pub(in crate::ui) fn found<'a>(state: &'a Shared, query: &str) -> Vec<Named<'a>> {
     let word = query.trim().to_lowercase();
-    let means = |named: &Named<'_>| named.help().is_some_and(|help| help.to_lowercase().contains(&word));
+    let means = |named: &Named<'_>| named.help(state).is_some_and(|help| help.to_lowercase().contains(&word));
     let score = |named: Named<'a>| {
         let by_name = fuzzy::score(query, named.name()).map(|score| score + 1);
         Some((by_name.or_else(|| means(&named).then_some(0))?, named))
@@ -91,8 +91,8 @@ pub(in crate::ui) fn draw(
         let text = format!(" {mark} {name:<26} {value:>10} {:<18}", cut(&named.unit(), 8));
         row(buffer, inside, 1 + (at - first) as u16, theme, role, &text);
     }
-    if let Some(help) = found.get(list.selected).and_then(|named| named.help()) {
-        let help = cut(help, usize::from(inside.width.saturating_sub(1)));
+    if let Some(help) = found.get(list.selected).and_then(|named| named.help(state)) {
+        let help = cut(&help, usize::from(inside.width.saturating_sub(1)));
         row(buffer, inside, inside.height.saturating_sub(1), theme, Role::Dim, &format!(" {help}"));
     }
     if found.is_empty() {

@@ -17,7 +17,7 @@ const WIDTH: u16 = 34;
 pub(crate) const GO_NO_GO: &str = "go or no-go (100 noisy flights)";
 
 /// A row of the list.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Choice {
     WhatIf(WhatIf),
     /// A hundred noisy flights of the plan, from home.
@@ -30,8 +30,8 @@ pub(crate) fn key(selected: &mut usize, event: KeyEvent) -> Outcome<Choice> {
         KeyCode::Up | KeyCode::Char('k') => *selected = selected.saturating_sub(1),
         KeyCode::Down | KeyCode::Char('j') => *selected = (*selected + 1).min(WHAT_IFS.len()),
         KeyCode::Enter => {
-            let what_if = WHAT_IFS.get(*selected);
-            return Outcome::Chosen(what_if.map_or(Choice::GoNoGo, |&chosen| Choice::WhatIf(chosen)));
+            let what_if = WHAT_IFS.into_iter().nth(*selected);
+            return Outcome::Chosen(what_if.map_or(Choice::GoNoGo, Choice::WhatIf));
         }
         KeyCode::Esc | KeyCode::Char('w' | 'q') => return Outcome::Left,
         _ => {}
@@ -39,18 +39,18 @@ pub(crate) fn key(selected: &mut usize, event: KeyEvent) -> Outcome<Choice> {
     Outcome::Open
 }
 
-/// Draws the popup; `selected` is the selected row. Without a flight only the last row is possible.
+/// Returns the title; on the ground the plan is flown from home.
+pub(crate) fn title(flies: bool) -> &'static str {
+    if flies { "What if, from this instant on:" } else { "What if, flown from home:" }
+}
+
+/// Draws the popup; `selected` is the selected row.
 pub(crate) fn draw(theme: &Theme, flies: bool, selected: usize, area: Rect, buffer: &mut Buffer) {
     let height = WHAT_IFS.len() as u16 + 3;
-    let inside = popup(theme, area, (WIDTH, height), "What if, from this instant on:", buffer);
-    let rows = WHAT_IFS.iter().map(|what_if| what_if.title).chain([GO_NO_GO]);
+    let inside = popup(theme, area, (WIDTH, height), title(flies), buffer);
+    let rows = WHAT_IFS.into_iter().map(|what_if| what_if.title).chain([GO_NO_GO.into()]);
     for (at, title) in rows.enumerate() {
-        let is_possible = flies || at == WHAT_IFS.len();
-        let (mark, role) = match (at == selected, is_possible) {
-            (true, _) => ("▸", Role::Selected),
-            (false, true) => (" ", Role::Text),
-            (false, false) => (" ", Role::Dim),
-        };
+        let (mark, role) = if at == selected { ("▸", Role::Selected) } else { (" ", Role::Text) };
         row(buffer, inside, at as u16, theme, role, &format!("{mark} {title}"));
     }
     let keys = [(" ↑ ↓", " choose  "), ("Enter", " fly  "), ("Esc", " close")];

@@ -60,7 +60,7 @@ pub(super) fn choose_signal(state: &mut AppState, line: &str) -> Result<Answered
     if found.is_empty() {
         return Err(format!("No signal matches {line}; fewer letters find more."));
     }
-    let rows = found.iter().take(MOST).map(|named| match named.help() {
+    let rows = found.iter().take(MOST).map(|named| match named.help(shared) {
         Some(help) => format!("{} ({help})", named.name()),
         None => named.name().to_owned(),
     });

@@ -106,7 +106,7 @@ pub(super) fn carry_out(
             return false;
         }
         // These need the terminal.
-        Effect::ShowFlights { .. } | Effect::Suspend | Effect::Quit => return false,
+        Effect::ShowFlights { .. } | Effect::Redraw | Effect::Suspend | Effect::Quit => return false,
         Effect::Send(command) => command,
         Effect::Cli(line) => Command::Cli { line, reply: answers.reply(Msg::CliReply) },
         Effect::ReadSettings => Command::ReadSettings { reply: answers.result(MISSING, Msg::SettingsReply) },

@@ -122,7 +122,7 @@ async fn run_loop(
         }
         for effect in effects {
             match effect {
-                Effect::Suspend => {}
+                Effect::Redraw | Effect::Suspend => {}
                 Effect::Copy(text) => lines.write(&text)?,
                 Effect::ShowFlights { files, again } => {
                     lines.write(&flights::command(&link, &files, again))?;
@@ -191,6 +191,7 @@ fn is_question(effect: &Effect) -> bool {
         | Effect::Curves(_)
         | Effect::ShowFlights { .. }
         | Effect::Copy(_)
+        | Effect::Redraw
         | Effect::Suspend
         | Effect::Quit => false,
     }

@@ -150,7 +150,9 @@ fn asked(effect: &Effect) -> Option<Question> {
         | Effect::EndSurvey(_)
         | Effect::WriteFlight { .. }
         | Effect::WriteRecording { .. } => None,
-        Effect::ShowFlights { .. } | Effect::Copy(_) | Effect::Suspend | Effect::Quit => None,
+        Effect::ShowFlights { .. } | Effect::Copy(_) | Effect::Redraw | Effect::Suspend | Effect::Quit => {
+            None
+        }
     }
 }
 

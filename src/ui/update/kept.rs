@@ -267,6 +267,24 @@ mod tests {
     }
 
     #[test]
+    fn two_programs_of_one_kind_keep_their_own_panels() {
+        let kept_with = |focus: Panel| {
+            let mut state = state_of(KeptOf::Craft, None);
+            state.shared.focus = focus;
+            kept(&mut state).expect("a screen")
+        };
+        let (first, second) = (kept_with(Panel::Graphs), kept_with(Panel::Log));
+        let focus = |kind: &KeptTexts, own: Option<&KeptTexts>| {
+            let own = own.and_then(|own| read(own.subject.clone()));
+            let mut state = state_of(KeptOf::Craft, KeptScreen::joined(read(kind.screen.clone()), own));
+            restore(&mut state);
+            state.shared.focus
+        };
+        assert_eq!(focus(&second, Some(&first)), Panel::Graphs);
+        assert_eq!(focus(&second, None), Panel::Log, "a craft that is new has the panels of the last one");
+    }
+
+    #[test]
     fn the_beginning_and_the_end_of_a_flight_are_no_places_to_return_to() {
         let mut state = state_of(KeptOf::Flown, None);
         for (at_s, place) in [(0.0, None), (7.0, Some(7_000_000)), (40.0, None)] {

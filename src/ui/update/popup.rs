@@ -4,7 +4,7 @@ use crossterm::event::{KeyCode, KeyEvent};
 
 use super::{act, arrange, diff, flights, map_menu, permission, run_line};
 use crate::telemetry::InFlightCommand;
-use crate::ui::action::{self, Action};
+use crate::ui::action::Action;
 use crate::ui::app_state::AppState;
 use crate::ui::command;
 use crate::ui::editor::FileRequest;
@@ -37,10 +37,7 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) 
             match chosen(&mut state.popups, outcome) {
                 None => Vec::new(),
                 Some(Choice::GoNoGo) => act(state, Action::GoNoGo),
-                Some(Choice::WhatIf(what_if)) => match action::flies(&state.shared) {
-                    Ok(()) => command::flight::fly_what_if(&mut state.shared, what_if),
-                    Err(reason) => state.shared.only_notify(Severity::Warn, reason),
-                },
+                Some(Choice::WhatIf(what_if)) => command::flight::fly_what_if(&mut state.shared, what_if),
             }
         }
         Some(Popup::Guards { selected }) => {

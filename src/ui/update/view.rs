@@ -9,8 +9,13 @@ use crate::ui::settings::reading;
 
 /// Gives a panel the focus.
 pub(super) fn focus(state: &mut AppState, panel: Panel) -> Vec<Effect> {
-    if state.shared.focus != panel {
+    let before = state.shared.focus;
+    if before != panel {
         state.panels.of_mut(panel).visit();
+        state.has_chosen = false;
+        if !before.takes_text() {
+            state.before_text = before;
+        }
     }
     state.shared.focus = panel;
     // The place counts, which another panel may have swapped.

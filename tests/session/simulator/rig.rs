@@ -193,7 +193,11 @@ impl Rig {
 
     fn note(&mut self, event: Event) {
         match event.kind {
-            SessionEvent::Notice(notice) | SessionEvent::ArmingBlocked(notice) => self.notices.push(notice),
+            SessionEvent::Notice(notice)
+            | SessionEvent::Warning(notice)
+            | SessionEvent::ArmingBlocked(notice) => {
+                self.notices.push(notice);
+            }
             SessionEvent::Simulator(remark) => self.notices.push(remark.to_string()),
             SessionEvent::Vehicle(EventKind::Notice(notice)) => self.notices.push(notice.to_string()),
             SessionEvent::Vehicle(EventKind::Fault { kind, on, .. }) => {

@@ -144,7 +144,7 @@ impl Subscriber<Flight> for Feed {
 
     fn after_tick(&mut self, flight: &Flight) {
         if let Some(Err(problem)) =
-            self.recorder.as_mut().map(|recorder| recorder.after_tick(flight.vehicle()))
+            self.recorder.as_mut().map(|recorder| recorder.after_tick(flight.vehicle(), false))
         {
             self.problem.get_or_insert(problem);
         }

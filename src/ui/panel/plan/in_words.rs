@@ -26,7 +26,7 @@ pub(super) fn lines(state: &Shared) -> Vec<String> {
         let mark = if finding.is_refusal() { "✗" } else { "▲" };
         let fix = home.and_then(|home| fix(state.editor.document(), finding, home));
         let fix = fix.map(|fix| format!(" — {name} on its row: {}", fix.title)).unwrap_or_default();
-        lines.push(format!("{mark} {finding}{fix}"));
+        lines.push(state.units.in_sentence(format!("{mark} {finding}{fix}")));
     }
     lines.extend((0..waypoints.len()).filter_map(|index| table::difference(state, index)));
     lines
