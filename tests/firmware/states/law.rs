@@ -168,6 +168,7 @@ impl Law {
             | FirmwareEvent::GpsLost { .. }
             | FirmwareEvent::Battery { .. }
             | FirmwareEvent::HeadingDoubt { .. }
+            | FirmwareEvent::LeanDoubt { .. }
             | FirmwareEvent::Mode(_)
             | FirmwareEvent::RxLoss
             | FirmwareEvent::RxRecovered
