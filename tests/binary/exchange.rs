@@ -141,7 +141,7 @@ fn a_file_with_75_waypoints_is_shown_simplified_and_split_and_not_flown() {
     sandbox.write("long.txt", &(0..75).map(line).collect::<String>());
     let shown = sandbox.run(&["plan", "show", "long.txt"]).exits(2).out;
     assert!(
-        shown.starts_with("75 waypoints, 8.24 km in all: a plan holds at most 30, so 3 parts"),
+        shown.starts_with("75 waypoints, 0.82 km in all: a plan holds at most 30, so 3 parts"),
         "{shown}"
     );
     assert!(shown.contains("long 1\n") && shown.contains("\n17 waypoints, "), "{shown}");
