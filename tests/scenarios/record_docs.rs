@@ -49,6 +49,7 @@ fn one_of_each() -> Vec<SessionEvent> {
         FirmwareEvent::RxRecovered,
         FirmwareEvent::Failsafe { policy: RxLossPolicy::Land, stage: 2, procedure: FailsafeProcedure::Land },
         FirmwareEvent::HeadingDoubt { on: true, error_deg: 58.0 },
+        FirmwareEvent::LeanDoubt { on: true, error_deg: 20.0 },
         FirmwareEvent::Battery { state: BatteryAlarm::Warning, cell_v: 3.49 },
         FirmwareEvent::Notice(FirmwareNotice::ArmAssisted),
     ];
@@ -131,6 +132,7 @@ fn vehicle_name(kind: &EventKind) -> Option<&'static str> {
             FirmwareEvent::RxRecovered => "rx_recovered",
             FirmwareEvent::Failsafe { .. } => "failsafe",
             FirmwareEvent::HeadingDoubt { .. } => "heading_doubt",
+            FirmwareEvent::LeanDoubt { .. } => "lean_doubt",
             FirmwareEvent::Battery { .. } => "battery",
             FirmwareEvent::Notice(_) => "notice",
             FirmwareEvent::Nav(event) => match event {
