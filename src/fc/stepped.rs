@@ -162,7 +162,7 @@ impl Stepped {
             }
             Err(NoReport::Stopped) => self.note_wait(now),
             Err(NoReport::Silent) => {
-                self.become_unusable("has not ended its step for 10 s, although it is not stopped")
+                self.become_unusable("has not ended its step for 10 s, although it is not stopped");
             }
             Err(NoReport::Faulty(why)) => self.become_unusable(why),
             Err(NoReport::Ended(end)) => self.restart(end.to_string(), end.is_reboot(), mailbox),
