@@ -35,7 +35,7 @@ pub use event::{Happened, RecordedEvent};
 pub use fingerprint::{Fingerprint, FlightPrint};
 pub use lines::Rest;
 pub use picture::{Cadence, Picture, Pictures, Seen};
-pub use read::{ReadError, Recording};
+pub use read::{ReadError, Recording, read_setup};
 pub use record::{FORMAT, Header};
 pub use recorder::{Recorder, RecordingSink};
 pub use repeat::Repeat;

@@ -18,6 +18,7 @@ use super::setup;
 use super::tui::{self, Screen, SecondFlight, Source};
 use crate::args::{PlanArg, RecordInstant, ReplayArgs, ReviewArgs, TerrainArgs};
 use crate::plan::format::PlanFile;
+use crate::recording::Setup;
 use crate::replay::{Overview, PastFlights};
 use crate::session::{ReplayConfig, ReplayStart};
 use crate::signals::SimTime;
@@ -36,6 +37,7 @@ pub(super) fn run(args: &ReplayArgs, repeat: &[String], keymap: Keymap) -> Resul
         [] => return Err(AppError::internal("no file to replay")),
     };
     let mut flights = opened::open(first)?;
+    let flown = opened::setup(first);
     let second = second.map(|path| opened::open(path)).transpose()?;
     if args.exports() {
         let stop = interrupt_flag()?;
@@ -65,15 +67,19 @@ pub(super) fn run(args: &ReplayArgs, repeat: &[String], keymap: Keymap) -> Resul
         notices: Vec::new(),
     };
     let (chosen, plan) = last_plan::read(kept.before(), None, &mut notices).unzip();
+    let of_flight = || flown.as_ref().map(Setup::plan).filter(|plan| !plan.plan.waypoints.is_empty());
+    let settings = flown.as_ref().and_then(|flown| flown.flight().ok()).map(|flight| flight.boot_lines);
     let screen = Screen {
-        plan: plan.unwrap_or_else(|| PlanFile { name: "new".to_owned(), ..PlanFile::default() }),
+        plan: plan
+            .or_else(of_flight)
+            .unwrap_or_else(|| PlanFile { name: "new".to_owned(), ..PlanFile::default() }),
         path: chosen.as_ref().and_then(PlanArg::path),
         backdrop: Vec::new(),
         directory,
         screen_file,
         kept,
         was_used: true,
-        given_settings: Vec::new(),
+        given_settings: setup::given_settings(&settings.unwrap_or_default()),
         notices,
         review: ReviewArgs::default(),
         tiles: None,

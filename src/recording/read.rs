@@ -124,6 +124,20 @@ impl Recording {
     }
 }
 
+/// Returns the start of a recorded flight, without reading the flight; `None` if the source does not begin with one.
+pub fn read_setup(source: impl BufRead) -> Option<Setup> {
+    let mut setup = None;
+    let read = each(source, |line| match serde_json::from_slice::<Record>(line) {
+        Ok(Record::Flight(_)) => ControlFlow::Continue(()),
+        Ok(Record::Setup(read)) => {
+            setup = Some(*read);
+            ControlFlow::Break(())
+        }
+        _ => ControlFlow::Break(()),
+    });
+    read.ok().and(setup)
+}
+
 /// A recording that is being read.
 #[derive(Debug, Default)]
 struct Reading {

@@ -47,6 +47,27 @@ fn the_last_instant_of_a_recorded_flight_is_complete_and_disarmed() {
 }
 
 #[test]
+fn the_plan_panel_of_a_replay_shows_the_plan_that_was_flown() {
+    let sandbox = Sandbox::new();
+    sandbox.run(&["fly", "land", "--record", "a.flight"]).exits(0);
+    let seen = sandbox.run_with(&["replay", "a.flight", "--plain"], "view.plan\nquit\n").exits(0).out;
+    let flown =
+        sandbox.run_with(&["land", "--fresh", "--no-ports", "--plain"], "view.plan\nquit\ny\n").exits(0).out;
+    let waypoints = |text: &str| -> Vec<String> {
+        let columns = |line: &str| {
+            line.split_whitespace().take(5).collect::<Vec<_>>().join(" ").replace(['[', ']'], "")
+        };
+        text.lines()
+            .skip_while(|line| !line.starts_with("Plan"))
+            .filter(|line| line.contains("LAND"))
+            .map(columns)
+            .collect()
+    };
+    assert_eq!(waypoints(&seen), ["0 LAND 40.4636797 -79.5182000 12.0"], "{seen}");
+    assert_eq!(waypoints(&seen), waypoints(&flown), "{seen} {flown}");
+}
+
+#[test]
 fn a_replay_leaves_the_unsaved_edits_of_another_run_alone() {
     let mut terminal = Terminal::start_in(with_recording(), 120, 40, PROGRAM, &["--no-ports", "square"]);
     terminal.until_shown("DISARMED");

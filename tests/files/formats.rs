@@ -110,7 +110,7 @@ proptest! {
     fn no_text_panics_and_every_problem_has_a_place(text in "\\PC{0,200}|(.|\n){0,300}") {
         for format in [Format::Toml, Format::CliText] {
             if let Err(errors) = parse("any", &text, format) {
-                let lines = text.split('\n').count();
+                let lines = text.split(['\n', '\r']).count();
                 prop_assert!(!errors.is_empty());
                 for error in errors {
                     prop_assert!((1..=lines).contains(&error.line) && error.column >= 1, "{error}");

@@ -21,6 +21,7 @@ mod map_view;
 mod mistyped;
 mod orientation;
 mod panels;
+mod pictures;
 mod plan_panel;
 mod popups_by_mouse;
 mod remapped;

@@ -12,7 +12,7 @@ use ratatui::backend::TestBackend;
 use strum::IntoEnumIterator as _;
 
 #[path = "../../examples/picture/svg/mod.rs"]
-mod svg;
+pub(crate) mod svg;
 
 fn screen(state: &AppState) -> TestBackend {
     let (width, height) = state.shared.size;

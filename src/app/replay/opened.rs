@@ -1,5 +1,6 @@
 //! Opens a file by its contents.
 
+use std::io::BufReader;
 use std::path::Path;
 
 use super::shown_name;
@@ -9,6 +10,7 @@ use crate::app::log_source::{FileSource, has_log};
 use crate::app::recording_file::GZIP;
 use crate::blackbox::FIRST_LINE;
 use crate::blackbox::decode::LogSource as _;
+use crate::recording::{Setup, read_setup};
 use crate::replay::{LogFlights, PastFlights, RecordedFlights};
 
 /// The first bytes of a file in which a log must begin.
@@ -51,6 +53,12 @@ pub(super) fn open(path: &Path) -> Result<Opened, AppError> {
         "{name} is no recorded flight: a blackbox log begins with the line `{FIRST_LINE}`, and a recording is a file of \
          `betadeck fly --record`"
     )))
+}
+
+/// Returns the start of the flight of a recording, with its plan and settings; `None` if the file is none or has none.
+pub(super) fn setup(path: &Path) -> Option<Setup> {
+    let (file, _) = input_file::open_log(path).ok()?;
+    read_setup(BufReader::new(file))
 }
 
 /// Returns the first bytes of a file.

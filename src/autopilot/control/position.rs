@@ -30,6 +30,8 @@ const CHASE: f64 = 1.1;
 /// speeds of the target.
 const ON_PATTERN: f64 = 0.5;
 const MOST_TRIM: f64 = 0.5;
+/// The lag of the velocity behind its setpoint, s.
+const VELOCITY_LAG_S: f64 = 0.3;
 /// The maximum lead of the speed setpoint over the speed while the thrust limits the lean, m/s.
 const SPEED_LEAD_MPS: f64 = 1.0;
 /// The fastest change of the lean limit in use, rad/s.
@@ -276,8 +278,13 @@ impl PositionController {
         if self.saturated || error.norm() > ON_PATTERN * radius_m {
             return;
         }
-        let gain = math::powi(0.025 * f64::from(params.position_p) / 2.0, 2);
-        let trim = self.pattern_trim + Vector2::new(along.dot(&error), inward.dot(&error)) * (gain * dt);
+        let stiffness = 0.025 * f64::from(params.position_p);
+        // While the craft answers to the trim, the pattern turns away from the direction in which it was added.
+        let turn_rps = target.target_accel.norm() / speed;
+        let (sin, cos) = math::sin_cos(math::atan2(turn_rps, stiffness) + turn_rps * VELOCITY_LAG_S);
+        let (ahead, inside) = (along.dot(&error), inward.dot(&error));
+        let step = Vector2::new(ahead * cos - inside * sin, ahead * sin + inside * cos);
+        let trim = self.pattern_trim + step * (math::powi(stiffness / 2.0, 2) * dt);
         self.pattern_trim = trim.cap_magnitude(MOST_TRIM * speed);
     }
 

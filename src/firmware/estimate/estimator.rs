@@ -19,6 +19,8 @@ use crate::geo::{GRAVITY, LatLon, wrap_pi};
 use crate::math;
 use crate::signals::{GpsSample, SensorFrame, SimTime};
 
+/// The specific force of an impact, m/s²: a hard landing stays below half of it.
+const IMPACT: f64 = 150.0;
 /// The nominal step of the slow part, s.
 const SLOW_S: f64 = 0.01;
 /// The longest step that is integrated, s. After a stall the craft is assumed to be at its last position, not further
@@ -57,6 +59,8 @@ pub struct Estimator {
     was_aided: bool,
     last_rate: Vector3<f64>,
     last_force: Vector3<f64>,
+    /// `true` after an impact since the last slow step.
+    has_hit: bool,
     same_s: f64,
     gyro: GyroCalibration,
     acc: Option<AccCalibration>,
@@ -107,6 +111,7 @@ impl Estimator {
             was_aided: false,
             last_rate: Vector3::zeros(),
             last_force: Vector3::new(0.0, 0.0, GRAVITY),
+            has_hit: false,
             same_s: 0.0,
             gyro: GyroCalibration::new(),
             acc: None,
@@ -238,6 +243,7 @@ impl Estimator {
         self.same_s = if is_same && rate.norm_squared() > MOVING * MOVING { self.same_s + dt } else { 0.0 };
         self.estimate.imu_frozen = self.same_s > FROZEN_S;
         let rate = if rate.norm_squared() <= RATE_LIMIT * RATE_LIMIT { rate } else { self.last_rate };
+        self.has_hit |= force.norm_squared() > IMPACT * IMPACT;
         let is_sound = force.norm_squared() <= FORCE_LIMIT * FORCE_LIMIT;
         let force = if is_sound { force - self.tuning.acc_offset_flu } else { self.last_force };
         (self.last_rate, self.last_force) = (rate, force);
@@ -302,6 +308,9 @@ impl Estimator {
         // While the heading is unknown, the felt acceleration has no known direction over the ground.
         let known = if self.estimate.heading_valid { felt } else { Vector2::zeros() };
         self.horizontal.predict(known, dt);
+        if std::mem::take(&mut self.has_hit) {
+            self.vertical.take_impact();
+        }
         self.vertical.predict(force.z - GRAVITY, dt);
         self.course.predict(felt, dt);
         self.fuse_gps(now);

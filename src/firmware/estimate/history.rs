@@ -14,17 +14,26 @@ pub(super) struct Axis {
     pub velocity: f64,
     /// The acceleration missing from the measured one, m/s².
     pub accel_error: f64,
+    /// The largest acceleration error, m/s².
+    pub accel_error_limit: f64,
     past: [(f64, f64); DEPTH],
     newest: usize,
 }
 
-/// The largest acceleration error, m/s²: more than a tilt error of 17° or the worst accelerometer causes.
-const ACCEL_ERROR_LIMIT: f64 = 3.0;
+/// The usual largest acceleration error, m/s²: more than a tilt error of 17° or the worst accelerometer causes.
+pub(super) const ACCEL_ERROR_LIMIT: f64 = 3.0;
 
 impl Axis {
     /// Creates an axis at rest at zero.
     pub(super) fn new() -> Self {
-        Self { position: 0.0, velocity: 0.0, accel_error: 0.0, past: [(0.0, 0.0); DEPTH], newest: 0 }
+        Self {
+            position: 0.0,
+            velocity: 0.0,
+            accel_error: 0.0,
+            accel_error_limit: ACCEL_ERROR_LIMIT,
+            past: [(0.0, 0.0); DEPTH],
+            newest: 0,
+        }
     }
 
     /// Starts again at this position and velocity, as if it had always moved like that.
@@ -55,7 +64,8 @@ impl Axis {
         let age = age.min(DEPTH - 1);
         let (p, v) = (gain.position * innovation, gain.velocity * innovation);
         let before = self.accel_error;
-        self.accel_error = (before + gain.accel * innovation).clamp(-ACCEL_ERROR_LIMIT, ACCEL_ERROR_LIMIT);
+        let limit = self.accel_error_limit;
+        self.accel_error = (before + gain.accel * innovation).clamp(-limit, limit);
         let b = self.accel_error - before;
         for back in 0..DEPTH {
             let since = (age as f64 - back as f64).max(0.0) * dt;

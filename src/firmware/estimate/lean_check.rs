@@ -44,7 +44,7 @@ mod tests {
             (0..(seconds * 100.0) as u32).for_each(|_| check.update(error_deg.to_radians(), 0.01));
             check.doubt().map(|doubt| doubt.to_degrees().round())
         };
-        assert_eq!(after(10.0, 60.0), None);
+        assert_eq!(after(8.0, 60.0), None);
         assert_eq!(after(16.0, 0.1), Some(16.0));
         assert_eq!(after(8.0, 10.0), Some(16.0));
         assert_eq!(after(2.0, 1.9), Some(16.0));

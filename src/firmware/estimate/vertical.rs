@@ -1,7 +1,7 @@
 //! Altitude and climb rate: dead reckoning by the accelerometer, corrected by barometer and GPS.
 
 use super::gps::Dilution;
-use super::history::Axis;
+use super::history::{ACCEL_ERROR_LIMIT, Axis};
 use super::kalman::{KalmanCovariance, ProcessNoise};
 use crate::math;
 use crate::signals::GpsSample;
@@ -24,6 +24,8 @@ const GPS_BESIDE_SIGMA: f64 = 4.0;
 const CLIMB_SIGMA: f64 = 0.08;
 /// The share of a solution that the zero of the GPS altitude follows while the barometer is the better source.
 const GPS_ZERO_SHARE: f64 = 0.02;
+/// The standard deviations of climb rate and acceleration after an impact, m/s and m/s²: a fall, and a craft on its back.
+const IMPACT_SIGMA: f64 = 20.0;
 /// The time for which a measurement counts, s.
 const VALID_S: f64 = 2.0;
 
@@ -71,6 +73,13 @@ impl Vertical {
         }
     }
 
+    /// Forgets how fast the craft climbs and how well the accelerometer knows it: an impact beyond what the sensor can
+    /// follow has stopped it, and perhaps turned it over. The barometer finds both again.
+    pub(super) fn take_impact(&mut self) {
+        self.covariance = KalmanCovariance::new(1.0, IMPACT_SIGMA, IMPACT_SIGMA);
+        self.axis.accel_error_limit = 2.0 * IMPACT_SIGMA;
+    }
+
     /// Returns the altitude above the zero, m.
     pub(super) fn altitude(&self) -> f64 {
         self.axis.position
@@ -100,6 +109,7 @@ impl Vertical {
     /// Sets the zero at the present altitude.
     pub(super) fn zero(&mut self) {
         let altitude = self.axis.position;
+        self.axis.accel_error_limit = ACCEL_ERROR_LIMIT;
         self.axis.shift(-altitude);
         self.baro_zero = self.baro_zero.map(|zero| zero + altitude);
         self.gps_zero = self.gps_zero.map(|zero| zero + altitude);
@@ -191,6 +201,32 @@ mod tests {
         let filter = settled();
         assert!(filter.altitude().abs() < 0.02, "{}", filter.altitude());
         assert!(filter.climb().abs() < 0.02, "{}", filter.climb());
+    }
+
+    #[test]
+    fn after_an_impact_the_altitude_does_not_go_on_below_the_ground() {
+        let mut filter = settled();
+        let (mut altitude, mut climb) = (0.0, 0.0);
+        let mut fly = |filter: &mut Vertical, true_accel: f64, felt: f64, steps: u32| {
+            let mut lowest = f64::INFINITY;
+            for step in 0..steps {
+                climb += true_accel * STEP_S;
+                altitude += climb * STEP_S;
+                filter.predict(felt, STEP_S);
+                if step % 2 == 0 {
+                    filter.fuse_baro(300.0 + altitude, 1.0);
+                }
+                lowest = filter.altitude().min(lowest);
+            }
+            lowest - altitude
+        };
+        fly(&mut filter, 20.0, 20.0, 100);
+        fly(&mut filter, -20.0, -20.0, 200);
+        filter.take_impact();
+        // On its back it feels the ground as a pull downwards.
+        let below_m = fly(&mut filter, 2000.0, -19.6, 1);
+        let below_m = fly(&mut filter, 0.0, -19.6, 300).min(below_m);
+        assert!(below_m > -2.0, "{below_m} m");
     }
 
     #[test]

@@ -21,7 +21,7 @@ pub(super) const GROUP: Group = Group {
         Line("log", "mine.bbl", Shows("No log was written: ")),
         Line("backdrop", "off", Shows("Nothing is under the plan.")),
         Line("go-to", "1", Shows("The autopilot does not fly")),
-        Line("what-if", "gps-loss", Shows("so there is no flight to look ahead to")),
+        Line("what-if", "gps-loss", Shows("GPS lost here, flown from home: ")),
         Line("where", "rx-loss,3", Shows("rx-loss,3 at every second")),
         Again("forecast.where", Hides("rx-loss,3 at every second")),
         Line("speed", "4", Shows("goes on at 4×")),

@@ -35,6 +35,7 @@ pub(super) const GROUP: Group = Group {
         Again("forecast.where", Hides("gps-loss,6 at every second")),
         Act("forecast.go", Shows("go or no-go: ")),
         Again("app.back", Hides("go or no-go: ")),
+        Act("app.redraw", Shows("The screen is drawn again.")),
         Act("app.suspend", Shows("no shell that could continue")),
         Act("app.cancel", Shows("Ctrl-C again within 2 s quits")),
     ],
