@@ -205,7 +205,7 @@ impl Lockstep {
         if sent.saturating_sub(self.read) > SENT_MAX {
             return Err(NoReport::Faulty("reports more bytes over its serial port than a step can carry"));
         }
-        let mut bytes = [0; 4096];
+        let (mut bytes, mut has_waited) = ([0; 4096], false);
         while self.read < sent {
             let most = bytes.len().min((sent - self.read) as usize);
             match serial.stream.read(&mut bytes[..most]) {
@@ -219,9 +219,11 @@ impl Lockstep {
                 }
                 Err(error) if error.kind() == ErrorKind::Interrupted => {}
                 Err(error) if error.kind() == ErrorKind::WouldBlock => {
-                    if !process::is_readable(&serial.stream) {
+                    // One that sends a byte now and then must not hold this thread either.
+                    if has_waited || !process::is_readable(&serial.stream) {
                         return Ok(false);
                     }
+                    has_waited = true;
                 }
                 Err(_) => {
                     self.lose_serial();
