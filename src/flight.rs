@@ -267,9 +267,11 @@ impl Flight {
 
     /// Notes how the craft gets on towards its waypoint.
     fn follow_progress(&mut self) {
-        let Some(nav) = self.vehicle.controller().nav().filter(|nav| nav.state != NavState::Idle) else {
+        let Some(nav) = self.vehicle.controller().nav() else { return };
+        self.progress.follow(nav.state);
+        if nav.state != NavState::Approaching {
             return;
-        };
+        }
         let (Some(truth), Some(frame)) = (self.vehicle.truth(), self.vehicle.local_frame()) else { return };
         let planned =
             self.vehicle.controller().stored_plan().and_then(|plan| plan.waypoints.get(usize::from(nav.wp)));

@@ -8,6 +8,9 @@
 //! Operations that IEEE 754 defines exactly are not here: the four operations, `sqrt`, `abs`, `floor`, `round`, `%`. `mul_add` is exact
 //! everywhere, but slow on processors without an instruction for it.
 
+/// The most decimals that tell two numbers apart.
+const MOST_DECIMALS: usize = 17;
+
 /// Returns the sine of an angle, rad.
 pub fn sin(x: f64) -> f64 {
     libm::sin(x)
@@ -84,6 +87,17 @@ pub fn powi(x: f64, exponent: u32) -> f64 {
     (1..exponent).fold(x, |power, _| power * x)
 }
 
+/// Returns the smallest number of decimals, from `least` on, with which two numbers read differently; `least` if they are
+/// equal.
+pub fn decimals_apart(one: f64, other: f64, least: usize) -> usize {
+    // As numbers, −0.0 and 0.0 are the same.
+    let read = |number: f64, decimals: usize| format!("{number:.decimals$}").parse::<f64>();
+    (least..=MOST_DECIMALS)
+        .find(|&decimals| read(one, decimals) != read(other, decimals))
+        .filter(|_| one != other)
+        .unwrap_or(least)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -110,6 +124,23 @@ mod tests {
             near(log10(1.0 + x * x), (1.0 + x * x).log10());
             near(powf(1.0 + x * x, 0.4), (1.0 + x * x).powf(0.4));
             near(powi(x, 3), x * x * x);
+        }
+    }
+
+    #[test]
+    fn numbers_that_differ_are_told_apart_by_their_decimals() {
+        for (one, other, least, decimals) in [
+            (150.0, 100.0, 0, 0),
+            (50.4, 50.0, 0, 1),
+            (50.04, 50.0, 0, 2),
+            (50.0004, 50.0, 1, 4),
+            (15.000_000_1, 15.0, 1, 7),
+            (15.000_000_000_000_002, 15.0, 1, 15),
+            (-0.001, 0.001, 1, 3),
+            (50.0, 50.0, 2, 2),
+            (f64::NAN, 50.0, 1, 1),
+        ] {
+            assert_eq!(decimals_apart(one, other, least), decimals, "{one} and {other}");
         }
     }
 }

@@ -245,14 +245,15 @@ fn flights_that_could_not_be_flown_are_neither_successes_nor_failures() {
         if number % 10 < 3 {
             record.standing = Standing::NotFlown;
             record.result = String::new();
-            record.problem = Some("airframe iris: too strong".to_owned());
+            record.problem = Some(format!("airframe iris: too strong: use at most {}.5 N·s/m", number + 20));
         }
         builder.add(&record);
     }
     let answer = builder.answer();
     let Success { passed, judged, not_flown, .. } = answer.success;
     assert_eq!((passed, judged, not_flown), (28, 28, 12));
-    assert_eq!(answer.not_flown, [("airframe iris: too strong".to_owned(), 12)]);
+    let first = "airframe iris: too strong: use at most 21.5 N·s/m".to_owned();
+    assert_eq!(answer.not_flown, [(first, 12)], "one reason with other numbers in each flight");
     assert_eq!((answer.causes.flights, answer.causes.failures), (28, 0));
     assert!(answer.worst.is_empty() && answer.is_whole() && !answer.is_met());
     assert_eq!(answer.results[1], ("not flown".to_owned(), 12));
@@ -288,4 +289,18 @@ fn equal_complaints_are_counted_and_the_result_is_said_once() {
         format!("the craft crashed: it hit the ground sinking at {}.1 m/s", worst.number)
     );
     assert!(answer.worst.iter().all(|other| other.is_like(worst)));
+}
+
+#[test]
+fn crashes_that_differ_in_the_sign_of_a_number_are_alike() {
+    let mut builder = builder("", 4, false);
+    for (number, roll) in (1..).zip(["-4", "4", "−12", "+3.5"]) {
+        let mut record = record(number, Side::A, false, &[]);
+        record.result = "crashed".to_owned();
+        record.reason =
+            format!("the craft crashed: it hit the ground in APPROACHING, roll {roll}°, pitch 11°");
+        record.failures = vec![record.reason.clone()];
+        builder.add(&record);
+    }
+    assert_eq!(builder.answer().worst[0].alike, 4);
 }

@@ -4,6 +4,7 @@ use nalgebra::Vector2;
 
 use crate::math;
 use crate::signals::SimTime;
+use crate::telemetry::NavState;
 
 /// The way by which a craft must come closer to count as getting on, m.
 const CLOSER_M: f64 = 1.0;
@@ -26,9 +27,21 @@ pub(super) struct Progress {
     distance_m: f64,
     /// The angle between heading and course, if the craft moves, degrees.
     against_deg: Option<f64>,
+    /// `true` after the end of the engagement in which the last look was.
+    is_over: bool,
 }
 
 impl Progress {
+    /// Takes the state of the mission. Only a craft on the way to its waypoint gets on: one that holds or lands starts
+    /// anew. The last looks before the end are kept for the verdict, until the next engagement.
+    pub(super) fn follow(&mut self, state: NavState) {
+        match state {
+            NavState::Idle => self.is_over = true,
+            NavState::Approaching if !self.is_over => {}
+            _ => *self = Self::default(),
+        }
+    }
+
     /// Takes the way to the waypoint and the velocity (north, east), and the heading.
     pub(super) fn look(
         &mut self,
@@ -88,5 +101,29 @@ mod tests {
         let away = "before that the craft moved away from waypoint 2 by 40 m, came no closer to waypoint 2 for 20 s, pointed \
                     180° away from its course";
         assert_eq!(after(20, |s| 10.0 + 2.0 * s, -2.0).as_deref(), Some(away));
+    }
+
+    #[test]
+    fn a_craft_that_holds_or_lands_as_planned_is_not_said_to_make_no_progress() {
+        let mut progress = Progress::default();
+        let mut fly = |seconds: std::ops::Range<u64>, state| {
+            for second in seconds {
+                progress.follow(state);
+                if state == NavState::Approaching {
+                    let way = Vector2::new(50.0, 0.0);
+                    progress.look(SimTime(second * 1_000_000), 3, way, Vector2::zeros(), 0.0);
+                }
+            }
+            progress.sentence()
+        };
+        let stalled = |seconds: u64| {
+            Some(format!("before that the craft came no closer to waypoint 3 for {seconds} s"))
+        };
+        assert_eq!(fly(0..11, NavState::Approaching), stalled(10));
+        assert_eq!(fly(11..40, NavState::Holding), None);
+        assert_eq!(fly(40..60, NavState::Landing), None);
+        assert_eq!(fly(60..68, NavState::Approaching), stalled(7));
+        assert_eq!(fly(68..80, NavState::Idle), stalled(7), "for the verdict after the end");
+        assert_eq!(fly(80..83, NavState::Approaching), None, "a new engagement");
     }
 }

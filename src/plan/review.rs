@@ -8,6 +8,7 @@ mod zones;
 use std::fmt;
 
 use crate::geo::{LatLon, distance_bearing};
+use crate::math;
 
 use super::estimate::{Assumptions, SettingSource, TouchdownThrottle, estimate};
 use super::feature::Zone;
@@ -128,7 +129,7 @@ impl Finding {
                     SettingSource::Craft => "the craft's ap_max_distance_from_home",
                     SettingSource::Plan => "the plan's ap_max_distance_from_home, set at the upload,",
                 };
-                let decimals = decimals_apart(*distance_m, *limit_m);
+                let decimals = math::decimals_apart(*distance_m, *limit_m, 0);
                 format!(
                     "waypoint {index} is {distance_m:.decimals$} m from home, {fence} is {limit_m:.decimals$} m"
                 )
@@ -192,7 +193,7 @@ impl fmt::Display for Finding {
                 -alt_m
             ),
             Self::AboveLimit { index, alt_m, limit_m } => {
-                let decimals = decimals_apart(*alt_m, *limit_m);
+                let decimals = math::decimals_apart(*alt_m, *limit_m, 0);
                 write!(
                     f,
                     "waypoint {index} is {alt_m:.decimals$} m above home, the limit (max_altitude_m) is {limit_m:.decimals$} m"
@@ -273,11 +274,6 @@ pub fn review(plan: &FlightPlan, home: LatLon, assumptions: &Assumptions) -> Vec
     findings
 }
 
-/// Returns the smallest number of decimals with which two lengths read differently; two if they are equal.
-fn decimals_apart(one_m: f64, other_m: f64) -> usize {
-    (0..10).find(|&decimals| format!("{one_m:.decimals$}") != format!("{other_m:.decimals$}")).unwrap_or(2)
-}
-
 /// Returns the legs that are flown below home.
 fn below_ground(waypoints: &[Waypoint]) -> impl Iterator<Item = Finding> {
     let below = altitude::legs(waypoints).filter(|leg| leg.alt_m < 0.0);
@@ -322,11 +318,6 @@ mod tests {
 
     #[test]
     fn a_distance_that_rounds_to_its_limit_shows_decimals() {
-        assert_eq!(decimals_apart(150.0, 100.0), 0);
-        assert_eq!(decimals_apart(50.4, 50.0), 1);
-        assert_eq!(decimals_apart(50.04, 50.0), 2);
-        assert_eq!(decimals_apart(50.0004, 50.0), 4);
-        assert_eq!(decimals_apart(50.0, 50.0), 2);
         let from = SettingSource::Craft;
         let finding = Finding::OutsideFence { index: 0, distance_m: 50.4, limit_m: 50.0, from };
         assert!(finding.reason().contains("50.4 m from home") && finding.reason().ends_with("is 50.0 m"));

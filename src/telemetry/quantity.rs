@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::math;
+
 /// Base units of a [`Dimension`], in the order of its exponents.
 const BASES: usize = 6;
 
@@ -112,35 +114,24 @@ impl fmt::Display for Dimension {
 
 /// Returns a value in its unit, for people: `1.82 m`.
 pub fn shown(value: f64, dimension: Dimension) -> String {
+    in_unit(value, dimension, decimals)
+}
+
+fn in_unit(value: f64, dimension: Dimension, decimals: impl Fn(f64) -> usize) -> String {
+    let number = |value| number_with(value, decimals(value));
     let Some(unit) = dimension.unit() else { return number(value) };
     let space = if unit.name == "°" { "" } else { " " };
     format!("{}{space}{}", number(value / unit.scale), unit.name)
 }
 
-/// The most decimals that are added to tell two numbers apart.
-const MORE_DECIMALS: usize = 10;
-
 /// Returns a value and a limit in their unit, with the decimal that tells them apart.
 pub fn shown_apart(value: f64, limit: f64, dimension: Dimension) -> [String; 2] {
     let scale = dimension.unit().map_or(1.0, |unit| unit.scale);
-    let both = |more| {
-        [value, limit].map(|of| {
-            let of = of / scale;
-            number_with(of, decimals(of) + more)
-        })
-    };
-    let more = (0..MORE_DECIMALS).find(|&more| value == limit || both(more)[0] != both(more)[1]).unwrap_or(0);
-    both(more).map(|number| match dimension.unit() {
-        None => number,
-        Some(unit) => format!("{number}{}{}", if unit.name == "°" { "" } else { " " }, unit.name),
-    })
+    let apart = math::decimals_apart(value / scale, limit / scale, 0);
+    [value, limit].map(|of| in_unit(of, dimension, |of| decimals(of).max(apart)))
 }
 
-/// Returns a number with as many decimals as are useful.
-fn number(value: f64) -> String {
-    number_with(value, decimals(value))
-}
-
+/// Returns the number of decimals that are useful.
 fn decimals(value: f64) -> usize {
     match value.abs() {
         size if size >= 100.0 => 1,

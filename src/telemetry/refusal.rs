@@ -2,6 +2,8 @@
 
 use std::borrow::Cow;
 
+use crate::math;
+
 /// The reason why the autopilot does not engage or left the mission. `Display` gives the name (without the
 /// waypoint number).
 #[derive(
@@ -99,10 +101,12 @@ impl Refusal {
             .into(),
             Self::NoHome => "Fence is set but home is unknown: arm with a fix.".into(),
             Self::Geofence { wp, distance_cm, limit_m } => {
-                let distance_m = f64::from(*distance_cm) / 100.0;
-                // A distance that rounds to the fence shows the digits that decide.
-                let decimals = if distance_m.round() == f64::from(*limit_m) { 2 } else { 0 };
-                format!("Waypoint {wp} is {distance_m:.decimals$} m from home, the fence is {limit_m} m.").into()
+                let (distance_m, limit_m) = (f64::from(*distance_cm) / 100.0, f64::from(*limit_m));
+                let decimals = math::decimals_apart(distance_m, limit_m, 0);
+                format!(
+                    "Waypoint {wp} is {distance_m:.decimals$} m from home, the fence is {limit_m:.decimals$} m."
+                )
+                .into()
             }
             Self::ThrottleMin { throttle_min_us, hover_us } => format!(
                 "ap_throttle_min is {throttle_min_us} µs, but this craft hovers at about {hover_us} µs and could not descend: set \
@@ -135,6 +139,14 @@ fn highest_floor_us(hover_us: u16) -> u16 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_waypoint_that_rounds_to_the_fence_shows_the_digit_that_decides() {
+        let refusal = Refusal::Geofence { wp: 3, distance_cm: 10_004, limit_m: 100 };
+        assert_eq!(refusal.sentence(), "Waypoint 3 is 100.04 m from home, the fence is 100.00 m.");
+        let refusal = Refusal::Geofence { wp: 3, distance_cm: 15_040, limit_m: 100 };
+        assert_eq!(refusal.sentence(), "Waypoint 3 is 150 m from home, the fence is 100 m.");
+    }
 
     #[test]
     fn a_throttle_floor_above_the_hover_is_refused_with_value_limit_and_edit() {

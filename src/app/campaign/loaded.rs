@@ -17,6 +17,7 @@ use crate::app::firmware::run::Stopped;
 use crate::app::terrain::with_terrain;
 use crate::args::TerrainArgs;
 use crate::campaign::{Campaign, CampaignFlight, Record, Side};
+use crate::design::Stream;
 use crate::plan::format;
 use crate::report::campaign::{Definition, RunHeader};
 use crate::scenario::{self, CaseFlight, Change, Flights, Request, read_request};
@@ -93,9 +94,8 @@ impl Loaded {
     /// Returns a sentence with the first flight that cannot be flown, and the number of them.
     pub(super) fn refuse_impossible_flights(&self) -> Result<(), AppError> {
         let flights = self.header.flights;
-        let stride = flights.div_ceil(LOOKED_AT).max(1);
         let (mut looked_at, mut impossible, mut first) = (0_u64, 0_u64, None);
-        for number in (1..=flights).step_by(stride as usize) {
+        for number in looks(flights) {
             looked_at += 1;
             let sides = [Side::A, Side::B].into_iter().take(self.header.sides() as usize);
             let problem = sides.filter_map(|side| self.of_side(number, side)?.impossible()).next();
@@ -150,6 +150,17 @@ impl Loaded {
             Some(firmware) => remote(&flight, side, firmware, thread, interrupted, reported),
         }
     }
+}
+
+/// Returns the numbers of the flights that are looked at: one, by chance, of each of at most [`LOOKED_AT`] equal parts.
+/// Evenly spaced numbers would miss levels of a grid, whose inputs have periods.
+fn looks(flights: u64) -> impl Iterator<Item = u64> {
+    let stride = flights.div_ceil(LOOKED_AT).max(1);
+    let chance = Stream::new(0, "looks");
+    (0..flights.div_ceil(stride)).map(move |part| {
+        let first = part * stride;
+        first + chance.bits(part) % stride.min(flights - first) + 1
+    })
 }
 
 fn embedded(flight: &CampaignFlight, side: Side, is_stopped: &impl Fn() -> bool) -> Option<Record> {
@@ -265,4 +276,26 @@ pub(super) fn differs(mine: &RunHeader, theirs: &RunHeader) -> String {
         return "its firmware was another".to_owned();
     }
     "its options were others".to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_look_at_some_flights_of_a_grid_sees_each_level_of_each_input() {
+        assert!(looks(0).next().is_none());
+        assert!(looks(2000).eq(1..=2000), "all of a small campaign");
+        for (flights, levels) in [(2002, 2), (4000, 2), (30_000, 15), (1_000_000, 10)] {
+            let numbers: Vec<u64> = looks(flights).collect();
+            assert!(numbers.len() as u64 <= LOOKED_AT && numbers.is_sorted_by(|a, b| a < b));
+            assert!(numbers.iter().all(|number| (1..=flights).contains(number)));
+            for level in 0..levels {
+                assert!(
+                    numbers.iter().any(|number| (number - 1) % levels == level),
+                    "level {level} of {levels} in {flights} flights"
+                );
+            }
+        }
+    }
 }

@@ -36,7 +36,9 @@ pub struct AnswerBuilder {
     worst: Vec<((u8, f64), Worst)>,
     /// The number of failed flights with each complaint, without its numbers.
     complaints: BTreeMap<(Side, String), u64>,
-    not_flown: BTreeMap<String, u64>,
+    /// The first reason of each kind why a flight could not be flown, and the number of such flights, by the reason
+    /// without its numbers.
+    not_flown: BTreeMap<String, (String, u64)>,
 }
 
 /// The flights of one side.
@@ -90,12 +92,18 @@ impl AnswerBuilder {
             Standing::Failed => {
                 side.judged += 1;
                 let complaint = alike(&record.result, &record.complaint());
-                count(&mut self.complaints, (record.side, complaint));
+                if let Some(count) = entry(&mut self.complaints, (record.side, complaint), || 0) {
+                    *count += 1;
+                }
             }
             Standing::Skipped => side.skipped += 1,
             Standing::NotFlown => {
                 side.not_flown += 1;
-                count(&mut self.not_flown, record.complaint());
+                let reason = record.complaint();
+                let kind = alike(&record.result, &reason);
+                if let Some((_, count)) = entry(&mut self.not_flown, kind, || (reason, 0)) {
+                    *count += 1;
+                }
             }
         }
         let result = if record.result.is_empty() { "not flown" } else { record.result.as_str() };
@@ -155,8 +163,7 @@ impl AnswerBuilder {
         let mut results: Vec<(String, u64)> =
             side.results.iter().map(|(result, count)| (result.clone(), *count)).collect();
         results.sort_by(|a, b| b.1.cmp(&a.1).then(a.0.cmp(&b.0)));
-        let mut not_flown: Vec<(String, u64)> =
-            self.not_flown.iter().map(|(reason, count)| (reason.clone(), *count)).collect();
+        let mut not_flown: Vec<(String, u64)> = self.not_flown.values().cloned().collect();
         not_flown.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
         Answer {
             wanted: self.wanted,
@@ -210,11 +217,16 @@ impl AnswerBuilder {
     }
 }
 
-/// Returns a complaint without its numbers: equal for flights that fail for the same reason.
+/// Returns a complaint without its numbers and their signs: equal for flights that fail for the same reason.
 pub(super) fn alike(result: &str, complaint: &str) -> String {
     let mut text = format!("{result}, ");
-    for c in complaint.chars() {
+    let mut rest = complaint.chars().peekable();
+    while let Some(c) = rest.next() {
+        let is_before_number = rest.peek().is_some_and(char::is_ascii_digit);
         match c {
+            // The hyphen in `wp-3` and `12-13` is no sign.
+            '-' | '−' | '+'
+                if is_before_number && !text.ends_with(|c: char| c == '#' || c.is_alphanumeric()) => {}
             '0'..='9' if text.ends_with('#') => {}
             '.' if text.ends_with('#') => {}
             '0'..='9' => text.push('#'),
@@ -224,8 +236,7 @@ pub(super) fn alike(result: &str, complaint: &str) -> String {
     text
 }
 
-fn count<K: Ord>(counts: &mut BTreeMap<K, u64>, of: K) {
-    if counts.len() < COMPLAINTS || counts.contains_key(&of) {
-        *counts.entry(of).or_default() += 1;
-    }
+/// Returns the entry of a complaint or reason; `None` if there are too many others.
+fn entry<K: Ord, V>(of: &mut BTreeMap<K, V>, key: K, first: impl FnOnce() -> V) -> Option<&mut V> {
+    (of.len() < COMPLAINTS || of.contains_key(&key)).then(|| of.entry(key).or_insert_with(first))
 }

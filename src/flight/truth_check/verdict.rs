@@ -1,5 +1,6 @@
 //! Compares the truth with a mission that is complete for the firmware.
 
+use crate::math;
 use crate::plan::WaypointType;
 use crate::telemetry::{FlightTruth, ParkedTruth, PlanSource, WaypointTruth};
 
@@ -34,55 +35,56 @@ pub(super) fn agreement(truth: &FlightTruth) -> Option<String> {
 fn waypoint_misses(waypoint: &WaypointTruth, tolerance_m: f64) -> [Option<Miss>; 3] {
     let WaypointTruth { wp, kind, miss_m, alt_error_m, hold_max_m, radius_m, .. } = *waypoint;
     let name = format!("waypoint {wp} ({kind})");
-    let reported = match kind {
-        WaypointType::Land => format!("the craft touched down {miss_m:.1} m from {name}"),
-        WaypointType::Hold => format!("{name} was not held, the craft was up to {miss_m:.1} m off"),
-        WaypointType::Takeoff => format!("the craft was {miss_m:.1} m off in {name}"),
+    let reported = |miss: &str| match kind {
+        WaypointType::Land => format!("the craft touched down {miss} from {name}"),
+        WaypointType::Hold => format!("{name} was not held, the craft was up to {miss} off"),
+        WaypointType::Takeoff => format!("the craft was {miss} off in {name}"),
         WaypointType::Flyby if radius_m <= 0.0 => {
-            format!("{name} was missed, the craft turned {miss_m:.1} m outside its turn radius")
+            format!("{name} was missed, the craft turned {miss} outside its turn radius")
         }
-        _ => format!("{name} was missed, the craft passed {miss_m:.1} m from it"),
+        _ => format!("{name} was missed, the craft passed {miss} from it"),
     };
     let waited = hold_max_m.filter(|_| kind == WaypointType::Land).and_then(|waited_m| {
-        let reported = format!("the craft was up to {waited_m:.1} m off while it waited at {name}");
-        miss(waited_m, radius_m + tolerance_m, &reported)
+        miss(waited_m, radius_m + tolerance_m, |waited| {
+            format!("the craft was up to {waited} off while it waited at {name}")
+        })
     });
     let vertical = alt_error_m.and_then(|error_m| {
-        let reported = match kind {
-            WaypointType::Hold => format!("{name} was not held, the craft was up to {}", too(error_m)),
-            _ => format!("{name} was missed, the craft passed {}", too(error_m)),
-        };
-        miss(error_m.abs(), tolerance_m, &reported)
+        let too = too(error_m);
+        miss(error_m.abs(), tolerance_m, |error| match kind {
+            WaypointType::Hold => format!("{name} was not held, the craft was up to {error} {too}"),
+            _ => format!("{name} was missed, the craft passed {error} {too}"),
+        })
     });
-    [miss(miss_m, radius_m + tolerance_m, &reported), waited, vertical]
+    [miss(miss_m, radius_m + tolerance_m, reported), waited, vertical]
 }
 
 fn parked_misses(parked: &ParkedTruth, tolerance_m: f64) -> [Option<Miss>; 2] {
     let ParkedTruth { wp, kind, distance_m, alt_error_m, speed_mps, radius_m } = *parked;
     let name = format!("the craft parked at waypoint {wp} ({kind})");
     let away = distance_m.and_then(|distance_m| {
-        let reported = format!("{name} was {distance_m:.1} m off at the end, moving at {speed_mps:.1} m/s");
-        miss(distance_m, radius_m + tolerance_m, &reported)
+        miss(distance_m, radius_m + tolerance_m, |distance| {
+            format!("{name} was {distance} off at the end, moving at {speed_mps:.1} m/s")
+        })
     });
-    let vertical =
-        miss(alt_error_m.abs(), tolerance_m, &format!("{name} was {} at the end", too(alt_error_m)));
+    let vertical = miss(alt_error_m.abs(), tolerance_m, |error| {
+        format!("{name} was {error} {} at the end", too(alt_error_m))
+    });
     [away, vertical]
 }
 
-fn miss(value_m: f64, allowed_m: f64, reported: &str) -> Option<Miss> {
+/// Returns a miss if a value is more than allowed. `reported` puts the value into a sentence.
+fn miss(value_m: f64, allowed_m: f64, reported: impl FnOnce(&str) -> String) -> Option<Miss> {
     let excess_m = value_m - allowed_m;
-    // A miss that rounds to what is allowed shows by how much it is more.
-    let more = match excess_m {
-        excess_m if excess_m < 0.1 => format!(", {:.3} mm less", 1000.0 * excess_m),
-        _ => String::new(),
-    };
-    (excess_m > 0.0)
-        .then(|| Miss { excess_m, sentence: format!("{reported}; {allowed_m:.1} m are allowed{more}") })
+    (excess_m > 0.0).then(|| {
+        let decimals = math::decimals_apart(value_m, allowed_m, 1);
+        let reported = reported(&format!("{value_m:.decimals$} m"));
+        Miss { excess_m, sentence: format!("{reported}; {allowed_m:.decimals$} m are allowed") }
+    })
 }
 
-/// `19.7 m too low`.
-fn too(error_m: f64) -> String {
-    format!("{:.1} m too {}", error_m.abs(), if error_m < 0.0 { "low" } else { "high" })
+fn too(error_m: f64) -> &'static str {
+    if error_m < 0.0 { "too low" } else { "too high" }
 }
 
 #[cfg(test)]
@@ -116,8 +118,14 @@ mod tests {
             beside.as_deref(),
             Some("waypoint 2 (FLYOVER) was missed, the craft passed 15.2 m from it; 15.0 m are allowed")
         );
-        let close = worst(&[flown(WaypointType::Flyover, 15.000_4, Some(0.0))]).unwrap();
-        assert!(close.ends_with("15.0 m from it; 15.0 m are allowed, 0.400 mm less"), "{close}");
+        for (miss_m, shown) in [
+            (15.05, "15.1 m from it; 15.0 m are allowed"),
+            (15.000_4, "15.0004 m from it; 15.0000 m are allowed"),
+            (15.000_000_1, "15.0000001 m from it; 15.0000000 m are allowed"),
+        ] {
+            let close = worst(&[flown(WaypointType::Flyover, miss_m, Some(0.0))]).unwrap();
+            assert!(close.ends_with(shown), "{close}");
+        }
         let below = worst(&[flown(WaypointType::Hold, 0.0, Some(-19.7))]);
         assert_eq!(
             below.as_deref(),

@@ -41,7 +41,10 @@ pub fn forecast_reason(forecast: &ForecastAnswer) -> String {
     let reserve = whole(forecast.reserve);
     let unflown = match (success.not_flown, answer.not_flown.first()) {
         (0, _) | (_, None) => None,
-        (count, Some((reason, _))) => Some(format!("{count} could not be flown: {reason}")),
+        (all, Some((reason, count))) if all == *count => Some(format!("{all} could not be flown: {reason}")),
+        (all, Some((reason, count))) => {
+            Some(format!("{all} could not be flown, {count} of them for this reason: {reason}"))
+        }
     };
     let Some(share) = success.share() else {
         return unflown.unwrap_or_else(|| "no flight could be judged".to_owned());

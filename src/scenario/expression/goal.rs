@@ -99,13 +99,14 @@ fn statistic(word: &str) -> Option<GoalStatistic> {
     })
 }
 
-/// Reads a share with its unit: 99 without one would be 9900 %.
+/// Reads a share with its unit: 99 without one would be 9900 %. A number up to 1 without one is a share already.
 fn read_share(cursor: &mut Cursor<'_>) -> Result<f64, SyntaxError> {
     let start = cursor.at();
     let (number, _) = read_number(&mut cursor.clone(), &Scope::default())?;
     if bare(&number) {
         let value = read_value(cursor, Dimension::NONE)?;
-        let hint = format!("allowed: %; write {value} %");
+        let percent = if value.abs() <= 1.0 { (value * 1e11).round() / 1e9 } else { value };
+        let hint = format!("allowed: %; write {percent} %");
         return Err(cursor.error_since(
             start,
             "a number without a unit does not fit: shares are compared",
@@ -209,6 +210,19 @@ mod tests {
             assert!(error.message.starts_with(message), "{text}: {}", error.message);
             assert!(!error.hint.is_empty(), "{text}");
         }
-        assert_eq!(read("success >= 99").unwrap_err().hint, "allowed: %; write 99 %");
+    }
+
+    #[test]
+    fn a_share_without_a_unit_is_answered_with_the_same_share_in_per_cent() {
+        for (text, way_out) in [
+            ("success >= 99", "write 99 %"),
+            ("success >= 0.99", "write 99 %"),
+            ("success >= 0.07", "write 7 %"),
+            ("success >= 1", "write 100 %"),
+            ("share(crashed) <= 0", "write 0 %"),
+            ("success >= 99 % with 0.95 confidence", "write 95 %"),
+        ] {
+            assert_eq!(read(text).unwrap_err().hint, format!("allowed: %; {way_out}"), "{text}");
+        }
     }
 }

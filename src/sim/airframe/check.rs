@@ -148,7 +148,7 @@ impl Findings {
 
     /// Checks the legs as springs on the mass and, through their lever, on the inertias.
     fn leg_stability(&mut self, airframe: &Airframe, step_s: f64) {
-        let step = format!("steps of {} ms with this mass and inertia", step_s * 1e3);
+        let step = format!("steps of {} ms with this mass and inertia", (step_s * 1e6).round() / 1e3);
         let legs = &airframe.legs_m;
         let lever = |arm: fn(&Vector3<f64>) -> f64, j: f64| legs.iter().map(arm).sum::<f64>() / j;
         let per_unit = (legs.len() as f64 / airframe.mass_kg)
@@ -202,6 +202,8 @@ mod tests {
         assert_eq!(findings(&airframe, 0.001), []);
         let found = findings(&airframe, 0.0025);
         assert!(found[0].text.starts_with("is too strong for steps of 2.5 ms"), "{found:?}");
+        let found = findings(&airframe, 0.002_474_999_999_999_999_6);
+        assert!(found[0].text.starts_with("is too strong for steps of 2.475 ms"), "{found:?}");
     }
 
     #[test]

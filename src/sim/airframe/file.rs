@@ -67,9 +67,9 @@ const KEYS: [Key; 27] = [
     required("battery.capacity_ah", |a, v| number(v).map(|x| a.battery.capacity_ah = x)),
 ];
 
-/// The name of the table with the battery keys.
 /// The step of a flight without another `--rate`, s. A flight with a longer one judges the legs again.
 const USUAL_STEP_S: f64 = 0.001;
+/// The name of the table with the battery keys.
 const BATTERY: &str = "battery";
 /// The nominal voltage of a cell if the file gives none for the pack, V.
 const NOMINAL_CELL_V: f64 = 3.7;
