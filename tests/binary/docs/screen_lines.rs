@@ -5,7 +5,7 @@ use super::filled_in;
 use crate::pty::Terminal;
 
 /// The beginning of a line, and the words on the screen after it was carried out.
-const CARRIED_OUT: [(&str, &str); 18] = [
+const CARRIED_OUT: [(&str, &str); 19] = [
     (":allow-changes", "changes need no permission"),
     (":arm", "● ARMED"),
     (":backdrop field.geojson", "is under the plan: 10 vertices"),
@@ -23,6 +23,7 @@ const CARRIED_OUT: [(&str, &str); 18] = [
     (":speed 4", " 4×"),
     (":tutorial", "▸ 1/5"),
     (":where ", " at every second: "),
+    (":what-if ", ", flown from home: "),
     (":wind 5@270", "wind=5@270"),
 ];
 
