@@ -160,7 +160,7 @@ fn read_text(source: impl Read, name: &str, kind: Kind) -> Result<String, AppErr
     let bytes = read_bytes(source, name, kind)?;
     match decode_text(&bytes) {
         Ok(text) => Ok(text.into_owned()),
-        Err(_) => Err(AppError::input(format!("{name} is not a text file (UTF-8)"))),
+        Err(reason) => Err(AppError::input(format!("{name} is not a text file: {reason}"))),
     }
 }
 
@@ -223,6 +223,16 @@ mod tests {
         assert!(error.to_string().ends_with("larger than 64 MiB: that is no elevation tile"), "{error}");
         let error = read_map(&path).expect_err("too large");
         assert!(error.to_string().ends_with("larger than 64 MiB: that is too much for a map"), "{error}");
+    }
+
+    #[test]
+    fn a_file_that_is_no_text_is_refused_with_the_reason() {
+        let say = |bytes: &[u8]| read_text(bytes, "a.toml", TEXT).expect_err("no text").to_string();
+        assert_eq!(say(b"abc\xff"), "a.toml is not a text file: byte 3 is not UTF-8 text");
+        assert_eq!(
+            say(b"\xff\xfea\0b"),
+            "a.toml is not a text file: the UTF-16 text ends in the middle of a character"
+        );
     }
 
     #[test]

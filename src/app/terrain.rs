@@ -152,7 +152,7 @@ fn read(path: &Path, square: Square) -> Result<Grid, String> {
     let grid = if is_tiff {
         decode_geotiff(&bytes, square)
     } else {
-        unpacked_hgt(bytes).and_then(|bytes| decode_hgt(&bytes, square, &HGT_SIDES))
+        unpacked_hgt(bytes, square).and_then(|bytes| decode_hgt(&bytes, square, &HGT_SIDES))
     };
     grid.map_err(|error| format!("{name}: {error}"))
 }

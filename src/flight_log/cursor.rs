@@ -103,15 +103,15 @@ impl<'a, S: LogSource> FlightCursor<'a, S> {
         self.end
     }
 
-    /// Returns the number of logs after this one, readable or not.
+    /// Returns the number of logs after this one, readable or not: those before `is_stopped` says so.
     ///
     /// # Errors
     ///
     /// Returns the error of the source.
-    pub fn count_logs_after(mut self) -> io::Result<usize> {
+    pub fn count_logs_after(mut self, is_stopped: impl Fn() -> bool) -> io::Result<usize> {
         let mut count = 0;
         self.reader.leave_log();
-        while self.reader.next_item()?.is_some() {
+        while !is_stopped() && self.reader.next_item()?.is_some() {
             count += 1;
             self.reader.leave_log();
         }

@@ -78,20 +78,27 @@ impl<S: LogSource> Indexer<S> {
     }
 
     /// Reads only until a log can be read with a cursor: the one with this number, from 1, or the first one with a frame. What is
-    /// known at the end of that log is missing.
+    /// known at the end of that log is missing. Returns `None` once `is_stopped` says so.
     ///
     /// # Errors
     ///
     /// Returns the error of the source.
-    pub fn run_to_start(mut self, number: Option<usize>) -> io::Result<LogFile> {
+    pub fn run_to_start(
+        mut self,
+        number: Option<usize>,
+        is_stopped: impl Fn() -> bool,
+    ) -> io::Result<Option<LogFile>> {
         while self.item()? {
+            if is_stopped() {
+                return Ok(None);
+            }
             let is_wanted = number.is_none_or(|number| number == self.begun);
             if is_wanted && let Some(building) = self.building.take_if(|building| building.has_begun()) {
                 self.found.flights.push(building.finish(self.begun));
                 break;
             }
         }
-        Ok(self.found)
+        Ok(Some(self.found))
     }
 
     /// Reads the whole file.

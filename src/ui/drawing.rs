@@ -49,6 +49,8 @@ fn without_emoji(text: &str) -> Cow<'_, str> {
     let is_part =
         |c: char| matches!(c, '\u{200d}' | '\u{20e3}' | '\u{fe00}'..='\u{fe0f}' | '\u{1f3fb}'..='\u{1f3ff}');
     let is_emoji = |c: char| matches!(c, '\u{1f000}'..='\u{1faff}');
+    // Scripts of India join letters with the same character. Signs such as the heart are emoji only after a joiner.
+    let is_joinable = |c: char| is_emoji(c) || matches!(c, '\u{2190}'..='\u{2bff}');
     if !text.chars().any(|c| is_part(c) || is_emoji(c)) {
         return Cow::Borrowed(text);
     }
@@ -56,7 +58,7 @@ fn without_emoji(text: &str) -> Cow<'_, str> {
     let mut is_joined = false;
     for c in text.chars() {
         let goes_on = std::mem::replace(&mut is_joined, c == '\u{200d}');
-        if !is_part(c) && !goes_on {
+        if !is_part(c) && !(goes_on && is_joinable(c)) {
             plain.push(if is_emoji(c) { '?' } else { c });
         }
     }
@@ -73,13 +75,16 @@ mod tests {
         for (name, drawn) in [
             ("👨\u{200d}👩\u{200d}👧 plan.toml", "? plan.toml"),
             ("a👍\u{1f3fd}b", "a?b"),
+            ("👨\u{200d}⚕\u{fe0f} plan", "? plan"),
+            ("क्\u{200d}ष", "क्ष"),
+            ("ශ්\u{200d}රී", "ශ්රී"),
             ("🚁🚁", "??"),
             ("✓ ⌂ ▸ äé名", "✓ ⌂ ▸ äé名"),
         ] {
             assert_eq!(without_emoji(name), drawn);
             let mut buffer = Buffer::empty(Rect::new(0, 0, 20, 1));
             line(&mut buffer, 0, 0, &Line::from(name), 20);
-            assert_eq!(buffer[(0, 0)].symbol(), drawn.chars().next().map(String::from).unwrap_or_default());
+            assert!(drawn.starts_with(buffer[(0, 0)].symbol()), "{drawn}: {}", buffer[(0, 0)].symbol());
         }
     }
 

@@ -29,7 +29,8 @@ pub(super) fn run(
         return Ok(false);
     }
     let number = args.number();
-    let log = if needs_index { logs.chosen(number) } else { logs.start(number) }.map_err(AppError::input)?;
+    let log = if needs_index { logs.chosen(number).map(Some) } else { logs.start(number, is_stopped) };
+    let Some(log) = log.map_err(AppError::input)? else { return Ok(false) };
     let name = logs.name().to_owned();
     log_assumptions(&log).iter().for_each(|notice| error::tell(notice));
     let has_track = args.gpx.is_some() || args.kml.is_some();

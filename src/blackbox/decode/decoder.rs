@@ -189,8 +189,9 @@ impl Decoder {
         for length in 1..input.len().min(MAX_UNDEFINED) {
             match self.goes_on(&input[length..], is_whole) {
                 Ok(()) => return Ok(Step::UndefinedFrame { length }),
-                Err(Stop::Short) => return Err(Stop::Short),
-                Err(Stop::Wrong) => {}
+                Err(Stop::Short) if !is_whole => return Err(Stop::Short),
+                // In a whole log no more bytes can tell that a short one is right.
+                Err(_) => {}
             }
         }
         Err(if input.len() < MAX_UNDEFINED { Stop::Short } else { Stop::Wrong })

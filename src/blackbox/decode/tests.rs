@@ -76,6 +76,18 @@ fn frames_have_the_values_that_were_predicted_and_encoded() {
 }
 
 #[test]
+fn a_frame_without_its_definition_is_passed_up_to_the_end_of_a_log() {
+    let is_other = |line: &&str| !line.starts_with("H Field G ");
+    let header: String = HEADER.split_inclusive('\n').filter(is_other).collect();
+    let mut maker = Maker::default();
+    maker.begin(&header).whole([0, 5000, -7, 1100, 1200]);
+    // The second byte of the undefined frame is the letter of a frame for which the log is too short.
+    maker.raw(b"G\x01I\x07").raw(b"S").unsigned(3);
+    let after = all(&maker.bytes).split_off(2);
+    assert_eq!(after, [Read::Frame(FrameKind::Slow, vec![3], 5000), Read::LogEnd]);
+}
+
+#[test]
 fn iterations_are_counted_by_the_intervals() {
     let mut maker = Maker::default();
     maker.begin(HEADER).intervals(0, 2);

@@ -105,17 +105,22 @@ impl<S> LogFlights<S> {
 
 impl<S: LogSource + Clone> LogFlights<S> {
     /// Returns the log with this number, from zero, or the first one that can be shown, as soon as a cursor can read it. The rest
-    /// of the file is not read, so what is known at the end of the log is missing.
+    /// of the file is not read, so what is known at the end of the log is missing. Returns `None` once `is_stopped` says so.
     ///
     /// # Errors
     /// Returns a sentence if the file cannot be read, or the log cannot be shown.
-    pub fn start(&self, number: Option<usize>) -> Result<Arc<LogFlight>, String> {
-        let indexer = Indexer::new(self.source.clone());
-        let found =
-            indexer.run_to_start(number.map(|number| number + 1)).map_err(|error| self.unreadable(&error))?;
+    pub fn start(
+        &self,
+        number: Option<usize>,
+        is_stopped: impl Fn() -> bool,
+    ) -> Result<Option<Arc<LogFlight>>, String> {
+        let found = Indexer::new(self.source.clone())
+            .run_to_start(number.map(|number| number + 1), is_stopped)
+            .map_err(|error| self.unreadable(&error))?;
+        let Some(found) = found else { return Ok(None) };
         let mut start = LogFlights::new(&self.name, ());
         start.take(found)?;
-        start.chosen(number)
+        start.chosen(number).map(Some)
     }
 }
 

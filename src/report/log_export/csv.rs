@@ -91,7 +91,7 @@ fn modes(boxes: Option<BoxFlags>) -> io::Result<Vec<u8>> {
 }
 
 /// Writes the main frames of a log: all of them, or the first one in each interval of so many microseconds. `is_stopped` is
-/// asked before each row.
+/// asked before each row, and while later logs are counted.
 ///
 /// # Errors
 ///
@@ -122,5 +122,5 @@ pub fn write_csv<S: LogSource, W: Write>(
         }
     }
     table.flush()?;
-    Ok(TableEnd { log: cursor.end(), logs_after: cursor.count_logs_after()? })
+    Ok(TableEnd { log: cursor.end(), logs_after: cursor.count_logs_after(is_stopped)? })
 }

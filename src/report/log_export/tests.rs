@@ -50,6 +50,13 @@ fn rows_may_be_an_interval_apart() {
 fn a_table_that_is_stopped_has_the_rows_so_far() {
     let text = written(None, true);
     assert_eq!(text.iter().filter(|byte| **byte == b'\n').count(), 1, "only the header");
+    let two = [LOG, LOG].concat();
+    let logs_after = |is_stopped: bool| {
+        write_csv(&flight(LOG), &two[..], None, &mut Vec::new(), || is_stopped).unwrap().logs_after
+    };
+    assert_eq!((logs_after(false), logs_after(true)), (1, 0));
+    let start = |is_stopped: bool| Indexer::new(&two[..]).run_to_start(Some(2), || is_stopped).unwrap();
+    assert!(start(false).is_some() && start(true).is_none());
 }
 
 #[test]
@@ -61,7 +68,8 @@ fn a_table_needs_no_index_and_gives_what_is_known_at_the_end() {
     {
         let whole = Indexer::new(bytes).run().unwrap().flights;
         let at = number.unwrap_or(1) - 1;
-        let start = Indexer::new(bytes).run_to_start(number).unwrap().flights.pop().unwrap();
+        let start =
+            Indexer::new(bytes).run_to_start(number, || false).unwrap().unwrap().flights.pop().unwrap();
         let (mut with_index, mut without) = (Vec::new(), Vec::new());
         let end = write_csv(&whole[at], bytes, None, &mut with_index, || false).unwrap();
         assert_eq!(write_csv(&start, bytes, None, &mut without, || false).unwrap(), end);

@@ -28,10 +28,10 @@ pub(super) fn of(lines: &Lines, findings: &mut Vec<HeaderFinding>) -> (FirmwareN
     let (word, rest) = revision.trim_start().split_once(' ').unwrap_or((revision, ""));
     let called =
         |name: &str| FirmwareName::iter().find(|known| <&str>::from(known).eq_ignore_ascii_case(name));
-    if let Some(name) = called(word) {
-        return (name, version(rest));
-    }
-    let name = called(lines.value("Firmware type").unwrap_or_default());
+    let (name, version) = match called(word) {
+        Some(name) => (Some(name), version(rest)),
+        None => (called(lines.value("Firmware type").unwrap_or_default()), (0, 0, 0)),
+    };
     if name.is_none() {
         findings.push(HeaderFinding::of(
             lines,
@@ -39,11 +39,18 @@ pub(super) fn of(lines: &Lines, findings: &mut Vec<HeaderFinding>) -> (FirmwareN
             "the units of an unknown firmware are assumed",
         ));
     }
-    if revision.is_empty() {
+    // Cleanflight before 2.0 wrote only the hash of its source.
+    let is_hash = !word.is_empty() && word.bytes().all(|byte| byte.is_ascii_hexdigit());
+    let needs_version = match name {
+        Some(FirmwareName::Betaflight) => true,
+        Some(FirmwareName::Cleanflight) => !is_hash,
+        _ => false,
+    };
+    if revision.is_empty() || needs_version && version == (0, 0, 0) {
         let assumed = "the units of an unknown version are assumed, and modes have no names";
         findings.push(HeaderFinding::of(lines, "Firmware revision", assumed));
     }
-    (name.unwrap_or(FirmwareName::Unknown), (0, 0, 0))
+    (name.unwrap_or(FirmwareName::Unknown), version)
 }
 
 /// Returns the version at the start of a text such as `4.5.2 (024f8e13d)` or `2026.12.0-alpha`.

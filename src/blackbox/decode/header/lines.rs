@@ -12,9 +12,8 @@ const MAX_FIELDS: usize = 256;
 /// The most damaged lines that are named.
 const MAX_DAMAGED: usize = 20;
 /// The lines with free text, which may have a colon.
-const FREE_TEXT: [&str; 9] = [
+const FREE_TEXT: [&str; 8] = [
     "Product",
-    "Firmware revision",
     "Firmware date",
     "Board information",
     "Log start datetime",
@@ -38,7 +37,8 @@ impl Lines {
         let (mut all, mut damaged) = (Vec::new(), Vec::new());
         let mut at = 0;
         // The line before the first one of these names the format.
-        for number in 2.. {
+        let mut number = 2;
+        loop {
             let rest = &bytes[at..];
             at += if let Some((name, value, length)) = line(rest) {
                 let (name, value) = (text(name), text(value));
@@ -46,9 +46,11 @@ impl Lines {
                     damaged.push(HeaderFinding::joined(number, &name, &value));
                 }
                 all.push((name, value));
+                number += 1;
                 length
             } else if let Some(length) = damaged_length(rest) {
                 damaged.push(HeaderFinding::damaged(number, &rest[..length]));
+                number += rest[..length].iter().filter(|byte| **byte == b'\n').count();
                 length
             } else {
                 break;
@@ -198,7 +200,8 @@ fn line(bytes: &[u8]) -> Option<(&[u8], &[u8], usize)> {
 fn is_known_form(name: &str, value: &str) -> bool {
     let is_setting = !name.starts_with(|first: char| first.is_ascii_uppercase())
         || name.starts_with("Field ")
-        || ["Data version", "Firmware type", "I interval", "P interval", "P ratio"].contains(&name);
+        || ["Data version", "Firmware type", "Firmware revision", "I interval", "P interval", "P ratio"]
+            .contains(&name);
     let has_room = |text: &str| !text.contains(|letter: char| letter.is_control() || letter == '\u{fffd}');
     let is_name = name.bytes().all(|byte| (b' '..=b'~').contains(&byte));
     let is_free = FREE_TEXT.contains(&name);
@@ -236,6 +239,13 @@ mod tests {
         let (lines, length) = Lines::read(bytes).unwrap();
         assert_eq!(lines.iter().collect::<Vec<_>>(), [("a", "1"), ("b", "x:y")]);
         assert_eq!(&bytes[length..], b"H \x10\x11\x12");
+    }
+
+    #[test]
+    fn damaged_lines_are_counted_each() {
+        let (lines, _) = Lines::read(b"H a:1\nx\ny\nz\nH b:2\nx\nH c:3\n").unwrap();
+        let starts: Vec<_> = lines.damaged().iter().map(|line| line.to_string()[..7].to_owned()).collect();
+        assert_eq!(starts, ["Line 3 ", "Line 7 "]);
     }
 
     #[test]

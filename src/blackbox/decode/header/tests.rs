@@ -63,6 +63,36 @@ fn a_missing_line_is_named_with_what_is_assumed() {
 }
 
 #[test]
+fn a_revision_without_a_version_is_named_if_units_rest_on_it() {
+    let with = |kind: &str, revision: &str| {
+        let lines = LINES.replace("type:Betaflight", &format!("type:{kind}"));
+        said(
+            &lines
+                .replace("revision:Betaflight 4.5.2 (024f8e13d) STM32F7X2", &format!("revision:{revision}")),
+        )
+    };
+    for (kind, revision) in
+        [("Betaflight", "x"), ("Betaflight", "Betaflight"), ("Cleanflight", "xyz"), ("Betaflight", "c49bd40")]
+    {
+        let found = with(kind, revision);
+        let line = format!(
+            "The line `Firmware revision:{revision}` of the header has no value that can be used: the units of an unknown version"
+        );
+        assert!(found.len() == 1 && found[0].starts_with(&line), "{found:?}");
+    }
+    for (kind, revision) in
+        [("Cleanflight", "c49bd40"), ("INAV", "x"), ("Cleanflight", "Betaflight 3.1.0 (x) Y")]
+    {
+        assert_eq!(with(kind, revision), [""; 0], "{kind} {revision}");
+    }
+    for (revision, count) in [("Betaflcc_1G:2048", 2), ("Betaflight 4.5cc_1G:2048", 1)] {
+        let found = with("Betaflight", revision);
+        let joined = format!("`H Firmware revision:{revision}` has parts of two lines.");
+        assert!(found.len() == count && found.iter().any(|line| line.ends_with(&joined)), "{found:?}");
+    }
+}
+
+#[test]
 fn an_interval_of_no_iterations_is_named() {
     for value in ["1/0", "0", "x"] {
         let lines = LINES.replace("P interval:4", &format!("P interval:{value}"));
