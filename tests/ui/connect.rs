@@ -250,7 +250,7 @@ fn a_firmware_without_plans_says_so() {
     let state = connected(|remote| remote.has_plans = false);
     let refusal = action::enabled(&state.shared, Action::Upload).unwrap_err();
     assert!(
-        refusal.contains("has no waypoints") && refusal.contains("-DENABLE_FLIGHT_PLANNING=1"),
+        refusal.contains("has no waypoints") && refusal.contains("today's master has flight plans"),
         "{refusal}"
     );
 }
