@@ -135,6 +135,8 @@ pub enum Request {
     Effect(Effect),
     Change(Change),
     Open(Popup),
+    /// Note that the user has chosen a value: a digit begins to type it.
+    Chosen,
     /// Open the `:` line with this text.
     Type(String),
     /// Run a line of the firmware's command line.

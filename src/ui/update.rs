@@ -380,6 +380,7 @@ fn carry_out(state: &mut AppState, requests: Vec<Request>) -> Vec<Effect> {
             Request::Effect(effect) => effects.push(effect),
             Request::Change(requested) => effects.extend(change(&mut state.shared, requested)),
             Request::Open(popup) => state.popups.push(popup),
+            Request::Chosen => state.has_chosen = true,
             Request::Type(text) => popup::open_command_line(state, &text),
             Request::Cli { line, is_reported } => {
                 state.panels.cli.console.queue(line, is_reported);

@@ -114,8 +114,10 @@ fn what_a_screen_asks_in_flight_is_chosen_by_number_or_named_on_the_line() {
     let sandbox = Sandbox::new();
     let mut flight = Dialogue::start(&sandbox, &["--plain", "--fresh", "--no-ports", "--speed=8"]);
     flight.hear("GPS fix");
-    flight.say("what-if gps-loss");
+    flight.say("look-ahead");
     flight.hear("disarmed");
+    flight.say("what-if gps-loss");
+    flight.hear("What if GPS lost here, flown from home: ");
     flight.say("fly");
     flight.hear("APPROACHING (waypoint 0");
     flight.say("what-if");

@@ -2,6 +2,7 @@
 //! change.
 
 use crate::fixture;
+use crate::hands::mouse;
 use betadeck::fc::{Access, NOTHING_MOVES, NOTHING_SIMULATED, RemoteState, RemoteView};
 use betadeck::session::Command;
 use betadeck::session::command::CliOutput;
@@ -9,7 +10,7 @@ use betadeck::telemetry::snapshot::ModeRange;
 use betadeck::telemetry::{ArmingFlag, Mode};
 use betadeck::ui::action::{self, Action, PanelAction};
 use betadeck::ui::{AppState, Effect, Msg, Panel, draw, update};
-use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
+use crossterm::event::{KeyCode, KeyEvent, KeyModifiers, MouseEventKind};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 
@@ -250,7 +251,7 @@ fn a_firmware_without_plans_says_so() {
     let state = connected(|remote| remote.has_plans = false);
     let refusal = action::enabled(&state.shared, Action::Upload).unwrap_err();
     assert!(
-        refusal.contains("has no waypoints") && refusal.contains("-DENABLE_FLIGHT_PLANNING=1"),
+        refusal.contains("has no waypoints") && refusal.contains("today's master has flight plans"),
         "{refusal}"
     );
 }
@@ -359,4 +360,28 @@ fn keys_after_the_settings_panel_wait_until_the_craft_has_told_its_settings() {
     press(&mut state, KeyCode::Esc);
     update(&mut state, Msg::SettingsReply(Ok(Box::new(read))));
     assert!(!text(&state).contains("/f"), "{}", text(&state));
+}
+
+#[test]
+fn keys_that_wait_for_the_settings_are_dropped_if_a_click_has_shown_another_panel() {
+    let read = betadeck::fc::CraftSettings::of_configuration(
+        &betadeck::firmware::config::Configuration::default(),
+        None,
+    );
+    for (cell, focus) in [(None, Panel::Settings), (Some((10, 10)), Panel::Map)] {
+        let mut state = connected(|_| {});
+        update(&mut state, Msg::Resize(120, 40));
+        for key in ['9', '/', 'f'] {
+            press(&mut state, KeyCode::Char(key));
+        }
+        if let Some(cell) = cell {
+            mouse(&mut state, MouseEventKind::Down, cell);
+        }
+        assert_eq!(state.shared.focus, focus);
+        let mode = format!("{:?}", state.shared.map.mode);
+        update(&mut state, Msg::SettingsReply(Ok(Box::new(read.clone()))));
+        assert_eq!(text(&state).contains("/f"), cell.is_none(), "{}", text(&state));
+        assert_eq!(format!("{:?}", state.shared.map.mode), mode, "`f` was not typed for the map");
+        assert!(state.shared.focus == focus && state.waiting_keys.is_empty());
+    }
 }

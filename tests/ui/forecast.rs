@@ -188,19 +188,21 @@ fn a_look_ahead_ends_with_the_flight() {
 }
 
 #[test]
-fn there_is_nothing_to_look_ahead_to_on_the_ground() {
+fn on_the_ground_there_is_nothing_to_look_ahead_to_and_a_what_if_flies_from_home() {
     let (mut state, _) = ready((80, 24));
     let refused = |state: &AppState| {
         state.shared.notice.as_ref().is_some_and(|notice| notice.text.contains("`F` flies the plan"))
     };
     assert!(press(&mut state, 'L').is_empty());
     assert!(refused(&state) && state.popups.is_empty());
-    // Only the flights from home are possible.
     press(&mut state, 'w');
-    key(&mut state, KeyCode::Up);
     assert!(!refused(&state));
-    assert!(key(&mut state, KeyCode::Enter).is_empty());
-    assert!(refused(&state) && state.popups.is_empty());
+    assert!(text(&state).contains("What if, flown from home:"), "{}", text(&state));
+    let effects = key(&mut state, KeyCode::Enter);
+    let asked = job(&effects).expect("a what-if");
+    assert!(matches!(&asked.request, ForecastRequest::WhatIf { what_if, .. } if *what_if == WHAT_IFS[0]));
+    assert!(state.popups.is_empty());
+    assert!(text(&state).contains("GPS lost here, flown from home: …"), "{}", text(&state));
 }
 
 #[test]

@@ -10,7 +10,7 @@ use betadeck::ui::{AppState, Msg, Panel, Severity, Units, update};
 use crossterm::event::MouseEventKind;
 
 use crate::fixture;
-use crate::hands::{keys, mouse, place_in_profile, screen, state_with_fix};
+use crate::hands::{keys, mouse, place_in_profile, place_of, screen, state_with_fix};
 
 fn imperial(size: (u16, u16)) -> AppState {
     let mut state = state_with_fix(size);
@@ -146,8 +146,18 @@ fn a_digit_on_a_value_that_was_chosen_edits_it_and_shows_a_panel_otherwise() {
     assert_eq!(state.shared.focus, Panel::State, "nothing was chosen");
     keys(&mut state, "2 right right right '60 enter");
     assert_eq!(state.shared.plan().waypoints[0].altitude, Altitude::above_home(60.0));
-    keys(&mut state, "3 2 1");
-    assert_eq!(state.shared.focus, Panel::Map, "the edit is over");
+    keys(&mut state, "+ '75 enter");
+    assert_eq!(state.shared.plan().waypoints[0].altitude, Altitude::above_home(75.0), "it is still chosen");
+    keys(&mut state, "esc 3 2 1");
+    assert_eq!(state.shared.focus, Panel::Map, "Esc ends it");
+    keys(&mut state, "2");
+    let (column, row) = place_of(&state, "75.0");
+    mouse(&mut state, MouseEventKind::Down, (column, row));
+    keys(&mut state, "'80 enter");
+    assert_eq!(state.shared.plan().waypoints[0].altitude, Altitude::above_home(80.0), "by a click");
+    mouse(&mut state, MouseEventKind::Down, (column, row));
+    keys(&mut state, "i 3");
+    assert_eq!(state.shared.focus, Panel::State, "an insertion is no value");
     // A word has no digits.
     keys(&mut state, "2 left left left down 3");
     assert_eq!(state.shared.focus, Panel::State);

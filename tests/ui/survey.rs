@@ -2,7 +2,7 @@
 
 use betadeck::campaign::{Forecast, InputValue, Record, Side, Standing};
 use betadeck::flight::FlightResult;
-use betadeck::flight::forecast::{self as flight_ahead, ForecastEnd, ForecastKind};
+use betadeck::flight::forecast::{self as flight_ahead, ForecastEnd, ForecastKind, WHAT_IFS};
 use betadeck::flight::sweep::{Fate, SweepPoint};
 use betadeck::scenario::{BuiltinFiles, read};
 use betadeck::session::{ForecastJob, ForecastReply, SurveyJob, SurveyNews, SurveyReply, SurveyRequest};
@@ -188,6 +188,9 @@ fn the_last_what_if_flies_a_hundred_flights_and_answers_in_a_line() {
     let seen = SIZES.map(|size| {
         let mut state = state_with_fix(size);
         keys(&mut state, "w");
+        for _ in WHAT_IFS {
+            press(&mut state, KeyCode::Down, KeyModifiers::NONE);
+        }
         let asked = job(&press(&mut state, KeyCode::Enter, KeyModifiers::NONE));
         assert_eq!(asked.request, SurveyRequest::GoNoGo);
         for flown in 1..=37 {

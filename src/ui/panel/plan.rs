@@ -122,7 +122,9 @@ impl Content for PlanPanel {
     /// Moves the cursor to the value under the mouse, or picks up a waypoint of the altitude profile.
     fn press(&mut self, state: &Shared, area: Rect, event: &MouseEvent) -> Vec<Request> {
         match target_at(state, area, (event.column, event.row)) {
-            Some(PlanTarget::Cell(row, column)) => vec![Change::PlanCell(row, column).into()],
+            Some(PlanTarget::Cell(row, column)) => {
+                vec![Change::PlanCell(row, column).into(), Request::Chosen]
+            }
             Some(PlanTarget::Altitude(index)) => {
                 let altitude = state.plan().waypoints.get(index).map(|wp| wp.altitude).unwrap_or_default();
                 // The current scale: it changes with the altitude.

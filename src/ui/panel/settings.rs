@@ -347,7 +347,7 @@ impl Content for SettingsPanel {
         if was_selected && list::is_value(self, area, event.column) {
             return self.begin_edit(state, Purpose::Set);
         }
-        Vec::new()
+        vec![Request::Chosen]
     }
 
     fn menu(&mut self, state: &Shared, area: Rect, event: &MouseEvent) -> Option<Popup> {

@@ -158,6 +158,7 @@ impl Content for WorldPanel {
         if let Some(knob) = knob_at(&self.knobs, state, area, event.row).filter(|_| is_knob) {
             self.knobs.field = None;
             self.knobs.selected = knob;
+            return vec![Request::Chosen];
         }
         Vec::new()
     }

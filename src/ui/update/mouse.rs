@@ -97,6 +97,7 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
     let Some((panel, area)) = at else { return Vec::new() };
     if let MouseEventKind::Down(MouseButton::Left | MouseButton::Right) = event.kind {
         focus(state, panel);
+        state.has_chosen = false;
     }
     let content = state.panels.of_mut(panel);
     let shared = &state.shared;

@@ -16,7 +16,6 @@ pub(super) fn take(state: &mut AppState, event: KeyEvent, found: Option<Action>)
         return None;
     }
     let action = state.panels.of(state.shared.focus).typing(&state.shared)?;
-    state.has_chosen = false;
     let mut effects = act(state, action);
     if state.panels.of_mut(state.shared.focus).field().is_some() || state.shared.editor.field().is_some() {
         effects.extend(key(state, event));
@@ -24,9 +23,9 @@ pub(super) fn take(state: &mut AppState, event: KeyEvent, found: Option<Action>)
     Some(effects)
 }
 
-/// Notes whether an action of the focused panel chooses a value.
+/// Notes whether an action of the focused panel chooses a value. While it is edited it stays chosen.
 pub(super) fn follow(state: &mut AppState, action: Action) {
-    let moves = matches!(
+    let chooses = matches!(
         action,
         Action::ScrollUp
             | Action::ScrollDown
@@ -44,5 +43,26 @@ pub(super) fn follow(state: &mut AppState, action: Action) {
                     | PanelAction::PreviousSetting
             )
     );
-    state.has_chosen = moves;
+    let edits = matches!(
+        action,
+        Action::Edit(
+            EditAction::Cell
+                | EditAction::Raise
+                | EditAction::Lower
+                | EditAction::RaiseMuch
+                | EditAction::LowerMuch
+        ) | Action::Panel(
+            PanelAction::KnobLess
+                | PanelAction::KnobMore
+                | PanelAction::KnobEnter
+                | PanelAction::KnobEdit
+                | PanelAction::SettingEdit
+                | PanelAction::SettingType
+                | PanelAction::SettingMore
+                | PanelAction::SettingLess
+                | PanelAction::SettingMoreMuch
+                | PanelAction::SettingLessMuch
+        )
+    );
+    state.has_chosen = chooses || edits && state.has_chosen;
 }

@@ -38,11 +38,13 @@ pub(super) fn hold(state: &mut AppState, event: KeyEvent, found: Option<Action>)
     true
 }
 
-/// Takes the settings of the craft, and carries out the keys that have waited for them.
+/// Takes the settings of the craft, and carries out the keys that have waited for them. A mouse may have shown something
+/// else in the meantime: the keys were not typed for that.
 pub(super) fn take_settings(state: &mut AppState, reply: Result<Box<CraftSettings>, String>) -> Vec<Effect> {
     reading::take(&mut state.shared, reply);
     let waiting = std::mem::take(&mut state.waiting_keys);
-    if state.shared.settings.craft().is_none() {
+    let is_shown = state.shared.focus == Panel::Settings && state.popups.is_empty();
+    if !is_shown || state.shared.settings.craft().is_none() {
         return Vec::new();
     }
     waiting.into_iter().flat_map(|event| key(state, event)).collect()
