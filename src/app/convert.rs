@@ -66,7 +66,7 @@ pub(super) fn run(args: &ConvertArgs) -> Result<u8, AppError> {
             }
             setup::keep_own_files(&mut kept);
             paths.iter().try_for_each(|path| kept.claim("the output", path))?;
-            // Either all parts are written, or none.
+            // No part is written if another one would replace a file.
             paths.iter().try_for_each(|path| refuse_to_replace(path, args.force))?;
             for (path, part) in paths.iter().zip(&written) {
                 write(path, &part.contents, args.force)?;

@@ -1,6 +1,7 @@
 //! `betadeck examples`: the files that the commands of the documentation name.
 
 use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::error::{self, AppError};
 use super::interrupt::interrupt_flag;
@@ -73,12 +74,30 @@ pub(super) fn run(folder: &Path) -> Result<u8, AppError> {
             there.join(", ")
         )));
     }
+    match write_all(folder) {
+        Ok(true) => {}
+        // The next run refuses a folder with some of the files.
+        stopped => {
+            for (name, _) in &all {
+                std::fs::remove_file(folder.join(name)).ok();
+            }
+            return stopped.map(|_| error::INTERRUPTED);
+        }
+    }
+    let width = all.iter().map(|(name, _)| name.len()).max().unwrap_or_default();
+    let rows = all.iter().map(|(name, purpose)| format!("{name:width$}  {purpose}\n"));
+    error::print(&rows.collect::<String>())
+}
+
+/// Writes all files. Returns `false` after an interrupt.
+fn write_all(folder: &Path) -> Result<bool, AppError> {
+    let interrupted = interrupt_flag()?;
     for file in FILES {
         write(&folder.join(file.name), file.contents.as_bytes())?;
     }
     for (name, _, setting) in FLOWN {
-        if !fly(&folder.join(name), setting)? {
-            return Ok(error::INTERRUPTED);
+        if !fly(&folder.join(name), setting, &interrupted)? {
+            return Ok(false);
         }
     }
     for (name, _, parts) in JOINED {
@@ -91,9 +110,7 @@ pub(super) fn run(folder: &Path) -> Result<u8, AppError> {
         }
         write(&folder.join(name), &contents)?;
     }
-    let width = all.iter().map(|(name, _)| name.len()).max().unwrap_or_default();
-    let rows = all.iter().map(|(name, purpose)| format!("{name:width$}  {purpose}\n"));
-    error::print(&rows.collect::<String>())
+    Ok(true)
 }
 
 fn write(path: &Path, contents: &[u8]) -> Result<(), AppError> {
@@ -102,7 +119,7 @@ fn write(path: &Path, contents: &[u8]) -> Result<(), AppError> {
 }
 
 /// Flies a landing with a setting, and writes its log. Returns `false` after an interrupt.
-fn fly(log: &Path, setting: &str) -> Result<bool, AppError> {
+fn fly(log: &Path, setting: &str, interrupted: &AtomicBool) -> Result<bool, AppError> {
     let plan = BuiltinPlan::find("land").ok_or_else(|| AppError::internal("no plan land"))?;
     let plan = setup::read_plan(&PlanArg::Builtin(plan), None)?;
     let mut start = setup::from_args(
@@ -116,9 +133,8 @@ fn fly(log: &Path, setting: &str) -> Result<bool, AppError> {
     upload(vehicle.controller_mut(), &plan.plan, &[]).map_err(AppError::input)?;
     let mut output = LogOnly::new(LogOutput::begin(log, &mut vehicle)?);
     let mut flight = setup::start_flight(vehicle, &setup::flight_options(&MissionArgs::default()))?;
-    let interrupted = interrupt_flag()?;
     let mut runner = Runner::new(flight.vehicle().step_us(), f64::INFINITY, None);
-    let end = runner.fly(&mut flight, &mut output, || interrupted.load(std::sync::atomic::Ordering::Relaxed));
+    let end = runner.fly(&mut flight, &mut output, || interrupted.load(Ordering::Relaxed));
     output.finish()?;
     Ok(end.is_ok())
 }

@@ -178,7 +178,9 @@ pub fn read(
         Format::Toml if text.len() > MAX_TOML => {
             let message =
                 format!("the file has {} KiB, a TOML plan at most {} KiB", text.len() >> 10, MAX_TOML >> 10);
-            problems.add(0..0, message, "a plan has at most 30 waypoints: is this the right file?");
+            let hint =
+                format!("a plan has at most {} waypoints: is this the right file?", super::MAX_WAYPOINTS);
+            problems.add(0..0, message, if options.long { String::new() } else { hint });
             PlanFile::default()
         }
         Format::Toml => native_read::read(text, options, &mut problems),
@@ -207,7 +209,7 @@ pub fn read(
     if file.name.is_empty() {
         file.name = stem(name);
     }
-    // The lines of a map are simplified when their points are read.
+    // A map is simplified when it is read: its lines may have many points.
     let is_map = matches!(format, Format::Kml | Format::Kmz | Format::Gpx | Format::GeoJson);
     if let Some(tolerance_m) = options.simplify_m.filter(|_| !is_map) {
         file.simplify(tolerance_m);

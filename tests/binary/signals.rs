@@ -52,6 +52,21 @@ fn an_interrupted_flight_says_so_and_leaves_whole_files() {
 }
 
 #[test]
+fn interrupted_examples_leave_no_file_and_can_be_made_again() {
+    let sandbox = Sandbox::new();
+    let mut command = sandbox.command(&["examples", "try"]);
+    let child = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn();
+    let mut child = Guard(child.expect("a process"));
+    while !sandbox.path("try/my-plan.toml").exists() && child.0.try_wait().expect("a state").is_none() {
+        std::thread::yield_now();
+    }
+    let id = child.0.id().to_string();
+    assert!(std::process::Command::new("kill").args(["-s", "INT", &id]).status().expect("kill").success());
+    assert_eq!(child.0.wait().expect("an end").code(), Some(130));
+    sandbox.run(&["examples", "try"]).exits(0);
+}
+
+#[test]
 fn a_second_signal_ends_a_flight_that_nobody_reads() {
     let sandbox = Sandbox::new();
     let mut command = sandbox.command(&["fly", "square", "--json", "-", "--samples", "1000"]);

@@ -32,17 +32,20 @@ impl PlanFile {
     pub(super) fn simplify(&mut self, tolerance_m: f64) {
         let before = self.waypoints();
         let mut kept: Vec<Waypoint> = Vec::new();
-        let mut begin = 0;
-        for end in 0..before.len() {
-            if end + 1 < before.len() && (end == begin || is_on_the_way(&before[end], &before[end + 1])) {
-                continue;
+        // The waypoint at which the present line begins, which is kept already. A line has waypoints with a place only.
+        let mut begin = None;
+        for (end, waypoint) in before.iter().enumerate() {
+            let has_place = waypoint.kind.uses_position();
+            match begin.filter(|_| has_place) {
+                None => kept.push(*waypoint),
+                Some(_) if before.get(end + 1).is_some_and(|next| is_on_the_way(waypoint, next)) => continue,
+                Some(begin) => {
+                    let line: Vec<Vertex> = before[begin..=end].iter().map(vertex).collect();
+                    let kept_here = thinned(&line, tolerance_m, line.len()).kept;
+                    kept.extend(kept_here.into_iter().skip(1).map(|index| before[begin + index]));
+                }
             }
-            let line: Vec<Vertex> = before[begin..=end].iter().map(vertex).collect();
-            // The first point of a line is the last one of the line before.
-            let skipped = usize::from(begin > 0);
-            let kept_here = thinned(&line, tolerance_m, line.len()).kept;
-            kept.extend(kept_here.into_iter().skip(skipped).map(|index| before[begin + index]));
-            begin = end;
+            begin = has_place.then_some(end);
         }
         if kept.len() < before.len() {
             let why = "points near the line are left out (--simplify)";
@@ -98,7 +101,7 @@ fn joint(part: &[Waypoint]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geo::{LatLon, offset_to_latlon};
+    use crate::geo::{Degrees7, LatLon, offset_to_latlon};
     use crate::plan::format::{Format, ReadOptions, read, write};
     use crate::plan::{Altitude, LegSpeed};
     use nalgebra::Vector2;
@@ -174,6 +177,61 @@ mod tests {
         all.iter_mut().for_each(|waypoint| waypoint.kind = WaypointType::Hold);
         file.take(all);
         assert_eq!(file.parts().iter().map(|part| part.plan.waypoints.len()).collect::<Vec<_>>(), [30, 11]);
+    }
+
+    #[test]
+    fn a_line_begins_and_ends_at_a_waypoint_without_a_place() {
+        let mut all = long(40).waypoints();
+        // One point of the line between the two is far from it, the others are near.
+        all[15].position = all[16].position;
+        all[15].position.lon_e7 += 10_000;
+        for index in [10, 20] {
+            all[index] = Waypoint { kind: WaypointType::Delay, ..Waypoint::default() };
+        }
+        let mut file = PlanFile::default();
+        file.take(all.clone());
+        file.simplify(5.0);
+        let expected: Vec<Waypoint> =
+            [0, 9, 10, 11, 14, 15, 16, 19, 20, 21, 39].map(|index| all[index]).into();
+        assert_eq!(file.waypoints(), expected);
+    }
+
+    #[test]
+    fn the_points_of_a_map_are_simplified() {
+        let options = ReadOptions { simplify_m: Some(1.5), long: true, ..ReadOptions::default() };
+        let points: String = long(45)
+            .waypoints()
+            .iter()
+            .map(|waypoint| {
+                let LatLon { lat_e7, lon_e7 } = waypoint.position;
+                format!("<wpt lat=\"{}\" lon=\"{}\"/>", Degrees7(lat_e7), Degrees7(lon_e7))
+            })
+            .collect();
+        let gpx = format!("<gpx>{points}</gpx>");
+        for (format, contents) in [
+            (Format::Gpx, gpx.into_bytes()),
+            (Format::Gpx, write(&long(30), Format::Gpx).contents),
+            (Format::Kml, write(&long(30), Format::Kml).contents),
+            (Format::Kmz, write(&long(30), Format::Kmz).contents),
+            (Format::GeoJson, write(&long(30), Format::GeoJson).contents),
+        ] {
+            let file = read("a", &contents, format, &options).unwrap();
+            assert_eq!((file.plan.waypoints.len(), file.rest.len()), (2, 0), "{format}");
+            let finding = file.losses.findings.iter().find(|finding| finding.field == "points").unwrap();
+            assert_eq!(finding.to, "2", "{finding}");
+        }
+    }
+
+    #[test]
+    fn a_large_toml_plan_is_refused_for_its_size() {
+        let text = "#".repeat(600 << 10);
+        let say = |long| {
+            let options = ReadOptions { long, ..ReadOptions::default() };
+            read("a.toml", text.as_bytes(), Format::Toml, &options).unwrap_err()[0].to_string()
+        };
+        assert!(say(false).contains("at most 30 waypoints"), "{}", say(false));
+        let long = say(true);
+        assert!(long.contains("600 KiB, a TOML plan at most 512 KiB") && !long.contains("30"), "{long}");
     }
 
     #[test]

@@ -70,6 +70,8 @@ pub(super) struct Builder<'m, 'p, 'a> {
     has_own: bool,
     /// A point does not say how it is passed.
     has_plain: bool,
+    /// The waypoints are the points of a line that was simplified.
+    is_simplified: bool,
 }
 
 impl<'m, 'p, 'a> Builder<'m, 'p, 'a> {
@@ -91,6 +93,7 @@ impl<'m, 'p, 'a> Builder<'m, 'p, 'a> {
             needs_amsl: false,
             has_own: false,
             has_plain: false,
+            is_simplified: false,
         };
         for skipped in &map.skipped {
             let why = "it is not a line or a point, and nothing is fetched";
@@ -365,6 +368,7 @@ impl<'m, 'p, 'a> Builder<'m, 'p, 'a> {
             self.plain(&spot);
         }
         self.losses.items = line.len();
+        self.is_simplified = true;
     }
 
     /// Notes that longitudes of a feature were wrapped.
@@ -411,6 +415,9 @@ impl<'m, 'p, 'a> Builder<'m, 'p, 'a> {
             ..PlanFile::default()
         };
         file.take(self.waypoints);
+        if let Some(tolerance_m) = self.options.simplify_m.filter(|_| !self.is_simplified) {
+            file.simplify(tolerance_m);
+        }
         file
     }
 

@@ -170,11 +170,17 @@ impl Document {
         let (Some(lat), Some(lon)) = (element.attribute("home-y"), element.attribute("home-x")) else {
             return;
         };
-        // A text that is no number is a home that nobody has, too.
-        let number = |text: &str| decimal("home", text).unwrap_or(f64::NAN);
         let place = Place::Line { line: problems.line_at(element.span.start) };
         let mut losses = LossReport::default();
-        let home = of_file(number(lat), number(lon), None, Some(&place), &mut losses);
+        let home = match (decimal("latitude", lat), decimal("longitude", lon)) {
+            (Ok(lat), Ok(lon)) => of_file(lat, lon, None, Some(&place), &mut losses),
+            (Err(message), _) | (_, Err(message)) => {
+                let why = format!("{message}: add --home LAT,LON,AMSL");
+                let finding = Finding::new(Severity::Lost, "home", why).place(place);
+                losses.add(finding.values(format!("{lat},{lon}"), "unknown"));
+                None
+            }
+        };
         self.findings.append(&mut losses.findings);
         // 0,0 is that of a mission without a home.
         if let Some(home) = home.map(|home| home.position).filter(|home| *home != LatLon::default()) {

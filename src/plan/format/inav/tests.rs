@@ -232,7 +232,12 @@ fn a_mission_is_chosen() {
 fn a_home_that_no_place_has_costs_a_finding_not_the_plan() {
     for (was, wrong, from) in [
         ("home-y=\"40.4635000\"", "home-y=\"404.635\"", "404.635,-79.5182"),
-        ("home-x=\"-79.5182000\"", "home-x=\"\"", "40.4635,NaN"),
+        ("home-x=\"-79.5182000\"", "home-x=\"\"", "40.4635000, → unknown: longitude is missing"),
+        (
+            "home-x=\"-79.5182000\"",
+            "home-x=\"west\"",
+            "40.4635000,west → unknown: longitude west is not a number",
+        ),
     ] {
         let file = read_text(&EXAMPLE.replace(was, wrong), Format::MwXml);
         assert_eq!((file.home, file.plan.waypoints.len()), (None, 3));
