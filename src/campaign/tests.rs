@@ -274,7 +274,7 @@ fn equal_complaints_are_counted_and_the_result_is_said_once() {
     for number in 1..=30 {
         let mut record = record(number, Side::A, number > 5, &[]);
         record.result = "crashed".to_owned();
-        record.reason = format!("the craft crashed: it hit the ground sinking at {}.1 m/s", number);
+        record.reason = format!("the craft crashed: it hit the ground sinking at {number}.1 m/s");
         record.failures = vec![format!(
             "result complete: the flight should end complete, it ended crashed: {}",
             record.reason
@@ -295,7 +295,7 @@ fn equal_complaints_are_counted_and_the_result_is_said_once() {
 fn crashes_that_differ_in_the_sign_of_a_number_are_alike() {
     let mut builder = builder("", 4, false);
     for (number, roll) in (1..).zip(["-4", "4", "−12", "+3.5"]) {
-        let mut record = record(number, Side::A, false, &[]);
+        let mut record = record(number, Side::A, true, &[]);
         record.result = "crashed".to_owned();
         record.reason =
             format!("the craft crashed: it hit the ground in APPROACHING, roll {roll}°, pitch 11°");

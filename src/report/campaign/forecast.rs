@@ -189,6 +189,24 @@ mod tests {
     }
 
     #[test]
+    fn the_reason_why_flights_could_not_be_flown_has_its_own_count() {
+        let unflown = |number: u64, problem: String| {
+            let flight = flight(number, 5.0, 0.4);
+            let result = String::new();
+            Record { standing: Standing::NotFlown, problem: Some(problem), result, ..flight }
+        };
+        let strong = |number: u64| unflown(number, format!("the legs are too strong: at most {number}.3"));
+        let alike = forecast((1..=9).map(strong));
+        assert_eq!(forecast_reason(&alike), "9 could not be flown: the legs are too strong: at most 1.3");
+        let weak = |number: u64| unflown(number, "the motors are too weak".to_owned());
+        let mixed = forecast((1..=9).map(strong).chain((10..=12).map(weak)));
+        assert_eq!(
+            forecast_reason(&mixed),
+            "12 could not be flown, 9 of them for this reason: the legs are too strong: at most 1.3"
+        );
+    }
+
+    #[test]
     fn calm_weather_is_go() {
         let answer = forecast((1..=100).map(|n| flight(n, 4.0, 0.9)));
         assert_eq!(
