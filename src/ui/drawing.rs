@@ -58,7 +58,7 @@ fn without_emoji(text: &str) -> Cow<'_, str> {
     let mut is_joined = false;
     for c in text.chars() {
         let goes_on = std::mem::replace(&mut is_joined, c == '\u{200d}');
-        if !is_part(c) && !(goes_on && is_joinable(c)) {
+        if !(is_part(c) || goes_on && is_joinable(c)) {
             plain.push(if is_emoji(c) { '?' } else { c });
         }
     }
