@@ -101,7 +101,7 @@ fn table() {
         all.map(|(frames, took)| (took, frames)).min().unwrap()
     };
     let (own, frames) = fastest(&|| {
-        let log = flights.start(None).unwrap();
+        let log = flights.start(None, || false).unwrap().unwrap();
         let null = File::create("/dev/null").unwrap();
         write_csv(&log, flights.source().clone(), None, null, || false).unwrap().log.counts.main
     });

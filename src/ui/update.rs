@@ -240,7 +240,7 @@ fn key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
     }
     match state.popups.last() {
         _ if found == Some(Action::Cancel) => cancel(state),
-        _ if found == Some(Action::Redraw) => redraw(state),
+        _ if found == Some(Action::Redraw) => view::redraw(state),
         Some(_) => popup::key(state, event, found),
         None if state.shared.editor.popup.is_some() => {
             let compared =
@@ -268,12 +268,6 @@ fn type_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
 /// Returns `true` if an open text field gets a key with this action. Keys that leave the field do not belong to it.
 fn takes_as_text(found: Option<Action>) -> bool {
     !matches!(found, Some(Action::Palette | Action::Redraw | Action::Suspend | Action::Previous))
-}
-
-/// Draws the whole screen again, whatever another program has written on it.
-fn redraw(state: &mut AppState) -> Vec<Effect> {
-    state.shared.notify(Severity::Info, "The screen is drawn again.");
-    vec![Effect::Redraw]
 }
 
 /// Handles Ctrl-C: the first press cancels, the second quits.
@@ -485,7 +479,7 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
         }
         Action::Quit => return plan_popup::quit(&mut state.shared),
         Action::Cancel => return cancel(state),
-        Action::Redraw => return redraw(state),
+        Action::Redraw => return view::redraw(state),
         Action::Suspend => return vec![Effect::Suspend],
         Action::Panel(own) => {
             let panel = match action::spec_of(action).map(|spec| spec.context) {

@@ -5,7 +5,6 @@
 
 mod child;
 mod faults;
-#[allow(dead_code, reason = "the tests write reports only")]
 #[path = "../../src/link/sitl_child/lockstep/frames.rs"]
 mod frames;
 #[path = "../port_support/free_port.rs"]

@@ -40,7 +40,8 @@ pub(in crate::report) fn results(answer: &Answer) -> Option<String> {
 
 /// Returns the reasons why flights could not be flown.
 pub(in crate::report) fn not_flown(answer: &Answer) -> Vec<String> {
-    let all = answer.success.not_flown;
+    // Those of both sides.
+    let all: u64 = answer.not_flown.iter().map(|(_, count)| count).sum();
     let mut lines: Vec<String> = answer
         .not_flown
         .iter()

@@ -288,8 +288,8 @@ fn every_built_in_craft_takes_every_tolerance_of_twenty_per_cent() {
     use strum::IntoEnumIterator as _;
     for name in crate::sim::BUILTIN_NAMES {
         for (of, percent) in Tolerance::iter().flat_map(|of| [(of, -20.0), (of, 20.0)]) {
-            let mut world = crate::sim::WorldConfig::default();
-            world.airframe = name.parse().unwrap();
+            let airframe = name.parse().unwrap();
+            let mut world = crate::sim::WorldConfig { airframe, ..Default::default() };
             of.apply(percent, &mut world.airframe, &mut world.switches);
             for rate_hz in [400, 500, 1000, 8000] {
                 world.rate_hz = rate_hz;

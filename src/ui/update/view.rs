@@ -2,10 +2,17 @@
 
 use super::carry_out;
 use crate::ui::app_state::AppState;
+use crate::ui::event_log::Severity;
 use crate::ui::layout;
 use crate::ui::message::Effect;
 use crate::ui::panel::Panel;
 use crate::ui::settings::reading;
+
+/// Draws the whole screen again, whatever another program has written on it.
+pub(super) fn redraw(state: &mut AppState) -> Vec<Effect> {
+    state.shared.notify(Severity::Info, "The screen is drawn again.");
+    vec![Effect::Redraw]
+}
 
 /// Gives a panel the focus.
 pub(super) fn focus(state: &mut AppState, panel: Panel) -> Vec<Effect> {
