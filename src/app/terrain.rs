@@ -16,7 +16,7 @@ use crate::terrain::{
 /// The largest number of tiles. Nine of the largest ones take 470 MB.
 const MOST_TILES: usize = 9;
 
-/// What the names of packed `.hgt` tiles end with.
+/// The endings of packed `.hgt` tiles.
 const PACKED: [&str; 2] = [".zip", ".gz"];
 
 /// The directories of the tiles, the first one first.

@@ -32,8 +32,8 @@ pub(super) struct Progress {
 }
 
 impl Progress {
-    /// Takes the state of the mission. Only a craft on the way to its waypoint gets on: one that holds or lands starts
-    /// anew. The last looks before the end are kept for the verdict, until the next engagement.
+    /// Takes the state of the mission. Only a craft on the way to its waypoint makes progress: one that holds or lands begins
+    /// from the start again. The last looks before the end are kept for the verdict, until the next engagement.
     pub(super) fn follow(&mut self, state: NavState) {
         match state {
             NavState::Idle => self.is_over = true,

@@ -8,7 +8,7 @@ use super::compass::{CompassCheck, CompassVerdict};
 use super::gps::GpsMonitor;
 use super::heading::{CourseComparison, MagTrust, magnetic_error};
 use super::horizontal::Horizontal;
-use super::lean_check::LeanCheck;
+use super::lean_check::{LeanCheck, urgency};
 use super::schedule::Schedule;
 use super::straight::StraightFlight;
 use super::tuning::{AttitudeSource, EstimatorOptions, EstimatorTuning};
@@ -494,10 +494,4 @@ impl Estimator {
         estimate.lean_doubt_rad = self.lean.doubt();
         estimate.calibrating = !self.gyro.done || self.acc.is_some() || self.mag.is_some();
     }
-}
-
-/// Returns the factor by which the tilt follows a missing acceleration of this size faster, m/s². Beyond what wind, noise and a
-/// usual gyro offset leave, a gyro has stepped, and the craft falls before the usual correction has found that.
-fn urgency(missing: f64) -> f64 {
-    1.0 + (missing - 1.0).clamp(0.0, 2.0)
 }

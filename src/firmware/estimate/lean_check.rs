@@ -33,6 +33,12 @@ impl LeanCheck {
     }
 }
 
+/// Returns the factor by which the tilt follows a missing acceleration of this size faster, m/s². Beyond the size that wind,
+/// noise and a usual gyro offset leave, a gyro has stepped, and the craft falls before the usual correction has found it.
+pub(super) fn urgency(missing: f64) -> f64 {
+    1.0 + (missing - 1.0).clamp(0.0, 2.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

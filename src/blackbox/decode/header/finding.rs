@@ -1,4 +1,4 @@
-//! What is wrong with the lines of a header that can be read all the same.
+//! The faults of a header that can be read in spite of them.
 
 use std::fmt;
 
