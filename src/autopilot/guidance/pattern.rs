@@ -51,16 +51,12 @@ pub fn figure8(width_m: f64, phase_rad: f64) -> PatternPoint {
     }
 }
 
-/// The fastest turn of the lean with which the attitude keeps up, rad/s. On a faster circle the lean lags behind, and the
-/// craft is carried off it.
-const LEAN_TURN_RPS: f64 = 60.0 * PI / 180.0;
-
-/// Returns the angular rate along a circle of `radius_m`, rad/s: `ap_max_turn_rate`, limited by the speed of the leg,
-/// by half the acceleration of the maximum lean, and by the turn of the lean, so that the circle can be flown.
+/// Returns the angular rate along a circle of `radius_m`, rad/s: `ap_max_turn_rate`, limited by the speed of the leg
+/// and by half the acceleration of the maximum lean, so that the circle can be flown.
 pub fn pattern_rate_rps(radius_m: f64, leg_speed_mps: f64, params: &Params) -> f64 {
     let radius = radius_m.max(0.1);
     let by_lean = (0.5 * GRAVITY * math::tan(params.max_lean_rad()) / radius).sqrt();
-    f64::from(params.max_turn_rate).to_radians().min(leg_speed_mps / radius).min(by_lean).min(LEAN_TURN_RPS)
+    f64::from(params.max_turn_rate).to_radians().min(leg_speed_mps / radius).min(by_lean)
 }
 
 /// Returns the remaining time of a hold, s, rounded down to tenths. It is infinite if the hold is endless.

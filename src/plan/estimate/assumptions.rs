@@ -8,8 +8,6 @@ use crate::plan::setpoint::{AltitudeSetpoint, SetpointLimits};
 
 /// The default altitude above home above which a waypoint is reported, m.
 pub const MAX_ALTITUDE_M: f64 = 120.0;
-/// The fastest turn of the lean on a circle, rad/s.
-const LEAN_TURN_RPS: f64 = 60.0 * std::f64::consts::PI / 180.0;
 /// The slowest leg speed of a waypoint, m/s.
 const SLOWEST_MPS: f64 = 1.0;
 /// The slowest leg speed with a DELAY, m/s.
@@ -203,8 +201,8 @@ impl Assumptions {
         (math::powi(speed_mps.max(SLOWEST_MPS), 2) / (GRAVITY * tangent)).clamp(0.5, WIDEST_TURN_M)
     }
 
-    /// Returns the rate of an ORBIT at this waypoint, radians/s: the setting, limited by the speed of the leg, by half of
-    /// the maximum lean, and by the turn of the lean.
+    /// Returns the rate of an ORBIT at this waypoint, radians/s: the setting, limited by the speed of the leg and by half
+    /// of the maximum lean.
     pub(in crate::plan) fn orbit_rate_rps(&self, waypoint: &Waypoint) -> f64 {
         let lean = self.max_angle_deg.clamp(5.0, 80.0).to_radians();
         let radius_m = self.orbit_radius_m.max(0.1);
@@ -212,7 +210,6 @@ impl Assumptions {
             .to_radians()
             .min(self.leg_speed_mps(waypoint) / radius_m)
             .min((0.5 * GRAVITY * math::tan(lean) / radius_m).sqrt())
-            .min(LEAN_TURN_RPS)
     }
 
     /// Returns the slowest speed of a leg of this length after a DELAY, m/s.

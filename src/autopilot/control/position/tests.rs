@@ -116,7 +116,8 @@ fn a_lasting_error_on_a_pattern_is_learned_but_not_the_way_to_the_pattern() {
     };
     for off_m in [-9.5, -1.0, 1.0, 9.5] {
         let trim = learned(off_m);
-        assert!(trim.x.abs() < 1e-9 && trim.y * off_m > 0.0, "{off_m} m inward: {trim}");
+        // It leads by the turn of the pattern while the craft answers to it.
+        assert!(trim.y * off_m > 0.0 && trim.x * off_m < 0.0, "{off_m} m inward: {trim}");
     }
     for off_m in [-10.5, 10.5, 50.0] {
         assert_eq!(learned(off_m), Vector2::zeros(), "{off_m} m inward");
