@@ -1,5 +1,5 @@
 //! The files that a scenario names. A scenario may come from somebody else, and its errors go into public logs: it names
-//! files of its own folder only, and shows no text of a file that is no plan.
+//! files of its own folder only, and no error shows text of a file that is no plan.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! How a craft gets on towards its waypoint, for a mission that is given up without a reason.
+//! The progress of a craft towards its waypoint, for a mission that is given up without a reason.
 
 use nalgebra::Vector2;
 
@@ -6,13 +6,13 @@ use crate::math;
 use crate::signals::SimTime;
 use crate::telemetry::NavState;
 
-/// The way by which a craft must come closer to count as getting on, m.
+/// The distance by which a craft must come closer to make progress, m.
 const CLOSER_M: f64 = 1.0;
-/// The shortest time without getting on that is worth a word, s.
+/// The shortest time without progress that is reported, s.
 const STALLED_S: f64 = 5.0;
-/// The shortest way away from the waypoint that is worth a word, m.
+/// The shortest distance away from the waypoint that is reported, m.
 const AWAY_M: f64 = 5.0;
-/// The speed from which the course has a meaning, m/s, and the angle between it and the heading that is worth a word,
+/// The speed from which the course has a meaning, m/s, and the angle between it and the heading that is reported,
 /// degrees.
 const MOVING_MPS: f64 = 1.0;
 const AGAINST_DEG: f64 = 90.0;
@@ -61,7 +61,7 @@ impl Progress {
         self.against_deg = (velocity.norm() >= MOVING_MPS).then_some(apart_deg.abs());
     }
 
-    /// Returns what the last look before the end showed; `None` if the craft got on as it should.
+    /// Returns what the last look before the end showed; `None` if the craft made progress.
     pub(super) fn sentence(&self) -> Option<String> {
         let wp = self.wp?;
         let mut parts = Vec::new();

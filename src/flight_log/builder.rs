@@ -30,7 +30,7 @@ pub(super) struct FlightBuilder {
     marks: MarkLog,
     track: TrackLog,
     counts: LogCounts,
-    /// What was skipped before the first main frame.
+    /// The frames and bytes skipped before the first main frame.
     start: LogCounts,
     first: Option<SimTime>,
     last: SimTime,

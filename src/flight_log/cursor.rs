@@ -24,7 +24,7 @@ pub struct FlightCursor<'a, S> {
     /// The next main frame and its values; `None` at the end of the log.
     next: Option<NextFrame>,
     next_main: Vec<i32>,
-    /// What was found up to here, without the number of other frames than main frames.
+    /// The counts up to here; of frames, main frames only.
     end: LogEnd,
 }
 

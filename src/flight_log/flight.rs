@@ -26,7 +26,7 @@ pub struct LogCounts {
     pub skipped_bytes: u64,
 }
 
-/// What is known once a log was read to its end.
+/// The findings that need a log to be read to its end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LogEnd {
     pub counts: LogCounts,
@@ -48,7 +48,7 @@ pub struct LogFlight {
     pub(super) marks: Vec<LogMark>,
     pub(super) track: Vec<TrackFix>,
     pub(super) home: Option<LogHome>,
-    /// What was skipped before the first main frame.
+    /// The frames and bytes skipped before the first main frame.
     pub(super) start: LogCounts,
     pub(super) end: LogEnd,
     pub(super) blocks: Vec<Block>,

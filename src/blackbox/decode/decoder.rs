@@ -224,7 +224,7 @@ impl Decoder {
                 }
             }
             let is_main = matches!(kind, FrameKind::Intra | FrameKind::Inter);
-            // What follows that frame is predicted from it, so only its own values are right.
+            // Later frames are predicted from that frame, so only its own values are right.
             if is_main && !has_main && !self.state.clock.is_next(self.stamp()) {
                 return Err(Stop::Wrong);
             }

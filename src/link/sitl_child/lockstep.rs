@@ -183,7 +183,8 @@ impl Lockstep {
                 return Err(NoReport::Faulty("reports bytes over its serial port that it has not sent"));
             }
             self.incomplete = Some((report, looks + 1));
-            return Err(self.process.no_report()).map_err(|reason| self.noted(reason));
+            let reason = self.process.no_report();
+            return Err(self.noted(reason));
         }
         let motors = (report.motor_packets > 0).then_some(report.motors);
         self.newest = Some(report);
