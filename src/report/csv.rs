@@ -23,7 +23,7 @@ impl<W: Write> CsvWriter<W> {
     pub fn new(out: W) -> io::Result<Self> {
         let columns = column::all();
         let mut rows = csv::Writer::from_writer(out);
-        rows.write_record(columns.iter().map(Column::header))?;
+        rows.write_record(columns.iter().map(Column::header)).map_err(output_error)?;
         Ok(Self { columns, rows })
     }
 
@@ -33,7 +33,7 @@ impl<W: Write> CsvWriter<W> {
     ///
     /// Returns the error of the output.
     pub fn row(&mut self, observed: &Observed<'_>) -> io::Result<()> {
-        Ok(self.rows.write_record(self.columns.iter().map(|column| column.cell(observed)))?)
+        self.rows.write_record(self.columns.iter().map(|column| column.cell(observed))).map_err(output_error)
     }
 
     /// Writes the rows that are still in memory.
@@ -52,6 +52,14 @@ impl<W: Write> CsvWriter<W> {
     /// Returns the error of the output.
     pub fn finish(self) -> io::Result<W> {
         self.rows.into_inner().map_err(csv::IntoInnerError::into_error)
+    }
+}
+
+/// Returns the error of the output in an error of the table, which otherwise hides its kind and its source.
+fn output_error(error: csv::Error) -> io::Error {
+    match error.into_kind() {
+        csv::ErrorKind::Io(error) => error,
+        kind => io::Error::other(format!("{kind:?}")),
     }
 }
 
