@@ -18,10 +18,10 @@ use std::io::ErrorKind;
 use std::net::{Ipv4Addr, UdpSocket};
 use std::time::{Duration, Instant};
 
+use betadeck::link::conventions::Dialect;
 use betadeck::link::proto::fdm::{GZ_PLUGIN_SIZE, State, mirrored, pressure_pa};
 use betadeck::link::proto::servo;
 use betadeck::signals::MotorCommand;
-use betadeck::signals::fdm::Dialect;
 use betadeck::sim::{World, WorldConfig};
 
 /// The number of plant steps in one step of the simulator, which lasts 4 ms.

@@ -16,6 +16,7 @@
 
 mod client;
 mod client_stream;
+pub mod conventions;
 pub mod endpoint;
 mod endpoint_stats;
 mod external;

@@ -41,7 +41,7 @@ pub use altitude_reference::{AltitudeError, AltitudeReference, CraftPlan};
 pub use capability::{Approach, Capability, Modifier, SpeedUse, Then, TimeUse};
 pub use cli_lines::{plan_lines, record_lines, upload_lines};
 pub use quantity::{Altitude, LegSpeed, Seconds};
-pub(crate) use review::{LegAltitude, leg_altitudes};
+pub use review::{LegAltitude, leg_altitudes};
 pub use waypoint::{HoldPattern, Waypoint, WaypointType};
 
 /// The most waypoints a plan holds.

@@ -4,8 +4,6 @@
 //! Frames: world ENU (x east, y north, z up); body FLU (x forward, y left, z up). Quaternions are body →
 //! world, Hamilton. All units are SI. A measurement that did not arrive with this frame is `None`.
 
-pub mod fdm;
-
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// The simulated time since boot in whole microseconds, the only time that the core uses.

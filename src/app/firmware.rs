@@ -17,8 +17,8 @@ use crate::args::{
     FirmwarePortArgs, FlightArgs, PhysicsArgs, UdpPorts,
 };
 use crate::fc::ProvisionLines;
+use crate::link::conventions::{Dialect, FirmwareClock, MotorOrder, Stamps};
 use crate::link::lockstep::check_lockstep;
-use crate::signals::fdm::{Dialect, FirmwareClock, MotorOrder, Stamps};
 
 /// The launcher's file in the working directory.
 const LAUNCHER_FILE: &str = "config.txt";

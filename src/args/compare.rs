@@ -6,7 +6,7 @@ use super::firmware::{FirmwareChoice, FirmwareLinkArgs, FirmwarePortArgs};
 use super::plan_arg::PlanArg;
 use super::value::{self, OutputFile};
 use super::{FlightArgs, MissionArgs, help};
-use crate::signals::fdm::FirmwareClock;
+use crate::link::conventions::FirmwareClock;
 
 /// The longest flight of a comparison, s. Its whole track is kept.
 const LONGEST_S: f64 = 7200.0;

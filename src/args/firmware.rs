@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use super::physics::{FdmDialect, PhysicsArgs};
 use super::{FlightArgs, Speed, UdpPorts};
-use crate::signals::fdm::{FirmwareClock, MotorOrder, Stamps};
+use crate::link::conventions::{FirmwareClock, MotorOrder, Stamps};
 
 /// A choice of the firmware.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]

@@ -3,7 +3,7 @@
 use std::str::FromStr;
 
 use super::{FlightArgs, help, value};
-use crate::signals::fdm::{Dialect, Mirror, MotorOrder};
+use crate::link::conventions::{Dialect, Mirror, MotorOrder};
 use crate::sim::ScheduledFault;
 
 /// A choice of the physics.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::*;
-use crate::signals::fdm::FirmwareClock;
+use crate::link::conventions::FirmwareClock;
 
 fn parse_line(line: &str, layers: &Layers) -> Result<Cli, clap::Error> {
     parse(line.split(' ').map(OsString::from), layers)

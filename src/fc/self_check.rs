@@ -6,9 +6,9 @@ use nalgebra::Vector3;
 
 use super::RemoteNotice;
 use crate::geo::{LatLon, distance_bearing};
+use crate::link::conventions::Dialect;
 use crate::link::proto::fdm::{Gravity, State};
 use crate::math;
-use crate::signals::fdm::Dialect;
 use crate::telemetry::snapshot::{EstimateView, TruthView};
 use crate::vehicle::Vehicle;
 

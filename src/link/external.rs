@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 use super::proto::fdm_link::{Counters, FdmLink, FdmLinkConfig, Received, Reply};
 use super::proto::servo;
 use super::udp::{MotorPort, Sent, StateQueue};
+use crate::link::conventions::MotorOrder;
 use crate::link::endpoint::{EndpointKind, EndpointState, EndpointStatus, SimulatorStats};
-use crate::signals::fdm::MotorOrder;
 use crate::signals::{MotorCommand, PerMotor, SensorFrame};
 use crate::telemetry::LinkState;
 

@@ -7,8 +7,8 @@ use std::time::{Duration, Instant};
 use super::endpoint_stats::EndpointStats;
 use super::proto::rc;
 use super::proto::sitl_feed::{FeedConfig, FeedState, SitlFeed};
+use crate::link::conventions::Dialect;
 use crate::link::endpoint::{EndpointKind, EndpointState, EndpointStatus};
-use crate::signals::fdm::Dialect;
 use crate::signals::{MotorCommand, RcFrame, SensorFrame};
 
 /// A size above that of any motor packet.

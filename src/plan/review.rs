@@ -14,7 +14,7 @@ use super::estimate::{Assumptions, SettingSource, TouchdownThrottle, estimate};
 use super::feature::Zone;
 use super::validate::{PlanFault, check_plan};
 use super::{FlightPlan, Modifier, Then, Waypoint, WaypointType};
-pub(crate) use altitude::{LegAltitude, legs as leg_altitudes};
+pub use altitude::{LegAltitude, legs as leg_altitudes};
 pub use clearance::{
     Before, CLEARANCE_M, Clearances, FlownPlace, LowClearance, Raise, Way, clearances, low_in_flight,
 };

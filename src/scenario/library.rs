@@ -112,7 +112,7 @@ mod tests {
 
     #[test]
     fn every_file_of_the_folder_is_built_in_reads_and_has_its_row() {
-        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("plans/scenarios");
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../plans/scenarios");
         let mut names: Vec<String> = std::fs::read_dir(folder)
             .unwrap()
             .map(|entry| entry.unwrap().file_name().into_string().unwrap())

@@ -6,10 +6,10 @@ use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+use betadeck::link::conventions::Dialect;
 use betadeck::link::proto::fdm::{State, mirrored, pressure_pa};
 use betadeck::link::proto::servo;
 use betadeck::signals::MotorCommand;
-use betadeck::signals::fdm::Dialect;
 use betadeck::sim::{Noise, World, WorldConfig};
 
 use super::program::PATIENCE;

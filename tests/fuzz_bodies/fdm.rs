@@ -2,10 +2,10 @@
 
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{Firmware, FirmwareOptions};
+use betadeck::link::conventions::Dialect;
 use betadeck::link::proto::fdm::{self, Gravity, Packet, PacketError, State};
 use betadeck::link::proto::fdm_link::{FdmLink, FdmLinkConfig, PacketKind, Reply};
 use betadeck::signals::SensorFrame;
-use betadeck::signals::fdm::Dialect;
 use betadeck::telemetry::LinkState;
 
 use super::craft;

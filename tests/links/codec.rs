@@ -4,6 +4,7 @@
 
 use std::time::Duration;
 
+use betadeck::link::conventions::Dialect;
 use betadeck::link::proto::command_line::{Completion, LineReply};
 use betadeck::link::proto::fdm::{self, Gravity, Packet, PacketError, State};
 use betadeck::link::proto::line_editor::MAX_LINE;
@@ -11,7 +12,6 @@ use betadeck::link::proto::serial_session::{SerialRequest, SerialSession};
 use betadeck::link::proto::{rc, servo};
 use betadeck::msp::{Decoder, Dropped, Form, Frame, Kind};
 use betadeck::signals::RcFrame;
-use betadeck::signals::fdm::Dialect;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 use serde_json::Value;

@@ -10,9 +10,9 @@ mod stalls;
 mod timing;
 
 use crate::at_rest::at_rest;
+use betadeck::link::conventions::Dialect;
 use betadeck::link::proto::fdm::{GZ_PLUGIN_SIZE, State};
 use betadeck::link::proto::fdm_link::{FdmLink, FdmLinkConfig};
-use betadeck::signals::fdm::Dialect;
 
 const MS: u64 = 1000;
 

@@ -1,10 +1,10 @@
 //! The feed of an executable, in simulated wall time, against the rules of the public executable (L-9).
 
 use betadeck::geo::LatLon;
+use betadeck::link::conventions::{Dialect, MotorOrder, Stamps};
 use betadeck::link::proto::fdm::pressure_pa;
 use betadeck::link::proto::sitl_feed::{FeedConfig, FeedState, SitlFeed};
 use betadeck::link::proto::{rc, servo};
-use betadeck::signals::fdm::{Dialect, MotorOrder, Stamps};
 use betadeck::signals::{GpsSample, SensorFrame, SimTime};
 use nalgebra::{UnitQuaternion, Vector3};
 

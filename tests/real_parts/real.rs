@@ -6,9 +6,9 @@ use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpStream, UdpSocket};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
+use betadeck::link::conventions::{Dialect, MotorOrder, Stamps};
 use betadeck::link::proto::sitl_feed::FeedConfig;
 use betadeck::link::{ChildConfig, SitlChild, SitlPeer, SitlPorts};
-use betadeck::signals::fdm::{Dialect, MotorOrder, Stamps};
 use betadeck::signals::{MotorCommand, RcFrame};
 use betadeck::sim::{Home, Noise, World, WorldConfig};
 use nalgebra::Vector3;

@@ -3,9 +3,9 @@
 use std::net::{IpAddr, Ipv4Addr, UdpSocket};
 use std::time::{Duration, Instant};
 
+use betadeck::link::conventions::{Dialect, MotorOrder, Stamps};
 use betadeck::link::proto::sitl_feed::{FeedConfig, FeedState};
 use betadeck::link::{SitlPeer, SitlPorts};
-use betadeck::signals::fdm::{Dialect, MotorOrder, Stamps};
 use betadeck::signals::{RcFrame, SensorFrame, SimTime};
 
 use super::stand_in::program::{End, Ports};

@@ -1,9 +1,9 @@
 //! The link's packets against reference packets. Encoder and decoder are written independently (L-1, L-2).
 
+use betadeck::link::conventions::Dialect;
 use betadeck::link::proto::fdm::{Packet, State, mirrored};
 use betadeck::link::proto::{rc, servo};
 use betadeck::signals::RcFrame;
-use betadeck::signals::fdm::Dialect;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use serde_json::Value;
 

@@ -1,7 +1,7 @@
 //! Simulators that hang, end, restart, send without a rhythm, lose packets that are waited for, or send nonsense.
 
+use betadeck::link::conventions::Dialect;
 use betadeck::link::proto::fdm::{GZ_PLUGIN_SIZE, SIZE};
-use betadeck::signals::fdm::Dialect;
 
 use crate::plant::Plant;
 use crate::rates::sitl;

@@ -1,8 +1,8 @@
 //! The project's plant, and the packets that a simulator sends about it.
 
+use betadeck::link::conventions::Dialect;
 use betadeck::link::proto::fdm::{GZ_PLUGIN_SIZE, State, mirrored, pressure_pa};
 use betadeck::signals::MotorCommand;
-use betadeck::signals::fdm::Dialect;
 use betadeck::sim::{Noise, World, WorldConfig, WorldEventKind};
 
 /// A craft at home, or in flight.

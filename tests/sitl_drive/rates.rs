@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use betadeck::signals::fdm::Dialect;
+use betadeck::link::conventions::Dialect;
 
 use crate::child::Child;
 use crate::simulator::{Hand, Simulator};

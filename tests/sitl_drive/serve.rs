@@ -1,6 +1,6 @@
 //! `betadeck serve --physics external`: the embedded firmware with all its doors, moved by the same simulator.
 
-use betadeck::signals::fdm::Dialect;
+use betadeck::link::conventions::Dialect;
 
 use crate::child::Child;
 use crate::failing_simulators::{BOUNDS, hang};

@@ -3,9 +3,9 @@
 
 use std::net::{Ipv4Addr, UdpSocket};
 
+use betadeck::link::conventions::Dialect;
 use betadeck::link::proto::{rc, servo};
 use betadeck::signals::RcFrame;
-use betadeck::signals::fdm::Dialect;
 
 use crate::child::NEVER;
 use crate::plant::Plant;

@@ -13,11 +13,11 @@ use crate::args::{
     CampaignArgs, FirmwareArgs, FirmwareChoice, FirmwarePortArgs, FlightArgs, PhysicsArgs, PlanArg,
 };
 use crate::design::fingerprint;
+use crate::link::conventions::FirmwareClock;
 use crate::plan::builtin::BuiltinPlan;
 use crate::report::campaign::{Contents, Definition, OtherSide, RunHeader};
 use crate::report::check::STANDARD_INPUT;
 use crate::scenario::BuiltinScenario;
-use crate::signals::fdm::FirmwareClock;
 
 /// The longest first line of a run's file, bytes: all files of the campaign are in it.
 pub(super) const MAX_HEADER: u64 = 64 << 20;

@@ -11,11 +11,11 @@ use crate::app::firmware::run::{OnEvent, RemoteRun, RunOptions, Stopped};
 use crate::app::firmware::{RemoteFirmware, reported};
 use crate::app::{AppError, error, parallel, setup};
 use crate::fc::Unset;
+use crate::link::conventions::{FirmwareClock, Stamps};
 use crate::report::check::{CheckedFlight, shell_word};
 use crate::report::flight::FlightReport;
 use crate::scenario::{self, Air, Case, CaseFlight, Flown};
 use crate::session::{Event, Subscriber};
-use crate::signals::fdm::{FirmwareClock, Stamps};
 use crate::vehicle::Vehicle;
 
 /// The message if flights cannot be prepared repeatedly.

@@ -10,10 +10,10 @@ use super::{FirmwarePorts, RemoteFirmware, on_the_wall_clock};
 use crate::app::AppError;
 use crate::args::UdpPorts;
 use crate::fc::{Provision, RemoteEnds, RemoteLink, starter_lines};
+use crate::link::conventions::FirmwareClock;
 use crate::link::lockstep::{Lockstep, LockstepConfig, LockstepPorts, NoReport};
 use crate::link::proto::sitl_feed::FeedConfig;
 use crate::link::{ChildConfig, FcPlace, FcStream, SitlChild, SitlPeer, SitlPorts};
-use crate::signals::fdm::FirmwareClock;
 use crate::storage::state_file;
 use crate::vehicle::Vehicle;
 

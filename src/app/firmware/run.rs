@@ -14,10 +14,10 @@ use super::processor;
 use crate::app::{AppError, runtime};
 use crate::fc::{Patience, Remote, RemoteLink, RemoteState, Unready, Unset, Upload, UploadProgress};
 use crate::firmware::cli::CliReply;
+use crate::link::conventions::FirmwareClock;
 use crate::plan::{AltitudeError, FlightPlan};
 use crate::session::{self, Event, Flying, Runner, Subscriber};
 use crate::signals::SimTime;
-use crate::signals::fdm::FirmwareClock;
 use crate::vehicle::{LateAnswer, Ticket, Vehicle};
 
 /// A remote firmware in operation. It ends on drop.

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Eighteen little-endian doubles, 144 bytes. The meaning of the numbers depends on the sender:
-//! [`Dialect`](crate::signals::fdm::Dialect). The program itself uses body FLU, world ENU, SI.
+//! [`Dialect`](crate::link::conventions::Dialect). The program itself uses body FLU, world ENU, SI.
 
 use crate::math;
 

@@ -18,7 +18,7 @@ mod kicks;
 mod virtual_sensors;
 
 use super::fdm::{Packet, PacketError};
-use crate::signals::fdm::{Dialect, Mirror};
+use crate::link::conventions::{Dialect, Mirror};
 use crate::signals::{Pose, SensorFrame};
 use crate::telemetry::LinkState;
 use clock::StampClock;

@@ -7,7 +7,7 @@
 //!                      4  f32 × 16  pulses, µs: the motors, then the servos, unused 0
 //! ```
 
-use crate::signals::fdm::MotorOrder;
+use crate::link::conventions::MotorOrder;
 use crate::signals::{MOTORS, MotorCommand, PerMotor};
 
 /// The size of the normalised datagram. Receivers refuse a shorter one and ignore the surplus of a longer

@@ -10,8 +10,8 @@
 use super::fdm::{Packet, State, mirrored, pressure_pa};
 use super::servo;
 use crate::geo::offset_to_degrees;
+use crate::link::conventions::{Dialect, MotorOrder, Stamps};
 use crate::math;
-use crate::signals::fdm::{Dialect, MotorOrder, Stamps};
 use crate::signals::{GpsSample, MotorCommand, SensorFrame, SimTime};
 use nalgebra::{UnitQuaternion, Vector2, Vector3};
 

@@ -12,17 +12,17 @@ const FEWEST_OTHERS: usize = 2;
 
 /// The altitude of the leg to a waypoint.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct LegAltitude {
+pub struct LegAltitude {
     /// The positional waypoint.
-    pub(crate) index: usize,
+    pub index: usize,
     /// The waypoint that gives the altitude: the same one, or the ALT_CHANGE before it.
-    pub(crate) said_by: usize,
+    pub said_by: usize,
     /// The altitude above home, m.
-    pub(crate) alt_m: f64,
+    pub alt_m: f64,
 }
 
 /// Returns the altitude of the leg to each positional waypoint.
-pub(crate) fn legs(waypoints: &[Waypoint]) -> impl Iterator<Item = LegAltitude> {
+pub fn legs(waypoints: &[Waypoint]) -> impl Iterator<Item = LegAltitude> {
     let mut changed = None;
     waypoints.iter().enumerate().filter_map(move |(index, waypoint)| {
         let own = (index, waypoint.altitude.above_home_m());

@@ -2,11 +2,11 @@
 
 use std::time::{Duration, Instant};
 
+use betadeck::link::conventions::MotorOrder;
 use betadeck::link::endpoint::{EndpointKind, EndpointState, Transport};
 use betadeck::link::proto::fdm_link::FdmLinkConfig;
 use betadeck::link::proto::{rc, servo};
 use betadeck::link::{ExternalSimulator, MotorPort, Request, Sent};
-use betadeck::signals::fdm::MotorOrder;
 use betadeck::signals::{MotorCommand, RcFrame};
 use betadeck::telemetry::LinkState;
 use tokio::net::UdpSocket;

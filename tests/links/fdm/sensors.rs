@@ -3,10 +3,10 @@
 
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{AttitudeSource, Firmware, FirmwareOptions};
+use betadeck::link::conventions::{Dialect, Mirror};
 use betadeck::link::proto::fdm::GZ_PLUGIN_SIZE;
 use betadeck::link::proto::fdm_link::{FdmLink, FdmLinkConfig, FdmNotice};
 use betadeck::signals::SimTime;
-use betadeck::signals::fdm::{Dialect, Mirror};
 use betadeck::telemetry::FirmwareEvent;
 use nalgebra::Vector3;
 

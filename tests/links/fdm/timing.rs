@@ -1,8 +1,8 @@
 //! The rules of timing: the packets that are answered, those that only set the time base, and the packets
 //! sent unasked.
 
+use betadeck::link::conventions::Dialect;
 use betadeck::link::proto::fdm_link::{FdmLink, FdmLinkConfig, FdmNotice, PacketKind, Reply};
-use betadeck::signals::fdm::Dialect;
 use betadeck::telemetry::LinkState;
 use nalgebra::UnitQuaternion;
 

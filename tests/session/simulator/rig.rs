@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{AttitudeSource, FirmwareOptions};
+use betadeck::link::conventions::{Dialect, MotorOrder};
 use betadeck::link::endpoint::{EndpointKind, EndpointState, EndpointStatus, SimulatorStats};
 use betadeck::link::proto::fdm::{State, mirrored, pressure_pa};
 use betadeck::link::proto::fdm_link::FdmLinkConfig;
@@ -13,7 +14,6 @@ use betadeck::session::ReplyTo;
 use betadeck::session::{
     Command, Endpoints, Event, Handle, RequestHandler, SessionConfig, SessionEvent, SessionView, start,
 };
-use betadeck::signals::fdm::{Dialect, MotorOrder};
 use betadeck::sim::{WorldConfig, attitude};
 use betadeck::storage::Store;
 use betadeck::telemetry::EventKind;

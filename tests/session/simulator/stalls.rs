@@ -5,11 +5,11 @@ use std::time::{Duration, Instant};
 
 use betadeck::firmware::FirmwareOptions;
 use betadeck::firmware::config::Configuration;
+use betadeck::link::conventions::MotorOrder;
 use betadeck::link::endpoint::EndpointKind;
 use betadeck::link::proto::fdm_link::FdmLinkConfig;
 use betadeck::link::{ExternalSimulator, ListenConfig};
 use betadeck::session::{Handle, Links, MotorTargets, SessionConfig, start};
-use betadeck::signals::fdm::MotorOrder;
 use betadeck::sim::WorldConfig;
 use betadeck::storage::Store;
 use betadeck::vehicle::{Vehicle, VehicleConfig};

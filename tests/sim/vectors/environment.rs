@@ -1,8 +1,8 @@
 //! Air, earth, magnetic field, turbulence scales and gusts.
 
 use betadeck::geo::LocalFrame;
+use betadeck::link::conventions::Dialect;
 use betadeck::link::proto::fdm;
-use betadeck::signals::fdm::Dialect;
 use betadeck::sim::{
     DrydenScales, SITL_DECLINATION_DEG, density, magnetic_field_enu, one_minus_cosine, pressure_pa,
     temperature_k,

@@ -4,7 +4,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::{FIELDS, Packet, SIZE, pressure_pa};
 use crate::geo::GRAVITY;
-use crate::signals::fdm::Dialect;
+use crate::link::conventions::Dialect;
 
 /// The treatment of gravity in the acceleration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

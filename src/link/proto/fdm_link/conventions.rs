@@ -5,8 +5,8 @@ use nalgebra::{Vector2, Vector3};
 
 use super::FdmNotice;
 use crate::geo::LocalFrame;
+use crate::link::conventions::Dialect;
 use crate::link::proto::fdm::{Gravity, Packet, State, mirrored};
-use crate::signals::fdm::Dialect;
 
 /// The limit of every body rate at rest, rad/s.
 const REST_RATE: f64 = 0.05;

@@ -22,6 +22,9 @@ const FORM: Form = Form { first: 1, whole_metres: true, has_home: true };
 
 /// The name of the root element.
 const ROOT: &str = "mission";
+/// The name of the program that wrote a file.
+const GENERATOR: &str = "betadeck";
+
 /// Returns `true` if a root element of this name begins a mission.
 pub(in crate::plan::format) fn is_root(name: &str) -> bool {
     name.eq_ignore_ascii_case(ROOT)
@@ -164,7 +167,7 @@ impl Document {
 
     /// Takes the home of an `mwp` or `meta` element.
     fn meta(&mut self, element: &Element, problems: &mut Problems<'_>) {
-        if element.attribute("generator") != Some(env!("CARGO_PKG_NAME")) {
+        if element.attribute("generator") != Some(GENERATOR) {
             *self.others.entry(element.name.to_ascii_lowercase()).or_default() += 1;
         }
         let (Some(lat), Some(lon)) = (element.attribute("home-y"), element.attribute("home-x")) else {
@@ -267,6 +270,5 @@ fn view(places: &[LatLon], home: Option<LatLon>) -> String {
         format!(" home-x=\"{}\" home-y=\"{}\"", Degrees7(home.lon_e7), Degrees7(home.lat_e7))
     });
     let (cx, cy) = (middle(&lon), middle(&lat));
-    let generator = env!("CARGO_PKG_NAME");
-    format!("  <mwp cx=\"{cx:.5}\" cy=\"{cy:.5}\"{home} zoom=\"{zoom}\" generator=\"{generator}\"/>\n")
+    format!("  <mwp cx=\"{cx:.5}\" cy=\"{cy:.5}\"{home} zoom=\"{zoom}\" generator=\"{GENERATOR}\"/>\n")
 }
