@@ -14,13 +14,13 @@
     reason = "a bench measures, tells and may panic; it shares its clients with the tests"
 )]
 
-#[path = "../tests/doors/app.rs"]
+#[path = "../tests/program/doors/app.rs"]
 mod app;
-#[path = "../tests/doors/msp.rs"]
+#[path = "../tests/program/doors/msp.rs"]
 mod msp;
-#[path = "../tests/doors/program.rs"]
+#[path = "../tests/program/doors/program.rs"]
 mod program;
-#[path = "../tests/doors/transmitter.rs"]
+#[path = "../tests/program/doors/transmitter.rs"]
 mod transmitter;
 
 use std::net::SocketAddr;

@@ -21,7 +21,7 @@ use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use std::sync::Arc;
 
-#[path = "../tests/ui/fixture.rs"]
+#[path = "../tests/screen/ui/fixture.rs"]
 mod fixture;
 
 /// The number of points of the long track.

@@ -16,7 +16,7 @@
     reason = "a bench measures, tells and may panic; it shares its programs with the tests"
 )]
 
-#[path = "../tests/doors/program.rs"]
+#[path = "../tests/program/doors/program.rs"]
 mod program;
 
 use std::net::UdpSocket;

@@ -13,13 +13,13 @@
     reason = "a bench looks at the clock and prints; it shares its terminal with the tests"
 )]
 
-#[path = "../tests/ui/fixture.rs"]
+#[path = "../tests/screen/ui/fixture.rs"]
 mod fixture;
-#[path = "../tests/binary/lines.rs"]
+#[path = "../tests/program/binary/lines.rs"]
 mod lines;
-#[path = "../tests/binary/pty.rs"]
+#[path = "../tests/program/binary/pty.rs"]
 mod pty;
-#[path = "../tests/binary/support.rs"]
+#[path = "../tests/program/binary/support.rs"]
 mod support;
 
 use std::time::{Duration, Instant};

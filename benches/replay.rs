@@ -24,10 +24,7 @@ use betadeck::replay::{CurvesRequest, LogFlights, PastFlight, PastFlights as _};
 use betadeck::report::log_export::write_csv;
 use betadeck::signals::SimTime;
 
-#[path = "../tests/log_support/made_log.rs"]
-mod made_log;
-
-use made_log::MadeLog;
+use test_support::MadeLog;
 
 /// The number of instants that are shown.
 const SEEKS: u64 = 400;

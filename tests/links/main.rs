@@ -1,11 +1,5 @@
-//! The links: packets, streams and ports.
+//! Protocols, sockets, sessions and files in this process.
 
-mod at_rest;
-#[path = "../serial_support/cable.rs"]
-mod cable;
-mod codec;
-mod doors;
-mod fc_client;
-mod fc_streams;
-mod fdm;
-mod sitl;
+mod files;
+mod protocols;
+mod session;

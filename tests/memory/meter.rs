@@ -1,4 +1,4 @@
-//! An allocator that measures the memory that a piece of work takes on its thread.
+//! An allocator that measures the memory that a piece of work takes on its thread, and counts its allocations.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -16,11 +16,13 @@ thread_local! {
     static HELD: Cell<isize> = const { Cell::new(0) };
     static MOST_HELD: Cell<isize> = const { Cell::new(0) };
     static TOTAL: Cell<usize> = const { Cell::new(0) };
+    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
 }
 
 struct Meter;
 
 fn take(bytes: usize) {
+    ALLOCATIONS.set(ALLOCATIONS.get() + 1);
     TOTAL.set(TOTAL.get().wrapping_add(bytes));
     HELD.set(HELD.get() + bytes as isize);
     MOST_HELD.set(MOST_HELD.get().max(HELD.get()));
@@ -70,4 +72,9 @@ pub(crate) fn measured<R>(work: impl FnOnce() -> R) -> (R, Taken) {
     let result = work();
     let peak = usize::try_from(MOST_HELD.get() - held).unwrap_or_default();
     (result, Taken { peak, total: TOTAL.get().wrapping_sub(total) })
+}
+
+/// Returns the number of allocations of this thread so far.
+pub(crate) fn allocations() -> u64 {
+    ALLOCATIONS.get()
 }

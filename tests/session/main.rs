@@ -1,9 +1,0 @@
-//! A session: its clients, its simulator, and its requests.
-
-mod doors;
-mod replay;
-mod requests;
-mod simulator;
-
-#[path = "../log_support/made_log.rs"]
-mod made_log;
