@@ -3,7 +3,7 @@
 //! `f64::sin` and its relatives call the C library, which has several versions of each and takes the one that suits the
 //! processor. Their results differ in the last bit, and after a few seconds of flight in every bit. These functions come
 //! from a library in Rust, so a flight has the same bits wherever it is flown. Each is within about 1 unit in the last place
-//! of the exact value. `tests/rooms` forbids the others to the core.
+//! of the exact value. `tests/house/rooms` forbids the others to the core.
 //!
 //! Operations that IEEE 754 defines exactly are not here: the four operations, `sqrt`, `abs`, `floor`, `round`, `%`. `mul_add` is exact
 //! everywhere, but slow on processors without an instruction for it.

@@ -31,7 +31,7 @@
 //! words. `permission` asks before a real craft is changed, and
 //! `status_message` suggests the next step.
 //!
-//! At most five files import each other, not counting parent and child; `tests/rooms` measures it.
+//! At most five files import each other, not counting parent and child; `tests/house/rooms` measures it.
 //!
 //! May use: ratatui, crossterm, the session's snapshots, events and commands, and plans. Never firmware internals,
 //! the simulator or sockets.

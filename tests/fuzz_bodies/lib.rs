@@ -1,5 +1,5 @@
 //! The bodies of the fuzz targets. Their checks must hold for any bytes. `fuzz/` runs them under libFuzzer,
-//! `tests/fuzz_corpus.rs` on the stored corpora and on mutations of them.
+//! `tests/links/fuzz_corpus.rs` on the stored corpora and on mutations of them.
 #![allow(unreachable_pub, reason = "a library of the fuzz crate, a module of the tests")]
 
 pub mod airframe;

@@ -1,6 +1,6 @@
 //! Loss of the fix in each phase of a mission: a flight is never `complete` if its true path contradicts it.
 //!
-//! `cargo test --release --test missions -- --ignored --nocapture outages` flies all of them.
+//! `cargo test --release --test core -- --ignored --nocapture outages` flies all of them.
 
 use betadeck_core::flight::FlightResult;
 use betadeck_core::geo::LatLon;
@@ -129,7 +129,7 @@ fn a_mission_with_an_outage_in_any_phase_is_complete_only_where_the_truth_agrees
 }
 
 #[test]
-#[ignore = "400 flights: cargo test --release --test missions -- --ignored --nocapture outages"]
+#[ignore = "400 flights: cargo test --release --test core -- --ignored --nocapture outages"]
 fn two_hundred_outages_in_every_phase_are_complete_only_where_the_truth_agrees() {
     check(in_parallel(0..400, fly));
 }

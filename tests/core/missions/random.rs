@@ -1,6 +1,6 @@
 //! A random search over missions: plans, airframes, settings, air and faults, with fixed seeds.
 //!
-//! `cargo test --release --test missions -- --ignored --nocapture ten_thousand` flies the whole search.
+//! `cargo test --release --test core -- --ignored --nocapture ten_thousand` flies the whole search.
 
 use crate::missions::dice::{Dice, in_parallel};
 use crate::missions::mission::{Mission, assert_none};
@@ -186,7 +186,7 @@ fn random_missions_never_stop_the_motors_in_the_air_and_crash_only_for_a_cause()
 }
 
 #[test]
-#[ignore = "10 000 missions: cargo test --release --test missions -- --ignored --nocapture ten_thousand"]
+#[ignore = "10 000 missions: cargo test --release --test core -- --ignored --nocapture ten_thousand"]
 fn ten_thousand_random_missions_never_stop_the_motors_in_the_air_and_crash_only_for_a_cause() {
     let mut found = Vec::new();
     for start in (0..10_000).step_by(250) {

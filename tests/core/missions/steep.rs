@@ -1,6 +1,6 @@
 //! Steep legs: the review reports before the flight which altitudes will be missed, and a HOLD waits for its altitude.
 //!
-//! `cargo test --release --test missions -- --ignored --nocapture heights` flies the whole search.
+//! `cargo test --release --test core -- --ignored --nocapture heights` flies the whole search.
 
 use betadeck_core::autopilot::Params;
 use betadeck_core::autopilot::control::{AltitudeController, AltitudeMeasurement, AltitudeTarget};
@@ -164,7 +164,7 @@ fn the_review_finds_every_height_that_will_be_missed() {
 }
 
 #[test]
-#[ignore = "2 000 missions: cargo test --release --test missions -- --ignored --nocapture heights"]
+#[ignore = "2 000 missions: cargo test --release --test core -- --ignored --nocapture heights"]
 fn the_review_finds_all_heights_that_will_be_missed_in_two_thousand_missions() {
     check_heights(2000);
 }

@@ -46,7 +46,7 @@ fn every_built_in_plan_takes_off_to_any_height_on_both_airframes() {
 }
 
 #[test]
-#[ignore = "660 flights: cargo test --release --test missions -- --ignored"]
+#[ignore = "660 flights: cargo test --release --test core missions -- --ignored"]
 fn every_built_in_plan_takes_off_to_any_height_on_both_airframes_with_five_seeds() {
     assert_none(all(|_| (1..=5).collect()));
 }

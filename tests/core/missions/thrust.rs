@@ -69,7 +69,7 @@ fn altitude_comes_before_lean_in_thin_air_with_payload_on_both_airframes() {
 }
 
 #[test]
-#[ignore = "288 flights: cargo test --release --test missions -- --ignored"]
+#[ignore = "288 flights: cargo test --release --test core missions -- --ignored"]
 fn altitude_comes_before_lean_in_the_whole_grid() {
     assert_none(grid(|_| true));
 }

@@ -134,19 +134,19 @@ fn circles_are_found_through_passed_on_items_and_local_names() {
         Room::new(files.iter().map(file)).largest_circle()
     };
     let root = ("ui.rs", "mod a; mod b; mod c; pub use c::C;");
-    let other = ("ui/b.rs", "use super::C; pub(in crate::rooms::ui) struct B;");
+    let other = ("ui/b.rs", "use super::C; pub(in crate::ui) struct B;");
     assert_eq!(
-        circle(&[root, other, ("ui/a.rs", "use super::b::B;"), ("ui/c.rs", "use crate::rooms::ui::a::A;")])
+        circle(&[root, other, ("ui/a.rs", "use super::b::B;"), ("ui/c.rs", "use crate::ui::a::A;")])
             .len(),
         3
     );
     assert_eq!(circle(&[root, other, ("ui/a.rs", "use super::b::B;"), ("ui/c.rs", "")]), [""; 0]);
     let by_name = ("ui/a.rs", "use super::c; fn f() { c::d::g() }");
-    let (child, grandchild) = (("ui/c.rs", "mod d; mod e;"), ("ui/c/d.rs", "use crate::rooms::ui::a::A;"));
+    let (child, grandchild) = (("ui/c.rs", "mod d; mod e;"), ("ui/c/d.rs", "use crate::ui::a::A;"));
     assert_eq!(circle(&[root, by_name, child, grandchild]), ["ui/a", "ui/c/d"]);
     let nested = [
         ("ui/c.rs", "mod d; use d::D;"),
-        ("ui/c/d.rs", "use super::C; #[cfg(test)]\nmod tests { use crate::rooms::ui::a; }"),
+        ("ui/c/d.rs", "use super::C; #[cfg(test)]\nmod tests { use crate::ui::a; }"),
     ];
     assert_eq!(circle(&nested), [""; 0]);
 }

@@ -70,7 +70,7 @@ fn methods_are_found_however_the_block_is_written() {
         "impl<T: Into<f64>> super::World<T> where T: Copy { fn f() {} }",
         "#[cfg(unix)]\nimpl<'a, F: Fn() -> f64> World<'a, F> { fn f() {} }",
         "use super::World as W;\nimpl W { fn f() {} }",
-        "mod inside { impl crate::rooms::sim::World {} }",
+        "mod inside { impl crate::sim::World {} }",
     ];
     let file =
         |(at, text): (usize, &&str)| SourceFile { name: format!("sim/{at}.rs"), text: (*text).to_owned() };

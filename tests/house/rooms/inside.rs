@@ -29,7 +29,7 @@ fn sub_rooms_use_what_the_table_allows() {
         wrong
             .extend(allowed.difference(&found).map(|(from, to)| format!("{room}: unused: {from} uses {to}")));
     }
-    assert!(wrong.is_empty(), "the arrows of the code and of tests/rooms/inside.txt: {wrong:#?}");
+    assert!(wrong.is_empty(), "the arrows of the code and of tests/house/rooms/inside.txt: {wrong:#?}");
 }
 
 #[test]
@@ -40,10 +40,10 @@ fn arrows_are_found_through_passed_on_items() {
         file("sim/a.rs", "use super::C; mod inside;"),
         file(
             "sim/a/inside.rs",
-            "use super::super::b; use crate::rooms::sim::Whole; use super::A; fn f() { b::g() }",
+            "use super::super::b; use crate::sim::Whole; use super::A; fn f() { b::g() }",
         ),
-        file("sim/b.rs", "#[cfg(test)]\nmod tests { use crate::rooms::sim::c; }"),
-        file("sim/c.rs", "pub(in crate::rooms::sim) struct C;"),
+        file("sim/b.rs", "#[cfg(test)]\nmod tests { use crate::sim::c; }"),
+        file("sim/c.rs", "pub(in crate::sim) struct C;"),
     ]);
     let arrows = [("a", "b"), ("a", "c"), ("a", "sim")].map(|(from, to)| (from, to.to_owned()));
     assert_eq!(room.arrows(), BTreeSet::from(arrows));

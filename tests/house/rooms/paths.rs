@@ -262,23 +262,23 @@ mod tests {
     #[test]
     fn paths_in_groups_in_code_and_by_super_are_found() {
         assert_eq!(
-            used("a/b.rs", "use crate::rooms::{geo::{LatLon, x}, sim, plan::Plan};"),
+            used("a/b.rs", "use crate::{geo::{LatLon, x}, sim, plan::Plan};"),
             ["geo", "plan", "sim"]
         );
         assert_eq!(
-            used("a.rs", "fn f() -> crate::rooms::geo::LatLon { super::link::open() }"),
+            used("a.rs", "fn f() -> crate::geo::LatLon { super::link::open() }"),
             ["geo", "link"]
         );
         assert_eq!(used("a/b.rs", "use super::x; use super::super::link::Y;"), ["a", "link"]);
         assert_eq!(used("a.rs", "mod tests { use super::*; use super::super::link; }"), ["a", "link"]);
         assert_eq!(used("a/b.rs", "pub(crate) fn f() {} pub(super) struct S;"), [""; 0]);
-        assert_eq!(used("a.rs", "let x = crate::rooms::sim::f::<crate::rooms::plan::P>();"), ["plan", "sim"]);
+        assert_eq!(used("a.rs", "let x = crate::sim::f::<crate::plan::P>();"), ["plan", "sim"]);
     }
 
     #[test]
     fn comments_strings_and_characters_are_passed_over() {
-        let text = "// crate::rooms::a\n/* crate::rooms::b */ let s = \"crate::rooms::c \\\" crate::rooms::d\"; let r = r#\"crate::rooms::e\"#; \
-                    let q = '\"'; let l: &'static str = crate::rooms::geo::NAME; let e = '\\''; crate::rooms::sim::f();";
+        let text = "// crate::a\n/* crate::b */ let s = \"crate::c \\\" crate::d\"; let r = r#\"crate::e\"#; \
+                    let q = '\"'; let l: &'static str = crate::geo::NAME; let e = '\\''; crate::sim::f();";
         assert_eq!(used("x.rs", text), ["geo", "sim"]);
     }
 }

@@ -30,7 +30,7 @@ fn calls(file: &SourceFile) -> Vec<String> {
 fn the_core_calls_no_function_whose_bits_depend_on_the_machine() {
     let core = files().into_iter().filter(|file| is_pure(file) && file.room() != "math");
     let found: Vec<String> = core.flat_map(|file| calls(&file)).collect();
-    assert!(found.is_empty(), "use crate::rooms::math: {found:#?}");
+    assert!(found.is_empty(), "use crate::math: {found:#?}");
 }
 
 #[test]

@@ -3,33 +3,8 @@
 use crate::rooms::paths::{Named, named, tokens};
 use crate::rooms::source::{SourceFile, files};
 
-/// Rooms that are pure: no file, no socket, no thread, no clock, no global state.
-const PURE: [&str; 22] = [
-    "autopilot",
-    "blackbox",
-    "campaign",
-    "design",
-    "fc",
-    "firmware",
-    "flight",
-    "flight_log",
-    "geo",
-    "math",
-    "pilot",
-    "plan",
-    "recording",
-    "replay",
-    "scenario",
-    "signals",
-    "sim",
-    "telemetry",
-    "terrain",
-    "text",
-    "timeline",
-    "vehicle",
-];
-
-/// Files of pure rooms that reach sockets and the clock.
+/// Files above the core that are pure, too: all of these folders but for these files.
+const PURE: [&str; 2] = ["fc", "link/proto"];
 const NOT_PURE: [&str; 3] = ["fc/feed.rs", "fc/remote_link.rs", "fc/stepped.rs"];
 
 /// Modules of `std` that reach the world outside the program.
@@ -39,9 +14,11 @@ const OUTSIDE: [&str; 6] = ["env", "fs", "net", "os", "process", "thread"];
 const VARIABLES: [&str; 8] =
     ["Cell", "LazyLock", "Mutex", "OnceCell", "OnceLock", "RefCell", "RwLock", "UnsafeCell"];
 
+/// Returns `true` for a file without files, sockets, threads, the clock and global state: all of the core, and the
+/// protocols above it.
 pub(crate) fn is_pure(file: &SourceFile) -> bool {
-    let is_pure_room = PURE.contains(&file.room().as_str()) && !NOT_PURE.contains(&file.name.as_str());
-    is_pure_room || file.name.starts_with("link/proto")
+    let is_protocol = PURE.iter().any(|folder| file.name.starts_with(folder));
+    file.is_of_the_core() || is_protocol && !NOT_PURE.contains(&file.name.as_str())
 }
 
 /// Returns what a file does to get around the table of rooms.
@@ -60,7 +37,7 @@ fn detours(file: &SourceFile) -> Vec<String> {
             _ if named.is_passed_on && is_foreign(named) => {
                 found.push(format!("{}: passes {path} on", file.name));
             }
-            // `use crate::rooms::sim::World; pub use World;`
+            // `use crate::sim::World; pub use World;`
             _ if named.is_passed_on && !named.is_ours => {
                 let first = named.path.first();
                 let source = all.iter().find(|other| is_foreign(other) && Some(&other.name) == first);
@@ -127,22 +104,22 @@ fn file(text: &str) -> SourceFile {
 #[test]
 fn every_known_detour_is_found() {
     for text in [
-        "use crate::rooms::*;",
-        "use crate::rooms::ui::*;",
+        "use crate::*;",
+        "use crate::ui::*;",
         "use super::super::ui::*;",
-        "use crate::rooms::{geo, ui::*};",
-        "pub use crate::rooms::firmware::Firmware;",
+        "use crate::{geo, ui::*};",
+        "pub use crate::firmware::Firmware;",
         "pub(crate) use super::super::firmware::{Firmware as Fc};",
-        "use crate::rooms::firmware::Firmware; pub use Firmware;",
-        "use crate::rooms::firmware::Firmware as Fc; pub use Fc as Other;",
-        "pub type Fc = crate::rooms::firmware::Firmware;",
+        "use crate::firmware::Firmware; pub use Firmware;",
+        "use crate::firmware::Firmware as Fc; pub use Fc as Other;",
+        "pub type Fc = crate::firmware::Firmware;",
     ] {
         assert_eq!(detours(&file(text)).len(), 1, "{text}");
     }
     for text in [
         "use super::*;",
-        "pub use crate::rooms::sim::World;",
-        "use crate::rooms::ui::State;",
+        "pub use crate::sim::World;",
+        "use crate::ui::State;",
         "pub use world::World;",
     ] {
         assert_eq!(detours(&file(text)), [""; 0], "{text}");

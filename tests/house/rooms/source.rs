@@ -1,5 +1,8 @@
 //! The files of `src/`.
 
+/// The first page of the core. It declares its rooms.
+const CORE: &str = include_str!("../../../src/core.rs");
+
 use std::path::Path;
 
 /// A source file of the crate.
@@ -16,22 +19,22 @@ impl SourceFile {
         self.module().into_iter().next().unwrap_or_else(|| "lib".to_owned())
     }
 
+    /// Returns `true` if the file is compiled into the core.
+    pub(crate) fn is_of_the_core(&self) -> bool {
+        CORE.lines().any(|line| line.strip_prefix("pub mod ") == Some(&format!("{};", self.room())))
+    }
+
     /// Returns the path of the file's module from the crate's root.
     pub(crate) fn module(&self) -> Vec<String> {
         let path = self.name.trim_end_matches(".rs");
-        if path == "lib" { Vec::new() } else { path.split('/').map(str::to_owned).collect() }
+        if ["core", "lib"].contains(&path) { Vec::new() } else { path.split('/').map(str::to_owned).collect() }
     }
 
     /// Returns the file without its unit tests.
     pub(crate) fn product(&self) -> Self {
-        let is_test = self.name.ends_with("tests.rs") || self.name.contains("/tests/");
+        let is_test = self.name.ends_with("/tests.rs") || self.name.contains("/tests/");
         let text = self.text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
         Self { name: self.name.clone(), text: if is_test { String::new() } else { text.to_owned() } }
-    }
-
-    /// Returns the number of lines without the unit tests.
-    pub(crate) fn product_lines(&self) -> usize {
-        self.product().text.lines().count()
     }
 }
 
