@@ -26,7 +26,9 @@
 
 use nalgebra::{UnitQuaternion, Vector2, Vector3};
 
+use crate::autopilot::io::NavInputs;
 use crate::geo::{LatLon, offset_to_latlon};
+use crate::signals::SimTime;
 
 mod attitude;
 mod calibration;
@@ -120,6 +122,32 @@ pub struct Estimate {
     pub calibrating: bool,
     /// `true` if the inertial sensors have repeated the same sample for a second while turning.
     pub imu_frozen: bool,
+}
+
+impl Estimate {
+    /// Returns the inputs of the autopilot at `time`, `dt` seconds after the last ones, so far as the estimate has them.
+    /// The rest is that of a disarmed craft with nothing known.
+    pub fn nav_inputs(&self, time: SimTime, dt: f64) -> NavInputs {
+        NavInputs {
+            time,
+            dt,
+            fix: self.gps.fix && self.position_valid,
+            altitude_valid: self.altitude_valid,
+            heading_valid: self.heading_valid,
+            origin: self.origin.unwrap_or_default(),
+            pos_ne: self.pos_ne,
+            vel_ne: self.vel_ne,
+            alt_m: self.alt_m,
+            climb_mps: self.climb_mps,
+            heading_rad: self.heading_rad,
+            yaw_rate_rps: self.rates.yaw,
+            roll_rad: self.roll_rad,
+            pitch_down_rad: self.pitch_down_rad,
+            cos_tilt: self.cos_tilt,
+            accel_ne: self.accel_ne,
+            ..NavInputs::unknown()
+        }
+    }
 }
 
 impl Default for Estimate {

@@ -97,32 +97,18 @@ impl Navigation {
         let stick = |value: f64| if receiver.signal() { value } else { 0.0 };
         let sticks = receiver.sticks();
         self.inputs = NavInputs {
-            time: now,
-            dt,
             armed: safety.arming.armed(),
             fix: sensing.fix && estimate.position_valid,
-            altitude_valid: estimate.altitude_valid,
-            heading_valid: estimate.heading_valid,
             throttle_raised: safety.arming.raised(),
             failsafe: self.failsafe.active(),
             battery_low: sensing.battery.is_low(),
             home: safety.home,
-            origin: estimate.origin.unwrap_or_default(),
-            pos_ne: estimate.pos_ne,
-            vel_ne: estimate.vel_ne,
-            alt_m: estimate.alt_m,
-            climb_mps: estimate.climb_mps,
-            heading_rad: estimate.heading_rad,
-            yaw_rate_rps: estimate.rates.yaw,
-            roll_rad: estimate.roll_rad,
-            pitch_down_rad: estimate.pitch_down_rad,
-            cos_tilt: estimate.cos_tilt,
-            accel_ne: estimate.accel_ne,
             throttle_us: control.throttle_us,
             hover_us: self.controllers.altitude.learned_hover_us(),
             stick_roll: stick(sticks.roll),
             stick_pitch: stick(sticks.pitch),
             stick_yaw: stick(sticks.yaw),
+            ..estimate.nav_inputs(now, dt)
         };
         let rates = estimate.rates;
         let rate_rps = Vector3::new(rates.roll, rates.pitch_down, rates.yaw).norm();

@@ -189,32 +189,14 @@ impl Rig {
         let dt = time.seconds_since(self.slow_time);
         self.slow_time = time;
         NavInputs {
-            time,
-            dt,
             armed: self.received.armed,
-            fix: estimate.gps.fix && estimate.position_valid,
-            altitude_valid: estimate.altitude_valid,
-            heading_valid: estimate.heading_valid,
             throttle_raised: true,
-            failsafe: false,
-            battery_low: false,
             home: estimate.origin,
-            origin: estimate.origin.unwrap_or_default(),
-            pos_ne: estimate.pos_ne,
-            vel_ne: estimate.vel_ne,
-            alt_m: estimate.alt_m,
-            climb_mps: estimate.climb_mps,
-            heading_rad: estimate.heading_rad,
-            yaw_rate_rps: estimate.rates.yaw,
-            roll_rad: estimate.roll_rad,
-            pitch_down_rad: estimate.pitch_down_rad,
-            cos_tilt: estimate.cos_tilt,
-            accel_ne: estimate.accel_ne,
             throttle_us: self.controller.state().throttle_us,
-            hover_us: None,
             stick_roll: self.received.stick_roll,
             stick_pitch: self.received.stick_pitch,
             stick_yaw: self.received.stick_yaw,
+            ..estimate.nav_inputs(time, dt)
         }
     }
 
