@@ -2,6 +2,7 @@
 //! tests. It has no clock, socket, thread or file, and gives the same bits on every machine.
 
 #![forbid(unsafe_code)]
+#![warn(missing_docs)]
 
 #[doc(hidden)]
 pub mod autopilot;
@@ -9,20 +10,16 @@ pub mod autopilot;
 pub mod blackbox;
 #[doc(hidden)]
 pub mod campaign;
-#[doc(hidden)]
 pub mod design;
-#[doc(hidden)]
 pub mod firmware;
 pub mod flight;
 #[doc(hidden)]
 pub mod flight_log;
-#[doc(hidden)]
 pub mod geo;
 #[doc(hidden)]
 pub mod math;
 #[doc(hidden)]
 pub mod msp;
-#[doc(hidden)]
 pub mod pilot;
 pub mod plan;
 #[doc(hidden)]
@@ -31,12 +28,9 @@ pub mod recording;
 pub mod replay;
 pub mod scenario;
 pub mod signals;
-#[doc(hidden)]
 pub mod sim;
 pub mod telemetry;
-#[doc(hidden)]
 pub mod terrain;
-#[doc(hidden)]
 pub mod text;
 #[doc(hidden)]
 pub mod timeline;

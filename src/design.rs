@@ -25,4 +25,4 @@ pub use normal::{normal_cdf, normal_quantile};
 pub use points::{Design, Points};
 pub use sobol::DIMENSIONS;
 pub use stream::{Stream, fingerprint};
-pub use wind_table::{DrawnWind, WindTable};
+pub use wind_table::{DrawnWind, Forecast, Rose, WindTable};

@@ -14,30 +14,42 @@
 //! | layer | modules | purpose |
 //! | --- | --- | --- |
 //! | the whole craft | this file, [`Firmware`]'s requests and views | wires the stages: one step, the requests of its owner, the data for displays |
-//! | interfaces | [`cli`], [`msp`], [`storage`], [`blackbox`] | command line, MSP messages, the stored image: text and bytes in and out of the configuration; logs of flights |
+//! | interfaces | [`cli`], [`msp`], `storage`, `blackbox` | command line, MSP messages, the stored image: text and bytes in and out of the configuration; logs of flights |
 //! | stages | `stages` | own the state of the step and update it in order |
-//! | decisions | [`rx`], [`modes`], [`arming`], [`failsafe`], [`orders`], [`battery`] | state machines of plain facts: the sticks that count, the active modes, permission to run the motors, orders for the navigator |
-//! | flying | [`estimate`], [`control`], [`filter`] | estimation of the craft's state, and control of the motors |
-//! | memory | [`config`], [`settings`], [`parameters`] | the configuration, one table of settings, and the same as typed numbers, computed outside the step |
+//! | decisions | `rx`, `modes`, `arming`, `failsafe`, `orders`, `battery` | state machines of plain facts: the sticks that count, the active modes, permission to run the motors, orders for the navigator |
+//! | flying | [`estimate`], `control`, `filter` | estimation of the craft's state, and control of the motors |
+//! | memory | [`config`], [`settings`], `parameters` | the configuration, one table of settings, and the same as typed numbers, computed outside the step |
 //!
 //! Nothing here reads a clock, allocates in a step, or panics.
 
+#[doc(hidden)]
 pub mod arming;
+#[doc(hidden)]
 pub mod battery;
+#[doc(hidden)]
 pub mod blackbox;
 pub mod cli;
 pub mod config;
+#[doc(hidden)]
 pub mod control;
 pub mod estimate;
+#[doc(hidden)]
 pub mod failsafe;
+#[doc(hidden)]
 pub mod filter;
+#[doc(hidden)]
 pub mod modes;
 pub mod msp;
+#[doc(hidden)]
 pub mod orders;
+#[doc(hidden)]
 pub mod outbox;
+#[doc(hidden)]
 pub mod parameters;
+#[doc(hidden)]
 pub mod rx;
 pub mod settings;
+#[doc(hidden)]
 pub mod storage;
 
 mod requests;
@@ -63,6 +75,7 @@ use stages::{
 /// Options that the firmware is created with. They are not part of its configuration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FirmwareOptions {
+    /// Steps per second, one of [`STEP_RATES_HZ`](crate::sim::STEP_RATES_HZ).
     pub rate_hz: u32,
     /// Softens the arming rules for RC from UDP, so that a simple script can arm.
     pub arm_assist: bool,

@@ -4,8 +4,8 @@
 //! and no files. The caller gets its events and decides about their use.
 //!
 //! ```
-//! use betadeck::flight::{Flight, FlightOptions, FlightResult, FlightSetup};
-//! use betadeck::plan::builtin::BuiltinPlan;
+//! use betadeck_core::flight::{Flight, FlightOptions, FlightResult, FlightSetup};
+//! use betadeck_core::plan::builtin::BuiltinPlan;
 //!
 //! let plan = BuiltinPlan::find("land").unwrap().read().unwrap();
 //! let mut setup = FlightSetup { plan: plan.clone(), ..FlightSetup::default() };
@@ -92,10 +92,13 @@ pub struct Flight {
 /// The end of a flight.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FlightEnd {
+    /// The result, with its reason.
     pub verdict: Verdict,
+    /// The flight as it was, compared with the plan.
     pub truth: FlightTruth,
     /// Simulated seconds from the engagement (or boot, if there was none) to the end.
     pub flown_s: f64,
+    /// Simulated time of the end since boot.
     pub time: SimTime,
 }
 
@@ -136,6 +139,7 @@ impl Flight {
         }
     }
 
+    /// Returns the vehicle, to read its truth, estimate and snapshot.
     pub fn vehicle(&self) -> &Vehicle {
         &self.vehicle
     }

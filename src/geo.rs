@@ -45,10 +45,12 @@ impl LatLon {
         Self { lat_e7: (lat_deg * 1e7).round() as i32, lon_e7: (lon_deg * 1e7).round() as i32 }
     }
 
+    /// Returns the latitude, degrees north.
     pub fn lat_deg(self) -> f64 {
         f64::from(self.lat_e7) * 1e-7
     }
 
+    /// Returns the longitude, degrees east.
     pub fn lon_deg(self) -> f64 {
         f64::from(self.lon_e7) * 1e-7
     }

@@ -54,12 +54,15 @@ const CLIMB_STICK_MAX_US: f64 = 2000.0;
 /// The facts that the pilot sees.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PilotFacts {
+    /// Simulated time since boot.
     pub time: SimTime,
     /// `true` if there is a 3-D fix.
     pub fix: bool,
     /// `true` if an arming disable flag is set.
     pub arming_blocked: bool,
+    /// `true` if the craft is armed.
     pub armed: bool,
+    /// `true` if the autopilot is engaged.
     pub engaged: bool,
     /// `true` if the heading is known.
     pub heading_known: bool,
@@ -104,6 +107,7 @@ struct ModeSwitches {
     autopilot: Switch,
 }
 
+/// The scripted pilot. A copy flies on by itself.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pilot {
     phase: Phase,

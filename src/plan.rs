@@ -9,8 +9,8 @@
 //! * `edit`: documents with their history and journal.
 //!
 //! ```
-//! use betadeck::plan::WaypointType;
-//! use betadeck::plan::format::{Format, parse};
+//! use betadeck_core::plan::WaypointType;
+//! use betadeck_core::plan::format::{Format, parse};
 //!
 //! let text = "waypoint insert 0 47.3977000 8.5456000 2000 500 FLYOVER 0 NONE";
 //! let file = parse("field", text, Format::of_contents(text.as_bytes())).unwrap();

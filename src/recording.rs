@@ -6,7 +6,7 @@
 //! ```
 //!
 //! A file is a sequence of gzip members with one JSON object a line, so that `zcat` shows it. Each kind of line is a
-//! [`Record`]. A file that was cut short is readable up to its last whole line. [`Writer`] makes the bytes, [`Recording`] is
+//! `Record`. A file that was cut short is readable up to its last whole line. [`Writer`] makes the bytes, [`Recording`] is
 //! what a reader keeps of them within bounds, and [`Repeat`] flies it again: the same program, started the same way and
 //! given the same inputs before the same ticks, flies the same to the last bit. A recording that flies differently, that
 //! another version wrote, or whose firmware was remote, is shown by its pictures.

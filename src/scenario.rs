@@ -10,7 +10,7 @@
 //! This module does no I/O: the caller passes a reader for the files that a scenario names.
 //!
 //! ```
-//! use betadeck::scenario::{BuiltinFiles, BuiltinScenario, CaseFlight, Outcome, judge, read};
+//! use betadeck_core::scenario::{BuiltinFiles, BuiltinScenario, CaseFlight, Outcome, judge, read};
 //!
 //! let found = BuiltinScenario::find("takeoff").unwrap();
 //! let scenario = read(found.name, found.text, Some(&[1]), &mut BuiltinFiles).unwrap();
@@ -57,7 +57,7 @@ pub use judge::{Judgement, Margin, Outcome, compare, judge, skip};
 pub use library::{BuiltinFiles, BuiltinScenario, SCENARIOS};
 pub use metric::{Metric, metrics};
 pub use run::{CaseFlight, FlightHash, Flown};
-pub use trace::{NearestGuard, Sample, Stay, Trace};
+pub use trace::{KnownPlan, NearestGuard, Sample, Stay, Trace};
 pub use varied::{Change, Choice, NumberInput, Spread, Tolerance, VariedInput};
 
 #[cfg(test)]

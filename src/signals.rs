@@ -114,6 +114,7 @@ pub struct Pose {
 pub struct GpsSample {
     /// `true` for a 3-D fix. Without one the position fields are meaningless.
     pub fix: bool,
+    /// The number of satellites in the solution.
     pub sats: u8,
     /// Position, degrees × 10⁷.
     pub position: crate::geo::LatLon,
@@ -133,6 +134,7 @@ pub struct GpsSample {
     pub latency_s: f64,
 }
 
+/// One reading of the battery.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BatterySample {
     /// Voltage at the terminals, V.

@@ -9,15 +9,13 @@
 //!                              wind, battery                     events     latency, faults
 //! ```
 //!
-//! part
-//! interval
+//! | part | interval |
 //! | --- | --- |
 //! | rotors, body, ground, inertial sensors | every step (125 µs … 2.5 ms) |
 //! | air (mean wind, gusts, turbulence, density), battery, magnetometer | 10 ms |
 //! | barometer, battery readings | 20 ms |
 //! | GPS | 100 ms (1 to 20 Hz) |
 //!
-//! World axes are ENU (x east, y north, z up) with the origin on the ground at home; body axes are FLU (x forward,
 //! World axes are ENU (x east, y north, z up) with the origin on the ground at home; body axes are FLU (x forward, y
 //! left, z up); attitudes turn body into world. [`Truth`] and [`SensorFrame`](crate::signals::SensorFrame) are
 //! different types, so that true and measured values cannot be mixed up. `docs/physics.md` has the equations.

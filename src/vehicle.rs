@@ -14,9 +14,9 @@
 //! that simulator, and [`Vehicle::see`] reports the place of the craft.
 //!
 //! ```
-//! use betadeck::flight::FlightSetup;
-//! use betadeck::signals::SimTime;
-//! use betadeck::vehicle::VehicleCommand;
+//! use betadeck_core::flight::FlightSetup;
+//! use betadeck_core::signals::SimTime;
+//! use betadeck_core::vehicle::VehicleCommand;
 //!
 //! let (mut vehicle, _notices) = FlightSetup::default().build().unwrap();
 //! vehicle.apply(&VehicleCommand::CutRc(true));
@@ -160,6 +160,7 @@ impl Vehicle {
         self.physics.clock().step_us()
     }
 
+    /// Returns the flight controller, to read it.
     pub fn controller(&self) -> &FlightController {
         &self.controller
     }
@@ -179,6 +180,7 @@ impl Vehicle {
         self.controller.embedded_mut()
     }
 
+    /// Returns the RC transmitter, to read it.
     pub fn transmitter(&self) -> &RcTransmitter {
         &self.transmitter
     }

@@ -1,13 +1,13 @@
 //! The land detector: distinguishes ground and air, whatever flies the craft.
 //!
-//! - [`GroundContact`]: the legs carry weight, according to the force that the accelerometer measures beyond the
+//! - `GroundContact`: the legs carry weight, according to the force that the accelerometer measures beyond the
 //!   thrust. Leans and attitude integrals then work against the ground.
-//! - [`ThrottleRelief`]: probes for the ground in a descent. A craft that does not sink although it should gets less
+//! - `ThrottleRelief`: probes for the ground in a descent. A craft that does not sink although it should gets less
 //!   and less throttle: on the ground until its weight is on the legs, in the air until it sinks again.
 //! - [`TouchdownGuards`] and [`TouchdownTimer`]: the conditions of a touchdown and the time that they have held.
-//! - [`StationaryTimer`]: a second way to a touchdown, for a craft on the ground for which one of those conditions
+//! - `StationaryTimer`: a second way to a touchdown, for a craft on the ground for which one of those conditions
 //!   cannot become true.
-//! - [`Impact`]: the bump of the ground, if `landing_disarm_threshold` enables it.
+//! - `Impact`: the bump of the ground, if `landing_disarm_threshold` enables it.
 
 mod contact;
 mod impact;

@@ -36,7 +36,9 @@ enum Shape {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 pub struct DistributionError {
+    /// The problem, as a part of a sentence.
     pub message: String,
+    /// What to write instead.
     pub hint: String,
 }
 

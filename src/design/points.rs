@@ -24,6 +24,7 @@ pub enum Design {
 /// The points of a campaign.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Points {
+    /// Returns the design.
     pub design: Design,
     /// The seed of all draws.
     pub seed: u64,

@@ -4,8 +4,8 @@ mod cells;
 mod forecast;
 mod rose;
 
-use forecast::Forecast;
-use rose::Rose;
+pub use forecast::Forecast;
+pub use rose::Rose;
 
 /// The most rows of a table.
 const MAX_ROWS: usize = 1000;

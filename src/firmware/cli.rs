@@ -48,6 +48,7 @@ pub const MAX_LINE: usize = 255;
 
 /// The data that a command may see and change.
 #[derive(Debug)]
+#[doc(hidden)]
 pub struct CliContext<'a> {
     /// The configuration in memory.
     pub configuration: &'a mut Configuration,
@@ -93,13 +94,16 @@ impl CliReply {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("the craft refused `{line}`: {reply}")]
 pub struct RefusedLine {
+    /// The line, as it was given.
     pub line: String,
+    /// The reply of the command line.
     pub reply: String,
 }
 
 /// An action that a command requests from the owner of the firmware.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CliAction {
+    /// Stores the configuration.
     Save,
     /// Restarts from the stored configuration; unsaved changes are lost.
     Restart {

@@ -25,7 +25,9 @@ pub use receiver::{ChannelMap, RxFail, RxFailMode, RxRange};
 pub use sanity::correct;
 pub use serial::{BAUD_RATES, SerialRow};
 
+/// The number of mode conditions.
 pub const MODE_CONDITIONS: usize = 20;
+/// The number of adjustment ranges.
 pub const ADJUSTMENT_RANGES: usize = 30;
 /// The number of channels with a range: the four sticks.
 pub const RX_RANGES: usize = 4;

@@ -58,8 +58,11 @@ pub const ACC_COUNTS_PER_G: f64 = 256.0;
 /// The turn rates, rad/s.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Rates {
+    /// About the roll axis, right side down positive.
     pub roll: f64,
+    /// About the pitch axis, nose down positive.
     pub pitch_down: f64,
+    /// About the vertical axis, clockwise from above positive.
     pub yaw: f64,
 }
 
@@ -117,6 +120,7 @@ pub struct Estimate {
     pub shown_alt_m: f64,
     /// The climb rate for displays: low-passed by `altitude_d_lpf`, m/s.
     pub shown_climb_mps: f64,
+    /// The state of the GPS.
     pub gps: GpsStatus,
     /// `true` while a sensor calibration is running.
     pub calibrating: bool,

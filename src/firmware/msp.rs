@@ -55,6 +55,7 @@ pub struct Outcome {
 /// An action that a message requests from the owner of the firmware.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum MspAction {
+    /// Stores the configuration.
     Save,
     /// Restarts from the stored configuration and closes the links.
     Reboot,
@@ -66,7 +67,9 @@ pub enum MspAction {
     RawGps {
         /// `true` if it is a fix.
         fix: bool,
+        /// The number of satellites.
         sats: u8,
+        /// The position, degrees × 10⁷.
         position: LatLon,
         /// The altitude above mean sea level, m.
         alt_amsl_m: u16,
@@ -75,14 +78,18 @@ pub enum MspAction {
     },
     /// Reads the flash memory for logs. The owner writes the bytes, at most `length` from `address` on, behind the reply.
     ReadFlash {
+        /// The first byte.
         address: u32,
+        /// The most bytes of the reply.
         length: u16,
     },
     /// Erases the flash memory for logs.
     EraseFlash,
     /// Runs the motors of the disarmed craft at these outputs, µs.
     MotorTest(PerMotor<u16>),
+    /// Calibrates the accelerometer.
     CalibrateAcc,
+    /// Calibrates the magnetometer.
     CalibrateMag,
     /// Holds this heading, degrees.
     HoldHeading(i16),
@@ -124,6 +131,7 @@ impl Call<'_> {
     }
 }
 
+#[doc(hidden)]
 pub fn handle(code: u16, request: &[u8], configuration: &mut Configuration, facts: &MspFacts) -> Outcome {
     let refused = Outcome { reply: None, action: None, notice: None };
     let Some(message) = table::find(code) else { return refused };

@@ -29,6 +29,7 @@ impl Firmware {
 
     /// Runs one CLI line and carries out its requests to the firmware itself. Storing and restarting are left to the
     /// owner, by the actions in the reply.
+    #[doc(hidden)]
     pub fn run_cli(&mut self, session: &mut Interpreter, line: &str) -> CliReply {
         let facts = CliFacts::observe(self);
         let configuration = &mut self.setup.configuration;
@@ -90,16 +91,19 @@ impl Firmware {
     }
 
     /// Sets the facts about the stored configuration that commands print.
+    #[doc(hidden)]
     pub fn set_storage_facts(&mut self, facts: StorageFacts) {
         self.setup.storage = facts;
     }
 
     /// Sets the facts about the flash memory for logs that messages report.
+    #[doc(hidden)]
     pub fn set_flash_facts(&mut self, facts: FlashFacts) {
         self.setup.flash = facts;
     }
 
     /// Sets the flag that an earlier instant is shown. Clients cannot change anything then.
+    #[doc(hidden)]
     pub fn set_rewound(&mut self, rewound: bool) {
         self.setup.rewound = rewound;
     }

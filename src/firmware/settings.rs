@@ -2,10 +2,10 @@
 //!
 //! * [`SETTINGS`] describes every setting: name, type, range, default, meaning.
 //! * [`Settings`] holds the values, including those of the PID, rate and battery profiles.
-//! * [`judge`] reports an invalid setting before a craft gets it.
+//! * [`judge()`] reports an invalid setting before a craft gets it.
 //! * [`foreign_name`] recognises the settings of other builds, which are kept but have no effect.
 //!
-//! The control code never reads settings in a step. [`parameters`](super::parameters) turns them into typed
+//! The control code never reads settings in a step. `parameters` turns them into typed
 //! coefficients, at boot and again after every command line and every message that may have changed them.
 
 mod current_firmware;
@@ -96,7 +96,9 @@ impl Width {
 pub enum Kind {
     /// An integer in a range.
     Number {
+        /// The smallest value.
         min: i64,
+        /// The greatest value.
         max: i64,
         /// The value of a fresh vehicle.
         default: i64,
@@ -114,7 +116,10 @@ pub enum Kind {
         default: &'static [i64],
     },
     /// A text, empty on a fresh vehicle.
-    Text { max: usize },
+    Text {
+        /// The most characters.
+        max: usize,
+    },
     /// A serial port: the value 0 is `NONE`, n is `UARTn`.
     Port {
         /// The port of a fresh vehicle.
@@ -138,6 +143,7 @@ pub enum Role {
 pub struct Setting {
     /// The name used by get, set, dump, diff and the settings file.
     pub name: &'static str,
+    /// The part of the configuration that has a value of its own.
     pub scope: Scope,
     /// The type on the wire.
     pub width: Width,

@@ -38,6 +38,7 @@ impl Firmware {
         self.outbox.take_lost()
     }
 
+    /// Returns `true` if the motors may turn.
     pub fn is_armed(&self) -> bool {
         self.safety.arming.armed()
     }
@@ -47,6 +48,7 @@ impl Firmware {
         self.safety.last_disarm
     }
 
+    /// Returns all arming disable flags that are set.
     pub fn arming_flags(&self) -> ArmingFlags {
         self.safety.arming.flags()
     }
@@ -56,28 +58,34 @@ impl Firmware {
         if self.is_armed() { ArmingFlags::NONE } else { self.arming_flags() }
     }
 
+    /// Returns the active modes.
     pub fn modes(&self) -> ModeFlags {
         self.modes
     }
 
     /// Returns the boxes that are switched on.
+    #[doc(hidden)]
     pub fn boxes(&self) -> BoxSet {
         self.rc.boxes
     }
 
+    #[doc(hidden)]
     pub fn receiver(&self) -> &Receiver {
         &self.rc.receiver
     }
 
     /// Returns the results of the controller's last step.
+    #[doc(hidden)]
     pub fn control(&self) -> &super::control::ControlState {
         self.control.controller.state()
     }
 
+    #[doc(hidden)]
     pub fn battery(&self) -> &battery::Battery {
         &self.sensing.battery
     }
 
+    /// Returns the estimate of the last step.
     pub fn estimate(&self) -> &Estimate {
         self.sensing.estimate()
     }
@@ -98,6 +106,7 @@ impl Firmware {
     }
 
     /// Returns the demands of the navigator's last update, if it flies.
+    #[doc(hidden)]
     pub fn nav_demand(&self) -> Option<NavOutput> {
         self.navigation.output
     }
@@ -149,6 +158,7 @@ impl Firmware {
     }
 
     /// Returns what the last step noted for a log; `None` if logs are off.
+    #[doc(hidden)]
     pub fn log_step(&self) -> Option<LogStep<'_>> {
         self.recorder.as_deref().map(Recorder::last_step)
     }
@@ -164,6 +174,7 @@ impl Firmware {
     }
 
     /// Returns the typed parameters in force.
+    #[doc(hidden)]
     pub fn parameters(&self) -> &Parameters {
         &self.setup.parameters
     }

@@ -22,8 +22,11 @@ const COMING_DOWN_M: f64 = 1.0;
 /// The facts for the judge, once per tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JudgeFacts {
+    /// Simulated time since boot.
     pub time: SimTime,
+    /// `true` while the autopilot is engaged.
     pub engaged: bool,
+    /// `true` while the craft is armed.
     pub armed: bool,
     /// Last reason of a disarm since boot.
     pub last_disarm: Option<DisarmReason>,
@@ -33,6 +36,7 @@ pub struct JudgeFacts {
     pub entered_for: Option<TransitionReason>,
     /// True altitude above the boot place, m.
     pub alt_m: f64,
+    /// Index of the current waypoint in the active plan.
     pub wp: u8,
     /// Origin of the active plan.
     pub source: PlanSource,
@@ -48,12 +52,14 @@ pub struct JudgeFacts {
     pub touched_down: bool,
     /// The crash; `None` while the craft is whole.
     pub crash: Option<Crash>,
+    /// `true` if the simulation has left the range in which its numbers are meaningful.
     pub diverged: bool,
 }
 
 /// The reason of a mission that the firmware gave up without one.
 pub(super) const UNEXPLAINED: &str = "mission given up: the firmware gives no reason";
 
+/// Decides when a flight is over, and with which result.
 #[derive(Debug, Clone)]
 pub struct Judge {
     timeout: SimTime,

@@ -36,7 +36,9 @@ pub struct SweepPoint {
     pub second: u32,
     /// The true place of the craft at that instant, ENU from home, m.
     pub place_enu: [f64; 3],
+    /// The result for the owner of the craft.
     pub fate: Fate,
+    /// The result of the judge.
     pub result: FlightResult,
     /// The reason as a sentence.
     pub reason: String,

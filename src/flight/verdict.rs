@@ -18,6 +18,7 @@ pub enum FlightResult {
     Aborted,
     /// Disarmed for another reason.
     Disarmed,
+    /// The craft crashed.
     Crashed,
     /// Not over before the timeout.
     Timeout,
@@ -27,8 +28,10 @@ pub enum FlightResult {
     Interrupted,
 }
 
+/// The result of a flight, with its reason.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Verdict {
+    /// The result.
     pub result: FlightResult,
     /// Reason, as a sentence.
     pub reason: String,
@@ -37,10 +40,13 @@ pub struct Verdict {
 /// A crash, with all that is known of it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Crash {
+    /// The cause, if it is known.
     pub cause: Option<CrashCause>,
     /// The state of the navigator before it, with the waypoint and the origin of the plan; IDLE if it did not fly.
     pub state: NavState,
+    /// Index of the waypoint in the active plan.
     pub wp: u8,
+    /// Origin of the active plan.
     pub source: PlanSource,
     /// True roll to the right and pitch up at the impact, degrees.
     pub attitude_deg: Option<[f64; 2]>,
@@ -72,6 +78,7 @@ impl std::fmt::Display for Crash {
 }
 
 impl Verdict {
+    /// Returns a verdict with this reason, a sentence without its full stop.
     pub fn new(result: FlightResult, reason: impl Into<String>) -> Self {
         Self { result, reason: reason.into() }
     }

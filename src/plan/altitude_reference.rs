@@ -10,6 +10,7 @@ pub enum AltitudeReference {
     /// The craft has not reported it yet.
     #[default]
     Unreported,
+    /// Altitudes count from home.
     Home,
     /// Altitudes count from mean sea level.
     SeaLevel {
@@ -88,6 +89,7 @@ impl AltitudeReference {
 /// A plan as a craft stores it, with altitudes from the reference of the craft.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct CraftPlan {
+    /// The waypoints, in the units of the craft.
     pub records: Records,
 }
 

@@ -9,18 +9,24 @@ pub struct Capability {
     pub place: bool,
     /// The altitude has a meaning.
     pub altitude: bool,
+    /// The use of the speed field.
     pub speed: SpeedUse,
+    /// The use of the duration.
     pub time: TimeUse,
     /// The pattern has a meaning.
     pub pattern: bool,
+    /// How the craft gets to the waypoint.
     pub approach: Approach,
+    /// The action after the arrival.
     pub then: Then,
 }
 
 /// The use of the speed field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SpeedUse {
+    /// The field has no meaning.
     Unused,
+    /// The field holds the speed of the leg, m/s.
     Leg,
     /// The field holds a rate in degrees/s.
     YawRate,
@@ -29,6 +35,7 @@ pub enum SpeedUse {
 /// The use of the duration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TimeUse {
+    /// The field has no meaning.
     Unused,
     /// The autopilot waits so long, but the editor does not offer it.
     Wait,
@@ -58,14 +65,18 @@ pub enum Approach {
 /// The change by a modifier.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Modifier {
+    /// Another altitude.
     Altitude,
+    /// A wait.
     Delay,
+    /// Another rate of yaw.
     YawRate,
 }
 
 /// The action after the arrival. Every type but `GoOn` waits for its duration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Then {
+    /// Goes on to the next waypoint.
     GoOn,
     /// Waits for the duration, if there is one, and goes on.
     Loiter,

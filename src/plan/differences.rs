@@ -13,7 +13,9 @@ pub struct Difference {
     pub waypoint: usize,
     /// The field; `waypoint` if the other plan does not have it.
     pub field: &'static str,
+    /// The value of the first plan.
     pub from: String,
+    /// The value of the second plan.
     pub to: String,
 }
 

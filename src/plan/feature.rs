@@ -5,6 +5,7 @@ use crate::geo::LatLon;
 /// A vertex of a shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Vertex {
+    /// The place.
     pub position: LatLon,
     /// Altitude, m, in the reference of the shape; `NaN` = not given.
     pub altitude_m: f32,
@@ -13,6 +14,7 @@ pub struct Vertex {
 /// A shape.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shape {
+    /// A point.
     Point(Vertex),
     /// At least two vertices.
     Line(Vec<Vertex>),
@@ -34,6 +36,7 @@ pub enum Zone {
 pub struct Feature {
     /// May be empty.
     pub name: String,
+    /// The shape.
     pub shape: Shape,
     /// Set only for an area that is a fence or a no-fly zone.
     pub zone: Option<Zone>,

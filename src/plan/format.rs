@@ -2,7 +2,7 @@
 //!
 //! * [`Format::Toml`] is the project's own format. It holds all of a [`PlanFile`], with units in the key names.
 //! * [`Format::CliText`] is Betaflight CLI text: the `waypoint` lines of a hand-written list or of a whole `diff all`.
-//! * The others are formats of other programs. [`kind`] has their table, [`loss`] the report of what differs there.
+//! * The others are formats of other programs. [`Format`] has their table, [`loss`] the report of what differs there.
 //!
 //! A reader reports every problem of a file with its place and changes nothing. Readers and writers report each part
 //! that the other side cannot hold.
@@ -78,6 +78,7 @@ pub struct PlanFile {
     pub home: Option<HomePosition>,
     /// The settings for the plan, as `name = value`, in the order in which they are applied.
     pub settings: Vec<String>,
+    /// The plan.
     pub plan: FlightPlan,
     /// The waypoints for which a plan has no room. A plan that is flown has none.
     pub rest: Vec<Waypoint>,
@@ -100,6 +101,7 @@ impl PlanFile {
 pub struct Written {
     /// The bytes of the file; empty if the plan is refused.
     pub contents: Vec<u8>,
+    /// The differences between the plan and the text.
     pub losses: LossReport,
 }
 

@@ -8,6 +8,7 @@ use super::{Altitude, LegSpeed, MAX_WAYPOINTS, Waypoint, WaypointType};
 use crate::geo::{GroundPlane, LatLon};
 use crate::math;
 
+/// A shape that can be generated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::Display, strum::EnumIter, strum::EnumString)]
 #[strum(serialize_all = "kebab-case", ascii_case_insensitive)]
 pub enum Shape {
@@ -25,6 +26,7 @@ pub enum Shape {
 /// A shape with its numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pattern {
+    /// The shape.
     pub shape: Shape,
     /// Extent along the heading, m; the diameter of a circle.
     pub length_m: f64,
@@ -34,8 +36,11 @@ pub struct Pattern {
     pub spacing_m: f64,
     /// Direction of the length, degrees from north, clockwise.
     pub heading_deg: f64,
+    /// Altitude of all waypoints.
     pub altitude: Altitude,
+    /// Speed on all legs.
     pub speed: LegSpeed,
+    /// Type of all waypoints.
     pub kind: WaypointType,
 }
 

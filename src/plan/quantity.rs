@@ -98,6 +98,7 @@ impl Seconds {
         self.0
     }
 
+    /// Returns `true` if there is no time.
     pub fn is_zero(self) -> bool {
         self.0 <= 0.0
     }

@@ -28,11 +28,13 @@ pub enum Finding {
     Fault(PlanFault),
     /// The craft refuses the plan because of the fence.
     OutsideFence {
+        /// Index of the waypoint.
         index: usize,
         /// Distance of the waypoint from home, m.
         distance_m: f64,
         /// The fence, m.
         limit_m: f64,
+        /// Source of the limit.
         from: SettingSource,
     },
     /// The craft has the plan, but another value for one of its settings.
@@ -44,12 +46,19 @@ pub enum Finding {
     NeverFlown {
         /// The waypoint that ends the mission.
         index: usize,
+        /// Type of that waypoint.
         kind: WaypointType,
     },
     /// A modifier without a place after it.
-    NothingToModify { index: usize, kind: WaypointType },
+    NothingToModify {
+        /// Index of the modifier.
+        index: usize,
+        /// Its type.
+        kind: WaypointType,
+    },
     /// The leg is flown slower than its speed field demands.
     SpeedLimited {
+        /// Index of the waypoint to which the leg leads.
         index: usize,
         /// The demanded speed, m/s.
         speed_mps: f64,
@@ -67,6 +76,7 @@ pub enum Finding {
     },
     /// The leg is flown below the place at which the craft is armed.
     BelowGround {
+        /// Index of the waypoint to which the leg leads.
         index: usize,
         /// Altitude of the leg above home, m.
         alt_m: f64,
@@ -97,14 +107,18 @@ pub enum Finding {
     NoTouchdownThrottle(TouchdownThrottle),
     /// A waypoint or a leg is where a zone of the map forbids it.
     AgainstZone {
+        /// Index of the waypoint.
         index: usize,
+        /// The part of the plan.
         part: ZonePart,
+        /// The kind of zone.
         zone: Zone,
         /// The name of the zone; may be empty.
         name: String,
     },
     /// The flown estimate goes where a zone of the map forbids it.
     FlownAgainstZone {
+        /// The kind of zone.
         zone: Zone,
         /// The name of the zone; may be empty.
         name: String,

@@ -31,6 +31,7 @@ pub struct SetpointLimits {
     pub landing_alt_m: f64,
 }
 
+/// The altitude that the autopilot demands, moved towards its target within limits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AltitudeSetpoint {
     /// Above home, m.

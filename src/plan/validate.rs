@@ -5,6 +5,7 @@ use super::{FlightPlan, MAX_WAYPOINTS, Waypoint};
 /// The reason why a plan cannot be flown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, thiserror::Error)]
 pub enum PlanFault {
+    /// The plan has no waypoint.
     #[error("the plan has no waypoints: add one")]
     Empty,
     /// The stored count is impossible.

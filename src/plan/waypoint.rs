@@ -78,6 +78,7 @@ pub enum HoldPattern {
 pub struct Waypoint {
     /// Position, degrees × 10⁷.
     pub position: LatLon,
+    /// Altitude above home.
     pub altitude: Altitude,
     /// Leg speed; zero of a YAW_RATE.
     pub speed: LegSpeed,

@@ -18,7 +18,9 @@ pub struct WindText(String);
 /// A mistake in the text of a wind.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct WindProblem {
+    /// The problem, as a part of a sentence.
     pub message: String,
+    /// What to write instead; may be empty.
     pub hint: String,
 }
 
@@ -60,10 +62,13 @@ impl WindText {
 /// The air of the flights of a case, apart from their seeds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AirTemplate {
+    /// The mean wind; `None` = calm.
     pub wind: Option<WindText>,
     /// Size of random gusts, m/s.
     pub gust_mps: f64,
+    /// Level of turbulence.
     pub turbulence: Turbulence,
+    /// Sensor errors on or off.
     pub noise: Noise,
 }
 

@@ -17,6 +17,7 @@ pub const USUAL_LEVELS: u64 = 5;
 /// `[campaign]`, and what its flights vary.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CampaignSpec {
+    /// The way in which the values of the flights are chosen.
     pub design: Design,
     /// The number of flights; `None` = the size of the grid, or [`USUAL_FLIGHTS`].
     pub flights: Option<u64>,
@@ -37,7 +38,9 @@ pub struct CampaignSpec {
 pub enum FlightSeeds {
     /// Another seed for each flight, from this one on.
     From(u64),
+    /// The seeds of a range.
     Range(RangeInclusive<u64>),
+    /// These seeds.
     List(Vec<u64>),
 }
 

@@ -12,6 +12,7 @@ use crate::telemetry::{FirmwareProfile, NavState, PlanSource, Turbulence};
 /// The keys of the command lines that are written in the scenario itself.
 pub(super) const OWN_LINES: [&str; 2] = ["settings", "lines"];
 
+/// A scenario: a plan, the air, inputs and expectations.
 #[derive(Debug, Clone)]
 pub struct Scenario {
     /// The file, as its user named it.
@@ -37,6 +38,7 @@ pub struct Case {
     pub name: String,
     /// The name that the file gives.
     pub base: String,
+    /// The name of the variant; empty if there is none.
     pub variant: String,
     /// The varied keys with the values of this case, for people.
     pub varied: Vec<(String, String)>,
@@ -54,6 +56,7 @@ pub struct Case {
     pub watch_s: f64,
     /// The instant at which the scenario ends the flight.
     pub ends: Option<Instant>,
+    /// Samples per second of simulated time, Hz.
     pub sample_hz: f64,
     /// Named numbers.
     pub parameters: Vec<(String, f64)>,
@@ -61,6 +64,7 @@ pub struct Case {
     pub inputs: Vec<TimedInput>,
     /// Numbers taken from the flight.
     pub measures: Vec<Measure>,
+    /// The expectations, in the order of the file.
     pub expectations: Vec<Expectation>,
 }
 
@@ -69,10 +73,13 @@ pub struct Case {
 pub struct Air {
     /// Seed of all randomness.
     pub seed: u64,
+    /// The mean wind.
     pub wind: Wind,
     /// Size of random gusts, m/s.
     pub gust_mps: f64,
+    /// Level of turbulence.
     pub turbulence: Turbulence,
+    /// Sensor errors on or off.
     pub noise: Noise,
 }
 
@@ -120,7 +127,9 @@ pub struct Window {
 /// A number taken from a flight.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measure {
+    /// The name in expressions and results.
     pub name: String,
+    /// The dimension of the number.
     pub dimension: Dimension,
     /// The way in which the number is taken.
     pub measured: Measured,
@@ -131,9 +140,11 @@ pub struct Measure {
 pub enum Measured {
     /// A statistic over a part of the flight.
     Over(Window, Statistic, Number),
+    /// The value at an instant.
     At(Instant, Number),
     /// The time between two instants, s.
     Time(Instant, Instant),
+    /// The value of a number of measures and parameters.
     Of(Number),
 }
 
@@ -141,13 +152,17 @@ pub enum Measured {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::Display, strum::EnumIter, strum::IntoStaticStr)]
 #[strum(serialize_all = "lowercase")]
 pub enum Statistic {
+    /// The mean.
     Mean,
     /// Root of the mean square.
     Rms,
+    /// The greatest value.
     Max,
+    /// The smallest value.
     Min,
 }
 
+/// An expectation about a flight.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expectation {
     /// The name of the expectation, or else its text.
@@ -158,9 +173,11 @@ pub struct Expectation {
     pub firmware: Option<FirmwareProfile>,
     /// The part of the flight in which it is judged.
     pub window: Window,
+    /// The expectation itself.
     pub expected: Expected,
 }
 
+/// What is expected of a flight.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Expected {
     /// The flight ends with one of these results.
@@ -169,7 +186,9 @@ pub enum Expected {
     States(Vec<StateStep>),
     /// Something happens: `count` times if that is given, else at least once.
     Event {
+        /// The happenings that count.
         pattern: Pattern,
+        /// The number of happenings; `None` = at least one.
         count: Option<usize>,
         /// The bounds for the time of the first one, seconds after an instant.
         within: Option<(f64, f64, Instant)>,
@@ -202,8 +221,11 @@ impl Expectation {
 /// A step of an expected order of states.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StateStep {
+    /// The entry into a state.
     Enter {
+        /// The state.
         state: NavState,
+        /// Index of the waypoint; `None` = any.
         wp: Option<u8>,
         /// The origin of the plan.
         source: Option<PlanSource>,

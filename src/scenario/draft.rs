@@ -15,6 +15,7 @@ use crate::signals::SimTime;
 
 /// A scenario under construction.
 #[derive(Debug, Clone, Default)]
+#[doc(hidden)]
 pub struct Draft {
     name: String,
     description: String,

@@ -36,6 +36,7 @@ pub use number::{MAX_NAME, read_number, read_quantity};
 pub struct Scope {
     /// Parameters and measures with their dimension; many expressions share them.
     pub names: Rc<BTreeMap<String, Dimension>>,
+    /// The names of the inputs.
     pub inputs: Vec<String>,
     /// The number of waypoints of the plan.
     pub waypoints: usize,
@@ -48,12 +49,15 @@ pub struct Scope {
 pub enum Number {
     /// A literal, in SI units and degrees, with the unit it was written in.
     Literal(f64, Option<&'static Unit>),
+    /// A signal at the instant of the sample.
     Signal(Signal),
     /// A number of the happening that the expression is about.
     Field(Field),
     /// A parameter or a measure.
     Name(String),
+    /// The number with the other sign.
     Negative(Box<Number>),
+    /// Two numbers and an operator between them.
     Join(Operator, Box<Number>, Box<Number>),
     /// A function of numbers.
     Call(Function, Vec<Number>),
@@ -77,12 +81,18 @@ pub enum Number {
     Rate(Box<Number>),
 }
 
+/// An operator between two numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Operator {
+    /// Addition.
     Add,
+    /// Subtraction.
     Subtract,
+    /// Multiplication.
     Multiply,
+    /// Division.
     Divide,
+    /// The remainder of the Euclidean division, never negative.
     Remainder,
 }
 
@@ -90,6 +100,7 @@ pub enum Operator {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::EnumString, strum::EnumIter, strum::IntoStaticStr)]
 #[strum(serialize_all = "lowercase")]
 pub enum Function {
+    /// The absolute value.
     Abs,
     /// The smaller of two.
     Min,
@@ -104,6 +115,7 @@ pub enum Function {
 /// A place on the ground.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Place {
+    /// The boot place.
     Home,
     /// North and east of the boot place, m.
     Offset(f64, f64),
@@ -118,7 +130,9 @@ pub enum Place {
 /// A yes-or-no statement about a flight.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Condition {
+    /// A number within its bound.
     Compare(Comparison),
+    /// A flag is set.
     Flag(Flag),
     /// The state machine is in this state, optionally with this waypoint.
     State(NavState, Option<u8>),
@@ -126,7 +140,9 @@ pub enum Condition {
     Mode(Mode),
     /// The autopilot flies a plan of this origin.
     Flying(PlanSource),
+    /// The condition does not hold.
     Not(Box<Condition>),
+    /// All of the conditions hold.
     All(Vec<Condition>),
     /// At least one of the conditions holds.
     Any(Vec<Condition>),
@@ -135,7 +151,9 @@ pub enum Condition {
 /// A number and its bound.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
+    /// The number on the left.
     pub left: Number,
+    /// The dimension of both sides.
     pub dimension: Dimension,
     /// The allowed values.
     pub bound: Bound,
@@ -152,13 +170,16 @@ pub enum Bound {
     Between(Number, Number),
     /// A number with a tolerance on both sides.
     Around(Number, Number),
+    /// This number.
     Equal(Number),
 }
 
 /// An instant of a flight.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Instant {
+    /// The event that marks it.
     pub anchor: Anchor,
+    /// The choice among several of them.
     pub occurrence: Occurrence,
     /// An earlier instant; only later happenings count.
     pub after: Option<Box<Instant>>,
@@ -169,9 +190,11 @@ pub struct Instant {
 /// The event that marks an instant.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Anchor {
+    /// The boot.
     Boot,
     /// The end of the recording.
     Last,
+    /// A happening.
     Happening(Pattern),
     /// A condition becomes true.
     When(Condition),
@@ -182,6 +205,7 @@ pub enum Anchor {
 pub enum Occurrence {
     /// The nth, from 1.
     Nth(usize),
+    /// The last.
     Last,
 }
 

@@ -69,11 +69,13 @@ pub trait Files {
 pub struct Request<'a> {
     /// The name of the file, as the user gave it.
     pub file: &'a str,
+    /// The text of the file.
     pub text: &'a str,
     /// The seeds that replace those of the file.
     pub seeds: Option<&'a [u64]>,
     /// The most flights that are listed.
     pub max_flights: usize,
+    /// The flights to list.
     pub flights: Flights,
 }
 

@@ -26,6 +26,7 @@ pub enum Flag {
 }
 
 impl Flag {
+    /// Returns a description for people.
     pub fn help(self) -> &'static str {
         match self {
             Self::Armed => "the craft is armed",

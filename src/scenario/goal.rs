@@ -10,7 +10,9 @@ pub struct Goal {
     pub label: String,
     /// Line in the file, from 1.
     pub line: usize,
+    /// The number.
     pub subject: Subject,
+    /// Its allowed values.
     pub limit: GoalLimit,
     /// The confidence with which the bound of the interval is compared, 0…1; `None` = the estimate itself is compared.
     pub confidence: Option<f64>,
@@ -32,6 +34,7 @@ pub enum Subject {
 pub struct Quantity {
     /// The name of a metric or of a measure.
     pub name: String,
+    /// The dimension of the number.
     pub dimension: Dimension,
 }
 
@@ -40,14 +43,18 @@ pub struct Quantity {
 pub enum GoalStatistic {
     /// The value below which this share of the flights lies, 0…1.
     Quantile(f64),
+    /// The mean.
     Mean,
+    /// The smallest value.
     Min,
+    /// The greatest value.
     Max,
 }
 
 /// The allowed values of a number of a campaign, in SI units and shares.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GoalLimit {
+    /// The limit.
     pub value: f64,
     /// `true` if greater values are allowed, `false` if smaller ones are.
     pub is_least: bool,

@@ -24,11 +24,13 @@ macro_rules! events {
 /// A kind of happening with its name.
 #[derive(Debug, Clone, Copy)]
 pub struct EventInfo {
+    /// The kind.
     pub event: EventName,
     /// The written name; words after it choose among its happenings.
     pub name: &'static str,
     /// The numbers of such a happening.
     pub fields: &'static [Field],
+    /// A description for people.
     pub help: &'static str,
 }
 
@@ -164,26 +166,33 @@ pub fn mode_word(mode: Mode) -> String {
     mode.to_string().replace(' ', "_")
 }
 
+/// A transition of the state machine.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Entered {
+    /// The new state.
     pub state: NavState,
     /// Index of the current waypoint in the active plan.
     pub wp: u8,
     /// Origin of the active plan.
     pub source: PlanSource,
+    /// The cause of the transition, as a word.
     pub reason: &'static str,
 }
 
+/// The kind of a happening.
 #[derive(Debug, Clone, PartialEq)]
 pub enum HappeningKind {
     /// The state machine entered a state.
     State(Entered),
+    /// An event.
     Event {
+        /// The kind of event.
         name: EventName,
         /// The words that tell this happening from others of its kind.
         words: Vec<String>,
         /// Its numbers, SI and degrees.
         fields: Vec<(Field, f64)>,
+        /// A text for people; may be empty.
         text: String,
     },
 }
@@ -193,6 +202,7 @@ pub enum HappeningKind {
 pub struct Happening {
     /// Simulated time since boot.
     pub time: SimTime,
+    /// The kind.
     pub kind: HappeningKind,
 }
 
@@ -235,15 +245,20 @@ impl Happening {
 pub enum Pattern {
     /// The entry into a state.
     State {
+        /// The state.
         state: NavState,
+        /// Index of the waypoint; `None` = any.
         wp: Option<u8>,
         /// The origin of the plan; `None` = any.
         source: Option<PlanSource>,
+        /// The cause of the transition, as a word; `None` = any.
         reason: Option<String>,
     },
     /// A happening of a kind that has all of these words and this text.
     Event {
+        /// The kind of event.
         name: EventName,
+        /// The words that the happening must have.
         words: Vec<String>,
         /// A part of the text; upper and lower case count as equal.
         text: Option<String>,

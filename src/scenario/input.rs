@@ -15,9 +15,11 @@ pub struct TimedInput {
     pub name: String,
     /// Line in the scenario's file, from 1.
     pub line: usize,
+    /// The instant.
     pub at: Instant,
     /// `true` if the input is repeated each time the instant comes.
     pub each: bool,
+    /// The action.
     pub action: Action,
     /// The text in the file.
     pub text: String,
@@ -26,6 +28,7 @@ pub struct TimedInput {
 /// An action on the craft.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Action {
+    /// A command to the vehicle.
     Vehicle(VehicleCommand),
     /// Holds a channel at a value, for a number of seconds or until its release.
     Stick {
@@ -33,6 +36,7 @@ pub enum Action {
         channel: u8,
         /// Value, µs.
         value_us: u16,
+        /// The time, s; `None` = until its release.
         for_s: Option<f64>,
     },
     /// The switch of a mode.

@@ -73,6 +73,7 @@ const TEXTS: &[(&str, &str)] = &[("guide.txt", include_str!("../../plans/scenari
 pub struct BuiltinScenario {
     /// The name on the command line.
     pub name: &'static str,
+    /// The text of the scenario file.
     pub text: &'static str,
 }
 

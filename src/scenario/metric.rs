@@ -28,14 +28,23 @@ use crate::telemetry::{NavState, PlanSource};
 )]
 #[strum(serialize_all = "snake_case")]
 pub enum Metric {
+    /// Greatest horizontal distance from the leg, m.
     CrossTrack,
+    /// Greatest distance from the altitude of the leg, m.
     AltitudeError,
+    /// Greatest horizontal distance at a waypoint, m.
     WaypointMiss,
+    /// Horizontal distance of the touchdown from its place, m.
     Touchdown,
+    /// Distance of the touchdown north of its place, m.
     TouchdownNorth,
+    /// Distance of the touchdown east of its place, m.
     TouchdownEast,
+    /// Time from the engagement to the end, s.
     Time,
+    /// Charge left at the end, % of the capacity.
     BatteryLeft,
+    /// Smallest distance from the fence, m.
     FenceMargin,
 }
 

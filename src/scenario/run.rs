@@ -21,6 +21,7 @@ use recorder::Recorder;
 /// A finished flight of a case.
 #[derive(Debug, Clone)]
 pub struct Flown {
+    /// The record of the flight.
     pub trace: Trace,
     /// The result: one of [`RESULTS`](super::happening::RESULTS).
     pub result: String,
@@ -92,6 +93,7 @@ impl<'a> CaseFlight<'a> {
         })
     }
 
+    /// Returns the vehicle.
     pub fn vehicle(&self) -> &Vehicle {
         self.flight.vehicle()
     }

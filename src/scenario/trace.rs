@@ -10,9 +10,12 @@ use crate::signals::SimTime;
 use crate::telemetry::signal::{Signal, SignalValues};
 use crate::telemetry::{Guard, GuardName, ModeFlags, NavState, PlanSource};
 
+/// The state of the craft at an instant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sample {
+    /// Simulated time since boot.
     pub time: SimTime,
+    /// The values of all signals.
     pub values: SignalValues,
     /// The flags, one bit each.
     pub flags: u16,
@@ -22,16 +25,19 @@ pub struct Sample {
     pub wp: u8,
     /// Origin of the active plan.
     pub source: PlanSource,
+    /// The active modes.
     pub modes: ModeFlags,
     /// The navigator's target, m north and east of the boot place; NaN = none.
     pub target_ne: [f32; 2],
 }
 
 impl Sample {
+    /// Returns the value of a signal, in its unit; NaN if it is unknown.
     pub fn value(&self, signal: Signal) -> f64 {
         self.values.get(signal)
     }
 
+    /// Returns `true` if a flag is set.
     pub fn has(&self, flag: Flag) -> bool {
         self.flags & (1 << flag as u8) != 0
     }
@@ -50,14 +56,18 @@ const HASHED_SIGNALS: usize = Signal::Satellites as usize + 1;
 pub struct NearestGuard {
     /// The guard at its closest.
     pub guard: Guard,
+    /// Simulated time since boot.
     pub time: SimTime,
 }
 
 /// A stay in a state, with the guards that were checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stay {
+    /// Simulated time of the entry since boot.
     pub since: SimTime,
+    /// The state.
     pub state: NavState,
+    /// Index of the waypoint in the active plan.
     pub wp: u8,
     /// The guards at their closest.
     pub guards: Vec<NearestGuard>,
@@ -70,6 +80,7 @@ pub struct KnownPlan {
     pub since: SimTime,
     /// Its origin.
     pub source: PlanSource,
+    /// The plan.
     pub plan: FlightPlan,
 }
 
@@ -86,6 +97,7 @@ pub struct Trace {
     pub plans: Vec<KnownPlan>,
     /// The local frame, north and east from the boot place.
     pub frame: Option<LocalFrame>,
+    /// Time of the first engagement since boot.
     pub engaged_at: Option<SimTime>,
 }
 

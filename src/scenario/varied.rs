@@ -12,6 +12,7 @@ use crate::telemetry::Turbulence;
 pub struct VariedInput {
     /// The name in results and the key of its random numbers, such as `mass_pct` or `ap_max_velocity`.
     pub name: String,
+    /// Its values.
     pub spread: Spread,
 }
 
@@ -20,11 +21,16 @@ pub struct VariedInput {
 pub enum Spread {
     /// One of these, all as often.
     Choice(Vec<Choice>),
+    /// A number with a distribution.
     Number(NumberInput, Distribution),
+    /// A wind with a speed and a direction.
     Wind {
+        /// Speed, m/s.
         speed: Distribution,
+        /// The direction from which it blows, degrees clockwise from north.
         from: Distribution,
     },
+    /// A wind of a table.
     Table(WindTable),
 }
 
@@ -33,15 +39,20 @@ pub enum Spread {
 pub struct Choice {
     /// The value for people.
     pub shown: String,
+    /// The change of the flight.
     pub change: Change,
 }
 
 /// An input whose value is a number.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NumberInput {
+    /// Size of random gusts, m/s.
     Gust,
+    /// Altitude of the pilot's climb, m.
     Takeoff,
+    /// Heading at boot, degrees.
     Heading,
+    /// A property of the airframe, per cent of its nominal value.
     Tolerance(Tolerance),
     /// A switch of the world.
     World(String),
@@ -54,24 +65,34 @@ pub enum NumberInput {
 /// A property of the airframe that differs from its nominal value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::EnumIter)]
 pub enum Tolerance {
+    /// The mass.
     Mass,
+    /// The thrust of the motors.
     Thrust,
+    /// The drag.
     Drag,
+    /// The moments of inertia.
     Inertia,
+    /// The capacity of the battery.
     Battery,
 }
 
 /// A value of an input in one flight.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Change {
+    /// Another airframe.
     Airframe(Box<Airframe>),
     /// A difference of the airframe, per cent.
     Tolerance(Tolerance, f64),
+    /// A wind as text, which may contain the seed.
     Wind(WindText),
+    /// A wind.
     WindIs(Wind),
     /// m/s.
     Gust(f64),
+    /// Level of turbulence.
     Turbulence(Turbulence),
+    /// Sensor errors on or off.
     Noise(Noise),
     /// A switch of the world, as `NAME=VALUE`.
     World(String),
@@ -83,6 +104,7 @@ pub enum Change {
     Rate(u32),
     /// `name = value`.
     Setting(String),
+    /// A fault.
     Fault(ScheduledFault),
 }
 

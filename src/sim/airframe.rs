@@ -29,6 +29,7 @@ mod file;
 
 pub use file::{AirframeFileError, AirframeProblem};
 
+/// The number of rotors.
 pub const ROTORS: usize = MOTORS;
 
 /// The maximum number of legs of an airframe.
@@ -87,6 +88,7 @@ pub struct Airframe {
     pub friction_full_mps: f64,
     /// Position of the inertial sensor, m.
     pub imu_position_m: Vector3<f64>,
+    /// The battery.
     pub battery: BatterySpec,
 }
 

@@ -17,6 +17,7 @@ const BEYOND_EMPTY_V: f64 = 50.0;
 /// The battery of an airframe.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BatterySpec {
+    /// Cells in series.
     pub cells: u8,
     /// Voltage at which the motors reach their specified top speed, V.
     pub nominal_v: f64,

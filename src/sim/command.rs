@@ -15,7 +15,9 @@ pub enum WorldCommand {
     SetWind(Wind),
     /// Random gusts of this strength from now on, m/s; 0 for none.
     SetGust(f64),
+    /// One gust of this size and direction, now.
     GustNow(Wind),
+    /// Level of turbulence from now on.
     SetTurbulence(Turbulence),
     /// Sensor errors on or off.
     SetNoise(Noise),

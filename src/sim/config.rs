@@ -26,7 +26,9 @@ pub const STEP_RATES_HZ: [u32; 6] = [400, 500, 1000, 2000, 4000, 8000];
 /// Everything that a [`World`](super::World) needs to know at boot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WorldConfig {
+    /// The craft.
     pub airframe: Airframe,
+    /// Place and heading at boot.
     pub home: Home,
     /// Steps per second, one of [`STEP_RATES_HZ`].
     pub rate_hz: u32,
@@ -34,10 +36,13 @@ pub struct WorldConfig {
     pub seed: u64,
     /// Sensor errors on or off.
     pub noise: Noise,
+    /// The mean wind.
     pub wind: Wind,
     /// Strength of random gusts, m/s; 0 for none.
     pub gust_mps: f64,
+    /// Level of turbulence.
     pub turbulence: Turbulence,
+    /// Rare switches.
     pub switches: Switches,
     /// Scheduled faults.
     pub faults: Vec<ScheduledFault>,
@@ -78,6 +83,7 @@ pub fn step_us(rate_hz: u32) -> Result<u64, WorldError> {
     }
 }
 
+/// Sensor errors on or off.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, Default, Hash, strum::Display, strum::EnumString, strum::VariantNames,
 )]

@@ -8,10 +8,13 @@ use super::fault::Fault;
 /// An event at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WorldEvent {
+    /// Simulated time since boot.
     pub time: SimTime,
+    /// The event.
     pub kind: WorldEventKind,
 }
 
+/// An event of the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum WorldEventKind {
     /// The first touch after a flight.
@@ -27,11 +30,15 @@ pub enum WorldEventKind {
         peak_mps2: f64,
     },
     /// The craft is lost.
-    Crash { cause: CrashCause },
+    Crash {
+        /// The cause.
+        cause: CrashCause,
+    },
     /// A fault began or ended. Impulses and displacements have no end, so only their beginning is reported.
     Fault {
         /// The fault; its `Display` is the value.
         fault: Fault,
+        /// `true` if it began.
         on: bool,
     },
     /// The full charge of the battery has been drawn.
@@ -40,5 +47,8 @@ pub enum WorldEventKind {
         cell_v: f64,
     },
     /// The integration failed. The world no longer changes.
-    Diverged { cause: DivergeCause },
+    Diverged {
+        /// The cause.
+        cause: DivergeCause,
+    },
 }

@@ -62,11 +62,17 @@ impl fmt::Display for MotorNumber {
 )]
 #[strum(serialize_all = "lowercase")]
 pub enum Direction {
+    /// To the north.
     North,
+    /// To the east.
     East,
+    /// To the south.
     South,
+    /// To the west.
     West,
+    /// Upwards.
     Up,
+    /// Downwards.
     Down,
 }
 
@@ -114,6 +120,7 @@ macro_rules! faults {
 }
 
 faults! {
+    /// No RC frame arrives.
     RxLoss;
     /// This fraction of RC frames is lost at random.
     RxJitter(f64);
@@ -133,6 +140,7 @@ faults! {
     BaroSpike(f64);
     /// The same pressure is repeated.
     BaroFreeze;
+    /// The magnetometer gives no data.
     MagOff;
     /// The measured heading is off by this many degrees, clockwise positive.
     MagBias(f64);
@@ -150,9 +158,11 @@ faults! {
     PropImbalance(MotorNumber, f64);
     /// Accelerometer vibration at hover speed, m/s² rms per axis.
     Vibration(f64);
+    /// The battery is weak.
     Battery(BatteryFault);
     /// One gust. It lasts four seconds unless a time is given.
     Gust(Wind);
+    /// Another mean wind.
     Wind(Wind);
     /// An impulse, N·s.
     Push(f64, Direction);
@@ -295,13 +305,16 @@ impl fmt::Display for Fault {
 pub enum FaultStart {
     /// Seconds after the first engagement of the autopilot since boot or reset.
     Engagement(f64),
+    /// This many seconds after boot.
     Boot(f64),
 }
 
 /// A fault with its time. `Display` gives the text that parses back to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScheduledFault {
+    /// The fault.
     pub fault: Fault,
+    /// Its begin.
     pub start: FaultStart,
     /// Duration in seconds; `None` lasts to the end.
     pub for_s: Option<f64>,

@@ -47,6 +47,7 @@ pub struct GroundContact {
     pub any_leg: bool,
     /// `true` if every leg carries load.
     pub all_legs: bool,
+    /// `true` if the body touches the ground.
     pub hull: bool,
     /// Distance of the lowest point from the ground, m; high up, a lower bound.
     pub clearance_m: f64,
@@ -92,6 +93,7 @@ impl Ground {
         self.landform = landform;
     }
 
+    #[doc(hidden)]
     pub fn landform(&self) -> &Landform {
         &self.landform
     }

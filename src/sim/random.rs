@@ -35,6 +35,7 @@ pub enum Stream {
     GpsAcquisition = 8,
     /// Voltage and current readings.
     Battery = 9,
+    /// Turbulence of the air.
     Turbulence = 10,
     /// Times and directions of gusts.
     Gusts = 11,

@@ -11,10 +11,12 @@ pub(super) const MAX_RISE_M: f64 = 40.0;
 /// The shape of the ground. Home is on it, at height zero.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Surface {
+    /// Level ground at height zero.
     #[default]
     Flat,
+    /// A plane through home.
     Slope(Slope),
-    /// The relief of elevation tiles: see [`Landform`](super::landform::Landform).
+    /// The relief of elevation tiles.
     Terrain,
 }
 
@@ -97,7 +99,7 @@ impl Surface {
 }
 
 impl std::fmt::Display for Surface {
-    /// Writes the form that [`Surface::parse`] reads.
+    /// Writes the form of the switch `ground`.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Flat => f.write_str("flat"),

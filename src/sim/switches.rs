@@ -24,6 +24,7 @@ pub enum WindProfile {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::Display, strum::EnumString)]
 #[strum(serialize_all = "lowercase")]
 pub enum AirDensity {
+    /// Density of the standard atmosphere at the altitude of the craft.
     #[default]
     Isa,
     /// The density for which the airframe's coefficients are given, everywhere.
@@ -83,7 +84,9 @@ impl Default for Switches {
 pub struct SwitchInfo {
     /// Name before the `=`.
     pub name: &'static str,
+    /// Allowed values, for people.
     pub values: &'static str,
+    /// A description for people.
     pub help: &'static str,
 }
 

@@ -10,6 +10,7 @@ use super::airframe::ROTORS;
 /// The true state of the craft at one instant: world ENU with home on the ground as origin, body FLU.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Truth {
+    /// Simulated time since boot.
     pub time: SimTime,
     /// Centre of mass, m; on the ground z is the height of the centre of mass above the legs.
     pub pos_enu: Vector3<f64>,
@@ -27,6 +28,7 @@ pub struct Truth {
     pub specific_force_flu: Vector3<f64>,
     /// Wind at the craft (the direction it blows to), m/s.
     pub wind_enu: Vector3<f64>,
+    /// The battery.
     pub battery: BatteryTruth,
     /// Height of the ground below the craft relative to the ground at home, m.
     pub ground_m: f64,

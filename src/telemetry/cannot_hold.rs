@@ -33,5 +33,6 @@ pub struct CannotHold {
     pub distance_m: f64,
     /// The height above the altitude setpoint, m; negative below it.
     pub vertical_m: f64,
+    /// The limit that is exceeded.
     pub limit: HoldLimit,
 }

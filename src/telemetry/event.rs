@@ -8,26 +8,33 @@ use crate::telemetry::{FaultKind, FaultValue, FirmwareEvent};
 pub struct Event {
     /// Simulated time since boot.
     pub time: SimTime,
+    /// The event.
     pub kind: EventKind,
 }
 
+/// A kind of event, with its data.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum EventKind {
     /// The vehicle was started.
     Boot {
         /// The seed of all randomness.
         seed: u64,
+        /// Steps per second, Hz.
         rate_hz: u32,
         /// The name of the airframe.
         airframe: String,
         /// `true` if other programs can influence the flight, which makes it not repeatable.
         live: bool,
     },
+    /// An event of the flight controller.
     Firmware(FirmwareEvent),
     /// A fault began or ended.
     Fault {
+        /// The kind of fault.
         kind: FaultKind,
+        /// `true` if it began.
         on: bool,
+        /// Its value.
         value: FaultValue,
     },
     /// The craft touched the ground.
@@ -42,7 +49,9 @@ pub enum EventKind {
         /// Greatest specific force since the contact, m/s².
         peak_mps2: f64,
     },
+    /// The craft crashed.
     Crash {
+        /// The cause.
         cause: CrashCause,
     },
     /// The full charge of the battery is drawn. A real pack is empty now, even if the simulated one still

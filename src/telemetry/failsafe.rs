@@ -43,6 +43,7 @@ pub enum RxLossPolicy {
     serde::Deserialize,
 )]
 pub enum FailsafeProcedure {
+    /// Stops the motors.
     #[strum(to_string = "DROP")]
     Drop,
     /// Level, hold the position, descend.

@@ -18,9 +18,11 @@ use std::fmt;
 )]
 #[strum(serialize_all = "kebab-case")]
 pub enum FaultKind {
+    /// No RC frame arrives.
     RxLoss,
     /// RC frames are lost at random.
     RxJitter,
+    /// The GPS has no solution.
     GpsLoss,
     /// The GPS position is shifted.
     GpsGlitch,
@@ -28,12 +30,15 @@ pub enum FaultKind {
     GpsFreeze,
     /// GPS solutions arrive late, without a word of it in them.
     GpsDelay,
+    /// All errors of the GPS are greater.
     GpsNoise,
+    /// The pressure drifts.
     BaroDrift,
     /// Single pressure samples are off.
     BaroSpike,
     /// The barometer repeats the same sample.
     BaroFreeze,
+    /// The magnetometer gives no data.
     MagOff,
     /// The magnetic heading is off.
     MagBias,
@@ -47,11 +52,17 @@ pub enum FaultKind {
     Motor,
     /// A motor's command is frozen.
     MotorStuck,
+    /// A propeller is out of balance.
     PropImbalance,
+    /// The frame vibrates.
     Vibration,
+    /// The battery is weak.
     Battery,
+    /// One gust.
     Gust,
+    /// Another mean wind.
     Wind,
+    /// The craft is pushed once.
     Push,
     /// The craft is moved instantly.
     Teleport,
@@ -92,10 +103,11 @@ pub enum FaultValue {
     },
     /// One battery cell fails short.
     CellOut,
+    /// An impulse.
     Push {
         /// Size, N·s.
         impulse: f64,
-        /// One of [`DIRECTIONS`].
+        /// `north`, `east`, `south`, `west`, `up` or `down`.
         #[serde(deserialize_with = "direction")]
         direction: Word,
     },

@@ -24,19 +24,29 @@ use super::nav::NavEvent;
 pub enum DisarmReason {
     /// An arming disable flag appeared.
     ArmingDisabled = 0,
+    /// A failsafe procedure.
     Failsafe = 1,
     /// The throttle was low for too long.
     ThrottleTimeout = 2,
+    /// Command of the sticks.
     Sticks = 3,
+    /// The ARM switch went off.
     Switch = 4,
+    /// The crash protection acted.
     CrashProtection = 5,
+    /// The take-off ran away.
     RunawayTakeoff = 6,
+    /// The GPS rescue ended.
     GpsRescue = 7,
+    /// A command over a serial link.
     SerialCommand = 8,
+    /// The autopilot detected the touchdown.
     Landing = 9,
+    /// The craft was turned over after a crash.
     Crashflip = 10,
     /// The reason is unknown because a remote flight controller does not report it.
     Unknown = 254,
+    /// A reason of the system, such as a restart.
     System = 255,
 }
 
@@ -45,13 +55,17 @@ pub enum DisarmReason {
 pub enum FirmwareEvent {
     /// The GPS got its first fix, or has a fix again.
     GpsFix {
+        /// The number of satellites.
         sats: u8,
     },
     /// The fix was lost.
     GpsLost {
+        /// The number of satellites.
         sats: u8,
     },
+    /// The craft was armed.
     Armed,
+    /// The craft was disarmed.
     Disarmed(DisarmReason),
     /// The set of active modes changed.
     Mode(ModeFlags),
@@ -65,11 +79,14 @@ pub enum FirmwareEvent {
         policy: RxLossPolicy,
         /// 1 at the loss, 2 when the procedure starts.
         stage: u8,
+        /// The procedure that flies at stage 2.
         procedure: FailsafeProcedure,
     },
+    /// An event of the navigator.
     Nav(NavEvent),
     /// The battery is low. This is only reported.
     Battery {
+        /// The level of the alarm.
         state: BatteryAlarm,
         /// The voltage per cell, V.
         cell_v: f64,

@@ -23,6 +23,7 @@ pub struct WaypointTruth {
     pub source: PlanSource,
     /// The index in that plan.
     pub wp: u8,
+    /// Type of the waypoint.
     pub kind: WaypointType,
     /// The horizontal miss, m. For a FLYOVER it is the closest approach; for a FLYBY at which the craft
     /// turned, that minus the turn radius; for a HOLD (from its pattern, if it has one) or TAKEOFF, the
@@ -43,6 +44,7 @@ pub struct WaypointTruth {
 pub struct ParkedTruth {
     /// The index of the waypoint.
     pub wp: u8,
+    /// Type of the waypoint.
     pub kind: WaypointType,
     /// The distance from its target, m; `None` while the pilot flies it or brings it back.
     pub distance_m: Option<f64>,

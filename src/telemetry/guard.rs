@@ -3,12 +3,16 @@
 /// The comparison of a guard.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::Display, serde::Serialize, serde::Deserialize)]
 pub enum GuardOp {
+    /// ≤
     #[strum(to_string = "≤")]
     AtMost,
+    /// ≥
     #[strum(to_string = "≥")]
     AtLeast,
+    /// <
     #[strum(to_string = "<")]
     Below,
+    /// >
     #[strum(to_string = ">")]
     Above,
 }
@@ -103,12 +107,15 @@ pub enum GuardUnit {
 /// A named condition of the state machine with all values that explain its result.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Guard {
+    /// The name.
     pub name: GuardName,
+    /// The value, in the unit of the guard.
     #[serde(deserialize_with = "or_nan")]
     pub value: f64,
     /// The limit in the same unit.
     #[serde(deserialize_with = "or_nan")]
     pub limit: f64,
+    /// The comparison of the value with the limit.
     pub op: GuardOp,
 }
 

@@ -18,6 +18,7 @@ pub enum InFlightCommand {
 /// The reason for a refusal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum InFlightRefusal {
+    /// The autopilot does not fly.
     NotFlying,
     /// A procedure of the receiver failsafe is running.
     Failsafe,
@@ -25,6 +26,7 @@ pub enum InFlightRefusal {
     Injected(PlanSource),
     /// The stored plan has no waypoint with this index to fly to.
     NoWaypoint {
+        /// Index of the waypoint.
         wp: u8,
         /// The number of waypoints in the plan.
         count: u8,

@@ -8,6 +8,7 @@ pub struct ModeFlags(u32);
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumIter, strum::IntoStaticStr)]
 #[repr(u8)]
 pub enum Mode {
+    /// The motors may turn.
     #[strum(to_string = "ARM")]
     Arm = 0,
     /// Self-levelling with an angle limit.
@@ -16,17 +17,22 @@ pub enum Mode {
     /// Self-levelling around the stick centre.
     #[strum(to_string = "HORIZON")]
     Horizon = 2,
+    /// Heading hold while the yaw stick is centred.
     #[strum(to_string = "MAG")]
     Mag = 3,
+    /// Altitude hold.
     #[strum(to_string = "ALTHOLD")]
     AltHold = 4,
     /// Controls relative to the heading at arming.
     #[strum(to_string = "HEADFREE")]
     HeadFree = 5,
+    /// Position hold.
     #[strum(to_string = "POS HOLD")]
     PosHold = 6,
+    /// A failsafe procedure flies.
     #[strum(to_string = "FAILSAFE")]
     Failsafe = 7,
+    /// Flies home and lands.
     #[strum(to_string = "GPS RESCUE")]
     GpsRescue = 8,
     /// The waypoint autopilot flies.
@@ -35,6 +41,7 @@ pub enum Mode {
 }
 
 impl ModeFlags {
+    /// The empty set.
     pub const NONE: Self = Self(0);
 
     /// Returns `true` if `mode` is in the set.

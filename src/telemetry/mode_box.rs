@@ -20,6 +20,7 @@ macro_rules! boxes {
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
         #[derive(strum::Display, strum::EnumIter, strum::FromRepr, strum::IntoStaticStr, serde::Serialize, serde::Deserialize)]
         #[repr(u8)]
+        #[allow(missing_docs, reason = "the variants have the names of Betaflight")]
         pub enum ModeBox {
             $($(#[$doc])* #[strum(to_string = $name)] $variant = $id,)*
         }

@@ -29,17 +29,22 @@ use crate::plan::{FlightPlan, WaypointType};
 #[strum(serialize_all = "UPPERCASE")]
 #[repr(u8)]
 pub enum NavState {
+    /// The autopilot does not fly.
     #[default]
     Idle = 0,
     /// On the way to the current waypoint.
     Approaching = 1,
     /// At the current waypoint. Lasts one update.
     Arrived = 2,
+    /// Holding the position of the waypoint.
     Holding = 3,
+    /// On a circle about the waypoint.
     Orbiting = 4,
     /// Flying a figure of eight.
     Figure8 = 5,
+    /// Descending to the touchdown.
     Landing = 6,
+    /// The plan is flown to its end.
     Complete = 7,
 }
 
@@ -64,6 +69,7 @@ pub enum PlanSource {
 )]
 #[strum(serialize_all = "UPPERCASE")]
 pub enum L1Mode {
+    /// No leg is followed.
     #[default]
     Off,
     /// The aim point moves along the leg.
@@ -95,6 +101,7 @@ pub enum FenceAction {
     /// Land on the spot.
     #[default]
     Land = 0,
+    /// Fly home and land.
     Rth = 1,
 }
 
@@ -105,18 +112,24 @@ pub enum NavEvent {
     Plan {
         /// The origin of the plan.
         source: PlanSource,
+        /// The plan.
         plan: Box<FlightPlan>,
     },
+    /// The state machine entered a state.
     State {
+        /// The old state.
         from: NavState,
+        /// The new state.
         to: NavState,
         /// The index of the current waypoint in the active plan.
         wp: u8,
         /// The type of the waypoint, if there is one.
         kind: Option<WaypointType>,
+        /// The cause of the transition.
         reason: TransitionReason,
         /// The guard that caused the transition, if there is one.
         guard: Option<Guard>,
+        /// The target position, degrees × 10⁷.
         target: LatLon,
         /// The target altitude above home, m.
         target_alt_m: f64,
@@ -140,6 +153,7 @@ pub enum NavEvent {
     },
     /// The craft cannot hold its position (`on`), or can again.
     CannotHold {
+        /// `true` if it cannot, `false` if it can again.
         on: bool,
         /// The deviation of the craft.
         deviation: CannotHold,

@@ -15,17 +15,23 @@ pub struct Dimension([i8; BASES]);
 impl Dimension {
     /// A count or a share.
     pub const NONE: Self = Self([0; BASES]);
+    /// Length, m.
     pub const LENGTH: Self = Self([1, 0, 0, 0, 0, 0]);
+    /// Time, s.
     pub const TIME: Self = Self([0, 1, 0, 0, 0, 0]);
     /// Metres per second.
     pub const SPEED: Self = Self([1, -1, 0, 0, 0, 0]);
     /// Metres per second squared.
     pub const ACCELERATION: Self = Self([1, -2, 0, 0, 0, 0]);
+    /// Angle, degrees.
     pub const ANGLE: Self = Self([0, 0, 1, 0, 0, 0]);
     /// Microseconds of an RC channel.
     pub const PULSE: Self = Self([0, 0, 0, 1, 0, 0]);
+    /// Voltage, V.
     pub const VOLTAGE: Self = Self([0, 0, 0, 0, 1, 0]);
+    /// Current, A.
     pub const CURRENT: Self = Self([0, 0, 0, 0, 0, 1]);
+    /// Charge, A·s.
     pub const CHARGE: Self = Self([0, 1, 0, 0, 0, 1]);
 
     /// Returns the dimension of a product, or of a quotient with `sign` −1.
@@ -39,6 +45,7 @@ impl Dimension {
 pub struct Unit {
     /// The written form.
     pub name: &'static str,
+    /// The dimension.
     pub dimension: Dimension,
     /// Size in SI units and degrees.
     pub scale: f64,

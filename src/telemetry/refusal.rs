@@ -24,7 +24,9 @@ pub enum Refusal {
     NotArmed,
     /// The throttle has not been raised since arming.
     Throttle,
+    /// There is no fix.
     NoFix,
+    /// There is no altitude.
     NoAltitude,
     /// The heading is unknown.
     NoHeading,

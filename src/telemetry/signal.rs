@@ -16,12 +16,17 @@ const COURSE_MPS: f64 = 0.3;
 /// The sources of the signals at one instant.
 #[derive(Debug, Clone, Copy)]
 pub struct Observed<'a> {
+    /// Simulated time since boot.
     pub time: SimTime,
     /// The time of the first engagement.
     pub engaged_at: Option<SimTime>,
+    /// True motion of the craft, if it is known.
     pub truth: Option<&'a TruthView>,
+    /// Estimate of the motion of the craft.
     pub estimate: &'a EstimateView,
+    /// Modes, arming, receiver and battery.
     pub craft: &'a CraftView,
+    /// State of the navigator, if it is known.
     pub nav: Option<&'a NavTelemetry>,
 }
 
@@ -82,10 +87,13 @@ macro_rules! signals {
 /// A signal with its name, its unit and its source.
 #[derive(Debug, Clone, Copy)]
 pub struct SignalInfo {
+    /// The signal.
     pub signal: Signal,
     /// The written name.
     pub name: &'static str,
+    /// The dimension of its unit.
     pub dimension: Dimension,
+    /// A description for people.
     pub help: &'static str,
     read: fn(&Observed<'_>) -> Option<f64>,
 }
@@ -202,6 +210,7 @@ signals! {
 pub struct SignalValues([f32; Signal::COUNT]);
 
 impl SignalValues {
+    /// No value is known.
     pub const UNKNOWN: Self = Self([f32::NAN; Signal::COUNT]);
 
     /// Returns the value of a signal, NaN if it is unknown.
@@ -209,6 +218,7 @@ impl SignalValues {
         f64::from(self.0[signal as usize])
     }
 
+    /// Sets the value of a signal, in its unit.
     pub fn set(&mut self, signal: Signal, value: f64) {
         self.0[signal as usize] = value as f32;
     }

@@ -15,6 +15,7 @@ use crate::telemetry::{
     switch,
 };
 
+/// The vehicle at an instant, as displays show it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Snapshot {
     /// Simulated time since boot.
@@ -87,6 +88,7 @@ pub struct TruthView {
     pub battery: Option<BatteryView>,
     /// `true` on the ground; with an external simulator: low and slow.
     pub on_ground: bool,
+    /// `true` after a crash.
     pub crashed: bool,
     /// `true` once the simulation has left the range in which its numbers are valid.
     pub diverged: bool,
@@ -107,6 +109,7 @@ mod degrees9 {
 }
 
 impl TruthView {
+    /// Returns the true horizontal speed over ground, m/s.
     pub fn ground_speed_mps(&self) -> f64 {
         math::hypot(self.vn, self.ve)
     }
@@ -156,7 +159,9 @@ pub struct EstimateView {
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(default)]
 pub struct CraftView {
+    /// `true` if the craft is armed.
     pub armed: Option<bool>,
+    /// The active modes.
     pub modes: Option<ModeFlags>,
     /// The arming disable flags that are set; empty while armed.
     pub arming_blocked_by: Option<ArmingFlags>,
@@ -164,6 +169,7 @@ pub struct CraftView {
     pub gps_fix: Option<bool>,
     /// The last GPS data, if any; outdated once the fix is lost.
     pub gps: Option<GpsView>,
+    /// The number of satellites.
     pub sats: Option<u8>,
     /// Horizontal dilution of precision, if reported.
     pub hdop: Option<f64>,
@@ -204,6 +210,7 @@ pub struct CraftView {
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(default)]
 pub struct GpsView {
+    /// The position, degrees × 10⁷.
     pub position: LatLon,
     /// Altitude above mean sea level, m.
     pub alt_amsl_m: f64,
@@ -365,11 +372,15 @@ pub struct WorldView {
     pub wind: Option<WindView>,
     /// Gust amplitude, m/s.
     pub gust_mps: f64,
+    /// Level of turbulence.
     pub turbulence: Turbulence,
+    /// `true` if the sensors have errors.
     pub noise: bool,
+    /// The active faults.
     pub faults: Vec<FaultView>,
 }
 
+/// The mean wind.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct WindView {
     /// Speed, m/s.
@@ -381,7 +392,9 @@ pub struct WindView {
 /// An active fault.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct FaultView {
+    /// The kind.
     pub kind: FaultKind,
+    /// Its value.
     pub value: FaultValue,
     /// The remaining time, s; `None` = until the end of the flight.
     pub left_s: Option<f64>,

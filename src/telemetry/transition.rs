@@ -34,6 +34,7 @@ macro_rules! reasons {
 }
 
 reasons! {
+    /// The mission starts at its first waypoint.
     Reset "reset";
     /// The mission continues where it was interrupted.
     Resume "resume";
@@ -47,7 +48,9 @@ reasons! {
     ReturnHome "return to home";
     /// The switch went off.
     Disengage "disengage";
+    /// The craft was disarmed.
     Disarm "disarm";
+    /// The craft left the fence.
     Fence "fence";
     /// The climb before the first leg is done.
     Climb "climb";
@@ -63,14 +66,17 @@ reasons! {
     Missed "missed";
     /// Continues with the next waypoint, or completes the plan.
     Advance "advance";
+    /// The hold at the waypoint begins.
     Hold "hold";
     /// The wait of a LAND or TAKEOFF begins.
     Loiter "loiter";
+    /// The descent of a LAND begins.
     Land "land";
     /// The hold pattern begins.
     Pattern "pattern";
     /// The time of the hold has elapsed.
     HoldTime "hold time";
+    /// The touchdown was detected.
     Touchdown "touchdown";
 }
 

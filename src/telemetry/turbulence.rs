@@ -19,9 +19,13 @@
 )]
 #[strum(serialize_all = "lowercase")]
 pub enum Turbulence {
+    /// No turbulence.
     #[default]
     None,
+    /// That of a wind of 15 kt at 20 ft.
     Light,
+    /// That of a wind of 30 kt at 20 ft.
     Moderate,
+    /// That of a wind of 45 kt at 20 ft.
     Severe,
 }

@@ -18,7 +18,9 @@ pub enum Samples {
 /// A grid of samples with its place.
 #[derive(Clone, PartialEq)]
 pub struct Grid {
+    /// The number of rows, from north to south.
     pub rows: usize,
+    /// The number of columns, from west to east.
     pub cols: usize,
     /// Latitude of the first row, degrees.
     pub north_deg: f64,

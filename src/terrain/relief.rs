@@ -24,10 +24,12 @@ impl Relief {
         Some(Self { tiles, home, home_m })
     }
 
+    /// Returns the place whose ground has height zero.
     pub fn home(&self) -> LatLon {
         self.home
     }
 
+    /// Returns the tiles.
     pub fn tiles(&self) -> &Tiles {
         &self.tiles
     }

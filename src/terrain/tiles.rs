@@ -24,14 +24,17 @@ pub struct Spot {
 }
 
 impl Tiles {
+    /// Adds the tile of a square, or replaces it.
     pub fn insert(&mut self, square: Square, grid: Grid) {
         self.grids.insert(square, Arc::new(grid));
     }
 
+    /// Returns `true` if there is no tile.
     pub fn is_empty(&self) -> bool {
         self.grids.is_empty()
     }
 
+    /// Returns `true` if there is a tile of this square.
     pub fn has(&self, square: Square) -> bool {
         self.grids.contains_key(&square)
     }

@@ -73,13 +73,16 @@ pub enum CliSession {
 /// A CLI line and its session.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CliLine {
+    /// The session that runs it.
     pub session: CliSession,
+    /// The line, without its end.
     pub line: String,
 }
 
 /// A plan and the settings that are stored before it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlanUpload {
+    /// The plan.
     pub plan: FlightPlan,
     /// Settings as `name = value`.
     pub settings: Vec<String>,
@@ -88,8 +91,11 @@ pub struct PlanUpload {
 /// An MSP message with the data for its answer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Message {
+    /// The code of the message.
     pub code: u16,
+    /// The payload of the request.
     pub payload: Vec<u8>,
+    /// Time of day for messages that ask for it.
     pub clock: Option<UtcTime>,
 }
 
@@ -109,6 +115,7 @@ impl From<Message> for VehicleCommand {
 /// The answer to a command.
 #[derive(Debug)]
 pub enum Reply {
+    /// Carried out. There is nothing to report.
     Done,
     /// Nothing has changed.
     Refused(VehicleRefusal),
@@ -123,10 +130,13 @@ pub enum Reply {
 /// The reason why a vehicle does not carry out a command.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum VehicleRefusal {
+    /// The world refuses a value.
     #[error("{0}")]
     World(WorldError),
+    /// The craft cannot fly home.
     #[error("{}", .0.sentence())]
     ReturnHome(Refusal),
+    /// The navigator refuses the command.
     #[error("{}", .0.sentence())]
     InFlight(InFlightRefusal),
     /// No channel switches the mode that the scripted pilot needs.
@@ -135,6 +145,7 @@ pub enum VehicleRefusal {
     /// The lines before this one keep their effect.
     #[error(transparent)]
     Upload(RefusedLine),
+    /// A remote flight controller gets a plan as lines.
     #[error("a remote flight controller accepts a plan only in a session")]
     UploadToRemote,
 }

@@ -29,6 +29,7 @@ pub struct Ticket(u64);
 /// The answer of the flight controller.
 #[derive(Debug)]
 pub enum Answer<T> {
+    /// The answer.
     Now(T),
     /// The answer comes later with this ticket from [`FlightController::take_answer`].
     Later(Ticket),
@@ -211,6 +212,7 @@ impl FlightController {
     }
 
     /// Sets the facts about the stored configuration that the commands of an embedded controller report.
+    #[doc(hidden)]
     pub fn set_storage_facts(&mut self, facts: StorageFacts) {
         if let Self::Embedded(embedded) = self {
             embedded.firmware.set_storage_facts(facts);
@@ -218,6 +220,7 @@ impl FlightController {
     }
 
     /// Sets the facts about the flash memory for logs that an embedded controller reports.
+    #[doc(hidden)]
     pub fn set_flash_facts(&mut self, facts: FlashFacts) {
         if let Self::Embedded(embedded) = self {
             embedded.firmware.set_flash_facts(facts);
@@ -226,6 +229,7 @@ impl FlightController {
 
     /// Sets the flag that an earlier instant is shown instead of the present one, for the commands of an embedded
     /// controller.
+    #[doc(hidden)]
     pub fn set_rewound(&mut self, rewound: bool) {
         if let Self::Embedded(embedded) = self {
             embedded.firmware.set_rewound(rewound);

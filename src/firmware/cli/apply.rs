@@ -71,6 +71,7 @@ impl ApplyReport {
 }
 
 /// Runs the lines in order. Passes each line that is run to `shown` with its reply.
+#[doc(hidden)]
 pub fn apply_lines<'l>(
     lines: impl IntoIterator<Item = &'l str>,
     interpreter: &mut Interpreter,
@@ -90,6 +91,7 @@ pub fn apply_lines<'l>(
 
 /// Runs a provisioning file up to its `save` or its end, and passes the text of the session to `shown`. The
 /// configuration is then ready to be stored, unless a line in a batch was refused.
+#[doc(hidden)]
 pub fn provision(
     file: &str,
     interpreter: &mut Interpreter,

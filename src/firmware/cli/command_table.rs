@@ -3,6 +3,7 @@
 use super::session::Session;
 use super::{bench, craft, dump, get_set, leave, modes, names, profiles, receiver, serial, status, waypoint};
 
+/// A command of the command line, with its help.
 #[derive(Debug, Clone, Copy)]
 pub struct Command {
     /// The name, in lower case.

@@ -32,6 +32,7 @@ pub(super) enum Batch {
 
 /// The interpreter of one session.
 #[derive(Debug, Clone, PartialEq)]
+#[doc(hidden)]
 pub struct Interpreter {
     pub(super) mode: CliMode,
     pub(super) batch: Batch,

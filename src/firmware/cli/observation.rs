@@ -12,6 +12,7 @@ const RX_IDLE_HZ: u32 = 20;
 
 /// The facts about the running firmware for `status`, `env`, `tasks`, `version` and `waypoint status`.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[doc(hidden)]
 pub struct CliFacts {
     pub build: BuildInfo,
     /// `true` while the craft is armed. Many commands are refused then.
@@ -117,12 +118,15 @@ fn tasks(firmware: &Firmware, rx_hz: u32) -> Vec<TaskFacts> {
 /// The version and the build, as announced by `version`, `env` and MSP.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct BuildInfo {
+    /// The version of the program, such as `1.2.3`.
     pub version: String,
+    /// The version of the MSP interface, such as `1.48`.
     pub api: String,
     /// The build date, `Mmm dd yyyy`.
     pub date: String,
     /// The build time, `hh:mm:ss`.
     pub time: String,
+    /// The revision of the source.
     pub revision: String,
 }
 
@@ -140,6 +144,7 @@ impl Default for BuildInfo {
 
 /// The stored configuration as `status` shows it.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[doc(hidden)]
 pub struct StorageFacts {
     /// The size of the stored image, bytes.
     pub used_bytes: usize,
@@ -159,6 +164,7 @@ impl Default for StorageFacts {
 
 /// The GPS as `status` shows it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[doc(hidden)]
 pub enum GpsFacts {
     /// The feature is off.
     NotEnabled,
@@ -170,6 +176,7 @@ pub enum GpsFacts {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[doc(hidden)]
 pub struct GpsSolutionFacts {
     pub sats: u8,
     /// Horizontal dilution of precision; 0 = not reported.
@@ -181,6 +188,7 @@ pub struct GpsSolutionFacts {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[doc(hidden)]
 pub struct BatteryFacts {
     /// Voltage, V.
     pub voltage_v: f64,
@@ -196,6 +204,7 @@ impl Default for BatteryFacts {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[doc(hidden)]
 pub struct LoopFacts {
     /// The processor load, percent.
     pub cpu_load_percent: u32,
@@ -210,6 +219,7 @@ pub struct LoopFacts {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[doc(hidden)]
 pub struct TaskFacts {
     pub id: u8,
     pub name: &'static str,
@@ -225,6 +235,7 @@ pub struct TaskFacts {
 
 /// The RC smoothing filters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[doc(hidden)]
 pub struct SmoothingFacts {
     /// The measured frame rate, Hz; `None` without a signal.
     pub rx_hz: Option<u32>,
@@ -235,6 +246,7 @@ pub struct SmoothingFacts {
 }
 
 #[derive(Debug, Clone, PartialEq, Default)]
+#[doc(hidden)]
 pub struct NavFacts {
     pub telemetry: NavTelemetry,
     /// The plan being flown, if any.

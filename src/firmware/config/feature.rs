@@ -18,6 +18,7 @@ use strum::IntoEnumIterator;
 )]
 #[strum(serialize_all = "SCREAMING_SNAKE_CASE")]
 #[repr(u8)]
+#[allow(missing_docs, reason = "the variants have the names of Betaflight")]
 pub enum Feature {
     RxPpm = 0,
     /// The receiver is the RC packet on UDP.

@@ -8,6 +8,7 @@ const MAX_CHARACTERS: usize = 1 << 17;
 /// The cost of a line in addition to its own characters.
 const LINE_COST: usize = 64;
 
+/// A line that is kept but has no effect here.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct KeptLine {
     /// The section that the line came in.

@@ -24,6 +24,7 @@ pub const MAX_MIX_ROWS: usize = 8;
 )]
 #[strum(serialize_all = "SCREAMING_SNAKE_CASE")]
 #[repr(u8)]
+#[allow(missing_docs, reason = "the variants have the names of Betaflight")]
 pub enum MixerKind {
     Tri = 1,
     #[strum(to_string = "QUADP")]
@@ -109,5 +110,6 @@ pub struct MixRow {
     pub roll: f64,
     /// The share of pitch, nose down positive.
     pub pitch_down: f64,
+    /// The share of yaw.
     pub yaw: f64,
 }

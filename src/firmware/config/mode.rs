@@ -11,6 +11,7 @@ const HIGHEST_US: u16 = 2100;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, strum::FromRepr)]
 #[repr(u8)]
 pub enum ModeLogic {
+    /// The mode is active if this condition or another one of the mode holds.
     #[default]
     Or = 0,
     /// All of these conditions must hold.
@@ -41,6 +42,7 @@ impl Default for ModeCondition {
 }
 
 impl ModeCondition {
+    /// The highest auxiliary channel, counted from 0.
     pub const MAX_AUX: u8 = 13;
 
     /// Limits a pulse to the range of conditions and rounds it down to their step.

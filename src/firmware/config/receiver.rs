@@ -71,6 +71,7 @@ pub enum RxFailMode {
     Auto = 0,
     /// The last value, for ever.
     Hold = 1,
+    /// The channel takes a fixed value.
     Set = 2,
 }
 
@@ -88,6 +89,7 @@ impl RxFailMode {
 /// The loss rule of one channel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct RxFail {
+    /// The behaviour of the channel while the link is lost.
     pub mode: RxFailMode,
     /// The value of mode [`RxFailMode::Set`], µs; 1500 otherwise.
     pub value_us: u16,

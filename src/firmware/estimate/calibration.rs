@@ -97,6 +97,7 @@ impl AccCalibration {
 
 /// The result of a magnetometer calibration in which the craft was not turned about all its axes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[doc(hidden)]
 pub struct NotTurned;
 
 /// A running magnetometer calibration. While the craft is turned about all axes, the field draws a part of a sphere

@@ -48,6 +48,7 @@ const FROZEN_S: f64 = 1.0;
 
 /// Estimates attitude, position and altitude from sensor data.
 #[derive(Debug, Clone)]
+#[doc(hidden)]
 pub struct Estimator {
     options: EstimatorOptions,
     tuning: EstimatorTuning,

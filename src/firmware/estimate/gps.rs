@@ -47,6 +47,7 @@ pub struct GpsStatus {
     pub hdop: f64,
     /// The newest solution with a fix.
     pub solution: Option<GpsSample>,
+    /// The number of messages so far.
     pub messages: u32,
     /// The time since the newest message, s.
     pub age_s: f64,

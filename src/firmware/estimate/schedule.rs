@@ -7,6 +7,7 @@ const NAVIGATION_US: u64 = 10_000;
 
 /// The slower loops that run in this step. All parts follow these flags, so they stay in phase.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[doc(hidden)]
 pub struct DueTasks {
     /// Roll and pitch are fresh, so the angle loop runs (500 Hz by default; each step if that does not divide the
     /// rate).

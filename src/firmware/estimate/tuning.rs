@@ -18,6 +18,7 @@ pub enum AttitudeSource {
 
 /// The options of the estimator that are not settings of the craft.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[doc(hidden)]
 pub struct EstimatorOptions {
     /// The source of the attitude.
     pub attitude: AttitudeSource,
@@ -42,6 +43,7 @@ impl Default for EstimatorOptions {
 
 /// The settings of the estimator in its own units.
 #[derive(Debug, Clone, PartialEq)]
+#[doc(hidden)]
 pub struct EstimatorTuning {
     /// The gain of the correction towards the vertical, rad/s per unit of the sine of the error.
     pub kp: f64,

@@ -31,6 +31,7 @@ const VALID_S: f64 = 2.0;
 
 /// The sources of the altitude.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[doc(hidden)]
 pub enum AltitudeSource {
     /// The barometer, and the GPS as far as it helps.
     #[default]

@@ -39,6 +39,7 @@ pub(super) fn read(call: &mut Call<'_>) -> Result<(), Refused> {
 }
 
 /// Returns the reply to a request for these bytes at an address.
+#[doc(hidden)]
 pub fn flash_reply(address: u32, bytes: &[u8]) -> Vec<u8> {
     let mut reply = Writer::default();
     reply.u32(address);

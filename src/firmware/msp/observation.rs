@@ -14,6 +14,7 @@ use crate::telemetry::{ArmingFlags, ModeFlags};
 
 /// Figures of the running firmware.
 #[derive(Debug, Clone, PartialEq)]
+#[doc(hidden)]
 pub struct MspFacts {
     pub build: BuildInfo,
     pub armed: bool,

@@ -51,6 +51,7 @@ impl Firmware {
     }
 
     /// Returns the facts about the present instant for messages.
+    #[doc(hidden)]
     pub fn msp_facts(&self, clock: Option<UtcTime>) -> MspFacts {
         MspFacts::observe(self, clock)
     }

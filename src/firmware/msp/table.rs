@@ -36,6 +36,7 @@ impl Handler {
 
 /// A message that the server answers.
 #[derive(Debug, Clone, Copy)]
+#[doc(hidden)]
 pub struct Message {
     pub kind: MessageKind,
     pub(super) handler: Handler,
@@ -72,6 +73,7 @@ pub(super) fn find(code: u16) -> Option<&'static Message> {
 }
 
 /// All messages in the order of their codes.
+#[doc(hidden)]
 pub static MESSAGES: &[Message] = &[
     answer(code::API_VERSION, identity::api_version),
     answer(code::FC_VARIANT, identity::fc_variant),

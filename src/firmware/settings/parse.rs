@@ -13,7 +13,10 @@ pub enum AssignError {
     InvalidValue,
     /// The text has more characters than the setting holds.
     #[error("the text is longer than {max} characters")]
-    TextTooLong { max: usize },
+    TextTooLong {
+        /// The most characters.
+        max: usize,
+    },
 }
 
 /// Parses `text` as a value of `setting`.

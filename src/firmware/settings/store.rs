@@ -12,6 +12,7 @@ pub enum Value {
     Number(i64),
     /// The elements of an array.
     Array(Vec<i64>),
+    /// A text.
     Text(String),
 }
 

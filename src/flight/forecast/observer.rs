@@ -26,6 +26,7 @@ pub struct WorstXte {
 /// The time that a waypoint took.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LegTime {
+    /// Index of the waypoint in the plan.
     pub wp: u8,
     /// From the start of its leg to the start of the next, s.
     pub time_s: f64,

@@ -42,7 +42,9 @@ pub(super) struct Ended {
 /// A flight flown ahead of time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Forecast {
+    /// What was flown ahead of time.
     pub kind: ForecastKind,
+    /// The end of the flight.
     pub end: ForecastEnd,
     /// Reason, as a sentence without its full stop.
     pub reason: String,

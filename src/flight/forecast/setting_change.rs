@@ -37,7 +37,9 @@ impl Unchanged {
 /// A plan with the setting lines that its upload sets, without `set `.
 #[derive(Debug, Clone, Copy)]
 pub struct PlanWithSettings<'a> {
+    /// The plan.
     pub plan: &'a FlightPlan,
+    /// The settings, as `name = value`.
     pub settings: &'a [String],
 }
 

@@ -17,6 +17,7 @@ const NOT_SHOWN: &str = "(not shown: this is no command)";
 pub struct BootLines {
     /// File or option, for messages.
     pub source: String,
+    /// The lines.
     pub text: String,
 }
 

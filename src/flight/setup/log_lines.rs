@@ -39,6 +39,7 @@ pub fn settings_of_log<'a>(lines: impl Iterator<Item = (&'a str, &'a str)>) -> V
 /// A setting in the header of a log.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LoggedSetting {
+    /// The name of the setting.
     pub name: String,
     /// The value; a word if this firmware has one for it.
     pub value: String,

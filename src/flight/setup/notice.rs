@@ -22,6 +22,7 @@ pub enum SetupNotice {
     PlanFarFromHome {
         /// The first waypoint with a place.
         first: LatLon,
+        /// Home of the plan.
         home: LatLon,
         /// Distance between the two, m.
         distance_m: f64,

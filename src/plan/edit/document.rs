@@ -14,6 +14,7 @@ pub struct PlanDocument {
     pub home: Option<HomePosition>,
     /// The settings for the plan, as `name = value`.
     pub settings: Vec<String>,
+    /// The plan as it is now.
     pub plan: FlightPlan,
 }
 

@@ -21,6 +21,7 @@ impl Revision {
         &self.label
     }
 
+    /// Returns the change.
     pub fn change(&self) -> &Change {
         &self.change
     }

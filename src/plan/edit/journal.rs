@@ -19,8 +19,11 @@ pub enum JournalLine {
         /// `true` if the file has the document.
         saved: bool,
     },
+    /// An edit of the plan.
     Edited {
+        /// The edit, for people.
         label: String,
+        /// The change.
         change: Box<Change>,
     },
     /// An undo, a redo or a jump to this revision.

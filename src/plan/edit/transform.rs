@@ -10,9 +10,11 @@ use crate::plan::{Altitude, FlightPlan, LegSpeed, SpeedUse, Waypoint};
 /// An edit of each selected waypoint that has such a value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Transform {
+    /// Sets the altitude.
     Altitude(Altitude),
     /// A change of altitude, m.
     AltitudeBy(f64),
+    /// Sets the speed of the leg.
     Speed(LegSpeed),
     /// A move, metres north and east.
     Move(Vector2<f64>),

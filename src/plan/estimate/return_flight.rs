@@ -15,6 +15,7 @@ pub enum ReturnMode {
 /// The altitude of the return flight.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ReturnFlight {
+    /// The choice of the altitude.
     pub mode: ReturnMode,
     /// `gps_rescue_initial_climb`, m.
     pub climb_m: f64,

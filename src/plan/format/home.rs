@@ -11,6 +11,7 @@ use crate::geo::LatLon;
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub struct HomePosition {
+    /// The place.
     pub position: LatLon,
     /// Altitude above mean sea level, m, if given.
     pub amsl_m: Option<f64>,
@@ -24,7 +25,12 @@ pub enum HomeError {
     Shape(String),
     /// A value is wrong.
     #[error("{message}; {hint}")]
-    Value { message: String, hint: String },
+    Value {
+        /// The problem, as a sentence without its full stop.
+        message: String,
+        /// What to write instead.
+        hint: String,
+    },
 }
 
 /// The lowest and the highest home above mean sea level, m: the troposphere range of the atmosphere model.

@@ -25,13 +25,16 @@ pub enum Format {
     /// QGroundControl's table.
     #[strum(serialize = "qgc-csv")]
     QgcCsv,
+    /// KML, as Google Earth writes it.
     #[strum(serialize = "kml")]
     Kml,
     /// KML in a ZIP archive.
     #[strum(serialize = "kmz")]
     Kmz,
+    /// GPX, as hand-held receivers and maps write it.
     #[strum(serialize = "gpx")]
     Gpx,
+    /// GeoJSON.
     #[strum(serialize = "geojson")]
     GeoJson,
     /// Missions of INAV as XML.

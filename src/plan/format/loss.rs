@@ -36,9 +36,15 @@ pub enum Severity {
 #[serde(untagged)]
 pub enum Place {
     /// A line, from 1.
-    Line { line: usize },
+    Line {
+        /// The number of the line, from 1.
+        line: usize,
+    },
     /// A JSON pointer, such as `/mission/items/3`.
-    Pointer { pointer: String },
+    Pointer {
+        /// The JSON pointer.
+        pointer: String,
+    },
 }
 
 impl fmt::Display for Place {
@@ -53,6 +59,7 @@ impl fmt::Display for Place {
 /// One difference. `Display` is its line in the report: `changed  WP 3 (item 5, line 41) altitude: 0 m → 50 m: WHY`.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct Finding {
+    /// How much it matters.
     pub severity: Severity,
     /// The number of the waypoint of the plan, from 0; `None` = the whole file.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -60,6 +67,7 @@ pub struct Finding {
     /// The number of the item in the file, as its format counts.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub item: Option<usize>,
+    /// The place in the file, if there is one.
     #[serde(flatten)]
     pub place: Option<Place>,
     /// The part that differs, such as `altitude`.
@@ -144,6 +152,7 @@ pub struct LossReport {
     pub items: usize,
     /// The number of waypoints of the plan.
     pub waypoints: usize,
+    /// The differences, in the order of the file.
     pub findings: Vec<Finding>,
 }
 

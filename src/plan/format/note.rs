@@ -16,6 +16,7 @@ pub struct Note {
 /// Kinds of skipped lines.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub enum NoteKind {
+    /// A comment.
     Comment,
     /// `set …` lines: a text plan carries waypoints only.
     Setting,

@@ -23,6 +23,7 @@ pub struct PlanError {
     pub column: usize,
     /// The number of wrong characters that `source` shows, at least 1.
     pub width: usize,
+    /// The problem, as a sentence without its full stop.
     pub message: String,
     /// The allowed values or a suggestion; may be empty.
     pub hint: String,

@@ -3,7 +3,9 @@
 /// A part of a setting's line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SettingPart {
+    /// The name of the setting.
     Name,
+    /// The value of the setting.
     Value,
 }
 
@@ -13,6 +15,7 @@ pub enum SettingPart {
 pub struct SettingFault {
     /// The part with the problem.
     pub part: SettingPart,
+    /// The problem, as a sentence without its full stop.
     pub message: String,
     /// The allowed values; may be empty.
     pub hint: String,

@@ -51,6 +51,7 @@ pub struct Raise {
 /// A change before the leg.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Before {
+    /// No other change is needed.
     Nothing,
     /// The waypoint before is raised, too.
     Waypoint(usize),
@@ -63,6 +64,7 @@ pub enum Before {
 pub struct LowClearance {
     /// The waypoint to which the leg leads, or at which the way home begins.
     pub index: usize,
+    /// The line that is too low.
     pub way: Way,
     /// The place of the lowest clearance.
     pub place: LatLon,
@@ -72,6 +74,7 @@ pub struct LowClearance {
     pub clearance_m: f64,
     /// The clearance that was asked for, m.
     pub margin_m: f64,
+    /// The change of the plan that raises it.
     pub raise: Raise,
 }
 

@@ -36,6 +36,7 @@ pub enum Remedy {
 /// A leg at whose end the craft is not at the altitude of the waypoint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SteepLeg {
+    /// Index of the waypoint to which the leg leads.
     pub index: usize,
     /// Altitude of the leg above home, m.
     pub alt_m: f64,

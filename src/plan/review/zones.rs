@@ -18,6 +18,7 @@ const RUN: usize = 32;
 /// The part of a plan that is where a zone forbids it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ZonePart {
+    /// The waypoint itself.
     Waypoint,
     /// The leg to the waypoint, but neither of its ends.
     Leg,

@@ -9,7 +9,9 @@ use crate::text::did_you_mean;
 pub struct SyntaxError {
     /// The range in bytes of the text.
     pub span: Range<usize>,
+    /// The problem, as a part of a sentence.
     pub message: String,
+    /// What to write instead; may be empty.
     pub hint: String,
 }
 
@@ -48,6 +50,7 @@ impl<'a> Cursor<'a> {
         self.at
     }
 
+    /// Returns the text that is not read yet.
     pub fn rest(&self) -> &'a str {
         &self.text[self.at..]
     }

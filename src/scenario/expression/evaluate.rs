@@ -15,11 +15,13 @@ const RATE_US: u64 = 100_000;
 /// A value, its bounds, and its distance from them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Verdict {
+    /// The number, in SI units and degrees.
     pub value: f64,
     /// The smallest allowed value.
     pub low: f64,
     /// The greatest allowed value.
     pub high: f64,
+    /// The dimension of the number.
     pub dimension: Dimension,
     /// `true` if the bounds themselves are not allowed.
     pub strict: bool,
@@ -83,6 +85,7 @@ impl<'a> Evaluator<'a> {
         Self { in_flight: Some(lookups), ..Self::new(trace, names) }
     }
 
+    /// Returns the record of the flight.
     pub fn trace(&self) -> &'a Trace {
         self.trace
     }

@@ -6,8 +6,10 @@ use crate::scenario::trace::Trace;
 use crate::signals::SimTime;
 use crate::telemetry::quantity::{Dimension, shown, shown_apart};
 
+/// The judgement of an expectation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Judgement {
+    /// The name of the expectation, or else its text.
     pub label: String,
     /// Line in the scenario's file, from 1.
     pub line: usize,
@@ -20,8 +22,11 @@ pub struct Judgement {
 pub enum Outcome {
     /// Met; with the tightest number if there is one.
     Met(Option<Margin>),
+    /// Not met.
     Failed {
+        /// The reason as a sentence.
         sentence: String,
+        /// The time at which it failed, if there is one.
         at: Option<SimTime>,
         /// The guard that came closest to firing at that time.
         guard: Option<String>,
@@ -37,6 +42,7 @@ pub enum Outcome {
 pub struct Margin {
     /// The number and its bounds.
     pub verdict: Verdict,
+    /// The time at which the number is closest to its bound.
     pub time: SimTime,
 }
 

@@ -15,9 +15,11 @@ use super::WorldCommand;
 /// One word that a command can begin with: name, form of its value, meaning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CommandWord {
+    /// The word.
     pub name: &'static str,
     /// Form of the value after the `=`; empty if there is none.
     pub value: &'static str,
+    /// A description for people.
     pub help: &'static str,
 }
 

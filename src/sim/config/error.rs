@@ -52,8 +52,11 @@ pub enum WorldError {
     OutOfRange {
         /// Meaning of the number.
         name: &'static str,
+        /// The value.
         value: f64,
+        /// The smallest value that is allowed.
         min: f64,
+        /// The greatest value that is allowed.
         max: f64,
     },
 }

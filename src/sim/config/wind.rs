@@ -17,6 +17,7 @@ pub struct Wind {
 }
 
 impl Wind {
+    /// No wind.
     pub const CALM: Self = Self { speed_mps: 0.0, from_deg: 0.0 };
 
     /// The maximum wind, m/s.

@@ -50,6 +50,7 @@ pub(crate) struct GpsFaults {
 /// The faults of the link to an external simulator.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LinkFaults {
+    /// `true` while nothing arrives.
     pub stall: bool,
     /// Fraction of packets that are lost.
     pub loss: f64,

@@ -91,6 +91,7 @@ impl Craft {
 /// The loads at the present instant, and what the next step needs of it.
 #[derive(Debug, Clone, Copy)]
 pub struct Present {
+    /// Forces and torques on the craft.
     pub loads: Loads,
     /// Body → world.
     pub(super) rotation: Matrix3<f64>,

@@ -21,8 +21,11 @@ pub struct WorldStatus {
     pub gust_mps: f64,
     /// `true` while a gust is active.
     pub gust_blowing: bool,
+    /// Level of turbulence.
     pub turbulence: Turbulence,
+    /// Sensor errors on or off.
     pub noise: Noise,
+    /// Rare switches.
     pub switches: Switches,
     /// Number of motor commands refused because they were not numbers.
     pub refused_commands: u64,
@@ -63,6 +66,7 @@ impl World {
         self.clock.time
     }
 
+    /// Returns time, seed and faults.
     pub fn clock(&self) -> &Clock {
         &self.clock
     }
@@ -72,6 +76,7 @@ impl World {
         &mut self.clock
     }
 
+    /// Returns the airframe.
     pub fn airframe(&self) -> &Airframe {
         &self.airframe
     }

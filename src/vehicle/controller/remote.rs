@@ -43,9 +43,12 @@ pub enum RemoteRequest {
     LeavePrompt,
     /// An MSP message; answered by [`LateAnswer::Msp`].
     Msp {
+        /// The code of the message.
         code: u16,
+        /// The payload of the request.
         payload: Vec<u8>,
     },
+    /// Restart on its own stored configuration.
     Restart,
     /// Fly home and land.
     ReturnHome,
@@ -60,7 +63,9 @@ pub struct RemoteTelemetry {
     pub estimate: EstimateView,
     /// Modes, arming, receiver and battery.
     pub craft: CraftView,
+    /// State of the navigator.
     pub nav: Option<NavTelemetry>,
+    /// Settings that displays and checks need.
     pub settings: Option<SettingsView>,
     /// Stored plan, with altitudes above home.
     pub stored_plan: Option<FlightPlan>,
@@ -72,6 +77,7 @@ pub struct RemoteTelemetry {
     pub takes_rc: bool,
 }
 
+/// The mailbox of a remote flight controller: sensor frames and requests to it, telemetry and answers from it.
 #[derive(Debug, Clone)]
 pub struct RemoteController {
     frames: VecDeque<FrameOut>,
@@ -133,6 +139,7 @@ impl RemoteController {
         self.telemetry = telemetry;
     }
 
+    /// Delivers an event.
     pub fn deliver_event(&mut self, event: FirmwareEvent) {
         self.events.push_back(event);
     }

@@ -136,8 +136,7 @@ fn circles_are_found_through_passed_on_items_and_local_names() {
     let root = ("ui.rs", "mod a; mod b; mod c; pub use c::C;");
     let other = ("ui/b.rs", "use super::C; pub(in crate::ui) struct B;");
     assert_eq!(
-        circle(&[root, other, ("ui/a.rs", "use super::b::B;"), ("ui/c.rs", "use crate::ui::a::A;")])
-            .len(),
+        circle(&[root, other, ("ui/a.rs", "use super::b::B;"), ("ui/c.rs", "use crate::ui::a::A;")]).len(),
         3
     );
     assert_eq!(circle(&[root, other, ("ui/a.rs", "use super::b::B;"), ("ui/c.rs", "")]), [""; 0]);

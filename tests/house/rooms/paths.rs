@@ -261,14 +261,8 @@ mod tests {
 
     #[test]
     fn paths_in_groups_in_code_and_by_super_are_found() {
-        assert_eq!(
-            used("a/b.rs", "use crate::{geo::{LatLon, x}, sim, plan::Plan};"),
-            ["geo", "plan", "sim"]
-        );
-        assert_eq!(
-            used("a.rs", "fn f() -> crate::geo::LatLon { super::link::open() }"),
-            ["geo", "link"]
-        );
+        assert_eq!(used("a/b.rs", "use crate::{geo::{LatLon, x}, sim, plan::Plan};"), ["geo", "plan", "sim"]);
+        assert_eq!(used("a.rs", "fn f() -> crate::geo::LatLon { super::link::open() }"), ["geo", "link"]);
         assert_eq!(used("a/b.rs", "use super::x; use super::super::link::Y;"), ["a", "link"]);
         assert_eq!(used("a.rs", "mod tests { use super::*; use super::super::link; }"), ["a", "link"]);
         assert_eq!(used("a/b.rs", "pub(crate) fn f() {} pub(super) struct S;"), [""; 0]);

@@ -116,12 +116,9 @@ fn every_known_detour_is_found() {
     ] {
         assert_eq!(detours(&file(text)).len(), 1, "{text}");
     }
-    for text in [
-        "use super::*;",
-        "pub use crate::sim::World;",
-        "use crate::ui::State;",
-        "pub use world::World;",
-    ] {
+    for text in
+        ["use super::*;", "pub use crate::sim::World;", "use crate::ui::State;", "pub use world::World;"]
+    {
         assert_eq!(detours(&file(text)), [""; 0], "{text}");
     }
 }

@@ -27,7 +27,11 @@ impl SourceFile {
     /// Returns the path of the file's module from the crate's root.
     pub(crate) fn module(&self) -> Vec<String> {
         let path = self.name.trim_end_matches(".rs");
-        if ["core", "lib"].contains(&path) { Vec::new() } else { path.split('/').map(str::to_owned).collect() }
+        if ["core", "lib"].contains(&path) {
+            Vec::new()
+        } else {
+            path.split('/').map(str::to_owned).collect()
+        }
     }
 
     /// Returns the file without its unit tests.

@@ -13,6 +13,7 @@ const AT_THE_END_M: f64 = 1.0;
 /// A place of the flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlownPlace {
+    /// The place.
     pub place: LatLon,
     /// The distance flown along the plan, m.
     pub along_m: f64,

@@ -13,6 +13,7 @@ pub struct AirframeProblem {
     pub column: usize,
     /// The line, or the part of it around the problem.
     pub source: SourceSnippet,
+    /// The problem, as a sentence without its full stop.
     pub text: String,
 }
 
