@@ -8,6 +8,7 @@
 //! that a plan needs.
 
 mod backdrop_file;
+mod build;
 mod campaign;
 mod check;
 mod compare;
@@ -64,6 +65,7 @@ mod usage;
 
 use std::ffi::OsString;
 
+pub use build::Build;
 pub use error::AppError;
 
 use crate::args::{self, Cli, Command, PlanCommand};
@@ -71,7 +73,8 @@ use crate::link::launch_firmware;
 use crate::ui::keymap::Keymap;
 
 /// Runs the program with the given command line (program name first) and returns its exit code.
-pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+pub fn run(arguments: impl IntoIterator<Item = OsString>, build: Build) -> u8 {
+    build.record();
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     // The hook reports the panic itself, after the terminal is restored.
     std::panic::catch_unwind(|| outcome(arguments)).unwrap_or(error::INTERNAL)

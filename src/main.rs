@@ -4,6 +4,9 @@
 
 use std::process::ExitCode;
 
+use betadeck::app::Build;
+
 fn main() -> ExitCode {
-    ExitCode::from(betadeck::app::run(std::env::args_os()))
+    let (revision, time_s) = betadeck_revision::revision!();
+    ExitCode::from(betadeck::app::run(std::env::args_os(), Build { revision, time_s }))
 }

@@ -14,6 +14,7 @@ mod shard;
 mod sources;
 mod sweep;
 
+use super::build::Build;
 use super::error::AppError;
 use crate::args::{CampaignArgs, CampaignCommand, ForecastArgs};
 pub(super) use consent::Consent;
@@ -38,5 +39,5 @@ pub(super) fn forecast(args: &ForecastArgs, repeat: &[String]) -> Result<u8, App
 
 /// Returns the version that flies, which is in every line.
 fn version() -> String {
-    format!("{} {}", env!("CARGO_PKG_VERSION"), env!("BETADECK_REVISION"))
+    format!("{} {}", env!("CARGO_PKG_VERSION"), Build::get().revision)
 }

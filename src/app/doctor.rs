@@ -6,6 +6,7 @@ use std::io::{ErrorKind, IsTerminal as _};
 use std::net::{TcpListener, UdpSocket};
 use std::path::Path;
 
+use super::build;
 use super::error::{self, AppError};
 use super::keys;
 use super::layers::{self, Outside};
@@ -19,8 +20,7 @@ use crate::ui::theme::{Charset, Palette};
 /// Prints the findings; exit code 0 if there is no problem.
 pub(super) fn run() -> Result<u8, AppError> {
     let mut report = Report::default();
-    let revision = env!("BETADECK_REVISION");
-    let _ = writeln!(report.text, "betadeck {} ({revision})", env!("CARGO_PKG_VERSION"));
+    let _ = writeln!(report.text, "betadeck {}", build::version());
     let layers = configuration(&mut report);
     match layers::directories() {
         Ok(directories) => state_directory(&mut report, &directories.state),

@@ -6,6 +6,7 @@ mod recorder;
 use std::path::PathBuf;
 use std::time::SystemTime;
 
+use super::build;
 use super::named_file::Kind;
 use crate::recording::{FORMAT, Happened, Header, RecordedEvent};
 use crate::report::{UtcSeconds, sentence};
@@ -27,12 +28,7 @@ pub(super) fn write(file: Option<PathBuf>, plan: &str, bytes: &[u8]) -> Result<S
 
 /// Returns the first line of a recording that begins now.
 pub(super) fn header(plan: &str) -> Header {
-    Header {
-        format: FORMAT,
-        program: format!("{} ({})", env!("CARGO_PKG_VERSION"), env!("BETADECK_REVISION")),
-        date: now().to_string(),
-        plan: plan.to_owned(),
-    }
+    Header { format: FORMAT, program: build::version(), date: now().to_string(), plan: plan.to_owned() }
 }
 
 /// Returns the present time.

@@ -2,8 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::AppError;
-use super::backdrop_file;
+use super::{AppError, backdrop_file, build};
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
 use crate::plan::feature::Feature;
@@ -19,7 +18,7 @@ use crate::vehicle::Vehicle;
 
 /// The name of this program with its version, for reports.
 pub(super) fn program() -> String {
-    format!("betadeck {} ({})", env!("CARGO_PKG_VERSION"), env!("BETADECK_REVISION"))
+    format!("betadeck {}", build::version())
 }
 
 /// Returns the command of these words, for a shell.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::output_file::KeptFiles;
-use super::{AppError, error, input_file};
+use super::{AppError, Build, error, input_file};
 use crate::args::{
     AttitudeChoice, DoorArgs, FlightArgs, MissionArgs, OnOff, PhysicsArgs, PlanArg, is_descriptor,
 };
@@ -189,9 +189,9 @@ pub(super) fn attitude_source(attitude: AttitudeChoice) -> AttitudeSource {
 
 /// Returns the data about this executable for the CLI's `version` and MSP.
 pub(super) fn build_info() -> BuildInfo {
-    let epoch = env!("BETADECK_BUILD_EPOCH").parse().unwrap_or_default();
-    let (date, time) = UtcSeconds(epoch).build_stamp();
-    BuildInfo { date, time, revision: env!("BETADECK_REVISION").to_owned(), ..BuildInfo::default() }
+    let Build { revision, time_s } = Build::get();
+    let (date, time) = UtcSeconds(time_s).build_stamp();
+    BuildInfo { date, time, revision: revision.to_owned(), ..BuildInfo::default() }
 }
 
 /// Returns the stored configuration, and adds its problems to `notices`.

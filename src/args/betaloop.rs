@@ -1,6 +1,6 @@
 //! The file of the betaloop launcher, `config.txt`, which names the SITL executable of its users.
 
-use configparser::ini::{Ini, IniDefault};
+use std::collections::BTreeMap;
 
 /// The section of the launcher.
 const SECTION: &str = "Betaloop";
@@ -44,32 +44,45 @@ impl Betaloop {
     /// # Errors
     /// Returns the reason why it is not such a file.
     pub fn read(text: &str) -> Result<Self, BetaloopError> {
-        // This follows the launcher: exact names of sections, and no comment after a value.
-        let mut form = IniDefault::default();
-        form.enable_inline_comments = false;
-        form.case_sensitive = true;
-        let sections = Ini::new_from_defaults(form).read(text.to_owned()).map_err(BetaloopError::Form)?;
-        let section = sections.get(SECTION).ok_or(BetaloopError::NoSection)?;
-        let mut executable = None;
-        let mut unused = Vec::new();
-        let mut named: Vec<&String> =
-            section.keys().filter(|key| key.eq_ignore_ascii_case(EXECUTABLE)).collect();
-        named.sort_unstable();
-        if let [first, second, ..] = named.as_slice() {
-            let (first, second) = ((*first).clone(), (*second).clone());
-            return Err(BetaloopError::TwoExecutables { first, second });
+        let section = section(text)?;
+        let mut named = section.keys().filter(|key| key.eq_ignore_ascii_case(EXECUTABLE));
+        if let (Some(&first), Some(&second)) = (named.next(), named.next()) {
+            return Err(BetaloopError::TwoExecutables { first: first.to_owned(), second: second.to_owned() });
         }
+        let (mut executable, mut unused) = (None, Vec::new());
         for (key, value) in section {
-            let value = value.as_deref().map(str::trim).filter(|value| !value.is_empty());
             if key.eq_ignore_ascii_case(EXECUTABLE) {
-                executable = value.map(str::to_owned);
+                executable = Some(value.to_owned()).filter(|value| !value.is_empty());
             } else {
-                unused.push(key.clone());
+                unused.push(key.to_owned());
             }
         }
-        unused.sort_unstable();
         executable.map(|executable| Self { executable, unused }).ok_or(BetaloopError::NoExecutable)
     }
+}
+
+/// Returns the keys and values of the launcher's section. Like the launcher, it takes the names of sections as they are
+/// written, knows no comment after a value, and takes the last of equal keys.
+fn section(text: &str) -> Result<BTreeMap<&str, &str>, BetaloopError> {
+    let (mut section, mut is_inside) = (None, false);
+    for (line, number) in text.lines().map(str::trim).zip(1..) {
+        if let Some(name) = line.strip_prefix('[') {
+            let what = format!("line {number}: the name of a section begins with [ and has no ]");
+            is_inside = name.rsplit_once(']').ok_or(BetaloopError::Form(what))?.0.trim() == SECTION;
+            if is_inside {
+                section.get_or_insert_with(BTreeMap::new);
+            }
+        } else if !line.is_empty() && !line.starts_with([';', '#']) {
+            let (key, value) = line.split_once(['=', ':']).unwrap_or((line, ""));
+            if key.trim().is_empty() {
+                return Err(BetaloopError::Form(format!("line {number}: there is no name before the value")));
+            }
+            if let Some(section) = section.as_mut().filter(|_| is_inside) {
+                section.insert(key.trim(), value.trim());
+            }
+        }
+    }
+    section.ok_or(BetaloopError::NoSection)
 }
 
 #[cfg(test)]

@@ -13,7 +13,6 @@ use crossterm::terminal::{
     LeaveAlternateScreen, disable_raw_mode, enable_raw_mode,
 };
 use crossterm::{cursor, execute, style};
-use nix::unistd::{Pid, getpgid, getpgrp, getppid, getsid};
 use ratatui::Terminal;
 use ratatui::backend::CrosstermBackend;
 
@@ -131,28 +130,35 @@ fn take_over(mouse: bool) -> io::Result<()> {
 pub(super) fn can_be_continued() -> bool {
     /// The greatest number of programs between this one and the shell, such as scripts and cargo.
     const MOST: usize = 64;
-    let (Ok(session), group) = (getsid(None), getpgrp()) else { return false };
-    let mut ancestor = Some(getppid());
+    let Some([mut ancestor, group, session]) = kin("self") else { return false };
     for _ in 0..MOST {
-        // 0 is a parent in another PID namespace; for the session of 0, the system would return that of this program.
-        let parent = match ancestor {
-            Some(parent) if parent.as_raw() > 0 && getsid(Some(parent)) == Ok(session) => parent,
+        match kin(&ancestor) {
+            Some([_, its_group, its_session]) if its_session == session && its_group != group => return true,
+            Some([parent, _, its_session]) if its_session == session => ancestor = parent,
+            // Also a parent in another PID namespace, which is 0.
             _ => return false,
-        };
-        if getpgid(Some(parent)) != Ok(group) {
-            return true;
         }
-        ancestor = parent_of(parent);
     }
     false
 }
 
-/// Returns the parent of another process, on systems with `/proc`.
-fn parent_of(process: Pid) -> Option<Pid> {
+/// Returns the parent, the group and the session of a process, which is a number or `self`.
+#[cfg(target_os = "linux")]
+fn kin(process: &str) -> Option<[String; 3]> {
     let stat = std::fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
     // The name of the program is in brackets and may itself contain brackets and blanks.
-    let parent = stat.rsplit_once(") ")?.1.split(' ').nth(1)?;
-    Some(Pid::from_raw(parent.parse().ok()?))
+    let mut numbers = stat.rsplit_once(") ")?.1.split(' ').skip(1).map(str::to_owned);
+    Some([numbers.next()?, numbers.next()?, numbers.next()?])
+}
+
+/// Returns the parent, the group and the session of a process, which is a number or `self`. The parent of another process
+/// is unknown, 0.
+#[cfg(not(target_os = "linux"))]
+fn kin(process: &str) -> Option<[String; 3]> {
+    use rustix::process::{Pid, getpgid, getppid, getsid};
+    let other = if process == "self" { None } else { Some(Pid::from_raw(process.parse().ok()?)?) };
+    let parent = other.map_or_else(getppid, |_| None);
+    Some([parent, getpgid(other).ok(), getsid(other).ok()].map(|id| Pid::as_raw(id).to_string()))
 }
 
 /// Restores the line discipline without writing to the terminal, which nobody may be reading.

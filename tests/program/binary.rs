@@ -47,6 +47,8 @@ mod replay;
 mod replayed_recordings;
 #[cfg(unix)]
 mod reports;
+#[cfg(target_os = "linux")]
+mod reproducible;
 #[cfg(unix)]
 mod settings;
 mod signals;

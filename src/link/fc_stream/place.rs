@@ -33,15 +33,13 @@ pub enum FcPlace {
 
 /// The error for a text that is not the address of a flight controller.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{what}; allowed are serial:DEVICE[,BAUD], tcp:HOST:PORT and ws:URL, such as {example}")]
-pub struct FcPlaceError {
-    what: String,
-    example: String,
-}
+#[error("{0}")]
+pub struct FcPlaceError(String);
 
 impl FcPlaceError {
-    fn new(what: impl Into<String>, example: impl Into<String>) -> Self {
-        Self { what: what.into(), example: example.into() }
+    fn new(what: impl fmt::Display, example: impl fmt::Display) -> Self {
+        const ALLOWED: &str = "allowed are serial:DEVICE[,BAUD], tcp:HOST:PORT and ws:URL";
+        Self(format!("{what}; {ALLOWED}, such as {example}"))
     }
 }
 
@@ -134,6 +132,10 @@ fn websocket(url: &str) -> Result<FcPlace, FcPlaceError> {
     if uri.host().is_none_or(str::is_empty) {
         return Err(problem(format!("\"{url}\" names no host")));
     }
+    if uri.scheme_str() == Some("wss") && !cfg!(feature = "tls") {
+        let why = "this program is built without TLS, which wss:// needs: build it with `--features tls`";
+        return Err(FcPlaceError(why.to_owned()));
+    }
     Ok(FcPlace::WebSocket(uri))
 }
 
@@ -172,7 +174,9 @@ mod tests {
             ("ws:localhost:6761", "ws://localhost:6761"),
             ("ws:ws://localhost:6761/", "ws://localhost:6761"),
             ("ws://10.0.0.1/fc?x=1", "ws://10.0.0.1/fc?x=1"),
+            #[cfg(feature = "tls")]
             ("ws:wss://craft.example/fc", "wss://craft.example/fc"),
+            #[cfg(feature = "tls")]
             ("wss://craft.example", "wss://craft.example"),
         ] {
             let place: FcPlace = text.parse().unwrap_or_else(|error| panic!("{text}: {error}"));
@@ -207,6 +211,15 @@ mod tests {
                 "{reported}"
             );
         }
+    }
+
+    #[cfg(not(feature = "tls"))]
+    #[test]
+    fn a_place_with_tls_is_refused_with_the_way_to_get_it() {
+        for text in ["wss://craft.example", "ws:wss://craft.example/fc"] {
+            assert!(refusal(text).ends_with("build it with `--features tls`"), "{}", refusal(text));
+        }
+        assert!(refusal("wss://").contains("is not a URL"), "{}", refusal("wss://"));
     }
 
     #[test]

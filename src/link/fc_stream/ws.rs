@@ -1,18 +1,22 @@
-//! A websocket, with or without TLS.
+//! A websocket, with TLS if the program is built with it.
 #![allow(clippy::disallowed_methods, reason = "a host that says nothing is waited for in wall time")]
 
-use std::sync::Arc;
+#[cfg(feature = "tls")]
+mod tls;
 
 use futures_util::{SinkExt as _, StreamExt as _};
-use rustls::{ClientConfig, RootCertStore};
 use tokio::net::TcpStream;
 use tokio::sync::mpsc;
+#[cfg(feature = "tls")]
+use tokio_tungstenite::connect_async_tls_with_config;
+#[cfg(not(feature = "tls"))]
+use tokio_tungstenite::connect_async_with_config;
 use tokio_tungstenite::tungstenite::client::IntoClientRequest as _;
 use tokio_tungstenite::tungstenite::error::{Error, ProtocolError, SubProtocolError};
 use tokio_tungstenite::tungstenite::http::{HeaderValue, Uri, header};
 use tokio_tungstenite::tungstenite::protocol::WebSocketConfig;
 use tokio_tungstenite::tungstenite::{Bytes, Message};
-use tokio_tungstenite::{Connector, MaybeTlsStream, WebSocketStream, connect_async_tls_with_config};
+use tokio_tungstenite::{MaybeTlsStream, WebSocketStream};
 
 use super::tcp::CONNECT_TIMEOUT;
 use super::{CHUNK, CLOSED, Ended, StreamEvent, reason};
@@ -30,15 +34,11 @@ pub(super) type Socket = WebSocketStream<MaybeTlsStream<TcpStream>>;
 /// Returns the reason as part of a sentence.
 pub(super) async fn connect(uri: &Uri) -> Result<Socket, String> {
     let attempt = async {
-        let connector = match uri.scheme_str() {
-            Some("wss") => Connector::Rustls(tls_config().await?),
-            _ => Connector::Plain,
-        };
-        match handshake(uri, connector.clone(), true).await {
+        match handshake(uri, true).await {
             // A bridge without support for sub-protocols exchanges bytes all the same.
             Err(Error::Protocol(ProtocolError::SecWebSocketSubProtocolError(
                 SubProtocolError::NoSubProtocol,
-            ))) => handshake(uri, connector, false).await,
+            ))) => handshake(uri, false).await,
             other => other,
         }
         .map_err(|error| refusal(&error))
@@ -49,7 +49,7 @@ pub(super) async fn connect(uri: &Uri) -> Result<Socket, String> {
     }
 }
 
-async fn handshake(uri: &Uri, connector: Connector, offer_binary: bool) -> Result<Socket, Error> {
+async fn handshake(uri: &Uri, offer_binary: bool) -> Result<Socket, Error> {
     let mut request = uri.into_client_request()?;
     if offer_binary {
         request.headers_mut().insert(header::SEC_WEBSOCKET_PROTOCOL, HeaderValue::from_static(BINARY));
@@ -58,27 +58,12 @@ async fn handshake(uri: &Uri, connector: Connector, offer_binary: bool) -> Resul
         .max_message_size(Some(MESSAGE_MAX))
         .max_frame_size(Some(MESSAGE_MAX))
         .write_buffer_size(0);
-    let (socket, _) = connect_async_tls_with_config(request, Some(config), true, Some(connector)).await?;
+    #[cfg(feature = "tls")]
+    let attempt = connect_async_tls_with_config(request, Some(config), true, tls::connector(uri).await?);
+    #[cfg(not(feature = "tls"))]
+    let attempt = connect_async_with_config(request, Some(config), true);
+    let (socket, _) = attempt.await?;
     Ok(socket)
-}
-
-/// Returns a TLS configuration with the certificates that this machine trusts.
-async fn tls_config() -> Result<Arc<ClientConfig>, String> {
-    let load = tokio::task::spawn_blocking(|| {
-        let mut roots = RootCertStore::empty();
-        roots.add_parsable_certificates(rustls_native_certs::load_native_certs().certs);
-        roots
-    });
-    let roots = load.await.map_err(|error| error.to_string())?;
-    if roots.is_empty() {
-        return Err("this machine has no trusted certificates (package ca-certificates)".to_owned());
-    }
-    let config = ClientConfig::builder_with_provider(Arc::new(rustls::crypto::ring::default_provider()))
-        .with_safe_default_protocol_versions()
-        .map_err(|error| error.to_string())?
-        .with_root_certificates(roots)
-        .with_no_client_auth();
-    Ok(Arc::new(config))
 }
 
 /// Moves bytes until the connection is lost or the session no longer needs them. Sets `heard` once bytes have
@@ -131,13 +116,10 @@ fn refusal(error: &Error) -> String {
         Error::ConnectionClosed
         | Error::AlreadyClosed
         | Error::Protocol(ProtocolError::ResetWithoutClosingHandshake) => CLOSED.to_owned(),
-        Error::Io(error) => match error.get_ref().and_then(|error| error.downcast_ref::<rustls::Error>()) {
-            Some(rustls::Error::InvalidCertificate(why)) => {
-                format!("its certificate is not trusted ({why})")
-            }
-            Some(error) => format!("TLS fails: {error}"),
-            None => reason(error),
-        },
+        #[cfg(feature = "tls")]
+        Error::Io(error) => tls::refusal(error).unwrap_or_else(|| reason(error)),
+        #[cfg(not(feature = "tls"))]
+        Error::Io(error) => reason(error),
         Error::Tls(error) => format!("TLS fails: {error}"),
         Error::Http(response) => {
             format!("no websocket is served there (the server answers {})", response.status())
