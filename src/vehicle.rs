@@ -33,6 +33,7 @@ mod input_log;
 mod physics;
 mod view;
 
+use nalgebra::Vector3;
 use rand::RngExt as _;
 
 pub use command::{CliLine, CliSession, Message, PlanUpload, Reply, VehicleCommand, VehicleRefusal};
@@ -262,6 +263,17 @@ impl Vehicle {
         self.physics.apply(command)?;
         self.note_input(|| VehicleCommand::World(Box::new(input)));
         Ok(())
+    }
+
+    /// Adds a wind of the program's own to the air at the craft, ENU, m/s, in place of the one that was added before: see
+    /// [`World::set_added_wind`]. A program that calls this before each tick blows as it likes, by time and place. A clone
+    /// keeps the wind. It is not among the inputs of the vehicle, so a program that flies again adds it again.
+    ///
+    /// # Errors
+    /// Fails if it is stronger than 60 m/s or not a number, or if an external simulator moves the craft. Nothing has changed
+    /// then.
+    pub fn set_added_wind(&mut self, vel_enu: Vector3<f64>) -> Result<(), WorldError> {
+        self.physics.set_added_wind(vel_enu)
     }
 
     /// Starts the scripted pilot, which flies the mission from here: climb to `takeoff_m`, engage.

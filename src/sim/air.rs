@@ -42,6 +42,8 @@ pub(super) struct Air {
     wind: Wind,
     wind_fault: Option<Wind>,
     ramp: Ramp,
+    /// The wind that the program adds, ENU, m/s.
+    pub added: Vector3<f64>,
     pub gusts: Gusts,
     pub turbulence: TurbulenceFilter,
     calm_axis_from_deg: f64,
@@ -73,6 +75,7 @@ impl Air {
             wind: config.wind,
             wind_fault: None,
             ramp: Ramp { from: velocity, to: velocity, start: SimTime::ZERO },
+            added: Vector3::zeros(),
             gusts: Gusts::new(config.seed, config.gust_mps),
             turbulence: TurbulenceFilter::new(config.seed, config.turbulence),
             calm_axis_from_deg: config.home.heading_deg,
@@ -107,7 +110,7 @@ impl Air {
     ) {
         let height_m = altitude_m - ground_m;
         // The airspeed is relative to the mean air, since turbulence does not carry itself along.
-        let mean = self.ramp.at(now) * profile(switches.wind_profile, height_m);
+        let mean = self.ramp.at(now) * profile(switches.wind_profile, height_m) + self.added;
         let airspeed = (vel_enu - mean).norm();
         self.from = self.to;
         self.gusts.advance(now, self.settled_wind(), switches.gust_rise_s);
@@ -127,6 +130,7 @@ impl Air {
         self.ramp.at(time) * profile(switches.wind_profile, height_m)
             + self.gusts.velocity_enu(time)
             + self.turbulence.velocity_enu(axis_from_deg) * switches.turbulence_scale
+            + self.added
     }
 
     /// Returns the wind after the end of all ramps: that of a fault, or the one that was set.

@@ -4,7 +4,7 @@ mod external;
 
 pub(super) use external::ExternalPhysics;
 
-use nalgebra::Vector2;
+use nalgebra::{Vector2, Vector3};
 
 use crate::geo::LocalFrame;
 use crate::signals::{MotorCommand, SensorFrame};
@@ -114,6 +114,14 @@ impl Physics {
         match self {
             Self::World(world) => world.apply(command),
             Self::External(external) => external.clock_mut().apply(command),
+        }
+    }
+
+    /// Adds a wind to the air at the craft, if its motion is simulated here.
+    pub(super) fn set_added_wind(&mut self, vel_enu: Vector3<f64>) -> Result<(), WorldError> {
+        match self {
+            Self::World(world) => world.set_added_wind(vel_enu),
+            Self::External(_) => Err(WorldError::Outside),
         }
     }
 

@@ -147,3 +147,30 @@ fn of_a_vehicle_elsewhere_nothing_is_made_up() {
     let snapshot = vehicle.snapshot();
     assert_eq!((snapshot.origin, snapshot.truth), (Some(place), None), "a place is not the craft's");
 }
+
+#[test]
+fn a_wind_that_the_program_adds_is_the_air_at_the_craft_and_of_its_copies() {
+    let mut vehicle = vehicle();
+    let wind = Vector3::new(3.0, -4.0, 1.0);
+    vehicle.set_added_wind(wind).unwrap();
+    run(&mut vehicle, 0.005);
+    let begun = vehicle.truth().unwrap().wind_enu;
+    assert!(begun.norm() < wind.norm(), "it comes in over a tick of the air: {begun}");
+    let mut copy = vehicle.clone();
+    for vehicle in [&mut vehicle, &mut copy] {
+        run(vehicle, 0.05);
+        assert!((vehicle.truth().unwrap().wind_enu - wind).norm() < 1e-12);
+    }
+    vehicle.reset_craft();
+    let mut again = vehicle.again(|_| ()).unwrap().unwrap();
+    for refused in [Vector3::new(61.0, 0.0, 0.0), Vector3::new(f64::NAN, 0.0, 0.0)] {
+        assert!(vehicle.set_added_wind(refused).is_err(), "{refused}");
+        assert!(again.set_added_wind(refused).is_err(), "{refused}");
+    }
+    for vehicle in [&mut vehicle, &mut again] {
+        run(vehicle, 0.1);
+        assert!((vehicle.truth().unwrap().wind_enu - wind).norm() < 1e-12, "the air stays");
+    }
+    let mut external = Vehicle::with_external_physics(config()).unwrap();
+    assert_eq!(external.set_added_wind(wind), Err(WorldError::Outside));
+}

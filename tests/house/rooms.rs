@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test may stop and say what it expects")]
 
 mod circles;
+mod front;
 mod impls;
 mod inside;
 mod page;

@@ -66,6 +66,7 @@ impl World {
         config.check()?;
         let mut world = Self::build(config, self.relief.clone())?;
         world.sensors.gps.set_rate(self.sensors.gps.rate_hz());
+        world.air.added = self.air.added;
         Ok(world)
     }
 

@@ -7,7 +7,7 @@ use crate::sim::air::usual_length_s;
 use crate::sim::airframe::ROTORS;
 use crate::sim::body::BodyState;
 use crate::sim::clock::{Clock, FaultHost};
-use crate::sim::command::WorldCommand;
+use crate::sim::command::{WorldCommand, in_range};
 use crate::sim::config::{Wind, WorldError};
 use crate::sim::fault::{ActiveFault, Fault};
 use crate::sim::landform::Landform;
@@ -57,6 +57,17 @@ impl World {
             self.craft.forget();
             self.refresh_loads();
         }
+        Ok(())
+    }
+
+    /// Adds a wind of this velocity (ENU, m/s) to the air at the craft, in place of the wind that was added before. It comes
+    /// in over the next air tick, at every height, until it is changed.
+    ///
+    /// # Errors
+    /// Fails if it is stronger than [`Wind::MAX_MPS`] or not a number. Nothing has changed then.
+    pub fn set_added_wind(&mut self, vel_enu: Vector3<f64>) -> Result<(), WorldError> {
+        in_range("added wind", vel_enu.norm(), 0.0, Wind::MAX_MPS)?;
+        self.air.added = vel_enu;
         Ok(())
     }
 

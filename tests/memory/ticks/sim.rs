@@ -46,6 +46,7 @@ fn a_flight_with_faults_wind_and_a_crash_allocates_nothing() {
             world.clock_mut().set_engaged(now);
         }
         let command = if step % 1000 == 7 { f64::NAN } else { hover };
+        world.set_added_wind([f64::from(step % 9), 0.0, -1.0].into()).expect("a wind");
         world.step(&MotorCommand([command; 4]));
         while world.take_event().is_some() {
             events += 1;
