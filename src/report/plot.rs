@@ -1,9 +1,10 @@
 //! Pictures of flights as SVG: a map, charts over time, and the states of a flight.
 //!
-//! `canvas` turns a drawing into a document with a title and a description, `colour` names the colours by their roles, and
-//! `map`, `chart`, `states`, `bars` and `scatter` are the pictures. `simplify` and `clip` bound the number of points, and
-//! `labels` and `legend` place texts. Points are pairs: to the right and up.
+//! `canvas` turns a drawing into a document with a title and a description, `axes` draws the field of a chart, `colour`
+//! names the colours by their roles, and `map`, `chart`, `states`, `bars` and `scatter` are the pictures. `simplify` and
+//! `clip` bound the number of points, and `labels` and `legend` place texts. Points are pairs: to the right and up.
 
+mod axes;
 mod bars;
 mod canvas;
 mod chart;

@@ -1,11 +1,7 @@
 //! Shares of flights along a number, or by words.
 
-use plotters::chart::ChartBuilder;
-use plotters::element::{PathElement, Rectangle, Text};
-use plotters::style::text_anchor::{HPos, VPos};
-
-use super::canvas::{Area, Drawn, filled, stroke, text, text_width, units};
-use super::chart::{BELOW, LEFT, RIGHT, SMALL, WIDTH, number};
+use super::axes::{ACROSS, Axes, BELOW, LEFT, SMALL, WIDTH};
+use super::canvas::{Anchor, Area, Height, filled, stroke, text, text_width};
 use super::legend::Legend;
 use super::{Colour, Picture, Point, range};
 
@@ -47,61 +43,37 @@ impl Bars {
             names.push((Colour::Second, 1.75, curve.clone()));
         }
         names.extend(self.marks.iter().map(|(_, name)| (Colour::Plan, 1.25, name.clone())));
-        let legend = Legend::new(&names, WIDTH - LEFT - RIGHT);
+        let legend = Legend::new(&names, ACROSS);
         picture.draw((WIDTH, legend.height() + 6.0 + HEIGHT + BELOW), |area| {
-            legend.draw(area, (LEFT, 0.0))?;
-            self.draw(area, legend.height())
+            legend.draw(area, (LEFT, 0.0));
+            self.draw(area, legend.height() + 6.0);
         })
     }
 
-    fn draw(&self, area: &Area<'_>, top: f64) -> Drawn {
+    fn draw(&self, area: &mut Area, top: f64) {
         let ends = self.bars.iter().flat_map(|bar| [bar.from, bar.to]);
         let marked = self.marks.iter().map(|(value, _)| *value);
-        let (low, high) = range::around(ends.chain(marked), 0.01);
+        let x = range::around(ends.chain(marked), 0.01);
         let tallest = self.bars.iter().map(|bar| bar.share).fold(LEAST_TOP, f64::max);
         let most = if self.curve.is_empty() { (tallest * 1.1).min(105.0) } else { 105.0 };
         let has_words = self.bars.iter().any(|bar| !bar.word.is_empty());
-        let mut chart = ChartBuilder::on(area)
-            .margin_top(units(top + 6.0))
-            .margin_right(units(RIGHT))
-            .x_label_area_size(units(BELOW))
-            .y_label_area_size(units(LEFT))
-            .build_cartesian_2d(low..high, 0.0..most)?;
-        chart
-            .configure_mesh()
-            .light_line_style(stroke(Colour::Grid, 0.0))
-            .max_light_lines(0)
-            .bold_line_style(stroke(Colour::Grid, 1.0))
-            .axis_style(stroke(Colour::Axis, 1.0))
-            .x_labels(if has_words { 0 } else { 9 })
-            .y_labels(5)
-            .set_all_tick_mark_size(units(3.0))
-            .x_label_formatter(&|value| number(*value))
-            .y_label_formatter(&|share| format!("{} %", number(*share)))
-            .label_style(text(SMALL, Colour::Label, HPos::Left, VPos::Top))
-            .draw()?;
-        let inside = |value: f64| value.clamp(low, high);
-        let shape = |bar: &Bar| [(inside(bar.from), 0.0), (inside(bar.to), bar.share.min(most))];
-        chart.draw_series(
-            self.bars.iter().map(|bar| Rectangle::new(shape(bar), filled(Colour::First, 0.45))),
-        )?;
-        chart.draw_series(
-            self.bars.iter().map(|bar| Rectangle::new(shape(bar), stroke(Colour::First, 1.0))),
-        )?;
-        let curve: Vec<Point> = self.curve.iter().map(|&(value, share)| (inside(value), share)).collect();
-        chart.draw_series([PathElement::new(curve, stroke(Colour::Second, 1.75))])?;
-        let lines = self.marks.iter().map(|&(value, _)| {
-            PathElement::new(vec![(inside(value), 0.0), (inside(value), most)], stroke(Colour::Plan, 1.25))
-        });
-        chart.draw_series(lines)?;
-        let px_each = (WIDTH - LEFT - RIGHT) / (high - low);
-        let words = self.bars.iter().filter(|bar| {
-            !bar.word.is_empty() && text_width(&bar.word, SMALL) < 1.3 * (bar.to - bar.from) * px_each
-        });
-        chart.draw_series(words.map(|bar| {
-            let style = text(SMALL, Colour::Ink, HPos::Center, VPos::Top);
-            Text::new(bar.word.clone(), (f64::midpoint(bar.from, bar.to), most), style)
-        }))?;
-        Ok(())
+        let axes = Axes { x, y: (0.0, most), top, height: HEIGHT };
+        axes.draw(area, (if has_words { 0 } else { 9 }, 5), " %");
+        for style in [filled(Colour::First, 0.45), stroke(Colour::First, 1.0)] {
+            for bar in &self.bars {
+                area.rectangle([axes.px((bar.from, 0.0)), axes.px((bar.to, bar.share))], &style);
+            }
+        }
+        let curve: Vec<Point> = self.curve.iter().map(|point| axes.px(*point)).collect();
+        area.line(&curve, &stroke(Colour::Second, 1.75));
+        for (value, _) in &self.marks {
+            area.line(&[axes.px((*value, 0.0)), axes.px((*value, most))], &stroke(Colour::Plan, 1.25));
+        }
+        let px_each = ACROSS / (x.1 - x.0);
+        let style = text(SMALL, Colour::Ink, Anchor::Middle, Height::Top);
+        let fits = |bar: &&Bar| text_width(&bar.word, SMALL) < 1.3 * (bar.to - bar.from) * px_each;
+        for bar in self.bars.iter().filter(|bar| !bar.word.is_empty()).filter(fits) {
+            area.text(&bar.word, axes.px((f64::midpoint(bar.from, bar.to), most)), &style);
+        }
     }
 }

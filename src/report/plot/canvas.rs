@@ -1,21 +1,12 @@
 //! A drawing as an SVG document.
 
 use std::fmt::Write as _;
-use std::io;
 
-use plotters::coord::Shift;
-use plotters::drawing::{DrawingArea, DrawingAreaErrorKind, IntoDrawingArea as _};
-use plotters::prelude::SVGBackend;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{Color as _, FontFamily, FontStyle, IntoFont as _, ShapeStyle, TextStyle};
-
-use super::Colour;
+use super::{Colour, Point};
 use crate::report::xml::escaped;
 
-/// Units of the drawing in a pixel. The library draws in whole units.
+/// Units of the drawing in a pixel. Coordinates are whole units.
 const UNITS: f64 = 4.0;
-/// The ratio by which the library divides the sizes of fonts.
-const FONT_RATIO: f64 = 1.24;
 /// Length of a dash and of the gap after it, px.
 const DASH: (f64, f64) = (5.0, 4.0);
 /// Width of the edge of a text, px.
@@ -23,10 +14,6 @@ const EDGE: f64 = 3.0;
 /// The margin around a document of its own, and the height of its heading, px.
 const MARGIN: f64 = 12.0;
 const HEADING: f64 = 38.0;
-
-pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
-pub(super) type Failure = DrawingAreaErrorKind<io::Error>;
-pub(super) type Drawn = Result<(), Failure>;
 
 /// A picture with its texts for people who do not see it.
 #[derive(Debug, Clone)]
@@ -63,18 +50,20 @@ impl Picture {
     }
 
     /// Returns the document of a drawing of this size, px.
-    pub(super) fn draw(&self, size: (f64, f64), draw: impl FnOnce(&Area<'_>) -> Drawn) -> String {
-        let mut drawn = String::new();
-        {
-            let (width, height) = (units(size.0).unsigned_abs(), units(size.1).unsigned_abs());
-            let area = SVGBackend::with_string(&mut drawn, (width, height)).into_drawing_area();
-            // Drawing into a string does not fail.
-            draw(&area).and_then(|()| area.present()).ok();
+    pub(super) fn draw(&self, size: (f64, f64), draw: impl FnOnce(&mut Area)) -> String {
+        let edge = format!(
+            " paint-order=\"stroke\" stroke=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\"",
+            Colour::Paper.light(),
+            units(EDGE)
+        );
+        let edge = if self.has_edged_texts { edge } else { String::new() };
+        let mut area = Area { shapes: String::new(), edge };
+        draw(&mut area);
+        if self.stands_alone {
+            self.document(size, &area.shapes)
+        } else {
+            format!("{}{}</svg>\n", self.head(size), area.shapes)
         }
-        // The head of the library's document ends the first line.
-        let body = shortened(drawn.split_once('\n').map_or("", |(_, body)| body));
-        let body = if self.has_edged_texts { body.replace("<text ", &edged_text()) } else { body };
-        if self.stands_alone { self.document(size, &body) } else { self.head(size) + &body }
     }
 
     /// Returns the beginning of a document of this size, px.
@@ -100,7 +89,7 @@ impl Picture {
             svg,
             "<rect width=\"100%\" height=\"100%\" fill=\"{paper}\"/>\n\
              <text x=\"{}\" y=\"{}\" font-size=\"{}\" font-weight=\"bold\" fill=\"{ink}\">{}</text>\n\
-             <g transform=\"translate({} {})\">",
+             <g transform=\"translate({} {})\">\n{body}</g>\n</svg>",
             units(MARGIN),
             units(HEADING - 14.0),
             units(14.0),
@@ -108,55 +97,112 @@ impl Picture {
             units(MARGIN),
             units(HEADING),
         );
-        svg.push_str(body.strip_suffix("</svg>\n").unwrap_or(body));
-        svg.push_str("</g>\n</svg>\n");
         svg
     }
 }
 
-/// Leaves out what is said already, and dashes the lines of the plan.
-fn shortened(body: &str) -> String {
-    let (dash, gap) = DASH;
-    let plan = format!(" stroke=\"{}\"", Colour::Plan.light());
-    let dashed = format!("{plan} stroke-dasharray=\"{} {}\"", units(dash), units(gap));
-    body.replace(" opacity=\"1\"", "")
-        .replace(" font-family=\"sans-serif\"", "")
-        .replace(" text-anchor=\"start\"", "")
-        .replace(" \"/>", "\"/>")
-        .replace("\n</text>", "</text>")
-        .replace(&plan, &dashed)
+/// The shapes of a drawing so far. Places are px to the right and down.
+#[derive(Debug)]
+pub(super) struct Area {
+    shapes: String,
+    /// The style of the edge of texts.
+    edge: String,
 }
 
-/// Returns the beginning of a text with an edge.
-fn edged_text() -> String {
-    format!(
-        "<text paint-order=\"stroke\" stroke=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\" ",
-        Colour::Paper.light(),
-        units(EDGE)
-    )
+impl Area {
+    pub(super) fn line(&mut self, points: &[Point], style: &str) {
+        self.path("polyline", points, style);
+    }
+
+    pub(super) fn polygon(&mut self, points: &[Point], style: &str) {
+        self.path("polygon", points, style);
+    }
+
+    fn path(&mut self, shape: &str, points: &[Point], style: &str) {
+        if points.is_empty() {
+            return;
+        }
+        let _ = write!(self.shapes, "<{shape}{style} points=\"");
+        for (index, (x, y)) in points.iter().enumerate() {
+            let gap = if index > 0 { " " } else { "" };
+            let _ = write!(self.shapes, "{gap}{},{}", units(*x), units(*y));
+        }
+        self.shapes.push_str("\"/>\n");
+    }
+
+    /// Draws a rectangle between two corners.
+    pub(super) fn rectangle(&mut self, [one, other]: [Point; 2], style: &str) {
+        let (left, top) = (units(one.0.min(other.0)), units(one.1.min(other.1)));
+        let (right, bottom) = (units(one.0.max(other.0)), units(one.1.max(other.1)));
+        let (width, height) = (right - left, bottom - top);
+        let _ = writeln!(
+            self.shapes,
+            "<rect x=\"{left}\" y=\"{top}\" width=\"{width}\" height=\"{height}\"{style}/>"
+        );
+    }
+
+    /// Draws two lines that cross at a place, each from `-arm` to `arm` across and up.
+    pub(super) fn cross(&mut self, (x, y): Point, arm: f64, style: &str) {
+        self.line(&[(x - arm, y - arm), (x + arm, y + arm)], style);
+        self.line(&[(x - arm, y + arm), (x + arm, y - arm)], style);
+    }
+
+    pub(super) fn circle(&mut self, (x, y): Point, radius: f64, style: &str) {
+        let (x, y, radius) = (units(x), units(y), units(radius));
+        let _ = writeln!(self.shapes, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"{style}/>");
+    }
+
+    /// Draws a text whose end or middle is at a place.
+    pub(super) fn text(&mut self, text: &str, (x, y): Point, style: &str) {
+        let (x, y, text) = (units(x), units(y), escaped(text));
+        let _ = writeln!(self.shapes, "<text{} x=\"{x}\" y=\"{y}\"{style}>{text}</text>", self.edge);
+    }
 }
 
 /// Converts px to units of the drawing.
-pub(super) fn units(px: f64) -> i32 {
+fn units(px: f64) -> i32 {
     (px * UNITS).round() as i32
 }
 
-/// Returns the style of a line of this width, px.
-pub(super) fn stroke(colour: Colour, width: f64) -> ShapeStyle {
-    colour.rgb().stroke_width(units(width).unsigned_abs())
+/// Returns the style of a line of this width, px. The lines of the plan are dashed.
+pub(super) fn stroke(colour: Colour, width: f64) -> String {
+    let (dash, gap) = DASH;
+    let dashes = match colour {
+        Colour::Plan => format!(" stroke-dasharray=\"{} {}\"", units(dash), units(gap)),
+        _ => String::new(),
+    };
+    format!(" fill=\"none\" stroke=\"{}\"{dashes} stroke-width=\"{}\"", colour.light(), units(width))
 }
 
 /// Returns the style of a filled shape.
-pub(super) fn filled(colour: Colour, opacity: f64) -> ShapeStyle {
-    colour.rgb().mix(opacity).filled()
+pub(super) fn filled(colour: Colour, opacity: f64) -> String {
+    let opacity = if opacity < 1.0 { format!(" opacity=\"{opacity}\"") } else { String::new() };
+    format!("{opacity} fill=\"{}\"", colour.light())
+}
+
+/// The part of a text that is at its place, across.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::IntoStaticStr)]
+#[strum(serialize_all = "lowercase")]
+pub(super) enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+/// The height of a place in a text.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::IntoStaticStr)]
+pub(super) enum Height {
+    #[strum(serialize = "0.5ex")]
+    Middle,
+    #[strum(serialize = "0.76em")]
+    Top,
 }
 
 /// Returns the style of a text of this size, px.
-pub(super) fn text(size: f64, colour: Colour, h_pos: HPos, v_pos: VPos) -> TextStyle<'static> {
-    let font = (FontFamily::SansSerif, size * UNITS * FONT_RATIO, FontStyle::Normal).into_font();
-    let mut style = TextStyle::from(font);
-    style.color = colour.rgb().to_backend_color();
-    style.pos(Pos::new(h_pos, v_pos))
+pub(super) fn text(size: f64, colour: Colour, anchor: Anchor, height: Height) -> String {
+    let (anchor, dy): (&str, &str) = (anchor.into(), height.into());
+    let (size, colour) = (units(size), colour.light());
+    format!(" dy=\"{dy}\" text-anchor=\"{anchor}\" font-size=\"{size}\" fill=\"{colour}\"")
 }
 
 /// Returns the estimated width of a text of this size, px.

@@ -1,7 +1,5 @@
 //! The colours of the pictures, by their roles.
 
-use plotters::style::RGBColor;
-
 macro_rules! colours {
     ($($(#[$doc:meta])* $variant:ident $light:literal $dark:literal;)*) => {
         /// The role of a colour. Each has a value on white and one on a dark page.
@@ -63,12 +61,6 @@ colours! {
 }
 
 impl Colour {
-    /// Returns the value on white for a drawing.
-    pub(super) const fn rgb(self) -> RGBColor {
-        let (light, _) = self.values();
-        RGBColor((light >> 16) as u8, (light >> 8) as u8, light as u8)
-    }
-
     /// Returns the value on white as the drawings write it: `#0072B2`.
     pub(in crate::report) fn light(self) -> String {
         format!("#{:06X}", self.values().0)

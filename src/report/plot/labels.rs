@@ -1,9 +1,7 @@
 //! Places for texts beside marks, so that they do not cover each other.
 
-use plotters::style::text_anchor::HPos;
-
 use super::Point;
-use super::canvas::text_width;
+use super::canvas::{Anchor, text_width};
 
 /// The distance of a text from its mark, px.
 const GAP: f64 = 7.0;
@@ -28,9 +26,9 @@ impl Labels {
         text: &str,
         size: f64,
         width: f64,
-    ) -> Option<(HPos, Point)> {
+    ) -> Option<(Anchor, Point)> {
         let length = text_width(text, size);
-        let sides = [(HPos::Left, x + GAP, x + GAP), (HPos::Right, x - GAP - length, x - GAP)];
+        let sides = [(Anchor::Start, x + GAP, x + GAP), (Anchor::End, x - GAP - length, x - GAP)];
         for dy in [-GAP, GAP] {
             for (side, left, at) in sides.iter() {
                 let middle = y + dy;
@@ -60,6 +58,6 @@ mod tests {
         let places: Vec<_> = (0..5).map(|_| labels.place((100.0, 100.0), "WP 1", 12.0, 400.0)).collect();
         assert!(places[..4].iter().all(Option::is_some) && places[4].is_none());
         let near_the_edge = labels.place((395.0, 50.0), "a long name", 12.0, 400.0).expect("a place");
-        assert!(matches!(near_the_edge.0, HPos::Right));
+        assert!(matches!(near_the_edge.0, Anchor::End));
     }
 }

@@ -1,10 +1,7 @@
 //! The names of the lines of a picture.
 
-use plotters::element::PathElement;
-use plotters::style::text_anchor::{HPos, VPos};
-
-use super::Colour;
-use super::canvas::{Area, Drawn, stroke, text, text_width, units};
+use super::canvas::{Anchor, Area, Height, stroke, text, text_width};
+use super::{Colour, Point};
 
 /// Height of a row, px.
 pub(super) const ROW: f64 = 18.0;
@@ -46,14 +43,12 @@ impl Legend {
     }
 
     /// Draws the names from this corner on, px.
-    pub(super) fn draw(&self, area: &Area<'_>, (left, top): (f64, f64)) -> Drawn {
+    pub(super) fn draw(&self, area: &mut Area, (left, top): Point) {
         for (x, row, colour, width, name) in &self.entries {
             let (x, y) = (left + x, top + (*row as f64 + 0.5) * ROW);
-            let line = [(units(x), units(y)), (units(x + SAMPLE), units(y))];
-            area.draw(&PathElement::new(line.to_vec(), stroke(*colour, *width)))?;
-            let style = text(SIZE, Colour::Ink, HPos::Left, VPos::Center);
-            area.draw_text(name, &style, (units(x + SAMPLE + GAPS.0), units(y)))?;
+            area.line(&[(x, y), (x + SAMPLE, y)], &stroke(*colour, *width));
+            let style = text(SIZE, Colour::Ink, Anchor::Start, Height::Middle);
+            area.text(name, (x + SAMPLE + GAPS.0, y), &style);
         }
-        Ok(())
     }
 }

@@ -3,10 +3,7 @@
 mod ground;
 mod view;
 
-use plotters::element::{Circle, PathElement, Rectangle};
-use plotters::style::text_anchor::{HPos, VPos};
-
-use super::canvas::{Area, Drawn, filled, stroke, text, units};
+use super::canvas::{Anchor, Area, Height, filled, stroke, text};
 use super::labels::Labels;
 use super::legend::Legend;
 use super::{Colour, Picture, Point, range, simplify};
@@ -71,71 +68,54 @@ impl Map {
         let top = if legend.height() > 0.0 { legend.height() + 6.0 } else { 0.0 };
         let view = view.below(top);
         picture.with_edged_texts().draw((view.width(), top + view.height() + SCALE), |area| {
-            legend.draw(area, (2.0, 0.0))?;
-            self.draw(area, &view)?;
-            scale(area, &view)
+            legend.draw(area, (2.0, 0.0));
+            self.draw(area, &view);
+            scale(area, &view);
         })
     }
 
-    fn draw(&self, area: &Area<'_>, view: &View) -> Drawn {
+    fn draw(&self, area: &mut Area, view: &View) {
         let mut labels = Labels::default();
         let mut names = Vec::new();
-        let names_of_ground = ground::draw(&self.ground, area, view, self.most_points)?;
-        area.draw(&Rectangle::new(view.corners(), stroke(Colour::Axis, 1.0)))?;
+        let names_of_ground = ground::draw(&self.ground, area, view, self.most_points);
+        area.rectangle([view.frame().low, view.frame().high], &stroke(Colour::Axis, 0.25));
         for (centre, radius) in &self.rings {
-            self.line(area, view, &circle(*centre, *radius), stroke(Colour::Plan, 1.0))?;
+            self.line(area, view, &circle(*centre, *radius), &stroke(Colour::Plan, 1.0));
         }
-        self.line(area, view, &self.legs, stroke(Colour::Plan, 1.0))?;
+        self.line(area, view, &self.legs, &stroke(Colour::Plan, 1.0));
         for track in &self.tracks {
-            self.line(area, view, &track.points, stroke(track.colour, track.width))?;
+            self.line(area, view, &track.points, &stroke(track.colour, track.width));
         }
         let is_inside = |place: &Point| view.frame().contains(view.px(*place));
         for (place, colour) in self.touchdowns.iter().filter(|(place, _)| is_inside(place)) {
-            let (x, y) = view.px(*place);
-            for (dx, dy) in [(4.0, 4.0), (4.0, -4.0)] {
-                let cross = vec![(units(x - dx), units(y - dy)), (units(x + dx), units(y + dy))];
-                area.draw(&PathElement::new(cross, stroke(*colour, 2.0)))?;
-            }
+            area.cross(view.px(*place), 4.0, &stroke(*colour, 2.0));
         }
         let (x, y) = view.px((0.0, 0.0));
-        let home = [(units(x - 4.0), units(y - 4.0)), (units(x + 4.0), units(y + 4.0))];
-        area.draw(&Rectangle::new(home, filled(Colour::Ink, 1.0)))?;
+        area.rectangle([(x - 4.0, y - 4.0), (x + 4.0, y + 4.0)], &filled(Colour::Ink, 1.0));
         labels.mark((x, y), 4.0);
         names.push(((x, y), "home"));
         for mark in self.marks.iter().filter(|mark| is_inside(&mark.place)) {
-            let (x, y) = view.px(mark.place);
-            let at = (units(x), units(y));
-            area.draw(&Circle::new(at, units(4.0), filled(Colour::Paper, 1.0)))?;
-            area.draw(&Circle::new(at, units(4.0), stroke(Colour::Ink, 1.25)))?;
-            labels.mark((x, y), 4.0);
-            names.push(((x, y), mark.name.as_str()));
+            let place = view.px(mark.place);
+            area.circle(place, 4.0, &filled(Colour::Paper, 1.0));
+            area.circle(place, 4.0, &stroke(Colour::Ink, 1.25));
+            labels.mark(place, 4.0);
+            names.push((place, mark.name.as_str()));
         }
         let own = names.into_iter().rev().map(|(place, name)| (place, name, SIZE, Colour::Ink));
         let of_ground = names_of_ground.into_iter().map(|(place, name)| (place, name, SMALL, Colour::Label));
         for (place, name, size, colour) in own.chain(of_ground) {
-            if let Some((side, (x, y))) = labels.place(place, name, size, view.width()) {
-                let style = text(size, colour, side, VPos::Center);
-                area.draw_text(name, &style, (units(x), units(y)))?;
+            if let Some((anchor, place)) = labels.place(place, name, size, view.width()) {
+                area.text(name, place, &text(size, colour, anchor, Height::Middle));
             }
         }
-        Ok(())
     }
 
     /// Draws the parts of a line inside the map.
-    fn line(
-        &self,
-        area: &Area<'_>,
-        view: &View,
-        line: &[Point],
-        style: plotters::style::ShapeStyle,
-    ) -> Drawn {
+    fn line(&self, area: &mut Area, view: &View, line: &[Point], style: &str) {
         let line: Vec<Point> = line.iter().map(|place| view.px(*place)).collect();
         for part in view.frame().line(&line) {
-            let part = simplify::simplified(&part, self.most_points);
-            let part = part.into_iter().map(|(x, y)| (units(x), units(y)));
-            area.draw(&PathElement::new(part.collect::<Vec<_>>(), style))?;
+            area.line(&simplify::simplified(&part, self.most_points), style);
         }
-        Ok(())
     }
 }
 
@@ -146,16 +126,15 @@ fn circle((x, y): Point, radius: f64) -> Vec<Point> {
 }
 
 /// Draws a bar of a round length, and the direction of north.
-fn scale(area: &Area<'_>, view: &View) -> Drawn {
+fn scale(area: &mut Area, view: &View) {
     let metres = range::round_length(BAR / view.px_per_m());
     let (left, y) = (2.0, view.bottom() + SCALE - 6.0);
     let right = left + metres * view.px_per_m();
-    let bar = [(left, y - 5.0), (left, y), (right, y), (right, y - 5.0)];
-    let bar: Vec<(i32, i32)> = bar.iter().map(|(x, y)| (units(*x), units(*y))).collect();
-    area.draw(&PathElement::new(bar, stroke(Colour::Ink, 1.0)))?;
-    let style = text(SMALL, Colour::Label, HPos::Left, VPos::Center);
+    area.line(&[(left, y - 5.0), (left, y), (right, y), (right, y - 5.0)], &stroke(Colour::Ink, 1.0));
     let name = if metres < 1000.0 { format!("{metres} m") } else { format!("{} km", metres / 1000.0) };
-    area.draw_text(&name, &style, (units(right + 6.0), units(y - 3.0)))?;
-    let style = text(SMALL, Colour::Label, HPos::Right, VPos::Center);
-    area.draw_text("north ↑", &style, (units(view.width() - 2.0), units(y - 3.0)))
+    for (name, x, anchor) in
+        [(name.as_str(), right + 6.0, Anchor::Start), ("north ↑", view.width() - 2.0, Anchor::End)]
+    {
+        area.text(name, (x, y - 3.0), &text(SMALL, Colour::Label, anchor, Height::Middle));
+    }
 }

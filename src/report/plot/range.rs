@@ -1,5 +1,7 @@
 //! Ranges of axes, and round lengths.
 
+use super::Point;
+
 /// The greatest number on an axis.
 const GREATEST: f64 = 1e7;
 
@@ -17,6 +19,16 @@ pub(super) fn around(values: impl Iterator<Item = f64>, least: f64) -> (f64, f64
     (bottom, (high + margin).max(bottom + least))
 }
 
+/// Returns the multiples of 1, 2, 5, 10 … inside a range with the smallest step of which there are at most `most`.
+pub(super) fn ticks((low, high): Point, most: usize) -> Vec<f64> {
+    let power = 10_f64.powf((high - low).log10().floor() - 2.0);
+    let steps = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0].map(|factor| factor * power);
+    let ends = |step: f64| ((low / step).ceil(), (high / step).floor());
+    let count = |step: &f64| ends(*step).1 - ends(*step).0 + 1.0;
+    let Some(step) = steps.into_iter().find(|step| count(step) <= most as f64) else { return Vec::new() };
+    (0..count(&step) as usize).map(|index| (ends(step).0 + index as f64) * step).collect()
+}
+
 /// Returns the longest length of 1, 2, 5, 10, 20, 50 … that is at most `most`.
 pub(super) fn round_length(most: f64) -> f64 {
     let power = 10_f64.powf(most.max(1.0).log10().floor());
@@ -32,6 +44,15 @@ mod tests {
         for (most, length) in [(0.3, 1.0), (1.0, 1.0), (4.9, 2.0), (6.0, 5.0), (99.0, 50.0), (100.0, 100.0)] {
             assert!((round_length(most) - length).abs() < 1e-9, "{most}");
         }
+    }
+
+    #[test]
+    fn ticks_are_round_numbers_inside() {
+        assert_eq!(ticks((-14.0, 225.0), 9), [0.0, 50.0, 100.0, 150.0, 200.0]);
+        assert_eq!(ticks((-3.9, 5.9), 5), [-2.0, 0.0, 2.0, 4.0]);
+        assert_eq!(ticks((11.95, 12.05), 3), [11.95, 12.0, 12.05]);
+        assert_eq!(ticks((3.0, 3.0), 5), [0.0; 0]);
+        assert_eq!(ticks((0.0, 1.0), 0), [0.0; 0]);
     }
 
     #[test]

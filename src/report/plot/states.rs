@@ -1,11 +1,7 @@
 //! The states of a flight over time.
 
-use plotters::chart::ChartBuilder;
-use plotters::element::{Rectangle, Text};
-use plotters::style::text_anchor::{HPos, VPos};
-
-use super::canvas::{filled, stroke, text, text_width, units};
-use super::chart::{BELOW, LEFT, RIGHT, SMALL, WIDTH, number};
+use super::axes::{ACROSS, Axes, BELOW, LEFT, SMALL, WIDTH};
+use super::canvas::{Anchor, Height, filled, text, text_width};
 use super::legend::Legend;
 use super::{Colour, Picture};
 
@@ -40,7 +36,7 @@ impl StateBar {
     /// Returns the bar as SVG.
     pub(in crate::report) fn svg(&self, picture: &Picture) -> String {
         let (from, to) = self.time;
-        let px_per_s = (WIDTH - LEFT - RIGHT) / (to - from);
+        let px_per_s = ACROSS / (to - from);
         let visible = || self.stays.iter().filter(|stay| (stay.to - stay.from) * px_per_s >= LEAST);
         let mut names: Vec<(Colour, f64, String)> = Vec::new();
         for stay in visible() {
@@ -48,35 +44,21 @@ impl StateBar {
                 names.push((stay.colour, 8.0, stay.name.to_owned()));
             }
         }
-        let legend = Legend::new(&names, WIDTH - LEFT - RIGHT);
+        let legend = Legend::new(&names, ACROSS);
         picture.draw((WIDTH, legend.height() + 6.0 + HEIGHT + BELOW), |area| {
-            legend.draw(area, (LEFT, 0.0))?;
-            let mut chart = ChartBuilder::on(area)
-                .margin_top(units(legend.height() + 6.0))
-                .margin_right(units(RIGHT))
-                .margin_left(units(LEFT))
-                .x_label_area_size(units(BELOW))
-                .build_cartesian_2d(from..to, 0.0..1.0)?;
-            chart
-                .configure_mesh()
-                .disable_mesh()
-                .axis_style(stroke(Colour::Axis, 1.0))
-                .x_labels(9)
-                .set_all_tick_mark_size(units(3.0))
-                .x_label_formatter(&|seconds| number(*seconds))
-                .label_style(text(SMALL, Colour::Label, HPos::Left, VPos::Top))
-                .draw()?;
-            let bars = visible()
-                .map(|stay| Rectangle::new([(stay.from, 0.0), (stay.to, 1.0)], filled(stay.colour, 1.0)));
-            chart.draw_series(bars)?;
+            legend.draw(area, (LEFT, 0.0));
+            let axes = Axes { x: self.time, y: (0.0, 1.0), top: legend.height() + 6.0, height: HEIGHT };
+            axes.below(area, 9);
+            for stay in visible() {
+                let corners = [axes.px((stay.from, 0.0)), axes.px((stay.to, 1.0))];
+                area.rectangle(corners, &filled(stay.colour, 1.0));
+            }
             let fitting =
                 |stay: &&Stay| text_width(&stay.label, SMALL) + 4.0 < (stay.to - stay.from) * px_per_s;
-            let labels = visible().filter(fitting).map(|stay| {
-                let style = text(SMALL, Colour::Paper, HPos::Center, VPos::Center);
-                Text::new(stay.label.clone(), (f64::midpoint(stay.from, stay.to), 0.5), style)
-            });
-            chart.draw_series(labels)?;
-            Ok(())
+            let style = text(SMALL, Colour::Paper, Anchor::Middle, Height::Middle);
+            for stay in visible().filter(fitting) {
+                area.text(&stay.label, axes.px((f64::midpoint(stay.from, stay.to), 0.5)), &style);
+            }
         })
     }
 }

@@ -1,9 +1,7 @@
 //! Lines, areas and points under a flight.
 
-use plotters::element::{Circle, PathElement, Polygon};
-
 use super::view::View;
-use crate::report::plot::canvas::{Area, Failure, filled, stroke, units};
+use crate::report::plot::canvas::{Area, filled, stroke};
 use crate::report::plot::{Colour, Point, simplify};
 
 /// The most names.
@@ -47,10 +45,10 @@ impl Ground {
 /// Draws the shapes, with at most so many points in all. Returns the names with their places, px.
 pub(super) fn draw<'g>(
     shapes: &'g [Ground],
-    area: &Area<'_>,
+    area: &mut Area,
     view: &View,
     most_points: usize,
-) -> Result<Vec<(Point, &'g str)>, Failure> {
+) -> Vec<(Point, &'g str)> {
     let frame = view.frame();
     let mut points_left = most_points;
     let mut names = Vec::new();
@@ -65,32 +63,31 @@ pub(super) fn draw<'g>(
             let inside = simplify::simplified(&frame.ring(ring), points_left);
             points_left = points_left.saturating_sub(inside.len());
             named_at = middle(&inside);
-            area.draw(&Polygon::new(to_units(&inside), filled(shape.colour(), shape.opacity())))?;
+            area.polygon(&inside, &filled(shape.colour(), shape.opacity()));
         }
         for line in &lines {
             if let [place] = line[..]
                 && frame.contains(place)
             {
                 named_at.get_or_insert(place);
-                let (x, y) = place;
-                area.draw(&Circle::new((units(x), units(y)), units(2.0), filled(shape.colour(), 1.0)))?;
+                area.circle(place, 2.0, &filled(shape.colour(), 1.0));
             }
             for part in frame.line(line) {
                 if points_left == 0 {
-                    return Ok(names);
+                    return names;
                 }
                 let part = simplify::simplified(&part, points_left);
                 points_left = points_left.saturating_sub(part.len());
                 let half = part.len().saturating_sub(1) / 2;
                 named_at = named_at.or_else(|| middle(part.get(half..half + 2)?));
                 let width = if shape.kind == GroundKind::Plain { 1.0 } else { 1.5 };
-                area.draw(&PathElement::new(to_units(&part), stroke(shape.colour(), width)))?;
+                area.line(&part, &stroke(shape.colour(), width));
             }
         }
         names.extend(named_at.filter(|_| !shape.name.is_empty()).map(|at| (at, shape.name.as_str())));
     }
     names.truncate(MOST_NAMES);
-    Ok(names)
+    names
 }
 
 /// Returns the mean of some points.
@@ -98,8 +95,4 @@ fn middle(points: &[Point]) -> Option<Point> {
     let count = points.len() as f64;
     let (x, y) = points.iter().fold((0.0, 0.0), |(x, y), point| (x + point.0, y + point.1));
     (count > 0.0).then_some((x / count, y / count))
-}
-
-fn to_units(line: &[Point]) -> Vec<(i32, i32)> {
-    line.iter().map(|(x, y)| (units(*x), units(*y))).collect()
 }

@@ -1,7 +1,6 @@
 //! Metres on the ground as pixels of a map.
 
 use crate::report::plot::Point;
-use crate::report::plot::canvas::units;
 use crate::report::plot::clip::Frame;
 
 /// Width of a map, px.
@@ -76,12 +75,6 @@ impl View {
     /// Returns the rectangle of the map, px.
     pub(super) fn frame(&self) -> Frame {
         Frame { low: (0.5, self.top + 0.5), high: (WIDTH - 0.5, self.bottom() - 0.5) }
-    }
-
-    /// Returns the corners of the map, units of the drawing.
-    pub(super) fn corners(&self) -> [(i32, i32); 2] {
-        let Frame { low, high } = self.frame();
-        [low, high].map(|(x, y)| (units(x), units(y)))
     }
 }
 
