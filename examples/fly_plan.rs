@@ -1,8 +1,8 @@
 //! Flies a plan and prints its margins: how close the true path came to the limits of each waypoint.
 //!
 //! ```sh
-//! cargo run --release -p betadeck-core --example fly_plan            # the built-in plan `land`, once
-//! cargo run --release -p betadeck-core --example fly_plan -- 3 plans/square.toml
+//! cargo run --release -p betadeck-core --example fly_plan            # the built-in plan `square`, once
+//! cargo run --release -p betadeck-core --example fly_plan -- 3 plans/takeoff.toml
 //! ```
 //!
 //! The first argument is the number of flights, each with another seed; the second a plan file. The exit code is 1 if a
@@ -13,7 +13,7 @@ use std::error::Error;
 use std::process::ExitCode;
 
 use betadeck_core::flight::{Flight, FlightEnd, FlightOptions, FlightResult, FlightSetup};
-use betadeck_core::plan::builtin::BuiltinPlan;
+use betadeck_core::plan::builtin::{BuiltinPlan, DEMO};
 use betadeck_core::plan::format::{Format, PlanFile, parse, report};
 
 fn main() -> Result<ExitCode, Box<dyn Error>> {
@@ -31,14 +31,14 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
     Ok(ExitCode::from(u8::from(!all_complete)))
 }
 
-/// Reads a plan file, or the built-in plan without one.
+/// Reads a plan file; without a path, the built-in demo plan.
 fn read(path: Option<String>) -> Result<PlanFile, Box<dyn Error>> {
     let read = match path {
         Some(path) => {
             let text = std::fs::read_to_string(&path)?;
             parse(&path, &text, Format::of_contents(text.as_bytes()))
         }
-        None => BuiltinPlan::find("land").ok_or("no such plan")?.read(),
+        None => BuiltinPlan::find(DEMO).ok_or("no such plan")?.read(),
     };
     read.map_err(|errors| report(&errors).into())
 }

@@ -14,14 +14,14 @@ use std::process::ExitCode;
 
 use betadeck_core::flight::{Flight, FlightOptions, FlightResult, FlightSetup};
 use betadeck_core::nalgebra::Vector3;
-use betadeck_core::plan::builtin::BuiltinPlan;
+use betadeck_core::plan::builtin::{BuiltinPlan, DEMO};
 use betadeck_core::plan::format::report;
 use betadeck_core::sim::AIR_TICK_US;
 
 /// Returns the velocity of the air at a time since boot, s, and a place, ENU from home, m: ENU, m/s.
 fn wind(time_s: f64, place: &Vector3<f64>) -> Vector3<f64> {
-    // The front comes a minute after boot, within ten seconds: 2 m/s to the east turn into 7 m/s to the south.
-    let share = ((time_s - 60.0) / 10.0).clamp(0.0, 1.0);
+    // The front comes 100 s after boot, within ten seconds: 2 m/s to the east turn into 7 m/s to the south.
+    let share = ((time_s - 100.0) / 10.0).clamp(0.0, 1.0);
     let mean = Vector3::new(2.0, 0.0, 0.0).lerp(&Vector3::new(0.0, -7.0, 0.0), share);
     // The wave stands over the ground, 80 m from crest to crest, and dies out near the ground.
     let height = (place.z / 10.0).clamp(0.0, 1.0);
@@ -66,7 +66,7 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
 
 /// Flies the plan from boot to the verdict in this air.
 fn fly(seed: u64, air: fn(f64, &Vector3<f64>) -> Vector3<f64>) -> Result<Flown, Box<dyn Error>> {
-    let plan = BuiltinPlan::find("land").ok_or("no such plan")?.read().map_err(|errors| report(&errors))?;
+    let plan = BuiltinPlan::find(DEMO).ok_or("no such plan")?.read().map_err(|errors| report(&errors))?;
     let mut setup = FlightSetup { plan: plan.clone(), ..FlightSetup::default() };
     setup.stored.plan = plan.plan;
     setup.world.seed = seed;

@@ -2,6 +2,11 @@
 //!
 //! A value comes from the first of these sources: the command line, the environment (`BETADECK_…`), the configuration
 //! file, the default. This module only turns texts into values: it reads no file, no environment and no clock.
+#![allow(
+    rustdoc::bare_urls,
+    rustdoc::broken_intra_doc_links,
+    reason = "the comments of options are the text of --help"
+)]
 
 mod backdrop;
 mod betaloop;

@@ -101,7 +101,5 @@ pub mod text;
 pub mod timeline;
 pub mod vehicle;
 
-use flight::{Flight, FlightOptions, FlightSetup};
 /// Vectors and rotations in the public signatures of this crate.
 pub use nalgebra;
-use vehicle::Vehicle;

@@ -7,12 +7,12 @@
 //!                                  draw(&AppState) ─► Frame
 //! ```
 //!
-//! * [`update`] alone changes [`AppState`]. It has no access to a clock (time comes as [`Msg::Clock`]), the terminal or
+//! * `update` alone changes [`AppState`]. It has no access to a clock (time comes as [`Msg::Clock`]), the terminal or
 //!   a channel, and returns [`Effect`]s, which are data.
 //! * [`Shared`] is the part of the state that every panel, popup and sentence may read: the picture of the session, the
 //!   editor, theme, units, keys, size and time. The state of a single panel and the popups are beside it in
 //!   [`AppState`], which only `update`, `draw` and `prompt` know.
-//! * [`draw`] only reads. [`layout`] computes everything that depends on the screen size; both use it.
+//! * `draw` only reads. [`layout`] computes everything that depends on the screen size; both use it.
 //! * A panel reads [`Shared`] and its own state, and returns requests. `update` alone carries them out.
 //! * Every key is a named [`action`]: keymap, hint bar, help, palette and the `:` line are read from one table. A
 //!   [`command`] takes an argument and returns requests, which `update` carries out.
@@ -24,7 +24,7 @@
 //!   once, `other_flight` a second one beside it,
 //!   `map_point` the places on the map, `viewport` its window, `map_edit` the edits on it, `backdrop` the files under it,
 //!   and `timeline` the timeline of the recording.
-//! * [`run`] is the shell around it: it waits for the terminal, the session and the clock, and carries out the effects.
+//! * `run` is the shell around it: it waits for the terminal, the session and the clock, and carries out the effects.
 //!
 //! `editor` holds the open plans. `update` handles messages, one file per subject. `prompt` asks the questions of the
 //! popups line by line in `--plain` mode, which has no screen. `status_bar` draws the two lines at the top and says them in

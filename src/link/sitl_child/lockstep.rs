@@ -1,5 +1,5 @@
 //! An unmodified SITL executable in simulated time. A library that is preloaded into it gives it its clock and the packets
-//! of the simulator, so that it computes one step for each [`Grant`] and then waits. Its clock, its motors and its answers
+//! of the simulator, so that it computes one step for each `Grant` and then waits. Its clock, its motors and its answers
 //! depend on what it was given only, and not on the machine.
 //!
 //! ```text
