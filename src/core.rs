@@ -20,7 +20,7 @@
 //! let mut flight = Flight::new(vehicle, &FlightOptions::default()).unwrap();
 //!
 //! // Step it tick by tick. Read the truth and the firmware's estimate of it, east and north of home, m.
-//! while flight.vehicle().time().as_secs_f64() < 60.0 {
+//! while flight.vehicle().time().as_secs_f64() < 35.0 {
 //!     flight.tick(|event| println!("{event:?}"));
 //! }
 //! let (truth, estimate) = (flight.vehicle().truth().unwrap(), flight.vehicle().estimate_view());
@@ -33,12 +33,13 @@
 //! branch.change_world(WorldCommand::parse("fault=gps-loss")?)?;
 //! branch.apply(&VehicleCommand::StopPilot);
 //! let mut sticks = branch.transmitter().sticks(); // µs: roll, pitch, throttle, yaw, AUX1 …
+//! sticks.channels[5] = 1000; // AUTOPILOT off
 //! for second in 0..5 {
 //!     sticks.channels[3] = 1500 + 40 * second;
 //!     branch.apply(&VehicleCommand::Sticks(sticks));
 //!     (0..1000).for_each(|_| branch.tick());
 //! }
-//! assert!(branch.controller().is_armed());
+//! assert!(branch.controller().is_armed() && branch.truth().unwrap().pos_enu.z > 5.0);
 //! # Ok(())
 //! # }
 //! ```
