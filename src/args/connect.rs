@@ -10,9 +10,9 @@ pub struct ConnectArgs {
     /// A remote flight controller: serial:DEVICE[,BAUD], tcp:HOST:PORT or ws:URL; nothing is simulated
     ///
     /// serial:/dev/ttyACM0 is a board on a USB cable, tcp:192.168.4.1:5761 or ws://10.0.0.2:6761 one behind a bridge;
-    /// wss:// is encrypted. Telemetry, command line and the plan are read from it. Changes need your permission once a
-    /// connection. betadeck never arms it and turns no motor. A lost connection is restored automatically. The doors
-    /// stay closed, except those whose port is given (--tcp-port, --ws-port).
+    /// wss:// is encrypted, in a program built with `--features tls`. Telemetry, command line and the plan are read from
+    /// it. Changes need your permission once a connection. betadeck never arms it and turns no motor. A lost connection
+    /// is restored automatically. The doors stay closed, except those whose port is given (--tcp-port, --ws-port).
     #[arg(long, value_name = "PLACE", conflicts_with_all = ["firmware", "betaloop", "physics"], help_heading = "Flight controller")]
     pub connect: Option<FcPlace>,
 }

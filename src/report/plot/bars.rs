@@ -59,7 +59,7 @@ impl Bars {
         let has_words = self.bars.iter().any(|bar| !bar.word.is_empty());
         let axes = Axes { x, y: (0.0, most), top, height: HEIGHT };
         axes.draw(area, (if has_words { 0 } else { 9 }, 5), " %");
-        for style in [filled(Colour::First, 0.45), stroke(Colour::First, 1.0)] {
+        for style in [filled(Colour::First, 0.45), stroke(Colour::First, 0.25)] {
             for bar in &self.bars {
                 area.rectangle([axes.px((bar.from, 0.0)), axes.px((bar.to, bar.share))], &style);
             }

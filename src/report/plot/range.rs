@@ -50,7 +50,7 @@ mod tests {
     fn ticks_are_round_numbers_inside() {
         assert_eq!(ticks((-14.0, 225.0), 9), [0.0, 50.0, 100.0, 150.0, 200.0]);
         assert_eq!(ticks((-3.9, 5.9), 5), [-2.0, 0.0, 2.0, 4.0]);
-        assert_eq!(ticks((11.95, 12.05), 3), [11.95, 12.0, 12.05]);
+        assert_eq!(ticks((1180.0, 1221.0), 3), [1180.0, 1200.0, 1220.0]);
         assert_eq!(ticks((3.0, 3.0), 5), [0.0; 0]);
         assert_eq!(ticks((0.0, 1.0), 0), [0.0; 0]);
     }
