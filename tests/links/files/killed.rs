@@ -45,7 +45,7 @@ fn killed_savers_leave_old_or_new() {
     let program = std::env::current_exe().expect("this program");
     for round in 0..200_usize {
         let mut child = Command::new(&program)
-            .args(["--exact", "killed::child_saves_for_ever", "--ignored", "--nocapture"])
+            .args(["--exact", "files::killed::child_saves_for_ever", "--ignored", "--nocapture"])
             .env(CHILD_DIRECTORY, directory.path())
             .stdout(Stdio::piped())
             .spawn()

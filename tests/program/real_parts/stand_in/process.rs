@@ -11,7 +11,7 @@ use super::program::{End, Ports, Shared, Sockets, live};
 /// it.)
 pub(crate) const VARIABLE: &str = "STAND_IN";
 /// The test that the child runs.
-const PROGRAM: &str = "stand_in::process::the_program";
+const PROGRAM: &str = "real_parts::stand_in::process::the_program";
 const IMAGE: &str = "eeprom.bin";
 
 /// The fault of a stand-in.
