@@ -131,6 +131,7 @@ pub struct Estimate {
 impl Estimate {
     /// Returns the inputs of the autopilot at `time`, `dt` seconds after the last ones, so far as the estimate has them.
     /// The rest is that of a disarmed craft with nothing known.
+    #[doc(hidden)]
     pub fn nav_inputs(&self, time: SimTime, dt: f64) -> NavInputs {
         NavInputs {
             time,
