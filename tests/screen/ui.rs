@@ -7,7 +7,7 @@ mod conversions;
 mod diff;
 mod editor;
 mod first_minutes;
-mod fixture;
+pub(crate) mod fixture;
 mod flights;
 mod forecast;
 mod four_sizes;

@@ -17,10 +17,9 @@ use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 
 mod clients;
-#[path = "ui/fixture.rs"]
-mod fixture;
 mod stand_in;
 
+use crate::ui::fixture;
 use stand_in::{DELAY, StandIn};
 
 const THROTTLE: usize = 2;

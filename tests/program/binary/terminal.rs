@@ -298,7 +298,8 @@ fn the_shell_finds_its_line_discipline_unchanged() {
 #[test]
 fn a_panic_gives_the_terminal_back_before_it_is_reported() {
     let itself = std::env::current_exe().expect("this test");
-    let arguments = ["--ignored", "--exact", "binary::terminal::panics_with_the_terminal_taken", "--nocapture"];
+    let arguments =
+        ["--ignored", "--exact", "binary::terminal::panics_with_the_terminal_taken", "--nocapture"];
     let mut terminal = Terminal::start(80, 24, itself.to_str().expect("a plain path"), &arguments);
     let before = Terminal::start(80, 24, "cat", &[]).discipline();
     assert_eq!(terminal.end(), 0, "{}", terminal.raw());
