@@ -35,7 +35,7 @@ pub(super) async fn connector(uri: &Uri) -> io::Result<Option<Connector>> {
 
 /// Returns an error of TLS as part of a sentence, or `None` for another error.
 pub(super) fn refusal(error: &io::Error) -> Option<String> {
-    match error.get_ref()?.downcast_ref()? {
+    match error.get_ref()?.downcast_ref::<rustls::Error>()? {
         rustls::Error::InvalidCertificate(why) => Some(format!("its certificate is not trusted ({why})")),
         error => Some(format!("TLS fails: {error}")),
     }
