@@ -75,7 +75,7 @@ fn section(text: &str) -> Result<BTreeMap<&str, &str>, BetaloopError> {
         } else if !line.is_empty() && !line.starts_with([';', '#']) {
             let (key, value) = line.split_once(['=', ':']).unwrap_or((line, ""));
             if key.trim().is_empty() {
-                return Err(BetaloopError::Form(format!("line {number}: there is no name before the value")));
+                return Err(BetaloopError::Form(format!("line {number}: the value has no name")));
             }
             if let Some(section) = section.as_mut().filter(|_| is_inside) {
                 section.insert(key.trim(), value.trim());

@@ -38,7 +38,7 @@ enum Shape {
 pub struct DistributionError {
     /// The problem, as a part of a sentence.
     pub message: String,
-    /// What to write instead.
+    /// The replacement, for the message.
     pub hint: String,
 }
 

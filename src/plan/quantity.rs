@@ -98,7 +98,7 @@ impl Seconds {
         self.0
     }
 
-    /// Returns `true` if there is no time.
+    /// Returns `true` for a duration of 0.
     pub fn is_zero(self) -> bool {
         self.0 <= 0.0
     }

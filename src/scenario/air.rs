@@ -20,7 +20,7 @@ pub struct WindText(String);
 pub struct WindProblem {
     /// The problem, as a part of a sentence.
     pub message: String,
-    /// What to write instead; may be empty.
+    /// The replacement, for the message; may be empty.
     pub hint: String,
 }
 

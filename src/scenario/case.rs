@@ -177,7 +177,7 @@ pub struct Expectation {
     pub expected: Expected,
 }
 
-/// What is expected of a flight.
+/// An expectation of a flight.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Expected {
     /// The flight ends with one of these results.

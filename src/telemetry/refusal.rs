@@ -24,9 +24,9 @@ pub enum Refusal {
     NotArmed,
     /// The throttle has not been raised since arming.
     Throttle,
-    /// There is no fix.
+    /// The craft has no GPS fix.
     NoFix,
-    /// There is no altitude.
+    /// The altitude is not known.
     NoAltitude,
     /// The heading is unknown.
     NoHeading,

@@ -42,7 +42,7 @@ pub(super) struct Ended {
 /// A flight flown ahead of time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Forecast {
-    /// What was flown ahead of time.
+    /// The kind of flight that was flown ahead of time.
     pub kind: ForecastKind,
     /// The end of the flight.
     pub end: ForecastEnd,

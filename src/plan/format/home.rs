@@ -28,7 +28,7 @@ pub enum HomeError {
     Value {
         /// The problem, as a sentence without its full stop.
         message: String,
-        /// What to write instead.
+        /// The replacement, for the message.
         hint: String,
     },
 }

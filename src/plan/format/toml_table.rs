@@ -31,7 +31,7 @@ impl<'t, 'i> TomlTable<'t, 'i> {
         &self.what
     }
 
-    /// Returns the place of the table in the text, bytes.
+    /// Returns the byte range of the table in the text.
     pub fn span(&self) -> Range<usize> {
         self.span.clone()
     }

@@ -11,7 +11,7 @@ pub struct SyntaxError {
     pub span: Range<usize>,
     /// The problem, as a part of a sentence.
     pub message: String,
-    /// What to write instead; may be empty.
+    /// The replacement, for the message; may be empty.
     pub hint: String,
 }
 
