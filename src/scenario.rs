@@ -59,6 +59,3 @@ pub use metric::{Metric, metrics};
 pub use run::{CaseFlight, FlightHash, Flown};
 pub use trace::{KnownPlan, NearestGuard, Sample, Stay, Trace};
 pub use varied::{Change, Choice, NumberInput, Spread, Tolerance, VariedInput};
-
-#[cfg(test)]
-mod tests;

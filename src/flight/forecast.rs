@@ -245,6 +245,3 @@ pub(super) fn refusal(RefusedLine { line, reply }: &RefusedLine) -> String {
 fn change(vehicle: &mut Vehicle, command: WorldCommand) -> Result<(), String> {
     vehicle.change_world(command).map_err(|error| error.to_string())
 }
-
-#[cfg(test)]
-mod tests;

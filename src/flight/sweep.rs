@@ -211,6 +211,3 @@ fn land_of(vehicle: &Vehicle) -> Option<Vector2<f64>> {
     let land = plan.waypoints.iter().find(|waypoint| waypoint.kind == WaypointType::Land)?.position;
     Some(frame.to_enu(land.lat_deg(), land.lon_deg(), frame.alt_amsl_m).xy())
 }
-
-#[cfg(test)]
-mod tests;

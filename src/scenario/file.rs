@@ -470,3 +470,25 @@ struct Craft {
     options: crate::flight::FlightOptions,
     pilot: bool,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::expression::{MAX_NAME, MAX_TERMS};
+
+    #[test]
+    fn the_reference_names_the_bounds() {
+        let reference = include_str!("../../docs/scenarios.md");
+        let table =
+            reference.split("<!-- BOUNDS -->").nth(1).and_then(|rest| rest.split("<!-- end -->").next());
+        let table = table.expect("a table of bounds").replace(' ', "");
+        for bound in [MAX_TERMS, MAX_NAME, MAX_FLIGHTS] {
+            assert!(table.contains(&bound.to_string()), "{bound}");
+        }
+        for (of, most) in BOUNDS {
+            let row = table.lines().find(|row| row.starts_with(&format!("|{}", of.replace(' ', ""))));
+            let row = row.unwrap_or_else(|| panic!("no row for {of}"));
+            assert!(row.contains(&most.to_string()), "{row}: {most}");
+        }
+    }
+}

@@ -212,3 +212,25 @@ fn set(boot_lines: &mut Vec<BootLines>, setting: &str) {
         None => boot_lines.push(BootLines { source: OWN_LINES[0].to_owned(), text: line }),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use strum::IntoEnumIterator as _;
+
+    use super::*;
+
+    #[test]
+    fn every_built_in_craft_takes_every_tolerance_of_twenty_per_cent() {
+        for name in crate::sim::BUILTIN_NAMES {
+            for (of, percent) in Tolerance::iter().flat_map(|of| [(of, -20.0), (of, 20.0)]) {
+                let airframe = name.parse().unwrap();
+                let mut world = crate::sim::WorldConfig { airframe, ..Default::default() };
+                of.apply(percent, &mut world.airframe, &mut world.switches);
+                for rate_hz in [400, 500, 1000, 8000] {
+                    world.rate_hz = rate_hz;
+                    assert_eq!(world.check(), Ok(()), "{name} {} {percent} {rate_hz}", of.key());
+                }
+            }
+        }
+    }
+}

@@ -7,3 +7,4 @@ mod faults;
 mod language;
 mod repeat;
 mod rig;
+mod texts;

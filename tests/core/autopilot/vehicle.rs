@@ -83,9 +83,9 @@ impl Case {
     }
 }
 
-/// Calls `fly` for both sets of gains and every hover throttle, with exact sensors and with real ones over
-/// ten seeds.
-fn each(mut fly: impl FnMut(Case)) {
+/// Calls `fly` for every `n`-th case of both sets of gains and every hover throttle, with exact sensors and with real
+/// ones over ten seeds.
+fn every(n: usize, fly: impl FnMut(Case)) {
     let plain = Case {
         name: "default gains",
         settings: "",
@@ -95,14 +95,18 @@ fn each(mut fly: impl FnMut(Case)) {
         wind: Wind::CALM,
         gust_mps: 0.0,
     };
+    let mut cases = Vec::new();
     for gains in [plain, Case { name: "guide's gains", settings: GUIDE, ..plain }] {
-        for hover in HOVERS {
-            fly(Case { hover, ..gains });
-        }
-        for (seed, hover) in SEEDS.zip(HOVERS.into_iter().cycle()) {
-            fly(Case { hover, noise: Noise::Real, seed, ..gains });
-        }
+        cases.extend(HOVERS.map(|hover| Case { hover, ..gains }));
+        let real = SEEDS.zip(HOVERS.into_iter().cycle());
+        cases.extend(real.map(|(seed, hover)| Case { hover, noise: Noise::Real, seed, ..gains }));
     }
+    cases.into_iter().step_by(n).for_each(fly);
+}
+
+/// Calls `fly` for all cases.
+fn each(fly: impl FnMut(Case)) {
+    every(1, fly);
 }
 
 /// A waypoint in metres north and east of home.
@@ -216,9 +220,10 @@ fn entered(log: &[Sample], state: NavState, wp: u8) -> f64 {
     found.unwrap_or_else(|| panic!("never {state} at {wp}")).t
 }
 
-#[test]
-fn cruise_and_cross_track() {
-    each(|case| {
+part_and_search!(cruise_and_cross_track, every 5, cruise_keeps_the_line_and_the_speed, cruise_keeps_the_line_and_the_speed_in_every_case);
+
+fn cruise_and_cross_track(n: usize) {
+    every(n, |case| {
         for (wind, from, bound) in
             [(0.0, 0.0, 0.5), (5.0, 270.0, 2.0), (8.0, 270.0, 3.0), (5.0, 0.0, 0.5), (5.0, 180.0, 0.5)]
         {
@@ -237,11 +242,12 @@ fn cruise_and_cross_track() {
     });
 }
 
-/// Cruises near the limit of the lean: 25° carries an `iris` to 12.4 m/s through the air, and nine tenths of
-/// that is requested.
-#[test]
-fn cruise_near_the_limit_of_the_lean() {
-    each(|case| {
+// Cruises near the limit of the lean: 25° carries an `iris` to 12.4 m/s through the air, and nine tenths of
+// that is requested.
+part_and_search!(cruise_near_the_limit_of_the_lean, every 5, cruise_near_the_limit_keeps_the_speed, cruise_near_the_limit_keeps_the_speed_in_every_case);
+
+fn cruise_near_the_limit_of_the_lean(n: usize) {
+    every(n, |case| {
         for (leg, wind) in [(10.0, 0.0), (6.0, 5.0), (3.0, 8.0)] {
             let case = case.wind(wind, 0.0, 0.0);
             let line = [point("FLYOVER", 10.0, 0.0, 20.0, leg), point("FLYOVER", 300.0, 0.0, 20.0, leg)];
@@ -275,9 +281,10 @@ fn start_from_rest_and_stop_from_10_mps() {
     });
 }
 
-#[test]
-fn hold() {
-    each(|case| {
+part_and_search!(hold, every 5, a_hold_stays_at_its_place, a_hold_stays_at_its_place_in_every_case);
+
+fn hold(n: usize) {
+    every(n, |case| {
         let airs = [(0.0, 0.0, 0.3), (5.0, 0.8, 0.8), (8.0, 1.5, 1.3)];
         let flights = airs.into_iter().flat_map(|air| case.gust_seeds(air.1).map(move |case| (case, air)));
         for (case, (wind, gust, bound)) in flights {
@@ -295,9 +302,10 @@ fn hold() {
     });
 }
 
-#[test]
-fn orbit() {
-    each(|case| {
+part_and_search!(orbit, every 5, an_orbit_keeps_its_radius_and_pace, an_orbit_keeps_its_radius_and_pace_in_every_case);
+
+fn orbit(n: usize) {
+    every(n, |case| {
         for (wind, bound) in [(0.0, 0.6), (5.0, 1.0)] {
             let case = case.wind(wind, 270.0, 0.0);
             let ring = Point { pattern: "ORBIT", ..point("HOLD", 60.0, 0.0, 20.0, 5.0) };
@@ -316,9 +324,10 @@ fn orbit() {
     });
 }
 
-#[test]
-fn corners() {
-    each(|case| {
+part_and_search!(corners, every 5, corners_are_flown_as_their_kind_says, corners_are_flown_as_their_kind_says_in_every_case);
+
+fn corners(n: usize) {
+    every(n, |case| {
         for kind in ["FLYOVER", "FLYBY"] {
             let corner = [point(kind, 60.0, 0.0, 20.0, 5.0), point("FLYOVER", 60.0, 120.0, 20.0, 5.0)];
             let log = fly(case, &corner, 20.0, 90.0, complete);
@@ -346,9 +355,10 @@ fn corners() {
     });
 }
 
-#[test]
-fn altitude() {
-    each(|case| {
+part_and_search!(altitude, every 5, the_altitude_is_reached_and_kept, the_altitude_is_reached_and_kept_in_every_case);
+
+fn altitude(n: usize) {
+    every(n, |case| {
         let log = fly(case, &[point("HOLD", 0.0, 0.0, 50.0, 0.0)], 10.0, 60.0, never);
         let overshoot = worst(log.iter().map(|s| s.alt - 50.0));
         let late = worst(log.iter().filter(|s| s.t > 20.0).map(|s| (s.alt - 50.0).abs()));

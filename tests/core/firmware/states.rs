@@ -29,7 +29,7 @@ use rand_chacha::ChaCha8Rng;
 use crew::Crew;
 use law::Law;
 
-const FLIGHTS: u64 = 250;
+const FLIGHTS: usize = 250;
 /// Seeds that once found a fault: a craft that was level for a moment while it tipped over.
 const FOUND: [u64; 1] = [1990];
 /// The number of navigator updates in a flight.
@@ -160,8 +160,9 @@ impl Drop for Place {
     }
 }
 
-#[test]
-fn no_event_breaks_the_firmware() {
+part_and_search!(no_event_breaks_it, every 4, no_event_breaks_the_firmware, no_event_breaks_the_firmware_in_many_flights);
+
+fn no_event_breaks_it(n: usize) {
     let mut base = Run::ready();
     let mut crew = Crew::default();
     while !crew.is_done() {
@@ -171,7 +172,8 @@ fn no_event_breaks_the_firmware() {
     let mut seen = BTreeSet::new();
     let mut happened = BTreeSet::new();
     let (mut updates, mut armings) = (0_u64, 0_u64);
-    for seed in (0..FLIGHTS).chain(FOUND) {
+    let flights = FLIGHTS / n;
+    for seed in (0..flights as u64).chain(FOUND) {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let mut run = base.clone();
         run.law.forget();
@@ -199,8 +201,9 @@ fn no_event_breaks_the_firmware() {
         seen.append(&mut run.law.seen);
     }
     println!("{updates} updates, {armings} armings, {} kinds of transitions", seen.len());
-    for needed in law::NEEDED {
+    // A part of the flights does not see each of them.
+    for needed in law::NEEDED.iter().filter(|_| n == 1) {
         assert!(seen.contains(*needed), "{needed} never happened: {seen:#?}");
     }
-    assert!(armings > FLIGHTS, "{armings}");
+    assert!(armings > flights as u64, "{armings}");
 }

@@ -27,8 +27,9 @@ fn a_rescue_by_switch_that_loses_its_gps_descends_to_the_ground_at_its_own_rate(
     }
 }
 
-#[test]
-fn motors_stop_on_the_ground_wherever_a_rescue_loses_its_gps() {
+part_and_search!(rescues, every 3, motors_stop_on_the_ground_wherever_a_rescue_loses_its_gps, motors_stop_on_the_ground_wherever_a_rescue_loses_its_gps_in_every_case);
+
+fn rescues(n: usize) {
     let mut faults = Vec::new();
     for kind in kinds() {
         for (landing_rate, detection) in [(50, 10), (200, 5)] {
@@ -40,7 +41,7 @@ fn motors_stop_on_the_ground_wherever_a_rescue_loses_its_gps() {
             let mut rig = Rig::new(kind, &lines);
             rig.parked(climbing_us(kind), 60.0).rescue();
             // In the climb at the start, on the way, over home, and in the landing.
-            for after_s in [0.5, 2.0, 5.0, 9.0, 14.0, 22.0, 30.0, 40.0] {
+            for after_s in [0.5, 2.0, 5.0, 9.0, 14.0, 22.0, 30.0, 40.0].into_iter().step_by(n) {
                 let mut rig = rig.clone();
                 rig.fly(after_s);
                 if rig.disarmed.is_some() || rig.plant.height_m() < 1.0 {
@@ -58,9 +59,11 @@ fn motors_stop_on_the_ground_wherever_a_rescue_loses_its_gps() {
     assert!(faults.is_empty(), "{} faults:\n{}", faults.len(), faults.join("\n"));
 }
 
-#[test]
-fn motors_stop_on_the_ground_whatever_the_craft_does_when_the_failsafe_descent_begins() {
+part_and_search!(failsafe_descents, every 7, motors_stop_on_the_ground_whatever_the_craft_does_when_the_failsafe_descent_begins, motors_stop_on_the_ground_whatever_the_craft_does_when_the_failsafe_descent_begins_in_every_case);
+
+fn failsafe_descents(n: usize) {
     let mut faults = Vec::new();
+    let mut number = 0;
     for kind in kinds() {
         for (has_gps, landing_rate, impact_mps) in
             [(true, 50, 2.2), (false, 50, 2.2), (true, 200, 2.6), (false, 200, 2.6)]
@@ -79,6 +82,10 @@ fn motors_stop_on_the_ground_whatever_the_craft_does_when_the_failsafe_descent_b
                 [(20.0, 0.0), (20.0, 0.7), (20.0, 4.0), (20.0, -0.5), (30.0, -3.0), (60.0, -10.0)]
             {
                 for throttle in [1000, 1300, 1800] {
+                    number += 1;
+                    if number % n != 0 {
+                        continue;
+                    }
                     let mut rig = rig.clone();
                     rig.throttle(throttle);
                     rig.plant.place(height_m, climb_mps);

@@ -108,13 +108,14 @@ fn each_arming_has_its_log_and_all_can_be_in_one_file() {
     }
 }
 
-#[test]
-fn a_log_that_is_cut_anywhere_is_read_to_its_last_whole_frame() {
+part_and_search!(a_cut_log_is_read, every 13, a_log_that_is_cut_anywhere_is_read_to_its_last_whole_frame, a_log_that_is_cut_anywhere_is_read_to_its_last_whole_frame_at_every_byte);
+
+fn a_cut_log_is_read(n: usize) {
     let mut flown = Flown::boot(1000, &["blackbox_sample_rate = 1/4"]);
     flown.hop(0.5);
     let bytes = &flown.logs[0];
     let whole = reader::read(bytes);
-    for end in whole.header + 200..bytes.len() {
+    for end in (whole.header + 200..bytes.len()).step_by(n) {
         let cut = reader::read(&bytes[..end]);
         assert_eq!(cut.parts[..], whole.parts[..cut.parts.len()], "cut at {end}");
         if end % 37 == 0 {

@@ -25,13 +25,19 @@ fn complaint(name: &str, airframe: Airframe, takeoff_m: f64, seed: u64) -> Optio
         .map(|reported| format!("{name}, {}, takeoff {takeoff_m} m, seed {seed}: {reported}", airframe.name))
 }
 
-fn all(seeds: impl Fn(usize) -> Vec<u64>) -> impl Iterator<Item = Option<String>> {
+/// Flies every `n`-th of all take-offs with these seeds.
+fn every(n: usize, seeds: impl Fn(usize) -> Vec<u64>) -> impl Iterator<Item = Option<String>> {
     let airframes = [Airframe::iris(), Airframe::five_inch()];
     let mut rows = Vec::new();
+    let mut number = 0;
     for plan in PLANS {
         for airframe in &airframes {
             for height in HEIGHTS_M {
-                for seed in seeds(rows.len()) {
+                number += 1;
+                if number % n != 0 {
+                    continue;
+                }
+                for seed in seeds(number) {
                     rows.push(complaint(plan.name, airframe.clone(), height, seed));
                 }
             }
@@ -42,13 +48,13 @@ fn all(seeds: impl Fn(usize) -> Vec<u64>) -> impl Iterator<Item = Option<String>
 
 #[test]
 fn every_built_in_plan_takes_off_to_any_height_on_both_airframes() {
-    assert_none(all(|row| vec![row as u64 % 5 + 1]));
+    assert_none(every(7, |row| vec![row as u64 % 5 + 1]));
 }
 
 #[test]
-#[ignore = "660 flights: cargo test --release --test core missions -- --ignored"]
+#[ignore = "search: 660 flights"]
 fn every_built_in_plan_takes_off_to_any_height_on_both_airframes_with_five_seeds() {
-    assert_none(all(|_| (1..=5).collect()));
+    assert_none(every(1, |_| (1..=5).collect()));
 }
 
 #[test]

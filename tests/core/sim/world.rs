@@ -6,6 +6,7 @@ mod faults;
 mod gps_grades;
 mod sensors;
 mod slope;
+mod standing;
 mod terrain;
 
 use betadeck_core::signals::MotorCommand;

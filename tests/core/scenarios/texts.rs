@@ -5,8 +5,10 @@ mod bounds;
 mod campaign;
 mod remote;
 
-use super::*;
-use crate::plan::format::{PlanError, PlanFile, report};
+use betadeck_core::plan::format::{PlanError, PlanFile, report};
+use betadeck_core::scenario::{
+    CaseFlight, Files, Insight, Judgement, Outcome, Scenario, compare, judge, read,
+};
 
 /// A reader that finds no files.
 struct NoFiles;
@@ -125,7 +127,7 @@ fn a_failure_says_the_value_the_bound_and_the_worst_moment() {
         sentence.starts_with("3.00 s, at most 2.00 s at 3.00 s after boot; outside for 33."),
         "{sentence}"
     );
-    assert_eq!(at.map(crate::signals::SimTime::as_secs_f64), Some(3.0));
+    assert_eq!(at.map(betadeck_core::signals::SimTime::as_secs_f64), Some(3.0));
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! Flights of remote firmware: what is judged of them.
 
 use super::*;
-use crate::telemetry::FirmwareProfile;
+use betadeck_core::scenario::{BuiltinFiles, BuiltinScenario, SCENARIOS, skip};
+use betadeck_core::telemetry::FirmwareProfile;
 
 /// Returns the outcomes of the expectations of one flight for each level of knowledge.
 fn judged_by<const N: usize>(reported: [Insight; N], expectations: &str) -> [Vec<Outcome>; N] {

@@ -1,7 +1,7 @@
 //! Allowances: bounds are wider by them, and by no more.
 
 use super::{judge, scenario};
-use crate::scenario::run::CaseFlight;
+use betadeck_core::scenario::CaseFlight;
 
 /// Returns which of these conditions are met at every moment by a craft that rests level at the boot place for a
 /// second, with real sensors and an allowance of each kind.

@@ -1,9 +1,14 @@
-use super::*;
-use crate::firmware::cli::Interpreter;
-use crate::flight::FlightSetup;
-use crate::plan::Seconds;
-use crate::plan::builtin::BuiltinPlan;
-use crate::sim::{Noise, WorldConfig};
+//! Forecasts: estimates, look-aheads and what-ifs.
+
+use betadeck_core::firmware::cli::Interpreter;
+use betadeck_core::flight::forecast::{
+    Forecast, ForecastEnd, ForecastKind, ForecastRun, PlanWithSettings, WHAT_IFS, WhatIf,
+};
+use betadeck_core::flight::{Flight, FlightOptions, FlightResult, FlightSetup};
+use betadeck_core::plan::builtin::BuiltinPlan;
+use betadeck_core::plan::{FlightPlan, Seconds};
+use betadeck_core::sim::{Noise, WorldCommand, WorldConfig};
+use betadeck_core::vehicle::Vehicle;
 
 fn metres(length: f64) -> String {
     format!("{length:.0} m")

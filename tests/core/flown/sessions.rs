@@ -1,10 +1,35 @@
 //! The flights of whole sessions, each as a recording of its own.
 
-use super::{header, read, repeat, setup};
-use crate::recording::{Cadence, Header, Recorder, Recording, RecordingSink, Rest, Seen, Setup};
-use crate::signals::SimTime;
-use crate::timeline::{Shown, Timeline};
-use crate::vehicle::{Vehicle, VehicleCommand};
+use betadeck_core::flight::FlightSetup;
+use betadeck_core::plan::builtin::BuiltinPlan;
+use betadeck_core::recording::{
+    Cadence, FORMAT, Header, Recorder, Recording, RecordingSink, Repeat, Rest, Seen, Setup,
+};
+use betadeck_core::signals::SimTime;
+use betadeck_core::timeline::{Shown, Timeline};
+use betadeck_core::vehicle::{Vehicle, VehicleCommand};
+
+fn header() -> Header {
+    let text = |text: &str| text.to_owned();
+    Header { format: FORMAT, program: text("0.1.0"), date: text("2026-05-09T07:29:33Z"), plan: text("land") }
+}
+
+fn setup() -> FlightSetup {
+    FlightSetup { plan: BuiltinPlan::find("land").unwrap().read().unwrap(), ..FlightSetup::default() }
+}
+
+fn read(bytes: &[u8]) -> Recording {
+    Recording::read(bytes).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn repeat(recording: &Recording) -> Repeat<'_> {
+    let mut repeat = Repeat::new(recording, recording.flight().unwrap()).unwrap();
+    while !repeat.is_over() {
+        repeat.prepare();
+        repeat.tick(drop);
+    }
+    repeat
+}
 
 /// A sink in memory: the finished recordings, and the one under way.
 #[derive(Default)]

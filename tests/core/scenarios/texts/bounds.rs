@@ -1,11 +1,9 @@
 //! Scenarios that are too large: refused with a sentence before they use too much time or memory.
 
 use super::{NoFiles, STANDING, hints, problems};
-use crate::plan::Waypoint;
-use crate::plan::format::{PlanError, PlanFile};
-use crate::scenario::expression::{MAX_NAME, MAX_TERMS};
-use crate::scenario::file::BOUNDS;
-use crate::scenario::{Files, Flights, MAX_FLIGHTS, Request, read, read_request};
+use betadeck_core::plan::Waypoint;
+use betadeck_core::plan::format::{PlanError, PlanFile};
+use betadeck_core::scenario::{Files, Flights, Request, read, read_request};
 
 /// Returns a comparison with a sum of this many altitudes.
 fn sum(terms: usize) -> String {
@@ -257,19 +255,4 @@ fn a_file_that_many_cases_name_is_read_once_and_kept_as_often_as_memory_allows()
         reported,
         ["test.toml:6:17: the settings and lines of all cases together have more than 64 MiB"]
     );
-}
-
-#[test]
-fn the_reference_names_the_bounds() {
-    let reference = include_str!("../../../docs/scenarios.md");
-    let table = reference.split("<!-- BOUNDS -->").nth(1).and_then(|rest| rest.split("<!-- end -->").next());
-    let table = table.expect("a table of bounds").replace(' ', "");
-    for bound in [MAX_TERMS, MAX_NAME, MAX_FLIGHTS] {
-        assert!(table.contains(&bound.to_string()), "{bound}");
-    }
-    for (of, most) in BOUNDS {
-        let row = table.lines().find(|row| row.starts_with(&format!("|{}", of.replace(' ', ""))));
-        let row = row.unwrap_or_else(|| panic!("no row for {of}"));
-        assert!(row.contains(&most.to_string()), "{row}: {most}");
-    }
 }
