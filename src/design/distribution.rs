@@ -47,11 +47,6 @@ fn error(message: impl Into<String>, hint: impl Into<String>) -> DistributionErr
 }
 
 impl Distribution {
-    /// Returns the distribution with only this value.
-    pub const fn constant(value: f64) -> Self {
-        Self { shape: Shape::Constant(value), limits: None }
-    }
-
     /// Returns the only value, if there is only one.
     pub fn value(&self) -> Option<f64> {
         match self.shape {

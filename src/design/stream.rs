@@ -32,11 +32,6 @@ impl Stream {
         rng.set_word_pos(u128::from(index) * WORDS);
         rng.next_u64()
     }
-
-    /// Returns the random number of a flight, greater than 0 and less than 1.
-    pub fn unit(&self, index: u64) -> f64 {
-        unit_of(self.bits(index))
-    }
 }
 
 /// Returns a number greater than 0 and less than 1 from random bits.
@@ -84,7 +79,7 @@ mod tests {
     fn numbers_are_uniform() {
         let stream = Stream::new(3, "gust");
         let count = 20_000;
-        let units: Vec<f64> = (0..count).map(|index| stream.unit(index)).collect();
+        let units: Vec<f64> = (0..count).map(|index| unit_of(stream.bits(index))).collect();
         assert!(units.iter().all(|unit| (0.0..1.0).contains(unit) && *unit > 0.0));
         let mean = units.iter().sum::<f64>() / count as f64;
         // The standard deviation of the mean is 0.289 / √count.

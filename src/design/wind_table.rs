@@ -62,11 +62,6 @@ impl WindTable {
             gust_mps: drawn.gust_mps.map(rounded),
         }
     }
-
-    /// Returns `true` if it sets gusts, too.
-    pub fn has_gusts(&self) -> bool {
-        matches!(self, Self::Forecast(forecast) if forecast.has_gusts())
-    }
 }
 
 /// Returns a value with four decimals, as distributions give it.

@@ -20,15 +20,6 @@ pub struct Pt1 {
 }
 
 impl Pt1 {
-    pub fn state(&self) -> f64 {
-        self.state
-    }
-
-    /// Starts again at `value`.
-    pub fn reset(&mut self, value: f64) {
-        self.state = value;
-    }
-
     /// Filters one sample; `gain` is [`pt1_gain`].
     pub fn apply(&mut self, input: f64, gain: f64) -> f64 {
         self.state += gain * (input - self.state);

@@ -125,16 +125,6 @@ impl LogFlight {
         self.end
     }
 
-    /// Returns `true` if the log ends with the event of its end, and `false` if it is cut.
-    pub fn is_complete(&self) -> bool {
-        self.end.is_complete
-    }
-
-    /// Returns the number of bytes after the last whole frame that belong to no frame.
-    pub fn cut_bytes(&self) -> u64 {
-        self.end.cut_bytes
-    }
-
     /// Returns a cursor at the last main frame not after `time`, or at the first one. Returns `None` if the log is empty.
     ///
     /// # Errors

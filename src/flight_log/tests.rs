@@ -134,7 +134,7 @@ fn what_happens_is_marked() {
         (10_002_000, "end"),
     ];
     assert_eq!(marks, expected.map(|(time, name)| (time, name.to_owned())));
-    assert!(flight.is_complete() && flight.cut_bytes() == 0);
+    assert!(flight.end().is_complete && flight.end().cut_bytes == 0);
     assert_eq!(flight.counts().skipped_bytes, 40);
     let sample = at(&flight, &maker.bytes, 1_001_500);
     assert!(sample.boxes.unwrap().has(ModeBox::Angle), "an event counts before the next slow frame");
@@ -193,7 +193,7 @@ fn a_file_has_several_logs_some_empty_some_refused() {
     assert_eq!(refused.iter().map(|refused| refused.number).collect::<Vec<_>>(), [2]);
     assert!(flights[1].is_empty() && flights[1].sample(&maker.bytes[..], SimTime(5)).unwrap().is_none());
     let cut = &flights[2];
-    assert_eq!((cut.is_complete(), cut.cut_bytes(), cut.counts().main), (false, 2, 2));
+    assert_eq!((cut.end().is_complete, cut.end().cut_bytes, cut.counts().main), (false, 2, 2));
     assert_eq!(at(cut, &maker.bytes, 9999).time, SimTime(9000));
 }
 

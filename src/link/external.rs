@@ -92,11 +92,6 @@ impl ExternalSimulator {
         self.link.state(self.micros(now))
     }
 
-    /// Returns the counters of received datagrams.
-    pub fn counters(&self) -> Counters {
-        self.link.counters()
-    }
-
     /// Returns the address to which motor values are sent, and the state of the link to the simulator.
     pub fn status(&self, now: Instant) -> EndpointStatus {
         let Counters { senseless, old, .. } = self.link.counters();

@@ -63,11 +63,6 @@ impl RcTransmitter {
         self.pilot.as_ref()
     }
 
-    /// Returns the channels that are forced to values.
-    pub fn inputs(&self) -> &[StickInput] {
-        &self.inputs
-    }
-
     /// Returns the present action of the scripted pilot in a word or two, while it flies.
     pub fn pilot_doing(&self) -> Option<&'static str> {
         self.pilot.as_ref().map(Pilot::doing)

@@ -119,16 +119,6 @@ impl Picture {
         self.shot.print
     }
 
-    /// Returns the frame of the virtual sticks, and `true` if they were cut.
-    pub fn sticks(&self) -> (RcFrame, bool) {
-        (self.shot.sticks.unwrap_or_default(), self.shot.cut)
-    }
-
-    /// Returns `true` if the craft was known to be armed.
-    pub fn is_armed(&self) -> bool {
-        self.shot.craft.is_armed()
-    }
-
     /// Returns the snapshot of the instant.
     pub fn snapshot(&self) -> Snapshot {
         let Scene { origin, active_plan, stored_plan, settings, mode_ranges } = (*self.scene).clone();

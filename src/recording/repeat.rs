@@ -75,15 +75,6 @@ impl<'r> Repeat<'r> {
         &self.vehicle
     }
 
-    pub fn vehicle_mut(&mut self) -> &mut Vehicle {
-        &mut self.vehicle
-    }
-
-    /// Returns the time of the end.
-    pub fn until(&self) -> SimTime {
-        self.until
-    }
-
     /// Returns the inputs before those of the flight for replays, with their times.
     pub fn earlier(&self) -> &'r [(SimTime, VehicleCommand)] {
         let inputs = &self.recording.inputs;

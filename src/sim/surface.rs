@@ -110,9 +110,6 @@ impl std::fmt::Display for Surface {
 }
 
 impl TangentPlane {
-    /// Level ground at height zero.
-    pub const LEVEL: Self = Self { point: Vector3::new(0.0, 0.0, 0.0), normal: Vector3::new(0.0, 0.0, 1.0) };
-
     /// Returns the plane through a point that rises by `gradient` metres in a metre east and north.
     pub(super) fn new(point: Vector3<f64>, gradient: &Vector2<f64>) -> Self {
         Self { point, normal: Vector3::new(-gradient.x, -gradient.y, 1.0).normalize() }

@@ -29,11 +29,6 @@ impl Tiles {
         self.grids.insert(square, Arc::new(grid));
     }
 
-    /// Returns `true` if there is no tile.
-    pub fn is_empty(&self) -> bool {
-        self.grids.is_empty()
-    }
-
     /// Returns `true` if there is a tile of this square.
     pub fn has(&self, square: Square) -> bool {
         self.grids.contains_key(&square)

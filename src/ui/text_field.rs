@@ -38,11 +38,6 @@ impl TextField {
         self.selected = selected && !self.is_empty();
     }
 
-    /// Returns `true` if the whole text is selected.
-    pub fn is_selected(&self) -> bool {
-        self.selected
-    }
-
     pub fn value(&self) -> &str {
         self.input.value()
     }
@@ -196,7 +191,7 @@ mod tests {
         field.insert("35");
         field.insert("6");
         assert_eq!(field.value(), "356", "pasted text replaces once");
-        assert!(!TextField::selected("").is_selected());
+        assert!(!TextField::selected("").selected);
     }
 
     #[test]

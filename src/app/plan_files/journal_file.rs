@@ -276,7 +276,7 @@ mod tests {
         let mut file = JournalFile::create(directory.path(), &journal).unwrap();
         file.longest = 4096;
         let path = file.path.clone();
-        let read = || Journal::read(&std::fs::read_to_string(&path).unwrap()).unwrap();
+        let read = || Journal::read_whole_part(&std::fs::read_to_string(&path).unwrap()).unwrap().0;
         let mut take = |journal: &mut Journal, line: JournalLine| {
             assert!(journal.take(line.clone()));
             file.append(&line, journal).unwrap();

@@ -124,11 +124,6 @@ impl Observation {
         self.gps.as_ref()
     }
 
-    /// Returns the motor outputs M1…M4, 0…1.
-    pub fn motors(&self) -> Option<PerMotor> {
-        self.motors
-    }
-
     /// Returns the conditions of the modes.
     pub fn mode_ranges(&self) -> Option<Vec<ModeRange>> {
         self.ranges.as_deref().map(|ranges| mode_ranges(ranges, self.range_links.as_deref()))

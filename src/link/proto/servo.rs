@@ -17,9 +17,6 @@ pub const SIZE: usize = 16;
 /// The size of the raw datagram.
 pub const RAW_SIZE: usize = 68;
 
-/// The number of outputs in the raw datagram.
-pub const RAW_OUTPUTS: usize = 16;
-
 impl MotorOrder {
     /// Arranges the values of M1 … M4 in the order of the packet.
     pub fn arrange<T>(self, [m1, m2, m3, m4]: PerMotor<T>) -> PerMotor<T> {

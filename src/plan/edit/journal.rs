@@ -96,12 +96,6 @@ impl Journal {
         lines
     }
 
-    /// Reads a journal. Leaves out a line that was cut short, and all lines after it. Returns `None` if even the
-    /// first line is invalid.
-    pub fn read(text: &str) -> Option<Self> {
-        Self::read_whole_part(text).map(|(journal, _)| journal)
-    }
-
     /// Reads a journal up to the first invalid line, and reports the losses from that line on. Returns `None` if even
     /// the first line is invalid.
     pub fn read_whole_part(text: &str) -> Option<(Self, Losses)> {
@@ -205,7 +199,7 @@ mod tests {
             }
             let cut = (cut * text.len() as f64) as usize;
             let expected = known.iter().rev().find(|(end, _)| *end <= cut + 1);
-            match (Journal::read(&text[..cut]), expected) {
+            match (Journal::read_whole_part(&text[..cut]).map(|(journal, _)| journal), expected) {
                 (Some(journal), Some((_, history))) => {
                     prop_assert_eq!(journal.history.document(), history.document());
                     prop_assert_eq!(journal.history.is_saved(), history.is_saved());
@@ -226,7 +220,7 @@ mod tests {
         for history in [history, History::new(document(&[]), false)] {
             let journal = Journal { file: Some("a.toml".to_owned()), history };
             let text: String = journal.lines().iter().map(JournalLine::to_text).collect();
-            let read = Journal::read(&text).unwrap();
+            let read = Journal::read_whole_part(&text).unwrap().0;
             assert_eq!(read.lines(), journal.lines());
             assert_eq!(read.history.document(), journal.history.document());
         }
@@ -264,7 +258,7 @@ mod tests {
     #[test]
     fn a_text_that_is_no_journal_gives_none() {
         for text in ["", "{}", "name = \"x\"", "{\"moved\":3}\n"] {
-            assert_eq!(Journal::read(text), None, "{text}");
+            assert_eq!(Journal::read_whole_part(text).map(|(journal, _)| journal), None, "{text}");
         }
     }
 }

@@ -49,11 +49,6 @@ impl Arrangement {
         self.sizes[split as usize] = Some(share.min(1000) as u16);
     }
 
-    /// Returns `true` if nothing was changed.
-    pub fn is_default(&self) -> bool {
-        *self == Self::default()
-    }
-
     /// Gives two panels each other's places.
     pub(in crate::ui) fn swap(&mut self, a: Panel, b: Panel) {
         if a != b && self.swaps.len() < MOST_SWAPS {
@@ -115,7 +110,7 @@ mod tests {
         assert_eq!(arrangement.size(Split::State, 80, 46, (20, 50)), 30);
         arrangement.set_size(Split::State, 2, 120);
         assert_eq!(arrangement.size(Split::State, 120, 46, (20, 30)), 20);
-        assert!(!arrangement.is_default());
+        assert_ne!(arrangement, Arrangement::default());
     }
 
     proptest! {

@@ -430,7 +430,7 @@ fn wrong_keys_in_the_configuration_file_are_reported_with_their_lines() {
 fn a_reader_that_goes_away_is_no_error() {
     for stream in ["out", "err"] {
         let sandbox = Sandbox::new();
-        let mut command = sandbox.command(&["fly", "square", "--json", "-", "--samples", "1000"]);
+        let mut command = sandbox.command(&["fly", "square", "--json", "-", "--samples", "100"]);
         let (out, err) =
             if stream == "out" { (Stdio::piped(), Stdio::null()) } else { (Stdio::null(), Stdio::piped()) };
         let mut child =

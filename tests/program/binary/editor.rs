@@ -27,7 +27,7 @@ fn kept_altitude(sandbox: &Sandbox) -> Option<i64> {
     let entries = std::fs::read_dir(sandbox.path("state/plans")).ok()?;
     let mut journals = entries.filter_map(|entry| {
         let text = std::fs::read(entry.ok()?.path()).ok()?;
-        Journal::read(&String::from_utf8_lossy(&text))
+        Some(Journal::read_whole_part(&String::from_utf8_lossy(&text))?.0)
     });
     let journal = journals.next()?;
     assert!(journals.next().is_none(), "one journal, for one plan");

@@ -79,11 +79,13 @@ fn at_100_hz() {
 }
 
 #[test]
+#[ignore = "search: three flights at the clock of the wall"]
 fn at_250_hz() {
     flies_the_square(Dialect::Legacy, 4);
 }
 
 #[test]
+#[ignore = "search: three flights at the clock of the wall"]
 fn at_1000_hz() {
     flies_the_square(Dialect::GzPlugin, 1);
 }

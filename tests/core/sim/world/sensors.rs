@@ -77,13 +77,12 @@ fn biases_are_as_large_as_stated() {
     deviation(&acc, 0.05, 0.12);
 }
 
-part_and_search!(gps_errors, every 2, gps_errors_are_white_plus_wandering, gps_errors_are_white_plus_wandering_for_a_long_time);
-
-fn gps_errors(n: usize) {
+#[test]
+fn gps_errors_are_white_plus_wandering() {
     let mut world = world(WorldConfig { seed: 4, rate_hz: 400, ..WorldConfig::default() });
     stand(&mut world, 10.0, |_| {});
     let mut fixes = Vec::new();
-    stand(&mut world, 6000.0 / n as f64, |world| {
+    stand(&mut world, 6000.0, |world| {
         if let Some(gps) = world.sensors().gps {
             let place = world.local_frame().to_enu(
                 gps.position.lat_deg(),
@@ -93,12 +92,12 @@ fn gps_errors(n: usize) {
             fixes.push((place - world.truth().pos_enu, gps.vel_enu));
         }
     });
-    assert_eq!(fixes.len(), 60_000 / n);
+    assert_eq!(fixes.len(), 60_000);
     for (axis, factor, velocity) in [(0, 1.0, 0.05), (1, 1.0, 0.05), (2, 1.6, 0.08)] {
         let errors: Vec<f64> = fixes.iter().map(|fix| fix.0[axis]).collect();
         let speeds: Vec<f64> = fixes.iter().map(|fix| fix.1[axis]).collect();
         deviation(&speeds, velocity, 0.05);
-        // 100 time constants of the wandering part, if all are flown: its deviation is known to 7 %.
+        // 100 time constants of the wandering part: its deviation is known to 7 %.
         deviation(&errors, factor * 0.25, 0.25);
         let steps: Vec<f64> = errors.windows(2).map(|pair| pair[1] - pair[0]).collect();
         let wander = 0.25_f64.powi(2) * (1.0 - (-0.1_f64 / 60.0).exp());

@@ -3,12 +3,12 @@
 use betadeck_core::signals::MotorCommand;
 use betadeck_core::sim::{Airframe, Fault, World, WorldCommand, WorldConfig};
 
-use super::{ideal, run};
+use super::{ideal, put_on, run};
 
 /// Returns a craft `height` metres above its place on the ground.
 fn lifted(config: WorldConfig, height: f64) -> World {
-    let mut world = World::new(config).unwrap();
-    world.apply(WorldCommand::FaultOn(Fault::Teleport([0.0, 0.0, height]), None)).unwrap();
+    let mut world = super::world(config);
+    put_on(&mut world, &format!("teleport=0,0,{height}"), None);
     world
 }
 
