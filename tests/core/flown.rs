@@ -1,4 +1,4 @@
-//! What flies with whole vehicles and is judged: forecasts, sweeps, recordings, drafts of scenarios.
+//! Whole flights through forecasts, sweeps and recordings, and the scenarios written of them.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may stop and say what it expects")]
 
