@@ -300,6 +300,7 @@ mod tests {
                 let at = f64::from(step);
                 rate_loop.step(&demand(4.0 * at, 0.5 * at), &tuning.rate, &derived);
             }
+            // A gain of 0 returns the state.
             rate_loop.axes[0].d_boost.apply(0.0, 0.0)
         });
         assert!(sums.windows(2).all(|pair| pair[0] < pair[1]), "{sums:?}");

@@ -202,8 +202,10 @@ fn no_event_breaks_it(n: usize) {
     }
     println!("{updates} updates, {armings} armings, {} kinds of transitions", seen.len());
     // A part of the flights does not see each of them.
-    for needed in law::NEEDED.iter().filter(|_| n == 1) {
-        assert!(seen.contains(*needed), "{needed} never happened: {seen:#?}");
+    if n == 1 {
+        for needed in law::NEEDED {
+            assert!(seen.contains(*needed), "{needed} never happened: {seen:#?}");
+        }
     }
     assert!(armings > flights as u64, "{armings}");
 }
