@@ -44,7 +44,7 @@ pub use replay::{ReplayConfig, ReplayNotice, ReplayStart, ReplayView, start_repl
 pub use reply::ReplyTo;
 pub use request_handler::{Handled, RequestHandler};
 pub use runner::{Flying, Runner, Stopped, Subscriber};
-pub use runtime::{Endpoints, FlownBefore, Handle, SessionConfig, Subscription, start, start_at};
+pub use runtime::{Endpoints, FlownBefore, Handle, SessionConfig, start, start_at};
 pub use simulator::SimulatorNotice;
 pub use surveyor::{SurveyJob, SurveyNews, SurveyReply, SurveyRequest, SurveyedPlan, Surveyor};
 pub use sweep_flights::{SweepProblem, fly_sweep};

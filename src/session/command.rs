@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use super::event::Event;
 use super::replay::ReplayView;
 use super::reply::ReplyTo;
 use crate::fc::{CraftSettings, RemoteView, UploadReport, UploadView};
@@ -117,8 +116,6 @@ pub enum Command {
     /// Copies the recording of the flight so far: the bytes of a file. The reply is the copy, or the reason why there is
     /// none.
     CopyRecording(ReplyTo<Result<Vec<u8>, String>>),
-    /// Sends all later events to this receiver, too, until it is dropped.
-    Subscribe(tokio::sync::mpsc::UnboundedSender<Event>),
     Quit,
 }
 
@@ -166,8 +163,6 @@ pub struct SessionView {
     pub simulator: Option<LinkState>,
     /// The remote flight controller, if there is one.
     pub remote: Option<RemoteView>,
-    /// `true` if files or doors influence the flight, which makes it not repeatable.
-    pub live: bool,
     /// The recording; `None` if the flight cannot be rewound.
     pub timeline: Option<TimelineView>,
     /// The recorded flight that is shown; `None` if a vehicle flies.
@@ -193,7 +188,6 @@ impl SessionView {
             endpoints: Vec::new(),
             simulator: None,
             remote: None,
-            live: false,
             timeline: None,
             replay: None,
             commands_taken: 0,

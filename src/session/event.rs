@@ -98,7 +98,7 @@ impl From<telemetry::Event> for Event {
 /// marks for them.
 #[derive(Debug)]
 pub(super) struct EventSender {
-    receivers: Vec<mpsc::UnboundedSender<Event>>,
+    receiver: mpsc::UnboundedSender<Event>,
     /// The recorder of flights, if there is one.
     recorder: Option<FeedSender>,
     marks: Marks,
@@ -108,12 +108,7 @@ pub(super) struct EventSender {
 
 impl EventSender {
     pub(super) fn new(receiver: mpsc::UnboundedSender<Event>) -> Self {
-        Self { receivers: vec![receiver], recorder: None, marks: Marks::default(), disarmed: false }
-    }
-
-    /// Sends all later events to this receiver, too, until it is dropped.
-    pub(super) fn subscribe(&mut self, receiver: mpsc::UnboundedSender<Event>) {
-        self.receivers.push(receiver);
+        Self { receiver, recorder: None, marks: Marks::default(), disarmed: false }
     }
 
     /// Sends all later events to a recorder, too.
@@ -170,6 +165,6 @@ impl EventSender {
         if let Some(recorder) = &self.recorder {
             recorder.send(FlightPart::Event(event.clone()));
         }
-        self.receivers.retain(|receiver| receiver.send(event.clone()).is_ok());
+        let _is_heard = self.receiver.send(event.clone());
     }
 }

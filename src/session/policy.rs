@@ -168,7 +168,6 @@ impl Intent {
             | Command::Curves { .. }
             | Command::CopyRecording(_)
             | Command::PermitChanges(_)
-            | Command::Subscribe(_)
             | Command::Quit => Self::Read,
         }
     }

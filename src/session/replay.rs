@@ -281,7 +281,6 @@ impl ReplaySession {
         }
         match command {
             Command::Quit => self.quit = true,
-            Command::Subscribe(receiver) => self.events.subscribe(receiver),
             Command::Curves { request, reply } => {
                 let player = self.player.as_mut();
                 let none = || Err("No flight is read yet.".to_owned());

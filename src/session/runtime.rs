@@ -112,23 +112,6 @@ pub struct Handle {
     pub thread: std::thread::JoinHandle<Option<String>>,
 }
 
-/// The state and the events of a session, for a subscriber beside the owner of the [`Handle`].
-#[derive(Debug)]
-pub struct Subscription {
-    pub view: watch::Receiver<SessionView>,
-    /// Every event from the subscription on, in order. They wait without a limit, so they must be read.
-    pub events: mpsc::UnboundedReceiver<Event>,
-}
-
-impl Handle {
-    /// Returns a further receiver of the session's views and events; `None` if the session has ended.
-    pub async fn subscribe(&self) -> Option<Subscription> {
-        let (sender, events) = mpsc::unbounded_channel();
-        self.commands.send(Command::Subscribe(sender)).await.ok()?;
-        Some(Subscription { view: self.view.clone(), events })
-    }
-}
-
 /// Formats a speed as a multiple of real time.
 fn factor(speed: f64) -> String {
     if speed.is_infinite() { "full speed".to_owned() } else { format!("{speed}×") }
@@ -458,7 +441,6 @@ impl Session {
             endpoints,
             simulator: self.simulator.as_ref().map(Simulator::state),
             remote: link.map(|link| link.remote().view()),
-            live: self.endpoints.is_some(),
             timeline: self.timeline_view(),
             commands_taken: self.commands.taken(),
             ..SessionView::of_recorded(vehicle)

@@ -92,7 +92,6 @@ impl Session {
             }
             Command::RecordedFlight(reply) => reply.send(self.recorded_flight()),
             Command::CopyRecording(reply) => self.copy_recording(reply),
-            Command::Subscribe(receiver) => self.events.subscribe(receiver),
             // The policy refuses another flight.
             Command::ShowFlight(_) => {}
             Command::Curves { reply, .. } => reply.send(Err(policy::NO_FILE.to_owned())),

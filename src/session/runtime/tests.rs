@@ -418,42 +418,19 @@ fn a_flight_that_is_flown_again_shows_its_progress_and_can_be_stopped() {
 }
 
 #[test]
-fn a_further_subscriber_gets_every_later_event_until_it_leaves() {
-    let (commands, taken) = mpsc::channel(32);
-    let (first, mut all) = mpsc::unbounded_channel();
-    let vehicle = Vehicle::with_remote_controller(WorldConfig::default()).unwrap();
-    let mut session = Session::new(config_of(vehicle, true), None, None, (taken, first));
-    session.notice("before");
-    let (second, mut later) = mpsc::unbounded_channel();
-    commands.try_send(Command::Subscribe(second)).unwrap();
-    session.take_commands(Duration::ZERO, &mut Context::from_waker(Waker::noop()));
-    session.notice("after");
-    let is_notice = |event: &Event, said: &str| event.kind == SessionEvent::Notice(said.to_owned());
-    assert!(later.try_recv().is_ok_and(|event| is_notice(&event, "after")));
-    drop(later);
-    session.notice("alone");
-    let heard: Vec<Event> = std::iter::from_fn(|| all.try_recv().ok()).collect();
-    for said in ["before", "after", "alone"] {
-        assert!(heard.iter().any(|event| is_notice(event, said)), "{said}");
-    }
-}
-
-#[test]
-fn a_subscriber_of_a_running_session_gets_its_views_and_events() {
+fn a_running_session_publishes_its_views_and_events() {
     let (vehicle, _) = FlightSetup::default().build().unwrap();
     let mut handle = start(config_of(vehicle, true)).unwrap();
     let runtime = tokio::runtime::Builder::new_current_thread().build().unwrap();
     runtime.block_on(async {
-        let mut subscription = handle.subscribe().await.unwrap();
         handle.commands.send(Command::Seek(Seek::Newest)).await.unwrap();
         let is_answer =
             |event: &Event| matches!(&event.kind, SessionEvent::Notice(said) if said.contains("newest"));
-        while !subscription.events.recv().await.is_some_and(|event| is_answer(&event)) {}
         while !handle.events.recv().await.is_some_and(|event| is_answer(&event)) {}
-        subscription.view.changed().await.unwrap();
+        handle.view.changed().await.unwrap();
         handle.commands.send(Command::Quit).await.unwrap();
         // The session drops its ends.
-        while subscription.events.recv().await.is_some() {}
+        while handle.events.recv().await.is_some() {}
     });
     assert_eq!(handle.thread.join().unwrap(), None);
 }
