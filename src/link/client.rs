@@ -169,8 +169,8 @@ impl Client {
             match request {
                 SerialRequest::Msp(frame) => {
                     self.stats.asked(frame.code);
-                    let (code, payload, client) = (frame.code, frame.payload.clone(), self.id);
-                    let payload = self.request(|reply| Request::Msp { client, code, payload, reply }).await?;
+                    let (code, payload) = (frame.code, frame.payload.clone());
+                    let payload = self.request(|reply| Request::Msp { code, payload, reply }).await?;
                     self.session.reply(&frame, payload);
                 }
                 SerialRequest::EnterCli { interactive } => {
@@ -186,12 +186,12 @@ impl Client {
                 }
                 SerialRequest::Flush => self.flush().await?,
                 SerialRequest::Restart => {
-                    self.send(Request::Restart { client: self.id }).await?;
+                    self.send(Request::Restart).await?;
                     return Err(Stop::Restarted);
                 }
                 SerialRequest::LeftCli => self.send(Request::LeftCli { client: self.id }).await?,
                 SerialRequest::Ignored { word } => {
-                    self.send(Request::Ignored { client: self.id, word }).await?;
+                    self.send(Request::Ignored { word }).await?;
                 }
                 SerialRequest::Foreign => return Err(Stop::Foreign(Stranger::WentOn)),
             }

@@ -18,7 +18,6 @@ pub struct ClientId(pub u64);
 #[derive(Debug)]
 pub enum Request {
     Msp {
-        client: ClientId,
         /// The code of the message.
         code: u16,
         payload: Vec<u8>,
@@ -55,18 +54,16 @@ pub enum Request {
     /// A client sent lines of text while its command line was closed; they were ignored. Sent once per paste
     /// of several lines.
     Ignored {
-        client: ClientId,
         /// The first word of the first line.
         word: String,
     },
     /// A client requests a restart of the firmware, which loses unsaved settings and closes the links.
-    Restart { client: ClientId },
+    Restart,
     /// An RC frame from a script.
     Rc {
         /// The script's clock, s; unused.
         stamp_s: f64,
         frame: RcFrame,
-        from: SocketAddr,
         at: Instant,
     },
     /// A datagram from a simulator.

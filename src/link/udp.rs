@@ -92,9 +92,7 @@ impl DatagramPort {
         self.stats.received(size);
         let datagram = &buffer[..size];
         let request = match self.datagrams {
-            Datagrams::Rc => {
-                rc::decode(datagram).map(|(stamp_s, frame)| Request::Rc { stamp_s, frame, from, at })
-            }
+            Datagrams::Rc => rc::decode(datagram).map(|(stamp_s, frame)| Request::Rc { stamp_s, frame, at }),
             Datagrams::Fdm => (size >= fdm::SIZE).then(|| {
                 // The size identifies the dialect.
                 let datagram = datagram[..size.min(fdm::GZ_PLUGIN_SIZE + 1)].to_vec();

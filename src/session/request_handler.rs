@@ -146,8 +146,8 @@ impl RequestHandler {
                 }
             }
             // The command line was opened before the craft was armed. A restart in flight would make it fall.
-            Request::Restart { .. } if vehicle.controller().armed() != Some(false) => {}
-            Request::Restart { .. } => self.restart(true, vehicle, persistence, &mut handled),
+            Request::Restart if vehicle.controller().armed() != Some(false) => {}
+            Request::Restart => self.restart(true, vehicle, persistence, &mut handled),
             Request::Rc { frame, at, .. } => {
                 self.udp = Some(ReceivedRc { frame, at });
                 vehicle.apply(&VehicleCommand::Rc(frame, RcSource::Udp));

@@ -183,10 +183,9 @@ fn frame_with(channel: usize) -> RcFrame {
 
 /// Sends frames of a script in real time.
 async fn script(requests: mpsc::Sender<Request>) {
-    let from = "127.0.0.1:9".parse().unwrap();
     loop {
         let frame = frame_with(SCRIPT);
-        let sent = requests.send(Request::Rc { stamp_s: 0.0, frame, from, at: Instant::now() }).await;
+        let sent = requests.send(Request::Rc { stamp_s: 0.0, frame, at: Instant::now() }).await;
         if sent.is_err() {
             return;
         }
@@ -264,11 +263,10 @@ async fn what_a_script_flew_is_shown_again_as_it_was() {
     rig.session.commands.send(Command::Speed(8.0)).await.unwrap();
     let requests = rig.requests.clone();
     let script = tokio::spawn(async move {
-        let from = "127.0.0.1:9".parse().unwrap();
         for step in 0.. {
             let mut frame = RcFrame::SAFE;
             frame.channels[0] = 1400 + step % 200;
-            let sent = requests.send(Request::Rc { stamp_s: 0.0, frame, from, at: Instant::now() }).await;
+            let sent = requests.send(Request::Rc { stamp_s: 0.0, frame, at: Instant::now() }).await;
             if sent.is_err() {
                 return;
             }
@@ -307,7 +305,7 @@ async fn framed_line(rig: &Rig, line: &str) -> LineReply {
 async fn message(rig: &Rig, code: u16, payload: &[u8]) -> Option<Vec<u8>> {
     let (reply, answer) = oneshot::channel();
     let payload = payload.to_vec();
-    rig.requests.send(Request::Msp { client: ClientId(1), code, payload, reply }).await.unwrap();
+    rig.requests.send(Request::Msp { code, payload, reply }).await.unwrap();
     answer.await.unwrap()
 }
 
@@ -333,7 +331,7 @@ async fn clients_change_nothing_while_an_earlier_instant_is_shown_and_are_answer
     {
         assert_eq!(message(&rig, code, payload).await, None, "{code}");
     }
-    rig.requests.send(Request::Restart { client: ClientId(1) }).await.unwrap();
+    rig.requests.send(Request::Restart).await.unwrap();
     assert_eq!(message(&rig, 2, &[]).await.as_deref(), Some(b"BTFL".as_slice()), "what reads is answered");
     let status = framed_line(&rig, "status").await;
     assert!(!status.refused && status.text.contains("earlier instant is shown"), "{}", status.text);

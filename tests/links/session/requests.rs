@@ -7,7 +7,6 @@
     reason = "tests may panic, and give the handler its time"
 )]
 
-use std::net::SocketAddr;
 use std::time::{Duration, Instant};
 
 use betadeck::firmware::cli::Interpreter;
@@ -117,13 +116,12 @@ impl Bench {
     }
 
     fn receive_udp(&mut self, frame: RcFrame) {
-        let from: SocketAddr = "127.0.0.1:9".parse().unwrap();
-        self.handle(Request::Rc { stamp_s: 0.0, frame, from, at: self.wall });
+        self.handle(Request::Rc { stamp_s: 0.0, frame, at: self.wall });
     }
 
-    fn ask(&mut self, client: u64, code: u16, payload: &[u8]) -> Option<Vec<u8>> {
+    fn ask(&mut self, code: u16, payload: &[u8]) -> Option<Vec<u8>> {
         let (reply, mut answer) = oneshot::channel();
-        self.handle(Request::Msp { client: ClientId(client), code, payload: payload.to_vec(), reply });
+        self.handle(Request::Msp { code, payload: payload.to_vec(), reply });
         answer.try_recv().unwrap()
     }
 
@@ -207,7 +205,7 @@ async fn the_script_stays_in_charge_beside_a_client_that_speaks_msp_however_fast
     for ms in 0..600_u32 {
         match ms % 20 {
             0 => bench.receive_udp(udp),
-            10 => assert!(bench.ask(1, 200, &payload).is_some()),
+            10 => assert!(bench.ask(200, &payload).is_some()),
             _ => {}
         }
         bench.pass(50.0);
@@ -234,7 +232,7 @@ async fn a_client_of_the_time_before_a_restart_does_nothing_to_those_after_it() 
     let mut bench = Bench::new().await;
     bench.enter(1, true);
     bench.line(1, LineSource::Prompt, "motor 1 1200");
-    assert_eq!(bench.ask(2, 68, &[]), Some(vec![0]));
+    assert_eq!(bench.ask(68, &[]), Some(vec![0]));
     assert!(bench.second_motor() < 0.1, "a restart stops the motors");
     bench.enter(3, true);
     bench.line(3, LineSource::Prompt, "motor 1 1300");
@@ -279,9 +277,9 @@ async fn an_armed_craft_is_not_restarted() {
         bench.pass(1.0);
     }
     assert!(bench.firmware().is_armed(), "{:?}", bench.firmware().arming_flags());
-    assert!(!bench.handle(Request::Restart { client: ClientId(1) }).restarted);
-    assert_eq!(bench.ask(2, 68, &[]), None);
-    assert_eq!(bench.ask(2, 208, &[]), Some(vec![0]));
+    assert!(!bench.handle(Request::Restart).restarted);
+    assert_eq!(bench.ask(68, &[]), None);
+    assert_eq!(bench.ask(208, &[]), Some(vec![0]));
     assert!(!bench.enter(3, true) && !bench.enter(3, false));
     assert!(bench.firmware().is_armed());
 }
@@ -291,7 +289,7 @@ async fn what_cannot_be_saved_is_reported_in_a_sentence() {
     let directory = tempfile::tempdir().unwrap();
     let mut bench = Bench::without_room(&directory).await;
     let (reply, mut answer) = oneshot::channel();
-    let handled = bench.handle(Request::Msp { client: ClientId(1), code: 250, payload: Vec::new(), reply });
+    let handled = bench.handle(Request::Msp { code: 250, payload: Vec::new(), reply });
     assert_eq!(answer.try_recv().unwrap(), None);
     let [notice] = &handled.notices[..] else { panic!("{:?}", handled.notices) };
     assert!(notice.text.starts_with("Not saved: ") && notice.text.ends_with('.'), "{notice:?}");

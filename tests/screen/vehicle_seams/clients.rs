@@ -47,7 +47,7 @@ impl Links {
 
     fn message(&mut self, code: u16) -> oneshot::Receiver<Option<Vec<u8>>> {
         let (reply, answer) = oneshot::channel();
-        self.handle(Request::Msp { client: CLIENT, code, payload: Vec::new(), reply });
+        self.handle(Request::Msp { code, payload: Vec::new(), reply });
         answer
     }
 
@@ -155,7 +155,7 @@ async fn a_client_of_a_silent_flight_controller_gets_an_error() {
 #[tokio::test]
 async fn a_craft_that_may_be_armed_is_not_restarted_by_a_client_that_leaves() {
     let mut links = Links::new().await;
-    assert!(!links.handle(Request::Restart { client: CLIENT }).restarted);
+    assert!(!links.handle(Request::Restart).restarted);
     links.exchange();
     assert_eq!(links.rig.stand_in.restarts, 0);
 }
@@ -169,7 +169,7 @@ async fn scripts_and_simulators_are_heard_beside_a_remote_flight_controller() {
     assert_eq!(handled.fdm, Some((vec![1, 2, 3], at)));
     let mut frame = RcFrame::SAFE;
     frame.channels[0] = 1600;
-    links.handle(Request::Rc { stamp_s: 0.0, frame, from, at });
+    links.handle(Request::Rc { stamp_s: 0.0, frame, at });
     links.exchange();
     let roll = links.rig.stand_in.firmware.craft_view().channels.unwrap()[0];
     assert_eq!(roll, 1600);

@@ -131,7 +131,7 @@ pub(crate) async fn answer_requests(
             }
             Request::LeftCli { .. } => craft.lock().unwrap().left_cli += 1,
             Request::Ignored { .. } => {}
-            Request::Restart { .. } => restart = true,
+            Request::Restart => restart = true,
             other @ (Request::Rc { .. } | Request::Fdm { .. } | Request::Notice(_)) => {
                 let _nobody_looks = others.try_send(other);
             }

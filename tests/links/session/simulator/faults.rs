@@ -1,6 +1,5 @@
 //! Faults of the link to the simulator and of the receiver: their beginning, their end and their losses.
 
-use std::net::SocketAddr;
 use std::time::Instant;
 
 use betadeck::link::Request;
@@ -150,9 +149,8 @@ async fn a_lost_receiver_hears_no_script() {
         }
         let mut lost = false;
         for _ in 0..100 {
-            let from = SocketAddr::from(([127, 0, 0, 1], 1));
             let frame = betadeck::signals::RcFrame::SAFE;
-            rig.requests.send(Request::Rc { stamp_s: 0.0, frame, from, at: rig.at }).await.unwrap();
+            rig.requests.send(Request::Rc { stamp_s: 0.0, frame, at: rig.at }).await.unwrap();
             rig.state(10, 0.0, 0.0).await;
         }
         rig.flown_ms().await;
