@@ -141,7 +141,7 @@ impl<'a, S: LogSource> FlightCursor<'a, S> {
     fn read_ahead(&mut self) -> io::Result<()> {
         loop {
             match self.reader.next_item()? {
-                None | Some(Item::Log { .. } | Item::Refused { .. } | Item::LogEnd { .. }) => return Ok(()),
+                None | Some(Item::Log { .. } | Item::Refused { .. } | Item::LogEnd) => return Ok(()),
                 Some(Item::Frame(Frame {
                     kind: FrameKind::Intra | FrameKind::Inter,
                     values,

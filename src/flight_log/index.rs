@@ -139,7 +139,7 @@ impl<S: LogSource> Indexer<S> {
             Some(Item::Skipped { bytes, frames, .. }) => {
                 self.building.iter_mut().for_each(|building| building.skip(bytes, frames));
             }
-            Some(Item::LogEnd { .. }) => {
+            Some(Item::LogEnd) => {
                 let finished = self.building.take().map(|building| building.finish(self.begun));
                 self.found.flights.extend(finished);
             }

@@ -33,7 +33,7 @@ fn items(bytes: &[u8]) -> usize {
                 assert!(is_inside && bytes > 0 && frames <= bytes);
                 passed += bytes;
             }
-            Item::LogEnd { .. } => {
+            Item::LogEnd => {
                 assert!(is_inside);
                 is_inside = false;
             }

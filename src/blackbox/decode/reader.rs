@@ -16,12 +16,10 @@ pub enum Item<'a> {
     /// A log begins.
     Log {
         header: Arc<Header>,
-        offset: u64,
     },
     /// A log begins that cannot be read. Its frames are passed.
     Refused {
         error: HeaderError,
-        offset: u64,
     },
     Frame(Frame<'a>),
     /// An event and the time of the last main frame, µs; `None` for an event that only old firmwares or those for developers
@@ -29,18 +27,14 @@ pub enum Item<'a> {
     Event {
         event: Option<LogEvent>,
         time_us: u64,
-        offset: u64,
     },
     /// Bytes without a frame, or frames whose values cannot be used, were passed.
     Skipped {
         bytes: u64,
         frames: u64,
-        offset: u64,
     },
     /// The log ends: after its last event, at the next log, or with the file.
-    LogEnd {
-        offset: u64,
-    },
+    LogEnd,
 }
 
 /// A frame with its values.
@@ -69,8 +63,8 @@ pub struct ResumePoint {
 #[derive(Debug, Clone, Copy)]
 enum Found {
     Frame { kind: FrameKind, offset: u64 },
-    Event { event: Option<LogEvent>, offset: u64 },
-    LogEnd { offset: u64 },
+    Event { event: Option<LogEvent> },
+    LogEnd,
 }
 
 /// Bytes that were passed and not reported yet.
@@ -78,7 +72,6 @@ enum Found {
 struct Passed {
     bytes: u64,
     frames: u64,
-    offset: u64,
 }
 
 /// Reads the logs of a file.
@@ -148,8 +141,8 @@ impl<S: LogSource> LogReader<S> {
         };
         if self.passed.bytes > 0 {
             self.waiting = Some(found);
-            let Passed { bytes, frames, offset } = std::mem::take(&mut self.passed);
-            return Ok(Some(Item::Skipped { bytes, frames, offset }));
+            let Passed { bytes, frames } = std::mem::take(&mut self.passed);
+            return Ok(Some(Item::Skipped { bytes, frames }));
         }
         let Some(log) = &self.log else { return Ok(None) };
         let time_us = log.time_us();
@@ -158,15 +151,15 @@ impl<S: LogSource> LogReader<S> {
                 let (values, has_home) = (log.values(kind), log.has_home());
                 Item::Frame(Frame { kind, values, time_us, has_home, offset })
             }
-            Found::Event { event, offset } => {
+            Found::Event { event } => {
                 if event == Some(LogEvent::End) {
-                    self.waiting = Some(Found::LogEnd { offset: self.window.offset() });
+                    self.waiting = Some(Found::LogEnd);
                 }
-                Item::Event { event, time_us, offset }
+                Item::Event { event, time_us }
             }
-            Found::LogEnd { offset } => {
+            Found::LogEnd => {
                 self.is_over = true;
-                Item::LogEnd { offset }
+                Item::LogEnd
             }
         }))
     }
@@ -185,7 +178,6 @@ impl<S: LogSource> LogReader<S> {
             }
             self.window.fill()?;
         }
-        let offset = self.window.offset();
         // The window is larger than the largest header.
         self.window.fill()?;
         self.window.pass_first_line();
@@ -195,9 +187,9 @@ impl<S: LogSource> LogReader<S> {
                 let header = Arc::new(header);
                 self.window.advance(length);
                 self.log = Some(Decoder::new(Arc::clone(&header)));
-                Ok(Some(Item::Log { header, offset }))
+                Ok(Some(Item::Log { header }))
             }
-            Err(error) => Ok(Some(Item::Refused { error, offset })),
+            Err(error) => Ok(Some(Item::Refused { error })),
         }
     }
 
@@ -205,15 +197,15 @@ impl<S: LogSource> LogReader<S> {
     fn find(&mut self) -> io::Result<Found> {
         loop {
             let offset = self.window.offset();
-            let Some(log) = &mut self.log else { return Ok(Found::LogEnd { offset }) };
+            let Some(log) = &mut self.log else { return Ok(Found::LogEnd) };
             let (bytes, is_all) = self.window.before_next_log();
             if bytes.is_empty() && is_all {
-                return Ok(Found::LogEnd { offset });
+                return Ok(Found::LogEnd);
             }
             let step = if bytes.is_empty() { Step::More } else { log.step(bytes, is_all) };
             let (length, found) = match step {
                 Step::Frame { kind, length } => (length, Some(Found::Frame { kind, offset })),
-                Step::Event { event, length } => (length, Some(Found::Event { event, offset })),
+                Step::Event { event, length } => (length, Some(Found::Event { event })),
                 Step::UselessFrame { length } => (length, None),
                 Step::StrayByte => (1, None),
                 Step::UndefinedFrame { length } => {
@@ -228,9 +220,6 @@ impl<S: LogSource> LogReader<S> {
             self.window.advance(length);
             if let Some(found) = found {
                 return Ok(found);
-            }
-            if self.passed.bytes == 0 {
-                self.passed.offset = offset;
             }
             self.passed.bytes += length as u64;
             self.passed.frames += u64::from(matches!(step, Step::UselessFrame { .. }));

@@ -29,7 +29,7 @@ fn read(item: &Item<'_>) -> Read {
         Item::Frame(frame) => Read::Frame(frame.kind, frame.values.to_vec(), frame.time_us),
         Item::Event { event, .. } => Read::Event(*event),
         Item::Skipped { bytes, frames, .. } => Read::Skipped { bytes: *bytes, frames: *frames },
-        Item::LogEnd { .. } => Read::LogEnd,
+        Item::LogEnd => Read::LogEnd,
     }
 }
 

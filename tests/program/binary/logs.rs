@@ -48,14 +48,16 @@ fn read(path: &Path) -> Logs {
     let bytes = std::fs::read(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     let mut reader = LogReader::new(bytes.as_slice());
     let mut logs = Logs::default();
-    while let Some(item) = reader.next_item().expect("bytes") {
+    loop {
+        let offset = reader.offset();
+        let Some(item) = reader.next_item().expect("bytes") else { break };
         match item {
             Item::Log { .. } => logs.logs += 1,
             Item::Frame(frame) if matches!(frame.kind, FrameKind::Intra | FrameKind::Inter) => {
                 logs.frames += 1;
             }
             Item::Event { event: Some(betadeck::blackbox::LogEvent::End), .. } => logs.ended += 1,
-            Item::Skipped { offset, .. } => assert!(offset + 500 > bytes.len() as u64, "damage at {offset}"),
+            Item::Skipped { .. } => assert!(offset + 500 > bytes.len() as u64, "damage at {offset}"),
             Item::Refused { error, .. } => panic!("{error}"),
             _ => {}
         }
