@@ -47,9 +47,7 @@ pub use case::{
     Window,
 };
 pub use draft::Draft;
-pub use file::{
-    FORMAT, Files, Flights, MAX_FLIGHTS, MAX_SEEDS, Request, TABLES, read, read_request, seed_range,
-};
+pub use file::{FORMAT, Files, Flights, MAX_FLIGHTS, MAX_SEEDS, Request, read, read_request, seed_range};
 pub use goal::{Goal, GoalLimit, GoalStatistic, Quantity, Subject, percent};
 pub use input::{Action, FORMS, TimedInput};
 pub use insight::Insight;

@@ -198,10 +198,10 @@ mod tests {
         assert_eq!(kept.before().map(|before| before.plans().count()), Some(1));
         assert_eq!(notices, [""; 0]);
         let (_, kept) = ScreenFile::open(None, Subject::Flight, START, &mut Vec::new());
-        assert!(!kept.is_kept());
+        assert!(!kept.is_kept);
         let plain = ScreenStart { plain: true, ..START };
         let (_, kept) = ScreenFile::open(Some(directory.path()), Subject::Flight, plain, &mut Vec::new());
-        assert!(!kept.is_kept());
+        assert!(!kept.is_kept);
     }
 
     #[test]
@@ -226,7 +226,7 @@ mod tests {
         let (file, ..) = opened(directory.path(), Subject::Flight);
         file.write(&texts("{ damaged", ""));
         let (_, kept, notices) = opened(directory.path(), Subject::Flight);
-        assert!(kept.is_kept());
+        assert!(kept.is_kept);
         let bad = directory.path().join("screen.bad");
         assert_eq!(std::fs::read_to_string(&bad).unwrap(), "{ damaged");
         assert!(notices[0].contains("screen.json is damaged. It is kept as"), "{notices:?}");
@@ -238,7 +238,7 @@ mod tests {
         );
         file.write(&texts(r#"{"version": 99}"#, ""));
         let (_, kept, notices) = opened(directory.path(), Subject::Flight);
-        assert!(!kept.is_kept());
+        assert!(!kept.is_kept);
         assert!(notices[0].contains("later version"), "{notices:?}");
     }
 

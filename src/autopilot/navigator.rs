@@ -32,7 +32,7 @@ use super::io::{NavInputs, NavOutput};
 use super::machine::Facts;
 use super::params::Params;
 use crate::plan::FlightPlan;
-use crate::telemetry::{NavEvent, NavState, NavTelemetry, PlanSource, TransitionReason};
+use crate::telemetry::{NavEvent, NavState, NavTelemetry, TransitionReason};
 use engagement::{ArmingEdge, Engagement};
 use fly::{Flown, Steering};
 use inputs::InputFilter;
@@ -81,16 +81,6 @@ impl Navigator {
     /// Returns the plan that is flown, empty while nothing is flown.
     pub fn active_plan(&self) -> &FlightPlan {
         self.task.cursor.plan()
-    }
-
-    /// Returns the source of the active plan.
-    pub fn source(&self) -> PlanSource {
-        self.task.cursor.source()
-    }
-
-    /// Returns the index of the current waypoint in the active plan.
-    pub fn index(&self) -> u8 {
-        self.task.cursor.index()
     }
 
     /// Returns the state of the last update for displays, logs and samples.

@@ -145,11 +145,6 @@ impl FcClient {
         self.armed = armed;
     }
 
-    /// Returns `true` if lines by MSP message work; `None` before the first was sent.
-    pub fn knows_message_lines(&self) -> Option<bool> {
-        self.knows_messages
-    }
-
     /// Returns `true` while the interactive command line is open, which suspends MSP.
     pub fn is_in_cli(&self) -> bool {
         self.in_prompt

@@ -105,13 +105,6 @@ impl Frame {
             Form::V2OverV1 => encode_tunnel(self.kind, self.code, payload, out),
         }
     }
-
-    /// Returns the frame's bytes.
-    pub fn to_bytes(&self) -> Vec<u8> {
-        let mut out = Vec::with_capacity(self.payload.len() + 16);
-        self.encode(&mut out);
-        out
-    }
 }
 
 fn xor(bytes: &[u8]) -> u8 {
@@ -174,6 +167,13 @@ fn encode_tunnel(kind: Kind, code: u16, payload: &[u8], out: &mut Vec<u8>) {
 mod tests {
     use super::*;
 
+    /// Returns the bytes of a reply with a payload of this length.
+    fn reply(form: Form, length: usize) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        Frame { form, kind: Kind::Reply, code: 116, payload: vec![7; length] }.encode(&mut bytes);
+        bytes
+    }
+
     #[test]
     fn crc_check_value() {
         assert_eq!(DVB_S2.checksum(b"123456789"), 0xbc);
@@ -181,18 +181,17 @@ mod tests {
 
     #[test]
     fn a_payload_of_254_is_plain_and_of_255_is_jumbo() {
-        let plain = Frame { form: Form::V1, kind: Kind::Reply, code: 116, payload: vec![7; 254] }.to_bytes();
+        let plain = reply(Form::V1, 254);
         assert_eq!(&plain[..5], &[b'$', b'M', b'>', 254, 116]);
         assert_eq!(plain.len(), 5 + 254 + 1);
-        let jumbo = Frame { form: Form::V1, kind: Kind::Reply, code: 116, payload: vec![7; 255] }.to_bytes();
+        let jumbo = reply(Form::V1, 255);
         assert_eq!(&jumbo[..7], &[b'$', b'M', b'>', 255, 116, 255, 0]);
         assert_eq!(jumbo.len(), 7 + 255 + 1);
     }
 
     #[test]
     fn a_jumbo_tunnel_names_the_length_of_its_body_after_the_inner_header() {
-        let bytes =
-            Frame { form: Form::V2OverV1, kind: Kind::Reply, code: 116, payload: vec![7; 287] }.to_bytes();
+        let bytes = reply(Form::V2OverV1, 287);
         // 287 = 0x011f payload, 293 = 0x0125 with header and CRC.
         assert_eq!(&bytes[..12], &[b'$', b'M', b'>', 255, 255, 0, 116, 0, 0x1f, 1, 0x25, 1]);
         assert_eq!(bytes.len(), 12 + 287 + 2);

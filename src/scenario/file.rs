@@ -28,7 +28,6 @@ use vary::Variant;
 pub use air::{MAX_SEEDS, seed_range};
 #[cfg(test)]
 pub(super) use bounds::BOUNDS;
-pub use keys::TABLES;
 
 /// The version of the file format.
 pub const FORMAT: i64 = 1;

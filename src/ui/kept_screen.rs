@@ -142,7 +142,7 @@ pub struct KeptTexts {
 #[derive(Debug, Default)]
 pub struct KeptScreens {
     /// `true` if the screen is kept.
-    pub(super) is_kept: bool,
+    pub(crate) is_kept: bool,
     pub(super) of: KeptOf,
     /// The screen that comes back, until it does.
     pub(super) before: Option<KeptScreen>,
@@ -256,11 +256,6 @@ impl KeptScreens {
         if let Some(before) = &mut self.before {
             before.subject.place = None;
         }
-    }
-
-    /// Returns `true` if the screen is kept for the next run.
-    pub fn is_kept(&self) -> bool {
-        self.is_kept
     }
 
     /// Returns the screen of the run before, until it comes back.

@@ -169,7 +169,9 @@ impl Client {
         assert!(!self.session.is_in_cli());
         let asked = self.talk.asks.len();
         self.talk.output.clear();
-        self.send(&Frame::request(Form::V2, 1, &[]).to_bytes());
+        let mut request = Vec::new();
+        Frame::request(Form::V2, 1, &[]).encode(&mut request);
+        self.send(&request);
         assert_eq!(self.talk.asks.len(), asked + 1, "{:?}", &self.talk.asks[asked..]);
         let mut decoder = Decoder::client();
         let replies: Vec<Frame> = self.talk.output.iter().filter_map(|byte| decoder.push(*byte)).collect();
@@ -185,7 +187,8 @@ fn decoders(data: &[u8]) {
         for frame in data.iter().filter_map(|byte| decoder.push(*byte)) {
             assert!(frame.payload.len() <= limit);
             let mut again = make();
-            let bytes = frame.to_bytes();
+            let mut bytes = Vec::new();
+            frame.encode(&mut bytes);
             let found: Vec<Frame> = bytes.iter().filter_map(|byte| again.push(*byte)).collect();
             assert_eq!(found, [frame]);
             assert!(again.is_between_frames() && again.dropped() == Dropped::default());

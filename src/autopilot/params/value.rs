@@ -40,7 +40,6 @@ pub enum YawMode {
 pub(super) trait Value: Copy {
     /// The names of the values of an enumeration in the order of their numbers; empty for plain numbers.
     const WORDS: &'static [&'static str];
-    fn to_number(self) -> i64;
     fn from_number(number: i64) -> Self;
 }
 
@@ -48,9 +47,6 @@ macro_rules! numbers {
     ($($ty:ty)*) => {$(
         impl Value for $ty {
             const WORDS: &'static [&'static str] = &[];
-            fn to_number(self) -> i64 {
-                i64::from(self)
-            }
             fn from_number(number: i64) -> Self {
                 Self::try_from(number.max(0)).unwrap_or(Self::MAX)
             }
@@ -61,9 +57,6 @@ numbers!(u8 u16);
 
 impl Value for bool {
     const WORDS: &'static [&'static str] = &["OFF", "ON"];
-    fn to_number(self) -> i64 {
-        i64::from(self)
-    }
     fn from_number(number: i64) -> Self {
         number != 0
     }
@@ -73,9 +66,6 @@ macro_rules! enumerations {
     ($($ty:ty)*) => {$(
         impl Value for $ty {
             const WORDS: &'static [&'static str] = Self::VARIANTS;
-            fn to_number(self) -> i64 {
-                self as i64
-            }
             fn from_number(number: i64) -> Self {
                 u8::try_from(number).ok().and_then(Self::from_repr).unwrap_or_default()
             }

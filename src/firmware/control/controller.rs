@@ -90,11 +90,6 @@ impl Controller {
         self.smoothing.invalidate();
     }
 
-    /// Returns the tuning in use.
-    pub fn tuning(&self) -> &Tuning {
-        &self.tuning
-    }
-
     /// Returns the smoothing cutoffs of sticks and throttle in use, Hz; 0 while nothing is smoothed.
     pub fn smoothing_hz(&self) -> [f64; 2] {
         self.smoothing.cutoffs_hz()

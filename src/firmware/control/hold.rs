@@ -29,10 +29,6 @@ pub struct HoldModes {
     pub descend: Option<DescentRate>,
 }
 
-impl HoldModes {
-    pub const NONE: Self = Self { altitude: false, position: false, descend: None };
-}
-
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HoldTuning {
     /// The deadband of the throttle stick, as a share of its way from hover to the end, 0…1.

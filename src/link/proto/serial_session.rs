@@ -342,8 +342,9 @@ mod tests {
 
     #[test]
     fn a_message_that_is_too_long_ends_neither_the_session_nor_counts_as_text() {
-        let too_long = Frame::request(Form::V2, 1, &[b'#'; 300]);
-        let asks = asked(&[&too_long.to_bytes(), FRAME]);
+        let mut too_long = Vec::new();
+        Frame::request(Form::V2, 1, &[b'#'; 300]).encode(&mut too_long);
+        let asks = asked(&[&too_long, FRAME]);
         assert!(matches!(&asks[..], [SerialRequest::Msp(_)]), "{asks:?}");
     }
 

@@ -139,18 +139,30 @@ pub(super) const EXPECT_KEYS: &[&str] = &[
 /// Keys of `[[compare]]`.
 pub(super) const COMPARE_KEYS: &[&str] = &["name", "that"];
 
-/// All tables with their keys, for the reference.
-pub const TABLES: &[(&str, &[&str])] = &[
-    ("the file", FILE_KEYS),
-    ("[plan]", PLAN_KEYS),
-    ("[craft]", CRAFT_KEYS),
-    ("[air]", AIR_KEYS),
-    ("[vary]", VARY_KEYS),
-    ("[campaign]", CAMPAIGN_KEYS),
-    ("[allow]", ALLOW_KEYS),
-    ("[[input]]", INPUT_KEYS),
-    ("[[measure]]", MEASURE_KEYS),
-    ("[[expect]]", EXPECT_KEYS),
-    ("[[case]]", CASE_KEYS),
-    ("[[compare]]", COMPARE_KEYS),
-];
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_reference_has_a_row_for_each_table_of_a_file() {
+        let tables = [
+            ("the file", FILE_KEYS),
+            ("[plan]", PLAN_KEYS),
+            ("[craft]", CRAFT_KEYS),
+            ("[air]", AIR_KEYS),
+            ("[vary]", VARY_KEYS),
+            ("[campaign]", CAMPAIGN_KEYS),
+            ("[allow]", ALLOW_KEYS),
+            ("[[input]]", INPUT_KEYS),
+            ("[[measure]]", MEASURE_KEYS),
+            ("[[expect]]", EXPECT_KEYS),
+            ("[[case]]", CASE_KEYS),
+            ("[[compare]]", COMPARE_KEYS),
+        ];
+        let rows: String =
+            tables.iter().map(|(table, keys)| format!("| {table} | `{}` |\n", keys.join("` `"))).collect();
+        let marked = format!("<!-- KEYS -->\n| table | keys |\n| --- | --- |\n{rows}<!-- end -->");
+        let page = include_str!("../../../docs/scenarios.md");
+        assert!(page.contains(&marked), "replace this table in docs/scenarios.md by this one:\n{marked}");
+    }
+}

@@ -340,7 +340,7 @@ fn effects() -> Vec<Effect> {
         ("ap_max_distance_from_home", [80, 90, 95], true, |name, value| {
             let mut flight = fly(with(name, value), &[hold(60.0, 20.0)], 20.0);
             flight.inputs.stick_pitch = 500.0;
-            flight.until(60.0, |f| f.nav.source() != PlanSource::Stored);
+            flight.until(60.0, |f| f.nav.telemetry().source != PlanSource::Stored);
             flight.plant.pos.x
         }),
         ("ap_geofence_action", [0, 1, 1], true, |name, value| {

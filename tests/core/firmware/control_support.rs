@@ -58,7 +58,7 @@ impl Rig {
             controllers: FlightControllers::default(),
             hold_tuning: HoldTuning::from_settings(settings),
             params,
-            modes: HoldModes::NONE,
+            modes: HoldModes::default(),
             hold: HoldOutput::default(),
             sticks: ControlInput::default(),
             received: ControlInput::default(),
@@ -95,7 +95,7 @@ impl Rig {
     pub(crate) fn manual(&mut self, mode: StickMode) {
         self.sticks.throttle_us = self.controller.state().throttle_us;
         self.sticks.mode = mode;
-        self.modes = HoldModes::NONE;
+        self.modes = HoldModes::default();
     }
 
     pub(crate) fn estimate(&self) -> &Estimate {

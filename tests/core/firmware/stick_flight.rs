@@ -1,7 +1,8 @@
 //! Manual flight: the response of the craft to the sticks.
 
 use crate::firmware::control_support::{Rig, StepResponse, world};
-use betadeck_core::firmware::control::StickMode;
+use betadeck_core::firmware::config::MixerKind;
+use betadeck_core::firmware::control::{StickMode, Tuning};
 use betadeck_core::firmware::settings::Settings;
 use betadeck_core::sim::{Airframe, Noise, WorldConfig};
 
@@ -11,11 +12,7 @@ fn airframes() -> [(&'static str, Airframe); 2] {
 
 /// Returns the stick deflection (RC units) that demands this angle with the default curve and limit.
 fn stick_for(angle_deg: f64, settings: &Settings) -> f64 {
-    let tuning = betadeck_core::firmware::control::Tuning::from_settings(
-        settings,
-        betadeck_core::firmware::config::MixerKind::QuadX,
-        &[],
-    );
+    let tuning = Tuning::from_settings(settings, MixerKind::QuadX, &[]);
     let wanted = angle_deg / tuning.level.limit_deg * tuning.rates[0].rate_dps(1.0);
     let mut stick: f64 = 0.0;
     while tuning.rates[0].rate_dps(stick / 500.0) < wanted {
@@ -78,7 +75,7 @@ fn rate_step(airframe: &Airframe, noise: Noise, axis: usize, rate_dps: f64) -> S
     let mut rig = Rig::airborne(world(noise, airframe.clone()), &settings);
     rig.manual(StickMode::Acro);
     rig.run(0.1);
-    let curve = rig.controller.tuning().rates[axis];
+    let curve = Tuning::from_settings(&settings, MixerKind::QuadX, &[]).rates[axis];
     let stick =
         (0..500).map(f64::from).find(|stick| curve.rate_dps(stick / 500.0) >= rate_dps).unwrap_or(500.0);
     *[&mut rig.sticks.stick_roll, &mut rig.sticks.stick_pitch, &mut rig.sticks.stick_yaw][axis] = stick;

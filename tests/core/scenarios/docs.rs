@@ -1,4 +1,4 @@
-//! `docs/scenarios.md` and `docs/campaigns.md` against the code: every key, signal, flag, event, input, unit and metric has
+//! `docs/scenarios.md` and `docs/campaigns.md` against the code: every signal, flag, event, input, unit and metric has
 //! its row.
 #![allow(
     clippy::unwrap_used,
@@ -8,7 +8,7 @@
 
 use betadeck_core::scenario::flag::Flag;
 use betadeck_core::scenario::happening::EVENTS;
-use betadeck_core::scenario::{FORMS, Metric, TABLES};
+use betadeck_core::scenario::{FORMS, Metric};
 use betadeck_core::telemetry::quantity::UNITS;
 use betadeck_core::telemetry::signal::{SIGNALS, SignalInfo};
 use strum::IntoEnumIterator as _;
@@ -22,7 +22,6 @@ fn tables() -> Vec<(&'static str, &'static str, String)> {
         (page, "FLAGS", flags()),
         (page, "SIGNALS", signals()),
         (page, "UNITS", units()),
-        (page, "KEYS", keys()),
         ("docs/campaigns.md", "METRICS", metrics()),
     ]
 }
@@ -92,13 +91,6 @@ fn signals() -> String {
 
 fn units() -> String {
     rows("| unit | is |", UNITS.iter().map(|unit| format!("| `{}` | {} |", unit.name, unit.help)))
-}
-
-fn keys() -> String {
-    rows(
-        "| table | keys |",
-        TABLES.iter().map(|(table, keys)| format!("| {table} | `{}` |", keys.join("` `"))),
-    )
 }
 
 #[test]

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use std::time::Duration;
-use test_support::hex;
+use test_support::{hex, msp_bytes};
 
 use betadeck::link::conventions::Dialect;
 use betadeck::link::proto::command_line::{Completion, LineReply};
@@ -43,7 +43,7 @@ fn captured_replies_decode_and_encode_to_the_same_bytes() {
         }
         let (frames, decoder) = decode_all(Decoder::client(), &reply);
         assert!(decoder.is_between_frames(), "{number}: the reply is complete");
-        let encoded: Vec<u8> = frames.iter().flat_map(Frame::to_bytes).collect();
+        let encoded: Vec<u8> = frames.iter().flat_map(msp_bytes).collect();
         assert_eq!(encoded, reply, "{number}");
         let (asked, _) = decode_all(Decoder::server(), &request);
         assert_eq!(asked.len(), frames.len(), "{number}");
@@ -79,12 +79,12 @@ fn any_frame(kind: Kind, limit: usize) -> impl Strategy<Value = Frame> {
 proptest! {
     #[test]
     fn requests_survive_the_wire(frame in any_frame(Kind::Request, 186)) {
-        prop_assert_eq!(decode_all(Decoder::server(), &frame.to_bytes()).0, vec![frame]);
+        prop_assert_eq!(decode_all(Decoder::server(), &msp_bytes(&frame)).0, vec![frame]);
     }
 
     #[test]
     fn replies_survive_the_wire(frame in any_frame(Kind::Reply, 1000)) {
-        prop_assert_eq!(decode_all(Decoder::client(), &frame.to_bytes()).0, vec![frame]);
+        prop_assert_eq!(decode_all(Decoder::client(), &msp_bytes(&frame)).0, vec![frame]);
     }
 
     #[test]
@@ -131,7 +131,7 @@ proptest! {
         frame in any_frame(Kind::Request, 186),
         cut in 1_usize..200,
     ) {
-        let mut stream = frame.to_bytes();
+        let mut stream = msp_bytes(&frame);
         stream.truncate(stream.len().saturating_sub(cut).max(1));
         // Zeros complete the announced frame, and are no frame themselves.
         stream.extend(vec![0_u8; 200]);
@@ -149,7 +149,7 @@ proptest! {
         size in 193_usize..1000,
     ) {
         let code = u16::from(code % 255);
-        let mut stream = Frame::request(form, code, &vec![0; size]).to_bytes();
+        let mut stream = msp_bytes(&Frame::request(form, code, &vec![0; size]));
         let good = Frame::request(Form::V2, 101, &[]);
         good.encode(&mut stream);
         let (found, decoder) = decode_all(Decoder::server(), &stream);

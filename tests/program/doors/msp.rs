@@ -20,7 +20,7 @@ pub(crate) fn request(code: u8, payload: &[u8]) -> Vec<u8> {
 
 /// Returns the bytes of a version 2 request, for codes that do not fit in a byte.
 pub(crate) fn request_v2(code: u16, payload: &[u8]) -> Vec<u8> {
-    Frame::request(Form::V2, code, payload).to_bytes()
+    test_support::msp_bytes(&Frame::request(Form::V2, code, payload))
 }
 
 /// Takes a complete answer from the front of `bytes`. Returns its code, and its payload unless it is an

@@ -49,7 +49,7 @@ impl SerialPort {
         match (&self.mode, byte) {
             (Mode::Frames, _) if self.line.is_empty() && is_frame => {
                 let frame = self.decoder.push(byte)?;
-                Some(Effect::Send(frame.answer(payload(&frame, rc)).to_bytes()))
+                Some(Effect::Send(test_support::msp_bytes(&frame.answer(payload(&frame, rc)))))
             }
             (Mode::Frames, STX) => {
                 self.mode = Mode::Framed;

@@ -19,6 +19,13 @@ pub use cable::Cable;
 pub use free_port::free_port;
 pub use made_log::MadeLog;
 
+/// Returns the bytes of an MSP frame.
+pub fn msp_bytes(frame: &betadeck_core::msp::Frame) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    frame.encode(&mut bytes);
+    bytes
+}
+
 /// Returns the path of a file or folder of the project.
 pub fn path(name: &str) -> PathBuf {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join(name)

@@ -125,7 +125,7 @@ fn race_mode_levels_roll_and_leaves_pitch_to_the_stick() {
         }
         let setpoint = controller.state().setpoint_dps;
         assert!(setpoint[0] < -10.0, "roll is levelled: {setpoint:?}");
-        let by_rate = (setpoint[1] - controller.tuning().rates[1].rate_dps(0.5)).abs() < 1.0;
+        let by_rate = (setpoint[1] - Tuning::default().rates[1].rate_dps(0.5)).abs() < 1.0;
         assert_eq!(by_rate, angle.is_none(), "{setpoint:?}");
         let lean = crate::firmware::control::LeanDemand { roll_rad: 0.0, pitch_down_rad: 0.0 };
         controller.step(&ControlInput { lean: Some(lean), ..input }, &estimate, DT);

@@ -18,7 +18,7 @@ fn fence_flight(action: FenceAction) -> Flight {
     assert!(flight.until(40.0, |f| f.nav.state() == NavState::Holding));
     flight.run(5.0);
     flight.inputs.stick_pitch = 500.0;
-    assert!(flight.until(40.0, |f| f.nav.source() != PlanSource::Stored));
+    assert!(flight.until(40.0, |f| f.nav.telemetry().source != PlanSource::Stored));
     flight.inputs.stick_pitch = 0.0;
     flight
 }
@@ -42,7 +42,7 @@ fn leaving_the_fence_lands() {
 fn leaving_the_fence_returns_home() {
     let mut flight = fence_flight(FenceAction::Rth);
     let began = flight.t();
-    assert_eq!((flight.nav.state(), flight.nav.index()), (NavState::Approaching, 0));
+    assert_eq!((flight.nav.state(), flight.nav.telemetry().wp), (NavState::Approaching, 0));
     let altitudes: Vec<_> =
         flight.nav.active_plan().waypoints.iter().map(|wp| wp.altitude.above_home_m()).collect();
     assert!(altitudes.iter().all(|alt| (alt - 30.0).abs() <= 0.5), "{altitudes:?}");
@@ -112,7 +112,10 @@ fn carried_away(params: Params) -> Flight {
 fn the_fence_stays_up_after_a_mission_was_given_up() {
     let fenced = Params { max_distance_from_home: 100, ..guide() };
     let mut flight = carried_away(fenced);
-    assert_eq!((flight.nav.state(), flight.nav.source()), (NavState::Landing, PlanSource::Emergency));
+    assert_eq!(
+        (flight.nav.state(), flight.nav.telemetry().source),
+        (NavState::Landing, PlanSource::Emergency)
+    );
     let guard = flight.events.iter().rev().find_map(|(_, event)| match event {
         NavEvent::State { guard, .. } => *guard,
         _ => None,
@@ -122,7 +125,7 @@ fn the_fence_stays_up_after_a_mission_was_given_up() {
     assert!(out.throttle_us >= 1100.0, "it is flown at once: {out:?}");
     assert!(flight.until(120.0, |f| f.disarmed));
     let home = carried_away(Params { geofence_action: FenceAction::Rth, ..fenced });
-    assert_eq!((home.nav.state(), home.nav.source()), (NavState::Approaching, PlanSource::Rth));
+    assert_eq!((home.nav.state(), home.nav.telemetry().source), (NavState::Approaching, PlanSource::Rth));
     let free = carried_away(Params { max_distance_from_home: 0, ..fenced });
     assert_eq!(free.nav.state(), NavState::Idle);
 }

@@ -17,7 +17,7 @@ fn command(flight: &mut Flight, command: InFlightCommand) -> Result<(), InFlight
 fn on_the_way() -> Flight {
     let mut flight = Flight::new(guide(), &three().waypoints, 20.0).launch();
     flight.run(6.0);
-    assert_eq!((flight.nav.state(), flight.nav.index()), (NavState::Approaching, 0));
+    assert_eq!((flight.nav.state(), flight.nav.telemetry().wp), (NavState::Approaching, 0));
     flight
 }
 
@@ -49,7 +49,7 @@ fn a_waypoint_that_was_flown_and_a_parked_craft_can_be_gone_back_from() {
     assert!(flight.until(120.0, |f| f.nav.state() == NavState::Complete));
     command(&mut flight, GoTo(0)).unwrap();
     flight.run(1.0);
-    assert_eq!((flight.nav.state(), flight.nav.index()), (NavState::Approaching, 0));
+    assert_eq!((flight.nav.state(), flight.nav.telemetry().wp), (NavState::Approaching, 0));
     // The mission continues from there, even after the switch was cycled.
     flight.nav.disengage();
     flight.engage();
@@ -126,7 +126,7 @@ fn a_new_plan_is_continued_from_the_chosen_waypoint_only() {
     flight.run(2.0);
     assert_eq!(flight.nav.active_plan(), &three(), "not before the next engagement");
     command(&mut flight, GoTo(1)).unwrap();
-    assert_eq!((flight.nav.active_plan(), flight.nav.index()), (&east, 1));
+    assert_eq!((flight.nav.active_plan(), flight.nav.telemetry().wp), (&east, 1));
     assert!(is_reached(&mut flight, 1));
     assert!((flight.plant.pos.y - 80.0).abs() < 6.0, "{}", flight.plant.pos);
 }

@@ -48,7 +48,7 @@ fn takeoff_climbs_over_its_place() {
     let mut flight = Flight::new(guide(), &waypoints, 1.5);
     flight.hover(5.0);
     flight.engage();
-    assert!(flight.until(40.0, |f| f.nav.index() == 1));
+    assert!(flight.until(40.0, |f| f.nav.telemetry().wp == 1));
     assert!(flight.plant.pos.norm() < 0.3 && (flight.plant.alt - 15.0).abs() < 2.0);
     let waited = flight.t() - flight.entered(NavState::Holding, 0).unwrap();
     assert!((waited - 2.0).abs() < 1e-9);
@@ -79,8 +79,8 @@ fn a_missed_flyover_is_come_back_to() {
         flight.plant.pos.y = 10.0;
         flight.tick();
     }
-    assert_eq!((flight.nav.state(), flight.nav.index()), (NavState::Approaching, 0));
-    assert!(flight.until(40.0, |f| f.nav.index() == 1));
+    assert_eq!((flight.nav.state(), flight.nav.telemetry().wp), (NavState::Approaching, 0));
+    assert!(flight.until(40.0, |f| f.nav.telemetry().wp == 1));
     let at = flight.log.last().unwrap().pos;
     assert!((at - Vector2::new(60.0, 0.0)).norm() < 1.2, "{at}");
 }
@@ -99,7 +99,7 @@ fn modifiers_change_the_next_leg() {
         waypoint(Hold, 60.0, 40.0, 20.0, 5.0),
     ];
     let mut flight = Flight::new(guide(), &waypoints, 20.0).launch();
-    assert!(flight.until(60.0, |f| f.nav.index() == 4));
+    assert!(flight.until(60.0, |f| f.nav.telemetry().wp == 4));
     let began = flight.t();
     assert!(flight.until(60.0, |f| f.nav.state() == NavState::Holding));
     let took = flight.t() - began;
@@ -181,10 +181,10 @@ fn a_resumed_mission_keeps_the_yaw_rate_cap_of_the_plan_before_it() {
     cap.yaw_rate_dps = 5;
     let waypoints = [cap, waypoint(Flyover, 0.0, 40.0, 20.0, 5.0), waypoint(Hold, 60.0, 40.0, 20.0, 5.0)];
     let mut flight = Flight::new(guide(), &waypoints, 20.0).launch();
-    assert!(flight.until(60.0, |f| f.nav.index() == 2));
+    assert!(flight.until(60.0, |f| f.nav.telemetry().wp == 2));
     flight.nav.disengage();
     flight.engage();
-    assert_eq!((flight.nav.state(), flight.nav.index()), (NavState::Approaching, 2));
+    assert_eq!((flight.nav.state(), flight.nav.telemetry().wp), (NavState::Approaching, 2));
     let resumed = flight.t();
     flight.run(8.0);
     let rates = || flight.since(resumed).map(|s| s.out.yaw_rate_rps.unwrap().abs().to_degrees());

@@ -35,7 +35,7 @@ fn a_lost_fix_idles_and_resumes_two_seconds_after_it_is_back() {
         assert!(waited < 300);
     }
     assert!((199..=202).contains(&waited), "{waited}");
-    assert_eq!((nav.state(), nav.index()), (NavState::Approaching, 1));
+    assert_eq!((nav.state(), nav.telemetry().wp), (NavState::Approaching, 1));
 }
 
 #[test]

@@ -130,7 +130,7 @@ fn a_wind_beyond_the_lean_ends_the_mission_within_thirty_seconds() {
         let corner = waypoint(Flyover, 0.0, 30.0, 20.0, 0.0);
         let far = waypoint(Flyover, length, 30.0, 20.0, rng.random_range(3.0..15.0));
         let mut flight = Flight::new(params, &[corner, far], 20.0).launch();
-        assert!(flight.until(60.0, |flight| flight.nav.index() == 1));
+        assert!(flight.until(60.0, |flight| flight.nav.telemetry().wp == 1));
         flight.run(rng.random_range(0.0..20.0));
         let speed = 1.5 * steady_speed_mps(f64::from(lean).to_radians());
         flight.plant.wind = Vector2::new(-speed, rng.random_range(-1.0..1.0));

@@ -17,7 +17,7 @@ fn return_home_flies_straight_and_lands() {
         flight.run(5.0);
         let began = flight.t();
         flight.nav.return_to_home(&flight.inputs, &flight.params, None).unwrap();
-        assert!(flight.until(60.0, |f| f.nav.index() == 1));
+        assert!(flight.until(60.0, |f| f.nav.telemetry().wp == 1));
         assert!((12.0..=26.0).contains(&(flight.t() - began)));
         let along = Vector2::new(100.0, 50.0).normalize();
         let beside = worst(flight.since(began + 5.0).map(|s| (s.pos - along * s.pos.dot(&along)).norm()));
@@ -55,7 +55,7 @@ fn return_home_without_a_home_lands_here() {
     let mut nav = Navigator::new();
     let at = NavInputs { home: None, ..inputs() };
     nav.return_to_home(&at, &Params::default(), None).unwrap();
-    assert_eq!((nav.state(), nav.source()), (NavState::Landing, PlanSource::Emergency));
+    assert_eq!((nav.state(), nav.telemetry().source), (NavState::Landing, PlanSource::Emergency));
 }
 
 #[test]
@@ -82,7 +82,10 @@ fn a_return_home_that_makes_no_progress_lands_where_it_is() {
         assert!(flight.t() - began < 31.0);
     }
     assert!((flight.t() - began - 30.0).abs() < 0.1, "{}", flight.t() - began);
-    assert_eq!((flight.nav.state(), flight.nav.source()), (NavState::Landing, PlanSource::Emergency));
+    assert_eq!(
+        (flight.nav.state(), flight.nav.telemetry().source),
+        (NavState::Landing, PlanSource::Emergency)
+    );
     assert_eq!(flight.nav.telemetry().reason, Some(TransitionReason::GivenUp(AbortReason::Stalled)));
     assert!(flight.until(120.0, |f| f.disarmed));
     assert!((flight.plant.pos - held).norm() < 2.0, "{}", flight.plant.pos);

@@ -19,7 +19,7 @@ fn sticks_override_and_release_returns_to_the_line() {
     assert!(moved > 2.0);
     assert!(flight.until(40.0, |f| f.plant.pos.x > 180.0));
     assert!(flight.plant.pos.y.abs() < 1.0, "{}", flight.plant.pos.y);
-    assert_eq!(flight.nav.index(), 1);
+    assert_eq!(flight.nav.telemetry().wp, 1);
 }
 
 #[test]

@@ -72,7 +72,7 @@ fn disarming_forgets_the_index_and_a_touchdown_shows_until_the_next_arming() {
     assert_eq!(nav.state(), NavState::Idle);
     at.armed = true;
     nav.engage(&at, &params, &stored).unwrap();
-    assert_eq!(nav.index(), 0);
+    assert_eq!(nav.telemetry().wp, 0);
 
     let mut flight = Flight::new(guide(), &[waypoint(Land, 0.0, 0.0, 6.0, 0.0)], 6.0).launch();
     assert!(flight.until(60.0, |f| f.disarmed));

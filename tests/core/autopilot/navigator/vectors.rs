@@ -29,7 +29,7 @@ fn check_expectation(nav: &Navigator, expect: &Value, case: &Value) {
         assert_eq!(nav.state().to_string(), state, "{case}");
     }
     if let Some(index) = expect["index"].as_u64() {
-        assert_eq!(u64::from(nav.index()), index, "{case}");
+        assert_eq!(u64::from(nav.telemetry().wp), index, "{case}");
     }
     if let Some(next) = expect["next_index"].as_u64() {
         assert_eq!(u64::from(nav.telemetry().next_wp), next, "{case}");
@@ -51,7 +51,7 @@ fn pass(
     params: &Params,
     controllers: &mut FlightControllers,
 ) {
-    let target = stored.waypoints[usize::from(nav.index())].position;
+    let target = stored.waypoints[usize::from(nav.telemetry().wp)].position;
     let place = betadeck_core::geo::local_offset(HOME, target);
     for step in [Vector2::new(-1.0, 0.0), Vector2::new(0.5, 0.0), Vector2::new(0.5, 0.0)] {
         at.time = SimTime(at.time.0 + 10_000);
@@ -156,11 +156,11 @@ fn commands_of_the_vectors() {
                 }
                 if let Some(start) = expect["starts_at"].as_u64() {
                     nav.engage(&at, &params, &stored).unwrap();
-                    assert_eq!(u64::from(nav.index()), start);
+                    assert_eq!(u64::from(nav.telemetry().wp), start);
                     nav.disengage();
                     nav.on_disarm();
                     nav.engage(&at, &params, &stored).unwrap();
-                    assert_eq!(nav.index(), 0, "only once");
+                    assert_eq!(nav.telemetry().wp, 0, "only once");
                 }
             }
             other => panic!("unknown command {other}"),

@@ -17,7 +17,7 @@ fn commands() -> Vec<Vec<u8>> {
     // SET_NAME "evil", EEPROM_WRITE, REBOOT.
     for (code, payload) in [(11, b"evil".as_slice()), (250, b""), (68, b"")] {
         use betadeck::msp::{Form, Frame};
-        frames.extend(Frame::request(Form::V1, code, payload).to_bytes());
+        Frame::request(Form::V1, code, payload).encode(&mut frames);
     }
     let lines = b"\x02set craft_name = evil\nsave\n\x03".to_vec();
     vec![frames, lines, b"#\r\nset craft_name = evil\r\nsave\r\n".to_vec()]

@@ -219,7 +219,7 @@ async fn the_command_line_in_messages_pages_through_its_output() {
     let mut client = house.tcp().await;
     let ask = |payload: &[u8]| {
         use betadeck::msp::{Form, Frame};
-        Frame::request(Form::V2, 0x3012, payload).to_bytes()
+        test_support::msp_bytes(&Frame::request(Form::V2, 0x3012, payload))
     };
     client.send(&ask(b"help")).await;
     let first = client.receive_exactly(9 + 3 + 512).await;

@@ -2,7 +2,7 @@
 //! captured answer.
 
 use std::time::Duration;
-use test_support::hex;
+use test_support::{hex, msp_bytes};
 
 use betadeck::fc::client::{Answer, Ask, AskId, FcClient, Unanswered};
 use betadeck::msp::{Decoder, Form, Frame, Kind};
@@ -141,9 +141,15 @@ fn an_armed_craft_drops_both_ways_into_its_command_line() {
     // The client then tries the line by message, which the captured firmware does not support.
     assert_eq!(frames(Decoder::server(), &client.take_output())[0].code, 0x3012);
     client.push(
-        &Frame { form: Form::V2, kind: Kind::Error, code: 0x3012, payload: Vec::new() }.to_bytes(),
+        &msp_bytes(&Frame { form: Form::V2, kind: Kind::Error, code: 0x3012, payload: Vec::new() }),
         NOW,
     );
     assert_eq!(client.next_answer(), Some((AskId(1), Answer::NotAnswered(Unanswered::CliClosed))));
-    assert_eq!(client.knows_message_lines(), Some(false));
+    client.ask(AskId(2), Ask::MessageLine("waypoint status".to_owned()));
+    client.poll(NOW);
+    // Gets back in step, as the prompt did not answer.
+    assert_eq!(client.take_output(), hex::decode("244d3c000101"));
+    client.push(&hex::decode("244d3e030100013132"), NOW);
+    assert_eq!(client.take_output(), [0; 0], "not asked a second time");
+    assert_eq!(client.next_answer(), Some((AskId(2), Answer::NotAnswered(Unanswered::CliClosed))));
 }

@@ -5,6 +5,7 @@ use std::time::Duration;
 use betadeck::fc::client::{Answer, Ask, AskId, CliAccess, FcClient, Unanswered};
 use betadeck::msp::{Form, Frame, Kind};
 use proptest::prelude::*;
+use test_support::msp_bytes;
 
 use crate::protocols::fc_client::board::{Bench, Manners};
 
@@ -73,11 +74,11 @@ fn endless(access: CliAccess, pause: Duration) -> (Duration, Answer) {
     client.poll(now);
     if access == CliAccess::Framed {
         let api = Frame { form: Form::V1, kind: Kind::Reply, code: 1, payload: vec![0, 1, 49] };
-        client.push(&api.to_bytes(), now);
+        client.push(&msp_bytes(&api), now);
         client.push(&[0x02], now);
     } else {
         let api = Frame { form: Form::V1, kind: Kind::Reply, code: 1, payload: vec![0, 1, 40] };
-        client.push(&api.to_bytes(), now);
+        client.push(&msp_bytes(&api), now);
         client.push(b"\r\nEntering CLI Mode, type 'exit' to return, or 'help'\r\n\r\n# ", now);
         now += Duration::from_millis(100);
         client.poll(now);
@@ -114,7 +115,7 @@ fn pages_without_end_are_given_up() {
     client.ask(AskId(7), Ask::MessageLine("dump".to_owned()));
     let reply = |code, payload: &[u8]| {
         let form = if code > 254 { Form::V2 } else { Form::V1 };
-        Frame { form, kind: Kind::Reply, code, payload: payload.to_vec() }.to_bytes()
+        msp_bytes(&Frame { form, kind: Kind::Reply, code, payload: payload.to_vec() })
     };
     client.poll(Duration::ZERO);
     client.push(&reply(1, &[0, 1, 49]), Duration::ZERO);
@@ -267,7 +268,7 @@ proptest! {
         client.poll(now);
         let reply = |code: u16, payload: Vec<u8>| {
             let form = if code > 254 { Form::V2 } else { Form::V1 };
-            Frame { form, kind: Kind::Reply, code, payload }.to_bytes()
+            msp_bytes(&Frame { form, kind: Kind::Reply, code, payload })
         };
         client.push(&reply(1, vec![0, 1, 49]), now);
         for code in codes.into_iter().filter(|code| *code != ATTITUDE) {
