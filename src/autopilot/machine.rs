@@ -175,6 +175,24 @@ pub enum Outcome {
     Touchdown,
 }
 
+impl Outcome {
+    /// Returns the state that the outcome leads to.
+    pub fn state(self) -> NavState {
+        match self {
+            Self::Abort(_) => NavState::Idle,
+            Self::LandHere | Self::Fence(FenceAction::Land) | Self::Land => NavState::Landing,
+            Self::Fence(FenceAction::Rth) | Self::Climbed | Self::Missed | Self::Next => {
+                NavState::Approaching
+            }
+            Self::Arrive => NavState::Arrived,
+            Self::Hold => NavState::Holding,
+            Self::Orbit => NavState::Orbiting,
+            Self::Figure8 => NavState::Figure8,
+            Self::Complete | Self::Touchdown => NavState::Complete,
+        }
+    }
+}
+
 /// A way out of a state. It fires when all its guards hold, or at once if it has no guards.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rule {

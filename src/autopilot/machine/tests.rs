@@ -13,22 +13,6 @@ use crate::plan::{HoldPattern, Seconds, WaypointType};
 use crate::telemetry::{AbortReason, FenceAction, Guard, NavState, PlanSource};
 
 impl Outcome {
-    /// Returns the state that the outcome leads to.
-    fn state(self) -> NavState {
-        match self {
-            Self::Abort(_) => NavState::Idle,
-            Self::LandHere | Self::Fence(FenceAction::Land) | Self::Land => NavState::Landing,
-            Self::Fence(FenceAction::Rth) | Self::Climbed | Self::Missed | Self::Next => {
-                NavState::Approaching
-            }
-            Self::Arrive => NavState::Arrived,
-            Self::Hold => NavState::Holding,
-            Self::Orbit => NavState::Orbiting,
-            Self::Figure8 => NavState::Figure8,
-            Self::Complete | Self::Touchdown => NavState::Complete,
-        }
-    }
-
     /// Describes the side effects in a few words. Empty if there are none.
     fn effect(self) -> &'static str {
         match self {

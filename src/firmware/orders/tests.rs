@@ -86,7 +86,7 @@ fn command_flies_without_the_switch_until_the_switch_goes_off() {
     for switch in [false, true, true] {
         flight.update(OrderFacts { autopilot_switch: switch, ..CALM });
         assert!(flight.navigator.is_flying());
-        assert_eq!(flight.navigator.source(), PlanSource::Rth);
+        assert_eq!(flight.navigator.telemetry().source, PlanSource::Rth);
     }
     flight.update(CALM);
     assert!(!flight.navigator.is_flying());
@@ -105,10 +105,10 @@ fn a_command_taken_back_leaves_the_craft_to_the_switch() {
             flight.orders.return_to_home(&mut flight.navigator, &flight.inputs, &Params::default(), None);
         assert_eq!((done, flight.orders.is_commanded()), (Ok(()), true));
         flight.update(facts);
-        assert_eq!(flight.navigator.source(), PlanSource::Rth);
+        assert_eq!(flight.navigator.telemetry().source, PlanSource::Rth);
         flight.orders.take_back(&mut flight.navigator);
         flight.update(facts);
-        let flown = flight.navigator.is_flying().then(|| flight.navigator.source());
+        let flown = flight.navigator.is_flying().then(|| flight.navigator.telemetry().source);
         assert_eq!((flown, flight.orders.is_commanded()), (after, false));
     }
 }
@@ -118,10 +118,10 @@ fn rescue_switch_flies_home_higher_and_lets_go() {
     let mut flight = Flight::engaged();
     let on = OrderFacts { autopilot_switch: true, rescue_switch: true, ..CALM };
     flight.update(on);
-    assert_eq!(flight.navigator.source(), PlanSource::Rth);
+    assert_eq!(flight.navigator.telemetry().source, PlanSource::Rth);
     assert_eq!(flight.navigator.active_plan().waypoints[0].altitude, Altitude::above_home(30.0));
     flight.update(OrderFacts { rescue_switch: false, ..on });
-    assert_eq!(flight.navigator.source(), PlanSource::Stored, "the mission goes on");
+    assert_eq!(flight.navigator.telemetry().source, PlanSource::Stored, "the mission goes on");
 
     let mut flight = Flight::new();
     flight.update(OrderFacts { rescue_switch: true, ..CALM });
@@ -171,7 +171,7 @@ fn an_order_that_waits_says_what_for() {
     for _ in 0..3 {
         flight.update(CALM);
     }
-    assert_eq!(flight.navigator.source(), PlanSource::Rth);
+    assert_eq!(flight.navigator.telemetry().source, PlanSource::Rth);
     assert_eq!(flight.navigator.telemetry().refusal, None);
 }
 
@@ -204,7 +204,7 @@ fn a_landing_that_loses_its_fix_goes_on_down_and_lands_when_it_is_back() {
             flight.update(CALM);
         }
         assert_eq!(flight.navigator.state(), NavState::Landing);
-        assert_eq!(flight.navigator.source(), PlanSource::Emergency, "the plan is kept");
+        assert_eq!(flight.navigator.telemetry().source, PlanSource::Emergency, "the plan is kept");
         assert_eq!(flight.navigator.active_plan().waypoints.len(), 1);
         let target = flight.navigator.telemetry().target_ne.unwrap();
         // Near the landing spiral.
@@ -356,7 +356,7 @@ fn a_rescue_goes_on_when_the_autopilot_switch_goes_off() {
     let both = OrderFacts { autopilot_switch: true, rescue_switch: true, ..CALM };
     flight.update(both);
     flight.update(OrderFacts { autopilot_switch: false, ..both });
-    assert_eq!(flight.navigator.source(), PlanSource::Rth);
+    assert_eq!(flight.navigator.telemetry().source, PlanSource::Rth);
     assert!(flight.navigator.is_flying() && flight.orders.is_rescue_by_switch());
     flight.update(CALM);
     assert!(!flight.navigator.is_flying(), "both switches are off");
@@ -457,7 +457,7 @@ proptest::proptest! {
             let orders = &flight.orders;
             if heard && facts.rescue_switch && possible && !orders.is_commanded() {
                 proptest::prop_assert!(orders.is_rescue_by_switch() && flight.navigator.is_flying(), "{deed:?}");
-                proptest::prop_assert_eq!(flight.navigator.source(), PlanSource::Rth);
+                proptest::prop_assert_eq!(flight.navigator.telemetry().source, PlanSource::Rth);
             }
             if heard && !facts.rescue_switch {
                 proptest::prop_assert!(!orders.is_rescue_by_switch(), "after {deed:?}");

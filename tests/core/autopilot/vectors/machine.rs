@@ -80,22 +80,6 @@ fn transition_facts(case: &Value) -> Facts {
     facts
 }
 
-/// Returns the state that an outcome leads to.
-fn state_after(outcome: Outcome) -> NavState {
-    match outcome {
-        Outcome::Abort(_) => NavState::Idle,
-        Outcome::LandHere | Outcome::Fence(FenceAction::Land) | Outcome::Land => NavState::Landing,
-        Outcome::Fence(FenceAction::Rth) | Outcome::Climbed | Outcome::Missed | Outcome::Next => {
-            NavState::Approaching
-        }
-        Outcome::Arrive => NavState::Arrived,
-        Outcome::Hold => NavState::Holding,
-        Outcome::Orbit => NavState::Orbiting,
-        Outcome::Figure8 => NavState::Figure8,
-        Outcome::Complete | Outcome::Touchdown => NavState::Complete,
-    }
-}
-
 fn approach_distance(input: &Value) -> f64 {
     input["distance_cm"].as_f64().unwrap_or(0.0) / 100.0
 }
@@ -107,7 +91,7 @@ fn state_transitions() {
         let decision = transition(before, &transition_facts(&case));
         let outcome = decision.map(|decision| decision.outcome);
         let expect = &case["expect"];
-        let after = outcome.map_or(before, state_after);
+        let after = outcome.map_or(before, Outcome::state);
         assert_eq!(after, state(text(expect, "state")), "{case} gave {decision:?}");
         let index = num(&case, "index") as u64;
         let index_after = match outcome {
