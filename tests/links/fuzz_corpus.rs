@@ -264,7 +264,7 @@ fn damaged_frames() {
 
 #[test]
 fn plan_files() {
-    check("plan_file", plan_file::run, 200);
+    check("plan_file", plan_file::run, 80);
 }
 
 #[test]

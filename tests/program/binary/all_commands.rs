@@ -23,18 +23,6 @@ use by_keys::Keys;
 use by_mouse::Mouse;
 use walk::{Group, Step, walk};
 
-/// All groups.
-const GROUPS: [&Group; 8] = [
-    &editing::GROUP,
-    &map::GROUP,
-    &panels::GROUP,
-    &settings::GROUP,
-    &flight::GROUP,
-    &time::GROUP,
-    &screen::GROUP,
-    &lines::GROUP,
-];
-
 #[test]
 fn the_walks_have_every_action_and_every_command_once() {
     let steps = || GROUPS.iter().flat_map(|group| group.steps);
@@ -55,16 +43,26 @@ fn the_walks_have_every_action_and_every_command_once() {
     assert!(unknown.is_none(), "{unknown:?}");
 }
 
-#[test]
-fn every_command_is_answered_by_its_key_at_80x24() {
-    for group in GROUPS {
-        walk(group, (80, 24), &mut Keys);
-    }
+/// Makes the tests of a group.
+macro_rules! walks {
+    ($($group:ident)*) => {
+        mod every_command_is_answered_by_its_key_at_80x24 {
+            $(#[test]
+            fn $group() {
+                super::walk(&super::$group::GROUP, (80, 24), &mut super::Keys);
+            })*
+        }
+
+        mod every_command_is_answered_by_the_mouse_alone_at_200x60 {
+            $(#[test]
+            fn $group() {
+                super::walk(&super::$group::GROUP, (200, 60), &mut super::Mouse::default());
+            })*
+        }
+
+        /// All groups.
+        const GROUPS: &[&Group] = &[$(&$group::GROUP),*];
+    };
 }
 
-#[test]
-fn every_command_is_answered_by_the_mouse_alone_at_200x60() {
-    for group in GROUPS {
-        walk(group, (200, 60), &mut Mouse::default());
-    }
-}
+walks! { editing map panels settings flight time screen lines }

@@ -402,8 +402,8 @@ fn every_popup_and_panel_is_drawn_at_every_size() {
         })
         .collect();
     assert!(popups.iter().take(3).all(|popups| popups.len() == 1));
-    for width in (1..=250).step_by(11) {
-        for height in (1..=80).step_by(5) {
+    for width in (1..=250).step_by(23) {
+        for height in (1..=80).step_by(9) {
             update(&mut state, Msg::Resize(width, height));
             for (at, panel) in Panel::ALL.into_iter().enumerate() {
                 state.shared.focus = panel;

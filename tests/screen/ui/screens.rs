@@ -328,12 +328,12 @@ fn no_size_panics_with_any_focus_zoom_or_popup() {
     fixture::orbit(&mut state);
     press(&mut state, '?');
     let popup = std::mem::take(&mut state.popups);
-    for width in (1..=250).step_by(3) {
-        for height in (1..=85).step_by(2) {
+    for width in (1..=250).step_by(7) {
+        for height in (1..=85).step_by(3) {
             update(&mut state, Msg::Resize(width, height));
             state.shared.focus = Panel::ALL[usize::from(width + height) % Panel::ALL.len()];
             state.shared.slots.visit(state.shared.focus);
-            state.shared.zoomed = (width / 3 + height) % 3 == 0;
+            state.shared.zoomed = (width / 7 + height) % 3 == 0;
             state.popups = if width % 5 == 0 { popup.clone() } else { Vec::new() };
             state.shared.theme = themes[usize::from(height % 2)];
             screen(&state);

@@ -34,8 +34,8 @@ struct Stated {
 }
 
 fn errors_are_as_stated(gps: GpsGrade, stated: &Stated) {
-    // 80 time constants: the deviation of the wandering part is known to 8 %.
-    let solutions = at_rest(gps, 80.0 * stated.tau);
+    // 50 time constants: the deviation of the wandering part is known to 10 %.
+    let solutions = at_rest(gps, 50.0 * stated.tau);
     let mut kept = [0.0; 3];
     for (axis, factor) in [(0, 1.0), (1, 1.0), (2, 1.6)] {
         let errors: Vec<f64> = solutions.iter().map(|(error, _)| error[axis] / factor).collect();

@@ -159,7 +159,7 @@ async fn megabytes_without_a_line_end_are_one_line_at_most() {
     for websocket in [false, true] {
         let mut client = if websocket { house.websocket().await } else { house.tcp().await };
         client.enter_cli().await;
-        for _ in 0..160 {
+        for _ in 0..40 {
             client.send(&[b'x'; 1 << 16]).await;
         }
         client.send(b"\n").await;
