@@ -56,7 +56,6 @@ fn angle_steps(n: usize) {
                             .for_each(|(mean, angle)| *mean += angle / flights as f64);
                     }
                     let response = StepResponse::of(&angles, step, 0.001);
-                    println!("{name} {noise} axis {axis} {angle}°: {response:?}");
                     assert!(response.overshoot <= 0.10, "{name} {noise} axis {axis} {angle}°: {response:?}");
                     // With noise, the end of a small step is that of the estimate.
                     let limit_s = if noise == Noise::Real && angle < 20.0 { 0.5 } else { 0.35 };
