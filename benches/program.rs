@@ -25,9 +25,8 @@ mod support;
 use std::time::{Duration, Instant};
 
 use betadeck::flight::FlightSetup;
-use betadeck::session::{
-    Command, ForecastJob, ForecastReply, Forecaster, Handle, ReplyTo, SessionConfig, start,
-};
+use betadeck::lookahead::{ForecastJob, ForecastReply, Forecaster};
+use betadeck::session::{Command, Handle, ReplyTo, SessionConfig, start};
 use betadeck::storage::Store;
 use betadeck::ui::{AppState, Effect, Msg, update};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};

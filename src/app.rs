@@ -1,14 +1,9 @@
 //! The program: from arguments to the tasks of one mode.
 //!
 //! One file a mode, with its parts in the layer of its name: `check` flies scenarios, `campaign` many flights of one,
-//! `compare` two firmwares, `fly` one plan, and `open` shows a flight of a scenario or a campaign. `firmware` starts or
-//! finds a remote firmware, `output_file` replaces files as a whole, `log_output` writes blackbox logs, and `plan_files`
-//! reads, writes and watches plan files. `replay` shows and exports recorded flights, `recording_file` writes them.
-//! `flight_library` keeps the recorded flights, and `flight_recorder` records them. `terrain` reads the elevation tiles
-//! that a plan needs.
+//! `compare` two firmwares, `fly` one plan, and `open` shows a flight of a scenario or a campaign. `replay` shows and
+//! exports recorded flights.
 
-mod backdrop_file;
-mod build;
 mod campaign;
 mod check;
 mod compare;
@@ -18,58 +13,35 @@ mod connect;
 mod convert;
 mod doctor;
 mod doors;
-pub mod entered_lines;
-mod error;
 mod examples;
-mod file_identity;
-mod firmware;
-mod flight_library;
-mod flight_recorder;
 mod flight_shelf;
 mod flights;
-mod flown_log;
 mod fly;
-mod input_file;
 mod input_lines;
-mod interrupt;
 mod keys;
 mod last_plan;
 mod layers;
-mod layout_file;
-mod line_history;
 mod live;
-mod log_output;
-mod log_source;
-mod named_file;
 mod open;
-mod output_file;
-mod parallel;
-mod patient_output;
 mod plan;
-mod plan_files;
-mod recording_file;
 mod replay;
 mod report;
-mod runtime;
 mod scenario_file;
 mod scenario_folder;
-mod screen_file;
 mod serve;
-mod set_aside;
 mod setup;
 mod sitl;
-mod stop_signal;
-mod terrain;
 mod tui;
 mod usage;
 
 use std::ffi::OsString;
 
-pub use build::Build;
-pub use error::AppError;
-
 use crate::args::{self, Cli, Command, PlanCommand};
+use crate::files::output_file;
+use crate::launch;
 use crate::link::launch_firmware;
+use crate::process::build::Build;
+use crate::process::error::{self, AppError};
 use crate::ui::keymap::Keymap;
 
 /// Runs the program with the given command line (program name first) and returns its exit code.
@@ -178,7 +150,7 @@ fn may_start_firmware(command: Option<&Command>) -> bool {
 
 fn dispatch(cli: Cli, keymap: Keymap) -> Result<u8, AppError> {
     if may_start_firmware(cli.command.as_ref()) {
-        firmware::sweep();
+        launch::sweep();
     }
     match cli.command {
         None => tui::run(&cli.tui, keymap),

@@ -22,6 +22,7 @@
 
 mod craft_at_boot;
 pub mod forecast;
+mod hazards;
 mod judge;
 mod progress;
 pub mod setup;
@@ -31,6 +32,7 @@ mod verdict;
 mod waiting;
 
 pub use craft_at_boot::craft_at_boot;
+pub use hazards::hazards;
 pub use judge::{Judge, JudgeFacts};
 use progress::Progress;
 pub use setup::FlightSetup;

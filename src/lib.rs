@@ -18,11 +18,25 @@ pub mod app;
 #[doc(hidden)]
 pub mod args;
 #[doc(hidden)]
+pub mod events;
+#[doc(hidden)]
 pub mod fc;
+#[doc(hidden)]
+pub mod files;
+#[doc(hidden)]
+pub mod launch;
 #[doc(hidden)]
 pub mod link;
 #[doc(hidden)]
+pub mod lookahead;
+#[doc(hidden)]
+pub mod process;
+#[doc(hidden)]
 pub mod report;
+#[doc(hidden)]
+pub mod runner;
+#[doc(hidden)]
+pub mod screen_files;
 #[doc(hidden)]
 pub mod session;
 #[doc(hidden)]

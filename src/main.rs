@@ -4,7 +4,7 @@
 
 use std::process::ExitCode;
 
-use betadeck::app::Build;
+use betadeck::process::Build;
 
 fn main() -> ExitCode {
     let (revision, time_s) = betadeck_revision::revision!();

@@ -14,9 +14,9 @@ mod shard;
 mod sources;
 mod sweep;
 
-use super::build::Build;
-use super::error::AppError;
 use crate::args::{CampaignArgs, CampaignCommand, ForecastArgs};
+use crate::process::build::Build;
+use crate::process::error::AppError;
 pub(super) use consent::Consent;
 pub(super) use loaded::{OneFlight, open_flight};
 

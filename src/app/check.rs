@@ -13,13 +13,16 @@ mod watch;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::error::{self, AppError};
-use super::firmware::{self, Beside, RemoteFirmware};
-use super::interrupt::interrupt_flag;
-use super::log_output::needs_embedded;
-use super::{parallel, setup};
+use super::setup;
 use crate::args::{CheckArgs, FlightArgs, PhysicsArgs};
+use crate::files::log_output::needs_embedded;
+use crate::launch;
+use crate::launch::{Beside, RemoteFirmware};
 use crate::link::conventions::FirmwareClock;
+use crate::process::error;
+use crate::process::error::AppError;
+use crate::process::interrupt::interrupt_flag;
+use crate::process::parallel;
 use crate::report::check::{Compared, Summary};
 use crate::scenario::Draft;
 use load::Loaded;
@@ -59,7 +62,7 @@ fn run_all(args: &CheckArgs, repeat: &[String]) -> Result<u8, AppError> {
     let (flight, physics) = (FlightArgs::default(), PhysicsArgs::default());
     let beside = Beside { ports: (&args.firmware_ports).into(), flight: &flight, physics: &physics };
     let mut notices = Vec::new();
-    let firmware = firmware::choose(&args.firmware, beside, &mut notices)?;
+    let firmware = launch::choose(&args.firmware, beside, &mut notices)?;
     if firmware.is_some() && args.blackbox.is_some() {
         return Err(needs_embedded());
     }

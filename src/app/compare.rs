@@ -8,11 +8,12 @@ mod recorder;
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::error::{self, AppError};
-use super::firmware::{Beside, Chosen, RemoteFirmware};
-use super::parallel;
 use crate::args::{CompareArgs, FirmwareChoice, FlightArgs, PhysicsArgs};
+use crate::launch::{Beside, Chosen, RemoteFirmware};
 use crate::link::conventions::FirmwareClock;
+use crate::process::error;
+use crate::process::error::AppError;
+use crate::process::parallel;
 use crate::report::compare::{Comparison, Side};
 use flights::{Flights, Flown};
 use jobs::Job;

@@ -4,9 +4,11 @@ use std::fmt::Write as _;
 use std::fs::{self, OpenOptions};
 use std::io::{ErrorKind, Write as _};
 
-use super::error::{self, AppError};
 use super::layers::{self, Outside};
 use crate::args::{self, ConfigCommand, KeyHelp};
+use crate::files::directories;
+use crate::process::error;
+use crate::process::error::AppError;
 use crate::ui::action::ACTIONS;
 
 /// Runs the command.
@@ -15,7 +17,7 @@ pub(super) fn run(command: ConfigCommand) -> Result<u8, AppError> {
         ConfigCommand::Init { force } => init(force),
         ConfigCommand::Show => show(),
         ConfigCommand::Path => {
-            let path = layers::directories()?.config_file();
+            let path = directories::directories()?.config_file();
             error::print(&format!("{}\n", path.display()))
         }
     }
@@ -23,7 +25,7 @@ pub(super) fn run(command: ConfigCommand) -> Result<u8, AppError> {
 
 /// Writes the file. An existing file may be the work of the user, so it is replaced only on request.
 fn init(force: bool) -> Result<u8, AppError> {
-    let path = layers::directories()?.config_file();
+    let path = directories::directories()?.config_file();
     let problem = |error| AppError::environment(format!("cannot write {}: {error}", path.display()));
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder).map_err(problem)?;

@@ -1,7 +1,7 @@
 //! The text of the configuration file: values of options, and the keys under `[keys]`.
 
-use super::AppError;
 use super::keys;
+use crate::process::error::AppError;
 use crate::ui::keymap::KeyLine;
 
 /// The contents of a configuration file.

@@ -3,18 +3,18 @@
 
 use std::time::Instant;
 
-use super::AppError;
-use super::backdrop_file;
-use super::flight_recorder::RecordedStart;
 use super::last_plan;
 use super::live::LiveArgs;
-use super::screen_file::{ScreenFile, ScreenStart, Subject};
 use super::setup;
 use super::tui::{self, LiveFlight, Screen, Source};
 use crate::args::{ConnectArgs, PlanArg, TuiArgs};
 use crate::fc::{RemoteEnds, RemoteLink};
+use crate::files::flight_recorder::RecordedStart;
 use crate::link::{FcPlace, FcStream};
 use crate::plan::format::PlanFile;
+use crate::process::error::AppError;
+use crate::screen_files::backdrop_file;
+use crate::screen_files::screen_file::{ScreenFile, ScreenStart, Subject};
 use crate::storage::Store;
 use crate::ui::keymap::Keymap;
 use crate::vehicle::Vehicle;

@@ -6,13 +6,15 @@ use std::path::{Path, PathBuf};
 
 use strum::IntoEnumIterator as _;
 
-use super::error::{self, AppError, USAGE};
-use super::output_file::{self, KeptFiles};
 use super::setup;
 use crate::args::{ConvertArgs, OutputFile, PlanArg};
+use crate::files::output_file;
+use crate::files::output_file::KeptFiles;
 use crate::flight::setup::check_setting;
 use crate::plan::format::loss::{Finding, LossReport, Severity};
 use crate::plan::format::{self, Format, PlanFile, ReadOptions, Written};
+use crate::process::error;
+use crate::process::error::{AppError, USAGE};
 use crate::report::conversion::Conversion;
 use crate::storage::link_target;
 use crate::text::printable;

@@ -6,13 +6,15 @@ use std::io::{ErrorKind, IsTerminal as _};
 use std::net::{TcpListener, UdpSocket};
 use std::path::Path;
 
-use super::build;
-use super::error::{self, AppError};
 use super::keys;
 use super::layers::{self, Outside};
 use super::tui::is_dumb;
 use super::usage;
 use crate::args::{self, DoorArgs, Layers};
+use crate::files::directories;
+use crate::process::build;
+use crate::process::error;
+use crate::process::error::AppError;
 use crate::ui::Theme;
 use crate::ui::layout::SMALLEST;
 use crate::ui::theme::{Charset, Palette};
@@ -22,7 +24,7 @@ pub(super) fn run() -> Result<u8, AppError> {
     let mut report = Report::default();
     let _ = writeln!(report.text, "betadeck {}", build::version());
     let layers = configuration(&mut report);
-    match layers::directories() {
+    match directories::directories() {
         Ok(directories) => state_directory(&mut report, &directories.state),
         Err(error) => report.line(false, "directories", &error.message),
     }

@@ -7,14 +7,15 @@ use std::time::{Duration, Instant};
 use tokio::sync::watch;
 use tokio_util::sync::CancellationToken;
 
-use super::AppError;
 use super::live::LiveArgs;
 use crate::args::{DoorArgs, FlightArgs, PhysicsArgs};
+use crate::events::EndpointAddresses;
 use crate::fc::RemoteLink;
 use crate::link::endpoint::EndpointKind;
 use crate::link::proto::fdm_link::FdmLinkConfig;
 use crate::link::{ExternalSimulator, ListenConfig, Listeners};
-use crate::session::{EndpointAddresses, Endpoints, Links, MotorTargets};
+use crate::process::error::AppError;
+use crate::session::{Endpoints, Links, MotorTargets};
 
 /// The interval at which the state of the doors is published.
 const VIEW: Duration = Duration::from_millis(250);

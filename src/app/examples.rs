@@ -3,17 +3,18 @@
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::error::{self, AppError};
-use super::interrupt::interrupt_flag;
-use super::log_output::{LogOnly, LogOutput};
-use super::output_file::{cannot_write, replace};
 use super::setup;
 use crate::args::{FlightArgs, MissionArgs, PlanArg};
 use crate::fc::upload;
+use crate::files::log_output::{LogOnly, LogOutput};
+use crate::files::output_file::{cannot_write, replace};
 use crate::firmware::config::Configuration;
 use crate::flight::setup::{BootLines, PhysicsSource};
 use crate::plan::builtin::BuiltinPlan;
-use crate::session::Runner;
+use crate::process::error;
+use crate::process::error::AppError;
+use crate::process::interrupt::interrupt_flag;
+use crate::runner::Runner;
 
 /// A file with its purpose.
 struct Example {

@@ -7,8 +7,9 @@ use std::sync::{Mutex, PoisonError};
 
 use clap::ValueEnum;
 
-use super::flight_library::{self, FOLDER, Known};
 use crate::args::DisplayArgs;
+use crate::files::flight_library;
+use crate::files::flight_library::{FOLDER, Known};
 use crate::recording::Listed;
 use crate::report::flights::FlightRow;
 use crate::ui::flights::{FlightShelf, LibraryFlight};

@@ -1,8 +1,10 @@
 //! `betadeck flights`: lists the library of recorded flights.
 
-use super::error::{self, AppError};
-use super::{flight_library, setup};
+use super::setup;
 use crate::args::FlightsArgs;
+use crate::files::flight_library;
+use crate::process::error;
+use crate::process::error::AppError;
 use crate::report::flights::{json_line, table};
 use crate::text::printable;
 

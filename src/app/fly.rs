@@ -8,25 +8,29 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use super::error::{self, AppError};
-use super::firmware::run::{RemoteRun, RunOptions, unless_interrupted};
-use super::firmware::{self, Beside, RemoteFirmware};
-use super::interrupt::interrupt_flag;
-use super::log_output::{LogOutput, needs_embedded};
-use super::recording_file::Recorder;
-use super::terrain::with_terrain;
 use super::{report, setup};
 use crate::args::{FlyArgs, PhysicsArgs, Speed};
+use crate::events::Event;
 use crate::fc::upload;
+use crate::files::log_output::{LogOutput, needs_embedded};
+use crate::files::recording_file::Recorder;
+use crate::files::terrain::with_terrain;
+use crate::flight::hazards;
 use crate::flight::setup::{BootLines, PhysicsSource};
 use crate::flight::{FlightResult, FlightSetup};
 use crate::geo::LatLon;
+use crate::launch;
+use crate::launch::run::{RemoteRun, RunOptions, unless_interrupted};
+use crate::launch::{Beside, RemoteFirmware};
 use crate::plan::estimate::Assumptions;
 use crate::plan::format::PlanFile;
 use crate::plan::review::{Finding, clearances};
+use crate::process::error;
+use crate::process::error::AppError;
+use crate::process::interrupt::interrupt_flag;
 use crate::report::End;
+use crate::runner::{Flying as _, Runner, Stopped, Subscriber};
 use crate::scenario::FlightHash;
-use crate::session::{Event, Flying as _, Runner, Stopped, Subscriber, hazards};
 use crate::storage::Store;
 use crate::terrain::{Relief, Tiles};
 use crate::vehicle::Vehicle;
@@ -42,7 +46,7 @@ pub(super) fn run(args: &FlyArgs, repeat: &[String]) -> Result<u8, AppError> {
     let mut notices = plan.notices();
     let physics = PhysicsArgs::default();
     let beside = Beside { ports: (&args.firmware_ports).into(), flight: &args.flight, physics: &physics };
-    let firmware = firmware::choose(&args.firmware, beside, &mut notices)?
+    let firmware = launch::choose(&args.firmware, beside, &mut notices)?
         .map(|firmware| firmware.with_settings(&plan.settings, &args.mission.set));
     match firmware {
         None => setup::check_set(&args.mission.set)?,

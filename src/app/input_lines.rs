@@ -4,7 +4,7 @@ use std::io::{self, BufRead};
 
 use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
 
-use super::AppError;
+use crate::process::error::AppError;
 
 /// The longest line, bytes.
 const LONGEST: u64 = 1 << 20;

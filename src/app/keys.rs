@@ -3,7 +3,7 @@
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::AppError;
+use crate::process::error::AppError;
 use crate::ui::keymap::{KeyLine, Keymap};
 
 /// Reads the lines of the table, `"flight.arm" = "a"`. The name may also be written without quotes.

@@ -1,9 +1,9 @@
 //! The plan that was shown last.
 
-use super::error::AppError;
 use super::setup;
 use crate::args::PlanArg;
 use crate::plan::format::{HomePosition, PlanFile};
+use crate::process::error::AppError;
 use crate::ui::KeptScreen;
 
 /// Reads the plan that was shown last, or one that was open beside it. A plan that cannot be read is a sentence for

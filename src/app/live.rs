@@ -1,14 +1,16 @@
 //! Starts the session of `betadeck` and `serve`, which flies in real time and serves its doors.
 
-use super::AppError;
 use super::connect;
 use super::doors::{self, OpenDoors};
-use super::firmware::link::{self, OpenLink};
-use super::firmware::{FirmwareFolder, RemoteFirmware};
 use super::setup;
 use crate::args::{DoorArgs, FlightArgs, PhysicsArgs, Speed};
+use crate::events::SessionEvent;
+use crate::launch::link;
+use crate::launch::link::OpenLink;
+use crate::launch::{FirmwareFolder, RemoteFirmware};
 use crate::link::FcPlace;
-use crate::session::{self, FlightFeed, FlownBefore, Handle, SessionConfig, SessionEvent};
+use crate::process::error::AppError;
+use crate::session::{self, FlightFeed, FlownBefore, Handle, SessionConfig};
 use crate::storage::Store;
 use crate::vehicle::Vehicle;
 

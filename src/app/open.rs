@@ -5,22 +5,26 @@ mod of_campaign;
 mod of_recording;
 
 use super::check;
-use super::error::{self, AppError};
-use super::firmware::run::{OnEvent, Stopped, unless_interrupted};
-use super::firmware::{self, Beside, RemoteFirmware, reported};
-use super::flight_recorder::RecordedStart;
-use super::interrupt::interrupt_flag;
 use super::live::LiveArgs;
-use super::screen_file::{ScreenFile, ScreenStart, Subject};
 use super::setup;
 use super::tui::{self, LiveFlight, Screen, Source};
 use crate::args::{DoorArgs, FlightArgs, Instant, OpenArgs, PhysicsArgs, ReviewArgs};
+use crate::events::Event;
 use crate::fc::RemoteLink;
+use crate::files::flight_recorder::RecordedStart;
+use crate::launch;
+use crate::launch::run::{OnEvent, Stopped, unless_interrupted};
+use crate::launch::{Beside, RemoteFirmware, reported};
 use crate::link::conventions::FirmwareClock;
 use crate::plan::format::PlanFile;
+use crate::process::error;
+use crate::process::error::AppError;
+use crate::process::interrupt::interrupt_flag;
 use crate::recording::Setup;
+use crate::runner::{Runner, Subscriber};
 use crate::scenario::{self, Air, Case, CaseFlight, Scenario};
-use crate::session::{Event, FlownAgain, FlownBefore, FlyAgain, Progress, Runner, SessionView, Subscriber};
+use crate::screen_files::screen_file::{ScreenFile, ScreenStart, Subject};
+use crate::session::{FlownAgain, FlownBefore, FlyAgain, Progress, SessionView};
 use crate::signals::SimTime;
 use crate::storage::Store;
 use crate::text::did_you_mean;
@@ -215,7 +219,7 @@ fn of_scenario(args: &OpenArgs, notices: &mut Vec<String>) -> Result<Opened, App
         flight: &FlightArgs::default(),
         physics: &PhysicsArgs::default(),
     };
-    let firmware = firmware::choose(&args.firmware, beside, notices)?;
+    let firmware = launch::choose(&args.firmware, beside, notices)?;
     notices.extend(args.firmware_ports.idle_options(firmware.is_some()));
     let name = if case.name.is_empty() {
         format!("Scenario {}", scenario.name)

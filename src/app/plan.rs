@@ -2,10 +2,9 @@
 
 use std::path::PathBuf;
 
-use super::error::{self, AppError};
-use super::terrain::TerrainFiles;
-use super::{backdrop_file, setup};
+use super::setup;
 use crate::args::{BackdropArgs, PlanArg, ReviewArgs, TerrainArgs};
+use crate::files::terrain::TerrainFiles;
 use crate::flight::FlightSetup;
 use crate::flight::setup::check_setting;
 use crate::geo::{LatLon, distance_bearing};
@@ -15,6 +14,9 @@ use crate::plan::feature::Feature;
 use crate::plan::format::{self, PlanFile, ReadOptions};
 use crate::plan::review::{Clearances, Finding, clearances, review, zone_findings};
 use crate::plan::{MAX_WAYPOINTS, Waypoint};
+use crate::process::error;
+use crate::process::error::AppError;
+use crate::screen_files::backdrop_file;
 use crate::sim::density_ratio;
 use crate::terrain::Relief;
 

@@ -2,14 +2,16 @@
 
 use std::path::PathBuf;
 
-use super::{AppError, backdrop_file, build};
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
 use crate::plan::feature::Feature;
+use crate::process::build;
+use crate::process::error::AppError;
 use crate::report::check::shell_word;
 use crate::report::flight::{FlightReport, ReportedSettings};
 use crate::report::route::Route;
 use crate::report::{FlightRecord, RecordedSample};
+use crate::screen_files::backdrop_file;
 use crate::signals::SimTime;
 use crate::telemetry::signal::Signal;
 use crate::terrain::Relief;

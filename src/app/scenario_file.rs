@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::named_file::{Kind, stem};
+use crate::files::named_file::{Kind, stem};
 use crate::scenario::Draft;
 use crate::timeline::RecordedFlight;
 

@@ -2,18 +2,21 @@
 
 use std::io::{BufWriter, Write};
 
-use super::error::{self, AppError};
-use super::firmware::{self, Beside};
 use super::live::{self, LiveArgs, Reports};
-use super::output_file;
-use super::runtime;
 use super::setup;
-use super::stop_signal;
-use super::terrain::with_terrain;
 use crate::args::{OutputFile, ServeArgs};
+use crate::events::Event;
+use crate::files::output_file;
+use crate::files::terrain::with_terrain;
+use crate::launch;
+use crate::launch::Beside;
 use crate::plan::format::PlanFile;
+use crate::process::error;
+use crate::process::error::AppError;
+use crate::process::runtime;
+use crate::process::stop_signal;
 use crate::report::{json, sentence};
-use crate::session::{Command, Event, Handle};
+use crate::session::{Command, Handle};
 use crate::text::printable;
 
 /// Serves until a signal. Every event is a line of output.
@@ -23,7 +26,7 @@ pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
     warnings.extend(setup::storage_notice(&store));
     let beside =
         Beside { ports: (&args.doors, &args.physics).into(), flight: &args.flight, physics: &args.physics };
-    let firmware = firmware::choose(&args.firmware, beside, &mut notices)?;
+    let firmware = launch::choose(&args.firmware, beside, &mut notices)?;
     notices.extend(args.physics.idle_options(&args.flight, firmware.is_some()));
     let stored = setup::stored(&mut store, &mut warnings);
     let no_plan = PlanFile::default();

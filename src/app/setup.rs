@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use super::output_file::KeptFiles;
-use super::{AppError, Build, error, input_file};
 use crate::args::{
     AttitudeChoice, DoorArgs, FlightArgs, MissionArgs, OnOff, PhysicsArgs, PlanArg, is_descriptor,
 };
+use crate::files::input_file;
+use crate::files::output_file::KeptFiles;
 use crate::firmware::AttitudeSource;
 use crate::firmware::cli::BuildInfo;
 use crate::firmware::config::Configuration;
@@ -16,6 +16,9 @@ use crate::plan::builtin::BuiltinPlan;
 use crate::plan::format::{self, Format, HomePosition, PlanFile, ReadOptions, SettingPart};
 use crate::plan::review::Finding;
 use crate::plan::validate::check_plan;
+use crate::process::build::Build;
+use crate::process::error;
+use crate::process::error::AppError;
 use crate::report::UtcSeconds;
 use crate::signals::SimTime;
 use crate::sim::{Airframe, Home, WorldConfig};
@@ -236,7 +239,7 @@ pub(super) fn store_directory(args: &FlightArgs) -> Result<Option<PathBuf>, AppE
 pub(super) fn state_directory(named: Option<&Path>) -> Result<PathBuf, AppError> {
     match named {
         Some(directory) => Ok(directory.to_owned()),
-        None => super::layers::directories().map(|directories| directories.state),
+        None => crate::files::directories::directories().map(|directories| directories.state),
     }
 }
 
@@ -273,7 +276,7 @@ pub(super) fn kept_files(args: &FlightArgs, plan: Option<&PlanArg>) -> KeptFiles
 
 /// Protects the configuration file and the files in the user's state directory.
 pub(super) fn keep_own_files(kept: &mut KeptFiles) {
-    if let Ok(directories) = super::layers::directories() {
+    if let Ok(directories) = crate::files::directories::directories() {
         kept.keep("the configuration file", &directories.config_file());
         kept.keep_state(&directories.state);
     }

@@ -10,18 +10,19 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use tokio::sync::Notify;
 
-use super::error::{self, AppError};
-use super::input_file;
-use super::output_file::KeptFiles;
-use super::runtime;
 use super::setup::attitude_source;
-use super::stop_signal;
 use crate::args::{OnOff, SitlArgs};
+use crate::files::input_file;
+use crate::files::output_file::KeptFiles;
 use crate::firmware::cli::{ApplyReport, CliContext, CliFacts, CliMode, Interpreter, provision};
 use crate::flight::FlightSetup;
 use crate::flight::setup::PhysicsSource;
 use crate::link::ListenConfig;
 use crate::link::proto::fdm_link::FdmLinkConfig;
+use crate::process::error;
+use crate::process::error::AppError;
+use crate::process::runtime;
+use crate::process::stop_signal;
 use crate::report::gpx::{GpxHeader, GpxPoint, GpxWriter, UtcSeconds};
 use crate::session::sitl::{OutputLine, Sitl, SitlConfig, SitlEnd, SitlError, SitlPorts, show_links};
 use crate::storage::Store;

@@ -8,38 +8,42 @@ use std::thread::JoinHandle;
 
 use tokio::sync::mpsc::UnboundedSender;
 
+use super::connect;
 use super::doors::OpenDoors;
-use super::error::{self, AppError};
-use super::firmware::{self, Beside, FirmwareFolder};
-use super::flight_recorder::{self, FlightRecorder, RecordedStart};
 use super::flight_shelf::Shelf;
-use super::flown_log;
 use super::input_lines;
 use super::last_plan;
-use super::layout_file::LayoutFile;
-use super::line_history::LineHistory;
 use super::live::{self, LiveArgs, Reports};
-use super::plan_files::PlanFiles;
-use super::recording_file;
-use super::runtime;
 use super::scenario_file;
-use super::screen_file::{ScreenFile, ScreenStart, Subject};
 use super::setup;
-use super::stop_signal;
-use super::terrain::{TerrainFiles, with_terrain};
-use super::{backdrop_file, connect};
 use crate::args::{
     CharsetChoice, DisplayArgs, PlanArg, ReviewArgs, TerrainArgs, ThemeChoice, TuiArgs, UnitsChoice,
 };
 use crate::campaign::Forecast;
+use crate::files::flight_recorder;
+use crate::files::flight_recorder::{FlightRecorder, RecordedStart};
+use crate::files::flown_log;
+use crate::files::recording_file;
+use crate::files::terrain::{TerrainFiles, with_terrain};
 use crate::firmware::cli;
 use crate::flight::setup::check_setting;
+use crate::launch;
+use crate::launch::{Beside, FirmwareFolder};
 use crate::plan::builtin::{BuiltinPlan, DEMO};
 use crate::plan::format::PlanFile;
+use crate::process::error;
+use crate::process::error::AppError;
+use crate::process::runtime;
+use crate::process::stop_signal;
 use crate::recording::Setup;
 use crate::replay::Overview;
 use crate::report::campaign::forecast_notice;
 use crate::report::sentence;
+use crate::screen_files::backdrop_file;
+use crate::screen_files::layout_file::LayoutFile;
+use crate::screen_files::line_history::LineHistory;
+use crate::screen_files::plan_files::PlanFiles;
+use crate::screen_files::screen_file::{ScreenFile, ScreenStart, Subject};
 use crate::session::{FlownBefore, Handle, ReplayConfig, SessionView, start_replay};
 use crate::storage::Store;
 use crate::terrain::Tiles;
@@ -136,7 +140,7 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
     let mut warnings: Vec<String> = setup::storage_notice(&store).into_iter().collect();
     let beside =
         Beside { ports: (&args.doors, &args.physics).into(), flight: &args.flight, physics: &args.physics };
-    let firmware = firmware::choose(&args.firmware, beside, &mut notices)?;
+    let firmware = launch::choose(&args.firmware, beside, &mut notices)?;
     notices.extend(args.physics.idle_options(&args.flight, firmware.is_some()));
     let (stored, was_stored) = setup::stored_before(&mut store, &mut warnings);
     // The plan's settings go to the craft with the upload.

@@ -3,8 +3,8 @@
 use std::ffi::OsString;
 use std::path::Path;
 
-use super::error;
 use crate::args::{self, Layers};
+use crate::process::error;
 use crate::text::printable;
 
 /// Makes the name of the program printable, because every usage line shows it.

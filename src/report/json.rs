@@ -10,7 +10,7 @@ mod truth;
 
 use serde::Serialize;
 
-use crate::session::Event;
+use crate::events::Event;
 use crate::signals::SimTime;
 use crate::telemetry::Snapshot;
 

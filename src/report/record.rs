@@ -5,8 +5,8 @@
 mod past;
 
 use super::sentence;
+use crate::events::{Event, SessionEvent};
 use crate::plan::WaypointType;
-use crate::session::{Event, SessionEvent};
 use crate::signals::SimTime;
 use crate::telemetry::signal::{Observed, Signal, SignalValues};
 use crate::telemetry::snapshot::{Snapshot, WorldView};

@@ -1,8 +1,8 @@
 //! The same events as sentences for people: `fly` without `--json`, `serve`, the log.
 
+use crate::events::{EndpointAddresses, Event, SessionEvent};
 use crate::link::endpoint::EndpointKind;
 use crate::plan::{FlightPlan, WaypointType};
-use crate::session::{EndpointAddresses, Event, SessionEvent};
 use crate::telemetry::{
     AbortReason, BatteryAlarm, CannotHold, DisarmReason, EventKind, FaultValue, FenceAction, FirmwareEvent,
     Guard, GuardUnit, HoldLimit, NavEvent, NavState, PlanSource, Refusal, TransitionReason,

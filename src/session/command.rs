@@ -6,6 +6,7 @@ use super::replay::ReplayView;
 use super::reply::ReplyTo;
 use crate::fc::{CraftSettings, RemoteView, UploadReport, UploadView};
 use crate::link::endpoint::EndpointStatus;
+use crate::lookahead::VehicleCopy;
 use crate::plan::FlightPlan;
 use crate::replay::{Curve, CurvesRequest};
 use crate::signals::{RcFrame, SimTime};
@@ -117,14 +118,6 @@ pub enum Command {
     /// none.
     CopyRecording(ReplyTo<Result<Vec<u8>, String>>),
     Quit,
-}
-
-/// A copy of the vehicle for forecasts.
-#[derive(Debug)]
-pub struct VehicleCopy {
-    pub(super) vehicle: Box<Vehicle>,
-    /// The altitude to which the scripted pilot climbs, m.
-    pub(super) takeoff_m: f64,
 }
 
 /// The output of a CLI line.

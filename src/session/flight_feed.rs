@@ -3,8 +3,8 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::event::Event;
 use super::reply::ReplyTo;
+use crate::events::Event;
 use crate::plan::FlightPlan;
 use crate::recording::{Cadence, Seen};
 use crate::signals::SimTime;

@@ -3,10 +3,10 @@
 use std::io;
 use std::time::{Duration, Instant};
 
-use super::runner::{Flying, Subscriber};
 use crate::blackbox::encode::LogBuffer;
 use crate::firmware::Firmware;
 use crate::firmware::blackbox::{Flash, LogDevice, LogStream};
+use crate::runner::{Flying, Subscriber};
 use crate::storage::LogFolder;
 use crate::vehicle::Vehicle;
 

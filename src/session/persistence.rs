@@ -2,7 +2,7 @@
 //! console alike, and keeps its logs. A remote flight controller stores both itself.
 
 use super::flight_logs::FlightLogs;
-use super::notice::Notice;
+use crate::events::Notice;
 use crate::firmware::cli::{CliAction, CliReply};
 use crate::firmware::config::Configuration;
 use crate::storage::Store;

@@ -4,7 +4,6 @@
 //! one flight. Commands to a craft are refused.
 #![allow(clippy::disallowed_methods, reason = "this is where wall time meets the time of the flight")]
 
-mod notice;
 mod player;
 mod view;
 
@@ -15,15 +14,15 @@ use tokio::sync::{mpsc, watch};
 
 use super::command::{Command, Seek, SessionView};
 use super::command_queue::CommandQueue;
-use super::event::{Event, EventSender, SessionEvent};
+use super::event_sender::EventSender;
 use super::policy::{self, Facts, Intent};
 use super::runtime::{Handle, refuse_command};
 use super::waker;
+use crate::events::{Event, ReplayNotice, SessionEvent};
 use crate::replay::{PastEventKind, PastFlights};
 use crate::signals::SimTime;
 use player::Player;
 
-pub use notice::ReplayNotice;
 pub use view::ReplayView;
 
 /// The interval of published views.

@@ -8,8 +8,8 @@ use tokio::sync::oneshot;
 
 use super::host_status::HostStatus;
 use super::late_answers::{LateAnswers, no_answer_line};
-use super::notice::Notice;
 use super::persistence::Persistence;
+use crate::events::Notice;
 use crate::firmware::cli::{COMMANDS, CliAction, CliMode, CliReply, complete};
 use crate::firmware::msp::{MspAction, Outcome, UtcTime, flash_reply};
 use crate::link::proto::command_line::{AfterLine, Completion, LineReply, LineSource};

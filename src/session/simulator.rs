@@ -1,17 +1,17 @@
 //! An external simulator that moves the craft: its packets advance the time, and its silence stops it.
 
-use std::fmt;
 use std::time::{Duration, Instant};
 
 use arrayvec::ArrayVec;
 
 use super::flight_logs::FlightLogs;
 use super::request_handler::RequestHandler;
+use crate::events::{SessionEvent, SimulatorNotice};
 use crate::link::endpoint::EndpointStatus;
 use crate::link::proto::fdm::PacketError;
-use crate::link::proto::fdm_link::{FdmNotice, PacketKind};
+use crate::link::proto::fdm_link::PacketKind;
 use crate::link::{ExternalSimulator, ImpairedLink, LinkImpairment};
-use crate::session::event::{EventSender, SessionEvent};
+use crate::session::event_sender::EventSender;
 use crate::sim::LinkFaults;
 use crate::telemetry::LinkState;
 use crate::vehicle::Vehicle;
@@ -24,38 +24,6 @@ const PAUSE: Duration = Duration::from_secs(1);
 
 /// The number of kinds of refusals. Each is reported once.
 const REFUSALS: usize = 6;
-
-/// A notice about the external simulator.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum SimulatorNotice {
-    /// The first packet was accepted.
-    Connected,
-    /// A packet was accepted after a silence.
-    Resumed {
-        /// The wall time without an accepted packet, s.
-        silence_s: f64,
-    },
-    /// It has stopped sending.
-    Silent,
-    /// Packets are refused for this reason. Reported once for each reason.
-    Refused(PacketError),
-    /// The link has adapted to the packets.
-    Adapted(FdmNotice),
-}
-
-impl fmt::Display for SimulatorNotice {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Connected => f.write_str("The simulator sends: the craft now follows its time."),
-            Self::Resumed { silence_s } => {
-                write!(f, "The simulator sends again after {silence_s:.1} s of silence.")
-            }
-            Self::Silent => f.write_str("The simulator is silent: time is stopped until it sends again."),
-            Self::Refused(refusal) => write!(f, "Packets of the simulator are refused: {refusal}."),
-            Self::Adapted(notice) => f.write_str(&sentence(&notice.to_string())),
-        }
-    }
-}
 
 /// The parts of the session that take part in the ticks.
 #[derive(Debug)]
@@ -273,10 +241,4 @@ fn impairment(faults: LinkFaults) -> LinkImpairment {
 
 fn report(notice: SimulatorNotice, vehicle: &mut Vehicle, events: &mut EventSender) {
     events.report(vehicle, SessionEvent::Simulator(notice));
-}
-
-/// Formats a notice of the link as a sentence.
-fn sentence(notice: &str) -> String {
-    let mut letters = notice.chars();
-    letters.next().map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
 }

@@ -5,8 +5,9 @@ use std::time::Duration;
 use crossterm::event::KeyEvent;
 
 use crate::campaign::ForecastAnswer;
+use crate::events::{Event, ReplayNotice, SessionEvent};
 use crate::fc::RemoteNotice;
-use crate::session::{Event, ReplayNotice, SessionEvent, SessionView};
+use crate::session::SessionView;
 use crate::signals::SimTime;
 use crate::telemetry::{EventKind, FirmwareEvent, NavEvent};
 

@@ -12,7 +12,7 @@ use super::settings::GivenSetting;
 use super::theme::Theme;
 use super::units::Units;
 use crate::campaign::ForecastAnswer;
-use crate::session::Event;
+use crate::events::Event;
 use crate::terrain::Tiles;
 
 /// The configuration of the user interface at start.

@@ -2,8 +2,8 @@
 
 use std::collections::VecDeque;
 
+use crate::events::{ReplayNotice, SessionEvent};
 use crate::fc::RemoteNotice;
-use crate::session::{ReplayNotice, SessionEvent};
 use crate::signals::SimTime;
 use crate::telemetry::{BatteryAlarm, DisarmReason, EventKind, FirmwareEvent, NavEvent, NavState};
 

@@ -12,7 +12,7 @@ mod setting_change;
 use std::time::Duration;
 
 use crate::flight::forecast::{Forecast, PathPoint};
-use crate::session::{ForecastJob, ForecastRequest};
+use crate::lookahead::{ForecastJob, ForecastRequest};
 use crate::signals::SimTime;
 
 use super::editor::PlanId;

@@ -14,11 +14,12 @@ use super::map_point::MapPoint;
 use super::map_state::{MapItem, MapMode};
 use super::popup::Popup;
 use super::settings::SettingsChange;
+use crate::events::Event;
 use crate::fc::{CraftSettings, UploadReport};
+use crate::lookahead::{ForecastJob, ForecastReply, SurveyJob, SurveyReply};
 use crate::plan::{Altitude, FlightPlan};
 use crate::replay::{Curve, CurvesRequest, Overview};
 use crate::session::command::{CliOutput, Command, SessionView};
-use crate::session::{Event, ForecastJob, ForecastReply, SurveyJob, SurveyReply};
 use crate::telemetry::snapshot::WorldView;
 use crate::vehicle::VehicleCommand;
 

@@ -14,8 +14,9 @@ use tokio::signal::unix::{SignalKind, signal};
 use tokio::sync::{mpsc, oneshot, watch};
 use tokio::time::sleep;
 
+use crate::events::Event;
 use crate::replay::Overview;
-use crate::session::{Command, Event, SessionView};
+use crate::session::{Command, SessionView};
 use crate::timeline::RecordedFlight;
 
 use super::app_state::AppState;

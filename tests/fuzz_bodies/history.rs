@@ -1,6 +1,6 @@
 //! Files of the lines that were entered in text fields.
 
-use betadeck::app::entered_lines::{LONGEST, RECALLED, is_kept, recalled};
+use betadeck::screen_files::entered_lines::{LONGEST, RECALLED, is_kept, recalled};
 
 /// Recalls the lines of the text: the newest that can have been entered, in their order.
 pub fn run(data: &[u8]) {

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use super::definition::executable_of;
-use crate::app::AppError;
 use crate::args::FirmwareChoice;
+use crate::process::error::AppError;
 
 /// The consent on the command line.
 #[derive(Debug, Clone, Copy)]

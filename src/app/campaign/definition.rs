@@ -6,15 +6,19 @@ use std::path::{Path, PathBuf};
 
 use super::of_plan;
 use super::sources::Sources;
-use crate::app::firmware::{Beside, Chosen, RemoteFirmware};
 use crate::app::scenario_folder::ScenarioFolder;
-use crate::app::{AppError, error, firmware, input_file, setup};
+use crate::app::setup;
 use crate::args::{
     CampaignArgs, FirmwareArgs, FirmwareChoice, FirmwarePortArgs, FlightArgs, PhysicsArgs, PlanArg,
 };
 use crate::design::fingerprint;
+use crate::files::input_file;
+use crate::launch;
+use crate::launch::{Beside, Chosen, RemoteFirmware};
 use crate::link::conventions::FirmwareClock;
 use crate::plan::builtin::BuiltinPlan;
+use crate::process::error;
+use crate::process::error::AppError;
 use crate::report::campaign::{Contents, Definition, OtherSide, RunHeader};
 use crate::report::check::STANDARD_INPUT;
 use crate::scenario::BuiltinScenario;
@@ -167,7 +171,7 @@ fn common(args: &CampaignArgs) -> Result<Definition, AppError> {
     let mut notices = Vec::new();
     let (flight, physics) = (FlightArgs::default(), PhysicsArgs::default());
     let beside = Beside { ports: (&args.firmware_ports).into(), flight: &flight, physics: &physics };
-    let chosen = firmware::choose(&args.firmware, beside, &mut notices)?;
+    let chosen = launch::choose(&args.firmware, beside, &mut notices)?;
     let versus = args.has_two_sides().then(|| other_side(args, beside, &mut notices)).transpose()?;
     let is_remote = chosen.is_some() || versus.as_ref().is_some_and(|side| !side.firmware.is_empty());
     notices.extend(args.firmware_ports.idle_options(is_remote));
@@ -248,7 +252,7 @@ pub(super) fn firmware_of(words: &[String], print: Option<&str>) -> Result<Optio
     let Some((args, ports)) = named_firmware(words)? else { return Ok(None) };
     let (flight, physics) = (FlightArgs::default(), PhysicsArgs::default());
     let beside = Beside { ports: (&ports).into(), flight: &flight, physics: &physics };
-    let firmware = firmware::choose(&args, beside, &mut Vec::new())?;
+    let firmware = launch::choose(&args, beside, &mut Vec::new())?;
     if let Some(executable) = firmware.as_ref().and_then(|firmware| firmware.executable.as_ref())
         && let Some(print) = print
         && print_of(executable)? != print

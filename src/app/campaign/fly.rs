@@ -12,12 +12,13 @@ use super::outputs::{self, Outputs, Titles};
 use super::progress::Progress;
 use super::run_file::RunFile;
 use super::{shard, version};
-use crate::app::error::{self, AppError};
-use crate::app::interrupt::interrupt_flag;
-use crate::app::parallel;
 use crate::app::report;
 use crate::args::CampaignArgs;
 use crate::campaign::{Record, Shard};
+use crate::process::error;
+use crate::process::error::AppError;
+use crate::process::interrupt::interrupt_flag;
+use crate::process::parallel;
 use crate::report::campaign::record_line;
 
 /// How often a flight is prepared whose firmware cannot be started.

@@ -9,19 +9,19 @@ use super::definition::{check_other_side, firmware_of};
 use super::run_file::RunReader;
 use super::sources::Sources;
 use super::version;
-use crate::app::AppError;
 use crate::app::check::{RemoteFlown, fly_case};
-use crate::app::error;
-use crate::app::firmware::RemoteFirmware;
-use crate::app::firmware::run::Stopped;
-use crate::app::terrain::with_terrain;
 use crate::args::TerrainArgs;
 use crate::campaign::{Campaign, CampaignFlight, Record, Side};
 use crate::design::Stream;
+use crate::files::terrain::with_terrain;
+use crate::launch::RemoteFirmware;
+use crate::launch::run::Stopped;
 use crate::plan::format;
+use crate::process::error;
+use crate::process::error::AppError;
 use crate::report::campaign::{Definition, RunHeader};
+use crate::runner::Runner;
 use crate::scenario::{self, CaseFlight, Change, Flights, Request, read_request};
-use crate::session::Runner;
 
 /// The most flights of a file of `check`.
 const MAX_LISTED: usize = 1_000_000;

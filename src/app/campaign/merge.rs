@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use super::loaded::{Loaded, differs};
 use super::outputs::{self, Outputs, Titles};
 use super::run_file::RunReader;
-use crate::app::AppError;
-use crate::app::error;
-use crate::app::output_file::StreamedOutput;
 use crate::app::report;
 use crate::args::MergeArgs;
 use crate::campaign::Shard;
+use crate::files::output_file::StreamedOutput;
+use crate::process::error;
+use crate::process::error::AppError;
 
 /// The most missing shards that are named.
 const SHOWN: usize = 20;

@@ -1,8 +1,8 @@
 //! A plan with the options of `fly`, as the text of a scenario.
 
-use crate::app::AppError;
 use crate::args::{AttitudeChoice, CampaignArgs, PlanArg};
 use crate::geo::Degrees7;
+use crate::process::error::AppError;
 use crate::scenario::FORMAT;
 
 /// The most samples of a flight that a scenario keeps.

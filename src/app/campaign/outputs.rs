@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use super::loaded::Loaded;
-use crate::app::error::{self, AppError};
-use crate::app::output_file::{FinalOutput, KeptFiles, StreamedOutput};
 use crate::app::{report, setup};
 use crate::args::{CampaignOutputArgs, OutputFile};
 use crate::campaign::{Answer, AnswerBuilder, Record, Shard, Standing};
+use crate::files::output_file::{FinalOutput, KeptFiles, StreamedOutput};
+use crate::process::error;
+use crate::process::error::AppError;
 use crate::report::campaign::{
     CsvTable, Reported, answer_json, answer_junit, answer_markdown, answer_sentences,
 };

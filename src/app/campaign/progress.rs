@@ -4,8 +4,8 @@
 use std::io::{IsTerminal as _, Write as _};
 use std::time::{Duration, Instant};
 
-use crate::app::error;
-use crate::app::patient_output::PatientOutput;
+use crate::process::error;
+use crate::process::patient_output::PatientOutput;
 
 /// Width of the bar, characters.
 const WIDTH: u64 = 24;

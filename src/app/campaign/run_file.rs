@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 
 use super::definition::MAX_HEADER;
 use super::loaded::differs;
-use crate::app::AppError;
 use crate::campaign::{Record, Shard, Side};
+use crate::process::error::AppError;
 use crate::report::campaign::{LineError, RunHeader, read_record};
 
 /// The longest line of a flight, bytes.

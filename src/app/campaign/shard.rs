@@ -1,9 +1,9 @@
 //! The part of a campaign that this process flies, also from the environment of an array job.
 #![allow(clippy::disallowed_methods, reason = "the environment of an array job names its part")]
 
-use crate::app::AppError;
 use crate::args::ShardArg;
 use crate::campaign::Shard;
+use crate::process::error::AppError;
 
 /// Returns the part that the option names.
 pub(super) fn of(shard: Option<ShardArg>) -> Result<Shard, AppError> {

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use crate::app::scenario_folder::{self, ScenarioFolder};
-use crate::app::{error, input_file};
+use crate::files::input_file;
 use crate::plan::format::PlanFile;
+use crate::process::error;
 use crate::report::campaign::Contents;
 use crate::scenario::{BuiltinFiles, Files};
 

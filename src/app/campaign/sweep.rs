@@ -6,20 +6,20 @@ use super::definition::{self, Wanted};
 use super::loaded::Loaded;
 use super::outputs;
 use super::progress::Progress;
-use crate::app::AppError;
-use crate::app::error;
-use crate::app::interrupt::interrupt_flag;
-use crate::app::output_file::FinalOutput;
-use crate::app::parallel;
 use crate::app::report;
 use crate::args::{CampaignArgs, OutputFile};
+use crate::files::output_file::FinalOutput;
 use crate::flight::Flight;
 use crate::flight::sweep::{Fate, Sweep, SweepPoint};
+use crate::lookahead::{SweepProblem, fly_sweep};
+use crate::process::error;
+use crate::process::error::AppError;
+use crate::process::interrupt::interrupt_flag;
+use crate::process::parallel;
 use crate::report::flight::FlightReport;
 use crate::report::html::{SweepPage, sweep_page};
 use crate::report::sweep::{SweptFlight, sweep_csv, sweep_json, sweep_sentences};
 use crate::scenario::CaseFlight;
-use crate::session::{SweepProblem, fly_sweep};
 use crate::sim::ScheduledFault;
 
 /// Flies and reports. The exit code is 0 if the craft is lost at no second.

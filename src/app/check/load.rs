@@ -4,9 +4,11 @@ use std::path::{Path, PathBuf};
 
 use super::run::is_wanted;
 use crate::app::scenario_folder::{self, ScenarioFolder};
-use crate::app::{AppError, error, input_file};
 use crate::args::{CheckArgs, MOST_FLIGHTS};
+use crate::files::input_file;
 use crate::plan::format::{self, PlanFile};
+use crate::process::error;
+use crate::process::error::AppError;
 use crate::report::check::STANDARD_INPUT;
 use crate::scenario::{
     self, BuiltinFiles, BuiltinScenario, Files, Flights, Request, SCENARIOS, Scenario, read_request,
@@ -47,7 +49,7 @@ pub(super) fn load(args: &CheckArgs) -> Result<Loaded, AppError> {
             // Of many thousand scenarios only those that are flown are kept.
             Ok(scenario) if !scenario.cases.iter().any(|case| is_wanted(&scenario, case, args)) => {}
             Ok(scenario) => loaded.scenarios.push(scenario),
-            Err(error) if error.code == crate::app::error::USAGE => problems.push(error.message),
+            Err(error) if error.code == crate::process::error::USAGE => problems.push(error.message),
             Err(error) => return Err(error),
         }
     }

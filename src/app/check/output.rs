@@ -5,13 +5,15 @@ use std::path::{Path, PathBuf};
 
 use super::Loaded;
 use super::progress::Progress;
-use crate::app::error::{self, AppError};
-use crate::app::log_output::LogFiles;
-use crate::app::output_file::{self, FinalOutput, KeptFiles, Writer};
-use crate::app::patient_output::PatientOutput;
 use crate::app::{report, setup};
 use crate::args::{CheckArgs, OutputFile};
+use crate::files::log_output::LogFiles;
+use crate::files::output_file;
+use crate::files::output_file::{FinalOutput, KeptFiles, Writer};
 use crate::plan::feature::Feature;
+use crate::process::error;
+use crate::process::error::AppError;
+use crate::process::patient_output::PatientOutput;
 use crate::report::check::{
     CheckedFlight, Summary, flight_line, flight_lines, junit, markdown, summary_line, summary_lines,
 };

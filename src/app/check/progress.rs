@@ -2,7 +2,7 @@
 
 use std::io::{IsTerminal as _, Write as _};
 
-use crate::app::patient_output::PatientOutput;
+use crate::process::patient_output::PatientOutput;
 use crate::text::printable;
 
 /// Width of the bar, characters.

@@ -1,9 +1,10 @@
 //! Records the flight of a case for the page about the run.
 
 use crate::app::report;
+use crate::events::Event;
 use crate::report::flight::FlightReport;
+use crate::runner::Subscriber;
 use crate::scenario::{Case, CaseFlight, Flown};
-use crate::session::{Event, Subscriber};
 use crate::vehicle::Vehicle;
 
 /// The record of a flight, if there is a page about the run.

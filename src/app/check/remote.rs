@@ -7,15 +7,18 @@ use super::Loaded;
 use super::record::Record;
 use super::results::Results;
 use super::run::{self, Job, Judged, Repetitions, Stopwatch};
-use crate::app::firmware::run::{OnEvent, RemoteRun, RunOptions, Stopped};
-use crate::app::firmware::{RemoteFirmware, reported};
-use crate::app::{AppError, error, parallel, setup};
+use crate::app::setup;
+use crate::events::Event;
 use crate::fc::Unset;
+use crate::launch::run::{OnEvent, RemoteRun, RunOptions, Stopped};
+use crate::launch::{RemoteFirmware, reported};
 use crate::link::conventions::{FirmwareClock, Stamps};
+use crate::process::error::AppError;
+use crate::process::{error, parallel};
 use crate::report::check::{CheckedFlight, shell_word};
 use crate::report::flight::FlightReport;
+use crate::runner::Subscriber;
 use crate::scenario::{self, Air, Case, CaseFlight, Flown};
-use crate::session::{Event, Subscriber};
 use crate::vehicle::Vehicle;
 
 /// The message if flights cannot be prepared repeatedly.

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::output::Output;
-use crate::app::AppError;
+use crate::process::error::AppError;
 use crate::report::check::CheckedFlight;
 use crate::report::flight::FlightReport;
 

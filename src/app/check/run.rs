@@ -6,13 +6,13 @@ use std::time::Instant;
 
 use super::record::Record;
 use super::{Comparisons, Loaded};
-use crate::app::AppError;
-use crate::app::log_output::{LogOnly, LogOutput};
 use crate::args::{CheckArgs, MOST_FLIGHTS};
+use crate::files::log_output::{LogOnly, LogOutput};
+use crate::process::error::AppError;
 use crate::report::check::{CheckedFlight, Compared};
 use crate::report::flight::FlightReport;
+use crate::runner::{Runner, Stopped};
 use crate::scenario::{self, Air, Case, CaseFlight, Flown, Scenario};
-use crate::session::{Runner, Stopped};
 
 /// A flight to be flown: the indices of its scenario, case and air, and the number of the repetition.
 #[derive(Debug, Clone, Copy)]

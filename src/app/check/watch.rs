@@ -7,9 +7,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, SystemTime};
 
 use super::{fly, load, output};
-use crate::app::error::{self, AppError};
-use crate::app::firmware::RemoteFirmware;
 use crate::args::CheckArgs;
+use crate::launch::RemoteFirmware;
+use crate::process::error;
+use crate::process::error::AppError;
 
 /// The interval between two checks of the files.
 const INTERVAL: Duration = Duration::from_millis(200);

@@ -1,9 +1,9 @@
 //! The flights of a comparison.
 
 use super::Compared;
-use crate::app::AppError;
-use crate::app::log_output::needs_embedded;
 use crate::args::CompareArgs;
+use crate::files::log_output::needs_embedded;
+use crate::process::error::AppError;
 use crate::scenario::MAX_FLIGHTS;
 use crate::sim::{Noise, WorldConfig};
 use crate::telemetry::Turbulence;

@@ -2,12 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::app::log_output::LogFiles;
-use crate::app::output_file::FinalOutput;
-use crate::app::{AppError, error, report, setup};
+use crate::app::{report, setup};
 use crate::args::{CompareArgs, OutputFile};
+use crate::files::log_output::LogFiles;
+use crate::files::output_file::FinalOutput;
 use crate::geo::LocalFrame;
 use crate::plan::feature::Feature;
+use crate::process::error;
+use crate::process::error::AppError;
 use crate::report::compare::Comparison;
 use crate::report::html;
 

@@ -2,9 +2,10 @@
 
 use nalgebra::Vector2;
 
+use crate::events::{Event, SessionEvent};
 use crate::flight::{Flight, FlightEnd};
 use crate::report::compare::{Track, TrackSample};
-use crate::session::{Event, SessionEvent, Subscriber};
+use crate::runner::Subscriber;
 use crate::signals::SimTime;
 use crate::telemetry::EventKind;
 use crate::vehicle::Vehicle;

@@ -1,8 +1,8 @@
 //! A flight that is watched for a while after its end, as `check` does, so that both give the same hash.
 
 use crate::flight::{Flight, FlightEnd};
+use crate::runner::Flying;
 use crate::scenario::FlightHash;
-use crate::session::Flying;
 use crate::telemetry::Event;
 use crate::vehicle::Vehicle;
 

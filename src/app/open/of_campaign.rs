@@ -1,9 +1,9 @@
 //! A flight of a campaign: `betadeck open RUN.jsonl:1234`.
 
 use super::Opened;
-use crate::app::AppError;
 use crate::app::campaign::{Consent, OneFlight, open_flight};
 use crate::args::OpenArgs;
+use crate::process::error::AppError;
 
 /// A flight as it was flown in a campaign.
 pub(super) struct FlownInCampaign {

@@ -4,10 +4,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::outputs;
 use super::report::Report;
-use crate::app::error::{self, AppError};
-use crate::app::log_source::FileSource;
 use crate::args::ReplayArgs;
+use crate::files::log_source::FileSource;
 use crate::flight_log::LogFlight;
+use crate::process::error;
+use crate::process::error::AppError;
 use crate::replay::{LogFlights, PastFlights as _, log_assumptions, log_end_notices};
 use crate::report::log_export::{TableEnd, log_gpx, log_track, write_csv};
 

@@ -4,12 +4,12 @@ use std::io::BufReader;
 use std::path::Path;
 
 use super::shown_name;
-use crate::app::error::AppError;
-use crate::app::input_file;
-use crate::app::log_source::{FileSource, has_log};
-use crate::app::recording_file::GZIP;
 use crate::blackbox::FIRST_LINE;
 use crate::blackbox::decode::LogSource as _;
+use crate::files::input_file;
+use crate::files::log_source::{FileSource, has_log};
+use crate::files::recording_file::GZIP;
+use crate::process::error::AppError;
 use crate::recording::{Setup, read_setup};
 use crate::replay::{LogFlights, PastFlights, RecordedFlights};
 

@@ -4,10 +4,10 @@ use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::app::error::AppError;
-use crate::app::output_file::{KeptFiles, StreamedOutput, write_failed};
-use crate::app::patient_output::PatientOutput;
 use crate::args::{OutputFile, ReplayArgs};
+use crate::files::output_file::{KeptFiles, StreamedOutput, write_failed};
+use crate::process::error::AppError;
+use crate::process::patient_output::PatientOutput;
 
 /// Checks that no output replaces a file that is read.
 pub(super) fn claim(args: &ReplayArgs) -> Result<(), AppError> {

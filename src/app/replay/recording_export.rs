@@ -5,10 +5,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::outputs;
 use super::report::Report;
-use crate::app::error::{self, AppError};
-use crate::app::log_source::FileSource;
 use crate::args::ReplayArgs;
+use crate::files::log_source::FileSource;
 use crate::plan::FlightPlan;
+use crate::process::error;
+use crate::process::error::AppError;
 use crate::recording::{Happened, Picture, Recording, Setup};
 use crate::replay::{PastFlights as _, RecordedFlights};
 use crate::report::{CsvWriter, GpxHeader, GpxPoint, GpxWriter, Track, TrackPoint, UtcSeconds};

@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use crate::app::error::AppError;
-use crate::app::output_file::StreamedOutput;
 use crate::app::{report, setup};
 use crate::args::ReplayArgs;
+use crate::files::output_file::StreamedOutput;
 use crate::flight::setup::{LoggedSetting, logged_settings};
 use crate::flight_log::LogFlight;
 use crate::plan::FlightPlan;
 use crate::plan::feature::Feature;
+use crate::process::error::AppError;
 use crate::recording::Recording;
 use crate::replay::Overview;
 use crate::report::flight::{FlightReport, ReportedSettings};

@@ -6,8 +6,8 @@ use std::net::SocketAddr;
 use serde::Serialize;
 
 use super::super::number::{Decimals, Milli};
+use crate::events::{EndpointAddresses, SessionEvent};
 use crate::plan::{FlightPlan, WaypointType};
-use crate::session::{EndpointAddresses, SessionEvent};
 use crate::telemetry::{
     BatteryAlarm, EventKind, FaultValue, FirmwareEvent, Guard, NavEvent, PlanSource, Refusal,
 };
@@ -240,9 +240,9 @@ impl GuardFields {
 mod tests {
     use super::super::event_line;
     use super::*;
+    use crate::events::Event;
     use crate::geo::LatLon;
     use crate::plan::{Altitude, Waypoint};
-    use crate::session::Event;
     use crate::signals::SimTime;
     use crate::telemetry::{
         AbortReason, CannotHold, DisarmReason, FailsafeProcedure, FaultKind, GuardName, GuardOp, HoldLimit,

@@ -1,9 +1,9 @@
 //! The record of a flight that is over, from what a display knows of it.
 
 use super::{FlightRecord, MOST_SAMPLES, RecordedSample, push_bounded};
+use crate::events::{Event, SessionEvent};
 use crate::replay::{Overview, PastEventKind, Picture};
 use crate::report::sentence;
-use crate::session::{Event, SessionEvent};
 use crate::signals::SimTime;
 
 impl FlightRecord {

@@ -5,8 +5,9 @@ use std::time::Duration;
 
 use super::ReplayStart;
 use crate::replay::{Curve, CurvesRequest, Moment, Overview, PastFlight};
+use crate::runner::Pacer;
+use crate::runner::SPEED_RANGE;
 use crate::session::command::Seek;
-use crate::session::pacer::{Pacer, SPEED_RANGE};
 use crate::session::seek::{Target, target};
 use crate::signals::SimTime;
 use crate::telemetry::Snapshot;

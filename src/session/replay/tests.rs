@@ -5,8 +5,9 @@ use std::task::{Wake, Waker};
 
 use super::*;
 use crate::replay::{Curve, CurvesRequest, Moment, Overview, PastEvent, PastFlight, Picture, Progress};
+use crate::runner::SPEED_RANGE;
+use crate::session::ReplyTo;
 use crate::session::policy::RECORDED;
-use crate::session::{ReplyTo, SPEED_RANGE};
 use crate::telemetry::{EventKind, FirmwareEvent, Mode, ModeFlags, Snapshot};
 use crate::timeline::{MarkKind, Marks};
 use crate::vehicle::VehicleCommand;

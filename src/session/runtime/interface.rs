@@ -3,19 +3,20 @@
 
 use std::time::Instant;
 
+use crate::events::Notice;
 use crate::fc::{
     CraftSettings, LIST, Upload, UploadProgress, UploadReport, UploadView, plan_above_home, replace_settings,
 };
 use crate::firmware::cli::{CliAction, CliReply, advice};
+use crate::flight::hazards;
 use crate::msp::code;
 use crate::plan::{AltitudeReference, FlightPlan};
+use crate::session::ReplyTo;
 use crate::session::command::CliOutput;
 use crate::session::host_status::HostStatus;
 use crate::session::late_answers::{LateAnswers, NO_ANSWER, no_answer_line};
-use crate::session::notice::Notice;
 use crate::session::persistence::Persistence;
 use crate::session::request_handler::RequestHandler;
-use crate::session::{ReplyTo, hazards};
 use crate::text::printable;
 use crate::vehicle::{
     Answer, CliSession, LateAnswer, Message, Reply as VehicleReply, Ticket, Vehicle, VehicleCommand,

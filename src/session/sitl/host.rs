@@ -9,6 +9,7 @@ use tokio::sync::watch;
 use tokio::time::{MissedTickBehavior, interval};
 
 use super::lines::{self, FlightLine, OpenResult, SitlPorts};
+use crate::events::{Event, SessionEvent, SimulatorNotice};
 use crate::firmware::FirmwareOptions;
 use crate::firmware::cli::BuildInfo;
 use crate::link::conventions::MotorOrder;
@@ -16,7 +17,7 @@ use crate::link::endpoint::{BadPackets, EndpointKind, EndpointStatus};
 use crate::link::proto::fdm_link::FdmLinkConfig;
 use crate::link::{ExternalSimulator, ListenConfig, Listeners, MotorPort};
 use crate::session::links::{Links, MotorTargets, MotorsError};
-use crate::session::{Command, Event, Handle, SessionConfig, SessionEvent, SimulatorNotice, start};
+use crate::session::{Command, Handle, SessionConfig, start};
 use crate::sim::{WorldConfig, WorldError};
 use crate::storage::{StorageError, Store};
 use crate::telemetry::{EventKind, FirmwareEvent, LinkState, NavEvent, Snapshot};

@@ -1,6 +1,6 @@
 //! Commands about time.
 
-use crate::session::SPEED_RANGE;
+use crate::runner::SPEED_RANGE;
 use crate::session::policy::{self, Facts, Intent};
 use crate::ui::message::Request;
 use crate::ui::shared::Shared;

@@ -1,7 +1,7 @@
 //! The input of a flown estimate, as far as the screen knows it.
 
+use crate::lookahead::{ForecastRequest, SurveyedPlan};
 use crate::plan::FlightPlan;
-use crate::session::{ForecastRequest, SurveyedPlan};
 use crate::telemetry::Turbulence;
 use crate::telemetry::snapshot::{SettingsView, WindView};
 use crate::ui::editor::settings_in_force;

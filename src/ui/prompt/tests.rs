@@ -1,7 +1,8 @@
 use super::*;
 use crate::geo::LatLon;
+use crate::lookahead::ForecastRequest;
 use crate::plan::{Waypoint, WaypointType};
-use crate::session::{Command, ForecastRequest, SessionView};
+use crate::session::{Command, SessionView};
 use crate::telemetry::InFlightCommand;
 use crate::ui::action::{Action, EditAction};
 use crate::ui::editor::{Browser, FileReply, FileRequest, PlanId, Purpose};

@@ -7,8 +7,9 @@ use crossterm::execute;
 use tokio::sync::mpsc;
 
 use super::{SessionLink, flights};
-use crate::session::command::VehicleCopy;
-use crate::session::{Command, ForecastReply, Forecaster, ReplyTo, SurveyNews, SurveyReply, Surveyor};
+use crate::lookahead::VehicleCopy;
+use crate::lookahead::{ForecastReply, Forecaster, SurveyNews, SurveyReply, Surveyor};
+use crate::session::{Command, ReplyTo};
 use crate::timeline::RecordedFlight;
 use crate::ui::editor::FileReply;
 use crate::ui::files_link::FilesLink;

@@ -4,7 +4,7 @@ use super::{Shown, SurveyState, Surveyed, SweepSoFar};
 use crate::campaign::{Forecast, ForecastAnswer};
 use crate::flight::forecast::{FlightResult, ForecastEnd};
 use crate::flight::sweep::Fate;
-use crate::session::{SurveyJob, SurveyNews, SurveyReply, SurveyRequest};
+use crate::lookahead::{SurveyJob, SurveyNews, SurveyReply, SurveyRequest};
 use crate::sim::ScheduledFault;
 use crate::ui::event_log::Severity;
 use crate::ui::forecast::EstimateBasis;

@@ -173,7 +173,8 @@ pub(in crate::ui) fn keep(state: &mut AppState) -> Option<Effect> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::{Event, ReplayView, SessionEvent};
+    use crate::events::{Event, SessionEvent};
+    use crate::session::ReplayView;
     use crate::telemetry::snapshot::WindView;
     use crate::timeline::TimelineView;
     use crate::ui::kept_screen::{KeptScreens, Unread};

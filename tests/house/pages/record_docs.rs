@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
+use betadeck::events::{EndpointAddresses, Event, SessionEvent};
 use betadeck::geo::LatLon;
 use betadeck::plan::{FlightPlan, Waypoint, WaypointType};
 use betadeck::report::{End, json};
-use betadeck::session::{EndpointAddresses, Event, SessionEvent};
 use betadeck::signals::SimTime;
 use betadeck::telemetry::{
     AbortReason, BatteryAlarm, CannotHold, CrashCause, DisarmReason, EventKind, FailsafeProcedure, FaultKind,

@@ -5,6 +5,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use betadeck::events::{Event, SessionEvent};
 use betadeck::firmware::FirmwareOptions;
 use betadeck::firmware::config::Configuration;
 use betadeck::link::endpoint::EndpointKind;
@@ -12,9 +13,7 @@ use betadeck::link::proto::command_line::{LineReply, LineSource};
 use betadeck::link::{ClientId, ListenConfig, Listeners, Request};
 use betadeck::session::ReplyTo;
 use betadeck::session::command::Seek;
-use betadeck::session::{
-    Command, Endpoints, Event, Handle, RequestHandler, SessionConfig, SessionEvent, SessionView, start,
-};
+use betadeck::session::{Command, Endpoints, Handle, RequestHandler, SessionConfig, SessionView, start};
 use betadeck::signals::RcFrame;
 use betadeck::sim::WorldConfig;
 use betadeck::storage::Store;

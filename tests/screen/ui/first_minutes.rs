@@ -1,8 +1,10 @@
 //! The first half hour of a new user, by keys: the screen is true, stays readable and says how to go on.
 
+use betadeck::events::{Event, SessionEvent};
 use betadeck::flight::forecast::ForecastKind;
+use betadeck::lookahead::{ForecastJob, ForecastReply};
 use betadeck::plan::{Seconds, WaypointType};
-use betadeck::session::{Event, ForecastJob, ForecastReply, SessionEvent, SessionView};
+use betadeck::session::SessionView;
 use betadeck::signals::SimTime;
 use betadeck::telemetry::{AbortReason, Guard, GuardName, GuardOp, NavState, Refusal};
 use betadeck::timeline::TimelineView;

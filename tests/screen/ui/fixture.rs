@@ -2,11 +2,12 @@
 
 #![allow(dead_code, unused_imports, reason = "tests and the bench share this file and use different parts")]
 
+use betadeck::events::{Event, SessionEvent};
 use betadeck::geo::{LatLon, LocalFrame};
 use betadeck::link::endpoint::{ClientStats, EndpointKind, EndpointState, EndpointStatus, PacketStats};
 use betadeck::plan::edit::{History, PlanDocument};
 use betadeck::plan::{Altitude, FlightPlan, HoldPattern, Seconds, Waypoint, WaypointType};
-use betadeck::session::{Event, SessionEvent, SessionView};
+use betadeck::session::SessionView;
 use betadeck::signals::{RcFrame, RcSource, SimTime};
 use betadeck::telemetry::snapshot::{ModeRange, SettingsView, TruthView};
 use betadeck::telemetry::{

@@ -7,7 +7,8 @@ use betadeck::fc::UploadReport;
 use betadeck::flight::forecast::{
     FlightResult, Forecast, ForecastEnd, ForecastKind, PathPoint, WHAT_IFS, WorstXte,
 };
-use betadeck::session::{Command, ForecastJob, ForecastReply, ForecastRequest};
+use betadeck::lookahead::{ForecastJob, ForecastReply, ForecastRequest};
+use betadeck::session::Command;
 use betadeck::telemetry::{InFlightCommand, Snapshot};
 use betadeck::ui::{AppState, Effect, Msg, draw, update};
 use betadeck::vehicle::VehicleCommand;

@@ -6,9 +6,9 @@ use std::sync::Arc;
 
 use betadeck::fc::UploadReport;
 use betadeck::flight::forecast::{FlightResult, Forecast, ForecastEnd, ForecastKind};
+use betadeck::lookahead::{ForecastReply, ForecastRequest};
 use betadeck::plan::edit::{History, PlanDocument};
 use betadeck::plan::estimate::Assumptions;
-use betadeck::session::{ForecastReply, ForecastRequest};
 use betadeck::telemetry::snapshot::SettingsView;
 use betadeck::ui::editor::{FileReply, Opened, PlanId};
 use betadeck::ui::{AppState, Effect, Msg, update};

@@ -2,8 +2,8 @@
 
 use betadeck::flight::forecast::{FlightResult, Forecast, ForecastEnd, ForecastKind, LegTime, PathPoint};
 use betadeck::geo::{GroundPlane, LatLon};
+use betadeck::lookahead::ForecastReply;
 use betadeck::plan::feature::{Feature, Shape, Vertex, Zone};
-use betadeck::session::ForecastReply;
 use betadeck::ui::backdrop::BackdropLayer;
 use betadeck::ui::editor::{Entry, FileReply, FileRequest, Listing};
 use betadeck::ui::{AppState, Effect, MapMode, Msg, run_line, update};

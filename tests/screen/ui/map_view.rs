@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use betadeck::session::{Event, SessionEvent};
+use betadeck::events::{Event, SessionEvent};
 use betadeck::signals::SimTime;
 use betadeck::telemetry::{EventKind, FirmwareEvent};
 use betadeck::ui::{AppState, MapMode, Msg, update};

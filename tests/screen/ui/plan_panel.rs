@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
+use betadeck::events::{Event, SessionEvent};
 use betadeck::plan::Altitude;
-use betadeck::session::{Event, SessionEvent, SessionView};
+use betadeck::session::SessionView;
 use betadeck::signals::SimTime;
 use betadeck::ui::editor::PlanId;
 use betadeck::ui::{AppState, Msg, Panel, Severity, Units, update};

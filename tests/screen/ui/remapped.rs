@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
+use betadeck::events::{Event, SessionEvent};
 use betadeck::plan::{Altitude, FlightPlan};
-use betadeck::session::{Event, SessionEvent, SessionView};
+use betadeck::session::SessionView;
 use betadeck::signals::SimTime;
 use betadeck::telemetry::snapshot::Snapshot;
 use betadeck::telemetry::{ArmingFlag, Refusal};

@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
+use betadeck::events::{Event, ReplayNotice, SessionEvent};
 use betadeck::geo::LatLon;
 use betadeck::plan::FlightPlan;
 use betadeck::replay::{Curve, CurvesRequest, Overview, Picture, Series};
 use betadeck::session::command::Seek;
 use betadeck::session::policy::RECORDED;
-use betadeck::session::{Command, Event, ReplayNotice, ReplayView, SessionEvent, SessionView};
+use betadeck::session::{Command, ReplayView, SessionView};
 use betadeck::signals::SimTime;
 use betadeck::telemetry::{EventKind, FirmwareEvent, Mode, ModeFlags, Snapshot};
 use betadeck::timeline::{MarkKind, Marks, TimelineView};

@@ -4,8 +4,8 @@ use betadeck::campaign::{Forecast, InputValue, Record, Side, Standing};
 use betadeck::flight::FlightResult;
 use betadeck::flight::forecast::{self as flight_ahead, ForecastEnd, ForecastKind, WHAT_IFS};
 use betadeck::flight::sweep::{Fate, SweepPoint};
+use betadeck::lookahead::{ForecastJob, ForecastReply, SurveyJob, SurveyNews, SurveyReply, SurveyRequest};
 use betadeck::scenario::{BuiltinFiles, read};
-use betadeck::session::{ForecastJob, ForecastReply, SurveyJob, SurveyNews, SurveyReply, SurveyRequest};
 use betadeck::ui::{AppState, Effect, Msg, run_line, update};
 use crossterm::event::{KeyCode, KeyModifiers};
 

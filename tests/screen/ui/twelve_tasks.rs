@@ -1,7 +1,9 @@
 //! The twelve tasks of `docs/guide.md`: its keys do what it says, and no task takes more than eight.
 
+use betadeck::events::{Event, SessionEvent};
+use betadeck::lookahead::ForecastRequest;
 use betadeck::plan::Altitude;
-use betadeck::session::{Command, Event, ForecastRequest, SessionEvent};
+use betadeck::session::Command;
 use betadeck::signals::SimTime;
 use betadeck::telemetry::{EventKind, FirmwareEvent, NavEvent, NavState, Refusal};
 use betadeck::ui::{AppState, Effect, Msg, Panel, layout, update};

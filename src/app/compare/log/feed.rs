@@ -1,13 +1,14 @@
 //! The sticks of a log for a simulated craft, and the track that it flies with them.
 
 use super::north_east;
-use crate::app::AppError;
-use crate::app::recording_file::Recorder;
+use crate::events::{Event, SessionEvent};
+use crate::files::recording_file::Recorder;
 use crate::flight::{Flight, FlightEnd};
 use crate::flight_log::LogSticks;
+use crate::process::error::AppError;
 use crate::recording::End;
 use crate::report::compare::{Track, TrackSample};
-use crate::session::{Event, SessionEvent, Subscriber};
+use crate::runner::Subscriber;
 use crate::signals::SimTime;
 use crate::telemetry::{EventKind, FirmwareEvent};
 use crate::vehicle::{Vehicle, VehicleCommand};

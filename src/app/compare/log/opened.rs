@@ -3,10 +3,10 @@
 use std::io;
 use std::path::Path;
 
-use crate::app::AppError;
-use crate::app::input_file;
-use crate::app::log_source::FileSource;
+use crate::files::input_file;
+use crate::files::log_source::FileSource;
 use crate::flight_log::{Indexer, LogFile, LogFlight, LogHome, LogSample, LogSticks};
+use crate::process::error::AppError;
 use crate::replay::{log_assumptions, log_end_notices};
 use crate::text::printable;
 

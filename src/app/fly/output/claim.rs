@@ -2,11 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::app::error::AppError;
-use crate::app::log_output::{self, file_of_one};
-use crate::app::output_file::{self, Writer};
 use crate::app::setup;
 use crate::args::{FlyArgs, OutputFile, PlanArg};
+use crate::files::log_output;
+use crate::files::log_output::file_of_one;
+use crate::files::output_file;
+use crate::files::output_file::Writer;
+use crate::process::error::AppError;
 
 /// Checks that no output replaces a file that must be kept. If all outputs are allowed, removes the results of an
 /// earlier flight, because this flight may fail before it begins.

@@ -4,10 +4,10 @@ use std::io::Write as _;
 
 use super::pace::Pace;
 use super::stream::{Stream, if_read};
-use crate::app::error::AppError;
 use crate::args::FlyArgs;
+use crate::events::Event;
+use crate::process::error::AppError;
 use crate::report::{End, json, sentence, truth};
-use crate::session::Event;
 use crate::signals::SimTime;
 use crate::text::printable;
 use crate::vehicle::Vehicle;

@@ -1,13 +1,15 @@
 //! The messages before a flight with a remote firmware.
 
 use super::{Beside, Output, Recorded};
-use crate::app::error::{self, AppError};
-use crate::app::firmware::reported;
-use crate::app::recording_file::Recorder;
 use crate::args::FlyArgs;
+use crate::events::Event;
+use crate::files::recording_file::Recorder;
+use crate::launch::reported;
 use crate::plan::format::PlanFile;
+use crate::process::error;
+use crate::process::error::AppError;
 use crate::report::sentence;
-use crate::session::{Event, Subscriber};
+use crate::runner::Subscriber;
 use crate::text::printable;
 use crate::vehicle::Vehicle;
 

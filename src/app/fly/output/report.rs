@@ -2,16 +2,16 @@
 
 use std::path::PathBuf;
 
-use crate::app::error::AppError;
-use crate::app::output_file::StreamedOutput;
 use crate::app::report;
 use crate::args::FlyArgs;
+use crate::events::Event;
+use crate::files::output_file::StreamedOutput;
 use crate::plan::feature::Feature;
 use crate::plan::format::PlanFile;
+use crate::process::error::AppError;
 use crate::report::End;
 use crate::report::flight::{self, FlightReport, ReportedSettings, Verdict};
 use crate::report::html;
-use crate::session::Event;
 use crate::terrain::Relief;
 use crate::vehicle::Vehicle;
 

@@ -2,10 +2,10 @@
 
 use std::io::{BufWriter, Write};
 
-use crate::app::error::AppError;
-use crate::app::output_file::{StreamedOutput, write_failed};
-use crate::app::patient_output::PatientOutput;
 use crate::args::OutputFile;
+use crate::files::output_file::{StreamedOutput, write_failed};
+use crate::process::error::AppError;
+use crate::process::patient_output::PatientOutput;
 
 /// Standard output or a file.
 pub(super) enum Stream {

@@ -2,11 +2,11 @@
 
 use super::pace::Pace;
 use super::stream::{Stream, if_read};
-use crate::app::error::AppError;
 use crate::app::fly::watched::WatchedFlight;
 use crate::args::FlyArgs;
+use crate::process::error::AppError;
 use crate::report::CsvWriter;
-use crate::session::Flying as _;
+use crate::runner::Flying as _;
 use crate::telemetry::signal::Observed;
 
 /// Rows a second, if the user asks for no other number.

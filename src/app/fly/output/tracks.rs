@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use super::pace::Pace;
-use crate::app::error::AppError;
-use crate::app::output_file::{StreamedOutput, write_failed};
 use crate::args::FlyArgs;
+use crate::files::output_file::{StreamedOutput, write_failed};
 use crate::plan::format::PlanFile;
+use crate::process::error::AppError;
 use crate::report::{GpxHeader, GpxPoint, GpxWriter, Track, TrackPoint, UtcSeconds};
 use crate::vehicle::Vehicle;
 

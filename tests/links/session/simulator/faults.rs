@@ -2,9 +2,9 @@
 
 use std::time::Instant;
 
+use betadeck::events::SessionEvent;
 use betadeck::link::Request;
 use betadeck::link::endpoint::SimulatorStats;
-use betadeck::session::SessionEvent;
 use betadeck::telemetry::{EventKind, FirmwareEvent, LinkState};
 
 use super::rig::{Rig, speaking, stats};

@@ -3,6 +3,7 @@
 use std::net::{SocketAddr, UdpSocket};
 use std::time::{Duration, Instant};
 
+use betadeck::events::{Event, SessionEvent};
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{AttitudeSource, FirmwareOptions};
 use betadeck::link::conventions::{Dialect, MotorOrder};
@@ -11,9 +12,7 @@ use betadeck::link::proto::fdm::{State, mirrored, pressure_pa};
 use betadeck::link::proto::fdm_link::FdmLinkConfig;
 use betadeck::link::{ClientId, ExternalSimulator, ListenConfig, Listeners, MotorPort, Request};
 use betadeck::session::ReplyTo;
-use betadeck::session::{
-    Command, Endpoints, Event, Handle, RequestHandler, SessionConfig, SessionEvent, SessionView, start,
-};
+use betadeck::session::{Command, Endpoints, Handle, RequestHandler, SessionConfig, SessionView, start};
 use betadeck::sim::{WorldConfig, attitude};
 use betadeck::storage::Store;
 use betadeck::telemetry::EventKind;
