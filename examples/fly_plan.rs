@@ -36,7 +36,7 @@ fn read(path: Option<String>) -> Result<PlanFile, Box<dyn Error>> {
     let read = match path {
         Some(path) => {
             let text = std::fs::read_to_string(&path)?;
-            parse(&path, &text, Format::of_contents(text.as_bytes()))
+            parse(&path, &text, Format::from_contents(text.as_bytes()))
         }
         None => BuiltinPlan::find(DEMO).ok_or("no such plan")?.read(),
     };

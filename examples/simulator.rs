@@ -31,7 +31,7 @@ const STEP: Duration = Duration::from_millis(4);
 /// The time to wait for motors before the craft moves without them.
 const PATIENCE: Duration = Duration::from_secs(1);
 /// The number of misses in a row after which the firmware is gone: motors off, and no state is sent.
-const MOST_MISSES: u32 = 5;
+const MAX_MISSES: u32 = 5;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let ports: Vec<u16> = std::env::args().skip(1).map(|port| port.parse()).collect::<Result<_, _>>()?;
@@ -44,28 +44,28 @@ fn main() -> Result<(), Box<dyn Error>> {
     socket.set_read_timeout(Some(PATIENCE))?;
     let mut world = World::new(WorldConfig::default())?;
     let mut motors = MotorCommand::default();
-    let mut misses = MOST_MISSES;
+    let mut misses = MAX_MISSES;
     let mut next = Instant::now();
     println!("Reading motors on {motors_port}, telling states to {states_port}.");
     loop {
         let heard = receive(&socket);
         match heard {
             Some(values) => {
-                if misses >= MOST_MISSES {
+                if misses >= MAX_MISSES {
                     println!("{:8.1} s: a firmware flies.", world.time().as_secs_f64());
                 }
                 (motors, misses) = (MotorCommand(values.map(f64::from)), 0);
             }
             None => misses = misses.saturating_add(1),
         }
-        if misses == MOST_MISSES {
+        if misses == MAX_MISSES {
             println!("{:8.1} s: the firmware is gone.", world.time().as_secs_f64());
             motors = MotorCommand::default();
         }
         for _ in 0..STEPS {
             world.step(&motors);
         }
-        if misses < MOST_MISSES {
+        if misses < MAX_MISSES {
             socket.send_to(&state(&world), (Ipv4Addr::LOCALHOST, states_port))?;
         }
         // Keeps real time, but does not make up for delays.

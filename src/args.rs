@@ -48,7 +48,7 @@ use crate::text::did_you_mean;
 pub use backdrop::BackdropArgs;
 pub use betaloop::{Betaloop, BetaloopError};
 pub use campaign::{CampaignArgs, CampaignCommand, CampaignOutputArgs, MergeArgs, ShardArg};
-pub use check::{CheckArgs, MOST_FLIGHTS};
+pub use check::{CheckArgs, MAX_ALLOWED_FLIGHTS};
 pub use compare::CompareArgs;
 pub use config_file::{ConfigCommand, KeyHelp, Origin, origins, template};
 pub use connect::ConnectArgs;

@@ -9,7 +9,7 @@
 //! everywhere, but slow on processors without an instruction for it.
 
 /// The most decimals that tell two numbers apart.
-const MOST_DECIMALS: usize = 17;
+const MAX_DECIMALS: usize = 17;
 
 /// Returns the sine of an angle, rad.
 pub fn sin(x: f64) -> f64 {
@@ -92,7 +92,7 @@ pub fn powi(x: f64, exponent: u32) -> f64 {
 pub fn decimals_apart(one: f64, other: f64, least: usize) -> usize {
     // As numbers, −0.0 and 0.0 are the same.
     let read = |number: f64, decimals: usize| format!("{number:.decimals$}").parse::<f64>();
-    (least..=MOST_DECIMALS)
+    (least..=MAX_DECIMALS)
         .find(|&decimals| read(one, decimals) != read(other, decimals))
         .filter(|_| one != other)
         .unwrap_or(least)

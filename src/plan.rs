@@ -13,7 +13,7 @@
 //! use betadeck_core::plan::format::{Format, parse};
 //!
 //! let text = "waypoint insert 0 47.3977000 8.5456000 2000 500 FLYOVER 0 NONE";
-//! let file = parse("field", text, Format::of_contents(text.as_bytes())).unwrap();
+//! let file = parse("field", text, Format::from_contents(text.as_bytes())).unwrap();
 //! assert_eq!(file.plan.waypoints[0].kind, WaypointType::Flyover);
 //!
 //! let errors = parse("field", "waypoint insert 0 91.0", Format::CliText).unwrap_err();

@@ -1,4 +1,4 @@
-//! Flights that are over, as a display shows them.
+//! Finished flights, as a display shows them.
 //!
 //! `past_flight` is the interface to such a flight, which gives the picture of any instant. `overview` is what a display needs of
 //! the whole flight at once: its events, a bounded number of pictures, and the names of the series that were recorded.

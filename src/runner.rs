@@ -23,7 +23,7 @@ const FREE_SLICE: u64 = 4096;
 /// The same with a remote flight controller.
 const REMOTE_SLICE: u64 = 50;
 /// The longest rest of a paced flight.
-const LONGEST_REST: Duration = Duration::from_millis(1);
+const MAX_REST: Duration = Duration::from_millis(1);
 
 /// The lost real time from which a flight counts as disturbed: the motors did not follow the craft.
 const DISTURBING: Duration = Duration::from_millis(500);
@@ -44,7 +44,7 @@ pub struct Runner {
 /// The reason why a flight did not reach its end.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Stopped {
-    /// The user wants no more of it.
+    /// The user stopped the flight.
     Interrupted,
     /// A subscriber cannot go on.
     BySubscriber,
@@ -197,7 +197,7 @@ impl Runner {
         }
         if self.link.is_some() || due < self.slice {
             subscriber.before_rest();
-            std::thread::sleep(self.rest(self.elapsed(), LONGEST_REST));
+            std::thread::sleep(self.rest(self.elapsed(), MAX_REST));
         }
         if subscriber.goes_on() { Ok(None) } else { Err(Stopped::BySubscriber) }
     }

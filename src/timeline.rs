@@ -52,7 +52,7 @@ impl Timeline {
     /// its world is not simulated by this program.
     pub fn new(vehicle: &mut Vehicle) -> Option<Self> {
         let is_remote = vehicle.embedded().is_none();
-        Self::within(if is_remote { Bounds::of_pictures() } else { Bounds::default() }, vehicle)
+        Self::within(if is_remote { Bounds::from_pictures() } else { Bounds::default() }, vehicle)
     }
 
     fn within(bounds: Bounds, vehicle: &mut Vehicle) -> Option<Self> {

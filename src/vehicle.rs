@@ -102,7 +102,7 @@ impl Vehicle {
     pub fn with_external_physics(config: VehicleConfig) -> Result<Self, WorldError> {
         let controller = embedded(config.configuration, config.firmware);
         let WorldConfig { rate_hz, seed, faults, .. } = config.world;
-        let clock = Clock::of_external(rate_hz, seed, faults)?;
+        let clock = Clock::from_external(rate_hz, seed, faults)?;
         let physics = Physics::External(Box::new(ExternalPhysics::new(clock)));
         Ok(Self::build(controller, physics, config.live))
     }
@@ -124,7 +124,7 @@ impl Vehicle {
     /// Never fails with the default step rate.
     pub fn elsewhere() -> Result<Self, WorldError> {
         let WorldConfig { rate_hz, seed, faults, .. } = WorldConfig::default();
-        let clock = Clock::of_external(rate_hz, seed, faults)?;
+        let clock = Clock::from_external(rate_hz, seed, faults)?;
         let physics = Physics::External(Box::new(ExternalPhysics::new(clock)));
         let mut vehicle = Self::build(FlightController::Remote(Box::default()), physics, true);
         vehicle.events.clear();

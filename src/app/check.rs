@@ -55,7 +55,7 @@ fn run_all(args: &CheckArgs, repeat: &[String]) -> Result<u8, AppError> {
     }
     if let Some(plan) = &args.new {
         let plan = setup::read_plan(plan, None)?;
-        let text = Draft::of_plan(&plan).finish().map_err(AppError::input)?;
+        let text = Draft::from_plan(&plan).finish().map_err(AppError::input)?;
         return error::print(&text);
     }
     output::remove_earlier(args)?;

@@ -28,7 +28,7 @@ pub(super) fn run(args: &FlightsArgs) -> Result<u8, AppError> {
         return error::write_stdout(lines.collect::<String>().as_bytes());
     }
     if flights.is_empty() {
-        error::tell("No flight is recorded yet: the screen records each flight when the craft is armed.");
+        error::tell("No flights yet: the screen records each flight from the moment the craft is armed.");
         return Ok(0);
     }
     error::print(&table(&flights))

@@ -58,7 +58,7 @@ impl Recorded {
     /// Records a picture of the vehicle if one is due.
     fn look(&mut self, vehicle: &Vehicle) {
         if vehicle.time().0.is_multiple_of(1_000_000 / PICTURES_HZ) {
-            self.past.push(SessionView::of_recorded(vehicle));
+            self.past.push(SessionView::from_recorded(vehicle));
         }
     }
 }
@@ -275,7 +275,7 @@ fn fly_remote<'a>(case: &'a Case, air: &Air, firmware: &RemoteFirmware) -> Resul
     let mut tell =
         OnEvent(|event: &Event| reported::sentence(event).iter().for_each(|said| error::tell(said)));
     let (mut remote, vehicle) = check::prepare(firmware, case, air, &interrupt_flag()?, 0, &mut tell)?;
-    let mut flight = CaseFlight::of_vehicle(case, vehicle).map_err(AppError::input)?;
+    let mut flight = CaseFlight::from_vehicle(case, vehicle).map_err(AppError::input)?;
     let mut subscribers = recording(&mut flight)?;
     remote.fly(&mut flight, &mut subscribers)?;
     let (timeline, recorded) = subscribers;
@@ -302,7 +302,7 @@ fn fly_again(
 ) -> Result<FlownAgain, String> {
     let fly = || -> Result<FlownAgain, Stopped> {
         let (mut remote, vehicle) = check::prepare(firmware, case, air, &progress.stopped(), 0, &mut ())?;
-        let mut flight = CaseFlight::of_vehicle(case, vehicle).map_err(AppError::input)?;
+        let mut flight = CaseFlight::from_vehicle(case, vehicle).map_err(AppError::input)?;
         remote.fly_until(&mut flight, until, &mut Reached(progress))?;
         let (link, keeps) = remote.into_parts();
         let link = link.filter(RemoteLink::is_in_steps).ok_or_else(|| {

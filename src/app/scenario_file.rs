@@ -15,7 +15,7 @@ pub(super) fn write(file: Option<PathBuf>, plan: &str, flight: RecordedFlight) -
         .as_deref()
         .and_then(Path::file_stem)
         .map_or_else(|| stem(plan), |name| name.to_string_lossy().into_owned());
-    let text = Draft::of_recorded(&name, flight)?.finish()?;
+    let text = Draft::from_recorded(&name, flight)?.finish()?;
     let path = SCENARIO.write(file, plan, text.as_bytes())?;
     let shown = path.display();
     Ok(format!("The flight is written as {shown}: `betadeck check {shown}` flies and judges it."))

@@ -21,7 +21,7 @@ const FIRMWARE_OPTIONS: [&str; 10] = [
 ];
 
 /// The greatest value of `--max-flights`.
-pub const MOST_FLIGHTS: i64 = 1_000_000;
+pub const MAX_ALLOWED_FLIGHTS: i64 = 1_000_000;
 
 /// The options of `check`.
 #[derive(Debug, Clone, PartialEq, Default, clap::Args)]
@@ -56,7 +56,7 @@ pub struct CheckArgs {
     pub repeat: Option<u32>,
 
     /// The most flights of the run; more are refused before the start [default: 10000]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST_FLIGHTS), help_heading = "How")]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MAX_ALLOWED_FLIGHTS), help_heading = "How")]
     pub max_flights: Option<u32>,
 
     /// Number of flights at the same time [default: one a processor]

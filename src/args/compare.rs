@@ -9,7 +9,7 @@ use super::{FlightArgs, MissionArgs, help};
 use crate::link::conventions::FirmwareClock;
 
 /// The longest flight of a comparison, s. Its whole track is kept.
-const LONGEST_S: f64 = 7200.0;
+const MAX_S: f64 = 7200.0;
 
 /// The options of `compare`.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
@@ -127,10 +127,8 @@ impl CompareArgs {
                         differences with --settings FILE"
                 .to_owned());
         }
-        if self.mission.timeout.is_some_and(|seconds| seconds > LONGEST_S) {
-            return Err(format!(
-                "--timeout: allowed are 1 to {LONGEST_S} s here, because whole tracks are kept"
-            ));
+        if self.mission.timeout.is_some_and(|seconds| seconds > MAX_S) {
+            return Err(format!("--timeout: allowed are 1 to {MAX_S} s here, because whole tracks are kept"));
         }
         Ok(())
     }

@@ -62,7 +62,7 @@ impl PlanArg {
         match self {
             Self::Builtin(_) => (Format::Toml, None),
             Self::Stdin(Some(format)) | Self::File(_, Some(format)) => (*format, None),
-            Self::Stdin(None) => (Format::of_contents(contents), None),
+            Self::Stdin(None) => (Format::from_contents(contents), None),
             Self::File(path, None) => Format::detect(&path.to_string_lossy(), contents),
         }
     }

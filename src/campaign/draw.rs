@@ -55,7 +55,7 @@ impl Place<'_> {
         self.points.unit(name, dimension, self.index)
     }
 
-    /// Returns the number of an input with so many values or levels: in a grid, the middle of its level.
+    /// Returns the unit coordinate of an input that has this number of levels; in a grid, the centre of its level.
     fn unit_of(&self, input: usize, name: &str, count: u64) -> f64 {
         match self.levels.get(input) {
             Some(&level) if self.points.design == Design::Grid => (level as f64 + 0.5) / count.max(1) as f64,

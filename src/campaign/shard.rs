@@ -16,7 +16,7 @@ pub struct Shard {
     pub of: u64,
 }
 
-/// A text that is no shard.
+/// Text that is not a valid shard.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}; write K/N, such as 3/7 for the third of seven")]
 pub struct ShardError(String);

@@ -6,11 +6,11 @@ use std::str::FromStr;
 use super::normal::{normal_cdf, normal_quantile};
 
 /// The least share of a distribution that may be left by its limits.
-const LEAST_SHARE: f64 = 1e-3;
+const MIN_SHARE: f64 = 1e-3;
 /// The decimals of a drawn value. A short value is the same in every file.
 const DECIMALS: f64 = 1e4;
 /// The greatest shape of a Weibull distribution. With a greater one, all values are the same.
-const MOST_SHAPE: f64 = 100.0;
+const MAX_SHAPE: f64 = 100.0;
 
 /// The forms of a distribution, for messages.
 const HINT: &str = "write 4..8 (uniform), 6 +- 2 (normal, with its standard deviation) or weibull(6, 2) (scale, shape), \
@@ -72,7 +72,7 @@ impl Distribution {
             _ => {
                 let cut = Self { limits: Some((low.max(least), high.min(most))), ..self };
                 match cut.ends() {
-                    (from, to) if to - from >= LEAST_SHARE => Ok(cut),
+                    (from, to) if to - from >= MIN_SHARE => Ok(cut),
                     _ => Err(error(
                         format!("hardly a value of {self} lies between {low} and {high}"),
                         allowed(),
@@ -130,8 +130,8 @@ impl FromStr for Distribution {
             let numbers = inside.and_then(|inside| inside.split_once(','));
             let (scale, shape) = numbers.ok_or_else(|| error(format!("{body} is not understood"), HINT))?;
             let (scale, shape) = (number(scale)?, number(shape)?);
-            if scale <= 0.0 || shape <= 0.0 || shape > MOST_SHAPE {
-                let hint = format!("allowed: a scale above 0, and a shape above 0 and at most {MOST_SHAPE}");
+            if scale <= 0.0 || shape <= 0.0 || shape > MAX_SHAPE {
+                let hint = format!("allowed: a scale above 0, and a shape above 0 and at most {MAX_SHAPE}");
                 return Err(error(format!("{body} is no distribution"), hint));
             }
             Shape::Weibull { scale, shape }

@@ -9,7 +9,7 @@ use super::refresh::Refresh;
 
 /// The number of unanswered requests in a row after which it counts as silent. Each waits for at least two
 /// seconds.
-const MOST_UNANSWERED: u32 = 2;
+const MAX_UNANSWERED: u32 = 2;
 
 /// The phase of the life, with the data that only this phase has.
 #[derive(Debug, Default)]
@@ -141,7 +141,7 @@ impl Connection {
 
     /// Returns `true` if it has been silent for some requests.
     pub(super) fn is_silent(&self) -> bool {
-        self.unanswered >= MOST_UNANSWERED
+        self.unanswered >= MAX_UNANSWERED
     }
 
     /// Returns `true` if the newest request was answered.

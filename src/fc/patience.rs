@@ -6,7 +6,7 @@ use std::time::Duration;
 /// The longest time between two answers, for a program that starts slowly, or a `save` and its restart.
 const SILENCE: Duration = Duration::from_secs(15);
 /// The most connections: one, and one more for each restart.
-const MOST_CONNECTIONS: u32 = 5;
+const MAX_CONNECTIONS: u32 = 5;
 
 /// The wait for a firmware.
 #[derive(Debug, Clone, Copy)]
@@ -38,7 +38,7 @@ impl Patience {
         if answers > self.answers {
             *self = Self { answers, since: now };
         }
-        if connections > MOST_CONNECTIONS {
+        if connections > MAX_CONNECTIONS {
             return Some(NotReady::EndsConnections);
         }
         (now.saturating_sub(self.since) >= SILENCE).then_some(match answers {
@@ -117,8 +117,8 @@ mod tests {
     fn connections_that_end_again_and_again_are_no_progress() {
         let start = Duration::ZERO;
         let mut patience = Patience::new(start);
-        assert_eq!(patience.look(40, MOST_CONNECTIONS, start), None);
-        assert_eq!(patience.look(41, MOST_CONNECTIONS + 1, start), Some(NotReady::EndsConnections));
+        assert_eq!(patience.look(40, MAX_CONNECTIONS, start), None);
+        assert_eq!(patience.look(41, MAX_CONNECTIONS + 1, start), Some(NotReady::EndsConnections));
     }
 
     #[test]

@@ -172,8 +172,8 @@ mod tests {
         assert_eq!((permission.opens_cli(), permission.cli()), (true, CliAccess::Framed));
         permission.permit(1);
         assert_eq!(permission.cli(), CliAccess::Interactive);
-        assert_eq!(Impact::of_line("get").or_changes(permission.opens_cli()), Impact::Changes);
-        assert_eq!(Impact::of_line("motor 1 1500").or_changes(true), MOVES);
+        assert_eq!(Impact::from_line("get").or_changes(permission.opens_cli()), Impact::Changes);
+        assert_eq!(Impact::from_line("motor 1 1500").or_changes(true), MOVES);
     }
 
     #[test]

@@ -32,7 +32,7 @@ const SAVE: &str = "save";
 /// The firmware's answer for a setting that it does not have.
 const UNKNOWN_NAME: &str = "INVALID NAME";
 /// The number of lost connections after which the procedure no longer starts again.
-const MOST_LOST: usize = 3;
+const MAX_LOST: usize = 3;
 
 /// The configuration of one flight controller.
 #[derive(Debug)]
@@ -155,7 +155,7 @@ impl Provision {
     /// Takes the answer to the last request.
     pub(super) fn take(&mut self, answer: &Answer) {
         let Some(asked) = self.asked.take() else { return };
-        if let (Answer::NotAnswered(Unanswered::LinkLost), true) = (answer, self.lost < MOST_LOST) {
+        if let (Answer::NotAnswered(Unanswered::LinkLost), true) = (answer, self.lost < MAX_LOST) {
             self.lost += 1;
             return self.begin();
         }

@@ -299,19 +299,19 @@ impl Remote {
             }
             // The prompt of a real craft opens only with permission, which the client asks for by itself.
             RemoteRequest::Typed(line) if self.craft.is_fed => {
-                let changes = Impact::of_line(&line) > Impact::Reads;
+                let changes = Impact::from_line(&line) > Impact::Reads;
                 self.ask(Purpose::Typed(ticket, changes), Ask::Typed(line));
             }
             RemoteRequest::LeavePrompt if self.craft.is_fed => self.ask(Purpose::Nothing, Ask::LeavePrompt),
             RemoteRequest::LeavePrompt => {}
             RemoteRequest::Cli(line) | RemoteRequest::Typed(line) => {
-                let changes = Impact::of_line(&line) > Impact::Reads;
+                let changes = Impact::from_line(&line) > Impact::Reads;
                 let purpose =
                     if line == LIST { Purpose::Plan(ticket) } else { Purpose::Line(ticket, changes) };
                 self.ask(purpose, Ask::Line(line));
             }
             RemoteRequest::Msp { code, payload } => {
-                let changes = Impact::of_message(code, &payload) == Impact::Changes;
+                let changes = Impact::from_message(code, &payload) == Impact::Changes;
                 self.ask(Purpose::Message(ticket, changes), Ask::Msp { code, payload });
             }
             RemoteRequest::ReturnHome => self.switch_rescue(true),

@@ -34,11 +34,11 @@ const QUESTION_PAUSE: Duration = Duration::from_millis(5);
 pub const EXCHANGE_PAUSE: Duration = Duration::from_micros(500);
 /// The maximum number of events of the child process between two steps. A process that prints much must not
 /// hold up the craft.
-const MOST_EVENTS: usize = 64;
+const MAX_EVENTS: usize = 64;
 /// The maximum number of pieces and bytes that are read between two steps, so that a flood from the peer does
 /// not hold up the craft. Unread data holds up the peer.
-const MOST_READ: usize = 64;
-const MOST_BYTES: usize = 8 * 1024;
+const MAX_READ: usize = 64;
+const MAX_BYTES: usize = 8 * 1024;
 /// The greatest distance between the first fixes of two real craft for which the drawing keeps its origin, m.
 const SAME_FIELD_M: f64 = 1000.0;
 
@@ -270,7 +270,7 @@ impl RemoteLink {
 
     /// Reports the events of its program.
     fn follow_program(&mut self, vehicle: &mut Vehicle, since: Duration) {
-        for _ in 0..MOST_EVENTS {
+        for _ in 0..MAX_EVENTS {
             let event = match &mut self.ends {
                 Ends::Wall { child, .. } => child.as_mut().and_then(SitlChild::take_event),
                 Ends::Steps(steps) => steps.take_output(),
@@ -297,8 +297,8 @@ impl RemoteLink {
     fn read_stream(&mut self, mut context: Option<&mut Context<'_>>, since: Duration) {
         let Ends::Wall { stream, .. } = &mut self.ends else { return };
         let mut read = 0;
-        for _ in 0..MOST_READ {
-            if read >= MOST_BYTES {
+        for _ in 0..MAX_READ {
+            if read >= MAX_BYTES {
                 break;
             }
             let event = match &mut context {
@@ -438,7 +438,7 @@ mod tests {
     #[test]
     #[allow(clippy::disallowed_methods, reason = "an instant to count from")]
     fn a_peer_that_floods_is_read_a_part_at_a_time() {
-        let ((to, _sent), (pieces, from)) = (mpsc::channel(1), mpsc::channel(MOST_READ));
+        let ((to, _sent), (pieces, from)) = (mpsc::channel(1), mpsc::channel(MAX_READ));
         while pieces.try_send(StreamEvent::Bytes(vec![b'$'; 4096])).is_ok() {}
         let stream = FcStream { to, from, place: "tcp:here:1".to_owned(), bytes_per_s: None };
         let ends = RemoteEnds { name: "the board".to_owned(), stream, peer: None, child: None };

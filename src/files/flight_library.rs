@@ -20,9 +20,9 @@ pub(crate) const FOLDER: &str = "flights";
 /// The ending of the files.
 pub(crate) const ENDING: &str = "flight";
 /// The most files that are listed.
-const MOST_LISTED: usize = 10_000;
+const MAX_LISTED: usize = 10_000;
 /// The most recordings of a second with the same name.
-const MOST_NUMBERS: u32 = 100;
+const MAX_NUMBERS: u32 = 100;
 
 /// Returns the recordings in a state directory, the newest first.
 ///
@@ -95,7 +95,7 @@ fn files(folder: &Path) -> io::Result<Vec<PathBuf>> {
         entries => entries?,
     };
     let paths = entries.flatten().map(|entry| entry.path());
-    let mut paths: Vec<PathBuf> = paths.filter(|path| is_recording(path)).take(MOST_LISTED).collect();
+    let mut paths: Vec<PathBuf> = paths.filter(|path| is_recording(path)).take(MAX_LISTED).collect();
     paths.sort();
     Ok(paths)
 }
@@ -196,7 +196,7 @@ impl Library {
         let mut temporary = state_file::temporary_in(&self.folder, 0o600)?;
         temporary.write_all(bytes)?;
         let stem = format!("{}-{}", header.date.trim_end_matches('Z').replace(':', "-"), stem(&header.plan));
-        for number in 1..=MOST_NUMBERS {
+        for number in 1..=MAX_NUMBERS {
             let suffix = if number == 1 { String::new() } else { format!("-{number}") };
             let path = self.folder.join(format!("{stem}{suffix}.{ENDING}"));
             match temporary.persist_noclobber(&path) {

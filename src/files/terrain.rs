@@ -16,7 +16,7 @@ use crate::terrain::{
 };
 
 /// The largest number of tiles. Nine of the largest ones take 470 MB.
-const MOST_TILES: usize = 9;
+const MAX_TILES: usize = 9;
 
 /// The endings of packed `.hgt` tiles.
 const PACKED: [&str; 2] = [".zip", ".gz"];
@@ -77,10 +77,10 @@ impl TerrainFiles {
         let first = self.directories.first()?;
         let squares = squares_of(&places(home, plan));
         let mut wanted: Vec<Square> = squares.iter().copied().filter(|square| !there.has(*square)).collect();
-        let room = MOST_TILES.saturating_sub(there.squares().count());
+        let room = MAX_TILES.saturating_sub(there.squares().count());
         if wanted.len() > room {
             notices.push(format!(
-                "The plan crosses {} elevation tiles. Only {MOST_TILES} are read; the ground under the others is \
+                "The plan crosses {} elevation tiles. Only {MAX_TILES} are read; the ground under the others is \
                  unknown.",
                 squares.len()
             ));
@@ -237,7 +237,7 @@ mod tests {
         let mut notices = Vec::new();
         let home = LatLon::from_degrees(40.5, -79.5);
         assert_eq!(files.read(home, &plan(&[(40.5, 80.0), (-60.0, 10.0)]), &mut notices), None);
-        assert_eq!(notices.len(), 1 + MOST_TILES, "{notices:?}");
+        assert_eq!(notices.len(), 1 + MAX_TILES, "{notices:?}");
         assert!(notices[0].contains("Only 9 are read") && notices[1].contains("N40W080.hgt"), "{notices:?}");
     }
 }

@@ -8,7 +8,7 @@ use crate::math;
 const PT2_STAGE: f64 = 1.553_773_974;
 const PT3_STAGE: f64 = 1.961_459_177;
 
-/// Returns the gain of a first-order low-pass: ω·dt/(ω·dt + 1). For a cutoff of zero it is 1, which is no filtering.
+/// Returns the gain of a first-order low-pass: ω·dt/(ω·dt + 1). A cutoff of 0 disables the filter (gain 1).
 pub fn pt1_gain(cutoff_hz: f64, dt: f64) -> f64 {
     let turn = 2.0 * PI * cutoff_hz * dt;
     if turn > 0.0 { turn / (turn + 1.0) } else { 1.0 }

@@ -24,7 +24,7 @@ use super::rx::{ChannelConfig, RxConfig, StickConfig};
 use super::settings::Settings;
 
 /// The least deflection of the yaw stick for stick commands, RC units.
-const LEAST_FULL_YAW: f64 = 100.0;
+const MIN_FULL_YAW: f64 = 100.0;
 
 /// The choices that change only with a restart.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -272,7 +272,7 @@ fn arming(configuration: &Configuration, boot: &BootChoices, options: &FirmwareO
         rescue_min_sats: small(settings, "gps_rescue_min_sats"),
         rescue_allow_without_fix: settings.flag("gps_rescue_allow_arming_without_fix"),
         // A stick at rest is no command, whatever the value of `max_check`.
-        full_yaw: (number("max_check") - number("mid_rc")).max(LEAST_FULL_YAW),
+        full_yaw: (number("max_check") - number("mid_rc")).max(MIN_FULL_YAW),
         stick_arming,
         auto_disarm_s: (motors_stop && stick_arming)
             .then(|| number("auto_disarm_delay"))

@@ -77,7 +77,7 @@ impl Sweep {
     ///
     /// # Errors
     /// Fails with the reason why nothing can be flown, as a sentence.
-    pub fn of_plan(
+    pub fn from_plan(
         vehicle: &Vehicle,
         plan: &FlightPlan,
         settings: &[String],

@@ -13,7 +13,7 @@ const CORRECTION_PER_S: f64 = 0.3;
 /// The specific forces between which the accelerometer shows where up is, as shares of gravity.
 const STEADY: std::ops::Range<f64> = 0.85..1.15;
 /// After a longer pause between two frames the accelerometer alone gives the attitude, s.
-const LONGEST_STEP_S: f64 = 0.5;
+const MAX_STEP_S: f64 = 0.5;
 
 /// Returns the attitude of a quaternion whose x, y and z are known and whose w is not negative.
 pub(super) fn from_parts([x, y, z]: [f64; 3]) -> UnitQuaternion<f64> {
@@ -57,7 +57,7 @@ pub(super) fn integrated(
     gyro_dps: Vector3<f64>,
     accel_mps2: Option<Vector3<f64>>,
 ) -> UnitQuaternion<f64> {
-    let Some(before) = before.filter(|_| step_s <= LONGEST_STEP_S) else {
+    let Some(before) = before.filter(|_| step_s <= MAX_STEP_S) else {
         let level = by_accelerometer(accel_mps2);
         return before.map_or(level, |before| turned_right(&level, angles(before).heading_deg));
     };

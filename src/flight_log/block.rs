@@ -6,7 +6,7 @@ use crate::blackbox::decode::ResumePoint;
 use crate::signals::SimTime;
 
 /// The most bytes of the file in one block if the file is small.
-const SMALLEST_BLOCK: u64 = 4 * 1024;
+const MIN_BLOCK: u64 = 4 * 1024;
 /// The number of extents in all blocks of a file, about. Each takes 16 bytes.
 const EXTENTS: u64 = 1 << 20;
 /// The number of blocks of a file, about.
@@ -25,7 +25,7 @@ pub(super) struct Block {
 /// take a limited amount of memory, whatever the sizes.
 pub(super) fn block_size(file_size: u64, signals: usize) -> u64 {
     let by_extents = file_size.saturating_mul(signals as u64) / EXTENTS;
-    SMALLEST_BLOCK.max(by_extents).max(file_size / BLOCKS)
+    MIN_BLOCK.max(by_extents).max(file_size / BLOCKS)
 }
 
 /// The extents of all signals in all blocks of a log.

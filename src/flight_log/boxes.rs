@@ -104,7 +104,7 @@ impl BoxOrder {
     pub const UNKNOWN: Self = Self(None);
 
     /// Returns the order of a version of Betaflight.
-    pub fn of_betaflight(version: Version) -> Self {
+    pub fn from_betaflight(version: Version) -> Self {
         Self(Some(version))
     }
 
@@ -157,12 +157,12 @@ mod tests {
     #[test]
     fn the_order_of_the_newest_firmware_is_that_of_its_protocol() {
         let protocol: Vec<&str> = ModeBox::iter().take(FLAGS).map(Into::into).collect();
-        assert_eq!(BoxOrder::of_betaflight((2026, 12, 0)).names().collect::<Vec<_>>(), protocol);
+        assert_eq!(BoxOrder::from_betaflight((2026, 12, 0)).names().collect::<Vec<_>>(), protocol);
     }
 
     #[test]
     fn older_firmwares_have_their_own_order() {
-        let bit = |version, name| BoxOrder::of_betaflight(version).names().position(|known| known == name);
+        let bit = |version, name| BoxOrder::from_betaflight(version).names().position(|known| known == name);
         assert_eq!(bit((3, 1, 0), "MAG"), Some(4));
         assert_eq!(bit((3, 2, 0), "MAG"), Some(5));
         assert_eq!(bit((3, 3, 2), "FAILSAFE"), Some(10));
@@ -175,7 +175,7 @@ mod tests {
 
     #[test]
     fn flags_have_names_and_modes() {
-        let flags = BoxFlags { bits: 0b1011, order: BoxOrder::of_betaflight((4, 5, 2)) };
+        let flags = BoxFlags { bits: 0b1011, order: BoxOrder::from_betaflight((4, 5, 2)) };
         assert_eq!(flags.names().collect::<Vec<_>>(), ["ARM", "ANGLE", "MAG"]);
         assert!(flags.has(ModeBox::Arm) && !flags.has(ModeBox::Horizon));
         assert_eq!(flags.modes().iter().collect::<Vec<_>>(), [Mode::Arm, Mode::Angle, Mode::Mag]);

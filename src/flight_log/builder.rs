@@ -42,7 +42,7 @@ pub(super) struct FlightBuilder {
 /// Returns the tracker for a log.
 pub(super) fn tracker(header: &Header) -> Tracker {
     let order = match header.firmware {
-        FirmwareName::Betaflight => BoxOrder::of_betaflight(header.version),
+        FirmwareName::Betaflight => BoxOrder::from_betaflight(header.version),
         _ => BoxOrder::UNKNOWN,
     };
     Tracker::new(Fields::of(header, &Scales::of(header)), order)

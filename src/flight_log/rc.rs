@@ -11,7 +11,7 @@ use crate::telemetry::{Mode, ModeBox};
 /// The interval of RC frames, µs.
 const FRAME_US: u64 = 20_000;
 /// The longest part of a log that is flown again, µs.
-const LONGEST_US: u64 = 7_200_000_000;
+const MAX_US: u64 = 7_200_000_000;
 /// The modes that get a switch, in the order of the channels from AUX1. FAILSAFE is a consequence.
 const SWITCHES: [Mode; 9] = [
     Mode::Arm,
@@ -68,7 +68,7 @@ impl LogSticks {
                 frames.push(StickFrame { since_us, frame: is_received.then_some(frame) });
                 due_us = (since_us / FRAME_US + 1) * FRAME_US;
             }
-            if since_us > LONGEST_US || !cursor.advance()? {
+            if since_us > MAX_US || !cursor.advance()? {
                 break;
             }
         }

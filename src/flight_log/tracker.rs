@@ -16,7 +16,7 @@ use crate::signals::SimTime;
 /// The ground speed from which on the course gives the heading once, m/s.
 const HEADING_MPS: f64 = 3.0;
 /// The longest time between two main frames over which the current is integrated, s.
-const LONGEST_STEP_S: f64 = 1.0;
+const MAX_STEP_S: f64 = 1.0;
 /// The bit of the state flags for a fix.
 const STATE_FIX: i64 = 1 << 1;
 
@@ -88,7 +88,7 @@ impl Tracker {
         sample.battery_a = read(&fields.current);
         if let Some(current_a) = sample.battery_a
             && !is_first
-            && step_s <= LONGEST_STEP_S
+            && step_s <= MAX_STEP_S
         {
             self.state.drawn_mah += current_a * step_s / 3.6;
         }

@@ -26,7 +26,7 @@ const STORED: &str = "eeprom.bin";
 /// already writes its configuration at its first start, and a firmware with another layout starts with defaults.
 const PROVISIONED: &str = "provisioned";
 /// The longest text of that file, bytes.
-const LONGEST_NOTE: u64 = 64 << 10;
+const MAX_NOTE: u64 = 64 << 10;
 /// The wall time within which an executable that can run in simulated time has booted, even on a busy machine.
 const BOOTS_WITHIN: Duration = Duration::from_secs(10);
 
@@ -134,7 +134,7 @@ pub(crate) fn open(
         }
     };
     let lines = starter_lines(&firmware.lines, is_fresh).map_err(AppError::internal)?;
-    let is_set = |(file, words): &(PathBuf, String)| matches!(state_file::read(file, LONGEST_NOTE), Ok(Some(noted)) if noted == words.as_bytes());
+    let is_set = |(file, words): &(PathBuf, String)| matches!(state_file::read(file, MAX_NOTE), Ok(Some(noted)) if noted == words.as_bytes());
     match note {
         None if lines.is_empty() => {}
         None => link.remote_mut().provision(Provision::new(lines, firmware.may_write)),

@@ -158,7 +158,7 @@ fn sweep(
     is_stopped: &(impl Fn() -> bool + Sync),
     report: &mut impl FnMut(SurveyNews),
 ) -> Result<(), String> {
-    let mut sweep = Sweep::of_plan(vehicle, plan, settings, *takeoff_m, fault)?;
+    let mut sweep = Sweep::from_plan(vehicle, plan, settings, *takeoff_m, fault)?;
     fly_sweep(&mut sweep, parallel::beside_a_flight(), is_stopped, |point| {
         report(SurveyNews::Point(Box::new(point)));
     })

@@ -8,7 +8,7 @@ use crate::telemetry::{ArmingFlag, ArmingFlags, Mode, ModeBox, ModeFlags};
 /// The number of boxes in the fixed part of a status.
 const FIXED_BOXES: u32 = 32;
 /// The maximum number of boxes whose state is kept.
-const MOST_BOXES: u32 = 128;
+const MAX_BOXES: u32 = 128;
 /// The low bits of the byte that gives the number of further bytes with mode bits.
 const COUNT_BITS: u8 = 0x0f;
 
@@ -50,7 +50,7 @@ impl Status {
         let more = usize::from(reader.u8().unwrap_or_default() & COUNT_BITS);
         for (at, byte) in reader.bytes(more).unwrap_or_default().iter().enumerate() {
             let shift = FIXED_BOXES + 8 * at as u32;
-            if shift < MOST_BOXES {
+            if shift < MAX_BOXES {
                 mode_bits |= u128::from(*byte) << shift;
             }
         }
@@ -102,7 +102,7 @@ impl Status {
     /// on. `box_ids` gives the order of the bits. Returns `None` if the flight controller has no such box.
     pub fn is_on(&self, wanted: ModeBox, box_ids: &[u8]) -> Option<bool> {
         let at = box_ids.iter().position(|id| *id == wanted as u8)?;
-        Some(at < MOST_BOXES as usize && self.mode_bits >> at & 1 == 1)
+        Some(at < MAX_BOXES as usize && self.mode_bits >> at & 1 == 1)
     }
 
     /// Returns `true` if the craft is armed; `None` if the flight controller has no ARM box.

@@ -277,7 +277,7 @@ mod tests {
     #[test]
     fn another_file_is_not_taken_for_an_empty_plan() {
         for (text, is) in [("{\n \"name\": \"x\"\n}", "this is JSON"), ("\u{feff}\n <html>", "this is XML")] {
-            let errors = parse("-", text, Format::of_contents(text.as_bytes())).unwrap_err();
+            let errors = parse("-", text, Format::from_contents(text.as_bytes())).unwrap_err();
             let reported = report(&errors);
             assert!(reported.contains(is) && reported.contains("toml, txt"), "{reported}");
         }

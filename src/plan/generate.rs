@@ -62,7 +62,7 @@ impl Default for Pattern {
 /// The smallest and the largest extent, m.
 const EXTENT_M: std::ops::RangeInclusive<f64> = 1.0..=20_000.0;
 /// A number of places that no real plan has. A spacing that needs more is a typing error.
-const MOST_PLACES: usize = 3000;
+const MAX_PLACES: usize = 3000;
 
 impl Pattern {
     /// Returns the places, metres north and east of the middle, in flight order.
@@ -119,7 +119,7 @@ impl Pattern {
             return Err(format!("The {name} is {value} m: {least} to {most} m is allowed."));
         }
         let longest = TAU / 2.0 * self.length_m.max(self.width_m);
-        if longest / self.spacing_m > MOST_PLACES as f64 {
+        if longest / self.spacing_m > MAX_PLACES as f64 {
             return Err(format!(
                 "A spacing of {} m makes far too many waypoints: make it wider.",
                 self.spacing_m

@@ -15,7 +15,7 @@ const SAME_MPS: f64 = 0.02;
 /// The share of gravity along the maximum lean that the craft uses to plan a stop.
 const STOP_SHARE: f64 = 0.35;
 /// The number of steps after which the rest of a leg is assumed to be flown at the last demanded speed.
-const MOST_STEPS: usize = 10_000;
+const MAX_STEPS: usize = 10_000;
 /// The slowest speed before a stop is complete, m/s.
 const CREEP_MPS: f64 = 0.05;
 
@@ -57,7 +57,7 @@ impl Motion {
         let mut left = leg.distance_m;
         let mut elapsed = 0.0;
         let mut demand = leg.speed_mps;
-        for _ in 0..MOST_STEPS {
+        for _ in 0..MAX_STEPS {
             if left <= leg.reach_m {
                 break;
             }

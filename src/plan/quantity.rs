@@ -51,7 +51,7 @@ pub struct LegSpeed {
 
 impl LegSpeed {
     /// The greatest speed, m/s.
-    pub const MOST_MPS: f64 = 655.35;
+    pub const MAX_MPS: f64 = 655.35;
 
     /// Returns the nearest speed that a record can hold.
     pub fn from_mps(mps: f64) -> Self {

@@ -144,7 +144,7 @@ pub struct Pictures {
 }
 
 /// The most memory of pictures, bytes: an hour with ten a second takes two thirds of it.
-const MOST_BYTES: usize = 96 << 20;
+const MAX_BYTES: usize = 96 << 20;
 
 impl Pictures {
     /// Adds a picture. A picture that is not newer than the last one, or too near to it, is left out. Once they take too
@@ -157,7 +157,7 @@ impl Pictures {
         }
         self.bytes += cost(&picture, new_scene);
         self.all.push(picture);
-        if self.bytes > MOST_BYTES {
+        if self.bytes > MAX_BYTES {
             self.thin_out();
         }
     }

@@ -15,8 +15,8 @@ use crate::telemetry::{EventKind, FirmwareEvent, NavEvent};
 use crate::vehicle::VehicleCommand;
 
 /// The most memory of inputs, and of events, bytes.
-const MOST_INPUTS: usize = 64 << 20;
-const MOST_EVENTS: usize = 16 << 20;
+const MAX_INPUTS: usize = 64 << 20;
+const MAX_EVENTS: usize = 16 << 20;
 
 /// The reason why a file is not shown as a recording.
 #[derive(Debug, thiserror::Error)]
@@ -196,7 +196,7 @@ impl Reading {
             Record::Event(time, what) => {
                 let event = RecordedEvent { time, what };
                 self.event_bytes += event_bytes(&event);
-                if self.event_bytes <= MOST_EVENTS {
+                if self.event_bytes <= MAX_EVENTS {
                     self.events.push(event);
                 } else {
                     self.left_out += 1;
@@ -223,7 +223,7 @@ impl Reading {
             return self.lack("its inputs are not in order");
         }
         self.input_bytes += size_of::<SimTime>() + command.bytes();
-        if self.input_bytes > MOST_INPUTS {
+        if self.input_bytes > MAX_INPUTS {
             return self.lack("it has more inputs than are read");
         }
         self.inputs.push((time, command));

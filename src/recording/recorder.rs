@@ -23,14 +23,14 @@ const AFTERMATH_US: u64 = 5_000_000;
 /// The time between two writes, µs.
 const FLUSH_US: u64 = 1_000_000;
 /// The most compressed inputs since boot, and the longest recording, bytes.
-const MOST_HISTORY: usize = 32 << 20;
-const MOST_FLIGHT: usize = 64 << 20;
+const MAX_HISTORY: usize = 32 << 20;
+const MAX_FLIGHT: usize = 64 << 20;
 /// The most that is kept of a craft that waits on the ground, bytes.
-const MOST_WAITING: usize = 4 << 20;
+const MAX_WAITING: usize = 4 << 20;
 /// The number of inputs after which they are compressed.
 const INPUTS: usize = 1000;
 /// The most events that count for the verdict.
-const MOST_EVENTS: usize = 10_000;
+const MAX_EVENTS: usize = 10_000;
 
 /// The place of the recordings of finished flights.
 pub trait RecordingSink {
@@ -190,7 +190,7 @@ impl Recorder {
 
     pub fn event(&mut self, event: RecordedEvent) {
         self.flight.writer.event(&event);
-        if self.flight.events.len() < MOST_EVENTS {
+        if self.flight.events.len() < MAX_EVENTS {
             self.flight.events.push(event);
         }
     }
@@ -219,7 +219,7 @@ impl Recorder {
         }
         let flight = &self.flight;
         let is_over = flight.disarmed_at.is_some_and(|since| time.0 >= since.0 + AFTERMATH_US);
-        let is_long = flight.bytes.len() > if flight.is_begun { MOST_FLIGHT } else { MOST_WAITING };
+        let is_long = flight.bytes.len() > if flight.is_begun { MAX_FLIGHT } else { MAX_WAITING };
         if is_over && flight.is_begun || is_long {
             self.next_flight(time, sink);
         }
@@ -325,7 +325,7 @@ impl Recorder {
     fn next_flight(&mut self, begin: SimTime, sink: &mut dyn RecordingSink) {
         self.end(sink);
         self.history.extend(self.inputs.end_part());
-        if self.history.len() > MOST_HISTORY {
+        if self.history.len() > MAX_HISTORY {
             self.lack("more inputs came before it than are kept");
         }
         if self.gap.is_some() {

@@ -9,7 +9,7 @@ use crate::timeline::{self, Timeline};
 use crate::vehicle::{Vehicle, VehicleCommand};
 
 /// The longest flight that is flown again, since boot, µs: a day.
-const LONGEST_US: u64 = 86_400_000_000;
+const MAX_US: u64 = 86_400_000_000;
 
 /// A recorded flight that is flown again. It is recorded for replays from the time at which the craft was last at boot, put
 /// back home or restarted before the flight, so that a scenario can be made of it.
@@ -50,7 +50,7 @@ impl<'r> Repeat<'r> {
     /// Returns the reason why it cannot be flown again, the end of a sentence.
     pub fn new(recording: &'r Recording, setup: FlightSetup) -> Result<Self, String> {
         let until = recording.end_time();
-        if until.0 > LONGEST_US {
+        if until.0 > MAX_US {
             return Err(format!("it lasts {:.0} hours since boot", until.as_secs_f64() / 3600.0));
         }
         let (mut vehicle, _) = setup.build().map_err(|error| error.to_string())?;

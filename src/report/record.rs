@@ -13,9 +13,9 @@ use crate::telemetry::snapshot::{Snapshot, WorldView};
 use crate::telemetry::{EventKind, FirmwareEvent, Guard, ModeFlags, NavEvent, NavState, TransitionReason};
 
 /// The most samples. When they are reached, every second one is dropped and the interval doubles.
-const MOST_SAMPLES: usize = 12_000;
+const MAX_SAMPLES: usize = 12_000;
 /// The most transitions, and the most sentences.
-const MOST_LINES: usize = 4_000;
+const MAX_LINES: usize = 4_000;
 /// The interval of the samples of a short flight, µs.
 const INTERVAL_US: u64 = 100_000;
 
@@ -143,7 +143,7 @@ impl FlightRecord {
         let (state, modes) = (snapshot.nav.as_ref().map(|nav| nav.state), snapshot.craft.modes);
         let values = SignalValues::of(&observed);
         self.samples.push(RecordedSample { time: snapshot.time, values, state, modes });
-        if self.samples.len() >= MOST_SAMPLES {
+        if self.samples.len() >= MAX_SAMPLES {
             // The samples that stay are those that are due at the longer interval.
             let mut keep = true;
             self.samples.retain(|_| {
@@ -177,7 +177,7 @@ impl FlightRecord {
 }
 
 fn push_bounded<T>(list: &mut Vec<T>, item: T, is_cut: &mut bool) {
-    if list.len() < MOST_LINES {
+    if list.len() < MAX_LINES {
         list.push(item);
     } else {
         *is_cut = true;
@@ -204,7 +204,7 @@ mod tests {
                 record.sample(&at(now), None);
             }
         }
-        assert!((MOST_SAMPLES / 2..=MOST_SAMPLES).contains(&record.samples.len()));
+        assert!((MAX_SAMPLES / 2..=MAX_SAMPLES).contains(&record.samples.len()));
         let gaps: Vec<u64> = record.samples.windows(2).map(|pair| pair[1].time.0 - pair[0].time.0).collect();
         assert!(gaps.iter().all(|gap| *gap == gaps[0]), "equal intervals");
         assert!(record.samples.last().expect("samples").time > SimTime(7_190_000_000));
@@ -230,10 +230,10 @@ mod tests {
         assert_eq!(record.transitions.len(), 1);
         let texts: Vec<&str> = record.sentences.iter().map(|(_, text)| text.as_str()).collect();
         assert_eq!(texts, ["Climbing to the minimum altitude first.", "A notice."]);
-        for _ in 0..=MOST_LINES {
+        for _ in 0..=MAX_LINES {
             record.note(&Event::notice(SimTime(7), "A notice"));
         }
-        assert!(record.is_cut && record.sentences.len() == MOST_LINES);
+        assert!(record.is_cut && record.sentences.len() == MAX_LINES);
     }
 
     #[test]

@@ -40,7 +40,7 @@ type Block = Vec<(&'static str, String)>;
 
 impl Draft {
     /// Returns a draft for a flight of a plan without inputs: the scripted pilot flies it in calm air.
-    pub fn of_plan(file: &PlanFile) -> Self {
+    pub fn from_plan(file: &PlanFile) -> Self {
         Self {
             name: file.name.clone(),
             description: file.description.clone(),
@@ -126,7 +126,7 @@ mod tests {
         }
         let until = SimTime::from_secs_f64(2.0);
         let flight = RecordedFlight { start, inputs: Vec::new(), until };
-        let text = Draft::of_recorded("wrong", flight).unwrap().finish().unwrap();
+        let text = Draft::from_recorded("wrong", flight).unwrap().finish().unwrap();
         for part in ["fault motor,,2:0.9", "fault gps-loss@boot+20,3"] {
             assert!(text.contains(part), "{part}\n{text}");
         }

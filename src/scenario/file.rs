@@ -136,7 +136,7 @@ fn read_text(request: &Request<'_>, reader: &mut Reader<'_, '_>) -> Option<Scena
         return None;
     }
     let span = document.span();
-    let top = TomlTable::of_document("the scenario", document.get_ref(), span);
+    let top = TomlTable::from_document("the scenario", document.get_ref(), span);
     reader.refuse_unknown(&top, FILE_KEYS);
     check_format(&top, reader);
     let is_campaign = top.get("campaign").is_some() || varied::is_drawn(&top);

@@ -75,7 +75,7 @@ pub(super) fn statistic(
 /// Judges an expectation that compares several flights. `names` are their measures as `CASE.MEASURE`, and `reported` is the
 /// knowledge of all flights.
 pub fn compare(compare: &Compare, names: &[(String, f64)], reported: Insight) -> Judgement {
-    let trace = Trace::of_nothing();
+    let trace = Trace::from_nothing();
     let is_known = |name: &str| names.iter().any(|(known, _)| known == name);
     let outcome = if reported < Insight::Inner && !compare.that.names().iter().all(|name| is_known(name)) {
         Outcome::Skipped(Insight::Inner)

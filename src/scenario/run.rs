@@ -64,14 +64,14 @@ impl<'a> CaseFlight<'a> {
         let mut setup = case.setup_in(air);
         setup.stored.plan = setup.plan.plan.clone();
         let (vehicle, _) = setup.build().map_err(|error| error.to_string())?;
-        Self::of_vehicle(case, vehicle)
+        Self::from_vehicle(case, vehicle)
     }
 
     /// Prepares the flight for a vehicle that is at home with the plan of the case.
     ///
     /// # Errors
     /// Returns a sentence if a mode that the pilot needs has no switch.
-    pub fn of_vehicle(case: &'a Case, vehicle: Vehicle) -> Result<Self, String> {
+    pub fn from_vehicle(case: &'a Case, vehicle: Vehicle) -> Result<Self, String> {
         let recorder = Recorder::new(&vehicle, case.setup.plan.plan.clone(), case.sample_hz);
         let flight = if case.pilot {
             Flight::new(vehicle, &case.options).map_err(|mode| {

@@ -115,7 +115,7 @@ impl Trace {
     }
 
     /// Creates a record of one sample with only unknown values. Comparisons of several flights are evaluated on it.
-    pub(super) fn of_nothing() -> Self {
+    pub(super) fn from_nothing() -> Self {
         let sample = Sample {
             time: SimTime::ZERO,
             values: SignalValues::UNKNOWN,

@@ -30,7 +30,7 @@ impl LayoutFile {
         match state_file::read(path, LARGEST) {
             Ok(contents) => {
                 let text = String::from_utf8_lossy(contents.as_deref().unwrap_or_default());
-                let (layouts, left_out) = SavedLayouts::of_lines(&text);
+                let (layouts, left_out) = SavedLayouts::from_lines(&text);
                 notices.extend(in_part(path, &left_out));
                 layouts
             }
@@ -85,7 +85,7 @@ mod tests {
         let mut notices = Vec::new();
         let layouts = file.read(&mut notices);
         let lines = "{\"name\":\"mine\",\"layout\":{}}\n{\"name\":\"wide\",\"layout\":{}}";
-        assert_eq!((layouts, Vec::new()), SavedLayouts::of_lines(lines));
+        assert_eq!((layouts, Vec::new()), SavedLayouts::from_lines(lines));
         let path = directory.path().join(NAME).display().to_string();
         let stays = "All other layouts are there, and the file stays as it is.";
         assert_eq!(notices, [format!("Line 1 of {path} is no layout that can be read. {stays}")]);

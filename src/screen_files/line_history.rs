@@ -10,7 +10,7 @@ use crate::storage::state_file::{self, Access};
 use crate::ui::{EnteredLines, LineField};
 
 /// The number of lines of a file above which the older ones are dropped at the next start.
-const MOST_LINES: usize = 2 * RECALLED;
+const MAX_LINES: usize = 2 * RECALLED;
 /// The largest file, bytes: twice the most lines of the greatest length.
 const LARGEST: u64 = 8 << 20;
 /// The fields that have a history.
@@ -74,7 +74,7 @@ impl LineHistory {
         let Ok(Some(text)) = state_file::read(&path, LARGEST) else { return Vec::new() };
         let Ok(text) = String::from_utf8(text) else { return Vec::new() };
         let recalled = recalled(&text);
-        if text.lines().count() > MOST_LINES {
+        if text.lines().count() > MAX_LINES {
             shorten(&path, &recalled);
         }
         recalled.into_iter().map(str::to_owned).collect()

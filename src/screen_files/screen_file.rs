@@ -16,9 +16,9 @@ const FOLDER: &str = "screens";
 /// The ending of the files in the folder.
 const ENDING: &str = "json";
 /// The most bytes of a file that are read.
-const MOST_BYTES: u64 = 1 << 20;
+const MAX_BYTES: u64 = 1 << 20;
 /// The most crafts and recorded flights whose files are kept.
-const MOST_SUBJECTS: usize = 200;
+const MAX_SUBJECTS: usize = 200;
 /// The checksum that names a file after its subject.
 const CHECKSUM: crc::Crc<u64> = crc::Crc::<u64>::new(&crc::CRC_64_XZ);
 
@@ -134,7 +134,7 @@ fn read_part(path: &Path, effect: &str, notices: &mut Vec<String>) -> Result<Opt
         notices.push(format!("{effect}, and is not kept after this run: {} {why}.", path.display()));
         Err(Stays)
     };
-    let contents = match state_file::read(path, MOST_BYTES) {
+    let contents = match state_file::read(path, MAX_BYTES) {
         Ok(None) => return Ok(None),
         Ok(Some(contents)) => contents,
         Err(error) => return stays(&format!("cannot be read: {error}")),
@@ -166,7 +166,7 @@ fn make_room(folder: &Path) {
         paths.filter_map(|path| Some((path.symlink_metadata().ok()?.modified().ok()?, path))).collect();
     dated.sort_unstable();
     // One file may be added.
-    let oldest = (dated.len() + 1).saturating_sub(MOST_SUBJECTS);
+    let oldest = (dated.len() + 1).saturating_sub(MAX_SUBJECTS);
     for (_, path) in dated.drain(..oldest) {
         std::fs::remove_file(path).ok();
     }
@@ -260,11 +260,11 @@ mod tests {
     #[test]
     fn the_places_of_the_longest_unseen_files_make_room() {
         let directory = tempfile::tempdir().unwrap();
-        for number in 0..MOST_SUBJECTS as u64 + 5 {
+        for number in 0..MAX_SUBJECTS as u64 + 5 {
             opened(directory.path(), Subject::Record(number)).0.write(&texts("{}", "{}"));
         }
         let files = std::fs::read_dir(directory.path().join(FOLDER)).unwrap().count();
-        assert_eq!(files, MOST_SUBJECTS + 1, "and the panels");
+        assert_eq!(files, MAX_SUBJECTS + 1, "and the panels");
         assert!(opened(directory.path(), Subject::Record(1)).0.subject.is_some_and(|path| !path.exists()));
     }
 }

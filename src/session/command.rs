@@ -167,7 +167,7 @@ pub struct SessionView {
 impl SessionView {
     /// Returns the view that a session would have shown of this vehicle, for a flight that was flown before
     /// the session began.
-    pub fn of_recorded(vehicle: &Vehicle) -> Self {
+    pub fn from_recorded(vehicle: &Vehicle) -> Self {
         Self {
             vehicle: Arc::new(vehicle.snapshot()),
             paused: true,
@@ -192,8 +192,8 @@ impl SessionView {
         self.timeline.as_ref().is_some_and(|timeline| timeline.rewound)
     }
 
-    /// Returns `true` if the craft is armed. While an earlier instant is shown, the newest one counts. The craft of a
-    /// recorded flight is not there any more.
+    /// Returns `true` if the craft is armed. While an earlier instant is shown, the newest one counts. A
+    /// recorded flight has no live craft.
     pub fn is_armed_now(&self) -> bool {
         match &self.timeline {
             _ if self.replay.is_some() => false,

@@ -12,9 +12,9 @@ use crate::timeline::Timeline;
 use crate::vehicle::{Vehicle, VehicleCommand};
 
 /// The pictures that may wait for a slow recorder. Later ones are left out until it catches up.
-const MOST_PICTURES: usize = 1000;
+const MAX_PICTURES: usize = 1000;
 /// The size of the inputs that may wait for a slow recorder, bytes.
-const MOST_INPUT_BYTES: usize = 32 << 20;
+const MAX_INPUT_BYTES: usize = 32 << 20;
 
 /// A part of a flight, in the order of the session.
 #[derive(Debug)]
@@ -127,7 +127,7 @@ impl FlightFeed {
         }
         for (time, input) in timeline.inputs_from(self.next_input) {
             let waiting = &self.sender.waiting.input_bytes;
-            if waiting.fetch_add(input.bytes(), Ordering::Relaxed) > MOST_INPUT_BYTES {
+            if waiting.fetch_add(input.bytes(), Ordering::Relaxed) > MAX_INPUT_BYTES {
                 waiting.fetch_sub(input.bytes(), Ordering::Relaxed);
                 self.sender.send(FlightPart::Gap);
                 break;
@@ -140,7 +140,7 @@ impl FlightFeed {
     /// Sends a picture of the vehicle if one is due.
     pub(super) fn look(&mut self, vehicle: &Vehicle) {
         let pictures = &self.sender.waiting.pictures;
-        if pictures.load(Ordering::Relaxed) < MOST_PICTURES
+        if pictures.load(Ordering::Relaxed) < MAX_PICTURES
             && let Some(seen) = self.cadence.due(vehicle)
         {
             pictures.fetch_add(1, Ordering::Relaxed);
@@ -186,7 +186,7 @@ mod tests {
         let parts = parts(&receiver);
         let pictures = parts.iter().filter(|part| matches!(part, FlightPart::Picture(_))).count();
         let inputs = parts.iter().filter(|part| matches!(part, FlightPart::Input(..))).count();
-        assert_eq!((pictures, inputs), (MOST_PICTURES, 151));
+        assert_eq!((pictures, inputs), (MAX_PICTURES, 151));
         vehicle.tick();
         while vehicle.time().0 % 1_000_000 != 0 {
             vehicle.tick();

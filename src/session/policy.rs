@@ -155,9 +155,9 @@ impl Intent {
             Command::Seek(_) => Self::Recording,
             Command::ShowFlight(_) => Self::OtherFlight,
             Command::FlyOn => Self::FlyOn,
-            Command::Vehicle(command) => Self::of_vehicle(command),
+            Command::Vehicle(command) => Self::from_vehicle(command),
             Command::StartPilot => Self::Fly,
-            Command::Cli { line, .. } => Self::Line(Impact::of_line(line)),
+            Command::Cli { line, .. } => Self::Line(Impact::from_line(line)),
             Command::Upload { .. } => Self::Upload,
             Command::Download { .. } => Self::Download,
             Command::ReadSettings { .. } => Self::Line(Impact::Reads),
@@ -172,11 +172,11 @@ impl Intent {
         }
     }
 
-    fn of_vehicle(command: &VehicleCommand) -> Self {
+    fn from_vehicle(command: &VehicleCommand) -> Self {
         match command {
-            VehicleCommand::Line(line) => Self::Line(Impact::of_line(&line.line)),
+            VehicleCommand::Line(line) => Self::Line(Impact::from_line(&line.line)),
             VehicleCommand::Message(message) => {
-                Self::Line(Impact::of_message(message.code, &message.payload))
+                Self::Line(Impact::from_message(message.code, &message.payload))
             }
             VehicleCommand::Restart(_) => Self::Line(Impact::Changes),
             VehicleCommand::Upload(_) => Self::Upload,

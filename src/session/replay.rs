@@ -30,7 +30,7 @@ const VIEW_INTERVAL: Duration = Duration::from_millis(16);
 /// The interval of the views that show how much of a file was read.
 const READING_INTERVAL: Duration = Duration::from_millis(100);
 /// The longest sleep of the loop while nothing moves. Commands wake it.
-const LONGEST_SLEEP: Duration = Duration::from_secs(1);
+const MAX_SLEEP: Duration = Duration::from_secs(1);
 
 /// The instant at which a replay begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -143,7 +143,7 @@ impl ReplaySession {
             }
             if self.commands.is_idle() {
                 let is_playing = self.player.as_ref().is_some_and(Player::is_playing);
-                std::thread::park_timeout(if is_playing { VIEW_INTERVAL } else { LONGEST_SLEEP });
+                std::thread::park_timeout(if is_playing { VIEW_INTERVAL } else { MAX_SLEEP });
             }
         }
         None

@@ -444,7 +444,7 @@ impl Session {
             remote: link.map(|link| link.remote().view()),
             timeline: self.timeline_view(),
             commands_taken: self.commands.taken(),
-            ..SessionView::of_recorded(vehicle)
+            ..SessionView::from_recorded(vehicle)
         }
     }
 

@@ -35,7 +35,7 @@ impl Clock {
     ///
     /// # Errors
     /// Fails if the step rate or a fault is not allowed.
-    pub fn of_external(rate_hz: u32, seed: u64, faults: Vec<ScheduledFault>) -> Result<Self, WorldError> {
+    pub fn from_external(rate_hz: u32, seed: u64, faults: Vec<ScheduledFault>) -> Result<Self, WorldError> {
         let mut clock = Self::new(rate_hz, seed, FaultLink::External, faults)?;
         clock.run_faults();
         Ok(clock)
@@ -279,7 +279,7 @@ mod tests {
     use crate::telemetry::FaultKind;
 
     fn external(faults: Vec<ScheduledFault>) -> Result<Clock, WorldError> {
-        Clock::of_external(1000, 1, faults)
+        Clock::from_external(1000, 1, faults)
     }
 
     #[test]
@@ -318,7 +318,7 @@ mod tests {
     #[test]
     fn a_clock_knows_the_seed_of_its_world() {
         for seed in [0, 1, 7, u64::MAX] {
-            assert_eq!(Clock::of_external(1000, seed, Vec::new()).map(|clock| clock.seed()), Ok(seed));
+            assert_eq!(Clock::from_external(1000, seed, Vec::new()).map(|clock| clock.seed()), Ok(seed));
         }
     }
 

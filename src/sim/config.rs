@@ -89,7 +89,7 @@ pub fn step_us(rate_hz: u32) -> Result<u64, WorldError> {
 )]
 #[strum(serialize_all = "lowercase")]
 pub enum Noise {
-    /// Noise, bias, drift, latency and acquisition of ordinary parts.
+    /// Typical hobby-grade sensors: noise, bias, drift, latency and time to the first fix.
     #[default]
     Real,
     /// Exact values without delay.

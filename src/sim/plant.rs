@@ -42,11 +42,11 @@ use rotors::{RotorSums, Rotors};
 /// The distance beyond the reach of the legs at which a craft is in the air, m, and the largest way in a step that keeps
 /// it off the ground then, m.
 const ALOFT_M: f64 = 1.0;
-const LARGEST_WAY_M: f64 = 0.5;
+const MAX_WAY_M: f64 = 0.5;
 
 /// The longest step that is made from the steps before, s: a small part of the lag of the motors. Longer steps are made
 /// by Runge–Kutta in the air, too.
-const LONGEST_STEP_S: f64 = 0.001;
+const MAX_STEP_S: f64 = 0.001;
 
 /// The constants of the equations of motion, computed for one step size.
 #[derive(Debug, Clone)]
@@ -160,7 +160,7 @@ impl Plant {
             return Present { loads, rotation, sums, trend: None };
         }
         let (loads, is_simple) = self.air_loads(&moment, air);
-        let trend = (is_simple && self.h <= LONGEST_STEP_S).then(|| {
+        let trend = (is_simple && self.h <= MAX_STEP_S).then(|| {
             let steady = self.rotors.static_loads_of(&sums, air.density_ratio);
             let momentum = self.momentum(&body.rate_flu, sums.spin);
             let turn = loads.torque_flu - steady.torque_flu - body.rate_flu.cross(&momentum);
@@ -195,7 +195,7 @@ impl Plant {
         let BodyState { pos_enu, vel_enu, .. } = body;
         let way_m = self.h * (vel_enu.x.abs() + vel_enu.y.abs() + vel_enu.z.abs());
         let height_m = self.ground.landform().tangent_at(pos_enu).distance_m(pos_enu);
-        way_m < LARGEST_WAY_M && height_m > self.ground.reach_m() + ALOFT_M
+        way_m < MAX_WAY_M && height_m > self.ground.reach_m() + ALOFT_M
     }
 
     /// Returns the angular momentum of body and rotors, FLU, for body rates and the sum of the rotor speeds, rad/s.

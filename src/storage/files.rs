@@ -157,9 +157,9 @@ impl Files {
 
 /// Returns the target of a symbolic link, even if it does not exist, or the path itself if it is no link.
 pub fn link_target(path: &Path) -> PathBuf {
-    const MOST_LINKS: usize = 40;
+    const MAX_LINKS: usize = 40;
     let mut path = path.to_owned();
-    for _ in 0..MOST_LINKS {
+    for _ in 0..MAX_LINKS {
         let Ok(target) = std::fs::read_link(&path) else { break };
         // An absolute target replaces the whole path.
         path = path.parent().map_or_else(|| target.clone(), |parent| parent.join(&target));

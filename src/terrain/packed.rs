@@ -10,7 +10,7 @@ use super::{MAX_SIDE, Square, TileError};
 /// The size of the largest `.hgt` tile, bytes.
 const MOST: u64 = (MAX_SIDE * MAX_SIDE * 2) as u64;
 /// The most members of an archive. Their list takes memory before it can be counted.
-const MOST_MEMBERS: usize = 100;
+const MAX_MEMBERS: usize = 100;
 
 /// Returns the `.hgt` tile of a square in the bytes of a file, which may be a ZIP archive or packed by gzip.
 ///
@@ -27,8 +27,8 @@ pub fn unpacked_hgt(bytes: Vec<u8>, square: Square) -> Result<Vec<u8>, TileError
 }
 
 fn of_archive(bytes: &[u8], square: Square) -> Result<Vec<u8>, TileError> {
-    if bytes.windows(4).filter(|bytes| bytes == b"PK\x01\x02").count() > MOST_MEMBERS {
-        return Err(problem(&format!("the archive has more than {MOST_MEMBERS} members")));
+    if bytes.windows(4).filter(|bytes| bytes == b"PK\x01\x02").count() > MAX_MEMBERS {
+        return Err(problem(&format!("the archive has more than {MAX_MEMBERS} members")));
     }
     let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|error| problem(&error))?;
     let wanted = square.hgt_name();

@@ -10,9 +10,9 @@ use std::fmt::Write as _;
 /// The replacement of a character that is not shown.
 const PLACEHOLDER: char = '?';
 /// The maximum number of characters of a line. Longer text is no sentence.
-const LONGEST_LINE: usize = 400;
+const MAX_LINE: usize = 400;
 /// The maximum number of characters of a name inside a line.
-const LONGEST_NAME: usize = 60;
+const MAX_NAME: usize = 60;
 
 /// Returns `true` if a terminal shows this character as it is.
 pub fn is_printable(c: char) -> bool {
@@ -28,16 +28,16 @@ pub fn is_printable(c: char) -> bool {
 
 /// Returns a single line of printable text.
 pub fn line(text: &str) -> Cow<'_, str> {
-    let is_short = text.len() <= LONGEST_LINE || text.chars().nth(LONGEST_LINE).is_none();
+    let is_short = text.len() <= MAX_LINE || text.chars().nth(MAX_LINE).is_none();
     if is_short && text.chars().all(is_printable) {
         return Cow::Borrowed(text);
     }
-    Cow::Owned(cut(text, LONGEST_LINE))
+    Cow::Owned(cut(text, MAX_LINE))
 }
 
 /// Returns a printable name for the inside of a line.
 pub fn name(text: &str) -> String {
-    cut(text, LONGEST_NAME)
+    cut(text, MAX_NAME)
 }
 
 /// Returns printable text of several lines. Tabs between words become spaces.
@@ -102,10 +102,10 @@ mod tests {
     #[test]
     fn a_name_longer_than_a_line_is_cut() {
         let cut = name(&"x".repeat(10_000));
-        assert_eq!(cut.chars().count(), LONGEST_NAME);
+        assert_eq!(cut.chars().count(), MAX_NAME);
         assert!(cut.ends_with("x\u{2026}"));
-        assert_eq!(line(&"x".repeat(10_000)).chars().count(), LONGEST_LINE);
-        assert_eq!(line(&"x".repeat(LONGEST_LINE)).chars().count(), LONGEST_LINE);
+        assert_eq!(line(&"x".repeat(10_000)).chars().count(), MAX_LINE);
+        assert_eq!(line(&"x".repeat(MAX_LINE)).chars().count(), MAX_LINE);
     }
 
     proptest! {

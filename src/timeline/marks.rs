@@ -39,7 +39,7 @@ impl MarkKind {
     /// Returns the mark of an event, or `None` for events that are of no interest for going back.
     fn of(event: &EventKind) -> Option<Self> {
         match event {
-            EventKind::Firmware(event) => Self::of_firmware(event),
+            EventKind::Firmware(event) => Self::from_firmware(event),
             EventKind::Fault { on: false, .. } => Some(Self::Recovery),
             EventKind::Fault { on: true, .. } | EventKind::Crash { .. } | EventKind::BatteryEmpty { .. } => {
                 Some(Self::Alarm)
@@ -49,7 +49,7 @@ impl MarkKind {
         }
     }
 
-    fn of_firmware(event: &FirmwareEvent) -> Option<Self> {
+    fn from_firmware(event: &FirmwareEvent) -> Option<Self> {
         Some(match event {
             FirmwareEvent::Armed => Self::Armed,
             FirmwareEvent::Disarmed(DisarmReason::Switch | DisarmReason::System | DisarmReason::Landing) => {

@@ -53,7 +53,7 @@ impl Default for Bounds {
 impl Bounds {
     /// Returns bounds for pictures of a vehicle that cannot be flown again: ten a second for five minutes, and one a second
     /// for an hour: some 150 MB (23 kB each, measured).
-    pub(super) fn of_pictures() -> Self {
+    pub(super) fn from_pictures() -> Self {
         const SECOND_US: u64 = 1_000_000;
         Self {
             interval_us: SECOND_US / 10,

@@ -1,7 +1,7 @@
 //! The round numbers of scales and axes: 1, 2 and 5 times a power of ten.
 
 /// The most ticks of an axis.
-const MOST_TICKS: usize = 64;
+const MAX_TICKS: usize = 64;
 
 /// Returns the longest round length not above `most`.
 pub(super) fn round_length(most: f64) -> f64 {
@@ -24,7 +24,7 @@ pub(super) fn ticks(low: f64, high: f64, most: usize) -> Vec<f64> {
     if !(range.is_finite() && range > 0.0) || most == 0 {
         return Vec::new();
     }
-    let most = most.min(MOST_TICKS);
+    let most = most.min(MAX_TICKS);
     let mut step = round_step(range / most as f64);
     loop {
         let (first, last) = ((low / step - 1e-9).ceil(), (high / step + 1e-9).floor());

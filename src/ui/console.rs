@@ -100,7 +100,7 @@ impl CliState {
         let Queued { line, reports } = self.queue.pop_front()?;
         self.reports = reports;
         self.waiting = true;
-        self.changes_craft = Impact::of_line(&line) > Impact::Reads;
+        self.changes_craft = Impact::from_line(&line) > Impact::Reads;
         self.push(CliLineKind::Entered, line.clone());
         Some(line)
     }

@@ -26,7 +26,7 @@ impl Severity {
     /// Returns the severity of an event.
     pub fn of(kind: &SessionEvent) -> Self {
         match kind {
-            SessionEvent::Vehicle(event) => Self::of_vehicle(event),
+            SessionEvent::Vehicle(event) => Self::from_vehicle(event),
             SessionEvent::Warning(_) => Self::Warn,
             SessionEvent::Branch { .. } => Self::Step,
             SessionEvent::Remote(RemoteNotice::Lost(_) | RemoteNotice::Restarted(_)) => Self::Warn,
@@ -46,7 +46,7 @@ impl Severity {
         }
     }
 
-    fn of_vehicle(kind: &EventKind) -> Self {
+    fn from_vehicle(kind: &EventKind) -> Self {
         match kind {
             EventKind::Boot { .. } | EventKind::Contact { .. } | EventKind::Notice(_) => Self::Info,
             EventKind::Touchdown { .. } => Self::Good,
@@ -58,11 +58,11 @@ impl Severity {
                 }
             }
             EventKind::Crash { .. } | EventKind::BatteryEmpty { .. } => Self::Fault,
-            EventKind::Firmware(event) => Self::of_firmware(event),
+            EventKind::Firmware(event) => Self::from_firmware(event),
         }
     }
 
-    fn of_firmware(event: &FirmwareEvent) -> Self {
+    fn from_firmware(event: &FirmwareEvent) -> Self {
         match event {
             FirmwareEvent::GpsFix { .. } | FirmwareEvent::RxRecovered | FirmwareEvent::Armed => Self::Good,
             FirmwareEvent::Disarmed(DisarmReason::Landing) => Self::Good,
@@ -172,7 +172,7 @@ mod tests {
 
     #[test]
     fn a_restart_that_was_asked_for_is_no_fault() {
-        let disarmed = |reason| Severity::of_firmware(&FirmwareEvent::Disarmed(reason));
+        let disarmed = |reason| Severity::from_firmware(&FirmwareEvent::Disarmed(reason));
         assert_eq!(disarmed(DisarmReason::System), Severity::Info);
         assert_eq!(disarmed(DisarmReason::Failsafe), Severity::Fault);
     }

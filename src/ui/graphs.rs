@@ -22,7 +22,7 @@ use history::SignalHistory;
 /// The selectable time spans, s.
 const SPANS_S: [f64; 12] = [0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1800.0, 7200.0];
 /// The index of the shortest span of a flight without recorded series: its pictures come a few times a second.
-const SHORTEST_OF_PICTURES: usize = 4;
+const MIN_OF_PICTURES: usize = 4;
 /// The index of the span at start.
 const FIRST_SPAN: usize = 6;
 /// The number of cursor steps in a span.
@@ -85,7 +85,7 @@ impl GraphsState {
         let is_recorded =
             |info: &&SignalInfo| overview.pictures.iter().any(|picture| picture.value(info.signal).is_some());
         self.recorded = Some(SIGNALS.iter().filter(is_recorded).map(|info| info.signal).collect());
-        self.history = SignalHistory::of_past(&overview.pictures);
+        self.history = SignalHistory::from_past(&overview.pictures);
         self.has_series = !overview.series.is_empty();
         self.curves = SeriesCurves::default();
         self.cursor_s = None;
@@ -137,7 +137,7 @@ impl GraphsState {
 
     /// Selects a longer time span, or a shorter one.
     pub(super) fn change_span(&mut self, by: isize) {
-        let shortest = if self.has_series { 0 } else { SHORTEST_OF_PICTURES };
+        let shortest = if self.has_series { 0 } else { MIN_OF_PICTURES };
         self.span = self.span.saturating_add_signed(by).clamp(shortest, SPANS_S.len() - 1);
     }
 

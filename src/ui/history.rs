@@ -91,7 +91,7 @@ impl History {
 pub struct UsedNames(Vec<String>);
 
 /// The most names that are remembered.
-const MOST_USED: usize = 50;
+const MAX_USED: usize = 50;
 
 impl UsedNames {
     /// Returns the names chosen in earlier runs, the newest last.
@@ -106,7 +106,7 @@ impl UsedNames {
     /// Makes a name the newest one.
     pub(super) fn remember(&mut self, name: &str) {
         self.0.retain(|used| used != name);
-        if self.0.len() == MOST_USED {
+        if self.0.len() == MAX_USED {
             self.0.remove(0);
         }
         self.0.push(name.to_owned());
@@ -114,7 +114,7 @@ impl UsedNames {
 
     /// Returns the weight of a name: the newest one has the greatest, one that was never chosen has none.
     pub(super) fn weight(&self, name: &str) -> u32 {
-        self.0.iter().position(|used| used == name).map_or(0, |at| (MOST_USED - self.0.len() + at + 1) as u32)
+        self.0.iter().position(|used| used == name).map_or(0, |at| (MAX_USED - self.0.len() + at + 1) as u32)
     }
 }
 
@@ -145,6 +145,6 @@ mod tests {
         for number in 0..200 {
             used.remember(&number.to_string());
         }
-        assert_eq!((used.0.len(), used.weight("199")), (MOST_USED, MOST_USED as u32));
+        assert_eq!((used.0.len(), used.weight("199")), (MAX_USED, MAX_USED as u32));
     }
 }

@@ -14,7 +14,7 @@ use super::layout::Arrangement;
 use super::map_state::MapMode;
 
 /// The most plans that are opened again.
-pub(super) const MOST_PLANS: usize = 16;
+pub(super) const MAX_PLANS: usize = 16;
 
 /// The version of the form in which the screen is kept.
 pub(super) const VERSION: u32 = 1;
@@ -219,7 +219,7 @@ impl KeptScreen {
 
     /// Returns the files of the open plans.
     pub fn plans(&self) -> impl Iterator<Item = &Path> {
-        self.subject.plans.iter().take(MOST_PLANS).map(PathBuf::as_path)
+        self.subject.plans.iter().take(MAX_PLANS).map(PathBuf::as_path)
     }
 
     /// Returns the place in the flights of the file.
@@ -244,7 +244,7 @@ impl KeptScreens {
         Self { is_kept: true, of, before, place, ..Self::default() }
     }
 
-    /// Returns screens that are kept as before, but of which none comes back.
+    /// Returns screens that are saved but not restored.
     #[must_use]
     pub fn fresh(self) -> Self {
         Self { before: None, place: None, ..self }

@@ -15,7 +15,7 @@ use crate::telemetry::{FaultValue, Turbulence};
 /// A step of the wind's speed and of gusts, m/s.
 const SPEED_STEP: f64 = 0.5;
 /// The strongest wind that the user can set, m/s.
-const MOST_MPS: f64 = 60.0;
+const MAX_MPS: f64 = 60.0;
 /// The height above the ground from which the mean wind is the given one, m. It is weaker below.
 const FULL_WIND_M: f64 = 10.0;
 /// A step of the wind's direction, degrees.
@@ -117,11 +117,11 @@ impl Knob {
     pub(super) fn help(self, units: Units) -> String {
         match self {
             Self::WindSpeed => {
-                let most = units.speed_text(MOST_MPS, 0);
+                let most = units.speed_text(MAX_MPS, 0);
                 format!("wind from {} up, 0 to {most}, over two seconds", units.length_text(FULL_WIND_M, 0))
             }
             Self::WindFrom => "the direction it blows from, degrees".to_owned(),
-            Self::Gust => format!("strength of random gusts, 0 to {}", units.speed_text(MOST_MPS, 0)),
+            Self::Gust => format!("strength of random gusts, 0 to {}", units.speed_text(MAX_MPS, 0)),
             Self::Turbulence => "none, light, moderate, severe".to_owned(),
             Self::Noise => "sensor errors: real, none".to_owned(),
             Self::Fault(fault) if fault.value.is_empty() => format!("{}; = types SECONDS", fault.help),
@@ -153,7 +153,7 @@ impl KnobsState {
         let world = &state.view.vehicle.world;
         let wind = world.wind.unwrap_or(WindView { speed_mps: 0.0, from_deg: 0.0 });
         let step = f64::from(steps);
-        let stepped = |speed: f64| (speed + step * SPEED_STEP).clamp(0.0, MOST_MPS);
+        let stepped = |speed: f64| (speed + step * SPEED_STEP).clamp(0.0, MAX_MPS);
         match knob {
             Knob::WindSpeed => set_wind(state, WindView { speed_mps: stepped(wind.speed_mps), ..wind }),
             Knob::WindFrom => {

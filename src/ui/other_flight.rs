@@ -61,7 +61,7 @@ impl OtherFlight {
     pub(super) fn new(name: String, overview: Arc<Overview>) -> Self {
         Self {
             name,
-            track: Track::of_past(overview.pictures.iter().filter_map(TrackPoint::of)),
+            track: Track::from_past(overview.pictures.iter().filter_map(TrackPoint::of)),
             placed_on: None,
             overview,
             shift_us: 0,
@@ -107,7 +107,7 @@ impl OtherFlight {
         let is_near = offset.distance(MapPoint::default()) < FAR_M;
         let offset = if is_near { offset } else { MapPoint::default() };
         let moved = |point: TrackPoint| TrackPoint { n: point.n + offset.n, e: point.e + offset.e, ..point };
-        self.track = Track::of_past(self.overview.pictures.iter().filter_map(TrackPoint::of).map(moved));
+        self.track = Track::from_past(self.overview.pictures.iter().filter_map(TrackPoint::of).map(moved));
     }
 
     /// Returns its track on the map.

@@ -13,7 +13,7 @@ pub(super) fn follow(state: &mut Shared) {
     if state.past.as_ref().is_some_and(|past| Arc::ptr_eq(past, &overview)) {
         return;
     }
-    state.track = Track::of_past(overview.pictures.iter().filter_map(TrackPoint::of));
+    state.track = Track::from_past(overview.pictures.iter().filter_map(TrackPoint::of));
     state.graphs.load(&overview);
     state.past = Some(overview);
 }

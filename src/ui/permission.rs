@@ -46,7 +46,7 @@ impl Permission {
 fn intent_of(effect: &Effect) -> Intent {
     match effect {
         Effect::Send(command) => Intent::of(command),
-        Effect::Cli(line) | Effect::Set(line) => Intent::Line(Impact::of_line(line)),
+        Effect::Cli(line) | Effect::Set(line) => Intent::Line(Impact::from_line(line)),
         Effect::ReadSettings => Intent::Line(Impact::Reads),
         Effect::Download(_) => Intent::Download,
         Effect::Upload { .. } => Intent::Upload,

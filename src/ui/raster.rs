@@ -14,7 +14,7 @@ const BITS: [[u8; COLUMNS]; ROWS] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [
 /// The Braille character without dots.
 const BLANK: u32 = 0x2800;
 /// The most dots that are set, so that a hostile file cannot stop the screen. They fill a window of 200x60 five times.
-const MOST_DOTS: usize = 500_000;
+const MAX_DOTS: usize = 500_000;
 
 /// The dots of a window.
 pub(in crate::ui) struct Raster {
@@ -31,7 +31,7 @@ impl Raster {
         let cells = vec![0; usize::from(area.width) * usize::from(area.height)];
         let last = |cells: u16, dots: usize| (usize::from(cells) * dots).saturating_sub(1) as f64;
         let limits = (last(area.width, COLUMNS), last(area.height, ROWS));
-        Self { area, cells, limits, left: MOST_DOTS }
+        Self { area, cells, limits, left: MAX_DOTS }
     }
 
     /// Returns the number of columns and of rows of dots.

@@ -24,7 +24,7 @@ pub(super) mod in_words;
 /// The voltage of an empty and a full cell, V.
 const CELL_V: (f64, f64) = (3.3, 4.2);
 /// The highest voltage of a charged cell, V. It gives the number of cells where nobody counts them.
-const MOST_CELL_V: f64 = 4.3;
+const MAX_CELL_V: f64 = 4.3;
 /// The number of parts of the battery bar.
 const BAR: usize = 5;
 
@@ -109,7 +109,7 @@ fn sensors(state: &Shared) -> Vec<Span<'static>> {
 
 fn battery_bar(volts: Option<f64>, cells: Option<u8>) -> (String, Role) {
     let Some(volts) = volts.filter(|v| v.is_finite()) else { return ("▯".repeat(BAR), Role::Dim) };
-    let cells = cells.map_or_else(|| (volts / MOST_CELL_V).ceil().max(1.0), f64::from);
+    let cells = cells.map_or_else(|| (volts / MAX_CELL_V).ceil().max(1.0), f64::from);
     let share = ((volts / cells - CELL_V.0) / (CELL_V.1 - CELL_V.0)).clamp(0.0, 1.0);
     let full = (share * BAR as f64).round() as usize;
     let role = match full {

@@ -284,7 +284,7 @@ fn disarmed_in_the_air(state: &Shared) -> Option<StatusMessage> {
     message(Severity::Fault, "Disarmed in the air.", action)
 }
 
-/// Returns the keys that undo a mishap, if the flight is recorded.
+/// Returns the keys that rewind to before the crash, if the flight is recorded.
 fn way_back(state: &Shared) -> String {
     if !state.flies_again() {
         return String::new();

@@ -97,7 +97,7 @@ impl Default for Track {
 
 impl Track {
     /// Returns the track of a flight that is over. Its jumps are gaps of the record, not resets.
-    pub(super) fn of_past(points: impl Iterator<Item = TrackPoint>) -> Self {
+    pub(super) fn from_past(points: impl Iterator<Item = TrackPoint>) -> Self {
         let mut track = Self::default();
         for point in points {
             track.add(point);

@@ -322,11 +322,11 @@ pub(super) fn flipped(state: &Shared, channel: usize) -> u16 {
 fn send(state: &mut Shared, next: RcFrame) -> Vec<Effect> {
     let mut effects = Vec::new();
     if state.stick_recording.stop_playing() {
-        state.notify(Severity::Info, "Playing stopped: the sticks are yours.");
+        state.notify(Severity::Info, "Playing stopped. You have the sticks.");
     }
     if state.view.pilot.is_some() {
         effects.push(Effect::Send(Command::Vehicle(VehicleCommand::StopPilot)));
-        state.notify(Severity::Info, "The pilot let go: the sticks are yours.");
+        state.notify(Severity::Info, "Scripted pilot stopped. You have the sticks.");
     }
     match state.view.vehicle.craft.rc_source {
         Some(RcSource::Udp | RcSource::Msp) if state.view.vehicle.craft.rc_link == Some(true) => {

@@ -32,7 +32,7 @@ fn session(text: &str, mode: CliMode, facts: &CliFacts) -> Configuration {
     for line in text.lines() {
         let before = configuration.clone();
         let reply = interpreter.run(line, &mut CliContext { configuration: &mut configuration, facts });
-        assert!(reply.text.len() <= craft::LONGEST_REPLY, "{line}: {} bytes", reply.text.len());
+        assert!(reply.text.len() <= craft::MAX_TEXT, "{line}: {} bytes", reply.text.len());
         assert!(!reply.failed || configuration == before, "{line} is refused and changes the craft");
         assert!(!reply.failed || reply.actions.is_empty(), "{line} is refused and asks for something");
         let completion = complete(line);
@@ -52,12 +52,12 @@ fn link(data: &[u8]) {
     for (at, byte) in b"#".iter().chain(data).enumerate() {
         let now = Duration::from_millis(at as u64 * 60);
         let output = editor.feed(*byte, false, now);
-        assert!(output.bytes.len() <= craft::LONGEST_REPLY);
+        assert!(output.bytes.len() <= craft::MAX_TEXT);
         if output.completes {
             let found = complete(editor.line());
             let completion =
                 Completion { tail: found.tail(editor.line()).to_owned(), words: found.candidates };
-            assert!(editor.complete(completion).len() <= craft::LONGEST_REPLY);
+            assert!(editor.complete(completion).len() <= craft::MAX_TEXT);
         }
         if let Some(line) = output.line {
             assert!(line.len() <= MAX_LINE && line.bytes().all(|byte| (b' '..=b'~').contains(&byte)));

@@ -8,15 +8,15 @@ use betadeck::firmware::{Firmware, FirmwareOptions};
 use betadeck::signals::{RcFrame, RcSource, SensorFrame};
 
 /// The greatest length of a command line reply.
-pub const LONGEST_REPLY: usize = 1 << 20;
+pub const MAX_TEXT: usize = 1 << 20;
 /// The greatest length of a reply to a message, which is the next buffer size of a configurator.
-const LONGEST_MESSAGE: usize = 4096;
+const MAX_MESSAGE: usize = 4096;
 
 /// Runs one line on a configuration, at rest on the ground.
 pub fn run_line(configuration: &mut Configuration, interpreter: &mut Interpreter, line: &str) -> String {
     let facts = CliFacts::default();
     let reply = interpreter.run(line, &mut CliContext { configuration, facts: &facts });
-    assert!(reply.text.len() <= LONGEST_REPLY, "{line}: {} bytes", reply.text.len());
+    assert!(reply.text.len() <= MAX_TEXT, "{line}: {} bytes", reply.text.len());
     reply.text
 }
 
@@ -81,7 +81,7 @@ pub fn assert_answers(firmware: &mut Firmware) {
     for message in MESSAGES.iter().filter(|message| message.kind.access.to_string() == "read") {
         let reply = firmware.run_msp(message.kind.code, &[], None).reply;
         let length = reply.unwrap_or_else(|| panic!("{} is refused", message.kind.name)).len();
-        assert!(length <= LONGEST_MESSAGE, "{}: {length} bytes", message.kind.name);
+        assert!(length <= MAX_MESSAGE, "{}: {length} bytes", message.kind.name);
     }
 }
 

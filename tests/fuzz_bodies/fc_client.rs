@@ -12,7 +12,7 @@ const PAUSE: &[u8] = &[0x1e, 0x1e];
 /// The time that passes: longer than a repetition takes, shorter than the patience with a line.
 const PASSES: Duration = Duration::from_millis(1100);
 /// The greatest length of an answer.
-const LONGEST_ANSWER: usize = 1 << 19;
+const MAX_ANSWER: usize = 1 << 19;
 
 /// Feeds the bytes in one piece, byte by byte and in pieces. The requests and results are the same, and each
 /// request gets one answer.
@@ -101,7 +101,7 @@ impl Talk {
                     self.observation.take(code, payload.as_deref().unwrap_or_default());
                 }
                 Answer::Line { text, .. } => {
-                    assert!(text.len() <= LONGEST_ANSWER, "{} bytes", text.len());
+                    assert!(text.len() <= MAX_ANSWER, "{} bytes", text.len());
                     let _ = Mission::parse(text);
                     settings(text).count();
                 }

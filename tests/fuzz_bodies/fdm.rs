@@ -11,7 +11,7 @@ use betadeck::telemetry::LinkState;
 use super::craft;
 
 /// The most ticks that one datagram may request: half a second of them and a rounded one.
-const MOST_TICKS: u32 = 501;
+const MAX_TICKS: u32 = 501;
 /// The ticks that are actually run after each datagram.
 const TICKS: u32 = 2;
 /// Microseconds for each unit of the byte that sets the simulator's wait.
@@ -71,7 +71,7 @@ fn exchange(data: &[u8]) {
         now_us += wait;
         count += 1;
         let received = link.receive(datagram, now_us);
-        assert!(received.ticks <= MOST_TICKS, "{} ticks", received.ticks);
+        assert!(received.ticks <= MAX_TICKS, "{} ticks", received.ticks);
         assert_eq!(received.sensors.is_some(), received.kind == PacketKind::State);
         if let PacketKind::Refused(_) | PacketKind::Old = received.kind {
             assert_eq!((received.ticks, received.reply), (0, Reply::Nothing));

@@ -17,7 +17,7 @@ const PAUSE: &[u8] = &[0x1e, 0x1e];
 /// The length of the quiet moment.
 const QUIET: Duration = Duration::from_millis(150);
 /// More bytes than garbage can still announce for a frame.
-const LONGEST_REQUEST: usize = MAX_REQUEST + 16;
+const MAX_REQUEST_FRAME: usize = MAX_REQUEST + 16;
 
 /// Sends the bytes in one piece, byte by byte and in pieces. The answers are the same. Then sends a sensible
 /// request.
@@ -99,7 +99,7 @@ impl Client {
                 self.talk.asks.push(ask);
             }
             let output = self.session.take_output();
-            assert!(output.len() <= craft::LONGEST_REPLY, "{} bytes at once", output.len());
+            assert!(output.len() <= craft::MAX_TEXT, "{} bytes at once", output.len());
             self.talk.output.extend(output);
             if self.closed {
                 return;
@@ -153,7 +153,7 @@ impl Client {
         self.now += Duration::from_secs(3);
         // Ends a frame that garbage began, a batch of framed lines, and an interactive session that it
         // opened.
-        self.send(&[b' '; LONGEST_REQUEST]);
+        self.send(&[b' '; MAX_REQUEST_FRAME]);
         if self.closed {
             // An incomplete character is no text.
             return;

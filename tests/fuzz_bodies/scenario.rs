@@ -5,7 +5,7 @@ use betadeck::plan::format::{PlanFile, report};
 use betadeck::scenario::{Case, CaseFlight, Files, MAX_FLIGHTS, Scenario, judge, read, skip};
 
 /// The most cases that a scenario may have.
-const MOST_CASES: usize = 1000;
+const MAX_CASES: usize = 1000;
 /// The number of ticks that an accepted scenario flies.
 const TICKS: u32 = 40;
 
@@ -40,7 +40,7 @@ pub fn run(data: &[u8]) {
 }
 
 fn assert_sound(scenario: &Scenario, lines: usize) {
-    assert!((1..=MOST_CASES).contains(&scenario.cases.len()));
+    assert!((1..=MAX_CASES).contains(&scenario.cases.len()));
     let flights: usize = scenario.cases.iter().map(|case| case.airs.len()).sum();
     assert!((scenario.cases.len()..=MAX_FLIGHTS).contains(&flights), "{flights} flights");
     for case in &scenario.cases {

@@ -10,9 +10,9 @@ pub fn run(data: &[u8]) {
         Err(Unread::Later) => assert!(text.contains("version"), "only a version can be later"),
         Err(Unread::Damaged) => {}
     }
-    let (layouts, left_out) = SavedLayouts::of_lines(&text);
+    let (layouts, left_out) = SavedLayouts::from_lines(&text);
     // A damaged line takes no other with it, and is counted.
     let damaged: Vec<&str> = text.lines().flat_map(|line| [line, "{\"name\":"]).collect();
-    let (same, more_left_out) = SavedLayouts::of_lines(&damaged.join("\n"));
+    let (same, more_left_out) = SavedLayouts::from_lines(&damaged.join("\n"));
     assert_eq!((same, more_left_out.len()), (layouts, left_out.len() + damaged.len() / 2));
 }

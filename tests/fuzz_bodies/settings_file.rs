@@ -16,7 +16,7 @@ pub fn run(data: &[u8]) {
         let mut applied = Configuration::default();
         let mut context = CliContext { configuration: &mut applied, facts: &facts };
         let report = apply_lines(text.lines(), &mut Interpreter::new(mode), &mut context, |line, reply| {
-            assert!(reply.text.len() <= craft::LONGEST_REPLY, "{line}: {} bytes", reply.text.len());
+            assert!(reply.text.len() <= craft::MAX_TEXT, "{line}: {} bytes", reply.text.len());
             let _shown = advice(line, reply);
         });
         assert_sensible(&report, &text);

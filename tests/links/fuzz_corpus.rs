@@ -16,7 +16,7 @@ use fuzz_bodies::{
 /// The longest stored case, in bytes, whose beginnings are all tested too.
 const SHORT: usize = 64;
 /// The most bytes of a mutant. Long ones take long and find little.
-const LONGEST_MUTANT: usize = 4096;
+const MAX_MUTANT: usize = 4096;
 
 /// Pieces that have a meaning for some target.
 const WORDS: [&[u8]; 43] = [
@@ -117,7 +117,7 @@ impl Dice {
                     drop(bytes.splice(range, word.iter().copied()));
                 }
             }
-            bytes.truncate(LONGEST_MUTANT);
+            bytes.truncate(MAX_MUTANT);
         }
         bytes
     }

@@ -14,7 +14,7 @@ pub(crate) struct Taken {
 
 thread_local! {
     static HELD: Cell<isize> = const { Cell::new(0) };
-    static MOST_HELD: Cell<isize> = const { Cell::new(0) };
+    static MAX_HELD: Cell<isize> = const { Cell::new(0) };
     static TOTAL: Cell<usize> = const { Cell::new(0) };
     static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
 }
@@ -25,7 +25,7 @@ fn take(bytes: usize) {
     ALLOCATIONS.set(ALLOCATIONS.get() + 1);
     TOTAL.set(TOTAL.get().wrapping_add(bytes));
     HELD.set(HELD.get() + bytes as isize);
-    MOST_HELD.set(MOST_HELD.get().max(HELD.get()));
+    MAX_HELD.set(MAX_HELD.get().max(HELD.get()));
 }
 
 fn give_back(bytes: usize) {
@@ -68,9 +68,9 @@ static ALLOCATOR: Meter = Meter;
 /// Runs `work` and returns its result and the memory that it took.
 pub(crate) fn measured<R>(work: impl FnOnce() -> R) -> (R, Taken) {
     let (held, total) = (HELD.get(), TOTAL.get());
-    MOST_HELD.set(held);
+    MAX_HELD.set(held);
     let result = work();
-    let peak = usize::try_from(MOST_HELD.get() - held).unwrap_or_default();
+    let peak = usize::try_from(MAX_HELD.get() - held).unwrap_or_default();
     (result, Taken { peak, total: TOTAL.get().wrapping_sub(total) })
 }
 

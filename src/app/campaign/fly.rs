@@ -41,7 +41,7 @@ pub(super) fn run(args: &CampaignArgs, repeat: &[String]) -> Result<u8, AppError
             outputs::claim(&args.output, Some(&path), &[])?;
             let shard = header.part().map_err(AppError::input)?;
             of_file = Some(path.clone());
-            (Loaded::of_run(*header)?, Some(path), shard)
+            (Loaded::from_run(*header)?, Some(path), shard)
         }
     };
     let header = loaded.header.of_shard(shard);

@@ -56,7 +56,7 @@ impl Loaded {
     }
 
     /// Reads the campaign of a run's file.
-    pub(super) fn of_run(header: RunHeader) -> Result<Self, AppError> {
+    pub(super) fn from_run(header: RunHeader) -> Result<Self, AppError> {
         let definition = &header.definition;
         let mut sources = Sources { place: None, contents: definition.files.clone() };
         let campaign = campaign(definition, &mut sources)?;
@@ -253,7 +253,7 @@ pub(in crate::app) fn open_flight(text: &str, consent: Consent<'_>) -> Result<Op
         _ => (&definition.firmware, &definition.firmware_print),
     };
     consent.check(path, options, print.as_deref())?;
-    let loaded = Loaded::of_run(header)?;
+    let loaded = Loaded::from_run(header)?;
     let flight = loaded.of_side(number, side).ok_or_else(|| AppError::internal("a flight without a case"))?;
     let [own, other] = loaded.firmware;
     let firmware = if side == Side::A { own } else { other };

@@ -23,7 +23,7 @@ pub(super) fn run(args: &MergeArgs, repeat: &[String]) -> Result<u8, AppError> {
         Some((_, part)) => part.header().of_shard(Shard::WHOLE),
         None => return Err(AppError::internal("no part")),
     };
-    let loaded = Loaded::of_run(header.clone())?;
+    let loaded = Loaded::from_run(header.clone())?;
     let mut outputs = Outputs::begin(&args.output, &loaded, Shard::WHOLE)?;
     let mut out = StreamedOutput::begin(&args.out)?;
     let mut write = |text: &str| out.add(format!("{text}\n").as_bytes());

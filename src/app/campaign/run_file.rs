@@ -38,10 +38,10 @@ impl RunReader {
     /// Opens a file and reads its header.
     pub(super) fn open(path: &Path) -> Result<Self, AppError> {
         let file = File::open(path).map_err(|error| cannot_read(path, &error))?;
-        Self::of_file(path, file)
+        Self::from_file(path, file)
     }
 
-    fn of_file(path: &Path, file: File) -> Result<Self, AppError> {
+    fn from_file(path: &Path, file: File) -> Result<Self, AppError> {
         let mut reader = BufReader::new(file);
         let line = read_line(path, &mut reader, MAX_HEADER)?.unwrap_or_default();
         let header = RunHeader::read(&line)
@@ -197,7 +197,7 @@ impl RunFile {
             return Ok(run);
         }
         file.seek(SeekFrom::Start(0)).map_err(cannot)?;
-        let mut reader = RunReader::of_file(path, file)?;
+        let mut reader = RunReader::from_file(path, file)?;
         if reader.header().id != header.id {
             let why = differs(header, reader.header());
             return Err(AppError::input(format!(

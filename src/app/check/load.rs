@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::run::is_wanted;
 use crate::app::scenario_folder::{self, ScenarioFolder};
-use crate::args::{CheckArgs, MOST_FLIGHTS};
+use crate::args::{CheckArgs, MAX_ALLOWED_FLIGHTS};
 use crate::files::input_file;
 use crate::plan::format::{self, PlanFile};
 use crate::process::error;
@@ -60,7 +60,13 @@ pub(super) fn load(args: &CheckArgs) -> Result<Loaded, AppError> {
 pub(in crate::app) fn load_one(name: &str, seed: Option<u64>, names_any: bool) -> Result<Scenario, AppError> {
     let (source, _) = source(name)?;
     // `open` shows only one of the flights, so the user's limit does not apply.
-    read(&source, seed.as_ref().map(std::slice::from_ref), MOST_FLIGHTS as usize, names_any, &mut Vec::new())
+    read(
+        &source,
+        seed.as_ref().map(std::slice::from_ref),
+        MAX_ALLOWED_FLIGHTS as usize,
+        names_any,
+        &mut Vec::new(),
+    )
 }
 
 /// Returns the sources in the arguments, each with `true` if the argument is the scenario itself.

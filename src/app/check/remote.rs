@@ -170,7 +170,7 @@ pub(in crate::app) fn fly_case(
     let mut tell = OnEvent(|event: &Event| reported.extend(reported::sentence(event)));
     let (mut remote, vehicle) = prepare(firmware, case, air, interrupted, thread, &mut tell)?;
     let problem = remote.unset().and_then(|unset| not_as_wanted(case, unset));
-    let mut flight = match CaseFlight::of_vehicle(case, vehicle) {
+    let mut flight = match CaseFlight::from_vehicle(case, vehicle) {
         Ok(flight) => flight,
         Err(problem) => return Ok(Err(problem)),
     };

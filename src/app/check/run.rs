@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use super::record::Record;
 use super::{Comparisons, Loaded};
-use crate::args::{CheckArgs, MOST_FLIGHTS};
+use crate::args::{CheckArgs, MAX_ALLOWED_FLIGHTS};
 use crate::files::log_output::{LogOnly, LogOutput};
 use crate::process::error::AppError;
 use crate::report::check::{CheckedFlight, Compared};
@@ -66,10 +66,10 @@ pub(super) fn refuse_too_many(loaded: &Loaded, args: &CheckArgs) -> Result<(), A
         return Ok(());
     };
     let fewer = "choose fewer with --filter TEXT, --seeds A..B or a smaller --repeat";
-    Err(AppError::input(if i64::try_from(needed).is_ok_and(|needed| needed <= MOST_FLIGHTS) {
+    Err(AppError::input(if i64::try_from(needed).is_ok_and(|needed| needed <= MAX_ALLOWED_FLIGHTS) {
         format!("{problem}: {fewer}, or add --max-flights {needed}")
     } else {
-        format!("{problem}: {fewer}; --max-flights allows up to {MOST_FLIGHTS}")
+        format!("{problem}: {fewer}; --max-flights allows up to {MAX_ALLOWED_FLIGHTS}")
     }))
 }
 

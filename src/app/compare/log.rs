@@ -49,7 +49,7 @@ pub(super) fn run(args: &CompareArgs, path: &Path, repeat: &[String]) -> Result<
     let frame = *vehicle.local_frame().ok_or_else(|| AppError::internal("the craft has no position"))?;
     let settings = vehicle.controller().settings_view().unwrap_or_default();
     let route = Route::new(&plan.plan, &frame, &settings);
-    let measured = log.read(|flight, source| Track::of_log(flight, source, seed))?;
+    let measured = log.read(|flight, source| Track::from_log(flight, source, seed))?;
     upload(vehicle.controller_mut(), &plan.plan, &[]).map_err(AppError::input)?;
     let standing_m = vehicle.truth().map_or(0.0, |truth| truth.pos_enu.z);
     let begin_us = begin_of_log(log.flight()).0.saturating_sub(log.flight().first().0);

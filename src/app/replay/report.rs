@@ -42,7 +42,7 @@ impl<'a> Report<'a> {
     /// # Errors
     /// Returns the error of the output.
     pub(super) fn write_log(self, name: &str, log: &LogFlight, overview: &Overview) -> Result<(), AppError> {
-        let mut report = FlightReport::of_past(name, overview);
+        let mut report = FlightReport::from_past(name, overview);
         let is_setting = |name: &str| !FORMAT.iter().any(|format| name.starts_with(format));
         let lines = log.header().lines().filter(|(name, _)| is_setting(name));
         let (changed, others) = logged_settings(lines).into_iter().partition(LoggedSetting::is_changed);
@@ -67,7 +67,7 @@ impl<'a> Report<'a> {
         overview: &Overview,
     ) -> Result<(), AppError> {
         let settings = settings(recording);
-        self.write(FlightReport { settings, ..FlightReport::of_past(name, overview) })
+        self.write(FlightReport { settings, ..FlightReport::from_past(name, overview) })
     }
 
     fn write(self, report: FlightReport) -> Result<(), AppError> {

@@ -46,7 +46,7 @@ const HELD_COS_TILT: f64 = 0.966;
 /// The throttle range below the hover throttle that a craft needs to descend, µs, and the lowest floor that the
 /// parameters allow, µs.
 const DESCENT_RESERVE_US: f64 = 100.0;
-const LEAST_FLOOR_US: f64 = 1050.0;
+const MIN_FLOOR_US: f64 = 1050.0;
 /// The fastest change of the throttle limits in use, µs/s.
 const LIMIT_SLEW_US_PER_S: f64 = 500.0;
 
@@ -421,8 +421,8 @@ impl AltitudeController {
     fn floor_us(&self, params: &Params) -> f64 {
         let floor_us = f64::from(params.throttle_min);
         match self.hover.learned_us() {
-            Some(hover_us) if hover_us < floor_us => (hover_us - DESCENT_RESERVE_US).max(LEAST_FLOOR_US),
-            None if self.lifting_floor_us.is_some_and(|lifts| params.throttle_min >= lifts) => LEAST_FLOOR_US,
+            Some(hover_us) if hover_us < floor_us => (hover_us - DESCENT_RESERVE_US).max(MIN_FLOOR_US),
+            None if self.lifting_floor_us.is_some_and(|lifts| params.throttle_min >= lifts) => MIN_FLOOR_US,
             Some(_) | None => floor_us,
         }
     }

@@ -11,7 +11,7 @@ const DEG: f64 = std::f64::consts::PI / 180.0;
 const FALL_RPS: f64 = 10.0 * DEG;
 const RISE_RPS: f64 = 5.0 * DEG;
 /// The limit never falls below this, rad.
-const LEAST_RAD: f64 = 5.0 * DEG;
+const MIN_RAD: f64 = 5.0 * DEG;
 /// The reserve of thrust over weight that a lean must leave.
 const RESERVE: f64 = 1.05;
 /// The smallest reduction worth reporting, rad.
@@ -39,15 +39,15 @@ impl LeanLimiter {
         let found_rad = self.found_rad.unwrap_or(f64::INFINITY);
         self.found_rad = if altitude.sinks_at_full_throttle(now) {
             let tilt_rad = math::acos(now.cos_tilt.clamp(0.0, 1.0));
-            Some(found_rad.min(tilt_rad.max(LEAST_RAD)).min(max_rad) - FALL_RPS * now.dt)
+            Some(found_rad.min(tilt_rad.max(MIN_RAD)).min(max_rad) - FALL_RPS * now.dt)
         } else if altitude.has_throttle_to_spare() {
             Some(found_rad + RISE_RPS * now.dt)
         } else {
             Some(found_rad)
         }
         .filter(|found| *found < max_rad)
-        .map(|found| found.max(LEAST_RAD));
-        let limit_rad = self.found_rad.unwrap_or(max_rad).min(by_thrust_rad.max(LEAST_RAD)).min(max_rad);
+        .map(|found| found.max(MIN_RAD));
+        let limit_rad = self.found_rad.unwrap_or(max_rad).min(by_thrust_rad.max(MIN_RAD)).min(max_rad);
         self.is_reduced = limit_rad < max_rad - TOLD_RAD;
         limit_rad
     }

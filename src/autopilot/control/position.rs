@@ -29,7 +29,7 @@ const CHASE: f64 = 1.1;
 /// The distance from the target, in radii of the pattern, within which the trim is learned, and the maximum trim, in
 /// speeds of the target.
 const ON_PATTERN: f64 = 0.5;
-const MOST_TRIM: f64 = 0.5;
+const MAX_TRIM: f64 = 0.5;
 /// The lag of the velocity behind its setpoint, s.
 const VELOCITY_LAG_S: f64 = 0.3;
 /// The maximum lead of the speed setpoint over the speed while the thrust limits the lean, m/s.
@@ -285,7 +285,7 @@ impl PositionController {
         let (ahead, inside) = (along.dot(&error), inward.dot(&error));
         let step = Vector2::new(ahead * cos - inside * sin, ahead * sin + inside * cos);
         let trim = self.pattern_trim + step * (math::powi(stiffness / 2.0, 2) * dt);
-        self.pattern_trim = trim.cap_magnitude(MOST_TRIM * speed);
+        self.pattern_trim = trim.cap_magnitude(MAX_TRIM * speed);
     }
 
     fn filter_accel(&mut self, now: &PositionMeasurement, params: &Params, dt: f64) {

@@ -19,7 +19,7 @@ pub fn turn_radius_m(ground_speed_mps: f64, max_lean_rad: f64) -> f64 {
 }
 
 /// The shortest leg (m) that has a direction.
-pub(crate) const SHORTEST_LEG_M: f64 = 0.1;
+pub(crate) const MIN_LEG_M: f64 = 0.1;
 
 /// The position of a step of the craft relative to the vertical plane through a waypoint, perpendicular to the
 /// inbound leg.
@@ -51,7 +51,7 @@ pub fn plane_crossing(
 ) -> PlaneCrossing {
     let leg = waypoint - leg_start;
     let length = leg.norm();
-    if length < SHORTEST_LEG_M {
+    if length < MIN_LEG_M {
         return PlaneCrossing::NoLeg;
     }
     let along = leg / length;

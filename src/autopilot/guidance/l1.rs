@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_6, TAU};
 
 use nalgebra::Vector2;
 
-use super::corner::SHORTEST_LEG_M;
+use super::corner::MIN_LEG_M;
 use crate::autopilot::params::Params;
 use crate::geo::wrap_pi;
 use crate::math;
@@ -79,7 +79,7 @@ pub fn l1(
     let leg = end - start;
     let length_m = leg.norm();
     let lookahead_m = limits.lookahead_m(velocity.norm());
-    if length_m < SHORTEST_LEG_M {
+    if length_m < MIN_LEG_M {
         let (eta_rad, a_lat_mps2) = steering(end - position, velocity);
         return L1Result {
             length_m,

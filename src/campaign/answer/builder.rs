@@ -55,7 +55,7 @@ struct OneSide {
 }
 
 impl AnswerBuilder {
-    /// Returns the answer of no flights. `wanted` is their number; `has_two_sides` says that each is flown twice.
+    /// Returns an empty answer for `wanted` flights. With `has_two_sides`, each flight is flown twice.
     pub fn new(scenario: &Scenario, wanted: u64, has_two_sides: bool) -> Self {
         let metrics =
             Metric::iter().map(|metric| Quantity { name: metric.to_string(), dimension: metric.dimension() });

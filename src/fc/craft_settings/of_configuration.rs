@@ -9,7 +9,7 @@ const KEPT: &str = "A setting of another build: kept and printed, without an eff
 
 impl CraftSettings {
     /// Returns the settings in the active profiles. A restart brings back the configuration `saved`, if it is known.
-    pub fn of_configuration(now: &Configuration, saved: Option<&Configuration>) -> Self {
+    pub fn from_configuration(now: &Configuration, saved: Option<&Configuration>) -> Self {
         let rows = settings::grouped().map(|(group, setting)| row(group, setting, now, saved));
         Self { all: rows.chain(kept(now)).collect() }
     }
@@ -80,7 +80,7 @@ mod tests {
         let saved = now.clone();
         now.settings.set_number("ap_max_angle", 25).unwrap();
         now.settings.set_number("p_roll", 60).unwrap();
-        let read = CraftSettings::of_configuration(&now, Some(&saved));
+        let read = CraftSettings::from_configuration(&now, Some(&saved));
         assert_eq!(read.all.len(), settings::SETTINGS.len());
         let angle = read.find("AP_MAX_ANGLE").unwrap();
         assert_eq!((angle.value.as_str(), angle.default.as_deref()), ("25", Some("50")));

@@ -7,9 +7,9 @@ use crate::firmware::settings;
 /// The most settings that are read, several times those of any firmware.
 const MOST: usize = 5000;
 /// The most words of a list.
-const MOST_WORDS: usize = 1000;
+const MAX_WORDS: usize = 1000;
 /// The longest text that is taken for the name of a setting, bytes.
-const LONGEST_NAME: usize = 64;
+const MAX_NAME: usize = 64;
 /// The first words of the lines below a value.
 const RANGE: &str = "Allowed range:";
 const WORDS: &str = "Allowed values:";
@@ -21,7 +21,7 @@ const PROFILES: [&str; 3] = ["profile", "rateprofile", "battery_profile"];
 
 impl CraftSettings {
     /// Returns the settings in an output of `get`, those of the embedded firmware's table first and in its order.
-    pub fn of_get(output: &str) -> Self {
+    pub fn from_get(output: &str) -> Self {
         let mut all: Vec<CraftSetting> = Vec::new();
         for line in output.lines().map(str::trim) {
             match (value_line(line), all.last_mut()) {
@@ -52,7 +52,7 @@ impl CraftSettings {
 fn value_line(line: &str) -> Option<(&str, &str)> {
     let (name, value) = line.split_once(" =")?;
     let is_name = !name.is_empty()
-        && name.len() <= LONGEST_NAME
+        && name.len() <= MAX_NAME
         && name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
     is_name.then(|| (name, value.trim()))
 }
@@ -66,7 +66,7 @@ fn take_detail(setting: &mut CraftSetting, line: &str) {
         }
     } else if let Some(words) = line.strip_prefix(WORDS) {
         let words = words.split(',').map(str::trim).filter(|word| !word.is_empty());
-        setting.allowed = Allowed::Words(words.take(MOST_WORDS).map(str::to_owned).collect());
+        setting.allowed = Allowed::Words(words.take(MAX_WORDS).map(str::to_owned).collect());
     } else if let Some(length) = line.strip_prefix(LENGTH) {
         setting.allowed = length.trim().parse().map_or(Allowed::Unknown, Allowed::Numbers);
     } else if let Some(length) = line.strip_prefix(TEXT) {
@@ -103,7 +103,7 @@ mod tests {
 
     #[test]
     fn the_output_of_another_firmware_is_read_in_the_order_of_the_reference() {
-        let read = CraftSettings::of_get(OUTPUT);
+        let read = CraftSettings::from_get(OUTPUT);
         let names: Vec<&str> = read.all.iter().map(|setting| setting.name.as_str()).collect();
         assert_eq!(names, ["gyro_lpf1_type", "acc_calibration", "p_roll", "craft_name", "ap_new_thing"]);
         let roll = read.find("p_roll").unwrap();
@@ -118,7 +118,7 @@ mod tests {
         assert!(
             matches!(&read.find("gyro_lpf1_type").unwrap().allowed, Allowed::Words(words) if words.len() == 4)
         );
-        assert_eq!(CraftSettings::of_get("###ERROR: CLOSED###\r\n"), CraftSettings::default());
+        assert_eq!(CraftSettings::from_get("###ERROR: CLOSED###\r\n"), CraftSettings::default());
     }
 
     #[test]
@@ -127,8 +127,8 @@ mod tests {
         let mut console = Interpreter::default();
         firmware.run_cli(&mut console, "set ap_max_angle = 25");
         firmware.run_cli(&mut console, "set rc_smoothing = OFF");
-        let printed = CraftSettings::of_get(&firmware.run_cli(&mut console, "get").text);
-        let held = CraftSettings::of_configuration(firmware.configuration(), None);
+        let printed = CraftSettings::from_get(&firmware.run_cli(&mut console, "get").text);
+        let held = CraftSettings::from_configuration(firmware.configuration(), None);
         assert_eq!(printed.all.len(), held.all.len());
         for (printed, held) in std::iter::zip(&printed.all, &held.all) {
             // Ports have no line with their range, and the role is not printed for most settings.
@@ -144,7 +144,7 @@ mod tests {
     proptest! {
         #[test]
         fn any_output_is_read(lines in prop::collection::vec("[a-z_0-9]{0,8}( = |: | - |,| )?[-0-9A-Za-z, ]{0,12}", 0..40)) {
-            let read = CraftSettings::of_get(&lines.join("\r\n"));
+            let read = CraftSettings::from_get(&lines.join("\r\n"));
             prop_assert!(read.all.len() <= lines.len());
             for setting in &read.all {
                 let _ = (setting.read("1"), setting.nudged(1), setting.allowed.to_string());

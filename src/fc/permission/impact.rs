@@ -112,12 +112,12 @@ impl Impact {
 
     /// Returns the impact of a line of the command line, both as typed and as sent. For several lines it is
     /// the worst.
-    pub fn of_line(line: &str) -> Self {
-        let typed = line.split(['\r', '\n']).map(Self::of_single_line);
-        typed.fold(Self::of_single_line(&sent_line(line)), Self::max)
+    pub fn from_line(line: &str) -> Self {
+        let typed = line.split(['\r', '\n']).map(Self::from_single_line);
+        typed.fold(Self::from_single_line(&sent_line(line)), Self::max)
     }
 
-    fn of_single_line(line: &str) -> Self {
+    fn from_single_line(line: &str) -> Self {
         let line = line.trim();
         let word_end = line.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(line.len());
         let (word, rest) = line.split_at(word_end);
@@ -144,7 +144,7 @@ impl Impact {
     }
 
     /// Returns the impact of an MSP message. An unknown message may change the craft.
-    pub fn of_message(code: u16, payload: &[u8]) -> Self {
+    pub fn from_message(code: u16, payload: &[u8]) -> Self {
         match code {
             // Configurators set the time of day at every connection.
             code::SET_RTC => Self::Reads,
@@ -159,7 +159,7 @@ impl Impact {
                 // The flight controller takes arbitrary data as the payload of each message.
                 let of_each = |code: &u8| match u16::from(*code) {
                     code::MULTIPLE_MSP => Self::Changes,
-                    code => Self::of_message(code, &[u8::MAX]),
+                    code => Self::from_message(code, &[u8::MAX]),
                 };
                 payload.iter().map(of_each).max().unwrap_or(Self::Reads)
             }
@@ -213,7 +213,7 @@ mod tests {
             "dma show",
             "waypoint list",
         ] {
-            assert_eq!(Impact::of_line(line), Impact::Reads, "{line}");
+            assert_eq!(Impact::from_line(line), Impact::Reads, "{line}");
         }
     }
 
@@ -250,7 +250,7 @@ mod tests {
             "status\nsave",
             "= 1",
         ] {
-            assert_eq!(Impact::of_line(line), Impact::Changes, "{line}");
+            assert_eq!(Impact::from_line(line), Impact::Changes, "{line}");
         }
     }
 
@@ -264,10 +264,10 @@ mod tests {
             "motor_0 1200",
             "get x\rmotor 0 1200",
         ] {
-            assert_eq!(Impact::of_line(line), MOVES, "{line}");
+            assert_eq!(Impact::from_line(line), MOVES, "{line}");
         }
         for line in ["bl", "bl rom", "msc", "serialpassthrough 1", "gpspassthrough"] {
-            assert_eq!(Impact::of_line(line), Impact::Forbidden(TAKES_PORT), "{line}");
+            assert_eq!(Impact::from_line(line), Impact::Forbidden(TAKES_PORT), "{line}");
         }
         for access in [Access::Reading, Access::Changing] {
             assert_eq!(access.check(MOVES), Err(Denial::Never(NOTHING_MOVES)));
@@ -277,7 +277,7 @@ mod tests {
 
     #[test]
     fn every_command_of_the_embedded_firmware_is_sorted() {
-        let reads = |name: &&str| Impact::of_line(name) == Impact::Reads;
+        let reads = |name: &&str| Impact::from_line(name) == Impact::Reads;
         let others: Vec<&str> =
             COMMANDS.iter().map(|command| command.name).filter(|name| !reads(name)).collect();
         let changing_alone = [
@@ -296,7 +296,7 @@ mod tests {
 
     #[test]
     fn messages_are_sorted_by_what_they_do() {
-        let of = |code| Impact::of_message(code, &[]);
+        let of = |code| Impact::from_message(code, &[]);
         for read in [1, 2, 101, 102, 105, 106, 109, 116, 150, 254, 0x3006] {
             assert_eq!(of(read), Impact::Reads, "{read}");
         }
@@ -306,14 +306,14 @@ mod tests {
         for moving in MOVING_MESSAGES {
             assert_eq!(of(moving), MOVES, "{moving}");
         }
-        assert_eq!((of(68), Impact::of_message(68, &[0])), (Impact::Changes, Impact::Changes));
-        assert_eq!(Impact::of_message(68, &[1]), Impact::Forbidden(TAKES_PORT));
+        assert_eq!((of(68), Impact::from_message(68, &[0])), (Impact::Changes, Impact::Changes));
+        assert_eq!(Impact::from_message(68, &[1]), Impact::Forbidden(TAKES_PORT));
         assert_eq!(of(245), Impact::Forbidden(TAKES_PORT));
     }
 
     #[test]
     fn a_message_of_messages_does_what_the_worst_of_them_does() {
-        let of = |codes: &[u8]| Impact::of_message(230, codes);
+        let of = |codes: &[u8]| Impact::from_message(230, codes);
         assert_eq!(of(&[]), Impact::Reads);
         assert_eq!(of(&[1, 2, 108]), Impact::Reads);
         assert_eq!(of(&[108, 250]), Impact::Changes);
@@ -325,20 +325,20 @@ mod tests {
     #[test]
     fn no_message_disarms_a_craft_and_what_lets_it_arm_again_is_a_change() {
         for disarming in [&[1][..], &[1, 0], &[255, 1]] {
-            assert_eq!(Impact::of_message(99, disarming), MOVES, "{disarming:?}");
+            assert_eq!(Impact::from_message(99, disarming), MOVES, "{disarming:?}");
         }
         for arming in [&[][..], &[0], &[0, 1]] {
-            assert_eq!(Impact::of_message(99, arming), Impact::Changes, "{arming:?}");
+            assert_eq!(Impact::from_message(99, arming), Impact::Changes, "{arming:?}");
         }
-        assert_eq!(Impact::of_message(211, &[90, 0]), MOVES, "a heading to turn to");
+        assert_eq!(Impact::from_message(211, &[90, 0]), MOVES, "a heading to turn to");
     }
 
     #[test]
     fn letters_that_are_not_sent_hide_nothing() {
-        assert_eq!(Impact::of_line("mo\u{200b}tor 1 1500"), MOVES);
-        assert_eq!(Impact::of_line("mo\rtor 1 1500"), MOVES);
-        assert_eq!(Impact::of_line("serial\u{1}passthrough 1"), Impact::Forbidden(TAKES_PORT));
-        assert_eq!(Impact::of_line("aux\u{1} 0"), Impact::Changes);
+        assert_eq!(Impact::from_line("mo\u{200b}tor 1 1500"), MOVES);
+        assert_eq!(Impact::from_line("mo\rtor 1 1500"), MOVES);
+        assert_eq!(Impact::from_line("serial\u{1}passthrough 1"), Impact::Forbidden(TAKES_PORT));
+        assert_eq!(Impact::from_line("aux\u{1} 0"), Impact::Changes);
     }
 
     proptest::proptest! {
@@ -348,7 +348,7 @@ mod tests {
             word in "(?i)motor",
             values in "[ \t]{1,3}[0-9]{1,3}[ \t]{1,3}[0-9]{1,5}[ \t]{0,2}",
         ) {
-            proptest::prop_assert_eq!(Impact::of_line(&format!("{before}{word}{values}")), MOVES);
+            proptest::prop_assert_eq!(Impact::from_line(&format!("{before}{word}{values}")), MOVES);
         }
 
         #[test]
@@ -359,7 +359,7 @@ mod tests {
             values in " [0-9]{1,3} [0-9]{1,5}",
         ) {
             let line = format!("{}{unsent}{}{values}", &word[..at], &word[at..]);
-            proptest::prop_assert_eq!(Impact::of_line(&line), MOVES);
+            proptest::prop_assert_eq!(Impact::from_line(&line), MOVES);
         }
     }
 }

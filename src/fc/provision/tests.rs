@@ -154,7 +154,7 @@ fn a_save_that_is_refused_ends_it_and_a_lost_answer_too() {
     let report = provision.result().unwrap().unwrap();
     assert_eq!(report.refused[0].reason, "ERROR IN save: NOT WHILE ARMED");
     let mut lost = Provision::new(of_user(["set ap_max_angle = 20"]), true);
-    for _ in 0..=MOST_LOST {
+    for _ in 0..=MAX_LOST {
         assert!(lost.result().is_none(), "it begins again");
         assert_eq!(lost.next(), Some(Ask::Line("get ap_max_angle".to_owned())));
         lost.take(&Answer::NotAnswered(Unanswered::LinkLost));

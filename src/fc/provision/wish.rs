@@ -46,7 +46,7 @@ impl Wish {
     }
 }
 
-/// Returns the wishes of these lines. Of two for the same item the last one counts.
+/// Parses the requested settings. A later line overrides an earlier one for the same item.
 pub(super) fn wishes<L: AsRef<str>>(lines: impl IntoIterator<Item = L>) -> Vec<Wish> {
     let mut in_profile = false;
     let mut wishes = Vec::new();

@@ -5,7 +5,7 @@ use crate::plan::WaypointType;
 use crate::telemetry::{AbortReason, NavState};
 
 /// The maximum number of waypoints that are read from a list.
-const MOST_WAYPOINTS: usize = 256;
+const MAX_WAYPOINTS: usize = 256;
 
 /// The mission that a flight controller reports.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -68,7 +68,7 @@ impl Mission {
                 "abort reason" => cause = Some(rest).filter(|cause| *cause != "NONE"),
                 "current waypoint" => mission.read_current(rest),
                 "distance" => mission.read_distance(line),
-                _ if line.starts_with('[') && mission.waypoints.len() < MOST_WAYPOINTS => {
+                _ if line.starts_with('[') && mission.waypoints.len() < MAX_WAYPOINTS => {
                     mission.waypoints.extend(planned_waypoint(line));
                 }
                 _ => {}

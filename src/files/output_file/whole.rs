@@ -250,7 +250,7 @@ fn name(file: NamedTempFile, path: &Path, permissions: Option<Permissions>) -> i
 
 /// Returns `true` if a path goes through a directory of devices and open descriptors.
 fn is_of_system(path: &Path) -> bool {
-    const MOST_LINKS: usize = 40;
+    const MAX_LINKS: usize = 40;
     let next = |path: &PathBuf| {
         let target = std::fs::read_link(path).ok()?;
         Some(directory_of(path).join(target))
@@ -259,7 +259,7 @@ fn is_of_system(path: &Path) -> bool {
         let directory = directory_of(&path).canonicalize();
         directory.is_ok_and(|directory| directory.starts_with("/dev") || directory.starts_with("/proc"))
     };
-    std::iter::successors(Some(path.to_owned()), next).take(MOST_LINKS).any(lies_there)
+    std::iter::successors(Some(path.to_owned()), next).take(MAX_LINKS).any(lies_there)
 }
 
 #[cfg(test)]

@@ -51,14 +51,14 @@ pub enum LogPart {
 }
 
 /// The most parts of a step: two events, states, a main frame, home, a solution.
-pub(super) const MOST_PARTS: usize = 6;
+pub(super) const MAX_PARTS: usize = 6;
 
 /// What a step noted.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Notes {
     /// Lines of the header.
     pub(super) text: LogBuffer,
-    pub(super) parts: ArrayVec<LogPart, MOST_PARTS>,
+    pub(super) parts: ArrayVec<LogPart, MAX_PARTS>,
     /// The state for the main frame among the parts.
     pub(super) main: MainState,
 }

@@ -16,7 +16,7 @@ use crate::math;
 /// The full stick deflection, RC command units.
 const FULL_STICK: f64 = 500.0;
 /// The longest plausible step, s.
-const LONGEST_STEP_S: f64 = 0.05;
+const MAX_STEP_S: f64 = 0.05;
 /// The relative change of the step length that needs new filter coefficients.
 const STEP_TOLERANCE: f64 = 0.01;
 
@@ -122,7 +122,7 @@ impl Controller {
     /// Runs one step of `dt` seconds.
     #[inline(always)]
     pub fn step(&mut self, input: &ControlInput, estimate: &Estimate, dt: f64) -> &ControlState {
-        let dt = if dt > 0.0 { dt.min(LONGEST_STEP_S) } else { self.derived.dt };
+        let dt = if dt > 0.0 { dt.min(MAX_STEP_S) } else { self.derived.dt };
         if (dt - self.derived.dt).abs() > STEP_TOLERANCE * self.derived.dt {
             self.derived = Derived::new(&self.tuning, dt);
             self.smoothing.invalidate();

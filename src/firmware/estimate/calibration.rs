@@ -12,8 +12,8 @@ const ACC_SAMPLES: u32 = 400;
 const MAG_CALIBRATION_S: f64 = 30.0;
 /// Signs that the craft was turned: the least ratio of the smallest span of an axis to the largest, and of the largest
 /// span to the farthest sample.
-const LEAST_ROUNDNESS: f64 = 0.5;
-const LEAST_SPAN: f64 = 0.5;
+const MIN_ROUNDNESS: f64 = 0.5;
+const MIN_SPAN: f64 = 0.5;
 /// A field in sensor units that keeps the numbers of the fit near one.
 const MAG_UNIT: f64 = 1000.0;
 /// Accelerometer units of the stored calibration per g.
@@ -141,7 +141,7 @@ impl MagCalibration {
         }
         let span = self.high - self.low;
         let farthest = self.high.abs().sup(&self.low.abs()).norm();
-        let turned = span.min() >= LEAST_ROUNDNESS * span.max() && span.max() >= LEAST_SPAN * farthest;
+        let turned = span.min() >= MIN_ROUNDNESS * span.max() && span.max() >= MIN_SPAN * farthest;
         let centre = self.normal.lu().solve(&self.right).map(|fit| fit.xyz() * MAG_UNIT);
         let found = centre.filter(|centre| turned && centre.iter().all(|axis| axis.is_finite()));
         Some(

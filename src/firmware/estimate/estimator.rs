@@ -25,7 +25,7 @@ const IMPACT: f64 = 150.0;
 const SLOW_S: f64 = 0.01;
 /// The longest step that is integrated, s. After a stall the craft is assumed to be at its last position, not further
 /// along its path.
-const LONGEST_STEP_S: f64 = 0.05;
+const MAX_STEP_S: f64 = 0.05;
 /// The largest plausible sensor readings, rad/s and m/s². Beyond them the sensor is broken.
 const RATE_LIMIT: f64 = 60.0;
 const FORCE_LIMIT: f64 = 500.0;
@@ -208,7 +208,7 @@ impl Estimator {
     /// Processes one frame. Returns the slower loops that run in this step.
     pub fn update(&mut self, frame: &SensorFrame) -> DueTasks {
         let now = frame.time;
-        let dt = self.time.map_or(0.0, |last| now.seconds_since(last)).min(LONGEST_STEP_S);
+        let dt = self.time.map_or(0.0, |last| now.seconds_since(last)).min(MAX_STEP_S);
         let is_first = self.time.replace(now).is_none();
         let rate = self.take_inertial(frame, dt);
         if is_first {
@@ -288,7 +288,7 @@ impl Estimator {
     }
 
     fn slow_step(&mut self, frame: &SensorFrame, now: SimTime) {
-        let dt = now.seconds_since(self.slow_time).min(2.0 * LONGEST_STEP_S);
+        let dt = now.seconds_since(self.slow_time).min(2.0 * MAX_STEP_S);
         self.slow_time = now;
         let force = self.world_sum / self.world_samples.max(1.0);
         (self.world_sum, self.world_samples) = (Vector3::zeros(), 0.0);

@@ -17,7 +17,7 @@ const DEPTH: usize = 32;
 /// The number of solutions between the ends of a comparison: 1 s at 10 Hz.
 const WINDOW: usize = 10;
 /// The least change of velocity over the window that indicates a direction, m/s, and the change with full weight.
-const LEAST_CHANGE: f64 = 1.0;
+const MIN_CHANGE: f64 = 1.0;
 const FULL_CHANGE: f64 = 3.0;
 /// The share of the disagreement that one comparison corrects.
 const SHARE: f64 = 0.05;
@@ -141,7 +141,7 @@ impl CourseComparison {
             self.evidence += Vector2::new(felt.dot(&seen), seen.perp(&felt));
             self.evidence_size += felt.norm() * seen.norm();
         }
-        if size < LEAST_CHANGE {
+        if size < MIN_CHANGE {
             return 0.0;
         }
         // Bearings grow from north to east.

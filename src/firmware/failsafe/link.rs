@@ -3,7 +3,7 @@
 use crate::signals::SimTime;
 
 /// The shortest delay of either edge, s.
-const SHORTEST_DELAY_S: f64 = 0.1;
+const MIN_DELAY_S: f64 = 0.1;
 
 /// The delays of the link.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,14 +64,14 @@ impl LinkMonitor {
         if signal {
             self.last_valid = last_frame;
             let since = *self.signal_since.get_or_insert(now);
-            if at_once || now.seconds_since(since) >= config.recovery_delay_s.max(SHORTEST_DELAY_S) {
+            if at_once || now.seconds_since(since) >= config.recovery_delay_s.max(MIN_DELAY_S) {
                 self.good = true;
                 self.up = true;
             }
         } else {
             self.signal_since = None;
             self.good = false;
-            let delay_s = config.delay_s.max(SHORTEST_DELAY_S);
+            let delay_s = config.delay_s.max(MIN_DELAY_S);
             self.up &= self.last_valid.is_some_and(|last| now.seconds_since(last) <= delay_s);
         }
         match (had_signal, signal) {

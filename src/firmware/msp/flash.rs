@@ -8,7 +8,7 @@ use crate::msp::Writer;
 const READY: i64 = 1;
 const SUPPORTED: i64 = 2;
 /// The most bytes of a reply.
-const MOST_BYTES: u16 = 4096;
+const MAX_BYTES: u16 = 4096;
 /// The bytes of a request that names no number.
 const USUAL_BYTES: u16 = 128;
 /// The data are as they are in the memory.
@@ -34,7 +34,7 @@ pub(super) fn read(call: &mut Call<'_>) -> Result<(), Refused> {
     }
     let address = call.request.u32();
     let length = if call.request.remaining() == 0 { USUAL_BYTES } else { call.request.u16() };
-    call.action = Some(MspAction::ReadFlash { address, length: length.min(MOST_BYTES) });
+    call.action = Some(MspAction::ReadFlash { address, length: length.min(MAX_BYTES) });
     Ok(())
 }
 

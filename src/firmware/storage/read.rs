@@ -12,15 +12,15 @@ use std::str::FromStr;
 use strum::IntoEnumIterator;
 
 /// The most fields of a record that are read. No record has that many.
-const MOST_FIELDS: usize = 16;
+const MAX_FIELDS: usize = 16;
 /// The most bytes of records of other versions that are kept.
-const MOST_UNKNOWN: usize = 1 << 16;
+const MAX_UNKNOWN: usize = 1 << 16;
 /// The cost of such a record in addition to its own bytes.
 const UNKNOWN_COST: usize = 32;
 /// The most unusable records that are named. The others are only counted.
-const MOST_NAMED: usize = 20;
+const MAX_NAMED: usize = 20;
 /// The most characters of a name in a finding.
-const LONGEST_NAME: usize = 40;
+const MAX_NAME: usize = 40;
 
 /// Builds a configuration from a payload. The sentences list the records that could not be used.
 pub(super) fn configuration(payload: &str) -> (Configuration, Vec<String>) {
@@ -30,15 +30,15 @@ pub(super) fn configuration(payload: &str) -> (Configuration, Vec<String>) {
     let (mut unknown, mut dropped, mut unnamed) = (0, 0_usize, 0_usize);
     for line in payload.lines().filter(|line| !line.is_empty()) {
         let (kind, rest) = line.split_once('\t').unwrap_or((line, ""));
-        let fields: Vec<&str> = rest.split('\t').take(MOST_FIELDS).collect();
+        let fields: Vec<&str> = rest.split('\t').take(MAX_FIELDS).collect();
         match record(&mut configuration, kind, &fields) {
             Outcome::Taken => {}
-            Outcome::Unknown if unknown + line.len() + UNKNOWN_COST > MOST_UNKNOWN => dropped += 1,
+            Outcome::Unknown if unknown + line.len() + UNKNOWN_COST > MAX_UNKNOWN => dropped += 1,
             Outcome::Unknown => {
                 unknown += line.len() + UNKNOWN_COST;
                 configuration.unknown_records.push(line.to_owned());
             }
-            Outcome::Refused if findings.len() == MOST_NAMED => unnamed += 1,
+            Outcome::Refused if findings.len() == MAX_NAMED => unnamed += 1,
             Outcome::Refused => findings.push(describe(kind, &fields)),
             Outcome::PlanFull => plan_is_too_long = true,
         }
@@ -59,7 +59,7 @@ pub(super) fn configuration(payload: &str) -> (Configuration, Vec<String>) {
 fn describe(kind: &str, fields: &[&str]) -> String {
     let what = match fields.first() {
         Some(first) if matches!(kind, "setting" | "mode" | "mix" | "rxfail" | "rxrange" | "serial") => {
-            format!("{kind} {}", first.chars().take(LONGEST_NAME).collect::<String>())
+            format!("{kind} {}", first.chars().take(MAX_NAME).collect::<String>())
         }
         _ => kind.to_owned(),
     };

@@ -241,7 +241,7 @@ impl FdmLink {
         }
         let elapsed_us = u64::from(ticks) * self.config.tick_us;
 
-        let dialect = *self.dialect.get_or_insert_with(|| Dialect::of_size(packet.size));
+        let dialect = *self.dialect.get_or_insert_with(|| Dialect::from_size(packet.size));
         if self.config.dialect.is_none() {
             received.notices.extend(self.gravity.watch(packet, dialect, elapsed_us));
         }

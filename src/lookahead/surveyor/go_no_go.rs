@@ -63,7 +63,7 @@ pub(super) fn record(
         world.wind = air.wind;
         world.noise = Noise::Real;
     })?;
-    let mut flown = CaseFlight::of_vehicle(&flight.case, craft)?;
+    let mut flown = CaseFlight::from_vehicle(&flight.case, craft)?;
     let mut runner = Runner::new(flown.vehicle().step_us(), f64::INFINITY, None);
     let is_over = runner.fly(&mut flown, &mut (), is_stopped).is_ok();
     Ok(is_over.then(|| Record::of(flight, Side::A, &flown.finish(), None)))

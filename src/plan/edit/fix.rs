@@ -15,7 +15,7 @@ const INSIDE_FENCE: f64 = 0.95;
 const RAISED_M: f64 = 10.0;
 
 /// The time of a HOLD that only waits for its altitude, s; 0 would hold forever.
-const SHORTEST_HOLD_S: f64 = 0.1;
+const MIN_HOLD_S: f64 = 0.1;
 /// The time suggested for a HOLD that lasts forever, s.
 const OFFERED_HOLD_S: f64 = 10.0;
 
@@ -103,7 +103,7 @@ pub fn fix(document: &PlanDocument, finding: &Finding, home: LatLon) -> Option<F
                 kind: WaypointType::Hold,
                 position: place.unwrap_or(home),
                 altitude: Altitude::above_home(alt_m),
-                duration: Seconds::new(SHORTEST_HOLD_S),
+                duration: Seconds::new(MIN_HOLD_S),
                 pattern: HoldPattern::None,
                 ..Waypoint::default()
             };

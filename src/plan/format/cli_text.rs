@@ -21,16 +21,16 @@ const VALUES: [&str; 8] =
 const OPERATIONS: [&str; 6] = ["insert", "update", "remove", "clear", "list", "status"];
 
 /// The most values of a line that are read: one more than any operation takes, and the two words before them.
-const MOST_WORDS: usize = VALUES.len() + 3;
+const MAX_WORDS: usize = VALUES.len() + 3;
 
 /// The most waypoints that are kept while later lines may still remove some.
-const MOST_INSERTED: usize = 1000;
+const MAX_INSERTED: usize = 1000;
 
 /// The most different commands with a count of their own.
-const MOST_NOTES: usize = 30;
+const MAX_NOTES: usize = 30;
 
 /// The longest command name in a note.
-const LONGEST_NAME: usize = 40;
+const MAX_NAME: usize = 40;
 
 /// The state of the reader after some lines.
 struct Reader<'p, 'a> {
@@ -91,7 +91,7 @@ impl Reader<'_, '_> {
                 format!("{command} is not a command"),
                 "did you mean waypoint?",
             ),
-            other if other.len() <= LONGEST_NAME => self.note(NoteKind::Command(other.to_owned()), number),
+            other if other.len() <= MAX_NAME => self.note(NoteKind::Command(other.to_owned()), number),
             _ => self.note(NoteKind::Others, number),
         }
     }
@@ -99,7 +99,7 @@ impl Reader<'_, '_> {
     fn note(&mut self, kind: NoteKind, line: usize) {
         let is_new_command =
             matches!(kind, NoteKind::Command(_)) && self.notes.iter().all(|note| note.kind != kind);
-        let is_full = self.notes.len() >= MOST_NOTES;
+        let is_full = self.notes.len() >= MAX_NOTES;
         let kind = if is_new_command && is_full { NoteKind::Others } else { kind };
         match self.notes.iter_mut().find(|note| note.kind == kind) {
             Some(note) => note.count += 1,
@@ -155,7 +155,7 @@ impl Reader<'_, '_> {
             pattern: self.value(arguments.get(7), field::pattern),
         };
         let waypoint = record.into();
-        if insert && self.waypoints.len() == MOST_INSERTED {
+        if insert && self.waypoints.len() == MAX_INSERTED {
             self.gave_up = true;
         } else if insert {
             // A faulty waypoint still takes its index, so that the lines after it give no false problems.
@@ -228,7 +228,7 @@ impl Reader<'_, '_> {
 /// Returns the words of a line that starts at byte `start` of the text, up to the limit.
 fn words(line: &str, start: usize) -> Vec<Word<'_>> {
     line.split_ascii_whitespace()
-        .take(MOST_WORDS)
+        .take(MAX_WORDS)
         .map(|word| {
             let at = start + (word.as_ptr() as usize - line.as_ptr() as usize);
             (word, at..at + word.len())
@@ -311,9 +311,9 @@ mod tests {
         assert_eq!(notes[4], "Skipped 1 `save` line (first: line 11)");
         let many: String = (0..100).map(|at| format!("other{at}\nother0\n")).collect();
         let notes = read_text(&format!("{TWO}{many}{}", "x".repeat(99))).notes;
-        assert_eq!(notes.len(), MOST_NOTES + 1);
+        assert_eq!(notes.len(), MAX_NOTES + 1);
         assert_eq!(notes[0].count, 101);
-        assert_eq!(notes[MOST_NOTES].to_string(), "Skipped 71 other lines (first: line 64)");
+        assert_eq!(notes[MAX_NOTES].to_string(), "Skipped 71 other lines (first: line 64)");
         assert_eq!(read_text("save").notes.last().unwrap().kind, NoteKind::NoWaypoints);
     }
 
@@ -369,7 +369,7 @@ mod tests {
         assert_eq!(headlines(&lines(33)), ["plan.txt:31:17: waypoint 30 does not fit: 33 are inserted"]);
         assert_eq!(read_text(&format!("{}waypoint remove 3", lines(31))).plan.waypoints.len(), 30);
         assert_eq!(read_text(&format!("{}waypoint clear", lines(40))).plan.waypoints.len(), 0);
-        let far_too_many = headlines(&format!("{}waypoint clear", lines(MOST_INSERTED + 1)));
+        let far_too_many = headlines(&format!("{}waypoint clear", lines(MAX_INSERTED + 1)));
         assert_eq!(far_too_many, ["plan.txt:31:17: waypoint 30 does not fit: more than 1000 are inserted"]);
     }
 

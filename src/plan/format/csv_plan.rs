@@ -16,7 +16,7 @@ const NEEDED: [&str; 4] = ["type", "lat_deg", "lon_deg", "alt_m"];
 /// The column that is written only if a waypoint needs it.
 const YAW_RATE: &str = "yaw_rate_dps";
 /// The longest duration, s.
-const LONGEST_S: f64 = 6553.5;
+const MAX_S: f64 = 6553.5;
 
 /// Returns `true` if the text begins with the header of a table of waypoints.
 pub(super) fn is_header(text: &str) -> bool {
@@ -104,13 +104,13 @@ impl TableReader {
         });
         let speed = row.read(speed, problems, |text| {
             let mps = number("speed", false)(text)?;
-            let range = format!("allowed: 0 to {} m/s", LegSpeed::MOST_MPS);
+            let range = format!("allowed: 0 to {} m/s", LegSpeed::MAX_MPS);
             LegSpeed::checked(mps).ok_or_else(|| format!("speed {mps} is out of range; {range}"))
         });
         let seconds = row.read(duration, problems, |text| {
             let seconds = number("duration", false)(text)?;
-            let range = format!("allowed: 0 to {LONGEST_S} s");
-            let is_good = (0.0..=LONGEST_S).contains(&seconds);
+            let range = format!("allowed: 0 to {MAX_S} s");
+            let is_good = (0.0..=MAX_S).contains(&seconds);
             if is_good { Ok(seconds) } else { Err(format!("duration {seconds} is out of range; {range}")) }
         });
         let pattern = row.read(pattern, problems, |text| match text {

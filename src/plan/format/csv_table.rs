@@ -8,14 +8,14 @@ use super::Problems;
 use super::bounds::MAX_ITEMS;
 
 /// The most values in a line.
-const MOST_VALUES: usize = 256;
+const MAX_VALUES: usize = 256;
 
 /// Returns the names of the columns of a text, in lower case, and the separator.
 pub(super) fn header(text: &str) -> (Vec<String>, u8) {
     let line = text.lines().find(|line| !line.trim().is_empty()).unwrap_or_default();
     let count = |separator: char| line.matches(separator).count();
     let separator = if count(';') > count(',') { b';' } else { b',' };
-    let names = line.split(char::from(separator)).take(MOST_VALUES);
+    let names = line.split(char::from(separator)).take(MAX_VALUES);
     let clean = |name: &str| name.trim().trim_matches('"').trim().to_ascii_lowercase();
     (names.map(clean).collect(), separator)
 }
@@ -46,8 +46,8 @@ impl<'t> Table<'t> {
         let mut start = 0;
         for line in text.split_inclusive('\n') {
             let separators = line.bytes().filter(|byte| b",;".contains(byte)).count();
-            if separators >= MOST_VALUES && !line.contains('"') || separators > 100 * MOST_VALUES {
-                let message = format!("a line has {} values, at most {MOST_VALUES} are read", separators + 1);
+            if separators >= MAX_VALUES && !line.contains('"') || separators > 100 * MAX_VALUES {
+                let message = format!("a line has {} values, at most {MAX_VALUES} are read", separators + 1);
                 problems.add(start..start + line.len(), message, "is this the right file?");
                 return None;
             }

@@ -184,7 +184,7 @@ impl Format {
 
     /// Returns the format of a file. If the ending and the contents differ, the contents decide, with a finding.
     pub fn detect(name: &str, contents: &[u8]) -> (Self, Option<Finding>) {
-        let of_contents = Self::of_contents(contents);
+        let of_contents = Self::from_contents(contents);
         let Some(ending) = ending(name) else { return (of_contents, None) };
         let by_name = Self::from_file_name(name);
         let info = of_contents.info();
@@ -204,7 +204,7 @@ impl Format {
 
     /// Returns the format of contents without a file name. A text is TOML if its first line that is not a comment
     /// begins a table or gives a key of a plan file. A text without the mark of any format is CLI text.
-    pub fn of_contents(contents: &[u8]) -> Self {
+    pub fn from_contents(contents: &[u8]) -> Self {
         if kmz::is_archive(contents) {
             return Self::Kmz;
         }
@@ -212,7 +212,7 @@ impl Format {
         if let Some(format) = of_mark(text.trim_start()) {
             return format;
         }
-        match MapKind::of_text(&text) {
+        match MapKind::from_text(&text) {
             Some(MapKind::Kml) => return Self::Kml,
             Some(MapKind::Gpx) => return Self::Gpx,
             Some(MapKind::GeoJson) if is_geojson(&text) => return Self::GeoJson,
@@ -240,7 +240,7 @@ impl Format {
             let text = super::encoding::decode(contents).unwrap_or_default();
             text.lines().any(|line| starts.iter().any(|start| line.trim_start().starts_with(start)))
         };
-        match Self::of_contents(contents) {
+        match Self::from_contents(contents) {
             Self::Toml => has_line(&["[[waypoint", "waypoint =", "waypoint=", "waypoints"]),
             Self::CliText => has_line(&["waypoint "]),
             _ => true,
@@ -304,7 +304,7 @@ mod tests {
     #[test]
     fn a_nameless_text_shows_its_format() {
         for text in ["name = \"x\"", "\u{feff}# mine\n\n[[waypoint]]", "waypoint = [{type='LAND'}]"] {
-            assert_eq!(Format::of_contents(text.as_bytes()), Format::Toml, "{text}");
+            assert_eq!(Format::from_contents(text.as_bytes()), Format::Toml, "{text}");
         }
         let litchi = "latitude,longitude,altitude(m),heading(deg)\n1,2,3,4";
         for (text, format, name) in [
@@ -318,7 +318,7 @@ mod tests {
             assert_eq!(Format::detect(name, text.as_bytes()), (format, None), "{text}");
         }
         for text in ["", "# dump\nbatch start", "waypoint insert 0 1 2", "set name = x", "=", "x = 1"] {
-            assert_eq!(Format::of_contents(text.as_bytes()), Format::CliText, "{text}");
+            assert_eq!(Format::from_contents(text.as_bytes()), Format::CliText, "{text}");
         }
     }
 
@@ -347,7 +347,7 @@ mod tests {
             ("{\"type\":\"SimpleItem\"}", Format::CliText),
             ("<html>", Format::CliText),
         ] {
-            assert_eq!(Format::of_contents(text.as_bytes()), format, "{text}");
+            assert_eq!(Format::from_contents(text.as_bytes()), format, "{text}");
         }
         assert_eq!(Format::detect("a.json", b"{\"type\":\"Point\"}"), (Format::GeoJson, None));
         let (format, finding) = Format::detect("a.kml", b"PK\x03\x04");

@@ -14,11 +14,11 @@ use crate::plan::{LegSpeed, MAX_WAYPOINTS, Seconds, Waypoint, WaypointType};
 /// The columns that a file must have. All others may be missing.
 const NEEDED: [&str; 3] = ["latitude", "longitude", "altitude(m)"];
 /// The most actions of a waypoint.
-const MOST_ACTIONS: usize = 15;
+const MAX_ACTIONS: usize = 15;
 /// Two radii of a turn that differ less than this count as equal, m.
 const SAME_RADIUS_M: f64 = 1.0;
 /// The longest hold, s.
-const LONGEST_S: f64 = 6553.5;
+const MAX_S: f64 = 6553.5;
 
 /// Returns `true` if the text begins with the header of a mission.
 pub(super) fn is_header(text: &str) -> bool {
@@ -67,7 +67,7 @@ struct Columns {
 impl Columns {
     fn new(table: &Table<'_>) -> Self {
         let column = |name: &str| table.column(name);
-        let actions = (1..=MOST_ACTIONS)
+        let actions = (1..=MAX_ACTIONS)
             .map(|number| (column(&format!("actiontype{number}")), column(&format!("actionparam{number}"))))
             .filter(|(kind, _)| kind.is_some());
         Self {
@@ -164,7 +164,7 @@ impl LitchiReader {
         }
         let mps = number(self.columns.speed, "speed", Some(0.0), problems)?;
         let speed = row.read(self.columns.speed, problems, |_| {
-            let range = format!("allowed: 0 to {} m/s", LegSpeed::MOST_MPS);
+            let range = format!("allowed: 0 to {} m/s", LegSpeed::MAX_MPS);
             LegSpeed::checked(mps).ok_or_else(|| format!("speed {mps} is out of range; {range}"))
         })?;
         let curve_m = number(self.columns.curve, "curvesize", Some(0.0), problems)?;
@@ -222,7 +222,7 @@ impl LitchiReader {
     }
 
     fn hold(&mut self, row: &Row<'_>, seconds: f64, problems: &Problems<'_>) -> Seconds {
-        let rounded = ((seconds * 10.0).round() / 10.0).clamp(0.1, LONGEST_S);
+        let rounded = ((seconds * 10.0).round() / 10.0).clamp(0.1, MAX_S);
         if (rounded - seconds).abs() > 1e-6 {
             let why = "a HOLD lasts tenths of a second, up to 6553.5 s";
             let values = (format!("{seconds} s"), format!("{rounded} s"));

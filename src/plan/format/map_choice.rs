@@ -8,7 +8,7 @@ use super::map_plan::{Builder, Map};
 use crate::plan::feature::{Shape, Vertex};
 
 /// The most lines that a refusal lists.
-const MOST_LISTED: usize = 20;
+const MAX_LISTED: usize = 20;
 
 /// A line of a map that can be a plan.
 #[derive(Debug, Clone, Copy)]
@@ -107,8 +107,8 @@ impl<'m> Builder<'m, '_, '_> {
 
     /// Refuses the file, and lists the lines.
     fn refuse(&mut self, message: String, listed: &[Candidate<'m>]) -> Choice<'m> {
-        let shown: Vec<String> = listed.iter().take(MOST_LISTED).map(Candidate::label).collect();
-        let rest = match listed.len().saturating_sub(MOST_LISTED) {
+        let shown: Vec<String> = listed.iter().take(MAX_LISTED).map(Candidate::label).collect();
+        let rest = match listed.len().saturating_sub(MAX_LISTED) {
             0 => String::new(),
             count => format!(", and {count} more"),
         };

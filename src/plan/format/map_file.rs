@@ -23,10 +23,10 @@ const MAX_UNPACKED: usize = 64 << 20;
 const MAX_PLAN: usize = 8 << 20;
 
 /// The most problems of a map that are listed. A map of 64 MiB with a fault in each vertex has one fault for people.
-const MOST_PROBLEMS: usize = 10;
+const MAX_PROBLEMS: usize = 10;
 
 /// The most characters of a name that are shown on a map. Each shape of a feature has a copy of its name.
-const LONGEST_NAME: usize = 60;
+const MAX_NAME: usize = 60;
 
 /// The limits of a plan.
 pub(super) const PLAN: Limits =
@@ -34,7 +34,7 @@ pub(super) const PLAN: Limits =
 
 /// The limits of a backdrop.
 const BACKDROP: Limits =
-    Limits { features: 100_000, vertices: 5_000_000, problems: MOST_PROBLEMS, is_plan: false };
+    Limits { features: 100_000, vertices: 5_000_000, problems: MAX_PROBLEMS, is_plan: false };
 
 /// The kind of a map file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,7 +46,7 @@ pub(super) enum MapKind {
 
 impl MapKind {
     /// Returns the kind of a text by its first element or its first key.
-    pub(super) fn of_text(text: &str) -> Option<Self> {
+    pub(super) fn from_text(text: &str) -> Option<Self> {
         let text = text.trim_start();
         if text.starts_with('{') {
             return Some(Self::GeoJson);
@@ -119,7 +119,7 @@ pub fn read_features(name: &str, contents: &[u8]) -> Result<Vec<Feature>, Vec<Pl
     if super::qgc_plan::is_plan(&text) {
         return Ok(super::qgc_fences(&text));
     }
-    let Some(kind) = MapKind::of_text(&text) else {
+    let Some(kind) = MapKind::from_text(&text) else {
         let message = "this is none of GeoJSON, KML, KMZ and GPX";
         return Err(refused(message.to_owned(), "a map is a file of one of these formats"));
     };
@@ -134,7 +134,7 @@ pub fn read_features(name: &str, contents: &[u8]) -> Result<Vec<Feature>, Vec<Pl
 /// Adds the shapes of a feature of a file.
 fn add_shapes(feature: MapFeature, features: &mut Vec<Feature>) {
     let zone = zone(&feature.properties);
-    let name: String = feature.name.chars().take(LONGEST_NAME).collect();
+    let name: String = feature.name.chars().take(MAX_NAME).collect();
     for piece in feature.pieces {
         let shape = match piece.shape {
             Shape::Line(mut line) if zone.is_some() && is_closed(&line) => {

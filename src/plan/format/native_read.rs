@@ -36,7 +36,7 @@ pub(super) fn read(text: &str, options: &ReadOptions, problems: &mut Problems<'_
         return PlanFile::default();
     }
     let span = document.span();
-    let file = TomlTable::of_document("the plan file", document.get_ref(), span);
+    let file = TomlTable::from_document("the plan file", document.get_ref(), span);
     file.refuse_unknown(FILE_KEYS, problems);
     let mut read = PlanFile {
         name: file.string("name", problems).unwrap_or_default(),

@@ -6,7 +6,7 @@ use std::ops::Range;
 use crate::text::source_snippet::{SourceSnippet, shortened, source_snippet};
 
 /// The most problems of a file that are listed; the others are counted.
-const MOST_LISTED: usize = 100;
+const MAX_LISTED: usize = 100;
 
 /// The size of a block of the text whose line ends are counted together.
 const BLOCK: usize = 4096;
@@ -114,7 +114,7 @@ impl<'a> Problems<'a> {
 
     /// Adds a problem at a byte range of the text. A range that is not on character boundaries is widened.
     pub fn add(&mut self, span: Range<usize>, message: impl Into<String>, hint: impl Into<String>) {
-        if self.errors.len() == MOST_LISTED {
+        if self.errors.len() == MAX_LISTED {
             self.unlisted += 1;
             return;
         }
@@ -166,7 +166,7 @@ impl<'a> Problems<'a> {
 
     /// Returns `true` if further problems are only counted.
     pub fn is_full(&self) -> bool {
-        self.errors.len() == MOST_LISTED
+        self.errors.len() == MAX_LISTED
     }
 
     /// Returns `true` if there is no problem so far.
@@ -259,7 +259,7 @@ mod tests {
         }
         assert_eq!(problems.len(), text.len());
         let errors = problems.into_errors();
-        assert_eq!(errors.len(), MOST_LISTED);
+        assert_eq!(errors.len(), MAX_LISTED);
         let report = report(&errors);
         assert!(report.ends_with("f: 1000000 problems (100 are shown); nothing was changed"));
         assert!(report.len() < 100_000, "{} bytes", report.len());

@@ -216,7 +216,7 @@ mod tests {
         4,Land,40.4640000,-79.5190000,300,Land,21,3,0,0,0,\r\n";
 
     fn read(text: &str) -> PlanFile {
-        assert_eq!(Format::of_contents(text.as_bytes()), Format::QgcCsv);
+        assert_eq!(Format::from_contents(text.as_bytes()), Format::QgcCsv);
         parse("x.csv", text, Format::QgcCsv).unwrap_or_else(|errors| panic!("{}", report(&errors)))
     }
 

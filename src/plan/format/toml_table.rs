@@ -22,7 +22,7 @@ pub struct TomlTable<'t, 'i> {
 
 impl<'t, 'i> TomlTable<'t, 'i> {
     /// Returns the table of a whole file.
-    pub fn of_document(what: &str, entries: &'t DeTable<'i>, span: Range<usize>) -> Self {
+    pub fn from_document(what: &str, entries: &'t DeTable<'i>, span: Range<usize>) -> Self {
         Self { what: what.to_owned(), entries, span }
     }
 

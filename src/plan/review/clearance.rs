@@ -20,7 +20,7 @@ pub const CLEARANCE_M: f64 = 15.0;
 /// The spacing of the tiles where no tile says it, m.
 const USUAL_STEP_M: f64 = 30.0;
 /// The most looks at the ground under one line.
-const MOST_LOOKS: f64 = 4096.0;
+const MAX_LOOKS: f64 = 4096.0;
 /// A shortage below this is rounding, m.
 const SHORT_M: f64 = 0.1;
 /// A craft this far from the altitude of its leg climbs or descends, m.
@@ -175,7 +175,7 @@ impl Looks {
         let length_m = local_offset(from, to).norm();
         let step = |place| relief.tiles().step_m(place).unwrap_or(USUAL_STEP_M);
         let third_m = step(from).min(step(to)).max(1.0) / 3.0;
-        Self { from, to, length_m, count: (length_m / third_m).ceil().clamp(1.0, MOST_LOOKS) as u32 }
+        Self { from, to, length_m, count: (length_m / third_m).ceil().clamp(1.0, MAX_LOOKS) as u32 }
     }
 
     /// Returns a look's place and its distance from the beginning, m.

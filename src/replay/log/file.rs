@@ -9,7 +9,7 @@ use crate::flight_log::{Indexer, LogFile, LogFlight, RefusedLog};
 use crate::replay::{PastFlight, PastFlights, Progress};
 
 /// The most logs that are named in the sentence about a file.
-const MOST_NAMED: usize = 12;
+const MAX_NAMED: usize = 12;
 
 /// A log that can be shown, or the reason why it cannot.
 #[derive(Debug)]
@@ -67,8 +67,8 @@ impl<S> LogFlights<S> {
             }
             Found::Log(_) | Found::Refused(_) => format!("{} cannot be shown", index + 1),
         };
-        let mut named: Vec<_> = self.logs.iter().enumerate().take(MOST_NAMED).map(one).collect();
-        let more = self.logs.len().saturating_sub(MOST_NAMED);
+        let mut named: Vec<_> = self.logs.iter().enumerate().take(MAX_NAMED).map(one).collect();
+        let more = self.logs.len().saturating_sub(MAX_NAMED);
         if more > 0 {
             named.push(format!("and {more} more"));
         }

@@ -13,11 +13,11 @@ use crate::telemetry::Snapshot;
 /// The time between two pictures, µs.
 const PICTURE_US: u64 = 100_000;
 /// The most pictures of a flight.
-const MOST_PICTURES: u64 = 20_000;
+const MAX_PICTURES: u64 = 20_000;
 /// The most frames of a log that is read a second time for its pictures.
-const MOST_REREAD: u64 = 400_000;
+const MAX_REREAD: u64 = 400_000;
 /// The most frames that are read for the curve of a series.
-const MOST_DRAWN: u64 = 150_000;
+const MAX_DRAWN: u64 = 150_000;
 
 /// A log of a file.
 pub(super) struct PastLog<S> {
@@ -54,12 +54,12 @@ impl<S: LogSource + Send> PastLog<S> {
     /// Returns the time between two pictures, µs.
     fn picture_interval_us(&self) -> u64 {
         let length_us = self.log.last().0.saturating_sub(self.log.first().0);
-        PICTURE_US.max(length_us / MOST_PICTURES + 1)
+        PICTURE_US.max(length_us / MAX_PICTURES + 1)
     }
 
     fn pictures(&mut self) -> io::Result<Vec<Snapshot>> {
         let interval_us = self.picture_interval_us();
-        if self.log.counts().main > MOST_REREAD {
+        if self.log.counts().main > MAX_REREAD {
             return Ok(self.coarse_pictures(interval_us));
         }
         let log = Arc::clone(&self.log);
@@ -123,7 +123,7 @@ impl<S: LogSource + Send> PastLog<S> {
         let length_us = request.to.0.saturating_sub(request.from.0);
         let frames = length_us / self.overview.frame_us.max(1);
         let known = self.log.coarse_parts(&range).max(1);
-        let steps = if frames > MOST_DRAWN { request.steps.min(known) } else { request.steps };
+        let steps = if frames > MAX_DRAWN { request.steps.min(known) } else { request.steps };
         let extents = self.log.series(&mut self.source, series, range, steps)?;
         let steps = extents.into_iter().map(|extent| extent.map(|Extent { min, max }| (min, max))).collect();
         Ok(Curve::new(request.from, request.to, steps))

@@ -8,7 +8,7 @@ use crate::telemetry::{DisarmReason, EventKind, FirmwareEvent, ModeBox};
 use crate::timeline::{MarkKind, Marks};
 
 /// The most damaged parts that are events of their own.
-const MOST_DAMAGED: usize = 100;
+const MAX_DAMAGED: usize = 100;
 /// The time between the change of the ARM box and the event of a disarming, µs.
 const SAME_US: u64 = 500_000;
 
@@ -31,7 +31,7 @@ pub(super) fn of(log: &[LogMark], armed_at: Option<SimTime>) -> Happenings {
             happenings.firmware(at, FirmwareEvent::Armed);
         }
         damaged += usize::from(matches!(mark.kind, LogMarkKind::Skipped { .. }));
-        if damaged <= MOST_DAMAGED || !matches!(mark.kind, LogMarkKind::Skipped { .. }) {
+        if damaged <= MAX_DAMAGED || !matches!(mark.kind, LogMarkKind::Skipped { .. }) {
             happenings.take(mark, log);
         }
     }
@@ -143,7 +143,7 @@ mod tests {
     }
 
     fn boxes(bits: u32) -> BoxFlags {
-        BoxFlags { bits, order: BoxOrder::of_betaflight((2026, 12, 0)) }
+        BoxFlags { bits, order: BoxOrder::from_betaflight((2026, 12, 0)) }
     }
 
     /// Returns the events with their seconds, in words.
@@ -220,9 +220,9 @@ mod tests {
         let value = AdjustedValue::Whole(-7);
         log.push((3, LogMarkKind::Adjustment { function: 4, value }));
         let (events, _) = events(&log, None);
-        assert_eq!(events.len(), MOST_DAMAGED + 2);
+        assert_eq!(events.len(), MAX_DAMAGED + 2);
         assert_eq!(events[0].1, "The log is damaged here: 12 bytes were skipped, 1.00 s.");
-        assert_eq!(events[MOST_DAMAGED].1, "Logging goes on after a pause of 2.0 s.");
-        assert_eq!(events[MOST_DAMAGED + 1].1, "In-flight adjustment: function 4 is -7.");
+        assert_eq!(events[MAX_DAMAGED].1, "Logging goes on after a pause of 2.0 s.");
+        assert_eq!(events[MAX_DAMAGED + 1].1, "In-flight adjustment: function 4 is -7.");
     }
 }

@@ -117,7 +117,7 @@ mod tests {
             rc_throttle_us: Some(1400.0),
             setpoint_throttle: Some(0.4),
             motors: [0.1, 0.2, 0.3, 0.4].into_iter().collect(),
-            boxes: Some(BoxFlags { bits: 0b11, order: BoxOrder::of_betaflight((4, 5, 0)) }),
+            boxes: Some(BoxFlags { bits: 0b11, order: BoxOrder::from_betaflight((4, 5, 0)) }),
             failsafe_phase: Some(FailsafePhase::Landing),
             ..LogSample::default()
         };

@@ -12,7 +12,7 @@ use crate::replay::{PastFlight, PastFlights, Progress};
 /// The size of the parts in which a file is read, bytes.
 const PART: usize = 64 << 10;
 /// The latest picture that is shown, in days since boot.
-const MOST_DAYS: u64 = 30;
+const MAX_DAYS: u64 = 30;
 const DAY_US: u64 = 86_400_000_000;
 
 /// The flight of a file with a recording.
@@ -61,10 +61,8 @@ impl<S: LogSource + Clone + Send> PastFlights for RecordedFlights<S> {
         let recording = read.map_err(|error| format!("{name} cannot be shown: {error}."))?;
         match recording.pictures.all().last() {
             None => return Err(format!("{name} has no picture of its flight, so there is nothing to show.")),
-            Some(last) if last.time().0 > MOST_DAYS * DAY_US => {
-                return Err(format!(
-                    "{name} cannot be shown: it ends more than {MOST_DAYS} days after boot."
-                ));
+            Some(last) if last.time().0 > MAX_DAYS * DAY_US => {
+                return Err(format!("{name} cannot be shown: it ends more than {MAX_DAYS} days after boot."));
             }
             Some(_) => {}
         }

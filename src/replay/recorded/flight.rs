@@ -13,9 +13,9 @@ use crate::timeline::Marks;
 /// The usual time between two pictures, µs.
 const FRAME_US: u64 = 100_000;
 /// The most pictures for a display.
-const MOST_PICTURES: usize = 20_000;
+const MAX_PICTURES: usize = 20_000;
 /// The most steps of a curve.
-const MOST_STEPS: usize = 10_000;
+const MAX_STEPS: usize = 10_000;
 
 /// A recorded flight with at least one picture.
 pub(super) struct PastRecording {
@@ -28,7 +28,7 @@ pub(super) struct PastRecording {
 impl PastRecording {
     pub(super) fn new(recording: Arc<Recording>) -> Self {
         let pictures = recording.pictures.all();
-        let step = pictures.len().div_ceil(MOST_PICTURES).max(1);
+        let step = pictures.len().div_ceil(MAX_PICTURES).max(1);
         let shown: Vec<Picture> =
             pictures.iter().step_by(step).map(|recorded| Picture::of(&recorded.snapshot())).collect();
         let signals: Vec<&SignalInfo> = SIGNALS
@@ -68,7 +68,7 @@ impl PastRecording {
         let pictures = self.recording.pictures.all();
         let from = pictures.partition_point(|picture| picture.time() < request.from);
         let to = pictures.partition_point(|picture| picture.time() < request.to);
-        let count = request.steps.clamp(1, MOST_STEPS);
+        let count = request.steps.clamp(1, MAX_STEPS);
         let length_us = u128::from(request.to.0.saturating_sub(request.from.0)).max(1);
         let mut steps: Vec<Option<(f64, f64)>> = vec![None; count];
         for picture in pictures.get(from..to).unwrap_or_default() {

@@ -31,7 +31,7 @@ impl Track {
     /// # Errors
     ///
     /// Returns the error of the source.
-    pub fn of_log<S: LogSource>(flight: &LogFlight, source: S, seed: u64) -> io::Result<Self> {
+    pub fn from_log<S: LogSource>(flight: &LogFlight, source: S, seed: u64) -> io::Result<Self> {
         let mut track = Self { seed, result: "logged".to_owned(), ..Self::default() };
         let begin = begin_of_log(flight);
         let Some(mut cursor) = flight.cursor(source, flight.first())? else { return Ok(track) };
@@ -134,7 +134,7 @@ mod tests {
         let flight = only(&bytes);
         // The modes of a slow frame count from the main frame before it.
         assert_eq!(begin_of_log(&flight), SimTime(5_990_000));
-        let track = Track::of_log(&flight, &bytes[..], 7).unwrap();
+        let track = Track::from_log(&flight, &bytes[..], 7).unwrap();
         assert_eq!((track.seed, track.result.as_str()), (7, "logged"));
         assert_eq!(track.samples.len(), 61, "twenty samples a second");
         let (first, last) = (track.samples[0], *track.samples.last().unwrap());
@@ -147,13 +147,13 @@ mod tests {
     #[test]
     fn the_touchdown_is_where_the_craft_was_disarmed() {
         let bytes = log(Some(100));
-        let track = Track::of_log(&only(&bytes), &bytes[..], 1).unwrap();
+        let track = Track::from_log(&only(&bytes), &bytes[..], 1).unwrap();
         let (time_s, ne) = track.touchdown.unwrap();
         assert!((time_s - 3.0).abs() < 0.011 && (ne.x - 4.3).abs() < 0.1, "{time_s} {ne:?}");
         assert!(track.reason.starts_with("disarmed: "), "{}", track.reason);
         // Without its end nobody knows where the craft landed.
         let cut = &bytes[..bytes.len() - 15];
-        assert_eq!(Track::of_log(&only(cut), cut, 1).unwrap().touchdown, None);
+        assert_eq!(Track::from_log(&only(cut), cut, 1).unwrap().touchdown, None);
     }
 
     #[test]
@@ -161,6 +161,6 @@ mod tests {
         let bytes = log(None);
         let flight = only(&bytes);
         assert_eq!(begin_of_log(&flight), SimTime(5_000_000));
-        assert_eq!(Track::of_log(&flight, &bytes[..], 1).unwrap().samples.len(), 80);
+        assert_eq!(Track::from_log(&flight, &bytes[..], 1).unwrap().samples.len(), 80);
     }
 }

@@ -11,22 +11,22 @@ const WIDTHS: [f64; 2] = [1.5, 3.5];
 /// Width of the other flights, px.
 const THIN: f64 = 0.75;
 /// The most other flights of a firmware in a page. All are in a picture of its own.
-const MOST_OTHERS: usize = 12;
+const MAX_OTHERS: usize = 12;
 /// The most points of a track in a picture of its own.
-const MOST_POINTS: usize = 20_000;
+const MAX_POINTS: usize = 20_000;
 
 /// Returns the picture as a document of its own, north up.
 pub(super) fn document(comparison: &Comparison) -> String {
     let description = format!("The tracks of {}, north up.", comparison.names().join(" and "));
     let picture = Picture::new("tracks", &comparison.title(), &description).standing_alone();
-    map(comparison, Vec::new(), MOST_POINTS, usize::MAX).svg(&picture)
+    map(comparison, Vec::new(), MAX_POINTS, usize::MAX).svg(&picture)
 }
 
 /// Returns the pictures for a page, with a map under the tracks.
 pub(super) fn figures(comparison: &Comparison, ground: Vec<Ground>, detail: Detail) -> Vec<Figure> {
     let names = comparison.names().join(" and ");
     let [of_map, _] = captions(comparison);
-    let others = MOST_OTHERS.min(detail.points / 50);
+    let others = MAX_OTHERS.min(detail.points / 50);
     let map = map(comparison, ground, detail.points, others);
     let picture = Picture::new("compare-map", "Tracks", &format!("The tracks of {names}, north up."));
     let map = Figure {

@@ -7,7 +7,7 @@ use crate::report::sentence;
 use crate::telemetry::NavState;
 
 /// The most rows of a table.
-const MOST_ROWS: usize = 200;
+const MAX_ROWS: usize = 200;
 
 /// Returns the verdict, the facts, the margins of the waypoints, the transitions, the changed settings and the command.
 pub fn markdown(report: &FlightReport) -> String {
@@ -44,7 +44,7 @@ fn margins(rows: &[MarginRow]) -> String {
         "| waypoint | at, s | measured | miss, m | allowed, m | left | altitude, m | allowed, m | left |\n\
                     | --- | ---: | --- | ---: | ---: | ---: | ---: | ---: | ---: |\n"
             .to_owned();
-    for MarginRow { name, at, rule, miss, altitude } in rows.iter().take(MOST_ROWS) {
+    for MarginRow { name, at, rule, miss, altitude } in rows.iter().take(MAX_ROWS) {
         let margin = |margin: &super::Margin| [margin.value(), margin.allowed(), margin.left()].join(" | ");
         text.push_str(&format!("| {name} | {at} | {rule} | {} | {} |\n", margin(miss), margin(altitude)));
     }
@@ -62,7 +62,7 @@ fn transitions(report: &FlightReport) -> String {
          | ---: | --- | --- | --- | --- |\n",
         all.len()
     );
-    for transition in all.iter().take(MOST_ROWS) {
+    for transition in all.iter().take(MAX_ROWS) {
         let Transition { time, to, wp, kind, reason, guard, .. } = transition;
         let waypoint = kind.filter(|_| *to != NavState::Idle).map(|kind| format!("WP{wp} {kind}"));
         text.push_str(&format!(
@@ -83,10 +83,10 @@ fn settings(settings: &ReportedSettings) -> String {
             let line = |[name, value, default]: &[String; 3]| {
                 format!("- {} (default {})\n", code(&format!("{name} = {value}")), code(default))
             };
-            changed.iter().take(MOST_ROWS).map(line).collect()
+            changed.iter().take(MAX_ROWS).map(line).collect()
         }
         ReportedSettings::Sent(sent) => {
-            sent.iter().take(MOST_ROWS).map(|line| format!("- {}\n", code(line))).collect()
+            sent.iter().take(MAX_ROWS).map(|line| format!("- {}\n", code(line))).collect()
         }
         // There are hundreds, and only a page has room for them.
         ReportedSettings::Logged { .. } => Vec::new(),

@@ -8,8 +8,8 @@ use crate::telemetry::signal::Signal;
 
 impl FlightReport {
     /// Returns the report about a recorded flight, without its settings, its map and its command.
-    pub fn of_past(name: &str, overview: &Overview) -> Self {
-        let record = FlightRecord::of_past(overview);
+    pub fn from_past(name: &str, overview: &Overview) -> Self {
+        let record = FlightRecord::from_past(overview);
         let length_s = overview.last.seconds_since(overview.first);
         let about = record.sentences.first().filter(|_| !overview.about.is_empty());
         let reason = about.map_or_else(String::new, |(_, sentence)| sentence.clone());
@@ -70,7 +70,7 @@ mod tests {
             pictures: (0..=10).map(picture).collect(),
             ..Overview::default()
         };
-        let report = FlightReport::of_past("LOG00001.BFL", &overview);
+        let report = FlightReport::from_past("LOG00001.BFL", &overview);
         let facts: Vec<(&str, &str)> =
             report.facts.iter().map(|(name, value)| (name.as_str(), value.as_str())).collect();
         assert_eq!(facts, [("recorded", "10.0 s"), ("farthest", "50.0 m"), ("highest", "20.0 m")]);

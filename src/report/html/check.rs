@@ -6,14 +6,14 @@ mod summary;
 use askama::Template;
 
 use super::page::Page;
-use super::{MOST_BYTES, text};
+use super::{MAX_BYTES, text};
 use crate::report::check::{CheckedFlight, Summary};
 use crate::report::flight::{FlightReport, Verdict};
 use flights::Flights;
 use summary::Case;
 
 /// The greatest size of the table of all expectations, bytes.
-const MOST_SUMMARY: usize = 400_000;
+const MAX_SUMMARY: usize = 400_000;
 
 /// The page of a run, which grows by a part a flight.
 #[derive(Debug, Default)]
@@ -38,7 +38,7 @@ impl CheckPage {
 
     /// Returns the page. `program` is the name of this program with its version.
     pub fn html(&self, summary: &Summary, command: Option<&str>, program: &str) -> String {
-        let (cases, all_cases) = summary::cases(summary, MOST_SUMMARY);
+        let (cases, all_cases) = summary::cases(summary, MAX_SUMMARY);
         let left_out = all_cases - cases.len();
         let left_out =
             (left_out > 0).then(|| format!("{left_out} further cases are left out of this table."));
@@ -52,13 +52,13 @@ impl CheckPage {
         };
         let mut body = Body { cases, left_out, flights: Vec::new(), flights_left_out: Some(String::new()) };
         let empty = frame(&rendered(&body)).len() + 200;
-        body.flights = self.flights.fitting(MOST_BYTES.saturating_sub(empty));
+        body.flights = self.flights.fitting(MAX_BYTES.saturating_sub(empty));
         let shown = body.flights.len();
         body.flights_left_out = (shown < summary.flights.len()).then(|| {
             format!(
                 "{shown} of {} flights are shown, the failed ones first: a report is at most {} MB.",
                 summary.flights.len(),
-                MOST_BYTES / 1_000_000
+                MAX_BYTES / 1_000_000
             )
         });
         frame(&rendered(&body))

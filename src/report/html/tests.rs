@@ -130,7 +130,7 @@ fn half_an_hour_of_noise_fits_into_a_page() {
     report.record.transitions = vec![transition; 4000];
     report.record.sentences = vec![(SimTime(5), "A long sentence. ".repeat(20)); 4000];
     let page = flight_page(&report, PROGRAM);
-    assert!((100_000..=MOST_BYTES).contains(&page.len()), "{}", page.len());
+    assert!((100_000..=MAX_BYTES).contains(&page.len()), "{}", page.len());
     assert!(count(&elements(&page), "svg") > 8, "all pictures are there");
     assert!(page.contains("later transitions are left out"));
 }
@@ -155,7 +155,7 @@ fn a_log_whose_modes_change_all_the_time_fits_into_a_page() {
     let changed = vec![["p_roll", "50", "45"].map(str::to_owned)];
     report.settings = Some(ReportedSettings::Logged { changed, others });
     let page = flight_page(&report, PROGRAM);
-    assert!((100_000..=MOST_BYTES).contains(&page.len()), "{}", page.len());
+    assert!((100_000..=MAX_BYTES).contains(&page.len()), "{}", page.len());
     assert!(count(&elements(&page), "svg") >= 2, "the map and the modes are there");
     assert!(page.contains("<code>p_roll</code></th><td><code>50</code></td><td><code>45</code></td>"));
     assert!(page.contains("<summary>1000 more lines of the header</summary>"));
@@ -207,7 +207,7 @@ fn a_run_of_many_flights_fits_into_a_page() {
     let scenarios: Vec<(&str, bool)> =
         names.iter().enumerate().map(|(index, name)| (name.as_str(), index != 2999)).collect();
     let page = check_page(&scenarios);
-    assert!(page.len() <= MOST_BYTES, "{}", page.len());
+    assert!(page.len() <= MAX_BYTES, "{}", page.len());
     elements(&page);
     assert!(page.contains("<summary>✗ scenario 2999</summary>"), "the failed flight is shown");
     assert!(page.contains("of 3000 flights are shown") && page.contains("further cases are left out"));

@@ -81,7 +81,7 @@ impl<'a> Fields<'a> {
     /// Returns the name and the fields of an event; `None` if it has no line.
     pub(super) fn of(kind: &'a SessionEvent) -> Option<(&'static str, Self)> {
         Some(match kind {
-            SessionEvent::Vehicle(event) => return Self::of_vehicle(event),
+            SessionEvent::Vehicle(event) => return Self::from_vehicle(event),
             SessionEvent::Endpoints(EndpointAddresses { ws, tcp, fdm, rc }) => {
                 ("doors", Self::Doors { ws: *ws, tcp: *tcp, fdm: *fdm, rc: *rc })
             }
@@ -100,13 +100,13 @@ impl<'a> Fields<'a> {
         })
     }
 
-    fn of_vehicle(kind: &'a EventKind) -> Option<(&'static str, Self)> {
+    fn from_vehicle(kind: &'a EventKind) -> Option<(&'static str, Self)> {
         Some(match kind {
             EventKind::Boot { seed, rate_hz, airframe, live } => {
                 let version = env!("CARGO_PKG_VERSION");
                 ("boot", Self::Boot { version, seed: *seed, rate: *rate_hz, airframe, live: *live })
             }
-            EventKind::Firmware(event) => return Self::of_firmware(event),
+            EventKind::Firmware(event) => return Self::from_firmware(event),
             EventKind::Fault { kind, on, value } => {
                 let value = (*value != FaultValue::None).then(|| value.to_string());
                 ("fault", Self::Fault { name: kind.into(), on: *on, value })
@@ -119,12 +119,12 @@ impl<'a> Fields<'a> {
                 ("touchdown", Self::Touchdown { impact_mps, peak_mps2 })
             }
             EventKind::Crash { cause } => ("crash", Self::Crash { cause: cause.to_string() }),
-            EventKind::BatteryEmpty { cell_v } => Self::of_battery(BatteryAlarm::Empty, *cell_v),
+            EventKind::BatteryEmpty { cell_v } => Self::from_battery(BatteryAlarm::Empty, *cell_v),
             EventKind::Notice(notice) => ("notice", Self::Notice { text: notice.to_string().into() }),
         })
     }
 
-    fn of_firmware(event: &'a FirmwareEvent) -> Option<(&'static str, Self)> {
+    fn from_firmware(event: &'a FirmwareEvent) -> Option<(&'static str, Self)> {
         Some(match event {
             FirmwareEvent::GpsFix { sats } => ("gps_fix", Self::Sats { sats: *sats }),
             FirmwareEvent::GpsLost { sats } => ("gps_lost", Self::Sats { sats: *sats }),
@@ -141,25 +141,25 @@ impl<'a> Fields<'a> {
                 let (policy, procedure) = (Some((*policy).into()), Some((*procedure).into()));
                 ("failsafe", Self::Failsafe { policy, stage: *stage, procedure })
             }
-            FirmwareEvent::Nav(event) => return Self::of_nav(event),
+            FirmwareEvent::Nav(event) => return Self::from_nav(event),
             FirmwareEvent::HeadingDoubt { on, error_deg } => {
                 ("heading_doubt", Self::HeadingDoubt { on: *on, error_deg: Decimals(*error_deg) })
             }
             FirmwareEvent::LeanDoubt { on, error_deg } => {
                 ("lean_doubt", Self::LeanDoubt { on: *on, error_deg: Decimals(*error_deg) })
             }
-            FirmwareEvent::Battery { state, cell_v } => Self::of_battery(*state, *cell_v),
+            FirmwareEvent::Battery { state, cell_v } => Self::from_battery(*state, *cell_v),
             FirmwareEvent::Notice(notice) => ("notice", Self::Notice { text: notice.to_string().into() }),
         })
     }
 
-    fn of_battery(state: BatteryAlarm, cell_v: f64) -> (&'static str, Self) {
+    fn from_battery(state: BatteryAlarm, cell_v: f64) -> (&'static str, Self) {
         ("battery", Self::Battery { state: state.to_string(), cell_v: Decimals(cell_v) })
     }
 
-    fn of_nav(event: &'a NavEvent) -> Option<(&'static str, Self)> {
+    fn from_nav(event: &'a NavEvent) -> Option<(&'static str, Self)> {
         Some(match event {
-            NavEvent::Plan { source, plan } => ("plan", Self::of_plan(*source, plan)),
+            NavEvent::Plan { source, plan } => ("plan", Self::from_plan(*source, plan)),
             NavEvent::State { from, to, wp, kind, reason, guard, target, target_alt_m } => {
                 let state = State {
                     from: from.to_string(),
@@ -188,13 +188,13 @@ impl<'a> Fields<'a> {
                 let limit = deviation.limit.into();
                 ("cannot_hold", Self::CannotHold { on: *on, distance_m, vertical_m, limit })
             }
-            NavEvent::Refused(refusal) => ("engage_refused", Self::of_refusal(*refusal)),
+            NavEvent::Refused(refusal) => ("engage_refused", Self::from_refusal(*refusal)),
             // The following disarm is the event.
             NavEvent::Disarm => return None,
         })
     }
 
-    fn of_plan(source: PlanSource, plan: &FlightPlan) -> Self {
+    fn from_plan(source: PlanSource, plan: &FlightPlan) -> Self {
         let waypoints = plan.waypoints.iter().map(|waypoint| PlanWaypoint {
             r#type: waypoint.kind.to_string(),
             lat: Decimals(waypoint.position.lat_deg()),
@@ -204,7 +204,7 @@ impl<'a> Fields<'a> {
         Self::Plan { source: source.to_string(), count: plan.waypoints.len(), waypoints: waypoints.collect() }
     }
 
-    fn of_refusal(refusal: Refusal) -> Self {
+    fn from_refusal(refusal: Refusal) -> Self {
         let (wp, cause) = match refusal {
             Refusal::BadWaypoint(wp) | Refusal::Geofence { wp, .. } => (Some(wp), None),
             Refusal::Aborted(cause) => (None, Some(cause.to_string())),

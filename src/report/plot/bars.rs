@@ -8,7 +8,7 @@ use super::{Colour, Picture, Point, range};
 /// Height of the bars, px.
 const HEIGHT: f64 = 150.0;
 /// The greatest share on the axis is at least this, per cent.
-const LEAST_TOP: f64 = 10.0;
+const MIN_TOP: f64 = 10.0;
 
 /// A picture of bars.
 #[derive(Debug, Clone, Default)]
@@ -54,7 +54,7 @@ impl Bars {
         let ends = self.bars.iter().flat_map(|bar| [bar.from, bar.to]);
         let marked = self.marks.iter().map(|(value, _)| *value);
         let x = range::around(ends.chain(marked), 0.01);
-        let tallest = self.bars.iter().map(|bar| bar.share).fold(LEAST_TOP, f64::max);
+        let tallest = self.bars.iter().map(|bar| bar.share).fold(MIN_TOP, f64::max);
         let most = if self.curve.is_empty() { (tallest * 1.1).min(105.0) } else { 105.0 };
         let has_words = self.bars.iter().any(|bar| !bar.word.is_empty());
         let axes = Axes { x, y: (0.0, most), top, height: HEIGHT };

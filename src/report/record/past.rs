@@ -1,6 +1,6 @@
 //! The record of a flight that is over, from what a display knows of it.
 
-use super::{FlightRecord, MOST_SAMPLES, RecordedSample, push_bounded};
+use super::{FlightRecord, MAX_SAMPLES, RecordedSample, push_bounded};
 use crate::events::{Event, SessionEvent};
 use crate::replay::{Overview, PastEventKind, Picture};
 use crate::report::sentence;
@@ -8,7 +8,7 @@ use crate::signals::SimTime;
 
 impl FlightRecord {
     /// Returns the record of a flight that is over.
-    pub fn of_past(overview: &Overview) -> Self {
+    pub fn from_past(overview: &Overview) -> Self {
         let mut record = Self { begins_at: Some(overview.first), ..Self::default() };
         for about in &overview.about {
             record.note_past(overview.first, about);
@@ -16,7 +16,7 @@ impl FlightRecord {
         for event in &overview.events {
             record.note_past(event.time, &event.kind);
         }
-        let every = overview.pictures.len().div_ceil(MOST_SAMPLES).max(1);
+        let every = overview.pictures.len().div_ceil(MAX_SAMPLES).max(1);
         let (mut transitions, mut state) = (record.transitions.iter().peekable(), None);
         let sample = |picture: &Picture| {
             while let Some(transition) = transitions.next_if(|transition| transition.time <= picture.time) {
@@ -79,7 +79,7 @@ mod tests {
             pictures: (10..15).map(picture).collect(),
             ..Overview::default()
         };
-        let record = FlightRecord::of_past(&overview);
+        let record = FlightRecord::from_past(&overview);
         let known: Vec<bool> = record.samples.iter().map(|sample| sample.state.is_some()).collect();
         assert_eq!(known, [false, false, true, true, true]);
         assert_eq!(record.place(&record.samples[4]), Some([14.0, 0.0]));

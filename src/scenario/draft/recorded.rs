@@ -52,7 +52,7 @@ impl Draft {
     ///
     /// # Errors
     /// Returns a sentence with the reason if the flight cannot be repeated.
-    pub fn of_recorded(name: &str, flight: RecordedFlight) -> Result<Self, String> {
+    pub fn from_recorded(name: &str, flight: RecordedFlight) -> Result<Self, String> {
         let past = Past::of(&flight);
         let RecordedFlight { mut start, inputs, .. } = flight;
         let start_at = start.time();

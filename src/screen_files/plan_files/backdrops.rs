@@ -11,8 +11,8 @@ const NAME: &str = "backdrops.json";
 /// The largest file, bytes.
 const LARGEST: u64 = 1 << 20;
 /// The most plans that are remembered, and the most files of one.
-const MOST_PLANS: usize = 200;
-const MOST_FILES: usize = 20;
+const MAX_PLANS: usize = 200;
+const MAX_FILES: usize = 20;
 
 /// The files under one plan.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -37,7 +37,7 @@ impl Backdrops {
     pub(super) fn of(&self, plan: &Path) -> Vec<PathBuf> {
         let mut files =
             self.read().into_iter().rfind(|kept| kept.plan == plan).map_or(Vec::new(), |kept| kept.files);
-        files.truncate(MOST_FILES);
+        files.truncate(MAX_FILES);
         files
     }
 
@@ -51,7 +51,7 @@ impl Backdrops {
         if !files.is_empty() {
             all.push(Remembered { plan: plan.to_owned(), files });
         }
-        let oldest = all.len().saturating_sub(MOST_PLANS);
+        let oldest = all.len().saturating_sub(MAX_PLANS);
         all.drain(..oldest);
         if let Ok(text) = serde_json::to_vec_pretty(&all) {
             state_file::replace(file, &text).ok();
@@ -82,7 +82,7 @@ mod tests {
         again.keep(field, Vec::new());
         assert!(backdrops.of(field).is_empty());
         assert_eq!(backdrops.of(town).len(), 2);
-        for number in 0..MOST_PLANS {
+        for number in 0..MAX_PLANS {
             backdrops.keep(&PathBuf::from(format!("/plans/{number}.toml")), vec!["/maps/a.kml".into()]);
         }
         assert!(backdrops.of(town).is_empty(), "the oldest is forgotten first");

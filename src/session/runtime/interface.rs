@@ -148,7 +148,7 @@ impl Interface {
     ) {
         if let Some(configuration) = vehicle.controller().configuration() {
             let saved = persistence.after_restart();
-            return reply.send(Ok(Box::new(CraftSettings::of_configuration(configuration, saved))));
+            return reply.send(Ok(Box::new(CraftSettings::from_configuration(configuration, saved))));
         }
         if let Answer::Later(ticket) = vehicle.apply(&VehicleCommand::single_line(GET)) {
             self.late_answers.expect(ticket, Waiting::Settings(reply), now());
@@ -247,7 +247,7 @@ impl Interface {
 
 /// Returns the settings in the answer to [`GET`].
 fn settings_of(said: &CliReply) -> Result<Box<CraftSettings>, String> {
-    let settings = CraftSettings::of_get(&said.text);
+    let settings = CraftSettings::from_get(&said.text);
     if said.failed || settings.all.is_empty() {
         let why =
             printable::line(said.text.trim().trim_matches('#').trim_start_matches("ERROR: ")).into_owned();

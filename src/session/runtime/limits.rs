@@ -41,8 +41,8 @@ pub(super) fn refuse_request(request: Request, access: Access) -> Result<Request
 /// Returns the impact of a client's request on the craft.
 pub(super) fn impact_of_request(request: &Request) -> Impact {
     match request {
-        Request::Msp { code, payload, .. } => Impact::of_message(*code, payload),
-        Request::Cli { line, .. } => Impact::of_line(line),
+        Request::Msp { code, payload, .. } => Impact::from_message(*code, payload),
+        Request::Cli { line, .. } => Impact::from_line(line),
         Request::Restart => Impact::Changes,
         Request::Rc { .. } | Request::Fdm { .. } => Impact::Forbidden(NOTHING_MOVES),
         // The client's own command line, into which nothing is typed yet.

@@ -142,7 +142,7 @@ impl Session {
     /// Returns all settings of the vehicle that is shown.
     pub(super) fn settings_of_shown(&self) -> Result<Box<CraftSettings>, String> {
         let configuration = self.shown_vehicle().controller().configuration();
-        let settings = configuration.map(|shown| CraftSettings::of_configuration(shown, None));
+        let settings = configuration.map(|shown| CraftSettings::from_configuration(shown, None));
         settings.map(Box::new).ok_or_else(|| PICTURE_RUNS_NO_LINE.to_owned())
     }
 

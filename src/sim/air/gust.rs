@@ -12,7 +12,7 @@ use crate::sim::random::{Stream, StreamRng, exponential};
 /// The time that a gust keeps its full strength, s.
 const HOLD_S: f64 = 2.0;
 /// The minimum and mean time between the starts of random gusts, s.
-const LEAST_SPACING_S: f64 = 6.0;
+const MIN_SPACING_S: f64 = 6.0;
 const MEAN_SPACING_S: f64 = 15.0;
 /// The maximum deviation of random gusts from the direction of the mean wind, degrees.
 const SPREAD_DEG: f64 = 30.0;
@@ -123,7 +123,7 @@ impl Gusts {
     fn plan_next(&mut self, now: SimTime) {
         self.next = (self.size_mps > 0.0).then(|| {
             let wait = exponential(&mut self.rng);
-            let spacing = LEAST_SPACING_S + (MEAN_SPACING_S - LEAST_SPACING_S) * wait;
+            let spacing = MIN_SPACING_S + (MEAN_SPACING_S - MIN_SPACING_S) * wait;
             SimTime(now.0 + SimTime::from_secs_f64(spacing).0)
         });
     }

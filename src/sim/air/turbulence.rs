@@ -19,7 +19,7 @@ const HEIGHT_FT: (f64, f64) = (10.0, 1000.0);
 /// The rate at which the wind at 20 ft follows a change of level, kt/s. That wind represents the level.
 const LEVEL_RAMP_KT_PER_S: f64 = 22.5;
 /// The minimum airspeed through the frozen field, m/s, so that a hovering craft meets turbulence too.
-const LEAST_AIRSPEED_MPS: f64 = 1.0;
+const MIN_AIRSPEED_MPS: f64 = 1.0;
 
 /// Scale lengths (m) and standard deviations (m/s) of turbulence at a height.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -133,7 +133,7 @@ impl TurbulenceFilter {
             return;
         }
         self.scales = DrydenScales::at(height_m, self.strength_kt);
-        let airspeed_mps = airspeed_mps.max(LEAST_AIRSPEED_MPS);
+        let airspeed_mps = airspeed_mps.max(MIN_AIRSPEED_MPS);
         let (keep_uv, drive_u) = self.scales.longitudinal_filter(airspeed_mps, dt);
         let keep_w = decay(airspeed_mps * dt, self.scales.length_w_m);
         let normals = &mut self.normals;

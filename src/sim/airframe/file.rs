@@ -75,7 +75,7 @@ const BATTERY: &str = "battery";
 const NOMINAL_CELL_V: f64 = 3.7;
 
 /// The maximum number of listed problems of a file. The others are counted.
-const MOST_LISTED: usize = 100;
+const MAX_LISTED: usize = 100;
 
 /// The positions of the keys in the text.
 type Places = BTreeMap<String, Range<usize>>;
@@ -177,7 +177,7 @@ impl Reading<'_> {
     }
 
     fn problem(&mut self, place: Range<usize>, text: String) {
-        if self.problems.len() == MOST_LISTED {
+        if self.problems.len() == MAX_LISTED {
             self.unlisted += 1;
             return;
         }

@@ -24,7 +24,7 @@ pub(in crate::ui) struct Pasted {
 /// Returns the reason in one sentence if there are no waypoints.
 pub(super) fn from_text(text: &str) -> Result<Pasted, String> {
     let text = text.replace("\r\n", "\n").replace('\r', "\n");
-    let format = Format::of_contents(text.as_bytes());
+    let format = Format::from_contents(text.as_bytes());
     let replaces = format == Format::CliText && text.lines().any(is_clear);
     let text = if format == Format::CliText && !replaces { renumbered(&text) } else { text };
     let file = format::parse("the pasted text", &text, format).map_err(|errors| {

@@ -56,7 +56,7 @@ impl Column {
             Self::Altitude => format!("{} above home", units.length_name()),
             Self::Speed if kind.has_yaw_rate() => "degrees per second".to_owned(),
             Self::Speed => {
-                let most = shortest(units.speed(LegSpeed::MOST_MPS));
+                let most = shortest(units.speed(LegSpeed::MAX_MPS));
                 format!("{} up to {most}; 0 = ap_max_velocity", units.speed_unit())
             }
             Self::Time if kind.capability().time == TimeUse::Stay => {

@@ -231,7 +231,7 @@ fn altitude(metres: f64, units: Units) -> Result<Altitude, String> {
 
 fn leg_speed(mps: f64, units: Units) -> Result<LegSpeed, String> {
     LegSpeed::checked(mps).ok_or_else(|| {
-        let (typed, most) = (shortest(units.speed(mps)), units.speed_text(LegSpeed::MOST_MPS, 2));
+        let (typed, most) = (shortest(units.speed(mps)), units.speed_text(LegSpeed::MAX_MPS, 2));
         format!("{typed} {} is out of range: 0 to {most} is allowed.", units.speed_unit())
     })
 }

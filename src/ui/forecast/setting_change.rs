@@ -4,7 +4,7 @@ use crate::flight::forecast::Forecast;
 use crate::ui::units::Units;
 
 /// Returns the difference to the flight without the change: `time −0:20, battery +2 %, worst xte 0.9 m → 1.4 m`;
-/// `None` if the forecast is of no such change.
+/// `None` if the forecast does not change a setting.
 pub(in crate::ui) fn difference(flown: &Forecast, units: Units) -> Option<String> {
     let unchanged = flown.unchanged.as_deref()?;
     let seconds = (flown.time_s - unchanged.time_s).round() as i64;

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::{FIRST_SPAN, GraphsState, PLOTS, SPANS_S};
 
 /// The most names of signals that are taken from a file.
-const MOST_NAMES: usize = 64;
+const MAX_NAMES: usize = 64;
 
 /// The shown graphs and the time span.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -39,7 +39,7 @@ impl GraphsState {
     /// Shows these graphs. Unknown names are left out.
     pub(in crate::ui) fn choose(&mut self, chosen: &ChosenGraphs) {
         self.shown = std::array::from_fn(|plot| chosen.plots.iter().any(|name| *name == PLOTS[plot].name));
-        self.series = chosen.signals.iter().take(MOST_NAMES).cloned().collect();
+        self.series = chosen.signals.iter().take(MAX_NAMES).cloned().collect();
         let same = |span: &f64| (span - chosen.span_s).abs() < 1e-9;
         // The shortest ones are only for recorded flights, whose series may not be read yet.
         self.span = SPANS_S.iter().position(same).unwrap_or(FIRST_SPAN);

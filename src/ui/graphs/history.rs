@@ -17,7 +17,7 @@ pub(super) struct SignalHistory {
 
 impl SignalHistory {
     /// Returns the whole history of a flight that is over.
-    pub(super) fn of_past(pictures: &[Picture]) -> Self {
+    pub(super) fn from_past(pictures: &[Picture]) -> Self {
         Self { fine: pictures.iter().copied().collect(), coarse: VecDeque::new() }
     }
 

@@ -32,7 +32,7 @@ pub struct Arrangement {
 }
 
 /// The most swaps that are kept. More of them than panels are never needed.
-const MOST_SWAPS: usize = 2 * Panel::ALL.len();
+const MAX_SWAPS: usize = 2 * Panel::ALL.len();
 
 impl Arrangement {
     /// Returns the size of a part of `whole` cells: `default`, or that of the user, but at least `least`, and so that
@@ -51,7 +51,7 @@ impl Arrangement {
 
     /// Gives two panels each other's places.
     pub(in crate::ui) fn swap(&mut self, a: Panel, b: Panel) {
-        if a != b && self.swaps.len() < MOST_SWAPS {
+        if a != b && self.swaps.len() < MAX_SWAPS {
             self.swaps.push((a.name().to_owned(), b.name().to_owned()));
             self.tidy();
         }
@@ -70,7 +70,7 @@ impl Arrangement {
 
     fn swaps(&self) -> impl Iterator<Item = (Panel, Panel)> {
         let panel = |name: &str| Panel::ALL.into_iter().find(|panel| panel.name() == name);
-        self.swaps.iter().take(MOST_SWAPS).filter_map(move |(a, b)| Some((panel(a)?, panel(b)?)))
+        self.swaps.iter().take(MAX_SWAPS).filter_map(move |(a, b)| Some((panel(a)?, panel(b)?)))
     }
 
     /// Replaces the swaps by the fewest with the same result.

@@ -10,7 +10,7 @@ use crate::ui::shared::Shared;
 /// The most columns of a name.
 const NAME_COLUMNS: usize = 20;
 /// The most layouts that the user saves.
-pub(super) const MOST_LAYOUTS: usize = 64;
+pub(super) const MAX_LAYOUTS: usize = 64;
 
 /// A layout.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -109,7 +109,7 @@ pub(in crate::ui) fn save(state: &mut Shared, name: &str) -> Result<Option<Strin
         return Err(format!("The name {name} is taken by the program: choose another."));
     }
     if !state.layouts.has_room(name) {
-        return Err(format!("There are {MOST_LAYOUTS} layouts: `:layout delete NAME` makes room."));
+        return Err(format!("There are {MAX_LAYOUTS} layouts: `:layout delete NAME` makes room."));
     }
     let layout = NamedLayout::present(state);
     Ok(state.layouts.insert(name, layout))

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::named::{MOST_LAYOUTS, NamedLayout, is_name};
+use super::named::{MAX_LAYOUTS, NamedLayout, is_name};
 
 /// The layouts that the user saved, in the order of their names.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -21,7 +21,7 @@ struct Line {
 impl SavedLayouts {
     /// Reads the lines of the file. Returns the layouts, and the numbers of the lines that are left out because they are
     /// damaged or of a later version. Lines are counted from 1.
-    pub fn of_lines(text: &str) -> (Self, Vec<usize>) {
+    pub fn from_lines(text: &str) -> (Self, Vec<usize>) {
         let mut layouts = Self::default();
         let mut left_out = Vec::new();
         for (number, line) in (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty()) {
@@ -38,7 +38,7 @@ impl SavedLayouts {
 
     /// Returns `true` if a layout with this name can be saved.
     pub(super) fn has_room(&self, name: &str) -> bool {
-        self.0.len() < MOST_LAYOUTS || self.0.contains_key(name)
+        self.0.len() < MAX_LAYOUTS || self.0.contains_key(name)
     }
 
     /// Returns the layout with this name.
@@ -78,7 +78,7 @@ mod tests {
             layouts.remove("mine"),
         ];
         let text: String = lines.map(|line| line.expect("a line") + "\n").concat();
-        assert_eq!(SavedLayouts::of_lines(&text), (layouts.clone(), Vec::new()));
+        assert_eq!(SavedLayouts::from_lines(&text), (layouts.clone(), Vec::new()));
         assert_eq!(layouts.names().collect::<Vec<_>>(), ["wide"]);
         assert_eq!(layouts.remove("mine"), None);
     }
@@ -91,9 +91,9 @@ mod tests {
             "{}\n\u{fffd}\n{line}\n{{\"name\": \"two words\", \"layout\": {{}}}}\n{{\"name\": 3}}\n{{\"name\": \"x",
             &line[..line.len() / 2]
         );
-        assert_eq!(SavedLayouts::of_lines(&text), (layouts, vec![1, 2, 4, 5, 6]));
+        assert_eq!(SavedLayouts::from_lines(&text), (layouts, vec![1, 2, 4, 5, 6]));
         let many: String = (0..100).map(|n| format!("{{\"name\": \"n{n}\", \"layout\": {{}}}}\n")).collect();
-        let (layouts, left_out) = SavedLayouts::of_lines(&many);
-        assert_eq!((layouts.names().count(), left_out.len()), (MOST_LAYOUTS, 100 - MOST_LAYOUTS));
+        let (layouts, left_out) = SavedLayouts::from_lines(&many);
+        assert_eq!((layouts.names().count(), left_out.len()), (MAX_LAYOUTS, 100 - MAX_LAYOUTS));
     }
 }

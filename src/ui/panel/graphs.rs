@@ -25,7 +25,7 @@ use chart::Chart;
 /// The width of the numbers left of a plot.
 const AXIS: u16 = 8;
 /// The least number of rows of a plot with its title.
-const LEAST_ROWS: u16 = 4;
+const MIN_ROWS: u16 = 4;
 
 /// The Graphs panel; its signals and its cursor are shared.
 #[derive(Debug, Default)]
@@ -98,7 +98,7 @@ fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {
         row(buffer, area, 0, theme, Role::Dim, "No graph is chosen: Enter lists them.");
         return;
     }
-    if area.height <= LEAST_ROWS || area.width <= AXIS + 8 {
+    if area.height <= MIN_ROWS || area.width <= AXIS + 8 {
         row(
             buffer,
             area,
@@ -116,7 +116,7 @@ fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {
     let plots = graphs.iter().filter(|graph| !is_named(graph));
     let charts = named.chain(plots).filter_map(|graph| charts::chart(state, *graph, window));
     let charts: Vec<Chart> = charts.collect();
-    let fitting = usize::from(body.height / LEAST_ROWS).clamp(1, charts.len().max(1));
+    let fitting = usize::from(body.height / MIN_ROWS).clamp(1, charts.len().max(1));
     let rows = body.height / fitting as u16;
     let spare = body.height % fitting as u16;
     let mut y = body.y;

@@ -22,7 +22,7 @@ const FREE: u16 = 2;
 /// The inner width from which the map is beside the rows. In a narrower popup it is below them.
 const WIDE: u16 = 110;
 /// The least width of the rows beside the map.
-const LEAST_BESIDE: u16 = 78;
+const MIN_BESIDE: u16 = 78;
 /// The greatest width of the labels.
 const LABEL: usize = 24;
 /// The rows of a page.
@@ -272,7 +272,7 @@ impl Parts {
             (false, ..) => (body, none),
             (true, true, _) => (none, Rect { y: inside.y + 1, height: height + 1, ..body }),
             (true, false, true) => {
-                let width = (body.width * 3 / 5).max(LEAST_BESIDE);
+                let width = (body.width * 3 / 5).max(MIN_BESIDE);
                 let map = Rect { x: body.x + width + 1, width: body.width - width - 1, ..body };
                 (Rect { width, ..body }, Rect { y: inside.y + 1, height: height + 1, ..map })
             }

@@ -270,7 +270,7 @@ fn foot(state: &Shared, list: &FlightsList, inside: Rect, buffer: &mut Buffer) {
         (None, _) => (Role::Dim, "Reading the library…".to_owned()),
         (Some(Err(problem)), _) => (Role::Fault, problem.clone()),
         (Some(Ok(all)), None) if all.is_empty() => {
-            (Role::Dim, "No flight is recorded yet: each flight is, from the arming on.".to_owned())
+            (Role::Dim, "No flights yet. Recording starts when the craft is armed.".to_owned())
         }
         (Some(Ok(_)), None) => (Role::Dim, "Nothing found: fewer letters find more.".to_owned()),
         (Some(Ok(_)), Some(flight)) if !flight.is_readable => {

@@ -41,7 +41,7 @@ pub(super) fn signals(state: &AppState) -> Vec<String> {
     let shown = if shown.is_empty() { "none".to_owned() } else { shown.join(", ") };
     vec![
         format!("Signals shown by name: {shown}."),
-        "A name shows or hides a signal, a part of it or a word of its meaning lists them, an empty line leaves it."
+        "Type a name to show or hide a signal, part of a name or description to list matches, or an empty line to finish."
             .to_owned(),
     ]
 }

@@ -182,7 +182,7 @@ mod tests {
         TerminalEvent::Key(key(c))
     }
 
-    /// Presses a key with these effects, of which so many are commands.
+    /// Presses a key that has these effects, `commands` of which are commands.
     fn press(ahead: &mut TypedAhead, c: char, effects: &[Effect], commands: usize, now: Instant) {
         let is_awaited = ahead.takes(Input::of(&Msg::Key(key(c))), effects, now);
         (0..commands).for_each(|_| ahead.sends(is_awaited, now));

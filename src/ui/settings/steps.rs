@@ -53,7 +53,7 @@ pub(super) struct Steps {
 }
 
 /// The most steps that can be undone.
-const MOST_STEPS: usize = 1000;
+const MAX_STEPS: usize = 1000;
 
 impl Steps {
     pub(super) fn pending(&self) -> usize {
@@ -79,7 +79,7 @@ impl Steps {
     }
 
     fn push_undo(&mut self, step: DoneStep) {
-        if self.undo.len() == MOST_STEPS {
+        if self.undo.len() == MAX_STEPS {
             self.undo.remove(0);
         }
         self.undo.push(step);

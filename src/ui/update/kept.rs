@@ -9,7 +9,7 @@ use crate::ui::app_state::AppState;
 use crate::ui::editor::FileRequest;
 use crate::ui::event_log::Severity;
 use crate::ui::kept_screen::{
-    KeptMap, KeptOf, KeptPanels, KeptPlace, KeptScreen, KeptSubject, KeptTexts, MOST_PLANS,
+    KeptMap, KeptOf, KeptPanels, KeptPlace, KeptScreen, KeptSubject, KeptTexts, MAX_PLANS,
 };
 use crate::ui::knobs;
 use crate::ui::layout::Slots;
@@ -52,7 +52,7 @@ fn present(state: &mut AppState) -> Option<KeptScreen> {
     let plan = shared.editor.plan();
     let speed = Some(shared.view.speed_wanted).filter(|speed| is_another_speed(*speed));
     let subject = KeptSubject {
-        plans: plans.take(MOST_PLANS).collect(),
+        plans: plans.take(MAX_PLANS).collect(),
         shown: plan.file().and_then(file),
         row: shared.editor.row(),
         shown_name: plan.file().is_none().then(|| plan.document().name.clone()),

@@ -1,4 +1,4 @@
-//! The mouse in a popup without a use of its own for it: a click on a shown key presses that key, a click on a row moves the
+//! Default mouse handling of popups: a click on a shown key presses that key, a click on a row moves the
 //! selection there and then chooses it, a click outside closes.
 
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};

@@ -11,7 +11,7 @@ use betadeck_core::vehicle::{Vehicle, VehicleCommand, VehicleConfig};
 #[test]
 fn a_plan_becomes_a_scenario_that_passes() {
     let plan = BuiltinPlan::find("land").unwrap().read().unwrap();
-    let text = Draft::of_plan(&plan).finish().unwrap();
+    let text = Draft::from_plan(&plan).finish().unwrap();
     for part in
         ["format = 1", "seeds = \"1..\"", "[plan]", "LANDING", "\"disarmed LANDING\"", "no_event = \"crash\""]
     {
@@ -74,7 +74,7 @@ fn the_first_flight_of_a_session_is_the_scenario_that_is_written_of_it() {
     };
     let (flight, flown) = first_flight(happen, 100);
     let truth = *flown.truth().unwrap();
-    let text = Draft::of_recorded("first", flight).unwrap().finish().unwrap();
+    let text = Draft::from_recorded("first", flight).unwrap().finish().unwrap();
     assert!(text.contains("wind 3@270") && text.contains("ARRIVED 1 of stored"), "{text}");
     // The flown plan is at the top of the text. No input types it again before the flight.
     let (top, inputs) = text.split_once("[[input]]").unwrap();
@@ -105,7 +105,7 @@ fn a_longer_plan_that_is_flown_later_has_its_own_numbers() {
         _ => {}
     };
     let (flight, _) = first_flight(happen, 80);
-    let text = Draft::of_recorded("two plans", flight).unwrap().finish().unwrap();
+    let text = Draft::from_recorded("two plans", flight).unwrap().finish().unwrap();
     assert!(text.contains("APPROACHING 2"), "{text}");
     assert_eq!(checked(&text).1, [""; 0]);
 }
@@ -119,7 +119,7 @@ fn waiting_after_the_landing_is_left_out() {
         _ => {}
     };
     let (flight, _) = first_flight(happen, 300);
-    let text = Draft::of_recorded("landed", flight).unwrap().finish().unwrap();
+    let text = Draft::from_recorded("landed", flight).unwrap().finish().unwrap();
     assert!(text.contains("disarmed LANDING"), "{text}");
     let (again, unmet) = checked(&text);
     assert_eq!(unmet, [""; 0]);

@@ -6,7 +6,7 @@ use crate::rooms::paths::{Named, named, tokens};
 use crate::rooms::source::{SourceFile, files};
 
 /// The greatest number of files of `ui` that import each other.
-const LARGEST_CIRCLE_OF_UI: usize = 5;
+const MAX_CIRCLE_OF_UI: usize = 5;
 
 type Module = Vec<String>;
 
@@ -123,7 +123,7 @@ fn is_nested(parent: &Module, child: &Module) -> bool {
 fn few_modules_of_the_screen_import_each_other() {
     let room = Room::new(files().into_iter().filter(|file| file.room() == "ui"));
     let circle = room.largest_circle();
-    assert!(circle.len() <= LARGEST_CIRCLE_OF_UI, "{} files: {circle:#?}", circle.len());
+    assert!(circle.len() <= MAX_CIRCLE_OF_UI, "{} files: {circle:#?}", circle.len());
 }
 
 #[test]

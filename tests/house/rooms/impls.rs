@@ -6,7 +6,7 @@ use crate::rooms::paths::{named, tokens};
 use crate::rooms::source::{SourceFile, files};
 
 /// The greatest number of files with methods of one type.
-const MOST_FILES: usize = 4;
+const MAX_FILES: usize = 4;
 
 /// Returns the types that have inherent `impl` blocks in a file, also under another name.
 fn types_with_methods(file: &SourceFile) -> BTreeSet<String> {
@@ -52,7 +52,7 @@ fn spread(files: &[SourceFile]) -> Vec<(String, String, Vec<String>)> {
     }
     places
         .into_iter()
-        .filter(|(_, files)| files.len() > MOST_FILES)
+        .filter(|(_, files)| files.len() > MAX_FILES)
         .map(|((room, name), files)| (room, name, files))
         .collect()
 }

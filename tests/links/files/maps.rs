@@ -79,7 +79,7 @@ proptest! {
             let again = write_with(&found, format, &options);
             prop_assert_eq!(&again.contents, &written.contents);
             prop_assert!(again.losses.findings.iter().all(|finding| written.losses.findings.contains(finding)));
-            prop_assert_eq!(Format::of_contents(&written.contents), format);
+            prop_assert_eq!(Format::from_contents(&written.contents), format);
             prop_assert!(read_features("law", &written.contents).is_ok());
         }
     }

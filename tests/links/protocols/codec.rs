@@ -390,9 +390,9 @@ fn gravity_is_added_where_the_sender_left_it_out() {
 
 #[test]
 fn the_size_of_a_datagram_tells_the_plugin() {
-    assert_eq!(Dialect::of_size(296), Dialect::GzPlugin);
-    assert_eq!(Dialect::of_size(144), Dialect::SitlGz);
-    assert_eq!(Dialect::of_size(145), Dialect::SitlGz);
+    assert_eq!(Dialect::from_size(296), Dialect::GzPlugin);
+    assert_eq!(Dialect::from_size(144), Dialect::SitlGz);
+    assert_eq!(Dialect::from_size(145), Dialect::SitlGz);
 }
 
 #[test]

@@ -7,7 +7,7 @@ use crate::binary::support::Sandbox;
 use test_support::MadeLog;
 
 /// The greatest size of a page, bytes.
-const MOST_BYTES: usize = 1_000_000;
+const MAX_BYTES: usize = 1_000_000;
 
 /// A plan that lands a short way north, with a name that would be markup if it were not escaped.
 const HOP: &str = "\
@@ -32,7 +32,7 @@ const QUICKLY: [&str; 3] = ["--takeoff=4", "--rate=400", "--noise=none"];
 fn page(sandbox: &Sandbox, name: &str) -> String {
     let page = sandbox.read(name);
     assert!(page.starts_with("<!DOCTYPE html>\n<!-- betadeck report -->\n"), "{name}");
-    assert!(page.len() <= MOST_BYTES, "{name}: {}", page.len());
+    assert!(page.len() <= MAX_BYTES, "{name}: {}", page.len());
     let mut reader = Reader::from_str(&page);
     loop {
         match reader.read_event().expect("a well-formed page") {

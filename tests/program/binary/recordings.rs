@@ -188,7 +188,7 @@ fn nothing_is_recorded_without_a_library_or_a_flight() {
     assert_eq!(screen.end(), Some(0));
     assert_eq!(library(&sandbox), [""; 0]);
     let ran = sandbox.run(&["flights", "--state-dir", "state"]).exits(0);
-    assert!(ran.out.is_empty() && ran.err.starts_with("No flight is recorded yet"), "{}", ran.err);
+    assert!(ran.out.is_empty() && ran.err.starts_with("No flights yet"), "{}", ran.err);
     sandbox.run(&["flights", "--state-dir", "nowhere"]).exits(2);
 }
 

@@ -18,7 +18,7 @@ const ARM_MS: u64 = 6000;
 /// A motor value above this means that the craft is armed.
 const IDLE: f32 = 0.03;
 /// The longest time of a flight, ms. A flight that takes longer has gone wrong.
-const LONGEST_MS: u64 = 400_000;
+const MAX_MS: u64 = 400_000;
 
 /// The state of the hand on the transmitter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -109,7 +109,7 @@ impl Simulator {
     pub(crate) fn advance(&mut self, ms: u64) {
         self.plant.advance(ms, self.motors);
         assert_eq!(self.plant.crash(), None, "at {} ms: {:?}", self.plant.time_ms(), self.flown);
-        assert!(self.plant.time_ms() < LONGEST_MS, "{:?}: {:?}", self.hand, self.flown);
+        assert!(self.plant.time_ms() < MAX_MS, "{:?}: {:?}", self.hand, self.flown);
         self.flown.look(self.plant.world.truth().pos_enu.xy(), self.plant.height_m());
         self.move_hand();
     }

@@ -345,7 +345,7 @@ fn keys_after_the_settings_panel_wait_until_the_craft_has_told_its_settings() {
     for key in ['/', 'f', 'e', 'n'] {
         assert!(press(&mut state, KeyCode::Char(key)).is_empty(), "{key} waits");
     }
-    let read = betadeck::fc::CraftSettings::of_configuration(
+    let read = betadeck::fc::CraftSettings::from_configuration(
         &betadeck::firmware::config::Configuration::default(),
         None,
     );
@@ -364,7 +364,7 @@ fn keys_after_the_settings_panel_wait_until_the_craft_has_told_its_settings() {
 
 #[test]
 fn keys_that_wait_for_the_settings_are_dropped_if_a_click_has_shown_another_panel() {
-    let read = betadeck::fc::CraftSettings::of_configuration(
+    let read = betadeck::fc::CraftSettings::from_configuration(
         &betadeck::firmware::config::Configuration::default(),
         None,
     );

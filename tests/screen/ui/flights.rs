@@ -178,7 +178,7 @@ fn a_flight_recorded_meanwhile_appears_and_the_selected_one_stays_selected() {
     keys(&mut state, "esc");
     assert!(update(&mut state, Msg::Flights(Ok(Vec::new()))).is_empty());
     assert_eq!(keys(&mut state, "ctrl-f").len(), 1);
-    assert!(screen(&state).contains("No flight is recorded yet"), "{}", screen(&state));
+    assert!(screen(&state).contains("No flights yet"), "{}", screen(&state));
 }
 
 #[test]

@@ -46,7 +46,7 @@ impl Craft {
             let reply = match effect {
                 Effect::ReadSettings => {
                     let read =
-                        CraftSettings::of_configuration(self.firmware.configuration(), Some(&self.saved));
+                        CraftSettings::from_configuration(self.firmware.configuration(), Some(&self.saved));
                     Msg::SettingsReply(Ok(Box::new(read)))
                 }
                 Effect::Set(line) => {

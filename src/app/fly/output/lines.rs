@@ -33,7 +33,7 @@ impl Lines {
             None if args.has_sentences() => Stream::stdout(),
             None => return Ok(None),
         };
-        let samples = args.samples.filter(|hz| args.json.is_some() && *hz > 0.0).map(Pace::of_hz);
+        let samples = args.samples.filter(|hz| args.json.is_some() && *hz > 0.0).map(Pace::from_hz);
         Ok(Some(Self { stream: Some(stream), json: args.json.is_some(), samples }))
     }
 

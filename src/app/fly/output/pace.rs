@@ -10,12 +10,12 @@ pub(super) struct Pace {
 
 impl Pace {
     /// Returns the pace of so many samples a second.
-    pub(super) fn of_hz(hz: f64) -> Self {
-        Self::of_us((1e6 / hz).round() as u64)
+    pub(super) fn from_hz(hz: f64) -> Self {
+        Self::from_us((1e6 / hz).round() as u64)
     }
 
     /// Returns the pace of one sample in so many microseconds.
-    pub(super) fn of_us(every_us: u64) -> Self {
+    pub(super) fn from_us(every_us: u64) -> Self {
         Self { every_us: every_us.max(1) }
     }
 

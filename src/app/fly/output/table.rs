@@ -28,7 +28,7 @@ impl Table {
         let Some(output) = &args.csv else { return Ok(None) };
         let rows = if_read(CsvWriter::new(Stream::open(output)?))?;
         let hz = args.samples.filter(|hz| *hz > 0.0).unwrap_or(USUAL_HZ);
-        Ok(Some(Self { rows, pace: Pace::of_hz(hz) }))
+        Ok(Some(Self { rows, pace: Pace::from_hz(hz) }))
     }
 
     /// Writes a row if one is due.

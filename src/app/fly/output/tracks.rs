@@ -42,7 +42,7 @@ impl Tracks {
         let (kml, geojson) = (open(&args.kml)?, open(&args.geojson)?);
         let of_states = (kml.is_some() || geojson.is_some()).then(|| OfStates {
             track: Track::new(header(), plan.plan.clone()),
-            pace: Pace::of_us(args.track_every_us()),
+            pace: Pace::from_us(args.track_every_us()),
             kml,
             geojson,
         });

@@ -46,7 +46,7 @@ pub fn mirrored(centre_deg: f64, value_deg: f64) -> f64 {
 
 impl Dialect {
     /// Returns the dialect that the size of a datagram suggests.
-    pub fn of_size(size: usize) -> Self {
+    pub fn from_size(size: usize) -> Self {
         if size == super::GZ_PLUGIN_SIZE { Self::GzPlugin } else { Self::SitlGz }
     }
 

@@ -142,7 +142,7 @@ impl Kicks {
         true
     }
 
-    /// Reports that the newest servo packet did not arrive: there is no socket, so nothing is in it.
+    /// Records that the last servo packet was refused, so nothing is queued.
     pub(super) fn refused(&mut self) {
         self.unreachable = true;
         self.arrived = 0;

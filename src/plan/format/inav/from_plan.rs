@@ -8,7 +8,7 @@ use crate::geo::{LatLon, distance_bearing};
 use crate::plan::{HoldPattern, Waypoint, WaypointType};
 
 /// The longest hold in whole seconds that a waypoint holds, too.
-const LONGEST_S: f64 = 6553.0;
+const MAX_S: f64 = 6553.0;
 /// The fastest leg of an item, cm/s.
 const FASTEST_CMS: i32 = i16::MAX as i32;
 
@@ -89,7 +89,7 @@ impl Writer {
         self.add(Finding::new(Severity::Lost, field, why).at(index).values(from, ""));
     }
 
-    /// Reports the parts of the file that are no waypoints.
+    /// Reports everything in the file except the waypoints.
     fn file(&mut self, file: &PlanFile) {
         if let Some(HomePosition { position, amsl_m }) = file.home {
             if !self.form.has_home {
@@ -263,7 +263,7 @@ impl Writer {
     /// Returns a hold time in whole seconds, at least one: 0 s would be no stop.
     fn whole_seconds(&mut self, index: usize, waypoint: &Waypoint) -> i32 {
         let seconds = waypoint.duration.get();
-        let rounded = seconds.round().clamp(1.0, LONGEST_S);
+        let rounded = seconds.round().clamp(1.0, MAX_S);
         if (rounded - seconds).abs() > 0.01 {
             let (from, to) = (format!("{seconds} s"), format!("{rounded} s"));
             self.differs(Severity::Changed, index, "duration", from, to, "INAV holds for whole seconds");

@@ -31,7 +31,7 @@ pub(in crate::plan::format) fn is_root(name: &str) -> bool {
 }
 
 /// The most names of unknown elements that are counted.
-const MOST_NAMES: usize = 20;
+const MAX_NAMES: usize = 20;
 
 /// Reads a file.
 pub(in crate::plan::format) fn read(
@@ -92,7 +92,7 @@ impl Document {
             "missionitem" => self.mission_item(element, problems),
             "mwp" | "meta" => self.meta(element, problems),
             "version" => {}
-            _ if self.others.len() < MOST_NAMES || self.others.contains_key(&name) => {
+            _ if self.others.len() < MAX_NAMES || self.others.contains_key(&name) => {
                 *self.others.entry(name).or_default() += 1;
             }
             _ => {}

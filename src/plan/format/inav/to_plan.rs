@@ -12,9 +12,9 @@ use crate::geo::LatLon;
 use crate::plan::{Altitude, FlightPlan, LegSpeed, MAX_WAYPOINTS, Seconds, Waypoint, WaypointType};
 
 /// The hold of an item with 0 s: the shortest of a plan, because 0 is endless there.
-const SHORTEST_S: f64 = 0.1;
+const MIN_S: f64 = 0.1;
 /// The longest hold of a waypoint, s.
-const LONGEST_S: f64 = 6553.5;
+const MAX_S: f64 = 6553.5;
 
 /// Returns the plan of the mission that the user chose.
 pub(super) fn plan_file(
@@ -78,12 +78,12 @@ fn home(of_file: Option<LatLon>, known: Option<HomePosition>, options: &ReadOpti
 
 /// Names the missions that are not read.
 fn others(missions: &[Mission], chosen: usize) -> Finding {
-    const MOST_NAMED: usize = 20;
+    const MAX_NAMED: usize = 20;
     let others: Vec<(usize, usize)> = (1..)
         .zip(missions.iter().map(|mission| mission.items.len()))
         .filter(|&(number, _)| number != chosen.max(1))
         .collect();
-    let (first, rest) = others.split_at(others.len().min(MOST_NAMED));
+    let (first, rest) = others.split_at(others.len().min(MAX_NAMED));
     let words = first.iter().map(|(number, items)| format!("mission {number} ({items} items)"));
     let mut named = words.collect::<Vec<_>>().join(", ");
     if !rest.is_empty() {
@@ -191,8 +191,8 @@ impl ItemReader<'_, '_, '_> {
             Action::PosholdTime => {
                 let waypoint = self.place(found);
                 let speed = self.leg_speed(found, p2);
-                let seconds = f64::from(p1).clamp(SHORTEST_S, LONGEST_S);
-                if (seconds - f64::from(p1)).abs() > SHORTEST_S + 0.01 {
+                let seconds = f64::from(p1).clamp(MIN_S, MAX_S);
+                if (seconds - f64::from(p1)).abs() > MIN_S + 0.01 {
                     let why = "a HOLD lasts 0.1 s to 6553.5 s";
                     let (from, to) = (format!("{p1} s"), format!("{seconds} s"));
                     self.differs(found, Severity::Changed, "duration", &from, &to, why);

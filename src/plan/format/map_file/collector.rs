@@ -55,7 +55,7 @@ pub(in crate::plan::format) enum Altitudes {
 
 impl Altitudes {
     /// Returns the reference of an altitude mode of KML.
-    pub(super) fn of_mode(mode: &str) -> Option<Self> {
+    pub(super) fn from_mode(mode: &str) -> Option<Self> {
         match mode {
             "absolute" => Some(Self::AboveSeaLevel),
             "relativeToGround" | "relativeToSeaFloor" => Some(Self::AboveGround),

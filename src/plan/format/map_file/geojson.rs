@@ -59,7 +59,7 @@ fn give(object: Object, collector: &mut Collector<'_, '_>, index: Option<usize>)
     let place = index.map(|index| Place::Pointer { pointer: format!("/features/{index}") });
     let Object { properties, name, mut pieces, .. } = object;
     // GDAL keeps the altitude mode of a KML file as a property.
-    if let Some(mode) = properties.get("altitudeMode").and_then(Altitudes::of_mode) {
+    if let Some(mode) = properties.get("altitudeMode").and_then(Altitudes::from_mode) {
         pieces.iter_mut().for_each(|piece| piece.altitudes = mode);
     }
     collector.feature(MapFeature { name, properties, pieces, place, ..MapFeature::default() })

@@ -145,7 +145,7 @@ impl KmlReader<'_, '_, '_, '_> {
     }
 
     fn altitudes(&mut self) -> Option<Altitudes> {
-        Altitudes::of_mode(&self.text())
+        Altitudes::from_mode(&self.text())
     }
 
     fn simple(&mut self, kind: Kind, pieces: &mut Vec<Piece>) {

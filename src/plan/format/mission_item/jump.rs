@@ -10,7 +10,7 @@ use crate::plan::format::loss::{Finding, Severity};
 /// The command of a jump.
 const JUMP: u16 = 177;
 /// The most items that are flown or jump, one after another.
-const MOST_STEPS: usize = 2 * MAX_ITEMS;
+const MAX_STEPS: usize = 2 * MAX_ITEMS;
 
 /// The order of the items.
 #[derive(Debug, Default)]
@@ -47,7 +47,7 @@ pub(super) fn order(items: &[MissionItem]) -> Result<Order, Fault> {
         if repeats < 0.0 {
             return Err(fault(format!("the jump of item {} repeats without an end", item.number)));
         }
-        if steps > MOST_STEPS {
+        if steps > MAX_STEPS {
             return Err(fault(format!("the jumps give more than {MAX_ITEMS} items")));
         }
         let number = Some(item.param(1)).filter(|number| number.fract() == 0.0 && *number >= 0.0);

@@ -12,9 +12,9 @@ use crate::plan::format::loss::{Finding, Severity};
 use crate::plan::{Altitude, HoldPattern, LegSpeed, Seconds, Waypoint, WaypointType};
 
 /// The longest time of a waypoint, s.
-const LONGEST_S: f64 = 6553.5;
+const MAX_S: f64 = 6553.5;
 /// The shortest stay, s: a stay of 0 is endless.
-const SHORTEST_S: f64 = 0.1;
+const MIN_S: f64 = 0.1;
 /// A time or a radius that differs by less counts as unchanged, s or m.
 const SAME: f64 = 0.011;
 
@@ -302,7 +302,7 @@ impl<'m> ItemWalk<'m> {
         } else if mps > 0.0 {
             let kept = LegSpeed::checked(mps).filter(|speed| speed.mps() > 0.0);
             self.speed = kept.ok_or_else(|| {
-                format!("speed {mps} m/s is out of range, allowed: 0.01 to {} m/s", LegSpeed::MOST_MPS)
+                format!("speed {mps} m/s is out of range, allowed: 0.01 to {} m/s", LegSpeed::MAX_MPS)
             })?;
             if of < 1.0 {
                 let why = "the speed through the air is taken as the speed over ground";
@@ -423,9 +423,9 @@ impl<'m> ItemWalk<'m> {
 
     fn duration(&mut self, item: &MissionItem, seconds: f64) -> Result<Seconds, String> {
         if !(0.0..=1e9).contains(&seconds) {
-            return Err(format!("a stay of {seconds} s is out of range, allowed: 0 to {LONGEST_S} s"));
+            return Err(format!("a stay of {seconds} s is out of range, allowed: 0 to {MAX_S} s"));
         }
-        let duration = Seconds::new(seconds.clamp(SHORTEST_S, LONGEST_S));
+        let duration = Seconds::new(seconds.clamp(MIN_S, MAX_S));
         if seconds > 0.0 && (duration.get() - seconds).abs() > SAME {
             let why = "times are kept to 0.1 s, up to 6553.5 s";
             let to = amount(duration.get(), "s");

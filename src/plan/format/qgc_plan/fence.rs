@@ -19,7 +19,7 @@ const CIRCLE_POINTS: usize = 72;
 /// A circle whose centre is within this distance of the home is one around home, m.
 const AT_HOME_M: f64 = 1.0;
 /// The largest circle, m.
-const LARGEST_M: f64 = 1e6;
+const MAX_M: f64 = 1e6;
 
 /// The fences of a file.
 #[derive(Debug, Default)]
@@ -89,7 +89,7 @@ fn circle(value: &Value, pointer: &str, source: &mut Source<'_, '_>) -> Option<(
     let center = position(&value["center"], &format!("{pointer}/center"), source)?;
     let at = format!("{pointer}/radius");
     let radius_m = source.number(&value["radius"], &at, "radius").unwrap_or(0.0);
-    if !(0.01..=LARGEST_M).contains(&radius_m) {
+    if !(0.01..=MAX_M).contains(&radius_m) {
         source.fault(&at, format!("radius {radius_m} m is out of range"), "allowed: 0.01 to 1000000 m");
         return None;
     }

@@ -15,7 +15,7 @@ use crate::plan::{Altitude, LegSpeed, Waypoint};
 /// The version of the data.
 const VERSION: u64 = 1;
 /// The most waypoints that are taken.
-const MOST_WAYPOINTS: usize = 30;
+const MAX_WAYPOINTS: usize = 30;
 
 /// The private data of a plan.
 #[derive(Debug, Default, Serialize, Deserialize)]
@@ -74,7 +74,7 @@ impl Data {
     }
 
     fn waypoints(&self) -> Option<Vec<Waypoint>> {
-        let points = (self.waypoints.len() <= MOST_WAYPOINTS).then_some(&self.waypoints)?;
+        let points = (self.waypoints.len() <= MAX_WAYPOINTS).then_some(&self.waypoints)?;
         points.iter().map(Point::waypoint).collect()
     }
 }

@@ -23,7 +23,7 @@ const EXAMPLE: &str = r#"{"fileType":"Plan","version":1,"groundStation":"betadec
  "rallyPoints":{"version":2,"points":[]}}"#;
 
 fn read_text(text: &str) -> PlanFile {
-    assert_eq!(Format::of_contents(text.as_bytes()), Format::QgcPlan);
+    assert_eq!(Format::from_contents(text.as_bytes()), Format::QgcPlan);
     parse("square.plan", text, Format::QgcPlan).unwrap_or_else(|errors| panic!("{}", report(&errors)))
 }
 

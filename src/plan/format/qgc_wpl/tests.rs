@@ -14,7 +14,7 @@ const EXAMPLE: &str = "QGC WPL 110\n\
     4\t0\t3\t21\t0\t0\t0\t0\t40.4640000\t-79.5190000\t0.000000\t1\n";
 
 fn read_text(text: &str) -> PlanFile {
-    assert_eq!(Format::of_contents(text.as_bytes()), Format::QgcWpl);
+    assert_eq!(Format::from_contents(text.as_bytes()), Format::QgcWpl);
     parse("square.waypoints", text, Format::QgcWpl).unwrap_or_else(|errors| panic!("{}", report(&errors)))
 }
 

@@ -8,16 +8,16 @@ use crate::report::plot::{self, Bar, Bars, Picture, Point};
 use crate::scenario::Metric;
 
 /// The most distributions that are drawn.
-const MOST_DISTRIBUTIONS: usize = 24;
+const MAX_DISTRIBUTIONS: usize = 24;
 /// The most inputs that are drawn.
-const MOST_CAUSES: usize = 3;
+const MAX_CAUSES: usize = 3;
 /// The least range of a metric that is drawn. A constant has no picture.
-const LEAST_RANGE: f64 = 1e-9;
+const MIN_RANGE: f64 = 1e-9;
 
 /// Returns the distributions of the metrics as histograms with their cumulative curves.
 pub(super) fn of_distributions(answer: &Answer, detail: Detail) -> Vec<Figure> {
-    let most = MOST_DISTRIBUTIONS.min(detail.rows);
-    let drawn = answer.distributions.iter().filter(|one| one.greatest - one.least > LEAST_RANGE);
+    let most = MAX_DISTRIBUTIONS.min(detail.rows);
+    let drawn = answer.distributions.iter().filter(|one| one.greatest - one.least > MIN_RANGE);
     drawn.take(most).enumerate().map(|(number, one)| distribution(number, one)).collect()
 }
 
@@ -72,7 +72,7 @@ pub(super) fn of_failures(answer: &Answer, detail: Detail) -> Vec<Figure> {
     let causes = &answer.causes;
     let has_both = causes.failures > 0 && causes.failures < causes.flights;
     // Without a cause beyond chance, the closest one is shown.
-    let real = causes.of_failures.iter().filter(|cause| cause.is_real).count().clamp(1, MOST_CAUSES);
+    let real = causes.of_failures.iter().filter(|cause| cause.is_real).count().clamp(1, MAX_CAUSES);
     let drawn = causes.of_failures.iter().filter(|_| has_both).take(real);
     let bars = drawn.enumerate().map(|(number, cause)| failures(number, cause));
     let first = causes.of_failures.first();

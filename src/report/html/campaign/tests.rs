@@ -1,6 +1,6 @@
 use super::*;
 use crate::campaign::{AnswerBuilder, Campaign, InputValue, Instant, Record, Shard, Side, Standing};
-use crate::report::html::MOST_BYTES;
+use crate::report::html::MAX_BYTES;
 use crate::scenario::{BuiltinFiles, Flights, Request, read_request};
 
 /// A campaign with a measure of this name and goals.
@@ -137,6 +137,6 @@ fn a_name_cannot_add_markup_to_a_campaign() {
 fn a_campaign_of_many_flights_fits_into_a_page() {
     let page = page(&"long ".repeat(80), 20_000, false);
     crate::report::html::tests::elements(&page);
-    assert!((50_000..=MOST_BYTES).contains(&page.len()), "{}", page.len());
+    assert!((50_000..=MAX_BYTES).contains(&page.len()), "{}", page.len());
     assert!(page.contains("Of many flights some are left out."));
 }

@@ -5,7 +5,7 @@ use askama::Template;
 use super::summary::Row;
 use crate::report::check::CheckedFlight;
 use crate::report::flight::{Detail, FlightReport, Verdict};
-use crate::report::html::{MOST_BYTES, flight, text};
+use crate::report::html::{MAX_BYTES, flight, text};
 use crate::scenario::{Judgement, Outcome};
 use crate::signals::SimTime;
 
@@ -52,7 +52,7 @@ impl Flights {
     pub(super) fn add(&mut self, flight: &CheckedFlight, report: &FlightReport) {
         self.count += 1;
         let parts = if flight.passed() { &mut self.passed } else { &mut self.failed };
-        if parts.bytes < MOST_BYTES {
+        if parts.bytes < MAX_BYTES {
             let part = part(flight, report, &format!("flight-{}", self.count));
             parts.bytes += part.len();
             parts.parts.push(part);

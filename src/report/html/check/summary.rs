@@ -36,7 +36,7 @@ impl Case {
 
 impl Row {
     /// Returns a row without a judgement.
-    fn of_flight(label: &str, seen: &str, left: &str, class: &'static str) -> Self {
+    fn from_flight(label: &str, seen: &str, left: &str, class: &'static str) -> Self {
         let rank = if class == "failed" { f64::NEG_INFINITY } else { f64::INFINITY };
         Self { rank, label: label.to_owned(), seen: text::line(seen), left: left.to_owned(), class }
     }
@@ -99,7 +99,7 @@ fn case(count: &CaseCount, flights: &[CheckedFlight]) -> Case {
     let CaseCount { name, passed, flights: all, .. } = count;
     let mut rows: Vec<Row> = Vec::new();
     if let Some(problem) = flights.iter().find_map(|flight| flight.problem.as_ref()) {
-        rows.push(Row::of_flight("the flight", problem, "✗", "failed"));
+        rows.push(Row::from_flight("the flight", problem, "✗", "failed"));
     }
     let labels = flights.iter().map(|flight| &flight.judgements).max_by_key(|judgements| judgements.len());
     for judgement in labels.into_iter().flatten() {
@@ -108,7 +108,7 @@ fn case(count: &CaseCount, flights: &[CheckedFlight]) -> Case {
         rows.extend(seen.min_by(|a, b| rank(a).total_cmp(&rank(b))).map(Row::of));
     }
     if rows.is_empty() {
-        rows.push(Row::of_flight("nothing was judged", "", "–", ""));
+        rows.push(Row::from_flight("nothing was judged", "", "–", ""));
     }
     let class = match count.has_failures() {
         true => "failed",

@@ -5,7 +5,7 @@ use crate::report::plot::canvas::{Area, filled, stroke};
 use crate::report::plot::{Colour, Point, simplify};
 
 /// The most names.
-const MOST_NAMES: usize = 40;
+const MAX_NAMES: usize = 40;
 
 /// The meaning of a shape for a flight.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -86,7 +86,7 @@ pub(super) fn draw<'g>(
         }
         names.extend(named_at.filter(|_| !shape.name.is_empty()).map(|at| (at, shape.name.as_str())));
     }
-    names.truncate(MOST_NAMES);
+    names.truncate(MAX_NAMES);
     names
 }
 

@@ -10,7 +10,7 @@ const HEIGHTS: (f64, f64) = (220.0, 560.0);
 /// The margin around the places, px. The names of waypoints use it, too.
 const MARGIN: f64 = 40.0;
 /// The least extent of the ground on the map, m.
-const LEAST_M: f64 = 20.0;
+const MIN_M: f64 = 20.0;
 /// The greatest distance of a place from home, m. Others are not drawn.
 const FARTHEST_M: f64 = 1e6;
 
@@ -33,7 +33,7 @@ impl View {
             low = (low.0.min(east), low.1.min(north));
             high = (high.0.max(east), high.1.max(north));
         }
-        let (across, up) = ((high.0 - low.0).max(LEAST_M), (high.1 - low.1).max(LEAST_M));
+        let (across, up) = ((high.0 - low.0).max(MIN_M), (high.1 - low.1).max(MIN_M));
         let (least, most) = HEIGHTS;
         let px_per_m = ((WIDTH - 2.0 * MARGIN) / across).min((most - 2.0 * MARGIN) / up);
         Self {

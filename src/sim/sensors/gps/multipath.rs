@@ -13,7 +13,7 @@ const MEAN_SPACING_S: f64 = 40.0;
 const SIZE_M: std::ops::Range<f64> = 2.0..8.0;
 const LENGTH_S: std::ops::Range<f64> = 3.0..15.0;
 /// The maximum number of masked satellites, and the mean time after which their number changes, s.
-const MOST_MASKED: u8 = 2;
+const MAX_MASKED: u8 = 2;
 /// The number of satellites that are high enough to be visible between walls.
 const HIGH_SATS: u8 = 8;
 const MASK_SPACING_S: f64 = 10.0;
@@ -35,7 +35,7 @@ impl Multipath {
         let mut rng = Stream::GpsMultipath.rng(seed);
         let next_step_s = wait(&mut rng, MEAN_SPACING_S);
         Self {
-            masked: rng.random_range(0..=MOST_MASKED),
+            masked: rng.random_range(0..=MAX_MASKED),
             next_mask_s: wait(&mut rng, MASK_SPACING_S),
             rng,
             step_enu: Vector3::zeros(),
@@ -57,7 +57,7 @@ impl Multipath {
         }
         if self.next_mask_s <= 0.0 {
             self.next_mask_s += wait(&mut self.rng, MASK_SPACING_S);
-            self.masked = self.rng.random_range(0..=MOST_MASKED);
+            self.masked = self.rng.random_range(0..=MAX_MASKED);
         }
     }
 

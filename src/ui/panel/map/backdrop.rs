@@ -23,7 +23,7 @@ const HALF_TURN_E7: f64 = 1.8e9;
 /// The most columns of a name.
 const NAME_COLUMNS: usize = 24;
 /// The most names for which room is looked for.
-const MOST_NAMES: usize = 256;
+const MAX_NAMES: usize = 256;
 
 /// Draws the grid, the lines, and the zones over them.
 pub(super) fn paint(state: &Shared, view: &Viewport, buffer: &mut Buffer) {
@@ -134,7 +134,7 @@ pub(super) fn write_names(state: &Shared, labels: &mut Labels<'_>) {
     let seen = |of_zones: bool| {
         all().filter(move |name| name.zone.is_some() == of_zones && window.shows(name.position))
     };
-    for name in seen(true).chain(seen(false)).take(MOST_NAMES) {
+    for name in seen(true).chain(seen(false)).take(MAX_NAMES) {
         let text = cut(&name.text, NAME_COLUMNS);
         let role = match name.zone {
             Some(Zone::Exclusion | Zone::Inclusion) => Role::Zone,

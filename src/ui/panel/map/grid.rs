@@ -13,13 +13,13 @@ use crate::ui::viewport::Viewport;
 use super::labels::Labels;
 
 /// The least distance between two lines, columns of the map.
-const LEAST_COLUMNS: f64 = 16.0;
+const MIN_COLUMNS: f64 = 16.0;
 /// The distance between two dots of a line, dots.
 const DOT_GAP: f64 = 4.0;
 /// The most dots of a line, more than any screen shows.
-const MOST_DOTS: f64 = 2000.0;
+const MAX_DOTS: f64 = 2000.0;
 /// The narrowest step, degrees: the resolution of positions.
-const LEAST_DEG: f64 = 1e-7;
+const MIN_DEG: f64 = 1e-7;
 /// The widest step, degrees. Near a pole nothing is wider.
 const WIDEST_DEG: f64 = 10.0;
 
@@ -40,10 +40,10 @@ struct Grid {
 impl Grid {
     fn of(frame: &LocalFrame, view: &Viewport) -> Self {
         let degree = to_map(frame, LatLon::from_degrees(frame.lat_deg + 0.5, frame.lon_deg + 0.5));
-        let least_m = LEAST_COLUMNS * view.scale;
+        let least_m = MIN_COLUMNS * view.scale;
         // One step for both directions, so that they can be compared.
         let least_deg = least_m / (2.0 * degree.e.abs().min(degree.n.abs()).max(1e-3));
-        let step_deg = round_step(least_deg.max(LEAST_DEG)).min(WIDEST_DEG);
+        let step_deg = round_step(least_deg.max(MIN_DEG)).min(WIDEST_DEG);
         let (north_m, east_m) = view.reach();
         let corner = |side: f64| {
             let place = MapPoint::new(view.centre.n + side * north_m, view.centre.e + side * east_m);
@@ -81,7 +81,7 @@ fn dots<'a>(
     let reach_m = if is_parallel { east_m } else { north_m };
     // Dots are half a column apart, and rows of dots, too.
     let gap_m = DOT_GAP * view.scale / 2.0;
-    let count = (2.0 * reach_m / gap_m).clamp(0.0, MOST_DOTS) as u32;
+    let count = (2.0 * reach_m / gap_m).clamp(0.0, MAX_DOTS) as u32;
     (0..=count).map(move |dot| {
         let along_m = f64::from(dot) * gap_m - reach_m;
         if is_parallel {

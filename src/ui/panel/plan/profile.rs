@@ -77,7 +77,7 @@ struct Axes {
 
 impl Axes {
     /// Returns the scales for the open plan; `None` if there is nothing to show, or no room.
-    fn of_plan(state: &Shared, points: &[Point], area: Rect) -> Option<Self> {
+    fn from_plan(state: &Shared, points: &[Point], area: Rect) -> Option<Self> {
         let flown = flown(state, points);
         Self::of(points, &flown, &ground_line(state, points, &flown), area)
     }
@@ -127,7 +127,7 @@ impl Axes {
 /// Returns the waypoint whose number is at a cell.
 pub(super) fn waypoint_at(state: &Shared, area: Rect, (column, row): (u16, u16)) -> Option<usize> {
     let points = points(state);
-    let axes = Axes::of_plan(state, &points, area)?;
+    let axes = Axes::from_plan(state, &points, area)?;
     let here =
         |point: &&Point| axes.row(point.alt_m) == row && axes.column(point.along_m).abs_diff(column) <= 1;
     points.iter().rev().find(here).map(|point| point.index)
@@ -136,7 +136,7 @@ pub(super) fn waypoint_at(state: &Shared, area: Rect, (column, row): (u16, u16))
 /// Returns the height of a row of the profile, m.
 pub(super) fn metres_per_row(state: &Shared, area: Rect) -> Option<f64> {
     let points = points(state);
-    Axes::of_plan(state, &points, area).map(|axes| axes.metres_per_row())
+    Axes::from_plan(state, &points, area).map(|axes| axes.metres_per_row())
 }
 
 /// Draws the profile: a rule with its legend, the altitudes, and the axes. The number of the waypoint under the cursor

@@ -19,7 +19,7 @@ mod help;
 pub(super) struct Lines<W> {
     output: W,
     asked: Option<Vec<String>>,
-    /// `true` while the settings are read that a line asked for.
+    /// `true` while the settings that a line requested are being read.
     reads: bool,
 }
 

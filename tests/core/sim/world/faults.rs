@@ -241,7 +241,7 @@ fn receiver_and_link_faults_are_reported_to_their_owners() {
     put_on(&mut embedded, "rx-jitter=0.3", None);
     assert!(embedded.clock().rx_lost());
     assert_eq!(embedded.clock().rx_drop_fraction(), 0.3);
-    let mut clock = Clock::of_external(1000, 1, Vec::new()).expect("a rate");
+    let mut clock = Clock::from_external(1000, 1, Vec::new()).expect("a rate");
     for text in ["rx-loss", "gps-loss", "stall", "fdm-loss=0.1", "fdm-late=20", "fdm-dup", "fdm-jitter"] {
         clock.apply(WorldCommand::FaultOn(fault(text), None)).expect("accepted");
     }

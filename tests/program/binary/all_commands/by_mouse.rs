@@ -12,7 +12,7 @@ const WHEEL_DOWN: u8 = 65;
 /// The number of rows of the palette.
 const ROWS: usize = 14;
 /// The most names that the palette puts in front.
-const MOST_USED: usize = 50;
+const MAX_USED: usize = 50;
 const PALETTE: &str = "Commands — Enter runs";
 
 /// Chooses every command in the palette.
@@ -41,7 +41,7 @@ impl Mouse {
         terminal.until("no palette", |terminal| !terminal.screen().contains(PALETTE));
         self.used.retain(|used| *used != name);
         self.used.push(name);
-        if self.used.len() > MOST_USED {
+        if self.used.len() > MAX_USED {
             self.used.remove(0);
         }
     }
