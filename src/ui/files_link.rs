@@ -9,8 +9,9 @@ use tokio::time::timeout;
 
 use super::editor::{FileReply, FileRequest};
 
-/// The longest wait for an edit to be kept. A slow disk must not block the screen.
-const PATIENCE: Duration = Duration::from_millis(100);
+/// The longest wait for an edit to be kept. A disk that hangs must not block the screen, and a busy machine must not show
+/// edits that a kill loses.
+const PATIENCE: Duration = Duration::from_secs(1);
 
 /// The longest time that keys wait for the answer to the request of an earlier key.
 const TYPED_AHEAD: Duration = Duration::from_millis(500);
@@ -72,5 +73,29 @@ impl FilesLink {
         let edited = self.edited;
         // If the files are slow or gone, they report it themselves.
         timeout(PATIENCE, self.done.wait_for(|&done| done >= edited)).await.ok();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::edit::JournalLine;
+    use crate::ui::editor::PlanId;
+
+    #[tokio::test]
+    async fn an_edit_is_not_shown_before_a_busy_machine_has_kept_it() {
+        let (requests, _asked) = std::sync::mpsc::channel();
+        let (done, kept) = watch::channel(0);
+        let mut link = FilesLink::new(requests, mpsc::unbounded_channel().1, kept);
+        for number in 0..6 {
+            assert!(link.ask(FileRequest::Journal(PlanId(1), JournalLine::Saved(number.to_string()))));
+        }
+        let keeper = std::thread::spawn(move || {
+            std::thread::sleep(Duration::from_millis(300));
+            done.send_modify(|done| *done = 6);
+        });
+        link.keep_edits().await;
+        assert_eq!(*link.done.borrow(), 6);
+        keeper.join().expect("the keeper ends");
     }
 }
