@@ -12,7 +12,7 @@ use betadeck::signals::SimTime;
 use betadeck::telemetry::{NavState, Snapshot};
 use betadeck::timeline::TimelineView;
 use betadeck::ui::backdrop::BackdropLayer;
-use betadeck::ui::editor::FileReply;
+use betadeck::ui::files::FileReply;
 use betadeck::ui::{AppState, MapMode, Msg, draw, update};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
 use divan::Bencher;

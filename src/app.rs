@@ -1,12 +1,9 @@
 //! The program: from arguments to the tasks of one mode.
 //!
-//! One file a mode, with its parts in the layer of its name: `check` flies scenarios, `campaign` many flights of one,
-//! `compare` two firmwares, `fly` one plan, and `open` shows a flight of a scenario or a campaign. `replay` shows and
-//! exports recorded flights.
+//! One file a mode, with its parts in the layer of its name: `tui`, `connect` and `serve` open the screen or the links,
+//! `open` shows a flight of a scenario or a campaign, `replay` shows and exports recorded flights. The modes without a
+//! screen are in the room `headless`.
 
-mod campaign;
-mod check;
-mod compare;
 mod config;
 pub mod configuration_file;
 mod connect;
@@ -16,7 +13,6 @@ mod doors;
 mod examples;
 mod flight_shelf;
 mod flights;
-mod fly;
 mod input_lines;
 mod keys;
 mod last_plan;
@@ -25,11 +21,9 @@ mod live;
 mod open;
 mod plan;
 mod replay;
-mod report;
 mod scenario_file;
-mod scenario_folder;
+mod screen;
 mod serve;
-mod setup;
 mod sitl;
 mod tui;
 mod usage;
@@ -38,11 +32,11 @@ use std::ffi::OsString;
 
 use crate::args::{self, Cli, Command, PlanCommand};
 use crate::files::output_file;
-use crate::launch;
 use crate::link::launch_firmware;
 use crate::process::build::Build;
 use crate::process::error::{self, AppError};
 use crate::ui::keymap::Keymap;
+use crate::{headless, launch};
 
 /// Runs the program with the given command line (program name first) and returns its exit code.
 pub fn run(arguments: impl IntoIterator<Item = OsString>, build: Build) -> u8 {
@@ -154,14 +148,14 @@ fn dispatch(cli: Cli, keymap: Keymap) -> Result<u8, AppError> {
     }
     match cli.command {
         None => tui::run(&cli.tui, keymap),
-        Some(Command::Fly(args)) => fly::run(&args, &cli.repeat),
-        Some(Command::Check(args)) => check::run(&args, &cli.repeat),
-        Some(Command::Campaign(args)) => campaign::run(&args, &cli.repeat),
-        Some(Command::Forecast(args)) => campaign::forecast(&args, &cli.repeat),
+        Some(Command::Fly(args)) => headless::fly::run(&args, &cli.repeat),
+        Some(Command::Check(args)) => headless::check::run(&args, &cli.repeat),
+        Some(Command::Campaign(args)) => headless::campaign::run(&args, &cli.repeat),
+        Some(Command::Forecast(args)) => headless::campaign::forecast(&args, &cli.repeat),
         Some(Command::Open(args)) => open::run(&args, keymap),
         Some(Command::Replay(args)) => replay::run(&args, &cli.repeat, keymap),
         Some(Command::Flights(args)) => flights::run(&args),
-        Some(Command::Compare(args)) => compare::run(&args, &cli.repeat),
+        Some(Command::Compare(args)) => headless::compare::run(&args, &cli.repeat),
         Some(Command::Sitl(args)) => sitl::run(&args),
         Some(Command::Serve(args)) => serve::run(&args),
         Some(Command::Plan(PlanCommand::List)) => plan::list(),

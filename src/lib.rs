@@ -24,6 +24,8 @@ pub mod fc;
 #[doc(hidden)]
 pub mod files;
 #[doc(hidden)]
+pub mod headless;
+#[doc(hidden)]
 pub mod launch;
 #[doc(hidden)]
 pub mod link;

@@ -1,5 +1,5 @@
 //! Flight plans: pure data and rules, without I/O. Quantities are in SI; the units of files, lines and messages are in
-//! `format::WaypointRecord` only.
+//! `WaypointRecord` only.
 //!
 //! The layers, each of which uses those before it:
 //!
@@ -23,7 +23,6 @@
 mod altitude_reference;
 pub mod builtin;
 mod capability;
-mod cli_lines;
 pub mod differences;
 pub mod edit;
 pub mod estimate;
@@ -32,6 +31,7 @@ pub mod format;
 pub mod generate;
 mod leg_time;
 mod quantity;
+mod record;
 pub mod review;
 pub mod setpoint;
 pub mod validate;
@@ -39,8 +39,9 @@ mod waypoint;
 
 pub use altitude_reference::{AltitudeError, AltitudeReference, CraftPlan};
 pub use capability::{Approach, Capability, Modifier, SpeedUse, Then, TimeUse};
-pub use cli_lines::{plan_lines, record_lines, upload_lines};
+pub use format::{plan_lines, record_lines, upload_lines};
 pub use quantity::{Altitude, LegSpeed, Seconds};
+pub use record::{Records, WaypointRecord};
 pub use review::{LegAltitude, leg_altitudes};
 pub use waypoint::{HoldPattern, Waypoint, WaypointType};
 

@@ -14,6 +14,7 @@
 //! Like the rest of the core, nothing here reads a file or a clock.
 
 mod ending;
+mod error;
 mod event;
 mod fingerprint;
 mod input;
@@ -31,14 +32,15 @@ mod tests;
 mod write;
 
 pub use ending::Ending;
+pub use error::ReadError;
 pub use event::{Happened, RecordedEvent};
 pub use fingerprint::{Fingerprint, FlightPrint};
 pub use lines::Rest;
 pub use picture::{Cadence, Picture, Pictures, Seen};
-pub use read::{ReadError, Recording, read_setup};
-pub use record::{FORMAT, Header};
+pub use read::{Recording, read_setup};
+pub use record::{End, FORMAT, Header};
 pub use recorder::{Recorder, RecordingSink};
 pub use repeat::Repeat;
 pub use setup::Setup;
-pub use summary::{End, Listed, Summary, TAIL, read_summary, seen_s};
+pub use summary::{Listed, Summary, TAIL, read_summary, seen_s};
 pub use write::Writer;

@@ -24,6 +24,7 @@ mod air;
 mod allowance;
 mod campaign_spec;
 mod case;
+mod change;
 mod draft;
 pub mod expression;
 mod file;
@@ -35,15 +36,16 @@ mod insight;
 mod judge;
 mod library;
 mod metric;
+mod metric_values;
 mod run;
 mod sampling;
 mod trace;
 mod varied;
 
-pub use air::{AirTemplate, WindProblem, WindText};
+pub use air::{Air, AirTemplate, WindProblem, WindText};
 pub use campaign_spec::{CampaignSpec, FlightSeeds, MAX_CAMPAIGN, USUAL_FLIGHTS, USUAL_LEVELS};
 pub use case::{
-    Air, Allowance, Case, Compare, Expectation, Expected, Measure, Measured, Scenario, StateStep, Statistic,
+    Allowance, Case, Compare, Expectation, Expected, Measure, Measured, Scenario, StateStep, Statistic,
     Window,
 };
 pub use draft::Draft;
@@ -53,7 +55,8 @@ pub use input::{Action, FORMS, TimedInput};
 pub use insight::Insight;
 pub use judge::{Judgement, Margin, Outcome, compare, judge, skip};
 pub use library::{BuiltinFiles, BuiltinScenario, SCENARIOS};
-pub use metric::{Metric, metrics};
+pub use metric::Metric;
+pub use metric_values::metrics;
 pub use run::{CaseFlight, FlightHash, Flown};
 pub use trace::{KnownPlan, NearestGuard, Sample, Stay, Trace};
 pub use varied::{Change, Choice, NumberInput, Spread, Tolerance, VariedInput};

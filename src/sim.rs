@@ -29,8 +29,10 @@ mod clock;
 mod command;
 mod config;
 mod endurance;
+mod error;
 mod event;
 mod fault;
+mod gps_grade;
 mod ground;
 mod landform;
 mod motors;
@@ -42,6 +44,7 @@ mod switches;
 mod touchdown;
 mod truth;
 mod value_text;
+mod wind;
 mod world;
 
 pub use air::{AIR_TICK_US, DrydenScales, one_minus_cosine};
@@ -54,18 +57,21 @@ pub use battery::{BatterySpec, motor_power_w};
 pub use body::{AirSample, BodyState, Loads, lever_arm_acceleration};
 pub use clock::Clock;
 pub use command::{COMMAND_WORDS, CommandWord, WorldCommand};
-pub use config::{Home, Noise, STEP_RATES_HZ, Wind, WorldConfig, WorldError, step_us};
+pub use config::{Home, Noise, STEP_RATES_HZ, WorldConfig, step_us};
+pub use error::WorldError;
 pub use event::{WorldEvent, WorldEventKind};
 pub use fault::{
     BatteryFault, Direction, FAULTS, Fault, FaultInfo, FaultKey, FaultStart, LinkFaults, MAX_FAULTS,
     MotorNumber, ScheduledFault,
 };
+pub use gps_grade::GpsGrade;
 pub use ground::{Ground, GroundContact};
 pub use plant::{Craft, Plant, Present, ground_effect_factor};
 pub use random::{Stream, StreamRng};
-pub use sensors::{GpsGrade, SITL_DECLINATION_DEG, magnetic_field_enu};
+pub use sensors::magnetic_field_enu;
 pub use surface::{Slope, Surface, TangentPlane};
-pub use switches::{AirDensity, SWITCHES, SwitchInfo, Switches, WindProfile};
+pub use switches::{AirDensity, SITL_DECLINATION_DEG, SWITCHES, SwitchInfo, Switches, WindProfile};
 pub use truth::{BatteryTruth, Truth, attitude, level_attitude};
 pub use value_text::ParseError;
+pub use wind::Wind;
 pub use world::{World, WorldStatus};

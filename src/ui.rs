@@ -12,109 +12,91 @@
 //! * [`Shared`] is the part of the state that every panel, popup and sentence may read: the picture of the session, the
 //!   editor, theme, units, keys, size and time. The state of a single panel and the popups are beside it in
 //!   [`AppState`], which only `update`, `draw` and `prompt` know.
-//! * `draw` only reads. [`layout`] computes everything that depends on the screen size; both use it.
+//! * `draw` only reads. [`acts::screen_layout`] computes everything that depends on the screen size; both use it.
 //! * A panel reads [`Shared`] and its own state, and returns requests. `update` alone carries them out.
 //! * Every key is a named [`action`]: keymap, hint bar, help, palette and the `:` line are read from one table. A
 //!   [`command`] takes an argument and returns requests, which `update` carries out.
-//! * `panel` has one file per panel, `popup` the windows over them, `keymap` the keys of the configuration file.
-//!   `transmitter` is the user's virtual RC transmitter, `stick_recording` records its sticks, `forecast` holds the
-//!   results of flights flown ahead of time, `survey` those of many flights of the plan, `diff` puts two versions of a plan
-//!   or of the settings beside each other, `settings` holds those of the craft, `graphs` the history of the graphs' signals,
-//!   `ground` the elevation tiles, `flights` is the library of recorded flights, `past_flight` shows a recorded flight at
-//!   once, `other_flight` a second one beside it,
-//!   `map_point` the places on the map, `viewport` its window, `map_edit` the edits on it, `backdrop` the files under it,
-//!   and `timeline` the timeline of the recording.
-//! * `run` is the shell around it: it waits for the terminal, the session and the clock, and carries out the effects.
 //!
-//! `editor` holds the open plans. `update` handles messages, one file per subject. `prompt` asks the questions of the
-//! popups line by line in `--plain` mode, which has no screen. `status_bar` draws the two lines at the top and says them in
-//! words. `permission` asks before a real craft is changed, and
-//! `status_message` suggests the next step.
+//! The modules, from the ground up. None uses one further down, but that a popup draws a map as its panel does:
 //!
-//! At most five files import each other, not counting parent and child; `tests/house/rooms` measures it.
+//! 1. Drawing without the state: `drawing`, `area`, `curve`, `raster`, `axis`, `theme`, `units`, `formatting`,
+//!    `text_field`, `text_wrap` and the like.
+//! 2. `model`: the state in parts, as plain data. [`model::message`] are the inputs and requests, [`model::effect`] the
+//!    requests to the shell, [`model::panel_table`] the panels, [`action`] the actions of keys.
+//! 3. `shared`: the part of the state that all panels see, put together from the model.
+//! 4. `acts`: functions over it: what keys, clock and session do to it, and what is derived from it, such as findings
+//!    about the plan, the next step, the window of the map and the layout of the screen.
+//! 5. `panel` has one file per panel, `popup` the windows over them. Both use `command`, `knobs`, `log_view`, `notice` and
+//!    `transitions`.
+//! 6. `app_state`, `update` and `draw`: the whole state, its changes, its drawing. Around the panels are `status_bar`,
+//!    `panel_bar`, `hint_bar`, `timeline` and `survey_strip`. `permission` asks before a real craft is changed.
+//!    `prompt` asks the questions of the popups line by line in `--plain` mode, which has no screen.
+//! 7. `run` and `terminal` are the shell around it: they wait for the terminal, the session and the clock, and carry out
+//!    the effects.
+//!
+//! `tests/house/rooms` checks that at most two modules use each other.
 //!
 //! May use: ratatui, crossterm, the session's snapshots, events and commands, and plans. Never firmware internals,
 //! the simulator or sockets.
 
-pub mod action;
+mod acts;
 mod app_state;
-mod arming_hint;
+mod area;
 mod ascii;
 mod axis;
-pub mod backdrop;
 pub mod command;
 mod completion;
-mod config;
-mod console;
 mod curve;
-mod diff;
 mod draw;
 mod drawing;
-pub mod editor;
-mod event_log;
 mod files_link;
-pub mod flights;
-mod forecast;
 mod formatting;
 mod fuzzy;
-mod graphs;
-mod ground;
 mod hint_bar;
-mod history;
-mod kept_screen;
-pub mod keymap;
 mod knobs;
-pub mod layout;
 mod log_view;
-mod map_edit;
-mod map_point;
-mod map_state;
-mod message;
-mod named_signal;
+mod model;
 mod notice;
-mod other_flight;
 mod panel;
 mod panel_bar;
-mod past_flight;
 mod permission;
 mod popup;
 mod prompt;
 mod raster;
 mod run;
 mod search;
-pub mod settings;
 mod shared;
 mod status_bar;
-pub mod status_message;
-mod stick_recording;
-mod survey;
+mod survey_strip;
 mod terminal;
 mod text_field;
 mod text_wrap;
 pub mod theme;
 mod timeline;
-mod track;
 mod transitions;
-mod transmitter;
 mod tutorial;
 pub mod units;
 mod update;
-mod viewport;
-mod world_history;
 
+pub use acts::availability::enabled;
+pub use acts::{screen_layout, status_message};
 pub use app_state::AppState;
-pub use config::{GroundConfig, UiConfig};
-pub use console::CliHelp;
 pub use draw::draw;
-pub use editor::OpenPlan;
-pub use event_log::Severity;
 pub use files_link::FilesLink;
-pub use history::{EnteredLines, LineField};
-pub use kept_screen::{KeptOf, KeptPlace, KeptScreen, KeptScreens, KeptTexts, Unread};
-pub use layout::SavedLayouts;
-pub use map_state::MapMode;
-pub use message::{Effect, FlightForm, Msg};
-pub use panel::{Panel, Panels};
+pub use model::config::{GroundConfig, UiConfig};
+pub use model::console::CliHelp;
+pub use model::editor::OpenPlan;
+pub use model::effect::{Effect, FlightForm};
+pub use model::event_log::Severity;
+pub use model::history::{EnteredLines, LineField};
+pub use model::kept_screen::{KeptOf, KeptPlace, KeptScreen, KeptScreens, KeptTexts, Unread};
+pub use model::layout::SavedLayouts;
+pub use model::map_state::MapMode;
+pub use model::message::Msg;
+pub use model::panel_table::Panel;
+pub use model::plan_id::PlanId;
+pub use model::{action, backdrop, editor, files, flights, keymap, settings};
+pub use panel::Panels;
 pub use popup::{CommandLine, FlightsList, Palette, Popup, SignalList};
 pub use run::{Ending, OtherReceiver, SessionLink, run, run_plain};
 pub use shared::{Notice, Shared};

@@ -27,6 +27,7 @@
 //! assert!(!vehicle.snapshot().craft.is_armed());
 //! ```
 
+mod apply;
 mod command;
 mod controller;
 mod input_log;

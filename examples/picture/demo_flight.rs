@@ -16,8 +16,9 @@ use betadeck::session::SessionView;
 use betadeck::signals::SimTime;
 use betadeck::sim::WorldConfig;
 use betadeck::timeline::{Marks, Timeline, TimelineView};
+use betadeck::ui::PlanId;
 use betadeck::ui::backdrop::BackdropLayer;
-use betadeck::ui::editor::{Conversion, ConversionLosses, FileReply, PlanId};
+use betadeck::ui::files::{Conversion, ConversionLosses, FileReply};
 use betadeck::ui::keymap::Keymap;
 use betadeck::ui::{
     AppState, CliHelp, Effect, EnteredLines, KeptScreens, Msg, OpenPlan, SavedLayouts, Theme, UiConfig,

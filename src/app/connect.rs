@@ -1,16 +1,12 @@
 //! `betadeck --connect`: the ground station for a remote flight controller, without a simulation.
-#![allow(clippy::disallowed_methods, reason = "answers are awaited in wall time")]
 
-use std::time::Instant;
-
+use super::doors::LiveArgs;
 use super::last_plan;
-use super::live::LiveArgs;
-use super::setup;
-use super::tui::{self, LiveFlight, Screen, Source};
+use super::screen::{self, LiveFlight, Screen, Source};
 use crate::args::{ConnectArgs, PlanArg, TuiArgs};
-use crate::fc::{RemoteEnds, RemoteLink};
 use crate::files::flight_recorder::RecordedStart;
-use crate::link::{FcPlace, FcStream};
+use crate::headless::setup;
+use crate::link::FcPlace;
 use crate::plan::format::PlanFile;
 use crate::process::error::AppError;
 use crate::screen_files::backdrop_file;
@@ -71,11 +67,5 @@ pub(super) fn run(args: &TuiArgs, place: &FcPlace, keymap: Keymap) -> Result<u8,
         })),
         other: None,
     };
-    tui::show(screen, keymap)
-}
-
-/// Returns the link to the flight controller at `place` and starts to connect.
-pub(super) fn link(place: &FcPlace) -> RemoteLink {
-    let stream = FcStream::open(place.clone());
-    RemoteLink::new(RemoteEnds { name: place.to_string(), stream, peer: None, child: None }, Instant::now())
+    screen::show(screen, keymap)
 }

@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 
 use strum::IntoEnumIterator as _;
 
-use super::setup;
 use crate::args::{ConvertArgs, OutputFile, PlanArg};
 use crate::files::output_file;
 use crate::files::output_file::KeptFiles;
 use crate::flight::setup::check_setting;
+use crate::headless::setup;
 use crate::plan::format::loss::{Finding, LossReport, Severity};
 use crate::plan::format::{self, Format, PlanFile, ReadOptions, Written};
 use crate::process::error;

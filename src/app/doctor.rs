@@ -6,17 +6,15 @@ use std::io::{ErrorKind, IsTerminal as _};
 use std::net::{TcpListener, UdpSocket};
 use std::path::Path;
 
-use super::keys;
 use super::layers::{self, Outside};
-use super::tui::is_dumb;
-use super::usage;
+use super::screen::is_dumb;
+use super::{keys, usage};
 use crate::args::{self, DoorArgs, Layers};
 use crate::files::directories;
-use crate::process::build;
-use crate::process::error;
 use crate::process::error::AppError;
+use crate::process::{build, error};
 use crate::ui::Theme;
-use crate::ui::layout::SMALLEST;
+use crate::ui::screen_layout::SMALLEST;
 use crate::ui::theme::{Charset, Palette};
 
 /// Prints the findings; exit code 0 if there is no problem.

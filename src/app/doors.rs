@@ -7,15 +7,29 @@ use std::time::{Duration, Instant};
 use tokio::sync::watch;
 use tokio_util::sync::CancellationToken;
 
-use super::live::LiveArgs;
 use crate::args::{DoorArgs, FlightArgs, PhysicsArgs};
 use crate::events::EndpointAddresses;
 use crate::fc::RemoteLink;
+use crate::launch::RemoteFirmware;
 use crate::link::endpoint::EndpointKind;
 use crate::link::proto::fdm_link::FdmLinkConfig;
-use crate::link::{ExternalSimulator, ListenConfig, Listeners};
+use crate::link::{ExternalSimulator, FcPlace, ListenConfig, Listeners};
 use crate::process::error::AppError;
 use crate::session::{Endpoints, Links, MotorTargets};
+
+/// The options of a session.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct LiveArgs<'a> {
+    pub(super) doors: &'a DoorArgs,
+    /// The remote flight controller, if there is no simulation.
+    pub(super) connect: Option<&'a FcPlace>,
+    /// The remote firmware, if the embedded one does not fly.
+    pub(super) firmware: Option<&'a RemoteFirmware>,
+    pub(super) physics: &'a PhysicsArgs,
+    pub(super) flight: &'a FlightArgs,
+    /// `true` if a screen shows the session and its earlier instants.
+    pub(super) has_screen: bool,
+}
 
 /// The interval at which the state of the doors is published.
 const VIEW: Duration = Duration::from_millis(250);

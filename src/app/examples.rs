@@ -3,13 +3,13 @@
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::setup;
 use crate::args::{FlightArgs, MissionArgs, PlanArg};
 use crate::fc::upload;
 use crate::files::log_output::{LogOnly, LogOutput};
 use crate::files::output_file::{cannot_write, replace};
 use crate::firmware::config::Configuration;
 use crate::flight::setup::{BootLines, PhysicsSource};
+use crate::headless::setup;
 use crate::plan::builtin::BuiltinPlan;
 use crate::process::error;
 use crate::process::error::AppError;

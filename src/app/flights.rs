@@ -1,8 +1,8 @@
 //! `betadeck flights`: lists the library of recorded flights.
 
-use super::setup;
 use crate::args::FlightsArgs;
 use crate::files::flight_library;
+use crate::headless::setup;
 use crate::process::error;
 use crate::process::error::AppError;
 use crate::report::flights::{json_line, table};

@@ -1,7 +1,7 @@
 //! The plan that was shown last.
 
-use super::setup;
 use crate::args::PlanArg;
+use crate::headless::setup;
 use crate::plan::format::{HomePosition, PlanFile};
 use crate::process::error::AppError;
 use crate::ui::KeptScreen;

@@ -1,14 +1,16 @@
 //! Starts the session of `betadeck` and `serve`, which flies in real time and serves its doors.
+#![allow(clippy::disallowed_methods, reason = "answers are awaited in wall time")]
 
-use super::connect;
-use super::doors::{self, OpenDoors};
-use super::setup;
-use crate::args::{DoorArgs, FlightArgs, PhysicsArgs, Speed};
+use std::time::Instant;
+
+use super::doors::{self, LiveArgs, OpenDoors};
+use crate::args::Speed;
 use crate::events::SessionEvent;
-use crate::launch::link;
+use crate::fc::{RemoteEnds, RemoteLink};
+use crate::headless::setup;
 use crate::launch::link::OpenLink;
-use crate::launch::{FirmwareFolder, RemoteFirmware};
-use crate::link::FcPlace;
+use crate::launch::{FirmwareFolder, link};
+use crate::link::{FcPlace, FcStream};
 use crate::process::error::AppError;
 use crate::session::{self, FlightFeed, FlownBefore, Handle, SessionConfig};
 use crate::storage::Store;
@@ -16,20 +18,6 @@ use crate::vehicle::Vehicle;
 
 /// The altitude to which the scripted pilot climbs before it engages, m.
 const TAKEOFF_M: f64 = 10.0;
-
-/// The options of a session.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct LiveArgs<'a> {
-    pub(super) doors: &'a DoorArgs,
-    /// The remote flight controller, if there is no simulation.
-    pub(super) connect: Option<&'a FcPlace>,
-    /// The remote firmware, if the embedded one does not fly.
-    pub(super) firmware: Option<&'a RemoteFirmware>,
-    pub(super) physics: &'a PhysicsArgs,
-    pub(super) flight: &'a FlightArgs,
-    /// `true` if a screen shows the session and its earlier instants.
-    pub(super) has_screen: bool,
-}
 
 /// Returns the error for a session that ended without a request.
 pub(super) fn ended_by_itself() -> AppError {
@@ -89,10 +77,16 @@ pub(super) async fn start(
         takeoff_m: TAKEOFF_M,
         is_recorded: args.has_screen,
         endpoints,
-        remote: remote.or_else(|| args.connect.map(connect::link)),
+        remote: remote.or_else(|| args.connect.map(connect)),
         first_events,
     };
     let session = session::start_at(config, flown, feed)
         .map_err(|error| AppError::environment(format!("cannot start a thread: {error}")))?;
     Ok((session, doors, directory.flatten()))
+}
+
+/// Returns the link to the flight controller at `place` and starts to connect.
+fn connect(place: &FcPlace) -> RemoteLink {
+    let stream = FcStream::open(place.clone());
+    RemoteLink::new(RemoteEnds { name: place.to_string(), stream, peer: None, child: None }, Instant::now())
 }

@@ -4,14 +4,13 @@
 mod of_campaign;
 mod of_recording;
 
-use super::check;
-use super::live::LiveArgs;
-use super::setup;
-use super::tui::{self, LiveFlight, Screen, Source};
+use super::doors::LiveArgs;
+use super::screen::{self, LiveFlight, Screen, Source};
 use crate::args::{DoorArgs, FlightArgs, Instant, OpenArgs, PhysicsArgs, ReviewArgs};
 use crate::events::Event;
 use crate::fc::RemoteLink;
 use crate::files::flight_recorder::RecordedStart;
+use crate::headless::{check, setup};
 use crate::launch;
 use crate::launch::run::{OnEvent, Stopped, unless_interrupted};
 use crate::launch::{Beside, RemoteFirmware, reported};
@@ -65,7 +64,7 @@ impl Recorded {
 
 /// Flies the case to its end and opens the screen at the instant.
 pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
-    tui::require_terminal(args.plain)?;
+    screen::require_terminal(args.plain)?;
     let mut notices = Vec::new();
     if let Some(recording) = of_recording::read(args)? {
         return of_recording::run(args, &recording, keymap);
@@ -99,7 +98,7 @@ pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
     let recorded = recorded_start(&case, &air, flight.vehicle());
     let finished = Finished {
         plan: case.setup.plan.clone(),
-        given_settings: setup::given_settings(&case.setup.boot_lines),
+        given_settings: screen::given_settings(&case.setup.boot_lines),
         vehicle: flight.into_vehicle(),
         recorded,
         flown: FlownBefore { timeline, events, show, again },
@@ -196,7 +195,7 @@ fn open_screen(args: &OpenArgs, finished: Finished, keymap: Keymap) -> Result<u8
         })),
         other: None,
     };
-    tui::show(screen, keymap)
+    screen::show(screen, keymap)
 }
 
 /// The flight that is opened, with its start on the screen.

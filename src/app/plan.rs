@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use super::setup;
 use crate::args::{BackdropArgs, PlanArg, ReviewArgs, TerrainArgs};
 use crate::files::terrain::TerrainFiles;
 use crate::flight::FlightSetup;
 use crate::flight::setup::check_setting;
 use crate::geo::{LatLon, distance_bearing};
+use crate::headless::setup;
 use crate::plan::builtin::PLANS;
 use crate::plan::estimate::Assumptions;
 use crate::plan::feature::Feature;

@@ -10,10 +10,10 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::last_plan;
-use super::setup;
-use super::tui::{self, Screen, SecondFlight, Source};
+use super::screen::{self, Screen, SecondFlight, Source};
 use crate::args::{PlanArg, RecordInstant, ReplayArgs, ReviewArgs, TerrainArgs};
 use crate::files::file_identity;
+use crate::headless::setup;
 use crate::plan::format::PlanFile;
 use crate::process::error;
 use crate::process::error::AppError;
@@ -30,7 +30,7 @@ use opened::Opened;
 /// Writes the files of the options, or shows the flights. With `--plain` it does both.
 pub(super) fn run(args: &ReplayArgs, repeat: &[String], keymap: Keymap) -> Result<u8, AppError> {
     if !args.exports() {
-        tui::require_terminal(args.plain)?;
+        screen::require_terminal(args.plain)?;
     }
     let (first, second) = match &args.files[..] {
         [first] => (first, None),
@@ -80,7 +80,7 @@ pub(super) fn run(args: &ReplayArgs, repeat: &[String], keymap: Keymap) -> Resul
         screen_file,
         kept,
         was_used: true,
-        given_settings: setup::given_settings(&settings.unwrap_or_default()),
+        given_settings: screen::given_settings(&settings.unwrap_or_default()),
         notices,
         review: ReviewArgs::default(),
         tiles: None,
@@ -90,7 +90,7 @@ pub(super) fn run(args: &ReplayArgs, repeat: &[String], keymap: Keymap) -> Resul
         source: Source::Replay(config),
         other: second.map(beside),
     };
-    tui::show(screen, keymap)
+    screen::show(screen, keymap)
 }
 
 /// Reads the kept screen of a file.

@@ -2,19 +2,18 @@
 
 use std::io::{BufWriter, Write};
 
-use super::live::{self, LiveArgs, Reports};
-use super::setup;
+use super::doors::LiveArgs;
+use super::live::{self, Reports};
 use crate::args::{OutputFile, ServeArgs};
 use crate::events::Event;
 use crate::files::output_file;
 use crate::files::terrain::with_terrain;
+use crate::headless::setup;
 use crate::launch;
 use crate::launch::Beside;
 use crate::plan::format::PlanFile;
-use crate::process::error;
 use crate::process::error::AppError;
-use crate::process::runtime;
-use crate::process::stop_signal;
+use crate::process::{error, runtime, stop_signal};
 use crate::report::{json, sentence};
 use crate::session::{Command, Handle};
 use crate::text::printable;

@@ -10,19 +10,17 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use tokio::sync::Notify;
 
-use super::setup::attitude_source;
 use crate::args::{OnOff, SitlArgs};
 use crate::files::input_file;
 use crate::files::output_file::KeptFiles;
 use crate::firmware::cli::{ApplyReport, CliContext, CliFacts, CliMode, Interpreter, provision};
 use crate::flight::FlightSetup;
 use crate::flight::setup::PhysicsSource;
+use crate::headless::setup::attitude_source;
 use crate::link::ListenConfig;
 use crate::link::proto::fdm_link::FdmLinkConfig;
-use crate::process::error;
 use crate::process::error::AppError;
-use crate::process::runtime;
-use crate::process::stop_signal;
+use crate::process::{error, runtime, stop_signal};
 use crate::report::gpx::{GpxHeader, GpxPoint, GpxWriter, UtcSeconds};
 use crate::session::sitl::{OutputLine, Sitl, SitlConfig, SitlEnd, SitlError, SitlPorts, show_links};
 use crate::storage::Store;
@@ -75,7 +73,7 @@ fn config(args: &SitlArgs) -> SitlConfig {
             ..FlightSetup::default()
         }
         .firmware_options(),
-        build: super::setup::build_info(),
+        build: crate::headless::setup::build_info(),
         fdm: FdmLinkConfig {
             dialect: args.simulator.fdm_dialect.unwrap_or_default().0,
             mirror: args.simulator.fdm_mirror.unwrap_or_default(),

@@ -19,6 +19,7 @@ mod leg;
 mod observed;
 mod progress;
 mod report;
+mod rescue;
 mod station;
 mod steer;
 mod task;
@@ -40,7 +41,7 @@ use observed::Observed;
 use station::{Station, StationMonitor};
 use task::Task;
 
-pub use task::Rescue;
+pub use rescue::Rescue;
 
 /// The maximum number of events between two drains. Further events are dropped; the state itself is never lost.
 pub const EVENT_CAPACITY: usize = 16;
@@ -104,7 +105,7 @@ impl Navigator {
     ) -> NavOutput {
         let now = self.inputs.apply(inputs);
         self.follow_arming(&now);
-        let seen = Observed::new(&now, params, &self.task);
+        let seen = Observed::new(&now, params, &self.task.cursor, &self.task.leg);
         let undecided = if self.is_flying() {
             self.task.cursor.follow_clearing(stored);
             self.steering.engage(&now, params, controllers);
@@ -129,7 +130,7 @@ impl Navigator {
         self.steering.engage(&now, params, controllers);
         self.end_old_descent(controllers);
         let (facts, seen) = undecided.unwrap_or_else(|| {
-            let seen = Observed::new(&now, params, &self.task);
+            let seen = Observed::new(&now, params, &self.task.cursor, &self.task.leg);
             (self.task.facts(self.state, self.previous, &seen, controllers), seen)
         });
         let flown = self.steering.fly(self.state, &mut self.task, &seen, controllers);

@@ -11,6 +11,7 @@
 
 mod bytes;
 mod clock;
+mod constants;
 mod decoder;
 mod event;
 mod group;

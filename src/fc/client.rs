@@ -16,6 +16,7 @@
 mod ask;
 mod exchange;
 mod framed_line;
+mod line_progress;
 mod line_text;
 mod message_line;
 mod prompt_line;
@@ -27,8 +28,9 @@ pub use line_text::printable as sent_line;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use exchange::{Exchange, LineProgress};
+use exchange::Exchange;
 use framed_line::FramedLine;
+use line_progress::LineProgress;
 use message_line::{MessageLine, Page};
 use prompt_line::PromptLine;
 use request::{Request, Waiting};

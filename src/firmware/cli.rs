@@ -27,6 +27,7 @@ mod profiles;
 mod receiver;
 mod serial;
 mod session;
+mod state;
 mod status;
 mod waypoint;
 
@@ -34,11 +35,11 @@ pub use advice::advice;
 pub use apply::{ApplyReport, FailedLine, apply_lines, provision};
 pub use command_table::{COMMANDS, Command};
 pub use complete::{Completion, complete, hint};
-pub use interpreter::{CliMode, Interpreter};
 pub use observation::{
     BatteryFacts, BuildInfo, CliFacts, GpsFacts, GpsSolutionFacts, LoopFacts, NavFacts, SmoothingFacts,
     StorageFacts, TaskFacts,
 };
+pub use state::{CliMode, Interpreter};
 
 use super::config::Configuration;
 use crate::telemetry::FirmwareNotice;

@@ -3,17 +3,13 @@
 use std::sync::Arc;
 
 use super::block::{Block, Extents, block_size};
-use super::boxes::BoxOrder;
-use super::fields::Fields;
 use super::flight::{LogCounts, LogEnd, LogFlight};
 use super::mark_log::{Flags, MarkLog};
 use super::scale::Scales;
 use super::signal::{Newest, SignalTable};
 use super::track_log::TrackLog;
 use super::tracker::Tracker;
-use crate::blackbox::decode::{
-    FirmwareName, Frame, Header, HeaderFinding, LogReader, LogSource, ResumePoint,
-};
+use crate::blackbox::decode::{Frame, Header, HeaderFinding, LogReader, LogSource, ResumePoint};
 use crate::blackbox::{FrameKind, LogEvent};
 use crate::signals::SimTime;
 
@@ -39,15 +35,6 @@ pub(super) struct FlightBuilder {
     is_complete: bool,
 }
 
-/// Returns the tracker for a log.
-pub(super) fn tracker(header: &Header) -> Tracker {
-    let order = match header.firmware {
-        FirmwareName::Betaflight => BoxOrder::from_betaflight(header.version),
-        _ => BoxOrder::UNKNOWN,
-    };
-    Tracker::new(Fields::of(header, &Scales::of(header)), order)
-}
-
 impl FlightBuilder {
     pub(super) fn new(header: Arc<Header>, file_size: u64) -> Self {
         let scales = Scales::of(&header);
@@ -56,7 +43,7 @@ impl FlightBuilder {
             findings: scales.findings().to_vec(),
             block_size: block_size(file_size, table.signals.len()),
             extents: Extents::new(table.signals.len()),
-            tracker: tracker(&header),
+            tracker: Tracker::from_header(&header),
             table,
             header,
             blocks: Vec::new(),

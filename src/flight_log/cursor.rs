@@ -4,7 +4,6 @@ use std::io;
 use std::sync::Arc;
 
 use super::block::Block;
-use super::builder::tracker;
 use super::flight::{LogCounts, LogEnd};
 use super::sample::LogSample;
 use super::signal::{Newest, SignalTable};
@@ -45,7 +44,7 @@ impl<'a, S: LogSource> FlightCursor<'a, S> {
         source: S,
         before: LogCounts,
     ) -> io::Result<Self> {
-        let mut tracker = tracker(header);
+        let mut tracker = Tracker::from_header(header);
         tracker.state = block.state.clone();
         let reader = LogReader::resumed(source, Arc::clone(header), &block.point);
         let (main, next_main) = (Vec::new(), Vec::new());

@@ -8,8 +8,9 @@ use super::failsafe_phase::FailsafePhase;
 use super::fields::{Fields, Place, read_three};
 use super::place::LogHome;
 use super::sample::LogSample;
+use super::scale::Scales;
 use crate::blackbox::FrameKind;
-use crate::blackbox::decode::Frame;
+use crate::blackbox::decode::{FirmwareName, Frame, Header};
 use crate::geo::{LatLon, LocalFrame};
 use crate::signals::SimTime;
 
@@ -45,6 +46,15 @@ pub(super) struct Tracker {
 }
 
 impl Tracker {
+    /// Returns the tracker for a log.
+    pub(super) fn from_header(header: &Header) -> Self {
+        let order = match header.firmware {
+            FirmwareName::Betaflight => BoxOrder::from_betaflight(header.version),
+            _ => BoxOrder::UNKNOWN,
+        };
+        Self::new(Fields::of(header, &Scales::of(header)), order)
+    }
+
     pub(super) fn new(fields: Fields, order: BoxOrder) -> Self {
         Self { fields, order, state: TrackerState::default() }
     }

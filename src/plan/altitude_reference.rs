@@ -1,8 +1,8 @@
 //! The reference of a craft for the altitudes of its waypoints. Plans in betadeck use home.
 
-use super::format::Records;
 use super::quantity::to_cm;
 use super::{FlightPlan, WaypointType};
+use crate::plan::record::Records;
 
 /// The reference of a craft for the altitudes of its waypoints.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

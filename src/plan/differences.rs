@@ -2,9 +2,9 @@
 
 use std::fmt;
 
-use super::format::WaypointRecord;
 use super::{FlightPlan, HoldPattern};
 use crate::geo::Degrees7;
+use crate::plan::record::WaypointRecord;
 
 /// A difference of one field. `Display` gives `WP3 altitude: 50 m → 15.24 m`.
 #[derive(Debug, Clone, PartialEq, Eq)]

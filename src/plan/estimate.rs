@@ -172,7 +172,7 @@ mod tests {
     use super::*;
     use crate::geo::offset_to_latlon;
     use crate::plan::WaypointType;
-    use crate::plan::format::WaypointRecord;
+    use crate::plan::record::WaypointRecord;
     use nalgebra::Vector2;
 
     const HOME: LatLon = LatLon::new(404_635_000, -795_182_000);

@@ -8,6 +8,7 @@
 //! that the other side cannot hold.
 
 mod bounds;
+mod cli_lines;
 mod cli_text;
 mod csv_plan;
 mod csv_table;
@@ -41,7 +42,6 @@ mod problem;
 mod qgc_csv;
 mod qgc_plan;
 mod qgc_wpl;
-mod record;
 mod setting;
 mod table;
 mod thinned;
@@ -53,6 +53,7 @@ use std::borrow::Cow;
 use super::{FlightPlan, Waypoint};
 use loss::{LossReport, Severity};
 
+pub use cli_lines::{plan_lines, record_lines, upload_lines};
 pub use encoding::decode as decode_text;
 pub use field::degrees_e7;
 pub use home::{HomeError, HomePosition};
@@ -62,7 +63,6 @@ pub use note::{Note, NoteKind};
 pub use options::{ReadOptions, WriteOptions};
 pub use problem::{PlanError, Problems, report};
 pub use qgc_plan::qgc_fences;
-pub use record::{Records, WaypointRecord};
 pub use setting::{SettingCheck, SettingFault, SettingPart, setting_line};
 pub use table::table;
 pub use toml_table::{TomlTable, Value};

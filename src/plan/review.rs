@@ -306,7 +306,7 @@ fn ends_the_mission(waypoint: &Waypoint) -> bool {
 mod tests {
     use super::*;
     use crate::plan::Seconds;
-    use crate::plan::format::WaypointRecord;
+    use crate::plan::record::WaypointRecord;
 
     const HOME: LatLon = LatLon::new(404_635_000, -795_182_000);
 

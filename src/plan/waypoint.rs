@@ -1,8 +1,8 @@
 //! One waypoint.
 
-use super::format::WaypointRecord;
 use super::quantity::{Altitude, LegSpeed, Seconds};
 use crate::geo::LatLon;
+use crate::plan::record::WaypointRecord;
 
 /// The action of the autopilot at a waypoint. The discriminant is the code in MSP messages and in files.
 #[derive(

@@ -1,15 +1,15 @@
 //! Reads a recording within bounds.
 
-use std::io::{self, BufRead};
+use std::io::BufRead;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
+use super::error::ReadError;
 use super::event::{Happened, RecordedEvent};
 use super::lines::{Rest, each};
 use super::picture::{Picture, Pictures, Scene};
-use super::record::{FORMAT, Header, Record};
+use super::record::{End, FORMAT, Header, Record};
 use super::setup::Setup;
-use super::summary::End;
 use crate::signals::SimTime;
 use crate::telemetry::{EventKind, FirmwareEvent, NavEvent};
 use crate::vehicle::VehicleCommand;
@@ -17,25 +17,6 @@ use crate::vehicle::VehicleCommand;
 /// The most memory of inputs, and of events, bytes.
 const MAX_INPUTS: usize = 64 << 20;
 const MAX_EVENTS: usize = 16 << 20;
-
-/// The reason why a file is not shown as a recording.
-#[derive(Debug, thiserror::Error)]
-pub enum ReadError {
-    #[error("it is no recording of a flight: one begins with a gzip member and the line {{\"flight\":…}}")]
-    NoRecording,
-    #[error("a later version of betadeck wrote it (format {0}, this one reads {FORMAT})")]
-    LaterFormat(u32),
-    #[error("it has neither pictures nor the inputs to fly it again")]
-    Empty,
-    #[error(transparent)]
-    Source(#[from] io::Error),
-}
-
-impl Header {
-    pub(super) fn check(&self) -> Result<(), ReadError> {
-        if self.format > FORMAT { Err(ReadError::LaterFormat(self.format)) } else { Ok(()) }
-    }
-}
 
 /// A recorded flight.
 #[derive(Debug, Clone, PartialEq)]

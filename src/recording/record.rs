@@ -6,7 +6,6 @@ use super::event::Happened;
 use super::input::Input;
 use super::picture::{Scene, Shot};
 use super::setup::Setup;
-use super::summary::End;
 use crate::signals::SimTime;
 
 /// The version of the format. A later version can still be read if it only adds lines or keys.
@@ -30,6 +29,23 @@ pub struct Header {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub(super) struct Begin {
     pub t: SimTime,
+}
+
+/// The last line.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct End {
+    /// The time of the end, since boot.
+    pub t: SimTime,
+    /// The result in a word, such as `complete`.
+    pub result: String,
+    /// The reason, a sentence without its full stop.
+    pub reason: String,
+    /// The duration of the flight, s.
+    pub flown_s: f64,
+    /// The hash of the flight; `None` if it cannot be flown again.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hash: Option<String>,
 }
 
 /// A line. Times are microseconds since boot.

@@ -4,11 +4,11 @@ use std::io::{self, BufRead};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
+use super::error::ReadError;
 use super::lines::{Rest, each};
-use super::read::ReadError;
-use super::record::{Header, Record};
+use super::record::{End, Header, Record};
 use crate::signals::SimTime;
 
 /// The name in the header of the last gzip member.
@@ -17,23 +17,6 @@ pub(super) const LAST_MEMBER: &[u8] = b"end";
 const LAST_HEADER: [u8; 10] = [0x1f, 0x8b, 8, 8, 0, 0, 0, 0, 0, 255];
 /// The longest last member, bytes.
 pub const TAIL: usize = 16 << 10;
-
-/// The last line.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[serde(default)]
-pub struct End {
-    /// The time of the end, since boot.
-    pub t: SimTime,
-    /// The result in a word, such as `complete`.
-    pub result: String,
-    /// The reason, a sentence without its full stop.
-    pub reason: String,
-    /// The duration of the flight, s.
-    pub flown_s: f64,
-    /// The hash of the flight; `None` if it cannot be flown again.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub hash: Option<String>,
-}
 
 /// What a list of recordings shows of one.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -11,9 +11,9 @@ use super::event::RecordedEvent;
 use super::input::Input;
 use super::number::Rounded;
 use super::picture::{Scene, Seen, parts};
-use super::record::{Begin, Header, Record};
+use super::record::{Begin, End, Header, Record};
 use super::setup::Setup;
-use super::summary::{End, LAST_MEMBER};
+use super::summary::LAST_MEMBER;
 use crate::signals::SimTime;
 use crate::vehicle::VehicleCommand;
 

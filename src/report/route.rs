@@ -1,8 +1,7 @@
 //! A flight plan in metres: the position and the altitude of each waypoint.
 
-use nalgebra::Vector2;
+use nalgebra::{Vector2, Vector3};
 
-use super::compare::TrackSample;
 use super::plot::{Mark, Point};
 use crate::geo::LocalFrame;
 use crate::plan::{FlightPlan, HoldPattern, WaypointType};
@@ -17,6 +16,24 @@ const CUT_M: f64 = 40.0;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Route {
     pub(in crate::report) points: Vec<RoutePoint>,
+}
+
+/// The position of the craft at an instant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrackSample {
+    /// Seconds after the engagement.
+    pub time_s: f64,
+    /// North and east of home, m.
+    pub ne: Vector2<f64>,
+    /// Height above the craft's position on the ground at home, m.
+    pub alt_m: f64,
+}
+
+impl TrackSample {
+    /// Returns north, east and up from home, m.
+    pub(in crate::report) fn position(&self) -> Vector3<f64> {
+        Vector3::new(self.ne.x, self.ne.y, self.alt_m)
+    }
 }
 
 /// A waypoint of the route.

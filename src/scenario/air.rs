@@ -2,14 +2,28 @@
 
 use std::collections::BTreeMap;
 
-use super::case::Air;
-use super::expression::{Cursor, Number, Scope, read_number};
+use super::expression::{Cursor, Number, Scope};
 use crate::sim::{Noise, ParseError, Wind};
 use crate::telemetry::Turbulence;
 use crate::telemetry::quantity::Dimension;
 
 /// The longest wind with its `{…}`, characters. The wind is read once for each seed.
 const MAX_WIND: usize = 200;
+
+/// The air and the sensors of a flight.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Air {
+    /// Seed of all randomness.
+    pub seed: u64,
+    /// The mean wind.
+    pub wind: Wind,
+    /// Size of random gusts, m/s.
+    pub gust_mps: f64,
+    /// Level of turbulence.
+    pub turbulence: Turbulence,
+    /// Sensor errors on or off.
+    pub noise: Noise,
+}
 
 /// The text of a wind: `5@270`, or with the seed in it, `{seed % 9}@{37 * seed % 360}`.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -103,7 +117,7 @@ fn fill(text: &str, seed: u64) -> Result<String, String> {
             ..Scope::default()
         };
         let mut cursor = Cursor::new(inside);
-        let (number, _) = read_number(&mut cursor, &scope).map_err(|error| error.message)?;
+        let (number, _) = scope.read_number(&mut cursor).map_err(|error| error.message)?;
         cursor.finish().map_err(|error| error.message)?;
         let value = number_of_seed(&number, seed as f64).ok_or("only seed and numbers are allowed here")?;
         filled.push_str(before);

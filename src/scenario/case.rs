@@ -1,16 +1,22 @@
 //! A scenario read from its file: the cases, and the expectations of each case.
 
+use super::air::Air;
 use super::campaign_spec::CampaignSpec;
 use super::expression::{Comparison, Condition, Instant, Number};
 use super::happening::Pattern;
 use super::input::TimedInput;
 use crate::flight::{FlightOptions, FlightSetup};
-use crate::sim::{Noise, Wind};
 use crate::telemetry::quantity::Dimension;
-use crate::telemetry::{FirmwareProfile, NavState, PlanSource, Turbulence};
+use crate::telemetry::{FirmwareProfile, NavState, PlanSource};
 
 /// The keys of the command lines that are written in the scenario itself.
 pub(super) const OWN_LINES: [&str; 2] = ["settings", "lines"];
+
+/// The default time for which the record goes on after the end, s. Consequences of the end, such as the disarm,
+/// belong to the flight.
+pub(super) const WATCH_S: f64 = 0.5;
+/// The default number of samples a second.
+pub(super) const SAMPLE_HZ: f64 = 100.0;
 
 /// A scenario: a plan, the air, inputs and expectations.
 #[derive(Debug, Clone)]
@@ -66,21 +72,6 @@ pub struct Case {
     pub measures: Vec<Measure>,
     /// The expectations, in the order of the file.
     pub expectations: Vec<Expectation>,
-}
-
-/// The air and the sensors of a flight.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Air {
-    /// Seed of all randomness.
-    pub seed: u64,
-    /// The mean wind.
-    pub wind: Wind,
-    /// Size of random gusts, m/s.
-    pub gust_mps: f64,
-    /// Level of turbulence.
-    pub turbulence: Turbulence,
-    /// Sensor errors on or off.
-    pub noise: Noise,
 }
 
 impl Case {

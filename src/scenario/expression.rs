@@ -7,10 +7,10 @@
 mod condition;
 mod cursor;
 mod evaluate;
-mod goal;
 mod instant;
 mod lookup;
 mod number;
+mod pattern;
 mod place;
 
 use std::collections::BTreeMap;
@@ -22,14 +22,14 @@ use crate::telemetry::quantity::{Dimension, Unit};
 use crate::telemetry::signal::Signal;
 use crate::telemetry::{Mode, NavState, PlanSource};
 
-pub use condition::read_condition;
 pub use cursor::{Cursor, MAX_TERMS, SyntaxError};
 pub use evaluate::{Evaluator, Verdict};
-pub use goal::read_goal;
-pub(super) use instant::mode_of as read_mode;
-pub use instant::{Search, read_instant, read_pattern, read_span_from};
-pub use lookup::Lookups;
-pub use number::{MAX_NAME, read_number, read_quantity};
+pub use instant::read_span_from;
+pub use lookup::{Lookups, Search};
+pub(super) use number::bare;
+pub use number::{MAX_NAME, read_quantity};
+pub(super) use pattern::mode_of as read_mode;
+pub use pattern::read_pattern;
 
 /// The meaning of names while an expression is read.
 #[derive(Debug, Clone, Default)]

@@ -9,21 +9,24 @@ mod keys;
 mod measure;
 mod plan;
 mod reader;
+mod variant;
 mod varied;
 mod vary;
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use super::case::{Air, Allowance, Case, Compare, Scenario};
-use super::expression::{Instant, Scope, read_condition, read_instant, read_quantity};
+use super::case::{SAMPLE_HZ, WATCH_S};
+use super::expression::{Instant, Scope, read_quantity};
 use super::input::{TimedInput, read_action, waypoints_after};
 use crate::flight::FlightSetup;
 use crate::plan::format::{PlanError, PlanFile, Problems, TomlTable, Value};
+use crate::scenario::air::Air;
+use crate::scenario::case::{Allowance, Case, Compare, Scenario};
 use crate::sim::Noise;
 use keys::{ALLOW_KEYS, CASE_KEYS, COMPARE_KEYS, FILE_KEYS, INPUT_KEYS};
 use reader::{Layers, Reader};
-use vary::Variant;
+use variant::Variant;
 
 pub use air::{MAX_SEEDS, seed_range};
 #[cfg(test)]
@@ -38,15 +41,10 @@ const MAX_BYTES: usize = 512 << 10;
 pub const MAX_FLIGHTS: usize = 10_000;
 /// The default time limit of a scenario, s after the engagement.
 const TIME_LIMIT_S: f64 = 600.0;
-/// The default time for which the record goes on after the end, s. Consequences of the end, such as the disarm,
-/// belong to the flight.
-pub(super) const WATCH_S: f64 = 0.5;
 /// The most samples of a flight: some 400 MB.
 const MAX_SAMPLES: f64 = 2e6;
 /// The most names of cases in a message.
 const SHOWN_CASES: usize = 20;
-/// The default number of samples a second.
-pub(super) const SAMPLE_HZ: f64 = 100.0;
 
 /// A reader for the files that a scenario names; names are relative to the place of the scenario.
 pub trait Files {
@@ -383,7 +381,7 @@ fn uploaded_waypoints(layers: &Layers<'_, '_>, belongs: &Belongs<'_>, reader: &m
 
 /// Reads an instant for which the flight waits.
 fn read_awaited(value: &Value<'_>, scope: &Scope, reader: &mut Reader<'_, '_>) -> Option<Instant> {
-    let instant = reader.expression(value, |cursor| read_instant(cursor, scope))?;
+    let instant = reader.expression(value, |cursor| scope.read_instant(cursor))?;
     if let Some(problem) = instant.unseen_in_flight() {
         reader.problem(
             value.span(),
@@ -456,7 +454,7 @@ fn read_compares(top: &TomlTable<'_, '_>, cases: &[Case], reader: &mut Reader<'_
         reader.refuse_unknown(&table, COMPARE_KEYS);
         let Some(value) = reader.required(&table, "that") else { continue };
         let label = reader.string(&table, "name").or_else(|| reader.text(value)).unwrap_or_default();
-        if let Some(that) = reader.expression(value, |cursor| read_condition(cursor, &scope)) {
+        if let Some(that) = reader.expression(value, |cursor| scope.read_condition(cursor)) {
             compares.push(Compare { label, line: reader.line(value.span()), that });
         }
     }

@@ -1,7 +1,10 @@
 //! The goals of a campaign: expectations about all its flights together.
 
+mod read;
+
 use super::metric::Metric;
 use crate::telemetry::quantity::{Dimension, shown};
+pub(super) use read::read_goal;
 
 /// An expectation about all flights of a campaign: `p95(touchdown) <= 2 m`.
 #[derive(Debug, Clone, PartialEq)]

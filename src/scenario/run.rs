@@ -5,12 +5,13 @@ mod inputs;
 mod log;
 mod recorder;
 
-use super::case::{Air, Case};
 use super::expression::{Evaluator, Lookups, Search};
 use super::happening::{EventName, Happening};
 use super::insight::Insight;
 use super::trace::Trace;
 use crate::flight::{Flight, FlightEnd, FlightResult};
+use crate::scenario::air::Air;
+use crate::scenario::case::Case;
 use crate::signals::SimTime;
 use crate::telemetry::{Event, FirmwareProfile, FlightTruth};
 use crate::vehicle::Vehicle;

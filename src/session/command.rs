@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use super::replay::ReplayView;
 use super::reply::ReplyTo;
 use crate::fc::{CraftSettings, RemoteView, UploadReport, UploadView};
 use crate::link::endpoint::EndpointStatus;
 use crate::lookahead::VehicleCopy;
 use crate::plan::FlightPlan;
 use crate::replay::{Curve, CurvesRequest};
+use crate::session::replay_view::ReplayView;
 use crate::signals::{RcFrame, SimTime};
 use crate::telemetry::{LinkState, LostTime, Snapshot};
 use crate::timeline::{RecordedFlight, TimelineView};

@@ -23,8 +23,6 @@ use crate::replay::{PastEventKind, PastFlights};
 use crate::signals::SimTime;
 use player::Player;
 
-pub use view::ReplayView;
-
 /// The interval of published views.
 const VIEW_INTERVAL: Duration = Duration::from_millis(16);
 /// The interval of the views that show how much of a file was read.

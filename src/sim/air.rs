@@ -11,8 +11,9 @@ use crate::telemetry::Turbulence;
 
 use super::atmosphere;
 use super::body::AirSample;
-use super::config::{Wind, WorldConfig};
 use super::switches::{AirDensity, Switches, WindProfile};
+use crate::sim::config::WorldConfig;
+use crate::sim::wind::Wind;
 
 mod gust;
 mod turbulence;

@@ -8,12 +8,13 @@ use arrayvec::ArrayVec;
 use crate::signals::SimTime;
 
 use super::command::WorldCommand;
-use super::config::{WorldError, step_us};
 use super::event::{WorldEvent, WorldEventKind};
 use super::fault::{
     ActiveFault, Effects, Fault, FaultChange, FaultLink, FaultSchedule, LinkFaults, MAX_FAULTS,
     ScheduledFault,
 };
+use crate::sim::config::step_us;
+use crate::sim::error::WorldError;
 
 /// The maximum number of events that can wait. If nothing takes them, later ones are lost.
 const MAX_EVENTS: usize = 64;

@@ -1,7 +1,10 @@
 //! The changes of a world while it runs.
 
-use super::config::{Noise, Wind, WorldError};
+use super::error::in_range;
 use super::fault::{Fault, FaultKey, MAX_TIME_S, ScheduledFault};
+use crate::sim::config::Noise;
+use crate::sim::error::WorldError;
+use crate::sim::wind::Wind;
 use crate::telemetry::Turbulence;
 
 mod text;
@@ -69,8 +72,4 @@ impl WorldCommand {
 pub(super) fn check_wind(wind: Wind) -> Result<(), WorldError> {
     in_range("wind speed", wind.speed_mps, 0.0, Wind::MAX_MPS)?;
     in_range("wind direction", wind.from_deg, -360.0, 360.0)
-}
-
-pub(super) fn in_range(name: &'static str, value: f64, min: f64, max: f64) -> Result<(), WorldError> {
-    if (min..=max).contains(&value) { Ok(()) } else { Err(WorldError::OutOfRange { name, value, min, max }) }
 }

@@ -5,20 +5,18 @@ use std::sync::Arc;
 use strum::VariantNames;
 
 use super::airframe::Airframe;
+use super::error::WorldError;
 use super::fault::ScheduledFault;
 use super::switches::Switches;
 use super::value_text::ParseError;
+use super::wind::Wind;
 use crate::telemetry::Turbulence;
 use crate::terrain::Tiles;
 use crate::text::did_you_mean;
 
-mod error;
 mod home;
-mod wind;
 
-pub use error::WorldError;
 pub use home::Home;
-pub use wind::Wind;
 
 /// The step rates that a world accepts, Hz. Each divides a hundredth of a second into whole steps.
 pub const STEP_RATES_HZ: [u32; 6] = [400, 500, 1000, 2000, 4000, 8000];

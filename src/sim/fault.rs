@@ -8,8 +8,9 @@ use std::fmt;
 use nalgebra::Vector3;
 
 use super::airframe::ROTORS;
-use super::config::{Wind, WorldError};
 use super::switches::Switches;
+use crate::sim::error::WorldError;
+use crate::sim::wind::Wind;
 use crate::telemetry::{FaultKind, FaultValue};
 
 mod effects;

@@ -2,9 +2,10 @@
 
 use nalgebra::{Vector2, Vector3};
 
-use super::config::{Home, WorldError};
 use super::surface::{Surface, TangentPlane};
 use crate::geo::LocalFrame;
+use crate::sim::config::Home;
+use crate::sim::error::WorldError;
 use crate::terrain::Relief;
 
 /// Elevation tiles around the home of a world.

@@ -23,10 +23,9 @@ mod magnetometer;
 
 use barometer::Barometer;
 use gps::Gps;
-pub use gps::GpsGrade;
 use imu::Imu;
 use magnetometer::Magnetometer;
-pub use magnetometer::{SITL_DECLINATION_DEG, magnetic_field_enu};
+pub use magnetometer::magnetic_field_enu;
 
 /// The number of slow ticks between two samples of barometer and battery: 50 Hz.
 const FIFTY_HZ_TICKS: u64 = 2;

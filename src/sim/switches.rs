@@ -2,12 +2,14 @@
 
 use std::str::FromStr;
 
-use super::command::in_range;
-use super::config::WorldError;
-use super::sensors::GpsGrade;
 use super::surface::{MAX_RISE_M, Surface};
+use crate::sim::error::{WorldError, in_range};
+use crate::sim::gps_grade::GpsGrade;
 use crate::sim::value_text::{ParseError, number, on_off};
 use crate::text::did_you_mean;
+
+/// The declination of the field of Betaflight's SITL, degrees east.
+pub const SITL_DECLINATION_DEG: f64 = 2.000_675_735_167_871_2;
 
 /// The change of the mean wind with height.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::Display, strum::EnumString)]
@@ -73,7 +75,7 @@ impl Default for Switches {
             air_density: AirDensity::Isa,
             vibration_mps2: 0.0,
             sensor_bias: true,
-            declination_deg: super::sensors::SITL_DECLINATION_DEG,
+            declination_deg: crate::sim::switches::SITL_DECLINATION_DEG,
             gps: GpsGrade::Open,
         }
     }

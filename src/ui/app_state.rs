@@ -11,17 +11,18 @@ use crate::session::SessionView;
 use crate::signals::SimTime;
 use crate::telemetry::{EventKind, FirmwareEvent, NavEvent};
 
-use super::action::Action;
-use super::config::UiConfig;
-use super::event_log::Severity;
-use super::kept_screen::KeptScreens;
-use super::layout::Border;
-use super::panel::{Panel, Panels};
 use super::permission::Permission;
 use super::popup::{CommandLine, Popup};
 use super::shared::Shared;
 use super::transitions::Transition;
 use super::tutorial::Tutorial;
+use crate::ui::acts::screen_layout::Border;
+use crate::ui::model::action::Action;
+use crate::ui::model::config::UiConfig;
+use crate::ui::model::event_log::Severity;
+use crate::ui::model::kept_screen::KeptScreens;
+use crate::ui::model::panel_table::Panel;
+use crate::ui::panel::Panels;
 
 /// The state of the user interface.
 #[derive(Debug)]
@@ -208,7 +209,10 @@ mod tests {
         state.take_event(&warning("one"));
         assert_eq!(shown(&state).as_deref(), Some("Not saved: one."), "nothing was pressed");
         let at = |state: &mut AppState, ms| {
-            crate::ui::update::update(state, crate::ui::message::Msg::Clock(Duration::from_millis(ms)));
+            crate::ui::update::update(
+                state,
+                crate::ui::model::message::Msg::Clock(Duration::from_millis(ms)),
+            );
         };
         at(&mut state, 20_000);
         state.shared.pressed_at = Some(state.shared.now);

@@ -15,12 +15,14 @@ mod world;
 pub use suggestion::{Suggestion, hint, suggestions};
 pub use table::{Command, all};
 
-use super::action::{self, ACTIONS, Action, Context, Spec};
-use super::keymap::KeyPress;
-use super::message::Request;
-use super::panel::Panel;
 use super::shared::Shared;
 use crate::text::did_you_mean;
+use crate::ui::acts::availability;
+use crate::ui::model::action;
+use crate::ui::model::action::{ACTIONS, Action, Context, Spec};
+use crate::ui::model::keymap::KeyPress;
+use crate::ui::model::message::Request;
+use crate::ui::model::panel_table::Panel;
 
 /// Returns the requests of a line.
 ///
@@ -39,7 +41,7 @@ pub fn run(state: &mut Shared, line: &str) -> Result<Vec<Request>, String> {
     if !argument.is_empty() {
         return Err(format!("{word} takes no argument."));
     }
-    action::enabled(state, action)?;
+    availability::enabled(state, action)?;
     Ok(vec![Request::Act(action)])
 }
 
@@ -134,9 +136,9 @@ fn did_you_mean_end<'a>(word: &str, words: impl IntoIterator<Item = &'a str>) ->
 mod tests {
     use super::*;
     use crate::session::{Command as SessionCommand, SessionView};
-    use crate::ui::action::PanelAction;
     use crate::ui::app_state::AppState;
-    use crate::ui::message::Effect;
+    use crate::ui::model::action::PanelAction;
+    use crate::ui::model::effect::Effect;
     use crate::ui::update::run_line;
 
     fn bare() -> AppState {

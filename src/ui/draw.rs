@@ -1,5 +1,7 @@
 //! Draws the whole screen: status, panels, hints, popups.
 
+use crate::ui::acts::{availability, screen_layout, setting_changes};
+use crate::ui::{area, survey_strip};
 use ratatui::Frame;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -7,30 +9,30 @@ use ratatui::style::Color;
 use ratatui::text::Line;
 use ratatui::widgets::{Block, BorderType, Widget as _};
 
-use super::action::{self, Action};
 use super::app_state::AppState;
-use super::ascii;
-use super::formatting;
-use super::layout::{self, SMALLEST};
-use super::panel::{self, Panel, span};
 use super::popup::frame::{key_line, popup};
 use super::popup::{
     Popup, action_menu, command_line, diff_view, flights_list, go_to, guards, help, layout_bar, map_menu,
     palette, signal_list, what_if,
 };
-use super::settings;
 use super::shared::Shared;
 use super::text_wrap::wrapped;
 use super::theme::{Charset, Role};
-use super::{hint_bar, notice, panel_bar, permission, status_bar, survey, timeline, tutorial};
+use super::{
+    ascii, formatting, hint_bar, notice, panel, panel_bar, permission, status_bar, timeline, tutorial,
+};
 use crate::text::printable;
+use crate::ui::acts::screen_layout::SMALLEST;
+use crate::ui::area::span;
+use crate::ui::model::action::Action;
+use crate::ui::model::panel_table::Panel;
 
 /// Draws the state; it only reads.
 pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
     let shared = &state.shared;
     let area = frame.area();
     let buffer = frame.buffer_mut();
-    let screen = layout::divided(shared, (area.width, area.height));
+    let screen = screen_layout::divided(shared, (area.width, area.height));
     let beside = screen.as_ref().and_then(|screen| screen.form);
     let cursor = match screen {
         Some(screen) => {
@@ -49,7 +51,7 @@ pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
                 timeline::draw(shared, area, buffer);
             }
             if let Some(area) = screen.sweep {
-                survey::draw(shared, area, buffer);
+                survey_strip::draw(shared, area, buffer);
             }
             let foot = screen.sweep.or(screen.timeline).unwrap_or(screen.hints);
             tutorial::draw(state.tutorial, shared, foot, buffer);
@@ -92,7 +94,7 @@ fn draw_popup(state: &AppState, popup: &Popup, area: Rect, buffer: &mut Buffer) 
         Popup::GoTo(question) => go_to::draw(shared, question, area, buffer),
         Popup::MapMenu(menu) => map_menu::draw(&shared.theme, menu, area, buffer),
         Popup::WhatIf { selected } => {
-            what_if::draw(&shared.theme, action::flies(shared).is_ok(), *selected, area, buffer);
+            what_if::draw(&shared.theme, availability::flies(shared).is_ok(), *selected, area, buffer);
         }
         Popup::Guards { selected } => guards::draw(shared, *selected, area, buffer),
         Popup::Actions(menu) => action_menu::draw(shared, menu, area, buffer),
@@ -152,7 +154,7 @@ fn framed_panel(state: &AppState, panel: Panel, area: Rect, buffer: &mut Buffer)
         .border_style(theme.style(frame_role))
         .title(Line::from(span(theme, title_role, format!("{mark}{title}"))))
         .render(area, buffer);
-    content.draw(shared, layout::inner(area), buffer).filter(|_| focused)
+    content.draw(shared, screen_layout::inner(area), buffer).filter(|_| focused)
 }
 
 fn too_small(state: &Shared, area: Rect, buffer: &mut Buffer) {
@@ -165,25 +167,25 @@ fn too_small(state: &Shared, area: Rect, buffer: &mut Buffer) {
         state.key(Action::Quit)
     );
     for (row, line) in wrapped(&text, usize::from(area.width)).iter().enumerate() {
-        panel::row(buffer, area, row as u16, &state.theme, Role::Text, line);
+        area::row(buffer, area, row as u16, &state.theme, Role::Text, line);
     }
 }
 
 fn quit_question(state: &Shared, area: Rect, buffer: &mut Buffer) {
     let inside = popup(&state.theme, area, (46, 3), "Quit?", buffer);
     let theme = &state.theme;
-    panel::row(buffer, inside, 0, theme, Role::Warn, " ▲ The craft is armed and flying ends here.");
+    area::row(buffer, inside, 0, theme, Role::Warn, " ▲ The craft is armed and flying ends here.");
     let answers = [(" y", " quit   "), ("n", " stay")];
-    panel::line(buffer, inside, 2, &key_line(theme, &answers));
+    area::line(buffer, inside, 2, &key_line(theme, &answers));
 }
 
 fn reset_question(state: &Shared, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
-    let text = wrapped(&format!("▲ {}", settings::changes::reset_question(state)), 54);
+    let text = wrapped(&format!("▲ {}", setting_changes::reset_question(state)), 54);
     let inside = popup(theme, area, (56, text.len() as u16 + 2), "Defaults?", buffer);
     for (at, text) in (0..).zip(&text) {
-        panel::row(buffer, inside, at, theme, Role::Warn, &format!(" {text}"));
+        area::row(buffer, inside, at, theme, Role::Warn, &format!(" {text}"));
     }
     let answers = [(" y", " reset   "), ("n", " change nothing")];
-    panel::line(buffer, inside, text.len() as u16 + 1, &key_line(theme, &answers));
+    area::line(buffer, inside, text.len() as u16 + 1, &key_line(theme, &answers));
 }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use tokio::sync::{mpsc, watch};
 use tokio::time::timeout;
 
-use super::editor::{FileReply, FileRequest};
+use crate::ui::model::files::{FileReply, FileRequest};
 
 /// The longest wait for an edit to be kept. A disk that hangs must not block the screen, and a busy machine must not show
 /// edits that a kill loses.
@@ -80,7 +80,7 @@ impl FilesLink {
 mod tests {
     use super::*;
     use crate::plan::edit::JournalLine;
-    use crate::ui::editor::PlanId;
+    use crate::ui::model::plan_id::PlanId;
 
     #[tokio::test]
     async fn an_edit_is_not_shown_before_a_busy_machine_has_kept_it() {

@@ -8,13 +8,16 @@ use unicode_width::UnicodeWidthStr as _;
 use crate::link::endpoint::EndpointState;
 use crate::telemetry::LinkState;
 
-use super::action::{Action, EditAction, PanelAction, enabled, is_wrecked};
-use super::panel::{Hint, Panel, span};
 use super::shared::Shared;
 use super::status_bar::sides;
 use super::theme::{Role, Theme};
-use super::transmitter;
-use super::transmitter::ThrottleMove;
+use crate::ui::acts::availability::{enabled, is_wrecked};
+use crate::ui::acts::transmitter;
+use crate::ui::acts::transmitter::ThrottleMove;
+use crate::ui::area::span;
+use crate::ui::model::action::{Action, EditAction, PanelAction};
+use crate::ui::model::panel_table::Panel;
+use crate::ui::panel::Hint;
 
 /// The width from which a door also shows its fault.
 const WIDE: u16 = 120;

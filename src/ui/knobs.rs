@@ -4,13 +4,14 @@ use crossterm::event::{KeyCode, KeyEvent};
 use strum::IntoEnumIterator as _;
 
 use super::formatting::fixed;
-use super::message::{Change, Effect, Request};
 use super::shared::Shared;
 use super::text_field::TextField;
 use super::units::Units;
 use crate::sim::{FAULTS, FaultInfo};
 use crate::telemetry::snapshot::{FaultView, WindView, WorldView};
 use crate::telemetry::{FaultValue, Turbulence};
+use crate::ui::model::effect::Effect;
+use crate::ui::model::message::{Change, Request};
 
 /// A step of the wind's speed and of gusts, m/s.
 const SPEED_STEP: f64 = 0.5;

@@ -2,11 +2,11 @@
 
 use crossterm::event::{KeyCode, KeyEvent};
 
-use super::action::{Action, PanelAction};
-use super::event_log::{LogLine, LogState, Severity};
-use super::message::{Change, Request};
 use super::shared::Shared;
 use super::text_field::TextField;
+use crate::ui::model::action::{Action, PanelAction};
+use crate::ui::model::event_log::{LogLine, LogState, Severity};
+use crate::ui::model::message::{Change, Request};
 
 /// The filters, the widest first, with their names in the title.
 const FILTERS: [(Severity, &str); 3] =

@@ -7,10 +7,10 @@ use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr as _;
 
 use super::drawing;
-use super::event_log::Severity;
 use super::formatting::{cut, within};
 use super::shared::{Notice, Shared};
 use super::text_wrap::wrapped;
+use crate::ui::model::event_log::Severity;
 
 /// How long a notice stays.
 const NOTICE_FOR: Duration = Duration::from_secs(8);

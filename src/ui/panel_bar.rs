@@ -5,12 +5,13 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 use unicode_width::UnicodeWidthStr as _;
 
-use super::action::Action;
 use super::drawing;
-use super::layout::Screen;
-use super::panel::{Panel, span};
 use super::shared::Shared;
 use super::theme::Role;
+use crate::ui::acts::screen_layout::Screen;
+use crate::ui::area::span;
+use crate::ui::model::action::Action;
+use crate::ui::model::panel_table::Panel;
 
 /// The width from which names are further apart.
 const WIDE: u16 = 80;

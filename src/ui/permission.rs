@@ -3,8 +3,6 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-use super::message::Effect;
-use super::panel::{line, row};
 use super::popup::frame::{key_line, popup};
 use super::shared::Shared;
 use super::text_wrap::wrapped;
@@ -12,6 +10,8 @@ use super::theme::Role;
 use crate::fc::{Access, Denial, Impact};
 use crate::session::SessionView;
 use crate::session::policy::{self, Facts, Intent, Refusal};
+use crate::ui::area::{line, row};
+use crate::ui::model::effect::Effect;
 
 /// The width of the inside.
 const WIDTH: u16 = 56;

@@ -14,6 +14,8 @@ pub(super) mod palette;
 pub(super) mod signal_list;
 pub(super) mod what_if;
 
+use crate::ui::acts::diff::Against;
+use crate::ui::model::message::NewPopup;
 pub(super) use action_menu::ActionMenu;
 pub use command_line::CommandLine;
 pub(super) use diff_view::DiffView;
@@ -78,4 +80,16 @@ pub enum Popup {
     Flights(FlightsList),
     /// The search of all commands.
     Palette(Palette),
+}
+
+impl From<NewPopup> for Popup {
+    fn from(popup: NewPopup) -> Self {
+        match popup {
+            NewPopup::Guards => Self::Guards { selected: 0 },
+            NewPopup::Plots => Self::Plots { selected: 0 },
+            NewPopup::Signals => Self::Signals(SignalList::default()),
+            NewPopup::ResetSettings => Self::ResetSettings,
+            NewPopup::Settings(comparison) => Self::Diff(DiffView::new(Against::Settings(comparison))),
+        }
+    }
 }

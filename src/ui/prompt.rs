@@ -10,13 +10,14 @@ use crate::flight::forecast::WHAT_IFS;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 use super::app_state::AppState;
-use super::command;
-use super::editor::{ConversionLosses, EditorPopup, OpenPlan, Question};
-use super::message::{Effect, Msg};
-use super::permission;
 use super::popup::{Popup, diff_view, what_if};
-use super::settings::changes::reset_question;
 use super::update::{compare, run_line, update};
+use super::{command, permission};
+use crate::ui::acts::setting_changes::reset_question;
+use crate::ui::model::editor::{EditorPopup, OpenPlan, Question};
+use crate::ui::model::effect::Effect;
+use crate::ui::model::files::ConversionLosses;
+use crate::ui::model::message::Msg;
 
 /// The last line of a list of choices.
 const NONE: &str = "A number chooses, an empty line leaves it.";

@@ -20,13 +20,14 @@ use crate::session::{Command, SessionView};
 use crate::timeline::RecordedFlight;
 
 use super::app_state::AppState;
-use super::config::UiConfig;
-use super::event_log::Severity;
 use super::files_link::FilesLink;
-use super::flights::FlightShelf;
-use super::message::{Effect, Msg};
 use super::terminal::{Tui, can_be_continued};
 use super::update::{follow_screen, keep, restore, update};
+use crate::ui::model::config::UiConfig;
+use crate::ui::model::effect::Effect;
+use crate::ui::model::event_log::Severity;
+use crate::ui::model::flights::FlightShelf;
+use crate::ui::model::message::Msg;
 
 mod effects;
 mod flights;

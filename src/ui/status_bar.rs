@@ -1,5 +1,6 @@
 //! The two status lines at the top: modes, GPS, battery, RC; mission and simulated time.
 
+use crate::ui::acts::{ground_under, past_flight};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
@@ -12,12 +13,10 @@ use crate::telemetry::{LinkState, Mode, NavState, NavTelemetry};
 
 use super::drawing;
 use super::formatting::{clock, clock_ms, compass, cut, factor, fixed, signed};
-use super::ground;
-use super::panel::span;
-use super::past_flight;
 use super::shared::Shared;
 use super::theme::Role;
 use super::units::Units;
+use crate::ui::area::span;
 
 pub(super) mod in_words;
 
@@ -170,7 +169,7 @@ fn mission(state: &Shared, room: usize) -> Vec<Span<'static>> {
     let estimate = &vehicle.estimate;
     let leg = engaged.map_or_else(Vec::new, |nav| leg(nav, units));
     let home_m = home_m(state);
-    let agl = ground::agl_m(state)
+    let agl = ground_under::agl_m(state)
         .map(|agl_m| (3, "  agl", fixed(Some(units.length(agl_m)), 6, 1), format!(" {m}")));
     // Rank (a low one is kept longest), label, value, unit.
     let craft = [

@@ -15,12 +15,12 @@ use ratatui::text::{Line, Span};
 
 use super::drawing;
 use super::formatting::clock;
-use super::panel::span;
 use super::shared::Shared;
 use super::theme::Role;
 use crate::signals::SimTime;
 use crate::telemetry::{Mode, NavState};
 use crate::timeline::{Mark, MarkKind, TimelineView};
+use crate::ui::area::span;
 use columns::Columns;
 
 /// Returns the instant at a column; `None` beside the line.

@@ -4,14 +4,14 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr as _;
 
-use super::action::{Action, EditAction};
 use super::drawing;
-use super::event_log::Severity;
 use super::formatting::cut;
-use super::panel::Panel;
 use super::shared::Shared;
 use super::text_wrap::wrapped;
 use super::theme::Role;
+use crate::ui::model::action::{Action, EditAction};
+use crate::ui::model::event_log::Severity;
+use crate::ui::model::panel_table::Panel;
 
 /// A tutorial in progress.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -1,33 +1,31 @@
 //! Applies a message to the state and returns the requested effects.
 
+use crate::ui::acts::{
+    availability, findings, forecasts, ground_under, past_flight, plan_edits as plan, setting_changes,
+    setting_reading, surveys, transmitter, zones,
+};
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind};
 
 use crate::session::{Command, SessionView};
 use crate::telemetry::InFlightCommand;
 use crate::vehicle::VehicleCommand;
 
-use super::action::{self, Action, Context, EditAction};
 use super::app_state::AppState;
-use super::command;
-use super::editor::{FormKind, actions as plan, findings, zones};
-use super::event_log::Severity;
-use super::forecast;
 use super::formatting::within;
-use super::ground;
-use super::keymap::KeyPress;
-use super::map_edit::actions as map_edit;
-use super::map_point;
-use super::message::{Effect, FlightForm, Msg, Request};
-use super::panel::Panel;
-use super::past_flight;
 use super::popup::{GoTo, Help, Palette, Popup};
-use super::settings;
-use super::stick_recording::keys::advance;
-use super::survey;
-use super::track::TrackPoint;
-use super::transmitter;
-use super::transmitter::TWICE_WITHIN;
-use super::tutorial;
+use super::{command, tutorial};
+use crate::ui::acts::map_edit::actions as map_edit;
+use crate::ui::acts::stick_keys::advance;
+use crate::ui::acts::transmitter::TWICE_WITHIN;
+use crate::ui::model::action::{Action, Context, EditAction};
+use crate::ui::model::editor::FormKind;
+use crate::ui::model::effect::{Effect, FlightForm};
+use crate::ui::model::event_log::Severity;
+use crate::ui::model::keymap::KeyPress;
+use crate::ui::model::message::{Msg, Request};
+use crate::ui::model::panel_table::Panel;
+use crate::ui::model::track::TrackPoint;
+use crate::ui::model::{action, map_point};
 
 mod arrange;
 mod change;
@@ -73,17 +71,17 @@ pub fn update(state: &mut AppState, msg: Msg) -> Vec<Effect> {
     permission::follow(state, connection);
     if is_followed {
         tutorial::follow(&mut state.tutorial, &mut state.shared);
-        effects.extend(forecast::follow_plan(&mut state.shared));
-        effects.extend(survey::follow(&mut state.shared));
-        effects.extend(ground::follow_plan(&mut state.shared));
+        effects.extend(forecasts::follow_plan(&mut state.shared));
+        effects.extend(surveys::follow(&mut state.shared));
+        effects.extend(ground_under::follow_plan(&mut state.shared));
         effects.extend(series::follow(&mut state.shared));
-        ground::follow_clearance(&mut state.shared);
+        ground_under::follow_clearance(&mut state.shared);
         state.shared.editor.follow_generator(findings::home(&state.shared));
         zones::follow(&mut state.shared);
     }
     if is_picture {
-        effects.extend(forecast::repeat(&mut state.shared));
-        let reads = settings::reading::follow(&mut state.shared);
+        effects.extend(forecasts::repeat(&mut state.shared));
+        let reads = setting_reading::follow(&mut state.shared);
         effects.extend(permission::hold(state, reads.into_iter().collect()));
     }
     if effects.iter().any(|effect| matches!(effect, Effect::Quit)) {
@@ -122,7 +120,7 @@ fn take(state: &mut AppState, msg: Msg) -> Vec<Effect> {
         Msg::SettingsReply(reply) => return waiting_keys::take_settings(state, reply),
         Msg::SetReply { line, output } => {
             state.panels.cli.console.record(line, output.as_ref());
-            return settings::changes::take_answer(&mut state.shared, output.as_ref());
+            return setting_changes::take_answer(&mut state.shared, output.as_ref());
         }
         Msg::CliReply(output) => {
             if state.panels.cli.console.changes_craft() {
@@ -146,8 +144,8 @@ fn take(state: &mut AppState, msg: Msg) -> Vec<Effect> {
             state.shared.settings.outdate();
             return uploaded(&mut state.shared, id, count, result);
         }
-        Msg::Forecast(reply) => forecast::take_answer(&mut state.shared, reply),
-        Msg::Survey(reply) => survey::take_reply(&mut state.shared, reply, state.go_sentence),
+        Msg::Forecast(reply) => forecasts::take_answer(&mut state.shared, reply),
+        Msg::Survey(reply) => surveys::take_reply(&mut state.shared, reply, state.go_sentence),
         Msg::DownloadReply { id, result } => return plan::downloaded(&mut state.shared, id, result),
         Msg::FlightWritten { what, result } => plan::flight_written(&mut state.shared, what, result),
         Msg::Flights(list) => return flights::listed(state, list),
@@ -285,7 +283,7 @@ fn cancel(state: &mut AppState) -> Vec<Effect> {
     let input = field || state.shared.focus == Panel::Cli && state.panels.cli.console.cancel();
     let upload = state.shared.editor.fly_after_upload.take().is_some();
     let edit = state.shared.editor.cancel() | map_edit::leave(&mut state.shared);
-    let survey = survey::dismiss(&mut state.shared);
+    let survey = surveys::dismiss(&mut state.shared);
     let what = if popup || input || upload || edit || survey.is_some() { "Cancelled. " } else { "" };
     state.shared.notify(Severity::Info, format!("{what}Ctrl-C again within 2 s quits."));
     survey.into_iter().collect()
@@ -348,7 +346,7 @@ fn moved(state: &mut AppState, columns: isize) -> Vec<Effect> {
 
 /// Carries out an action, or notifies the user of the reason for its refusal.
 fn act(state: &mut AppState, action: Action) -> Vec<Effect> {
-    if let Err(reason) = action::enabled(&state.shared, action) {
+    if let Err(reason) = availability::enabled(&state.shared, action) {
         state.shared.notify(Severity::Warn, reason);
         return Vec::new();
     }
@@ -373,7 +371,7 @@ fn carry_out(state: &mut AppState, requests: Vec<Request>) -> Vec<Effect> {
             Request::Act(action) => effects.extend(perform(state, action)),
             Request::Effect(effect) => effects.push(effect),
             Request::Change(requested) => effects.extend(change(&mut state.shared, requested)),
-            Request::Open(popup) => state.popups.push(popup),
+            Request::Open(popup) => state.popups.push(popup.into()),
             Request::Chosen => state.has_chosen = true,
             Request::Type(text) => popup::open_command_line(state, &text),
             Request::Cli { line, is_reported } => {
@@ -417,12 +415,12 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
         Action::ResetCraft => return transmitter::reset_key(&mut state.shared),
         Action::Layout => state.popups.push(Popup::Layout),
         Action::LookAhead => {
-            let survey = survey::dismiss(&mut state.shared);
-            return survey.into_iter().chain(forecast::toggle_look_ahead(&mut state.shared)).collect();
+            let survey = surveys::dismiss(&mut state.shared);
+            return survey.into_iter().chain(forecasts::toggle_look_ahead(&mut state.shared)).collect();
         }
         Action::WhatIf => state.popups.push(Popup::WhatIf { selected: 0 }),
-        Action::WhereMay => return survey::toggle_sweep(&mut state.shared),
-        Action::GoNoGo => return survey::ask_go_no_go(&mut state.shared),
+        Action::WhereMay => return surveys::toggle_sweep(&mut state.shared),
+        Action::GoNoGo => return surveys::ask_go_no_go(&mut state.shared),
         Action::Pause => return vec![Effect::Send(Command::Pause(!state.shared.view.paused))],
         Action::Step => return timeline::step(&state.shared, state.step_ticks),
         Action::Tick => return timeline::step(&state.shared, 1),
@@ -463,7 +461,7 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
                 state.panels.of_mut(focus_now).close_field();
             } else if let Some(requests) = state.panels.of_mut(focus_now).go_back(&state.shared) {
                 return carry_out(state, requests);
-            } else if let Some(effect) = survey::dismiss(&mut state.shared) {
+            } else if let Some(effect) = surveys::dismiss(&mut state.shared) {
                 return vec![effect];
             } else if !state.shared.forecast.dismiss()
                 && !state.shared.editor.cancel()

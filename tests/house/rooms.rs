@@ -4,7 +4,6 @@
 mod circles;
 mod front;
 mod impls;
-mod inside;
 mod page;
 mod paths;
 mod portable;

@@ -1,8 +1,8 @@
 //! A flight of a campaign: `betadeck open RUN.jsonl:1234`.
 
 use super::Opened;
-use crate::app::campaign::{Consent, OneFlight, open_flight};
 use crate::args::OpenArgs;
+use crate::headless::campaign::{Consent, OneFlight, open_flight};
 use crate::process::error::AppError;
 
 /// A flight as it was flown in a campaign.

@@ -5,15 +5,14 @@ use std::path::Path;
 use std::sync::atomic::Ordering;
 
 use super::{Finished, Kept, Recorded, instant, open_screen, ways_to_go};
-use crate::app::setup;
+use crate::app::screen;
 use crate::args::{OpenArgs, TerrainArgs};
 use crate::events::Event;
-use crate::files::file_identity;
 use crate::files::flight_recorder::RecordedStart;
-use crate::files::input_file;
 use crate::files::log_source::has_log;
 use crate::files::recording_file::GZIP;
 use crate::files::terrain::with_terrain;
+use crate::files::{file_identity, input_file};
 use crate::flight::FlightSetup;
 use crate::process::error;
 use crate::process::error::AppError;
@@ -116,7 +115,7 @@ fn begin<'r>(
     if recording.setup().is_some_and(Setup::had_tiles) {
         setup = with_terrain(setup, &TerrainArgs::default(), notices).map_err(|error| error.message)?;
     }
-    let given_settings = setup::given_settings(&setup.boot_lines);
+    let given_settings = screen::given_settings(&setup.boot_lines);
     Ok((Repeat::new(recording, setup)?, given_settings))
 }
 

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use crate::app::{report, setup};
 use crate::args::ReplayArgs;
 use crate::files::output_file::StreamedOutput;
 use crate::flight::setup::{LoggedSetting, logged_settings};
 use crate::flight_log::LogFlight;
+use crate::headless::{report, setup};
 use crate::plan::FlightPlan;
 use crate::plan::feature::Feature;
 use crate::process::error::AppError;

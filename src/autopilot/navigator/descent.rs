@@ -1,6 +1,6 @@
 //! The path down of a landing.
 
-use super::task::Rescue;
+use super::rescue::Rescue;
 use crate::autopilot::control::AltitudeTarget;
 use crate::autopilot::guidance::landing_setpoint_m;
 use crate::autopilot::io::NavInputs;

@@ -3,7 +3,7 @@
 use super::Navigator;
 use super::climb::Climb;
 use super::leg::Leg;
-use super::task::Rescue;
+use super::rescue::Rescue;
 use super::transit::Cause;
 use crate::autopilot::engage::{self, EngageFacts};
 use crate::autopilot::io::NavInputs;

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector2;
 
-use super::leg::CO_LOCATED_M;
-use super::task::Task;
+use super::cursor::PlanCursor;
+use super::leg::{CO_LOCATED_M, Leg};
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::params::Params;
 use crate::geo::local_offset;
@@ -34,8 +34,7 @@ pub(super) struct Observed<'a> {
 }
 
 impl<'a> Observed<'a> {
-    pub(super) fn new(now: &'a NavInputs, params: &'a Params, task: &Task) -> Self {
-        let Task { cursor, leg, .. } = task;
+    pub(super) fn new(now: &'a NavInputs, params: &'a Params, cursor: &PlanCursor, leg: &Leg) -> Self {
         let waypoint_ne = local_offset(now.origin, leg.waypoint);
         let to_waypoint = waypoint_ne - now.pos_ne;
         let following = cursor.following();

@@ -9,6 +9,7 @@ mod lines;
 mod tests;
 
 use super::super::field::{Field, FrameKind, Predictor};
+use super::constants::Constants;
 use super::layout::Layout;
 use lines::Lines;
 
@@ -47,14 +48,6 @@ pub struct Header {
     /// The kinds of frames that the log may have without their definition.
     undefined: Vec<FrameKind>,
     findings: Vec<HeaderFinding>,
-}
-
-/// The header's numbers to which predictors add.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Constants {
-    pub(super) min_throttle: i32,
-    pub(super) vbat_reference: i32,
-    pub(super) min_motor: i32,
 }
 
 impl Header {

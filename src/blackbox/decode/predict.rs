@@ -1,7 +1,7 @@
 //! The values to which decoded differences are added.
 
 use super::super::field::{Field, Predictor};
-use super::header::Constants;
+use super::constants::Constants;
 
 /// The value of predictor 8.
 const CENTRE: i32 = 1500;

@@ -2,15 +2,11 @@
 
 use std::time::Duration;
 
-use super::Answer;
 use super::framed_line::FramedLine;
-use super::line_text;
 use super::message_line::MessageLine;
 use super::prompt_line::PromptLine;
 use super::request::Request;
-
-/// The longest time for a line with all of its output, even if the output comes steadily.
-pub(super) const LONGEST: Duration = Duration::from_secs(60);
+use super::{Answer, line_text};
 
 /// The current exchange; one at a time.
 #[derive(Debug)]
@@ -24,24 +20,6 @@ pub(super) enum Exchange {
     Framed(FramedLine),
     /// A line at the prompt.
     Prompt(PromptLine),
-}
-
-/// The progress of a line.
-#[derive(Debug, PartialEq, Eq)]
-pub(super) enum LineProgress {
-    /// Its answer is still to come.
-    Waiting,
-    Answered {
-        text: String,
-        /// `true` if the prompt stays open.
-        open: bool,
-    },
-    /// The line is done, and the flight controller reports that it restarts.
-    Restarting { text: String },
-    /// The output stopped before its end.
-    Silent,
-    /// The command line did not open; the line was not sent.
-    NotOpened,
 }
 
 impl Exchange {

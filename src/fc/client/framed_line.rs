@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::exchange::{LONGEST, LineProgress};
+use super::line_progress::{LONGEST, LineProgress};
 use super::line_text;
 
 const ETX: u8 = 0x03;

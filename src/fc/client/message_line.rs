@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::exchange::LONGEST;
+use super::line_progress::LONGEST;
 use super::request::Request;
 use super::{Answer, line_text};
 use crate::link::proto::command_message::{CUT, REFUSED};

@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use super::exchange::{LONGEST, LineProgress};
 use super::framed_line::{MAX_OUTPUT, RESTART_QUIET, end_of};
+use super::line_progress::{LONGEST, LineProgress};
 use super::line_text;
 
 /// The character that opens the command line after a quiet moment.

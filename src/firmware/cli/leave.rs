@@ -1,8 +1,8 @@
 //! Saving, leaving, resetting and batches.
 
 use super::CliAction;
-use super::interpreter::{Batch, CliMode};
 use super::session::Session;
+use super::state::{Batch, CliMode};
 use crate::firmware::config::correct;
 use crate::firmware::settings::Scope;
 

@@ -7,8 +7,7 @@ use strum::IntoEnumIterator as _;
 use super::CliAction;
 use super::session::{Session, integer};
 use crate::geo::{Degrees7, LatLon};
-use crate::plan::format::{Records, WaypointRecord};
-use crate::plan::{HoldPattern, MAX_WAYPOINTS, WaypointType, plan_lines};
+use crate::plan::{HoldPattern, MAX_WAYPOINTS, Records, WaypointRecord, WaypointType, plan_lines};
 use crate::telemetry::{NavState, Refusal};
 
 /// `waypoint [list|status|insert|update|remove|clear]`.

@@ -6,8 +6,7 @@ use super::super::config::{
 };
 use super::super::settings::{Scope, find};
 use crate::geo::LatLon;
-use crate::plan::format::WaypointRecord;
-use crate::plan::{HoldPattern, WaypointType};
+use crate::plan::{HoldPattern, WaypointRecord, WaypointType};
 use std::str::FromStr;
 use strum::IntoEnumIterator;
 

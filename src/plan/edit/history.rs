@@ -259,7 +259,7 @@ impl History {
 mod tests {
     use super::*;
     use crate::plan::Waypoint;
-    use crate::plan::format::WaypointRecord;
+    use crate::plan::record::WaypointRecord;
     use proptest::prelude::*;
 
     fn named(name: &str) -> PlanDocument {

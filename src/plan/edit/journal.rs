@@ -161,7 +161,7 @@ impl Journal {
 mod tests {
     use super::*;
     use crate::plan::Waypoint;
-    use crate::plan::format::WaypointRecord;
+    use crate::plan::record::WaypointRecord;
     use proptest::prelude::*;
 
     fn document(alts: &[i32]) -> PlanDocument {

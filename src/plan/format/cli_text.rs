@@ -5,12 +5,14 @@
 
 use std::ops::Range;
 
+use super::cli_lines::plan_lines;
 use super::field::{self, FieldError};
 use super::long::hint;
 use super::loss::{Finding, LossReport, Severity};
-use super::{Note, NoteKind, PlanFile, Problems, WaypointRecord, Written};
+use super::{Note, NoteKind, PlanFile, Problems, Written};
 use crate::geo::LatLon;
-use crate::plan::{MAX_WAYPOINTS, Waypoint, plan_lines};
+use crate::plan::record::WaypointRecord;
+use crate::plan::{MAX_WAYPOINTS, Waypoint};
 use crate::text::did_you_mean;
 
 /// The values of `waypoint insert` and `waypoint update`, by name.

@@ -5,8 +5,9 @@ use proptest::option;
 use proptest::prelude::*;
 use strum::IntoEnumIterator as _;
 
-use super::{HomePosition, PlanFile, WaypointRecord};
+use super::{HomePosition, PlanFile};
 use crate::geo::LatLon;
+use crate::plan::record::WaypointRecord;
 use crate::plan::{FlightPlan, HoldPattern, MAX_WAYPOINTS, Waypoint, WaypointType};
 
 /// Returns a file with these waypoints and nothing else.

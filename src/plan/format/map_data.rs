@@ -1,14 +1,14 @@
 //! Our own data in the files of maps: the keys of our TOML with their values as text.
 
 use super::field::{self, FieldError};
-use super::home;
 use super::loss::{Finding, LossReport, Severity};
 use super::map_file::Properties;
 use super::native_read::{altitude_cm, duration_ds, speed_cms, yaw_rate};
 use super::native_write::scaled;
-use super::{HomePosition, PlanFile, WaypointRecord};
+use super::{HomePosition, PlanFile, home};
 use crate::geo::{Degrees7, LatLon, offset_to_latlon};
 use crate::math;
+use crate::plan::record::WaypointRecord;
 use crate::plan::{HoldPattern, Waypoint, WaypointType};
 use nalgebra::Vector2;
 

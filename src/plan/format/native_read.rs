@@ -10,8 +10,9 @@ use super::home::{self, HomePosition};
 use super::long::hint;
 use super::setting::{SettingCheck, SettingPart, setting_line};
 use super::toml_table::{TomlTable, Value};
-use super::{PlanFile, Problems, ReadOptions, WaypointRecord};
+use super::{PlanFile, Problems, ReadOptions};
 use crate::geo::LatLon;
+use crate::plan::record::WaypointRecord;
 use crate::plan::{HoldPattern, MAX_WAYPOINTS, TimeUse, Waypoint, WaypointType};
 
 /// Keys of the whole file.

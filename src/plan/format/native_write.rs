@@ -5,7 +5,8 @@ use crate::plan::{HoldPattern, TimeUse};
 use crate::text::printable::is_printable;
 
 use super::loss::LossReport;
-use super::{PlanFile, WaypointRecord, Written};
+use super::{PlanFile, Written};
+use crate::plan::record::WaypointRecord;
 
 /// Writes a plan as TOML. Leaves out values that are the default for the type of their record.
 pub(super) fn write(file: &PlanFile) -> Written {

@@ -42,7 +42,7 @@ fn squares_to<'a>(places: &'a [Vector3<f64>], line: &'a [Vector3<f64>]) -> impl 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::compare::TrackSample;
+    use crate::report::route::TrackSample;
     use nalgebra::Vector2;
 
     fn line(alt_m: f64, points: usize) -> Track {

@@ -4,9 +4,10 @@ use std::io;
 
 use nalgebra::Vector2;
 
-use super::{Track, TrackSample};
+use super::Track;
 use crate::blackbox::decode::LogSource;
 use crate::flight_log::{LogFlight, LogMarkKind};
+use crate::report::route::TrackSample;
 use crate::signals::SimTime;
 use crate::telemetry::{Mode, ModeBox};
 

@@ -3,9 +3,9 @@
 use nalgebra::Vector2;
 
 use super::passage::{Passage, passages};
-use super::track::{Track, TrackSample, distance_to_segment};
+use super::track::{Track, distance_to_segment};
 use crate::plan::WaypointType;
-use crate::report::route::Route;
+use crate::report::route::{Route, TrackSample};
 
 /// The sine of the smallest turn that counts as a corner, about 10°.
 const CORNER: f64 = 0.17;

@@ -4,8 +4,8 @@
 //! with the least sum of the squared distances. This also works for a waypoint that the plan flies over twice, and
 //! for a route that crosses itself.
 
-use super::track::{Track, TrackSample};
-use crate::report::route::{Route, RoutePoint};
+use super::track::Track;
+use crate::report::route::{Route, RoutePoint, TrackSample};
 
 /// The distance from the closest approach within which the craft counts as at the waypoint, m.
 const NEAR_M: f64 = 1.0;

@@ -54,7 +54,7 @@ fn captions(comparison: &Comparison) -> [&'static str; 2] {
 }
 
 fn map(comparison: &Comparison, ground: Vec<Ground>, most_points: usize, most_others: usize) -> Map {
-    let place = |sample: &super::TrackSample| -> Point { (sample.ne.y, sample.ne.x) };
+    let place = |sample: &crate::report::route::TrackSample| -> Point { (sample.ne.y, sample.ne.x) };
     let first = comparison.sides.iter().find_map(|side| side.flights.first()?.samples.first());
     let mut map = Map {
         legs: first.map(place).into_iter().chain(comparison.route.legs()).collect(),

@@ -3,6 +3,7 @@ use nalgebra::Vector2;
 use super::*;
 use crate::geo::LocalFrame;
 use crate::plan::{Altitude, FlightPlan, HoldPattern, WaypointType};
+use crate::report::route::TrackSample;
 use crate::telemetry::snapshot::SettingsView;
 
 const LAT_DEG: f64 = 40.4635;

@@ -1,6 +1,8 @@
 //! The true track of a craft.
 
-use nalgebra::{Vector2, Vector3};
+use nalgebra::Vector2;
+
+use crate::report::route::TrackSample;
 
 /// A flight of the plan from its engagement on, the instant at which the pilot switched the autopilot on.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -17,24 +19,6 @@ pub struct Track {
     pub reason: String,
     /// Seconds from the engagement to the end; `None` if the autopilot did not engage.
     pub flown_s: Option<f64>,
-}
-
-/// The position of the craft at an instant.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TrackSample {
-    /// Seconds after the engagement.
-    pub time_s: f64,
-    /// North and east of home, m.
-    pub ne: Vector2<f64>,
-    /// Height above the craft's position on the ground at home, m.
-    pub alt_m: f64,
-}
-
-impl TrackSample {
-    /// Returns north, east and up from home, m.
-    pub(super) fn position(&self) -> Vector3<f64> {
-        Vector3::new(self.ne.x, self.ne.y, self.alt_m)
-    }
 }
 
 /// Returns the distance from a point to the segment between two others.

@@ -5,9 +5,10 @@ use quick_xml::events::{BytesStart, Event};
 
 use super::*;
 use crate::report::check::{CheckedFlight, Summary};
-use crate::report::compare::{Comparison, Side, Track, TrackSample};
+use crate::report::compare::{Comparison, Side, Track};
 use crate::report::flight::{FlightReport, ReportedSettings, fixture};
 use crate::report::record::RecordedSample;
+use crate::report::route::TrackSample;
 use crate::scenario::{Judgement, Outcome};
 use crate::signals::SimTime;
 use crate::telemetry::signal::{SIGNALS, Signal, SignalValues};

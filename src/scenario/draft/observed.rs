@@ -196,11 +196,11 @@ fn legs(flown: &Flown) -> Vec<Block> {
 
 /// Returns the greatest size of a number between two instants; `None` if one of them did not come.
 fn greatest_between(number: &str, from: &str, until: &str, flown: &Flown) -> Option<f64> {
-    use crate::scenario::expression::{Cursor, Scope, read_instant, read_number};
+    use crate::scenario::expression::{Cursor, Scope};
     let waypoints = flown.trace.plans.first().map_or(0, |known| known.plan.waypoints.len());
     let scope = Scope { waypoints, ..Scope::default() };
-    let (number, _) = read_number(&mut Cursor::new(&format!("abs({number})")), &scope).ok()?;
-    let instant = |text: &str| read_instant(&mut Cursor::new(text), &scope).ok();
+    let (number, _) = scope.read_number(&mut Cursor::new(&format!("abs({number})"))).ok()?;
+    let instant = |text: &str| scope.read_instant(&mut Cursor::new(text)).ok();
     let window = crate::scenario::case::Window { from: instant(from), until: instant(until) };
     let evaluator = Evaluator::new(&flown.trace, &[]);
     let value = crate::scenario::judge::statistic(&window, Statistic::Max, &number, &evaluator);

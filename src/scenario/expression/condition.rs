@@ -5,24 +5,26 @@ use std::str::FromStr as _;
 use strum::IntoEnumIterator as _;
 
 use super::cursor::{Cursor, SyntaxError};
-use super::instant::{SOURCES, mode_of, read_state_word, read_waypoint};
-use super::number::{Typed, read_number, share_unit};
+use super::number::{Typed, share_unit};
+use super::pattern::{SOURCES, mode_of, read_state_word, read_waypoint};
 use super::{Bound, Comparison, Condition, Scope};
 use crate::scenario::flag::Flag;
 use crate::telemetry::quantity::Dimension;
 
-/// Reads a condition.
-///
-/// # Errors
-/// Returns the mistake in the text.
-pub fn read_condition(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<Condition, SyntaxError> {
-    cursor.nested(|cursor| {
-        let mut any = vec![read_all(cursor, scope)?];
-        while cursor.take_keyword("or") {
-            any.push(read_all(cursor, scope)?);
-        }
-        Ok(if any.len() == 1 { any.remove(0) } else { Condition::Any(any) })
-    })
+impl Scope {
+    /// Reads a condition.
+    ///
+    /// # Errors
+    /// Returns the mistake in the text.
+    pub fn read_condition(&self, cursor: &mut Cursor<'_>) -> Result<Condition, SyntaxError> {
+        cursor.nested(|cursor| {
+            let mut any = vec![read_all(cursor, self)?];
+            while cursor.take_keyword("or") {
+                any.push(read_all(cursor, self)?);
+            }
+            Ok(if any.len() == 1 { any.remove(0) } else { Condition::Any(any) })
+        })
+    }
 }
 
 fn read_all(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<Condition, SyntaxError> {
@@ -44,7 +46,7 @@ fn read_one(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<Condition, SyntaxE
     if cursor.rest().starts_with('(') {
         let mut inner = cursor.clone();
         inner.take("(");
-        if let Ok(condition) = read_condition(&mut inner, scope)
+        if let Ok(condition) = scope.read_condition(&mut inner)
             && inner.take(")")
         {
             *cursor = inner;
@@ -95,7 +97,7 @@ fn read_word(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<Option<Condition>
 /// Returns the mistake in the text.
 pub(super) fn read_comparison(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<Comparison, SyntaxError> {
     let start = cursor.at();
-    let left = read_number(cursor, scope).map_err(|mut error| {
+    let left = scope.read_number(cursor).map_err(|mut error| {
         if cursor.at() == start && error.message.ends_with("is not a signal or a measure") {
             let flags: Vec<String> = Flag::iter().map(|flag| flag.to_string()).collect();
             error.hint = format!("{}; or one of {}, state, mode, flying", error.hint, flags.join(", "));
@@ -114,16 +116,16 @@ pub(super) fn read_comparison(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<
         Bound::AtLeast(same(cursor, scope, dimension)?, true)
     } else if cursor.take_keyword("in") {
         let from = cursor.at();
-        let low = read_number(cursor, scope)?;
+        let low = scope.read_number(cursor)?;
         cursor.expect("..")?;
-        let high = read_number(cursor, scope)?;
+        let high = scope.read_number(cursor)?;
         let (low, high) = share_unit(low, high);
         Bound::Between(fits(cursor, from, low, dimension)?, fits(cursor, from, high, dimension)?)
     } else if cursor.take("=") {
         let from = cursor.at();
-        let middle = read_number(cursor, scope)?;
+        let middle = scope.read_number(cursor)?;
         if cursor.take("+-") || cursor.take("±") {
-            let tolerance = read_number(cursor, scope)?;
+            let tolerance = scope.read_number(cursor)?;
             let (middle, tolerance) = share_unit(middle, tolerance);
             Bound::Around(fits(cursor, from, middle, dimension)?, fits(cursor, from, tolerance, dimension)?)
         } else if dimension == Dimension::NONE {
@@ -170,7 +172,7 @@ fn wrong_bound(bound: &Bound) -> Option<(&'static str, &'static str)> {
 /// Reads a number with the given dimension.
 fn same(cursor: &mut Cursor<'_>, scope: &Scope, dimension: Dimension) -> Result<super::Number, SyntaxError> {
     let start = cursor.at();
-    let number = read_number(cursor, scope)?;
+    let number = scope.read_number(cursor)?;
     fits(cursor, start, number, dimension)
 }
 

@@ -71,7 +71,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Takes these characters if they come next.
-    pub(super) fn take(&mut self, symbol: &str) -> bool {
+    pub(in crate::scenario) fn take(&mut self, symbol: &str) -> bool {
         let found = self.rest().starts_with(symbol);
         if found {
             self.advance(symbol.len());
@@ -79,7 +79,7 @@ impl<'a> Cursor<'a> {
         found
     }
 
-    pub(super) fn expect(&mut self, symbol: &str) -> Result<(), SyntaxError> {
+    pub(in crate::scenario) fn expect(&mut self, symbol: &str) -> Result<(), SyntaxError> {
         if self.take(symbol) { Ok(()) } else { Err(self.error(format!("{symbol} is expected here"), "")) }
     }
 
@@ -90,7 +90,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Returns the next word of an argument. It may also begin with a digit, and may have `-` inside.
-    pub(super) fn peek_argument(&self) -> Option<&'a str> {
+    pub(in crate::scenario) fn peek_argument(&self) -> Option<&'a str> {
         self.word_of(|c| c.is_alphanumeric() || c == '_' || c == '-').filter(|word| !word.starts_with('-'))
     }
 
@@ -101,12 +101,12 @@ impl<'a> Cursor<'a> {
     }
 
     /// Takes a word that was peeked.
-    pub(super) fn take_word(&mut self, word: &str) {
+    pub(in crate::scenario) fn take_word(&mut self, word: &str) {
         self.advance(word.len());
     }
 
     /// Takes this word if it comes next.
-    pub(super) fn take_keyword(&mut self, keyword: &str) -> bool {
+    pub(in crate::scenario) fn take_keyword(&mut self, keyword: &str) -> bool {
         let found = self.peek_word() == Some(keyword);
         if found {
             self.advance(keyword.len());
@@ -115,7 +115,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Takes a decimal number without a sign.
-    pub(super) fn take_decimal(&mut self) -> Option<f64> {
+    pub(in crate::scenario) fn take_decimal(&mut self) -> Option<f64> {
         let rest = self.rest();
         let digits = |text: &str| text.bytes().take_while(u8::is_ascii_digit).count();
         let whole = digits(rest);
@@ -133,7 +133,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Takes a whole number as an index.
-    pub(super) fn take_index(&mut self) -> Option<u8> {
+    pub(in crate::scenario) fn take_index(&mut self) -> Option<u8> {
         let rest = self.rest();
         let length = rest.bytes().take_while(u8::is_ascii_digit).count();
         let value = rest[..length].parse().ok()?;
@@ -145,7 +145,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Takes a text in single or double quotes.
-    pub(super) fn take_quoted(&mut self) -> Result<Option<&'a str>, SyntaxError> {
+    pub(in crate::scenario) fn take_quoted(&mut self) -> Result<Option<&'a str>, SyntaxError> {
         let rest = self.rest();
         let Some(quote) = rest.chars().next().filter(|c| matches!(c, '"' | '\'')) else { return Ok(None) };
         let Some(length) = rest[1..].find(quote) else {
@@ -193,7 +193,11 @@ impl<'a> Cursor<'a> {
     }
 
     /// Returns an error that the next word is not one of `words`.
-    pub(super) fn unknown<'w>(&self, what: &str, words: impl Iterator<Item = &'w str>) -> SyntaxError {
+    pub(in crate::scenario) fn unknown<'w>(
+        &self,
+        what: &str,
+        words: impl Iterator<Item = &'w str>,
+    ) -> SyntaxError {
         let rest = self.rest();
         let symbol = &rest[..rest.chars().next().map_or(0, char::len_utf8)];
         let found = self.peek_argument().unwrap_or(symbol);
@@ -221,7 +225,7 @@ impl<'a> Cursor<'a> {
         self.count(1)
     }
 
-    pub(super) fn terms(&self) -> usize {
+    pub(in crate::scenario) fn terms(&self) -> usize {
         self.terms
     }
 
@@ -231,12 +235,12 @@ impl<'a> Cursor<'a> {
     }
 
     /// Counts the terms since `before` a second time, because their values are computed twice.
-    pub(super) fn count_twice(&mut self, before: usize) -> Result<(), SyntaxError> {
+    pub(in crate::scenario) fn count_twice(&mut self, before: usize) -> Result<(), SyntaxError> {
         self.count(self.terms - before)
     }
 
     /// Copies the count of terms from a failed attempt, so that reading can continue here in another way.
-    pub(super) fn note_attempt(&mut self, attempt: &Self) {
+    pub(in crate::scenario) fn note_attempt(&mut self, attempt: &Self) {
         self.reads = attempt.reads;
     }
 
@@ -253,7 +257,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    pub(super) fn nested<T>(
+    pub(in crate::scenario) fn nested<T>(
         &mut self,
         read: impl FnOnce(&mut Self) -> Result<T, SyntaxError>,
     ) -> Result<T, SyntaxError> {

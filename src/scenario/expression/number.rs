@@ -5,8 +5,7 @@ use std::str::FromStr as _;
 use strum::IntoEnumIterator as _;
 
 use super::cursor::{Cursor, SyntaxError};
-use super::instant::read_instant;
-use super::place::{read_line, read_place};
+use super::place::read_line;
 use super::{Function, Number, Operator, Scope};
 use crate::telemetry::quantity::{Dimension, UNITS, Unit};
 use crate::telemetry::signal::{SIGNALS, Signal};
@@ -20,29 +19,31 @@ pub const MAX_NAME: usize = 100;
 const OTHER_FUNCTIONS: [&str; 9] =
     ["distance", "bearing", "apart", "along", "across", "past", "since", "at", "rate"];
 
-/// Reads a number.
-///
-/// # Errors
-/// Returns the mistake in the text, such as units that do not match.
-pub fn read_number(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<(Number, Dimension), SyntaxError> {
-    cursor.nested(|cursor| {
-        let start = cursor.at();
-        let mut left = read_product(cursor, scope)?;
-        loop {
-            // `+-` begins a tolerance, `->` the end of a line.
-            let operator = if cursor.rest().starts_with("+-") || cursor.rest().starts_with("->") {
-                return Ok(left);
-            } else if cursor.take("+") {
-                Operator::Add
-            } else if cursor.take("-") {
-                Operator::Subtract
-            } else {
-                return Ok(left);
-            };
-            let right = read_product(cursor, scope)?;
-            left = join_same(cursor, start, operator, left, right)?;
-        }
-    })
+impl Scope {
+    /// Reads a number.
+    ///
+    /// # Errors
+    /// Returns the mistake in the text, such as units that do not match.
+    pub fn read_number(&self, cursor: &mut Cursor<'_>) -> Result<(Number, Dimension), SyntaxError> {
+        cursor.nested(|cursor| {
+            let start = cursor.at();
+            let mut left = read_product(cursor, self)?;
+            loop {
+                // `+-` begins a tolerance, `->` the end of a line.
+                let operator = if cursor.rest().starts_with("+-") || cursor.rest().starts_with("->") {
+                    return Ok(left);
+                } else if cursor.take("+") {
+                    Operator::Add
+                } else if cursor.take("-") {
+                    Operator::Subtract
+                } else {
+                    return Ok(left);
+                };
+                let right = read_product(cursor, self)?;
+                left = join_same(cursor, start, operator, left, right)?;
+            }
+        })
+    }
 }
 
 /// Joins two numbers in a sum or a difference: both must have the same dimension.
@@ -73,7 +74,7 @@ pub(super) fn share_unit(left: Typed, right: Typed) -> (Typed, Typed) {
     }
 }
 
-pub(super) fn bare(number: &Number) -> bool {
+pub(in crate::scenario) fn bare(number: &Number) -> bool {
     match number {
         Number::Literal(_, unit) => unit.is_none(),
         Number::Negative(inner) => bare(inner),
@@ -126,7 +127,7 @@ fn read_factor(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<Typed, SyntaxEr
         });
     }
     if cursor.take("(") {
-        let inner = read_number(cursor, scope)?;
+        let inner = scope.read_number(cursor)?;
         cursor.expect(")")?;
         return Ok(inner);
     }
@@ -212,7 +213,7 @@ fn read_call(cursor: &mut Cursor<'_>, scope: &Scope, word: &str) -> Result<Typed
 
 fn read_arguments(cursor: &mut Cursor<'_>, scope: &Scope, function: Function) -> Result<Typed, SyntaxError> {
     let start = cursor.at();
-    let first = read_number(cursor, scope)?;
+    let first = scope.read_number(cursor)?;
     match function {
         Function::Abs => Ok((Number::Call(function, vec![first.0]), first.1)),
         Function::Wrap if first.1 != Dimension::ANGLE => {
@@ -221,7 +222,7 @@ fn read_arguments(cursor: &mut Cursor<'_>, scope: &Scope, function: Function) ->
         Function::Wrap => Ok((Number::Call(function, vec![first.0]), first.1)),
         Function::Min | Function::Max | Function::Hypot => {
             cursor.expect(",")?;
-            let second = read_number(cursor, scope)?;
+            let second = scope.read_number(cursor)?;
             let (first, second) = share_unit(first, second);
             if first.1 != second.1 {
                 return Err(cursor.error_since(
@@ -237,12 +238,12 @@ fn read_arguments(cursor: &mut Cursor<'_>, scope: &Scope, function: Function) ->
 
 fn read_other(cursor: &mut Cursor<'_>, scope: &Scope, word: &str) -> Result<Typed, SyntaxError> {
     Ok(match word {
-        "distance" => (Number::Distance(read_place(cursor, scope)?), Dimension::LENGTH),
-        "bearing" => (Number::Bearing(read_place(cursor, scope)?), Dimension::ANGLE),
+        "distance" => (Number::Distance(scope.read_place(cursor)?), Dimension::LENGTH),
+        "bearing" => (Number::Bearing(scope.read_place(cursor)?), Dimension::ANGLE),
         "apart" => {
-            let from = read_place(cursor, scope)?;
+            let from = scope.read_place(cursor)?;
             cursor.expect(",")?;
-            (Number::Apart(from, read_place(cursor, scope)?), Dimension::LENGTH)
+            (Number::Apart(from, scope.read_place(cursor)?), Dimension::LENGTH)
         }
         "along" | "across" | "past" => {
             let (from, to) = read_line(cursor, scope)?;
@@ -253,15 +254,15 @@ fn read_other(cursor: &mut Cursor<'_>, scope: &Scope, word: &str) -> Result<Type
             };
             (number, Dimension::LENGTH)
         }
-        "since" => (Number::Since(Box::new(read_instant(cursor, scope)?)), Dimension::TIME),
+        "since" => (Number::Since(Box::new(scope.read_instant(cursor)?)), Dimension::TIME),
         "at" => {
-            let (number, dimension) = read_number(cursor, scope)?;
+            let (number, dimension) = scope.read_number(cursor)?;
             cursor.expect(",")?;
-            (Number::At(Box::new(number), Box::new(read_instant(cursor, scope)?)), dimension)
+            (Number::At(Box::new(number), Box::new(scope.read_instant(cursor)?)), dimension)
         }
         _ => {
             let before = cursor.terms();
-            let (number, dimension) = read_number(cursor, scope)?;
+            let (number, dimension) = scope.read_number(cursor)?;
             cursor.count_twice(before)?;
             (Number::Rate(Box::new(number)), dimension.combine(Dimension::TIME, -1))
         }
@@ -273,7 +274,7 @@ fn read_other(cursor: &mut Cursor<'_>, scope: &Scope, word: &str) -> Result<Type
 /// # Errors
 /// Returns the mistake in the text.
 pub fn read_quantity(cursor: &mut Cursor<'_>) -> Result<(f64, Dimension), SyntaxError> {
-    let (number, dimension) = read_number(cursor, &Scope::default())?;
+    let (number, dimension) = Scope::default().read_number(cursor)?;
     cursor.finish()?;
     let value = number.constant(&|_| None).filter(|value| value.is_finite()).ok_or_else(|| {
         cursor.error_since(0, "this is not known before the flight", "write a number with its unit")

@@ -1,56 +1,50 @@
 //! Places on the ground and lines between them.
 
 use super::cursor::{Cursor, SyntaxError};
-use super::instant::{read_instant, read_source};
+use super::pattern::{read_source, waypoints};
 use super::{Place, Scope};
 use crate::telemetry::PlanSource;
 
 /// The forms of a place, for messages.
 const PLACES: &str = "write home, wp 2, 60 N 0 E, target, or place at ARRIVED 1";
 
-pub(super) fn read_place(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<Place, SyntaxError> {
-    cursor.term()?;
-    if cursor.take_keyword("home") {
-        return Ok(Place::Home);
-    }
-    if cursor.take_keyword("target") {
-        return Ok(Place::Target);
-    }
-    if cursor.take_keyword("place") {
-        if !cursor.take_keyword("at") {
-            return Err(cursor.error("at is expected here", "write place at ARRIVED 1"));
+impl Scope {
+    pub(super) fn read_place(&self, cursor: &mut Cursor<'_>) -> Result<Place, SyntaxError> {
+        cursor.term()?;
+        if cursor.take_keyword("home") {
+            return Ok(Place::Home);
         }
-        return cursor.nested(|cursor| Ok(Place::CraftAt(Box::new(read_instant(cursor, scope)?))));
-    }
-    if cursor.take_keyword("wp") {
+        if cursor.take_keyword("target") {
+            return Ok(Place::Target);
+        }
+        if cursor.take_keyword("place") {
+            if !cursor.take_keyword("at") {
+                return Err(cursor.error("at is expected here", "write place at ARRIVED 1"));
+            }
+            return cursor.nested(|cursor| Ok(Place::CraftAt(Box::new(self.read_instant(cursor)?))));
+        }
+        if cursor.take_keyword("wp") {
+            let start = cursor.at();
+            let Some(index) = cursor.take_index() else {
+                return Err(cursor.error("the number of a waypoint is expected here", "write wp 2"));
+            };
+            let source = read_source(cursor)?.unwrap_or(PlanSource::Stored);
+            if source == PlanSource::Stored && usize::from(index) >= self.waypoints {
+                return Err(cursor.error_since(
+                    start,
+                    format!("the plan has no waypoint {index}"),
+                    waypoints(self),
+                ));
+            }
+            return Ok(Place::Waypoint(index, source));
+        }
         let start = cursor.at();
-        let Some(index) = cursor.take_index() else {
-            return Err(cursor.error("the number of a waypoint is expected here", "write wp 2"));
-        };
-        let source = read_source(cursor)?.unwrap_or(PlanSource::Stored);
-        if source == PlanSource::Stored && usize::from(index) >= scope.waypoints {
-            return Err(cursor.error_since(
-                start,
-                format!("the plan has no waypoint {index}"),
-                waypoints(scope),
-            ));
+        let north = read_offset(cursor, "N", "S")?;
+        let east = read_offset(cursor, "E", "W")?;
+        if !north.is_finite() || !east.is_finite() {
+            return Err(cursor.error_since(start, "this place is too far away", PLACES));
         }
-        return Ok(Place::Waypoint(index, source));
-    }
-    let start = cursor.at();
-    let north = read_offset(cursor, "N", "S")?;
-    let east = read_offset(cursor, "E", "W")?;
-    if !north.is_finite() || !east.is_finite() {
-        return Err(cursor.error_since(start, "this place is too far away", PLACES));
-    }
-    Ok(Place::Offset(north, east))
-}
-
-/// Returns the allowed indices of the plan, for messages.
-pub(super) fn waypoints(scope: &Scope) -> String {
-    match scope.waypoints {
-        0 => "it is empty".to_owned(),
-        count => format!("allowed: 0 to {}", count - 1),
+        Ok(Place::Offset(north, east))
     }
 }
 
@@ -76,9 +70,9 @@ fn read_offset(cursor: &mut Cursor<'_>, positive: &str, negative: &str) -> Resul
 
 /// Reads a line from one place to another.
 pub(super) fn read_line(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<(Place, Place), SyntaxError> {
-    let from = read_place(cursor, scope)?;
+    let from = scope.read_place(cursor)?;
     if !cursor.take("->") {
         return Err(cursor.error("-> is expected here", "write the line as wp 0 -> wp 1"));
     }
-    Ok((from, read_place(cursor, scope)?))
+    Ok((from, scope.read_place(cursor)?))
 }

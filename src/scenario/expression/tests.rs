@@ -53,7 +53,7 @@ fn value(text: &str, seconds: f64) -> f64 {
     let names = [("bound".to_owned(), 4.0)];
     let evaluator = Evaluator::new(&trace, &names);
     let mut cursor = Cursor::new(text);
-    let (number, _) = read_number(&mut cursor, &scope()).unwrap_or_else(|error| panic!("{text}: {error:?}"));
+    let (number, _) = scope().read_number(&mut cursor).unwrap_or_else(|error| panic!("{text}: {error:?}"));
     cursor.finish().unwrap();
     evaluator.number(&number, trace.index_at((seconds * 1e6) as i64).unwrap())
 }
@@ -64,7 +64,7 @@ fn holds(text: &str, seconds: f64) -> Option<bool> {
     let names = [("bound".to_owned(), 4.0)];
     let evaluator = Evaluator::new(&trace, &names);
     let mut cursor = Cursor::new(text);
-    let condition = read_condition(&mut cursor, &scope()).unwrap_or_else(|error| panic!("{text}: {error:?}"));
+    let condition = scope().read_condition(&mut cursor).unwrap_or_else(|error| panic!("{text}: {error:?}"));
     cursor.finish().unwrap();
     evaluator.holds(&condition, trace.index_at((seconds * 1e6) as i64).unwrap())
 }
@@ -74,7 +74,7 @@ fn when(text: &str) -> Option<f64> {
     let trace = climb_to_the_north();
     let evaluator = Evaluator::new(&trace, &[]);
     let mut cursor = Cursor::new(text);
-    let instant = read_instant(&mut cursor, &scope()).unwrap_or_else(|error| panic!("{text}: {error:?}"));
+    let instant = scope().read_instant(&mut cursor).unwrap_or_else(|error| panic!("{text}: {error:?}"));
     cursor.finish().unwrap();
     evaluator.instant(&instant).map(|us| us as f64 * 1e-6)
 }
@@ -82,7 +82,7 @@ fn when(text: &str) -> Option<f64> {
 /// Returns the mistake in a condition: the part of the text, the message and the hint.
 fn complaint(text: &str) -> String {
     let mut cursor = Cursor::new(text);
-    let result = read_condition(&mut cursor, &scope()).and_then(|_| cursor.finish());
+    let result = scope().read_condition(&mut cursor).and_then(|_| cursor.finish());
     let error = result.expect_err(text);
     format!("[{}] {}; {}", &text[error.span], error.message, error.hint)
 }
@@ -232,11 +232,11 @@ proptest::proptest! {
     #[test]
     fn no_text_makes_the_reader_panic(text in "\\PC{0,60}") {
         let mut cursor = Cursor::new(&text);
-        if let Err(error) = read_condition(&mut cursor, &scope()) {
+        if let Err(error) = scope().read_condition(&mut cursor) {
             proptest::prop_assert!(text.get(error.span.clone()).is_some(), "{error:?}");
         }
         let mut cursor = Cursor::new(&text);
-        if let Err(error) = read_instant(&mut cursor, &scope()) {
+        if let Err(error) = scope().read_instant(&mut cursor) {
             proptest::prop_assert!(text.get(error.span.clone()).is_some(), "{error:?}");
         }
     }
@@ -250,9 +250,9 @@ proptest::proptest! {
     ) {
         let text = words.join(" ");
         let mut cursor = Cursor::new(&text);
-        let _ = read_condition(&mut cursor, &scope());
+        let _ = scope().read_condition(&mut cursor);
         let mut cursor = Cursor::new(&text);
-        let _ = read_instant(&mut cursor, &scope());
+        let _ = scope().read_instant(&mut cursor);
     }
 }
 
@@ -288,7 +288,7 @@ fn nested_instants_cost_no_more_than_linear_time_in_flight_and_are_the_same() {
         "last when since(last when altitude > 3 m) > 1 s",
     ] {
         let mut cursor = Cursor::new(text);
-        let Ok(instant) = read_instant(&mut cursor, &scope()) else { panic!("{text}") };
+        let Ok(instant) = scope().read_instant(&mut cursor) else { panic!("{text}") };
         let lookups = Lookups::default();
         let (found, judged) = during_the_flight(&instant, Some(&lookups));
         let (expected, again) = during_the_flight(&instant, None);

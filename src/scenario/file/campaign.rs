@@ -12,8 +12,8 @@ use crate::design::Design;
 use crate::plan::format::TomlTable;
 use crate::scenario::campaign_spec::{CampaignSpec, MAX_CAMPAIGN, USUAL_LEVELS};
 use crate::scenario::case::Case;
-use crate::scenario::expression::{Cursor, read_goal};
-use crate::scenario::goal::Goal;
+use crate::scenario::expression::Cursor;
+use crate::scenario::goal::{Goal, read_goal};
 use crate::scenario::varied::{Spread, Tolerance};
 use crate::telemetry::quantity::Dimension;
 

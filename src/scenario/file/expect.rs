@@ -9,8 +9,7 @@ use super::{Allowance, Belongs};
 use crate::plan::format::{TomlTable, Value};
 use crate::scenario::case::{Expectation, Expected, StateStep, Statistic, Window};
 use crate::scenario::expression::{
-    Comparison, Condition, Cursor, Scope, SyntaxError, read_condition, read_instant, read_pattern,
-    read_span_from,
+    Comparison, Condition, Cursor, Scope, SyntaxError, read_pattern, read_span_from,
 };
 use crate::scenario::happening::{Pattern, RESULTS};
 use crate::telemetry::FirmwareProfile;
@@ -182,7 +181,7 @@ fn read_expected(
             let condition = condition(value, scope, reader)?;
             match table.get("at") {
                 Some(at) => {
-                    Expected::At(reader.expression(at, |cursor| read_instant(cursor, scope))?, condition)
+                    Expected::At(reader.expression(at, |cursor| scope.read_instant(cursor))?, condition)
                 }
                 None => Expected::That(condition),
             }
@@ -195,7 +194,7 @@ fn read_expected(
 }
 
 fn condition(value: &Value<'_>, scope: &Scope, reader: &mut Reader<'_, '_>) -> Option<Condition> {
-    reader.expression(value, |cursor| read_condition(cursor, scope))
+    reader.expression(value, |cursor| scope.read_condition(cursor))
 }
 
 fn comparison(value: &Value<'_>, scope: &Scope, reader: &mut Reader<'_, '_>) -> Option<Comparison> {

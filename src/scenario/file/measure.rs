@@ -9,7 +9,7 @@ use super::keys::MEASURE_KEYS;
 use super::reader::{Layers, Reader};
 use crate::plan::format::TomlTable;
 use crate::scenario::case::{Measure, Measured, Statistic, Window};
-use crate::scenario::expression::{Scope, read_instant, read_number};
+use crate::scenario::expression::Scope;
 use crate::telemetry::quantity::Dimension;
 use crate::telemetry::signal::Signal;
 
@@ -64,7 +64,7 @@ pub(super) fn taken(name: &str) -> Option<String> {
 /// Reads the window of a table.
 pub(super) fn window(table: &TomlTable<'_, '_>, scope: &Scope, reader: &mut Reader<'_, '_>) -> Window {
     let mut instant =
-        |key| table.get(key).and_then(|value| reader.expression(value, |cursor| read_instant(cursor, scope)));
+        |key| table.get(key).and_then(|value| reader.expression(value, |cursor| scope.read_instant(cursor)));
     Window { from: instant("from"), until: instant("until") }
 }
 
@@ -93,23 +93,23 @@ fn read_measured(
     for statistic in Statistic::iter() {
         if let Some(value) = table.get(statistic.into()) {
             let window = window(table, scope, reader);
-            let (number, dimension) = reader.expression(value, |cursor| read_number(cursor, scope))?;
+            let (number, dimension) = reader.expression(value, |cursor| scope.read_number(cursor))?;
             return Some((Measured::Over(window, statistic, number), dimension));
         }
     }
     if let Some(value) = table.get("time") {
         let (from, to) = reader.expression(value, |cursor| {
-            let from = read_instant(cursor, scope)?;
+            let from = scope.read_instant(cursor)?;
             cursor.arrow("write engaged -> ARRIVED 1")?;
-            Ok((from, read_instant(cursor, scope)?))
+            Ok((from, scope.read_instant(cursor)?))
         })?;
         return Some((Measured::Time(from, to), Dimension::TIME));
     }
     let value = table.get("value")?;
-    let (number, dimension) = reader.expression(value, |cursor| read_number(cursor, scope))?;
+    let (number, dimension) = reader.expression(value, |cursor| scope.read_number(cursor))?;
     let measured = match table.get("at") {
         None => Measured::Of(number),
-        Some(at) => Measured::At(reader.expression(at, |cursor| read_instant(cursor, scope))?, number),
+        Some(at) => Measured::At(reader.expression(at, |cursor| scope.read_instant(cursor))?, number),
     };
     Some((measured, dimension))
 }

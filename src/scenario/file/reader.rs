@@ -6,8 +6,9 @@ use std::ops::Range;
 
 use toml::de::DeValue;
 
+use super::Files;
 use super::bounds::Spent;
-use super::{Files, Variant};
+use super::variant::Variant;
 use crate::plan::FlightPlan;
 use crate::plan::builtin::BuiltinPlan;
 use crate::plan::format::{PlanFile, Problems, TomlTable, Value};

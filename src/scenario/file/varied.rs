@@ -11,6 +11,7 @@ use super::air;
 use super::craft::airframe_named;
 use super::keys::{OF_FAULTS, VARY_KEYS};
 use super::reader::Reader;
+use super::variant::scalar;
 use crate::flight::setup::check_setting;
 use crate::plan::format::{TomlTable, Value, setting_line};
 use crate::scenario::varied::{Change, Choice, NumberInput, Spread, Tolerance, VariedInput};
@@ -185,17 +186,5 @@ fn setting(text: &str, value: &Value<'_>, reader: &mut Reader<'_, '_>) -> Option
             reader.problem(value.span(), fault.message, fault.hint);
             None
         }
-    }
-}
-
-/// Returns a text, a number or a truth value as it is written.
-pub(super) fn scalar(value: &Value<'_>) -> String {
-    match value.get_ref() {
-        DeValue::String(text) => text.to_string(),
-        DeValue::Integer(integer) => integer.as_str().to_owned(),
-        DeValue::Float(float) => float.as_str().to_owned(),
-        DeValue::Boolean(true) => "on".to_owned(),
-        DeValue::Boolean(false) => "off".to_owned(),
-        _ => String::new(),
     }
 }

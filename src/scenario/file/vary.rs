@@ -4,38 +4,10 @@ use toml::de::DeValue;
 
 use super::keys::VARY_KEYS;
 use super::reader::Reader;
-use super::varied::scalar;
-use crate::plan::format::{TomlTable, Value};
+use super::variant::Variant;
+use crate::plan::format::TomlTable;
 
 const MAX_VARIANTS: usize = 1000;
-
-#[derive(Debug, Default)]
-pub(super) struct Variant<'l, 't> {
-    values: Vec<(&'l str, &'l Value<'t>)>,
-}
-
-impl<'l, 't> Variant<'l, 't> {
-    /// Returns the varied value of this key.
-    pub(super) fn get(&self, key: &str) -> Option<&'l Value<'t>> {
-        self.values.iter().find(|(name, _)| *name == key).map(|&(_, value)| value)
-    }
-
-    /// Returns the keys with their values for people.
-    pub(super) fn shown(&self) -> impl Iterator<Item = (&'l str, String)> {
-        self.values.iter().map(|&(key, value)| (key, scalar(value)))
-    }
-
-    /// Returns the name of a case with this combination.
-    pub(super) fn name_of(&self, base: &str) -> String {
-        let parts =
-            self.shown().map(|(key, shown)| if key == "settings" { shown } else { format!("{key} {shown}") });
-        std::iter::once(base.to_owned())
-            .filter(|base| !base.is_empty())
-            .chain(parts)
-            .collect::<Vec<_>>()
-            .join(", ")
-    }
-}
 
 /// Returns all combinations; one empty combination if nothing is varied.
 pub(super) fn read<'l, 't>(top: &TomlTable<'l, 't>, reader: &mut Reader<'_, '_>) -> Vec<Variant<'l, 't>> {

@@ -3,7 +3,7 @@
 use super::recorder::Recorder;
 use crate::flight::{Flight, FlightEnd, FlightResult};
 use crate::plan::FlightPlan;
-use crate::scenario::file::{SAMPLE_HZ, WATCH_S};
+use crate::scenario::case::{SAMPLE_HZ, WATCH_S};
 use crate::scenario::trace::TraceHasher;
 use crate::signals::SimTime;
 use crate::telemetry::Event;

@@ -4,8 +4,9 @@ use std::path::Path;
 
 use super::PlanFiles;
 use crate::screen_files::backdrop_file;
+use crate::ui::PlanId;
 use crate::ui::backdrop::BackdropLayer;
-use crate::ui::editor::{FileReply, PlanId};
+use crate::ui::files::FileReply;
 
 impl PlanFiles {
     /// Puts files under the first plan; none = those remembered with it.

@@ -2,8 +2,8 @@
 
 use super::PlanFiles;
 use crate::screen_files::screen_file::ScreenFile;
-use crate::ui::KeptScreen;
-use crate::ui::editor::{FileReply, FileRequest, PlanId};
+use crate::ui::files::{FileReply, FileRequest};
+use crate::ui::{KeptScreen, PlanId};
 
 impl PlanFiles {
     /// Keeps no journals, and leaves those of other programs alone.

@@ -9,7 +9,8 @@ use crate::plan::edit::PlanDocument;
 use crate::plan::format::loss::LossReport;
 use crate::plan::format::{self, Format, HomePosition, PlanFile, ReadOptions, Written};
 use crate::storage::link_target;
-use crate::ui::editor::{Entry, FileReply, Listing, PlanId};
+use crate::ui::PlanId;
+use crate::ui::files::{Entry, FileReply, Listing};
 
 /// The contents of a file. They show a change by another program; time stamp and length do not show every change.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::on_disk;
 use crate::screen_files::plan_files::on_disk::Content;
-use crate::ui::editor::FileReply;
+use crate::ui::files::FileReply;
 
 /// Writes settings in a new file. `count` is their number.
 pub(super) fn save(path: PathBuf, text: &str, count: usize) -> FileReply {

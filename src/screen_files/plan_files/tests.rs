@@ -1,5 +1,5 @@
 use super::*;
-use crate::plan::format::WaypointRecord;
+use crate::plan::WaypointRecord;
 
 mod backdrop;
 mod damaged_journals;

@@ -6,8 +6,8 @@ use rand::RngExt;
 
 use crate::math;
 use crate::signals::SimTime;
-use crate::sim::config::Wind;
 use crate::sim::random::{Stream, StreamRng, exponential};
+use crate::sim::wind::Wind;
 
 /// The time that a gust keeps its full strength, s.
 const HOLD_S: f64 = 2.0;

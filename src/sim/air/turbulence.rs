@@ -8,8 +8,8 @@ use std::f64::consts::FRAC_1_SQRT_2;
 use nalgebra::Vector3;
 
 use crate::math;
-use crate::sim::config::Wind;
 use crate::sim::random::{Normals, Stream};
+use crate::sim::wind::Wind;
 use crate::telemetry::Turbulence;
 
 const FEET_PER_METRE: f64 = 1.0 / 0.3048;

@@ -3,10 +3,11 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::sim::config::{Noise, Wind};
+use crate::sim::config::Noise;
 use crate::sim::fault::{Fault, MAX_TIME_S, ScheduledFault};
 use crate::sim::switches::{SWITCHES, Switches};
 use crate::sim::value_text::{ParseError, number_in};
+use crate::sim::wind::Wind;
 use crate::telemetry::Turbulence;
 use crate::text::did_you_mean;
 

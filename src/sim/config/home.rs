@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use crate::sim::value_text::{ParseError, number_in};
 
-use super::WorldError;
+use crate::sim::error::WorldError;
 
 /// The place of the craft at boot.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use crate::math;
 use crate::sim::airframe::ROTORS;
 use crate::sim::battery::BatteryFaults;
-use crate::sim::config::Wind;
+use crate::sim::wind::Wind;
 
 use super::{BatteryFault, Fault};
 

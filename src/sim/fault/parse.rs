@@ -4,8 +4,8 @@ use std::str::FromStr;
 
 use strum::VariantNames;
 
-use crate::sim::config::Wind;
 use crate::sim::value_text::{ParseError, number, number_in};
+use crate::sim::wind::Wind;
 use crate::telemetry::FaultKind;
 use crate::text::did_you_mean;
 

@@ -10,11 +10,9 @@ use crate::sim::fault::{GpsFaults, MAX_GPS_DELAY_S};
 use crate::sim::random::{GaussMarkov, Normals, Stream};
 use crate::sim::truth::Truth;
 
-mod grade;
 mod multipath;
 
-pub use grade::GpsGrade;
-use grade::GradeErrors;
+use crate::sim::gps_grade::{GpsGrade, GradeErrors};
 use multipath::Multipath;
 
 /// The number of slow ticks per second.

@@ -13,8 +13,7 @@ use crate::sim::random::{Normals, Stream};
 /// The horizontal and vertical (up) part of the field, counts.
 const HORIZONTAL: f64 = 2_048.048_458_899_349_5;
 const UP: f64 = -3_547.2;
-/// The declination of the field of Betaflight's SITL, degrees east.
-pub const SITL_DECLINATION_DEG: f64 = 2.000_675_735_167_871_2;
+
 /// The white noise per axis, counts: 0.4 mG of a field of 500 mG.
 const SIGMA: f64 = 0.4 / 500.0 * 4096.0;
 
@@ -61,7 +60,7 @@ impl Magnetometer {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sim::truth;
+    use crate::sim::{SITL_DECLINATION_DEG, truth};
 
     /// Returns the heading from a level magnetometer, degrees.
     fn heading(field: Vector3<f64>) -> f64 {

@@ -7,11 +7,12 @@ use crate::sim::air::usual_length_s;
 use crate::sim::airframe::ROTORS;
 use crate::sim::body::BodyState;
 use crate::sim::clock::{Clock, FaultHost};
-use crate::sim::command::{WorldCommand, in_range};
-use crate::sim::config::{Wind, WorldError};
+use crate::sim::command::WorldCommand;
+use crate::sim::error::{WorldError, in_range};
 use crate::sim::fault::{ActiveFault, Fault};
 use crate::sim::landform::Landform;
 use crate::sim::touchdown::TouchdownDetector;
+use crate::sim::wind::Wind;
 
 use super::boot::standing;
 use super::{World, full_battery};

@@ -4,10 +4,11 @@ use crate::geo::LocalFrame;
 use crate::signals::{SensorFrame, SimTime};
 use crate::sim::airframe::Airframe;
 use crate::sim::clock::Clock;
-use crate::sim::config::{Noise, Wind};
+use crate::sim::config::Noise;
 use crate::sim::event::WorldEvent;
 use crate::sim::switches::Switches;
 use crate::sim::truth::Truth;
+use crate::sim::wind::Wind;
 use crate::telemetry::Turbulence;
 
 use super::World;

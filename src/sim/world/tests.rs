@@ -4,10 +4,12 @@ use super::*;
 use crate::signals::SimTime;
 use crate::sim::airframe::Airframe;
 use crate::sim::command::WorldCommand;
-use crate::sim::config::{Noise, Wind, WorldConfig, WorldError};
+use crate::sim::config::{Noise, WorldConfig};
+use crate::sim::error::WorldError;
 use crate::sim::event::WorldEvent;
 use crate::sim::fault::{Fault, FaultStart, ScheduledFault};
 use crate::sim::switches::AirDensity;
+use crate::sim::wind::Wind;
 use crate::telemetry::{FaultKind, Turbulence};
 
 fn ideal() -> WorldConfig {

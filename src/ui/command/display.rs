@@ -1,10 +1,12 @@
 //! Commands that change the display.
 
 use super::did_you_mean_end;
-use crate::ui::editor::FileRequest;
-use crate::ui::event_log::Severity;
-use crate::ui::layout::{Arrangement, named};
-use crate::ui::message::{Change, Effect, Request};
+use crate::ui::acts::named_layouts;
+use crate::ui::model::effect::Effect;
+use crate::ui::model::event_log::Severity;
+use crate::ui::model::files::FileRequest;
+use crate::ui::model::layout::Arrangement;
+use crate::ui::model::message::{Change, Request};
 use crate::ui::shared::Shared;
 use crate::ui::theme::{Charset, Palette};
 use crate::ui::units::Units;
@@ -67,14 +69,16 @@ pub(super) fn layout(state: &mut Shared, _: &str, argument: &str) -> Result<Vec<
     match argument.split_once(' ').map_or((argument, ""), |(verb, name)| (verb, name.trim())) {
         ("default", "") => state.arrangement = Arrangement::default(),
         ("save", name) => {
-            return keep(named::save(state, name)?, format!("`:layout {name}` shows this layout."));
+            return keep(named_layouts::save(state, name)?, format!("`:layout {name}` shows this layout."));
         }
         ("delete", name) => {
-            return keep(named::delete(state, name)?, format!("Layout {name} is deleted."));
+            return keep(named_layouts::delete(state, name)?, format!("Layout {name} is deleted."));
         }
-        _ => match named::find(state, argument) {
+        _ => match named_layouts::find(state, argument) {
             Some(layout) => layout.show(state),
-            None => return Err(unknown("layout", argument, &named::names(state).collect::<Vec<_>>())),
+            None => {
+                return Err(unknown("layout", argument, &named_layouts::names(state).collect::<Vec<_>>()));
+            }
         },
     }
     Ok(Vec::new())
@@ -83,7 +87,8 @@ pub(super) fn layout(state: &mut Shared, _: &str, argument: &str) -> Result<Vec<
 /// Returns the matching names of layouts.
 pub(super) fn complete_layout(state: &Shared, _: &str, typed: &str) -> Vec<String> {
     let saved = || state.layouts.names().map(|name| format!("delete {name}"));
-    let all = named::names(state).map(str::to_owned).chain(["default".to_owned(), "save ".to_owned()]);
+    let all =
+        named_layouts::names(state).map(str::to_owned).chain(["default".to_owned(), "save ".to_owned()]);
     all.chain(saved()).filter(|name| name.starts_with(typed)).collect()
 }
 

@@ -5,10 +5,11 @@ use crate::flight::forecast::{WHAT_IFS, WhatIf};
 use crate::session::Command;
 use crate::sim::{FAULTS, FaultInfo, ScheduledFault};
 use crate::telemetry::InFlightCommand;
-use crate::ui::action::{self, Action};
-use crate::ui::message::{Effect, Request, requests};
+use crate::ui::acts::{availability, forecasts, surveys};
+use crate::ui::model::action::Action;
+use crate::ui::model::effect::Effect;
+use crate::ui::model::message::{Request, requests};
 use crate::ui::shared::Shared;
-use crate::ui::{forecast, survey};
 use crate::vehicle::VehicleCommand;
 
 /// The name of the row of the what-ifs that flies a hundred flights of the plan.
@@ -16,7 +17,7 @@ const GO_NO_GO: &str = "go";
 
 /// Runs `go-to 2`.
 pub(super) fn go_to(state: &mut Shared, _: &str, argument: &str) -> Result<Vec<Request>, String> {
-    action::enabled(state, Action::GoTo)?;
+    availability::enabled(state, Action::GoTo)?;
     if argument.is_empty() {
         return Ok(vec![Request::Act(Action::GoTo)]);
     }
@@ -47,7 +48,7 @@ fn waypoints(state: &Shared) -> Vec<String> {
 
 /// Runs `what-if gps-loss` or `what-if wind,,14@270`.
 pub(super) fn what_if(state: &mut Shared, _: &str, argument: &str) -> Result<Vec<Request>, String> {
-    action::enabled(state, Action::WhatIf)?;
+    availability::enabled(state, Action::WhatIf)?;
     if argument == GO_NO_GO {
         return Ok(vec![Request::Act(Action::GoNoGo)]);
     }
@@ -60,7 +61,7 @@ pub(super) fn what_if(state: &mut Shared, _: &str, argument: &str) -> Result<Vec
 /// Flies ahead with the what-if of this name, or of this number in the list. The last one flies a hundred flights.
 pub(in crate::ui) fn ask_what_if(state: &mut Shared, name: &str) -> Result<Vec<Effect>, String> {
     if name == GO_NO_GO || name.parse() == Ok(WHAT_IFS.len() + 1) {
-        return Ok(survey::ask_go_no_go(state));
+        return Ok(surveys::ask_go_no_go(state));
     }
     let numbered = name.parse::<usize>().ok().and_then(|number| number.checked_sub(1));
     let found = match numbered {
@@ -96,26 +97,26 @@ fn no_what_if(name: &str) -> String {
 
 /// Flies ahead with a what-if, in place of a survey.
 pub(in crate::ui) fn fly_what_if(state: &mut Shared, what_if: WhatIf) -> Vec<Effect> {
-    let (survey, flies) = (survey::dismiss(state), flies(state));
-    survey.into_iter().chain(forecast::ask_what_if(state, what_if, flies)).collect()
+    let (survey, flies) = (surveys::dismiss(state), flies(state));
+    survey.into_iter().chain(forecasts::ask_what_if(state, what_if, flies)).collect()
 }
 
 /// Returns `true` if there is a flight to look ahead to. On the ground a what-if is flown from home.
 pub(in crate::ui) fn flies(state: &Shared) -> bool {
-    action::flies(state).is_ok()
+    availability::flies(state).is_ok()
 }
 
 /// Runs `where gps-loss,6`.
 pub(super) fn where_may(state: &mut Shared, _: &str, argument: &str) -> Result<Vec<Request>, String> {
     if argument.is_empty() {
-        action::enabled(state, Action::WhereMay)?;
+        availability::enabled(state, Action::WhereMay)?;
         return Ok(vec![Request::Act(Action::WhereMay)]);
     }
     // A sweep that is shown gives way to the new one.
-    action::enabled(state, Action::GoNoGo)?;
+    availability::enabled(state, Action::GoNoGo)?;
     let fault =
         ScheduledFault::without_time(argument).map_err(|problem| format!("where {argument}: {problem}."))?;
-    Ok(requests(survey::ask_sweep(state, fault)))
+    Ok(requests(surveys::ask_sweep(state, fault)))
 }
 
 /// Returns the matching names of faults.

@@ -2,9 +2,11 @@
 
 use std::path::PathBuf;
 
-use crate::ui::action::{Action, EditAction, PanelAction};
-use crate::ui::editor::{FileRequest, findings};
-use crate::ui::message::{Change, Effect, FlightForm, Request};
+use crate::ui::acts::findings;
+use crate::ui::model::action::{Action, EditAction, PanelAction};
+use crate::ui::model::effect::{Effect, FlightForm};
+use crate::ui::model::files::FileRequest;
+use crate::ui::model::message::{Change, Request};
 use crate::ui::shared::Shared;
 
 /// The argument that removes the backdrop.

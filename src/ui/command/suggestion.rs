@@ -1,7 +1,9 @@
 //! Suggestions for the line being typed, and a hint about it.
 
 use super::{all, short_name, split};
-use crate::ui::action::{self, ACTIONS};
+use crate::ui::acts::availability;
+use crate::ui::model::action;
+use crate::ui::model::action::ACTIONS;
 use crate::ui::shared::Shared;
 
 /// The longest argument form shown beside the help.
@@ -67,7 +69,7 @@ pub fn hint(state: &Shared, typed: &str) -> Option<String> {
     }
     let action = super::action_named(word, state.focus).ok()?;
     let spec = action::spec_of(action)?;
-    Some(match action::enabled(state, action) {
+    Some(match availability::enabled(state, action) {
         Ok(()) => format!("{} — {}", spec.name, spec.help),
         Err(reason) => format!("{} — {reason}", spec.name),
     })

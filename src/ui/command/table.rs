@@ -2,7 +2,7 @@
 
 use super::{display, flight, plan, time, vehicle, world};
 use crate::sim::COMMAND_WORDS;
-use crate::ui::message::Request;
+use crate::ui::model::message::Request;
 use crate::ui::shared::Shared;
 
 /// A command that takes an argument.

@@ -2,7 +2,7 @@
 
 use crate::runner::SPEED_RANGE;
 use crate::session::policy::{self, Facts, Intent};
-use crate::ui::message::Request;
+use crate::ui::model::message::Request;
 use crate::ui::shared::Shared;
 
 /// Runs `speed 4` or `speed max`.

@@ -1,10 +1,11 @@
 //! Commands that go through the craft's command line.
 
 use crate::fc::{CraftSetting, cli_block};
-use crate::ui::action::Action;
-use crate::ui::editor::FileRequest;
-use crate::ui::message::{Effect, Request};
-use crate::ui::panel::Panel;
+use crate::ui::model::action::Action;
+use crate::ui::model::effect::Effect;
+use crate::ui::model::files::FileRequest;
+use crate::ui::model::message::Request;
+use crate::ui::model::panel_table::Panel;
 use crate::ui::shared::Shared;
 
 /// Runs `set NAME=VALUE`, or `set NAME` to read the value.

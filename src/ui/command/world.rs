@@ -2,7 +2,8 @@
 
 use super::did_you_mean_end;
 use crate::sim::{COMMAND_WORDS, FAULTS, FaultInfo, SWITCHES};
-use crate::ui::message::{Effect, Request};
+use crate::ui::model::effect::Effect;
+use crate::ui::model::message::Request;
 use crate::ui::shared::Shared;
 
 /// Runs `wind 5@270`, `fault gps-loss,6` and the like.

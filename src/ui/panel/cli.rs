@@ -4,18 +4,20 @@ use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::ui::action::Action;
-use crate::ui::console::{CliLineKind, CliState};
-use crate::ui::editor::FileRequest;
+use super::Content;
 use crate::ui::formatting::cut;
-use crate::ui::history::LineField;
-use crate::ui::message::{Effect, Request, requests};
-use crate::ui::panel::{Content, Panel};
+use crate::ui::model::action::Action;
+use crate::ui::model::console::{CliLineKind, CliState};
+use crate::ui::model::effect::Effect;
+use crate::ui::model::files::FileRequest;
+use crate::ui::model::history::LineField;
+use crate::ui::model::message::{Request, requests};
+use crate::ui::model::panel_table::Panel;
 use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
 
 use super::content::scrolled;
-use super::row;
+use crate::ui::area::row;
 use crate::ui::text_wrap::{fitting, folded, wrapped};
 
 /// The greatest number of rows of completion candidates.

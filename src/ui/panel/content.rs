@@ -4,8 +4,8 @@ use crossterm::event::{KeyEvent, MouseEvent};
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::ui::action::{Action, PanelAction};
-use crate::ui::message::Request;
+use crate::ui::model::action::{Action, PanelAction};
+use crate::ui::model::message::Request;
 use crate::ui::popup::Popup;
 use crate::ui::shared::Shared;
 use crate::ui::text_field::TextField;

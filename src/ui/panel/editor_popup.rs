@@ -10,8 +10,9 @@ mod form;
 pub(crate) use browser::place_at;
 pub(crate) use form::field_at;
 
-use super::{line, row, span};
-use crate::ui::editor::{ConversionLosses, EditorPopup, LossList, OpenPlan, Question};
+use crate::ui::area::{line, row, span};
+use crate::ui::model::editor::{EditorPopup, LossList, OpenPlan, Question};
+use crate::ui::model::files::ConversionLosses;
 use crate::ui::popup::frame::popup;
 use crate::ui::shared::Shared;
 use crate::ui::text_wrap::wrapped;

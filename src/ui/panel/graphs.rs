@@ -7,19 +7,18 @@ mod in_words;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
+use super::{Content, Hint};
 use crate::signals::SimTime;
-use crate::ui::action::{Action, PanelAction};
 use crate::ui::formatting::{clock, clock_ms};
-use crate::ui::graphs::{Graph, PLOTS};
-use crate::ui::message::{Change, Request};
-use crate::ui::panel::{Content, Hint, Panel};
-use crate::ui::popup::Popup;
-use crate::ui::popup::SignalList;
+use crate::ui::model::action::{Action, PanelAction};
+use crate::ui::model::graphs::{Graph, PLOTS};
+use crate::ui::model::message::{Change, NewPopup, Request};
+use crate::ui::model::panel_table::Panel;
 use crate::ui::popup::frame::popup;
 use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
 
-use super::row;
+use crate::ui::area::row;
 use chart::Chart;
 
 /// The width of the numbers left of a plot.
@@ -77,8 +76,8 @@ impl Content for GraphsPanel {
             PanelAction::CursorOn => Change::GraphsCursor(1.0).into(),
             PanelAction::SpanLess => Change::GraphsSpan(-1).into(),
             PanelAction::SpanMore => Change::GraphsSpan(1).into(),
-            PanelAction::ChoosePlots => Request::Open(Popup::Plots { selected: 0 }),
-            PanelAction::ChooseSignals => Request::Open(Popup::Signals(SignalList::default())),
+            PanelAction::ChoosePlots => Request::Open(NewPopup::Plots),
+            PanelAction::ChooseSignals => Request::Open(NewPopup::Signals),
             PanelAction::CursorOff => Change::NoGraphsCursor.into(),
             _ => return Vec::new(),
         }]

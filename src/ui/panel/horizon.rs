@@ -9,7 +9,7 @@ use crate::ui::formatting::{compass, fixed, signed};
 use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
 
-use super::row;
+use crate::ui::area::row;
 
 /// The columns and rows of the horizon.
 pub(super) const SIZE: (u16, u16) = (21, 5);

@@ -5,18 +5,19 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::text::{Line, Span};
 
-use crate::ui::action::{Action, PanelAction};
-use crate::ui::event_log::{LogLine, Severity};
+use super::{Content, Hint};
 use crate::ui::formatting::clock_ms;
 use crate::ui::log_view::LogView;
-use crate::ui::message::Request;
-use crate::ui::panel::{Content, Hint, Panel};
+use crate::ui::model::action::{Action, PanelAction};
+use crate::ui::model::event_log::{LogLine, Severity};
+use crate::ui::model::message::Request;
+use crate::ui::model::panel_table::Panel;
 use crate::ui::shared::Shared;
 use crate::ui::text_field::TextField;
 use crate::ui::theme::Role;
 
 use super::content::scrolled;
-use super::{line, row, span};
+use crate::ui::area::{line, row, span};
 use crate::ui::text_wrap::{fitting, wrapped};
 
 /// The width of time and mark before the text.

@@ -1,5 +1,6 @@
 //! 1 Map: metres, with north or the course of the craft up.
 
+use crate::ui::acts::{availability, map_edit};
 use std::time::Duration;
 
 use crossterm::event::{KeyModifiers, MouseEvent};
@@ -8,21 +9,23 @@ use ratatui::layout::{Position, Rect};
 use ratatui::widgets::Widget as _;
 use ratatui::widgets::canvas::Canvas;
 
+use super::{Content, Hint};
 use crate::geo::LocalFrame;
 use crate::plan::{Waypoint, WaypointType};
 use crate::telemetry::PlanSource;
-use crate::ui::action::{self, Action, EditAction, PanelAction};
-use crate::ui::map_edit::{self, measure};
-use crate::ui::map_point::origin::origin;
-use crate::ui::map_point::{self, MapPoint, to_map};
-use crate::ui::map_state::{MapItem, MapMode, Moving};
-use crate::ui::message::{Change, Request};
-use crate::ui::panel::{Content, Hint, Panel};
+use crate::ui::acts::map_edit::measure;
+use crate::ui::acts::origin::origin;
+use crate::ui::acts::viewport::moves::ZOOM_STEP;
+use crate::ui::acts::viewport::{Viewport, moves};
+use crate::ui::model::action::{Action, EditAction, PanelAction};
+use crate::ui::model::map_point;
+use crate::ui::model::map_point::{MapPoint, to_map};
+use crate::ui::model::map_state::{MapItem, MapMode, Moving};
+use crate::ui::model::message::{Change, Request};
+use crate::ui::model::panel_table::Panel;
 use crate::ui::popup::map_menu::MapChoice;
 use crate::ui::popup::{MapMenu, Popup};
 use crate::ui::shared::Shared;
-use crate::ui::viewport::Viewport;
-use crate::ui::viewport::moves::{self, ZOOM_STEP};
 
 mod backdrop;
 pub(in crate::ui) mod compared;
@@ -235,7 +238,7 @@ impl Content for MapPanel {
         let place = view.place(at.0, at.1);
         let choices = match map_edit::item_at(state, place, view.scale) {
             Some(MapItem::Waypoint(index)) => {
-                let can_go = action::enabled(state, Action::GoTo).is_ok() && state.plan_is_on_craft();
+                let can_go = availability::enabled(state, Action::GoTo).is_ok() && state.plan_is_on_craft();
                 let go_to = u8::try_from(index).ok().filter(|_| can_go).map(MapChoice::GoTo);
                 let edits = [MapChoice::EditWaypoint(index), MapChoice::DeleteWaypoint(index)];
                 edits.into_iter().chain(go_to).chain([MapChoice::Measure]).collect()

@@ -5,20 +5,21 @@ mod legs;
 mod profile;
 mod table;
 
+use crate::ui::acts::{estimate_line, findings, settings_in_force};
 use crossterm::event::MouseEvent;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::text::Line;
 
-use super::{line, row, span};
+use super::{Content, Hint};
 use crate::plan::Altitude;
 use crate::plan::review::Finding;
-use crate::ui::action::{Action, EditAction};
-use crate::ui::editor::{Column, findings, settings_in_force};
-use crate::ui::forecast;
+use crate::ui::area::{line, row, span};
 use crate::ui::formatting::cut;
-use crate::ui::message::{Change, Request};
-use crate::ui::panel::{Content, Hint, Panel};
+use crate::ui::model::action::{Action, EditAction};
+use crate::ui::model::editor::Column;
+use crate::ui::model::message::{Change, Request};
+use crate::ui::model::panel_table::Panel;
 use crate::ui::shared::Shared;
 use crate::ui::text_wrap::wrapped;
 use crate::ui::theme::Role;
@@ -219,7 +220,7 @@ fn below(state: &Shared, findings: &[Finding], area: Rect) -> Vec<Line<'static>>
             let text = legs::line(state).map(|text| cut(&text, usize::from(area.width)));
             lines.extend(text.map(|text| Line::from(span(&state.theme, Role::Dim, text))));
         }
-        lines.extend(forecast::estimate_lines(state, area.width));
+        lines.extend(estimate_line::lines(state, area.width));
     }
     lines
 }

@@ -4,17 +4,19 @@ use crossterm::event::MouseEvent;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
+use super::{Content, Hint};
 use crate::signals::{RC_CHANNELS, RcSource};
 use crate::telemetry::snapshot::{CraftView, ModeRange};
-use crate::ui::action::{Action, PanelAction};
+use crate::ui::acts::transmitter;
+use crate::ui::drawing;
 use crate::ui::formatting::cut;
-use crate::ui::message::{Change, Request};
-use crate::ui::panel::{Content, Hint, Panel};
+use crate::ui::model::action::{Action, PanelAction};
+use crate::ui::model::message::{Change, Request};
+use crate::ui::model::panel_table::Panel;
 use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
-use crate::ui::{drawing, transmitter};
 
-use super::row;
+use crate::ui::area::row;
 
 /// The width of name and value before the bar.
 const LABEL: u16 = 17;

@@ -8,15 +8,18 @@ use crossterm::event::{KeyEvent, MouseEvent};
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
+use super::{Content, Hint};
 use crate::fc::{Allowed, CraftSetting, cli_block};
-use crate::ui::action::{Action, PanelAction};
-use crate::ui::diff::Against;
-use crate::ui::event_log::Severity;
-use crate::ui::message::{Change, Effect, Request};
-use crate::ui::panel::{Content, Hint, Panel};
-use crate::ui::popup::{ActionMenu, DiffView, Popup};
-use crate::ui::settings::listing::{Choice, Comparison, Row, rows};
-use crate::ui::settings::{Assignment, SettingsChange, Step, changes};
+use crate::ui::acts::setting_changes;
+use crate::ui::acts::setting_list::{Choice, Row, rows};
+use crate::ui::model::action::{Action, PanelAction};
+use crate::ui::model::effect::Effect;
+use crate::ui::model::event_log::Severity;
+use crate::ui::model::message::{Change, NewPopup, Request};
+use crate::ui::model::panel_table::Panel;
+use crate::ui::model::settings::comparison::Comparison;
+use crate::ui::model::settings::{Assignment, SettingsChange, Step};
+use crate::ui::popup::{ActionMenu, Popup};
 use crate::ui::shared::Shared;
 use crate::ui::text_field::TextField;
 use editing::{Edit, Purpose};
@@ -272,9 +275,9 @@ impl Content for SettingsPanel {
                 return self.set(state, value);
             }
             PanelAction::AllDefault => {
-                return vec![match changes::nothing_to_reset(state) {
+                return vec![match setting_changes::nothing_to_reset(state) {
                     Some(why) => Change::Say(Severity::Info, why.to_owned()).into(),
-                    None => Request::Open(Popup::ResetSettings),
+                    None => Request::Open(NewPopup::ResetSettings),
                 }];
             }
             PanelAction::SettingUndo => return vec![Change::Settings(SettingsChange::Undo).into()],
@@ -285,7 +288,7 @@ impl Content for SettingsPanel {
                     Comparison::All => Comparison::Defaults,
                     other => other,
                 };
-                return vec![Request::Open(Popup::Diff(DiffView::new(Against::Settings(comparison))))];
+                return vec![Request::Open(NewPopup::Settings(comparison))];
             }
             PanelAction::CopySettings => return self.copy(state),
             PanelAction::SettingIntoPlan => return self.put_in_plan(state, false),

@@ -10,23 +10,22 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::text::Line;
 
+use super::{Content, Hint, horizon};
 use crate::telemetry::{Guard, GuardName, NavState};
-use crate::ui::action::{Action, PanelAction};
+use crate::ui::acts::status_message;
 use crate::ui::formatting::{cut, fixed, signed, within};
-use crate::ui::message::Request;
-use crate::ui::panel::{Content, Hint, Panel};
-use crate::ui::popup::Popup;
+use crate::ui::model::action::{Action, PanelAction};
+use crate::ui::model::message::{NewPopup, Request};
+use crate::ui::model::panel_table::Panel;
 use crate::ui::shared::Shared;
-use crate::ui::status_message;
 use crate::ui::text_field::TextField;
 use crate::ui::theme::{Role, Theme};
 use crate::ui::transitions::{Transition, Transitions};
 use crate::ui::units::Units;
 
 use super::content::scrolled;
-use super::horizon;
 use super::state_diagram::{COMPACT, Diagram, FULL, LOW};
-use super::{line, row, span};
+use crate::ui::area::{line, row, span};
 use crate::ui::text_wrap::wrapped;
 
 /// The time for which the strokes of the last transition stay lit.
@@ -83,7 +82,7 @@ impl Content for StatePanel {
 
     fn act(&mut self, state: &Shared, action: PanelAction) -> Vec<Request> {
         match action {
-            PanelAction::ExplainGuards => return vec![Request::Open(Popup::Guards { selected: 0 })],
+            PanelAction::ExplainGuards => return vec![Request::Open(NewPopup::Guards)],
             PanelAction::SearchTransitions => {
                 self.transitions.begin_search();
                 return vec![Request::Act(Action::Show(Panel::State))];

@@ -4,17 +4,18 @@ use crossterm::event::{KeyEvent, MouseEvent};
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
-use crate::ui::action::{Action, PanelAction};
+use super::{Content, Hint};
 use crate::ui::formatting::{clock, cut};
 use crate::ui::knobs::{Knob, KnobsState, knobs};
-use crate::ui::message::Request;
-use crate::ui::panel::{Content, Hint, Panel};
+use crate::ui::model::action::{Action, PanelAction};
+use crate::ui::model::message::Request;
+use crate::ui::model::panel_table::Panel;
 use crate::ui::shared::Shared;
 use crate::ui::text_field::TextField;
 use crate::ui::theme::Role;
 
 use super::content::scrolled;
-use super::row;
+use crate::ui::area::row;
 
 /// The width of a name with its mark.
 const NAME: usize = 18;

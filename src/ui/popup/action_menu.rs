@@ -5,10 +5,11 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
-use crate::ui::action::{Action, enabled, spec_of};
+use crate::ui::acts::availability::enabled;
+use crate::ui::acts::screen_layout;
+use crate::ui::area::{line, span};
 use crate::ui::formatting::cut;
-use crate::ui::layout;
-use crate::ui::panel::{line, span};
+use crate::ui::model::action::{Action, spec_of};
 use crate::ui::popup::Outcome;
 use crate::ui::popup::frame::framed;
 use crate::ui::shared::Shared;
@@ -53,7 +54,7 @@ impl ActionMenu {
 
     /// Handles a click on a screen of this size. A click outside closes the menu.
     pub(in crate::ui) fn click(&self, size: (u16, u16), (column, row): (u16, u16)) -> Outcome<Action> {
-        let inside = layout::inner(self.rect(Rect::new(0, 0, size.0, size.1)));
+        let inside = screen_layout::inner(self.rect(Rect::new(0, 0, size.0, size.1)));
         if inside.contains((column, row).into()) {
             self.chosen(usize::from(row - inside.y))
         } else {

@@ -6,12 +6,12 @@ use ratatui::layout::{Position, Rect};
 use ratatui::text::Line;
 use ratatui::widgets::{Block, Clear, Widget as _};
 
+use crate::ui::acts::screen_layout;
+use crate::ui::area::{line, row, span};
 use crate::ui::command::{self, Suggestion};
 use crate::ui::completion::common_prefix;
 use crate::ui::formatting::cut;
-use crate::ui::history::History;
-use crate::ui::layout;
-use crate::ui::panel::{line, row, span};
+use crate::ui::model::history::History;
 use crate::ui::popup::Outcome;
 use crate::ui::popup::frame::key_line;
 use crate::ui::shared::Shared;
@@ -99,7 +99,7 @@ pub(in crate::ui) fn click(
 ) -> Option<Outcome<(String, bool)>> {
     let typed = entered.field.value();
     let list = List::of(state, typed, Rect::new(0, 0, size.0, size.1.checked_sub(1)?))?;
-    let inside = layout::inner(list.place);
+    let inside = screen_layout::inner(list.place);
     let rows = Rect { height: list.shown as u16, ..inside };
     if !rows.contains(cell.into()) {
         return None;
@@ -159,7 +159,7 @@ pub(in crate::ui) fn draw(
 fn draw_suggestions(state: &Shared, typed: &str, above: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let Some(List { suggestions, shown, hint, place }) = List::of(state, typed, above) else { return };
-    let area = layout::inner(place);
+    let area = screen_layout::inner(place);
     let inside = usize::from(area.width);
     Clear.render(place, buffer);
     let keys = key_line(theme, &KEYS);

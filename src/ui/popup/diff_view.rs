@@ -5,14 +5,14 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::text::{Line, Span};
 
-use crate::ui::diff::{self, Against, Diff, DiffRow, Mark};
+use crate::ui::acts::diff::{Against, Diff, DiffRow, Mark};
+use crate::ui::acts::{diff, screen_layout};
+use crate::ui::area::{line, row, span};
 use crate::ui::formatting::cut;
-use crate::ui::layout;
+use crate::ui::model::settings::comparison::Comparison;
 use crate::ui::panel::map::compared;
-use crate::ui::panel::{line, row, span};
 use crate::ui::popup::frame::{framed, key_line};
 use crate::ui::search::{Search, has_all};
-use crate::ui::settings::listing::Comparison;
 use crate::ui::shared::Shared;
 use crate::ui::text_wrap::wrapped;
 use crate::ui::theme::Role;
@@ -129,7 +129,7 @@ impl DiffView {
                 if !place.contains((event.column, event.row).into()) {
                     return DiffKey::Left;
                 }
-                let parts = Parts::of(layout::inner(place), self, self.has_map(state));
+                let parts = Parts::of(screen_layout::inner(place), self, self.has_map(state));
                 if event.row == parts.tabs.y {
                     let tab = self.tab_at(state, event.column.saturating_sub(parts.tabs.x));
                     return tab.map_or(DiffKey::Open, |tab| self.show(tab));

@@ -7,10 +7,10 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use crate::text::printable;
-use crate::ui::flights::{FlightsState, LibraryFlight};
+use crate::ui::acts::screen_layout;
+use crate::ui::area::{line, row};
 use crate::ui::formatting::cut;
-use crate::ui::layout;
-use crate::ui::panel::{line, row};
+use crate::ui::model::flights::{FlightsState, LibraryFlight};
 use crate::ui::popup::frame::{framed, key_line, place};
 use crate::ui::shared::Shared;
 use crate::ui::text_field::TextField;
@@ -119,7 +119,7 @@ impl FlightsList {
             MouseEventKind::Down(button) if self.deleting.is_none() => button,
             _ => return FlightsKey::Open,
         };
-        let inside = layout::inner(frame_in(Rect::new(0, 0, size.0, size.1)));
+        let inside = screen_layout::inner(frame_in(Rect::new(0, 0, size.0, size.1)));
         if !inside.contains(Position::new(event.column, event.row)) {
             return FlightsKey::Left;
         }

@@ -5,8 +5,8 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 use ratatui::widgets::{Block, Clear, Widget as _};
 
-use crate::ui::layout;
-use crate::ui::panel::span;
+use crate::ui::acts::screen_layout;
+use crate::ui::area::span;
 use crate::ui::theme::{Role, Theme};
 
 /// Draws an empty frame in the middle for a popup of this inner size. Returns the inside.
@@ -34,7 +34,7 @@ pub(in crate::ui) fn framed(theme: &Theme, place: Rect, title: &str, buffer: &mu
         .border_style(theme.style(Role::Focus))
         .title(Line::from(span(theme, Role::Focus, title)))
         .render(place, buffer);
-    layout::inner(place)
+    screen_layout::inner(place)
 }
 
 /// Returns a line of keys, each followed by its effect.

@@ -5,7 +5,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 use crate::plan::FlightPlan;
-use crate::ui::panel::{line, row};
+use crate::ui::area::{line, row};
 use crate::ui::popup::Outcome;
 use crate::ui::popup::frame::{key_line, popup};
 use crate::ui::shared::Shared;

@@ -5,7 +5,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 use crate::telemetry::Guard;
-use crate::ui::panel::row;
+use crate::ui::area::row;
 use crate::ui::popup::frame::popup;
 use crate::ui::shared::Shared;
 use crate::ui::text_wrap::wrapped;

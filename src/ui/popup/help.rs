@@ -5,9 +5,10 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::text::Line;
 
-use crate::ui::action::{ACTIONS, Action, Context, Spec};
-use crate::ui::layout;
-use crate::ui::panel::{Panel, line, span};
+use crate::ui::acts::screen_layout;
+use crate::ui::area::{line, span};
+use crate::ui::model::action::{ACTIONS, Action, Context, Spec};
+use crate::ui::model::panel_table::Panel;
 use crate::ui::popup::Outcome;
 use crate::ui::popup::frame::{framed, place};
 use crate::ui::search::Search;
@@ -70,7 +71,7 @@ impl Help {
         if !place.contains((column, row).into()) {
             return Outcome::Left;
         }
-        let at = row.checked_sub(layout::inner(place).y).map(|at| first + usize::from(at));
+        let at = row.checked_sub(screen_layout::inner(place).y).map(|at| first + usize::from(at));
         let action = at.and_then(|at| entries.get(at)).and_then(|(_, action)| *action);
         action.map_or(Outcome::Open, Outcome::Chosen)
     }
@@ -80,7 +81,7 @@ impl Help {
         let width = entries.iter().map(|(line, _)| line.width()).max().unwrap_or(0).max(40) as u16 + 1;
         let height = area.height.saturating_sub(4).min(entries.len() as u16).max(1);
         let place = place(area, (width, height));
-        let shown = usize::from(layout::inner(place).height);
+        let shown = usize::from(screen_layout::inner(place).height);
         (place, self.scroll.min(entries.len().saturating_sub(shown)))
     }
 

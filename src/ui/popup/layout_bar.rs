@@ -1,15 +1,14 @@
 //! The keys that arrange the panels, in place of the hints.
 
+use crate::ui::acts::named_layouts;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 
-use crate::ui::drawing;
-use crate::ui::layout::named;
-use crate::ui::notice;
-use crate::ui::panel::span;
+use crate::ui::area::span;
 use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
+use crate::ui::{drawing, notice};
 
 /// The keys and their effects, the most useful first.
 const KEYS: [(&str, &str); 6] =
@@ -18,8 +17,10 @@ const KEYS: [(&str, &str); 6] =
 /// Draws the keys and the names of the layouts: in one line, or in two if one has no room for them.
 pub(in crate::ui) fn draw(state: &Shared, area: Rect, buffer: &mut Buffer) {
     let keys: Vec<_> = KEYS.map(|(key, effect)| (key.to_owned(), effect.to_owned())).to_vec();
-    let names: Vec<_> =
-        (1..=9).zip(named::names(state)).map(|(key, name)| (key.to_string(), name.to_owned())).collect();
+    let names: Vec<_> = (1..=9)
+        .zip(named_layouts::names(state))
+        .map(|(key, name)| (key.to_string(), name.to_owned()))
+        .collect();
     let all = [&keys[..], &names[..]].concat();
     if draw_line(state, area, 1, &all, buffer) {
         return;

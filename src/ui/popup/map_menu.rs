@@ -6,8 +6,8 @@ use ratatui::layout::Rect;
 use ratatui::widgets::{Block, Clear, Widget as _};
 
 use crate::geo::LatLon;
-use crate::ui::layout;
-use crate::ui::panel::row;
+use crate::ui::acts::screen_layout;
+use crate::ui::area::row;
 use crate::ui::popup::Outcome;
 use crate::ui::theme::{Role, Theme};
 
@@ -84,7 +84,7 @@ impl MapMenu {
 
     /// Handles a click on a screen of this size. A click outside closes the menu.
     pub(in crate::ui) fn click(&self, size: (u16, u16), (column, line): (u16, u16)) -> Outcome<MapChoice> {
-        let inside = layout::inner(self.rect(Rect::new(0, 0, size.0, size.1)));
+        let inside = screen_layout::inner(self.rect(Rect::new(0, 0, size.0, size.1)));
         let is_inside = (inside.left()..inside.right()).contains(&column)
             && (inside.top()..inside.bottom()).contains(&line);
         if is_inside { self.chosen(usize::from(line - inside.y)) } else { Outcome::Left }
@@ -108,7 +108,7 @@ pub(in crate::ui) fn draw(theme: &Theme, menu: &MapMenu, area: Rect, buffer: &mu
     let place = menu.rect(area);
     Clear.render(place, buffer);
     Block::bordered().border_style(theme.style(Role::Focus)).render(place, buffer);
-    let inside = layout::inner(place);
+    let inside = screen_layout::inner(place);
     for (at, choice) in menu.choices.iter().enumerate().take(usize::from(inside.height)) {
         let (mark, role) = if at == menu.selected { ("▸", Role::Selected) } else { (" ", Role::Text) };
         let (key, name) = choice.shown();

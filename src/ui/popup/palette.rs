@@ -1,17 +1,17 @@
 //! The palette: every action and command, found by a few letters of its name, title or help.
 
+use crate::ui::acts::{availability, screen_layout};
 use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::text::Line;
 
-use crate::ui::action::{self, ACTIONS, Action, Spec};
+use crate::ui::area::{line, row, span};
 use crate::ui::command::{self, Command};
 use crate::ui::formatting::cut;
 use crate::ui::fuzzy;
-use crate::ui::history::UsedNames;
-use crate::ui::layout;
-use crate::ui::panel::{line, row, span};
+use crate::ui::model::action::{ACTIONS, Action, Spec};
+use crate::ui::model::history::UsedNames;
 use crate::ui::popup::Outcome;
 use crate::ui::popup::frame::{place, popup};
 use crate::ui::shared::Shared;
@@ -80,7 +80,7 @@ impl Entry {
     /// Returns the reason if it is refused now.
     fn refusal(&self, state: &Shared) -> Option<String> {
         match self {
-            Self::Action(spec) => action::enabled(state, spec.action).err(),
+            Self::Action(spec) => availability::enabled(state, spec.action).err(),
             Self::Command(_) => None,
         }
     }
@@ -154,7 +154,7 @@ pub(in crate::ui) fn click(
     if !place.contains((column, row).into()) {
         return Outcome::Left;
     }
-    let inside = layout::inner(place);
+    let inside = screen_layout::inner(place);
     let rows = inside.height.saturating_sub(AROUND);
     let at = row.checked_sub(inside.y + 1).filter(|at| *at < rows);
     let found = entries(palette.query.value(), used);

@@ -4,10 +4,10 @@ use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
+use crate::ui::acts::named_signal::Named;
+use crate::ui::area::row;
 use crate::ui::formatting::cut;
 use crate::ui::fuzzy;
-use crate::ui::named_signal::Named;
-use crate::ui::panel::row;
 use crate::ui::popup::frame::popup;
 use crate::ui::shared::Shared;
 use crate::ui::text_field::TextField;

@@ -9,7 +9,7 @@ use crate::ui::popup::Outcome;
 use crate::ui::popup::frame::{key_line, popup};
 use crate::ui::theme::{Role, Theme};
 
-use crate::ui::panel::{line, row};
+use crate::ui::area::{line, row};
 
 /// The width of the inside.
 const WIDTH: u16 = 34;

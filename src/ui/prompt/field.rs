@@ -4,8 +4,9 @@ use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 use super::press;
 use crate::ui::app_state::AppState;
-use crate::ui::message::{Effect, Msg};
-use crate::ui::panel::Panel;
+use crate::ui::model::effect::Effect;
+use crate::ui::model::message::Msg;
+use crate::ui::model::panel_table::Panel;
 use crate::ui::update::update;
 
 /// Returns `true` if a value of the plan is being typed.

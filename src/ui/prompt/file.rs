@@ -4,7 +4,7 @@ use crossterm::event::KeyCode;
 
 use super::{Answered, press};
 use crate::ui::app_state::AppState;
-use crate::ui::editor::{Browser, EditorPopup, Purpose};
+use crate::ui::model::editor::{Browser, EditorPopup, Purpose};
 use crate::ui::text_field::TextField;
 
 /// Returns the question; `None` until the directory has been read.

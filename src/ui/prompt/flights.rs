@@ -5,8 +5,8 @@ use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use super::{Answered, list, press};
 use crate::text::printable;
 use crate::ui::app_state::AppState;
-use crate::ui::flights::LibraryFlight;
-use crate::ui::message::Msg;
+use crate::ui::model::flights::LibraryFlight;
+use crate::ui::model::message::Msg;
 use crate::ui::popup::{FlightsList, Popup};
 use crate::ui::update::update;
 

@@ -3,8 +3,9 @@
 use crossterm::event::KeyCode;
 
 use super::{Answered, press};
+use crate::ui::acts::findings;
 use crate::ui::app_state::AppState;
-use crate::ui::editor::{EditorPopup, Form, FormField, FormKind, findings};
+use crate::ui::model::editor::{EditorPopup, Form, FormField, FormKind};
 
 /// Returns the question: the current values.
 pub(super) fn question(state: &AppState, form: &Form) -> Vec<String> {

@@ -1,9 +1,9 @@
 //! The choice of graphs without a screen.
 
 use super::{Answered, list};
+use crate::ui::acts::named_signal::Named;
 use crate::ui::app_state::AppState;
-use crate::ui::graphs::PLOTS;
-use crate::ui::named_signal::Named;
+use crate::ui::model::graphs::PLOTS;
 use crate::ui::panel::graphs::choices;
 use crate::ui::popup::signal_list;
 

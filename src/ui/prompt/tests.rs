@@ -4,8 +4,10 @@ use crate::lookahead::ForecastRequest;
 use crate::plan::{Waypoint, WaypointType};
 use crate::session::{Command, SessionView};
 use crate::telemetry::InFlightCommand;
-use crate::ui::action::{Action, EditAction};
-use crate::ui::editor::{Browser, FileReply, FileRequest, PlanId, Purpose};
+use crate::ui::model::action::{Action, EditAction};
+use crate::ui::model::editor::{Browser, Purpose};
+use crate::ui::model::files::{FileReply, FileRequest};
+use crate::ui::model::plan_id::PlanId;
 use crate::ui::update::perform;
 use crate::vehicle::VehicleCommand;
 
@@ -97,10 +99,13 @@ fn a_form_takes_its_values_line_by_line() {
 
 #[test]
 fn files_are_chosen_by_number_or_name_once_the_directory_was_read() {
-    let listing = || crate::ui::editor::Listing {
+    let listing = || crate::ui::model::files::Listing {
         directory: "/plans".into(),
         entries: [("deep", true), ("orbit.toml", false), ("square.toml", false)]
-            .map(|(name, is_directory)| crate::ui::editor::Entry { name: name.to_owned(), is_directory })
+            .map(|(name, is_directory)| crate::ui::model::files::Entry {
+                name: name.to_owned(),
+                is_directory,
+            })
             .to_vec(),
     };
     for (line, wanted) in [("3", "/plans/square.toml"), ("orbit", "/plans/orbit.toml")] {

@@ -7,13 +7,13 @@ use crossterm::execute;
 use tokio::sync::mpsc;
 
 use super::{SessionLink, flights};
-use crate::lookahead::VehicleCopy;
-use crate::lookahead::{ForecastReply, Forecaster, SurveyNews, SurveyReply, Surveyor};
+use crate::lookahead::{ForecastReply, Forecaster, SurveyNews, SurveyReply, Surveyor, VehicleCopy};
 use crate::session::{Command, ReplyTo};
 use crate::timeline::RecordedFlight;
-use crate::ui::editor::FileReply;
 use crate::ui::files_link::FilesLink;
-use crate::ui::message::{Effect, FlightForm, Msg};
+use crate::ui::model::effect::{Effect, FlightForm};
+use crate::ui::model::files::FileReply;
+use crate::ui::model::message::Msg;
 
 /// The channel of all answers.
 #[derive(Debug, Clone)]

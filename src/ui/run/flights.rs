@@ -11,8 +11,8 @@ use tokio::time::sleep;
 
 use super::SessionLink;
 use super::effects::Answers;
-use crate::ui::flights::FlightShelf;
-use crate::ui::message::Msg;
+use crate::ui::model::flights::FlightShelf;
+use crate::ui::model::message::Msg;
 
 /// The reason for which there is no library.
 pub(super) const NO_LIBRARY: &str = "This screen has no library of flights: it has no state directory.";

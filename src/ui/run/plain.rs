@@ -10,11 +10,13 @@ use super::{Ending, SessionLink, flights, second_flight};
 use crate::flight::forecast::ForecastKind;
 use crate::session::Command;
 use crate::ui::app_state::AppState;
-use crate::ui::config::UiConfig;
-use crate::ui::editor::{EditorPopup, FileReply, FileRequest, Question};
 use crate::ui::files_link::FilesLink;
 use crate::ui::formatting::clock_ms;
-use crate::ui::message::{Effect, Msg};
+use crate::ui::model::config::UiConfig;
+use crate::ui::model::editor::{EditorPopup, Question};
+use crate::ui::model::effect::Effect;
+use crate::ui::model::files::{FileReply, FileRequest};
+use crate::ui::model::message::Msg;
 use crate::ui::update::update;
 use lines::Lines;
 

@@ -8,7 +8,8 @@ use std::time::{Duration, Instant};
 use crossterm::event::{Event as TerminalEvent, KeyEvent, MouseEventKind};
 
 use crate::session::{Command, Seek};
-use crate::ui::message::{Effect, Msg};
+use crate::ui::model::effect::Effect;
+use crate::ui::model::message::Msg;
 
 /// The longest time that keys wait.
 const LONGEST: Duration = Duration::from_millis(500);

@@ -2,10 +2,10 @@
 
 use super::{leg_numbers, modes, rc, speed};
 use crate::telemetry::LinkState;
+use crate::ui::acts::{ground_under, past_flight};
 use crate::ui::formatting::{clock, compass, factor};
 use crate::ui::panel::in_words::{number, signed_number};
 use crate::ui::shared::Shared;
-use crate::ui::{ground, past_flight};
 
 /// Returns the craft and its sensors, then the mission with its numbers and the time.
 pub(in crate::ui) fn lines(state: &Shared) -> [String; 2] {
@@ -65,7 +65,7 @@ fn mission(state: &Shared) -> String {
     let estimate = &vehicle.estimate;
     parts.extend(estimate.alt.map(|metres| format!("altitude {}", units.length_text(metres, 1))));
     parts.extend(
-        ground::agl_m(state).map(|metres| format!("{} above the ground", units.length_text(metres, 1))),
+        ground_under::agl_m(state).map(|metres| format!("{} above the ground", units.length_text(metres, 1))),
     );
     parts.extend(estimate.ground_speed_mps.map(|mps| format!("speed {}", units.speed_text(mps, 1))));
     parts.extend(

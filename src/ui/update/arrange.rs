@@ -1,14 +1,16 @@
 //! Resizes and swaps panels, and chooses layouts.
 
+use crate::ui::acts::{named_layouts, screen_layout};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers, MouseEvent};
 
 use super::view::focus;
-use crate::ui::action::Action;
+use crate::ui::acts::screen_layout::{Border, Screen};
 use crate::ui::app_state::AppState;
-use crate::ui::event_log::Severity;
-use crate::ui::layout::{self, Arrangement, Border, Screen, named};
-use crate::ui::message::Effect;
-use crate::ui::panel::Panel;
+use crate::ui::model::action::Action;
+use crate::ui::model::effect::Effect;
+use crate::ui::model::event_log::Severity;
+use crate::ui::model::layout::Arrangement;
+use crate::ui::model::panel_table::Panel;
 use crate::ui::popup::Popup;
 use crate::ui::shared::Shared;
 use crate::ui::text_field::TextField;
@@ -38,7 +40,8 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) 
         KeyCode::Char('0') => shared.arrangement = Arrangement::default(),
         KeyCode::Char(digit @ '1'..='9') => {
             let index = digit as usize - '1' as usize;
-            let layout = named::names(shared).nth(index).and_then(|name| named::find(shared, name));
+            let layout =
+                named_layouts::names(shared).nth(index).and_then(|name| named_layouts::find(shared, name));
             if let Some(layout) = layout {
                 layout.show(shared);
             }
@@ -57,7 +60,7 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) 
 
 /// Makes the focused panel wider or higher by a number of cells.
 fn resize(state: &mut Shared, is_width: bool, by: i32) {
-    let Some(screen) = layout::screen(state) else { return };
+    let Some(screen) = screen_layout::screen(state) else { return };
     let Some(area) = screen.panel(state.focus) else { return };
     // A border across the whole of the panel's side.
     let is_beside = |border: &&Border| {
@@ -102,7 +105,7 @@ fn go_on(state: &mut AppState, step: isize) {
 }
 
 fn visible_neighbour(state: &Shared, step: isize) -> Option<Panel> {
-    let screen = layout::screen(state)?;
+    let screen = screen_layout::screen(state)?;
     let count = screen.panels.len();
     let at = screen.panels.iter().position(|(panel, _)| *panel == state.focus)?;
     screen.panels.get((at + count).wrapping_add_signed(step) % count).map(|(panel, _)| *panel)
@@ -132,7 +135,7 @@ pub(super) fn drag(state: &mut Shared, screen: &Screen, dragged: Border, event: 
 mod tests {
     use super::*;
     use crate::session::SessionView;
-    use crate::ui::message::Msg;
+    use crate::ui::model::message::Msg;
     use crate::ui::update::update;
 
     fn arranging(size: (u16, u16)) -> AppState {
@@ -146,7 +149,7 @@ mod tests {
     }
 
     fn area(state: &AppState, panel: Panel) -> ratatui::layout::Rect {
-        layout::screen(&state.shared).and_then(|screen| screen.panel(panel)).expect("a visible panel")
+        screen_layout::screen(&state.shared).and_then(|screen| screen.panel(panel)).expect("a visible panel")
     }
 
     #[test]
@@ -182,7 +185,7 @@ mod tests {
         assert_eq!((area(&state, Panel::Map), area(&state, Panel::State)), (beside, map));
         for panel in Panel::ALL {
             focus(&mut state, panel);
-            assert!(layout::screen(&state.shared).unwrap().panel(panel).is_some(), "{panel:?}");
+            assert!(screen_layout::screen(&state.shared).unwrap().panel(panel).is_some(), "{panel:?}");
         }
         press(&mut state, KeyCode::Char('0'));
         focus(&mut state, Panel::Plan);
@@ -243,7 +246,7 @@ mod tests {
                 for _ in 0..200 {
                     press(&mut state, code);
                 }
-                for (panel, area) in layout::screen(&state.shared).unwrap().panels {
+                for (panel, area) in screen_layout::screen(&state.shared).unwrap().panels {
                     assert!(area.width >= 20 && area.height >= 4, "{size:?} {code:?}: {panel:?} {area:?}");
                 }
             }

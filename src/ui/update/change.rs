@@ -1,14 +1,12 @@
 //! Changes the state that all panels share, as a panel requests it.
 
-use crate::ui::editor::actions as plan;
-use crate::ui::event_log::Severity;
-use crate::ui::map_edit::actions as map_edit;
-use crate::ui::map_edit::measure;
-use crate::ui::message::{Change, Effect};
-use crate::ui::settings;
+use crate::ui::acts::map_edit::{actions as map_edit, measure};
+use crate::ui::acts::stick_keys::{toggle_playing, toggle_recording};
+use crate::ui::acts::{plan_edits as plan, setting_changes, transmitter};
+use crate::ui::model::effect::Effect;
+use crate::ui::model::event_log::Severity;
+use crate::ui::model::message::Change;
 use crate::ui::shared::Shared;
-use crate::ui::stick_recording::keys::{toggle_playing, toggle_recording};
-use crate::ui::transmitter;
 
 /// Carries out a change.
 pub(super) fn change(state: &mut Shared, change: Change) -> Vec<Effect> {
@@ -69,7 +67,7 @@ pub(super) fn change(state: &mut Shared, change: Change) -> Vec<Effect> {
         Change::Channel(channel, us) => return transmitter::set(state, channel, us),
         Change::Record => return toggle_recording(state),
         Change::Play => return toggle_playing(state),
-        Change::Settings(requested) => return settings::changes::change(state, requested),
+        Change::Settings(requested) => return setting_changes::change(state, requested),
         Change::World(world) => std::sync::Arc::make_mut(&mut state.view.vehicle).world = *world,
     }
     Vec::new()

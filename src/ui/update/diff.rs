@@ -1,13 +1,14 @@
 //! The comparison of two versions: opens it, and requests what must be read.
 
+use crate::ui::acts::diff::Against;
+use crate::ui::acts::{diff, findings, setting_reading};
 use crate::ui::app_state::AppState;
-use crate::ui::diff::{self, Against};
-use crate::ui::editor::{Column, EditorPopup, FileRequest, Question, findings};
-use crate::ui::message::Effect;
-use crate::ui::panel::Panel;
+use crate::ui::model::editor::{Column, EditorPopup, Question};
+use crate::ui::model::effect::Effect;
+use crate::ui::model::files::FileRequest;
+use crate::ui::model::panel_table::Panel;
 use crate::ui::popup::diff_view::DiffKey;
 use crate::ui::popup::{DiffView, Popup};
-use crate::ui::settings::reading;
 use crate::ui::shared::Shared;
 
 use super::view::focus;
@@ -63,7 +64,7 @@ fn read(state: &mut Shared, against: Against) -> Vec<Effect> {
     match against {
         Against::File => read_file(state).into_iter().collect(),
         // The craft has settings of the plan, too.
-        Against::Settings(_) | Against::Craft => reading::refresh(state).into_iter().collect(),
+        Against::Settings(_) | Against::Craft => setting_reading::refresh(state).into_iter().collect(),
         Against::Revision(_) => Vec::new(),
     }
 }

@@ -3,11 +3,13 @@
 use crate::fc::UploadReport;
 use crate::plan::review::Finding;
 use crate::session::Command;
-use crate::ui::action::{Action, EditAction};
-use crate::ui::editor::{EditorPopup, OpenPlan, PlanId, Question, findings, settings_in_force};
-use crate::ui::event_log::Severity;
-use crate::ui::message::Effect;
-use crate::ui::panel::Panel;
+use crate::ui::acts::{findings, settings_in_force};
+use crate::ui::model::action::{Action, EditAction};
+use crate::ui::model::editor::{EditorPopup, OpenPlan, Question};
+use crate::ui::model::effect::Effect;
+use crate::ui::model::event_log::Severity;
+use crate::ui::model::panel_table::Panel;
+use crate::ui::model::plan_id::PlanId;
 use crate::ui::shared::Shared;
 use crate::vehicle::VehicleCommand;
 

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use crate::ui::app_state::AppState;
-use crate::ui::event_log::Severity;
-use crate::ui::flights::LibraryFlight;
-use crate::ui::message::Effect;
+use crate::ui::model::effect::Effect;
+use crate::ui::model::event_log::Severity;
+use crate::ui::model::flights::LibraryFlight;
 use crate::ui::popup::flights_list::FlightsKey;
 use crate::ui::popup::{FlightsList, Popup};
 

@@ -6,16 +6,16 @@ use std::time::Duration;
 use crate::session::{Command, SessionView};
 use crate::signals::SimTime;
 use crate::ui::app_state::AppState;
-use crate::ui::editor::FileRequest;
-use crate::ui::event_log::Severity;
-use crate::ui::kept_screen::{
+use crate::ui::knobs;
+use crate::ui::model::effect::Effect;
+use crate::ui::model::event_log::Severity;
+use crate::ui::model::files::FileRequest;
+use crate::ui::model::kept_screen::{
     KeptMap, KeptOf, KeptPanels, KeptPlace, KeptScreen, KeptSubject, KeptTexts, MAX_PLANS,
 };
-use crate::ui::knobs;
-use crate::ui::layout::Slots;
-use crate::ui::map_state::MapMode;
-use crate::ui::message::Effect;
-use crate::ui::panel::Panel;
+use crate::ui::model::layout::Slots;
+use crate::ui::model::map_state::MapMode;
+use crate::ui::model::panel_table::Panel;
 use crate::ui::shared::Shared;
 
 /// The shortest time between two looks for a change.
@@ -177,7 +177,7 @@ mod tests {
     use crate::session::ReplayView;
     use crate::telemetry::snapshot::WindView;
     use crate::timeline::TimelineView;
-    use crate::ui::kept_screen::{KeptScreens, Unread};
+    use crate::ui::model::kept_screen::{KeptScreens, Unread};
     use std::sync::Arc;
 
     fn state() -> AppState {

@@ -2,12 +2,13 @@
 
 use crossterm::event::{MouseButton, MouseEvent, MouseEventKind};
 
-use crate::ui::action::Action;
+use crate::ui::acts::screen_layout;
 use crate::ui::app_state::AppState;
-use crate::ui::message::{Effect, Request};
-use crate::ui::panel::Panel;
+use crate::ui::model::action::Action;
+use crate::ui::model::effect::Effect;
+use crate::ui::model::panel_table::Panel;
 use crate::ui::popup::{Outcome, Popup, command_line, palette};
-use crate::ui::{hint_bar, layout, notice, panel_bar, tutorial};
+use crate::ui::{hint_bar, notice, panel_bar, tutorial};
 
 use super::popup::{chosen, enter, take_entry};
 use super::view::focus;
@@ -49,7 +50,7 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
         return effects;
     }
     if is_click
-        && let Some(screen) = layout::screen(&state.shared)
+        && let Some(screen) = screen_layout::screen(&state.shared)
         && let foot = screen.timeline.unwrap_or(screen.hints)
         && let above = tutorial::rows(state.tutorial, &state.shared, foot)
         && notice::close_at(&mut state.shared, above, foot, (event.column, event.row))
@@ -59,7 +60,7 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
     if is_click && let Some(effects) = timeline::click(&state.shared, event.column, event.row) {
         return effects;
     }
-    let Some(screen) = layout::screen(&state.shared) else { return Vec::new() };
+    let Some(screen) = screen_layout::screen(&state.shared) else { return Vec::new() };
     if let (MouseEventKind::Drag(MouseButton::Left), Some(border)) = (event.kind, state.dragged) {
         arrange::drag(&mut state.shared, &screen, border, &event);
         return Vec::new();
@@ -101,7 +102,7 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
     }
     let content = state.panels.of_mut(panel);
     let shared = &state.shared;
-    let inside = layout::inner(area);
+    let inside = screen_layout::inner(area);
     let requests = match event.kind {
         MouseEventKind::Down(MouseButton::Left) => {
             state.pressed = Some(panel);
@@ -109,7 +110,8 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
         }
         MouseEventKind::Drag(MouseButton::Left) => content.drag(shared, inside, &event),
         MouseEventKind::Down(MouseButton::Right) => {
-            content.menu(shared, inside, &event).map(Request::Open).into_iter().collect()
+            state.popups.extend(content.menu(shared, inside, &event));
+            Vec::new()
         }
         MouseEventKind::ScrollUp => content.wheel(shared, inside, &event, -1),
         MouseEventKind::ScrollDown => content.wheel(shared, inside, &event, 1),

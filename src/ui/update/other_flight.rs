@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use crate::replay::Overview;
-use crate::ui::event_log::Severity;
-use crate::ui::map_point::origin::origin;
-use crate::ui::other_flight::OtherFlight;
+use crate::ui::acts::origin::origin;
+use crate::ui::model::event_log::Severity;
+use crate::ui::model::other_flight::OtherFlight;
 use crate::ui::shared::Shared;
 
 /// The time of a shift, µs.

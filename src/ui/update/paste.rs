@@ -1,11 +1,11 @@
 //! Pasted text.
 
-use crate::ui::action::Action;
+use crate::ui::acts::plan_edits as plan;
 use crate::ui::app_state::AppState;
-use crate::ui::editor::actions as plan;
-use crate::ui::event_log::Severity;
-use crate::ui::message::Effect;
-use crate::ui::panel::Panel;
+use crate::ui::model::action::Action;
+use crate::ui::model::effect::Effect;
+use crate::ui::model::event_log::Severity;
+use crate::ui::model::panel_table::Panel;
 use crate::ui::popup::Popup;
 use crate::ui::search::Search;
 use crate::ui::text_field::TextField;

@@ -2,11 +2,11 @@
 
 use super::flight;
 use crate::session::Command;
+use crate::ui::acts::{setting_changes, setting_reading};
 use crate::ui::app_state::AppState;
-use crate::ui::event_log::Severity;
-use crate::ui::message::Effect;
+use crate::ui::model::effect::Effect;
+use crate::ui::model::event_log::Severity;
 use crate::ui::popup::Popup;
-use crate::ui::settings;
 
 /// The reason for missing settings after the user declined.
 const NOT_READ: &str = "The settings were not read: reading them would have opened the command line.";
@@ -50,10 +50,10 @@ pub(super) fn decline(state: &mut AppState) {
         state.panels.cli.console.not_run("not run: changes were not permitted");
     }
     if held.iter().any(|effect| matches!(effect, Effect::Set(_))) {
-        settings::changes::take_back(&mut state.shared);
+        setting_changes::take_back(&mut state.shared);
     }
     if held.iter().any(|effect| matches!(effect, Effect::ReadSettings)) {
-        settings::reading::take(&mut state.shared, Err(NOT_READ.to_owned()));
+        setting_reading::take(&mut state.shared, Err(NOT_READ.to_owned()));
     }
     for effect in &held {
         if let Effect::Upload { id, .. } = effect {

@@ -1,20 +1,20 @@
 //! Handles keys for the editor's popups, and replies of the files.
 
+use crate::ui::acts::{findings, ground_under, plan_edits as plan, screen_layout};
 use std::path::{Path, PathBuf};
 
 use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::layout::Rect;
 
 use super::{diff, flight};
-use crate::ui::action::{Action, EditAction};
-use crate::ui::editor::{
-    Browser, BrowserKey, Conversion, EditorPopup, FileReply, FileRequest, Form, FormKey, LossList, PlanId,
-    Purpose, Question, actions as plan, findings,
+use crate::ui::model::action::{Action, EditAction};
+use crate::ui::model::editor::{
+    Browser, BrowserKey, EditorPopup, Form, FormKey, LossList, Purpose, Question,
 };
-use crate::ui::event_log::Severity;
-use crate::ui::ground;
-use crate::ui::layout;
-use crate::ui::message::Effect;
+use crate::ui::model::effect::Effect;
+use crate::ui::model::event_log::Severity;
+use crate::ui::model::files::{Conversion, FileReply, FileRequest};
+use crate::ui::model::plan_id::PlanId;
 use crate::ui::panel::editor_popup;
 use crate::ui::shared::Shared;
 
@@ -37,7 +37,7 @@ pub(super) fn click(state: &mut Shared, cell: (u16, u16)) -> Option<Vec<Effect>>
     let area = Rect::new(0, 0, state.size.0, state.size.1);
     match &state.editor.popup {
         Some(EditorPopup::Form(form)) => {
-            let beside = layout::screen(state).and_then(|screen| screen.form);
+            let beside = screen_layout::screen(state).and_then(|screen| screen.form);
             let click = editor_popup::field_at(state, form, area, beside, cell)?;
             if let Some(EditorPopup::Form(form)) = &mut state.editor.popup {
                 form.click(click);
@@ -186,7 +186,13 @@ fn save_plan(state: &mut Shared, id: PlanId) -> Vec<Effect> {
 
 /// Quits if all edits are saved; else asks about the first plan with an unsaved edit.
 pub(super) fn quit(state: &mut Shared) -> Vec<Effect> {
-    match state.editor.plans().iter().find(|plan| plan.is_unsaved()).map(super::super::editor::OpenPlan::id) {
+    match state
+        .editor
+        .plans()
+        .iter()
+        .find(|plan| plan.is_unsaved())
+        .map(crate::ui::model::editor::OpenPlan::id)
+    {
         Some(id) => {
             state.editor.popup = Some(EditorPopup::Question(Question::Unsaved { id, quits: true }));
             Vec::new()
@@ -285,7 +291,7 @@ pub(super) fn answered(state: &mut Shared, reply: FileReply) -> Vec<Effect> {
             state.editor.journal_fails = false;
             state.notify(Severity::Good, "Edits are kept again.");
         }
-        FileReply::Ground { tiles, problems } => ground::read(state, tiles, problems),
+        FileReply::Ground { tiles, problems } => ground_under::read(state, tiles, problems),
         FileReply::EditsLost(text) => state.pin(text),
         FileReply::Failed(sentence) => {
             state.editor.quitting = false;

@@ -1,22 +1,22 @@
 //! Handles keys while a popup is open.
 
+use crate::ui::acts::setting_changes;
 use crossterm::event::{KeyCode, KeyEvent};
 
 use super::{act, arrange, diff, flights, map_menu, permission, run_line};
 use crate::telemetry::InFlightCommand;
-use crate::ui::action::Action;
 use crate::ui::app_state::AppState;
 use crate::ui::command;
-use crate::ui::editor::FileRequest;
-use crate::ui::event_log::Severity;
-use crate::ui::history::LineField;
-use crate::ui::message::Effect;
+use crate::ui::model::action::Action;
+use crate::ui::model::effect::Effect;
+use crate::ui::model::event_log::Severity;
+use crate::ui::model::files::FileRequest;
+use crate::ui::model::history::LineField;
 use crate::ui::panel::graphs;
 use crate::ui::popup::palette::Entry;
 use crate::ui::popup::signal_list::SignalKey;
 use crate::ui::popup::what_if::Choice;
 use crate::ui::popup::{Outcome, Popup, command_line, guards, palette, signal_list, what_if};
-use crate::ui::settings;
 use crate::vehicle::VehicleCommand;
 
 /// Handles a key for the popup opened last; `found` is the action of the key without a popup.
@@ -59,8 +59,8 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) 
         Some(Popup::ResetSettings) => match event.code {
             KeyCode::Char('y' | 'Y') => {
                 state.popups.pop();
-                let reset = settings::changes::reset_all(&state.shared);
-                settings::changes::change(&mut state.shared, reset)
+                let reset = setting_changes::reset_all(&state.shared);
+                setting_changes::change(&mut state.shared, reset)
             }
             KeyCode::Char('n' | 'N' | 'q') | KeyCode::Esc => {
                 state.popups.pop();

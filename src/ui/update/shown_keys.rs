@@ -8,11 +8,11 @@ use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 
+use crate::ui::acts::screen_layout;
 use crate::ui::app_state::AppState;
 use crate::ui::draw::draw;
-use crate::ui::keymap::KeyPress;
-use crate::ui::layout;
-use crate::ui::message::Effect;
+use crate::ui::model::effect::Effect;
+use crate::ui::model::keymap::KeyPress;
 use crate::ui::popup::Popup;
 use crate::ui::theme::Role;
 
@@ -68,7 +68,7 @@ fn closes_outside(state: &AppState) -> bool {
 
 fn click(state: &mut AppState, (column, row): (u16, u16)) -> Option<Click> {
     let with = picture(state)?;
-    let beside = layout::screen(&state.shared).and_then(|screen| screen.form);
+    let beside = screen_layout::screen(&state.shared).and_then(|screen| screen.form);
     let place = match beside.filter(|_| state.popups.is_empty()) {
         Some(place) => place,
         None => difference(&with, &below(state)?)?,

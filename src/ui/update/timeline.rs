@@ -2,10 +2,12 @@
 
 use crate::session::command::Seek;
 use crate::session::{Command, SessionView};
-use crate::ui::action::{Action, is_wrecked};
-use crate::ui::message::Effect;
+use crate::ui::acts::availability::is_wrecked;
+use crate::ui::acts::screen_layout;
+use crate::ui::model::action::Action;
+use crate::ui::model::effect::Effect;
 use crate::ui::shared::Shared;
-use crate::ui::{layout, timeline};
+use crate::ui::timeline;
 
 /// The time that one press of the keys for earlier and later skips, s.
 const SKIP_S: f64 = 10.0;
@@ -39,7 +41,7 @@ pub(super) fn step(state: &Shared, ticks: u32) -> Vec<Effect> {
 
 /// Handles a click on the timeline, which shows that instant; `None` if the click is elsewhere.
 pub(super) fn click(state: &Shared, column: u16, row: u16) -> Option<Vec<Effect>> {
-    let area = layout::screen(state)?.timeline.filter(|area| area.contains((column, row).into()))?;
+    let area = screen_layout::screen(state)?.timeline.filter(|area| area.contains((column, row).into()))?;
     let recorded = state.view.timeline.as_ref()?;
     let time = timeline::time_at(recorded, area, column);
     Some(time.map_or_else(Vec::new, |time| vec![Effect::Send(Command::Seek(Seek::Time(time)))]))

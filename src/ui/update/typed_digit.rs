@@ -3,9 +3,9 @@
 use crossterm::event::{KeyCode, KeyEvent};
 
 use super::{act, key};
-use crate::ui::action::{Action, EditAction, PanelAction};
 use crate::ui::app_state::AppState;
-use crate::ui::message::Effect;
+use crate::ui::model::action::{Action, EditAction, PanelAction};
+use crate::ui::model::effect::Effect;
 
 /// Begins to type the chosen value with a digit. Returns `None` if the key is something else here.
 pub(super) fn take(state: &mut AppState, event: KeyEvent, found: Option<Action>) -> Option<Vec<Effect>> {

@@ -1,12 +1,11 @@
 //! The view: focus and scrolling.
 
 use super::carry_out;
+use crate::ui::acts::{screen_layout, setting_reading};
 use crate::ui::app_state::AppState;
-use crate::ui::event_log::Severity;
-use crate::ui::layout;
-use crate::ui::message::Effect;
-use crate::ui::panel::Panel;
-use crate::ui::settings::reading;
+use crate::ui::model::effect::Effect;
+use crate::ui::model::event_log::Severity;
+use crate::ui::model::panel_table::Panel;
 
 /// Draws the whole screen again, whatever another program has written on it.
 pub(super) fn redraw(state: &mut AppState) -> Vec<Effect> {
@@ -36,7 +35,7 @@ pub(super) fn focus(state: &mut AppState, panel: Panel) -> Vec<Effect> {
 pub(super) fn show(state: &mut AppState, panel: Panel) -> Vec<Effect> {
     let mut effects = focus(state, panel);
     if panel == Panel::Settings {
-        effects.extend(reading::follow(&mut state.shared));
+        effects.extend(setting_reading::follow(&mut state.shared));
     }
     effects
 }
@@ -51,7 +50,8 @@ pub(super) fn focus_neighbour(state: &mut AppState, step: isize) -> Vec<Effect> 
 /// Scrolls the focused panel by lines.
 pub(super) fn scroll(state: &mut AppState, by: isize) -> Vec<Effect> {
     let panel = state.shared.focus;
-    let area = layout::screen(&state.shared).and_then(|screen| screen.panel(panel)).map(layout::inner);
+    let area =
+        screen_layout::screen(&state.shared).and_then(|screen| screen.panel(panel)).map(screen_layout::inner);
     let Some(area) = area else { return Vec::new() };
     let requests = state.panels.of_mut(panel).scroll(&state.shared, area, by);
     carry_out(state, requests)

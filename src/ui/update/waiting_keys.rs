@@ -4,11 +4,11 @@ use crossterm::event::KeyEvent;
 
 use super::key;
 use crate::fc::CraftSettings;
-use crate::ui::action::{Action, Context, spec_of};
+use crate::ui::acts::setting_reading;
 use crate::ui::app_state::AppState;
-use crate::ui::message::Effect;
-use crate::ui::panel::Panel;
-use crate::ui::settings::reading;
+use crate::ui::model::action::{Action, Context, spec_of};
+use crate::ui::model::effect::Effect;
+use crate::ui::model::panel_table::Panel;
 
 /// The most keys that wait.
 const MOST: usize = 100;
@@ -41,7 +41,7 @@ pub(super) fn hold(state: &mut AppState, event: KeyEvent, found: Option<Action>)
 /// Takes the settings of the craft, and carries out the keys that have waited for them. A mouse may have shown something
 /// else in the meantime: the keys were not typed for that.
 pub(super) fn take_settings(state: &mut AppState, reply: Result<Box<CraftSettings>, String>) -> Vec<Effect> {
-    reading::take(&mut state.shared, reply);
+    setting_reading::take(&mut state.shared, reply);
     let waiting = std::mem::take(&mut state.waiting_keys);
     let is_shown = state.shared.focus == Panel::Settings && state.popups.is_empty();
     if !is_shown || state.shared.settings.craft().is_none() {

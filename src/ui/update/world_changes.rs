@@ -3,9 +3,9 @@
 use crate::signals::SimTime;
 use crate::telemetry::snapshot::WorldView;
 use crate::ui::knobs::{Knob, knobs_of};
+use crate::ui::model::world_history::{WorldChange, WorldHistory};
 use crate::ui::shared::Shared;
 use crate::ui::units::Units;
-use crate::ui::world_history::{WorldChange, WorldHistory};
 
 /// Notes the differences between the world of the picture before and that of now.
 pub(super) fn follow(state: &mut Shared, before: &WorldView) {

@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 
 use crate::autopilot::flight::{Flight, plan, waypoint};
 use betadeck_core::autopilot::{Params, Rescue};
-use betadeck_core::plan::format::WaypointRecord;
+use betadeck_core::plan::WaypointRecord;
 use betadeck_core::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType};
 use betadeck_core::telemetry::{InFlightCommand, NavEvent, NavState, TransitionReason};
 use nalgebra::Vector2;

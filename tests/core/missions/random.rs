@@ -7,7 +7,7 @@ use crate::missions::mission::{Mission, assert_none};
 use crate::missions::oracle;
 use betadeck_core::flight::FlightResult;
 use betadeck_core::geo::{LatLon, offset_to_latlon};
-use betadeck_core::plan::format::WaypointRecord;
+use betadeck_core::plan::WaypointRecord;
 use betadeck_core::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType, plan_lines};
 use betadeck_core::sim::{Airframe, ScheduledFault, Wind};
 use betadeck_core::telemetry::{DisarmReason, Turbulence};

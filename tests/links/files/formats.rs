@@ -1,7 +1,7 @@
 //! Laws of the plan formats: a written plan reads back, canonical text prints unchanged, and no text causes a panic.
 
 use betadeck::geo::LatLon;
-use betadeck::plan::format::WaypointRecord;
+use betadeck::plan::WaypointRecord;
 use betadeck::plan::format::{Format, HomePosition, PlanFile, degrees_e7, parse, report, write};
 use betadeck::plan::{FlightPlan, HoldPattern, MAX_WAYPOINTS, Waypoint, WaypointType};
 use proptest::collection::vec;

@@ -1,11 +1,11 @@
 //! Plans in KML, KMZ, GPX and GeoJSON: the law of the round trip, and files as other programs write them.
 
 use betadeck::geo::LatLon;
+use betadeck::plan::WaypointRecord;
 use betadeck::plan::feature::{Feature, Shape};
 use betadeck::plan::format::loss::Severity;
 use betadeck::plan::format::{
-    Format, HomePosition, PlanFile, ReadOptions, WaypointRecord, WriteOptions, read, read_features, report,
-    write_with,
+    Format, HomePosition, PlanFile, ReadOptions, WriteOptions, read, read_features, report, write_with,
 };
 use betadeck::plan::{FlightPlan, HoldPattern, MAX_WAYPOINTS, Waypoint, WaypointType};
 use proptest::collection::vec;

@@ -1,9 +1,10 @@
 //! Commands by name: keys, palette and the `:` line reach the same actions, and typed characters are text.
 
 use betadeck::session::Command;
-use betadeck::ui::action::{ACTIONS, Action, enabled};
+use betadeck::ui::action::{ACTIONS, Action};
 use betadeck::ui::command;
-use betadeck::ui::editor::FileRequest;
+use betadeck::ui::enabled;
+use betadeck::ui::files::FileRequest;
 use betadeck::ui::keymap::KeyPress;
 use betadeck::ui::{AppState, Effect, EnteredLines, FlightForm, LineField, Msg, Panel, Popup, draw, update};
 use betadeck::vehicle::VehicleCommand;

@@ -8,8 +8,8 @@ use betadeck::session::Command;
 use betadeck::session::command::CliOutput;
 use betadeck::telemetry::snapshot::ModeRange;
 use betadeck::telemetry::{ArmingFlag, Mode};
-use betadeck::ui::action::{self, Action, PanelAction};
-use betadeck::ui::{AppState, Effect, Msg, Panel, draw, update};
+use betadeck::ui::action::{Action, PanelAction};
+use betadeck::ui::{AppState, Effect, Msg, Panel, draw, enabled, update};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers, MouseEventKind};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
@@ -196,16 +196,12 @@ fn nothing_moves_a_real_craft() {
         Action::Panel(PanelAction::Flip),
         Action::Panel(PanelAction::Play),
     ] {
-        assert_eq!(action::enabled(&state.shared, moving), Err(NOTHING_MOVES.to_owned()), "{moving:?}");
+        assert_eq!(enabled(&state.shared, moving), Err(NOTHING_MOVES.to_owned()), "{moving:?}");
     }
     for simulated in
         [Action::ResetCraft, Action::Panel(PanelAction::KnobMore), Action::Panel(PanelAction::KnobEdit)]
     {
-        assert_eq!(
-            action::enabled(&state.shared, simulated),
-            Err(NOTHING_SIMULATED.to_owned()),
-            "{simulated:?}"
-        );
+        assert_eq!(enabled(&state.shared, simulated), Err(NOTHING_SIMULATED.to_owned()), "{simulated:?}");
     }
     for other in [
         Action::Pause,
@@ -217,10 +213,10 @@ fn nothing_moves_a_real_craft() {
         Action::WhatIf,
         Action::AllowChanges,
     ] {
-        assert!(action::enabled(&state.shared, other).is_err(), "{other:?}");
+        assert!(enabled(&state.shared, other).is_err(), "{other:?}");
     }
     for free in [Action::Upload, Action::Show(Panel::Cli), Action::Zoom, Action::Quit] {
-        assert_eq!(action::enabled(&state.shared, free), Ok(()), "{free:?}");
+        assert_eq!(enabled(&state.shared, free), Ok(()), "{free:?}");
     }
 }
 
@@ -249,7 +245,7 @@ fn the_screen_says_how_the_connection_is() {
 #[test]
 fn a_firmware_without_plans_says_so() {
     let state = connected(|remote| remote.has_plans = false);
-    let refusal = action::enabled(&state.shared, Action::Upload).unwrap_err();
+    let refusal = enabled(&state.shared, Action::Upload).unwrap_err();
     assert!(
         refusal.contains("has no waypoints") && refusal.contains("today's master has flight plans"),
         "{refusal}"
@@ -266,15 +262,15 @@ fn over_a_simulated_craft_with_a_remote_firmware_only_what_can_work_is_offered()
     };
     let state = flying(|_| {});
     for action in [Action::GoTo, Action::HoldHere, Action::Resume] {
-        let why = action::enabled(&state.shared, action).unwrap_err();
+        let why = enabled(&state.shared, action).unwrap_err();
         assert!(why.contains("takes no such order"), "{action:?}: {why}");
     }
-    assert_eq!(action::enabled(&state.shared, Action::Fly), Ok(()));
+    assert_eq!(enabled(&state.shared, Action::Fly), Ok(()));
     for (change, reason) in [
         ((|remote| remote.state = RemoteState::Identifying) as fn(&mut RemoteView), "wait until it answers"),
         (|remote| remote.has_plans = false, "has no waypoints"),
     ] {
-        let why = action::enabled(&flying(change).shared, Action::Fly).unwrap_err();
+        let why = enabled(&flying(change).shared, Action::Fly).unwrap_err();
         assert!(why.contains(reason), "{why}");
     }
 }
@@ -320,7 +316,7 @@ fn a_child_is_ready_only_with_a_switch_that_arms_it() {
 
 #[test]
 fn a_child_is_brought_home_only_with_a_switch_for_it() {
-    let can_return = |modes: &[Mode]| action::enabled(&child(true, modes).shared, Action::ReturnHome);
+    let can_return = |modes: &[Mode]| enabled(&child(true, modes).shared, Action::ReturnHome);
     let why = can_return(&[Mode::Arm, Mode::Autopilot]).unwrap_err();
     assert!(why.contains("GPS RESCUE"), "{why}");
     assert_eq!(can_return(&[Mode::Arm, Mode::Autopilot, Mode::GpsRescue]), Ok(()));

@@ -1,6 +1,6 @@
 //! The question before a file is opened or saved that differs from the plan.
 
-use betadeck::ui::editor::{Conversion, ConversionLosses, FileReply, FileRequest};
+use betadeck::ui::files::{Conversion, ConversionLosses, FileReply, FileRequest};
 use betadeck::ui::{Effect, Msg, update};
 
 use crate::ui::editor::save_of;

@@ -2,13 +2,12 @@
 
 use std::sync::Arc;
 
-use betadeck::ui::editor::{FileReply, FileRequest};
+use betadeck::ui::files::{FileReply, FileRequest};
 use betadeck::ui::{AppState, Effect, Msg, Popup, theme, update};
 use crossterm::event::{KeyCode, KeyModifiers, MouseButton, MouseEventKind};
 
-use crate::ui::fixture;
 use crate::ui::hands::{keys, mouse, mouse_button, place_of, press, screen, state_with_fix};
-use crate::ui::settings;
+use crate::ui::{fixture, settings};
 
 /// Returns a craft with the square, and an open plan that moves one waypoint, raises another and adds one.
 fn edited(size: (u16, u16), theme: theme::Theme) -> AppState {

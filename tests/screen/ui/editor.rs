@@ -1,7 +1,7 @@
 //! The plan editor by keys, mouse and paste: messages in, screen and effects out.
 
 use betadeck::plan::{Altitude, FlightPlan, Seconds, WaypointType};
-use betadeck::ui::editor::{Entry, FileReply, FileRequest, Listing};
+use betadeck::ui::files::{Entry, FileReply, FileRequest, Listing};
 use betadeck::ui::{Effect, Msg, update};
 use crossterm::event::{KeyCode, KeyModifiers, MouseEventKind};
 

@@ -8,7 +8,7 @@ use betadeck::session::SessionView;
 use betadeck::signals::SimTime;
 use betadeck::telemetry::{AbortReason, Guard, GuardName, GuardOp, NavState, Refusal};
 use betadeck::timeline::TimelineView;
-use betadeck::ui::editor::FileReply;
+use betadeck::ui::files::FileReply;
 use betadeck::ui::theme::{Palette, Theme};
 use betadeck::ui::{AppState, Effect, Msg, draw, update};
 use ratatui::Terminal;

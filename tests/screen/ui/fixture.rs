@@ -13,7 +13,7 @@ use betadeck::telemetry::snapshot::{ModeRange, SettingsView, TruthView};
 use betadeck::telemetry::{
     ArmingFlag, EventKind, FirmwareEvent, Guard, L1Mode, Mode, ModeFlags, NavEvent, NavState, Snapshot,
 };
-use betadeck::ui::editor::PlanId;
+use betadeck::ui::PlanId;
 use betadeck::ui::keymap::Keymap;
 use betadeck::ui::theme::{Charset, Palette};
 use betadeck::ui::{AppState, CliHelp, EnteredLines, Msg, OpenPlan, Theme, UiConfig, Units, update};

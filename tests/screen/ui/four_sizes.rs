@@ -1,7 +1,8 @@
 //! Every panel and every popup at the four sizes that the screen is designed for, and at any other size without a panic.
 
 use betadeck::telemetry::NavState;
-use betadeck::ui::editor::{Conversion, ConversionLosses, EditorPopup, Entry, FileReply, FormKind, Listing};
+use betadeck::ui::editor::{EditorPopup, FormKind};
+use betadeck::ui::files::{Conversion, ConversionLosses, Entry, FileReply, Listing};
 use betadeck::ui::{AppState, Msg, Panel, Popup, draw, update};
 use crossterm::event::{KeyCode, KeyModifiers};
 use ratatui::Terminal;
@@ -9,10 +10,8 @@ use ratatui::backend::TestBackend;
 use ratatui::layout::Position;
 use strum::VariantNames as _;
 
-use crate::ui::fixture;
-use crate::ui::hands;
 use crate::ui::hands::{keys, press, screen, state_with_fix};
-use crate::ui::settings;
+use crate::ui::{fixture, hands, settings};
 
 const SIZES: [(u16, u16); 4] = [(60, 20), (80, 24), (120, 40), (200, 60)];
 

@@ -2,7 +2,7 @@
 
 #![allow(dead_code, reason = "tests share this file and use different parts")]
 
-use betadeck::ui::editor::FileRequest;
+use betadeck::ui::files::FileRequest;
 use betadeck::ui::keymap::KeyPress;
 use betadeck::ui::{AppState, Effect, Msg, draw, update};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};

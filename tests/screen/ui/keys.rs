@@ -5,9 +5,9 @@ use std::time::Duration;
 use betadeck::fc::UploadReport;
 use betadeck::session::Command;
 use betadeck::session::command::CliOutput;
-use betadeck::ui::editor::FileRequest;
+use betadeck::ui::files::FileRequest;
 use betadeck::ui::keymap::KeyPress;
-use betadeck::ui::{AppState, Effect, MapMode, Msg, Panel, Popup, layout, update};
+use betadeck::ui::{AppState, Effect, MapMode, Msg, Panel, Popup, screen_layout, update};
 use betadeck::vehicle::VehicleCommand;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
 
@@ -287,7 +287,8 @@ fn tab_goes_through_all_panels_and_back() {
     for _ in Panel::ALL {
         seen.push(state.shared.focus);
         assert!(
-            layout::screen(&state.shared).is_some_and(|screen| screen.panel(state.shared.focus).is_some()),
+            screen_layout::screen(&state.shared)
+                .is_some_and(|screen| screen.panel(state.shared.focus).is_some()),
             "visible"
         );
         key(&mut state, KeyCode::Tab);
@@ -321,14 +322,16 @@ fn the_map_pans_zooms_follows_and_fits() {
 fn the_mouse_sets_a_channel_and_drags_the_map() {
     let mut state = ready();
     press(&mut state, '4');
-    let area = layout::screen(&state.shared).and_then(|screen| screen.panel(Panel::Rc)).expect("visible");
+    let area =
+        screen_layout::screen(&state.shared).and_then(|screen| screen.panel(Panel::Rc)).expect("visible");
     let at = |kind, column, row| Msg::Mouse(MouseEvent { kind, column, row, modifiers: KeyModifiers::NONE });
     let down = MouseEventKind::Down(MouseButton::Left);
     let effects = update(&mut state, at(down, area.x + 25, area.y + 2));
     let channels = sticks(&effects).expect("a click on a bar sets the channel");
     assert_ne!(channels[1], 1500);
 
-    let area = layout::screen(&state.shared).and_then(|screen| screen.panel(Panel::Map)).expect("visible");
+    let area =
+        screen_layout::screen(&state.shared).and_then(|screen| screen.panel(Panel::Map)).expect("visible");
     update(&mut state, at(down, area.x + 10, area.y + 10));
     update(&mut state, at(MouseEventKind::Drag(MouseButton::Left), area.x + 14, area.y + 10));
     assert!(matches!(state.shared.map.mode, MapMode::Free { .. }));
@@ -339,7 +342,7 @@ fn a_drag_that_strays_from_the_map_over_the_sliders_moves_no_stick() {
     let mut state = ready();
     press(&mut state, '4');
     let place =
-        |panel| layout::screen(&state.shared).and_then(|screen| screen.panel(panel)).expect("visible");
+        |panel| screen_layout::screen(&state.shared).and_then(|screen| screen.panel(panel)).expect("visible");
     let (map, rc) = (place(Panel::Map), place(Panel::Rc));
     let at = |kind, column, row| Msg::Mouse(MouseEvent { kind, column, row, modifiers: KeyModifiers::NONE });
     let (down, drag) = (MouseEventKind::Down(MouseButton::Left), MouseEventKind::Drag(MouseButton::Left));
@@ -355,7 +358,8 @@ fn a_drag_that_strays_from_the_map_over_the_sliders_moves_no_stick() {
 fn a_dragged_slider_stays_the_one_that_was_pressed() {
     let mut state = ready();
     press(&mut state, '4');
-    let rc = layout::screen(&state.shared).and_then(|screen| screen.panel(Panel::Rc)).expect("visible");
+    let rc =
+        screen_layout::screen(&state.shared).and_then(|screen| screen.panel(Panel::Rc)).expect("visible");
     let at = |kind, column, row| Msg::Mouse(MouseEvent { kind, column, row, modifiers: KeyModifiers::NONE });
     let (down, drag) = (MouseEventKind::Down(MouseButton::Left), MouseEventKind::Drag(MouseButton::Left));
     state.panels.rc.channel = 15;
@@ -385,10 +389,10 @@ fn help_closes_by_the_key_it_explains() {
 fn z_zooms_the_focused_panel_and_esc_ends_it() {
     let mut state = ready();
     press(&mut state, 'z');
-    let screen = layout::screen(&state.shared).expect("large enough");
+    let screen = screen_layout::screen(&state.shared).expect("large enough");
     assert_eq!(screen.panels.len(), 1);
     key(&mut state, KeyCode::Esc);
-    assert!(layout::screen(&state.shared).is_some_and(|screen| screen.panels.len() > 1));
+    assert!(screen_layout::screen(&state.shared).is_some_and(|screen| screen.panels.len() > 1));
 }
 
 #[test]

@@ -10,7 +10,8 @@ use betadeck::lookahead::{ForecastReply, ForecastRequest};
 use betadeck::plan::edit::{History, PlanDocument};
 use betadeck::plan::estimate::Assumptions;
 use betadeck::telemetry::snapshot::SettingsView;
-use betadeck::ui::editor::{FileReply, Opened, PlanId};
+use betadeck::ui::PlanId;
+use betadeck::ui::files::{FileReply, Opened};
 use betadeck::ui::{AppState, Effect, Msg, update};
 
 use crate::ui::fixture;

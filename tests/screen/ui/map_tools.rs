@@ -5,7 +5,7 @@ use betadeck::geo::{GroundPlane, LatLon};
 use betadeck::lookahead::ForecastReply;
 use betadeck::plan::feature::{Feature, Shape, Vertex, Zone};
 use betadeck::ui::backdrop::BackdropLayer;
-use betadeck::ui::editor::{Entry, FileReply, FileRequest, Listing};
+use betadeck::ui::files::{Entry, FileReply, FileRequest, Listing};
 use betadeck::ui::{AppState, Effect, MapMode, Msg, run_line, update};
 use crossterm::event::MouseEventKind;
 use nalgebra::Vector2;

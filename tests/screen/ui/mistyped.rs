@@ -1,7 +1,7 @@
 //! The effects of mistyped values: messages in, screen and effects out.
 
 use betadeck::plan::FlightPlan;
-use betadeck::ui::editor::FileRequest;
+use betadeck::ui::files::FileRequest;
 use betadeck::ui::{Effect, Msg, update};
 
 use crate::ui::hands::{keys, screen, state_with_fix as state};

@@ -6,7 +6,7 @@ use betadeck::events::{Event, SessionEvent};
 use betadeck::plan::Altitude;
 use betadeck::session::SessionView;
 use betadeck::signals::SimTime;
-use betadeck::ui::editor::PlanId;
+use betadeck::ui::PlanId;
 use betadeck::ui::{AppState, Msg, Panel, Severity, Units, update};
 use crossterm::event::MouseEventKind;
 

@@ -1,7 +1,7 @@
 //! Popups by the mouse alone: a click on a shown key presses it, a click on a row selects and then chooses it, a click
 //! outside closes.
 
-use betadeck::ui::editor::{Entry, FileReply, FileRequest, Listing};
+use betadeck::ui::files::{Entry, FileReply, FileRequest, Listing};
 use betadeck::ui::theme::Palette;
 use betadeck::ui::{AppState, Effect, Msg, Popup, update};
 use crossterm::event::{MouseButton, MouseEventKind};

@@ -1,7 +1,7 @@
 //! Search by `/` in the help, in the transitions and in the log, what the palette remembers, and clicks on hints and in
 //! popups.
 
-use betadeck::ui::editor::FileRequest;
+use betadeck::ui::files::FileRequest;
 use betadeck::ui::{AppState, Effect, LineField, Popup};
 use crossterm::event::{MouseButton, MouseEventKind};
 

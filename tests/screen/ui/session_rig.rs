@@ -18,7 +18,7 @@ use betadeck::signals::SimTime;
 use betadeck::sim::WorldConfig;
 use betadeck::storage::Store;
 use betadeck::telemetry::{NavState, Snapshot, Turbulence};
-use betadeck::ui::editor::PlanId;
+use betadeck::ui::PlanId;
 use betadeck::ui::keymap::Keymap;
 use betadeck::ui::{
     AppState, CliHelp, Effect, EnteredLines, Msg, OpenPlan, Theme, UiConfig, Units, draw, update,

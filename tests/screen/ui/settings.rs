@@ -9,7 +9,7 @@ use betadeck::flight::forecast::{FlightResult, Forecast, ForecastEnd, ForecastKi
 use betadeck::lookahead::{ForecastReply, ForecastRequest};
 use betadeck::session::command::CliOutput;
 use betadeck::telemetry::NavState;
-use betadeck::ui::editor::FileRequest;
+use betadeck::ui::files::FileRequest;
 use betadeck::ui::{AppState, Effect, Msg, update};
 use crossterm::event::{MouseButton, MouseEventKind};
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use betadeck::plan::Altitude;
 use betadeck::telemetry::NavState;
 use betadeck::terrain::{Grid, Samples, Square, Tiles};
-use betadeck::ui::editor::FileReply;
+use betadeck::ui::files::FileReply;
 use betadeck::ui::{AppState, Msg, update};
 
 use crate::ui::fixture;

@@ -6,7 +6,7 @@ use betadeck::plan::Altitude;
 use betadeck::session::Command;
 use betadeck::signals::SimTime;
 use betadeck::telemetry::{EventKind, FirmwareEvent, NavEvent, NavState, Refusal};
-use betadeck::ui::{AppState, Effect, Msg, Panel, layout, update};
+use betadeck::ui::{AppState, Effect, Msg, Panel, screen_layout, update};
 
 use crate::ui::fixture;
 use crate::ui::hands::{screen, state_with_fix};
@@ -99,7 +99,9 @@ fn check(user: &mut User, task: &str, keys: &[String]) {
         }
         "make the map wider" => {
             let width = |state: &AppState| {
-                layout::screen(&state.shared).and_then(|screen| screen.panel(Panel::Map)).map(|map| map.width)
+                screen_layout::screen(&state.shared)
+                    .and_then(|screen| screen.panel(Panel::Map))
+                    .map(|map| map.width)
             };
             let before = width(&user.state);
             user.press(keys);

@@ -5,12 +5,12 @@ use std::time::Duration;
 use betadeck::fc::UploadReport;
 use betadeck::fc::UploadView;
 use betadeck::session::Command;
-use betadeck::ui::editor::{FileReply, PlanId};
+use betadeck::ui::PlanId;
+use betadeck::ui::files::FileReply;
 use betadeck::ui::{AppState, Effect, Msg, Severity, update};
 
-use crate::ui::fixture;
-use crate::ui::hands;
 use crate::ui::hands::{keys, screen, state_with_fix as state};
+use crate::ui::{fixture, hands};
 
 /// Shows the progress of an upload.
 fn progress(state: &mut AppState, upload: Option<(usize, usize)>) {

@@ -1,10 +1,11 @@
 use proptest::prelude::*;
 
 use super::super::law::{file, plan_file};
-use super::super::{Format, HomePosition, PlanError, WaypointRecord, parse, report, write as write_format};
 use super::*;
 use crate::geo::LatLon;
 use crate::plan::HoldPattern;
+use crate::plan::format::{Format, HomePosition, PlanError, parse, report, write as write_format};
+use crate::plan::record::WaypointRecord;
 
 fn read_text(text: &str) -> PlanFile {
     parse("a.csv", text, Format::Csv).unwrap_or_else(|errors| panic!("{}", report(&errors)))

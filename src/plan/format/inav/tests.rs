@@ -2,8 +2,9 @@ use proptest::prelude::*;
 
 use super::super::law::{file, plan_file};
 use super::super::loss::Severity;
-use super::super::{Format, PlanError, PlanFile, ReadOptions, WaypointRecord, read, report, write};
 use crate::geo::LatLon;
+use crate::plan::format::{Format, PlanError, PlanFile, ReadOptions, read, report, write};
+use crate::plan::record::WaypointRecord;
 use crate::plan::{HoldPattern, Waypoint, WaypointType};
 
 mod samples;

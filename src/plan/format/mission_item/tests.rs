@@ -8,7 +8,7 @@ use strum::IntoEnumIterator as _;
 use super::*;
 use crate::plan::estimate::Assumptions;
 use crate::plan::format::PlanFile;
-use crate::plan::format::WaypointRecord;
+use crate::plan::record::WaypointRecord;
 use crate::plan::{FlightPlan, HoldPattern, MAX_WAYPOINTS, Waypoint, WaypointType};
 
 const HOME: LatLon = LatLon::new(404_635_000, -795_182_000);

@@ -3,9 +3,9 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Margin, Position, Rect};
 
-use super::super::{line, row};
 use super::{WIDTH, keys};
-use crate::ui::editor::{Browser, BrowserPlace, Purpose};
+use crate::ui::area::{line, row};
+use crate::ui::model::editor::{Browser, BrowserPlace, Purpose};
 use crate::ui::popup::frame::{framed, place};
 use crate::ui::shared::Shared;
 use crate::ui::theme::Role;

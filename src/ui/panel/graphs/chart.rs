@@ -4,10 +4,10 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 
+use crate::ui::area::{line, row, span};
 use crate::ui::axis::ticks;
 use crate::ui::curve::{self, Limits, Point, Stroke};
 use crate::ui::formatting::fixed;
-use crate::ui::panel::{line, row, span};
 use crate::ui::raster::Raster;
 use crate::ui::shared::Shared;
 use crate::ui::theme::Role;

@@ -3,11 +3,11 @@
 use crate::replay::Picture;
 use crate::telemetry::quantity::Dimension;
 use crate::telemetry::signal::Signal;
+use crate::ui::acts::named_signal::{Named, scale};
 use crate::ui::curve::{Point, Stroke};
 use crate::ui::formatting::cut;
-use crate::ui::graphs::{Graph, Plot};
-use crate::ui::named_signal::{Named, scale};
-use crate::ui::other_flight::OtherFlight;
+use crate::ui::model::graphs::{Graph, Plot};
+use crate::ui::model::other_flight::OtherFlight;
 use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
 

@@ -5,15 +5,15 @@ use unicode_width::UnicodeWidthStr as _;
 
 use crate::geo::{LatLon, LocalFrame};
 use crate::plan::feature::Zone;
-use crate::ui::backdrop::{BackdropLayer, Window};
+use crate::ui::acts::map_edit;
+use crate::ui::acts::origin::origin;
+use crate::ui::acts::viewport::Viewport;
 use crate::ui::formatting::cut;
-use crate::ui::map_edit;
-use crate::ui::map_point::origin::origin;
-use crate::ui::map_point::{MapPoint, to_map};
+use crate::ui::model::backdrop::{BackdropLayer, Window};
+use crate::ui::model::map_point::{MapPoint, to_map};
 use crate::ui::raster::Raster;
 use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
-use crate::ui::viewport::Viewport;
 
 use super::grid;
 use super::labels::Labels;

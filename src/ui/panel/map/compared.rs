@@ -9,11 +9,11 @@ use super::labels::Labels;
 use super::marks::glyph;
 use super::{PlacedWaypoint, lines, spots_of};
 use crate::plan::FlightPlan;
-use crate::ui::map_edit;
-use crate::ui::map_point::origin::origin;
+use crate::ui::acts::map_edit;
+use crate::ui::acts::origin::origin;
+use crate::ui::acts::viewport::Viewport;
 use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
-use crate::ui::viewport::Viewport;
 
 /// The distance from which two places are different ones, m.
 const APART_M: f64 = 0.05;

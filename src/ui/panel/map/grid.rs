@@ -3,12 +3,12 @@
 use ratatui::layout::Rect;
 
 use crate::geo::{LatLon, LocalFrame};
+use crate::ui::acts::map_edit;
+use crate::ui::acts::viewport::Viewport;
 use crate::ui::axis::round_step;
-use crate::ui::map_edit;
-use crate::ui::map_point::{MapPoint, to_map};
+use crate::ui::model::map_point::{MapPoint, to_map};
 use crate::ui::raster::Raster;
 use crate::ui::theme::Role;
-use crate::ui::viewport::Viewport;
 
 use super::labels::Labels;
 

@@ -1,10 +1,11 @@
 //! The map without a screen: distances and bearings of the craft, home, the fence and the waypoints.
 
 use crate::plan::Waypoint;
+use crate::ui::acts::map_edit;
+use crate::ui::acts::origin::origin;
 use crate::ui::formatting::compass;
-use crate::ui::map_edit;
-use crate::ui::map_point::origin::origin;
-use crate::ui::map_point::{self, MapPoint, to_map};
+use crate::ui::model::map_point;
+use crate::ui::model::map_point::{MapPoint, to_map};
 use crate::ui::panel::in_words::number;
 use crate::ui::shared::Shared;
 

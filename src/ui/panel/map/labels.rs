@@ -3,11 +3,11 @@
 use ratatui::buffer::Buffer;
 use unicode_width::UnicodeWidthStr as _;
 
+use crate::ui::acts::viewport::Viewport;
 use crate::ui::drawing;
-use crate::ui::map_point::MapPoint;
+use crate::ui::model::map_point::MapPoint;
 use crate::ui::text_wrap::wrapped;
 use crate::ui::theme::{Palette, Role, Theme};
-use crate::ui::viewport::Viewport;
 
 /// The greatest number of lines at the top.
 const TOP_LINES: usize = 3;

@@ -1,5 +1,6 @@
 //! The lines of the map: fence, legs, hold patterns, flown track.
 
+use crate::ui::acts::{ghost_path, map_edit};
 use ratatui::style::Color;
 use ratatui::widgets::canvas::{Context, Line as CanvasLine};
 
@@ -7,15 +8,15 @@ use crate::flight::sweep::Fate;
 use crate::plan::{Approach, HoldPattern, Waypoint};
 use crate::telemetry::NavTelemetry;
 use crate::telemetry::snapshot::SettingsView;
-use crate::ui::map_point::origin::origin;
-use crate::ui::map_point::{MapPoint, to_map};
-use crate::ui::map_state::{MapItem, Moving};
-use crate::ui::other_flight::OtherFlight;
+use crate::ui::acts::origin::origin;
+use crate::ui::acts::viewport::Viewport;
+use crate::ui::model::map_point::{MapPoint, to_map};
+use crate::ui::model::map_state::{MapItem, Moving};
+use crate::ui::model::other_flight::OtherFlight;
+use crate::ui::model::survey;
+use crate::ui::model::track::TrackPoint;
 use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
-use crate::ui::track::TrackPoint;
-use crate::ui::viewport::Viewport;
-use crate::ui::{forecast, map_edit, survey};
 
 use super::track_line::TrackLine;
 use super::{PlacedWaypoint, Scene};
@@ -144,7 +145,7 @@ pub(super) fn paint(state: &Shared, scene: &Scene, context: &mut Context<'_>) {
         }
     });
     layer(Role::Title, &mut |painter| {
-        let ghost = forecast::ghost(state).filter(|_| scene.preview.is_empty());
+        let ghost = ghost_path::ghost(state).filter(|_| scene.preview.is_empty());
         for pair in ghost.map_or(&[][..], |ghost| ghost.unchanged).windows(2) {
             let [from, to] = [&pair[0], &pair[1]].map(|point| MapPoint::new(point.n, point.e));
             painter.line(from, to);
@@ -160,7 +161,7 @@ pub(super) fn paint(state: &Shared, scene: &Scene, context: &mut Context<'_>) {
             legs(if number == 0 { home_or_last } else { scene.home }, spots, painter);
         }
         let is_free = scene.preview.is_empty() && state.survey.sweep().is_none();
-        if let Some(ghost) = forecast::ghost(state).filter(|_| is_free) {
+        if let Some(ghost) = ghost_path::ghost(state).filter(|_| is_free) {
             painter.dotted(ghost.path.iter().map(|point| MapPoint::new(point.n, point.e)));
         }
     });

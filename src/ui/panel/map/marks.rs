@@ -1,13 +1,12 @@
 //! The text of the map: waypoints, craft, home, scale and wind.
 
+use crate::ui::acts::{ghost_path, past_flight};
 use ratatui::buffer::Buffer;
 
 use crate::plan::WaypointType;
+use crate::ui::acts::map_edit::measure;
 use crate::ui::axis::round_length;
-use crate::ui::forecast;
-use crate::ui::map_edit::measure;
-use crate::ui::map_point::MapPoint;
-use crate::ui::past_flight;
+use crate::ui::model::map_point::MapPoint;
 use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
 
@@ -23,7 +22,7 @@ pub(super) fn write(state: &Shared, scene: &Scene, buffer: &mut Buffer) {
     let vehicle = &state.view.vehicle;
     let mut labels = Labels::new(theme, scene.view, buffer);
     frame_notes(state, &mut labels);
-    let ghost = forecast::ghost(state).filter(|_| scene.preview.is_empty());
+    let ghost = ghost_path::ghost(state).filter(|_| scene.preview.is_empty());
     let sweep = state.survey.sweep().filter(|_| scene.preview.is_empty());
     let ghost_line = state.survey.line().or(ghost.map(|ghost| format!("··· {}", ghost.line)));
     if let Some(line) = &ghost_line {

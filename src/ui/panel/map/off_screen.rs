@@ -1,9 +1,9 @@
 //! Arrows at the edge of the map to craft and home outside of it.
 
-use crate::ui::map_point::MapPoint;
+use crate::ui::acts::viewport::Viewport;
+use crate::ui::model::map_point::MapPoint;
 use crate::ui::shared::Shared;
 use crate::ui::theme::Role;
-use crate::ui::viewport::Viewport;
 
 use super::Scene;
 use super::labels::Labels;

@@ -3,9 +3,9 @@
 use ratatui::style::Color;
 use ratatui::widgets::canvas::{Line, Painter, Shape};
 
-use crate::ui::map_point::MapPoint;
-use crate::ui::track::TrackPoint;
-use crate::ui::viewport::Viewport;
+use crate::ui::acts::viewport::Viewport;
+use crate::ui::model::map_point::MapPoint;
+use crate::ui::model::track::TrackPoint;
 
 /// Points closer than this to the last drawn one are left out, dots.
 const NEAR_DOTS: f64 = 0.7;

@@ -3,9 +3,8 @@
 
 use super::{nothing_planned, table};
 use crate::plan::edit::fix::fix;
-use crate::ui::action::{Action, EditAction, spec_of};
-use crate::ui::editor::findings;
-use crate::ui::forecast;
+use crate::ui::acts::{estimate_line, findings};
+use crate::ui::model::action::{Action, EditAction, spec_of};
 use crate::ui::panel::in_words::{WIDTH, drawn};
 use crate::ui::shared::Shared;
 
@@ -29,7 +28,6 @@ pub(super) fn lines(state: &Shared) -> Vec<String> {
         lines.push(state.units.in_sentence(format!("{mark} {finding}{fix}")));
     }
     lines.extend((0..waypoints.len()).filter_map(|index| table::difference(state, index)));
-    lines
-        .extend(forecast::estimate_lines(state, WIDTH).iter().map(|line| line.to_string().trim().to_owned()));
+    lines.extend(estimate_line::lines(state, WIDTH).iter().map(|line| line.to_string().trim().to_owned()));
     lines
 }

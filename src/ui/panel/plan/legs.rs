@@ -3,7 +3,7 @@
 //! Distance, bearing and time are those of `plan show`. The charge is that of the flown estimate.
 
 use crate::plan::estimate::estimate;
-use crate::ui::editor::{findings, settings_in_force};
+use crate::ui::acts::{findings, settings_in_force};
 use crate::ui::formatting::compass;
 use crate::ui::shared::Shared;
 

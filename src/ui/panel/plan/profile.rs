@@ -4,10 +4,10 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 use crate::plan::estimate::estimate;
+use crate::ui::acts::{findings, settings_in_force};
 use crate::ui::axis::ticks;
 use crate::ui::curve::{self, Limits, Point as CurvePoint, Stroke};
 use crate::ui::drawing;
-use crate::ui::editor::{findings, settings_in_force};
 use crate::ui::raster::Raster;
 use crate::ui::shared::Shared;
 use crate::ui::theme::Role;

@@ -4,8 +4,8 @@ use crossterm::event::{KeyCode, KeyEvent};
 
 use super::{SettingsPanel, set};
 use crate::fc::{Allowed, CraftSetting};
-use crate::ui::message::{Change, Request};
-use crate::ui::settings::{Assignment, SettingsChange};
+use crate::ui::model::message::{Change, Request};
+use crate::ui::model::settings::{Assignment, SettingsChange};
 use crate::ui::shared::Shared;
 use crate::ui::text_field::TextField;
 

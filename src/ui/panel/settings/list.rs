@@ -6,9 +6,11 @@ use ratatui::text::Line;
 
 use super::{SettingsPanel, details};
 use crate::fc::CraftSetting;
+use crate::ui::acts::setting_list::{Row, planned, rows};
+use crate::ui::area::{line, row, span};
 use crate::ui::formatting::cut;
-use crate::ui::panel::{Panel, line, row, span};
-use crate::ui::settings::listing::{Comparison, Row, planned, rows};
+use crate::ui::model::panel_table::Panel;
+use crate::ui::model::settings::comparison::Comparison;
 use crate::ui::shared::Shared;
 use crate::ui::text_wrap::wrapped;
 use crate::ui::theme::Role;

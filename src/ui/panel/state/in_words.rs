@@ -3,10 +3,10 @@
 use super::transition_list::why;
 use super::{is_watch, short, short_name, time_of_leg};
 use crate::telemetry::Guard;
+use crate::ui::acts::status_message;
 use crate::ui::formatting::clock_ms;
 use crate::ui::panel::in_words::number;
 use crate::ui::shared::Shared;
-use crate::ui::status_message;
 use crate::ui::transitions::Transitions;
 
 /// The number of transitions shown.

@@ -5,11 +5,12 @@ use ratatui::layout::{Position, Rect};
 use ratatui::text::Line;
 
 use crate::telemetry::TransitionReason;
-use crate::ui::action::{Action, PanelAction};
-use crate::ui::event_log::Severity;
+use crate::ui::area::{line, row, span};
 use crate::ui::formatting::{clock, cut};
-use crate::ui::message::{Change, Request};
-use crate::ui::panel::{Panel, line, row, span};
+use crate::ui::model::action::{Action, PanelAction};
+use crate::ui::model::event_log::Severity;
+use crate::ui::model::message::{Change, Request};
+use crate::ui::model::panel_table::Panel;
 use crate::ui::search::has_all;
 use crate::ui::shared::Shared;
 use crate::ui::theme::Role;

@@ -1,16 +1,18 @@
 //! The output: one sentence per line.
 
+use crate::ui::acts::{ghost_path, surveys};
 use std::io::{self, Write};
 
 use crate::flight::forecast::ForecastKind;
 use crate::text::printable;
-use crate::ui::action::{Action, Context, EditAction, spec_of};
 use crate::ui::app_state::AppState;
-use crate::ui::message::{Effect, Msg};
-use crate::ui::panel::Panel;
+use crate::ui::model::action::{Action, Context, EditAction, spec_of};
+use crate::ui::model::effect::Effect;
+use crate::ui::model::message::Msg;
+use crate::ui::model::panel_table::Panel;
 use crate::ui::popup::Popup;
 use crate::ui::update::{self, run_line, update};
-use crate::ui::{command, forecast, prompt, status_bar, survey};
+use crate::ui::{command, prompt, status_bar};
 
 mod help;
 
@@ -126,7 +128,7 @@ impl<W: Write> Lines<W> {
             Msg::Forecast(reply) if reply.kind == ForecastKind::LookAhead => {
                 let effects = update(state, Msg::Forecast(reply));
                 if let Some(ghost) =
-                    forecast::ghost(&state.shared).filter(|_| state.shared.forecast.looks_ahead())
+                    ghost_path::ghost(&state.shared).filter(|_| state.shared.forecast.looks_ahead())
                 {
                     self.write(&ghost.line)?;
                     // Once for each request.
@@ -148,7 +150,7 @@ impl<W: Write> Lines<W> {
                 }
                 if is_last {
                     // Once for each request.
-                    survey::dismiss(&mut state.shared);
+                    surveys::dismiss(&mut state.shared);
                 }
                 Ok(effects)
             }

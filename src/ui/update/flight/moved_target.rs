@@ -2,7 +2,7 @@
 
 use crate::geo::distance_bearing;
 use crate::plan::{FlightPlan, LegAltitude, Waypoint, leg_altitudes};
-use crate::ui::action::Action;
+use crate::ui::model::action::Action;
 use crate::ui::shared::Shared;
 
 /// A waypoint that moves by more than this is asked about, m.

@@ -7,7 +7,7 @@ use betadeck_core::autopilot::fence::{FenceFacts, pre_flight};
 use betadeck_core::autopilot::machine::{Facts, Outcome, transition};
 use betadeck_core::autopilot::rx_loss::{RxLossFacts, decide};
 use betadeck_core::geo::LatLon;
-use betadeck_core::plan::format::WaypointRecord;
+use betadeck_core::plan::WaypointRecord;
 use betadeck_core::plan::validate::{PlanFault, WaypointFault, check_records};
 use betadeck_core::plan::{FlightPlan, HoldPattern, MAX_WAYPOINTS, Waypoint, WaypointType};
 use betadeck_core::telemetry::{AbortReason, FenceAction, PlanSource, Refusal, RxLossPolicy};

@@ -2,8 +2,8 @@
 
 use super::Point;
 use crate::plan::Waypoint;
-use crate::ui::map_point::origin::origin;
-use crate::ui::map_point::{MapPoint, to_map};
+use crate::ui::acts::origin::origin;
+use crate::ui::model::map_point::{MapPoint, to_map};
 use crate::ui::shared::Shared;
 
 /// Track points closer than this to each other share a mark of the profile: a share of its length, and m.

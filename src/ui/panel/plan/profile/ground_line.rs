@@ -2,9 +2,9 @@
 
 use super::Point;
 use super::flown::FlownPoint;
-use crate::ui::ground;
-use crate::ui::map_point::origin::origin;
-use crate::ui::map_point::{MapPoint, to_map};
+use crate::ui::acts::ground_under;
+use crate::ui::acts::origin::origin;
+use crate::ui::model::map_point::{MapPoint, to_map};
 use crate::ui::shared::Shared;
 
 /// The number of looks at the ground under the plan. No screen has more columns for them.
@@ -18,7 +18,7 @@ pub(super) struct GroundPoint {
 
 /// Returns the ground; empty without elevation tiles at home.
 pub(super) fn ground_line(state: &Shared, points: &[Point], flown: &[FlownPoint]) -> Vec<GroundPoint> {
-    let Some((relief, frame)) = ground::relief(state).zip(origin(state)) else { return Vec::new() };
+    let Some((relief, frame)) = ground_under::relief(state).zip(origin(state)) else { return Vec::new() };
     let Some(length_m) = points.last().map(|last| last.along_m) else { return Vec::new() };
     let waypoints = &state.plan().waypoints;
     let place_of = |point: &Point| {
@@ -45,7 +45,7 @@ pub(super) fn ground_line(state: &Shared, points: &[Point], flown: &[FlownPoint]
     places
         .into_iter()
         .filter_map(|(along_m, place)| {
-            let alt_m = ground::above_home_m(&relief, &frame, place)?;
+            let alt_m = ground_under::above_home_m(&relief, &frame, place)?;
             Some(GroundPoint { along_m, alt_m })
         })
         .collect()

@@ -1,8 +1,8 @@
 //! The help: all commands by topic, or one topic with a sentence for each of its commands.
 
 use crate::text::did_you_mean;
-use crate::ui::action::{ACTIONS, Spec};
 use crate::ui::command::{self, short_name};
+use crate::ui::model::action::{ACTIONS, Spec};
 
 /// Returns the topic of a line that asks for help; empty for all.
 pub(super) fn topic(line: &str) -> Option<&str> {
