@@ -6,7 +6,7 @@
 use betadeck::firmware::cli::Interpreter;
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::config::MixerKind;
-use betadeck::firmware::control::{ControlInput, Controller, LeanDemand, StickMode, Tuning};
+use betadeck::firmware::control::{ControlInput, Controller, StickMode, TiltDemand, Tuning};
 use betadeck::firmware::estimate::{Estimator, EstimatorOptions, EstimatorTuning};
 use betadeck::firmware::settings::Settings;
 use betadeck::firmware::{Firmware, FirmwareOptions};
@@ -83,7 +83,7 @@ fn input() -> ControlInput {
 fn estimate_and_control_1000_ticks(bencher: divan::Bencher, mode: &str) {
     let mut input = input();
     if mode == "navigator" {
-        input.lean = Some(LeanDemand { roll_rad: 0.1, pitch_down_rad: 0.15 });
+        input.tilt = Some(TiltDemand { roll_rad: 0.1, pitch_down_rad: 0.15 });
         input.yaw_rate_rps = Some(0.2);
         input.throttle = Some(0.45);
     }

@@ -31,8 +31,8 @@ const DEPART_S: f64 = 10.0;
 const ON_CIRCLE_S: f64 = 25.0;
 const RETURN_S: f64 = 80.0;
 const DESCEND_S: f64 = 95.0;
-/// The greatest lean, degrees, and the interval of the law, s.
-const MAX_LEAN_DEG: f64 = 30.0;
+/// The greatest tilt, degrees, and the interval of the law, s.
+const MAX_TILT_DEG: f64 = 30.0;
 const STEP_S: f64 = FRAME_US as f64 * 1e-6;
 const LOW_US: u16 = 1000;
 
@@ -47,22 +47,22 @@ struct Law {
 
 impl Law {
     /// Returns the sticks for a place (north and east of home, m), a velocity there, m/s, an acceleration, m/s², and an
-    /// altitude above home, m. `lean_us` is the stick for a lean of a degree, `hover_us` the throttle to begin with.
+    /// altitude above home, m. `tilt_us` is the stick for a tilt of a degree, `hover_us` the throttle to begin with.
     fn sticks(
         &mut self,
         estimate: &Estimate,
         [place, velocity, acceleration]: [Vector2<f64>; 3],
         alt_m: f64,
-        lean_us: f64,
+        tilt_us: f64,
         hover_us: f64,
     ) -> [u16; 4] {
         let error = place - estimate.pos_ne;
         self.position_sum = (self.position_sum + error * STEP_S).map(|sum| sum.clamp(-20.0, 20.0));
         let wanted =
             acceleration + error * 0.8 + (velocity - estimate.vel_ne) * 1.6 + self.position_sum * 0.15;
-        // The lean of a hovering craft accelerates it by g·tan(lean).
+        // The tilt of a hovering craft accelerates it by g·tan(tilt).
         let body = Rotation2::new(-estimate.heading_rad) * wanted;
-        let lean = |mps2: f64| (mps2 / 9.81).atan().to_degrees().clamp(-MAX_LEAN_DEG, MAX_LEAN_DEG);
+        let tilt = |mps2: f64| (mps2 / 9.81).atan().to_degrees().clamp(-MAX_TILT_DEG, MAX_TILT_DEG);
         let climb_mps = ((alt_m - estimate.alt_m) * 0.8).clamp(-1.0, 2.0);
         let climb_error = climb_mps - estimate.climb_mps;
         self.throttle_sum = (self.throttle_sum + climb_error * 40.0 * STEP_S).clamp(-300.0, 300.0);
@@ -70,8 +70,8 @@ impl Law {
             (hover_us - 1000.0 + self.throttle_sum + climb_error * 80.0) / estimate.cos_tilt.max(0.7);
         let stick = |value: f64| value.round().clamp(1000.0, 2000.0) as u16;
         [
-            stick(1500.0 + lean_us * lean(body.y)),
-            stick(1500.0 + lean_us * lean(body.x)),
+            stick(1500.0 + tilt_us * tilt(body.y)),
+            stick(1500.0 + tilt_us * tilt(body.x)),
             stick(1000.0 + throttle),
             1500,
         ]
@@ -135,11 +135,11 @@ fn fly(vehicle: &mut Vehicle) -> Result<(f64, bool), Box<dyn Error>> {
                 }
                 None => {}
                 Some(flown_s) => {
-                    let lean_us = (f64::from(firmware.forward_stick_us()) - 1500.0) / 15.0;
+                    let tilt_us = (f64::from(firmware.forward_stick_us()) - 1500.0) / 15.0;
                     let hover_us = f64::from(firmware.hover_stick_us());
                     // The target stays above the ground on the way down until the legs carry the craft.
                     let alt_m = if flown_s < DESCEND_S { ALTITUDE_M } else { estimate.alt_m - 1.0 };
-                    let sticks = law.sticks(estimate, way(flown_s), alt_m, lean_us, hover_us);
+                    let sticks = law.sticks(estimate, way(flown_s), alt_m, tilt_us, hover_us);
                     frame.channels[..4].copy_from_slice(&sticks);
                     if flown_s > DESCEND_S && estimate.alt_m < 0.3 && estimate.climb_mps.abs() < 0.1 {
                         frame.channels[2] = LOW_US;

@@ -41,8 +41,8 @@ struct Flown {
     flown_s: f64,
     /// Strongest wind at the craft, m/s.
     strongest_mps: f64,
-    /// Greatest lean, degrees.
-    lean_deg: f64,
+    /// Greatest tilt, degrees.
+    tilt_deg: f64,
     /// Greatest horizontal miss of a waypoint, m.
     miss_m: f64,
 }
@@ -56,7 +56,7 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
             println!(
                 "seed {seed}, {name:<8}: {:.0} s, wind up to {:.1} m/s, lean up to {:.0}°, waypoints missed by at \
                  most {:.2} m: {}",
-                flown.flown_s, flown.strongest_mps, flown.lean_deg, flown.miss_m, flown.reason
+                flown.flown_s, flown.strongest_mps, flown.tilt_deg, flown.miss_m, flown.reason
             );
             all_complete &= flown.complete;
         }
@@ -73,13 +73,13 @@ fn fly(seed: u64, air: fn(f64, &Vector3<f64>) -> Vector3<f64>) -> Result<Flown, 
     let (vehicle, _) = setup.build()?;
     let options = FlightOptions::default();
     let mut flight = Flight::new(vehicle, &options).map_err(|mode| format!("no channel switches {mode}"))?;
-    let (mut strongest_mps, mut lean_deg) = (0.0_f64, 0.0_f64);
+    let (mut strongest_mps, mut tilt_deg) = (0.0_f64, 0.0_f64);
     let end = loop {
         let vehicle = flight.vehicle_mut();
         if vehicle.time().0.is_multiple_of(AIR_TICK_US) {
             let truth = vehicle.truth().ok_or("the world is embedded")?;
             strongest_mps = strongest_mps.max(truth.wind_enu.norm());
-            lean_deg = lean_deg.max((truth.attitude * Vector3::z()).angle(&Vector3::z()).to_degrees());
+            tilt_deg = tilt_deg.max((truth.attitude * Vector3::z()).angle(&Vector3::z()).to_degrees());
             let blown = air(vehicle.time().as_secs_f64(), &truth.pos_enu);
             vehicle.set_added_wind(blown)?;
         }
@@ -92,7 +92,7 @@ fn fly(seed: u64, air: fn(f64, &Vector3<f64>) -> Vector3<f64>) -> Result<Flown, 
         reason: end.verdict.reason,
         flown_s: end.flown_s,
         strongest_mps,
-        lean_deg,
+        tilt_deg,
         miss_m: end.truth.waypoints.iter().map(|waypoint| waypoint.miss_m).fold(0.0, f64::max),
     })
 }

@@ -250,7 +250,7 @@ pub enum Command {
 
     /// Converts a plan file to another format and reports what that format cannot hold
     #[command(before_help = help::examples(&[
-        ("betadeck convert square.txt square.toml", "formats by the files' endings"),
+        ("betadeck convert square.txt square.toml", "formats by the files' extensions"),
         ("betadeck convert - plan.toml", "from standard input"),
         ("betadeck convert plan.toml - --to txt", "to standard output"),
         ("betadeck convert new.txt plan.toml --force", "replaces the existing plan.toml"),

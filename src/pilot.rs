@@ -66,7 +66,7 @@ pub struct PilotFacts {
     pub engaged: bool,
     /// `true` if the heading is known.
     pub heading_known: bool,
-    /// Pitch stick that leans the craft forward by 15° in ANGLE, µs.
+    /// Pitch stick that tilts the craft forward by 15° in ANGLE, µs.
     pub forward_stick_us: u16,
     /// Altitude above home, m.
     pub alt_m: f64,

@@ -21,8 +21,8 @@
 //!
 //! 1. Drawing without the state: `drawing`, `area`, `curve`, `raster`, `axis`, `theme`, `units`, `formatting`,
 //!    `text_field`, `text_wrap` and the like.
-//! 2. `model`: the state in parts, as plain data. [`model::message`] are the inputs and requests, [`model::effect`] the
-//!    requests to the shell, [`model::panel_table`] the panels, [`action`] the actions of keys.
+//! 2. `model`: the state in parts, as plain data. `model::message` are the inputs and requests, `model::effect` the
+//!    requests to the shell, `model::panel_table` the panels, [`action`] the actions of keys.
 //! 3. `shared`: the part of the state that all panels see, put together from the model.
 //! 4. `acts`: functions over it: what keys, clock and session do to it, and what is derived from it, such as findings
 //!    about the plan, the next step, the window of the map and the layout of the screen.

@@ -17,7 +17,7 @@ const MOMENT_S: f64 = 110.0;
 /// The time of the rewound picture, simulated seconds: on the leg before.
 const REWOUND_TO_S: f64 = 75.0;
 
-/// A picture, with its name in `docs/` without the ending.
+/// A picture, with its name in `docs/` without the extension.
 pub(crate) struct Picture {
     pub(crate) name: &'static str,
     pub(crate) svg: String,

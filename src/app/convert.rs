@@ -88,13 +88,14 @@ pub(super) fn run(args: &ConvertArgs) -> Result<u8, AppError> {
     })
 }
 
-/// Returns the file of each part: the named one for a single part, else with `-1`, `-2` and so on before its ending.
+/// Returns the file of each part: the named one for a single part, else with `-1`, `-2` and so on before its extension.
 fn paths(path: &Path, parts: usize) -> Vec<PathBuf> {
     let numbered = |number: usize| {
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-        let ending =
-            path.extension().map_or_else(String::new, |ending| format!(".{}", ending.to_string_lossy()));
-        path.with_file_name(format!("{stem}-{number}{ending}"))
+        let extension = path
+            .extension()
+            .map_or_else(String::new, |extension| format!(".{}", extension.to_string_lossy()));
+        path.with_file_name(format!("{stem}-{number}{extension}"))
     };
     if parts == 1 { vec![path.to_owned()] } else { (1..=parts).map(numbered).collect() }
 }
@@ -132,16 +133,16 @@ fn print_json(conversion: &Conversion, has_plan: bool) -> Result<(), AppError> {
 fn list() -> String {
     let rows = Format::iter().map(|format| {
         let info = format.info();
-        let endings: Vec<String> =
-            info.endings.iter().chain(info.also).map(|ending| format!(".{ending}")).collect();
+        let extensions: Vec<String> =
+            info.extensions.iter().chain(info.also).map(|extension| format!(".{extension}")).collect();
         let ways = if info.writes { "read, write" } else { "read" };
-        (format.to_string(), endings.join(" "), ways, info)
+        (format.to_string(), extensions.join(" "), ways, info)
     });
     let rows: Vec<_> = rows.collect();
-    let width = rows.iter().map(|(_, endings, ..)| endings.len()).max().unwrap_or_default();
+    let width = rows.iter().map(|(_, extensions, ..)| extensions.len()).max().unwrap_or_default();
     rows.iter()
-        .map(|(name, endings, ways, info)| {
-            format!("{name:<7}  {endings:<width$}  {ways:<11}  {}: {}\n", info.title, info.carries)
+        .map(|(name, extensions, ways, info)| {
+            format!("{name:<7}  {extensions:<width$}  {ways:<11}  {}: {}\n", info.title, info.carries)
         })
         .collect()
 }

@@ -6,7 +6,7 @@ use crate::files::named_file::{Kind, stem};
 use crate::scenario::Draft;
 use crate::timeline::RecordedFlight;
 
-const SCENARIO: Kind = Kind { ending: "toml", command: "scenario" };
+const SCENARIO: Kind = Kind { extension: "toml", command: "scenario" };
 
 /// Makes a scenario of the flight, flies it again, and writes it to `file`, or to a new file named after the plan.
 /// Never replaces an existing file. Returns a sentence with the name of the file, or with the reason for a failure.

@@ -20,11 +20,11 @@ pub struct ConvertArgs {
     #[arg(value_name = "OUT", required_unless_present = "list")]
     output: Option<OutputFile>,
 
-    /// Format of IN; --list names them [default: by its ending and its contents]
+    /// Format of IN; --list names them [default: by its extension and its contents]
     #[arg(long, value_name = "FORMAT", value_parser = value::format)]
     from: Option<Format>,
 
-    /// Format of OUT; --list names them [default: by its ending]
+    /// Format of OUT; --list names them [default: by its extension]
     #[arg(long, value_name = "FORMAT", value_parser = value::format)]
     to: Option<Format>,
 
@@ -32,7 +32,7 @@ pub struct ConvertArgs {
     #[arg(long)]
     pub force: bool,
 
-    /// Lists the formats, their endings, and what each carries
+    /// Lists the formats, their extensions, and what each carries
     #[arg(long, exclusive = true)]
     pub list: bool,
 
@@ -72,7 +72,7 @@ pub struct ConvertArgs {
     #[arg(long, value_name = "METRES", value_parser = value::spacing)]
     simplify: Option<f64>,
 
-    /// Writes several plans if the waypoints do not fit into one: OUT with -1, -2 and so on before its ending
+    /// Writes several plans if the waypoints do not fit into one: OUT with -1, -2 and so on before its extension
     ///
     /// Each part begins with the waypoint with which the one before ends.
     #[arg(long)]
@@ -124,14 +124,14 @@ impl ConvertArgs {
     ///
     /// # Errors
     ///
-    /// Returns an error if neither `--to` nor the ending of OUT gives a format that can be written. This cannot happen
+    /// Returns an error if neither `--to` nor the extension of OUT gives a format that can be written. This cannot happen
     /// after [`super::parse`], which checks it.
     pub fn target(&self) -> Result<Format, String> {
-        let by_ending = |path: &Path| Format::from_file_name(&path.to_string_lossy());
+        let by_extension = |path: &Path| Format::from_file_name(&path.to_string_lossy());
         let output = self.output();
         let found = self.to.or_else(|| match &output {
             OutputFile::Stdout => None,
-            OutputFile::File(path) => by_ending(path),
+            OutputFile::File(path) => by_extension(path),
         });
         let names = Format::names(true);
         let format = found.ok_or_else(|| match &output {
@@ -139,9 +139,9 @@ impl ConvertArgs {
                 format!("the format of standard output is not given: add --to with one of {names}")
             }
             OutputFile::File(path) => format!(
-                "{} has none of the endings {}: add --to with one of {names}",
+                "{} has none of the extensions {}: add --to with one of {names}",
                 path.display(),
-                Format::endings()
+                Format::extensions()
             ),
         })?;
         if !format.info().writes {

@@ -29,8 +29,8 @@ pub fn is_descriptor(path: &Path) -> bool {
 /// The reason why a text is not a plan.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "it is neither a built-in plan nor a file ending in {endings}{guess} (built in: {builtin})",
-    endings = Format::endings(),
+    "it is neither a built-in plan nor a file extension in {extensions}{guess} (built in: {builtin})",
+    extensions = Format::extensions(),
     builtin = PLANS.iter().map(|plan| plan.name).collect::<Vec<_>>().join(", ")
 )]
 pub struct PlanArgError {
@@ -56,7 +56,7 @@ impl FromStr for PlanArg {
 }
 
 impl PlanArg {
-    /// Returns the format of `contents`, which were read from this source, and a finding if the ending of the file
+    /// Returns the format of `contents`, which were read from this source, and a finding if the extension of the file
     /// names another one.
     pub fn format(&self, contents: &[u8]) -> (Format, Option<Finding>) {
         match self {

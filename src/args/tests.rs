@@ -216,7 +216,7 @@ fn wrong_values_say_what_is_allowed() {
         ("betadeck flly square", "did you mean betadeck fly?"),
         ("betadeck convrt", "did you mean betadeck convert?"),
         ("betadeck convert a.txt -", "add --to with one of toml, txt"),
-        ("betadeck convert a.txt b", "b has none of the endings .toml, .txt"),
+        ("betadeck convert a.txt b", "b has none of the extensions .toml, .txt"),
         ("betadeck convert a b.txt", "a: it is neither a built-in plan nor a file"),
         ("betadeck convert a.txt b.toml --from doc", "allowed are toml, txt"),
     ] {

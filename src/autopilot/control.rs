@@ -5,9 +5,9 @@ mod bumpless;
 mod disturbance;
 mod flight_controllers;
 mod hover_throttle;
-mod lean_limit;
 mod position;
 mod spool_up;
+mod tilt_limit;
 mod yaw;
 
 pub use altitude::{
@@ -19,6 +19,6 @@ pub use disturbance::DisturbanceObserver;
 pub use flight_controllers::FlightControllers;
 pub use hover_throttle::{HOVER_MAX_US, HOVER_MIN_US, HoverMeasurement, HoverThrottleEstimator};
 pub use position::{
-    LEAN_SLEW_RPS, PositionController, PositionLaw, PositionMeasurement, PositionTarget, earth_to_body,
+    PositionController, PositionLaw, PositionMeasurement, PositionTarget, TILT_SLEW_RPS, earth_to_body,
 };
 pub use yaw::{YAW_SLEW_DPS2, YawController, YawFacts, desired_heading, yaw_rate_dps};

@@ -1,7 +1,7 @@
 //! The land detector: distinguishes ground and air, whatever flies the craft.
 //!
 //! - `GroundContact`: the legs carry weight, according to the force that the accelerometer measures beyond the
-//!   thrust. Leans and attitude integrals then work against the ground.
+//!   thrust. Tilts and attitude integrals then work against the ground.
 //! - `ThrottleRelief`: probes for the ground in a descent. A craft that does not sink although it should gets less
 //!   and less throttle: on the ground until its weight is on the legs, in the air until it sinks again.
 //! - [`TouchdownGuards`] and [`TouchdownTimer`]: the conditions of a touchdown and the time that they have held.
@@ -200,9 +200,9 @@ impl LandDetector {
         self.relief.relief_us()
     }
 
-    /// Returns the share of the lean demand that is flown. A craft on the ground is not tilted on its legs.
-    pub fn lean_share(&self) -> f64 {
-        if self.on_ground() { 0.0 } else { self.relief.lean_share() }
+    /// Returns the share of the tilt demand that is flown. A craft on the ground is not tilted on its legs.
+    pub fn tilt_share(&self) -> f64 {
+        if self.on_ground() { 0.0 } else { self.relief.tilt_share() }
     }
 
     /// Returns `true` if attitude integrals would accumulate the forces of the ground: the legs carry weight, or a

@@ -134,8 +134,8 @@ impl Navigator {
             (self.task.facts(self.state, self.previous, &seen, controllers), seen)
         });
         let flown = self.steering.fly(self.state, &mut self.task, &seen, controllers);
-        if let Some(lean_rad) = flown.limited_lean_rad {
-            self.push(NavEvent::Limited { lean_rad });
+        if let Some(tilt_rad) = flown.limited_tilt_rad {
+            self.push(NavEvent::Limited { tilt_rad });
         }
         self.finish_update(Some((&facts, flown)), &seen, controllers);
         flown.output

@@ -110,43 +110,43 @@ parameters! {
         "Throttle response to the commanded climb rate.";
     /// Position gain: 0.025 per s of the speed law, 0.12 deg per m of the direct law.
     "ap_position_p" position_p: u8 = 30, 0..=200, Live,
-        "Lean response to position error.";
+        "Tilt response to position error.";
     /// Position integral of the direct law, 0.01 deg per m·s.
     "ap_position_i" position_i: u8 = 30, 0..=200, Live,
-        "Lean response to lasting position error.";
+        "Tilt response to lasting position error.";
     /// Position damping of the direct law, 0.15 deg per m/s.
     "ap_position_d" position_d: u8 = 30, 0..=200, Live,
-        "Lean response to speed.";
+        "Tilt response to speed.";
     /// Acceleration feedback of the direct law, 0.08 deg per m/s².
     "ap_position_a" position_a: u8 = 30, 0..=200, Live,
-        "Lean response to acceleration, and weight of the accelerometer.";
+        "Tilt response to acceleration, and weight of the accelerometer.";
     /// Stored, without effect.
     "ap_position_f" position_f: u8 = 30, 0..=200, Stored,
-        "Lean response to the commanded speed.";
+        "Tilt response to the commanded speed.";
     /// Low-pass of the measured acceleration, 0.1 Hz.
     "ap_position_cutoff" position_cutoff: u8 = 30, 1..=250, Live,
-        "Smoothing of the lean angle, 0.1 Hz.";
+        "Smoothing of the tilt angle, 0.1 Hz.";
     /// Stored, without effect, cm/s.
     "ap_stop_threshold" stop_threshold: u8 = 10, 0..=100, Stored,
         "Speed below which a hold counts as stopped, cm/s.";
-    /// Maximum lean, deg.
+    /// Maximum tilt, deg.
     "ap_max_angle" max_angle: u8 = 50, 10..=70, Live,
-        "Maximum lean of the autopilot, deg; also sets the turn radius.";
+        "Maximum tilt of the autopilot, deg; also sets the turn radius.";
     /// `true` if holds use the speed law too, else the direct law.
     "ap_velocity_control_enable" velocity_control_enable: bool = true, 0..=1, Live,
         "Control the speed over ground, not only the position.";
     /// Speed error gain, 0.1 deg per m/s.
     "ap_velocity_p" velocity_p: u8 = 50, 0..=200, Live,
-        "Lean response to speed error, 0.1 deg per m/s.";
+        "Tilt response to speed error, 0.1 deg per m/s.";
     /// Speed error integral gain, 0.1 deg per m.
     "ap_velocity_i" velocity_i: u8 = 10, 0..=200, Live,
-        "Lean response to lasting speed error, 0.1 deg per m.";
+        "Tilt response to lasting speed error, 0.1 deg per m.";
     /// Acceleration damping, 0.1 deg per m/s².
     "ap_velocity_d" velocity_d: u8 = 5, 0..=100, Live,
-        "Lean response to acceleration, 0.1 deg per m/s².";
+        "Tilt response to acceleration, 0.1 deg per m/s².";
     /// Drag feed-forward, 1e-4 deg per (m/s)².
     "ap_velocity_drag_coeff" velocity_drag_coeff: u16 = 50, 0..=1000, Live,
-        "Lean that compensates for air drag, 0.0001 deg per (m/s)2.";
+        "Tilt that compensates for air drag, 0.0001 deg per (m/s)2.";
     /// Default and maximum leg speed, cm/s.
     "ap_max_velocity" max_velocity: u16 = 500, 100..=5000, Live,
         "Maximum speed, and the speed of legs that set none, cm/s.";
@@ -198,9 +198,9 @@ parameters! {
     /// Stored, without effect, cm.
     "ap_nav_preturn_dist" nav_preturn_dist: u16 = 1500, 500..=5000, Stored,
         "Distance before a corner at which the turn begins, cm.";
-    /// Lean that sets the acceleration when speed builds up, deg; 0 = half of the maximum lean.
+    /// Tilt that sets the acceleration when speed builds up, deg; 0 = half of the maximum tilt.
     "ap_velocity_buildup_max_pitch" velocity_buildup_max_pitch: u8 = 8, 0..=20, Live,
-        "Nose-down lean that helps a slow craft to gain speed, deg.";
+        "Nose-down tilt that helps a slow craft to gain speed, deg.";
     /// Angular rate along hold patterns, deg/s.
     "ap_max_turn_rate" max_turn_rate: u8 = 3, 1..=90, Live,
         "Angular speed along orbits and figures of eight, deg/s.";
@@ -275,14 +275,14 @@ impl Params {
         Self::FIELDS.iter().find(|field| field.name == name)
     }
 
-    /// Returns the maximum lean, rad.
-    pub fn max_lean_rad(&self) -> f64 {
+    /// Returns the maximum tilt, rad.
+    pub fn max_tilt_rad(&self) -> f64 {
         f64::from(self.max_angle).to_radians()
     }
 
-    /// Returns the acceleration that the maximum lean allows for braking and turning, m/s²: g·sin(maximum lean).
+    /// Returns the acceleration that the maximum tilt allows for braking and turning, m/s²: g·sin(maximum tilt).
     pub fn max_accel_mps2(&self) -> f64 {
-        GRAVITY * math::sin(self.max_lean_rad())
+        GRAVITY * math::sin(self.max_tilt_rad())
     }
 
     /// Returns the acceleration when speed builds up, m/s².

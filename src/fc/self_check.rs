@@ -13,7 +13,7 @@ use crate::telemetry::snapshot::{EstimateView, TruthView};
 use crate::vehicle::Vehicle;
 
 /// The greatest error of roll and pitch, degrees.
-const LEAN_DEG: f64 = 2.0;
+const TILT_DEG: f64 = 2.0;
 /// The greatest error of the heading, degrees. The magnetic field that an executable computes points 2° east
 /// of north.
 const HEADING_DEG: f64 = 5.0;
@@ -102,9 +102,9 @@ fn finding(at_rest: &AtRest) -> Option<String> {
     else {
         return None;
     };
-    let leans = (roll - truth.roll_deg).abs() > LEAN_DEG || (pitch - truth.pitch_deg).abs() > LEAN_DEG;
+    let tilts = (roll - truth.roll_deg).abs() > TILT_DEG || (pitch - truth.pitch_deg).abs() > TILT_DEG;
     let turned = trusts_mag && off_by(heading, truth.heading_deg) > HEADING_DEG;
-    if leans || turned {
+    if tilts || turned {
         let way_out = match fitting_dialect(sent, &truth, heading).filter(|_| trusts_mag) {
             Some(fits) => format!("--fdm-dialect {fits} would fit"),
             None => "another --fdm-dialect may fit".to_owned(),
@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_trusted_magnetometer_the_heading_is_no_evidence_but_a_lean_is() {
+    fn without_a_trusted_magnetometer_the_heading_is_no_evidence_but_a_tilt_is() {
         let unknown_heading = AtRest { trusts_mag: false, ..at_rest(0.0, 0.0, 90.0) };
         assert_eq!(finding(&unknown_heading), None);
         let sentence = finding(&AtRest { trusts_mag: false, ..at_rest(0.0, 9.0, 0.0) }).unwrap();

@@ -17,8 +17,8 @@ use crate::storage::state_file::{self, Access};
 
 /// The folder in the state directory.
 pub(crate) const FOLDER: &str = "flights";
-/// The ending of the files.
-pub(crate) const ENDING: &str = "flight";
+/// The extension of the files.
+pub(crate) const EXTENSION: &str = "flight";
 /// The most files that are listed.
 const MAX_LISTED: usize = 10_000;
 /// The most recordings of a second with the same name.
@@ -101,7 +101,7 @@ fn files(folder: &Path) -> io::Result<Vec<PathBuf>> {
 }
 
 fn is_recording(path: &Path) -> bool {
-    path.extension().is_some_and(|ending| ending == ENDING)
+    path.extension().is_some_and(|extension| extension == EXTENSION)
 }
 
 /// Returns what a list shows of files, in their order. A recording without an end is read whole, so several are read at
@@ -198,7 +198,7 @@ impl Library {
         let stem = format!("{}-{}", header.date.trim_end_matches('Z').replace(':', "-"), stem(&header.plan));
         for number in 1..=MAX_NUMBERS {
             let suffix = if number == 1 { String::new() } else { format!("-{number}") };
-            let path = self.folder.join(format!("{stem}{suffix}.{ENDING}"));
+            let path = self.folder.join(format!("{stem}{suffix}.{EXTENSION}"));
             match temporary.persist_noclobber(&path) {
                 Ok(file) => {
                     self.open = Some(Growing { path, file, bytes: bytes.len() as u64, others: 0 });

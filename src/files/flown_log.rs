@@ -8,7 +8,7 @@ use crate::firmware::Firmware;
 use crate::firmware::blackbox::LogStream;
 use crate::timeline::RecordedFlight;
 
-const LOG: Kind = Kind { ending: "bbl", command: "log" };
+const LOG: Kind = Kind { extension: "bbl", command: "log" };
 
 /// Flies the flight again with a log, and writes it to `file`, or to a new file named after the plan. Never replaces an
 /// existing file. Returns a sentence with the name of the file, or with the reason for a failure.

@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 /// The most files with numbers after the plan's name.
 const MOST: u32 = 999;
 
-/// A kind of file: its ending, and the command that writes it to a file with a name.
+/// A kind of file: its extension, and the command that writes it to a file with a name.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Kind {
-    pub(crate) ending: &'static str,
+    pub(crate) extension: &'static str,
     pub(crate) command: &'static str,
 }
 
@@ -27,15 +27,15 @@ impl Kind {
     }
 
     fn create_numbered(self, stem: &str, contents: &[u8]) -> Result<PathBuf, String> {
-        let Self { ending, command } = self;
+        let Self { extension, command } = self;
         for number in 1..=MOST {
-            let path = PathBuf::from(format!("{stem}-flight-{number}.{ending}"));
+            let path = PathBuf::from(format!("{stem}-flight-{number}.{extension}"));
             if !path.exists() {
                 return self.create(&path, contents).map(|()| path);
             }
         }
         Err(format!(
-            "{stem}-flight-1.{ending} to {stem}-flight-{MOST}.{ending} exist already: name a file, `:{command} FILE`."
+            "{stem}-flight-1.{extension} to {stem}-flight-{MOST}.{extension} exist already: name a file, `:{command} FILE`."
         ))
     }
 
@@ -73,7 +73,7 @@ mod tests {
     fn a_file_that_is_there_is_never_replaced() {
         let directory = tempfile::tempdir().expect("a directory");
         let path = directory.path().join("mine.toml");
-        let kind = Kind { ending: "toml", command: "scenario" };
+        let kind = Kind { extension: "toml", command: "scenario" };
         assert_eq!(kind.write(Some(path.clone()), "plan", b"one"), Ok(path.clone()));
         let error = kind.write(Some(path.clone()), "plan", b"two").expect_err("there already");
         assert!(error.contains("exists already") && error.contains("`:scenario FILE`"), "{error}");

@@ -17,7 +17,7 @@ pub(crate) use whole::{FinalOutput, StreamedOutput, replace};
 
 /// Files of a state directory other than the stored configuration.
 const HISTORIES: [&str; 3] = ["commands.history", "cli.history", "palette.history"];
-/// The folder for the journals of edits, and their file ending.
+/// The folder for the journals of edits, and their file extension.
 const JOURNALS: (&str, &str) = ("plans", "journal");
 /// The folder in which a remote firmware keeps its configuration.
 const FIRMWARE: &str = "firmware";
@@ -109,7 +109,8 @@ fn state_folder(directory: &Path, path: &Path) -> Option<&'static str> {
 /// Returns `true` if a file with this name in this folder belongs to the program. A folder of plans may be the user's
 /// own.
 fn is_stored_in(folder: &str, path: &Path) -> bool {
-    folder != JOURNALS.0 || path.extension().is_some_and(|ending| ending == JOURNALS.1 || ending == "bad")
+    folder != JOURNALS.0
+        || path.extension().is_some_and(|extension| extension == JOURNALS.1 || extension == "bad")
 }
 
 /// Creates a file after a successful claim.

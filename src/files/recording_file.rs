@@ -16,7 +16,7 @@ pub(crate) use recorder::Recorder;
 
 /// The first bytes of a recording, those of a gzip member.
 pub(crate) const GZIP: [u8; 2] = [0x1f, 0x8b];
-const RECORDING: Kind = Kind { ending: "flight", command: "record" };
+const RECORDING: Kind = Kind { extension: "flight", command: "record" };
 
 /// Writes a recording to `file`, or to a new file named after the plan. Never replaces an existing file. Returns a
 /// sentence with the name of the file, or with the reason for a failure.

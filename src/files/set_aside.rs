@@ -4,8 +4,8 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-/// The ending of these files.
-const ENDING: &str = "bad";
+/// The extension of these files.
+const EXTENSION: &str = "bad";
 /// The most files with the same name.
 const MOST: u32 = 1000;
 
@@ -44,8 +44,8 @@ pub(crate) fn away(journal: &Path, why: String) -> SetAside {
 /// Copies a file to a free name and returns that name.
 pub(crate) fn copy(file: &Path) -> io::Result<PathBuf> {
     for number in 1..=MOST {
-        let ending = if number == 1 { ENDING.to_owned() } else { format!("{number}.{ENDING}") };
-        let kept = file.with_extension(ending);
+        let extension = if number == 1 { EXTENSION.to_owned() } else { format!("{number}.{EXTENSION}") };
+        let kept = file.with_extension(extension);
         // A second name takes no space on a full disk. Some file systems allow only one name for a file.
         let copied = match std::fs::hard_link(file, &kept) {
             Err(error) if error.kind() != ErrorKind::AlreadyExists => copy_bytes(file, &kept),

@@ -18,7 +18,7 @@ use crate::terrain::{
 /// The largest number of tiles. Nine of the largest ones take 470 MB.
 const MAX_TILES: usize = 9;
 
-/// The endings of packed `.hgt` tiles.
+/// The extensions of packed `.hgt` tiles.
 const PACKED: [&str; 2] = [".zip", ".gz"];
 
 /// The directories of the tiles, the first one first.
@@ -112,7 +112,7 @@ impl TerrainFiles {
     /// Reads the first readable file of a tile.
     fn tile(&self, square: Square, notices: &mut Vec<String>) -> Option<Grid> {
         let hgt = square.hgt_name();
-        let packed = PACKED.map(|ending| format!("{hgt}{ending}"));
+        let packed = PACKED.map(|extension| format!("{hgt}{extension}"));
         let names = [hgt, square.copernicus_name(10), square.copernicus_name(30)].into_iter().chain(packed);
         let names: Vec<String> = names.collect();
         let paths = self.directories.iter().flat_map(|folder| names.iter().map(|name| folder.join(name)));
@@ -150,7 +150,7 @@ fn places(home: LatLon, plan: &FlightPlan) -> Vec<LatLon> {
 fn read(path: &Path, square: Square) -> Result<Grid, String> {
     let name = path.display();
     let bytes = input_file::read_tile(path).map_err(|error| error.to_string())?;
-    let is_tiff = path.extension().is_some_and(|ending| ending == "tif");
+    let is_tiff = path.extension().is_some_and(|extension| extension == "tif");
     let grid = if is_tiff {
         decode_geotiff(&bytes, square)
     } else {

@@ -3,7 +3,7 @@
 //! ```text
 //! sticks ─► rates ─► smoothing ─┬─► acro setpoint ──────────┐
 //!                               └─► angle target ─┐         ▼
-//! navigator, holds ─► lean ───────────────────────┴► level ─► rate PID ─► mixer ─► motors
+//! navigator, holds ─► tilt ───────────────────────┴► level ─► rate PID ─► mixer ─► motors
 //!                   ─► throttle ──────────────────────────────────────────▲
 //! gyro ─► low-pass ─────────────────────────────────────────────▲
 //! ```
@@ -46,7 +46,7 @@ pub enum StickMode {
 
 /// An attitude demanded by the navigator or a hold mode. It replaces the pilot's angles.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct LeanDemand {
+pub struct TiltDemand {
     /// Roll, rad, right positive.
     pub roll_rad: f64,
     /// Pitch, rad, nose down positive.
@@ -71,8 +71,8 @@ pub struct ControlInput {
     pub throttle_us: f64,
     /// `true` if a new RC frame arrived since the last step.
     pub rc_frame: bool,
-    /// The lean demanded instead of the pilot's. It implies levelling.
-    pub lean: Option<LeanDemand>,
+    /// The tilt demanded instead of the pilot's. It implies levelling.
+    pub tilt: Option<TiltDemand>,
     /// The yaw rate demanded instead of the pilot's, rad/s, clockwise positive.
     pub yaw_rate_rps: Option<f64>,
     /// The throttle demanded instead of the pilot's, 0…1.
@@ -107,7 +107,7 @@ impl Default for ControlInput {
             stick_yaw: 0.0,
             throttle_us: 1000.0,
             rc_frame: false,
-            lean: None,
+            tilt: None,
             yaw_rate_rps: None,
             throttle: None,
             stands: false,

@@ -20,8 +20,8 @@
 //! all outputs use (north, east).
 //!
 //! The tilt correction follows Mahony (complementary filter on the rotation group): the accelerometer shows the
-//! vertical. But a multirotor that leans to accelerate feels only its thrust, along its own vertical axis, so this
-//! correction alone would slowly level out every lean. While the horizontal filter gets measurements, it knows the real
+//! vertical. But a multirotor that tilts to accelerate feels only its thrust, along its own vertical axis, so this
+//! correction alone would slowly level out every tilt. While the horizontal filter gets measurements, it knows the real
 //! acceleration of the craft, and the correction uses that.
 
 use nalgebra::{UnitQuaternion, Vector2, Vector3};
@@ -39,9 +39,9 @@ mod heading;
 mod history;
 mod horizontal;
 mod kalman;
-mod lean_check;
 mod schedule;
 mod straight;
+mod tilt_check;
 mod tuning;
 mod vertical;
 
@@ -84,8 +84,8 @@ pub struct Estimate {
     pub heading_valid: bool,
     /// The difference of the magnetometer from the course over ground, rad, while it is doubted because of it.
     pub heading_doubt_rad: Option<f64>,
-    /// The error of the lean at which gyro and accelerometer began to disagree, rad, while they do.
-    pub lean_doubt_rad: Option<f64>,
+    /// The error of the tilt at which gyro and accelerometer began to disagree, rad, while they do.
+    pub tilt_doubt_rad: Option<f64>,
     /// The roll angle, rad, right positive.
     pub roll_rad: f64,
     /// The pitch angle, rad, nose down positive.
@@ -163,7 +163,7 @@ impl Default for Estimate {
             attitude_valid: false,
             heading_valid: false,
             heading_doubt_rad: None,
-            lean_doubt_rad: None,
+            tilt_doubt_rad: None,
             roll_rad: 0.0,
             pitch_down_rad: 0.0,
             heading_rad: 0.0,

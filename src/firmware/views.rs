@@ -21,8 +21,8 @@ use super::{Firmware, FirmwareOptions, battery};
 
 /// The margin above the threshold at which a throttle stick is put as raised, µs.
 const RAISED_MARGIN_US: f64 = 12.5;
-/// A lean that gains speed quickly, degrees.
-const AHEAD_LEAN_DEG: f64 = 15.0;
+/// A tilt that gains speed quickly, degrees.
+const AHEAD_TILT_DEG: f64 = 15.0;
 /// A sink rate that every landing gear withstands, m/s.
 const GENTLE_SINK_MPS: f64 = 1.0;
 
@@ -122,9 +122,9 @@ impl Firmware {
         self.navigation.hover_stick_us(self.parameters()).round().clamp(1100.0, 1900.0) as u16
     }
 
-    /// Returns the pitch stick that leans the craft forward by 15° in ANGLE, µs.
+    /// Returns the pitch stick that tilts the craft forward by 15° in ANGLE, µs.
     pub fn forward_stick_us(&self) -> u16 {
-        let share = AHEAD_LEAN_DEG / self.parameters().control.level.limit_deg.max(AHEAD_LEAN_DEG);
+        let share = AHEAD_TILT_DEG / self.parameters().control.level.limit_deg.max(AHEAD_TILT_DEG);
         (1500.0 + 500.0 * share).round() as u16
     }
 

@@ -214,7 +214,7 @@ fn airframe(name: Option<&str>) -> Result<Airframe, AppError> {
 /// Returns `true` if the name is that of a TOML file, or of a pipe with one.
 fn is_airframe_file(name: &str) -> bool {
     let path = Path::new(name);
-    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) || is_descriptor(path)
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) || is_descriptor(path)
 }
 
 /// Returns the directory of `--state-dir`, or the user's; `None` with `--fresh`.

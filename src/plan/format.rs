@@ -70,7 +70,7 @@ pub use toml_table::{TomlTable, Value};
 /// A plan and the other contents of its file.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PlanFile {
-    /// The name of the plan, or the file's name without its ending if the file gives none.
+    /// The name of the plan, or the file's name without its extension if the file gives none.
     pub name: String,
     /// A description for people; may be empty.
     pub description: String,
@@ -263,7 +263,7 @@ pub fn write_with(file: &PlanFile, format: Format, options: &WriteOptions) -> Wr
     written
 }
 
-/// Returns the file's name without folders and ending; `plan` for standard input.
+/// Returns the file's name without folders and extension; `plan` for standard input.
 fn stem(name: &str) -> String {
     let base = name.rsplit(['/', '\\']).next().unwrap_or(name);
     let stem = base.rsplit_once('.').map_or(base, |(stem, _)| stem);

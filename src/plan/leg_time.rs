@@ -12,7 +12,7 @@ const STEP_S: f64 = 0.05;
 const FOLLOW: f64 = 1.5;
 /// Speeds with a smaller difference count as equal, m/s.
 const SAME_MPS: f64 = 0.02;
-/// The share of gravity along the maximum lean that the craft uses to plan a stop.
+/// The share of gravity along the maximum tilt that the craft uses to plan a stop.
 const STOP_SHARE: f64 = 0.35;
 /// The number of steps after which the rest of a leg is assumed to be flown at the last demanded speed.
 const MAX_STEPS: usize = 10_000;
@@ -46,10 +46,10 @@ impl Motion {
 
     /// Flies the leg in the direction of a unit vector and returns its time, s.
     pub(super) fn fly(&mut self, leg: &LegShape, along: Vector2<f64>, assumptions: &Assumptions) -> f64 {
-        let lean = GRAVITY * math::sin(assumptions.max_angle_deg.clamp(5.0, 80.0).to_radians());
+        let tilt = GRAVITY * math::sin(assumptions.max_angle_deg.clamp(5.0, 80.0).to_radians());
         let speed_up = match assumptions.buildup_deg {
             deg if deg > 0.0 => GRAVITY * math::tan(deg.min(45.0).to_radians()),
-            _ => 0.5 * lean,
+            _ => 0.5 * tilt,
         };
         let gain = 0.025 * assumptions.position_p;
         let mut speed = self.velocity.dot(&along);
@@ -62,17 +62,17 @@ impl Motion {
                 break;
             }
             if leg.stops {
-                let stop = (gain * left).min((2.0 * STOP_SHARE * lean * left).sqrt()).max(CREEP_MPS);
+                let stop = (gain * left).min((2.0 * STOP_SHARE * tilt * left).sqrt()).max(CREEP_MPS);
                 demand = leg.speed_mps.min(stop);
             }
             let before = setpoint;
-            setpoint += (demand - setpoint).clamp(-lean * STEP_S, speed_up * STEP_S);
+            setpoint += (demand - setpoint).clamp(-tilt * STEP_S, speed_up * STEP_S);
             let is_steady = (speed - leg.speed_mps).abs() < SAME_MPS
                 && (setpoint - leg.speed_mps).abs() < SAME_MPS
                 && (demand - leg.speed_mps).abs() < SAME_MPS;
-            let step = if is_steady { steady_s(leg, left, lean, gain) } else { STEP_S };
+            let step = if is_steady { steady_s(leg, left, tilt, gain) } else { STEP_S };
             let wanted = (setpoint - before) / STEP_S + FOLLOW * (setpoint - speed);
-            speed += wanted.clamp(-lean, lean) * STEP_S;
+            speed += wanted.clamp(-tilt, tilt) * STEP_S;
             left -= speed * step;
             elapsed += step;
         }
@@ -83,10 +83,10 @@ impl Motion {
 }
 
 /// Returns the time until a craft at steady speed slows down or arrives, s.
-fn steady_s(leg: &LegShape, left_m: f64, lean: f64, gain: f64) -> f64 {
+fn steady_s(leg: &LegShape, left_m: f64, tilt: f64, gain: f64) -> f64 {
     let until_m = if leg.stops {
         (leg.speed_mps / gain.max(0.01))
-            .max(math::powi(leg.speed_mps, 2) / (2.0 * STOP_SHARE * lean.max(0.1)))
+            .max(math::powi(leg.speed_mps, 2) / (2.0 * STOP_SHARE * tilt.max(0.1)))
     } else {
         leg.reach_m
     };

@@ -94,13 +94,13 @@ fn firmware(event: &FirmwareEvent) -> Option<String> {
             format!("The compass is {:.0}° off the GPS course: the course is used instead.", error_deg.abs())
         }
         FirmwareEvent::HeadingDoubt { on: false, .. } => "The compass agrees with the GPS course.".to_owned(),
-        FirmwareEvent::LeanDoubt { on: true, error_deg } => {
+        FirmwareEvent::TiltDoubt { on: true, error_deg } => {
             format!(
-                "Gyro and accelerometer disagree with the speed of the GPS: the estimated lean is off by {error_deg:.0}° \
+                "Gyro and accelerometer disagree with the speed of the GPS: the estimated tilt is off by {error_deg:.0}° \
                  (a step of the gyro, or a late GPS)."
             )
         }
-        FirmwareEvent::LeanDoubt { on: false, .. } => "Gyro, accelerometer and GPS agree again.".to_owned(),
+        FirmwareEvent::TiltDoubt { on: false, .. } => "Gyro, accelerometer and GPS agree again.".to_owned(),
         FirmwareEvent::Battery { state, cell_v } => battery(*state, *cell_v),
         FirmwareEvent::Notice(notice) => notice.to_string(),
     })
@@ -117,9 +117,9 @@ fn nav(event: &NavEvent) -> Option<String> {
         }
         NavEvent::Climbing(true) => "Climbing to the minimum altitude first.".to_owned(),
         NavEvent::Climbing(false) => "Climb done.".to_owned(),
-        NavEvent::Limited { lean_rad } => format!(
-            "Not enough throttle: lean limited to {:.0}° to keep the altitude, flying slower.",
-            lean_rad.to_degrees()
+        NavEvent::Limited { tilt_rad } => format!(
+            "Not enough throttle: tilt limited to {:.0}° to keep the altitude, flying slower.",
+            tilt_rad.to_degrees()
         ),
         NavEvent::Geofence { distance_m, limit_m, action } => {
             let what = match action {
@@ -130,7 +130,7 @@ fn nav(event: &NavEvent) -> Option<String> {
         }
         NavEvent::CannotHold { on: true, deviation } => {
             let binds = match deviation.limit {
-                HoldLimit::Lean => "; the lean is at its limit",
+                HoldLimit::Tilt => "; the tilt is at its limit",
                 HoldLimit::Throttle => "; the throttle is at its limit",
                 HoldLimit::Battery => "; the battery is too low",
                 HoldLimit::None => "",
@@ -289,8 +289,8 @@ mod tests {
             say(FirmwareEvent::Nav(NavEvent::CannotHold { on, deviation }))
         };
         assert_eq!(
-            say(true, -0.2, HoldLimit::Lean),
-            "Cannot hold: 23.4 m from the target, 0.2 m below its altitude; the lean is at its limit."
+            say(true, -0.2, HoldLimit::Tilt),
+            "Cannot hold: 23.4 m from the target, 0.2 m below its altitude; the tilt is at its limit."
         );
         assert_eq!(
             say(false, 0.1, HoldLimit::None),

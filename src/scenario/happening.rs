@@ -55,8 +55,8 @@ events! {
     BatteryEmpty "battery_empty" [CellVoltage] "all of the battery's charge was used";
     CannotHold "cannot_hold" [Distance, Vertical] "the navigator cannot hold its target, or can again, with the limit";
     HeadingDoubt "heading_doubt" [Error] "the magnetometer disagrees with the course, or agrees again";
-    LeanDoubt "lean_doubt" [Error] "gyro and accelerometer disagree on the lean, or agree again";
-    Limited "limited" [LeanLimit] "the thrust was not enough for the commanded lean";
+    TiltDoubt "lean_doubt" [Error] "gyro and accelerometer disagree on the tilt, or agree again";
+    Limited "limited" [TiltLimit] "the thrust was not enough for the commanded tilt";
     Climbing "climbing" [] "the climb before the first leg began or ended";
     Notice "notice" [] "the flight controller or the world reported something";
     Reply "reply" [] "the command line answered an input";
@@ -91,8 +91,8 @@ fields! {
     Vertical "vertical" LENGTH "vertical distance";
     Limit "limit" LENGTH "the fence";
     CellVoltage "cell_voltage" VOLTAGE "voltage of a cell";
-    Error "error" ANGLE "heading or lean error";
-    LeanLimit "lean_limit" ANGLE "maximum lean";
+    Error "error" ANGLE "heading or tilt error";
+    TiltLimit "lean_limit" ANGLE "maximum tilt";
     Sats "sats" NONE "satellites in use";
     Count "count" NONE "waypoints in the plan";
     Wp "wp" NONE "index of the waypoint at fault";
@@ -125,10 +125,10 @@ impl EventName {
                 .collect(),
             Self::Battery => ["WARNING", "CRITICAL", "EMPTY"].map(str::to_owned).to_vec(),
             Self::CannotHold => {
-                let limits = [HoldLimit::Lean, HoldLimit::Throttle, HoldLimit::Battery, HoldLimit::None];
+                let limits = [HoldLimit::Tilt, HoldLimit::Throttle, HoldLimit::Battery, HoldLimit::None];
                 on_off().into_iter().chain(limits.map(|limit| limit.to_string())).collect()
             }
-            Self::HeadingDoubt | Self::LeanDoubt | Self::Climbing => on_off().to_vec(),
+            Self::HeadingDoubt | Self::TiltDoubt | Self::Climbing => on_off().to_vec(),
             Self::End => RESULTS.map(str::to_owned).to_vec(),
             _ => Vec::new(),
         }

@@ -54,7 +54,7 @@ impl Signal {
             | Self::Pitch
             | Self::Heading
             | Self::Course
-            | Self::Lean
+            | Self::Tilt
             | Self::Force
             | Self::Motor1
             | Self::Motor2
@@ -138,7 +138,7 @@ impl EventName {
             | Self::Battery
             | Self::CannotHold
             | Self::HeadingDoubt
-            | Self::LeanDoubt
+            | Self::TiltDoubt
             | Self::Limited
             | Self::Climbing
             | Self::Notice

@@ -13,8 +13,8 @@ use crate::ui::{KeptOf, KeptScreen, KeptScreens, KeptTexts, Unread};
 /// The name of the file of flights, and of the folder of all other files.
 const NAME: &str = "screen.json";
 const FOLDER: &str = "screens";
-/// The ending of the files in the folder.
-const ENDING: &str = "json";
+/// The extension of the files in the folder.
+const EXTENSION: &str = "json";
 /// The most bytes of a file that are read.
 const MAX_BYTES: u64 = 1 << 20;
 /// The most crafts and recorded flights whose files are kept.
@@ -94,8 +94,8 @@ impl ScreenFile {
         };
         let folder = state.join(FOLDER);
         Self {
-            screen: Some(folder.join(format!("{kind}.{ENDING}"))),
-            subject: Some(folder.join(format!("{kind}-{number:016x}.{ENDING}"))),
+            screen: Some(folder.join(format!("{kind}.{EXTENSION}"))),
+            subject: Some(folder.join(format!("{kind}-{number:016x}.{EXTENSION}"))),
         }
     }
 
@@ -159,7 +159,7 @@ fn make_room(folder: &Path) {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let is_of_subject = |path: &PathBuf| {
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        path.extension().is_some_and(|ending| ending == ENDING) && name.contains('-')
+        path.extension().is_some_and(|extension| extension == EXTENSION) && name.contains('-')
     };
     let paths = entries.map(|entry| entry.path()).filter(is_of_subject);
     let mut dated: Vec<_> =

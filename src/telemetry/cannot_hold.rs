@@ -15,8 +15,10 @@
 )]
 #[strum(serialize_all = "lowercase")]
 pub enum HoldLimit {
-    /// The lean is at `ap_max_angle`.
-    Lean,
+    /// The tilt is at `ap_max_angle`.
+    #[strum(serialize = "lean")]
+    #[serde(rename = "Lean")]
+    Tilt,
     /// The throttle is at `ap_throttle_max`.
     Throttle,
     /// The throttle is at `ap_throttle_max`, and a low battery gives no more thrust.

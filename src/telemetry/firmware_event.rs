@@ -98,11 +98,12 @@ pub enum FirmwareEvent {
         /// The magnetic heading minus the heading by the course, degrees.
         error_deg: f64,
     },
-    /// Gyro and accelerometer disagree on the lean, or agree again.
-    LeanDoubt {
-        /// `true` if the lean is doubted, and corrected faster.
+    /// Gyro and accelerometer disagree on the tilt, or agree again.
+    #[serde(rename = "LeanDoubt")]
+    TiltDoubt {
+        /// `true` if the tilt is doubted, and corrected faster.
         on: bool,
-        /// The error of the lean at its beginning, degrees.
+        /// The error of the tilt at its beginning, degrees.
         error_deg: f64,
     },
     /// A notice for the pilot. It has no stored form: recordings keep its sentence.

@@ -136,11 +136,12 @@ pub enum NavEvent {
     },
     /// The climb before the first leg began (`true`) or ended.
     Climbing(bool),
-    /// The thrust does not suffice for the requested lean, so the lean is limited and the speed is lower.
+    /// The thrust does not suffice for the requested tilt, so the tilt is limited and the speed is lower.
     /// Sent once per leg.
     Limited {
-        /// The current maximum lean, rad.
-        lean_rad: f64,
+        /// The current maximum tilt, rad.
+        #[serde(rename = "lean_rad")]
+        tilt_rad: f64,
     },
     /// The craft left the fence.
     Geofence {

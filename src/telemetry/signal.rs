@@ -125,7 +125,7 @@ signals! {
             .filter(|truth| truth.ground_speed_mps() >= COURSE_MPS)
             .map(|truth| math::atan2(truth.ve, truth.vn).to_degrees().rem_euclid(360.0))
     };
-    Lean "lean" ANGLE "true tilt from level" = |o| {
+    Tilt "lean" ANGLE "true tilt from level" = |o| {
         let cos = |degrees: f64| math::cos(degrees.to_radians());
         o.truth.map(|truth| math::acos(cos(truth.roll_deg) * cos(truth.pitch_deg)).to_degrees())
     };
@@ -289,7 +289,7 @@ mod tests {
         let snapshot = Snapshot { truth: Some(truth), nav: Some(nav), ..Snapshot::default() };
         let read = |signal: Signal| signal.read(&Observed::of(&snapshot)).unwrap();
         assert!((read(Signal::Course) - 270.0).abs() < 1e-9);
-        assert!((read(Signal::Lean) - 10.0).abs() < 1e-9);
+        assert!((read(Signal::Tilt) - 10.0).abs() < 1e-9);
         assert!((read(Signal::PitchDemand) + 0.1_f64.to_degrees()).abs() < 1e-9, "nose down is negative");
     }
 }

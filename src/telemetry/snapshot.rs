@@ -343,7 +343,7 @@ impl SettingsView {
         }
     }
 
-    /// Returns the radius of a coordinated turn at this speed, m: R = V² / (g·tan θ) with the maximum lean.
+    /// Returns the radius of a coordinated turn at this speed, m: R = V² / (g·tan θ) with the maximum tilt.
     pub fn turn_radius_m(&self, speed_mps: f64) -> f64 {
         speed_mps * speed_mps / (GRAVITY * math::tan(self.max_angle_deg.to_radians())).max(0.1)
     }
@@ -355,9 +355,9 @@ impl SettingsView {
         }
         let speed_mps = wp.speed.own_mps().unwrap_or(self.max_velocity_mps);
         let radius_m = self.orbit_radius_m.max(0.1);
-        // The autopilot has the same limits: the setting, the speed of the leg and half of the maximum lean.
-        let by_lean = (0.5 * GRAVITY * math::tan(self.max_angle_deg.to_radians()) / radius_m).sqrt();
-        let rate_rps = self.max_turn_rate_dps.to_radians().min(speed_mps / radius_m).min(by_lean);
+        // The autopilot has the same limits: the setting, the speed of the leg and half of the maximum tilt.
+        let by_tilt = (0.5 * GRAVITY * math::tan(self.max_angle_deg.to_radians()) / radius_m).sqrt();
+        let rate_rps = self.max_turn_rate_dps.to_radians().min(speed_mps / radius_m).min(by_tilt);
         Some(rate_rps * wp.duration.get() / std::f64::consts::TAU)
     }
 }

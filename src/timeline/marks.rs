@@ -58,13 +58,13 @@ impl MarkKind {
             FirmwareEvent::GpsFix { .. }
             | FirmwareEvent::RxRecovered
             | FirmwareEvent::HeadingDoubt { on: false, .. }
-            | FirmwareEvent::LeanDoubt { on: false, .. } => Self::Recovery,
+            | FirmwareEvent::TiltDoubt { on: false, .. } => Self::Recovery,
             FirmwareEvent::Disarmed(_)
             | FirmwareEvent::GpsLost { .. }
             | FirmwareEvent::RxLoss
             | FirmwareEvent::Failsafe { .. }
             | FirmwareEvent::HeadingDoubt { on: true, .. }
-            | FirmwareEvent::LeanDoubt { on: true, .. }
+            | FirmwareEvent::TiltDoubt { on: true, .. }
             | FirmwareEvent::Battery {
                 state: BatteryAlarm::Warning | BatteryAlarm::Critical | BatteryAlarm::Empty,
                 ..

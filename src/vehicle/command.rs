@@ -9,7 +9,7 @@ use crate::signals::{RcFrame, RcSource};
 use crate::sim::{WorldCommand, WorldError};
 use crate::telemetry::{InFlightCommand, InFlightRefusal, Mode, Refusal};
 
-/// A command to a vehicle. [`Vehicle::apply`] carries it out.
+/// A command to a vehicle. [`Vehicle::apply`](super::Vehicle::apply) carries it out.
 #[derive(Debug, Clone, PartialEq)]
 pub enum VehicleCommand {
     /// An RC frame from a link.

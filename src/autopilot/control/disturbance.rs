@@ -1,4 +1,4 @@
-//! Estimates the acceleration that the lean does not explain: wind and drag.
+//! Estimates the acceleration that the tilt does not explain: wind and drag.
 
 use nalgebra::Vector2;
 
@@ -8,7 +8,7 @@ const BANDWIDTH_RPS: f64 = 2.0;
 const LIMIT_MPS2: f64 = 10.0;
 
 /// A velocity observer with the disturbance as its second state: `v̂' = a + d̂ + 2ω(v − v̂)`, `d̂' = ω²(v − v̂)`,
-/// where `a` is the acceleration of the actual lean. It needs no accelerometer, so accelerometer bias does not affect
+/// where `a` is the acceleration of the actual tilt. It needs no accelerometer, so accelerometer bias does not affect
 /// it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DisturbanceObserver {
@@ -22,10 +22,10 @@ impl DisturbanceObserver {
         self.accel
     }
 
-    /// Takes the measured ground `velocity` (m/s) and the acceleration of the actual lean (m/s²). Ignores values that
+    /// Takes the measured ground `velocity` (m/s) and the acceleration of the actual tilt (m/s²). Ignores values that
     /// are not finite.
-    pub fn update(&mut self, velocity: Vector2<f64>, lean_accel: Vector2<f64>, dt: f64) {
-        if !(velocity.sum() + lean_accel.sum() + dt).is_finite() {
+    pub fn update(&mut self, velocity: Vector2<f64>, tilt_accel: Vector2<f64>, dt: f64) {
+        if !(velocity.sum() + tilt_accel.sum() + dt).is_finite() {
             return;
         }
         let predicted = self.velocity.unwrap_or(velocity);
@@ -35,7 +35,7 @@ impl DisturbanceObserver {
             self.velocity = Some(velocity);
             return;
         }
-        self.velocity = Some(predicted + (lean_accel + self.accel + error * (2.0 * BANDWIDTH_RPS)) * dt);
+        self.velocity = Some(predicted + (tilt_accel + self.accel + error * (2.0 * BANDWIDTH_RPS)) * dt);
         let next = self.accel + error * (BANDWIDTH_RPS * BANDWIDTH_RPS * dt);
         self.accel = next.cap_magnitude(LIMIT_MPS2);
     }

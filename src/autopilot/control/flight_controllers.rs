@@ -1,13 +1,13 @@
 //! The controllers of a flight, lent to the code that flies the craft.
 
 use super::altitude::{AltitudeController, AltitudeMeasurement};
-use super::lean_limit::LeanLimiter;
 use super::position::{PositionController, PositionMeasurement};
+use super::tilt_limit::TiltLimiter;
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::land_detector::LandDetector;
 use crate::autopilot::params::Params;
 
-/// The altitude controller, the position controller, the lean limiter and the land detector of a craft. There is one
+/// The altitude controller, the position controller, the tilt limiter and the land detector of a craft. There is one
 /// of each.
 ///
 /// They are lent to the navigator or to the hold modes. The borrower engages a controller when it takes over, so that
@@ -18,7 +18,7 @@ pub struct FlightControllers {
     pub altitude: AltitudeController,
     pub position: PositionController,
     pub land: LandDetector,
-    lean: LeanLimiter,
+    tilt: TiltLimiter,
 }
 
 impl FlightControllers {
@@ -28,26 +28,26 @@ impl FlightControllers {
         self.position.engage(&PositionMeasurement::from(now));
     }
 
-    /// Limits the lean to what the thrust allows. Call it after the altitude controller was updated.
-    pub fn limit_lean(&mut self, now: &NavInputs, params: &Params) {
-        let limit_rad = self.lean.update(now, &self.altitude, params);
-        self.position.limit_lean(Some(limit_rad));
+    /// Limits the tilt to what the thrust allows. Call it after the altitude controller was updated.
+    pub fn limit_tilt(&mut self, now: &NavInputs, params: &Params) {
+        let limit_rad = self.tilt.update(now, &self.altitude, params);
+        self.position.limit_tilt(Some(limit_rad));
     }
 
-    /// Returns `true` if the thrust is too low for the commanded lean.
-    pub fn thrust_limits_lean(&self) -> bool {
-        self.lean.is_reduced() && self.position.is_saturated()
+    /// Returns `true` if the thrust is too low for the commanded tilt.
+    pub fn thrust_limits_tilt(&self) -> bool {
+        self.tilt.is_reduced() && self.position.is_saturated()
     }
 
-    /// Tracks a cycle whose throttle does not come from this altitude controller. The pilot balances lean against
+    /// Tracks a cycle whose throttle does not come from this altitude controller. The pilot balances tilt against
     /// altitude.
     pub fn track_altitude(&mut self, now: &NavInputs, params: &Params) {
-        self.lean = LeanLimiter::default();
-        self.position.limit_lean(None);
+        self.tilt = TiltLimiter::default();
+        self.position.limit_tilt(None);
         self.altitude.track(&AltitudeMeasurement::from(now), params, now.dt);
     }
 
-    /// Tracks a cycle whose lean does not come from this position controller. Does nothing without a fix.
+    /// Tracks a cycle whose tilt does not come from this position controller. Does nothing without a fix.
     pub fn track_position(&mut self, now: &NavInputs) {
         if now.fix {
             self.position.track(&PositionMeasurement::from(now), now.dt);
@@ -62,7 +62,7 @@ mod tests {
     use nalgebra::Vector2;
 
     /// Returns the controllers of a craft that hovers at 1900 µs and flies at full speed for a second, with at most
-    /// 60° of lean.
+    /// 60° of tilt.
     fn weak_craft() -> (FlightControllers, NavInputs, Params) {
         let params = Params { max_angle: 60, hover_throttle: 1900, ..Params::default() };
         let now = NavInputs { throttle_us: 1900.0, ..NavInputs::hovering() };
@@ -75,24 +75,24 @@ mod tests {
         };
         for _ in 0..300 {
             controllers.altitude.update(&(&now).into(), AltitudeTarget::Altitude(20.0), &params, now.dt);
-            controllers.limit_lean(&now, &params);
+            controllers.limit_tilt(&now, &params);
             controllers.position.update(&(&now).into(), &far, &params, now.dt);
         }
         (controllers, now, params)
     }
 
     #[test]
-    fn a_lean_that_the_thrust_cuts_is_reported() {
+    fn a_tilt_that_the_thrust_cuts_is_reported() {
         let (controllers, _, params) = weak_craft();
-        assert!(controllers.position.max_lean_rad(&params) < 0.5);
-        assert!(controllers.thrust_limits_lean());
+        assert!(controllers.position.max_tilt_rad(&params) < 0.5);
+        assert!(controllers.thrust_limits_tilt());
     }
 
     #[test]
-    fn a_pilot_who_flies_the_altitude_gets_the_whole_lean() {
+    fn a_pilot_who_flies_the_altitude_gets_the_whole_tilt() {
         let (mut controllers, now, params) = weak_craft();
         controllers.track_altitude(&now, &params);
-        assert_eq!(controllers.position.max_lean_rad(&params), params.max_lean_rad());
-        assert!(!controllers.thrust_limits_lean());
+        assert_eq!(controllers.position.max_tilt_rad(&params), params.max_tilt_rad());
+        assert!(!controllers.thrust_limits_tilt());
     }
 }

@@ -21,11 +21,11 @@ const FAR_M: f64 = 2.0;
 /// changed.
 const FAR_S: f64 = 1.0;
 /// The throttle is the hover throttle while the craft is slower than this, m/s, accelerates less than this, m/s², and
-/// leans less than this, for this time, s. A steady climb has no acceleration either, but needs throttle against
+/// tilts less than this, for this time, s. A steady climb has no acceleration either, but needs throttle against
 /// inflow and drag.
 const STILL_CLIMB_MPS: f64 = 0.3;
 const STILL_ACCEL_MPS2: f64 = 0.5;
-const STILL_LEAN_RAD: f64 = 15.0 * std::f64::consts::PI / 180.0;
+const STILL_TILT_RAD: f64 = 15.0 * std::f64::consts::PI / 180.0;
 const STILL_S: f64 = 0.5;
 /// The maximum throttle that drag and inflow are assumed to cost in a climb, and to give back in a descent, µs per
 /// m/s.
@@ -142,7 +142,7 @@ impl HoverThrottleEstimator {
         self.airborne_s = if now.altitude_m > AIRBORNE_M { self.airborne_s + dt } else { 0.0 };
         let is_still = now.climb_mps.abs() < STILL_CLIMB_MPS
             && accel.abs() < STILL_ACCEL_MPS2
-            && now.cos_tilt > math::cos(STILL_LEAN_RAD);
+            && now.cos_tilt > math::cos(STILL_TILT_RAD);
         self.still_s = if is_still { self.still_s + dt } else { 0.0 };
         if self.hovers() && self.airborne_s > 0.0 {
             let estimate = self.estimate_us.unwrap_or(instant);

@@ -1,4 +1,4 @@
-//! Position control: turns a target place into a lean towards north and east.
+//! Position control: turns a target place into a tilt towards north and east.
 
 use nalgebra::Vector2;
 
@@ -22,7 +22,7 @@ const BLEED_HALF_LIFE_S: f64 = 2.5;
 /// the lag of acceleration and braking.
 const HALF_INTEGRAL_ACCEL: f64 = 0.3;
 /// The rate at which the velocity setpoint closes small differences, rad/s. Without it, a turn of the direction at
-/// walking pace would kick the lean.
+/// walking pace would kick the tilt.
 const SETPOINT_RPS: f64 = 5.0;
 /// The factor by which the craft may be faster than its target when it follows a pattern.
 const CHASE: f64 = 1.1;
@@ -32,15 +32,15 @@ const ON_PATTERN: f64 = 0.5;
 const MAX_TRIM: f64 = 0.5;
 /// The lag of the velocity behind its setpoint, s.
 const VELOCITY_LAG_S: f64 = 0.3;
-/// The maximum lead of the speed setpoint over the speed while the thrust limits the lean, m/s.
+/// The maximum lead of the speed setpoint over the speed while the thrust limits the tilt, m/s.
 const SPEED_LEAD_MPS: f64 = 1.0;
-/// The fastest change of the lean limit in use, rad/s.
+/// The fastest change of the tilt limit in use, rad/s.
 const LIMIT_SLEW: f64 = 30.0 * DEG;
-/// The fastest change of the lean demand, rad/s.
-pub const LEAN_SLEW_RPS: f64 = 200.0 * DEG;
+/// The fastest change of the tilt demand, rad/s.
+pub const TILT_SLEW_RPS: f64 = 200.0 * DEG;
 const DEG: f64 = std::f64::consts::PI / 180.0;
 
-/// Converts a lean towards (north, east) to (forward, right) of a craft that heads `heading_rad`.
+/// Converts a tilt towards (north, east) to (forward, right) of a craft that heads `heading_rad`.
 pub fn earth_to_body(ne: Vector2<f64>, heading_rad: f64) -> Vector2<f64> {
     let (sin, cos) = math::sin_cos(heading_rad);
     Vector2::new(ne.x * cos + ne.y * sin, -ne.x * sin + ne.y * cos)
@@ -60,8 +60,8 @@ pub struct PositionMeasurement {
     pub velocity: Vector2<f64>,
     /// Acceleration, m/s².
     pub accel: Vector2<f64>,
-    /// Current lean (forward, right), rad.
-    pub lean_body: Vector2<f64>,
+    /// Current tilt (forward, right), rad.
+    pub tilt_body: Vector2<f64>,
     /// Heading, rad clockwise from north.
     pub heading_rad: f64,
 }
@@ -72,7 +72,7 @@ impl From<&NavInputs> for PositionMeasurement {
             position: now.pos_ne,
             velocity: now.vel_ne,
             accel: now.accel_ne,
-            lean_body: Vector2::new(now.pitch_down_rad, now.roll_rad),
+            tilt_body: Vector2::new(now.pitch_down_rad, now.roll_rad),
             heading_rad: now.heading_rad,
         }
     }
@@ -80,9 +80,9 @@ impl From<&NavInputs> for PositionMeasurement {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PositionLaw {
-    /// Position error → speed → lean: legs, and holds with `ap_velocity_control_enable`.
+    /// Position error → speed → tilt: legs, and holds with `ap_velocity_control_enable`.
     Speed,
-    /// Position error → lean: holds without it.
+    /// Position error → tilt: holds without it.
     Direct,
 }
 
@@ -136,11 +136,11 @@ pub struct PositionController {
     direct_integral: Vector2<f64>,
     saturated: bool,
     limit_rad: Option<f64>,
-    /// Lean that the thrust allows, rad, or `None` while the thrust is not monitored.
+    /// Tilt that the thrust allows, rad, or `None` while the thrust is not monitored.
     thrust_limit_rad: Option<f64>,
     params: Option<Params>,
     transfer: [BumplessTransfer; 2],
-    /// Lean from which to continue, flown by something else until now.
+    /// Tilt from which to continue, flown by something else until now.
     flown: Option<Vector2<f64>>,
     /// Demand of the last update, rad.
     demand: Option<Vector2<f64>>,
@@ -160,30 +160,30 @@ impl PositionController {
         self.speed = now.velocity.norm();
         self.saturated = false;
         self.limit_rad = None;
-        let flown = body_to_earth(now.lean_body, now.heading_rad);
+        let flown = body_to_earth(now.tilt_body, now.heading_rad);
         self.flown = Some(flown);
         self.demand = Some(flown);
     }
 
-    /// Takes over with empty integrals, setpoints at the craft, and the lean where it was.
+    /// Takes over with empty integrals, setpoints at the craft, and the tilt where it was.
     pub fn engage(&mut self, now: &PositionMeasurement) {
         *self = Self { observer: self.observer, thrust_limit_rad: self.thrust_limit_rad, ..Self::default() };
         self.track(now, 0.0);
     }
 
-    /// Returns `true` if the demand is limited to the maximum lean.
+    /// Returns `true` if the demand is limited to the maximum tilt.
     pub fn is_saturated(&self) -> bool {
         self.saturated
     }
 
-    /// Limits the lean to what the thrust allows, rad. `None` if no controller keeps the altitude.
-    pub(super) fn limit_lean(&mut self, limit_rad: Option<f64>) {
+    /// Limits the tilt to what the thrust allows, rad. `None` if no controller keeps the altitude.
+    pub(super) fn limit_tilt(&mut self, limit_rad: Option<f64>) {
         self.thrust_limit_rad = limit_rad;
     }
 
-    /// Returns the maximum lean that may be flown, rad.
-    pub fn max_lean_rad(&self, params: &Params) -> f64 {
-        self.thrust_limit_rad.unwrap_or(f64::INFINITY).min(params.max_lean_rad())
+    /// Returns the maximum tilt that may be flown, rad.
+    pub fn max_tilt_rad(&self, params: &Params) -> f64 {
+        self.thrust_limit_rad.unwrap_or(f64::INFINITY).min(params.max_tilt_rad())
     }
 
     /// Returns the speed setpoint, m/s.
@@ -191,8 +191,8 @@ impl PositionController {
         self.speed
     }
 
-    /// Returns the lean towards (north, east) in rad that leads to `target`, `dt` seconds after the last update,
-    /// inside the maximum lean.
+    /// Returns the tilt towards (north, east) in rad that leads to `target`, `dt` seconds after the last update,
+    /// inside the maximum tilt.
     pub fn update(
         &mut self,
         now: &PositionMeasurement,
@@ -218,15 +218,15 @@ impl PositionController {
         let finite = wanted.iter().all(|axis| axis.is_finite());
         let wanted = if finite { wanted.cap_magnitude(limit) } else { Vector2::zeros() };
         let slewed =
-            self.demand.map_or(wanted, |last| last + (wanted - last).cap_magnitude(LEAN_SLEW_RPS * dt));
+            self.demand.map_or(wanted, |last| last + (wanted - last).cap_magnitude(TILT_SLEW_RPS * dt));
         let demand = slewed.cap_magnitude(limit);
         self.demand = Some(demand);
         demand
     }
 
     fn observe(&mut self, now: &PositionMeasurement, dt: f64) {
-        let lean = body_to_earth(now.lean_body, now.heading_rad);
-        let accel = lean.map(|axis| GRAVITY * math::tan(axis.clamp(-1.3, 1.3)));
+        let tilt = body_to_earth(now.tilt_body, now.heading_rad);
+        let accel = tilt.map(|axis| GRAVITY * math::tan(axis.clamp(-1.3, 1.3)));
         self.observer.update(now.velocity, accel, dt);
     }
 
@@ -250,8 +250,8 @@ impl PositionController {
         let demand = if frame.is_some() { chase.norm() } else { demand };
         let brake = params.max_accel_mps2();
         self.speed += (demand - self.speed).clamp(-brake * dt, params.build_up_accel_mps2() * dt);
-        if self.max_lean_rad(params) < params.max_lean_rad() {
-            // The setpoint must not exceed a speed that the lean can hold.
+        if self.max_tilt_rad(params) < params.max_tilt_rad() {
+            // The setpoint must not exceed a speed that the tilt can hold.
             self.speed = self.speed.min(now.velocity.norm() + SPEED_LEAD_MPS);
         }
         let direction = chase.try_normalize(1e-6).unwrap_or(direction);
@@ -317,11 +317,11 @@ impl PositionController {
 
     fn law(&self, now: &PositionMeasurement, target: &PositionTarget, params: &Params) -> Vector2<f64> {
         let wind = self.observer.accel().map(|axis| -math::atan(axis / GRAVITY));
-        let lean = match target.law {
+        let tilt = match target.law {
             PositionLaw::Speed => self.speed_law(now, params),
             PositionLaw::Direct => self.direct_law(now, target, params),
         };
-        lean + wind
+        tilt + wind
     }
 
     fn speed_law(&self, now: &PositionMeasurement, params: &Params) -> Vector2<f64> {
@@ -360,9 +360,9 @@ impl PositionController {
         Vector2::new(self.transfer[0].remaining(), self.transfer[1].remaining())
     }
 
-    /// Returns the maximum lean, which follows that of the parameter at a limited rate.
+    /// Returns the maximum tilt, which follows that of the parameter at a limited rate.
     fn slew_limit(&mut self, params: &Params, dt: f64) -> f64 {
-        let wanted = self.max_lean_rad(params);
+        let wanted = self.max_tilt_rad(params);
         let limit = match self.limit_rad {
             Some(old) => old + (wanted - old).clamp(-LIMIT_SLEW * dt, LIMIT_SLEW * dt),
             None => wanted,

@@ -8,9 +8,9 @@ use crate::math;
 const TURN_GRAVITY: f64 = 9.8;
 
 /// Returns the distance before a FLYBY waypoint at which the turn begins, m: `R = V²/(g·tan θ)` for the ground speed
-/// (m/s, at least 1) and the maximum lean (rad), within 0.5…1000 m. It is the exact tangent distance of a 90° corner.
-pub fn turn_radius_m(ground_speed_mps: f64, max_lean_rad: f64) -> f64 {
-    let tan = math::tan(max_lean_rad);
+/// (m/s, at least 1) and the maximum tilt (rad), within 0.5…1000 m. It is the exact tangent distance of a 90° corner.
+pub fn turn_radius_m(ground_speed_mps: f64, max_tilt_rad: f64) -> f64 {
+    let tan = math::tan(max_tilt_rad);
     if tan < 0.1 {
         return 1000.0;
     }

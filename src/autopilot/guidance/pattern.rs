@@ -52,11 +52,11 @@ pub fn figure8(width_m: f64, phase_rad: f64) -> PatternPoint {
 }
 
 /// Returns the angular rate along a circle of `radius_m`, rad/s: `ap_max_turn_rate`, limited by the speed of the leg
-/// and by half the acceleration of the maximum lean, so that the circle can be flown.
+/// and by half the acceleration of the maximum tilt, so that the circle can be flown.
 pub fn pattern_rate_rps(radius_m: f64, leg_speed_mps: f64, params: &Params) -> f64 {
     let radius = radius_m.max(0.1);
-    let by_lean = (0.5 * GRAVITY * math::tan(params.max_lean_rad()) / radius).sqrt();
-    f64::from(params.max_turn_rate).to_radians().min(leg_speed_mps / radius).min(by_lean)
+    let by_tilt = (0.5 * GRAVITY * math::tan(params.max_tilt_rad()) / radius).sqrt();
+    f64::from(params.max_turn_rate).to_radians().min(leg_speed_mps / radius).min(by_tilt)
 }
 
 /// Returns the remaining time of a hold, s, rounded down to tenths. It is infinite if the hold is endless.

@@ -11,7 +11,7 @@ pub fn leg_speed_mps(speed: LegSpeed, params: &Params) -> f64 {
 }
 
 /// Returns the speed (m/s) at `distance_m` from a point to stop at. Near the point it is proportional to the distance
-/// (0.025·`ap_position_p` per second), farther out it is on the parabola of 0.35·g·sin(maximum lean). It is never
+/// (0.025·`ap_position_p` per second), farther out it is on the parabola of 0.35·g·sin(maximum tilt). It is never
 /// above the speed of the leg.
 pub fn stop_speed_mps(distance_m: f64, leg_speed_mps: f64, params: &Params) -> f64 {
     let gain = 0.025 * f64::from(params.position_p);

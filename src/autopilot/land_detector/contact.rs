@@ -2,7 +2,7 @@
 //!
 //! In the air the accelerometer measures the thrust; on the ground it measures gravity whatever the motors do. The
 //! thrust of a motor command is learned in flight, so the force beyond it is weight on the legs. There, a craft that
-//! its autopilot keeps in place would lean against the ground until it falls over.
+//! its autopilot keeps in place would tilt against the ground until it falls over.
 
 use super::GroundMeasurement;
 use crate::geo::GRAVITY;

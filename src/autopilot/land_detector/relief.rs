@@ -122,8 +122,8 @@ impl ThrottleRelief {
         self.relief_us
     }
 
-    /// Returns the share of the lean demand that is flown.
-    pub(super) fn lean_share(&self) -> f64 {
+    /// Returns the share of the tilt demand that is flown.
+    pub(super) fn tilt_share(&self) -> f64 {
         1.0 - (self.relief_us / LEVEL_US).min(1.0)
     }
 
@@ -144,11 +144,11 @@ mod tests {
         let facts = DescentFacts::new(&now, &params, (-5.0, 1300.0), params.descent_rate_mps());
         let mut relief = ThrottleRelief::default();
         relief.begin(0.0);
-        assert_eq!(relief.lean_share(), 1.0);
+        assert_eq!(relief.tilt_share(), 1.0);
         let (mut before, mut steps) = (1.0, 0);
-        while relief.lean_share() > 0.0 {
+        while relief.tilt_share() > 0.0 {
             relief.update(&facts, 0.01);
-            let share = relief.lean_share();
+            let share = relief.tilt_share();
             assert!((0.0..before).contains(&share), "{share} after {before}");
             (before, steps) = (share, steps + 1);
         }

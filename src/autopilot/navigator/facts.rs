@@ -56,7 +56,7 @@ impl Task {
                 distance_m: seen.distance_m,
                 altitude_error_m: self.leg.altitude_m - now.alt_m,
                 plane,
-                turn_radius_m: turn_radius_m(seen.ground_speed_mps, params.max_lean_rad()),
+                turn_radius_m: turn_radius_m(seen.ground_speed_mps, params.max_tilt_rad()),
                 arrival_radius_m: params.arrival_radius_m(),
                 hold_radius_m: params.hold_radius_m(),
                 held_off_s: self.leg.altitude_wait.held_off_s(now.time),
@@ -131,7 +131,7 @@ impl Task {
             let turn = LegTurn {
                 ground_speed_mps: seen.ground_speed_mps,
                 speed_mps: seen.ground_speed_mps.max(speed_setpoint_mps),
-                max_lean_rad: seen.params.max_lean_rad(),
+                max_tilt_rad: seen.params.max_tilt_rad(),
                 arc_rps: self.leg.arc_rps(),
             };
             self.leg.progress.update(self.progress_distance_m(seen), &turn, seen.now.time);

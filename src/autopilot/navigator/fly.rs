@@ -22,8 +22,8 @@ const FULL_STICK: f64 = 500.0;
 pub(super) struct Flown {
     pub output: NavOutput,
     pub path: PathView,
-    /// Maximum lean, rad, if it must be reported now that the thrust is too low for the lean. This is once per leg.
-    pub limited_lean_rad: Option<f64>,
+    /// Maximum tilt, rad, if it must be reported now that the thrust is too low for the tilt. This is once per leg.
+    pub limited_tilt_rad: Option<f64>,
 }
 
 /// No setpoint outside a landing goes below this altitude, m, unless the waypoint is well below home.
@@ -109,29 +109,29 @@ impl Steering {
             AltitudeTarget::Landing { setpoint_m, .. } => setpoint_m,
             AltitudeTarget::Rate(_) => altitude_controller.setpoint_m(),
         };
-        controllers.limit_lean(now, params);
+        controllers.limit_tilt(now, params);
         let is_limited =
-            controllers.thrust_limits_lean() && !std::mem::replace(&mut task.leg.reported_limited, true);
-        let limited_lean_rad = is_limited.then(|| controllers.position.max_lean_rad(params));
+            controllers.thrust_limits_tilt() && !std::mem::replace(&mut task.leg.reported_limited, true);
+        let limited_tilt_rad = is_limited.then(|| controllers.position.max_tilt_rad(params));
         let position_controller = &mut controllers.position;
         let horizontal = PositionMeasurement::from(now);
-        let lean = if seen.stick_override {
+        let tilt = if seen.stick_override {
             position_controller.track(&horizontal, now.dt);
             Vector2::new(stick_share(now.stick_pitch, params), stick_share(now.stick_roll, params))
                 .cap_magnitude(1.0)
-                * position_controller.max_lean_rad(params)
+                * position_controller.max_tilt_rad(params)
         } else {
             let demand = position_controller.update(&horizontal, &target, params, now.dt);
             earth_to_body(demand, now.heading_rad)
         };
         let output = NavOutput {
-            roll_rad: lean.y,
-            pitch_down_rad: lean.x,
+            roll_rad: tilt.y,
+            pitch_down_rad: tilt.x,
             yaw_rate_rps: self.yaw_rate(task, seen),
             throttle: throttle_share(throttle_us, params),
             throttle_us,
         };
-        Flown { output, path, limited_lean_rad }
+        Flown { output, path, limited_tilt_rad }
     }
 
     fn altitude_target(

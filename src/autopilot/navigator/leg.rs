@@ -39,7 +39,7 @@ pub(super) struct Leg {
     pub delay: Option<(f64, SimTime)>,
     /// The arc at the start of the leg.
     arc: Option<CornerArc>,
-    /// `true` once it was reported that the thrust limits the lean.
+    /// `true` once it was reported that the thrust limits the tilt.
     pub reported_limited: bool,
     pub progress: ProgressMonitor,
     pub altitude_wait: AltitudeWait,

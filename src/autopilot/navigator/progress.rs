@@ -11,8 +11,8 @@ const PROGRESS_M: f64 = 2.0;
 const FLYAWAY_SHARE: f64 = 0.25;
 const FLYAWAY_LEAST_M: f64 = 20.0;
 const FLYAWAY_MOST_M: f64 = 100.0;
-/// The time until a craft that flew past its waypoint leans against its speed, s.
-const LEAN_DELAY_S: f64 = 1.0;
+/// The time until a craft that flew past its waypoint tilts against its speed, s.
+const TILT_DELAY_S: f64 = 1.0;
 
 /// The turn at the start of a leg.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,8 +21,8 @@ pub(super) struct LegTurn {
     pub ground_speed_mps: f64,
     /// Ground speed, or the speed setpoint while that is greater, m/s. The speed has to decrease first.
     pub speed_mps: f64,
-    /// Maximum lean, rad.
-    pub max_lean_rad: f64,
+    /// Maximum tilt, rad.
+    pub max_tilt_rad: f64,
     /// Turn rate of the corner arc, rad/s, while one is flown.
     pub arc_rps: Option<f64>,
 }
@@ -34,9 +34,9 @@ impl LegTurn {
         self.stop_m(self.speed_mps) + self.arc_rps.map_or(0.0, |rate| 2.0 * self.speed_mps / rate)
     }
 
-    /// Returns the stopping distance of a craft at this speed that brakes at the maximum lean, m.
+    /// Returns the stopping distance of a craft at this speed that brakes at the maximum tilt, m.
     fn stop_m(&self, speed_mps: f64) -> f64 {
-        math::powi(speed_mps, 2) / (2.0 * GRAVITY * math::tan(self.max_lean_rad).max(0.1))
+        math::powi(speed_mps, 2) / (2.0 * GRAVITY * math::tan(self.max_tilt_rad).max(0.1))
     }
 }
 
@@ -79,7 +79,7 @@ impl Progress {
     fn update(&mut self, distance_m: f64, turn: &LegTurn, time: SimTime) {
         if distance_m < self.best_m {
             self.best_m = distance_m;
-            self.carry_m = turn.ground_speed_mps * LEAN_DELAY_S + turn.stop_m(turn.ground_speed_mps);
+            self.carry_m = turn.ground_speed_mps * TILT_DELAY_S + turn.stop_m(turn.ground_speed_mps);
         }
         if self.on_arc {
             // The craft accelerates on the arc.

@@ -28,8 +28,8 @@ pub(super) struct Station {
     radius_m: f64,
     /// Height above the setpoint, m.
     vertical_m: f64,
-    /// `true` if the lean demand is at its limit.
-    lean_binds: bool,
+    /// `true` if the tilt demand is at its limit.
+    tilt_binds: bool,
     /// `true` if the throttle demand is at its limit.
     throttle_binds: bool,
     /// `true` if the battery is at its warning voltage or below.
@@ -66,7 +66,7 @@ impl Station {
             distance_m: (target_ne - now.pos_ne).norm(),
             radius_m: pattern_m + HOLD_RADII * params.hold_radius_m(),
             vertical_m: now.alt_m - setpoint_m,
-            lean_binds: controllers.position.is_saturated(),
+            tilt_binds: controllers.position.is_saturated(),
             throttle_binds: controllers.altitude.throttle_us()
                 >= f64::from(params.throttle_max) - THROTTLE_BINDS_US,
             battery_low: now.battery_low,
@@ -88,7 +88,7 @@ impl Station {
 struct Period {
     time_s: f64,
     excess_ms: f64,
-    lean_s: f64,
+    tilt_s: f64,
     throttle_s: f64,
 }
 
@@ -96,7 +96,7 @@ impl Period {
     fn add(&mut self, station: &Station, dt: f64) {
         self.time_s += dt;
         self.excess_ms += station.excess_m() * dt;
-        self.lean_s += if station.lean_binds { dt } else { 0.0 };
+        self.tilt_s += if station.tilt_binds { dt } else { 0.0 };
         self.throttle_s += if station.throttle_binds { dt } else { 0.0 };
     }
 
@@ -110,9 +110,9 @@ impl Period {
         let most = |time_s: f64| time_s > 0.5 * self.time_s;
         let too_low = station.vertical_m < -VERTICAL_M;
         let throttle = if station.battery_low { HoldLimit::Battery } else { HoldLimit::Throttle };
-        match (most(self.lean_s), most(self.throttle_s)) {
+        match (most(self.tilt_s), most(self.throttle_s)) {
             (_, true) if too_low => throttle,
-            (true, _) => HoldLimit::Lean,
+            (true, _) => HoldLimit::Tilt,
             (false, true) => throttle,
             (false, false) => HoldLimit::None,
         }
@@ -176,7 +176,7 @@ mod tests {
             distance_m,
             radius_m: 20.0,
             vertical_m,
-            lean_binds: false,
+            tilt_binds: false,
             throttle_binds: false,
             battery_low: false,
         };
@@ -200,7 +200,7 @@ mod tests {
                 distance_m: 20.0 + excess_m(seconds),
                 radius_m: 20.0,
                 vertical_m: 0.0,
-                lean_binds: true,
+                tilt_binds: true,
                 throttle_binds: false,
                 battery_low: false,
             };

@@ -7,10 +7,10 @@ use super::OPTION;
 use crate::files::output_file::KeptFiles;
 use crate::process::error::AppError;
 
-/// The ending of the files in a folder.
-const ENDING: &str = "bbl";
-/// The endings of logs. A missing path with one of them is meant as a file.
-const OF_LOGS: [&str; 3] = [ENDING, "bfl", "txt"];
+/// The extension of the files in a folder.
+const EXTENSION: &str = "bbl";
+/// The extensions of logs. A missing path with one of them is meant as a file.
+const OF_LOGS: [&str; 3] = [EXTENSION, "bfl", "txt"];
 
 /// The files of the logs of a run, by the number of the flight.
 #[derive(Debug)]
@@ -43,7 +43,7 @@ impl LogFiles {
 
 /// Returns the file of a single flight.
 pub(crate) fn file_of_one(path: &Path, flight: &str) -> PathBuf {
-    if path.is_dir() { path.join(format!("{}.{ENDING}", file_name(flight))) } else { path.to_owned() }
+    if path.is_dir() { path.join(format!("{}.{EXTENSION}", file_name(flight))) } else { path.to_owned() }
 }
 
 fn make_folder(path: &Path, flights: usize) -> Result<(), AppError> {
@@ -51,8 +51,8 @@ fn make_folder(path: &Path, flights: usize) -> Result<(), AppError> {
     if path.is_dir() {
         return Ok(());
     }
-    let ending = path.extension().unwrap_or_default();
-    if path.exists() || OF_LOGS.iter().any(|log| ending.eq_ignore_ascii_case(log)) {
+    let extension = path.extension().unwrap_or_default();
+    if path.exists() || OF_LOGS.iter().any(|log| extension.eq_ignore_ascii_case(log)) {
         return Err(AppError::input(format!(
             "{OPTION} {name} is not a folder, and each of the {flights} flights has a log: name a folder"
         )));
@@ -71,7 +71,7 @@ fn in_folder(folder: &Path, flights: &[String]) -> Vec<PathBuf> {
         while !used.insert(candidate.clone()) {
             candidate = numbered.next().unwrap_or_default();
         }
-        folder.join(format!("{candidate}.{ENDING}"))
+        folder.join(format!("{candidate}.{EXTENSION}"))
     };
     flights.iter().map(&mut unused).collect()
 }

@@ -184,7 +184,7 @@ mod tests {
     fn hints_tell_value_range_and_meaning() {
         let settings = Settings::default();
         let text = hint("set ap_max_angle = 2", Some(&settings)).expect("a hint");
-        assert!(text.starts_with("ap_max_angle = 50 (default 50; 10…70): Maximum lean"), "{text}");
+        assert!(text.starts_with("ap_max_angle = 50 (default 50; 10…70): Maximum tilt"), "{text}");
         assert!(hint("rxf", None).is_none());
         let text = hint("get msp_uart_2", None).expect("a hint");
         assert!(text.starts_with("msp_uart_2 (default NONE; NONE UART1"), "{text}");

@@ -208,21 +208,21 @@ impl Controller {
     /// Lets the angle loop change the setpoints. Returns `true` for each axis that it controls fully.
     #[inline(always)]
     fn levelling(&mut self, input: &ControlInput, estimate: &Estimate, setpoint: &mut [f64; 3]) -> [bool; 3] {
-        if input.lean.is_none() && input.mode == StickMode::Acro {
+        if input.tilt.is_none() && input.mode == StickMode::Acro {
             self.level.release();
             self.state.angle_demand_rad = None;
             self.tilt_throttle = 0.0;
             return [false; 3];
         }
-        let is_horizon = input.lean.is_none() && input.mode == StickMode::Horizon;
+        let is_horizon = input.tilt.is_none() && input.mode == StickMode::Horizon;
         if self.is_level_due {
             let target = self.target_deg(input, setpoint);
             let demand = LevelDemand {
                 target,
                 flown: [estimate.roll_rad.to_degrees(), estimate.pitch_down_rad.to_degrees()],
                 yaw_dps: setpoint[2],
-                earth_reference: if input.lean.is_some() { 1.0 } else { self.tuning.level.earth_reference },
-                keeps_heading: input.lean.is_some(),
+                earth_reference: if input.tilt.is_some() { 1.0 } else { self.tuning.level.earth_reference },
+                keeps_heading: input.tilt.is_some(),
             };
             let dt = self.since_level_s;
             self.since_level_s = 0.0;
@@ -237,7 +237,7 @@ impl Controller {
         }
         let level = self.level.rates(&self.derived);
         let share = if is_horizon { self.horizon_strength } else { 1.0 };
-        let by_rate = input.lean.is_none() && !is_horizon && self.tuning.level.race_mode;
+        let by_rate = input.tilt.is_none() && !is_horizon && self.tuning.level.race_mode;
         for axis in 0..if by_rate { 1 } else { 2 } {
             setpoint[axis] += share * (level[axis] - setpoint[axis]);
         }
@@ -249,10 +249,10 @@ impl Controller {
 
     /// Returns the demanded roll and pitch, °: those of the navigator, or of the sticks within the angle limit.
     fn target_deg(&self, input: &ControlInput, setpoint: &[f64; 3]) -> [f64; 2] {
-        if let Some(lean) = input.lean {
+        if let Some(tilt) = input.tilt {
             let sane =
                 |angle: f64| if angle.is_finite() { angle.to_degrees().clamp(-85.0, 85.0) } else { 0.0 };
-            return [sane(lean.roll_rad), sane(lean.pitch_down_rad)];
+            return [sane(tilt.roll_rad), sane(tilt.pitch_down_rad)];
         }
         let limit = self.tuning.level.limit_deg;
         [0, 1].map(|axis| limit * (setpoint[axis] / self.full_rates[axis]).clamp(-1.0, 1.0))
@@ -278,7 +278,7 @@ impl Controller {
             // A throttle that the pilot does not control does not jump with the stick.
             boost: if input.anti_gravity && !is_held { gain_boost } else { GainBoost::NONE },
             integrate: (airmode || !is_low)
-                && !(input.stands && (input.lean.is_some() || is_held || input.mode == StickMode::Angle)),
+                && !(input.stands && (input.tilt.is_some() || is_held || input.mode == StickMode::Angle)),
         };
         let rate = &self.tuning.rate;
         let sums = self.rate_loop.step(&demand, rate, &self.derived);

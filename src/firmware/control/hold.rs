@@ -8,7 +8,7 @@ use crate::autopilot::control::FlightControllers;
 use crate::autopilot::io::NavInputs;
 use crate::firmware::settings::Settings;
 
-use super::LeanDemand;
+use super::TiltDemand;
 
 mod altitude;
 mod position;
@@ -74,7 +74,7 @@ impl HoldTuning {
 /// The demands of the holds; `None` leaves control to the pilot.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct HoldOutput {
-    pub lean: Option<LeanDemand>,
+    pub tilt: Option<TiltDemand>,
     /// The throttle, 0…1.
     pub throttle: Option<f64>,
     /// `true` if position hold is requested but position or heading is unknown. The craft is only levelled then.
@@ -121,11 +121,11 @@ impl Holds {
             (None, false)
         };
         let keeps_place = modes.position && now.fix && tuning.uses_gps;
-        let lean = if keeps_place && controllers.land.awaits_lift_off() {
+        let tilt = if keeps_place && controllers.land.awaits_lift_off() {
             // On the ground, GPS noise would wind up the integral, and the craft would jump at lift-off.
             self.position.release();
             controllers.track_position(now);
-            Some(LeanDemand { roll_rad: 0.0, pitch_down_rad: 0.0 })
+            Some(TiltDemand { roll_rad: 0.0, pitch_down_rad: 0.0 })
         } else if keeps_place {
             Some(self.position.update(now, params, tuning, &mut controllers.position))
         } else {
@@ -133,6 +133,6 @@ impl Holds {
             controllers.track_position(now);
             None
         };
-        HoldOutput { lean, throttle, no_position: modes.position && lean.is_none(), touchdown }
+        HoldOutput { tilt, throttle, no_position: modes.position && tilt.is_none(), touchdown }
     }
 }

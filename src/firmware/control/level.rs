@@ -30,7 +30,7 @@ pub(super) struct LevelDemand {
     pub yaw_dps: f64,
     /// The share of the yaw that turns about the vertical of the earth, 0…1.
     pub earth_reference: f64,
-    /// `true` if the yaw rate is that of the heading. A change of the lean must not turn it then.
+    /// `true` if the yaw rate is that of the heading. A change of the tilt must not turn it then.
     pub keeps_heading: bool,
 }
 
@@ -56,7 +56,7 @@ pub(super) struct Level {
     filters: [Pt3; 2],
     wanted: [f64; 2],
     yaw_share: f64,
-    /// The yaw rate that keeps the heading while the lean changes, °/s.
+    /// The yaw rate that keeps the heading while the tilt changes, °/s.
     yaw_coupling_dps: f64,
     is_on: bool,
 }
@@ -92,7 +92,7 @@ impl Level {
         }
     }
 
-    /// Adds the roll and pitch rates that a leaning craft needs to turn about the vertical.
+    /// Adds the roll and pitch rates that a tilting craft needs to turn about the vertical.
     fn couple(&mut self, demand: &LevelDemand) {
         let g = demand.earth_reference;
         let [roll, pitch] = demand.target.map(f64::to_radians);
@@ -107,7 +107,7 @@ impl Level {
         [roll.apply(self.wanted[0], derived.level_rate), pitch.apply(self.wanted[1], derived.level_rate)]
     }
 
-    /// Returns the body yaw rate (°/s) for a demanded rate about the vertical. It is smaller while the craft leans, and
+    /// Returns the body yaw rate (°/s) for a demanded rate about the vertical. It is smaller while the craft tilts, and
     /// it compensates for the turn of the nose that pitching causes.
     pub(super) fn yaw_dps(&self, demanded_dps: f64) -> f64 {
         demanded_dps * self.yaw_share + self.yaw_coupling_dps

@@ -8,9 +8,9 @@ use super::compass::{CompassCheck, CompassVerdict};
 use super::gps::GpsMonitor;
 use super::heading::{CourseComparison, MagTrust, magnetic_error};
 use super::horizontal::Horizontal;
-use super::lean_check::{LeanCheck, urgency};
 use super::schedule::Schedule;
 use super::straight::StraightFlight;
+use super::tilt_check::{TiltCheck, urgency};
 use super::tuning::{AttitudeSource, EstimatorOptions, EstimatorTuning};
 use super::vertical::{AltitudeSource, Vertical, pressure_altitude_m};
 use super::{DueTasks, Estimate, Rates};
@@ -88,7 +88,7 @@ pub struct Estimator {
     vertical: Vertical,
     course: CourseComparison,
     compass: CompassCheck,
-    lean: LeanCheck,
+    tilt: TiltCheck,
     straight: StraightFlight,
     /// The angle of the estimated heading clockwise from that of the newest magnetometer sample, rad.
     mag_error: f64,
@@ -136,7 +136,7 @@ impl Estimator {
             vertical: Vertical::new(),
             course: CourseComparison::new(),
             compass: CompassCheck::default(),
-            lean: LeanCheck::default(),
+            tilt: TiltCheck::default(),
             straight: StraightFlight::default(),
             mag_error: 0.0,
             solution_at: SimTime::ZERO,
@@ -161,7 +161,7 @@ impl Estimator {
         self.armed = true;
         self.was_aided = false;
         self.compass.reset();
-        self.lean = LeanCheck::default();
+        self.tilt = TiltCheck::default();
         self.vertical.zero();
         self.shown_alt.reset(0.0);
         if let Some(origin) = home.or_else(|| self.estimate.place()) {
@@ -455,7 +455,7 @@ impl Estimator {
         self.was_aided |= is_aided;
         let (missing, gains) = if is_aided {
             let missing = self.horizontal.accel_error();
-            self.lean.update(math::atan2(missing.norm(), GRAVITY), dt);
+            self.tilt.update(math::atan2(missing.norm(), GRAVITY), dt);
             let kp = self.tuning.kp * AIDED_FACTOR * urgency(missing.norm());
             let gains = VerticalGains { kp, ki: self.tuning.ki + AIDED_INTEGRAL * kp * kp };
             (Vector3::new(missing.y, missing.x, 0.0), gains)
@@ -492,7 +492,7 @@ impl Estimator {
         estimate.baro_alt_m = self.vertical.baro_altitude();
         estimate.gps = self.gps.status;
         estimate.heading_doubt_rad = self.compass.doubt();
-        estimate.lean_doubt_rad = self.lean.doubt();
+        estimate.tilt_doubt_rad = self.tilt.doubt();
         estimate.calibrating = !self.gyro.done || self.acc.is_some() || self.mag.is_some();
     }
 }

@@ -1,7 +1,7 @@
 //! The controller, driven by the sticks or by the demands that replace them.
 
 use crate::autopilot::io::NavOutput;
-use crate::firmware::control::{ControlInput, Controller, LeanDemand, StickMode, Tuning};
+use crate::firmware::control::{ControlInput, Controller, StickMode, TiltDemand, Tuning};
 use crate::firmware::estimate::{DueTasks, Estimate};
 use crate::firmware::rx::Sticks;
 use crate::signals::{MOTORS, MotorCommand, PerMotor};
@@ -13,7 +13,7 @@ const MOTOR_STOP_US: f64 = 1000.0;
 /// Demands that replace the pilot's, updated a hundred times a second.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(in crate::firmware) struct Demand {
-    pub lean: Option<LeanDemand>,
+    pub tilt: Option<TiltDemand>,
     /// The yaw rate, rad/s, clockwise positive.
     pub yaw_rate_rps: Option<f64>,
     /// The throttle into the mixer, 0…1.
@@ -25,7 +25,7 @@ pub(in crate::firmware) struct Demand {
 impl From<NavOutput> for Demand {
     fn from(output: NavOutput) -> Self {
         Self {
-            lean: Some(LeanDemand { roll_rad: output.roll_rad, pitch_down_rad: output.pitch_down_rad }),
+            tilt: Some(TiltDemand { roll_rad: output.roll_rad, pitch_down_rad: output.pitch_down_rad }),
             yaw_rate_rps: output.yaw_rate_rps,
             throttle: Some(output.throttle),
             stands: false,
@@ -58,8 +58,8 @@ pub(in crate::firmware) struct ControlStep<'a> {
     pub headfree_rad: f64,
 }
 
-/// The lean demand while the craft is levelled after a crash.
-const LEVEL: LeanDemand = LeanDemand { roll_rad: 0.0, pitch_down_rad: 0.0 };
+/// The tilt demand while the craft is levelled after a crash.
+const LEVEL: TiltDemand = TiltDemand { roll_rad: 0.0, pitch_down_rad: 0.0 };
 
 /// The controller and the demands in force.
 #[derive(Debug, Clone)]
@@ -116,7 +116,7 @@ impl FlightControl {
             stick_yaw: sticks.yaw,
             throttle_us: sticks.throttle_us,
             rc_frame: step.rc_frame,
-            lean: self.demand.lean.or(step.levels_after_crash.then_some(LEVEL)),
+            tilt: self.demand.tilt.or(step.levels_after_crash.then_some(LEVEL)),
             stands: self.demand.stands,
             yaw_rate_rps: self.demand.yaw_rate_rps,
             throttle: self.demand.throttle,

@@ -7,7 +7,7 @@ use crate::autopilot::control::{AltitudeController, FlightControllers};
 use crate::autopilot::io::{NavInputs, NavOutput};
 use crate::autopilot::land_detector::{GroundMeasurement, ImpactFacts};
 use crate::firmware::control::hold::{DescentRate, HoldModes, HoldOutput, Holds};
-use crate::firmware::control::{ControlState, LeanDemand};
+use crate::firmware::control::{ControlState, TiltDemand};
 use crate::firmware::estimate::Estimate;
 use crate::firmware::failsafe::{Failsafe, FailsafeAction, FailsafeFacts, Procedure, Response};
 use crate::firmware::modes::{AfterAbort, ModeFacts, boxes};
@@ -309,15 +309,15 @@ impl Navigation {
         self.only_levelled = only_levelled;
         let demand = match self.output {
             Some(output) => Demand::from(output),
-            None => Demand { lean: held.lean, throttle: held.throttle, ..Demand::default() },
+            None => Demand { tilt: held.tilt, throttle: held.throttle, ..Demand::default() },
         };
         let land = &self.controllers.land;
-        let share = land.lean_share();
-        let lean = demand.lean.map(|lean| LeanDemand {
-            roll_rad: share * lean.roll_rad,
-            pitch_down_rad: share * lean.pitch_down_rad,
+        let share = land.tilt_share();
+        let tilt = demand.tilt.map(|tilt| TiltDemand {
+            roll_rad: share * tilt.roll_rad,
+            pitch_down_rad: share * tilt.pitch_down_rad,
         });
-        let demand = Demand { lean, stands: land.stands(), ..demand };
+        let demand = Demand { tilt, stands: land.stands(), ..demand };
         Flown { demand, touchdown: held.touchdown }
     }
 

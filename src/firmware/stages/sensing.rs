@@ -22,8 +22,8 @@ pub(in crate::firmware) struct Sensing {
     pub fix: bool,
     /// `true` if the magnetometer was reported as doubted.
     heading_doubted: bool,
-    /// `true` if the lean was reported as doubted.
-    lean_doubted: bool,
+    /// `true` if the tilt was reported as doubted.
+    tilt_doubted: bool,
 }
 
 impl Sensing {
@@ -41,7 +41,7 @@ impl Sensing {
             mag_flu: Vector3::zeros(),
             fix: false,
             heading_doubted: false,
-            lean_doubted: false,
+            tilt_doubted: false,
         }
     }
 
@@ -82,13 +82,13 @@ impl Sensing {
         self.imu_frozen = frozen;
     }
 
-    /// Reports a magnetometer or a lean that is doubted, or trusted again.
+    /// Reports a magnetometer or a tilt that is doubted, or trusted again.
     pub(in crate::firmware) fn watch_doubts(&mut self, outbox: &mut Outbox) {
-        let lean = self.estimate().lean_doubt_rad;
-        if lean.is_some() != self.lean_doubted {
-            self.lean_doubted = lean.is_some();
-            let error_deg = lean.unwrap_or_default().to_degrees();
-            outbox.push(FirmwareEvent::LeanDoubt { on: self.lean_doubted, error_deg });
+        let tilt = self.estimate().tilt_doubt_rad;
+        if tilt.is_some() != self.tilt_doubted {
+            self.tilt_doubted = tilt.is_some();
+            let error_deg = tilt.unwrap_or_default().to_degrees();
+            outbox.push(FirmwareEvent::TiltDoubt { on: self.tilt_doubted, error_deg });
         }
         let doubt = self.estimate().heading_doubt_rad;
         if doubt.is_some() != self.heading_doubted {

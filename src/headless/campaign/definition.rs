@@ -148,7 +148,7 @@ fn of_plan(args: &CampaignArgs, plan: &PlanArg, bytes: Option<&[u8]>) -> Result<
     let mut sources = Sources { place: Some(place), ..Sources::default() };
     let file = bytes.map(|bytes| {
         let name = match plan {
-            // Without an ending the contents show the format.
+            // Without an extension the contents show the format.
             PlanArg::Stdin(_) => "standard-input".to_owned(),
             _ => plan.display_name(),
         };

@@ -133,7 +133,7 @@ fn quoted(text: &str) -> String {
     quoted + "\""
 }
 
-/// Returns a name without its folder and its ending.
+/// Returns a name without its folder and its extension.
 fn stem(name: &str) -> String {
     let name = name.rsplit('/').next().unwrap_or(name);
     let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);

@@ -112,7 +112,7 @@ fn in_directory(directory: &Path) -> Result<Vec<PathBuf>, AppError> {
     let mut files = Vec::new();
     for entry in std::fs::read_dir(directory).map_err(cannot)? {
         let path = entry.map_err(cannot)?.path();
-        let is_toml = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
+        let is_toml = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
         if is_toml && path.is_file() && is_scenario(&input_file::read_small(&path)?) {
             files.push(path);
         }

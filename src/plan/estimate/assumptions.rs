@@ -202,14 +202,14 @@ impl Assumptions {
     }
 
     /// Returns the rate of an ORBIT at this waypoint, radians/s: the setting, limited by the speed of the leg and by half
-    /// of the maximum lean.
+    /// of the maximum tilt.
     pub(in crate::plan) fn orbit_rate_rps(&self, waypoint: &Waypoint) -> f64 {
-        let lean = self.max_angle_deg.clamp(5.0, 80.0).to_radians();
+        let tilt = self.max_angle_deg.clamp(5.0, 80.0).to_radians();
         let radius_m = self.orbit_radius_m.max(0.1);
         self.turn_rate_dps
             .to_radians()
             .min(self.leg_speed_mps(waypoint) / radius_m)
-            .min((0.5 * GRAVITY * math::tan(lean) / radius_m).sqrt())
+            .min((0.5 * GRAVITY * math::tan(tilt) / radius_m).sqrt())
     }
 
     /// Returns the slowest speed of a leg of this length after a DELAY, m/s.

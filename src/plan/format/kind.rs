@@ -1,4 +1,4 @@
-//! The table of the plan formats: names, endings, what each carries, and how a file shows its format.
+//! The table of the plan formats: names, extensions, what each carries, and how a file shows its format.
 
 use strum::IntoEnumIterator as _;
 
@@ -56,9 +56,9 @@ pub enum Format {
 pub struct FormatInfo {
     /// The format in words.
     pub title: &'static str,
-    /// The endings that give this format when a file is written.
-    pub endings: &'static [&'static str],
-    /// Further endings of files that may be in this format. Their contents decide.
+    /// The extensions that give this format when a file is written.
+    pub extensions: &'static [&'static str],
+    /// Further extensions of files that may be in this format. Their contents decide.
     pub also: &'static [&'static str],
     /// `true` if plans are written in it, too.
     pub writes: bool,
@@ -72,91 +72,91 @@ impl Format {
         match self {
             Self::Toml => FormatInfo {
                 title: "betadeck plan",
-                endings: &["toml"],
+                extensions: &["toml"],
                 also: &[],
                 writes: true,
                 carries: "everything",
             },
             Self::CliText => FormatInfo {
                 title: "Betaflight CLI text",
-                endings: &["txt"],
+                extensions: &["txt"],
                 also: &[],
                 writes: true,
                 carries: "the waypoints; not name, home and settings",
             },
             Self::QgcPlan => FormatInfo {
                 title: "QGroundControl plan",
-                endings: &["plan"],
+                extensions: &["plan"],
                 also: &["json"],
                 writes: true,
                 carries: "everything for betadeck; others do not know settings, FIGURE8 and YAW_RATE",
             },
             Self::QgcWpl => FormatInfo {
                 title: "MAVLink waypoint file",
-                endings: &["waypoints"],
+                extensions: &["waypoints"],
                 also: &["txt", "mission"],
                 writes: true,
                 carries: "home and the waypoints as items; not name, settings, FIGURE8 and the altitude of LAND",
             },
             Self::QgcCsv => FormatInfo {
                 title: "QGroundControl table",
-                endings: &[],
+                extensions: &[],
                 also: &["csv"],
                 writes: false,
                 carries: "home and the waypoints as items",
             },
             Self::Kml => FormatInfo {
                 title: "KML",
-                endings: &["kml"],
+                extensions: &["kml"],
                 also: &["xml"],
                 writes: true,
                 carries: "everything; other programs see points, the path and the fence",
             },
             Self::Kmz => FormatInfo {
                 title: "KMZ (packed KML)",
-                endings: &["kmz"],
+                extensions: &["kmz"],
                 also: &[],
                 writes: true,
                 carries: "everything; other programs see points, the path and the fence",
             },
             Self::Gpx => FormatInfo {
                 title: "GPX",
-                endings: &["gpx"],
+                extensions: &["gpx"],
                 also: &["xml"],
                 writes: true,
                 carries: "everything; other programs see a route, with altitudes if that of home is known",
             },
             Self::GeoJson => FormatInfo {
                 title: "GeoJSON",
-                endings: &["geojson"],
+                extensions: &["geojson"],
                 also: &["json"],
                 writes: true,
                 carries: "everything; other programs see points, the path and the fence",
             },
             Self::MwXml => FormatInfo {
                 title: "MW-XML mission (INAV, mwp)",
-                endings: &["mission"],
+                extensions: &["mission"],
                 also: &["xml"],
                 writes: true,
                 carries: "points, holds, landings and home; the rest as private data",
             },
             Self::InavCli => FormatInfo {
                 title: "INAV CLI text",
-                endings: &[],
+                extensions: &[],
                 also: &["txt"],
                 writes: true,
                 carries: "points, holds and landings; the rest as private data",
             },
             Self::Litchi => FormatInfo {
                 title: "Litchi mission",
-                endings: &[],
+                extensions: &[],
                 also: &["csv"],
                 writes: false,
                 carries: "points and timed holds",
             },
             Self::Csv => FormatInfo {
                 title: "table of waypoints",
-                endings: &["csv"],
+                extensions: &["csv"],
                 also: &[],
                 writes: true,
                 carries: "the waypoints; not name, home and settings",
@@ -169,33 +169,34 @@ impl Format {
         self.info().title
     }
 
-    /// Returns the format that a file of this name is written in, by its ending.
+    /// Returns the format that a file of this name is written in, by its extension.
     pub fn from_file_name(name: &str) -> Option<Self> {
-        let ending = ending(name)?;
-        Self::iter().find(|format| has(format.info().endings, ending))
+        let extension = extension(name)?;
+        Self::iter().find(|format| has(format.info().extensions, extension))
     }
 
     /// Returns `true` if a file of this name may be a plan.
     pub fn is_plan_name(name: &str) -> bool {
-        ending(name).is_some_and(|ending| {
-            Self::iter().any(|format| has(format.info().endings, ending) || has(format.info().also, ending))
+        extension(name).is_some_and(|extension| {
+            Self::iter()
+                .any(|format| has(format.info().extensions, extension) || has(format.info().also, extension))
         })
     }
 
-    /// Returns the format of a file. If the ending and the contents differ, the contents decide, with a finding.
+    /// Returns the format of a file. If the extension and the contents differ, the contents decide, with a finding.
     pub fn detect(name: &str, contents: &[u8]) -> (Self, Option<Finding>) {
         let of_contents = Self::from_contents(contents);
-        let Some(ending) = ending(name) else { return (of_contents, None) };
+        let Some(extension) = extension(name) else { return (of_contents, None) };
         let by_name = Self::from_file_name(name);
         let info = of_contents.info();
         match by_name {
             Some(by_name) if by_name == of_contents => (of_contents, None),
-            // A text without a mark of its own may be a plan of the ending, with a fault in its first line.
+            // A text without a mark of its own may be a plan of the extension, with a fault in its first line.
             Some(by_name) if of_contents == Self::CliText => (by_name, None),
-            _ if has(info.endings, ending) || has(info.also, ending) => (of_contents, None),
+            _ if has(info.extensions, extension) || has(info.also, extension) => (of_contents, None),
             None => (of_contents, None),
             Some(by_name) => {
-                let why = "the ending of the file and its contents differ, the contents decide";
+                let why = "the extension of the file and its contents differ, the contents decide";
                 let finding = Finding::new(Severity::Assumed, "format", why);
                 (of_contents, Some(finding.values(by_name.title(), of_contents.title())))
             }
@@ -247,11 +248,11 @@ impl Format {
         }
     }
 
-    /// Returns the endings that can be written, for messages: `.toml, .txt`.
-    pub fn endings() -> String {
-        let endings =
-            Self::iter().filter(|format| format.info().writes).flat_map(|format| format.info().endings);
-        endings.map(|ending| format!(".{ending}")).collect::<Vec<_>>().join(", ")
+    /// Returns the extensions that can be written, for messages: `.toml, .txt`.
+    pub fn extensions() -> String {
+        let extensions =
+            Self::iter().filter(|format| format.info().writes).flat_map(|format| format.info().extensions);
+        extensions.map(|extension| format!(".{extension}")).collect::<Vec<_>>().join(", ")
     }
 
     /// Returns the names of the formats for messages: `toml, txt`. With `written`, of those that can be written.
@@ -274,14 +275,14 @@ fn of_mark(text: &str) -> Option<Format> {
     }
 }
 
-/// Returns the ending of a file name without its dot.
-fn ending(name: &str) -> Option<&str> {
-    let (stem, ending) = name.rsplit_once('.')?;
-    (!stem.is_empty() && !ending.contains(['/', '\\'])).then_some(ending)
+/// Returns the extension of a file name without its dot.
+fn extension(name: &str) -> Option<&str> {
+    let (stem, extension) = name.rsplit_once('.')?;
+    (!stem.is_empty() && !extension.contains(['/', '\\'])).then_some(extension)
 }
 
-fn has(endings: &[&str], ending: &str) -> bool {
-    endings.iter().any(|known| known.eq_ignore_ascii_case(ending))
+fn has(extensions: &[&str], extension: &str) -> bool {
+    extensions.iter().any(|known| known.eq_ignore_ascii_case(extension))
 }
 
 #[cfg(test)]
@@ -296,7 +297,7 @@ mod tests {
         assert_eq!(Format::from_file_name("square"), None);
         assert_eq!(Format::from_file_name("dir.txt/square"), None);
         assert_eq!(Format::from_file_name(".txt"), None);
-        assert!(Format::endings().starts_with(".toml, .txt"));
+        assert!(Format::extensions().starts_with(".toml, .txt"));
         assert_eq!(Format::from_file_name("a.mission"), Some(Format::MwXml));
         assert_eq!(Format::from_file_name("a.csv"), Some(Format::Csv));
     }

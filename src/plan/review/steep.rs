@@ -181,8 +181,8 @@ impl Walk<'_> {
         match leg.approach {
             Approach::Pass | Approach::Turn if leg.stops => self.assumptions.arrival_radius_m,
             Approach::Turn => {
-                let lean = self.assumptions.max_angle_deg.clamp(5.0, 80.0).to_radians();
-                math::powi(speed_mps, 2) / (GRAVITY * math::tan(lean))
+                let tilt = self.assumptions.max_angle_deg.clamp(5.0, 80.0).to_radians();
+                math::powi(speed_mps, 2) / (GRAVITY * math::tan(tilt))
             }
             Approach::Pass => 0.0,
             _ => self.assumptions.hold_radius_m,

@@ -19,29 +19,99 @@ type Degrees = Decimals<7>;
 #[derive(Debug, Serialize)]
 #[serde(untagged)]
 pub(super) enum Fields<'a> {
-    Boot { version: &'static str, seed: u64, rate: u32, airframe: &'a str, live: bool },
+    Boot {
+        version: &'static str,
+        seed: u64,
+        rate: u32,
+        airframe: &'a str,
+        live: bool,
+    },
     None {},
-    Sats { sats: u8 },
-    Disarmed { reason: String },
-    Mode { active: Vec<String> },
-    Plan { source: String, count: usize, waypoints: Vec<PlanWaypoint> },
-    Refused { reason: String, wp: Option<u8>, cause: Option<String>, text: Cow<'static, str> },
+    Sats {
+        sats: u8,
+    },
+    Disarmed {
+        reason: String,
+    },
+    Mode {
+        active: Vec<String>,
+    },
+    Plan {
+        source: String,
+        count: usize,
+        waypoints: Vec<PlanWaypoint>,
+    },
+    Refused {
+        reason: String,
+        wp: Option<u8>,
+        cause: Option<String>,
+        text: Cow<'static, str>,
+    },
     State(Box<State>),
-    On { on: bool },
-    Limited { by: &'static str, lean_deg: Milli },
-    Geofence { distance_m: Milli, limit_m: Milli, action: &'a str },
-    CannotHold { on: bool, distance_m: Milli, vertical_m: Milli, limit: &'a str },
-    Failsafe { policy: Option<&'a str>, stage: u8, procedure: Option<&'a str> },
-    Fault { name: &'static str, on: bool, value: Option<String> },
-    Contact { impact_mps: Milli },
-    Touchdown { impact_mps: Milli, peak_mps2: Milli },
-    Crash { cause: String },
-    HeadingDoubt { on: bool, error_deg: Milli },
-    LeanDoubt { on: bool, error_deg: Milli },
-    Battery { state: String, cell_v: Milli },
-    Doors { ws: Option<SocketAddr>, tcp: Option<SocketAddr>, fdm: Option<SocketAddr>, rc: Option<SocketAddr> },
-    Notice { text: Cow<'a, str> },
-    Branch { number: u32, left_at: Decimals<6> },
+    On {
+        on: bool,
+    },
+    Limited {
+        by: &'static str,
+        #[serde(rename = "lean_deg")]
+        tilt_deg: Milli,
+    },
+    Geofence {
+        distance_m: Milli,
+        limit_m: Milli,
+        action: &'a str,
+    },
+    CannotHold {
+        on: bool,
+        distance_m: Milli,
+        vertical_m: Milli,
+        limit: &'a str,
+    },
+    Failsafe {
+        policy: Option<&'a str>,
+        stage: u8,
+        procedure: Option<&'a str>,
+    },
+    Fault {
+        name: &'static str,
+        on: bool,
+        value: Option<String>,
+    },
+    Contact {
+        impact_mps: Milli,
+    },
+    Touchdown {
+        impact_mps: Milli,
+        peak_mps2: Milli,
+    },
+    Crash {
+        cause: String,
+    },
+    HeadingDoubt {
+        on: bool,
+        error_deg: Milli,
+    },
+    TiltDoubt {
+        on: bool,
+        error_deg: Milli,
+    },
+    Battery {
+        state: String,
+        cell_v: Milli,
+    },
+    Doors {
+        ws: Option<SocketAddr>,
+        tcp: Option<SocketAddr>,
+        fdm: Option<SocketAddr>,
+        rc: Option<SocketAddr>,
+    },
+    Notice {
+        text: Cow<'a, str>,
+    },
+    Branch {
+        number: u32,
+        left_at: Decimals<6>,
+    },
 }
 
 #[derive(Debug, Serialize)]
@@ -145,8 +215,8 @@ impl<'a> Fields<'a> {
             FirmwareEvent::HeadingDoubt { on, error_deg } => {
                 ("heading_doubt", Self::HeadingDoubt { on: *on, error_deg: Decimals(*error_deg) })
             }
-            FirmwareEvent::LeanDoubt { on, error_deg } => {
-                ("lean_doubt", Self::LeanDoubt { on: *on, error_deg: Decimals(*error_deg) })
+            FirmwareEvent::TiltDoubt { on, error_deg } => {
+                ("lean_doubt", Self::TiltDoubt { on: *on, error_deg: Decimals(*error_deg) })
             }
             FirmwareEvent::Battery { state, cell_v } => Self::from_battery(*state, *cell_v),
             FirmwareEvent::Notice(notice) => ("notice", Self::Notice { text: notice.to_string().into() }),
@@ -175,8 +245,8 @@ impl<'a> Fields<'a> {
                 ("state", Self::State(Box::new(state)))
             }
             NavEvent::Climbing(on) => ("climbing", Self::On { on: *on }),
-            NavEvent::Limited { lean_rad } => {
-                ("limited", Self::Limited { by: "throttle", lean_deg: Decimals(lean_rad.to_degrees()) })
+            NavEvent::Limited { tilt_rad } => {
+                ("limited", Self::Limited { by: "throttle", tilt_deg: Decimals(tilt_rad.to_degrees()) })
             }
             NavEvent::Geofence { distance_m, limit_m, action } => {
                 let (distance_m, limit_m) = (Decimals(*distance_m), Decimals(*limit_m));
@@ -308,7 +378,7 @@ mod tests {
             line(EventKind::BatteryEmpty { cell_v: 2.9 }),
             r#"{"t":12.34,"event":"battery","state":"EMPTY","cell_v":2.9}"#
         );
-        let deviation = CannotHold { distance_m: 23.4, vertical_m: -0.25, limit: HoldLimit::Lean };
+        let deviation = CannotHold { distance_m: 23.4, vertical_m: -0.25, limit: HoldLimit::Tilt };
         assert_eq!(
             firmware(FirmwareEvent::Nav(NavEvent::CannotHold { on: true, deviation })),
             r#"{"t":12.34,"event":"cannot_hold","on":true,"distance_m":23.4,"vertical_m":-0.25,"limit":"lean"}"#

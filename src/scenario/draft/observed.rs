@@ -152,7 +152,7 @@ fn bounds(flown: &Flown) -> Vec<Block> {
         values.filter(|value| !value.is_nan()).fold(f64::NEG_INFINITY, f64::max)
     };
     let mut blocks = vec![
-        vec![("always", quoted(&format!("lean <= {} deg", above(greatest(Signal::Lean), 3.0))))],
+        vec![("always", quoted(&format!("lean <= {} deg", above(greatest(Signal::Tilt), 3.0))))],
         vec![("always", quoted(&format!("speed <= {} m/s", above(greatest(Signal::Speed), 0.5))))],
         vec![("always", quoted(&format!("altitude <= {} m", above(greatest(Signal::Altitude), 1.0))))],
     ];

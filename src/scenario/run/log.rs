@@ -58,8 +58,8 @@ impl Log {
             FirmwareEvent::HeadingDoubt { on, error_deg } => {
                 Happening::event(time, EventName::HeadingDoubt, &[on_off(*on)]).with(Field::Error, *error_deg)
             }
-            FirmwareEvent::LeanDoubt { on, error_deg } => {
-                Happening::event(time, EventName::LeanDoubt, &[on_off(*on)]).with(Field::Error, *error_deg)
+            FirmwareEvent::TiltDoubt { on, error_deg } => {
+                Happening::event(time, EventName::TiltDoubt, &[on_off(*on)]).with(Field::Error, *error_deg)
             }
             FirmwareEvent::Notice(notice) => plain(EventName::Notice).saying(notice.to_string()),
         };
@@ -95,8 +95,8 @@ impl Log {
                 Happening { time, kind: HappeningKind::State(entered) }
             }
             NavEvent::Climbing(on) => Happening::event(time, EventName::Climbing, &[on_off(*on)]),
-            NavEvent::Limited { lean_rad } => {
-                Happening::event(time, EventName::Limited, &[]).with(Field::LeanLimit, lean_rad.to_degrees())
+            NavEvent::Limited { tilt_rad } => {
+                Happening::event(time, EventName::Limited, &[]).with(Field::TiltLimit, tilt_rad.to_degrees())
             }
             NavEvent::Geofence { distance_m, limit_m, action } => {
                 Happening::event(time, EventName::Geofence, &[(*action).into()])

@@ -9,7 +9,7 @@ use crate::files::set_aside::SetAside;
 use crate::plan::edit::{Journal, JournalLine, Losses};
 use crate::storage::state_file::{self, Access};
 
-const ENDING: &str = "journal";
+const EXTENSION: &str = "journal";
 /// The largest journal that is read, bytes: some hundred thousand edits.
 const LARGEST: u64 = 64 << 20;
 /// The length above which a journal is compacted, bytes: its older edits become one.
@@ -60,7 +60,7 @@ impl JournalFile {
         std::fs::create_dir_all(directory)?;
         let stem = stem(journal.file.as_deref().unwrap_or("unnamed"));
         for number in 0..MOST {
-            let path = directory.join(format!("{stem}-{number}.{ENDING}"));
+            let path = directory.join(format!("{stem}-{number}.{EXTENSION}"));
             match OpenOptions::new().append(true).create_new(true).open(&path) {
                 Ok(file) => {
                     let mut created = Self::new(path, file);
@@ -229,7 +229,7 @@ fn paths(directory: &Path) -> Vec<PathBuf> {
     let is_journal = |path: &PathBuf| {
         // Only files written by this program are opened: a FIFO would make it wait.
         let is_sound = path.symlink_metadata().is_ok_and(|there| there.is_file());
-        is_sound && path.extension().is_some_and(|ending| ending == ENDING)
+        is_sound && path.extension().is_some_and(|extension| extension == EXTENSION)
     };
     let mut paths: Vec<PathBuf> =
         entries.filter_map(Result::ok).map(|entry| entry.path()).filter(is_journal).collect();

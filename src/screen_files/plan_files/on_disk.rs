@@ -107,11 +107,11 @@ fn parse(path: &Path, contents: &[u8], home: Option<HomePosition>) -> Result<Pla
     Ok(file)
 }
 
-/// Returns the file of a plan in the format of its ending.
+/// Returns the file of a plan in the format of its extension.
 pub(super) fn converted(path: &Path, document: PlanDocument) -> Result<Written, String> {
     let name = path.display();
     let format = Format::from_file_name(&path.to_string_lossy()).ok_or_else(|| {
-        format!("The ending of {name} does not give the format: name it {}.", Format::endings())
+        format!("The extension of {name} does not give the format: name it {}.", Format::extensions())
     })?;
     let written = format::write(&PlanFile::from(document), format);
     if written.is_refused() {

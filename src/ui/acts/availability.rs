@@ -1,6 +1,6 @@
 //! Decides which actions are possible now, and gives the reason for each refusal.
 
-use super::{stick_keys as stick_recording, transmitter};
+use super::{stick_keys, transmitter};
 use crate::fc::{Access, Denial, NO_RETURN_SWITCH, RemoteState};
 use crate::session::policy::{self, Facts, NOT_KNOWN_YET, Refusal};
 use crate::telemetry::{Mode, NavState};
@@ -50,7 +50,7 @@ fn can_do(state: &Shared, action: Action) -> Result<(), String> {
         Action::ShiftEarlier | Action::ShiftLater if state.other.is_none() => {
             Err("There is no second flight to shift: `betadeck replay A B` shows two.".to_owned())
         }
-        Action::Panel(PanelAction::Play) => stick_recording::can_play(state),
+        Action::Panel(PanelAction::Play) => stick_keys::can_play(state),
         Action::Throttle if state.view.vehicle.is_engaged() => Err(format!(
             "The autopilot has the throttle: `{}` switches it off.",
             state.key(Action::Autopilot)

@@ -1,4 +1,7 @@
 //! The requests of forecasts, and the answers.
+//!
+//! The flown estimate of the open plan keeps itself up to date: [`follow_plan`] compares the input of the newest
+//! request with the current one. The look-ahead is requested again and again while it is on, a what-if once.
 
 use std::time::Duration;
 

@@ -10,7 +10,7 @@
 //!  └──────────────┘    └───────────────┘    └─────────┴ plan─┘    └──────┴──────┴───────┘
 //! ```
 //!
-//! The user can move the borders and swap panels: [`Arrangement`].
+//! The user can move the borders and swap panels: `model::layout`.
 //!
 //! World and Settings take the place of RC when they are shown, Graphs the place of the log.
 //!

@@ -317,7 +317,7 @@ fn cannot_hold_message(deviation: CannotHold, units: Units) -> Option<StatusMess
     let (off, vertical) = (units.length_text(distance_m, 0), units.length_text(vertical_m.abs(), 0));
     let condition = format!("Cannot hold: {off} off, {vertical} too {side}.");
     let action = match limit {
-        HoldLimit::Lean => "the lean is at its limit: raise ap_max_angle, or land",
+        HoldLimit::Tilt => "the tilt is at its limit: raise ap_max_angle, or land",
         HoldLimit::Throttle => "the throttle is at its limit: land",
         HoldLimit::Battery => "the battery is too low for its thrust: land",
         HoldLimit::None => "no limit binds: sticks take over; check sensors and gains",

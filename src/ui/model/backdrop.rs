@@ -16,8 +16,8 @@ pub(in crate::ui) use detail::{Detail, Window};
 /// The most vertices of a backdrop.
 pub const MAX_VERTICES: usize = 200_000;
 
-/// The endings of files that may be maps.
-const MAP_ENDINGS: [&str; 6] = ["geojson", "json", "kml", "kmz", "gpx", "plan"];
+/// The extensions of files that may be maps.
+const MAP_EXTENSIONS: [&str; 6] = ["geojson", "json", "kml", "kmz", "gpx", "plan"];
 
 /// The shapes of one file.
 #[derive(Debug, Clone)]
@@ -62,8 +62,8 @@ impl BackdropLayer {
 
     /// Returns `true` if files of this name may be maps.
     pub fn is_map_name(name: &str) -> bool {
-        let ending = name.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase());
-        ending.is_some_and(|ending| MAP_ENDINGS.contains(&ending.as_str()))
+        let extension = name.rsplit_once('.').map(|(_, extension)| extension.to_ascii_lowercase());
+        extension.is_some_and(|extension| MAP_EXTENSIONS.contains(&extension.as_str()))
     }
 
     /// Returns the number of vertices in the file.

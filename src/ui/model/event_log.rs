@@ -72,12 +72,12 @@ impl Severity {
             | FirmwareEvent::Notice(_) => Self::Info,
             FirmwareEvent::Disarmed(_) | FirmwareEvent::Failsafe { .. } => Self::Fault,
             FirmwareEvent::GpsLost { .. } | FirmwareEvent::RxLoss => Self::Warn,
-            FirmwareEvent::HeadingDoubt { on: false, .. } | FirmwareEvent::LeanDoubt { on: false, .. } => {
+            FirmwareEvent::HeadingDoubt { on: false, .. } | FirmwareEvent::TiltDoubt { on: false, .. } => {
                 Self::Good
             }
             FirmwareEvent::Battery { state: BatteryAlarm::Warning, .. }
             | FirmwareEvent::HeadingDoubt { on: true, .. } => Self::Warn,
-            FirmwareEvent::LeanDoubt { on: true, .. } => Self::Fault,
+            FirmwareEvent::TiltDoubt { on: true, .. } => Self::Fault,
             FirmwareEvent::Battery { .. } => Self::Fault,
             FirmwareEvent::Nav(event) => match event {
                 NavEvent::State { to: NavState::Complete, .. } => Self::Good,

@@ -1,7 +1,4 @@
-//! The flights flown ahead of time: the requests of the user interface and the answers.
-//!
-//! The flown estimate of the open plan keeps itself up to date: [`follow_plan`] compares the input of the newest
-//! request with the current one. The look-ahead is requested again and again while it is on, a what-if once.
+//! The flights flown ahead of time: the newest request of each kind, and the newest answer.
 
 pub(in crate::ui) mod estimate_basis;
 pub(in crate::ui) mod setting_change;

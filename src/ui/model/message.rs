@@ -1,4 +1,4 @@
-//! The messages to the user interface, and the effects that it requests.
+//! The messages to the user interface, and the requests of panels, popups and commands.
 
 use std::path::PathBuf;
 use std::sync::Arc;

@@ -6,7 +6,8 @@
 //!   reading ◀── SettingsReply ───┴────── SetReply ◀────────┘
 //! ```
 //!
-//! A changed value is shown at once. The next reading confirms it, or takes it back.
+//! A changed value is shown at once. The next reading confirms it, or takes it back. The module `changes` is
+//! `acts/setting_changes`, and `reading` is `acts/setting_reading`.
 
 pub mod comparison;
 pub(in crate::ui) mod steps;

@@ -1,4 +1,4 @@
-//! A point mass with a lagging lean, drag, wind and ground, flown by the navigator. Its physics are
+//! A point mass with a lagging tilt, drag, wind and ground, flown by the navigator. Its physics are
 //! sufficient to test guidance and control, and run thousands of times faster than real time.
 
 #![allow(dead_code, reason = "each test file uses its own part")]
@@ -28,15 +28,15 @@ pub(crate) struct Plant {
     pub(crate) climb: f64,
     pub(crate) heading: f64,
     pub(crate) yaw_rate: f64,
-    /// The lean (forward, right), rad.
-    pub(crate) lean: Vector2<f64>,
+    /// The tilt (forward, right), rad.
+    pub(crate) tilt: Vector2<f64>,
     pub(crate) accel: Vector2<f64>,
     /// The ratio of thrust to weight.
     pub(crate) thrust: f64,
     /// The throttle at which the craft hovers, µs.
     pub(crate) hover_us: f64,
-    /// The bandwidth of the lean, rad/s.
-    pub(crate) lean_bandwidth: f64,
+    /// The bandwidth of the tilt, rad/s.
+    pub(crate) tilt_bandwidth: f64,
     /// The mean wind, towards (north, east), m/s.
     pub(crate) wind: Vector2<f64>,
     /// The standard deviation of the gusts, m/s.
@@ -55,11 +55,11 @@ impl Plant {
             climb: 0.0,
             heading: 0.0,
             yaw_rate: 0.0,
-            lean: Vector2::zeros(),
+            tilt: Vector2::zeros(),
             accel: Vector2::zeros(),
             thrust: 1.0,
             hover_us: 1500.0,
-            lean_bandwidth: 5.0,
+            tilt_bandwidth: 5.0,
             wind: Vector2::zeros(),
             gust_sd: 0.0,
             gust: Vector2::zeros(),
@@ -82,7 +82,7 @@ impl Plant {
     pub(crate) fn step(&mut self, roll: f64, pitch: f64, yaw_rate: f64, throttle: f64) {
         let share = throttle / ((self.hover_us - 1050.0) / 950.0);
         self.thrust += (share * share - self.thrust) * DT / 0.05;
-        self.lean += (Vector2::new(pitch, roll) - self.lean) * (self.lean_bandwidth * DT);
+        self.tilt += (Vector2::new(pitch, roll) - self.tilt) * (self.tilt_bandwidth * DT);
         self.yaw_rate += (yaw_rate - self.yaw_rate) * (8.0 * DT);
         self.heading = (self.heading + self.yaw_rate * DT).rem_euclid(std::f64::consts::TAU);
         // A gust with a correlation time of 2 s.
@@ -92,10 +92,10 @@ impl Plant {
         self.gust += -self.gust * (DT / tau) + noise * kick;
         let air = self.vel - self.wind - self.gust;
         let drag = -air * (0.19 + 0.0145 * air.norm());
-        let tilt = self.lean.norm();
+        let tilt = self.tilt.norm();
         let thrust = self.thrust * GRAVITY;
-        let lean_ne = earth_to_body(self.lean, -self.heading);
-        let push = lean_ne.try_normalize(1e-9).unwrap_or_default() * (thrust * tilt.sin());
+        let tilt_ne = earth_to_body(self.tilt, -self.heading);
+        let push = tilt_ne.try_normalize(1e-9).unwrap_or_default() * (thrust * tilt.sin());
         self.accel = push + drag;
         let mut lift = thrust * tilt.cos() - GRAVITY - 0.2 * self.climb;
         if self.alt <= 0.0 {
@@ -127,7 +127,7 @@ pub(crate) struct Sample {
     pub(crate) vel: Vector2<f64>,
     pub(crate) alt: f64,
     pub(crate) climb: f64,
-    pub(crate) lean_deg: f64,
+    pub(crate) tilt_deg: f64,
     pub(crate) demand_deg: f64,
     pub(crate) throttle_us: f64,
     pub(crate) heading: f64,
@@ -261,9 +261,9 @@ impl Flight {
         self.inputs.climb_mps = plant.climb;
         self.inputs.heading_rad = plant.heading;
         self.inputs.yaw_rate_rps = plant.yaw_rate;
-        self.inputs.roll_rad = plant.lean.y;
-        self.inputs.pitch_down_rad = plant.lean.x;
-        self.inputs.cos_tilt = plant.lean.norm().cos();
+        self.inputs.roll_rad = plant.tilt.y;
+        self.inputs.pitch_down_rad = plant.tilt.x;
+        self.inputs.cos_tilt = plant.tilt.norm().cos();
         self.inputs.accel_ne = plant.accel;
         let on_legs = if plant.alt <= 0.0 { (1.0 - plant.thrust).max(0.0) } else { 0.0 };
         let force = Vector3::new(0.0, 0.0, (plant.thrust + on_legs) * GRAVITY);
@@ -292,8 +292,8 @@ impl Flight {
             self.controllers.track_altitude(&self.inputs, &self.params);
             self.controllers.track_position(&self.inputs);
             let throttle = altitude.update(&vertical, AltitudeTarget::Altitude(height), &params, DT);
-            let lean = position.update(&horizontal, &PositionTarget::stay(point, &params), &params, DT);
-            let body = earth_to_body(lean, self.plant.heading);
+            let tilt = position.update(&horizontal, &PositionTarget::stay(point, &params), &params, DT);
+            let body = earth_to_body(tilt, self.plant.heading);
             self.plant.step(body.y, body.x, 0.0, throttle_share(throttle, &params));
             self.inputs.throttle_us = throttle;
         }
@@ -316,7 +316,7 @@ impl Flight {
         self.sense();
         let mut out = self.nav.update(&self.inputs, &self.params, &self.plan, &mut self.controllers);
         // As in the firmware, a landed craft is not tilted on its legs.
-        let share = self.controllers.land.lean_share();
+        let share = self.controllers.land.tilt_share();
         (out.roll_rad, out.pitch_down_rad) = (share * out.roll_rad, share * out.pitch_down_rad);
         let t = self.t();
         for event in self.nav.drain_events() {
@@ -335,7 +335,7 @@ impl Flight {
             vel: self.plant.vel,
             alt: self.plant.alt,
             climb: self.plant.climb,
-            lean_deg: self.plant.lean.norm().to_degrees(),
+            tilt_deg: self.plant.tilt.norm().to_degrees(),
             demand_deg: out.roll_rad.hypot(out.pitch_down_rad).to_degrees(),
             throttle_us: throttle,
             heading: self.plant.heading,
@@ -409,7 +409,7 @@ pub(crate) fn horizontal(inputs: &NavInputs) -> PositionMeasurement {
         position: inputs.pos_ne,
         velocity: inputs.vel_ne,
         accel: inputs.accel_ne,
-        lean_body: Vector2::new(inputs.pitch_down_rad, inputs.roll_rad),
+        tilt_body: Vector2::new(inputs.pitch_down_rad, inputs.roll_rad),
         heading_rad: inputs.heading_rad,
     }
 }

@@ -38,7 +38,7 @@ fn straight_leg_in_wind() {
     each(|name, params, bandwidth| {
         for (wind, bound, mean_bound) in [(0.0, 0.5, 0.5), (5.0, 2.0, 0.8), (8.0, 3.0, 1.2)] {
             let mut flight = Flight::new(params, &line(), 20.0).wind(0.0, wind, 0.0);
-            flight.plant.lean_bandwidth = bandwidth;
+            flight.plant.tilt_bandwidth = bandwidth;
             let mut flight = flight.launch();
             assert!(flight.until(60.0, |f| f.nav.state() == NavState::Complete), "{name}: not complete");
             let late = flight.log.iter().filter(|s| s.wp == 1 && s.pos.x > 40.0 && s.pos.x < 205.0);
@@ -62,7 +62,7 @@ fn cruise_along_the_wind() {
         for wind in [-5.0, 5.0] {
             let far = [waypoint(Flyover, 300.0, 0.0, 20.0, 5.0), waypoint(Flyover, 400.0, 0.0, 20.0, 5.0)];
             let mut flight = Flight::new(params, &far, 20.0).wind(wind, 0.0, 0.0);
-            flight.plant.lean_bandwidth = bandwidth;
+            flight.plant.tilt_bandwidth = bandwidth;
             let mut flight = flight.launch();
             flight.run(40.0);
             let speeds = || flight.since(10.0).map(|s| s.vel.norm());
@@ -79,7 +79,7 @@ fn start_from_rest() {
     each(|name, params, bandwidth| {
         let far = [waypoint(Flyover, 200.0, 0.0, 20.0, 0.0), waypoint(Flyover, 400.0, 0.0, 20.0, 0.0)];
         let mut flight = Flight::new(params, &far, 20.0);
-        flight.plant.lean_bandwidth = bandwidth;
+        flight.plant.tilt_bandwidth = bandwidth;
         let mut flight = flight.launch();
         flight.run(3.0);
         let accel = flight.plant.vel.norm() / 3.0;
@@ -93,7 +93,7 @@ fn stop_at_a_hold_from_10_mps() {
     each(|name, params, bandwidth| {
         let hold = [waypoint(Hold, 120.0, 0.0, 20.0, 10.0)];
         let mut flight = Flight::new(params, &hold, 20.0);
-        flight.plant.lean_bandwidth = bandwidth;
+        flight.plant.tilt_bandwidth = bandwidth;
         let mut flight = flight.launch();
         assert!(flight.until(60.0, |f| f.nav.state() == NavState::Holding));
         let arrived = flight.t();
@@ -115,7 +115,7 @@ fn hold_in_wind() {
             let diagonal = wind / 2_f64.sqrt();
             let hold = [waypoint(Hold, 0.0, 0.0, 20.0, 0.0)];
             let mut flight = Flight::new(params, &hold, 20.0).wind(diagonal, diagonal, gust);
-            flight.plant.lean_bandwidth = bandwidth;
+            flight.plant.tilt_bandwidth = bandwidth;
             let mut flight = flight.launch();
             flight.run(60.0);
             let place = flight.place(0);
@@ -135,7 +135,7 @@ fn orbit() {
             let mut hold = waypoint(Hold, 60.0, 0.0, 20.0, 5.0);
             hold.pattern = HoldPattern::Orbit;
             let mut flight = Flight::new(params, &[hold], 20.0).wind(0.0, wind, 0.0);
-            flight.plant.lean_bandwidth = bandwidth;
+            flight.plant.tilt_bandwidth = bandwidth;
             let mut flight = flight.launch();
             assert!(flight.until(60.0, |f| f.nav.state() == NavState::Orbiting));
             let began = flight.t();
@@ -182,7 +182,7 @@ fn corner(kind: WaypointType) -> [Waypoint; 2] {
 fn flyover_corner() {
     each(|name, params, bandwidth| {
         let mut flight = Flight::new(params, &corner(Flyover), 20.0);
-        flight.plant.lean_bandwidth = bandwidth;
+        flight.plant.tilt_bandwidth = bandwidth;
         let mut flight = flight.launch();
         assert!(flight.until(90.0, |f| f.nav.state() == NavState::Complete));
         let place = Vector2::new(60.0, 0.0);
@@ -199,7 +199,7 @@ fn flyover_corner() {
 fn flyby_corner() {
     each(|name, params, bandwidth| {
         let mut flight = Flight::new(params, &corner(Flyby), 20.0);
-        flight.plant.lean_bandwidth = bandwidth;
+        flight.plant.tilt_bandwidth = bandwidth;
         let mut flight = flight.launch();
         assert!(flight.until(90.0, |f| f.nav.state() == NavState::Complete));
         let place = Vector2::new(60.0, 0.0);
@@ -223,7 +223,7 @@ fn climb_from_10_to_50_m() {
     each(|name, params, bandwidth| {
         let hold = [waypoint(Hold, 0.0, 0.0, 50.0, 0.0)];
         let mut flight = Flight::new(params, &hold, 10.0);
-        flight.plant.lean_bandwidth = bandwidth;
+        flight.plant.tilt_bandwidth = bandwidth;
         let mut flight = flight.launch();
         flight.run(60.0);
         let overshoot = worst(flight.log.iter().map(|s| s.alt - 50.0));
@@ -244,7 +244,7 @@ fn altitude_on_a_level_square() {
             waypoint(Flyover, 0.0, 0.0, 20.0, 5.0),
         ];
         let mut flight = Flight::new(params, &square, 20.0);
-        flight.plant.lean_bandwidth = bandwidth;
+        flight.plant.tilt_bandwidth = bandwidth;
         let mut flight = flight.launch();
         assert!(flight.until(120.0, |f| f.nav.state() == NavState::Complete));
         let (first, later) = if name.starts_with("guide") { (1.6, 0.7) } else { (3.0, 2.2) };
@@ -264,7 +264,7 @@ fn landing() {
                 let mut params = params;
                 params.hover_throttle = (1500.0 + hover_error) as u16;
                 let mut flight = Flight::new(params, &land, 20.0).wind(wind, 0.0, 0.0);
-                flight.plant.lean_bandwidth = bandwidth;
+                flight.plant.tilt_bandwidth = bandwidth;
                 let mut flight = flight.launch();
                 assert!(flight.until(90.0, |f| f.disarmed), "{name}: no touchdown");
                 let landing = flight.entered(NavState::Landing, 0).unwrap();

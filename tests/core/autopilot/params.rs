@@ -9,7 +9,7 @@
 use crate::autopilot::flight::{DT, Flight, guide, inputs, set, vertical, waypoint, worst};
 use betadeck_core::autopilot::Params;
 use betadeck_core::autopilot::control::{
-    AltitudeController, AltitudeTarget, FlightControllers, LEAN_SLEW_RPS, THROTTLE_SLEW_US_PER_S,
+    AltitudeController, AltitudeTarget, FlightControllers, THROTTLE_SLEW_US_PER_S, TILT_SLEW_RPS,
     YAW_SLEW_DPS2, throttle_share,
 };
 use betadeck_core::autopilot::guidance::{L1Limits, l1};
@@ -212,7 +212,7 @@ fn effects() -> Vec<Effect> {
             let mut flight = fly(with(name, value), &[hold(0.0, 20.0)], 1.0);
             flight.inputs.stick_roll = 200.0;
             flight.run(0.5);
-            flight.plant.lean.y
+            flight.plant.tilt.y
         }),
         ("ap_yaw_mode", [0, 1, 3], false, |name, value| {
             // The craft starts east slowly: BEARING has turned the nose, VELOCITY not yet, FIXED never turns
@@ -419,8 +419,8 @@ fn a_change_in_flight_steps_nothing() {
             let (a, b) = (&pair[0].out, &pair[1].out);
             // The demand turns with the nose as well.
             let turn = pair[1].demand_deg.to_radians() * (pair[1].heading - pair[0].heading).sin().abs();
-            let lean = (b.roll_rad - a.roll_rad).hypot(b.pitch_down_rad - a.pitch_down_rad) - turn;
-            assert!(lean <= LEAN_SLEW_RPS * DT + 1e-3, "{}: lean by {lean} at {}", field.name, pair[1].t);
+            let tilt = (b.roll_rad - a.roll_rad).hypot(b.pitch_down_rad - a.pitch_down_rad) - turn;
+            assert!(tilt <= TILT_SLEW_RPS * DT + 1e-3, "{}: lean by {tilt} at {}", field.name, pair[1].t);
             let throttle = (b.throttle_us - a.throttle_us).abs();
             assert!(throttle <= THROTTLE_SLEW_US_PER_S * DT + 1e-6, "{}: {throttle} µs", field.name);
             let yaw = (yaw(b.yaw_rate_rps) - yaw(a.yaw_rate_rps)).abs();

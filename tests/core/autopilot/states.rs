@@ -115,26 +115,26 @@ fn legal(from: NavState, to: NavState) -> bool {
     }
 }
 
-/// The limits of throttle (µs) and lean (degrees). After a change, the widest of the old and the new ones.
+/// The limits of throttle (µs) and tilt (degrees). After a change, the widest of the old and the new ones.
 #[derive(Debug, Clone, Copy)]
 struct Limits {
     low_us: f64,
     high_us: f64,
-    lean_deg: f64,
+    tilt_deg: f64,
 }
 
 impl Limits {
     fn of(params: &Params) -> Self {
         let low_us = f64::from(params.throttle_min);
         let high_us = f64::from(params.throttle_max).max(low_us);
-        Self { low_us, high_us, lean_deg: f64::from(params.max_angle) }
+        Self { low_us, high_us, tilt_deg: f64::from(params.max_angle) }
     }
 
     fn widest(self, other: Self) -> Self {
         Self {
             low_us: self.low_us.min(other.low_us),
             high_us: self.high_us.max(other.high_us),
-            lean_deg: self.lean_deg.max(other.lean_deg),
+            tilt_deg: self.tilt_deg.max(other.tilt_deg),
         }
     }
 }
@@ -292,8 +292,8 @@ impl Run {
             let limits =
                 if update > self.limits_changed_at + SETTLE { Limits::of(params) } else { self.limits };
             prop_assert!((limits.low_us..=limits.high_us).contains(&out.throttle_us), "{:?} {limits:?}", out);
-            let lean = sample.demand_deg;
-            prop_assert!(lean <= limits.lean_deg + 1e-6, "{lean}° {limits:?}");
+            let tilt = sample.demand_deg;
+            prop_assert!(tilt <= limits.tilt_deg + 1e-6, "{tilt}° {limits:?}");
         } else if let Some(refusal) = refusal {
             prop_assert_eq!(telemetry.refusal, Some(refusal), "IDLE without a reason");
         }

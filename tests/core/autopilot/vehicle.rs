@@ -26,7 +26,7 @@ set ap_altitude_d = 20
 set ap_altitude_f = 10
 set ap_max_yaw_rate = 90
 ";
-/// The lean limit of the bounds.
+/// The tilt limit of the bounds.
 const COMMON: &str = "
 set ap_max_angle = 25
 ";
@@ -132,7 +132,7 @@ struct Sample {
     pos: Vector2<f64>,
     alt: f64,
     speed: f64,
-    lean_deg: f64,
+    tilt_deg: f64,
     armed: bool,
     on_ground: bool,
 }
@@ -184,7 +184,7 @@ fn fly(case: Case, points: &[Point], takeoff_m: f64, limit_s: f64, done: fn(&Sam
             pos: Vector2::new(truth.pos_enu.y, truth.pos_enu.x),
             alt: truth.pos_enu.z - ground,
             speed: truth.vel_enu.xy().norm(),
-            lean_deg: (truth.attitude * Vector3::z()).z.min(1.0).acos().to_degrees(),
+            tilt_deg: (truth.attitude * Vector3::z()).z.min(1.0).acos().to_degrees(),
             armed: vehicle.embedded().unwrap().is_armed(),
             on_ground: truth.on_ground,
         };
@@ -194,8 +194,8 @@ fn fly(case: Case, points: &[Point], takeoff_m: f64, limit_s: f64, done: fn(&Sam
         }
     }
     assert!(!log.is_empty(), "{case:?} never engaged");
-    let lean = worst(log.iter().map(|s| s.lean_deg));
-    assert!(lean <= 27.0 + case.angle(), "{}: lean {lean}", case.name);
+    let tilt = worst(log.iter().map(|s| s.tilt_deg));
+    assert!(tilt <= 27.0 + case.angle(), "{}: lean {tilt}", case.name);
     log
 }
 
@@ -242,11 +242,11 @@ fn cruise_and_cross_track(n: usize) {
     });
 }
 
-// Cruises near the limit of the lean: 25° carries an `iris` to 12.4 m/s through the air, and nine tenths of
+// Cruises near the limit of the tilt: 25° carries an `iris` to 12.4 m/s through the air, and nine tenths of
 // that is requested.
-part_and_search!(cruise_near_the_limit_of_the_lean, every 5, cruise_near_the_limit_keeps_the_speed, cruise_near_the_limit_keeps_the_speed_in_every_case);
+part_and_search!(cruise_near_the_limit_of_the_tilt, every 5, cruise_near_the_limit_keeps_the_speed, cruise_near_the_limit_keeps_the_speed_in_every_case);
 
-fn cruise_near_the_limit_of_the_lean(n: usize) {
+fn cruise_near_the_limit_of_the_tilt(n: usize) {
     every(n, |case| {
         for (leg, wind) in [(10.0, 0.0), (6.0, 5.0), (3.0, 8.0)] {
             let case = case.wind(wind, 0.0, 0.0);

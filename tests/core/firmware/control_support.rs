@@ -9,7 +9,7 @@ use betadeck_core::autopilot::io::NavInputs;
 use betadeck_core::autopilot::land_detector::GroundMeasurement;
 use betadeck_core::firmware::config::MixerKind;
 use betadeck_core::firmware::control::hold::{HoldModes, HoldOutput, HoldTuning, Holds};
-use betadeck_core::firmware::control::{ControlInput, Controller, LeanDemand, StickMode, Tuning};
+use betadeck_core::firmware::control::{ControlInput, Controller, StickMode, TiltDemand, Tuning};
 use betadeck_core::firmware::estimate::{Estimate, Estimator, EstimatorOptions, EstimatorTuning};
 use betadeck_core::firmware::settings::Settings;
 use betadeck_core::signals::SimTime;
@@ -107,7 +107,7 @@ impl Rig {
     }
 
     /// Returns the true roll (right positive) and pitch (nose down positive), degrees.
-    pub(crate) fn lean_deg(&self) -> [f64; 2] {
+    pub(crate) fn tilt_deg(&self) -> [f64; 2] {
         let m = self.truth().attitude.to_rotation_matrix();
         let m = m.matrix();
         [m[(2, 1)].atan2(m[(2, 2)]).to_degrees(), (-m[(2, 0)]).asin().to_degrees()]
@@ -170,14 +170,14 @@ impl Rig {
         let mut input = self.received;
         (input.due, input.rc_frame) = (due, is_frame);
         input.throttle = self.hold.throttle.or(input.throttle);
-        let share = self.controllers.land.lean_share();
-        let held = self.hold.lean.map(|lean| LeanDemand {
-            roll_rad: share * lean.roll_rad,
-            pitch_down_rad: share * lean.pitch_down_rad,
+        let share = self.controllers.land.tilt_share();
+        let held = self.hold.tilt.map(|tilt| TiltDemand {
+            roll_rad: share * tilt.roll_rad,
+            pitch_down_rad: share * tilt.pitch_down_rad,
         });
-        input.lean = held.or(input.lean);
+        input.tilt = held.or(input.tilt);
         input.stands = self.controllers.land.stands();
-        if self.modes.altitude && input.lean.is_none() {
+        if self.modes.altitude && input.tilt.is_none() {
             input.mode = StickMode::Angle;
         }
         let state = self.controller.step(&input, self.estimator.estimate(), self.dt);
@@ -200,10 +200,10 @@ impl Rig {
         }
     }
 
-    /// Demands this lean from the next frame on.
-    pub(crate) fn lean(&mut self, roll_deg: f64, pitch_deg: f64) {
-        self.sticks.lean =
-            Some(LeanDemand { roll_rad: roll_deg.to_radians(), pitch_down_rad: pitch_deg.to_radians() });
+    /// Demands this tilt from the next frame on.
+    pub(crate) fn tilt(&mut self, roll_deg: f64, pitch_deg: f64) {
+        self.sticks.tilt =
+            Some(TiltDemand { roll_rad: roll_deg.to_radians(), pitch_down_rad: pitch_deg.to_radians() });
     }
 }
 

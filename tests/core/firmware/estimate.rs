@@ -51,7 +51,7 @@ impl Errors {
     }
 }
 
-/// Returns the guide's hover throttle and lean limit. The bounds are stated for a craft with a known hover
+/// Returns the guide's hover throttle and tilt limit. The bounds are stated for a craft with a known hover
 /// throttle.
 fn settings() -> Settings {
     let mut settings = Settings::default();

@@ -121,10 +121,10 @@ fn without_a_fix_the_position_is_left_to_the_pilot() {
     rig.world.apply(WorldCommand::FaultOn(Fault::GpsLoss, Some(6.0))).expect("a valid fault");
     let altitude = rig.altitude_m();
     rig.run(1.0);
-    assert!(rig.hold.no_position && rig.hold.lean.is_none() && rig.hold.throttle.is_some());
+    assert!(rig.hold.no_position && rig.hold.tilt.is_none() && rig.hold.throttle.is_some());
     let mut worst: f64 = 0.0;
     rig.watch(4.0, |rig| {
-        worst = rig.lean_deg().iter().fold(worst, |most, angle| most.max(angle.abs()));
+        worst = rig.tilt_deg().iter().fold(worst, |most, angle| most.max(angle.abs()));
         assert!((rig.altitude_m() - altitude).abs() < 2.0);
     });
     assert!(worst < 3.0, "{worst}");
@@ -176,7 +176,7 @@ fn a_position_hold_without_a_source_is_only_levelled() {
         settings.set_number("poshold_position_source", source).expect("in range");
         let mut rig = Rig::airborne(windy(Noise::None, 0.0), &settings);
         rig.run(0.1);
-        assert_eq!(rig.hold.lean.is_some(), holds, "{source}");
+        assert_eq!(rig.hold.tilt.is_some(), holds, "{source}");
         assert_eq!(rig.hold.no_position, !holds, "{source}");
     }
 }

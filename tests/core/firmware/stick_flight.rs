@@ -25,7 +25,7 @@ fn stick_for(angle_deg: f64, settings: &Settings) -> f64 {
 /// settled, so the mean of several flights is judged.
 const SEEDS: u64 = 12;
 
-/// Returns the lean angles after a step of the stick in angle mode, degrees from those before, every millisecond.
+/// Returns the tilt angles after a step of the stick in angle mode, degrees from those before, every millisecond.
 fn angle_step(airframe: &Airframe, noise: Noise, seed: u64, axis: usize, angle: f64) -> (f64, Vec<f64>) {
     let settings = Settings::default();
     let config = WorldConfig { seed, ..world(noise, airframe.clone()) };
@@ -33,9 +33,9 @@ fn angle_step(airframe: &Airframe, noise: Noise, seed: u64, axis: usize, angle: 
     rig.manual(StickMode::Angle);
     rig.run(1.0);
     *[&mut rig.sticks.stick_roll, &mut rig.sticks.stick_pitch][axis] = stick_for(angle, &settings);
-    let start = rig.lean_deg()[axis];
+    let start = rig.tilt_deg()[axis];
     let mut angles = Vec::new();
-    rig.watch(1.0, |rig| angles.push(rig.lean_deg()[axis] - start));
+    rig.watch(1.0, |rig| angles.push(rig.tilt_deg()[axis] - start));
     (angle - start, angles)
 }
 
@@ -115,12 +115,12 @@ fn the_right_yaw_stick_turns_the_nose_right() {
 fn a_levelled_craft_keeps_level_through_a_full_turn() {
     let mut rig = Rig::airborne(world(Noise::Real, Airframe::iris()), &Settings::default());
     rig.manual(StickMode::Angle);
-    rig.lean(15.0, -10.0);
+    rig.tilt(15.0, -10.0);
     rig.sticks.yaw_rate_rps = Some(1.5);
     rig.run(1.0);
     let mut worst: f64 = 0.0;
     rig.watch(4.0, |rig| {
-        let [roll, pitch] = rig.lean_deg();
+        let [roll, pitch] = rig.tilt_deg();
         worst = worst.max((roll - 15.0).abs()).max((pitch + 10.0).abs());
     });
     println!("worst lean error in a turn: {worst}");
@@ -136,10 +136,10 @@ fn a_gust_of_torque_is_shrugged_off() {
     let weak = Fault::Motor(MotorNumber::new(2).expect("there is a motor 2"), 0.8);
     rig.world.apply(WorldCommand::FaultOn(weak, None)).expect("a valid fault");
     let mut worst: f64 = 0.0;
-    rig.watch(3.0, |rig| worst = rig.lean_deg().iter().fold(worst, |most, angle| most.max(angle.abs())));
-    println!("motor 2 at 80 %: {worst}° at most, then {:?}", rig.lean_deg());
+    rig.watch(3.0, |rig| worst = rig.tilt_deg().iter().fold(worst, |most, angle| most.max(angle.abs())));
+    println!("motor 2 at 80 %: {worst}° at most, then {:?}", rig.tilt_deg());
     assert!(worst < 12.0, "{worst}");
-    assert!(rig.lean_deg().iter().all(|angle| angle.abs() < 2.0), "{:?}", rig.lean_deg());
+    assert!(rig.tilt_deg().iter().all(|angle| angle.abs() < 2.0), "{:?}", rig.tilt_deg());
 }
 
 #[test]
@@ -151,7 +151,7 @@ fn hovering_in_angle_mode_hardly_moves_the_craft() {
         let (mut worst, mut fastest, mut motor): (f64, f64, f64) = (0.0, 0.0, 0.0);
         let mut last = rig.controller.state().motors.0;
         rig.watch(5.0, |rig| {
-            worst = rig.lean_deg().iter().fold(worst, |most, angle| most.max(angle.abs()));
+            worst = rig.tilt_deg().iter().fold(worst, |most, angle| most.max(angle.abs()));
             fastest = rig.rates_dps().iter().fold(fastest, |most, rate| most.max(rate.abs()));
             let now = rig.controller.state().motors.0;
             motor = motor.max((now[0] - last[0]).abs());
@@ -170,9 +170,9 @@ fn acro_keeps_the_attitude_when_the_sticks_are_released() {
     rig.run(0.3);
     rig.sticks.stick_roll = 0.0;
     rig.run(0.3);
-    let left = rig.lean_deg()[0];
+    let left = rig.tilt_deg()[0];
     rig.run(0.7);
-    assert!(left > 10.0 && (rig.lean_deg()[0] - left).abs() < 5.0, "{left} {:?}", rig.lean_deg());
+    assert!(left > 10.0 && (rig.tilt_deg()[0] - left).abs() < 5.0, "{left} {:?}", rig.tilt_deg());
 }
 
 #[test]
@@ -183,7 +183,7 @@ fn horizon_levels_in_the_middle_and_flips_at_the_end() {
     rig.run(1.5);
     rig.sticks.stick_roll = 0.0;
     rig.run(2.0);
-    assert!(rig.lean_deg()[0].abs() < 4.0, "{:?}", rig.lean_deg());
+    assert!(rig.tilt_deg()[0].abs() < 4.0, "{:?}", rig.tilt_deg());
     rig.sticks.stick_roll = 500.0;
     let mut fastest: f64 = 0.0;
     rig.watch(0.4, |rig| fastest = fastest.max(rig.rates_dps()[0]));
@@ -200,9 +200,9 @@ fn every_rate_levels_alike() {
         rig.manual(StickMode::Angle);
         rig.run(1.0);
         rig.sticks.stick_roll = stick_for(20.0, &settings);
-        let start = rig.lean_deg()[0];
+        let start = rig.tilt_deg()[0];
         let mut angles = Vec::new();
-        rig.watch(1.0, |rig| angles.push(rig.lean_deg()[0] - start));
+        rig.watch(1.0, |rig| angles.push(rig.tilt_deg()[0] - start));
         let response = StepResponse::of(&angles, 20.0 - start, 1.0 / f64::from(rate_hz));
         println!("{rate_hz} Hz: {response:?}");
         assert!(response.overshoot <= 0.10 && response.settled_s <= 0.35, "{rate_hz} Hz: {response:?}");

@@ -77,7 +77,7 @@ fn weak_motor_is_recovered_from() {
         rig.fly(20.0);
         let off = off(&rig);
         let mut checks = Checks::default();
-        checks.at_most("attitude", greatest(rig.span(start, 1e9).map(Sample::lean)), 12.0 + extra.angle);
+        checks.at_most("attitude", greatest(rig.span(start, 1e9).map(Sample::tilt)), 12.0 + extra.angle);
         checks.at_most("back", greatest(rig.span(start + 10.0, 1e9).map(&off)), 1.0 + extra.h);
         checks.verdict(&format!("weak motor, seed {seed}"), &rig.story())
     }));
@@ -157,11 +157,11 @@ waypoint insert 1 40.4662000 -79.5182000 2000 500 FLYOVER 0 NONE";
         let mut rig = Rig::new(world(seed).0, line, 20.0);
         rig.engaged().fly(20.0);
         let start = rig.t();
-        let before = greatest(rig.span(start - 5.0, start).map(Sample::lean));
+        let before = greatest(rig.span(start - 5.0, start).map(Sample::tilt));
         rig.vehicle.change_world(fault("motor", "2:0.8")).unwrap();
         rig.fly(15.0);
         let mut checks = Checks::default();
-        checks.at_most("lean", greatest(rig.span(start, 1e9).map(Sample::lean)), before + 1.0);
+        checks.at_most("lean", greatest(rig.span(start, 1e9).map(Sample::tilt)), before + 1.0);
         checks.at_most("altitude", greatest(rig.span(start, 1e9).map(|s| (s.alt - 20.0).abs())), 1.0);
         checks.verdict(&format!("weak motor in cruise, seed {seed}"), &rig.story())
     }));
@@ -182,9 +182,9 @@ fn wind_near_the_limit_is_held_and_beyond_it_ends_at_the_fence() {
     rig.vehicle.change_world(WorldCommand::SetWind("14@0".parse().unwrap())).unwrap();
     let start = rig.t();
     rig.until(1200.0, "the fence", at_the_fence);
-    let lean: Vec<f64> = rig.span(start + 15.0, 1e9).map(Sample::lean).collect();
-    let middle = mean(lean.iter().copied());
-    let swing = greatest(lean.iter().map(|lean| (lean - middle).abs()));
+    let tilt: Vec<f64> = rig.span(start + 15.0, 1e9).map(Sample::tilt).collect();
+    let middle = mean(tilt.iter().copied());
+    let swing = greatest(tilt.iter().map(|tilt| (tilt - middle).abs()));
     assert!(swing <= 5.0, "{swing}");
 }
 

@@ -78,8 +78,8 @@ fn corner_checks(seed: u64) -> Option<String> {
     }
     checks.within("FLYOVER against FLYBY", overshoots[1] / overshoots[0].max(0.01), 2.0, f64::INFINITY);
     checks.within("COMPLETE at", rig.entered(NavState::Complete, 5), 70.0, 105.0);
-    let lean = greatest(rig.span(0.0, 1e9).map(Sample::lean));
-    checks.at_most("lean", lean, 27.0 + extra.angle);
+    let tilt = greatest(rig.span(0.0, 1e9).map(Sample::tilt));
+    checks.at_most("lean", tilt, 27.0 + extra.angle);
     checks.at_most("altitude", greatest(rig.span(12.0, 1e9).map(|s| (s.alt - 20.0).abs())), 0.7 + extra.v);
     checks.verdict(&format!("corners, seed {seed}"), &rig.story())
 }

@@ -27,7 +27,7 @@ fn outage(seed: u64) -> Option<String> {
     let idle = rig.transitions().into_iter().find(|entry| entry.to == NavState::Idle).unwrap();
     checks.at_most("IDLE after gps_lost", idle.t - lost, 0.05);
     let away = || rig.span(lost + 1.0, ended);
-    checks.at_most("lean", greatest(away().map(Sample::lean)), 3.0 + extra.angle);
+    checks.at_most("lean", greatest(away().map(Sample::tilt)), 3.0 + extra.angle);
     let alt = rig.at(lost).alt;
     checks.at_most("altitude", greatest(away().map(|s| (s.alt - alt).abs())), 2.0 + extra.v);
     for (mode, on) in [(Mode::Autopilot, false), (Mode::Angle, true), (Mode::AltHold, true)] {
@@ -74,7 +74,7 @@ fn glitch_does_not_upset_a_hold() {
         rig.vehicle.change_world(WorldCommand::FaultOn(Fault::GpsGlitch(30.0, 90.0), Some(2.0))).unwrap();
         rig.fly(22.0);
         let mut checks = Checks::default();
-        checks.at_most("lean", greatest(rig.span(0.0, 1e9).map(Sample::lean)), 27.0 + extra.angle);
+        checks.at_most("lean", greatest(rig.span(0.0, 1e9).map(Sample::tilt)), 27.0 + extra.angle);
         checks.at_most("back", rig.samples.last().unwrap().from(place), 1.5 + extra.h);
         checks.holds("state", rig.path().ends_with("HOLDING 0"));
         checks.verdict(&format!("glitch, seed {seed}"), &rig.story())
@@ -97,7 +97,7 @@ fn landing_among_buildings_does_not_tip_over() {
         let mut checks = Checks::default();
         checks.same("reason", rig.disarmed().unwrap().1, DisarmReason::Landing);
         checks.holds("whole", !rig.vehicle.truth().unwrap().crashed);
-        checks.at_most("lean at rest", rig.samples.last().unwrap().lean(), 2.0);
+        checks.at_most("lean at rest", rig.samples.last().unwrap().tilt(), 2.0);
         checks.verdict(&format!("urban landing, seed {seed}"), &rig.story())
     }));
 }

@@ -51,7 +51,7 @@ fn landing(seed: u64, wind: Wind) -> Option<String> {
     let rest = rig.at(disarm);
     let moved = greatest(rig.span(disarm, 1e9).map(|s| (s.n - rest.n).hypot(s.e - rest.e)));
     checks.at_most("stays", moved, 0.2);
-    checks.at_most("lean", greatest(rig.span(0.0, 1e9).map(Sample::lean)), 27.0 + extra.angle);
+    checks.at_most("lean", greatest(rig.span(0.0, 1e9).map(Sample::tilt)), 27.0 + extra.angle);
     checks.verdict(&format!("landing, seed {seed}, wind {wind}"), &rig.story())
 }
 
@@ -61,7 +61,7 @@ fn landing_in_calm_and_in_wind() {
     assert_met(SEEDS.into_iter().flat_map(|seed| winds.map(|wind| landing(seed, wind))));
 }
 
-/// Lands in rough air. In the first seconds on the ground, wind can tip over a craft that leans against it.
+/// Lands in rough air. In the first seconds on the ground, wind can tip over a craft that tilts against it.
 /// Returns the distance from its waypoint, m, and the broken bounds.
 fn rough_landing(seed: u64) -> (f64, Option<String>) {
     let (mut world, _) = world(seed);
@@ -72,13 +72,13 @@ fn rough_landing(seed: u64) -> (f64, Option<String>) {
     let mut checks = Checks::default();
     let (disarm, reason) = rig.disarmed().unwrap();
     checks.same("reason", reason, DisarmReason::Landing);
-    // The take-off also crosses this height, so the search starts later. A leaning craft touches with two
+    // The take-off also crosses this height, so the search starts later. A tilting craft touches with two
     // legs first.
     let contact = rig.span(5.0, disarm).find(|s| s.alt < 0.045).map_or(f64::INFINITY, |s| s.t);
     checks.within("disarm after contact", disarm - contact, 1.0, 9.0);
     let rest = rig.at(disarm);
-    checks.at_most("lean at the end", rest.lean(), 3.0);
-    checks.at_most("lean afterwards", greatest(rig.span(disarm, 1e9).map(Sample::lean)), 3.0);
+    checks.at_most("lean at the end", rest.tilt(), 3.0);
+    checks.at_most("lean afterwards", greatest(rig.span(disarm, 1e9).map(Sample::tilt)), 3.0);
     checks.at_most("height at the disarm", rest.alt, 0.03);
     let place = rest.from(rig.waypoint(0));
     checks.at_most("place", place, 3.5);

@@ -26,9 +26,9 @@ fn is_down(checks: &mut Checks, rig: &Rig, radius_m: f64) {
     checks.same("reason", reason, DisarmReason::Landing);
     let rest = rig.at(disarm);
     checks.at_most("height at the disarm", rest.alt, 0.03);
-    checks.at_most("lean at the disarm", rest.lean(), 3.0);
+    checks.at_most("lean at the disarm", rest.tilt(), 3.0);
     checks.at_most("place", rest.from([0.0, 0.0]), radius_m);
-    let tilt = greatest(rig.span(disarm, 1e9).map(Sample::lean));
+    let tilt = greatest(rig.span(disarm, 1e9).map(Sample::tilt));
     checks.at_most("lean afterwards", tilt, 3.0);
 }
 

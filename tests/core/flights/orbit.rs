@@ -100,7 +100,7 @@ fn orbit_ends_after_its_time() {
     assert_met([timed(0), timed(1)]);
 }
 
-/// Flies an orbit whose rate is limited by the speed or by the lean: radius, m; rate, °/s; `ap_max_velocity`,
+/// Flies an orbit whose rate is limited by the speed or by the tilt: radius, m; rate, °/s; `ap_max_velocity`,
 /// cm/s.
 fn fast(radius_m: f64, rate_dps: u32, speed_cms: u32, holds: &str) -> Option<String> {
     let (world, _) = world(0);

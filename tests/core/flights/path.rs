@@ -15,14 +15,14 @@ struct Air {
     /// The greatest and the mean cross-track error.
     xte: (f64, f64),
     /// Roll and pitch (nose up) in the steady part, and their tolerance.
-    lean: Option<(f64, f64, f64)>,
+    tilt: Option<(f64, f64, f64)>,
 }
 
 const AIRS: [Air; 4] = [
-    Air { wind: "calm", rough: false, xte: (0.5, 0.5), lean: None },
-    Air { wind: "5@270", rough: false, xte: (2.0, 0.8), lean: Some((-7.8, -7.9, 1.5)) },
-    Air { wind: "8@270", rough: false, xte: (3.0, 1.2), lean: Some((-13.9, -8.0, 2.0)) },
-    Air { wind: "5@270", rough: true, xte: (4.0, 1.5), lean: None },
+    Air { wind: "calm", rough: false, xte: (0.5, 0.5), tilt: None },
+    Air { wind: "5@270", rough: false, xte: (2.0, 0.8), tilt: Some((-7.8, -7.9, 1.5)) },
+    Air { wind: "8@270", rough: false, xte: (3.0, 1.2), tilt: Some((-13.9, -8.0, 2.0)) },
+    Air { wind: "5@270", rough: true, xte: (4.0, 1.5), tilt: None },
 ];
 
 fn line(seed: u64, air: &Air) -> Option<String> {
@@ -51,7 +51,7 @@ fn line(seed: u64, air: &Air) -> Option<String> {
         checks.at_most("fastest", greatest(speeds()), 5.25 + extra.speed);
     }
     checks.within("speed", mean(leg.iter().map(Sample::speed)), 4.75 - extra.speed, 5.25 + extra.speed);
-    if let Some((roll, pitch, tolerance)) = air.lean {
+    if let Some((roll, pitch, tolerance)) = air.tilt {
         let steady = || leg.iter().filter(|s| s.n > 100.0);
         let tolerance = tolerance + extra.angle;
         checks.within("roll", mean(steady().map(|s| s.roll)), roll - tolerance, roll + tolerance);
@@ -59,7 +59,7 @@ fn line(seed: u64, air: &Air) -> Option<String> {
         let heading = steady().map(|s| ((s.heading + 180.0).rem_euclid(360.0) - 180.0).abs());
         checks.at_most("nose", greatest(heading), 5.0 + extra.angle);
     }
-    checks.at_most("lean", greatest(rig.span(0.0, 1e9).map(Sample::lean)), 27.0 + extra.angle);
+    checks.at_most("lean", greatest(rig.span(0.0, 1e9).map(Sample::tilt)), 27.0 + extra.angle);
     checks.verdict(
         &format!("line, seed {seed}, {}{}", air.wind, if air.rough { " rough" } else { "" }),
         &rig.story(),

@@ -49,7 +49,7 @@ impl Sample {
     }
 
     /// Returns the tilt from level, degrees.
-    pub(crate) fn lean(&self) -> f64 {
+    pub(crate) fn tilt(&self) -> f64 {
         (self.roll.to_radians().cos() * self.pitch.to_radians().cos()).acos().to_degrees()
     }
 

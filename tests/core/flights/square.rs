@@ -59,7 +59,7 @@ fn basic_navigation(seed: u64) -> Option<String> {
         greatest(rig.span(0.0, 12.0).map(|s| (s.alt - 20.0).abs())),
         1.6 + extra.v,
     );
-    checks.at_most("lean", greatest(rig.span(0.0, 1e9).map(Sample::lean)), 27.0 + extra.angle);
+    checks.at_most("lean", greatest(rig.span(0.0, 1e9).map(Sample::tilt)), 27.0 + extra.angle);
     let last = rig.samples.last().unwrap();
     checks.holds("armed, AUTOPILOT on", last.armed && last.modes.has(Mode::Autopilot));
     checks.verdict(&format!("basic navigation, seed {seed}"), &rig.story())
@@ -87,7 +87,7 @@ fn square(seed: u64) -> Option<String> {
     checks.at_most("touchdown", rig.at(at).from(place), 1.0 + extra.h);
     let climb = greatest(rig.span(0.0, rig.entered(NavState::Landing, 3)).map(|s| s.alt - 50.0));
     checks.at_most("altitude overshoot", climb, 1.5 + extra.v);
-    checks.at_most("lean", greatest(rig.span(0.0, 1e9).map(Sample::lean)), 27.0 + extra.angle);
+    checks.at_most("lean", greatest(rig.span(0.0, 1e9).map(Sample::tilt)), 27.0 + extra.angle);
     checks.verdict(&format!("square, seed {seed}"), &rig.story())
 }
 

@@ -42,7 +42,7 @@ fn a_craft_blown_off_its_hold_says_so() {
         rig.until(25.0, "it is reported", |rig| !reported(rig).is_empty());
         let (on, deviation) = reported(&rig)[0];
         assert!(on && deviation.distance_m > 4.0, "{deviation:?}");
-        assert_eq!(deviation.limit, HoldLimit::Lean);
+        assert_eq!(deviation.limit, HoldLimit::Tilt);
         rig.fly(5.0);
         assert!(shown(&rig).unwrap().distance_m > deviation.distance_m + 5.0, "the picture keeps up");
         wind(&mut rig, "calm");

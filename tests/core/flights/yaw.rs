@@ -32,11 +32,11 @@ fn turned(from: f64, to: f64) -> f64 {
     (from - to + 180.0).rem_euclid(360.0) - 180.0
 }
 
-fn fixed_heading(mode: &str, lean: u32, speed_cms: u32, air: Turbulence, bound: f64) -> Option<String> {
+fn fixed_heading(mode: &str, tilt: u32, speed_cms: u32, air: Turbulence, bound: f64) -> Option<String> {
     let (mut world, _) = world(0);
     world.turbulence = air;
     let lines = format!(
-        "{}set ap_yaw_mode = {mode}\nset ap_max_angle = {lean}\nset ap_max_velocity = 1500\n",
+        "{}set ap_yaw_mode = {mode}\nset ap_max_angle = {tilt}\nset ap_max_velocity = 1500\n",
         seven_squares(speed_cms)
     );
     let mut rig = Rig::new(world, &lines, 20.0);
@@ -45,7 +45,7 @@ fn fixed_heading(mode: &str, lean: u32, speed_cms: u32, air: Turbulence, bound: 
     let mut checks = Checks::default();
     let off = greatest(rig.span(0.0, 1e9).map(|sample| turned(sample.heading, start).abs()));
     checks.at_most("turned by", off, bound);
-    checks.verdict(&format!("{mode}, {lean} degrees, {speed_cms} cm/s, {air}"), &rig.story())
+    checks.verdict(&format!("{mode}, {tilt} degrees, {speed_cms} cm/s, {air}"), &rig.story())
 }
 
 part_and_search!(fixed_headings, every 3, a_fixed_heading_stays_over_seven_squares, a_fixed_heading_stays_over_seven_squares_in_every_case);
@@ -58,7 +58,7 @@ fn fixed_headings(n: usize) {
     assert_met(
         cases
             .step_by(n)
-            .map(|((mode, lean, speed_cms), (air, bound))| fixed_heading(mode, lean, speed_cms, air, bound)),
+            .map(|((mode, tilt, speed_cms), (air, bound))| fixed_heading(mode, tilt, speed_cms, air, bound)),
     );
 }
 

@@ -1,4 +1,4 @@
-//! A kinematic quadcopter. Thrust sets the climb rate and lean sets the horizontal acceleration, each with a
+//! A kinematic quadcopter. Thrust sets the climb rate and tilt sets the horizontal acceleration, each with a
 //! lag.
 //!
 //! Its default numbers are those of the public SITL harness. Such a craft reaches a steady sink rate at any
@@ -15,8 +15,8 @@ const BUMP_MPS2: f64 = 60.0;
 /// The body rate per unit of differential thrust, rad/s, and its time constant, s.
 const RATE_GAIN: f64 = 12.0;
 const RATE_TAU_S: f64 = 0.08;
-/// The greatest lean, rad.
-const MAX_LEAN_RAD: f64 = 1.2;
+/// The greatest tilt, rad.
+const MAX_TILT_RAD: f64 = 1.2;
 /// The share of the hover thrust below which a craft stays on the ground.
 const LIFTING_SHARE: f64 = 0.8;
 /// The place where the craft starts.
@@ -117,8 +117,8 @@ impl Plant {
         ) * (RATE_GAIN / 2.0);
         self.rates += (wanted - self.rates) * (dt / RATE_TAU_S).min(1.0);
         self.angles += self.rates * dt;
-        for lean in self.angles.iter_mut().take(2) {
-            *lean = lean.clamp(-MAX_LEAN_RAD, MAX_LEAN_RAD);
+        for tilt in self.angles.iter_mut().take(2) {
+            *tilt = tilt.clamp(-MAX_TILT_RAD, MAX_TILT_RAD);
         }
         let (roll, pitch, heading) = (self.angles.x, self.angles.y, self.angles.z);
         let ahead = GRAVITY * pitch.tan();

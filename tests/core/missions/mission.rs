@@ -28,7 +28,7 @@ pub(crate) struct Outcome {
     pub(crate) end: FlightEnd,
     /// The greatest true altitude before the engagement, m.
     pub(crate) climbed_m: f64,
-    /// `true` if the thrust limited the lean.
+    /// `true` if the thrust limited the tilt.
     pub(crate) limited: bool,
     /// The reason of each disarm, with the true altitude, m.
     pub(crate) disarms: Vec<(DisarmReason, f64)>,

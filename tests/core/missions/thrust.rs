@@ -1,4 +1,4 @@
-//! Craft with little thrust: weak motors, thin air, payload, large lean angles.
+//! Craft with little thrust: weak motors, thin air, payload, large tilt angles.
 
 use crate::missions::mission::{Mission, Outcome, assert_none, plan};
 use betadeck_core::flight::FlightResult;
@@ -10,10 +10,10 @@ const FAR: &str = "waypoint insert 0 40.4905000 -79.5182000 3000 0 FLYOVER 0 NON
 const HOLD: &str = "waypoint insert 0 40.4635000 -79.5182000 2000 0 HOLD 300 NONE";
 
 /// Flies the first minutes of a long leg.
-fn far(amsl_m: f64, speed_mps: f64, lean_deg: u8, payload_kg: f64, airframe: Airframe) -> Outcome {
+fn far(amsl_m: f64, speed_mps: f64, tilt_deg: u8, payload_kg: f64, airframe: Airframe) -> Outcome {
     let mut mission = Mission { takeoff_m: 30.0, timeout_s: 130.0, ..Mission::new(plan(FAR)) }
         .set("ap_max_velocity", (100.0 * speed_mps).round())
-        .set("ap_max_angle", lean_deg);
+        .set("ap_max_angle", tilt_deg);
     mission.world.home = Home { alt_amsl_m: amsl_m, ..mission.world.home };
     mission.world.airframe = airframe;
     if payload_kg > 0.0 {
@@ -32,16 +32,16 @@ fn grid(take: impl Fn(usize) -> bool) -> Vec<Option<String>> {
     for airframe in [Airframe::iris(), Airframe::five_inch()] {
         for amsl_m in [-400.0, 1000.0, 2000.0, 4000.0] {
             for speed_mps in [5.0, 12.0, 25.0] {
-                for lean_deg in [15, 35, 50, 60] {
+                for tilt_deg in [15, 35, 50, 60] {
                     for payload_kg in [0.0, 0.2, 0.4] {
                         row += 1;
                         if !take(row) {
                             continue;
                         }
-                        let outcome = far(amsl_m, speed_mps, lean_deg, payload_kg, airframe.clone());
+                        let outcome = far(amsl_m, speed_mps, tilt_deg, payload_kg, airframe.clone());
                         complaints.push(is_down(&outcome).then(|| {
                             format!(
-                                "{} at {amsl_m} m, {speed_mps} m/s, {lean_deg}°, {payload_kg} kg: {}",
+                                "{} at {amsl_m} m, {speed_mps} m/s, {tilt_deg}°, {payload_kg} kg: {}",
                                 airframe.name, outcome.end.verdict.reason
                             )
                         }));
@@ -54,23 +54,23 @@ fn grid(take: impl Fn(usize) -> bool) -> Vec<Option<String>> {
 }
 
 #[test]
-fn a_craft_that_cannot_lean_that_far_flies_slower_and_says_so() {
+fn a_craft_that_cannot_tilt_that_far_flies_slower_and_says_so() {
     let cases = [(2000.0, 50, 0.0), (300.0, 55, 0.0), (300.0, 50, 0.2)];
-    for (amsl_m, lean_deg, payload_kg) in cases {
-        let outcome = far(amsl_m, 25.0, lean_deg, payload_kg, Airframe::iris());
-        assert!(!is_down(&outcome), "{amsl_m} m, {lean_deg}°, {payload_kg} kg: {:?}", outcome.end.verdict);
-        assert!(outcome.limited, "{amsl_m} m, {lean_deg}°, {payload_kg} kg: nothing was reported");
+    for (amsl_m, tilt_deg, payload_kg) in cases {
+        let outcome = far(amsl_m, 25.0, tilt_deg, payload_kg, Airframe::iris());
+        assert!(!is_down(&outcome), "{amsl_m} m, {tilt_deg}°, {payload_kg} kg: {:?}", outcome.end.verdict);
+        assert!(outcome.limited, "{amsl_m} m, {tilt_deg}°, {payload_kg} kg: nothing was reported");
     }
 }
 
 #[test]
-fn altitude_comes_before_lean_in_thin_air_with_payload_on_both_airframes() {
+fn altitude_comes_before_tilt_in_thin_air_with_payload_on_both_airframes() {
     assert_none(grid(|row| row % 23 == 0));
 }
 
 #[test]
 #[ignore = "search: 288 flights"]
-fn altitude_comes_before_lean_in_the_whole_grid() {
+fn altitude_comes_before_tilt_in_the_whole_grid() {
     assert_none(grid(|_| true));
 }
 

@@ -133,7 +133,7 @@ fn guide_7_sees_that_l1_is_off() {
 fn guide_7_sees_wind_from_the_other_side() {
     let mut case = case_of("guide-7", "wind-5, noise none");
     case.airs[0].wind = "5@90".parse().unwrap();
-    assert_fails(&judged(&case), "it leans into the wind", "mean 7.");
+    assert_fails(&judged(&case), "it tilts into the wind", "mean 7.");
 }
 
 #[test]

@@ -32,7 +32,7 @@ fn one_of_each() -> Vec<SessionEvent> {
             target_alt_m: 3.0,
         },
         NavEvent::Climbing(true),
-        NavEvent::Limited { lean_rad: 0.5 },
+        NavEvent::Limited { tilt_rad: 0.5 },
         NavEvent::Geofence { distance_m: 101.0, limit_m: 100.0, action: FenceAction::Rth },
         NavEvent::CannotHold { on: true, deviation: CannotHold::default() },
         NavEvent::Refused(Refusal::Aborted(AbortReason::Flyaway)),
@@ -48,7 +48,7 @@ fn one_of_each() -> Vec<SessionEvent> {
         FirmwareEvent::RxRecovered,
         FirmwareEvent::Failsafe { policy: RxLossPolicy::Land, stage: 2, procedure: FailsafeProcedure::Land },
         FirmwareEvent::HeadingDoubt { on: true, error_deg: 58.0 },
-        FirmwareEvent::LeanDoubt { on: true, error_deg: 10.0 },
+        FirmwareEvent::TiltDoubt { on: true, error_deg: 10.0 },
         FirmwareEvent::Battery { state: BatteryAlarm::Warning, cell_v: 3.49 },
         FirmwareEvent::Notice(FirmwareNotice::ArmAssisted),
     ];
@@ -131,7 +131,7 @@ fn vehicle_name(kind: &EventKind) -> Option<&'static str> {
             FirmwareEvent::RxRecovered => "rx_recovered",
             FirmwareEvent::Failsafe { .. } => "failsafe",
             FirmwareEvent::HeadingDoubt { .. } => "heading_doubt",
-            FirmwareEvent::LeanDoubt { .. } => "lean_doubt",
+            FirmwareEvent::TiltDoubt { .. } => "lean_doubt",
             FirmwareEvent::Battery { .. } => "battery",
             FirmwareEvent::Notice(_) => "notice",
             FirmwareEvent::Nav(event) => match event {

@@ -52,7 +52,7 @@ pub(crate) fn files() -> Vec<SourceFile> {
             let path = entry.unwrap().path();
             if path.is_dir() {
                 folders.push(path);
-            } else if path.extension().is_some_and(|ending| ending == "rs") {
+            } else if path.extension().is_some_and(|extension| extension == "rs") {
                 let name = below(&root, &path);
                 let text = std::fs::read_to_string(&path).unwrap();
                 files.push(SourceFile { name, text });

@@ -66,8 +66,8 @@ fn every_format_has_a_row_on_its_page() {
         let info = format.info();
         let name = format!("`{format}`");
         let row = rows.iter().find(|row| row.contains(&name)).unwrap_or_else(|| panic!("{name} has no row"));
-        for ending in info.endings {
-            assert!(row.contains(&format!("`.{ending}`")), "{name}: .{ending} is missing");
+        for extension in info.extensions {
+            assert!(row.contains(&format!("`.{extension}`")), "{name}: .{extension} is missing");
         }
         assert_eq!(row.contains("read only"), !info.writes, "{name}");
     }

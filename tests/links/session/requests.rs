@@ -357,7 +357,7 @@ fn modes(bench: &Bench) -> Vec<&'static str> {
     bench.firmware().mode_ranges().iter().map(|range| range.mode_box.into()).collect()
 }
 
-/// Returns a bench whose craft has ARM on AUX4 and a lean angle set, as `--settings` does, and a client at its command
+/// Returns a bench whose craft has ARM on AUX4 and a tilt angle set, as `--settings` does, and a client at its command
 /// line.
 async fn bench_with_given_settings() -> Bench {
     let mut firmware = Firmware::new(Configuration::default(), FirmwareOptions::default());

@@ -148,7 +148,7 @@ fn all_settings_of_a_remote_firmware_are_read_and_changed_in_the_same_panel() {
     };
     let p_roll = row(&terminal, "p_roll");
     assert!(p_roll.contains('●') && p_roll.contains("60"), "{p_roll}");
-    terminal.send("/lean of the auto\r");
+    terminal.send("/tilt of the auto\r");
     terminal.until("the setting", |terminal| row(terminal, "ap_max_angle").contains("50"));
     terminal.send("w");
     terminal.until_shown("no forecast of its flight");

@@ -37,7 +37,7 @@ fn until_row(terminal: &mut Terminal, name: &str, parts: &[&str]) {
 fn settings_are_found_changed_compared_tried_and_saved_by_keys() {
     let mut terminal = opened(80, 24);
     until_row(&mut terminal, "p_roll", &["●o", "60"]);
-    terminal.send("/lean of the auto\r");
+    terminal.send("/tilt of the auto\r");
     until_row(&mut terminal, "ap_max_angle", &["▸", "deg"]);
     terminal.send("\r999\r");
     terminal.until_shown("✗ 999 is no value of ap_max_angle: 10…70.");
@@ -53,7 +53,7 @@ fn settings_are_found_changed_compared_tried_and_saved_by_keys() {
     terminal.send("p");
     terminal.until_shown("ap_max_angle = 31 at its upload");
     terminal.send("\x1b");
-    terminal.until("the search is over", |terminal| !terminal.screen().contains("/lean"));
+    terminal.until("the search is over", |terminal| !terminal.screen().contains("/tilt"));
     // Only what differs: from the defaults, then from the plan, then from the flash.
     terminal.send("ff");
     terminal.until_shown("other than the plan's");

@@ -294,7 +294,7 @@ fn a_craft_that_cannot_hold_says_so_on_an_80x24_screen() {
     let mut view = state.shared.view.clone();
     let vehicle = std::sync::Arc::make_mut(&mut view.vehicle);
     let nav = vehicle.nav.as_mut().unwrap();
-    nav.cannot_hold = Some(CannotHold { distance_m: 23.4, vertical_m: -0.2, limit: HoldLimit::Lean });
+    nav.cannot_hold = Some(CannotHold { distance_m: 23.4, vertical_m: -0.2, limit: HoldLimit::Tilt });
     update(&mut state, Msg::View(view));
     insta::assert_snapshot!(screen(&state));
 }

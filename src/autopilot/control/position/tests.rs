@@ -12,13 +12,13 @@ fn level_craft(velocity: f64, accel: f64) -> PositionMeasurement {
         position: Vector2::zeros(),
         velocity: Vector2::new(velocity, 0.0),
         accel: Vector2::new(accel, 0.0),
-        lean_body: Vector2::zeros(),
+        tilt_body: Vector2::zeros(),
         heading_rad: 0.0,
     }
 }
 
-/// Returns the lean to the north, degrees, of a level craft `seconds` after it was sent to a place `north_m` ahead.
-fn lean_deg(
+/// Returns the tilt to the north, degrees, of a level craft `seconds` after it was sent to a place `north_m` ahead.
+fn tilt_deg(
     controller: &mut PositionController,
     now: &PositionMeasurement,
     north_m: f64,
@@ -28,8 +28,8 @@ fn lean_deg(
     let params = Params::default();
     let target = PositionTarget { law, ..PositionTarget::stay(Vector2::new(north_m, 0.0), &params) };
     let steps = (seconds / DT).round() as usize;
-    let leans = (0..steps).map(|_| controller.update(now, &target, &params, DT));
-    leans.last().unwrap_or_default().x.to_degrees()
+    let tilts = (0..steps).map(|_| controller.update(now, &target, &params, DT));
+    tilts.last().unwrap_or_default().x.to_degrees()
 }
 
 #[test]
@@ -39,31 +39,31 @@ fn a_craft_leans_against_the_speed_and_the_acceleration_that_carry_it_away() {
             let mut controller = PositionController::default();
             let carried = level_craft(velocity, accel);
             controller.engage(&carried);
-            let lean = lean_deg(&mut controller, &carried, 0.0, law, 2.0);
-            assert!(lean < -0.5, "{law:?}, {velocity} m/s, {accel} m/s²: {lean}°");
+            let tilt = tilt_deg(&mut controller, &carried, 0.0, law, 2.0);
+            assert!(tilt < -0.5, "{law:?}, {velocity} m/s, {accel} m/s²: {tilt}°");
         }
     }
 }
 
 #[test]
-fn the_lean_learned_against_a_lasting_error_fades_while_the_pilot_flies() {
+fn the_tilt_learned_against_a_lasting_error_fades_while_the_pilot_flies() {
     let still = level_craft(0.0, 0.0);
     for law in LAWS {
         let mut held_back = PositionController::default();
         held_back.engage(&still);
-        lean_deg(&mut held_back, &still, 1.0, law, 10.0);
-        let lean_after = |pilot_s: f64| {
+        tilt_deg(&mut held_back, &still, 1.0, law, 10.0);
+        let tilt_after = |pilot_s: f64| {
             let mut controller = held_back.clone();
             for _ in 0..(pilot_s / DT).round() as usize {
                 controller.track(&still, DT);
             }
-            lean_deg(&mut controller, &still, 0.0, law, 1.5)
+            tilt_deg(&mut controller, &still, 0.0, law, 1.5)
         };
-        let (learned, left) = (lean_after(0.05), lean_after(10.0));
+        let (learned, left) = (tilt_after(0.05), tilt_after(10.0));
         assert!(learned > 2.0, "{law:?}: {learned}°");
         assert!((0.0..0.2 * learned).contains(&left), "{law:?}: {left}° of {learned}°");
         held_back.engage(&still);
-        let engaged = lean_deg(&mut held_back, &still, 0.0, law, 1.5);
+        let engaged = tilt_deg(&mut held_back, &still, 0.0, law, 1.5);
         assert!(engaged.abs() < 0.1, "{law:?}: {engaged}° after the craft was taken over");
     }
 }
@@ -77,9 +77,9 @@ fn a_craft_leans_into_its_speeding_up_before_it_lags_behind() {
     controller.engage(&still);
     let law = PositionLaw::Speed;
     let target = PositionTarget { law, ..PositionTarget::stay(Vector2::new(500.0, 0.0), &params) };
-    let lean = (0..200).map(|_| controller.update(&still, &target, &params, DT)).last().unwrap_or_default();
+    let tilt = (0..200).map(|_| controller.update(&still, &target, &params, DT)).last().unwrap_or_default();
     let expected = (params.build_up_accel_mps2() / GRAVITY).atan();
-    assert!((lean.x - expected).abs() < 0.05 * expected && lean.y.abs() < 1e-9, "{lean} {expected}");
+    assert!((tilt.x - expected).abs() < 0.05 * expected && tilt.y.abs() < 1e-9, "{tilt} {expected}");
 }
 
 #[test]

@@ -49,10 +49,10 @@ fn right_sticks_roll_right_pitch_down_and_turn_clockwise() {
 }
 
 #[test]
-fn a_demanded_lean_takes_the_place_of_the_sticks() {
+fn a_demanded_tilt_takes_the_place_of_the_sticks() {
     let mut controller = Controller::new(Tuning::default(), DT);
-    let lean = crate::firmware::control::LeanDemand { roll_rad: 0.2, pitch_down_rad: -0.1 };
-    let input = ControlInput { lean: Some(lean), stick_roll: -500.0, throttle: Some(0.4), ..flying() };
+    let tilt = crate::firmware::control::TiltDemand { roll_rad: 0.2, pitch_down_rad: -0.1 };
+    let input = ControlInput { tilt: Some(tilt), stick_roll: -500.0, throttle: Some(0.4), ..flying() };
     let state = run(&mut controller, &input, 100);
     assert!(state.setpoint_dps[0] > 0.0 && state.setpoint_dps[1] < 0.0);
     let [roll, pitch] = state.angle_demand_rad.unwrap();
@@ -127,10 +127,10 @@ fn race_mode_levels_roll_and_leaves_pitch_to_the_stick() {
         assert!(setpoint[0] < -10.0, "roll is levelled: {setpoint:?}");
         let by_rate = (setpoint[1] - Tuning::default().rates[1].rate_dps(0.5)).abs() < 1.0;
         assert_eq!(by_rate, angle.is_none(), "{setpoint:?}");
-        let lean = crate::firmware::control::LeanDemand { roll_rad: 0.0, pitch_down_rad: 0.0 };
-        controller.step(&ControlInput { lean: Some(lean), ..input }, &estimate, DT);
+        let tilt = crate::firmware::control::TiltDemand { roll_rad: 0.0, pitch_down_rad: 0.0 };
+        controller.step(&ControlInput { tilt: Some(tilt), ..input }, &estimate, DT);
         for _ in 0..100 {
-            controller.step(&ControlInput { lean: Some(lean), ..input }, &estimate, DT);
+            controller.step(&ControlInput { tilt: Some(tilt), ..input }, &estimate, DT);
         }
         assert!(controller.state().setpoint_dps[1] < -10.0, "the autopilot levels both");
     }

@@ -120,7 +120,7 @@ impl AltitudeHold {
         }
         controller.set_relief_us(land.relief_us());
         let throttle_us = controller.update(&measured, target, params, now.dt);
-        controllers.limit_lean(now, params);
+        controllers.limit_tilt(now, params);
         throttle_share(throttle_us, params)
     }
 

@@ -6,11 +6,11 @@ use super::HoldTuning;
 use crate::autopilot::Params;
 use crate::autopilot::control::{PositionController, PositionMeasurement, PositionTarget, earth_to_body};
 use crate::autopilot::io::NavInputs;
-use crate::firmware::control::LeanDemand;
+use crate::firmware::control::TiltDemand;
 
 /// The full stick deflection, RC command units.
 const FULL_STICK: f64 = 500.0;
-/// The share of the maximum lean that is used to plan the stop when the sticks are released.
+/// The share of the maximum tilt that is used to plan the stop when the sticks are released.
 const STOP_SHARE: f64 = 0.4;
 
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -26,20 +26,20 @@ impl PositionHold {
         *self = Self::default();
     }
 
-    /// Returns the lean that holds the position, or the lean that the pilot demands.
+    /// Returns the tilt that holds the position, or the tilt that the pilot demands.
     pub(super) fn update(
         &mut self,
         now: &NavInputs,
         params: &Params,
         tuning: &HoldTuning,
         controller: &mut PositionController,
-    ) -> LeanDemand {
+    ) -> TiltDemand {
         let measured = PositionMeasurement::from(now);
         if !self.is_on {
             controller.engage(&measured);
             self.is_on = true;
         }
-        let limit = controller.max_lean_rad(params);
+        let limit = controller.max_tilt_rad(params);
         let stick = Vector2::new(
             share(now.stick_pitch, tuning.stick_deadband),
             share(now.stick_roll, tuning.stick_deadband),
@@ -47,14 +47,14 @@ impl PositionHold {
         if stick != Vector2::zeros() {
             self.point = None;
             controller.track(&measured, now.dt);
-            let lean = stick.cap_magnitude(1.0) * limit;
-            return LeanDemand { pitch_down_rad: lean.x, roll_rad: lean.y };
+            let tilt = stick.cap_magnitude(1.0) * limit;
+            return TiltDemand { pitch_down_rad: tilt.x, roll_rad: tilt.y };
         }
         let point = *self.point.get_or_insert_with(|| stopping_point(now, params));
         let target = PositionTarget::stay(point, params);
-        let lean_ne = controller.update(&measured, &target, params, now.dt);
-        let body = earth_to_body(lean_ne, now.heading_rad);
-        LeanDemand { pitch_down_rad: body.x, roll_rad: body.y }
+        let tilt_ne = controller.update(&measured, &target, params, now.dt);
+        let body = earth_to_body(tilt_ne, now.heading_rad);
+        TiltDemand { pitch_down_rad: body.x, roll_rad: body.y }
     }
 }
 

@@ -3,10 +3,10 @@
 use super::*;
 
 /// Returns the journals, or the files set aside, in the order of their names.
-fn kept(directory: &Path, ending: &str) -> Vec<PathBuf> {
+fn kept(directory: &Path, extension: &str) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(directory.join("plans")).unwrap();
     let mut paths: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
-    paths.retain(|path| path.extension().is_some_and(|there| there == ending));
+    paths.retain(|path| path.extension().is_some_and(|there| there == extension));
     paths.sort();
     paths
 }

@@ -110,35 +110,35 @@ fn calm_air_never_ends_a_mission_in_ten_thousand() {
     assert!(alarms.is_empty(), "{} alarms: {:#?}", alarms.len(), &alarms[..alarms.len().min(30)]);
 }
 
-/// Returns the steady speed of the point mass at a lean, at which the drag equals the push.
-fn steady_speed_mps(lean_rad: f64) -> f64 {
-    let push = betadeck_core::geo::GRAVITY * lean_rad.tan();
+/// Returns the steady speed of the point mass at a tilt, at which the drag equals the push.
+fn steady_speed_mps(tilt_rad: f64) -> f64 {
+    let push = betadeck_core::geo::GRAVITY * tilt_rad.tan();
     let (linear, square) = (0.19, 0.0145);
     (-linear + f64::sqrt(linear * linear + 4.0 * square * push)) / (2.0 * square)
 }
 
 #[test]
-fn a_wind_beyond_the_lean_ends_the_mission_within_thirty_seconds() {
+fn a_wind_beyond_the_tilt_ends_the_mission_within_thirty_seconds() {
     let mut late = Vec::new();
     for seed in 0..40 {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let lean: u8 = rng.random_range(15..40);
+        let tilt: u8 = rng.random_range(15..40);
         let length = rng.random_range(200.0..2000.0);
         let mut params = guide();
         params.max_distance_from_home = 0;
-        params.max_angle = lean;
+        params.max_angle = tilt;
         let corner = waypoint(Flyover, 0.0, 30.0, 20.0, 0.0);
         let far = waypoint(Flyover, length, 30.0, 20.0, rng.random_range(3.0..15.0));
         let mut flight = Flight::new(params, &[corner, far], 20.0).launch();
         assert!(flight.until(60.0, |flight| flight.nav.telemetry().wp == 1));
         flight.run(rng.random_range(0.0..20.0));
-        let speed = 1.5 * steady_speed_mps(f64::from(lean).to_radians());
+        let speed = 1.5 * steady_speed_mps(f64::from(tilt).to_radians());
         flight.plant.wind = Vector2::new(-speed, rng.random_range(-1.0..1.0));
         let struck = flight.t();
         flight.until(60.0, |flight| given_up(flight).is_some());
         let caught = given_up(&flight).map(|(t, _)| t - struck);
         if caught.is_none_or(|after| after > 30.0) {
-            late.push(format!("seed {seed}, {lean} degrees, leg {length:.0} m: {caught:?}"));
+            late.push(format!("seed {seed}, {tilt} degrees, leg {length:.0} m: {caught:?}"));
         }
     }
     assert!(late.is_empty(), "{late:#?}");

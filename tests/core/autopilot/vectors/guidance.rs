@@ -17,8 +17,8 @@ use crate::autopilot::vectors::{
 #[test]
 fn turn_radius() {
     for case in cases("turn_radius", "cases") {
-        let lean = num(&case, "max_angle_deg").to_radians();
-        let radius = turn_radius_m(num(&case, "ground_speed_cms") / 100.0, lean) * 100.0;
+        let tilt = num(&case, "max_angle_deg").to_radians();
+        let radius = turn_radius_m(num(&case, "ground_speed_cms") / 100.0, tilt) * 100.0;
         close(radius, num(&case, "radius_cm"), num(&case, "radius_cm") * 2e-3, &case);
     }
 }

@@ -13,7 +13,7 @@ const PATIENCE: u32 = 6000;
 /// The number of updates that a craft lies disarmed before the crew comes.
 const LEFT_ALONE: u32 = 200;
 const CLIMB: u32 = 500;
-/// The greatest lean at which a craft is armed, as a cosine.
+/// The greatest tilt at which a craft is armed, as a cosine.
 const UPRIGHT: f64 = 0.95;
 /// A craft is at rest if it is slower than this (m/s and rad/s) for `REST` updates. A craft that takes longer
 /// than `SETTLE` updates is put back home.

@@ -45,26 +45,26 @@ pub(crate) const NEEDED: &[&str] = &[
     "disarmed SYSTEM",
 ];
 
-/// The limits of throttle (µs) and lean (degrees). After a change, the widest of the old and the new ones.
+/// The limits of throttle (µs) and tilt (degrees). After a change, the widest of the old and the new ones.
 #[derive(Debug, Clone, Copy)]
 struct Limits {
     low_us: f64,
     high_us: f64,
-    lean_deg: f64,
+    tilt_deg: f64,
 }
 
 impl Limits {
     fn of(params: &Params) -> Self {
         let low_us = f64::from(params.throttle_min);
         let high_us = f64::from(params.throttle_max).max(low_us);
-        Self { low_us, high_us, lean_deg: f64::from(params.max_angle) }
+        Self { low_us, high_us, tilt_deg: f64::from(params.max_angle) }
     }
 
     fn widest(self, other: Self) -> Self {
         Self {
             low_us: self.low_us.min(other.low_us),
             high_us: self.high_us.max(other.high_us),
-            lean_deg: self.lean_deg.max(other.lean_deg),
+            tilt_deg: self.tilt_deg.max(other.tilt_deg),
         }
     }
 }
@@ -168,7 +168,7 @@ impl Law {
             | FirmwareEvent::GpsLost { .. }
             | FirmwareEvent::Battery { .. }
             | FirmwareEvent::HeadingDoubt { .. }
-            | FirmwareEvent::LeanDoubt { .. }
+            | FirmwareEvent::TiltDoubt { .. }
             | FirmwareEvent::Mode(_)
             | FirmwareEvent::RxLoss
             | FirmwareEvent::RxRecovered
@@ -266,8 +266,8 @@ impl Law {
         };
         assert!((0.0..=1.0).contains(&out.throttle), "{out:?}");
         assert!((limits.low_us..=limits.high_us).contains(&out.throttle_us), "{out:?} {limits:?}");
-        let lean = out.roll_rad.hypot(out.pitch_down_rad).to_degrees();
-        assert!(lean <= limits.lean_deg + 1e-6, "{lean}° {limits:?}");
+        let tilt = out.roll_rad.hypot(out.pitch_down_rad).to_degrees();
+        assert!(tilt <= limits.tilt_deg + 1e-6, "{tilt}° {limits:?}");
         assert!(out.yaw_rate_rps.is_none_or(f64::is_finite));
     }
 

@@ -11,10 +11,10 @@ const SHORT_H: f64 = H / 8.0;
 /// The period of the flight controller, s. It holds its commands that long.
 const CONTROL_S: f64 = 0.001;
 
-/// Lean angles to the right and forwards, rad, that change every two seconds.
-const LEANS: [[f64; 2]; 5] = [[0.0, 0.4], [0.4, 0.0], [0.0, -0.5], [-0.6, 0.1], [0.0, 0.0]];
+/// Tilt angles to the right and forwards, rad, that change every two seconds.
+const TILTS: [[f64; 2]; 5] = [[0.0, 0.4], [0.4, 0.0], [0.0, -0.5], [-0.6, 0.1], [0.0, 0.0]];
 
-/// Stands in for a flight controller: leans the craft by rates and angles. Returns the motor commands, 0…1.
+/// Stands in for a flight controller: tilts the craft by rates and angles. Returns the motor commands, 0…1.
 fn control(body: &BodyState, [right, forwards]: [f64; 2]) -> [f64; 4] {
     let up = body.attitude.inverse_transform_vector(&Vector3::z());
     let rate = body.rate_flu;
@@ -47,8 +47,8 @@ fn flown(mut stand: Stand, h: f64, wind: fn(f64) -> Vector3<f64>) -> BodyState {
         if command % 10 == 0 {
             stand.air.wind_enu = wind(f64::from(command) * CONTROL_S);
         }
-        let lean = LEANS[command as usize / 2000 % LEANS.len()];
-        stand.command(control(&stand.body, lean));
+        let tilt = TILTS[command as usize / 2000 % TILTS.len()];
+        stand.command(control(&stand.body, tilt));
         (0..per_command).for_each(|_| stand.step());
     }
     stand.body
@@ -148,7 +148,7 @@ fn a_push_in_flight_moves_a_craft_as_with_runge_kutta() {
                 stand.body.vel_enu += Vector3::new(3.0, -2.0, 1.0);
                 stand.body.rate_flu += Vector3::new(1.0, 0.0, -2.0);
             }
-            stand.command(control(&stand.body, LEANS[0]));
+            stand.command(control(&stand.body, TILTS[0]));
             stand.step();
         }
         stand.body

@@ -26,8 +26,8 @@ const OUTPUTS: [&str; 13] = [
     ">",
 ];
 
-/// The endings of files that a command reads.
-const ENDINGS: [&str; 9] = ["toml", "txt", "plan", "bbl", "BFL", "flight", "jsonl", "geojson", "csv"];
+/// The extensions of files that a command reads.
+const EXTENSIONS: [&str; 9] = ["toml", "txt", "plan", "bbl", "BFL", "flight", "jsonl", "geojson", "csv"];
 
 /// Files that only their owner has.
 const OF_THE_USER: [&str; 1] = ["~/betaloop/config.txt"];
@@ -95,9 +95,9 @@ fn missing(words: &[String], there: &mut BTreeSet<String>) -> Vec<String> {
 fn read_file(word: &str) -> Option<&str> {
     // A flight of a campaign is named with its number.
     let file = word.split_once(".jsonl:").map_or(word, |(name, _)| &word[..name.len() + ".jsonl".len()]);
-    let ending = file.rsplit_once('.').map_or("", |(_, ending)| ending);
+    let extension = file.rsplit_once('.').map_or("", |(_, extension)| extension);
     let is_folder = file.ends_with('/') && !file.starts_with('-');
-    (!file.contains('=') && (is_folder || ENDINGS.contains(&ending))).then_some(file)
+    (!file.contains('=') && (is_folder || EXTENSIONS.contains(&extension))).then_some(file)
 }
 
 #[test]

@@ -1,22 +1,22 @@
-//! The check that gyro and accelerometer agree on the lean, with the accelerations that the GPS shows.
+//! The check that gyro and accelerometer agree on the tilt, with the accelerations that the GPS shows.
 
-/// The error of the lean above which the gyro is doubted, and below which it is trusted again, rad.
+/// The error of the tilt above which the gyro is doubted, and below which it is trusted again, rad.
 const DOUBTED: f64 = 9.0 * std::f64::consts::PI / 180.0;
 const BELIEVED: f64 = 3.0 * std::f64::consts::PI / 180.0;
 /// The time for which they must agree again, s.
 const QUIET_S: f64 = 2.0;
 
-/// Watches the error of the estimated lean.
+/// Watches the error of the estimated tilt.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct LeanCheck {
+pub(super) struct TiltCheck {
     /// The error at which the doubt began, rad.
     doubt: Option<f64>,
     /// The time for which the two have agreed, s.
     quiet_s: f64,
 }
 
-impl LeanCheck {
-    /// Takes the error of the lean that the accelerations show, rad, `dt` seconds after the one before.
+impl TiltCheck {
+    /// Takes the error of the tilt that the accelerations show, rad, `dt` seconds after the one before.
     pub(super) fn update(&mut self, error: f64, dt: f64) {
         if error > DOUBTED {
             self.doubt.get_or_insert(error);
@@ -45,7 +45,7 @@ mod tests {
 
     #[test]
     fn a_large_error_is_a_doubt_until_the_two_agree_for_a_while() {
-        let mut check = LeanCheck::default();
+        let mut check = TiltCheck::default();
         let mut after = |error_deg: f64, seconds: f64| {
             (0..(seconds * 100.0) as u32).for_each(|_| check.update(error_deg.to_radians(), 0.01));
             check.doubt().map(|doubt| doubt.to_degrees().round())

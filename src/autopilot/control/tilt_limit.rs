@@ -1,4 +1,4 @@
-//! Altitude before lean: limits the lean so that the craft keeps its altitude.
+//! Altitude before tilt: limits the tilt so that the craft keeps its altitude.
 
 use super::altitude::AltitudeController;
 use crate::autopilot::io::NavInputs;
@@ -12,26 +12,26 @@ const FALL_RPS: f64 = 10.0 * DEG;
 const RISE_RPS: f64 = 5.0 * DEG;
 /// The limit never falls below this, rad.
 const MIN_RAD: f64 = 5.0 * DEG;
-/// The reserve of thrust over weight that a lean must leave.
+/// The reserve of thrust over weight that a tilt must leave.
 const RESERVE: f64 = 1.05;
 /// The smallest reduction worth reporting, rad.
 const TOLD_RAD: f64 = 1.0 * DEG;
 
-/// The lean that the thrust allows.
+/// The tilt that the thrust allows.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct LeanLimiter {
-    /// Limit found in flight, rad, or `None` while the maximum lean of the parameters can be flown.
+pub(super) struct TiltLimiter {
+    /// Limit found in flight, rad, or `None` while the maximum tilt of the parameters can be flown.
     found_rad: Option<f64>,
     is_reduced: bool,
 }
 
-impl LeanLimiter {
+impl TiltLimiter {
     /// Returns the limit after a cycle in which the altitude controller computed its throttle, rad.
     ///
     /// Thrust grows with the square of the throttle above its zero, so a tilt needs `cos tilt ≥ ((hover −
     /// zero)/(maximum − zero))²`. Drag and moving air may need more. The craft then sinks at full throttle.
     pub(super) fn update(&mut self, now: &NavInputs, altitude: &AltitudeController, params: &Params) -> f64 {
-        let max_rad = params.max_lean_rad();
+        let max_rad = params.max_tilt_rad();
         let zero_us = params.throttle_zero_us();
         let available_us = (f64::from(params.throttle_max) - zero_us).max(1.0);
         let needed = RESERVE * math::powi((altitude.hover_us() - zero_us) / available_us, 2);
@@ -63,9 +63,9 @@ mod tests {
     use super::*;
     use crate::autopilot::control::AltitudeTarget;
 
-    /// Flies for `seconds` towards an altitude. Returns the lean limit at the end, degrees.
+    /// Flies for `seconds` towards an altitude. Returns the tilt limit at the end, degrees.
     fn limit_deg(
-        limiter: &mut LeanLimiter,
+        limiter: &mut TiltLimiter,
         altitude: &mut AltitudeController,
         now: &NavInputs,
         target_m: f64,
@@ -87,7 +87,7 @@ mod tests {
         let hovering = NavInputs::hovering();
         let mut altitude = AltitudeController::default();
         altitude.engage(&(&hovering).into(), &params);
-        let mut limiter = LeanLimiter::default();
+        let mut limiter = TiltLimiter::default();
         assert_eq!(limit_deg(&mut limiter, &mut altitude, &hovering, 20.0, 5.0), whole_deg);
 
         // Full throttle that makes the craft climb is enough.
