@@ -1,4 +1,4 @@
-//! What the keys, the clock and the session do to the state of the screen, and what can be derived from it.
+//! Functions over the state of the screen: the effects of keys, clock and session, and values derived from it.
 
 pub(in crate::ui) mod arming_hint;
 pub(in crate::ui) mod availability;
