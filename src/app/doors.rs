@@ -21,7 +21,7 @@ use crate::session::{Endpoints, Links, MotorTargets};
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LiveArgs<'a> {
     pub(super) doors: &'a DoorArgs,
-    /// The remote flight controller, if there is no simulation.
+    /// The remote flight controller to connect to; `None` for a simulated craft.
     pub(super) connect: Option<&'a FcPlace>,
     /// The remote firmware, if the embedded one does not fly.
     pub(super) firmware: Option<&'a RemoteFirmware>,

@@ -7,7 +7,7 @@ use super::record::{FORMAT, Header};
 /// The reason why a file is not shown as a recording.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
-    #[error("it is no recording of a flight: one begins with a gzip member and the line {{\"flight\":…}}")]
+    #[error("it is not a recording of a flight: one begins with a gzip member and the line {{\"flight\":…}}")]
     NoRecording,
     #[error("a later version of betadeck wrote it (format {0}, this one reads {FORMAT})")]
     LaterFormat(u32),

@@ -67,7 +67,7 @@ fn cross_track(trace: &Trace) -> Option<f64> {
     worst
 }
 
-/// Returns the leg to the present waypoint: from the one before it, or from the place of the craft.
+/// Returns the leg to the current waypoint, from the waypoint before it or from the position of the craft.
 fn leg_to(sample: &Sample, trace: &Trace) -> Option<(u8, [f64; 2], [f64; 2])> {
     let to = trace.waypoint(sample.wp, PlanSource::Stored, sample.time)?;
     let plan = trace.plan(PlanSource::Stored, sample.time)?;
@@ -89,7 +89,7 @@ fn beside(place: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
     ((place_east * north - place_north * east) / length).abs()
 }
 
-/// Returns the place of the last touchdown north and east of the LAND of the plan, m.
+/// Returns the position of the last touchdown, north and east of the LAND of the plan, m.
 fn touchdown(flown: &Flown) -> Option<[f64; 2]> {
     let trace = &flown.trace;
     let land = flown

@@ -106,8 +106,8 @@ fn what_cannot_be_shown_is_refused_in_a_sentence() {
     let month = SimTime(31 * 86_400_000_000);
     for (bytes, said) in [
         (made(0, SimTime(0)), "a.flight cannot be shown: it has neither pictures nor"),
-        (b"\x1f\x8bjunk".to_vec(), "a.flight cannot be shown: it is no recording of a flight"),
-        (Vec::new(), "a.flight cannot be shown: it is no recording of a flight"),
+        (b"\x1f\x8bjunk".to_vec(), "a.flight cannot be shown: it is not a recording of a flight"),
+        (Vec::new(), "a.flight cannot be shown: it is not a recording of a flight"),
         (made(3, month), "a.flight cannot be shown: it ends more than 30 days after boot."),
         (made(3, SimTime(u64::MAX - 500_000)), "a.flight cannot be shown: it ends more than 30 days"),
     ] {

@@ -2,6 +2,7 @@
 
 use crate::plan::edit::PlanDocument;
 use crate::plan::estimate::{Assumptions, SettingSource};
+use crate::ui::model::settings::name_of;
 use crate::ui::shared::Shared;
 
 /// The setting of what happens at the fence.
@@ -105,9 +106,4 @@ fn replaced_fence_action(state: &Shared, document: &PlanDocument) -> Option<Stri
         Some(old) => Some(format!("The plan sets the action of the fence to {new} (it was {old}).")),
         None => Some(format!("The plan sets the action of the fence to {new}.")),
     }
-}
-
-/// The name in `name = value`, and in what a firmware says of such a line.
-fn name_of(line: &str) -> &str {
-    line.split([' ', '=']).find(|word| !word.is_empty()).unwrap_or_default()
 }

@@ -110,7 +110,7 @@ impl SettingsState {
     }
 }
 
-/// Returns the name in `name = value`.
+/// Returns the name in `name = value`, and in the message of a firmware about such a line.
 pub(in crate::ui) fn name_of(line: &str) -> &str {
     line.split([' ', '=']).find(|word| !word.is_empty()).unwrap_or_default()
 }

@@ -235,6 +235,6 @@ fn a_file_that_is_no_recording_is_refused_with_the_reason() {
     std::fs::write(sandbox.path("noise.flight"), [0x1f, 0x8b, 8, 0, 1, 2, 3]).expect("a file");
     let file = sandbox.path("noise.flight").display().to_string();
     let mut terminal = crate::binary::pty::Terminal::betadeck(160, 40, &["open", &file]);
-    terminal.until_shown("it is no recording of a flight");
+    terminal.until_shown("it is not a recording of a flight");
     terminal.end();
 }
