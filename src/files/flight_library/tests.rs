@@ -100,7 +100,7 @@ fn links_and_other_files_are_not_listed_and_a_damaged_recording_is() {
     std::fs::write(folder.join("damaged.flight"), "GPS").unwrap();
     let listed = list(state.path()).unwrap();
     assert_eq!(listed.len(), 2, "{listed:?}");
-    assert!(listed[1].summary.as_ref().unwrap_err().starts_with("it is no recording"), "{listed:?}");
+    assert!(listed[1].summary.as_ref().unwrap_err().starts_with("it is not a recording"), "{listed:?}");
 }
 
 #[test]

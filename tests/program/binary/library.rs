@@ -74,7 +74,7 @@ fn the_library_is_listed_and_a_flight_deleted_without_a_screen() {
     plain.say("app.flights");
     let heard = plain.hear("`delete N` deletes one").join("\n");
     assert!(heard.contains("Recorded flights, the newest first:") && heard.contains("windy"), "{heard}");
-    assert!(heard.contains("3 damaged.flight  unreadable: it is no recording"), "{heard}");
+    assert!(heard.contains("3 damaged.flight  unreadable: it is not a recording"), "{heard}");
     plain.say("1");
     plain.hear("On a screen: betadeck replay ");
     plain.say("again 2");
