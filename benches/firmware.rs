@@ -3,7 +3,6 @@
 //! One iteration is a second of flight (1000 ticks), so a reading of 250 µs means 0.25 µs a tick.
 #![allow(clippy::unwrap_used, reason = "a bench may stop")]
 
-use betadeck::firmware::cli::Interpreter;
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::config::MixerKind;
 use betadeck::firmware::control::{ControlInput, Controller, StickMode, TiltDemand, Tuning};
@@ -12,7 +11,7 @@ use betadeck::firmware::settings::Settings;
 use betadeck::firmware::{Firmware, FirmwareOptions};
 use betadeck::signals::{GpsSample, RcFrame, RcSource, SensorFrame, SimTime};
 use betadeck::sim::WorldConfig;
-use betadeck::vehicle::{Vehicle, VehicleConfig};
+use betadeck::vehicle::{CliSession, Vehicle, VehicleCommand, VehicleConfig};
 use nalgebra::Vector3;
 
 fn main() {
@@ -111,13 +110,12 @@ fn on_a_leg() -> (Firmware, Vec<SensorFrame>) {
         live: false,
     };
     let mut vehicle = Vehicle::new(config).expect("a valid world");
-    let mut session = Interpreter::default();
     for line in
         ["set ap_hover_throttle = 1500", "waypoint insert 0 40.4700000 -79.5182000 2000 500 FLYOVER 0 ORBIT"]
     {
-        vehicle.embedded_mut().unwrap().run_cli(&mut session, line);
+        vehicle.apply(&VehicleCommand::line(CliSession::Console, line));
     }
-    vehicle.start_pilot(10.0).expect("the starter modes");
+    vehicle.apply(&VehicleCommand::StartPilot(10.0)).accepted().expect("the starter modes");
     let engaged = (0..60_000).any(|_| {
         vehicle.tick();
         vehicle.engaged_at().is_some()

@@ -13,7 +13,6 @@
 
 use std::time::{Duration, Instant};
 
-use betadeck::fc::upload;
 use betadeck::flight::FlightSetup;
 use betadeck::plan::Seconds;
 use betadeck::plan::builtin::{BuiltinPlan, DEMO};
@@ -23,6 +22,7 @@ use betadeck::signals::SimTime;
 use betadeck::sim::WorldConfig;
 use betadeck::storage::Store;
 use betadeck::telemetry::Turbulence;
+use betadeck::vehicle::VehicleCommand;
 
 /// The number of seeks.
 const SEEKS: u64 = 200;
@@ -58,7 +58,7 @@ fn session() -> Handle {
     // The hold has no end.
     plan.plan.waypoints.truncate(3);
     plan.plan.waypoints[2].duration = Seconds::default();
-    upload(vehicle.controller_mut(), &plan.plan, &plan.settings).unwrap();
+    vehicle.apply(&VehicleCommand::upload(plan.plan, plan.settings)).accepted().unwrap();
     start(SessionConfig {
         vehicle,
         store: Store::in_memory(),

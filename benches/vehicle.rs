@@ -24,7 +24,6 @@ use std::time::Instant;
 use betadeck::blackbox::encode::LogBuffer;
 use betadeck::firmware::Firmware;
 use betadeck::firmware::blackbox::LogStream;
-use betadeck::firmware::cli::Interpreter;
 use betadeck::flight::forecast::ForecastRun;
 use betadeck::flight::{Flight, FlightOptions, FlightResult, FlightSetup};
 use betadeck::plan::builtin::{BuiltinPlan, DEMO};
@@ -32,7 +31,7 @@ use betadeck::plan::upload_lines;
 use betadeck::signals::{MotorCommand, RcFrame, RcSource, SensorFrame};
 use betadeck::sim::{World, WorldConfig};
 use betadeck::telemetry::Turbulence;
-use betadeck::vehicle::Vehicle;
+use betadeck::vehicle::{CliSession, Vehicle, VehicleCommand};
 
 const RUNS: usize = 5;
 /// The number of ticks in the replayed part of the mission.
@@ -83,9 +82,8 @@ fn vehicle(rate_hz: u32) -> Vehicle {
     let file = BuiltinPlan::find(DEMO).expect("the demo is built in").read().expect("the demo reads");
     let setup = FlightSetup { world: air(rate_hz), ..FlightSetup::default() };
     let (mut vehicle, _) = setup.build().expect("the default world is sound");
-    let mut console = Interpreter::default();
     for line in upload_lines(file.plan.records(), &file.settings) {
-        vehicle.embedded_mut().unwrap().run_cli(&mut console, &line);
+        vehicle.apply(&VehicleCommand::line(CliSession::Console, line));
     }
     vehicle
 }
@@ -136,7 +134,7 @@ struct Recording {
 fn record() -> Recording {
     let mut vehicle = vehicle(1000);
     let mut world = World::new(air(1000)).expect("the default world is sound");
-    vehicle.start_pilot(10.0).expect("the starter modes have the switches");
+    vehicle.apply(&VehicleCommand::StartPilot(10.0)).accepted().expect("the starter modes have the switches");
     while vehicle.engaged_at().is_none() {
         vehicle.tick();
         world.step(&MotorCommand(vehicle.truth().unwrap().motor_command));
@@ -190,9 +188,9 @@ impl Recording {
     /// the other.
     fn cost_of_logs(&self) -> [f64; 3] {
         let mut logged = self.start.clone();
-        let firmware = logged.embedded_mut().unwrap();
-        assert!(!firmware.run_cli(&mut Interpreter::default(), "set blackbox_sample_rate = 1/2").failed);
-        firmware.set_logs(true);
+        let set = VehicleCommand::single_line("set blackbox_sample_rate = 1/2");
+        assert!(logged.apply(&set).line().is_some_and(|reply| !reply.failed));
+        logged.set_logs(true);
         let (mut stream, mut buffer, mut bytes) = (LogStream::default(), LogBuffer::default(), 0);
         let encoded = logged.clone();
         let ignore = |vehicle: &Vehicle| {

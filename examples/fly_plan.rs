@@ -51,7 +51,7 @@ fn fly(plan: &PlanFile, seed: u64, options: &FlightOptions) -> Result<FlightEnd,
     setup.world.wind = "3@240".parse()?;
     let (vehicle, notices) = setup.build()?;
     notices.iter().filter(|_| seed == 1).for_each(|notice| println!("{notice}"));
-    let mut flight = Flight::new(vehicle, options).map_err(|mode| format!("no channel switches {mode}"))?;
+    let mut flight = Flight::new(vehicle, options)?;
     loop {
         if let Some(end) = flight.tick(|_| ()) {
             return Ok(end);

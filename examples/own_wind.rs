@@ -72,7 +72,7 @@ fn fly(seed: u64, air: fn(f64, &Vector3<f64>) -> Vector3<f64>) -> Result<Flown, 
     setup.world.seed = seed;
     let (vehicle, _) = setup.build()?;
     let options = FlightOptions::default();
-    let mut flight = Flight::new(vehicle, &options).map_err(|mode| format!("no channel switches {mode}"))?;
+    let mut flight = Flight::new(vehicle, &options)?;
     let (mut strongest_mps, mut tilt_deg) = (0.0_f64, 0.0_f64);
     let end = loop {
         let vehicle = flight.vehicle_mut();

@@ -30,7 +30,7 @@
 //! let mut branch = flight.clone().into_vehicle();
 //! let end = std::iter::repeat_with(|| flight.tick(|_| ())).flatten().next().unwrap();
 //! assert_eq!(end.verdict.result, FlightResult::Complete);
-//! branch.change_world(WorldCommand::parse("fault=gps-loss")?)?;
+//! branch.apply(&WorldCommand::parse("fault=gps-loss")?.into()).accepted()?;
 //! branch.apply(&VehicleCommand::StopPilot);
 //! let mut sticks = branch.transmitter().sticks(); // µs: roll, pitch, throttle, yaw, AUX1 …
 //! sticks.channels[5] = 1000; // AUTOPILOT off

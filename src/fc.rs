@@ -47,7 +47,5 @@ pub use remote::Remote;
 pub use remote_link::{EXCHANGE_PAUSE, RemoteEnds, RemoteLink};
 pub use rescue::NO_RETURN_SWITCH;
 pub use starter::{guide_settings, starter_lines};
-pub use upload::{
-    LIST, Upload, UploadProgress, UploadReport, UploadView, plan_above_home, plan_of_list, upload,
-};
+pub use upload::{LIST, Upload, UploadProgress, UploadReport, UploadView, plan_above_home, plan_of_list};
 pub use view::{RemoteNotice, RemoteState, RemoteView};

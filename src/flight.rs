@@ -48,7 +48,7 @@ use crate::telemetry::{
     CrashCause, Event, EventKind, FirmwareEvent, FlightTruth, Mode, NavEvent, NavState, NavTelemetry,
     PlanSource,
 };
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Vehicle, VehicleCommand, VehicleRefusal};
 
 /// The time between two looks of the judge while nothing happens, µs. It is the period of the navigator.
 const LOOK_US: u64 = 10_000;
@@ -108,9 +108,9 @@ impl Flight {
     /// Returns a flight of the plan that `vehicle` has stored.
     ///
     /// # Errors
-    /// Fails with the mode that no channel switches.
-    pub fn new(mut vehicle: Vehicle, options: &FlightOptions) -> Result<Self, Mode> {
-        vehicle.start_pilot(options.takeoff_m)?;
+    /// Fails if no channel switches a mode that the pilot needs.
+    pub fn new(mut vehicle: Vehicle, options: &FlightOptions) -> Result<Self, VehicleRefusal> {
+        vehicle.apply(&VehicleCommand::StartPilot(options.takeoff_m)).accepted()?;
         Ok(Self::go_on(vehicle, options))
     }
 

@@ -30,6 +30,7 @@
 mod apply;
 mod command;
 mod controller;
+mod host;
 mod input_log;
 mod physics;
 mod view;
@@ -37,7 +38,9 @@ mod view;
 use nalgebra::Vector3;
 use rand::RngExt as _;
 
-pub use command::{CliLine, CliSession, Message, PlanUpload, Reply, VehicleCommand, VehicleRefusal};
+pub use command::{
+    CliLine, CliSession, CommandKind, Message, PlanUpload, Reply, VehicleCommand, VehicleRefusal,
+};
 pub use controller::{
     Answer, EmbeddedController, FlightController, FrameOut, LateAnswer, RemoteController, RemoteRequest,
     RemoteTelemetry, Ticket,
@@ -46,14 +49,14 @@ pub use controller::{
 use crate::firmware::config::Configuration;
 use crate::firmware::{Firmware, FirmwareOptions};
 use crate::geo::LocalFrame;
-use crate::pilot::{FRAME_US, Pilot, RcTransmitter};
+use crate::pilot::{FRAME_US, RcTransmitter};
 use crate::plan::FlightPlan;
 use crate::signals::{MotorCommand, Pose, RcFrame, RcSource, SensorFrame, SimTime};
 use crate::sim::{
-    Airframe, Clock, LinkFaults, Stream, StreamRng, Truth, World, WorldCommand, WorldConfig, WorldError,
-    WorldEventKind, WorldStatus,
+    Airframe, Clock, LinkFaults, Stream, StreamRng, Truth, World, WorldConfig, WorldError, WorldEventKind,
+    WorldStatus,
 };
-use crate::telemetry::{Event, EventKind, FirmwareEvent, Mode, NavEvent, NavState, VehicleNotice};
+use crate::telemetry::{Event, EventKind, FirmwareEvent, NavEvent, NavState, VehicleNotice};
 use physics::{ExternalPhysics, Physics};
 
 /// A craft slower than this is at rest, m/s.
@@ -167,29 +170,14 @@ impl Vehicle {
         &self.controller
     }
 
-    /// Returns the flight controller, to send it requests and data.
-    pub fn controller_mut(&mut self) -> &mut FlightController {
-        &mut self.controller
-    }
-
     /// Returns the embedded firmware, if it flies the craft.
     pub fn embedded(&self) -> Option<&Firmware> {
         self.controller.embedded()
     }
 
-    /// Does the same as [`Self::embedded`], for changes.
-    pub fn embedded_mut(&mut self) -> Option<&mut Firmware> {
-        self.controller.embedded_mut()
-    }
-
     /// Returns the RC transmitter, to read it.
     pub fn transmitter(&self) -> &RcTransmitter {
         &self.transmitter
-    }
-
-    /// Returns the RC transmitter, to set it up. The changes are not among the inputs of the vehicle.
-    pub fn transmitter_mut(&mut self) -> &mut RcTransmitter {
-        &mut self.transmitter
     }
 
     /// Returns the true state of the craft. `None` if an external simulator moves it.
@@ -255,17 +243,6 @@ impl Vehicle {
         self.engaged_at
     }
 
-    /// Changes air, noise or faults.
-    ///
-    /// # Errors
-    /// Fails if a value is not allowed. Nothing has changed then.
-    pub fn change_world(&mut self, command: WorldCommand) -> Result<(), WorldError> {
-        let input = command.clone();
-        self.physics.apply(command)?;
-        self.note_input(|| VehicleCommand::World(Box::new(input)));
-        Ok(())
-    }
-
     /// Adds a wind of the program's own to the air at the craft, ENU, m/s, in place of the one that was added before: see
     /// [`World::set_added_wind`]. A program that calls this before each tick blows as it likes, by time and place. A clone
     /// keeps the wind. It is not among the inputs of the vehicle, so a program that flies again adds it again.
@@ -275,31 +252,6 @@ impl Vehicle {
     /// then.
     pub fn set_added_wind(&mut self, vel_enu: Vector3<f64>) -> Result<(), WorldError> {
         self.physics.set_added_wind(vel_enu)
-    }
-
-    /// Starts the scripted pilot, which flies the mission from here: climb to `takeoff_m`, engage.
-    ///
-    /// # Errors
-    /// Fails with the mode that no channel switches.
-    pub fn start_pilot(&mut self, takeoff_m: f64) -> Result<(), Mode> {
-        self.transmitter.start_pilot(Pilot::new(takeoff_m, &self.controller.mode_ranges())?);
-        self.note_input(|| VehicleCommand::StartPilot(takeoff_m));
-        Ok(())
-    }
-
-    /// Puts the craft back home, undamaged and disarmed. Plan, settings, air and faults stay. Faults and inputs that
-    /// count from the engagement wait for the next one. A craft that an external simulator moves is only disarmed,
-    /// and starts where it is seen next.
-    pub fn reset_craft(&mut self) {
-        self.note_input(|| VehicleCommand::ResetCraft);
-        self.engaged_at = None;
-        self.transmitter.stop_pilot();
-        *self.transmitter.sticks_mut() = RcFrame::SAFE;
-        self.controller.restart_in_place();
-        self.physics.reset();
-        if self.truth().is_some() {
-            self.notice(VehicleNotice::BackHome);
-        }
     }
 
     /// Returns the same craft with its present settings at boot, in the present air and without faults; `None` if the flight
@@ -389,12 +341,6 @@ impl Vehicle {
     /// Moves the events since the last call into `sink`, oldest first.
     pub fn drain_events(&mut self, sink: impl FnMut(Event)) {
         self.events.drain(..).for_each(sink);
-    }
-
-    fn note_input(&mut self, input: impl FnOnce() -> VehicleCommand) {
-        if let Some(log) = self.controller.input_log_mut() {
-            log.note(input);
-        }
     }
 
     fn notice(&mut self, notice: VehicleNotice) {

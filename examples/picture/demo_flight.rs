@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::sync::Arc;
 
-use betadeck::firmware::cli::{self, Interpreter};
+use betadeck::firmware::cli;
 use betadeck::flight::FlightSetup;
 use betadeck::flight::forecast::ForecastRun;
 use betadeck::lookahead::{ForecastReply, ForecastRequest};
@@ -24,7 +24,7 @@ use betadeck::ui::{
     AppState, CliHelp, Effect, EnteredLines, KeptScreens, Msg, OpenPlan, SavedLayouts, Theme, UiConfig,
     Units, update,
 };
-use betadeck::vehicle::Vehicle;
+use betadeck::vehicle::{CliSession, Vehicle, VehicleCommand};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 /// The altitude to which the pilot climbs before the engagement, m.
@@ -52,9 +52,8 @@ impl DemoFlight {
             .map_err(|errors| betadeck::plan::format::report(&errors))?;
         let world = WorldConfig { wind: "3@230".parse()?, ..WorldConfig::default() };
         let (mut vehicle, _) = FlightSetup { world, ..FlightSetup::default() }.build()?;
-        let mut console = Interpreter::default();
         for line in upload_lines(file.plan.records(), &file.settings) {
-            vehicle.embedded_mut().ok_or("no embedded firmware")?.run_cli(&mut console, &line);
+            vehicle.apply(&VehicleCommand::line(CliSession::Console, line));
         }
         let config = UiConfig {
             theme: Theme::default(),
@@ -82,7 +81,7 @@ impl DemoFlight {
 
     /// Takes off, engages the autopilot and flies until this simulated time, s.
     pub(crate) fn fly_to(&mut self, time_s: f64) -> Result<(), Box<dyn Error>> {
-        self.vehicle.start_pilot(TAKEOFF_M).map_err(|mode| format!("no switch for {mode}"))?;
+        self.vehicle.apply(&VehicleCommand::StartPilot(TAKEOFF_M)).accepted()?;
         self.advance_to(time_s)
     }
 

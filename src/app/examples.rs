@@ -4,7 +4,6 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::args::{FlightArgs, MissionArgs, PlanArg};
-use crate::fc::upload;
 use crate::files::log_output::{LogOnly, LogOutput};
 use crate::files::output_file::{cannot_write, replace};
 use crate::firmware::config::Configuration;
@@ -131,7 +130,7 @@ fn fly(log: &Path, setting: &str, interrupted: &AtomicBool) -> Result<bool, AppE
     )?;
     start.boot_lines.push(BootLines::settings("the example", &[setting.to_owned()]));
     let mut vehicle = setup::build(start, &mut Vec::new())?;
-    upload(vehicle.controller_mut(), &plan.plan, &[]).map_err(AppError::input)?;
+    setup::store_plan(&mut vehicle, &plan.plan)?;
     let mut output = LogOnly::new(LogOutput::begin(log, &mut vehicle)?);
     let mut flight = setup::start_flight(vehicle, &setup::flight_options(&MissionArgs::default()))?;
     let mut runner = Runner::new(flight.vehicle().step_us(), f64::INFINITY, None);

@@ -14,7 +14,7 @@ use crate::link::{FcPlace, FcStream};
 use crate::process::error::AppError;
 use crate::session::{self, FlightFeed, FlownBefore, Handle, SessionConfig};
 use crate::storage::Store;
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Vehicle, VehicleCommand};
 
 /// The altitude to which the scripted pilot climbs before it engages, m.
 const TAKEOFF_M: f64 = 10.0;
@@ -64,7 +64,7 @@ pub(super) async fn start(
         // RC comes only through the doors. Virtual sticks at rest would hide the loss of a script, or disturb one that
         // sends to a firmware on the wall clock. One in simulated time gets them until the first frame of a script.
         let gets_sticks = opened.as_ref().is_some_and(|opened| opened.link.is_in_steps());
-        vehicle.transmitter_mut().set_cut(!gets_sticks);
+        vehicle.apply(&VehicleCommand::CutRc(!gets_sticks));
     }
     let (remote, directory) = opened.map(|opened| (opened.link, opened.directory)).unzip();
     first_events.extend(warnings.into_iter().map(SessionEvent::Warning));

@@ -318,7 +318,7 @@ mod tests {
             let mut payload = ((alt_m * 100.0) as i32).to_le_bytes().to_vec();
             payload.extend(((climb_mps * 100.0) as i16).to_le_bytes());
             observer.take_message(code::ALTITUDE, &payload);
-            observer.deliver(vehicle.controller_mut().remote_mut().unwrap(), None, simulated);
+            observer.deliver(vehicle.remote_mut().unwrap(), None, simulated);
             let estimate = vehicle.snapshot().estimate;
             (estimate.alt, estimate.climb_mps)
         };
@@ -351,7 +351,7 @@ mod tests {
                 observer.take_message(code::ALTITUDE, &[&(alt_m * 100).to_le_bytes()[..], &[0; 2]].concat());
             }
             let simulated = Some(Simulated { home_m: Some(300.0), commanded: None });
-            observer.deliver(vehicle.controller_mut().remote_mut().unwrap(), Some(&home), simulated);
+            observer.deliver(vehicle.remote_mut().unwrap(), Some(&home), simulated);
             vehicle.snapshot().estimate.alt
         };
         assert_eq!(reported(false, 300, 300), Some(0.0), "above sea level, before the first arming");

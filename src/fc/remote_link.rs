@@ -215,7 +215,7 @@ impl RemoteLink {
         let Ends::Steps(steps) = &mut self.ends else { return };
         let since = steps.elapsed();
         if !steps.is_busy() {
-            if let Some(mailbox) = vehicle.controller_mut().remote_mut() {
+            if let Some(mailbox) = vehicle.remote_mut() {
                 steps.take_frames(mailbox);
                 while let Some((ticket, request)) = mailbox.take_request() {
                     self.remote.handle(Input::Requested(ticket, request), since);
@@ -226,7 +226,7 @@ impl RemoteLink {
                 steps.send(&output);
             }
         }
-        steps.run(vehicle.controller_mut().remote_mut(), now);
+        steps.run(vehicle.remote_mut(), now);
         let since = steps.elapsed();
         if steps.sends_motors {
             self.remote.handle(Input::SentMotors, since);
@@ -327,7 +327,7 @@ impl RemoteLink {
     /// Carries the frames and requests of the vehicle to the flight controller.
     fn empty_mailbox(&mut self, vehicle: &mut Vehicle, now: Instant) {
         let since = self.since(now);
-        let Some(mailbox) = vehicle.controller_mut().remote_mut() else { return };
+        let Some(mailbox) = vehicle.remote_mut() else { return };
         let Ends::Wall { feed, .. } = &mut self.ends else { return };
         match feed {
             Some(feed) => {
@@ -349,7 +349,7 @@ impl RemoteLink {
             match event {
                 Event::Notice(notice) => self.notices.push(notice),
                 Event::Answered(ticket, answer) => {
-                    if let Some(mailbox) = vehicle.controller_mut().remote_mut() {
+                    if let Some(mailbox) = vehicle.remote_mut() {
                         mailbox.deliver_answer(ticket, answer);
                     }
                 }
@@ -387,7 +387,9 @@ impl RemoteLink {
                 Event::Switched(channel, pulse_us) => {
                     // The scripted pilot would move the switch back.
                     vehicle.apply(&VehicleCommand::StopPilot);
-                    vehicle.transmitter_mut().sticks_mut().channels[channel] = pulse_us;
+                    let mut sticks = vehicle.transmitter().sticks();
+                    sticks.channels[channel] = pulse_us;
+                    vehicle.apply(&VehicleCommand::Sticks(sticks));
                 }
             }
         }
@@ -418,7 +420,7 @@ impl RemoteLink {
             home_m: frame.map(|frame| frame.alt_amsl_m),
             commanded: rescue::is_on(observer, &vehicle.transmitter().sticks().channels),
         });
-        if let Some(mailbox) = vehicle.controller_mut().remote_mut() {
+        if let Some(mailbox) = vehicle.remote_mut() {
             self.remote.deliver(mailbox, frame.as_ref(), simulated);
         }
     }

@@ -312,7 +312,7 @@ fn a_message_to_a_child_that_boots_waits_for_its_connection() {
     let request = |vehicle: &mut Vehicle| {
         let message = Message { code: code::API_VERSION, payload: Vec::new(), clock: None };
         vehicle.apply(&message.into());
-        let (ticket, request) = vehicle.controller_mut().remote_mut().unwrap().take_request().unwrap();
+        let (ticket, request) = vehicle.remote_mut().unwrap().take_request().unwrap();
         Input::Requested(ticket, request)
     };
     let answers = |remote: &mut Remote| {

@@ -1,26 +1,10 @@
-//! Uploads a plan: to an embedded flight controller as a plan, to a remote one through the command line, as a
-//! ground station does, and reads it back. Downloads a plan in the same way.
+//! Uploads a plan to a remote flight controller through the command line, as a ground station does, and reads it back. Downloads a plan in the same way.
 
 use super::master_settings::replaced_reported;
 use crate::firmware::cli::{CliReply, RefusedLine};
 use crate::plan::format::{self, Format};
 use crate::plan::{AltitudeError, AltitudeReference, CraftPlan, FlightPlan, upload_lines};
-use crate::vehicle::{Answer, FlightController, PlanUpload, Ticket, Vehicle, VehicleCommand};
-
-/// Stores `settings` and `plan` in an embedded flight controller.
-///
-/// # Errors
-/// Returns the sentence of the first refusal; earlier lines keep their effect. A remote flight controller
-/// answers too late for this function.
-pub fn upload(
-    controller: &mut FlightController,
-    plan: &FlightPlan,
-    settings: &[String],
-) -> Result<UploadReport, String> {
-    let upload = PlanUpload { plan: plan.clone(), settings: settings.to_vec() };
-    controller.upload(&upload).map_err(|refusal| refusal.to_string())?;
-    Ok(UploadReport::default())
-}
+use crate::vehicle::{Answer, Ticket, Vehicle, VehicleCommand};
 
 /// The result of an upload.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -225,7 +209,7 @@ mod tests {
 
     /// Returns the new requests to the remote flight controller.
     fn asked(vehicle: &mut Vehicle) -> Vec<String> {
-        let mailbox = vehicle.controller_mut().remote_mut().unwrap();
+        let mailbox = vehicle.remote_mut().unwrap();
         std::iter::from_fn(|| mailbox.take_request())
             .map(|(_, request)| match request {
                 RemoteRequest::Cli(line) => line,

@@ -21,9 +21,10 @@ pub(crate) fn write(file: Option<PathBuf>, plan: &str, flight: RecordedFlight) -
 /// Flies a flight again with a log. The log ends where the flight does, so its size is that of the flight.
 fn flown_log(flight: RecordedFlight) -> Result<Vec<u8>, String> {
     let RecordedFlight { start: mut vehicle, inputs, until } = flight;
-    let firmware = vehicle.embedded_mut().ok_or("only the embedded firmware writes a log here.")?;
-    firmware.set_logs(true);
-    firmware.begin_new_log();
+    if !vehicle.set_logs(true) {
+        return Err("only the embedded firmware writes a log here.".to_owned());
+    }
+    vehicle.begin_new_log();
     let (mut stream, mut buffer, mut log) = (LogStream::default(), LogBuffer::default(), Vec::new());
     let mut inputs = inputs.iter().peekable();
     while vehicle.time() < until {

@@ -41,7 +41,9 @@ impl LogOutput {
     /// # Errors
     /// Returns the reason why the file cannot be written, or that the firmware is remote.
     pub(crate) fn begin(path: &Path, vehicle: &mut Vehicle) -> Result<Self, AppError> {
-        vehicle.embedded_mut().ok_or_else(needs_embedded)?.set_logs(true);
+        if !vehicle.set_logs(true) {
+            return Err(needs_embedded());
+        }
         Ok(Self {
             path: path.to_owned(),
             file: Some(StreamedOutput::begin(path)?),

@@ -15,13 +15,9 @@ use super::modes::AfterAbort;
 use super::parameters::{RescueAltitude, RescueCause, RescueConfig, RescueSanity};
 use crate::geo::local_offset;
 
-/// An order that does not come from the AUTOPILOT switch.
+/// A return home with a landing, by command or (with its own altitude and speeds) by the rescue switch.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Order {
-    /// Flies home and lands, by command or (with its own altitude and speeds) by the rescue switch.
-    ReturnHome(Option<Rescue>),
-    Land,
-}
+struct Return(Option<Rescue>);
 
 /// The inputs that decide the navigator's orders in one update.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,7 +37,7 @@ pub struct OrderFacts {
 /// The orders in force.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Orders {
-    order: Option<Order>,
+    order: Option<Return>,
     switch_was: bool,
     was_armed: bool,
     /// `true` if the flight ended with the AUTOPILOT switch on. The switch then has no effect until it is released.
@@ -87,23 +83,12 @@ impl Orders {
         rescue: Option<Rescue>,
     ) -> Result<(), Refusal> {
         navigator.return_to_home(inputs, params, rescue)?;
-        self.order = Some(Order::ReturnHome(rescue));
+        self.order = Some(Return(rescue));
         self.by_rescue_switch = false;
         Ok(())
     }
 
-    /// Lands here.
-    ///
-    /// # Errors
-    /// Returns a refusal if the craft is not armed or has no fix or no altitude.
-    pub fn emergency_land(&mut self, navigator: &mut Navigator, inputs: &NavInputs) -> Result<(), Refusal> {
-        navigator.emergency_land(inputs)?;
-        self.order = Some(Order::Land);
-        self.by_rescue_switch = false;
-        Ok(())
-    }
-
-    /// Returns `true` while the craft flies home or lands by a command, not by a switch.
+    /// Returns `true` while the craft flies home by a command, not by a switch.
     pub fn is_commanded(&self) -> bool {
         self.order.is_some() && !self.by_rescue_switch
     }
@@ -246,9 +231,9 @@ impl Orders {
     }
 }
 
-/// Repeats an aborted order, but only after a lost fix. A return home that makes no progress lands instead.
+/// Repeats an aborted return, but only after a lost fix. One that makes no progress lands instead.
 fn repeat(
-    order: Order,
+    Return(rescue): Return,
     navigator: &mut Navigator,
     inputs: &NavInputs,
     params: &Params,
@@ -256,10 +241,7 @@ fn repeat(
     if !navigator.has_fix_back(inputs) {
         return Err(Refusal::Aborted(AbortReason::GpsLost));
     }
-    match order {
-        Order::ReturnHome(rescue) => navigator.return_to_home(inputs, params, rescue),
-        Order::Land => navigator.emergency_land(inputs),
-    }
+    navigator.return_to_home(inputs, params, rescue)
 }
 
 /// Returns the response of stage 2 of the failsafe in the present situation.

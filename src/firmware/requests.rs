@@ -168,15 +168,6 @@ impl Firmware {
         self.navigation.command(command, &self.setup.parameters, stored)
     }
 
-    /// Lands here, regardless of the AUTOPILOT switch.
-    ///
-    /// # Errors
-    /// As for [`Firmware::return_to_home`].
-    pub fn emergency_land(&mut self) -> Result<(), Refusal> {
-        let done = self.navigation.emergency_land();
-        self.answer(done)
-    }
-
     fn answer(&mut self, done: Result<(), Refusal>) -> Result<(), Refusal> {
         if let Err(refusal) = done {
             self.outbox.push(FirmwareEvent::Nav(NavEvent::Refused(refusal)));
@@ -184,7 +175,7 @@ impl Firmware {
         done
     }
 
-    /// Cancels [`Firmware::return_to_home`] or [`Firmware::emergency_land`]. The switch decides again, and starts its
+    /// Cancels [`Firmware::return_to_home`]. The switch decides again, and starts its
     /// mission again if it is on. Without such a command nothing happens.
     pub fn cancel_command(&mut self) {
         self.navigation.cancel_command();

@@ -20,12 +20,11 @@ pub use what_if::{WHAT_IFS, WhatIf};
 
 use super::{Flight, FlightEnd, FlightOptions, Verdict};
 use crate::firmware::Firmware;
-use crate::firmware::cli::RefusedLine;
 use crate::plan::FlightPlan;
-use crate::signals::SimTime;
+use crate::signals::{RC_CHANNELS, SimTime};
 use crate::sim::WorldCommand;
-use crate::telemetry::{AbortReason, Mode, Refusal};
-use crate::vehicle::Vehicle;
+use crate::telemetry::{AbortReason, Refusal};
+use crate::vehicle::{Vehicle, VehicleCommand};
 use endless::EndlessWatch;
 use observer::Observer;
 use report::Ended;
@@ -68,13 +67,20 @@ impl ForecastRun {
         if plan.waypoints.is_empty() {
             return Err(NO_WAYPOINTS.to_owned());
         }
-        let Some(firmware) = vehicle.embedded_mut() else { return Err(CONTROLLER_IS_REMOTE.to_owned()) };
-        firmware.upload(plan, settings).map_err(|refused| refusal(&refused))?;
-        change(&mut vehicle, WorldCommand::ClearFaults)?;
-        vehicle.transmitter_mut().inputs_mut().clear();
-        vehicle.transmitter_mut().set_cut(false);
-        vehicle.reset_craft();
-        vehicle.start_pilot(takeoff_m).map_err(no_switch)?;
+        if vehicle.embedded().is_none() {
+            return Err(CONTROLLER_IS_REMOTE.to_owned());
+        }
+        let channels = (0..RC_CHANNELS as u8).map(VehicleCommand::ReleaseChannel);
+        let before = [
+            VehicleCommand::upload(plan.clone(), settings.to_vec()),
+            WorldCommand::ClearFaults.into(),
+            VehicleCommand::CutRc(false),
+            VehicleCommand::ResetCraft,
+            VehicleCommand::StartPilot(takeoff_m),
+        ];
+        for command in channels.chain(before) {
+            apply(&mut vehicle, &command)?;
+        }
         Self::begin(ForecastKind::PlanEstimate, vehicle, takeoff_m)
     }
 
@@ -104,7 +110,7 @@ impl ForecastRun {
         let flies = check_flies(&vehicle).is_ok();
         let begins_now = flies || matches!(command, WorldCommand::SetWind(_));
         if begins_now {
-            change(&mut vehicle, command.clone())?;
+            apply(&mut vehicle, &command.clone().into())?;
         }
         if flies {
             return Self::begin(ForecastKind::WhatIf, vehicle, FlightOptions::default().takeoff_m);
@@ -152,7 +158,7 @@ impl ForecastRun {
             && let Some(command) = self.at_engagement.take()
         {
             // It was read already. A world that has no such fault flies on without it.
-            let _done = self.flight.vehicle_mut().change_world(command);
+            let _done = self.flight.vehicle_mut().apply(&command.into());
         }
         let vehicle = self.flight.vehicle();
         self.observer.look(vehicle);
@@ -232,16 +238,6 @@ fn check_flies(vehicle: &Vehicle) -> Result<(), String> {
     Ok(())
 }
 
-/// Returns the reason for a refused start of the scripted pilot, as a sentence.
-pub(super) fn no_switch(mode: Mode) -> String {
-    format!("The scripted pilot needs a switch for {mode}: assign one with the CLI command aux.")
-}
-
-/// Returns the refusal of a line of an upload, as a sentence.
-pub(super) fn refusal(RefusedLine { line, reply }: &RefusedLine) -> String {
-    format!("The craft refuses `{line}`: {reply}")
-}
-
-fn change(vehicle: &mut Vehicle, command: WorldCommand) -> Result<(), String> {
-    vehicle.change_world(command).map_err(|error| error.to_string())
+fn apply(vehicle: &mut Vehicle, command: &VehicleCommand) -> Result<(), String> {
+    vehicle.apply(command).accepted().map_err(|refusal| refusal.sentence())
 }

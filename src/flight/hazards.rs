@@ -40,8 +40,7 @@ mod tests {
 
     #[test]
     fn an_upload_with_a_leg_that_is_too_steep_is_warned_of() {
-        let firmware = Firmware::new(Configuration::default(), FirmwareOptions::default());
-        let mut controller = FlightController::from(firmware);
+        let mut firmware = Firmware::new(Configuration::default(), FirmwareOptions::default());
         let home = LatLon::new(404_635_000, -795_182_000);
         let mut plan = FlightPlan::default();
         for alt_m in [80.0, 20.0] {
@@ -54,7 +53,8 @@ mod tests {
                 ..Waypoint::default()
             });
         }
-        controller.embedded_mut().unwrap().upload(&plan, &[]).unwrap();
+        firmware.upload(&plan, &[]).unwrap();
+        let controller = FlightController::from(firmware);
         let reported = hazards_from(&controller, Some(home), 10.0, None);
         assert!(
             reported.len() == 1 && reported[0].starts_with("Caution: waypoint 0 is passed about"),
@@ -66,8 +66,7 @@ mod tests {
 
     #[test]
     fn an_upload_with_a_hazard_is_warned_of() {
-        let firmware = Firmware::new(Configuration::default(), FirmwareOptions::default());
-        let mut controller = FlightController::from(firmware);
+        let mut firmware = Firmware::new(Configuration::default(), FirmwareOptions::default());
         let mut plan = FlightPlan::default();
         let home = LatLon::new(404_635_000, -795_182_000);
         plan.waypoints.push(Waypoint {
@@ -77,7 +76,8 @@ mod tests {
             ..Waypoint::default()
         });
         let settings = ["ap_landing_throttle_threshold = 300".to_owned()];
-        controller.embedded_mut().unwrap().upload(&plan, &settings).unwrap();
+        firmware.upload(&plan, &settings).unwrap();
+        let controller = FlightController::from(firmware);
         let reported = hazards_from(&controller, Some(home), 10.0, None);
         assert!(reported[0].starts_with("Caution: waypoint 0 is 3.0 m below home"), "{reported:?}");
         assert!(

@@ -19,7 +19,7 @@ use crate::firmware::{AttitudeSource, FirmwareOptions, settings};
 use crate::pilot::StickInput;
 use crate::plan::format::{self, HomePosition, PlanError, PlanFile, SettingFault};
 use crate::sim::{WorldConfig, WorldError};
-use crate::vehicle::{Vehicle, VehicleConfig};
+use crate::vehicle::{Vehicle, VehicleCommand, VehicleConfig};
 
 /// The silence of the GPS that ends the fix while an external simulator moves the craft, s. Its packets may stall.
 const EXTERNAL_GPS_TIMEOUT_S: f64 = 2.5;
@@ -151,8 +151,8 @@ impl FlightSetup {
             PhysicsSource::Embedded => Vehicle::new(config),
             PhysicsSource::External => Vehicle::with_external_physics(config),
         }?;
-        vehicle.controller_mut().set_build(self.build);
-        *vehicle.transmitter_mut().inputs_mut() = self.stick_inputs;
+        vehicle.set_build(self.build);
+        hold_channels(&mut vehicle, &self.stick_inputs);
         Ok((vehicle, home_notice.into_iter().chain(notices).collect()))
     }
 
@@ -168,8 +168,14 @@ impl FlightSetup {
             }
         }
         let mut vehicle = Vehicle::with_remote_controller(WorldConfig { home, ..self.world })?;
-        *vehicle.transmitter_mut().inputs_mut() = self.stick_inputs;
+        hold_channels(&mut vehicle, &self.stick_inputs);
         Ok((vehicle, notices))
+    }
+}
+
+fn hold_channels(vehicle: &mut Vehicle, inputs: &[StickInput]) {
+    for input in inputs {
+        vehicle.apply(&VehicleCommand::HoldChannel(*input));
     }
 }
 

@@ -10,7 +10,6 @@
 
 use nalgebra::Vector2;
 
-use super::forecast::no_switch;
 use super::{Flight, FlightEnd, FlightOptions, FlightResult, craft_at_boot};
 use crate::plan::{FlightPlan, WaypointType};
 use crate::signals::SimTime;
@@ -86,7 +85,7 @@ impl Sweep {
     ) -> Result<Self, String> {
         let vehicle = craft_at_boot(vehicle, plan, settings, |_| {})?;
         let options = FlightOptions { takeoff_m, ..FlightOptions::default() };
-        let flight = Flight::new(vehicle, &options).map_err(no_switch)?;
+        let flight = Flight::new(vehicle, &options).map_err(|refusal| refusal.sentence())?;
         Ok(Self::new(flight, fault))
     }
 
@@ -131,10 +130,8 @@ impl Sweep {
         self.second += 1;
         let mut flight = self.flight.clone();
         let fault = ScheduledFault { start: FaultStart::Engagement(f64::from(second)), ..self.fault };
-        flight
-            .vehicle_mut()
-            .change_world(WorldCommand::Schedule(fault))
-            .map_err(|error| error.to_string())?;
+        let scheduled = flight.vehicle_mut().apply(&WorldCommand::Schedule(fault).into()).accepted();
+        scheduled.map_err(|refusal| refusal.sentence())?;
         Ok(Branch { second, place_enu: place(self.flight.vehicle()), flight })
     }
 }

@@ -11,7 +11,6 @@ use std::time::Instant;
 use super::{report, setup};
 use crate::args::{FlyArgs, PhysicsArgs, Speed};
 use crate::events::Event;
-use crate::fc::upload;
 use crate::files::log_output::{LogOutput, needs_embedded};
 use crate::files::recording_file::Recorder;
 use crate::files::terrain::with_terrain;
@@ -161,8 +160,7 @@ impl Run {
 impl Start<'_> {
     /// Prepares a flight with the embedded firmware.
     fn embedded(mut self) -> Result<Prepared, AppError> {
-        // A plan that the craft refuses is invalid input.
-        upload(self.vehicle.controller_mut(), &self.plan.plan, &[]).map_err(AppError::input)?;
+        setup::store_plan(&mut self.vehicle, &self.plan.plan)?;
         let options = setup::flight_options(&self.args.mission);
         self.notices.extend(self.hazards());
         let hash = self.hash();

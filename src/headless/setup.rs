@@ -1,5 +1,6 @@
 //! Reads the files of the options, and makes the start of a flight from both.
 
+use crate::plan::FlightPlan;
 use std::path::{Path, PathBuf};
 
 use crate::args::{
@@ -23,7 +24,7 @@ use crate::report::UtcSeconds;
 use crate::signals::SimTime;
 use crate::sim::{Airframe, Home, WorldConfig};
 use crate::storage::Store;
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Vehicle, VehicleCommand};
 
 /// Reads a plan from its source. `home` is that of a file that has none, or none with its altitude above sea level.
 pub(crate) fn read_plan(plan: &PlanArg, home: Option<HomePosition>) -> Result<PlanFile, AppError> {
@@ -140,12 +141,16 @@ pub(crate) fn check_set(settings: &[String]) -> Result<(), AppError> {
     })
 }
 
+/// Stores a plan in the embedded firmware. A plan that it refuses is invalid input.
+pub(crate) fn store_plan(vehicle: &mut Vehicle, plan: &FlightPlan) -> Result<(), AppError> {
+    let stored = vehicle.apply(&VehicleCommand::upload(plan.clone(), Vec::new())).accepted();
+    stored.map_err(|refusal| AppError::input(refusal.to_string()))
+}
+
 /// Starts a flight of the plan that is stored in the craft.
 pub(crate) fn start_flight(vehicle: Vehicle, options: &FlightOptions) -> Result<Flight, AppError> {
-    Flight::new(vehicle, options).map_err(|mode| {
-        AppError::input(format!(
-            "no channel switches {mode}: the pilot needs one; set it with an aux line in --settings"
-        ))
+    Flight::new(vehicle, options).map_err(|refusal| {
+        AppError::input(format!("{refusal}: the pilot needs one; set it with an aux line in --settings"))
     })
 }
 

@@ -261,7 +261,7 @@ impl RemoteRun {
     ) -> Result<CliReply, Stopped> {
         loop {
             self.wait(vehicle, subscriber)?;
-            match vehicle.controller_mut().take_answer() {
+            match vehicle.take_answer() {
                 Some((ticket, LateAnswer::Cli(said))) if ticket == waits_for => return Ok(said),
                 _ => {}
             }

@@ -39,7 +39,7 @@ fn record(seconds: u64, mut happen: impl FnMut(u64, &mut Vehicle)) -> Recorded {
     for tick in 0..seconds * 1000 {
         if tick == 5 {
             let _reported = vehicle.apply(&VehicleCommand::upload(plan.clone(), Vec::new()));
-            vehicle.start_pilot(5.0).unwrap();
+            vehicle.apply(&VehicleCommand::StartPilot(5.0)).accepted().unwrap();
         }
         happen(tick, &mut vehicle);
         let at = vehicle.time();
@@ -94,7 +94,10 @@ fn a_recording_flies_again_to_the_last_bit() {
         }
         10_000 => {
             let _reported = vehicle.apply(&VehicleCommand::single_line("set ap_max_angle = 20"));
-            vehicle.change_world(crate::sim::WorldCommand::parse("wind=3.1@270").unwrap()).unwrap();
+            vehicle
+                .apply(&VehicleCommand::from(crate::sim::WorldCommand::parse("wind=3.1@270").unwrap()))
+                .accepted()
+                .unwrap();
         }
         _ => {}
     });

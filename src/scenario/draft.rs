@@ -117,12 +117,13 @@ mod tests {
     use crate::flight::FlightSetup;
     use crate::sim::WorldCommand;
     use crate::timeline::RecordedFlight;
+    use crate::vehicle::VehicleCommand;
 
     #[test]
     fn what_was_wrong_at_the_start_of_a_recorded_flight_is_wrong_in_its_scenario() {
         let (mut start, _) = FlightSetup::default().build().unwrap();
         for line in ["fault=motor,,2:0.9", "fault=gps-loss@boot+20,3"] {
-            start.change_world(WorldCommand::parse(line).unwrap()).unwrap();
+            start.apply(&VehicleCommand::from(WorldCommand::parse(line).unwrap())).accepted().unwrap();
         }
         let until = SimTime::from_secs_f64(2.0);
         let flight = RecordedFlight { start, inputs: Vec::new(), until };

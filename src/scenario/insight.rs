@@ -9,7 +9,7 @@ use crate::scenario::flag::Flag;
 use crate::sim::{Fault, ScheduledFault, Switches};
 use crate::telemetry::signal::Signal;
 use crate::telemetry::{DisarmReason, PlanSource};
-use crate::vehicle::VehicleCommand;
+use crate::vehicle::{CommandKind, VehicleCommand};
 
 /// The required knowledge of a flight controller, the least first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, strum::Display)]
@@ -304,35 +304,12 @@ fn action(action: &Action, switches: &Switches) -> Insight {
         Action::Vehicle(VehicleCommand::World(command)) if command.fault().is_some_and(is_idle) => {
             Insight::Inner
         }
-        Action::Vehicle(
-            VehicleCommand::World(_)
-            | VehicleCommand::ResetCraft
-            | VehicleCommand::Sticks(_)
-            | VehicleCommand::SticksFirst(_)
-            | VehicleCommand::CutRc(_)
-            | VehicleCommand::HoldChannel(_)
-            | VehicleCommand::ReleaseChannel(_)
-            | VehicleCommand::StartPilot(_)
-            | VehicleCommand::StopPilot
-            | VehicleCommand::Rc(..),
-        )
-        | Action::Stick { .. }
-        | Action::Switch(..)
-        | Action::CutRc(_)
-        | Action::RestoreRc => Insight::Truth,
-        Action::Vehicle(
-            VehicleCommand::ReturnHome
-            | VehicleCommand::CancelReturn
-            | VehicleCommand::InFlight(_)
-            | VehicleCommand::BeginCli(..)
-            | VehicleCommand::EndCli(_)
-            | VehicleCommand::EndAllCli
-            | VehicleCommand::Line(_)
-            | VehicleCommand::Upload(_)
-            | VehicleCommand::Message(_)
-            | VehicleCommand::CliOpened
-            | VehicleCommand::CliClosed
-            | VehicleCommand::Restart(_),
-        ) => Insight::Inner,
+        Action::Vehicle(command) => match command.kind() {
+            CommandKind::World | CommandKind::Reset | CommandKind::Rc | CommandKind::Pilot => Insight::Truth,
+            CommandKind::Return | CommandKind::Order | CommandKind::Session | CommandKind::Configuration => {
+                Insight::Inner
+            }
+        },
+        Action::Stick { .. } | Action::Switch(..) | Action::CutRc(_) | Action::RestoreRc => Insight::Truth,
     }
 }

@@ -75,9 +75,8 @@ impl<'a> CaseFlight<'a> {
     pub fn from_vehicle(case: &'a Case, vehicle: Vehicle) -> Result<Self, String> {
         let recorder = Recorder::new(&vehicle, case.setup.plan.plan.clone(), case.sample_hz);
         let flight = if case.pilot {
-            Flight::new(vehicle, &case.options).map_err(|mode| {
-                format!("no channel switches {mode}: the pilot needs one; set it with an aux line")
-            })?
+            Flight::new(vehicle, &case.options)
+                .map_err(|refusal| format!("{refusal}: the pilot needs one; set it with an aux line"))?
         } else {
             Flight::go_on(vehicle, &case.options)
         };

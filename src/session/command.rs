@@ -10,6 +10,7 @@ use crate::plan::FlightPlan;
 use crate::replay::{Curve, CurvesRequest};
 use crate::session::replay_view::ReplayView;
 use crate::signals::{RcFrame, SimTime};
+use crate::sim::WorldCommand;
 use crate::telemetry::{LinkState, LostTime, Snapshot};
 use crate::timeline::{RecordedFlight, TimelineView};
 use crate::vehicle::{Vehicle, VehicleCommand};
@@ -95,9 +96,9 @@ pub enum Command {
     StartPilot,
     /// Permits changes to the remote craft over the connection with this number, until it ends.
     PermitChanges(u32),
-    /// Changes the air, the noise or a fault: `wind=5@270`, `fault=motor,,2:0.8`, `end=all`…
+    /// Changes the air, the noise or a fault.
     World {
-        line: String,
+        change: Box<WorldCommand>,
         /// Receives `Ok`, or the reason.
         reply: ReplyTo<Result<(), String>>,
     },

@@ -171,7 +171,7 @@ mod tests {
         let (mut vehicle, _) = FlightSetup::default().build().unwrap();
         let mut timeline = Timeline::new(&mut vehicle).unwrap();
         let (mut feed, receiver) = flight_feed(0);
-        vehicle.start_pilot(5.0).unwrap();
+        vehicle.apply(&VehicleCommand::StartPilot(5.0)).accepted().unwrap();
         let ticks = 150_000;
         for tick in 0..ticks {
             if tick % 1000 == 0 {

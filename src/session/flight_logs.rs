@@ -114,16 +114,16 @@ mod tests {
     #![allow(clippy::disallowed_methods, reason = "the writer gets its time from the tests")]
 
     use super::*;
-    use crate::firmware::cli::Interpreter;
     use crate::flight::FlightSetup;
     use crate::storage::logs_in;
+    use crate::vehicle::VehicleCommand;
 
     /// Returns a vehicle that logs from boot on.
     fn logging(device: &str) -> Vehicle {
         let (mut vehicle, _) = FlightSetup::default().build().expect("a vehicle");
-        let firmware = vehicle.embedded_mut().expect("embedded");
         for line in [format!("set blackbox_device = {device}"), "set blackbox_mode = ALWAYS".to_owned()] {
-            assert!(!firmware.run_cli(&mut Interpreter::default(), &line).failed, "{line}");
+            let reply = vehicle.apply(&VehicleCommand::single_line(&line)).line().expect("a reply");
+            assert!(!reply.failed, "{line}");
         }
         vehicle
     }
@@ -164,7 +164,7 @@ mod tests {
         fly(&mut vehicle, &mut logs, 500);
         let mut earlier = vehicle.clone();
         fly(&mut vehicle, &mut logs, 500);
-        earlier.embedded_mut().expect("embedded").begin_new_log();
+        earlier.begin_new_log();
         fly(&mut earlier, &mut logs, 500);
         drop(logs);
         let mut files: Vec<_> = logs_in(directory.path()).collect();

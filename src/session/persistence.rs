@@ -6,7 +6,7 @@ use crate::events::Notice;
 use crate::firmware::cli::{CliAction, CliReply};
 use crate::firmware::config::Configuration;
 use crate::storage::Store;
-use crate::vehicle::FlightController;
+use crate::vehicle::{Vehicle, VehicleCommand};
 
 /// The storage for the configuration of an embedded flight controller.
 #[derive(Debug)]
@@ -32,11 +32,11 @@ pub(super) struct CarriedOut {
 }
 
 impl Persistence {
-    /// Keeps the configuration of `controller`, which has just booted, in `store`. With `starter_modes`, a
+    /// Keeps the configuration of `vehicle`, which has just booted, in `store`. With `starter_modes`, a
     /// craft without mode conditions gets the usual ones at every restart.
-    pub fn new(store: Store, controller: &mut FlightController, starter_modes: bool) -> Self {
-        controller.set_storage_facts(store.facts());
-        let at_boot = controller.configuration().cloned().map(Box::new);
+    pub fn new(store: Store, vehicle: &mut Vehicle, starter_modes: bool) -> Self {
+        vehicle.set_storage_facts(store.facts());
+        let at_boot = vehicle.controller().configuration().cloned().map(Box::new);
         let logs = FlightLogs::new(store.log_folder());
         Self { store, at_boot, saved: None, starter_modes, logs }
     }
@@ -50,14 +50,14 @@ impl Persistence {
     ///
     /// # Errors
     /// Returns the sentence for the user if it could not be stored.
-    pub(super) fn save(&mut self, controller: &mut FlightController) -> Result<(), String> {
-        let Some(configuration) = controller.configuration() else { return Ok(()) };
+    pub(super) fn save(&mut self, vehicle: &mut Vehicle) -> Result<(), String> {
+        let Some(configuration) = vehicle.controller().configuration() else { return Ok(()) };
         let saved = self.store.save(configuration);
         if saved.is_ok() {
             self.at_boot = None;
             self.saved = Some(Box::new(configuration.clone()));
         }
-        controller.set_storage_facts(self.store.facts());
+        vehicle.set_storage_facts(self.store.facts());
         saved.map_err(|error| format!("Not saved: {error}."))
     }
 
@@ -66,21 +66,17 @@ impl Persistence {
         self.saved.as_deref().or(self.at_boot.as_deref())
     }
 
-    /// Updates the storage facts of `controller`, which was restored from an earlier instant.
-    pub(super) fn tell(&self, controller: &mut FlightController) {
-        controller.set_storage_facts(self.store.facts());
+    /// Updates the storage facts of `vehicle`, which was restored from an earlier instant.
+    pub(super) fn report_facts(&self, vehicle: &mut Vehicle) {
+        vehicle.set_storage_facts(self.store.facts());
     }
 
     /// Saves and restarts as the answer to a line requires, with the restart last. If saving fails, the
     /// answer becomes a refusal, and nothing restarts.
-    pub(super) fn carry_out(
-        &mut self,
-        reply: &mut CliReply,
-        controller: &mut FlightController,
-    ) -> CarriedOut {
+    pub(super) fn carry_out(&mut self, reply: &mut CliReply, vehicle: &mut Vehicle) -> CarriedOut {
         let mut done = CarriedOut::default();
         if reply.actions.contains(&CliAction::Save)
-            && let Err(notice) = self.save(controller)
+            && let Err(notice) = self.save(vehicle)
         {
             reply.refuse_save(&notice);
             done.notices.push(Notice::warning(notice));
@@ -90,7 +86,7 @@ impl Persistence {
             _ => None,
         });
         if restart.is_some() {
-            done.notices.extend(self.restart(controller));
+            done.notices.extend(self.restart(vehicle));
         }
         done.restarted = restart;
         done
@@ -99,19 +95,19 @@ impl Persistence {
     /// Restarts the flight controller on the configuration that was saved last, or the one at boot. Returns
     /// sentences for the user: the faults of the stored configuration, and that the craft got the starter
     /// modes.
-    pub(super) fn restart(&mut self, controller: &mut FlightController) -> Vec<Notice> {
-        let mut notices = Vec::new();
-        controller.restart(|| {
-            let loaded = self.store.load();
-            notices = loaded.findings.into_iter().map(Notice::warning).collect();
-            let mut configuration =
-                self.at_boot.as_deref().map_or(loaded.configuration, Configuration::clone);
-            if self.starter_modes && configuration.starter_modes() {
-                notices.push(Configuration::STARTER_MODES_NOTICE.into());
-            }
-            configuration
-        });
-        controller.set_storage_facts(self.store.facts());
+    pub(super) fn restart(&mut self, vehicle: &mut Vehicle) -> Vec<Notice> {
+        if vehicle.embedded().is_none() {
+            vehicle.apply(&VehicleCommand::Restart(Box::default()));
+            return Vec::new();
+        }
+        let loaded = self.store.load();
+        let mut notices: Vec<Notice> = loaded.findings.into_iter().map(Notice::warning).collect();
+        let mut configuration = self.at_boot.as_deref().map_or(loaded.configuration, Configuration::clone);
+        if self.starter_modes && configuration.starter_modes() {
+            notices.push(Configuration::STARTER_MODES_NOTICE.into());
+        }
+        vehicle.apply(&VehicleCommand::Restart(Box::new(configuration)));
+        vehicle.set_storage_facts(self.store.facts());
         notices
     }
 }

@@ -9,7 +9,7 @@ use crate::fc::{
 };
 use crate::flight::forecast::{CONTROLLER_IS_REMOTE, PHYSICS_IS_EXTERNAL};
 use crate::telemetry::LinkState;
-use crate::vehicle::VehicleCommand;
+use crate::vehicle::{CommandKind, VehicleCommand};
 
 /// Refusal to pause, step or accelerate time with an external simulator.
 pub const TIME_IS_EXTERNAL: &str = "The simulator sets the time: pause it or change its speed there.";
@@ -173,31 +173,19 @@ impl Intent {
     }
 
     fn from_vehicle(command: &VehicleCommand) -> Self {
-        match command {
-            VehicleCommand::Line(line) => Self::Line(Impact::from_line(&line.line)),
-            VehicleCommand::Message(message) => {
+        match (command.kind(), command) {
+            (_, VehicleCommand::Line(line)) => Self::Line(Impact::from_line(&line.line)),
+            (_, VehicleCommand::Message(message)) => {
                 Self::Line(Impact::from_message(message.code, &message.payload))
             }
-            VehicleCommand::Restart(_) => Self::Line(Impact::Changes),
-            VehicleCommand::Upload(_) => Self::Upload,
-            VehicleCommand::BeginCli(..)
-            | VehicleCommand::EndCli(_)
-            | VehicleCommand::EndAllCli
-            | VehicleCommand::CliOpened
-            | VehicleCommand::CliClosed => Self::Read,
-            VehicleCommand::ResetCraft => Self::Reset,
-            VehicleCommand::World(_) => Self::World,
-            VehicleCommand::InFlight(_) => Self::Order,
-            VehicleCommand::StartPilot(_) => Self::Fly,
-            VehicleCommand::Rc(..)
-            | VehicleCommand::SticksFirst(_)
-            | VehicleCommand::ReturnHome
-            | VehicleCommand::CancelReturn
-            | VehicleCommand::Sticks(_)
-            | VehicleCommand::CutRc(_)
-            | VehicleCommand::HoldChannel(_)
-            | VehicleCommand::ReleaseChannel(_)
-            | VehicleCommand::StopPilot => Self::Move,
+            (_, VehicleCommand::Upload(_)) => Self::Upload,
+            (CommandKind::Configuration, _) => Self::Line(Impact::Changes),
+            (CommandKind::Session, _) => Self::Read,
+            (CommandKind::Reset, _) => Self::Reset,
+            (CommandKind::World, _) => Self::World,
+            (CommandKind::Order, _) => Self::Order,
+            (CommandKind::Pilot, _) => Self::Fly,
+            (CommandKind::Rc | CommandKind::Return, _) => Self::Move,
         }
     }
 

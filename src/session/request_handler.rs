@@ -98,7 +98,7 @@ impl RequestHandler {
         match request {
             Request::Msp { code, payload, reply, .. } => {
                 let message = Message { code, payload, clock: self.clock_at(now) };
-                vehicle.controller_mut().set_flash_facts(persistence.logs().flash().facts());
+                vehicle.set_flash_facts(persistence.logs().flash().facts());
                 match vehicle.apply(&message.into()) {
                     Answer::Now(Reply::Message(outcome)) => {
                         let payload = self.act_on_message(outcome, vehicle, persistence, now, &mut handled);
@@ -213,14 +213,14 @@ impl RequestHandler {
     ) -> Option<Vec<u8>> {
         match outcome.action {
             Some(MspAction::Save) => {
-                if let Err(notice) = persistence.save(vehicle.controller_mut()) {
+                if let Err(notice) = persistence.save(vehicle) {
                     handled.notices.push(Notice::warning(notice));
                     return None;
                 }
             }
             Some(MspAction::Reboot) => self.restart(true, vehicle, persistence, handled),
             Some(MspAction::SaveAndReboot) => {
-                if let Err(notice) = persistence.save(vehicle.controller_mut()) {
+                if let Err(notice) = persistence.save(vehicle) {
                     handled.notices.push(Notice::warning(notice));
                     return None;
                 }
@@ -271,7 +271,7 @@ impl RequestHandler {
                 CliAction::Save | CliAction::Restart { .. } | CliAction::PlanChanged | CliAction::Leave => {}
             }
         }
-        let done = persistence.carry_out(said, vehicle.controller_mut());
+        let done = persistence.carry_out(said, vehicle);
         handled.notices.extend(done.notices);
         if let Some(close_links) = done.restarted {
             handled.restarted = true;
@@ -286,7 +286,7 @@ impl RequestHandler {
         persistence: &mut Persistence,
         handled: &mut Handled,
     ) {
-        handled.notices.extend(persistence.restart(vehicle.controller_mut()));
+        handled.notices.extend(persistence.restart(vehicle));
         handled.restarted = true;
         self.after_restart(close_links, vehicle);
     }

@@ -213,8 +213,7 @@ impl Session {
             }
             None => (None, None),
         };
-        let persistence =
-            Persistence::new(config.store, config.vehicle.controller_mut(), config.starter_modes);
+        let persistence = Persistence::new(config.store, &mut config.vehicle, config.starter_modes);
         let mut session = Self {
             runner: Runner::new(config.vehicle.step_us(), config.speed, config.remote).with_slice(SLICE),
             usual_speed: config.speed,
@@ -404,7 +403,7 @@ impl Session {
 
     /// Passes on the new answers of a remote flight controller, and gives up overdue requests.
     fn take_late_answers(&mut self, now: Instant) {
-        while let Some((ticket, answer)) = self.vehicle.controller_mut().take_answer() {
+        while let Some((ticket, answer)) = self.vehicle.take_answer() {
             self.changed = true;
             let craft = &mut UploadTo { vehicle: &mut self.vehicle, takeoff_m: self.takeoff_m };
             match self.interface.take_answer(ticket, answer, craft, now) {

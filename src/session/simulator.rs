@@ -14,7 +14,7 @@ use crate::link::{ExternalSimulator, ImpairedLink, LinkImpairment};
 use crate::session::event_sender::EventSender;
 use crate::sim::LinkFaults;
 use crate::telemetry::LinkState;
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Vehicle, VehicleCommand};
 
 /// The interval at which frames from sockets are repeated while time runs fast, µs of simulated time.
 pub(super) const RC_REPEAT_US: u64 = 20_000;
@@ -156,7 +156,7 @@ impl Simulator {
         self.count_time(at, received.ticks, vehicle.step_us());
         self.report_return(at, vehicle, events);
         if received.kind == (PacketKind::Resync { restarted: true }) {
-            vehicle.reset_craft();
+            vehicle.apply(&VehicleCommand::ResetCraft);
             beside.handler.after_restart(false, vehicle);
         }
         for notice in received.notices {

@@ -60,7 +60,7 @@ fn move_stick(vehicle: &mut Vehicle, channel: usize, value_us: u16) {
 
 fn happen(tick: u64, vehicle: &mut Vehicle) {
     let world = |vehicle: &mut Vehicle, line: &str| {
-        vehicle.change_world(WorldCommand::parse(line).unwrap()).unwrap();
+        vehicle.apply(&VehicleCommand::from(WorldCommand::parse(line).unwrap())).accepted().unwrap();
     };
     match tick {
         500 => {
@@ -78,11 +78,11 @@ fn happen(tick: u64, vehicle: &mut Vehicle) {
         1003 => done(vehicle, &VehicleCommand::CliOpened),
         1200 => {
             let kept = vehicle.controller().configuration().cloned().unwrap();
-            vehicle.controller_mut().restart(|| kept);
+            done(vehicle, &VehicleCommand::Restart(Box::new(kept)));
         }
         1300 => world(vehicle, "wind=4@270"),
         // The pilot waits for the fix first.
-        1500 => vehicle.start_pilot(3.0).unwrap(),
+        1500 => vehicle.apply(&VehicleCommand::StartPilot(3.0)).accepted().unwrap(),
         15_300 => done(vehicle, &VehicleCommand::InFlight(InFlightCommand::HoldHere)),
         15_800 => done(vehicle, &VehicleCommand::InFlight(InFlightCommand::GoTo(2))),
         16_000 => world(vehicle, "fault=gps-loss,2"),
@@ -100,7 +100,7 @@ fn happen(tick: u64, vehicle: &mut Vehicle) {
         }
         19_200 => done(vehicle, &VehicleCommand::CancelReturn),
         19_500 => message(vehicle, code::SET_NAME, b"replayed"),
-        20_000 => vehicle.reset_craft(),
+        20_000 => done(vehicle, &VehicleCommand::ResetCraft),
         20_500..22_000 if tick.is_multiple_of(7) => {
             let mut frame = RcFrame::SAFE;
             frame.channels[3] = 1500 + (tick % 90) as u16;

@@ -131,18 +131,6 @@ impl Knob {
     }
 }
 
-/// Returns the lines that make the air and the noise of a world from those at their defaults.
-pub(super) fn lines(world: &WorldView) -> Vec<String> {
-    let Some(wind) = world.wind else { return Vec::new() };
-    let parts = [
-        (Knob::WindSpeed, format!("wind={}@{}", wind.speed_mps, wind.from_deg)),
-        (Knob::Gust, format!("gust={}", world.gust_mps)),
-        (Knob::Turbulence, format!("turbulence={}", world.turbulence)),
-        (Knob::Noise, "noise=none".to_owned()),
-    ];
-    parts.into_iter().filter(|(knob, _)| !knob.is_default(world)).map(|(_, line)| line).collect()
-}
-
 impl KnobsState {
     fn selected(&self, state: &Shared) -> Option<Knob> {
         knobs(state).get(self.selected).copied()

@@ -142,17 +142,12 @@ async fn run_loop(
     }
     // Before the first frame: a terminal that is closed once it has seen that frame sends no keys any more.
     let mut keys = EventStream::new();
-    let restored = restore(&mut state);
+    restore(&mut state);
     tui.draw(&state)?;
 
     let (answers, mut replies) = Answers::channel();
     let threads = Threads::start(&answers)?;
     let mut ahead = TypedAhead::default();
-    for effect in restored {
-        if carry_out(effect, &link, &threads, &mut files, &answers) {
-            ahead.sends(false, started);
-        }
-    }
     let mut events = Vec::with_capacity(BATCH);
     let mut drawn = Instant::now();
     // The time of the next frame; `None` while nothing has changed.

@@ -58,6 +58,27 @@ pub enum VehicleCommand {
     ResetCraft,
 }
 
+/// The part of the craft that a command acts on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CommandKind {
+    /// The transmitter, and the RC of other programs.
+    Rc,
+    /// The start of the scripted pilot.
+    Pilot,
+    /// The return home.
+    Return,
+    /// The navigator that flies a plan.
+    Order,
+    /// The sessions of the command line. Nothing else changes.
+    Session,
+    /// The configuration: a line, a message, an upload, a restart.
+    Configuration,
+    /// Air, noise and faults.
+    World,
+    /// The place of the craft.
+    Reset,
+}
+
 /// The session of the command line that runs a line. A session that was not begun is at a prompt.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum CliSession {
@@ -105,6 +126,12 @@ impl Message {
     }
 }
 
+impl From<WorldCommand> for VehicleCommand {
+    fn from(change: WorldCommand) -> Self {
+        Self::World(Box::new(change))
+    }
+}
+
 impl From<Message> for VehicleCommand {
     fn from(message: Message) -> Self {
         Self::Message(Box::new(message))
@@ -116,6 +143,8 @@ impl From<Message> for VehicleCommand {
 pub enum Reply {
     /// Carried out. There is nothing to report.
     Done,
+    /// Carried out already, for example the end of a session that has ended.
+    Unchanged,
     /// Nothing has changed.
     Refused(VehicleRefusal),
     /// The answer to a CLI line.
@@ -149,6 +178,33 @@ pub enum VehicleRefusal {
     UploadToRemote,
 }
 
+impl VehicleRefusal {
+    /// Returns the reason as a sentence of its own, with the way out.
+    pub fn sentence(&self) -> String {
+        match self {
+            Self::ReturnHome(refusal) => format!("No return home: {}", refusal.sentence()),
+            Self::Pilot(mode) => {
+                format!("The scripted pilot needs a switch for {mode}: assign one with the CLI command aux.")
+            }
+            Self::Upload(RefusedLine { line, reply }) => format!("The craft refuses `{line}`: {reply}"),
+            Self::World(_) | Self::InFlight(_) | Self::UploadToRemote => self.to_string(),
+        }
+    }
+}
+
+impl Reply {
+    /// Returns the reply, unless it is a refusal. A line of the command line can be refused by its own reply.
+    ///
+    /// # Errors
+    /// Fails with the reason of the refusal.
+    pub fn accepted(self) -> Result<Self, VehicleRefusal> {
+        match self {
+            Self::Refused(refusal) => Err(refusal),
+            reply => Ok(reply),
+        }
+    }
+}
+
 impl From<Result<(), VehicleRefusal>> for Reply {
     fn from(result: Result<(), VehicleRefusal>) -> Self {
         result.map_or_else(Self::Refused, |()| Self::Done)
@@ -169,6 +225,31 @@ impl VehicleCommand {
     /// Returns the command that stores a plan after its settings (`name = value`).
     pub fn upload(plan: FlightPlan, settings: Vec<String>) -> Self {
         Self::Upload(Box::new(PlanUpload { plan, settings }))
+    }
+
+    /// Returns the part of the craft that the command acts on. The rules about permissions, remote craft and scenarios
+    /// follow from it.
+    pub fn kind(&self) -> CommandKind {
+        match self {
+            Self::Rc(..)
+            | Self::SticksFirst(_)
+            | Self::Sticks(_)
+            | Self::CutRc(_)
+            | Self::HoldChannel(_)
+            | Self::ReleaseChannel(_)
+            | Self::StopPilot => CommandKind::Rc,
+            Self::StartPilot(_) => CommandKind::Pilot,
+            Self::ReturnHome | Self::CancelReturn => CommandKind::Return,
+            Self::InFlight(_) => CommandKind::Order,
+            Self::BeginCli(..) | Self::EndCli(_) | Self::EndAllCli | Self::CliOpened | Self::CliClosed => {
+                CommandKind::Session
+            }
+            Self::Line(_) | Self::Message(_) | Self::Upload(_) | Self::Restart(_) => {
+                CommandKind::Configuration
+            }
+            Self::World(_) => CommandKind::World,
+            Self::ResetCraft => CommandKind::Reset,
+        }
     }
 
     /// Returns the approximate memory of the command, bytes.

@@ -7,20 +7,15 @@ pub use embedded::EmbeddedController;
 pub use remote::{FrameOut, RemoteController, RemoteRequest, RemoteTelemetry};
 
 use super::input_log::InputLog;
-use super::{CliLine, CliSession, Message, PlanUpload, VehicleRefusal};
+use super::{Reply, VehicleCommand, VehicleRefusal};
 use crate::firmware::Firmware;
-use crate::firmware::blackbox::FlashFacts;
-use crate::firmware::cli::{BuildInfo, CliMode, CliReply, StorageFacts};
+use crate::firmware::cli::CliReply;
 use crate::firmware::config::Configuration;
-use crate::firmware::msp::Outcome;
 use crate::pilot::PilotFacts;
 use crate::plan::{AltitudeReference, FlightPlan};
 use crate::signals::{MotorCommand, RcFrame, RcSource, SensorFrame, SimTime};
 use crate::telemetry::snapshot::{CraftView, EstimateView, ModeRange, SettingsView};
-use crate::telemetry::{
-    DisarmReason, FirmwareEvent, FirmwareProfile, InFlightCommand, InFlightRefusal, Mode, ModeFlags,
-    NavTelemetry, Refusal,
-};
+use crate::telemetry::{DisarmReason, FirmwareEvent, FirmwareProfile, Mode, ModeFlags, NavTelemetry};
 
 /// The identity of a request to a remote flight controller until its answer comes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -31,16 +26,34 @@ pub struct Ticket(u64);
 pub enum Answer<T> {
     /// The answer.
     Now(T),
-    /// The answer comes later with this ticket from [`FlightController::take_answer`].
+    /// The answer comes later with this ticket from [`Vehicle::take_answer`](super::Vehicle::take_answer).
     Later(Ticket),
 }
 
 impl<T> Answer<T> {
-    /// Converts an answer that is here.
-    pub(super) fn map<U>(self, convert: impl FnOnce(T) -> U) -> Answer<U> {
+    /// Returns the answer if it is here. An embedded controller answers at once.
+    pub fn now(self) -> Option<T> {
         match self {
-            Self::Now(answer) => Answer::Now(convert(answer)),
-            Self::Later(ticket) => Answer::Later(ticket),
+            Self::Now(answer) => Some(answer),
+            Self::Later(_) => None,
+        }
+    }
+}
+
+impl Answer<Reply> {
+    /// Checks that the command was not refused. A remote controller may still refuse it later.
+    ///
+    /// # Errors
+    /// Fails with the reason of the refusal.
+    pub fn accepted(self) -> Result<(), VehicleRefusal> {
+        self.now().map_or(Ok(()), |reply| reply.accepted().map(drop))
+    }
+
+    /// Returns the reply to a CLI line, if the command was one and the reply is here.
+    pub fn line(self) -> Option<CliReply> {
+        match self.now()? {
+            Reply::Line(reply) => Some(reply),
+            _ => None,
         }
     }
 }
@@ -81,24 +94,16 @@ impl FlightController {
     /// Takes an RC frame for the next step. Only the newest frame of each source counts.
     pub(super) fn receive_rc(&mut self, frame: &RcFrame, source: RcSource) {
         match self {
-            Self::Embedded(embedded) => embedded.receive_rc(frame, source),
+            Self::Embedded(embedded) => embedded.firmware.receive_rc(frame, source),
             Self::Remote(remote) => remote.receive_rc(frame, source),
         }
     }
 
     /// Drops the RC frames since the last step, as if they had never arrived.
-    pub fn lose_rc(&mut self) {
+    pub(super) fn lose_rc(&mut self) {
         match self {
             Self::Embedded(embedded) => embedded.firmware.lose_rc(),
             Self::Remote(remote) => remote.lose_rc(),
-        }
-    }
-
-    /// Gives the virtual sticks precedence over the other sources of RC, or ends that.
-    pub(super) fn take_over_sticks(&mut self, sticks_first: bool) {
-        match self {
-            Self::Embedded(embedded) => embedded.take_over_sticks(sticks_first),
-            Self::Remote(remote) => remote.take_over_sticks(sticks_first),
         }
     }
 
@@ -119,80 +124,19 @@ impl FlightController {
         }
     }
 
-    /// Begins a session of the command line.
-    pub(super) fn begin_cli(&mut self, session: CliSession, mode: CliMode) {
+    /// Carries out a command to the flight controller.
+    pub(super) fn apply(&mut self, command: &VehicleCommand) -> Answer<Reply> {
         match self {
-            Self::Embedded(embedded) => embedded.begin_cli(session, mode),
-            Self::Remote(remote) => remote.begin_cli(session, mode),
-        }
-    }
-
-    pub(super) fn end_cli(&mut self, session: CliSession) {
-        match self {
-            Self::Embedded(embedded) => embedded.end_cli(session),
-            Self::Remote(remote) => remote.end_cli(session),
-        }
-    }
-
-    pub(super) fn end_all_cli(&mut self) {
-        match self {
-            Self::Embedded(embedded) => embedded.end_all_cli(),
-            Self::Remote(remote) => remote.end_all_cli(),
-        }
-    }
-
-    /// Runs a CLI line. The reply says if the owner of an embedded controller must store the configuration or
-    /// restart.
-    pub(super) fn run_cli(&mut self, line: &CliLine) -> Answer<CliReply> {
-        match self {
-            Self::Embedded(embedded) => Answer::Now(embedded.run_cli(line)),
-            Self::Remote(remote) => Answer::Later(remote.run_cli(line)),
-        }
-    }
-
-    /// Answers an MSP message. The outcome says if the owner of an embedded controller must store the configuration
-    /// or restart.
-    pub(super) fn run_msp(&mut self, message: &Message) -> Answer<Outcome> {
-        match self {
-            Self::Embedded(embedded) => Answer::Now(embedded.run_msp(message)),
-            Self::Remote(remote) => {
-                let (code, payload) = (message.code, message.payload.clone());
-                Answer::Later(remote.ask(RemoteRequest::Msp { code, payload }))
-            }
-        }
-    }
-
-    /// Stores a plan and its settings in an embedded controller, and returns the answers to the lines of the upload.
-    ///
-    /// # Errors
-    /// Fails with the first refusal. The lines before it keep their effect. A remote controller answers too late.
-    pub fn upload(&mut self, upload: &PlanUpload) -> Result<Vec<String>, VehicleRefusal> {
-        match self {
-            Self::Embedded(embedded) => embedded.upload(upload).map_err(VehicleRefusal::Upload),
-            Self::Remote(_) => Err(VehicleRefusal::UploadToRemote),
+            Self::Embedded(embedded) => Answer::Now(embedded.apply(command)),
+            Self::Remote(remote) => remote.apply(command),
         }
     }
 
     /// Takes the oldest late answer that was not taken yet.
-    pub fn take_answer(&mut self) -> Option<(Ticket, LateAnswer)> {
+    pub(super) fn take_answer(&mut self) -> Option<(Ticket, LateAnswer)> {
         match self {
             Self::Embedded(_) => None,
             Self::Remote(remote) => remote.take_answer(),
-        }
-    }
-
-    /// Reports that a person opened the command line. An embedded controller does not arm until it restarts; a remote
-    /// one has its own rule.
-    pub(super) fn cli_opened(&mut self) {
-        if let Self::Embedded(embedded) = self {
-            embedded.cli_opened();
-        }
-    }
-
-    /// Reports that the command line was left. Motors that it turned stop. A remote controller has its own rule.
-    pub(super) fn cli_closed(&mut self) {
-        if let Self::Embedded(embedded) = self {
-            embedded.cli_closed();
         }
     }
 
@@ -202,87 +146,11 @@ impl FlightController {
         self.embedded().map(Firmware::configuration)
     }
 
-    /// Restarts an embedded controller on the configuration from `stored`, a remote one on its own stored
-    /// configuration.
-    pub fn restart(&mut self, stored: impl FnOnce() -> Configuration) {
-        match self {
-            Self::Embedded(embedded) => embedded.restart(stored()),
-            Self::Remote(remote) => remote.restart(),
-        }
-    }
-
-    /// Sets the facts about the stored configuration that the commands of an embedded controller report.
-    #[doc(hidden)]
-    pub fn set_storage_facts(&mut self, facts: StorageFacts) {
-        if let Self::Embedded(embedded) = self {
-            embedded.firmware.set_storage_facts(facts);
-        }
-    }
-
-    /// Sets the facts about the flash memory for logs that an embedded controller reports.
-    #[doc(hidden)]
-    pub fn set_flash_facts(&mut self, facts: FlashFacts) {
-        if let Self::Embedded(embedded) = self {
-            embedded.firmware.set_flash_facts(facts);
-        }
-    }
-
-    /// Sets the flag that an earlier instant is shown instead of the present one, for the commands of an embedded
-    /// controller.
-    #[doc(hidden)]
-    pub fn set_rewound(&mut self, rewound: bool) {
-        if let Self::Embedded(embedded) = self {
-            embedded.firmware.set_rewound(rewound);
-        }
-    }
-
-    /// Sets version and build that an embedded controller announces.
-    pub fn set_build(&mut self, build: BuildInfo) {
-        if let Self::Embedded(embedded) = self {
-            embedded.firmware.set_build(build);
-        }
-    }
-
     /// Restarts with the configuration in memory, stored or not.
     pub(super) fn restart_in_place(&mut self) {
         match self {
             Self::Embedded(embedded) => embedded.firmware.restart_in_place(),
             Self::Remote(remote) => remote.restart(),
-        }
-    }
-
-    /// Flies home and lands, whatever the AUTOPILOT switch says. A remote controller gets a request.
-    ///
-    /// # Errors
-    /// Fails with the reason why an embedded controller does not.
-    pub(super) fn return_to_home(&mut self) -> Result<(), Refusal> {
-        match self {
-            Self::Embedded(embedded) => embedded.return_to_home(),
-            Self::Remote(remote) => {
-                remote.ask(RemoteRequest::ReturnHome);
-                Ok(())
-            }
-        }
-    }
-
-    /// Gives a command to the navigator that flies the stored plan. A remote controller has no such commands.
-    ///
-    /// # Errors
-    /// Fails with the reason. Nothing has changed then.
-    pub(super) fn command(&mut self, command: InFlightCommand) -> Result<(), InFlightRefusal> {
-        match self {
-            Self::Embedded(embedded) => embedded.command(command),
-            Self::Remote(_) => Err(InFlightRefusal::Remote),
-        }
-    }
-
-    /// Cancels [`Self::return_to_home`].
-    pub(super) fn cancel_command(&mut self) {
-        match self {
-            Self::Embedded(embedded) => embedded.cancel_command(),
-            Self::Remote(remote) => {
-                remote.ask(RemoteRequest::CancelReturn);
-            }
         }
     }
 
@@ -308,8 +176,8 @@ impl FlightController {
         }
     }
 
-    /// Does the same as [`Self::embedded`], for changes. The changes are not among the inputs of the vehicle.
-    pub fn embedded_mut(&mut self) -> Option<&mut Firmware> {
+    /// Does the same as [`Self::embedded`], for changes.
+    pub(super) fn embedded_mut(&mut self) -> Option<&mut Firmware> {
         match self {
             Self::Embedded(embedded) => Some(&mut embedded.firmware),
             Self::Remote(_) => None,
@@ -331,7 +199,7 @@ impl FlightController {
     }
 
     /// Returns the mailbox of a remote controller, for the code that communicates with it.
-    pub fn remote_mut(&mut self) -> Option<&mut RemoteController> {
+    pub(super) fn remote_mut(&mut self) -> Option<&mut RemoteController> {
         match self {
             Self::Embedded(_) => None,
             Self::Remote(remote) => Some(remote),

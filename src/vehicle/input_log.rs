@@ -1,16 +1,20 @@
 //! The record of the commands to a vehicle since its last tick. With them a flight can be flown again to the last bit.
 //!
 //! Frames of the virtual sticks and losses by faults are not recorded, since they follow from the transmitter and the
-//! world. Reports of commands about the rest of the program (storage, links) are not recorded either, since they do not
-//! affect the flight.
+//! world. Reports about the rest of the program (storage, links) are not recorded either, since they do not affect the
+//! flight.
 
-use super::{Vehicle, VehicleCommand};
+use super::{Reply, VehicleCommand, VehicleRefusal};
+use crate::firmware::msp::{MESSAGES, MspAction};
+use crate::msp::Access;
+use crate::signals::RcSource;
 
 /// The inputs since the last tick, if they are recorded.
 #[derive(Debug, Clone, Default)]
 pub(super) struct InputLog {
     inputs: Option<Vec<VehicleCommand>>,
-    bytes: usize,
+    /// The approximate memory of the inputs, bytes.
+    pub(super) bytes: usize,
 }
 
 impl InputLog {
@@ -22,10 +26,10 @@ impl InputLog {
         self.inputs.as_ref().is_none_or(Vec::is_empty)
     }
 
-    /// Records an input that has been carried out.
-    pub(super) fn note(&mut self, input: impl FnOnce() -> VehicleCommand) {
+    /// Records a command with this reply, if it is an input.
+    pub(super) fn note(&mut self, command: &VehicleCommand, reply: &Reply) {
         let Some(inputs) = &mut self.inputs else { return };
-        let input = input();
+        let Some(input) = input(command, reply) else { return };
         // Only the newest frame of a source counts. A script continues to send while time is stopped.
         if let VehicleCommand::Rc(frame, source) = input
             && let Some(VehicleCommand::Rc(earlier, _)) = inputs
@@ -49,32 +53,26 @@ impl InputLog {
     }
 }
 
-impl Vehicle {
-    /// Records the inputs from now on for [`Self::take_inputs`], or ends that. Only an embedded flight controller in
-    /// the simulated world can be flown again, so other vehicles record none. Returns `true` if inputs are recorded.
-    pub fn keep_inputs(&mut self, wanted: bool) -> bool {
-        let wanted = wanted && self.truth().is_some();
-        self.controller.input_log_mut().is_some_and(|log| {
-            log.set_wanted(wanted);
-            wanted
-        })
+/// Returns the input that a command with this reply was, if it was one. Lines that only ask are inputs, since each makes
+/// the parameters follow the settings again. An order that the firmware refuses is one, since the refusal is an event.
+fn input(command: &VehicleCommand, reply: &Reply) -> Option<VehicleCommand> {
+    match (command, reply) {
+        (_, Reply::Unchanged | Reply::Refused(VehicleRefusal::World(_) | VehicleRefusal::Pilot(_)))
+        // The frames of the virtual sticks follow from the transmitter.
+        | (VehicleCommand::Rc(_, RcSource::Sticks), _) => None,
+        (VehicleCommand::Message(message), Reply::Message(outcome)) => match outcome.action {
+            Some(MspAction::RawRc(frame)) => Some(VehicleCommand::Rc(frame, RcSource::Msp)),
+            _ => writes(message.code).then(|| command.clone()),
+        },
+        _ => Some(command.clone()),
     }
+}
 
-    /// Returns `true` if there were inputs since the last call of [`Self::take_inputs`].
-    pub fn has_inputs(&self) -> bool {
-        self.controller.input_log().is_some_and(|log| !log.is_empty())
-    }
-
-    /// Returns the approximate memory of the inputs since the last call of [`Self::take_inputs`], bytes.
-    pub fn input_bytes(&self) -> usize {
-        self.controller.input_log().map_or(0, |log| log.bytes)
-    }
-
-    /// Moves the inputs since the last call into `sink`, oldest first. Applying them again before the same tick gives
-    /// the same vehicle.
-    pub fn take_inputs(&mut self, sink: impl FnMut(VehicleCommand)) {
-        if let Some(log) = self.controller.input_log_mut() {
-            log.drain().for_each(sink);
-        }
-    }
+/// Returns `true` if a message can change anything.
+fn writes(code: u16) -> bool {
+    let found = MESSAGES.binary_search_by_key(&code, |message| message.kind.code);
+    found
+        .ok()
+        .and_then(|index| MESSAGES.get(index))
+        .is_some_and(|message| message.kind.access == Access::Write)
 }

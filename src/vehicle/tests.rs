@@ -4,7 +4,7 @@ use super::*;
 use crate::firmware::cli::CliMode;
 use crate::geo::LatLon;
 use crate::pilot::StickInput;
-use crate::sim::Fault;
+use crate::sim::{Fault, WorldCommand};
 use crate::telemetry::TransitionReason;
 
 fn config() -> VehicleConfig {
@@ -63,7 +63,7 @@ fn lost_events_are_reported() {
     let mut vehicle = vehicle();
     for _ in 0..100 {
         // Refused because the craft is not armed.
-        assert!(vehicle.controller_mut().return_to_home().is_err());
+        assert!(vehicle.apply(&VehicleCommand::ReturnHome).accepted().is_err());
     }
     vehicle.tick();
     let mut notices = Vec::new();
@@ -82,14 +82,9 @@ fn after_a_reset_faults_and_sticks_count_from_the_next_engagement() {
 }
 
 fn counts_from_the_next_engagement(mut vehicle: Vehicle) {
-    vehicle.transmitter_mut().inputs_mut().push(StickInput {
-        channel: 0,
-        value_us: 1900,
-        at_s: 0.5,
-        for_s: Some(0.2),
-        from_boot: false,
-    });
-    vehicle.change_world(WorldCommand::parse("fault=gps-loss@0.5").unwrap()).unwrap();
+    let input = StickInput { channel: 0, value_us: 1900, at_s: 0.5, for_s: Some(0.2), from_boot: false };
+    vehicle.apply(&VehicleCommand::HoldChannel(input));
+    vehicle.apply(&WorldCommand::parse("fault=gps-loss@0.5").unwrap().into()).accepted().unwrap();
     for engaged_s in [1.0, 3.0] {
         run(&mut vehicle, engaged_s);
         assert_eq!(vehicle.engaged_at(), None);
@@ -112,7 +107,7 @@ fn counts_from_the_next_engagement(mut vehicle: Vehicle) {
         assert_eq!((stick(&vehicle), vehicle.snapshot().world.faults.len()), (1500, 0));
         run(&mut vehicle, engaged_s + 0.6);
         assert_eq!((stick(&vehicle), vehicle.snapshot().world.faults.len()), (1900, 1));
-        vehicle.reset_craft();
+        vehicle.apply(&VehicleCommand::ResetCraft);
     }
 }
 
@@ -120,10 +115,10 @@ fn counts_from_the_next_engagement(mut vehicle: Vehicle) {
 fn a_craft_put_back_home_knows_nothing_of_the_fall() {
     let mut vehicle = vehicle();
     run(&mut vehicle, 4.0);
-    vehicle.change_world(WorldCommand::FaultOn(Fault::Teleport([0.0, 0.0, 30.0]), None)).unwrap();
+    vehicle.apply(&WorldCommand::FaultOn(Fault::Teleport([0.0, 0.0, 30.0]), None).into()).accepted().unwrap();
     // A slow tick, so that barometer and GPS have just reported.
     run(&mut vehicle, 5.0);
-    vehicle.reset_craft();
+    vehicle.apply(&VehicleCommand::ResetCraft);
     run(&mut vehicle, 15.0);
     let estimate = vehicle.embedded().unwrap().altitude_m();
     assert!(estimate.abs() < 1.0, "{estimate}");
@@ -161,7 +156,7 @@ fn a_wind_that_the_program_adds_is_the_air_at_the_craft_and_of_its_copies() {
         run(vehicle, 0.05);
         assert!((vehicle.truth().unwrap().wind_enu - wind).norm() < 1e-12);
     }
-    vehicle.reset_craft();
+    vehicle.apply(&VehicleCommand::ResetCraft);
     let mut again = vehicle.again(|_| ()).unwrap().unwrap();
     for refused in [Vector3::new(61.0, 0.0, 0.0), Vector3::new(f64::NAN, 0.0, 0.0)] {
         assert!(vehicle.set_added_wind(refused).is_err(), "{refused}");

@@ -42,12 +42,14 @@ impl Rig {
     fn run(&mut self, seconds: f64) {
         for _ in 0..(seconds * 1000.0) as usize {
             self.vehicle.tick();
-            self.stand_in.exchange(self.vehicle.controller_mut().remote_mut().unwrap());
+            self.stand_in.exchange(self.vehicle.remote_mut().unwrap());
         }
     }
 
     fn set(&mut self, channel: usize, us: u16) {
-        self.vehicle.transmitter_mut().sticks_mut().channels[channel] = us;
+        let mut sticks = self.vehicle.transmitter().sticks();
+        sticks.channels[channel] = us;
+        self.vehicle.apply(&VehicleCommand::Sticks(sticks));
     }
 
     /// Arms and climbs in ALTHOLD, then hovers.
@@ -112,7 +114,7 @@ fn a_remote_flight_controller_hears_one_transmitter_at_a_time() {
             }
             for _ in 0..20 {
                 rig.vehicle.tick();
-                let mailbox = rig.vehicle.controller_mut().remote_mut().unwrap();
+                let mailbox = rig.vehicle.remote_mut().unwrap();
                 while let Some(frame) = mailbox.take_frame() {
                     if let FrameOut::Rc(frame, source) = frame {
                         seen.push((source, frame.channels[0]));
@@ -126,7 +128,7 @@ fn a_remote_flight_controller_hears_one_transmitter_at_a_time() {
     assert_eq!(sources(&mut rig, Some(1600), 20), [(RcSource::Udp, 1600); 20]);
     assert_eq!(rig.vehicle.controller().rc_source(), None, "it has not reported that it takes RC from here");
     let reported = RemoteTelemetry { takes_rc: true, ..RemoteTelemetry::default() };
-    rig.vehicle.controller_mut().remote_mut().unwrap().deliver_telemetry(reported);
+    rig.vehicle.remote_mut().unwrap().deliver_telemetry(reported);
     assert_eq!(rig.vehicle.snapshot().craft.rc_source, Some(RcSource::Udp));
     assert!(rig.vehicle.snapshot().craft.rc_age_s.unwrap() < 0.1);
     rig.vehicle.apply(&VehicleCommand::SticksFirst(true));
@@ -144,11 +146,11 @@ fn a_command_line_is_answered_later_by_its_ticket() {
         Answer::Now(reply) => panic!("{reply:?}"),
     };
     let (first, second) = (ask("get ap_max_angle"), ask("nonsense"));
-    assert_eq!(rig.vehicle.controller_mut().take_answer(), None);
+    assert_eq!(rig.vehicle.take_answer(), None);
     rig.run(0.001 * (DELAY + 2) as f64);
-    let Some((ticket, LateAnswer::Cli(reply))) = rig.vehicle.controller_mut().take_answer() else { panic!() };
+    let Some((ticket, LateAnswer::Cli(reply))) = rig.vehicle.take_answer() else { panic!() };
     assert!(ticket == first && reply.text.contains("ap_max_angle = "), "{reply:?}");
-    let Some((ticket, LateAnswer::Cli(reply))) = rig.vehicle.controller_mut().take_answer() else { panic!() };
+    let Some((ticket, LateAnswer::Cli(reply))) = rig.vehicle.take_answer() else { panic!() };
     assert!(ticket == second && reply.failed, "{reply:?}");
 }
 
@@ -221,12 +223,12 @@ fn rx_jitter_drops_its_fraction_of_the_rc_frames() {
     for (fault, expected) in [(None, 1000..=1000), (Some("fault=rx-jitter,,0.2"), 740..=860)] {
         let mut vehicle = Vehicle::with_remote_controller(WorldConfig::default()).unwrap();
         if let Some(fault) = fault {
-            vehicle.change_world(WorldCommand::parse(fault).unwrap()).unwrap();
+            vehicle.apply(&VehicleCommand::from(WorldCommand::parse(fault).unwrap())).accepted().unwrap();
         }
         let mut frames = 0;
         for _ in 0..20_000 {
             vehicle.tick();
-            let mailbox = vehicle.controller_mut().remote_mut().unwrap();
+            let mailbox = vehicle.remote_mut().unwrap();
             while let Some(frame) = mailbox.take_frame() {
                 frames += usize::from(matches!(frame, FrameOut::Rc(..)));
             }

@@ -24,6 +24,8 @@ const CALM: OrderFacts = OrderFacts {
     failsafe_active: false,
     failsafe_mission: None,
 };
+/// The AUTOPILOT switch is on.
+const ON: OrderFacts = OrderFacts { autopilot_switch: true, ..CALM };
 
 /// A flight of the navigator under orders, without a craft.
 struct Flight {
@@ -175,12 +177,11 @@ fn an_order_that_waits_says_what_for() {
     assert_eq!(flight.navigator.telemetry().refusal, None);
 }
 
-/// Returns a flight that lands by command.
+/// Returns a flight of the plan that lands where it is.
 fn landing() -> Flight {
-    let mut flight = Flight::new();
-    flight.update(CALM);
-    assert_eq!(flight.orders.emergency_land(&mut flight.navigator, &flight.inputs), Ok(()));
-    flight.update(CALM);
+    let mut flight = Flight::engaged();
+    assert_eq!(flight.navigator.emergency_land(&flight.inputs), Ok(()));
+    flight.update(ON);
     assert_eq!(flight.navigator.state(), NavState::Landing);
     flight
 }
@@ -190,18 +191,18 @@ fn a_landing_that_loses_its_fix_goes_on_down_and_lands_when_it_is_back() {
     for (north_m, place_m) in [(0.0, 0.0), (19.0, 0.0), (25.0, 25.0)] {
         let mut flight = landing();
         flight.inputs.fix = false;
-        flight.update(CALM);
+        flight.update(ON);
         assert_eq!(flight.navigator.state(), NavState::Idle);
         assert_eq!(flight.orders.after_abort(&flight.navigator), AfterAbort::Descent);
         flight.inputs.fix = true;
         flight.inputs.alt_m = 12.0;
         flight.inputs.pos_ne.x = north_m;
         for _ in 0..199 {
-            flight.update(CALM);
+            flight.update(ON);
         }
         assert_eq!(flight.navigator.state(), NavState::Idle);
         for _ in 0..3 {
-            flight.update(CALM);
+            flight.update(ON);
         }
         assert_eq!(flight.navigator.state(), NavState::Landing);
         assert_eq!(flight.navigator.telemetry().source, PlanSource::Emergency, "the plan is kept");
@@ -218,11 +219,10 @@ fn a_landing_of_the_plan_is_resumed_as_a_landing_unless_the_switch_goes_off() {
     let lost = |switch| {
         let mut flight = Flight::engaged();
         flight.inputs.fix = true;
-        flight.orders.emergency_land(&mut flight.navigator, &flight.inputs).unwrap();
-        let on = OrderFacts { autopilot_switch: true, ..CALM };
-        flight.update(on);
+        flight.navigator.emergency_land(&flight.inputs).unwrap();
+        flight.update(ON);
         flight.inputs.fix = false;
-        flight.update(on);
+        flight.update(ON);
         flight.update(OrderFacts { autopilot_switch: switch, ..CALM });
         flight
     };
@@ -247,7 +247,8 @@ fn descent_of_the_failsafe_takes_the_mission_off() {
 fn disarming_forgets_commands() {
     let mut flight = Flight::new();
     flight.update(CALM);
-    flight.orders.emergency_land(&mut flight.navigator, &flight.inputs).unwrap();
+    let Flight { orders, navigator, inputs, .. } = &mut flight;
+    orders.return_to_home(navigator, inputs, &Params::default(), None).unwrap();
     flight.inputs.armed = false;
     flight.update(CALM);
     flight.inputs.armed = true;
@@ -272,7 +273,7 @@ fn failsafe_response_by_policy_and_procedure() {
             let idle = Flight::new();
             let approaching = Flight::engaged();
             let mut landing = Flight::engaged();
-            landing.orders.emergency_land(&mut landing.navigator, &landing.inputs).unwrap();
+            landing.navigator.emergency_land(&landing.inputs).unwrap();
             let got = [
                 failsafe_response(&idle.navigator, &params, procedure, true),
                 failsafe_response(&approaching.navigator, &params, procedure, true),
@@ -375,7 +376,6 @@ enum Deed {
     Raised(bool),
     Armed(bool),
     ReturnHome,
-    Land,
     Cancel,
     /// Nothing happens for this number of updates.
     Wait(u16),
@@ -399,7 +399,6 @@ fn deed() -> impl proptest::strategy::Strategy<Value = Deed> {
         1 => any::<bool>().prop_map(Deed::Raised),
         1 => prop_oneof![4 => Just(true), 1 => Just(false)].prop_map(Deed::Armed),
         1 => Just(Deed::ReturnHome),
-        1 => Just(Deed::Land),
         2 => Just(Deed::Cancel),
         4 => (1_u16..300).prop_map(Deed::Wait),
     ]
@@ -440,10 +439,6 @@ proptest::proptest! {
                 Deed::ReturnHome => {
                     let Flight { orders, navigator, inputs, .. } = &mut flight;
                     orders.return_to_home(navigator, inputs, &Params::default(), None).ok();
-                }
-                Deed::Land => {
-                    let Flight { orders, navigator, inputs, .. } = &mut flight;
-                    orders.emergency_land(navigator, inputs).ok();
                 }
                 Deed::Cancel => flight.orders.take_back(&mut flight.navigator),
                 Deed::Wait(count) => updates = count,

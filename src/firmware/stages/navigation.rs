@@ -345,11 +345,6 @@ impl Navigation {
         self.navigator.command(command, &self.inputs, &parameters.nav, stored)
     }
 
-    /// Lands here, by command.
-    pub(in crate::firmware) fn emergency_land(&mut self) -> Result<(), Refusal> {
-        self.orders.emergency_land(&mut self.navigator, &self.inputs)
-    }
-
     /// Cancels the command to fly home or land.
     pub(in crate::firmware) fn cancel_command(&mut self) {
         self.orders.take_back(&mut self.navigator);

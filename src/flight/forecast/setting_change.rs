@@ -1,10 +1,10 @@
 //! The effect of other settings: the same flight with them and without them.
 
-use super::{Forecast, ForecastKind, ForecastRun, check_flies, check_possible, refusal};
-use crate::firmware::cli::{Interpreter, RefusedLine};
+use super::{Forecast, ForecastKind, ForecastRun, check_flies, check_possible};
+use crate::firmware::cli::RefusedLine;
 use crate::flight::FlightOptions;
 use crate::plan::FlightPlan;
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Vehicle, VehicleCommand, VehicleRefusal};
 
 /// The flight without the changed settings.
 #[derive(Debug)]
@@ -71,12 +71,12 @@ impl ForecastRun {
 
 /// Sets settings as the command line does.
 fn set(vehicle: &mut Vehicle, settings: &[String]) -> Result<(), String> {
-    let Some(firmware) = vehicle.embedded_mut() else { return Ok(()) };
     for setting in settings {
         let line = format!("set {setting}");
-        let reply = firmware.run_cli(&mut Interpreter::default(), &line);
-        if reply.failed {
-            return Err(refusal(&RefusedLine { line, reply: reply.text.trim().to_owned() }));
+        let reply = vehicle.apply(&VehicleCommand::single_line(&line)).line();
+        if let Some(refused) = reply.filter(|reply| reply.failed) {
+            let refused = RefusedLine { line, reply: refused.text.trim().to_owned() };
+            return Err(VehicleRefusal::Upload(refused).sentence());
         }
     }
     Ok(())

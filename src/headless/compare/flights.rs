@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::Compared;
 use crate::args::{CompareArgs, Speed};
 use crate::events::{Event, SessionEvent};
-use crate::fc::{guide_settings, upload};
+use crate::fc::guide_settings;
 use crate::files::log_output::{LogOnly, LogOutput};
 use crate::files::terrain::with_terrain;
 use crate::firmware::config::Configuration;
@@ -141,7 +141,7 @@ impl Flights {
     fn fly_embedded(&self, setup: FlightSetup, log: Option<&Path>) -> Result<Option<Flown>, AppError> {
         let seed = setup.world.seed;
         let mut vehicle = setup::build(setup, &mut Vec::new())?;
-        upload(vehicle.controller_mut(), &self.plan.plan, &[]).map_err(AppError::input)?;
+        setup::store_plan(&mut vehicle, &self.plan.plan)?;
         let mut recorder = Recorder::new(&vehicle, seed);
         let mut log = log.map(|path| LogOutput::begin(path, &mut vehicle).map(LogOnly::new)).transpose()?;
         let mut flight = setup::start_flight(vehicle, &self.options)?;

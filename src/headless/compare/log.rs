@@ -11,7 +11,6 @@ use std::sync::atomic::Ordering;
 use nalgebra::Vector2;
 
 use crate::args::CompareArgs;
-use crate::fc::upload;
 use crate::files::recording_file::Recorder;
 use crate::files::terrain::with_terrain;
 use crate::firmware::config::Configuration;
@@ -50,7 +49,7 @@ pub(super) fn run(args: &CompareArgs, path: &Path, repeat: &[String]) -> Result<
     let settings = vehicle.controller().settings_view().unwrap_or_default();
     let route = Route::new(&plan.plan, &frame, &settings);
     let measured = log.read(|flight, source| Track::from_log(flight, source, seed))?;
-    upload(vehicle.controller_mut(), &plan.plan, &[]).map_err(AppError::input)?;
+    setup::store_plan(&mut vehicle, &plan.plan)?;
     let standing_m = vehicle.truth().map_or(0.0, |truth| truth.pos_enu.z);
     let begin_us = begin_of_log(log.flight()).0.saturating_sub(log.flight().first().0);
     let recorder = args.record.as_deref().zip(recorded.as_ref());

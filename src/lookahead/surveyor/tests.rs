@@ -5,6 +5,7 @@ use crate::flight::sweep::Fate;
 use crate::plan::builtin::BuiltinPlan;
 use crate::scenario::{BuiltinFiles, CaseFlight, Flights, MAX_FLIGHTS, Request, read_request};
 use crate::sim::WorldCommand;
+use crate::vehicle::VehicleCommand;
 
 fn copy() -> VehicleCopy {
     let (vehicle, _) = FlightSetup::default().build().unwrap();
@@ -66,7 +67,7 @@ fn copy_in_flight() -> VehicleCopy {
     setup.stored.plan = plan.plan;
     setup.world.wind = "3@90".parse().unwrap();
     let (mut vehicle, _) = setup.build().unwrap();
-    vehicle.start_pilot(5.0).unwrap();
+    vehicle.apply(&VehicleCommand::StartPilot(5.0)).accepted().unwrap();
     (0..9000).for_each(|_| vehicle.tick());
     assert!(vehicle.controller().is_armed());
     for command in [
@@ -74,7 +75,7 @@ fn copy_in_flight() -> VehicleCopy {
         WorldCommand::SetTurbulence(crate::telemetry::Turbulence::Light),
         WorldCommand::Schedule("motor@0,,3:0.5".parse().unwrap()),
     ] {
-        vehicle.change_world(command).unwrap();
+        vehicle.apply(&VehicleCommand::from(command)).accepted().unwrap();
     }
     (0..500).for_each(|_| vehicle.tick());
     VehicleCopy { vehicle: Box::new(vehicle), takeoff_m: 5.0 }

@@ -83,12 +83,16 @@ impl JournalFile {
         Self { path, file, longest: LONGEST, numbers: None }
     }
 
-    /// Opens a journal; `None` if another program has locked it, or if it cannot be read now.
+    /// Opens a journal; `None` if another program has locked it, if it cannot be read now, or if it is empty because its
+    /// program was killed before the first edit was written.
     fn open(path: PathBuf) -> Option<Result<Found, SetAside>> {
         let file = state_file::open(&path, Access::Append).ok()?;
         lock(&file).ok()?;
         let file = Self::new(path, file);
         let length = file.file.metadata().ok()?.len();
+        if length == 0 {
+            return None;
+        }
         if length > LARGEST {
             let why = format!("it is larger than {} MiB", LARGEST >> 20);
             return Some(Err(set_aside::away(&file.path, why)));
@@ -264,6 +268,15 @@ mod tests {
         drop(file);
         assert_eq!(find(directory.path(), "a.toml").found.len(), 1);
         drop(inherited);
+    }
+
+    #[test]
+    fn a_kill_while_a_journal_is_made_is_no_damage() {
+        let directory = tempfile::tempdir().unwrap();
+        std::fs::write(directory.path().join("plan-0.journal"), "").unwrap();
+        for journals in [left_behind(directory.path()), find(directory.path(), "plan")] {
+            assert!(journals.found.is_empty() && journals.set_aside.is_empty(), "{journals:?}");
+        }
     }
 
     fn named(name: usize) -> PlanDocument {

@@ -3,6 +3,7 @@ use crate::fc::NOT_PERMITTED;
 use crate::plan::FlightPlan;
 use crate::session::ReplyTo;
 use crate::signals::RcFrame;
+use crate::sim::WorldCommand;
 use crate::telemetry::InFlightCommand;
 
 const ALL: [Intent; 16] = [
@@ -196,7 +197,7 @@ fn the_intents_of_commands() {
         (Command::Vehicle(VehicleCommand::CancelReturn), Intent::Move),
         (Command::Vehicle(VehicleCommand::InFlight(InFlightCommand::HoldHere)), Intent::Order),
         (Command::Vehicle(VehicleCommand::ResetCraft), Intent::Reset),
-        (Command::World { line: "wind=5@270".to_owned(), reply: reply() }, Intent::World),
+        (Command::World { change: Box::new(WorldCommand::ClearFaults), reply: reply() }, Intent::World),
         (Command::PermitChanges(1), Intent::Read),
         (Command::Quit, Intent::Read),
     ] {

@@ -13,9 +13,8 @@ use crate::session::command::Command;
 use crate::session::flight_feed::FlightPart;
 use crate::session::policy::{self, Facts, Intent, RemoteFacts};
 use crate::session::simulator::Simulator;
-use crate::sim::WorldCommand;
 use crate::timeline::Timeline;
-use crate::vehicle::{Answer, Reply, VehicleCommand, VehicleRefusal};
+use crate::vehicle::{Answer, Reply, VehicleCommand};
 
 impl Session {
     pub(super) fn take_commands(&mut self, now: Duration, context: &mut Context<'_>) {
@@ -80,9 +79,9 @@ impl Session {
                     self.notice("Changes are permitted until the connection ends.");
                 }
             }
-            Command::World { line, reply } => {
-                let changed = self.change_world(&line);
-                reply.send(changed);
+            Command::World { change, reply } => {
+                let changed = self.vehicle.apply(&VehicleCommand::World(change)).accepted();
+                reply.send(changed.map_err(|refusal| refusal.to_string()));
             }
             Command::CopyVehicle(reply) => {
                 let copy = forecast::check_possible(&self.vehicle).map(|()| VehicleCopy {
@@ -134,30 +133,16 @@ impl Session {
     /// Applies a command to the vehicle. A refusal is a notice.
     fn apply(&mut self, command: &VehicleCommand) {
         let Answer::Now(Reply::Refused(refusal)) = self.vehicle.apply(command) else { return };
-        self.notice(match refusal {
-            VehicleRefusal::ReturnHome(refusal) => format!("No return home: {}", refusal.sentence()),
-            VehicleRefusal::Pilot(mode) => {
-                format!("The scripted pilot needs a switch for {mode}: assign one with the CLI command aux.")
-            }
-            VehicleRefusal::World(_)
-            | VehicleRefusal::InFlight(_)
-            | VehicleRefusal::Upload(_)
-            | VehicleRefusal::UploadToRemote => refusal.to_string(),
-        });
+        self.notice(refusal.sentence());
     }
 
     fn reset_craft(&mut self) {
-        self.vehicle.reset_craft();
+        self.vehicle.apply(&VehicleCommand::ResetCraft);
         if self.simulator.is_some() {
             self.notice("The firmware restarted, disarmed; the simulator places the craft.");
         }
         if let Some(endpoints) = &mut self.endpoints {
             endpoints.handler.after_restart(false, &mut self.vehicle);
         }
-    }
-
-    fn change_world(&mut self, line: &str) -> Result<(), String> {
-        let command = WorldCommand::parse(line).map_err(|error| error.to_string())?;
-        self.vehicle.change_world(command).map_err(|error| error.to_string())
     }
 }

@@ -72,7 +72,7 @@ impl Interface {
             }
         };
         self.host.add_to(&mut answer);
-        let done = persistence.carry_out(&mut answer, vehicle.controller_mut());
+        let done = persistence.carry_out(&mut answer, vehicle);
         if done.restarted.is_some() {
             restart_console(vehicle);
             if let Some(handler) = handler {
@@ -168,7 +168,7 @@ impl Interface {
             let way = if is_real { "its transmitter disarms it" } else { "`a` disarms it" };
             reply.send(Err(format!("Not saved while the craft is armed: {way} on the ground.")));
         } else if vehicle.embedded().is_some() {
-            reply.send(persistence.save(vehicle.controller_mut()));
+            reply.send(persistence.save(vehicle));
         } else if let Answer::Later(ticket) =
             vehicle.apply(&Message::of(code::EEPROM_WRITE, Vec::new()).into())
         {

@@ -31,7 +31,7 @@ impl Session {
         // While time runs, the next view is due soon anyway.
         let access = self.access();
         let rewound_to = self.timeline.as_ref().and_then(Timeline::shown).map(Vehicle::time);
-        self.vehicle.controller_mut().set_rewound(rewound_to.is_some());
+        self.vehicle.set_rewound(rewound_to.is_some());
         let time_stands_still = self.runner.pacer.is_paused() || !self.follows_wall_clock();
         let Some(endpoints) = &mut self.endpoints else { return 0 };
         let mut flown = 0;

@@ -406,15 +406,13 @@ impl Session {
         };
         self.vehicle = vehicle;
         // The log under way has what is discarded now.
-        if let Some(firmware) = self.vehicle.embedded_mut() {
-            firmware.begin_new_log();
-        }
+        self.vehicle.begin_new_log();
         self.continue_on(branch, left, now);
     }
 
     /// Continues with the vehicle of a new branch. `left` is the instant at which the flight was left.
     fn continue_on(&mut self, branch: u32, left: SimTime, now: Duration) {
-        self.persistence.tell(self.vehicle.controller_mut());
+        self.persistence.report_facts(&mut self.vehicle);
         self.vehicle.apply(&VehicleCommand::EndAllCli);
         self.arming = ArmingWatch::default();
         if let (Some(feed), Some(timeline)) = (&mut self.feed, &self.timeline) {

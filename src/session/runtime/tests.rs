@@ -52,7 +52,7 @@ impl Rig {
         let (commands, taken) = mpsc::channel(32);
         let config = config_of(vehicle, true);
         let mut session = Session::new(config, None, None, (taken, mpsc::unbounded_channel().0));
-        if let Some(mailbox) = session.vehicle.controller_mut().remote_mut() {
+        if let Some(mailbox) = session.vehicle.remote_mut() {
             let altitude_reference = AltitudeReference::Home;
             mailbox.deliver_telemetry(RemoteTelemetry { altitude_reference, ..RemoteTelemetry::default() });
         }
@@ -106,7 +106,7 @@ impl Rig {
     }
 
     fn mailbox(&mut self) -> &mut crate::vehicle::RemoteController {
-        self.session.vehicle.controller_mut().remote_mut().unwrap()
+        self.session.vehicle.remote_mut().unwrap()
     }
 
     fn shown(&self) -> Option<UploadView> {

@@ -21,7 +21,7 @@ use crate::session::{Command, Handle, SessionConfig, start};
 use crate::sim::{WorldConfig, WorldError};
 use crate::storage::{StorageError, Store};
 use crate::telemetry::{EventKind, FirmwareEvent, LinkState, NavEvent, Snapshot};
-use crate::vehicle::{Vehicle, VehicleConfig};
+use crate::vehicle::{Vehicle, VehicleCommand, VehicleConfig};
 
 /// The interval at which clients of the serial port are counted.
 const CLIENT_INTERVAL: Duration = Duration::from_millis(5);
@@ -220,9 +220,9 @@ fn boot(
         configuration: loaded.configuration,
         live: true,
     })?;
-    vehicle.transmitter_mut().set_cut(true);
-    vehicle.controller_mut().set_build(config.build.clone());
-    vehicle.controller_mut().set_storage_facts(store.facts());
+    vehicle.apply(&VehicleCommand::CutRc(true));
+    vehicle.set_build(config.build.clone());
+    vehicle.set_storage_facts(store.facts());
     Ok(vehicle)
 }
 

@@ -84,10 +84,6 @@ pub(in crate::ui) struct KeptSubject {
     /// The name of the shown plan if it has no file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(in crate::ui) shown_name: Option<String>,
-    /// The speed, times real time, if it is not real time.
-    pub(in crate::ui) speed: Option<f64>,
-    /// The lines that make the air of a calm world.
-    pub(in crate::ui) air: Vec<String>,
     /// The shown place in a flight that is over.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(in crate::ui) place: Option<KeptPlace>,

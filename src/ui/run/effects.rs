@@ -9,6 +9,7 @@ use tokio::sync::mpsc;
 use super::{SessionLink, flights};
 use crate::lookahead::{ForecastReply, Forecaster, SurveyNews, SurveyReply, Surveyor, VehicleCopy};
 use crate::session::{Command, ReplyTo};
+use crate::sim::WorldCommand;
 use crate::timeline::RecordedFlight;
 use crate::ui::files_link::FilesLink;
 use crate::ui::model::effect::{Effect, FlightForm};
@@ -116,9 +117,16 @@ pub(super) fn carry_out(
             Command::Cli { line, reply: answers.reply(|output| Msg::SetReply { line: set, output }) }
         }
         Effect::World(line) => {
-            let asked = line.clone();
-            let message = |result| Msg::WorldReply { line: asked, result };
-            Command::World { line, reply: answers.result("The session did not answer.", message) }
+            let parsed = WorldCommand::parse(&line).map_err(|error| error.to_string());
+            let message = |result| Msg::WorldReply { line, result };
+            let reply = answers.result("The session did not answer.", message);
+            match parsed {
+                Ok(change) => Command::World { change: Box::new(change), reply },
+                Err(problem) => {
+                    reply.send(Err(problem));
+                    return false;
+                }
+            }
         }
         Effect::Upload { id, name, plan, settings } => {
             let count = plan.waypoints.len();

@@ -3,10 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use crate::session::{Command, SessionView};
+use crate::session::SessionView;
 use crate::signals::SimTime;
 use crate::ui::app_state::AppState;
-use crate::ui::knobs;
 use crate::ui::model::effect::Effect;
 use crate::ui::model::event_log::Severity;
 use crate::ui::model::files::FileRequest;
@@ -20,10 +19,6 @@ use crate::ui::shared::Shared;
 
 /// The shortest time between two looks for a change.
 const INTERVAL: Duration = Duration::from_secs(1);
-/// The beginnings of the lines about the air that come back.
-const AIR: [&str; 4] = ["wind=", "gust=", "turbulence=", "noise="];
-/// The speeds that come back, times real time.
-const SPEEDS: (f64, f64) = (0.01, 1000.0);
 
 /// Returns the present screen; `None` while the recorded flight is not there yet.
 fn present(state: &mut AppState) -> Option<KeptScreen> {
@@ -50,14 +45,11 @@ fn present(state: &mut AppState) -> Option<KeptScreen> {
     let file = |path: &Path| path.to_str().map(PathBuf::from);
     let plans = shared.editor.plans().iter().filter_map(|plan| plan.file().and_then(file));
     let plan = shared.editor.plan();
-    let speed = Some(shared.view.speed_wanted).filter(|speed| is_another_speed(*speed));
     let subject = KeptSubject {
         plans: plans.take(MAX_PLANS).collect(),
         shown: plan.file().and_then(file),
         row: shared.editor.row(),
         shown_name: plan.file().is_none().then(|| plan.document().name.clone()),
-        speed: speed.filter(|_| has_speed(shared, kept.of)),
-        air: if has_air(shared, kept.of) { knobs::lines(&shared.view.vehicle.world) } else { Vec::new() },
         place: kept.place,
         window: is_of_subject.then_some(mode),
     };
@@ -76,59 +68,25 @@ fn place(view: &SessionView) -> Option<KeptPlace> {
     Some(KeptPlace { flight: replay.map_or(0, |replay| replay.number), at_us: is_within.then_some(at.0) })
 }
 
-fn is_another_speed(speed: f64) -> bool {
-    speed.is_finite() && (SPEEDS.0..=SPEEDS.1).contains(&speed) && (speed - 1.0).abs() > 1e-9
-}
-
-/// Returns `true` if this program determines the speed.
-fn has_speed(shared: &Shared, of: KeptOf) -> bool {
-    of != KeptOf::Craft && shared.view.remote.is_none() && shared.view.simulator.is_none()
-}
-
-/// Returns `true` if the air is the one that the user has made, rather than that of a flight that is over.
-fn has_air(shared: &Shared, of: KeptOf) -> bool {
-    of == KeptOf::Flight && has_speed(shared, of)
-}
-
 fn panel_of(name: &str) -> Option<Panel> {
     Panel::ALL.into_iter().find(|panel| panel.name() == name)
 }
 
-/// Shows the screen of the run before. Returns the requests for the speed and the air, if the options of this run left
-/// them at their defaults.
-pub(in crate::ui) fn restore(state: &mut AppState) -> Vec<Effect> {
-    let Some(KeptScreen { panels, subject }) = state.kept.before.take() else { return Vec::new() };
-    let (shared, of) = (&mut state.shared, state.kept.of);
+/// Shows the screen of the run before. Speed and air are those of this run.
+pub(in crate::ui) fn restore(state: &mut AppState) {
+    let Some(KeptScreen { panels, subject }) = state.kept.before.take() else { return };
+    let shared = &mut state.shared;
     if let Some(panels) = panels {
         arrange(shared, panels);
     }
     if let Some(window) = subject.window {
         shared.map.mode = window.possible();
     }
-    let mut effects = Vec::new();
-    let mut said = Vec::new();
     if let Some(at_us) = subject.place.and_then(|place| place.at_us) {
-        said.push(format!("at {:.1} s since boot", SimTime(at_us).as_secs_f64()));
+        let at_s = SimTime(at_us).as_secs_f64();
+        let text = format!("As you left it: at {at_s:.1} s since boot. `--fresh-screen` starts clean.");
+        shared.notify(Severity::Info, text);
     }
-    if has_speed(shared, of)
-        && let Some(speed) = subject.speed.filter(|speed| is_another_speed(*speed))
-        && !is_another_speed(shared.view.speed_wanted)
-    {
-        said.push(format!("speed {speed}×"));
-        effects.push(Effect::Send(Command::Speed(speed)));
-    }
-    if has_air(shared, of) && knobs::lines(&shared.view.vehicle.world).is_empty() {
-        // The file may have been written by anybody.
-        let is_air = |line: &&String| AIR.iter().any(|name| line.starts_with(name));
-        let air: Vec<String> = subject.air.iter().filter(is_air).take(AIR.len()).cloned().collect();
-        said.extend(air.iter().cloned());
-        effects.extend(air.into_iter().map(Effect::World));
-    }
-    if !said.is_empty() {
-        let text = format!("As you left it: {}. `--fresh-screen` starts clean.", said.join(", "));
-        state.shared.notify(Severity::Info, text);
-    }
-    effects
 }
 
 /// Shows the panels as they were.
@@ -175,7 +133,6 @@ mod tests {
     use super::*;
     use crate::events::{Event, SessionEvent};
     use crate::session::ReplayView;
-    use crate::telemetry::snapshot::WindView;
     use crate::timeline::TimelineView;
     use crate::ui::model::kept_screen::{KeptScreens, Unread};
     use std::sync::Arc;
@@ -227,13 +184,13 @@ mod tests {
         assert_eq!(texts.subject, None, "a flight has one file");
         assert_eq!(kept(&mut before), None, "once");
         let mut after = state_of(KeptOf::Flight, read(texts.screen));
-        assert!(restore(&mut after).is_empty(), "real time in calm air");
+        restore(&mut after);
         assert_eq!(present(&mut after), present(&mut before));
         assert_eq!(after.shared.focus, Panel::Graphs);
     }
 
     #[test]
-    fn the_place_the_speed_and_the_window_of_the_map_are_those_of_one_recorded_flight() {
+    fn the_place_and_the_window_of_the_map_are_those_of_one_recorded_flight() {
         let mut before = state_of(KeptOf::Record, None);
         let reading = ReplayView { reading: Some(0.5), ..ReplayView::default() };
         before.shared.view.replay = Some(Arc::new(reading));
@@ -241,7 +198,6 @@ mod tests {
         before.shared.view.replay =
             Some(Arc::new(ReplayView { number: 2, count: 3, ..ReplayView::default() }));
         before.shared.map.mode = MapMode::Free { n: 3.5, e: -7.0, scale: 0.5 };
-        before.shared.view.speed_wanted = 0.5;
         before.shared.zoomed = true;
         show(&mut before, 12.5);
         let KeptTexts { screen, subject } = kept(&mut before).expect("a changed screen is kept");
@@ -253,17 +209,14 @@ mod tests {
         let mut after = state_of(KeptOf::Record, both);
         let place = KeptPlace { flight: 2, at_us: Some(12_500_000) };
         assert_eq!(after.kept.before().and_then(KeptScreen::place), Some(place));
-        let effects = restore(&mut after);
-        assert!(matches!(&effects[..], [Effect::Send(Command::Speed(0.5))]), "{effects:?}");
+        restore(&mut after);
         assert_eq!(after.shared.map.mode, before.shared.map.mode);
         let said = after.shared.notice.as_ref().map(|notice| notice.text.as_str());
-        assert_eq!(
-            said,
-            Some("As you left it: at 12.5 s since boot, speed 0.5×. `--fresh-screen` starts clean.")
-        );
+        assert_eq!(said, Some("As you left it: at 12.5 s since boot. `--fresh-screen` starts clean."));
 
         let mut other = state_of(KeptOf::Record, KeptScreen::joined(read(screen), None));
-        assert!(restore(&mut other).is_empty() && other.shared.zoomed);
+        restore(&mut other);
+        assert!(other.shared.zoomed);
         assert_eq!(other.shared.map.mode, MapMode::Fit);
     }
 
@@ -305,49 +258,12 @@ mod tests {
     }
 
     #[test]
-    fn neither_speed_nor_air_is_kept_of_a_craft_and_no_air_of_a_flight_that_is_over() {
-        for (of, speed) in [(KeptOf::Craft, None), (KeptOf::Flown, Some(4.0)), (KeptOf::Record, Some(4.0))] {
-            let mut state = state_of(of, None);
-            show(&mut state, 7.0);
-            state.shared.view.speed_wanted = 4.0;
-            let vehicle = Arc::make_mut(&mut state.shared.view.vehicle);
-            vehicle.world.wind = Some(WindView { speed_mps: 5.0, from_deg: 270.0 });
-            let screen = present(&mut state).expect("a screen");
-            assert_eq!((screen.subject.speed, screen.subject.air.len()), (speed, 0), "{of:?}");
-            let subject = KeptSubject { air: vec!["wind=5@270".to_owned()], ..screen.subject };
-            let mut after = state_of(of, Some(KeptScreen { panels: None, subject }));
-            let effects = restore(&mut after);
-            assert!(effects.iter().all(|effect| matches!(effect, Effect::Send(Command::Speed(_)))), "{of:?}");
-        }
-    }
-
-    #[test]
-    fn speed_and_air_come_back_unless_the_options_set_them() {
-        let air = vec!["wind=5@270".to_owned()];
-        let subject = KeptSubject { speed: Some(4.0), air, ..KeptSubject::default() };
-        let screen = KeptScreen { panels: None, subject };
-        let mut state = state_of(KeptOf::Flight, Some(screen.clone()));
-        let effects = restore(&mut state);
-        assert!(
-            matches!(&effects[..], [Effect::Send(Command::Speed(4.0)), Effect::World(line)] if line == "wind=5@270"),
-            "{effects:?}"
-        );
-        state.kept = KeptScreens::after(KeptOf::Flight, Some(screen));
-        state.shared.view.speed_wanted = 2.0;
-        let world = &mut Arc::make_mut(&mut state.shared.view.vehicle).world;
-        world.gust_mps = 3.0;
-        world.wind = Some(WindView { speed_mps: 0.0, from_deg: 0.0 });
-        assert!(restore(&mut state).is_empty());
-    }
-
-    #[test]
     fn a_screen_with_unknown_names_and_impossible_numbers_is_taken_as_far_as_it_is_known() {
         let text = r#"{"version": 1, "focus": "Radar", "places": ["Map"], "graphs": {"plots": ["none"]},
-            "map": {"mode": {"Free": {"n": 1e300, "e": 0.0, "scale": 1.0}}}, "row": 4000000, "speed": -1.0,
-            "air": ["thermal=9", "wind=3@90"]}"#;
+            "map": {"mode": {"Free": {"n": 1e300, "e": 0.0, "scale": 1.0}}}, "row": 4000000,
+            "speed": 4.0, "air": ["wind=3@90"]}"#;
         let mut state = state_of(KeptOf::Flight, KeptScreen::parse(text).ok());
-        let effects = restore(&mut state);
-        assert!(matches!(&effects[..], [Effect::World(line)] if line == "wind=3@90"), "{effects:?}");
+        restore(&mut state);
         assert_eq!((state.shared.focus, state.shared.map.mode), (Panel::Map, MapMode::Fit));
     }
 

@@ -3,14 +3,10 @@
 use std::collections::BTreeMap;
 
 use crate::firmware::Firmware;
-use crate::firmware::cli::{CliMode, CliReply, Interpreter, RefusedLine};
+use crate::firmware::cli::{CliReply, Interpreter};
 use crate::firmware::config::Configuration;
-use crate::firmware::msp::{MESSAGES, MspAction, Outcome};
-use crate::msp::Access;
-use crate::signals::{RcFrame, RcSource};
-use crate::telemetry::{InFlightCommand, InFlightRefusal, Refusal};
 use crate::vehicle::input_log::InputLog;
-use crate::vehicle::{CliLine, CliSession, Message, PlanUpload, VehicleCommand};
+use crate::vehicle::{CliLine, CliSession, Message, Reply, VehicleCommand, VehicleRefusal};
 
 /// The firmware, the sessions of its command line, and the inputs since the last step.
 #[derive(Debug, Clone)]
@@ -25,40 +21,54 @@ impl EmbeddedController {
         Self { firmware, cli_sessions: BTreeMap::new(), inputs: InputLog::default() }
     }
 
-    pub(super) fn receive_rc(&mut self, frame: &RcFrame, source: RcSource) {
-        // The frames of the virtual sticks follow from the transmitter.
-        if source != RcSource::Sticks {
-            self.inputs.note(|| VehicleCommand::Rc(*frame, source));
+    /// Carries out a command to the firmware. Commands to the transmitter and the world have no effect here.
+    pub(super) fn apply(&mut self, command: &VehicleCommand) -> Reply {
+        match command {
+            VehicleCommand::Rc(frame, source) => self.firmware.receive_rc(frame, *source),
+            VehicleCommand::SticksFirst(first) => self.firmware.take_over_sticks(*first),
+            VehicleCommand::BeginCli(session, mode) => {
+                self.cli_sessions.insert(*session, Interpreter::new(*mode));
+            }
+            VehicleCommand::EndCli(session) => {
+                return changed(self.cli_sessions.remove(session).is_some());
+            }
+            VehicleCommand::EndAllCli => {
+                return changed(!std::mem::take(&mut self.cli_sessions).is_empty());
+            }
+            VehicleCommand::Line(line) => return Reply::Line(self.run_cli(line)),
+            VehicleCommand::Upload(upload) => {
+                let stored = self.firmware.upload(&upload.plan, &upload.settings);
+                return stored.map_err(VehicleRefusal::Upload).map_or_else(Reply::Refused, Reply::Uploaded);
+            }
+            VehicleCommand::Message(message) => {
+                let Message { code, payload, clock } = &**message;
+                return Reply::Message(self.firmware.run_msp(*code, payload, *clock));
+            }
+            VehicleCommand::CliOpened => self.firmware.cli_opened(),
+            VehicleCommand::CliClosed => self.firmware.cli_closed(),
+            VehicleCommand::Restart(configuration) => {
+                self.firmware.restart(Configuration::clone(configuration));
+            }
+            VehicleCommand::ReturnHome => {
+                return self.firmware.return_to_home().map_err(VehicleRefusal::ReturnHome).into();
+            }
+            VehicleCommand::InFlight(command) => {
+                return self.firmware.command(*command).map_err(VehicleRefusal::InFlight).into();
+            }
+            VehicleCommand::CancelReturn => self.firmware.cancel_command(),
+            VehicleCommand::Sticks(_)
+            | VehicleCommand::CutRc(_)
+            | VehicleCommand::HoldChannel(_)
+            | VehicleCommand::ReleaseChannel(_)
+            | VehicleCommand::StartPilot(_)
+            | VehicleCommand::StopPilot
+            | VehicleCommand::World(_)
+            | VehicleCommand::ResetCraft => return Reply::Unchanged,
         }
-        self.firmware.receive_rc(frame, source);
+        Reply::Done
     }
 
-    pub(super) fn take_over_sticks(&mut self, sticks_first: bool) {
-        self.inputs.note(|| VehicleCommand::SticksFirst(sticks_first));
-        self.firmware.take_over_sticks(sticks_first);
-    }
-
-    pub(super) fn begin_cli(&mut self, session: CliSession, mode: CliMode) {
-        self.inputs.note(|| VehicleCommand::BeginCli(session, mode));
-        self.cli_sessions.insert(session, Interpreter::new(mode));
-    }
-
-    pub(super) fn end_cli(&mut self, session: CliSession) {
-        if self.cli_sessions.remove(&session).is_some() {
-            self.inputs.note(|| VehicleCommand::EndCli(session));
-        }
-    }
-
-    pub(super) fn end_all_cli(&mut self) {
-        if !std::mem::take(&mut self.cli_sessions).is_empty() {
-            self.inputs.note(|| VehicleCommand::EndAllCli);
-        }
-    }
-
-    /// Lines that only ask are inputs too, since each makes the parameters follow the settings again.
-    pub(super) fn run_cli(&mut self, command: &CliLine) -> CliReply {
-        self.inputs.note(|| VehicleCommand::Line(Box::new(command.clone())));
-        let CliLine { session, line } = command;
+    fn run_cli(&mut self, CliLine { session, line }: &CliLine) -> CliReply {
         match session {
             CliSession::Single(mode) => self.firmware.run_cli(&mut Interpreter::new(*mode), line),
             CliSession::Console | CliSession::Client(_) => {
@@ -66,59 +76,8 @@ impl EmbeddedController {
             }
         }
     }
-
-    pub(super) fn upload(&mut self, upload: &PlanUpload) -> Result<Vec<String>, RefusedLine> {
-        self.inputs.note(|| VehicleCommand::Upload(Box::new(upload.clone())));
-        self.firmware.upload(&upload.plan, &upload.settings)
-    }
-
-    pub(super) fn run_msp(&mut self, message: &Message) -> Outcome {
-        let Message { code, payload, clock } = message;
-        let outcome = self.firmware.run_msp(*code, payload, *clock);
-        match outcome.action {
-            Some(MspAction::RawRc(frame)) => self.inputs.note(|| VehicleCommand::Rc(frame, RcSource::Msp)),
-            _ if writes(*code) => self.inputs.note(|| VehicleCommand::Message(Box::new(message.clone()))),
-            _ => {}
-        }
-        outcome
-    }
-
-    pub(super) fn cli_opened(&mut self) {
-        self.inputs.note(|| VehicleCommand::CliOpened);
-        self.firmware.cli_opened();
-    }
-
-    pub(super) fn cli_closed(&mut self) {
-        self.inputs.note(|| VehicleCommand::CliClosed);
-        self.firmware.cli_closed();
-    }
-
-    pub(super) fn restart(&mut self, configuration: Configuration) {
-        self.inputs.note(|| VehicleCommand::Restart(Box::new(configuration.clone())));
-        self.firmware.restart(configuration);
-    }
-
-    pub(super) fn return_to_home(&mut self) -> Result<(), Refusal> {
-        self.inputs.note(|| VehicleCommand::ReturnHome);
-        self.firmware.return_to_home()
-    }
-
-    pub(super) fn command(&mut self, command: InFlightCommand) -> Result<(), InFlightRefusal> {
-        self.inputs.note(|| VehicleCommand::InFlight(command));
-        self.firmware.command(command)
-    }
-
-    pub(super) fn cancel_command(&mut self) {
-        self.inputs.note(|| VehicleCommand::CancelReturn);
-        self.firmware.cancel_command();
-    }
 }
 
-/// Returns `true` if a message can change anything.
-fn writes(code: u16) -> bool {
-    let found = MESSAGES.binary_search_by_key(&code, |message| message.kind.code);
-    found
-        .ok()
-        .and_then(|index| MESSAGES.get(index))
-        .is_some_and(|message| message.kind.access == Access::Write)
+fn changed(changed: bool) -> Reply {
+    if changed { Reply::Done } else { Reply::Unchanged }
 }

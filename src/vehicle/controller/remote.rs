@@ -7,15 +7,15 @@ use std::collections::{BTreeSet, VecDeque};
 
 use strum::{EnumCount as _, IntoEnumIterator as _};
 
-use super::{LateAnswer, Ticket};
+use super::{Answer, LateAnswer, Ticket};
 use crate::firmware::cli::CliMode;
 use crate::firmware::rx::Sources;
 use crate::pilot::PilotFacts;
 use crate::plan::{AltitudeReference, FlightPlan};
 use crate::signals::{MotorCommand, RcFrame, RcSource, SensorFrame, SimTime};
 use crate::telemetry::snapshot::{CraftView, EstimateView, SettingsView};
-use crate::telemetry::{DisarmReason, FirmwareEvent, Mode, NavTelemetry};
-use crate::vehicle::{CliLine, CliSession};
+use crate::telemetry::{DisarmReason, FirmwareEvent, InFlightRefusal, Mode, NavTelemetry};
+use crate::vehicle::{CliLine, CliSession, Reply, VehicleCommand, VehicleRefusal};
 
 /// The maximum number of waiting frames. Beyond it the oldest frame is dropped, since old measurements are of no use.
 const MAX_FRAMES: usize = 1024;
@@ -170,16 +170,61 @@ impl RemoteController {
         self.frames.push_back(frame);
     }
 
+    /// Carries out a command: the mailbox gets the request. It has its own rules for persons at its command line and
+    /// for the configuration of a restart. Commands to the transmitter and the world have no effect here.
+    pub(super) fn apply(&mut self, command: &VehicleCommand) -> Answer<Reply> {
+        match command {
+            VehicleCommand::Rc(frame, source) => self.receive_rc(frame, *source),
+            VehicleCommand::SticksFirst(first) => self.sources.take_over(*first),
+            // The prompt opens with the first line.
+            VehicleCommand::BeginCli(session, CliMode::Interactive) => {
+                self.prompts.insert(*session);
+            }
+            VehicleCommand::EndCli(session) => {
+                if self.prompts.remove(session) && self.prompts.is_empty() {
+                    self.ask(RemoteRequest::LeavePrompt);
+                }
+            }
+            // A restart closes the prompt.
+            VehicleCommand::EndAllCli => self.prompts.clear(),
+            VehicleCommand::Line(line) => return Answer::Later(self.run_cli(line)),
+            VehicleCommand::Message(message) => {
+                let (code, payload) = (message.code, message.payload.clone());
+                return Answer::Later(self.ask(RemoteRequest::Msp { code, payload }));
+            }
+            VehicleCommand::Upload(_) => return Answer::Now(Reply::Refused(VehicleRefusal::UploadToRemote)),
+            VehicleCommand::InFlight(_) => {
+                let refusal = VehicleRefusal::InFlight(InFlightRefusal::Remote);
+                return Answer::Now(Reply::Refused(refusal));
+            }
+            VehicleCommand::Restart(_) => self.restart(),
+            VehicleCommand::ReturnHome => {
+                self.ask(RemoteRequest::ReturnHome);
+            }
+            VehicleCommand::CancelReturn => {
+                self.ask(RemoteRequest::CancelReturn);
+            }
+            VehicleCommand::BeginCli(..)
+            | VehicleCommand::CliOpened
+            | VehicleCommand::CliClosed
+            | VehicleCommand::Sticks(_)
+            | VehicleCommand::CutRc(_)
+            | VehicleCommand::HoldChannel(_)
+            | VehicleCommand::ReleaseChannel(_)
+            | VehicleCommand::StartPilot(_)
+            | VehicleCommand::StopPilot
+            | VehicleCommand::World(_)
+            | VehicleCommand::ResetCraft => return Answer::Now(Reply::Unchanged),
+        }
+        Answer::Now(Reply::Done)
+    }
+
     pub(super) fn receive_rc(&mut self, frame: &RcFrame, source: RcSource) {
         self.rc[source as usize] = Some(*frame);
     }
 
     pub(super) fn lose_rc(&mut self) {
         self.rc.fill(None);
-    }
-
-    pub(super) fn take_over_sticks(&mut self, sticks_first: bool) {
-        self.sources.take_over(sticks_first);
     }
 
     pub(super) fn sources(&self) -> &Sources {
@@ -208,32 +253,14 @@ impl RemoteController {
         }
     }
 
-    pub(super) fn ask(&mut self, request: RemoteRequest) -> Ticket {
+    fn ask(&mut self, request: RemoteRequest) -> Ticket {
         let ticket = Ticket(self.next_ticket);
         self.next_ticket += 1;
         self.requests.push_back((ticket, request));
         ticket
     }
 
-    /// Begins a session of its command line. The prompt opens with the first line.
-    pub(super) fn begin_cli(&mut self, session: CliSession, mode: CliMode) {
-        if mode == CliMode::Interactive {
-            self.prompts.insert(session);
-        }
-    }
-
-    pub(super) fn end_cli(&mut self, session: CliSession) {
-        if self.prompts.remove(&session) && self.prompts.is_empty() {
-            self.ask(RemoteRequest::LeavePrompt);
-        }
-    }
-
-    /// Ends all sessions after a restart, which closes the prompt.
-    pub(super) fn end_all_cli(&mut self) {
-        self.prompts.clear();
-    }
-
-    pub(super) fn run_cli(&mut self, line: &CliLine) -> Ticket {
+    fn run_cli(&mut self, line: &CliLine) -> Ticket {
         let is_at_prompt = self.prompts.contains(&line.session);
         let line = line.line.clone();
         self.ask(if is_at_prompt { RemoteRequest::Typed(line) } else { RemoteRequest::Cli(line) })

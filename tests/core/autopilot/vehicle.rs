@@ -7,11 +7,11 @@
     reason = "a test may stop at a surprise and say what it measured"
 )]
 
-use betadeck_core::firmware::cli::Interpreter;
 use betadeck_core::flight::FlightSetup;
 use betadeck_core::geo::{LatLon, LocalFrame};
 use betadeck_core::sim::{Noise, Wind, WorldConfig};
 use betadeck_core::telemetry::NavState;
+use betadeck_core::vehicle::{CliSession, VehicleCommand};
 
 use nalgebra::{Vector2, Vector3};
 
@@ -149,9 +149,8 @@ fn fly(case: Case, points: &[Point], takeoff_m: f64, limit_s: f64, done: fn(&Sam
     };
     let frame = LocalFrame::new(world.home.lat_deg, world.home.lon_deg, world.home.alt_amsl_m);
     let (mut vehicle, _) = FlightSetup { world, ..FlightSetup::default() }.build().unwrap();
-    let mut session = Interpreter::default();
     let mut cli = |line: &str| {
-        let reply = vehicle.embedded_mut().unwrap().run_cli(&mut session, line);
+        let reply = vehicle.apply(&VehicleCommand::line(CliSession::Console, line)).line().unwrap();
         assert!(!reply.failed, "{line}: {}", reply.text);
     };
     COMMON.lines().chain(case.settings.lines()).for_each(&mut cli);
@@ -163,7 +162,7 @@ fn fly(case: Case, points: &[Point], takeoff_m: f64, limit_s: f64, done: fn(&Sam
         let (alt, speed) = (point.alt_m * 100.0, point.speed_mps * 100.0);
         cli(&format!("waypoint insert {index} {at} {alt} {speed} {} 0 {}", point.kind, point.pattern));
     }
-    vehicle.start_pilot(takeoff_m).unwrap();
+    vehicle.apply(&VehicleCommand::StartPilot(takeoff_m)).accepted().unwrap();
     let ground = vehicle.truth().unwrap().pos_enu.z;
     let mut log = Vec::new();
     let mut last = 0;

@@ -16,13 +16,12 @@ mod law;
 use std::collections::BTreeSet;
 
 use betadeck_core::firmware::FirmwareOptions;
-use betadeck_core::firmware::cli::Interpreter;
 use betadeck_core::firmware::config::Configuration;
 use betadeck_core::plan::FlightPlan;
 use betadeck_core::signals::{RcFrame, RcSource};
 use betadeck_core::sim::{Noise, WorldConfig};
 use betadeck_core::telemetry::{EventKind, VehicleNotice};
-use betadeck_core::vehicle::{Vehicle, VehicleConfig};
+use betadeck_core::vehicle::{CliSession, Vehicle, VehicleCommand, VehicleConfig};
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 
@@ -52,7 +51,6 @@ const FAILSAFE: usize = 8;
 #[derive(Clone)]
 struct Run {
     vehicle: Vehicle,
-    console: Interpreter,
     frame: RcFrame,
     source: RcSource,
     /// `true` while RC frames arrive.
@@ -73,7 +71,6 @@ impl Run {
         let vehicle = Vehicle::new(VehicleConfig { world, firmware, configuration, live: false }).unwrap();
         let mut run = Self {
             vehicle,
-            console: Interpreter::default(),
             frame: RcFrame::SAFE,
             source: RcSource::Udp,
             link: true,
@@ -81,7 +78,7 @@ impl Run {
             update: 0,
             law: Law::default(),
         };
-        run.vehicle.transmitter_mut().set_cut(true);
+        run.vehicle.apply(&VehicleCommand::CutRc(true));
         for line in [
             "aux 5 46 3 1700 2100 0 0",
             "aux 6 27 4 1700 2100 0 0",
@@ -94,17 +91,18 @@ impl Run {
     }
 
     fn cli(&mut self, line: &str) {
-        let reply = self.vehicle.embedded_mut().unwrap().run_cli(&mut self.console, line);
+        let reply = self.vehicle.apply(&VehicleCommand::line(CliSession::Console, line)).line().unwrap();
         assert!(!reply.failed, "{line}: {}", reply.text);
         self.law.settings_changed(self.vehicle.embedded().unwrap(), self.update);
     }
 
     /// Restarts the firmware in place, or puts the complete craft back home.
     fn restart(&mut self, whole: bool) {
-        match whole {
-            true => self.vehicle.reset_craft(),
-            false => self.vehicle.embedded_mut().unwrap().restart_in_place(),
-        }
+        let kept = self.vehicle.controller().configuration().cloned().unwrap();
+        self.vehicle.apply(&match whole {
+            true => VehicleCommand::ResetCraft,
+            false => VehicleCommand::Restart(Box::new(kept)),
+        });
         self.law.restarted();
     }
 
@@ -116,7 +114,7 @@ impl Run {
     fn fly(&mut self) {
         for _ in 0..TICKS_PER_UPDATE {
             if self.link && self.vehicle.time().0.is_multiple_of(20_000) {
-                self.vehicle.embedded_mut().unwrap().receive_rc(&self.frame, self.source);
+                self.vehicle.apply(&VehicleCommand::Rc(self.frame, self.source));
             }
             self.vehicle.tick();
             self.law.judge_motors(self.vehicle.embedded().unwrap());

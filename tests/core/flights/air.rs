@@ -4,6 +4,7 @@ use crate::flights::checks::{Checks, assert_met, greatest, mean};
 use crate::flights::rig::{Rig, Sample, world};
 use betadeck_core::sim::{Fault, Wind, WorldCommand};
 use betadeck_core::telemetry::{BatteryAlarm, DisarmReason, EventKind, FirmwareEvent, NavEvent, NavState};
+use betadeck_core::vehicle::VehicleCommand;
 
 const HOLD: &str = "waypoint insert 0 40.4635901 -79.5182000 2000 500 HOLD 0 NONE";
 
@@ -54,7 +55,7 @@ fn single_gust_is_ridden_out() {
     assert_met([0, 1].map(|seed| {
         let extra = world(seed).1;
         let mut rig = holding(seed, "calm", 0.0);
-        rig.vehicle.change_world(fault("gust", "8@0")).unwrap();
+        rig.vehicle.apply(&VehicleCommand::from(fault("gust", "8@0"))).accepted().unwrap();
         let start = rig.t();
         rig.fly(20.0);
         let off = off(&rig);
@@ -72,7 +73,7 @@ fn weak_motor_is_recovered_from() {
     assert_met([0, 1].map(|seed| {
         let extra = world(seed).1;
         let mut rig = holding(seed, "calm", 0.0);
-        rig.vehicle.change_world(fault("motor", "2:0.8")).unwrap();
+        rig.vehicle.apply(&VehicleCommand::from(fault("motor", "2:0.8"))).accepted().unwrap();
         let start = rig.t();
         rig.fly(20.0);
         let off = off(&rig);
@@ -86,7 +87,7 @@ fn weak_motor_is_recovered_from() {
 #[test]
 fn dead_motor_is_a_crash_without_nonsense() {
     let mut rig = holding(0, "calm", 0.0);
-    rig.vehicle.change_world(fault("motor", "2:0")).unwrap();
+    rig.vehicle.apply(&VehicleCommand::from(fault("motor", "2:0"))).accepted().unwrap();
     rig.until(20.0, "crash", |rig| rig.vehicle.truth().unwrap().crashed).fly(1.0);
     let last = rig.samples.last().unwrap();
     assert!([last.n, last.e, last.alt, last.roll].iter().all(|value| value.is_finite()));
@@ -100,7 +101,7 @@ fn load_is_carried_and_landed() {
 waypoint insert 1 40.4635901 -79.5182000 1000 500 LAND 0 NONE";
     let mut rig = Rig::new(world(0).0, lines, 20.0);
     rig.engaged().until_state(60.0, NavState::Holding).fly(5.0);
-    rig.vehicle.change_world(fault("payload", "0.1")).unwrap();
+    rig.vehicle.apply(&VehicleCommand::from(fault("payload", "0.1"))).accepted().unwrap();
     let start = rig.t();
     rig.until(120.0, "disarm", |rig| rig.disarmed().is_some());
     let landing = rig.entered(NavState::Approaching, 1);
@@ -112,8 +113,8 @@ waypoint insert 1 40.4635901 -79.5182000 1000 500 LAND 0 NONE";
 #[test]
 fn biased_inertial_sensors_still_hold() {
     let mut rig = holding(0, "calm", 0.0);
-    rig.vehicle.change_world(fault("gyro-bias", "2")).unwrap();
-    rig.vehicle.change_world(fault("acc-bias", "0.3")).unwrap();
+    rig.vehicle.apply(&VehicleCommand::from(fault("gyro-bias", "2"))).accepted().unwrap();
+    rig.vehicle.apply(&VehicleCommand::from(fault("acc-bias", "0.3"))).accepted().unwrap();
     let start = rig.t();
     rig.fly(60.0);
     let off = off(&rig);
@@ -158,7 +159,7 @@ waypoint insert 1 40.4662000 -79.5182000 2000 500 FLYOVER 0 NONE";
         rig.engaged().fly(20.0);
         let start = rig.t();
         let before = greatest(rig.span(start - 5.0, start).map(Sample::tilt));
-        rig.vehicle.change_world(fault("motor", "2:0.8")).unwrap();
+        rig.vehicle.apply(&VehicleCommand::from(fault("motor", "2:0.8"))).accepted().unwrap();
         rig.fly(15.0);
         let mut checks = Checks::default();
         checks.at_most("lean", greatest(rig.span(start, 1e9).map(Sample::tilt)), before + 1.0);
@@ -179,7 +180,10 @@ fn wind_near_the_limit_is_held_and_beyond_it_ends_at_the_fence() {
     let lines = "waypoint insert 0 40.4635000 -79.5182000 2000 500 HOLD 0 NONE";
     let mut rig = Rig::new(world(0).0, lines, 20.0);
     rig.engaged().until_state(60.0, NavState::Holding).fly(5.0);
-    rig.vehicle.change_world(WorldCommand::SetWind("14@0".parse().unwrap())).unwrap();
+    rig.vehicle
+        .apply(&VehicleCommand::from(WorldCommand::SetWind("14@0".parse().unwrap())))
+        .accepted()
+        .unwrap();
     let start = rig.t();
     rig.until(1200.0, "the fence", at_the_fence);
     let tilt: Vec<f64> = rig.span(start + 15.0, 1e9).map(Sample::tilt).collect();

@@ -2,17 +2,17 @@
 
 use crate::flights::checks::greatest;
 use crate::flights::rig::{Rig, world};
-use betadeck_core::firmware::cli::Interpreter;
 use betadeck_core::signals::RcFrame;
 use betadeck_core::sim::{Fault, Truth, WorldCommand};
 use betadeck_core::telemetry::{DisarmReason, EventKind, Mode, NavState};
+use betadeck_core::vehicle::VehicleCommand;
 
 /// Returns a craft that hovers ten metres up by the switches of the scripted pilot, who no longer acts, and
 /// the sticks.
 fn hovering() -> (Rig, RcFrame) {
     let mut rig = Rig::new(world(1).0, "", 10.0);
     rig.until(60.0, "hover", |rig| rig.vehicle.transmitter().pilot_doing() == Some("hovering"));
-    rig.vehicle.transmitter_mut().stop_pilot();
+    rig.vehicle.apply(&VehicleCommand::StopPilot);
     rig.fly(3.0);
     let sticks = rig.vehicle.transmitter().sticks();
     (rig, sticks)
@@ -22,7 +22,7 @@ fn hovering() -> (Rig, RcFrame) {
 fn the_sinking_stick_brings_the_craft_down_softly() {
     let (mut rig, mut sticks) = hovering();
     sticks.channels[2] = rig.vehicle.embedded().unwrap().sink_stick_us().unwrap();
-    *rig.vehicle.transmitter_mut().sticks_mut() = sticks;
+    rig.vehicle.apply(&VehicleCommand::Sticks(sticks));
     rig.fly(3.0);
     let from = rig.samples.len();
     rig.fly(4.0);
@@ -43,13 +43,13 @@ fn the_sinking_stick_brings_the_craft_down_softly() {
 #[test]
 fn a_return_home_that_is_taken_back_leaves_the_craft_held() {
     let (mut rig, _) = hovering();
-    rig.vehicle.embedded_mut().unwrap().return_to_home().unwrap();
+    rig.vehicle.apply(&VehicleCommand::ReturnHome).accepted().unwrap();
     rig.fly(1.0);
     assert!(
         rig.vehicle.snapshot().craft.is_commanded()
             && rig.vehicle.embedded().unwrap().modes().has(Mode::Autopilot)
     );
-    rig.vehicle.embedded_mut().unwrap().cancel_command();
+    rig.vehicle.apply(&VehicleCommand::CancelReturn);
     rig.fly(1.0);
     let snapshot = rig.vehicle.snapshot();
     assert_eq!((snapshot.craft.is_commanded(), snapshot.nav.unwrap().state), (false, NavState::Idle));
@@ -66,8 +66,8 @@ fn a_return_home_that_is_taken_back_leaves_the_craft_held() {
 fn after_stick(throttle_us: u16) -> Truth {
     let mut rig = Rig::new(world(1).0, "set ap_hover_throttle = 1275\nset alt_hold_deadband = 20", 10.0);
     rig.until(60.0, "the hold modes", |rig| rig.vehicle.embedded().unwrap().modes().has(Mode::AltHold));
-    rig.vehicle.transmitter_mut().stop_pilot();
-    rig.vehicle.transmitter_mut().sticks_mut().channels[2] = throttle_us;
+    rig.vehicle.apply(&VehicleCommand::StopPilot);
+    rig.stick(2, throttle_us);
     rig.fly(10.0);
     *rig.vehicle.truth().unwrap()
 }
@@ -89,10 +89,9 @@ waypoint insert 0 40.4663000 -79.5182000 2000 500 FLYOVER 0 NONE";
     rig.fly(9.0);
     let left = rig.vehicle.embedded().unwrap().altitude_m() - height;
     assert!(left.abs() < 1.0, "{left}");
-    let status = rig.vehicle.embedded_mut().unwrap().run_cli(&mut Interpreter::default(), "status").text;
+    let status = rig.vehicle.apply(&VehicleCommand::single_line("status")).line().unwrap().text;
     assert!(status.contains("Autopilot: Waypoint 0 is 311 m from home, the fence is 50 m."), "{status}");
-    let status =
-        rig.vehicle.embedded_mut().unwrap().run_cli(&mut Interpreter::default(), "waypoint status").text;
+    let status = rig.vehicle.apply(&VehicleCommand::single_line("waypoint status")).line().unwrap().text;
     assert!(status.contains("  inactive\r\n  refused: Waypoint 0 is 311 m from home"), "{status}");
 }
 
@@ -100,11 +99,11 @@ waypoint insert 0 40.4663000 -79.5182000 2000 500 FLYOVER 0 NONE";
 fn a_rescue_that_loses_its_fix_comes_down_and_disarms() {
     let mut rig = Rig::new(world(1).0, "aux 3 46 3 1700 2100", 10.0);
     rig.until(60.0, "hover", |rig| rig.vehicle.transmitter().pilot_doing() == Some("hovering"));
-    rig.vehicle.transmitter_mut().stop_pilot();
-    rig.vehicle.transmitter_mut().sticks_mut().channels[7] = 1900;
+    rig.vehicle.apply(&VehicleCommand::StopPilot);
+    rig.stick(7, 1900);
     rig.fly(3.0);
     assert!(rig.vehicle.embedded().unwrap().modes().has(Mode::Autopilot), "the rescue flies");
-    rig.vehicle.change_world(WorldCommand::FaultOn(Fault::GpsLoss, None)).unwrap();
+    rig.vehicle.apply(&VehicleCommand::from(WorldCommand::FaultOn(Fault::GpsLoss, None))).accepted().unwrap();
     rig.fly(3.0);
     let modes = rig.vehicle.embedded().unwrap().modes();
     assert!(modes.has(Mode::Angle) && modes.has(Mode::AltHold), "{modes:?}");

@@ -4,6 +4,7 @@ use crate::flights::checks::{Checks, assert_met};
 use crate::flights::rig::{Rig, world};
 use betadeck_core::sim::{Fault, WorldCommand};
 use betadeck_core::telemetry::{DisarmReason, EventKind, FirmwareEvent, NavEvent, Refusal};
+use betadeck_core::vehicle::VehicleCommand;
 
 const LAND: &str = "waypoint insert 0 40.4635000 -79.5182000 2000 0 LAND 0 ORBIT";
 const SQUARE: &str = "
@@ -29,7 +30,10 @@ fn doubts(rig: &Rig) -> Vec<bool> {
 fn landing_with_bias(seed: u64, plan: &str, bias_deg: f64) -> Option<String> {
     let mut rig = Rig::new(world(seed).0, &format!("set trust_mag = ON\n{plan}"), 20.0);
     rig.engaged().fly(5.0);
-    rig.vehicle.change_world(WorldCommand::FaultOn(Fault::MagBias(bias_deg), None)).unwrap();
+    rig.vehicle
+        .apply(&VehicleCommand::from(WorldCommand::FaultOn(Fault::MagBias(bias_deg), None)))
+        .accepted()
+        .unwrap();
     rig.until(240.0, "disarm", |rig| rig.disarmed().is_some() || rig.vehicle.truth().unwrap().crashed);
     let mut checks = Checks::default();
     checks.holds("whole", !rig.vehicle.truth().unwrap().crashed);

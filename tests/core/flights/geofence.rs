@@ -5,6 +5,7 @@ use crate::flights::rig::{Rig, SEEDS, world};
 use betadeck_core::pilot::StickInput;
 use betadeck_core::plan::WaypointType;
 use betadeck_core::telemetry::{EventKind, FirmwareEvent, Mode, NavEvent, NavState, PlanSource, Refusal};
+use betadeck_core::vehicle::VehicleCommand;
 
 const FENCE: &str = "set ap_max_distance_from_home = 100\n";
 
@@ -50,10 +51,10 @@ fn pushed_out(seed: u64, action: &str, alt_cm: u32, takeoff_m: f64) -> Rig {
     let mut rig = Rig::new(world(seed).0, &lines, takeoff_m);
     rig.engaged().until_state(60.0, NavState::Holding).fly(5.0);
     let forward = StickInput { channel: 1, value_us: 2000, at_s: 0.0, for_s: None, from_boot: true };
-    rig.vehicle.transmitter_mut().inputs_mut().push(forward);
+    rig.vehicle.apply(&VehicleCommand::HoldChannel(forward));
     let seen = rig.transitions().len();
     rig.until(30.0, "the fence", |rig| rig.transitions().len() > seen);
-    rig.vehicle.transmitter_mut().inputs_mut().clear();
+    rig.release_channels();
     rig
 }
 

@@ -4,6 +4,7 @@ use crate::flights::checks::{Checks, assert_met, greatest};
 use crate::flights::rig::{Rig, SEEDS, Sample, world};
 use betadeck_core::sim::{Fault, GpsGrade, WorldCommand};
 use betadeck_core::telemetry::{DisarmReason, EventKind, FirmwareEvent, Mode, NavState, Turbulence};
+use betadeck_core::vehicle::VehicleCommand;
 
 const MISSION: &str = "
 waypoint insert 0 40.4640403 -79.5182000 2000 500 FLYOVER 0 ORBIT
@@ -16,7 +17,10 @@ fn outage(seed: u64) -> Option<String> {
     rig.engaged().fly(20.0);
     let wp = rig.samples.last().unwrap().wp;
     let began = rig.t();
-    rig.vehicle.change_world(WorldCommand::FaultOn(Fault::GpsLoss, Some(6.0))).unwrap();
+    rig.vehicle
+        .apply(&VehicleCommand::from(WorldCommand::FaultOn(Fault::GpsLoss, Some(6.0))))
+        .accepted()
+        .unwrap();
     rig.fly(6.0);
     let ended = rig.t();
     rig.until(120.0, "disarm", |rig| rig.disarmed().is_some());
@@ -56,7 +60,10 @@ fn outage_keeps_level_and_altitude_and_the_mission_resumes() {
 fn hanging_receiver_counts_as_lost() {
     let mut rig = Rig::new(world(1).0, MISSION, 20.0);
     rig.engaged().fly(8.0);
-    rig.vehicle.change_world(WorldCommand::FaultOn(Fault::GpsFreeze, None)).unwrap();
+    rig.vehicle
+        .apply(&VehicleCommand::from(WorldCommand::FaultOn(Fault::GpsFreeze, None)))
+        .accepted()
+        .unwrap();
     rig.until(1.0, "gps_lost", |rig| {
         rig.event_at(|kind| matches!(kind, EventKind::Firmware(FirmwareEvent::GpsLost { .. }))).is_some()
     });
@@ -71,7 +78,10 @@ fn glitch_does_not_upset_a_hold() {
         let mut rig = Rig::new(world, "waypoint insert 0 40.4635901 -79.5182000 2000 500 HOLD 0 NONE", 20.0);
         rig.engaged().until_state(60.0, NavState::Holding).fly(10.0);
         let place = rig.waypoint(0);
-        rig.vehicle.change_world(WorldCommand::FaultOn(Fault::GpsGlitch(30.0, 90.0), Some(2.0))).unwrap();
+        rig.vehicle
+            .apply(&VehicleCommand::from(WorldCommand::FaultOn(Fault::GpsGlitch(30.0, 90.0), Some(2.0))))
+            .accepted()
+            .unwrap();
         rig.fly(22.0);
         let mut checks = Checks::default();
         checks.at_most("lean", greatest(rig.span(0.0, 1e9).map(Sample::tilt)), 27.0 + extra.angle);

@@ -5,12 +5,13 @@ use crate::flights::checks::{Checks, assert_met, greatest};
 use crate::flights::rig::{Rig, Sample, world};
 use betadeck_core::sim::{Fault, Wind, WorldCommand};
 use betadeck_core::telemetry::{DisarmReason, Mode, NavState};
+use betadeck_core::vehicle::VehicleCommand;
 
 const LAND: &str = "waypoint insert 0 40.4635000 -79.5182000 2000 0 LAND 0 NONE";
 
 fn fault(rig: &mut Rig, name: &str, value: &str, for_s: Option<f64>) {
     let command = WorldCommand::FaultOn(Fault::parse(name, Some(value)).unwrap(), for_s);
-    rig.vehicle.change_world(command).unwrap();
+    rig.vehicle.apply(&VehicleCommand::from(command)).accepted().unwrap();
 }
 
 /// Returns a craft that has begun its landing from 20 m.
@@ -125,7 +126,10 @@ fn the_landing_of_the_failsafe_feels_for_the_ground() {
         let mut rig = Rig::new(world, &format!("set failsafe_procedure = AUTO-LAND\n{plan}"), 15.0);
         rig.engaged().until_state(30.0, NavState::Holding).fly(5.0);
         let lost = rig.t();
-        rig.vehicle.change_world(WorldCommand::FaultOn(Fault::RxLoss, None)).unwrap();
+        rig.vehicle
+            .apply(&VehicleCommand::from(WorldCommand::FaultOn(Fault::RxLoss, None)))
+            .accepted()
+            .unwrap();
         rig.until(90.0, "disarm", |rig| rig.disarmed().is_some()).fly(2.0);
         let mut checks = Checks::default();
         is_down(&mut checks, &rig, 4.0);
@@ -144,7 +148,10 @@ fn a_fix_lost_while_landing_does_not_leave_the_craft_half_a_metre_up() {
             .until_state(30.0, NavState::Landing)
             .until(80.0, "low", |rig| rig.samples.last().is_some_and(|s| s.alt < 3.0));
         let lost = rig.t();
-        rig.vehicle.change_world(WorldCommand::FaultOn(Fault::GpsLoss, Some(30.0))).unwrap();
+        rig.vehicle
+            .apply(&VehicleCommand::from(WorldCommand::FaultOn(Fault::GpsLoss, Some(30.0))))
+            .accepted()
+            .unwrap();
         rig.fly(0.5);
         let mut checks = Checks::default();
         checks.same("state", rig.samples.last().unwrap().state, NavState::Idle);
@@ -164,7 +171,10 @@ fn a_fix_that_comes_back_lands_the_craft_and_never_climbs() {
         let mut rig = landing(seed, "");
         rig.fly(10.0);
         let lost = rig.t();
-        rig.vehicle.change_world(WorldCommand::FaultOn(Fault::GpsLoss, Some(6.0))).unwrap();
+        rig.vehicle
+            .apply(&VehicleCommand::from(WorldCommand::FaultOn(Fault::GpsLoss, Some(6.0))))
+            .accepted()
+            .unwrap();
         rig.fly(1.0);
         let height = rig.samples.last().unwrap().alt;
         rig.until_state(20.0, NavState::Landing);
@@ -180,18 +190,18 @@ fn a_fix_that_comes_back_lands_the_craft_and_never_climbs() {
 fn the_throttle_stick_takes_a_landing_without_a_fix_over() {
     let mut rig = landing(1, "");
     rig.fly(6.0);
-    rig.vehicle.change_world(WorldCommand::FaultOn(Fault::GpsLoss, None)).unwrap();
+    rig.vehicle.apply(&VehicleCommand::from(WorldCommand::FaultOn(Fault::GpsLoss, None))).accepted().unwrap();
     rig.fly(3.0);
     let sinking = *rig.samples.last().unwrap();
     assert!(sinking.vu < -0.25, "{}", sinking.vu);
-    rig.vehicle.transmitter_mut().stop_pilot();
+    rig.vehicle.apply(&VehicleCommand::StopPilot);
     // Within the deadband the stick has no effect.
     let throttle = 2;
-    let left = rig.vehicle.transmitter_mut().sticks_mut().channels[throttle];
-    rig.vehicle.transmitter_mut().sticks_mut().channels[throttle] = left + 40;
+    let left = rig.vehicle.transmitter().sticks().channels[throttle];
+    rig.stick(throttle, left + 40);
     rig.fly(3.0);
     assert!(rig.samples.last().unwrap().vu < -0.25);
-    rig.vehicle.transmitter_mut().sticks_mut().channels[throttle] = left + 60;
+    rig.stick(throttle, left + 60);
     rig.fly(6.0);
     let held = rig.samples.last().unwrap();
     assert!(held.vu.abs() < 0.3, "{}", held.vu);
@@ -210,7 +220,10 @@ waypoint insert 1 40.4680000 -79.5182000 400 1000 LAND 0 NONE";
         let mut rig = Rig::new(world(seed).0, &lines, 4.0);
         rig.engaged().fly(14.0);
         let lost = rig.t();
-        rig.vehicle.change_world(WorldCommand::FaultOn(Fault::RxLoss, None)).unwrap();
+        rig.vehicle
+            .apply(&VehicleCommand::from(WorldCommand::FaultOn(Fault::RxLoss, None)))
+            .accepted()
+            .unwrap();
         rig.until(90.0, "disarm", |rig| rig.disarmed().is_some() || rig.vehicle.crashed()).fly(2.0);
         let mut checks = Checks::default();
         checks.holds("not crashed", !rig.vehicle.crashed());

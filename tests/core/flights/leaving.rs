@@ -5,6 +5,7 @@ use betadeck_core::sim::{Fault, WorldCommand};
 use betadeck_core::telemetry::{
     AbortReason, Event, EventKind, FirmwareEvent, Mode, NavEvent, NavState, Refusal, VehicleNotice,
 };
+use betadeck_core::vehicle::VehicleCommand;
 
 const MISSION: &str = "
 waypoint insert 0 40.4640403 -79.5182000 2000 500 FLYOVER 0 ORBIT
@@ -19,8 +20,8 @@ const HOLDS: usize = 6;
 fn on_its_way() -> Rig {
     let mut rig = Rig::new(world(0).0, MISSION, 20.0);
     rig.engaged().fly(8.0);
-    rig.vehicle.transmitter_mut().stop_pilot();
-    rig.vehicle.transmitter_mut().sticks_mut().channels[HOLDS] = 1000;
+    rig.vehicle.apply(&VehicleCommand::StopPilot);
+    rig.stick(HOLDS, 1000);
     rig.fly(0.1);
     assert_eq!(modes(&rig), "ARM ANGLE ALTHOLD POS HOLD AUTOPILOT");
     rig
@@ -45,13 +46,13 @@ fn refusals(rig: &Rig) -> Vec<Refusal> {
 fn switch_off_leaves_what_the_pilots_switches_say_and_on_again_resumes() {
     let mut rig = on_its_way();
     rig.until_state(30.0, NavState::Arrived).fly(1.0);
-    rig.vehicle.transmitter_mut().sticks_mut().channels[AUTOPILOT] = 1000;
-    rig.vehicle.transmitter_mut().sticks_mut().channels[HOLDS] = 2000;
+    rig.stick(AUTOPILOT, 1000);
+    rig.stick(HOLDS, 2000);
     rig.until(0.1, "IDLE", |rig| rig.vehicle.embedded().unwrap().nav().state == NavState::Idle);
     rig.fly(0.011);
     assert_eq!(modes(&rig), "ARM ANGLE ALTHOLD POS HOLD");
     rig.fly(2.0);
-    rig.vehicle.transmitter_mut().sticks_mut().channels[AUTOPILOT] = 2000;
+    rig.stick(AUTOPILOT, 2000);
     rig.until_state(0.2, NavState::Approaching);
     assert!(rig.path().ends_with("IDLE 1, APPROACHING 1"), "{}", rig.path());
 }
@@ -59,7 +60,10 @@ fn switch_off_leaves_what_the_pilots_switches_say_and_on_again_resumes() {
 #[test]
 fn lost_fix_keeps_level_and_altitude_only() {
     let mut rig = on_its_way();
-    rig.vehicle.change_world(WorldCommand::FaultOn(Fault::GpsLoss, Some(3.0))).unwrap();
+    rig.vehicle
+        .apply(&VehicleCommand::from(WorldCommand::FaultOn(Fault::GpsLoss, Some(3.0))))
+        .accepted()
+        .unwrap();
     rig.until_state(1.0, NavState::Idle).fly(0.1);
     assert_eq!(modes(&rig), "ARM ANGLE ALTHOLD");
     rig.until_state(10.0, NavState::Approaching);
@@ -71,14 +75,17 @@ fn lost_fix_keeps_level_and_altitude_only() {
 #[test]
 fn flyaway_parks_the_craft_until_the_switch_is_cycled() {
     let mut rig = on_its_way();
-    rig.vehicle.change_world(WorldCommand::FaultOn(Fault::Teleport([-80.0, -60.0, 0.0]), None)).unwrap();
+    rig.vehicle
+        .apply(&VehicleCommand::from(WorldCommand::FaultOn(Fault::Teleport([-80.0, -60.0, 0.0]), None)))
+        .accepted()
+        .unwrap();
     rig.until_state(3.0, NavState::Idle).fly(5.0);
     assert_eq!(modes(&rig), "ARM ANGLE ALTHOLD POS HOLD");
     assert_eq!(refusals(&rig), [Refusal::Aborted(AbortReason::Flyaway)], "reported once");
-    rig.vehicle.transmitter_mut().sticks_mut().channels[AUTOPILOT] = 1000;
+    rig.stick(AUTOPILOT, 1000);
     rig.fly(0.2);
     assert_eq!(modes(&rig), "ARM", "acro, as the pilot's switches say");
-    rig.vehicle.transmitter_mut().sticks_mut().channels[AUTOPILOT] = 2000;
+    rig.stick(AUTOPILOT, 2000);
     rig.until_state(0.2, NavState::Approaching);
 }
 
@@ -104,7 +111,7 @@ fn edited_plan_does_not_touch_the_mission() {
 #[test]
 fn mode_events_tell_every_change_and_nothing_else() {
     let mut rig = on_its_way();
-    rig.vehicle.transmitter_mut().sticks_mut().channels[AUTOPILOT] = 1000;
+    rig.stick(AUTOPILOT, 1000);
     rig.fly(1.0);
     let reported: Vec<_> = rig
         .events

@@ -4,6 +4,7 @@ use crate::flights::checks::{Checks, assert_met, greatest, mean};
 use crate::flights::rig::{Rig, SEEDS, Sample, world};
 use betadeck_core::sim::{Fault, Wind, WorldCommand};
 use betadeck_core::telemetry::{NavState, Turbulence};
+use betadeck_core::vehicle::VehicleCommand;
 
 const LINE: &str = "
 waypoint insert 0 40.4635901 -79.5182000 2000 500 FLYOVER 0 ORBIT
@@ -78,7 +79,10 @@ fn displaced_craft_comes_back_to_the_line() {
     let mut rig = Rig::new(world, LINE, 20.0);
     rig.engaged().until(60.0, "70 m north", |rig| rig.samples.last().is_some_and(|s| s.n > 70.0));
     let (from, n) = (rig.t(), rig.samples.last().unwrap().n);
-    rig.vehicle.change_world(WorldCommand::FaultOn(Fault::Teleport([0.0, 20.0, 0.0]), None)).unwrap();
+    rig.vehicle
+        .apply(&VehicleCommand::from(WorldCommand::FaultOn(Fault::Teleport([0.0, 20.0, 0.0]), None)))
+        .accepted()
+        .unwrap();
     rig.until_state(90.0, NavState::Complete);
     let mut checks = Checks::default();
     let back = greatest(rig.span(from, 1e9).filter(|s| s.e > 2.0).map(|s| s.t)) - from;
@@ -95,7 +99,10 @@ fn without_l1_it_heads_for_the_waypoint() {
     world.wind = "5@270".parse::<Wind>().unwrap();
     let mut rig = Rig::new(world, &format!("{LINE}\nset ap_l1_enable = OFF"), 20.0);
     rig.engaged().until(60.0, "70 m north", |rig| rig.samples.last().is_some_and(|s| s.n > 70.0));
-    rig.vehicle.change_world(WorldCommand::FaultOn(Fault::Teleport([0.0, 20.0, 0.0]), None)).unwrap();
+    rig.vehicle
+        .apply(&VehicleCommand::from(WorldCommand::FaultOn(Fault::Teleport([0.0, 20.0, 0.0]), None)))
+        .accepted()
+        .unwrap();
     rig.tick();
     let start = *rig.samples.last().unwrap();
     rig.until(60.0, "half way", |rig| rig.samples.last().is_some_and(|s| s.n > start.n + 70.0));

@@ -2,6 +2,7 @@
 
 use crate::flights::rig::{Rig, world};
 use betadeck_core::telemetry::{DisarmReason, EventKind, FirmwareEvent, Mode};
+use betadeck_core::vehicle::VehicleCommand;
 
 const MISSION: &str = "\nwaypoint insert 0 40.4648508 -79.5182000 2000 500 FLYOVER 0 ORBIT
 waypoint insert 1 40.4648508 -79.5174926 2000 500 LAND 0 ORBIT";
@@ -15,7 +16,7 @@ fn stage_2(policy: &str, procedure: &str, engaged: bool) -> (String, String) {
     } else {
         rig.until(60.0, "hover", |rig| rig.vehicle.embedded().unwrap().altitude_m() > 9.0);
     }
-    rig.vehicle.transmitter_mut().set_cut(true);
+    rig.vehicle.apply(&VehicleCommand::CutRc(true));
     rig.fly(2.1);
     let word: Option<&str> = rig.events.iter().find_map(|event| match event.kind {
         EventKind::Firmware(FirmwareEvent::Failsafe { stage: 2, procedure, .. }) => Some(procedure.into()),
@@ -68,7 +69,7 @@ fn rescue_climb(min_start_dist_m: u32) -> f64 {
     rig.until(60.0, "12 m from home", |rig| {
         rig.samples.last().is_some_and(|now| now.from([0.0, 0.0]) > 12.0)
     });
-    rig.vehicle.transmitter_mut().set_cut(true);
+    rig.vehicle.apply(&VehicleCommand::CutRc(true));
     let plans = rig.plans().len();
     rig.until(10.0, "the rescue", |rig| rig.plans().len() > plans);
     let now = *rig.samples.last().unwrap();

@@ -5,6 +5,7 @@ use crate::flights::checks::{Checks, assert_met};
 use crate::flights::rig::{Rig, world};
 use betadeck_core::sim::{Airframe, Fault, WorldCommand};
 use betadeck_core::telemetry::{DisarmReason, EventKind, Mode};
+use betadeck_core::vehicle::VehicleCommand;
 
 /// A plan with one FLYOVER 333 m north at 40 m, and the rescue of the public harness.
 const PLAN: &str = "\
@@ -44,9 +45,12 @@ fn a_rescue_that_loses_its_gps_sinks_at_its_own_rate_to_the_ground_on_every_airf
             let lines = format!("{PLAN}\nset ap_landing_descent_rate = {landing_rate}");
             let mut rig = Rig::new(world, &lines, 10.0);
             rig.engaged();
-            rig.vehicle.transmitter_mut().inputs_mut().push("aux5=2000@20".parse().unwrap());
+            rig.vehicle.apply(&VehicleCommand::HoldChannel("aux5=2000@20".parse().unwrap()));
             rig.until(40.0, "30 s of flight", |rig| rig.t() >= 30.0);
-            rig.vehicle.change_world(WorldCommand::FaultOn(Fault::GpsLoss, None)).unwrap();
+            rig.vehicle
+                .apply(&VehicleCommand::from(WorldCommand::FaultOn(Fault::GpsLoss, None)))
+                .accepted()
+                .unwrap();
             let lost = rig.t();
             rig.until(200.0, "disarm", |rig| rig.disarmed().is_some());
             rig.fly(2.0);
@@ -77,7 +81,7 @@ fn a_rescue_that_keeps_its_gps_sinks_at_its_own_rate_too() {
         let lines = format!("{PLAN}\nset ap_landing_descent_rate = {landing_rate}");
         let mut rig = Rig::new(world(1).0, &lines, 10.0);
         rig.engaged();
-        rig.vehicle.transmitter_mut().inputs_mut().push("aux5=2000@20".parse().unwrap());
+        rig.vehicle.apply(&VehicleCommand::HoldChannel("aux5=2000@20".parse().unwrap()));
         rig.until(250.0, "disarm", |rig| rig.disarmed().is_some());
         let mut checks = Checks::default();
         let (disarm, reason) = rig.disarmed().unwrap();

@@ -5,6 +5,7 @@ use crate::flights::rig::{Rig, SEEDS, world};
 use betadeck_core::plan::WaypointType;
 use betadeck_core::sim::Wind;
 use betadeck_core::telemetry::{EventKind, NavState, PlanSource};
+use betadeck_core::vehicle::VehicleCommand;
 
 fn return_home(seed: u64, wind: Wind) -> Option<String> {
     let (mut world, extra) = world(seed);
@@ -13,7 +14,7 @@ fn return_home(seed: u64, wind: Wind) -> Option<String> {
     let lines = "set ap_max_velocity = 1000\nwaypoint insert 0 40.4644005 -79.5176105 2000 500 HOLD 0 NONE";
     let mut rig = Rig::new(world, lines, 20.0);
     rig.engaged().until_state(90.0, NavState::Holding).fly(5.0);
-    rig.vehicle.embedded_mut().unwrap().return_to_home().unwrap();
+    rig.vehicle.apply(&VehicleCommand::ReturnHome).accepted().unwrap();
     let command = rig.t();
     rig.until(150.0, "disarm", |rig| rig.disarmed().is_some());
     let mut checks = Checks::default();

@@ -1,14 +1,13 @@
 //! A vehicle, its pilot, and a record of the flight.
 
-use betadeck_core::firmware::cli::Interpreter;
 use betadeck_core::flight::FlightSetup;
 use betadeck_core::plan::FlightPlan;
-use betadeck_core::signals::SimTime;
+use betadeck_core::signals::{RC_CHANNELS, SimTime};
 use betadeck_core::sim::{Noise, Switches, WindProfile, WorldConfig};
 use betadeck_core::telemetry::{
     DisarmReason, Event, EventKind, FirmwareEvent, ModeFlags, NavEvent, NavState, PlanSource,
 };
-use betadeck_core::vehicle::Vehicle;
+use betadeck_core::vehicle::{CliSession, Vehicle, VehicleCommand};
 
 /// Returns the guide's configuration, Step 5, without its `save`: nothing restarts here.
 pub(crate) fn guide_settings() -> impl Iterator<Item = &'static str> {
@@ -85,15 +84,28 @@ impl Rig {
         rig.cli(&guide_settings().collect::<Vec<_>>().join("\n"));
         rig.cli("set ap_geofence_action = LAND");
         rig.cli(lines);
-        rig.vehicle.start_pilot(takeoff_m).unwrap();
+        rig.vehicle.apply(&VehicleCommand::StartPilot(takeoff_m)).accepted().unwrap();
         rig
+    }
+
+    /// Moves a channel of the virtual sticks, from 0.
+    pub(crate) fn stick(&mut self, channel: usize, value_us: u16) {
+        let mut sticks = self.vehicle.transmitter().sticks();
+        sticks.channels[channel] = value_us;
+        self.vehicle.apply(&VehicleCommand::Sticks(sticks));
+    }
+
+    /// Gives all channels back to the virtual sticks.
+    pub(crate) fn release_channels(&mut self) {
+        for channel in 0..RC_CHANNELS as u8 {
+            self.vehicle.apply(&VehicleCommand::ReleaseChannel(channel));
+        }
     }
 
     /// Types CLI lines. No line may fail.
     pub(crate) fn cli(&mut self, lines: &str) {
-        let mut session = Interpreter::default();
         for line in lines.lines() {
-            let reply = self.vehicle.embedded_mut().unwrap().run_cli(&mut session, line);
+            let reply = self.vehicle.apply(&VehicleCommand::line(CliSession::Console, line)).line().unwrap();
             assert!(!reply.failed, "{line}: {}", reply.text);
         }
     }

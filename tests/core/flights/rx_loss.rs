@@ -4,6 +4,7 @@ use crate::flights::checks::{Checks, assert_met, greatest};
 use crate::flights::rig::{Rig, SEEDS, world};
 use betadeck_core::plan::WaypointType;
 use betadeck_core::telemetry::{DisarmReason, EventKind, FirmwareEvent, Mode, NavState, PlanSource};
+use betadeck_core::vehicle::VehicleCommand;
 
 const MISSION: &str = "
 waypoint insert 0 40.4648508 -79.5182000 2000 500 FLYOVER 0 ORBIT
@@ -13,7 +14,7 @@ waypoint insert 1 40.4648508 -79.5174926 2000 500 LAND 0 ORBIT";
 fn cut(seed: u64, policy: &str) -> (Rig, f64) {
     let mut rig = Rig::new(world(seed).0, &format!("set ap_rx_loss_policy = {policy}{MISSION}"), 20.0);
     rig.engaged().fly(14.0);
-    rig.vehicle.transmitter_mut().set_cut(true);
+    rig.vehicle.apply(&VehicleCommand::CutRc(true));
     let cut = rig.t();
     (rig, cut)
 }
@@ -73,7 +74,7 @@ fn policy_land_lands_where_the_link_was_lost() {
 fn link_back_with_centred_sticks_keeps_landing() {
     let (mut rig, cut) = cut(0, "LAND");
     rig.fly(10.0);
-    rig.vehicle.transmitter_mut().set_cut(false);
+    rig.vehicle.apply(&VehicleCommand::CutRc(false));
     rig.until(120.0, "disarm", |rig| rig.disarmed().is_some());
     assert_eq!(rig.path(), "APPROACHING 0, LANDING 0, COMPLETE 0");
     assert!(rig.disarmed().unwrap().0 > cut + 30.0);
@@ -83,12 +84,12 @@ fn link_back_with_centred_sticks_keeps_landing() {
 fn stick_takes_over_from_the_emergency_landing() {
     let (mut rig, _) = cut(0, "LAND");
     rig.fly(5.0);
-    rig.vehicle.transmitter_mut().set_cut(false);
-    rig.vehicle.transmitter_mut().stop_pilot();
-    rig.vehicle.transmitter_mut().sticks_mut().channels[5] = 1000;
+    rig.vehicle.apply(&VehicleCommand::CutRc(false));
+    rig.vehicle.apply(&VehicleCommand::StopPilot);
+    rig.stick(5, 1000);
     rig.fly(1.0);
     assert!(rig.samples.last().unwrap().modes.has(Mode::Failsafe));
-    rig.vehicle.transmitter_mut().sticks_mut().channels[0] = 1700;
+    rig.stick(0, 1700);
     rig.fly(0.2);
     let now = *rig.samples.last().unwrap();
     assert!(
@@ -135,7 +136,7 @@ fn policy_disable_runs_the_procedure() {
 fn auto_land_descends_and_disarms() {
     let mut rig = Rig::new(world(0).0, &format!("set failsafe_procedure = AUTO-LAND{MISSION}"), 20.0);
     rig.engaged().fly(14.0);
-    rig.vehicle.transmitter_mut().set_cut(true);
+    rig.vehicle.apply(&VehicleCommand::CutRc(true));
     rig.until(60.0, "disarm", |rig| rig.disarmed().is_some());
     assert_eq!(rig.disarmed().unwrap().1, DisarmReason::Landing);
     let began = stage_2(&rig);
@@ -158,7 +159,7 @@ fn a_link_lost_in_a_fast_climb_does_not_stop_the_motors_up_there() {
     let mut rig = Rig::new(world(1).0, &lines, 0.5);
     rig.engaged();
     rig.until(30.0, "a fast climb", |rig| rig.samples.last().is_some_and(|now| now.vu > 3.5));
-    rig.vehicle.transmitter_mut().set_cut(true);
+    rig.vehicle.apply(&VehicleCommand::CutRc(true));
     rig.until(120.0, "disarmed", |rig| rig.disarmed().is_some());
     let truth = rig.vehicle.truth().unwrap();
     assert!(truth.on_ground && !truth.crashed, "{}", rig.story());
@@ -171,7 +172,7 @@ fn rescue_flies_home_at_its_altitude() {
     );
     let mut rig = Rig::new(world(0).0, &lines, 20.0);
     rig.engaged().fly(14.0);
-    rig.vehicle.transmitter_mut().set_cut(true);
+    rig.vehicle.apply(&VehicleCommand::CutRc(true));
     rig.until(180.0, "disarm", |rig| rig.disarmed().is_some());
     assert_eq!(rig.plans().last().unwrap().0, PlanSource::Rth);
     let began = stage_2(&rig);
@@ -187,7 +188,7 @@ fn lost_fix_in_the_emergency_landing_descends_by_altitude_alone() {
     use betadeck_core::sim::{Fault, WorldCommand};
     let (mut rig, _) = cut(0, "LAND");
     rig.fly(5.0);
-    rig.vehicle.change_world(WorldCommand::FaultOn(Fault::GpsLoss, None)).unwrap();
+    rig.vehicle.apply(&VehicleCommand::from(WorldCommand::FaultOn(Fault::GpsLoss, None))).accepted().unwrap();
     rig.until(60.0, "disarm", |rig| rig.disarmed().is_some());
     let procedures: Vec<&str> = rig
         .events

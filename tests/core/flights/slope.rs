@@ -4,6 +4,7 @@ use crate::flights::checks::{Checks, assert_met};
 use crate::flights::rig::{Rig, world};
 use betadeck_core::sim::{Fault, WorldCommand};
 use betadeck_core::telemetry::{DisarmReason, EventKind, NavState};
+use betadeck_core::vehicle::VehicleCommand;
 
 /// A LAND 100 m east of home, 20 m above it.
 const LAND_EAST: &str = "waypoint insert 0 40.4635000 -79.5170205 2000 500 LAND 0 NONE";
@@ -59,7 +60,10 @@ fn a_descent_without_a_fix_ends_on_sloping_ground_too() {
         world.switches.set(&format!("ground={ground}")).unwrap();
         let mut rig = Rig::new(world, LAND_EAST, 20.0);
         rig.engaged().until_state(60.0, NavState::Landing).fly(2.0);
-        rig.vehicle.change_world(WorldCommand::FaultOn(Fault::GpsLoss, None)).unwrap();
+        rig.vehicle
+            .apply(&VehicleCommand::from(WorldCommand::FaultOn(Fault::GpsLoss, None)))
+            .accepted()
+            .unwrap();
         rig.until(240.0, "disarm", |rig| rig.disarmed().is_some()).fly(2.0);
         let mut checks = Checks::default();
         let (disarm, reason) = rig.disarmed().unwrap();

@@ -2,6 +2,7 @@
 
 use betadeck_core::sim::{BatteryFault, Fault, WorldCommand};
 use betadeck_core::telemetry::{CannotHold, EventKind, FirmwareEvent, HoldLimit, NavEvent, NavState};
+use betadeck_core::vehicle::VehicleCommand;
 
 use crate::flights::rig::{Rig, world};
 
@@ -31,7 +32,10 @@ fn shown(rig: &Rig) -> Option<CannotHold> {
 }
 
 fn wind(rig: &mut Rig, wind: &str) {
-    rig.vehicle.change_world(WorldCommand::SetWind(wind.parse().unwrap())).unwrap();
+    rig.vehicle
+        .apply(&VehicleCommand::from(WorldCommand::SetWind(wind.parse().unwrap())))
+        .accepted()
+        .unwrap();
 }
 
 #[test]
@@ -74,7 +78,8 @@ fn a_craft_that_sinks_on_a_tired_battery_says_so() {
     let mut rig = Rig::new(world, &format!("{HOLD}\nset ap_max_distance_from_home = 0"), 20.0);
     rig.engaged().until_state(60.0, NavState::Holding).fly(10.0);
     rig.vehicle
-        .change_world(WorldCommand::FaultOn(Fault::Battery(BatteryFault::Offset(-8.0)), None))
+        .apply(&VehicleCommand::from(WorldCommand::FaultOn(Fault::Battery(BatteryFault::Offset(-8.0)), None)))
+        .accepted()
         .unwrap();
     rig.until(60.0, "it is reported", |rig| !reported(rig).is_empty());
     let (_, deviation) = reported(&rig)[0];

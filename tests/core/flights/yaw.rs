@@ -3,6 +3,7 @@
 use betadeck_core::pilot::StickInput;
 use betadeck_core::sim::Airframe;
 use betadeck_core::telemetry::{NavState, Turbulence};
+use betadeck_core::vehicle::VehicleCommand;
 
 use crate::flights::checks::{Checks, assert_met, greatest};
 use crate::flights::rig::{Rig, world};
@@ -69,9 +70,9 @@ fn the_yaw_stick_chooses_the_heading_that_is_kept() {
     rig.engaged().fly(5.0);
     let before = rig.samples.last().unwrap().heading;
     let right = StickInput { channel: YAW, value_us: 1700, at_s: 0.0, for_s: None, from_boot: true };
-    rig.vehicle.transmitter_mut().inputs_mut().push(right);
+    rig.vehicle.apply(&VehicleCommand::HoldChannel(right));
     rig.fly(1.0);
-    rig.vehicle.transmitter_mut().inputs_mut().clear();
+    rig.release_channels();
     let released = rig.t();
     let chosen = rig.samples.last().unwrap().heading;
     assert!(turned(chosen, before).abs() > 30.0, "{before} to {chosen}");

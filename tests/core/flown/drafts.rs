@@ -66,8 +66,11 @@ fn the_first_flight_of_a_session_is_the_scenario_that_is_written_of_it() {
     let plan = BuiltinPlan::find(betadeck_core::plan::builtin::DEMO).unwrap().read().unwrap();
     let happen = |tick: u64, vehicle: &mut Vehicle| match tick {
         2000 => upload(&plan, vehicle),
-        2001 => vehicle.start_pilot(10.0).unwrap(),
-        40_000 => vehicle.change_world(WorldCommand::parse("wind=3@270").unwrap()).unwrap(),
+        2001 => vehicle.apply(&VehicleCommand::StartPilot(10.0)).accepted().unwrap(),
+        40_000 => vehicle
+            .apply(&VehicleCommand::from(WorldCommand::parse("wind=3@270").unwrap()))
+            .accepted()
+            .unwrap(),
         // This plan is stored now, but it is not flown.
         50_000 => upload(&BuiltinPlan::find("land").unwrap().read().unwrap(), vehicle),
         _ => {}
@@ -97,7 +100,7 @@ fn a_longer_plan_that_is_flown_later_has_its_own_numbers() {
     let (short, long) = (plan("land"), plan(betadeck_core::plan::builtin::DEMO));
     let happen = |tick: u64, vehicle: &mut Vehicle| match tick {
         2000 => upload(&short, vehicle),
-        2001 => vehicle.start_pilot(5.0).unwrap(),
+        2001 => vehicle.apply(&VehicleCommand::StartPilot(5.0)).accepted().unwrap(),
         22_000 => upload(&long, vehicle),
         23_000 => {
             let _done = vehicle.apply(&VehicleCommand::InFlight(InFlightCommand::GoTo(2)));
@@ -115,7 +118,7 @@ fn waiting_after_the_landing_is_left_out() {
     let plan = BuiltinPlan::find("land").unwrap().read().unwrap();
     let happen = |tick: u64, vehicle: &mut Vehicle| match tick {
         2000 => upload(&plan, vehicle),
-        2001 => vehicle.start_pilot(5.0).unwrap(),
+        2001 => vehicle.apply(&VehicleCommand::StartPilot(5.0)).accepted().unwrap(),
         _ => {}
     };
     let (flight, _) = first_flight(happen, 300);

@@ -1,6 +1,5 @@
 //! Forecasts: estimates, look-aheads and what-ifs.
 
-use betadeck_core::firmware::cli::Interpreter;
 use betadeck_core::flight::forecast::{
     Forecast, ForecastEnd, ForecastKind, ForecastRun, PlanWithSettings, WHAT_IFS, WhatIf,
 };
@@ -8,7 +7,7 @@ use betadeck_core::flight::{Flight, FlightOptions, FlightResult, FlightSetup};
 use betadeck_core::plan::builtin::BuiltinPlan;
 use betadeck_core::plan::{FlightPlan, Seconds};
 use betadeck_core::sim::{Noise, WorldCommand, WorldConfig};
-use betadeck_core::vehicle::Vehicle;
+use betadeck_core::vehicle::{Vehicle, VehicleCommand};
 
 fn metres(length: f64) -> String {
     format!("{length:.0} m")
@@ -42,7 +41,7 @@ fn estimate(name: &str) -> Forecast {
 
 /// Lets the scripted pilot fly until `seconds` after the engagement.
 fn in_flight(mut vehicle: Vehicle, seconds: f64) -> Vehicle {
-    vehicle.start_pilot(10.0).unwrap();
+    vehicle.apply(&VehicleCommand::StartPilot(10.0)).accepted().unwrap();
     while vehicle.engaged_at().is_none_or(|at| vehicle.time().seconds_since(at) < seconds) {
         vehicle.tick();
         vehicle.drain_events(drop);
@@ -90,7 +89,7 @@ fn an_estimate_is_the_same_in_slices_of_any_length() {
 #[test]
 fn an_estimate_from_the_middle_of_another_flight_starts_at_home_without_faults() {
     let mut flying = in_flight(vehicle("square", Noise::None), 5.0);
-    flying.change_world(WorldCommand::parse("fault=gps-loss").unwrap()).unwrap();
+    flying.apply(&VehicleCommand::from(WorldCommand::parse("fault=gps-loss").unwrap())).accepted().unwrap();
     let forecast = end(ForecastRun::plan_estimate(flying, &plan("land"), &[], 10.0).unwrap());
     assert!(forecast.is_complete(), "{}", forecast.reason);
     assert!(forecast.path[0].n.hypot(forecast.path[0].e) < 0.1);
@@ -107,8 +106,8 @@ fn the_settings_of_the_plan_count() {
 #[test]
 fn the_settings_of_the_craft_count() {
     let mut vehicle = vehicle("square", Noise::None);
-    let firmware = vehicle.embedded_mut().unwrap();
-    let reply = firmware.run_cli(&mut Interpreter::default(), "set ap_max_distance_from_home = 82");
+    let set = VehicleCommand::single_line("set ap_max_distance_from_home = 82");
+    let reply = vehicle.apply(&set).line().unwrap();
     assert!(!reply.failed, "{}", reply.text);
     let forecast = end(ForecastRun::plan_estimate(vehicle, &plan("square"), &[], 10.0).unwrap());
     assert!(!forecast.is_complete(), "{}", forecast.reason);
@@ -186,8 +185,10 @@ fn a_craft_at_rest_has_nothing_ahead() {
 #[test]
 fn sticks_that_stay_have_an_end_too() {
     let mut flying = in_flight(vehicle("square", Noise::None), 5.0);
-    flying.transmitter_mut().stop_pilot();
-    flying.transmitter_mut().sticks_mut().channels[5] = 1000;
+    flying.apply(&VehicleCommand::StopPilot);
+    let mut sticks = flying.transmitter().sticks();
+    sticks.channels[5] = 1000;
+    flying.apply(&VehicleCommand::Sticks(sticks));
     let forecast = end(ForecastRun::look_ahead(flying).unwrap());
     // The autopilot is off from here on: only the sticks hold the craft.
     assert_eq!(forecast.end, ForecastEnd::Endless, "{}", forecast.reason);

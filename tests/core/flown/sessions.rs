@@ -105,7 +105,7 @@ impl Session {
     fn start(&mut self) {
         let plan = setup().plan.plan;
         let _reported = self.vehicle.apply(&VehicleCommand::upload(plan, Vec::new()));
-        self.vehicle.start_pilot(5.0).unwrap();
+        self.vehicle.apply(&VehicleCommand::StartPilot(5.0)).accepted().unwrap();
     }
 
     fn fly_on_from(&mut self, seconds: u64) {
@@ -131,7 +131,7 @@ fn each_flight_of_a_session_is_a_recording_that_flies_again() {
     session.start();
     session.fly(100);
     // The craft has landed; it is flown again from home.
-    session.vehicle.reset_craft();
+    session.vehicle.apply(&VehicleCommand::ResetCraft);
     session.fly(10);
     session.start();
     session.fly(20);

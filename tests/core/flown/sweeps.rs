@@ -1,5 +1,6 @@
 //! Sweeps: one fault at every second of a flight.
 
+use betadeck_core::vehicle::VehicleCommand;
 use std::collections::BTreeSet;
 
 use betadeck_core::flight::sweep::{Fate, Sweep, SweepPoint};
@@ -36,7 +37,11 @@ fn swept(plan: &str, fault: &str) -> Vec<SweepPoint> {
 /// Flies the whole flight with a fault that is scheduled before boot.
 fn whole(plan: &str, fault: &str) -> (FlightEnd, [f64; 3]) {
     let mut flight = flight(plan);
-    flight.vehicle_mut().change_world(WorldCommand::Schedule(fault.parse().unwrap())).unwrap();
+    flight
+        .vehicle_mut()
+        .apply(&VehicleCommand::from(WorldCommand::Schedule(fault.parse().unwrap())))
+        .accepted()
+        .unwrap();
     loop {
         if let Some(end) = flight.tick(drop) {
             return (end, flight.vehicle().truth().unwrap().pos_enu.into());

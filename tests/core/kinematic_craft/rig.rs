@@ -1,12 +1,11 @@
 //! The firmware on a kinematic craft, and the pilot of a rescue.
 
-use betadeck_core::firmware::cli::Interpreter;
 use betadeck_core::firmware::config::Configuration;
 use betadeck_core::firmware::{AttitudeSource, FirmwareOptions};
 use betadeck_core::signals::{MotorCommand, RcFrame, RcSource};
 use betadeck_core::sim::{Noise, WorldConfig};
 use betadeck_core::telemetry::{ArmingFlags, DisarmReason, EventKind, FirmwareEvent, Mode};
-use betadeck_core::vehicle::{Vehicle, VehicleConfig};
+use betadeck_core::vehicle::{CliSession, Vehicle, VehicleCommand, VehicleConfig};
 
 use crate::kinematic_craft::plant::{Kind, Plant};
 
@@ -86,10 +85,9 @@ impl Rig {
             stood_s: 0.0,
             path: Vec::new(),
         };
-        rig.vehicle.transmitter_mut().set_cut(true);
-        let mut console = Interpreter::default();
+        rig.vehicle.apply(&VehicleCommand::CutRc(true));
         for line in SETTINGS.lines().chain(lines.lines()) {
-            let reply = rig.vehicle.embedded_mut().unwrap().run_cli(&mut console, line);
+            let reply = rig.vehicle.apply(&VehicleCommand::line(CliSession::Console, line)).line().unwrap();
             assert!(!reply.failed, "{line}: {}", reply.text);
         }
         rig
@@ -100,7 +98,7 @@ impl Rig {
         let mut sensors = self.plant.sensors(PACKET_S);
         let mut motors = MotorCommand::default();
         if self.link {
-            self.vehicle.embedded_mut().unwrap().receive_rc(&self.frame, RcSource::Udp);
+            self.vehicle.apply(&VehicleCommand::Rc(self.frame, RcSource::Udp));
         }
         for _ in 0..PACKET_US / self.vehicle.step_us() {
             motors = self.vehicle.tick_on(&sensors);

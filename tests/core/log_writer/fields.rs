@@ -3,6 +3,7 @@
 use crate::log_writer::flown::Flown;
 use crate::log_writer::judge;
 use crate::log_writer::reader::{self, Log, Part};
+use betadeck_core::vehicle::VehicleCommand;
 
 /// Settings with which a log has all fields.
 const ALL_FIELDS: [&str; 2] = ["rssi_channel = 9", "d_yaw = 20"];
@@ -128,7 +129,7 @@ fn groups_of_fields_are_left_out_by_their_settings() {
 fn a_craft_without_gps_logs_no_solutions() {
     let mut flown = Flown::boot(1000, &[]);
     flown.line("feature -GPS");
-    flown.vehicle.reset_craft();
+    flown.vehicle.apply(&VehicleCommand::ResetCraft);
     flown.hop(2.0);
     let log = flown.log();
     assert!(!log.headers.keys().any(|name| name.starts_with("Field G") || name.starts_with("Field H")));
@@ -158,7 +159,7 @@ fn debug_values_are_those_of_the_mode() {
 fn the_debug_values_of_the_autopilot_show_its_flight() {
     let mut flown = Flown::boot(1000, &["debug_mode = AUTOPILOT_PID"]);
     flown.line("waypoint insert 0 40.4637000 -79.5182000 1000 500 FLYOVER 0 ORBIT");
-    flown.vehicle.start_pilot(5.0).unwrap();
+    flown.vehicle.apply(&VehicleCommand::StartPilot(5.0)).accepted().unwrap();
     flown.fly(30.0);
     // The crate does not know this mode.
     let log = reader::read(&flown.logs[0]);

@@ -3,6 +3,7 @@
 use crate::log_writer::flown::Flown;
 use crate::log_writer::judge;
 use crate::log_writer::reader::{self, Event, Part};
+use betadeck_core::vehicle::VehicleCommand;
 
 #[test]
 fn a_log_begins_with_a_whole_frame_and_has_the_states_before_the_next_one() {
@@ -57,7 +58,7 @@ fn the_states_are_written_when_they_change() {
 fn the_failsafe_of_a_lost_link_is_in_the_states() {
     let mut flown = Flown::boot(1000, &["ap_rx_loss_policy = LAND"]);
     flown.line("waypoint insert 0 40.4637000 -79.5182000 1000 500 HOLD 0 ORBIT");
-    flown.vehicle.start_pilot(5.0).unwrap();
+    flown.vehicle.apply(&VehicleCommand::StartPilot(5.0)).accepted().unwrap();
     flown.fly(22.0);
     let _cut = flown.vehicle.apply(&betadeck_core::vehicle::VehicleCommand::CutRc(true));
     flown.fly(4.0);
@@ -130,7 +131,7 @@ fn a_restart_ends_the_log() {
     flown.fly(8.0);
     flown.arm();
     flown.fly(1.0);
-    flown.vehicle.reset_craft();
+    flown.vehicle.apply(&VehicleCommand::ResetCraft);
     flown.fly(0.5);
     let log = flown.log();
     let events = log.events();
@@ -145,7 +146,7 @@ fn a_craft_that_is_disarmed_at_once_has_a_readable_log() {
     while !flown.firmware().is_armed() {
         flown.fly(0.001);
     }
-    flown.vehicle.reset_craft();
+    flown.vehicle.apply(&VehicleCommand::ResetCraft);
     flown.fly(0.5);
     assert_eq!(flown.log().letters(), "IEE");
 }

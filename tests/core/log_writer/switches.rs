@@ -31,7 +31,7 @@ fn a_device_that_is_chosen_in_flight_begins_a_log_and_one_that_is_removed_ends_i
 #[test]
 fn logs_can_be_forced_without_a_device() {
     let mut flown = Flown::boot_without_device(1000, &[]);
-    flown.vehicle.embedded_mut().unwrap().set_logs(true);
+    flown.vehicle.set_logs(true);
     flown.hop(0.25);
     assert!(flown.log().mains().len() > 50);
     assert_eq!(flown.firmware().configuration().settings.text("blackbox_device"), "NONE");
@@ -114,7 +114,7 @@ fn a_copy_of_the_craft_logs_on_by_itself() {
     flown.fly(1.0);
     copy.fly(1.0);
     assert!(flown.logs == copy.logs, "the same flight has the same log");
-    copy.vehicle.embedded_mut().unwrap().begin_new_log();
+    copy.vehicle.begin_new_log();
     copy.fly(0.5);
     assert_eq!(copy.logs.len(), 2);
     let log = judge::read(&copy.logs[1]);

@@ -18,8 +18,8 @@ use betadeck::session::{Handled, Persistence, RequestHandler};
 use betadeck::signals::{MotorCommand, RcFrame, RcSource, SensorFrame, SimTime};
 use betadeck::sim::WorldConfig;
 use betadeck::storage::Store;
-use betadeck::telemetry::{ArmingFlag, FirmwareEvent};
-use betadeck::vehicle::{Vehicle, VehicleConfig};
+use betadeck::telemetry::{ArmingFlag, EventKind, FirmwareEvent};
+use betadeck::vehicle::{Vehicle, VehicleCommand, VehicleConfig};
 use tokio::sync::{mpsc, oneshot};
 
 const TICK: Duration = Duration::from_millis(1);
@@ -53,9 +53,10 @@ impl Bench {
         let (doors, _) = Listeners::open(&closed, mpsc::channel(1).0).await;
         let firmware = FirmwareOptions { arm_assist: true, ..FirmwareOptions::default() };
         let config = VehicleConfig { world: WorldConfig::default(), firmware, configuration, live: true };
-        let mut vehicle = Vehicle::new(config).unwrap();
+        let mut vehicle = Vehicle::with_external_physics(config).unwrap();
+        vehicle.apply(&VehicleCommand::CutRc(true));
         Self {
-            persistence: Persistence::new(Store::in_memory(), vehicle.controller_mut(), true),
+            persistence: Persistence::new(Store::in_memory(), &mut vehicle, true),
             vehicle,
             handler: RequestHandler::new(doors.restart_signal()),
             ticks: 0,
@@ -71,7 +72,7 @@ impl Bench {
         let folder = directory.path().join("state");
         let mut bench = Self::new().await;
         let store = Store::open(&folder, false).unwrap();
-        bench.persistence = Persistence::new(store, bench.vehicle.controller_mut(), true);
+        bench.persistence = Persistence::new(store, &mut bench.vehicle, true);
         std::fs::remove_dir_all(&folder).unwrap();
         std::fs::write(&folder, "").unwrap();
         bench
@@ -81,24 +82,18 @@ impl Bench {
         self.vehicle.embedded().unwrap()
     }
 
-    fn firmware_mut(&mut self) -> &mut Firmware {
-        self.vehicle.embedded_mut().unwrap()
-    }
-
     fn tick(&mut self, speed: f64) {
         if self.ticks.is_multiple_of(LOOK) {
             self.handler.keep_rc_fresh(&mut self.vehicle, speed, self.wall);
         }
         let sensors = SensorFrame { time: SimTime(self.ticks * 1000), ..SensorFrame::default() };
-        self.motors = self.firmware_mut().step(&sensors);
+        self.motors = self.vehicle.tick_on(&sensors);
         self.ticks += 1;
-        while let Some(event) = self.firmware_mut().take_event() {
-            match event {
-                FirmwareEvent::RxLoss => self.lost = true,
-                FirmwareEvent::RxRecovered => self.lost = false,
-                _ => {}
-            }
-        }
+        self.vehicle.drain_events(|event| match event.kind {
+            EventKind::Firmware(FirmwareEvent::RxLoss) => self.lost = true,
+            EventKind::Firmware(FirmwareEvent::RxRecovered) => self.lost = false,
+            _ => {}
+        });
     }
 
     /// Lets a millisecond of the wall clock pass, at `speed` times real time.
@@ -268,7 +263,8 @@ async fn an_armed_craft_is_not_restarted() {
     let mut frame = RcFrame::SAFE;
     bench.enter(1, true);
     // The craft is put back home: the command line is open but blocks nothing.
-    bench.firmware_mut().restart_in_place();
+    let kept = bench.vehicle.controller().configuration().cloned().unwrap();
+    bench.vehicle.apply(&VehicleCommand::Restart(Box::new(kept)));
     for ms in 0..7000_u32 {
         frame.channels[4] = if ms > 6500 { 2000 } else { 1000 };
         if ms.is_multiple_of(20) {
@@ -322,7 +318,7 @@ async fn a_second_craft_on_the_same_store_does_not_save() {
     let first = Store::open(directory.path(), false).unwrap();
     let mut bench = Bench::new().await;
     let second = Store::open(directory.path(), false).unwrap();
-    bench.persistence = Persistence::new(second, bench.vehicle.controller_mut(), true);
+    bench.persistence = Persistence::new(second, &mut bench.vehicle, true);
     assert!(bench.enter(1, true));
     let reply = bench.line(1, LineSource::Prompt, "save");
     assert!(

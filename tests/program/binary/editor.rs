@@ -26,7 +26,10 @@ fn shown_altitude(terminal: &Terminal) -> Option<i64> {
 fn kept_altitude(sandbox: &Sandbox) -> Option<i64> {
     let entries = std::fs::read_dir(sandbox.path("state/plans")).ok()?;
     let mut journals = entries.filter_map(|entry| {
-        let text = std::fs::read(entry.ok()?.path()).ok()?;
+        // A kill can leave a temporary file with an edit that no journal has.
+        let path = entry.ok()?.path();
+        let text =
+            std::fs::read(path.extension().is_some_and(|end| end == "journal").then_some(path)?).ok()?;
         Some(Journal::read_whole_part(&String::from_utf8_lossy(&text))?.0)
     });
     let journal = journals.next()?;

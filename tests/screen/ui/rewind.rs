@@ -6,6 +6,7 @@ use betadeck::session::Command;
 use betadeck::session::ReplyTo;
 use betadeck::session::command::Seek;
 use betadeck::signals::SimTime;
+use betadeck::sim::WorldCommand;
 use betadeck::telemetry::NavState;
 use betadeck::timeline::MarkKind;
 use betadeck::ui::{AppState, Msg, update};
@@ -144,8 +145,8 @@ async fn nothing_steers_an_instant_that_is_past() {
         .unwrap();
     assert_eq!(answer.await.unwrap(), Err(refused.clone()));
     let (reply, answer) = ReplyTo::channel();
-    let line = "wind=5@270".to_owned();
-    rig.session.commands.send(Command::World { line, reply }).await.unwrap();
+    let change = Box::new(WorldCommand::parse("wind=5@270").unwrap());
+    rig.session.commands.send(Command::World { change, reply }).await.unwrap();
     assert_eq!(answer.await.unwrap(), Err(refused));
     let (reply, answer) = ReplyTo::channel();
     let line = "set ap_max_angle = 30".to_owned();

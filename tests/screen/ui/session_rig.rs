@@ -15,7 +15,7 @@ use betadeck::session::ReplyTo;
 use betadeck::session::command::{CliOutput, Seek};
 use betadeck::session::{Command, Handle, SessionConfig, start};
 use betadeck::signals::SimTime;
-use betadeck::sim::WorldConfig;
+use betadeck::sim::{WorldCommand, WorldConfig};
 use betadeck::storage::Store;
 use betadeck::telemetry::{NavState, Snapshot, Turbulence};
 use betadeck::ui::PlanId;
@@ -133,10 +133,10 @@ impl Rig {
                 }
                 Effect::World(line) => {
                     let (reply, answer) = ReplyTo::channel();
-                    let asked = line.clone();
-                    self.session.commands.send(Command::World { line, reply }).await.unwrap();
+                    let change = Box::new(WorldCommand::parse(&line).unwrap());
+                    self.session.commands.send(Command::World { change, reply }).await.unwrap();
                     let result = answer.await.unwrap();
-                    let next = update(&mut self.state, Msg::WorldReply { line: asked, result });
+                    let next = update(&mut self.state, Msg::WorldReply { line, result });
                     Box::pin(self.carry_out(next)).await;
                 }
                 Effect::Cli(line) => {

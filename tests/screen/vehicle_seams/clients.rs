@@ -5,7 +5,6 @@
 use std::net::SocketAddr;
 use std::time::{Duration, Instant};
 
-use betadeck::fc::upload;
 use betadeck::link::proto::command_line::{LineReply, LineSource};
 use betadeck::link::{ClientId, ListenConfig, Listeners, Request};
 use betadeck::plan::{Altitude, FlightPlan, Waypoint};
@@ -35,7 +34,7 @@ impl Links {
         let mut rig = Rig::new();
         Self {
             handler: RequestHandler::new(doors.restart_signal()),
-            persistence: Persistence::new(Store::in_memory(), rig.vehicle.controller_mut(), true),
+            persistence: Persistence::new(Store::in_memory(), &mut rig.vehicle, true),
             rig,
             now: Instant::now(),
         }
@@ -61,7 +60,7 @@ impl Links {
     /// Lets the stand-in answer, and passes its answers on.
     fn exchange(&mut self) {
         self.rig.run(0.001 * (DELAY + 2) as f64);
-        while let Some((ticket, answer)) = self.rig.vehicle.controller_mut().take_answer() {
+        while let Some((ticket, answer)) = self.rig.vehicle.take_answer() {
             self.handler.deliver(ticket, answer);
         }
     }
@@ -184,6 +183,7 @@ fn plan() -> FlightPlan {
 #[test]
 fn a_flight_without_a_session_cannot_upload_to_a_remote_flight_controller() {
     let mut rig = Rig::new();
-    let refused = upload(rig.vehicle.controller_mut(), &plan(), &[]).unwrap_err();
-    assert_eq!(refused, "a remote flight controller accepts a plan only in a session");
+    let upload = VehicleCommand::upload(plan(), Vec::new());
+    let refused = rig.vehicle.apply(&upload).accepted().unwrap_err();
+    assert_eq!(refused.to_string(), "a remote flight controller accepts a plan only in a session");
 }

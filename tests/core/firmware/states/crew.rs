@@ -1,5 +1,6 @@
 //! The ground crew, who put a craft that came down back into the air.
 
+use betadeck_core::vehicle::VehicleCommand;
 use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;
 
@@ -72,7 +73,7 @@ impl Crew {
             Work::Come => {
                 run.frame = RcFrame::SAFE;
                 run.link = true;
-                run.vehicle.change_world(WorldCommand::ClearFaults).unwrap();
+                run.vehicle.apply(&VehicleCommand::from(WorldCommand::ClearFaults)).accepted().unwrap();
                 self.resting = 0;
                 self.next(Work::Settle);
             }

@@ -4,6 +4,7 @@ use betadeck_core::autopilot::Params;
 use betadeck_core::plan::{FlightPlan, HoldPattern, MAX_WAYPOINTS, WaypointType};
 use betadeck_core::signals::RcSource;
 use betadeck_core::sim::{Fault, Wind, WorldCommand};
+use betadeck_core::vehicle::{Message, VehicleCommand};
 use nalgebra::Vector3;
 use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;
@@ -60,10 +61,11 @@ pub(crate) fn happen(run: &mut Run, rng: &mut ChaCha8Rng) -> String {
             run.cli(&line);
             line
         }
-        73..77 => command(run, "home", |run| run.vehicle.embedded_mut().unwrap().return_to_home().is_ok()),
-        77..80 => command(run, "land", |run| run.vehicle.embedded_mut().unwrap().emergency_land().is_ok()),
+        73..80 => {
+            command(run, "home", |run| run.vehicle.apply(&VehicleCommand::ReturnHome).accepted().is_ok())
+        }
         80..84 => {
-            run.vehicle.embedded_mut().unwrap().cancel_command();
+            run.vehicle.apply(&VehicleCommand::CancelReturn);
             let view = run.vehicle.embedded().unwrap().craft_view();
             assert!(!view.is_commanded(), "a command that was taken back stays");
             "undo".to_owned()
@@ -81,12 +83,12 @@ pub(crate) fn happen(run: &mut Run, rng: &mut ChaCha8Rng) -> String {
         92 => {
             // Requests of a configurator. They may be unknown to the firmware.
             let code = rng.random_range(1..200);
-            let _answer = run.vehicle.embedded_mut().unwrap().run_msp(code, &[], None);
+            let _answer = run.vehicle.apply(&Message::of(code, Vec::new()).into());
             format!("msp {code}")
         }
         93..95 => {
             let jump = Fault::Teleport([rng.random_range(-80.0..80.0), rng.random_range(-80.0..80.0), 5.0]);
-            run.vehicle.change_world(WorldCommand::FaultOn(jump, None)).unwrap();
+            run.vehicle.apply(&VehicleCommand::from(WorldCommand::FaultOn(jump, None))).accepted().unwrap();
             format!("jump {jump}")
         }
         _ => calm(run),
@@ -120,7 +122,7 @@ fn calm(run: &mut Run) -> String {
     for (channel, on) in [(AUTOPILOT, true), (RESCUE, false), (FAILSAFE, false), (ARM, true)] {
         run.switch(channel, on);
     }
-    run.vehicle.change_world(WorldCommand::ClearFaults).unwrap();
+    run.vehicle.apply(&VehicleCommand::from(WorldCommand::ClearFaults)).accepted().unwrap();
     "calm".to_owned()
 }
 
@@ -131,13 +133,13 @@ fn gps(run: &mut Run, rng: &mut ChaCha8Rng) -> String {
         true => WorldCommand::FaultOff(Fault::GpsLoss.key()),
         false => WorldCommand::FaultOn(Fault::GpsLoss, seconds),
     };
-    run.vehicle.change_world(command).unwrap();
+    run.vehicle.apply(&VehicleCommand::from(command)).accepted().unwrap();
     format!("gps {back} {seconds:?}")
 }
 
 fn set_wind(run: &mut Run, rng: &mut ChaCha8Rng) -> String {
     let wind = Wind { speed_mps: rng.random_range(0.0..8.0), from_deg: rng.random_range(0.0..360.0) };
-    run.vehicle.change_world(WorldCommand::SetWind(wind)).unwrap();
+    run.vehicle.apply(&VehicleCommand::from(WorldCommand::SetWind(wind))).accepted().unwrap();
     format!("wind {wind}")
 }
 

@@ -10,7 +10,7 @@ use betadeck::msp::code;
 use betadeck::plan::format::{self, Format};
 use betadeck::telemetry::snapshot::{CraftView, EstimateView};
 use betadeck::telemetry::{Mode, NavState};
-use betadeck::vehicle::Vehicle;
+use betadeck::vehicle::{Vehicle, VehicleCommand};
 
 use crate::protocols::fc_client::board::{Bench, Manners};
 
@@ -33,7 +33,7 @@ fn vehicle() -> Vehicle {
     let plan = format::parse("square.toml", text, Format::Toml).unwrap();
     let stored = Configuration { plan: plan.plan.clone(), ..Configuration::default() };
     let (mut vehicle, _) = FlightSetup { plan, stored, ..FlightSetup::default() }.build().unwrap();
-    vehicle.start_pilot(10.0).unwrap();
+    vehicle.apply(&VehicleCommand::StartPilot(10.0)).accepted().unwrap();
     vehicle
 }
 

@@ -13,7 +13,7 @@ use betadeck::link::proto::fdm_link::FdmLinkConfig;
 use betadeck::link::{ClientId, ExternalSimulator, ListenConfig, Listeners, MotorPort, Request};
 use betadeck::session::ReplyTo;
 use betadeck::session::{Command, Endpoints, Handle, RequestHandler, SessionConfig, SessionView, start};
-use betadeck::sim::{WorldConfig, attitude};
+use betadeck::sim::{WorldCommand, WorldConfig, attitude};
 use betadeck::storage::Store;
 use betadeck::telemetry::EventKind;
 use betadeck::vehicle::{Vehicle, VehicleCommand, VehicleConfig};
@@ -226,7 +226,7 @@ impl Rig {
 
     pub(crate) async fn world(&self, line: &str) -> Result<(), String> {
         let (reply, answer) = ReplyTo::channel();
-        self.command(Command::World { line: line.to_owned(), reply }).await;
+        self.command(Command::World { change: Box::new(WorldCommand::parse(line).unwrap()), reply }).await;
         tokio::time::timeout(PATIENCE, answer).await.unwrap().unwrap()
     }
 }
