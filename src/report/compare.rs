@@ -23,7 +23,7 @@ pub(super) use cells::TableRow;
 pub use log_track::begin_of_log;
 pub use measure::Measure;
 pub use statistics::Statistics;
-pub use track::Track;
+pub use track::{Landing, Track};
 
 use super::flight::{Detail, Figure};
 use super::plot::Ground;

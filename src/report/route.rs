@@ -4,7 +4,9 @@ use nalgebra::{Vector2, Vector3};
 
 use super::plot::{Mark, Point};
 use crate::geo::LocalFrame;
+use crate::math::acos;
 use crate::plan::{FlightPlan, HoldPattern, WaypointType};
+use crate::sim::Truth;
 use crate::telemetry::snapshot::SettingsView;
 
 /// The greatest distance, beyond the waypoint's own radius, at which a waypoint counts as flown, m.
@@ -27,6 +29,24 @@ pub struct TrackSample {
     pub ne: Vector2<f64>,
     /// Height above the craft's position on the ground at home, m.
     pub alt_m: f64,
+    /// Attitude; `None` in a log.
+    pub attitude: Option<SampledAttitude>,
+}
+
+/// The attitude of the craft at an instant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SampledAttitude {
+    /// Direction of the nose, degrees clockwise from north.
+    pub heading_deg: f64,
+    /// Angle between the thrust axis and the vertical, degrees.
+    pub tilt_deg: f64,
+}
+
+impl From<&Truth> for SampledAttitude {
+    fn from(truth: &Truth) -> Self {
+        let up = (truth.attitude * Vector3::z()).z;
+        Self { heading_deg: truth.heading_deg(), tilt_deg: acos(up.clamp(-1.0, 1.0)).to_degrees() }
+    }
 }
 
 impl TrackSample {
@@ -48,6 +68,8 @@ pub(in crate::report) struct RoutePoint {
     pub(in crate::report) alt_m: f64,
     /// Radius of the pattern around the waypoint, m; 0 = none.
     pub(in crate::report) pattern_m: f64,
+    /// `true` if the pattern is an ORBIT, a ring around the waypoint.
+    pub(in crate::report) is_ring: bool,
     /// `true` if the craft stays there for a while.
     pub(in crate::report) holds: bool,
     /// The distance at which it counts as flown, m.
@@ -90,6 +112,7 @@ impl Route {
                 ne: waypoint.kind.uses_position().then(place),
                 alt_m: alt_change_m.take().unwrap_or(alt_m),
                 pattern_m,
+                is_ring: is_hold && waypoint.pattern == HoldPattern::Orbit,
                 holds: is_hold,
                 reach_m,
             });

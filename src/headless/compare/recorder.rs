@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use crate::events::{Event, SessionEvent};
 use crate::flight::{Flight, FlightEnd};
-use crate::report::compare::Track;
+use crate::report::compare::{Landing, Track};
 use crate::report::route::TrackSample;
 use crate::runner::Subscriber;
 use crate::signals::SimTime;
@@ -24,20 +24,20 @@ pub(super) struct Recorder {
     /// engages.
     switched_at: Option<SimTime>,
     was_switching: bool,
-    /// `true` if the craft touched the ground since the last look.
-    touched_down: bool,
+    /// The speed of the touchdown since the last look, m/s.
+    touched_down: Option<f64>,
 }
 
 impl Recorder {
     /// Creates a recorder for a craft on the ground at home, in the air of this seed.
     pub(super) fn new(vehicle: &Vehicle, seed: u64) -> Self {
-        let standing_m = place(vehicle).map_or(0.0, |(_, alt_m)| alt_m);
+        let standing_m = vehicle.truth().map_or(0.0, |truth| truth.pos_enu.z);
         Self {
             track: Track { seed, ..Track::default() },
             standing_m,
             switched_at: None,
             was_switching: false,
-            touched_down: false,
+            touched_down: None,
         }
     }
 
@@ -59,11 +59,13 @@ impl Recorder {
 
 impl Subscriber<Flight> for Recorder {
     fn event(&mut self, event: &Event) {
-        self.touched_down |= matches!(event.kind, SessionEvent::Vehicle(EventKind::Touchdown { .. }));
+        if let SessionEvent::Vehicle(EventKind::Touchdown { impact_mps, .. }) = event.kind {
+            self.touched_down = Some(impact_mps);
+        }
     }
 
     fn after_tick(&mut self, flight: &Flight) {
-        let touched_down = std::mem::take(&mut self.touched_down);
+        let touched_down = self.touched_down.take();
         let vehicle = flight.vehicle();
         let now = vehicle.time();
         let switching = vehicle.transmitter().pilot_doing() == Some("engaging");
@@ -77,19 +79,20 @@ impl Subscriber<Flight> for Recorder {
         }
         self.was_switching = switching;
         let begin = self.switched_at.or(flight.engaged_at());
-        let (Some(begin), Some((ne, alt_m))) = (begin, place(vehicle)) else { return };
-        let time_s = now.seconds_since(begin);
-        if touched_down {
-            self.track.touchdown = Some((time_s, ne));
+        let (Some(begin), Some(truth)) = (begin, vehicle.truth()) else { return };
+        let (time_s, ne) = (now.seconds_since(begin), Vector2::new(truth.pos_enu.y, truth.pos_enu.x));
+        if touched_down.is_some() {
+            let landing = Landing { time_s, ne, impact_mps: touched_down, disarmed_after_s: None };
+            self.track.touchdown = Some(landing);
+        }
+        if let Some(landing) = &mut self.track.touchdown
+            && vehicle.controller().armed() == Some(false)
+        {
+            landing.disarmed_after_s.get_or_insert(time_s - landing.time_s);
         }
         if now.0.is_multiple_of(INTERVAL_US) {
-            self.track.samples.push(TrackSample { time_s, ne, alt_m: alt_m - self.standing_m });
+            let (alt_m, attitude) = (truth.pos_enu.z - self.standing_m, Some(truth.into()));
+            self.track.samples.push(TrackSample { time_s, ne, alt_m, attitude });
         }
     }
-}
-
-/// Returns the position north and east of home and above it, m.
-fn place(vehicle: &Vehicle) -> Option<(Vector2<f64>, f64)> {
-    let position = vehicle.truth()?.pos_enu;
-    Some((Vector2::new(position.y, position.x), position.z))
 }

@@ -51,6 +51,7 @@ mod tests {
                 time_s: 0.0,
                 ne: Vector2::new(100.0 * index as f64 / (points - 1) as f64, 0.0),
                 alt_m,
+                attitude: None,
             })
             .collect();
         Track { samples, ..Track::default() }
@@ -69,7 +70,12 @@ mod tests {
     #[test]
     fn what_only_one_of_them_flew_counts() {
         let mut longer = line(5.0, 101);
-        longer.samples.push(TrackSample { time_s: 0.0, ne: Vector2::new(100.0, 30.0), alt_m: 5.0 });
+        longer.samples.push(TrackSample {
+            time_s: 0.0,
+            ne: Vector2::new(100.0, 30.0),
+            alt_m: 5.0,
+            attitude: None,
+        });
         let (there, back) = (rms_m(&longer, &line(5.0, 101)), rms_m(&line(5.0, 101), &longer));
         assert_eq!(there, back);
         assert!((there.unwrap() - (900.0_f64 / 203.0).sqrt()).abs() < 1e-9);

@@ -4,7 +4,7 @@ use std::io;
 
 use nalgebra::Vector2;
 
-use super::Track;
+use super::{Landing, Track};
 use crate::blackbox::decode::LogSource;
 use crate::flight_log::{LogFlight, LogMarkKind};
 use crate::report::route::TrackSample;
@@ -44,7 +44,7 @@ impl Track {
                 && sample.time.0 >= due_us
             {
                 let (time_s, ne) = (sample.time.seconds_since(begin), Vector2::new(n, e));
-                track.samples.push(TrackSample { time_s, ne, alt_m: alt - standing_m });
+                track.samples.push(TrackSample { time_s, ne, alt_m: alt - standing_m, attitude: None });
                 due_us = sample.time.0 + INTERVAL_US;
             }
             if !cursor.advance()? {
@@ -59,7 +59,7 @@ impl Track {
         if let Some((time, reason)) = disarmed {
             track.reason = format!("disarmed: {reason}");
             let last = track.samples.last().map(|last| last.ne);
-            track.touchdown = last.map(|ne| (time.seconds_since(begin), ne));
+            track.touchdown = last.map(|ne| Landing::from_disarming(time.seconds_since(begin), ne));
         }
         Ok(track)
     }
@@ -149,7 +149,7 @@ mod tests {
     fn the_touchdown_is_where_the_craft_was_disarmed() {
         let bytes = log(Some(100));
         let track = Track::from_log(&only(&bytes), &bytes[..], 1).unwrap();
-        let (time_s, ne) = track.touchdown.unwrap();
+        let Landing { time_s, ne, .. } = track.touchdown.unwrap();
         assert!((time_s - 3.0).abs() < 0.011 && (ne.x - 4.3).abs() < 0.1, "{time_s} {ne:?}");
         assert!(track.reason.starts_with("disarmed: "), "{}", track.reason);
         // Without its end nobody knows where the craft landed.

@@ -4,11 +4,16 @@ use nalgebra::Vector2;
 
 use super::passage::{Passage, passages};
 use super::track::{Track, distance_to_segment};
+use crate::math::atan2;
 use crate::plan::WaypointType;
 use crate::report::route::{Route, TrackSample};
 
 /// The sine of the smallest turn that counts as a corner, about 10°.
 const CORNER: f64 = 0.17;
+/// The speed below which the course over ground has no meaning for the nose, m/s.
+const SLOWEST_COURSE_MPS: f64 = 1.0;
+/// The shortest stay on a ring that is measured, s.
+const SHORTEST_RING_S: f64 = 1.0;
 
 /// A measure of a flight; waypoints are given by their index in the plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -27,8 +32,24 @@ pub enum Measure {
     Overshoot(u8),
     /// Altitude at the instant of reaching a waypoint, less the altitude in the plan, m.
     AltitudeError(u8),
+    /// Root mean square distance from the ring of an ORBIT at a waypoint, m.
+    RingError(u8),
+    /// Mean rate at which the craft went around that ring, °/s; clockwise is positive.
+    RingRate(u8),
+    /// Greatest distance from a waypoint in its hold without a pattern, m.
+    HoldDistance(u8),
+    /// Root mean square angle between the nose and the course over ground on the leg to a waypoint, degrees.
+    NoseError(u8),
     /// Distance of the touchdown from the LAND point, m.
     TouchdownDistance,
+    /// Speed at the touchdown, m/s.
+    TouchdownSpeed,
+    /// Seconds from the touchdown until the craft was disarmed.
+    DisarmDelay,
+    /// Greatest angle between the thrust axis and the vertical, degrees.
+    TiltMax,
+    /// Greatest horizontal distance from home, m.
+    HomeDistance,
 }
 
 impl Measure {
@@ -41,7 +62,12 @@ impl Measure {
             .chain(of_each(Self::CrossTrackRms))
             .chain(of_each(Self::Overshoot))
             .chain(of_each(Self::AltitudeError))
-            .chain([Self::TouchdownDistance])
+            .chain(of_each(Self::RingError))
+            .chain(of_each(Self::RingRate))
+            .chain(of_each(Self::HoldDistance))
+            .chain(of_each(Self::NoseError))
+            .chain([Self::TouchdownDistance, Self::TouchdownSpeed, Self::DisarmDelay])
+            .chain([Self::TiltMax, Self::HomeDistance])
     }
 
     /// Returns the title for people.
@@ -54,7 +80,15 @@ impl Measure {
             Self::CrossTrackRms(wp) => format!("cross-track RMS, leg to WP{wp}"),
             Self::Overshoot(wp) => format!("overshoot at WP{wp}"),
             Self::AltitudeError(wp) => format!("altitude error at WP{wp}"),
+            Self::RingError(wp) => format!("ring error RMS, WP{wp}"),
+            Self::RingRate(wp) => format!("ring rate, WP{wp}"),
+            Self::HoldDistance(wp) => format!("hold distance max, WP{wp}"),
+            Self::NoseError(wp) => format!("nose error RMS, leg to WP{wp}"),
             Self::TouchdownDistance => "touchdown beside the LAND point".to_owned(),
+            Self::TouchdownSpeed => "speed at the touchdown".to_owned(),
+            Self::DisarmDelay => "touchdown to disarming".to_owned(),
+            Self::TiltMax => "tilt max".to_owned(),
+            Self::HomeDistance => "distance from home max".to_owned(),
         }
     }
 
@@ -68,17 +102,31 @@ impl Measure {
             Self::CrossTrackRms(wp) => ("cross_track_rms_m", Some(wp)),
             Self::Overshoot(wp) => ("overshoot_m", Some(wp)),
             Self::AltitudeError(wp) => ("alt_error_m", Some(wp)),
+            Self::RingError(wp) => ("ring_error_rms_m", Some(wp)),
+            Self::RingRate(wp) => ("ring_rate_dps", Some(wp)),
+            Self::HoldDistance(wp) => ("hold_distance_max_m", Some(wp)),
+            Self::NoseError(wp) => ("nose_error_rms_deg", Some(wp)),
             Self::TouchdownDistance => ("touchdown_distance_m", None),
+            Self::TouchdownSpeed => ("touchdown_speed_mps", None),
+            Self::DisarmDelay => ("touchdown_to_disarm_s", None),
+            Self::TiltMax => ("tilt_max_deg", None),
+            Self::HomeDistance => ("home_distance_max_m", None),
         }
     }
 
     pub(super) fn unit(self) -> &'static str {
         match self {
-            Self::TimeTo(_) | Self::TouchdownTime | Self::Flown => "s",
+            Self::TimeTo(_) | Self::TouchdownTime | Self::Flown | Self::DisarmDelay => "s",
+            Self::RingRate(_) => "°/s",
+            Self::NoseError(_) | Self::TiltMax => "°",
+            Self::TouchdownSpeed => "m/s",
             Self::CrossTrackMax(_)
             | Self::CrossTrackRms(_)
             | Self::Overshoot(_)
             | Self::AltitudeError(_)
+            | Self::RingError(_)
+            | Self::HoldDistance(_)
+            | Self::HomeDistance
             | Self::TouchdownDistance => "m",
         }
     }
@@ -88,18 +136,27 @@ impl Measure {
 pub(super) fn measures(route: &Route, track: &Track) -> Vec<(Measure, f64)> {
     let mut found = Vec::new();
     found.extend(track.flown_s.map(|flown_s| (Measure::Flown, flown_s)));
-    if let Some((time_s, ne)) = track.touchdown {
-        found.push((Measure::TouchdownTime, time_s));
+    if let Some(landing) = track.touchdown {
+        found.push((Measure::TouchdownTime, landing.time_s));
         let land = route.points.iter().find(|point| point.kind == WaypointType::Land);
-        let distance = land.and_then(|point| point.ne).map(|land| (ne - land).norm());
+        let distance = land.and_then(|point| point.ne).map(|land| (landing.ne - land).norm());
         found.extend(distance.map(|distance| (Measure::TouchdownDistance, distance)));
+        found.extend(landing.impact_mps.map(|speed_mps| (Measure::TouchdownSpeed, speed_mps)));
+        found.extend(landing.disarmed_after_s.map(|delay_s| (Measure::DisarmDelay, delay_s)));
     }
+    let greatest = |values: &mut dyn Iterator<Item = f64>| values.reduce(f64::max);
+    let tilts = &mut track.samples.iter().filter_map(|sample| Some(sample.attitude?.tilt_deg));
+    found.extend(greatest(tilts).map(|tilt_deg| (Measure::TiltMax, tilt_deg)));
+    let distances = &mut track.samples.iter().map(|sample| sample.ne.norm());
+    found.extend(greatest(distances).map(|distance_m| (Measure::HomeDistance, distance_m)));
     let passed = passages(route, track);
     for (index, passage) in passed.iter().enumerate() {
         let wp = passage.point.wp;
         let Some(reached) = track.samples.get(passage.reached) else { continue };
         found.push((Measure::TimeTo(wp), reached.time_s));
         found.push((Measure::AltitudeError(wp), reached.alt_m - passage.point.alt_m));
+        let stay = track.samples.get(passage.reached..=passage.left).unwrap_or_default();
+        found.extend(in_hold(passage, stay));
         let before = index.checked_sub(1).and_then(|before| passed.get(before));
         let Some(leg) = Leg::new(before, passage, track) else { continue };
         let flown = track.samples.get(leg.first..=passage.reached).unwrap_or_default();
@@ -107,10 +164,62 @@ pub(super) fn measures(route: &Route, track: &Track) -> Vec<(Measure, f64)> {
             found.push((Measure::CrossTrackMax(wp), most_m));
             found.push((Measure::CrossTrackRms(wp), rms_m));
         }
+        found.extend(nose_error_deg(flown).map(|error_deg| (Measure::NoseError(wp), error_deg)));
         let overshoot_m = leg.overshoot_m(passage, passed.get(index + 1), &track.samples);
         found.extend(overshoot_m.map(|overshoot_m| (Measure::Overshoot(wp), overshoot_m)));
     }
     found
+}
+
+/// Returns the measures of a hold from the samples of the stay at its waypoint.
+fn in_hold(passage: &Passage, stay: &[TrackSample]) -> Vec<(Measure, f64)> {
+    let point = &passage.point;
+    let Some(centre) = point.ne.filter(|_| point.holds) else { return Vec::new() };
+    let distances = stay.iter().map(|sample| (sample.ne - centre).norm());
+    if point.pattern_m == 0.0 {
+        let greatest = distances.reduce(f64::max);
+        return greatest
+            .map(|distance_m| (Measure::HoldDistance(point.wp), distance_m))
+            .into_iter()
+            .collect();
+    }
+    let (Some(first), Some(last)) = (stay.first(), stay.last()) else { return Vec::new() };
+    let seconds = last.time_s - first.time_s;
+    if !point.is_ring || seconds < SHORTEST_RING_S {
+        return Vec::new();
+    }
+    let squares: f64 = distances.map(|distance| (distance - point.pattern_m).powi(2)).sum();
+    // From north to east is clockwise.
+    let step = |pair: &[TrackSample]| match pair {
+        [from, to] => {
+            let (from, to) = (from.ne - centre, to.ne - centre);
+            atan2(from.perp(&to), from.dot(&to))
+        }
+        _ => 0.0,
+    };
+    let turned: f64 = stay.windows(2).map(step).sum();
+    vec![
+        (Measure::RingError(point.wp), (squares / stay.len() as f64).sqrt()),
+        (Measure::RingRate(point.wp), turned.to_degrees() / seconds),
+    ]
+}
+
+/// Returns the root mean square angle between the nose and the course over ground, degrees; `None` for a craft that
+/// hardly moves, or of a log.
+fn nose_error_deg(flown: &[TrackSample]) -> Option<f64> {
+    let (mut sum, mut count) = (0.0, 0_u32);
+    for pair in flown.windows(2) {
+        let [from, to] = pair else { continue };
+        let (moved, seconds) = (to.ne - from.ne, to.time_s - from.time_s);
+        let Some(attitude) = from.attitude.filter(|_| moved.norm() > SLOWEST_COURSE_MPS * seconds) else {
+            continue;
+        };
+        let course_deg = atan2(moved.y, moved.x).to_degrees();
+        let beside_deg = (attitude.heading_deg - course_deg + 180.0).rem_euclid(360.0) - 180.0;
+        sum += beside_deg * beside_deg;
+        count += 1;
+    }
+    (count > 0).then(|| (sum / f64::from(count)).sqrt())
 }
 
 /// The straight line to a waypoint.

@@ -70,7 +70,7 @@ fn map(comparison: &Comparison, ground: Vec<Ground>, most_points: usize, most_ot
         for (index, flight) in side.flights.iter().enumerate().take(most_others.saturating_add(1)).rev() {
             let points = flight.samples.iter().map(place).collect();
             map.tracks.push(MapTrack { points, colour, width: if index == 0 { bold } else { THIN } });
-            map.touchdowns.extend(flight.touchdown.map(|(_, ne)| ((ne.y, ne.x), colour)));
+            map.touchdowns.extend(flight.touchdown.map(|landing| ((landing.ne.y, landing.ne.x), colour)));
         }
     }
     map

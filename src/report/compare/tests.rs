@@ -3,7 +3,7 @@ use nalgebra::Vector2;
 use super::*;
 use crate::geo::LocalFrame;
 use crate::plan::{Altitude, FlightPlan, HoldPattern, WaypointType};
-use crate::report::route::TrackSample;
+use crate::report::route::{SampledAttitude, TrackSample};
 use crate::telemetry::snapshot::SettingsView;
 
 const LAT_DEG: f64 = 40.4635;
@@ -49,7 +49,12 @@ fn track(places: &[(f64, f64)]) -> Track {
         let steps = ((to - from).norm() as usize).max(1);
         for step in 0..steps {
             let ne = from + (to - from) * (step as f64 / steps as f64);
-            samples.push(TrackSample { time_s: samples.len() as f64 / 10.0, ne, alt_m: 10.0 });
+            samples.push(TrackSample {
+                time_s: samples.len() as f64 / 10.0,
+                ne,
+                alt_m: 10.0,
+                attitude: None,
+            });
         }
     }
     let end = samples.len() as f64 / 10.0;
@@ -127,12 +132,41 @@ fn an_orbit_is_reached_at_its_ring_and_left_from_it() {
     places.extend((1..=36).map(|step| ring(f64::from(step) * 20.0)));
     places.extend([(0.0, 0.0)]);
     let mut flown = track(&places);
-    flown.touchdown = Some((40.0, Vector2::new(3.0, 4.0)));
+    flown.touchdown = Some(Landing {
+        time_s: 40.0,
+        ne: Vector2::new(3.0, 4.0),
+        impact_mps: Some(0.5),
+        disarmed_after_s: Some(1.5),
+    });
     let found = measures(&route, &flown);
     assert_near(value(&found, Measure::TimeTo(0)), 7.9, 0.11);
     assert_near(value(&found, Measure::CrossTrackMax(1)), 0.0, 0.5);
     assert_near(value(&found, Measure::TouchdownDistance), 5.0, 0.01);
+    assert_near(value(&found, Measure::TouchdownSpeed), 0.5, 1e-9);
+    assert_near(value(&found, Measure::DisarmDelay), 1.5, 1e-9);
+    // The chords of the track are inside the ring: 20° in six steps. It goes from south to east, counter-clockwise.
+    assert_near(value(&found, Measure::RingError(0)), 0.15, 0.15);
+    assert_near(value(&found, Measure::RingRate(0)), -20.0 / 0.6, 0.5);
+    assert_near(value(&found, Measure::HomeDistance), 120.0, 1.0);
     assert!(!found.iter().any(|(measure, _)| matches!(measure, Measure::Overshoot(_))));
+}
+
+#[test]
+fn a_nose_beside_the_course_a_tilt_and_a_drift_in_a_hold_are_measured() {
+    let route = route(&[(100.0, 0.0, Hold), (0.0, 0.0, Land)]);
+    let mut flown = track(&[(0.0, 0.0), (100.0, 0.0), (100.0, 2.5), (100.0, 0.0), (0.0, 0.0)]);
+    assert!(!measures(&route, &flown).iter().any(|(measure, _)| matches!(measure, Measure::NoseError(_))));
+    for sample in &mut flown.samples {
+        let tilt_deg = if sample.time_s > 5.0 { 12.0 } else { 4.0 };
+        // The way out goes north, the way back south.
+        sample.attitude = Some(SampledAttitude { heading_deg: 350.0, tilt_deg });
+    }
+    let found = measures(&route, &flown);
+    assert_near(value(&found, Measure::NoseError(0)), 10.0, 0.01);
+    assert_near(value(&found, Measure::NoseError(1)), 170.0, 0.5);
+    assert_near(value(&found, Measure::TiltMax), 12.0, 1e-9);
+    assert_near(value(&found, Measure::HoldDistance(0)), 2.5, 1.0);
+    assert!(!found.iter().any(|(measure, _)| matches!(measure, Measure::RingError(_))));
 }
 
 fn comparison(name: &str) -> Comparison {

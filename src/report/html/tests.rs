@@ -221,6 +221,7 @@ fn comparison_page(name: &str, is_log: bool) -> String {
             time_s: f64::from(step),
             ne: nalgebra::Vector2::new(f64::from(step), by),
             alt_m: 10.0 + by,
+            attitude: None,
         };
         Track {
             samples: (0..100).map(sample).collect(),

@@ -39,183 +39,228 @@ pub fn current(state: &Shared) -> Option<StatusMessage> {
     message(severity, state.units.in_sentence(condition), state.units.in_sentence(action))
 }
 
+/// A situation and its message; `None` if the craft is in another situation.
+type Rule = fn(&Shared) -> Option<StatusMessage>;
+
+/// The situations that come first, with the craft engaged or not.
+const ALWAYS: [Rule; 8] =
+    [flies_again, replay, rewound, remote_craft, simulator, crashed, diverged, link_is_lost];
+/// The situations of a craft that the autopilot does not fly.
+const NOT_ENGAGED: [Rule; 3] = [disarmed_in_the_air, rc_is_cut, arming_is_unknown];
+/// The situations of an armed craft that the autopilot does not fly.
+const ARMED: [Rule; 4] = [failsafe, refused_autopilot, pilot_flies, by_hand];
+/// The situations of a disarmed craft.
+const DISARMED: [Rule; 10] = [
+    complete,
+    pilot_prepares,
+    no_fix,
+    arming_is_blocked,
+    no_plan,
+    switched_on_while_disarmed,
+    refused_stored_plan,
+    no_switch_arms,
+    refused_open_plan,
+    ready,
+];
+
+/// Returns the message of the first situation that the craft is in.
+fn first(rules: &[Rule], state: &Shared) -> Option<StatusMessage> {
+    rules.iter().find_map(|rule| rule(state))
+}
+
 fn metric(state: &Shared) -> Option<StatusMessage> {
     let vehicle = &state.view.vehicle;
-    let craft = &vehicle.craft;
-    let key = |action| state.key(action);
-    let flying_again = state.view.timeline.as_ref().and_then(|timeline| timeline.flying_again);
-    if let Some((reached, until)) = flying_again {
-        let (reached_s, until_s) = (reached.as_secs_f64(), until.as_secs_f64());
-        let condition = format!("The firmware flies again: {reached_s:.0} of {until_s:.0} s.");
-        return message(Severity::Info, condition, format!("{} stops it", key(Action::FlyOn)));
-    }
-    if let Some(replay) = &state.view.replay {
-        return of_replay(state, replay);
-    }
-    if let Some(rewound_s) = state.rewound_s() {
-        let condition = format!("Rewound by {rewound_s:.1} s: the flight waits.");
-        let flies_on = if state.flies_again() {
-            format!("{} flies on from here, ", key(Action::FlyOn))
-        } else {
-            String::new()
-        };
-        let action = format!("{flies_on}{} goes to the end", key(Action::Newest));
-        return message(Severity::Info, condition, action);
-    }
-    if let Some(reported) = state.view.remote.as_ref().and_then(|outside| remote::current(state, outside)) {
-        return Some(reported);
-    }
-    match state.view.simulator {
-        Some(LinkState::Silent) => {
-            return message(
-                Severity::Fault,
-                "The simulator is silent: time is stopped.",
-                "let it go on, or start it again",
-            );
-        }
-        Some(LinkState::Waiting) => {
-            let action = "start it; it sends to the door udp fdm";
-            return message(Severity::Warn, "No simulator yet.", action);
-        }
-        Some(LinkState::Flowing) | None => {}
-    }
-    if let Some(truth) = &vehicle.truth {
-        if truth.crashed {
-            let action = format!("{}{} puts it back home", way_back(state), key(Action::ResetCraft));
-            return message(Severity::Fault, "The craft crashed.", action);
-        }
-        if truth.diverged {
-            return message(
-                Severity::Fault,
-                "The simulation left its valid range.",
-                format!("{} resets", key(Action::ResetCraft)),
-            );
-        }
-    }
-    if let Some(ahead) = craft.failsafe_ahead {
-        return failsafe_ahead(state, ahead);
-    }
-    if vehicle.is_engaged() {
-        return in_flight(state);
-    }
-    if state.is_disarmed_in_the_air() {
-        return disarmed_in_the_air(state);
-    }
-    let switched_on = transmitter::switch_is_on(state, Mode::Autopilot);
-    if state.view.rc_cut {
-        return message(
-            Severity::Fault,
-            "The RC link is cut.",
-            format!("{} restores it", key(Action::CutRc)),
-        );
-    }
-    let Some(armed) = craft.armed else {
-        return message(
-            Severity::Warn,
-            "The flight controller does not report arming.",
-            "wait for an answer",
-        );
+    first(&ALWAYS, state).or_else(|| match vehicle.craft.armed {
+        _ if vehicle.is_engaged() => in_flight(state),
+        Some(true) => first(&NOT_ENGAGED, state).or_else(|| first(&ARMED, state)),
+        _ => first(&NOT_ENGAGED, state).or_else(|| first(&DISARMED, state)),
+    })
+}
+
+fn flies_again(state: &Shared) -> Option<StatusMessage> {
+    let (reached, until) = state.view.timeline.as_ref()?.flying_again?;
+    let (reached_s, until_s) = (reached.as_secs_f64(), until.as_secs_f64());
+    let condition = format!("The firmware flies again: {reached_s:.0} of {until_s:.0} s.");
+    message(Severity::Info, condition, format!("{} stops it", state.key(Action::FlyOn)))
+}
+
+fn replay(state: &Shared) -> Option<StatusMessage> {
+    of_replay(state, state.view.replay.as_deref()?)
+}
+
+fn rewound(state: &Shared) -> Option<StatusMessage> {
+    let rewound_s = state.rewound_s()?;
+    let condition = format!("Rewound by {rewound_s:.1} s: the flight waits.");
+    let flies_on = match state.flies_again() {
+        true => format!("{} flies on from here, ", state.key(Action::FlyOn)),
+        false => String::new(),
     };
-    if armed {
-        if craft.failsafe_stage.is_some_and(|stage| stage > 0) {
-            return message(Severity::Fault, "Failsafe: the RC link is lost.", "send RC frames again");
+    message(Severity::Info, condition, format!("{flies_on}{} goes to the end", state.key(Action::Newest)))
+}
+
+fn remote_craft(state: &Shared) -> Option<StatusMessage> {
+    remote::current(state, state.view.remote.as_ref()?)
+}
+
+fn simulator(state: &Shared) -> Option<StatusMessage> {
+    match state.view.simulator? {
+        LinkState::Silent => message(
+            Severity::Fault,
+            "The simulator is silent: time is stopped.",
+            "let it go on, or start it again",
+        ),
+        LinkState::Waiting => {
+            message(Severity::Warn, "No simulator yet.", "start it; it sends to the door udp fdm")
         }
-        if let Some(refusal) = vehicle.nav.as_ref().and_then(|nav| nav.refusal).filter(|_| switched_on) {
-            let condition = format!("AUTOPILOT refused: {}", refusal.sentence());
-            return message(Severity::Fault, condition, action_after(state, refusal));
+        LinkState::Flowing => None,
+    }
+}
+
+fn crashed(state: &Shared) -> Option<StatusMessage> {
+    state.view.vehicle.truth.as_ref().filter(|truth| truth.crashed)?;
+    let action = format!("{}{} puts it back home", way_back(state), state.key(Action::ResetCraft));
+    message(Severity::Fault, "The craft crashed.", action)
+}
+
+fn diverged(state: &Shared) -> Option<StatusMessage> {
+    state.view.vehicle.truth.as_ref().filter(|truth| truth.diverged)?;
+    let action = format!("{} resets", state.key(Action::ResetCraft));
+    message(Severity::Fault, "The simulation left its valid range.", action)
+}
+
+fn link_is_lost(state: &Shared) -> Option<StatusMessage> {
+    failsafe_ahead(state, state.view.vehicle.craft.failsafe_ahead?)
+}
+
+fn rc_is_cut(state: &Shared) -> Option<StatusMessage> {
+    if !state.view.rc_cut {
+        return None;
+    }
+    message(Severity::Fault, "The RC link is cut.", format!("{} restores it", state.key(Action::CutRc)))
+}
+
+fn arming_is_unknown(state: &Shared) -> Option<StatusMessage> {
+    if state.view.vehicle.craft.armed.is_some() {
+        return None;
+    }
+    message(Severity::Warn, "The flight controller does not report arming.", "wait for an answer")
+}
+
+fn failsafe(state: &Shared) -> Option<StatusMessage> {
+    state.view.vehicle.craft.failsafe_stage.filter(|stage| *stage > 0)?;
+    message(Severity::Fault, "Failsafe: the RC link is lost.", "send RC frames again")
+}
+
+fn refused_autopilot(state: &Shared) -> Option<StatusMessage> {
+    let refusal = state.view.vehicle.nav.as_ref()?.refusal?;
+    if !transmitter::switch_is_on(state, Mode::Autopilot) {
+        return None;
+    }
+    let condition = format!("AUTOPILOT refused: {}", refusal.sentence());
+    message(Severity::Fault, condition, action_after(state, refusal))
+}
+
+fn pilot_flies(state: &Shared) -> Option<StatusMessage> {
+    let condition = format!("The pilot flies: {}.", state.view.pilot?);
+    message(Severity::Info, condition, format!("{} stops it", state.key(Action::Fly)))
+}
+
+fn complete(state: &Shared) -> Option<StatusMessage> {
+    state.view.vehicle.nav.as_ref().filter(|nav| nav.state == NavState::Complete)?;
+    let again = format!("{} flies again", state.key(Action::Fly));
+    let action = match state.view.simulator {
+        Some(_) => again,
+        None => format!("{} puts the craft back home, {again}", state.key(Action::ResetCraft)),
+    };
+    message(Severity::Good, "Mission complete.", action)
+}
+
+fn pilot_prepares(state: &Shared) -> Option<StatusMessage> {
+    let doing = state.view.pilot?;
+    let craft = &state.view.vehicle.craft;
+    if let Some(flag) = most_useful_flag(craft.arming_flags()).filter(|_| craft.has_fix()) {
+        let condition = format!("The pilot waits, arming is blocked: {flag}.");
+        return message(Severity::Info, condition, arming_hint(state, flag));
+    }
+    let condition = format!("The pilot prepares: {doing}.");
+    message(Severity::Info, condition, format!("{} stops it", state.key(Action::Fly)))
+}
+
+fn no_fix(state: &Shared) -> Option<StatusMessage> {
+    state.view.vehicle.craft.gps_fix.filter(|has_fix| !has_fix)?;
+    let action = format!("wait for satellites; {} waits by itself", state.key(Action::Fly));
+    message(Severity::Warn, "No GPS fix yet.", action)
+}
+
+fn arming_is_blocked(state: &Shared) -> Option<StatusMessage> {
+    let flag = most_useful_flag(state.view.vehicle.craft.arming_flags())?;
+    message(Severity::Warn, format!("Arming is blocked: {flag}."), arming_hint(state, flag))
+}
+
+fn no_plan(state: &Shared) -> Option<StatusMessage> {
+    state.view.vehicle.stored_plan.as_ref().filter(|plan| plan.waypoints.is_empty())?;
+    if let Some((condition, action)) = refusal_of_the_open(state) {
+        return message(Severity::Warn, condition, action);
+    }
+    let action = if state.plan().waypoints.is_empty() {
+        let opens = state.key(Action::Show(Panel::Plan));
+        let inserts = state.key(Action::Edit(EditAction::Insert));
+        format!("{opens} opens the plan editor: `{inserts}` inserts a waypoint")
+    } else {
+        let (upload, fly) = (state.key(Action::Upload), state.key(Action::Fly));
+        let fence = settings_in_force::replaced_fence(state, state.editor.document());
+        let fence = fence.map_or_else(String::new, |fence| format!(". {}", fence.trim_end_matches('.')));
+        format!("{upload} uploads {}; {fly} does it and flies{fence}", state.editor.plan().title())
+    };
+    message(Severity::Warn, "The craft has no plan.", action)
+}
+
+fn switched_on_while_disarmed(state: &Shared) -> Option<StatusMessage> {
+    if !transmitter::switch_is_on(state, Mode::Autopilot) {
+        return None;
+    }
+    let (autopilot, arm) = (state.key(Action::Autopilot), state.key(Action::Arm));
+    let action = format!("{autopilot} switches it off, then {arm} arms");
+    message(Severity::Warn, "AUTOPILOT is on while disarmed.", action)
+}
+
+fn refused_stored_plan(state: &Shared) -> Option<StatusMessage> {
+    let refusal = findings::refusal_of_the_stored(state)?;
+    let (plan, upload) = (state.key(Action::Show(Panel::Plan)), state.key(Action::Upload));
+    let condition = format!("The autopilot would refuse: {}.", refusal.reason());
+    message(Severity::Warn, condition, format!("{plan} edits the plan, {upload} uploads it"))
+}
+
+fn no_switch_arms(state: &Shared) -> Option<StatusMessage> {
+    transmitter::switch(state, Mode::Arm).err()?;
+    let action = match state.view.vehicle.craft.mode_ranges {
+        None => "wait for an answer".to_owned(),
+        Some(_) => {
+            let cli = state.key(Action::Show(Panel::Cli));
+            format!("`aux 0 0 0 1700 2100` in the CLI ({cli}) assigns one")
         }
-        if let Some(doing) = state.view.pilot {
-            return message(
-                Severity::Info,
-                format!("The pilot flies: {doing}."),
-                format!("{} stops it", key(Action::Fly)),
-            );
-        }
-        return by_hand(state);
-    }
-    let outside = state.view.simulator.is_some();
-    if vehicle.nav.as_ref().is_some_and(|nav| nav.state == NavState::Complete) {
-        let again = format!("{} flies again", key(Action::Fly));
-        let action = if outside {
-            again
-        } else {
-            format!("{} puts the craft back home, {again}", key(Action::ResetCraft))
-        };
-        return message(Severity::Good, "Mission complete.", action);
-    }
-    if let Some(doing) = state.view.pilot {
-        if let Some(flag) = most_useful_flag(craft.arming_flags()).filter(|_| craft.has_fix()) {
-            let condition = format!("The pilot waits, arming is blocked: {flag}.");
-            return message(Severity::Info, condition, arming_hint(state, flag));
-        }
-        return message(
-            Severity::Info,
-            format!("The pilot prepares: {doing}."),
-            format!("{} stops it", key(Action::Fly)),
-        );
-    }
-    if craft.gps_fix == Some(false) {
-        return message(
-            Severity::Warn,
-            "No GPS fix yet.",
-            format!("wait for satellites; {} waits by itself", key(Action::Fly)),
-        );
-    }
-    if let Some(flag) = most_useful_flag(craft.arming_flags()) {
-        return message(Severity::Warn, format!("Arming is blocked: {flag}."), arming_hint(state, flag));
-    }
-    let refused_open = findings::refusal_of_the_open(state).map(|refusal| {
-        let title = state.editor.plan().title();
-        let plan = key(Action::Show(Panel::Plan));
-        let condition = format!("The autopilot would refuse {title}: {}.", refusal.reason());
-        (condition, format!("{plan} edits the plan"))
-    });
-    if vehicle.stored_plan.as_ref().is_some_and(|plan| plan.waypoints.is_empty()) {
-        if let Some((condition, action)) = refused_open {
-            return message(Severity::Warn, condition, action);
-        }
-        let action = if state.plan().waypoints.is_empty() {
-            {
-                let (opens, inserts) =
-                    (key(Action::Show(Panel::Plan)), key(Action::Edit(EditAction::Insert)));
-                format!("{opens} opens the plan editor: `{inserts}` inserts a waypoint")
-            }
-        } else {
-            let (upload, fly) = (key(Action::Upload), key(Action::Fly));
-            let fence = settings_in_force::replaced_fence(state, state.editor.document());
-            let fence = fence.map_or_else(String::new, |fence| format!(". {}", fence.trim_end_matches('.')));
-            format!("{upload} uploads {}; {fly} does it and flies{fence}", state.editor.plan().title())
-        };
-        return message(Severity::Warn, "The craft has no plan.", action);
-    }
-    if switched_on {
-        let action = format!("{} switches it off, then {} arms", key(Action::Autopilot), key(Action::Arm));
-        return message(Severity::Warn, "AUTOPILOT is on while disarmed.", action);
-    }
-    if let Some(refusal) = findings::refusal_of_the_stored(state) {
-        let (plan, upload) = (key(Action::Show(Panel::Plan)), key(Action::Upload));
-        let condition = format!("The autopilot would refuse: {}.", refusal.reason());
-        return message(Severity::Warn, condition, format!("{plan} edits the plan, {upload} uploads it"));
-    }
-    if transmitter::switch(state, Mode::Arm).is_err() {
-        let action = match craft.mode_ranges {
-            None => "wait for an answer".to_owned(),
-            Some(_) => {
-                format!("`aux 0 0 0 1700 2100` in the CLI ({}) assigns one", key(Action::Show(Panel::Cli)))
-            }
-        };
-        return message(Severity::Warn, "No switch arms the craft.", action);
-    }
-    if let Some((condition, action)) = refused_open {
-        let fly = key(Action::Fly);
-        return message(
-            Severity::Warn,
-            condition,
-            format!("{action}; {fly} asks, the craft has another plan"),
-        );
-    }
-    let by_hand = [Action::Arm, Action::Throttle, Action::Autopilot].map(key).join(", ");
-    let fly = key(Action::Fly);
+    };
+    message(Severity::Warn, "No switch arms the craft.", action)
+}
+
+fn refused_open_plan(state: &Shared) -> Option<StatusMessage> {
+    let (condition, action) = refusal_of_the_open(state)?;
+    let fly = state.key(Action::Fly);
+    message(Severity::Warn, condition, format!("{action}; {fly} asks, the craft has another plan"))
+}
+
+/// Returns the reason why the autopilot would refuse the open plan, and the next step.
+fn refusal_of_the_open(state: &Shared) -> Option<(String, String)> {
+    let refusal = findings::refusal_of_the_open(state)?;
+    let title = state.editor.plan().title();
+    let condition = format!("The autopilot would refuse {title}: {}.", refusal.reason());
+    Some((condition, format!("{} edits the plan", state.key(Action::Show(Panel::Plan)))))
+}
+
+fn ready(state: &Shared) -> Option<StatusMessage> {
+    let by_hand =
+        [Action::Arm, Action::Throttle, Action::Autopilot].map(|action| state.key(action)).join(", ");
+    let fly = state.key(Action::Fly);
     let flies = if settings_in_force::craft_has_another(state) {
         let title = state.editor.plan().title();
         format!("{fly} asks: the craft does not have {title} as edited")
@@ -275,6 +320,9 @@ fn failsafe_ahead(state: &Shared, ahead: FailsafeAhead) -> Option<StatusMessage>
 
 /// Returns the message for a craft that falls without its motors.
 fn disarmed_in_the_air(state: &Shared) -> Option<StatusMessage> {
+    if !state.is_disarmed_in_the_air() {
+        return None;
+    }
     let action = if state.view.simulator.is_some() {
         "reset the simulator's world".to_owned()
     } else {

@@ -7,7 +7,7 @@ use crate::flight::{Flight, FlightEnd};
 use crate::flight_log::LogSticks;
 use crate::process::error::AppError;
 use crate::recording::End;
-use crate::report::compare::Track;
+use crate::report::compare::{Landing, Track};
 use crate::report::route::TrackSample;
 use crate::runner::Subscriber;
 use crate::signals::SimTime;
@@ -159,10 +159,11 @@ impl Subscriber<Flight> for Feed {
         }
         let (time_s, ne) = (now.seconds_since(begin), north_east(truth.pos_enu));
         if has_disarmed {
-            self.track.touchdown = Some((time_s, ne));
+            self.track.touchdown = Some(Landing::from_disarming(time_s, ne));
         }
         if now.0.is_multiple_of(INTERVAL_US) {
-            self.track.samples.push(TrackSample { time_s, ne, alt_m: truth.pos_enu.z - self.standing_m });
+            let (alt_m, attitude) = (truth.pos_enu.z - self.standing_m, Some(truth.into()));
+            self.track.samples.push(TrackSample { time_s, ne, alt_m, attitude });
         }
     }
 
