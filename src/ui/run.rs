@@ -122,9 +122,9 @@ pub async fn run(
 }
 
 async fn run_loop(
-    mut tui: Tui,
-    mut link: SessionLink,
-    mut files: FilesLink,
+    tui: Tui,
+    link: SessionLink,
+    files: FilesLink,
     config: UiConfig,
     stop: impl Future<Output = ()>,
 ) -> io::Result<Ending> {
@@ -133,31 +133,17 @@ async fn run_loop(
     let mut resume = signal(SignalKind::from_raw(Signal::CONT.as_raw()))?;
     let started = Instant::now();
     let mut stop = std::pin::pin!(stop);
-    let size = tui.terminal().size()?;
-    let view = link.view.borrow_and_update().clone();
-    let mut state = AppState::new(config, (size.width, size.height), view.clone());
-    // Each picture extends tracks and graphs.
-    for past in link.past.drain(..).chain([view]) {
-        update(&mut state, Msg::View(past));
-    }
-    // Before the first frame: a terminal that is closed once it has seen that frame sends no keys any more.
-    let mut keys = EventStream::new();
-    restore(&mut state);
-    tui.draw(&state)?;
-
-    let (answers, mut replies) = Answers::channel();
-    let threads = Threads::start(&answers)?;
-    let mut ahead = TypedAhead::default();
+    let (mut screen, mut replies) = Screen::start(tui, link, files, config)?;
     let mut events = Vec::with_capacity(BATCH);
     let mut drawn = Instant::now();
     // The time of the next frame; `None` while nothing has changed.
     let mut due: Option<Instant> = None;
 
     loop {
-        let is_held =
-            ahead.holds_keys(state.shared.view.commands_taken, Instant::now()) || files.holds_keys();
+        let is_held = screen.holds_keys();
         let frame_at = due.unwrap_or(drawn + if is_held { HELD } else { FADE_FRAME });
-        let early = ahead.next(is_held);
+        let early = screen.ahead.next(is_held);
+        let link = &mut screen.link;
         let wake = tokio::select! {
             // Keys first: the user gets an answer before the flight is shown.
             biased;
@@ -166,9 +152,9 @@ async fn run_loop(
             Some(()) = suspend.recv() => Wake::Suspend,
             Some(()) = resume.recv() => Wake::Resume,
             // An answer that keys typed ahead are meant for comes before them.
-            Some(reply) = files.replies.recv() => Wake::Msg(Msg::Files(reply)),
-            key = keys.next(), if ahead.reads_keys(is_held) => match key {
-                Some(Ok(event)) => match ahead.let_through(event, is_held) {
+            Some(reply) = screen.files.replies.recv() => Wake::Msg(Msg::Files(reply)),
+            key = screen.keys.next(), if screen.ahead.reads_keys(is_held) => match key {
+                Some(Ok(event)) => match screen.ahead.let_through(event, is_held) {
                     Some(event) => terminal_message(event).map_or(Wake::Time, Wake::Msg),
                     None => continue,
                 },
@@ -188,91 +174,176 @@ async fn run_loop(
             },
         };
         let now = Instant::now();
-        update(&mut state, Msg::Clock(now - started));
+        update(&mut screen.state, Msg::Clock(now - started));
         let (msg, frame) = match wake {
             Wake::End(ending) => {
-                if let Some(effect) = keep(&mut state) {
-                    carry_out(effect, &link, &threads, &mut files, &answers);
-                }
-                link.commands.try_send(Command::Quit).ok();
-                return Ok(ending);
+                let kept = keep(&mut screen.state);
+                screen.carry_out(kept);
+                return Ok(screen.quit(ending));
             }
             Wake::Time => {
                 // Nothing else looks at a screen that waits.
-                if let Some(effect) = follow_screen(&mut state) {
-                    carry_out(effect, &link, &threads, &mut files, &answers);
-                }
+                let kept = follow_screen(&mut screen.state);
+                screen.carry_out(kept);
                 (None, Duration::ZERO)
             }
-            Wake::Suspend | Wake::Resume => {
-                if matches!(wake, Wake::Suspend) {
-                    tui.suspend()?;
-                } else {
-                    tui.resume()?;
-                }
-                let size = tui.terminal().size()?;
-                (Some(Msg::Resize(size.width, size.height)), Duration::ZERO)
+            Wake::Suspend => {
+                screen.tui.suspend()?;
+                (Some(screen.size()?), Duration::ZERO)
+            }
+            Wake::Resume => {
+                screen.tui.resume()?;
+                (Some(screen.size()?), Duration::ZERO)
             }
             Wake::Msg(msg) => (Some(msg), KEY_FRAME),
             Wake::Flight(msg) => (Some(msg), FLIGHT_FRAME),
         };
         let received = events.drain(..).map(Msg::Event);
         for msg in received.chain(msg).collect::<Vec<_>>() {
-            if matches!(msg, Msg::Resize(..)) {
-                tui.lose_screen();
-            }
-            let input = Input::of(&msg);
-            ahead.hears(&msg);
-            let effects = update(&mut state, msg);
-            let is_awaited = ahead.takes(input, &effects, now);
-            for effect in effects {
-                if matches!(effect, Effect::Quit) {
-                    link.commands.try_send(Command::Quit).ok();
-                    return Ok(Ending::Quit);
-                }
-                if matches!(effect, Effect::Redraw) {
-                    tui.lose_screen();
-                }
-                if matches!(effect, Effect::Suspend) && !can_be_continued() {
-                    state.shared.notify(
-                        Severity::Warn,
-                        "Not stopped: there is no shell that could continue the program.",
-                    );
-                } else if matches!(effect, Effect::Suspend) {
-                    tui.suspend()?;
-                    let size = tui.terminal().size()?;
-                    update(&mut state, Msg::Resize(size.width, size.height));
-                }
-                if let Effect::ShowFlights { files, again } = &effect {
-                    // The reader of the terminal ends, so that the keys go to the other program. What it has read
-                    // already was meant for that program and would act on this one.
-                    keys = EventStream::new();
-                    drop_typed_keys()?;
-                    ahead.drop_key();
-                    tui.leave();
-                    let shown = flights::show(link.shelf.as_ref(), files, *again, &mut stop).await;
-                    tui.resume()?;
-                    let Shown::Left(result) = shown else {
-                        link.commands.try_send(Command::Quit).ok();
-                        return Ok(Ending::Signal);
-                    };
-                    let size = tui.terminal().size()?;
-                    update(&mut state, Msg::Resize(size.width, size.height));
-                    update(&mut state, Msg::FlightsShown(result));
-                }
-                if carry_out(effect, &link, &threads, &mut files, &answers) {
-                    ahead.sends(is_awaited, now);
-                }
+            if let Some(ending) = screen.take(msg, now, &mut stop).await? {
+                return Ok(screen.quit(ending));
             }
         }
         let wanted = drawn + frame;
         due = Some(due.map_or(wanted, |due| due.min(wanted)));
         if due.is_some_and(|due| due <= now) {
-            files.keep_edits().await;
-            tui.draw(&state)?;
+            screen.files.keep_edits().await;
+            screen.tui.draw(&screen.state)?;
             drawn = Instant::now();
             due = None;
         }
+    }
+}
+
+/// The running user interface with its links.
+struct Screen {
+    tui: Tui,
+    state: AppState,
+    link: SessionLink,
+    files: FilesLink,
+    threads: Threads,
+    answers: Answers,
+    keys: EventStream,
+    ahead: TypedAhead,
+}
+
+impl Screen {
+    /// Draws the first frame. Returns the screen, and the receiver of the answers to its effects.
+    fn start(
+        mut tui: Tui,
+        mut link: SessionLink,
+        files: FilesLink,
+        config: UiConfig,
+    ) -> io::Result<(Self, mpsc::UnboundedReceiver<Msg>)> {
+        let size = tui.terminal().size()?;
+        let view = link.view.borrow_and_update().clone();
+        let mut state = AppState::new(config, (size.width, size.height), view.clone());
+        // Each picture extends tracks and graphs.
+        for past in link.past.drain(..).chain([view]) {
+            update(&mut state, Msg::View(past));
+        }
+        // Before the first frame: a terminal that is closed once it has seen that frame sends no keys any more.
+        let keys = EventStream::new();
+        restore(&mut state);
+        tui.draw(&state)?;
+        let (answers, replies) = Answers::channel();
+        let threads = Threads::start(&answers)?;
+        let ahead = TypedAhead::default();
+        Ok((Self { tui, state, link, files, threads, answers, keys, ahead }, replies))
+    }
+
+    /// Returns `true` while keys wait for an answer.
+    fn holds_keys(&mut self) -> bool {
+        let taken = self.state.shared.view.commands_taken;
+        self.ahead.holds_keys(taken, Instant::now()) || self.files.holds_keys()
+    }
+
+    /// Returns the message with the size of the terminal.
+    fn size(&mut self) -> io::Result<Msg> {
+        let size = self.tui.terminal().size()?;
+        Ok(Msg::Resize(size.width, size.height))
+    }
+
+    /// Carries out an effect, if there is one. Returns `true` if the session gets a command.
+    fn carry_out(&mut self, effect: Option<Effect>) -> bool {
+        let Self { link, threads, files, answers, .. } = self;
+        effect.is_some_and(|effect| carry_out(effect, link, threads, files, answers))
+    }
+
+    /// Ends the session.
+    fn quit(&self, ending: Ending) -> Ending {
+        self.link.commands.try_send(Command::Quit).ok();
+        ending
+    }
+
+    /// Takes a message and carries out its effects. Returns the reason if one of them ends the user interface.
+    async fn take(
+        &mut self,
+        msg: Msg,
+        now: Instant,
+        stop: &mut (impl Future<Output = ()> + Unpin),
+    ) -> io::Result<Option<Ending>> {
+        if matches!(msg, Msg::Resize(..)) {
+            self.tui.lose_screen();
+        }
+        let input = Input::of(&msg);
+        self.ahead.hears(&msg);
+        let effects = update(&mut self.state, msg);
+        let is_awaited = self.ahead.takes(input, &effects, now);
+        for effect in effects {
+            match &effect {
+                Effect::Quit => return Ok(Some(Ending::Quit)),
+                Effect::Redraw => self.tui.lose_screen(),
+                Effect::Suspend => self.suspend()?,
+                Effect::ShowFlights { files, again } => {
+                    if !self.show_flights(files, *again, &mut *stop).await? {
+                        return Ok(Some(Ending::Signal));
+                    }
+                }
+                _ => {
+                    if self.carry_out(Some(effect)) {
+                        self.ahead.sends(is_awaited, now);
+                    }
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    /// Stops the program until its shell continues it.
+    fn suspend(&mut self) -> io::Result<()> {
+        if !can_be_continued() {
+            let text = "Not stopped: there is no shell that could continue the program.";
+            self.state.shared.notify(Severity::Warn, text);
+            return Ok(());
+        }
+        self.tui.suspend()?;
+        let size = self.size()?;
+        update(&mut self.state, size);
+        Ok(())
+    }
+
+    /// Leaves the terminal to another program that shows flights, until it ends. Returns `false` if this program has to
+    /// stop meanwhile.
+    async fn show_flights(
+        &mut self,
+        files: &[PathBuf],
+        again: bool,
+        stop: impl Future<Output = ()>,
+    ) -> io::Result<bool> {
+        // The reader of the terminal ends, so that the keys go to the other program. What it has read already was meant
+        // for that program and would act on this one.
+        self.keys = EventStream::new();
+        drop_typed_keys()?;
+        self.ahead.drop_key();
+        self.tui.leave();
+        let shown = flights::show(self.link.shelf.as_ref(), files, again, stop).await;
+        self.tui.resume()?;
+        let Shown::Left(result) = shown else { return Ok(false) };
+        let size = self.size()?;
+        update(&mut self.state, size);
+        update(&mut self.state, Msg::FlightsShown(result));
+        Ok(true)
     }
 }
 
