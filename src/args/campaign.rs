@@ -75,7 +75,7 @@ pub struct CampaignArgs {
     #[arg(long, value_name = "PART", help_heading = "Which")]
     pub shard: Option<ShardArg>,
 
-    /// Number of flights at the same time [default: one a processor]
+    /// Number of flights at the same time [default: one per processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256), help_heading = "How")]
     pub jobs: Option<u32>,
 

@@ -59,7 +59,7 @@ pub struct CheckArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MAX_ALLOWED_FLIGHTS), help_heading = "How")]
     pub max_flights: Option<u32>,
 
-    /// Number of flights at the same time [default: one a processor]
+    /// Number of flights at the same time [default: one per processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256), help_heading = "How")]
     pub jobs: Option<u32>,
 

@@ -54,7 +54,7 @@ pub struct CompareArgs {
     #[arg(long, value_name = "A..B", value_parser = value::seeds, conflicts_with_all = ["seed", "repeat"], help_heading = "Flight")]
     pub seeds: Option<value::Seeds>,
 
-    /// Number of flights at the same time [default: one a processor; on the wall clock: 1]
+    /// Number of flights at the same time [default: one per processor; on the wall clock: 1]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256), help_heading = "Flight")]
     pub jobs: Option<u32>,
 

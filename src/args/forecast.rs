@@ -71,7 +71,7 @@ pub struct ForecastArgs {
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = value::seed, help_heading = "How")]
     pub seed: Option<u64>,
 
-    /// Number of flights at the same time [default: one a processor]
+    /// Number of flights at the same time [default: one per processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256), help_heading = "How")]
     pub jobs: Option<u32>,
 

@@ -104,7 +104,7 @@ impl Distribution {
         }
     }
 
-    /// Returns the share of values below `value`, without the limits.
+    /// Returns the share of values up to `value`, as if there were no limits.
     fn share_below(&self, value: f64) -> f64 {
         match self.shape {
             Shape::Constant(only) => f64::from(u8::from(only <= value)),

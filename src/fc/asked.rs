@@ -10,13 +10,13 @@ use crate::vehicle::Ticket;
 /// The purpose of a request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Purpose {
-    /// A line for a part of this program. `true` if it may change something.
+    /// A line from another part of this program. `true` if it may change something.
     Line(Ticket, bool),
-    /// A line at the prompt, for a client of the doors. `true` if it may change something.
+    /// A line at the prompt, from a client of the doors. `true` if it may change something.
     Typed(Ticket, bool),
-    /// The line that shows the plan, for a part of this program.
+    /// The line that shows the plan, from another part of this program.
     Plan(Ticket),
-    /// A message for a part of this program. `true` if it may change something.
+    /// An MSP message from another part of this program. `true` if it may change something.
     Message(Ticket, bool),
     /// A question about its identity.
     Identity(Question),

@@ -3,7 +3,7 @@
 use crate::fc::client::Answer;
 use crate::firmware::cli::{CliAction, CliReply};
 
-/// Converts the answer to a line to that of an embedded flight controller's command line.
+/// Converts the answer of a remote flight controller to the reply of an embedded command line.
 pub(super) fn cli_reply(answer: Answer) -> CliReply {
     match answer {
         Answer::Line { text, failed, restarted } => {

@@ -37,7 +37,8 @@ pub(super) enum SelfCheck {
 }
 
 impl SelfCheck {
-    /// Checks once, some time after the executable begins to answer, that it shows the craft at rest correctly.
+    /// Checks once, some time after the executable begins to answer, that it reports the attitude and the position of
+    /// a craft at rest correctly. Returns a notice if it does not.
     pub(super) fn look(
         &mut self,
         sent: Dialect,

@@ -106,10 +106,10 @@ pub enum UploadProgress {
 }
 
 impl Upload {
-    /// Creates an upload to a craft with this reference of altitudes.
+    /// Creates an upload to a craft with this altitude reference.
     ///
     /// # Errors
-    /// Returns an error if the reference is unknown.
+    /// Returns an error if the reference is unknown, or if it is sea level and the altitude of home is unknown.
     pub fn new(
         plan: &FlightPlan,
         settings: &[String],

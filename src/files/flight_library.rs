@@ -65,10 +65,10 @@ impl Known {
     }
 }
 
-/// Deletes a recording of the library in a state directory, unless it is being recorded.
+/// Deletes a recording from the library in a state directory, unless it is still being written.
 ///
 /// # Errors
-/// Returns the reason, the end of a sentence.
+/// Returns the reason as the end of a sentence.
 pub(crate) fn remove(state: &Path, path: &Path) -> Result<(), String> {
     if path.parent() != Some(&state.join(FOLDER)) || !is_recording(path) {
         return Err("it is not in the library".to_owned());

@@ -6,7 +6,7 @@ use crate::firmware::modes::AfterAbort;
 /// The stick is at a position from before the abort, so it has no effect until the pilot moves it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) enum ThrottleTakeover {
-    /// The pilot uses the stick.
+    /// No hold is on after an aborted mission. The stick has its usual effect.
     #[default]
     Flown,
     /// The stick has been at this pulse since the mission was aborted, µs.

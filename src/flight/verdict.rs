@@ -42,7 +42,7 @@ pub struct Verdict {
 pub struct Crash {
     /// The cause, if it is known.
     pub cause: Option<CrashCause>,
-    /// The state of the navigator before it, with the waypoint and the origin of the plan; IDLE if it did not fly.
+    /// The state of the navigator at the crash; IDLE if it flew nothing.
     pub state: NavState,
     /// Index of the waypoint in the active plan.
     pub wp: u8,

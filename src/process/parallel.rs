@@ -9,7 +9,7 @@ use crate::runner::parallel;
 pub(crate) const JOBS_HAVE_NO_EFFECT: &str =
     "--jobs has no effect: a firmware on the wall clock flies one flight at a time.";
 
-/// Returns the number of flights at once: the one of `--jobs`, or one a processor.
+/// Returns the number of flights at once: the one of `--jobs`, or one per processor.
 pub(crate) fn threads(jobs: Option<u32>) -> usize {
     jobs.map_or_else(parallel::processors, |jobs| jobs as usize)
 }

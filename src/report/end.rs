@@ -1,4 +1,4 @@
-//! The end of a flight, for the last event and the last lines of a headless flight.
+//! The end of a flight, as the last event and the last lines on standard error report it.
 
 use crate::telemetry::FlightTruth;
 

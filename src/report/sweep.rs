@@ -47,7 +47,7 @@ impl SweptFlight<'_> {
         ScheduledFault { start: FaultStart::Engagement(f64::from(second)), ..self.fault }
     }
 
-    /// Returns the fault at the second to look at.
+    /// Returns the fault at the second with the worst result; `None` if every flight ends at home.
     pub fn worst_fault(&self) -> Option<ScheduledFault> {
         self.worst().map(|worst| self.at(worst.second))
     }

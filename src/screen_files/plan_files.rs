@@ -140,7 +140,7 @@ impl PlanFiles {
         self.take_in(path, seen, document, Vec::new())
     }
 
-    /// Returns the losses of journals since the last call, one sentence each.
+    /// Returns one sentence for each journal that was found damaged or unreadable since the last call.
     pub(crate) fn take_losses(&mut self) -> Vec<String> {
         std::mem::take(&mut self.lost)
     }

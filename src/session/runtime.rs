@@ -126,8 +126,8 @@ pub fn start(config: SessionConfig) -> std::io::Result<Handle> {
     start_at(config, None, None)
 }
 
-/// Starts the session at the end of a flight that was flown before. The vehicle is in the state after that
-/// flight, one of its instants is shown, and time is paused. `feed` records the flights of the session.
+/// Starts the session's thread. With `flown`, the vehicle is in the state after that flight, one instant of the
+/// flight is shown, and time is paused. `feed` records the flights of the session.
 ///
 /// # Errors
 /// Returns an error if the system cannot start a thread.

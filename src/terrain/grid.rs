@@ -26,9 +26,9 @@ pub struct Grid {
     pub north_deg: f64,
     /// Longitude of the first column, degrees.
     pub west_deg: f64,
-    /// Distance of two rows, degrees.
+    /// Distance between adjacent rows, degrees.
     pub lat_step_deg: f64,
-    /// Distance of two columns, degrees.
+    /// Distance between adjacent columns, degrees.
     pub lon_step_deg: f64,
     /// `rows` times `cols` samples.
     pub samples: Samples,

@@ -26,9 +26,9 @@ const HALF_INTEGRAL_ACCEL: f64 = 0.3;
 const SETPOINT_RPS: f64 = 5.0;
 /// The factor by which the craft may be faster than its target when it follows a pattern.
 const CHASE: f64 = 1.1;
-/// The distance from the target, in radii of the pattern, within which the trim is learned, and the maximum trim, in
-/// speeds of the target.
+/// The distance from the target within which the trim is learned, as a fraction of the radius of the pattern.
 const ON_PATTERN: f64 = 0.5;
+/// The maximum trim, as a fraction of the speed of the target.
 const MAX_TRIM: f64 = 0.5;
 /// The lag of the velocity behind its setpoint, s.
 const VELOCITY_LAG_S: f64 = 0.3;

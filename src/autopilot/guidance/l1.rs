@@ -118,7 +118,8 @@ pub fn l1(
     }
 }
 
-/// Returns the angle η from course to aim, and `2·V²·sin η / distance` with η within ±90°.
+/// Returns the angle η from the course to the aim, and the lateral acceleration `2·V²·sin η / distance`, for which η
+/// is clamped to ±90°. Returns `None` and 0 if the craft does not move or is at the aim.
 fn steering(to_aim: Vector2<f64>, velocity: Vector2<f64>) -> (Option<f64>, f64) {
     let distance = to_aim.norm();
     let speed = velocity.norm();

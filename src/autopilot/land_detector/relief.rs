@@ -19,7 +19,7 @@ const SANK_SHARE: f64 = 0.6;
 /// The rates at which the throttle is reduced while a craft does not sink, and restored, µs/s.
 const RELIEF_US_PER_S: f64 = 120.0;
 const GIVE_BACK_US_PER_S: f64 = 300.0;
-/// The maximum reduction of the throttle, µs. The floor of the parameters is reached in any case.
+/// The maximum reduction of the throttle, µs. The reduced throttle is still limited by the throttle floor.
 const RELIEF_LIMIT_US: f64 = 600.0;
 /// The reduction of the throttle at which the craft is flown level, µs.
 const LEVEL_US: f64 = 80.0;

@@ -2,7 +2,7 @@
 
 use std::io;
 
-/// Gives ranges of the bytes of a file.
+/// A log file whose bytes can be read at any offset.
 pub trait LogSource {
     /// Returns the number of bytes.
     fn size(&self) -> u64;

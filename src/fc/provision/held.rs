@@ -69,7 +69,7 @@ pub(super) struct Held {
     settings: BTreeMap<String, Option<String>>,
     aux: Vec<Vec<u16>>,
     plan: Option<FlightPlan>,
-    /// `true` if nothing was changed in its configuration.
+    /// `true` if the flight controller reported no differences from a fresh configuration.
     is_bare: bool,
 }
 

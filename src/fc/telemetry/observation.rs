@@ -129,7 +129,8 @@ impl Observation {
         self.ranges.as_deref().map(|ranges| mode_ranges(ranges, self.range_links.as_deref()))
     }
 
-    /// Returns modes, arming, receiver and battery, as far as they were reported.
+    /// Returns the state of the craft as far as the flight controller has reported it: modes, arming, GPS, home,
+    /// receiver, motors and battery.
     pub fn craft_view(&self) -> CraftView {
         let armed = self.armed();
         let flags = self.status.and_then(|status| status.arming_blocked_by);

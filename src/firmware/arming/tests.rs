@@ -63,7 +63,7 @@ struct Row {
 const SAME: fn(&mut ArmingConfig) = |_| {};
 const BACK_TO_READY: fn(&mut ArmingFacts) = |_| {};
 
-/// Returns every situation that sets a flag and clears it with its cause.
+/// Returns the situations that set a flag only while they last.
 fn situations() -> Vec<Row> {
     vec![
         Row { name: "FAILSAFE", config: SAME, set: |f| f.failsafe_landed = true, clear: BACK_TO_READY },

@@ -19,7 +19,8 @@ pub(super) fn manufacturer_id(session: &mut Session<'_>, value: &str) {
     session.line(format_args!("manufacturer_id {id}"));
 }
 
-/// Returns a new name, cut to its maximum length.
+/// Returns the printable ASCII characters of `value`, at most `max` of them, without blanks at the ends; `None` if
+/// nothing is left.
 fn identity(value: &str, max: usize) -> Option<String> {
     let printable = value.chars().filter(|letter| (' '..='~').contains(letter));
     let name: String = printable.take(max).collect::<String>().trim().to_owned();

@@ -36,17 +36,17 @@ pub(super) const fn i16(name: &'static str) -> Field {
     Field::Setting(Width::I16, name)
 }
 
-/// A byte without meaning here.
+/// Returns a fixed field of one byte for data that this program does not use.
 pub(super) const fn byte(value: i64) -> Field {
     Field::Fixed(Width::U8, value)
 }
 
-/// A word without meaning here.
+/// Returns a fixed field of two bytes for data that this program does not use.
 pub(super) const fn word(value: i64) -> Field {
     Field::Fixed(Width::U16, value)
 }
 
-/// A double word without meaning here.
+/// Returns a fixed field of four bytes for data that this program does not use.
 pub(super) const fn long(value: i64) -> Field {
     Field::Fixed(Width::U32, value)
 }

@@ -160,7 +160,7 @@ impl Channels {
         &self.last_valid
     }
 
-    /// Returns the live AUX channels in use, µs.
+    /// Returns the values of the AUX channels in use, µs.
     pub fn aux(&self, config: &ChannelConfig) -> &[u16] {
         let live = (AUX1 + usize::from(config.max_aux)).min(RC_CHANNELS);
         &self.values[AUX1..live]

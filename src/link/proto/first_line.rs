@@ -21,7 +21,7 @@ const TAIL: usize = HTTP_VERSION.len() + 1;
 /// The longest request line. Browsers send less.
 const LINE_MAX: usize = 4 * 1024 * 1024;
 
-/// The protocol of a stranger, as far as the first byte shows.
+/// A protocol that serial clients do not speak, as far as the beginning of the connection shows it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum ForeignProtocol {
     /// An HTTP request, or a word in capitals, which cannot be distinguished from one.

@@ -60,7 +60,7 @@ pub(super) struct Builder<'m, 'p, 'a> {
     pub(super) map: &'m Map,
     pub(super) options: &'m ReadOptions,
     pub(super) problems: &'p mut Problems<'a>,
-    /// An altitude of 0 is not given.
+    /// `true` if an altitude of 0 means that no altitude is given.
     pub(super) zero_is_missing: bool,
     /// The home in the file.
     home: Option<HomePosition>,

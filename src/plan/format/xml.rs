@@ -38,7 +38,7 @@ impl Element {
     }
 }
 
-/// A part of a document whose text is still that of the document.
+/// A part of a document. Its text is borrowed from the document where possible.
 enum Borrowed<'t> {
     Start(Element),
     /// The text, and its place in the document.

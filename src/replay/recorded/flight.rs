@@ -1,4 +1,4 @@
-//! The flight of a recording, by its pictures.
+//! Shows a recorded flight from the pictures in its recording.
 
 use std::sync::Arc;
 

@@ -18,12 +18,12 @@ impl CsvTable {
         Self { inputs, metrics }
     }
 
-    /// Returns the first line, with its end.
+    /// Returns the header row, with the line ending.
     pub fn head(&self) -> Vec<u8> {
         row(FIRST.iter().copied().chain(self.inputs.iter().chain(&self.metrics).map(String::as_str)))
     }
 
-    /// Returns the line of a flight, with its end. A flight without a value has an empty cell.
+    /// Returns the row of a flight, with the line ending. A missing value gives an empty cell.
     pub fn line(&self, record: &Record) -> Vec<u8> {
         let side = if record.side == Side::B { "b" } else { "a" };
         let mut cells = vec![

@@ -20,7 +20,7 @@ use crate::ui::shared::Shared;
 /// The shortest time between two look-aheads while it is on.
 const LOOK_AHEAD_INTERVAL: Duration = Duration::from_secs(1);
 
-/// Requests an estimate of the open plan if the newest one was for another plan or other air.
+/// Requests an estimate of the open plan if the plan, the settings or the air have changed since the last estimate.
 pub(in crate::ui) fn follow_plan(state: &mut Shared) -> Option<Effect> {
     let holds = state.forecast.basis.as_ref().is_some_and(|basis| basis.still_holds(state));
     if holds || !state.forecast.has_session {

@@ -18,7 +18,8 @@ const EMBEDDED: Duration = Duration::from_secs(1);
 /// The time after a refusal before a remote firmware is asked again.
 const AGAIN: Duration = Duration::from_secs(10);
 
-/// Requests the settings if they are shown and may be outdated.
+/// Requests the settings if they are shown, and unknown or possibly outdated. Discards the settings of an earlier
+/// connection.
 pub(in crate::ui) fn follow(state: &mut Shared) -> Option<Effect> {
     let connection = state.view.remote.as_ref().map(|remote| remote.connection);
     if state.settings.connection != connection {

@@ -43,10 +43,10 @@ pub(in crate::ui) fn toggle_playing(state: &mut Shared) -> Vec<Effect> {
     advance(state)
 }
 
-/// Checks that there is something to play.
+/// Checks that the recorded stick movements can be played, or playing can be stopped.
 ///
 /// # Errors
-/// Returns the reason in a sentence if there is not.
+/// Returns the reason in a sentence if not.
 pub(in crate::ui) fn can_play(state: &Shared) -> Result<(), String> {
     let recording = &state.stick_recording;
     match recording.activity {

@@ -15,8 +15,8 @@ use crate::ui::shared::Shared;
 
 /// The bearing at the top of the map changes in steps of this many degrees, so that noise does not turn the map.
 const TURN_STEP_DEG: f64 = 5.0;
-/// The ground speed below which the heading is up instead of the course, m/s. A craft without a true course has its
-/// heading up, too.
+/// The ground speed below which the heading is at the top of the map instead of the course, m/s. The heading is also
+/// used for a craft without a simulated truth.
 const COURSE_MPS: f64 = 1.0;
 /// The craft stays in this share of a window that keeps it in view.
 const KEPT_SHARE: f64 = 0.8;

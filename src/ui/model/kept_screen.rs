@@ -144,7 +144,8 @@ pub struct KeptScreens {
     pub(in crate::ui) before: Option<KeptScreen>,
     /// The shown place in a flight that is over.
     pub(in crate::ui) place: Option<KeptPlace>,
-    /// `true` once another flight has begun on this screen. Its instants are no places in the first one.
+    /// `true` once the flight was continued from an earlier instant, or the firmware was restarted. `place` then
+    /// stays as it is.
     pub(in crate::ui) has_left: bool,
     /// The screen that was kept last.
     pub(in crate::ui) last: Option<KeptScreen>,

@@ -23,7 +23,7 @@ pub struct SignalList {
     selected: usize,
 }
 
-/// The result of a key.
+/// The result of a key press while the list of signals is open.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(in crate::ui) enum SignalKey {
     Open,

@@ -1,7 +1,7 @@
-//! Keys typed ahead, as over a slow line.
+//! Holds back keys that are typed faster than the session answers, for example over a slow connection.
 //!
-//! A key acts on what the keys before it have led to. So it waits until the session shows the outcome of their commands,
-//! and until their questions are answered. What takes longer than a moment holds no keys.
+//! A key acts on the outcome of the keys before it. So it waits until the session shows the outcome of their
+//! commands, and until their questions are answered, but for half a second at most.
 
 use std::time::{Duration, Instant};
 

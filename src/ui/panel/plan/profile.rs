@@ -82,7 +82,7 @@ impl Axes {
         Self::of(points, &flown, &ground_line(state, points, &flown), area)
     }
 
-    /// Returns `None` if there is nothing to show, or no room.
+    /// Returns the scales for these points; `None` if there are no points, or no room.
     fn of(points: &[Point], flown: &[FlownPoint], ground: &[GroundPoint], area: Rect) -> Option<Self> {
         let has_room = area.width > AXIS + MARGIN + 8 && area.height > FRAME_ROWS + 1;
         let length_m = points.last().filter(|_| has_room)?.along_m.max(1.0);

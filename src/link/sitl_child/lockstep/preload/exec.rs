@@ -17,7 +17,7 @@ static PROCESS: AtomicI32 = AtomicI32::new(-1);
 static LIBRARY: Text = Text::new();
 static START_SETTINGS: Text = Text::new();
 
-/// A text of the environment.
+/// A text with a terminating zero that is kept for the environment of the next executable.
 struct Text(UnsafeCell<[u8; LONGEST]>);
 
 // SAFETY: only the main thread writes it, before other threads exist.
