@@ -115,7 +115,7 @@ pub struct TuiArgs {
     #[arg(long, help_heading = "Screen")]
     pub plain: bool,
 
-    /// Start with a clean screen: not with the plans, panels, map, speed and air of the last run
+    /// Start with a clean screen: not with the plans, panels and map of the last run
     #[arg(long, help_heading = "Screen")]
     pub fresh_screen: bool,
 

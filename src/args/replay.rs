@@ -30,7 +30,7 @@ pub struct ReplayArgs {
     #[arg(long, help_heading = "Screen")]
     pub plain: bool,
 
-    /// Start with a clean screen: not with the panels and the map of the last run, and the place and speed in this flight
+    /// Start with a clean screen: not with the panels and the map of the last run, and the place in this flight
     #[arg(long, help_heading = "Screen")]
     pub fresh_screen: bool,
 

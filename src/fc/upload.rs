@@ -1,4 +1,5 @@
-//! Uploads a plan to a remote flight controller through the command line, as a ground station does, and reads it back. Downloads a plan in the same way.
+//! Uploads a plan to a remote flight controller through the command line, as a ground station does, and reads it back.
+//! Downloads a plan in the same way.
 
 use super::master_settings::replaced_reported;
 use crate::firmware::cli::{CliReply, RefusedLine};

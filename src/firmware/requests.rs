@@ -175,8 +175,8 @@ impl Firmware {
         done
     }
 
-    /// Cancels [`Firmware::return_to_home`]. The switch decides again, and starts its
-    /// mission again if it is on. Without such a command nothing happens.
+    /// Cancels [`Firmware::return_to_home`]. The switch decides again, and starts its mission again if it is on. Without
+    /// such a command nothing happens.
     pub fn cancel_command(&mut self) {
         self.navigation.cancel_command();
     }

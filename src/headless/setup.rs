@@ -1,6 +1,5 @@
 //! Reads the files of the options, and makes the start of a flight from both.
 
-use crate::plan::FlightPlan;
 use std::path::{Path, PathBuf};
 
 use crate::args::{
@@ -13,6 +12,7 @@ use crate::firmware::cli::BuildInfo;
 use crate::firmware::config::Configuration;
 use crate::flight::setup::{BootLines, PhysicsSource, check_setting};
 use crate::flight::{Flight, FlightOptions, FlightSetup};
+use crate::plan::FlightPlan;
 use crate::plan::builtin::BuiltinPlan;
 use crate::plan::format::{self, Format, HomePosition, PlanFile, ReadOptions, SettingPart};
 use crate::plan::review::Finding;

@@ -97,6 +97,7 @@ impl Persistence {
     /// modes.
     pub(super) fn restart(&mut self, vehicle: &mut Vehicle) -> Vec<Notice> {
         if vehicle.embedded().is_none() {
+            // It restarts on its own stored configuration.
             vehicle.apply(&VehicleCommand::Restart(Box::default()));
             return Vec::new();
         }

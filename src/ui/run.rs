@@ -217,7 +217,6 @@ async fn run_loop(
 
 /// The running user interface with its links.
 struct Screen {
-    tui: Tui,
     state: AppState,
     link: SessionLink,
     files: FilesLink,
@@ -225,6 +224,8 @@ struct Screen {
     answers: Answers,
     keys: EventStream,
     ahead: TypedAhead,
+    /// Last, so that the reader of the keys ends before the terminal is restored.
+    tui: Tui,
 }
 
 impl Screen {

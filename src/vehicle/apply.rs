@@ -34,7 +34,7 @@ impl Vehicle {
                 return Some(started.map_err(VehicleRefusal::Pilot).into());
             }
             VehicleCommand::StopPilot => {
-                return Some(if self.transmitter.stop_pilot() { Reply::Done } else { Reply::Unchanged });
+                return Some(Reply::done(self.transmitter.stop_pilot()));
             }
             VehicleCommand::World(change) => {
                 let changed = self.physics.apply(change.as_ref().clone());

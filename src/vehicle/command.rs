@@ -58,7 +58,7 @@ pub enum VehicleCommand {
     ResetCraft,
 }
 
-/// The part of the craft that a command acts on.
+/// The subject of a command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CommandKind {
     /// The transmitter, and the RC of other programs.
@@ -69,13 +69,13 @@ pub enum CommandKind {
     Return,
     /// The navigator that flies a plan.
     Order,
-    /// The sessions of the command line. Nothing else changes.
+    /// The sessions of the command line. No setting changes.
     Session,
     /// The configuration: a line, a message, an upload, a restart.
     Configuration,
     /// Air, noise and faults.
     World,
-    /// The place of the craft.
+    /// The whole craft, which is put back home.
     Reset,
 }
 
@@ -143,9 +143,9 @@ impl From<Message> for VehicleCommand {
 pub enum Reply {
     /// Carried out. There is nothing to report.
     Done,
-    /// Carried out already, for example the end of a session that has ended.
+    /// There was nothing to do, for example the end of a session that has ended.
     Unchanged,
-    /// Nothing has changed.
+    /// Not carried out. The lines of an upload before the refused one keep their effect.
     Refused(VehicleRefusal),
     /// The answer to a CLI line.
     Line(CliReply),
@@ -179,7 +179,7 @@ pub enum VehicleRefusal {
 }
 
 impl VehicleRefusal {
-    /// Returns the reason as a sentence of its own, with the way out.
+    /// Returns the reason for a notice, for most refusals with the way out.
     pub fn sentence(&self) -> String {
         match self {
             Self::ReturnHome(refusal) => format!("No return home: {}", refusal.sentence()),
@@ -193,15 +193,9 @@ impl VehicleRefusal {
 }
 
 impl Reply {
-    /// Returns the reply, unless it is a refusal. A line of the command line can be refused by its own reply.
-    ///
-    /// # Errors
-    /// Fails with the reason of the refusal.
-    pub fn accepted(self) -> Result<Self, VehicleRefusal> {
-        match self {
-            Self::Refused(refusal) => Err(refusal),
-            reply => Ok(reply),
-        }
+    /// Returns the reply of a command that had something to do, or had not.
+    pub(super) fn done(is_done: bool) -> Self {
+        if is_done { Self::Done } else { Self::Unchanged }
     }
 }
 
@@ -227,7 +221,7 @@ impl VehicleCommand {
         Self::Upload(Box::new(PlanUpload { plan, settings }))
     }
 
-    /// Returns the part of the craft that the command acts on. The rules about permissions, remote craft and scenarios
+    /// Returns the subject of the command. The rules about permissions, remote craft and scenarios
     /// follow from it.
     pub fn kind(&self) -> CommandKind {
         match self {

@@ -30,29 +30,22 @@ pub enum Answer<T> {
     Later(Ticket),
 }
 
-impl<T> Answer<T> {
-    /// Returns the answer if it is here. An embedded controller answers at once.
-    pub fn now(self) -> Option<T> {
-        match self {
-            Self::Now(answer) => Some(answer),
-            Self::Later(_) => None,
-        }
-    }
-}
-
 impl Answer<Reply> {
     /// Checks that the command was not refused. A remote controller may still refuse it later.
     ///
     /// # Errors
     /// Fails with the reason of the refusal.
     pub fn accepted(self) -> Result<(), VehicleRefusal> {
-        self.now().map_or(Ok(()), |reply| reply.accepted().map(drop))
+        match self {
+            Self::Now(Reply::Refused(refusal)) => Err(refusal),
+            Self::Now(_) | Self::Later(_) => Ok(()),
+        }
     }
 
     /// Returns the reply to a CLI line, if the command was one and the reply is here.
     pub fn line(self) -> Option<CliReply> {
-        match self.now()? {
-            Reply::Line(reply) => Some(reply),
+        match self {
+            Self::Now(Reply::Line(reply)) => Some(reply),
             _ => None,
         }
     }

@@ -1,5 +1,6 @@
 //! The exchange between a flight controller and the program around it: facts that its command line prints, its log, and the
-//! mailbox of a remote one. Nothing of it changes the flight, so it is not among the inputs of the vehicle.
+//! mailbox of a remote one. Facts and the log do not change the flight, so they are not among the inputs of the vehicle.
+//! A vehicle with a remote flight controller records no inputs.
 
 use super::{LateAnswer, RemoteController, Ticket, Vehicle};
 use crate::firmware::Firmware;

@@ -54,7 +54,8 @@ impl InputLog {
 }
 
 /// Returns the input that a command with this reply was, if it was one. Lines that only ask are inputs, since each makes
-/// the parameters follow the settings again. An order that the firmware refuses is one, since the refusal is an event.
+/// the parameters follow the settings again. A refused return home is one, since the refusal is an event, and a refused
+/// upload, since the lines before the refused one keep their effect.
 fn input(command: &VehicleCommand, reply: &Reply) -> Option<VehicleCommand> {
     match (command, reply) {
         (_, Reply::Unchanged | Reply::Refused(VehicleRefusal::World(_) | VehicleRefusal::Pilot(_)))

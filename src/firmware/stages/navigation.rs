@@ -345,7 +345,7 @@ impl Navigation {
         self.navigator.command(command, &self.inputs, &parameters.nav, stored)
     }
 
-    /// Cancels the command to fly home or land.
+    /// Cancels the command to fly home.
     pub(in crate::firmware) fn cancel_command(&mut self) {
         self.orders.take_back(&mut self.navigator);
     }

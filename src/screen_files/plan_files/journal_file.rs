@@ -84,7 +84,7 @@ impl JournalFile {
     }
 
     /// Opens a journal; `None` if another program has locked it, if it cannot be read now, or if it is empty because its
-    /// program was killed before the first edit was written.
+    /// program was killed before its first line was written.
     fn open(path: PathBuf) -> Option<Result<Found, SetAside>> {
         let file = state_file::open(&path, Access::Append).ok()?;
         lock(&file).ok()?;

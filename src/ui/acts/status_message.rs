@@ -198,7 +198,9 @@ fn arming_is_blocked(state: &Shared) -> Option<StatusMessage> {
 }
 
 fn no_plan(state: &Shared) -> Option<StatusMessage> {
-    state.view.vehicle.stored_plan.as_ref().filter(|plan| plan.waypoints.is_empty())?;
+    if !lacks_plan(state) {
+        return None;
+    }
     if let Some((condition, action)) = refusal_of_the_open(state) {
         return message(Severity::Warn, condition, action);
     }

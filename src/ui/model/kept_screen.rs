@@ -1,8 +1,8 @@
 //! The part of the screen that comes back with the next start: the focus and the places of the panels, the window of the
-//! map, the graphs, the open plans and the row of the shown one, the speed, the air, and the place in a flight that is over.
+//! map, the graphs, the open plans and the row of the shown one, and the place in a flight that is over.
 //!
 //! It is kept in the state directory while the program runs, so that it also comes back after a kill. Each kind of session
-//! has its own screen, because their panels differ in use. Plans, place and speed are kept for each craft and each flight.
+//! has its own screen, because their panels differ in use. Plans and place are kept for each craft and each flight.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -43,7 +43,7 @@ pub enum KeptOf {
 }
 
 impl KeptOf {
-    /// Returns `true` if plans, place and speed belong to one craft or one flight, not to the next of its kind.
+    /// Returns `true` if plans and place belong to one craft or one flight, not to the next of its kind.
     pub(in crate::ui) fn has_subject(self) -> bool {
         self != Self::Flight
     }

@@ -30,10 +30,10 @@ impl EmbeddedController {
                 self.cli_sessions.insert(*session, Interpreter::new(*mode));
             }
             VehicleCommand::EndCli(session) => {
-                return changed(self.cli_sessions.remove(session).is_some());
+                return Reply::done(self.cli_sessions.remove(session).is_some());
             }
             VehicleCommand::EndAllCli => {
-                return changed(!std::mem::take(&mut self.cli_sessions).is_empty());
+                return Reply::done(!std::mem::take(&mut self.cli_sessions).is_empty());
             }
             VehicleCommand::Line(line) => return Reply::Line(self.run_cli(line)),
             VehicleCommand::Upload(upload) => {
@@ -76,8 +76,4 @@ impl EmbeddedController {
             }
         }
     }
-}
-
-fn changed(changed: bool) -> Reply {
-    if changed { Reply::Done } else { Reply::Unchanged }
 }
