@@ -1,5 +1,7 @@
 //! The measures of a flight.
 
+use std::f64::consts::TAU;
+
 use nalgebra::Vector2;
 
 use super::passage::{Passage, passages};
@@ -12,8 +14,6 @@ use crate::report::route::{Route, TrackSample};
 const CORNER: f64 = 0.17;
 /// The speed below which the course over ground has no meaning for the nose, m/s.
 const SLOWEST_COURSE_MPS: f64 = 1.0;
-/// The shortest stay on a ring that is measured, s.
-const SHORTEST_RING_S: f64 = 1.0;
 
 /// A measure of a flight; waypoints are given by their index in the plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -32,9 +32,9 @@ pub enum Measure {
     Overshoot(u8),
     /// Altitude at the instant of reaching a waypoint, less the altitude in the plan, m.
     AltitudeError(u8),
-    /// Root mean square distance from the ring of an ORBIT at a waypoint, m.
+    /// Root mean square distance from the ring of an ORBIT at a waypoint in its last lap, m.
     RingError(u8),
-    /// Mean rate at which the craft went around that ring, °/s; clockwise is positive.
+    /// Mean rate of that lap, °/s; clockwise is positive.
     RingRate(u8),
     /// Greatest distance from a waypoint in its hold without a pattern, m.
     HoldDistance(u8),
@@ -175,20 +175,16 @@ pub(super) fn measures(route: &Route, track: &Track) -> Vec<(Measure, f64)> {
 fn in_hold(passage: &Passage, stay: &[TrackSample]) -> Vec<(Measure, f64)> {
     let point = &passage.point;
     let Some(centre) = point.ne.filter(|_| point.holds) else { return Vec::new() };
-    let distances = stay.iter().map(|sample| (sample.ne - centre).norm());
     if point.pattern_m == 0.0 {
-        let greatest = distances.reduce(f64::max);
+        let greatest = stay.iter().map(|sample| (sample.ne - centre).norm()).reduce(f64::max);
         return greatest
             .map(|distance_m| (Measure::HoldDistance(point.wp), distance_m))
             .into_iter()
             .collect();
     }
-    let (Some(first), Some(last)) = (stay.first(), stay.last()) else { return Vec::new() };
-    let seconds = last.time_s - first.time_s;
-    if !point.is_ring || seconds < SHORTEST_RING_S {
+    if !point.is_ring {
         return Vec::new();
     }
-    let squares: f64 = distances.map(|distance| (distance - point.pattern_m).powi(2)).sum();
     // From north to east is clockwise.
     let step = |pair: &[TrackSample]| match pair {
         [from, to] => {
@@ -197,9 +193,21 @@ fn in_hold(passage: &Passage, stay: &[TrackSample]) -> Vec<(Measure, f64)> {
         }
         _ => 0.0,
     };
-    let turned: f64 = stay.windows(2).map(step).sum();
+    // Only the last lap: the craft first flies to the waypoint, and from there to the ring.
+    let (mut turned, mut begin) = (0.0_f64, stay.len().saturating_sub(1));
+    while begin > 0 && turned.abs() < TAU {
+        begin -= 1;
+        turned += stay.get(begin..begin + 2).map_or(0.0, step);
+    }
+    let lap = stay.get(begin..).unwrap_or_default();
+    let (Some(first), Some(last)) = (lap.first(), lap.last()) else { return Vec::new() };
+    let seconds = last.time_s - first.time_s;
+    if turned.abs() < TAU {
+        return Vec::new();
+    }
+    let squares = lap.iter().map(|sample| ((sample.ne - centre).norm() - point.pattern_m).powi(2));
     vec![
-        (Measure::RingError(point.wp), (squares / stay.len() as f64).sqrt()),
+        (Measure::RingError(point.wp), (squares.sum::<f64>() / lap.len() as f64).sqrt()),
         (Measure::RingRate(point.wp), turned.to_degrees() / seconds),
     ]
 }
