@@ -144,11 +144,10 @@ pub(super) fn measures(route: &Route, track: &Track) -> Vec<(Measure, f64)> {
         found.extend(landing.impact_mps.map(|speed_mps| (Measure::TouchdownSpeed, speed_mps)));
         found.extend(landing.disarmed_after_s.map(|delay_s| (Measure::DisarmDelay, delay_s)));
     }
-    let greatest = |values: &mut dyn Iterator<Item = f64>| values.reduce(f64::max);
-    let tilts = &mut track.samples.iter().filter_map(|sample| Some(sample.attitude?.tilt_deg));
-    found.extend(greatest(tilts).map(|tilt_deg| (Measure::TiltMax, tilt_deg)));
-    let distances = &mut track.samples.iter().map(|sample| sample.ne.norm());
-    found.extend(greatest(distances).map(|distance_m| (Measure::HomeDistance, distance_m)));
+    let tilts = track.samples.iter().filter_map(|sample| Some(sample.attitude?.tilt_deg));
+    found.extend(tilts.reduce(f64::max).map(|tilt_deg| (Measure::TiltMax, tilt_deg)));
+    let distances = track.samples.iter().map(|sample| sample.ne.norm());
+    found.extend(distances.reduce(f64::max).map(|distance_m| (Measure::HomeDistance, distance_m)));
     let passed = passages(route, track);
     for (index, passage) in passed.iter().enumerate() {
         let wp = passage.point.wp;
