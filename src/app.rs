@@ -101,6 +101,7 @@ fn reads_layers(command: Option<&Command>) -> bool {
         ) => true,
         Some(
             Command::Check(_)
+            | Command::Lab(_)
             | Command::Campaign(_)
             | Command::Forecast(_)
             | Command::Plan(_)
@@ -121,6 +122,7 @@ fn may_start_firmware(command: Option<&Command>) -> bool {
         | Some(
             Command::Fly(_)
             | Command::Check(_)
+            | Command::Lab(_)
             | Command::Campaign(_)
             | Command::Compare(_)
             | Command::Serve(_),
@@ -150,6 +152,7 @@ fn dispatch(cli: Cli, keymap: Keymap) -> Result<u8, AppError> {
         None => tui::run(&cli.tui, keymap),
         Some(Command::Fly(args)) => headless::fly::run(&args, &cli.repeat),
         Some(Command::Check(args)) => headless::check::run(&args, &cli.repeat),
+        Some(Command::Lab(args)) => headless::lab::run(&args, &cli.repeat),
         Some(Command::Campaign(args)) => headless::campaign::run(&args, &cli.repeat),
         Some(Command::Forecast(args)) => headless::campaign::forecast(&args, &cli.repeat),
         Some(Command::Open(args)) => open::run(&args, keymap),

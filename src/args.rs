@@ -24,6 +24,7 @@ mod fly;
 mod forecast;
 mod generate;
 mod help;
+mod lab;
 mod layers;
 mod mission;
 mod open;
@@ -60,6 +61,7 @@ pub use flight::FlightArgs;
 pub use fly::FlyArgs;
 pub use forecast::{Charge, ForecastArgs};
 pub use generate::{completions, man_page};
+pub use lab::LabArgs;
 pub use layers::{ENVIRONMENT_PREFIX, Layers};
 pub use mission::MissionArgs;
 pub use open::OpenArgs;
@@ -228,6 +230,14 @@ pub enum Command {
     ]))]
     Compare(Box<CompareArgs>),
 
+    /// Flies a programme of flights on two builds of a SITL executable: what got worse, what changed
+    #[command(before_help = help::examples(&[
+        ("betadeck lab --base old.elf --head new.elf", "does the change make it fly worse? In at most three minutes"),
+        ("betadeck lab new.elf", "which properties does it break?"),
+        ("betadeck lab --base old.elf --head new.elf --budget 30min --seed 2", "more flights, and other ones"),
+    ]))]
+    Lab(Box<LabArgs>),
+
     /// Runs firmware and physics in real time with all doors open, without a screen
     #[command(before_help = help::examples(&[
         ("betadeck serve", "the Betaflight App connects to ws://localhost:6761, scripts send RC to UDP 9004"),
@@ -340,6 +350,7 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>, layers: &Layers) -> 
             Command::Serve(_)
             | Command::Sitl(_)
             | Command::Check(_)
+            | Command::Lab(_)
             | Command::Forecast(_)
             | Command::Open(_)
             | Command::Flights(_)

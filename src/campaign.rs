@@ -27,7 +27,7 @@ pub use flights::{Campaign, CampaignFlight};
 pub use forecast::{Forecast, ForecastAnswer};
 pub use record::{InputValue, Instant, Record, Side, Standing};
 pub use shard::{Shard, ShardError};
-pub use statistics::{Rule, Significance, Split, Summary, wilson};
+pub use statistics::{Rule, Significance, Split, Summary, mcnemar, signed_rank, wilson};
 pub use weather::wind_around;
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ pub(crate) mod campaign;
 pub(crate) mod check;
 pub(crate) mod compare;
 pub(crate) mod fly;
+pub(crate) mod lab;
 pub(crate) mod report;
 pub(crate) mod scenario_folder;
 pub(crate) mod setup;

@@ -20,6 +20,7 @@ pub mod flights;
 pub mod gpx;
 pub mod html;
 pub mod json;
+pub mod lab;
 pub mod log_export;
 mod markdown;
 mod number;

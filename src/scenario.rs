@@ -37,6 +37,7 @@ mod judge;
 mod library;
 mod metric;
 mod metric_values;
+mod mission;
 mod run;
 mod sampling;
 mod trace;
@@ -45,8 +46,8 @@ mod varied;
 pub use air::{Air, AirTemplate, WindProblem, WindText};
 pub use campaign_spec::{CampaignSpec, FlightSeeds, MAX_CAMPAIGN, USUAL_FLIGHTS, USUAL_LEVELS};
 pub use case::{
-    Allowance, Case, Compare, Expectation, Expected, Measure, Measured, Scenario, StateStep, Statistic,
-    Window,
+    Allowance, Better, Case, Compare, Expectation, Expected, Measure, Measured, Scenario, StateStep,
+    Statistic, Window,
 };
 pub use draft::Draft;
 pub use file::{FORMAT, Files, Flights, MAX_FLIGHTS, MAX_SEEDS, Request, read, read_request, seed_range};
@@ -54,9 +55,10 @@ pub use goal::{Goal, GoalLimit, GoalStatistic, Quantity, Subject, percent};
 pub use input::{Action, FORMS, TimedInput};
 pub use insight::Insight;
 pub use judge::{Judgement, Margin, Outcome, compare, judge, skip};
-pub use library::{BuiltinFiles, BuiltinScenario, SCENARIOS};
+pub use library::{BuiltinFiles, BuiltinScenario, LAB_SCENARIOS, SCENARIOS};
 pub use metric::Metric;
 pub use metric_values::metrics;
+pub use mission::{MISSION, mission, mission_number};
 pub use run::{CaseFlight, FlightHash, Flown};
 pub use trace::{KnownPlan, NearestGuard, Sample, Stay, Trace};
 pub use varied::{Change, Choice, NumberInput, Spread, Tolerance, VariedInput};

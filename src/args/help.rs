@@ -30,6 +30,15 @@ Exit codes: 0 every flight completed (with --log: both were measured), 1 one did
 Each option can also be set in the configuration file (wind = \"5@270\") and in the environment
 (BETADECK_WIND=5@270); the command line overrides the environment, which overrides the file.";
 
+/// The end of the help of `lab`.
+pub(super) const LAB: &str = "\
+Both executables fly the same flights in simulated time: the scenarios of the test guide, modes by sticks, rescue, failsafe,
+fence, faults, landings, random missions. A measure has changed if a test of the paired differences says so and if a pilot
+would notice it. docs/firmware-ci.md explains the programme, the tests, and a workflow for pull requests.
+
+Exit codes: 0 nothing is worse (alone: every property was kept), 1 something is, 2 wrong usage, 3 file trouble or a firmware
+that could not be flown, 4 internal error, 130 interrupted.";
+
 /// The end of the help of `campaign`.
 pub(super) const CAMPAIGN: &str = "\
 docs/scenarios.md explains what a file can vary and expect, docs/clusters.md how several machines fly one campaign.

@@ -241,6 +241,21 @@ pub(super) fn table_rate(text: &str) -> Result<f64, String> {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Seeds(pub Vec<u64>);
 
+/// Reads a time on the wall clock, s: `90`, `120s`, `10min`, `2h`.
+pub(super) fn wall_time(text: &str) -> Result<f64, String> {
+    let number = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let scale = match &text[number.len()..] {
+        "" | "s" => 1.0,
+        "min" => 60.0,
+        "h" => 3600.0,
+        _ => return Err("write a time such as 120s, 10min or 2h".to_owned()),
+    };
+    let seconds =
+        number.parse::<f64>().map_err(|_| "write a time such as 120s, 10min or 2h".to_owned())? * scale;
+    let allowed = (1.0..=86_400.0).contains(&seconds);
+    allowed.then_some(seconds).ok_or_else(|| "allowed are 1 s to 24 h".to_owned())
+}
+
 /// Reads seeds, `A..B`.
 pub(super) fn seeds(text: &str) -> Result<Seeds, String> {
     crate::scenario::seed_range(text)

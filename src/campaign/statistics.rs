@@ -9,7 +9,7 @@ mod summary;
 
 pub(super) use binomial::order_bound;
 pub use interval::wilson;
-pub(super) use paired::{mcnemar, signed_rank};
+pub use paired::{mcnemar, signed_rank};
 pub(super) use ranks::{Correlation, spearman};
 pub use split::{Rule, Split};
 pub(super) use split::{best_split, best_word_split};

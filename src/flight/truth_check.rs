@@ -68,7 +68,11 @@ impl TruthCheck {
         match event {
             NavEvent::Plan { source, plan } => self.begin_plan(*source, plan),
             NavEvent::State { to, wp, kind, reason, guard, target, target_alt_m, .. } => {
-                let kind = kind.unwrap_or_default();
+                // A remote firmware can fly a plan that it does not show, such as that of a rescue.
+                let Some(kind) = *kind else {
+                    self.run = None;
+                    return;
+                };
                 let position = self.planned_place(*wp).unwrap_or(*target);
                 let ne = if kind.uses_position() { place(frame, position) } else { craft.ne };
                 let target = Target {

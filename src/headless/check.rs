@@ -5,7 +5,7 @@ mod output;
 mod progress;
 mod record;
 mod remote;
-pub(crate) use remote::{RemoteFlown, fly_case, prepare};
+pub(crate) use remote::{RemoteFlown, fly_case, options_to_open, prepare};
 mod results;
 mod run;
 mod watch;
@@ -25,9 +25,11 @@ use crate::process::{error, parallel};
 use crate::report::check::{Compared, Summary};
 use crate::scenario::Draft;
 use load::Loaded;
-pub(crate) use load::load_one;
+pub(crate) use load::{load_one, load_or_plan};
 use output::Output;
+pub(crate) use progress::Bar;
 use results::Results;
+pub(crate) use run::{Stopwatch, judged};
 
 /// The exit code at which `git bisect run` skips a commit.
 const SKIP_COMMIT: u8 = 125;

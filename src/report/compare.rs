@@ -6,7 +6,10 @@
 
 mod cells;
 mod distance;
+mod flown_track;
+mod hold;
 mod json;
+mod leg;
 mod log_track;
 mod markdown;
 mod measure;
@@ -21,14 +24,13 @@ mod tests;
 
 pub(super) use cells::TableRow;
 pub use log_track::begin_of_log;
-pub use measure::Measure;
+pub use measure::{Measure, measures};
 pub use statistics::Statistics;
 pub use track::{Landing, Track};
 
 use super::flight::{Detail, Figure};
 use super::plot::Ground;
 use super::route::Route;
-use measure::measures;
 
 /// The flights of one firmware.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,13 +1,14 @@
 //! Reports as HTML pages: one file each, without scripts and without anything from elsewhere.
 //!
 //! The templates in `templates/report/` escape every text. `page` is the frame of all pages, `flight` the part about one
-//! flight, and `check`, `compare`, `campaign` and `sweep` the pages of those commands. A page is at most [`MAX_BYTES`] long: lines get fewer
+//! flight, and `check`, `compare`, `lab`, `campaign` and `sweep` the pages of those commands. A page is at most [`MAX_BYTES`] long: lines get fewer
 //! points and tables fewer rows until it is.
 
 mod campaign;
 mod check;
 mod compare;
 mod flight;
+mod lab;
 mod page;
 mod sweep;
 mod text;
@@ -16,6 +17,7 @@ pub use campaign::{CampaignPage, campaign_page};
 pub use check::CheckPage;
 pub use compare::compare_page;
 pub use flight::flight_page;
+pub use lab::lab_page;
 pub use sweep::{SweepPage, sweep_page};
 
 use super::flight::Detail;

@@ -123,6 +123,17 @@ impl Route {
         Self { points }
     }
 
+    /// Returns the horizontal distance from the nearest leg, of which the first begins at home, m.
+    pub(in crate::report) fn distance_m(&self, ne: Vector2<f64>) -> f64 {
+        let places = std::iter::once(Vector2::zeros()).chain(self.points.iter().filter_map(|point| point.ne));
+        let places: Vec<Vector2<f64>> = places.collect();
+        let legs = places.windows(2).map(|ends| match ends {
+            [from, to] => distance_to_segment(ne, *from, *to),
+            _ => f64::INFINITY,
+        });
+        legs.fold(ne.norm(), f64::min)
+    }
+
     /// Returns the places of the waypoints in their order, for a map.
     pub(super) fn legs(&self) -> impl Iterator<Item = Point> + '_ {
         self.points.iter().filter_map(RoutePoint::place)
@@ -161,4 +172,16 @@ impl RoutePoint {
             None => (self.alt_m - sample.alt_m).max(0.0),
         }
     }
+}
+
+/// Returns the distance from a point to the segment between two others.
+pub(in crate::report) fn distance_to_segment<const D: usize>(
+    point: nalgebra::SVector<f64, D>,
+    from: nalgebra::SVector<f64, D>,
+    to: nalgebra::SVector<f64, D>,
+) -> f64 {
+    let along = to - from;
+    let length = along.norm_squared();
+    let share = if length > 0.0 { ((point - from).dot(&along) / length).clamp(0.0, 1.0) } else { 0.0 };
+    (point - (from + along * share)).norm()
 }

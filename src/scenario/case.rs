@@ -124,6 +124,18 @@ pub struct Measure {
     pub dimension: Dimension,
     /// The way in which the number is taken.
     pub measured: Measured,
+    /// The direction in which the number improves; `None` = neither.
+    pub better: Option<Better>,
+}
+
+/// The direction in which a number of a flight improves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::Display, strum::EnumString)]
+#[strum(serialize_all = "lowercase")]
+pub enum Better {
+    /// Smaller numbers are better.
+    Less,
+    /// Greater numbers are better.
+    More,
 }
 
 /// A way to take a number from a flight.

@@ -5,18 +5,41 @@ use crate::plan::format::PlanFile;
 use crate::text::did_you_mean;
 
 macro_rules! scenarios {
-    ($($name:literal)*) => {
-        /// All built-in scenarios, in the order of a flight of all.
-        pub const SCENARIOS: &[BuiltinScenario] = &[
+    ($(#[$comment:meta])* $list:ident $prefix:literal $folder:literal $($name:literal)*) => {
+        $(#[$comment])*
+        pub const $list: &[BuiltinScenario] = &[
             $(BuiltinScenario {
-                name: $name,
-                text: include_str!(concat!("../../plans/scenarios/", $name, ".toml")),
+                name: concat!($prefix, $name),
+                text: include_str!(concat!("../../plans/", $folder, "/", $name, ".toml")),
             },)*
         ];
     };
 }
 
 scenarios! {
+    /// The scenarios of the programme of `lab`, beside the guide's and the missions.
+    LAB_SCENARIOS "lab-" "lab"
+    "signs"
+    "arming"
+    "throttle"
+    "alt-hold"
+    "pos-hold"
+    "takeover"
+    "corners"
+    "altitude"
+    "hold"
+    "landing"
+    "rescue"
+    "compass"
+    "rx-loss"
+    "fence"
+    "gps"
+    "baro"
+}
+
+scenarios! {
+    /// All built-in scenarios, in the order of a flight of all. Those of `lab` are apart.
+    SCENARIOS "" "scenarios"
     "guide-1"
     "guide-2"
     "guide-3"
@@ -80,12 +103,12 @@ pub struct BuiltinScenario {
 impl BuiltinScenario {
     /// Returns the built-in scenario with this name.
     pub fn find(name: &str) -> Option<Self> {
-        SCENARIOS.iter().copied().find(|scenario| scenario.name == name)
+        SCENARIOS.iter().chain(LAB_SCENARIOS).copied().find(|scenario| scenario.name == name)
     }
 
     /// Returns the built-in name that is closest to `name`.
     pub fn suggest(name: &str) -> Option<&'static str> {
-        did_you_mean::closest(name, SCENARIOS.iter().map(|scenario| scenario.name))
+        did_you_mean::closest(name, SCENARIOS.iter().chain(LAB_SCENARIOS).map(|scenario| scenario.name))
     }
 }
 
@@ -112,19 +135,21 @@ mod tests {
     use crate::plan::format::report;
 
     #[test]
-    fn every_file_of_the_folder_is_built_in_reads_and_has_its_row() {
-        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../plans/scenarios");
-        let mut names: Vec<String> = std::fs::read_dir(folder)
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            .filter_map(|name| name.strip_suffix(".toml").map(str::to_owned))
-            .collect();
-        names.sort();
-        let mut built_in: Vec<&str> = SCENARIOS.iter().map(|scenario| scenario.name).collect();
-        built_in.sort_unstable();
-        assert_eq!(names, built_in);
+    fn every_file_of_the_folders_is_built_in_reads_and_has_its_row() {
+        for (scenarios, folder, prefix) in [(SCENARIOS, "scenarios", ""), (LAB_SCENARIOS, "lab", "lab-")] {
+            let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../plans").join(folder);
+            let mut names: Vec<String> = std::fs::read_dir(folder)
+                .unwrap()
+                .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+                .filter_map(|name| Some(format!("{prefix}{}", name.strip_suffix(".toml")?)))
+                .collect();
+            names.sort();
+            let mut built_in: Vec<&str> = scenarios.iter().map(|scenario| scenario.name).collect();
+            built_in.sort_unstable();
+            assert_eq!(names, built_in);
+        }
         let page = include_str!("../../plans/README.md");
-        for scenario in SCENARIOS {
+        for scenario in SCENARIOS.iter().chain(LAB_SCENARIOS) {
             let read = crate::scenario::read(scenario.name, scenario.text, None, &mut BuiltinFiles)
                 .unwrap_or_else(|errors| panic!("{}", report(&errors)));
             assert!(!read.description.is_empty(), "{}", scenario.name);

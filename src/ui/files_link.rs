@@ -9,9 +9,9 @@ use tokio::time::timeout;
 
 use crate::ui::model::files::{FileReply, FileRequest};
 
-/// The longest wait for an edit to be kept. A disk that hangs must not block the screen, and a busy machine must not show
-/// edits that a kill loses.
-const PATIENCE: Duration = Duration::from_secs(1);
+/// The longest wait for an edit to be kept. A busy machine must not show edits that a kill loses. A disk that hangs blocks the
+/// screen only once.
+const PATIENCE: Duration = Duration::from_secs(10);
 
 /// The longest time that keys wait for the answer to the request of an earlier key.
 const TYPED_AHEAD: Duration = Duration::from_millis(500);
@@ -28,6 +28,8 @@ pub struct FilesLink {
     edited: u64,
     /// The number of the newest request whose answer changes the meaning of the keys after it, and its time.
     decisive: Option<(u64, Instant)>,
+    /// `true` after a wait that was too long, until the edits are kept.
+    hangs: bool,
 }
 
 impl FilesLink {
@@ -38,7 +40,7 @@ impl FilesLink {
         replies: mpsc::UnboundedReceiver<FileReply>,
         done: watch::Receiver<u64>,
     ) -> Self {
-        Self { requests, replies, done, asked: 0, edited: 0, decisive: None }
+        Self { requests, replies, done, asked: 0, edited: 0, decisive: None, hangs: false }
     }
 
     /// Sends a request. Returns `false` if nobody receives it.
@@ -71,8 +73,9 @@ impl FilesLink {
     /// Waits until the newest edit is kept, so that the edits on the screen survive the program.
     pub(super) async fn keep_edits(&mut self) {
         let edited = self.edited;
-        // If the files are slow or gone, they report it themselves.
-        timeout(PATIENCE, self.done.wait_for(|&done| done >= edited)).await.ok();
+        let patience = if self.hangs { Duration::ZERO } else { PATIENCE };
+        // If the files hang or are gone, they report it themselves.
+        self.hangs = timeout(patience, self.done.wait_for(|&done| done >= edited)).await.is_err();
     }
 }
 
@@ -97,5 +100,19 @@ mod tests {
         link.keep_edits().await;
         assert_eq!(*link.done.borrow(), 6);
         keeper.join().expect("the keeper ends");
+    }
+
+    #[tokio::test]
+    async fn a_disk_that_hangs_stops_the_screen_once() {
+        let (requests, _asked) = std::sync::mpsc::channel();
+        let (done, kept) = watch::channel(0);
+        let mut link = FilesLink::new(requests, mpsc::unbounded_channel().1, kept);
+        link.hangs = true;
+        assert!(link.ask(FileRequest::Journal(PlanId(1), JournalLine::Saved("a plan".to_owned()))));
+        link.keep_edits().await;
+        assert!(link.hangs, "without a wait, the edit is not kept");
+        done.send_modify(|done| *done = 1);
+        link.keep_edits().await;
+        assert!(!link.hangs, "the next edit is waited for");
     }
 }

@@ -5,8 +5,10 @@
 
 mod child;
 mod faults;
+pub(crate) mod flying;
 #[path = "../../src/link/sitl_child/lockstep/frames.rs"]
 mod frames;
+mod lab;
 mod library;
 mod serial_port;
 mod served;

@@ -6,17 +6,17 @@ use super::ranks::ranks;
 use crate::design::normal_cdf;
 use crate::math;
 
-/// The least pairs with a difference for the normal approximation.
-const MANY: usize = 10;
+/// The most pairs for which the distribution of the ranks is counted. Beyond, the normal distribution is as good.
+const COUNTED: usize = 50;
 
 /// Returns McNemar's exact test: of the pairs in which only one side succeeded, how many were won by each.
-pub(in crate::campaign) fn mcnemar(only_a: u64, only_b: u64) -> Significance {
+pub fn mcnemar(only_a: u64, only_b: u64) -> Significance {
     Significance { p: sign(only_a, only_b), test: "McNemar" }
 }
 
-/// Returns Wilcoxon's signed-rank test of the differences of the pairs; the sign test if there are few. `None` if all pairs
-/// are equal.
-pub(in crate::campaign) fn signed_rank(differences: &[f64]) -> Option<Significance> {
+/// Returns Wilcoxon's signed-rank test of the differences of the pairs: exact for few pairs, else by the normal
+/// distribution. `None` if all pairs are equal.
+pub fn signed_rank(differences: &[f64]) -> Option<Significance> {
     let differences: Vec<f64> = differences
         .iter()
         .copied()
@@ -25,30 +25,43 @@ pub(in crate::campaign) fn signed_rank(differences: &[f64]) -> Option<Significan
     if differences.is_empty() {
         return None;
     }
-    if differences.len() < MANY {
-        let positive = differences.iter().filter(|difference| **difference > 0.0).count() as u64;
-        return Some(Significance { p: sign(positive, differences.len() as u64 - positive), test: "sign" });
-    }
     let sizes: Vec<f64> = differences.iter().map(|difference| difference.abs()).collect();
     let ranks = ranks(&sizes);
     let n = ranks.len() as f64;
-    let positive: f64 = std::iter::zip(&differences, &ranks)
-        .filter(|(difference, _)| **difference > 0.0)
-        .map(|(_, rank)| rank)
-        .sum();
+    let of_positive = std::iter::zip(&differences, &ranks).filter(|(difference, _)| **difference > 0.0);
+    let positive: f64 = of_positive.map(|(_, rank)| rank).sum();
+    let p = if ranks.len() <= COUNTED { counted(&ranks, positive) } else { approximate(sizes, n, positive) };
+    Some(Significance { p: p.min(1.0), test: "Wilcoxon" })
+}
+
+/// Returns the probability of a sum of positive ranks at least as far from its mean, if each sign is as likely.
+fn counted(ranks: &[f64], positive: f64) -> f64 {
+    // Equal sizes share halves of ranks, so doubled ranks are whole.
+    let doubled: Vec<usize> = ranks.iter().map(|rank| (2.0 * rank).round() as usize).collect();
+    let all: usize = doubled.iter().sum();
+    // `ways[sum]` is the probability of a doubled sum.
+    let mut ways = vec![0.0; all + 1];
+    ways[0] = 1.0;
+    for rank in doubled {
+        for sum in (0..ways.len()).rev() {
+            let with = sum.checked_sub(rank).map_or(0.0, |without| ways[without]);
+            ways[sum] = f64::midpoint(ways[sum], with);
+        }
+    }
+    let low = ((2.0 * positive).round() as usize).min(all - (2.0 * positive).round() as usize);
+    2.0 * ways.iter().take(low + 1).sum::<f64>()
+}
+
+/// Returns the same by the normal distribution.
+fn approximate(mut sizes: Vec<f64>, n: f64, positive: f64) -> f64 {
     let mean = n * (n + 1.0) / 4.0;
     // Equal sizes share their rank, which takes a part of the variance.
-    let ties: f64 = {
-        let mut sorted = sizes;
-        sorted.sort_by(f64::total_cmp);
-        sorted
-            .chunk_by(|a, b| a == b)
-            .map(|group| math::powi(group.len() as f64, 3) - group.len() as f64)
-            .sum()
-    };
+    sizes.sort_by(f64::total_cmp);
+    let groups = sizes.chunk_by(|a, b| a == b);
+    let ties: f64 = groups.map(|group| math::powi(group.len() as f64, 3) - group.len() as f64).sum();
     let variance = n * (n + 1.0) * (2.0 * n + 1.0) / 24.0 - ties / 48.0;
     let z = (positive - mean) / variance.sqrt();
-    Some(Significance { p: (2.0 * normal_cdf(-z.abs())).min(1.0), test: "Wilcoxon" })
+    2.0 * normal_cdf(-z.abs())
 }
 
 /// Returns the probability of counts at least as different, if both are as likely.
@@ -70,22 +83,25 @@ mod tests {
     }
 
     #[test]
-    fn ranks_of_differences_are_compared_with_their_mean() {
-        // 1 to 12, of which 3 and 7 are negative: the positive ranks sum to 68, their mean is 39, the variance 162.5.
-        let differences: Vec<f64> = (1..=12)
-            .map(|size| if [3, 7].contains(&size) { -f64::from(size) } else { f64::from(size) })
-            .collect();
-        let found = signed_rank(&differences).unwrap();
-        let z = (68.0 - 39.0) / 162.5_f64.sqrt();
-        assert_eq!(found.test, "Wilcoxon");
-        assert!((found.p - 2.0 * normal_cdf(-z)).abs() < 1e-12);
+    fn the_ranks_of_few_differences_are_counted() {
+        // All of 12 differences are positive: 2 of 2¹² signs.
+        let differences: Vec<f64> = (1..=12).map(f64::from).collect();
+        assert!((signed_rank(&differences).unwrap().p - 2.0 / 4096.0).abs() < 1e-15);
+        // 1 and 2 of five are negative, 3 in all: {}, {1}, {2}, {3} and {1, 2} have at most that, of 32.
+        let found = signed_rank(&[-0.1, -0.2, 0.3, 0.0, 0.4, 0.5]).unwrap();
+        assert!((found.p - 10.0 / 32.0).abs() < 1e-15);
+        // Equal sizes share the ranks 1.5: {} and the two of one of them have at most 1.5, of 8.
+        assert!((signed_rank(&[-2.0, 2.0, 5.0]).unwrap().p - 6.0 / 8.0).abs() < 1e-15);
+        assert_eq!(signed_rank(&[0.0, 0.0, f64::NAN]), None);
     }
 
     #[test]
-    fn few_pairs_are_compared_by_their_sign_and_equal_ones_not_at_all() {
-        let found = signed_rank(&[0.5, 0.0, 1.5, 2.5, 3.0, 9.0]).unwrap();
-        assert_eq!(found.test, "sign");
-        assert!((found.p - 2.0 / 32.0).abs() < 1e-12);
-        assert_eq!(signed_rank(&[0.0, 0.0, f64::NAN]), None);
+    fn both_distributions_agree_where_they_meet() {
+        let differences: Vec<f64> =
+            (1..=50).map(|size| if size % 3 == 0 { -f64::from(size) } else { f64::from(size) }).collect();
+        let ranks: Vec<f64> = (1..=50).map(f64::from).collect();
+        let positive: f64 = differences.iter().filter(|difference| **difference > 0.0).sum();
+        let (exact, normal) = (counted(&ranks, positive), approximate(ranks.clone(), 50.0, positive));
+        assert!((exact - normal).abs() < 1e-3, "{exact} {normal}");
     }
 }

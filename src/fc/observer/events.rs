@@ -121,6 +121,8 @@ impl EventObserver {
         events: &mut Vec<FirmwareEvent>,
     ) {
         let (from, wp) = (self.state, self.wp);
+        // A rescue is a mission of its own, whose waypoints are not reported.
+        let plan = plan.filter(|_| !craft.modes.is_some_and(|modes| modes.has(Mode::GpsRescue)));
         if (nav.state, nav.wp) == (from, wp) {
             return;
         }
@@ -272,6 +274,26 @@ mod tests {
             }
         }
         assert_eq!(words, ["AUTOPILOT", "APPROACHING"]);
+    }
+
+    #[test]
+    fn the_waypoints_of_a_rescue_are_not_those_of_the_plan() {
+        let plan = BuiltinPlan::find("square").unwrap().read().unwrap().plan;
+        let mut observer = EventObserver::default();
+        let mut kinds = Vec::new();
+        for (rescue, wp) in [(false, 0), (true, 1), (true, 2)] {
+            let mut modes = ModeFlags::default();
+            modes.set(Mode::Autopilot, true);
+            modes.set(Mode::GpsRescue, rescue);
+            let craft = CraftView { armed: Some(true), modes: Some(modes), ..CraftView::default() };
+            let nav = NavTelemetry { state: NavState::Approaching, wp, ..NavTelemetry::default() };
+            for event in observer.follow(&craft, Some(&nav), Some(&plan)) {
+                if let FirmwareEvent::Nav(NavEvent::State { to: NavState::Approaching, kind, .. }) = event {
+                    kinds.push(kind.is_some());
+                }
+            }
+        }
+        assert_eq!(kinds, [true, false, false]);
     }
 
     #[test]

@@ -95,6 +95,27 @@ impl Bench {
 }
 
 #[test]
+fn a_waypoint_that_the_firmware_does_not_show_is_not_measured() {
+    let mut bench = Bench::new(WaypointType::Flyover);
+    let state = |to| NavEvent::State {
+        from: NavState::Idle,
+        to,
+        wp: 2,
+        kind: None,
+        reason: TransitionReason::Advance,
+        guard: None,
+        target: LatLon::default(),
+        target_alt_m: 0.0,
+    };
+    bench.enter(NavState::Approaching, TransitionReason::Reset, None);
+    for to in [NavState::Approaching, NavState::Arrived, NavState::Complete] {
+        bench.follow(&state(to));
+        bench.fly_to(-10.0);
+    }
+    assert_eq!(bench.waypoints(), []);
+}
+
+#[test]
 fn a_flyover_is_measured_at_its_closest_and_a_flyby_from_its_turn_radius() {
     let turn = Guard { name: GuardName::TurnRadius, value: 5.0, limit: 5.5, op: GuardOp::AtMost };
     for (kind, reason, miss_m, radius_m) in [

@@ -12,7 +12,8 @@ use crate::process::error;
 use crate::process::error::AppError;
 use crate::report::check::STANDARD_INPUT;
 use crate::scenario::{
-    self, BuiltinFiles, BuiltinScenario, Files, Flights, Request, SCENARIOS, Scenario, read_request,
+    self, BuiltinFiles, BuiltinScenario, Files, Flights, MISSION, Request, SCENARIOS, Scenario, mission,
+    mission_number, read_request,
 };
 
 #[derive(Debug)]
@@ -30,6 +31,8 @@ pub(super) struct Loaded {
 /// The source of a scenario.
 enum Source {
     Builtin(BuiltinScenario),
+    /// The random mission with this number.
+    Mission(u64),
     File(PathBuf),
     Stdin,
 }
@@ -70,6 +73,27 @@ pub(crate) fn load_one(name: &str, seed: Option<u64>, names_any: bool) -> Result
     )
 }
 
+/// Reads a scenario, or a plan as a scenario with these lines.
+pub(crate) fn load_or_plan(path: &Path, lines: &str) -> Result<Scenario, AppError> {
+    let name = path.display().to_string();
+    let contents = input_file::read_plan(path)?;
+    if std::str::from_utf8(&contents).is_ok_and(is_scenario) {
+        return load_one(&name, None, true);
+    }
+    let file = path.file_name().unwrap_or_default().to_string_lossy();
+    let text = format!("format = 1\n{lines}\n[plan]\nfile = {}\n", toml_text(&file));
+    let request =
+        Request { file: &name, text: &text, seeds: None, max_flights: 100, flights: Flights::Listed };
+    let scenario =
+        read_request(&request, &mut Beside { place: ScenarioFolder::of(path, true), read: &mut Vec::new() });
+    scenario.map_err(|errors| AppError::input(format::report(&errors).trim_end().to_owned()))
+}
+
+/// Returns a text as a TOML string.
+fn toml_text(text: &str) -> String {
+    format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))
+}
+
 /// Returns the sources in the arguments, each with `true` if the argument is the scenario itself.
 fn sources(args: &CheckArgs) -> Result<Vec<(Source, bool)>, AppError> {
     if args.what.is_empty() {
@@ -93,6 +117,9 @@ fn source(name: &str) -> Result<(Source, bool), AppError> {
     }
     if let Some(scenario) = BuiltinScenario::find(name) {
         return Ok((Source::Builtin(scenario), true));
+    }
+    if let Some(number) = mission_number(name) {
+        return Ok((Source::Mission(number), true));
     }
     let path = PathBuf::from(name);
     if path.exists() || name.contains('/') || name.ends_with(".toml") {
@@ -149,6 +176,10 @@ fn read(
     let request = |file, text| Request { file, text, seeds, max_flights, flights: Flights::Listed };
     let scenario = match source {
         Source::Builtin(builtin) => read_request(&request(builtin.name, builtin.text), &mut BuiltinFiles),
+        Source::Mission(number) => {
+            let name = format!("{MISSION}{number}");
+            read_request(&request(&name, &mission(*number)), &mut BuiltinFiles)
+        }
         Source::Stdin => {
             let text = input_file::read_stdin_text()?;
             let place = ScenarioFolder { names_any, ..ScenarioFolder::default() };

@@ -8,7 +8,7 @@ use crate::args::{CheckArgs, OutputFile};
 use crate::files::log_output::LogFiles;
 use crate::files::output_file;
 use crate::files::output_file::{FinalOutput, KeptFiles, Writer};
-use crate::headless::check::progress::Progress;
+use crate::headless::check::progress::Bar;
 use crate::headless::{report, setup};
 use crate::plan::feature::Feature;
 use crate::process::error;
@@ -31,7 +31,7 @@ pub(super) struct Output {
     junit: Option<FinalOutput>,
     markdown: Option<FinalOutput>,
     report: Option<Report>,
-    progress: Progress,
+    progress: Bar,
 }
 
 /// The page about the run.
@@ -117,7 +117,7 @@ impl Output {
                 backdrop,
                 command: report::command(repeat),
             }),
-            progress: Progress::new(),
+            progress: Bar::new(),
         })
     }
 
@@ -133,7 +133,7 @@ impl Output {
         self.progress.clear();
         self.lines(&flight_lines(flight))?;
         self.json_lines(&[flight_line(flight)])?;
-        self.progress.show(done, all, &flight.scenario);
+        self.progress.show(done, all, &format!("{done} of {all} flights, {}", flight.scenario));
         Ok(())
     }
 

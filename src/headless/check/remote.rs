@@ -210,7 +210,7 @@ pub(crate) fn prepare(
 
 /// Returns the options of `betadeck open` that fly with the same firmware, as text with a blank before each; `None` if it is
 /// not started by this program, or if the user's own lines, ports or formats are needed.
-fn options_to_open(firmware: &RemoteFirmware) -> Option<String> {
+pub(crate) fn options_to_open(firmware: &RemoteFirmware) -> Option<String> {
     let is_usual = firmware.lines.of_user.is_empty()
         && firmware.ports.are_usual()
         && firmware.stamps == Stamps::default();

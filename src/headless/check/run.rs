@@ -25,15 +25,16 @@ pub(super) struct Job {
     pub(super) number: usize,
 }
 
+/// A measurement of wall time.
 #[derive(Debug)]
-pub(super) struct Stopwatch(Instant);
+pub(crate) struct Stopwatch(Instant);
 
 impl Stopwatch {
-    pub(super) fn start() -> Self {
+    pub(crate) fn start() -> Self {
         Self(Instant::now())
     }
 
-    pub(super) fn seconds(&self) -> f64 {
+    pub(crate) fn seconds(&self) -> f64 {
         self.0.elapsed().as_secs_f64()
     }
 }
@@ -144,7 +145,7 @@ pub(super) fn one(
 }
 
 /// Returns the judged flight.
-pub(super) fn judged(flight: CheckedFlight, case: &Case, flown: Flown, started: &Stopwatch) -> CheckedFlight {
+pub(crate) fn judged(flight: CheckedFlight, case: &Case, flown: Flown, started: &Stopwatch) -> CheckedFlight {
     let (judgements, measures) = scenario::judge(case, &flown);
     CheckedFlight {
         reported: flown.reported,

@@ -2,7 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::track::{Track, distance_to_segment};
+use super::track::Track;
+use crate::report::route::distance_to_segment;
 
 /// The most places of a track for a comparison. The work grows with the square of that number.
 const MOST: usize = 2000;

@@ -13,7 +13,7 @@ pub struct Statistics {
 
 impl Statistics {
     /// Returns the statistics of these values; `None` if there are no values.
-    pub(super) fn of(values: impl Iterator<Item = f64>) -> Option<Self> {
+    pub(in crate::report) fn of(values: impl Iterator<Item = f64>) -> Option<Self> {
         let mut values: Vec<f64> = values.collect();
         values.sort_by(f64::total_cmp);
         let (min, max) = (*values.first()?, *values.last()?);

@@ -169,6 +169,35 @@ fn a_nose_beside_the_course_a_tilt_and_a_drift_in_a_hold_are_measured() {
     assert!(!found.iter().any(|(measure, _)| matches!(measure, Measure::RingError(_))));
 }
 
+#[test]
+fn the_speeds_of_legs_and_corners_the_yaw_and_the_sink_are_measured() {
+    let route = route(&[(100.0, 0.0, Flyover), (100.0, 100.0, Flyover), (0.0, 0.0, Land)]);
+    let mut flown = track(&[(0.0, 0.0), (100.0, 0.0), (100.0, 100.0), (0.0, 0.0)]);
+    let end_s = flown.samples.last().unwrap().time_s;
+    for sample in &mut flown.samples {
+        sample.alt_m = if sample.time_s > 4.0 { 9.5 } else { 20.0 };
+        // From the tenth second on the nose turns by 30° a second.
+        let heading_deg = (350.0 + 30.0 * (sample.time_s - 10.0).max(0.0)).rem_euclid(360.0);
+        sample.attitude = Some(SampledAttitude { heading_deg, tilt_deg: 0.0 });
+    }
+    let found = measures(&route, &flown);
+    assert_near(value(&found, Measure::LegSpeed(0)), 10.0, 1e-6);
+    assert_near(value(&found, Measure::LegSpeed(2)), 10.0, 0.1);
+    // In a corner of 90° the way over two samples is shorter by √2.
+    assert_near(value(&found, Measure::CornerSpeed(0)), 10.0 / 2.0_f64.sqrt(), 0.01);
+    assert_near(value(&found, Measure::LegAltitude(0)), 0.5, 1e-9);
+    assert_near(value(&found, Measure::LegAltitude(1)), 0.5, 1e-9);
+    assert_near(value(&found, Measure::YawRateMax), 30.0, 1e-6);
+    assert!(!found.iter().any(|(measure, _)| *measure == Measure::SinkRate), "it has not landed");
+    for step in 1..=100 {
+        let sample = TrackSample { alt_m: 10.0 - 0.1 * f64::from(step), ..*flown.samples.last().unwrap() };
+        flown.samples.push(TrackSample { time_s: end_s + 0.2 * f64::from(step), ..sample });
+    }
+    let time_s = end_s + 20.0;
+    flown.touchdown = Some(Landing { time_s, ..Landing::from_disarming(time_s, Vector2::zeros()) });
+    assert_near(value(&measures(&route, &flown), Measure::SinkRate), 0.5, 1e-6);
+}
+
 fn comparison(name: &str) -> Comparison {
     let route = route(&[(100.0, 0.0, Flyover), (100.0, 100.0, Flyover), (0.0, 0.0, Land)]);
     let straight = track(&[(0.0, 0.0), (100.0, 0.0), (100.0, 100.0), (0.0, 0.0)]);

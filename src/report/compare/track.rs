@@ -40,15 +40,3 @@ impl Landing {
         Self { time_s, ne, impact_mps: None, disarmed_after_s: None }
     }
 }
-
-/// Returns the distance from a point to the segment between two others.
-pub(super) fn distance_to_segment<const D: usize>(
-    point: nalgebra::SVector<f64, D>,
-    from: nalgebra::SVector<f64, D>,
-    to: nalgebra::SVector<f64, D>,
-) -> f64 {
-    let along = to - from;
-    let length = along.norm_squared();
-    let share = if length > 0.0 { ((point - from).dot(&along) / length).clamp(0.0, 1.0) } else { 0.0 };
-    (point - (from + along * share)).norm()
-}

@@ -106,7 +106,7 @@ pub(super) const INPUT_KEYS: &[&str] = &["name", "cases", "at", "each", "do"];
 
 /// Keys of `[[measure]]`.
 pub(super) const MEASURE_KEYS: &[&str] =
-    &["name", "cases", "from", "until", "mean", "rms", "max", "min", "at", "value", "time"];
+    &["name", "cases", "from", "until", "mean", "rms", "max", "min", "at", "value", "time", "better"];
 
 /// Keys of `[[expect]]`.
 pub(super) const EXPECT_KEYS: &[&str] = &[

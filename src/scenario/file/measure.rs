@@ -8,7 +8,7 @@ use super::Belongs;
 use super::keys::MEASURE_KEYS;
 use super::reader::{Layers, Reader};
 use crate::plan::format::TomlTable;
-use crate::scenario::case::{Measure, Measured, Statistic, Window};
+use crate::scenario::case::{Better, Measure, Measured, Statistic, Window};
 use crate::scenario::expression::Scope;
 use crate::telemetry::quantity::Dimension;
 use crate::telemetry::signal::Signal;
@@ -48,9 +48,10 @@ pub(super) fn read(
             reader.problem(value.span(), problem, "choose another name");
             continue;
         }
+        let better = better(&table, reader);
         if let Some((measured, dimension)) = read_measured(&table, scope, reader) {
             Rc::make_mut(&mut scope.names).insert(name.clone(), dimension);
-            measures.push(Measure { name, dimension, measured });
+            measures.push(Measure { name, dimension, measured, better });
         }
     }
     measures
@@ -59,6 +60,16 @@ pub(super) fn read(
 /// Returns a problem if a parameter or a measure has the name of a signal, because expressions would never find it.
 pub(super) fn taken(name: &str) -> Option<String> {
     Signal::find(name).map(|_| format!("{name} is a signal"))
+}
+
+/// Reads the direction in which a measure improves.
+fn better(table: &TomlTable<'_, '_>, reader: &mut Reader<'_, '_>) -> Option<Better> {
+    let value = table.get("better")?;
+    let better = reader.text(value)?.parse().ok();
+    if better.is_none() {
+        reader.problem(value.span(), "this is no direction", "write less or more");
+    }
+    better
 }
 
 /// Reads the window of a table.

@@ -16,7 +16,9 @@ use std::os::unix::process::CommandExt as _;
 use std::process::Command;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::thread::ScopedJoinHandle;
 
+use super::flying::{self, FLYING};
 use super::frames::{MOTOR_BYTES, Report, SERIAL_PORTS};
 use super::serial_port::{Effect, SerialPort};
 
@@ -63,7 +65,7 @@ fn clock_ns() -> u64 {
     time.s as u64 * 1_000_000_000 + time.fraction as u64
 }
 
-fn sleep_50_us() {
+pub(super) fn sleep_50_us() {
     let length = Time { s: 0, fraction: 50_000 };
     // SAFETY: the length is readable.
     unsafe { nanosleep(&raw const length, std::ptr::null_mut()) };
@@ -210,37 +212,76 @@ static BEFORE_MAIN: extern "C" fn(i32, *const *const c_char) = before_main;
 
 extern "C" fn before_main(count: i32, arguments: *const *const c_char) {
     // SAFETY: the C library passes as many arguments as it counts, each with a zero at its end.
-    let is_stand_in =
-        count == 2 && unsafe { CStr::from_ptr(*arguments.add(1)) }.to_bytes() == ARGUMENT.as_bytes();
-    if is_stand_in {
+    let argument = if count == 2 { unsafe { CStr::from_ptr(*arguments.add(1)) }.to_bytes() } else { b"" };
+    if argument == ARGUMENT.as_bytes() {
         run();
+    } else if argument == FLYING.as_bytes() {
+        flying::run();
     }
 }
 
-fn run() {
-    let ports = std::fs::read_to_string(PORTS_FILE).unwrap();
-    let port = |at: usize| ports.split(',').nth(at).unwrap().parse::<u16>().unwrap();
-    let bind = |at: usize| UdpSocket::bind(("0.0.0.0", port(at))).unwrap();
-    let (states_in, rc_in) = (bind(0), bind(1));
-    let listener = TcpListener::bind(("0.0.0.0", port(3))).unwrap();
-    let motors_out = UdpSocket::bind(("0.0.0.0", 0)).unwrap();
-    let (state, rc, serial) =
-        (Newest(Mutex::new(([0_u8; 144], 0))), Newest(Mutex::new(([0_u8; 40], 0))), Serial::default());
+/// The parts of the program that its threads share.
+pub(super) struct Parts {
+    state: Newest<144>,
+    rc: Newest<40>,
+    serial: Serial,
+    motors_out: UdpSocket,
+    motors_port: u16,
+}
+
+impl Parts {
+    /// Returns the newest state and RC packet, and the number of states.
+    pub(super) fn newest(&self) -> ([u8; 144], [u8; 40], u64) {
+        let (state, count) = *self.state.0.lock().unwrap();
+        (state, self.rc.0.lock().unwrap().0, count)
+    }
+
+    /// Sends a motor packet.
+    pub(super) fn send_motors(&self, packet: &[u8; 16]) {
+        self.motors_out.send_to(packet, ("127.0.0.1", self.motors_port)).unwrap();
+    }
+
+    /// Returns the bytes that came over the serial port.
+    pub(super) fn received(&self) -> Vec<u8> {
+        std::mem::take(&mut *self.serial.received.lock().unwrap())
+    }
+
+    /// Sends bytes over the serial port.
+    pub(super) fn send(&self, bytes: &[u8]) {
+        self.serial.to_send.lock().unwrap().extend_from_slice(bytes);
+    }
+}
+
+/// Starts the threads, and runs `main` on this one. The ports are those of states, RC, motors and the serial port.
+pub(super) fn with_threads(
+    [states, rc, motors_port, serial]: [u16; 4],
+    main: impl for<'s> FnOnce(&'s Parts, Vec<ScopedJoinHandle<'s, ()>>),
+) {
+    let bind = |port| UdpSocket::bind(("0.0.0.0", port)).unwrap();
+    let (states_in, rc_in) = (bind(states), bind(rc));
+    let listener = TcpListener::bind(("0.0.0.0", serial)).unwrap();
+    let parts = Parts {
+        state: Newest(Mutex::new(([0_u8; 144], 0))),
+        rc: Newest(Mutex::new(([0_u8; 40], 0))),
+        serial: Serial::default(),
+        motors_out: bind(0),
+        motors_port,
+    };
     std::thread::scope(|scope| {
-        let mut threads = vec![
+        let threads = vec![
             scope.spawn(|| {
                 begin_late();
-                serve(&listener, &serial);
+                serve(&listener, &parts.serial);
                 println!("the serial thread ends");
             }),
             scope.spawn(|| {
                 begin_late();
-                take_packets(&states_in, &state);
+                take_packets(&states_in, &parts.state);
                 println!("the state thread ends");
             }),
             scope.spawn(|| {
                 begin_late();
-                take_packets(&rc_in, &rc);
+                take_packets(&rc_in, &parts.rc);
                 println!("the RC thread ends");
             }),
         ];
@@ -249,28 +290,35 @@ fn run() {
             println!("a thread has not come to wait for its turn");
             std::process::exit(9);
         }
+        main(&parts, threads);
+    });
+}
+
+fn run() {
+    let ports = std::fs::read_to_string(PORTS_FILE).unwrap();
+    let ports: Vec<u16> = ports.split(',').map(|port| port.parse().unwrap()).collect();
+    with_threads(ports.try_into().unwrap(), |parts, mut threads| {
         let (started_ns, mut states, mut number, mut terminal) =
             (clock_ns(), 0, 0_u64, SerialPort::default());
         loop {
             let now_ns = clock_ns();
-            let (state, count) = *state.0.lock().unwrap();
+            let (state, rc, count) = parts.newest();
             if count == std::mem::replace(&mut states, count) {
                 sleep_50_us();
                 continue;
             }
-            let (rc, _) = *rc.0.lock().unwrap();
             for byte in state.iter().chain(&rc).chain(&now_ns.to_le_bytes()) {
                 number = (number ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
             }
             let mut packet = [0; 16];
             packet[..8].copy_from_slice(&number.to_le_bytes());
             packet[8..].copy_from_slice(&(now_ns - started_ns).to_le_bytes());
-            motors_out.send_to(&packet, ("127.0.0.1", port(2))).unwrap();
-            for byte in std::mem::take(&mut *serial.received.lock().unwrap()) {
+            parts.send_motors(&packet);
+            for byte in parts.received() {
                 let text = match terminal.take(byte, &rc) {
                     None => continue,
                     Some(Effect::Send(bytes)) => {
-                        serial.to_send.lock().unwrap().extend(bytes);
+                        parts.send(&bytes);
                         continue;
                     }
                     Some(Effect::Save) => std::process::exit(0),
@@ -316,7 +364,7 @@ fn run() {
                     _ => {}
                 }
                 let answer = format!("{text} at {} µs, {number:x}\n", (now_ns - started_ns) / 1000);
-                serial.to_send.lock().unwrap().extend_from_slice(answer.as_bytes());
+                parts.send(answer.as_bytes());
             }
         }
     });

@@ -99,7 +99,11 @@ fn a_firmware_that_crashes_is_started_again() {
 fn a_firmware_that_hangs_is_reported() {
     let mut served = Served::stand_in(free_ports(), Trouble::Hangs);
     served.notice(" answers: Betaflight ");
-    served.notice("has sent no motors for a second");
+    // On a busy machine it can have been late before, and the notice is not repeated while no motors come.
+    let hangs = "has sent no motors for a second";
+    if !served.program.seen().iter().any(|line| line.contains(hangs)) {
+        served.notice(hangs);
+    }
 }
 
 #[test]

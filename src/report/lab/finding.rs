@@ -1,0 +1,158 @@
+//! Changed measures: the flights of both builds compared one by one.
+
+use std::cmp::Ordering;
+
+use super::{LabFlight, LabMeasure};
+use crate::campaign::{Significance, signed_rank};
+use crate::report::check::CheckedFlight;
+use crate::scenario::Better;
+
+/// The share of the smaller median below which no change is reported.
+const SHARE: f64 = 0.01;
+
+/// A measure that changed.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::report) struct Finding {
+    pub(in crate::report) measure: LabMeasure,
+    pub(in crate::report) kind: Kind,
+    /// The medians before and after, of the flights that differ.
+    pub(in crate::report) medians: [f64; 2],
+    /// The median of the differences of these flights.
+    pub(in crate::report) difference: f64,
+    /// The flights that differ in the direction of that median.
+    pub(in crate::report) agreeing: usize,
+    /// The flights that differ.
+    pub(in crate::report) differing: usize,
+    /// The flights that have the measure.
+    pub(in crate::report) pairs: usize,
+    /// The probability of such differences if the builds fly alike, corrected for the number of measures.
+    pub(in crate::report) p: f64,
+    /// The flight with the greatest difference in that direction.
+    pub(in crate::report) example: usize,
+}
+
+/// What a change means for the pilot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, strum::Display, strum::IntoStaticStr)]
+#[strum(serialize_all = "lowercase")]
+pub(in crate::report) enum Kind {
+    Worse,
+    /// Neither better nor worse.
+    Changed,
+    Better,
+}
+
+/// A measure with the differences of its flights.
+struct Compared<'a> {
+    measure: &'a LabMeasure,
+    /// The flights with the value before and after.
+    pairs: Vec<(usize, [f64; 2])>,
+    /// The flights that differ, with their difference.
+    differing: Vec<(usize, f64)>,
+    p: f64,
+}
+
+/// Returns the measures that changed, the most important first, and the number of measures that were compared.
+///
+/// A measure has changed if Wilcoxon's signed-rank test of the differences says so, after Holm's correction for the number
+/// of measures that could be significant at all, and if the median difference is one that a pilot notices.
+pub(super) fn all(measures: &[LabMeasure], flights: &[LabFlight]) -> (Vec<Finding>, usize) {
+    let mut compared: Vec<Compared<'_>> = measures.iter().map(|measure| compare(measure, flights)).collect();
+    compared.retain(|compared| !compared.pairs.is_empty());
+    let count = compared.len();
+    // With so few differing flights no difference is significant, so the measure takes no part in the correction.
+    compared.retain(|compared| 2.0 * 0.5_f64.powi(compared.differing.len() as i32) < Significance::LEVEL);
+    compared.sort_by(|a, b| a.p.total_cmp(&b.p));
+    let tested = compared.len();
+    let mut corrected = 0.0_f64;
+    let mut findings = Vec::new();
+    for (rank, compared) in compared.iter().enumerate() {
+        corrected = corrected.max((compared.p * (tested - rank) as f64).min(1.0));
+        if corrected < Significance::LEVEL {
+            findings.extend(compared.finding(corrected));
+        }
+    }
+    findings.sort_by(order);
+    (findings, count)
+}
+
+/// Puts worse before changed before better, and a large share of change before a small one.
+fn order(a: &Finding, b: &Finding) -> Ordering {
+    a.kind.cmp(&b.kind).then(b.share().total_cmp(&a.share()))
+}
+
+fn compare<'a>(measure: &'a LabMeasure, flights: &[LabFlight]) -> Compared<'a> {
+    let value = |flight: &CheckedFlight| {
+        let is_of = measure.scenario.as_ref().is_none_or(|scenario| *scenario == flight.scenario);
+        let found = flight.measures.iter().find(|(key, _)| is_of && *key == measure.key);
+        found.map(|(_, value)| *value).filter(|value| value.is_finite())
+    };
+    let pairs: Vec<(usize, [f64; 2])> = flights
+        .iter()
+        .enumerate()
+        .filter_map(|(index, flight)| Some((index, [value(flight.base.as_ref()?)?, value(&flight.head)?])))
+        .collect();
+    let differences = pairs.iter().map(|(index, [base, head])| (*index, head - base));
+    let differing: Vec<(usize, f64)> = differences.filter(|(_, difference)| *difference != 0.0).collect();
+    let sizes: Vec<f64> = differing.iter().map(|(_, difference)| *difference).collect();
+    Compared { measure, pairs, differing, p: signed_rank(&sizes).map_or(1.0, |found| found.p) }
+}
+
+impl Compared<'_> {
+    /// Returns the finding; `None` if a pilot would not notice the difference.
+    fn finding(&self, p: f64) -> Option<Finding> {
+        let difference = median(self.differing.iter().map(|(_, difference)| *difference))?;
+        let of_side = |side: usize| {
+            let differing = self.pairs.iter().filter(|(_, sides)| sides[0] != sides[1]);
+            median(differing.map(|(_, sides)| sides[side]))
+        };
+        let medians = [of_side(0)?, of_side(1)?];
+        let least = smallest(self.measure.unit).max(SHARE * medians[0].abs().min(medians[1].abs()));
+        if difference.abs() < least {
+            return None;
+        }
+        let agrees = |found: f64| found * difference > 0.0;
+        let example = self.differing.iter().filter(|(_, found)| agrees(*found));
+        let example = example.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?.0;
+        let kind = match (self.measure.better, difference > 0.0) {
+            (None, _) => Kind::Changed,
+            (Some(Better::Less), true) | (Some(Better::More), false) => Kind::Worse,
+            _ => Kind::Better,
+        };
+        Some(Finding {
+            measure: self.measure.clone(),
+            kind,
+            medians,
+            difference,
+            agreeing: self.differing.iter().filter(|(_, found)| agrees(*found)).count(),
+            differing: self.differing.len(),
+            pairs: self.pairs.len(),
+            p,
+            example,
+        })
+    }
+}
+
+impl Finding {
+    /// Returns the change as a share of the measure, which makes measures of all units comparable. A measure near zero counts
+    /// as a few of the smallest changes.
+    pub(super) fn share(&self) -> f64 {
+        let size = self.medians.iter().map(|median| median.abs()).fold(0.0, f64::max);
+        self.difference.abs() / size.max(4.0 * smallest(self.measure.unit)).max(1e-9)
+    }
+}
+
+/// Returns the smallest difference that a pilot notices, in a unit of the measures.
+fn smallest(unit: &str) -> f64 {
+    match unit {
+        "m" => 0.1,
+        "s" => 0.2,
+        "m/s" => 0.05,
+        "°" | "deg" | "°/s" | "deg/s" => 0.5,
+        _ => 0.0,
+    }
+}
+
+/// Returns the middle value, or the mean of the two in the middle.
+fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+    crate::report::compare::Statistics::of(values).map(|found| found.median)
+}

@@ -1,0 +1,206 @@
+use super::*;
+use crate::report::compare::Track;
+use crate::scenario::{Better, Judgement, Outcome};
+
+/// Returns a flight with this value of a measure and these properties, `true` = kept.
+fn flight(seed: u64, value: f64, kept: &[(&str, bool)]) -> CheckedFlight {
+    let judgements = kept.iter().map(|(label, is_kept)| Judgement {
+        label: (*label).to_owned(),
+        line: 0,
+        outcome: match is_kept {
+            true => Outcome::Met(None),
+            false => Outcome::Failed { sentence: format!("{label} is not true"), at: None, guard: None },
+        },
+    });
+    CheckedFlight {
+        scenario: "lab-landing".to_owned(),
+        file: "lab-landing".to_owned(),
+        seed,
+        seeds: 20,
+        hash: value.to_bits(),
+        flown_s: 40.0,
+        is_remote: true,
+        firmware_options: Some(" --firmware new.elf".to_owned()),
+        measures: vec![("touchdown_speed_mps".to_owned(), value)],
+        judgements: judgements.collect(),
+        ..CheckedFlight::default()
+    }
+}
+
+/// Returns the answer about flights with these values before and after.
+fn lab(values: &[(f64, f64)]) -> Lab {
+    let flights = (1..).zip(values).map(|(seed, (before, after))| LabFlight {
+        base: Some(flight(seed, *before, &[])),
+        head: flight(seed, *after, &[]),
+    });
+    answer(flights.collect())
+}
+
+fn answer(flights: Vec<LabFlight>) -> Lab {
+    let measures: Vec<LabMeasure> = common().collect();
+    let wanted = flights.len();
+    Lab::new((Some("old.elf".to_owned()), "new.elf".to_owned()), &measures, flights, wanted, 10.0)
+}
+
+#[test]
+fn a_landing_that_is_faster_in_all_flights_is_worse() {
+    let lab =
+        lab(&(0..20).map(|n| (0.5 + 0.01 * f64::from(n), 0.9 + 0.012 * f64::from(n))).collect::<Vec<_>>());
+    assert!(lab.is_worse());
+    let [finding] = &lab.findings[..] else { panic!("{:?}", lab.findings) };
+    assert_eq!((finding.kind, finding.agreeing, finding.differing), (Kind::Worse, 20, 20));
+    assert!((finding.difference - 0.419).abs() < 1e-9 && finding.p < 1e-4, "{finding:?}");
+    let text = lab.text();
+    assert!(
+        text.contains("worse: speed at the touchdown 0.59 → 1.01 m/s (+0.42, 20 of 20 flights)"),
+        "{text}"
+    );
+    assert!(text.contains("betadeck open lab-landing --seed 20 --at boot+0.00 --firmware new.elf"), "{text}");
+    assert!(text.lines().count() <= 10, "{text}");
+    insta::assert_snapshot!(lab.markdown(Some("betadeck lab --base old.elf --head new.elf")));
+}
+
+#[test]
+fn two_copies_of_one_build_do_not_differ() {
+    let lab = lab(&(0..20).map(|n| (f64::from(n), f64::from(n))).collect::<Vec<_>>());
+    assert!(!lab.is_worse());
+    assert!(
+        lab.text().contains("No difference. All flights are the same to the last bit."),
+        "{}",
+        lab.text()
+    );
+}
+
+#[test]
+fn noise_in_both_directions_and_differences_that_nobody_notices_are_no_change() {
+    let noise = (0..20).map(|n| (0.5, if n % 2 == 0 { 0.9 } else { 0.1 } + 0.001 * f64::from(n)));
+    assert!(lab(&noise.collect::<Vec<_>>()).findings.is_empty());
+    let small = (0..20).map(|n| (0.5, 0.52 + 0.0001 * f64::from(n)));
+    assert!(lab(&small.collect::<Vec<_>>()).findings.is_empty());
+    let few = (0..4).map(|n| (0.5, 0.9 + 0.01 * f64::from(n)));
+    assert!(lab(&few.collect::<Vec<_>>()).findings.is_empty(), "four flights say nothing");
+}
+
+#[test]
+fn a_change_in_a_part_of_the_flights_counts_by_that_part() {
+    let part = (0..40).map(|n| (0.5, if n < 12 { 0.9 + 0.01 * f64::from(n) } else { 0.5 }));
+    let lab = lab(&part.collect::<Vec<_>>());
+    assert!(lab.text().contains("12 of 12 flights, 28 are equal"), "{}", lab.text());
+}
+
+#[test]
+fn a_smaller_value_is_better_or_worse_as_the_measure_says() {
+    let kind = |better: Option<Better>, sign: f64| {
+        let measure = LabMeasure { better, ..common().find(|one| one.key == "touchdown_speed_mps").unwrap() };
+        let flights = (1..=20).map(|seed| LabFlight {
+            base: Some(flight(seed, 1.0, &[])),
+            head: flight(seed, 1.0 + sign * (0.4 + 0.01 * seed as f64), &[]),
+        });
+        finding::all(&[measure], &flights.collect::<Vec<_>>()).0[0].kind
+    };
+    assert_eq!(kind(Some(Better::Less), -1.0), Kind::Better);
+    assert_eq!(kind(Some(Better::More), -1.0), Kind::Worse);
+    assert_eq!(kind(Some(Better::More), 1.0), Kind::Better);
+    assert_eq!(kind(None, 1.0), Kind::Changed);
+}
+
+#[test]
+fn a_property_that_the_change_broke_is_worse_if_it_is_more_than_chance() {
+    let fence = "stays inside the fence";
+    let pair = |seed: u64, before: bool, after: bool| LabFlight {
+        base: Some(flight(seed, 1.0, &[(fence, before)])),
+        head: flight(seed, 1.0, &[(fence, after)]),
+    };
+    let broken = answer(vec![pair(1, true, false), pair(2, true, true), pair(3, true, false)]);
+    assert!(broken.is_worse());
+    let text = broken.text();
+    assert!(text.contains("2 flights fail that passed before"), "{text}");
+    assert!(
+        text.contains("worse: stays inside the fence: 2 of 3 flights, before 0; lab-landing · seed 1"),
+        "{text}"
+    );
+    // One flight more and one fewer is chance.
+    let turned = answer(vec![pair(1, true, false), pair(2, false, true), pair(3, true, true)]);
+    assert!(!turned.is_worse());
+    assert!(
+        turned.text().contains("fails now: stays inside the fence: 1 of 3 flights, before 1"),
+        "{}",
+        turned.text()
+    );
+    let mended = answer(vec![pair(1, false, true), pair(2, false, true)]);
+    assert!(!mended.is_worse() && !mended.text().contains("fence"), "{}", mended.text());
+}
+
+#[test]
+fn a_build_alone_is_judged_by_the_properties() {
+    let one = |seed: u64, kept: bool| LabFlight {
+        base: None,
+        head: flight(seed, 1.0, &[("it does not crash", kept)]),
+    };
+    let alone = |flights: Vec<LabFlight>| {
+        let measures: Vec<LabMeasure> = common().collect();
+        Lab::new((None, "new.elf".to_owned()), &measures, flights, 2, 10.0)
+    };
+    let crashed = alone(vec![one(1, true), one(2, false)]);
+    assert!(crashed.is_worse() && crashed.findings.is_empty());
+    let text = crashed.text();
+    assert!(text.contains("1 property was broken."), "{text}");
+    assert!(
+        text.contains(
+            "broken: it does not crash: 1 of 2 flights; lab-landing · seed 2: it does not crash is not"
+        ),
+        "{text}"
+    );
+    assert!(!alone(vec![one(1, true)]).is_worse());
+}
+
+#[test]
+fn a_flight_that_could_not_be_prepared_is_a_broken_property() {
+    let failed = CheckedFlight { problem: Some("it does not answer".to_owned()), ..flight(1, 1.0, &[]) };
+    let pair = |seed| LabFlight {
+        base: Some(flight(seed, 1.0, &[])),
+        head: CheckedFlight { seed, ..failed.clone() },
+    };
+    let lab = answer(vec![pair(1), pair(2)]);
+    assert!(lab.is_worse() && lab.text().contains(ANSWERS), "{}", lab.text());
+}
+
+#[test]
+fn the_json_has_all_flights_and_the_same_numbers() {
+    let lab = lab(&(0..20).map(|n| (0.5, 0.9 + 0.01 * f64::from(n))).collect::<Vec<_>>());
+    let json: serde_json::Value = serde_json::from_str(&lab.json()).unwrap();
+    assert_eq!(json["flights"].as_array().unwrap().len(), 20);
+    assert_eq!(json["measures"][0]["kind"], "worse");
+    assert_eq!(json["worse"], true);
+    assert_eq!(json["flights"][0]["base"]["measures"]["touchdown_speed_mps"], 0.5);
+}
+
+#[test]
+fn every_common_measure_is_one_that_flights_have() {
+    use crate::report::compare::Measure;
+    let keys: Vec<&str> = [
+        Measure::Flown,
+        Measure::LegSpeed(0),
+        Measure::CornerSpeed(0),
+        Measure::CrossTrackRms(0),
+        Measure::CrossTrackMax(0),
+        Measure::Overshoot(0),
+        Measure::LegAltitude(0),
+        Measure::AltitudeError(0),
+        Measure::NoseError(0),
+        Measure::RingRadius(0),
+        Measure::RingRate(0),
+        Measure::HoldDistance(0),
+        Measure::SinkRate,
+        Measure::TouchdownSpeed,
+        Measure::TouchdownDistance,
+        Measure::DisarmDelay,
+        Measure::TiltMax,
+        Measure::YawRateMax,
+    ]
+    .map(|measure| measure.key().0)
+    .to_vec();
+    let common: Vec<String> = common().map(|measure| measure.key).collect();
+    assert_eq!(common, keys);
+    assert!(measures_of(&crate::report::route::Route { points: Vec::new() }, &Track::default()).is_empty());
+}
