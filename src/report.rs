@@ -5,7 +5,8 @@
 //! * During a flight: `json` and `sentence` for events, `csv` for samples, `gpx` and `track` for places.
 //! * After it: `record` keeps what a report needs, `flight` is all that it says about a flight as plain data, with its
 //!   tables and pictures, and `html` makes pages of it. `plot` draws maps and charts as SVG.
-//! * About several flights: `check` has the results of scenarios, `compare` those of two firmwares, `campaign` the lines
+//! * About several flights: `check` has the results of scenarios, `compare` those of two firmwares, `lab` those of a
+//!   programme on them, `campaign` the lines
 //!   and the answer of a campaign, `sweep` a flight with a fault at every second, `flights` the list of recordings.
 //! * About files: `conversion` is the loss report of `convert`, `log_export` writes logs as CSV and tracks.
 

@@ -2,7 +2,7 @@
 //!
 //! All measures come from truth, in the same way for both firmwares; their own reports do not count. The flight of a log
 //! is measured by its GPS and its altitude (`log_track`). `passage` finds the times at which a track passed the waypoints,
-//! `measure` takes the other measures, and `distance` gives the distance between two tracks.
+//! `take`, `leg` and `hold` the other measures, and `distance` gives the distance between two tracks.
 
 mod cells;
 mod distance;
@@ -16,6 +16,7 @@ mod measure;
 mod passage;
 mod picture;
 mod statistics;
+mod take;
 mod text;
 mod track;
 
@@ -23,9 +24,11 @@ mod track;
 mod tests;
 
 pub(super) use cells::TableRow;
+pub use flown_track::flown_track;
 pub use log_track::begin_of_log;
-pub use measure::{Measure, measures};
+pub use measure::Measure;
 pub use statistics::Statistics;
+pub use take::measures;
 pub use track::{Landing, Track};
 
 use super::flight::{Detail, Figure};

@@ -12,7 +12,7 @@ use crate::launch::RemoteFirmware;
 use crate::launch::run::Stopped;
 use crate::process::error::AppError;
 use crate::report::check::CheckedFlight;
-use crate::report::compare::Track;
+use crate::report::compare::flown_track;
 use crate::report::lab::{LabFlight, measures_of, properties, values};
 use crate::report::route::Route;
 use crate::scenario::{Air, Case, Flown, Judgement, Scenario};
@@ -97,13 +97,16 @@ impl Pair<'_> {
     }
 }
 
+/// The measures and the judgements that all flights have in common.
+type Common = (Vec<(String, f64)>, Vec<Judgement>);
+
 /// Returns the measures and the judgements that all flights have in common.
-fn measured(case: &Case, air: &Air, flown: &Flown) -> Result<(Vec<(String, f64)>, Vec<Judgement>), AppError> {
+fn measured(case: &Case, air: &Air, flown: &Flown) -> Result<Common, AppError> {
     // The embedded firmware knows the settings of the case.
     let vehicle: Vehicle = setup::build(case.setup_in(air), &mut Vec::new())?;
     let frame = *vehicle.local_frame().ok_or_else(|| AppError::internal("the craft has no position"))?;
     let settings = vehicle.controller().settings_view().unwrap_or_default();
     let route = Route::new(&case.setup.plan.plan, &frame, &settings);
-    let track = Track::from_flown(flown, air.seed);
+    let track = flown_track(flown, air.seed);
     Ok((measures_of(&route, &track), properties(flown, &route, &settings)))
 }

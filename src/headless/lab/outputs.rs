@@ -1,6 +1,6 @@
 //! The outputs of the programme.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::args::{LabArgs, OutputFile};
 use crate::files::output_file::{FinalOutput, KeptFiles};
@@ -49,7 +49,7 @@ impl Outputs {
         let prepare = |path: Option<&Path>| path.map(FinalOutput::prepare).transpose();
         Ok(Self {
             json_on_stdout: args.json == Some(OutputFile::Stdout),
-            json: prepare(json.map(|path| path.as_path()))?,
+            json: prepare(json.map(PathBuf::as_path))?,
             junit: prepare(args.junit.as_deref())?,
             markdown: prepare(args.markdown.as_deref())?,
             html: prepare(args.html.as_deref())?,

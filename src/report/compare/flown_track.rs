@@ -12,36 +12,34 @@ use crate::telemetry::signal::Signal;
 /// The interval between two samples of a track, µs.
 const INTERVAL_US: u64 = 50_000;
 
-impl Track {
-    /// Returns the track of a flight from its engagement on; from boot on if the autopilot did not engage.
-    pub fn from_flown(flown: &Flown, seed: u64) -> Self {
-        let trace = &flown.trace;
-        let begin = trace.engaged_at.unwrap_or(SimTime::ZERO);
-        let time_s = |time: SimTime| time.seconds_since(begin);
-        let standing_m = trace.samples.first().map_or(0.0, |first| first.value(Signal::Altitude));
-        let kept = trace
-            .samples
-            .iter()
-            .filter(|sample| sample.time >= begin && sample.time.0.is_multiple_of(INTERVAL_US));
-        let samples: Vec<TrackSample> = kept
-            .map(|sample| TrackSample {
-                time_s: time_s(sample.time),
-                ne: Vector2::from(sample.place()),
-                alt_m: sample.value(Signal::Altitude) - standing_m,
-                attitude: Some(SampledAttitude {
-                    heading_deg: sample.value(Signal::Heading),
-                    tilt_deg: sample.value(Signal::Tilt),
-                }),
-            })
-            .collect();
-        Self {
-            seed,
-            touchdown: touchdown(flown, begin),
-            samples,
-            result: flown.result.clone(),
-            reason: flown.reason.clone(),
-            flown_s: trace.engaged_at.map(|_| flown.flown_s),
-        }
+/// Returns the track of a flight from its engagement on; from boot on if the autopilot did not engage.
+pub fn flown_track(flown: &Flown, seed: u64) -> Track {
+    let trace = &flown.trace;
+    let begin = trace.engaged_at.unwrap_or(SimTime::ZERO);
+    let time_s = |time: SimTime| time.seconds_since(begin);
+    let standing_m = trace.samples.first().map_or(0.0, |first| first.value(Signal::Altitude));
+    let kept = trace
+        .samples
+        .iter()
+        .filter(|sample| sample.time >= begin && sample.time.0.is_multiple_of(INTERVAL_US));
+    let samples: Vec<TrackSample> = kept
+        .map(|sample| TrackSample {
+            time_s: time_s(sample.time),
+            ne: Vector2::from(sample.place()),
+            alt_m: sample.value(Signal::Altitude) - standing_m,
+            attitude: Some(SampledAttitude {
+                heading_deg: sample.value(Signal::Heading),
+                tilt_deg: sample.value(Signal::Tilt),
+            }),
+        })
+        .collect();
+    Track {
+        seed,
+        touchdown: touchdown(flown, begin),
+        samples,
+        result: flown.result.clone(),
+        reason: flown.reason.clone(),
+        flown_s: trace.engaged_at.map(|_| flown.flown_s),
     }
 }
 

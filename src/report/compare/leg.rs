@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::measure::{Measure, wrapped_deg};
+use super::measure::Measure;
 use super::passage::Passage;
 use super::track::Track;
 use crate::math::atan2;
@@ -142,4 +142,9 @@ fn outside_of_corner(way_in: Vector2<f64>, way_out: Vector2<f64>) -> Option<Vect
         None if way_in.dot(&way_out) < 0.0 => Some(way_in),
         outside => outside,
     }
+}
+
+/// Returns an angle as −180 to 180 degrees.
+pub(super) fn wrapped_deg(angle_deg: f64) -> f64 {
+    (angle_deg + 180.0).rem_euclid(360.0) - 180.0
 }

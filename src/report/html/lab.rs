@@ -49,8 +49,8 @@ pub fn lab_page(lab: &Lab, command: Option<&str>, program: &str) -> String {
             kind: finding.kind.to_string(),
             title: text::line(&finding.measure.title),
             unit: finding.measure.unit,
-            before: format!("{:.2}", finding.medians[0]),
-            after: format!("{:.2}", finding.medians[1]),
+            before: format!("{:.2}", finding.typical[0]),
+            after: format!("{:.2}", finding.typical[1]),
             difference: format!("{:+.2}", finding.difference),
             flights: format!("{} of {}", finding.agreeing, finding.differing),
             command: shell(lab.open(finding)),
@@ -65,7 +65,7 @@ pub fn lab_page(lab: &Lab, command: Option<&str>, program: &str) -> String {
         let mut page =
             Page::new("A programme of flights on a firmware by betadeck", &title, &verdict, &body, program);
         page.command = command.and_then(text::command);
-        page.note = "Measured from truth, in simulated time. Medians are those of the flights that differ.";
+        page.note = "Measured from truth, in simulated time. Before: the median of the flights that differ; after: that with the median difference.";
         page.html()
     })
 }

@@ -15,8 +15,9 @@ const SHARE: f64 = 0.01;
 pub(in crate::report) struct Finding {
     pub(in crate::report) measure: LabMeasure,
     pub(in crate::report) kind: Kind,
-    /// The medians before and after, of the flights that differ.
-    pub(in crate::report) medians: [f64; 2],
+    /// The median before, of the flights that differ, and this with the median difference. Flights of different kinds have
+    /// different values, so that a median after has little to do with the one before.
+    pub(in crate::report) typical: [f64; 2],
     /// The median of the differences of these flights.
     pub(in crate::report) difference: f64,
     /// The flights that differ in the direction of that median.
@@ -101,12 +102,10 @@ impl Compared<'_> {
     /// Returns the finding; `None` if a pilot would not notice the difference.
     fn finding(&self, p: f64) -> Option<Finding> {
         let difference = median(self.differing.iter().map(|(_, difference)| *difference))?;
-        let of_side = |side: usize| {
-            let differing = self.pairs.iter().filter(|(_, sides)| sides[0] != sides[1]);
-            median(differing.map(|(_, sides)| sides[side]))
-        };
-        let medians = [of_side(0)?, of_side(1)?];
-        let least = smallest(self.measure.unit).max(SHARE * medians[0].abs().min(medians[1].abs()));
+        let differing = self.pairs.iter().filter(|(_, sides)| sides[0] != sides[1]);
+        let before = median(differing.map(|(_, sides)| sides[0]))?;
+        let typical = [before, before + difference];
+        let least = smallest(self.measure.unit).max(SHARE * before.abs());
         if difference.abs() < least {
             return None;
         }
@@ -121,7 +120,7 @@ impl Compared<'_> {
         Some(Finding {
             measure: self.measure.clone(),
             kind,
-            medians,
+            typical,
             difference,
             agreeing: self.differing.iter().filter(|(_, found)| agrees(*found)).count(),
             differing: self.differing.len(),
@@ -136,7 +135,7 @@ impl Finding {
     /// Returns the change as a share of the measure, which makes measures of all units comparable. A measure near zero counts
     /// as a few of the smallest changes.
     pub(super) fn share(&self) -> f64 {
-        let size = self.medians.iter().map(|median| median.abs()).fold(0.0, f64::max);
+        let size = self.typical.iter().map(|value| value.abs()).fold(0.0, f64::max);
         self.difference.abs() / size.max(4.0 * smallest(self.measure.unit)).max(1e-9)
     }
 }

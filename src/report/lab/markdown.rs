@@ -15,7 +15,7 @@ pub(super) fn markdown(lab: &Lab, command: Option<&str>) -> String {
         );
     }
     for finding in &lab.findings {
-        let [before, after] = finding.medians;
+        let [before, after] = finding.typical;
         let command = lab.open(finding).map(|open| code(&open)).unwrap_or_default();
         text.push_str(&format!(
             "| {} | {} | {before:.2} | {after:.2} | {:+.2} {} | {} of {} | {:.1e} | {command} |\n",

@@ -30,7 +30,7 @@ pub(super) fn answer(lab: &Lab) -> String {
 
 /// Returns a finding: `worse: speed at the touchdown 0.52 → 0.93 m/s (+0.41, 20 of 20 flights)`.
 pub(super) fn line(finding: &Finding) -> String {
-    let Finding { measure, kind, medians: [base, head], difference, agreeing, differing, pairs, .. } =
+    let Finding { measure, kind, typical: [base, head], difference, agreeing, differing, pairs, .. } =
         finding;
     let unit = if measure.unit.is_empty() { String::new() } else { format!(" {}", measure.unit) };
     let all = if pairs == differing { String::new() } else { format!(", {} are equal", pairs - differing) };
