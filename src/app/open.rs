@@ -211,7 +211,8 @@ struct Opened {
 
 /// Reads the scenario and the firmware of the options.
 fn of_scenario(args: &OpenArgs, notices: &mut Vec<String>) -> Result<Opened, AppError> {
-    let scenario = check::load_one(&args.scenario, args.seed, args.any_folder)?;
+    let scenario =
+        check::load_one(&args.scenario, args.seed.as_ref().map(std::slice::from_ref), args.any_folder)?;
     let (case, air) = choose(&scenario, args)?;
     let beside = Beside {
         ports: (&args.firmware_ports).into(),

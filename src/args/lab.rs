@@ -45,7 +45,7 @@ pub struct LabArgs {
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000), help_heading = "Which")]
     pub seed: u32,
 
-    /// Time after which no further flight begins, such as 120s or 10min [default: 180s]
+    /// Time after which no further flight begins, such as 120s or 10min [default: 170s, for an answer in three minutes]
     #[arg(long, value_name = "TIME", value_parser = value::wall_time, help_heading = "How")]
     pub budget: Option<f64>,
 

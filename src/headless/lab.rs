@@ -22,7 +22,7 @@ use programme::Programme;
 
 /// The default time after which no further flight begins, s. The flights that are in the air then take a few seconds more.
 const BUDGET_S: f64 = 170.0;
-/// The flights at the beginning after which a firmware that none of them could fly is given up.
+/// The flights at the beginning after which a firmware that could fly none of them is given up.
 const TRIES: usize = 2;
 
 /// Flies, compares and judges. The exit code is 0 if nothing is worse.
@@ -34,8 +34,9 @@ pub(crate) fn run(args: &LabArgs, repeat: &[String]) -> Result<u8, AppError> {
     let head = args.head.as_deref().or(args.alone.as_deref());
     let head = head.ok_or_else(|| AppError::input("name an executable"))?;
     let mut notices = Vec::new();
-    let base = args.base.as_deref().map(|path| firmware(args, path, &mut notices)).transpose()?;
-    let firmwares = (base, firmware(args, head, &mut notices)?);
+    let base = args.base.as_deref().map(|path| firmware(args, path, "--base ", &mut notices)).transpose()?;
+    let option = if args.head.is_some() { "--head " } else { "" };
+    let firmwares = (base, firmware(args, head, option, &mut notices)?);
     let outputs = Outputs::prepare(args, repeat)?;
     notices.iter().for_each(|notice| error::tell(notice));
     if let Some(folder) = &args.keep {
@@ -86,6 +87,9 @@ fn fly(
             Ok(flight) => {
                 progress.show(done, programme.entries().len(), &flight.head.scenario);
                 flights.push(flight);
+                if flights.len() == TRIES && !flights.iter().any(is_flown) {
+                    gives_up.store(true, Ordering::Relaxed);
+                }
             }
             Err(error) => {
                 gives_up.store(true, Ordering::Relaxed);
@@ -94,13 +98,9 @@ fn fly(
         },
     )?;
     progress.clear();
-    let is_flown = |flight: &LabFlight| {
-        let sides = std::iter::once(&flight.head).chain(&flight.base);
-        sides.filter(|side| side.problem.is_some()).count() == 0
-    };
     match (trouble, flights.first()) {
         (Some(error), _) => Err(error),
-        (None, Some(first)) if flights.len() >= TRIES && !flights.iter().any(is_flown) => {
+        (None, Some(first)) if !flights.iter().any(is_flown) => {
             let problem = first.base.iter().chain(Some(&first.head)).find_map(|side| side.problem.clone());
             Err(AppError::environment(problem.unwrap_or_default()))
         }
@@ -108,21 +108,37 @@ fn fly(
     }
 }
 
-/// Returns the firmware in a file, checked. It must run in simulated time.
-fn firmware(args: &LabArgs, path: &Path, notices: &mut Vec<String>) -> Result<RemoteFirmware, AppError> {
+/// Returns `true` if no side had a problem.
+fn is_flown(flight: &LabFlight) -> bool {
+    std::iter::once(&flight.head).chain(&flight.base).all(|side| side.problem.is_none())
+}
+
+/// Returns the firmware in a file, checked. It must run in simulated time. `option` names the file in messages.
+fn firmware(
+    args: &LabArgs,
+    path: &Path,
+    option: &str,
+    notices: &mut Vec<String>,
+) -> Result<RemoteFirmware, AppError> {
     let link = FirmwareLinkArgs { firmware_arg: args.firmware_arg.clone(), ..FirmwareLinkArgs::default() };
     let (flight, physics) = (FlightArgs::default(), PhysicsArgs::default());
     let beside = Beside { ports: (&args.firmware_ports).into(), flight: &flight, physics: &physics };
     let chosen = Chosen::by_option(FirmwareChoice::Executable(path.to_owned()));
-    let firmware = chosen.check(&link, beside, notices)?;
-    let firmware = firmware.ok_or_else(|| AppError::input("name an executable"))?;
+    let mut own = Vec::new();
+    let checked = chosen.check(&link, beside, &mut own).map_err(|AppError { code, message }| {
+        // The message is about the option of the other commands.
+        let message = message.replace("--firmware ", option).replace(", or write embedded or attach", "");
+        AppError { code, message }
+    })?;
+    let firmware = checked.ok_or_else(|| AppError::input("name an executable"))?;
     if firmware.clock == FirmwareClock::Real {
         return Err(AppError::environment(format!(
-            "{} cannot run in simulated time here, and on the wall clock no two flights are the same: {}",
+            "{option}{} cannot run in simulated time here, and on the wall clock no two flights are the same: {}",
             path.display(),
-            notices.join(" ")
+            own.join(" ")
         )));
     }
+    notices.append(&mut own);
     Ok(firmware)
 }
 

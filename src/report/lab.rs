@@ -70,14 +70,15 @@ impl Lab {
         Self { base, head, flights, wanted, wall_s, findings, compared, broken }
     }
 
-    /// Returns `true` if the build is worse than the one before it; if it is alone, if it broke a property.
+    /// Returns `true` if the build is worse than the one before it; if it is alone, if it broke a property that every firmware
+    /// keeps.
     pub fn is_worse(&self) -> bool {
         match self.base {
             Some(_) => {
                 self.findings.iter().any(|finding| finding.kind == Kind::Worse)
                     || self.broken.iter().any(Broken::is_worse)
             }
-            None => !self.broken.is_empty(),
+            None => self.broken.iter().any(Broken::is_general),
         }
     }
 
@@ -152,14 +153,14 @@ impl Lab {
     /// Returns the number of flights and their speed in words.
     pub(super) fn flown(&self) -> String {
         let sides = if self.base.is_some() { 2.0 } else { 1.0 };
-        let flown_s: f64 = self.flights.iter().map(LabFlight::flown_s).sum();
+        let flown_s = self.flights.iter().map(LabFlight::flown_s).fold(0.0, |sum, flown_s| sum + flown_s);
         let each = if sides > 1.0 { " on each" } else { "" };
         let of = match self.flights.len() {
-            all if all == self.wanted => format!("{all}"),
-            some => format!("{some} of {}", self.wanted),
+            all if all == self.wanted => counted(all, "flight", "flights"),
+            some => format!("{some} of {}", counted(self.wanted, "flight", "flights")),
         };
         format!(
-            "{of} flights{each}, {flown_s:.0} s flown in {:.0} s ({:.0}x real time)",
+            "{of}{each}, {flown_s:.0} s flown in {:.0} s ({:.0}x real time)",
             self.wall_s,
             flown_s / self.wall_s.max(1e-3)
         )
@@ -167,45 +168,57 @@ impl Lab {
 
     /// Returns the counts of what changed, as a sentence.
     pub(super) fn verdict(&self) -> String {
-        let Some(_) = &self.base else {
-            return match self.broken.len() {
-                0 => "Every property was kept.".to_owned(),
-                1 => "1 property was broken.".to_owned(),
-                count => format!("{count} properties were broken."),
+        if self.flights.is_empty() {
+            return "Nothing was flown.".to_owned();
+        }
+        if self.base.is_none() {
+            let general = self.broken.iter().filter(|broken| broken.is_general()).count();
+            return match (general, self.broken.len() - general) {
+                (0, 0) => "Every property was kept.".to_owned(),
+                (general, of_scenarios) => format!(
+                    "{} and {} were not met.",
+                    counted(general, "property", "properties"),
+                    counted(of_scenarios, "expectation of a scenario", "expectations of scenarios")
+                ),
             };
-        };
-        let identical = self.flights.iter().filter(|flight| flight.is_identical()).count();
-        let same = match identical {
-            0 => String::new(),
-            all if all == self.flights.len() => " All flights are the same to the last bit.".to_owned(),
-            1 => " 1 flight is the same to the last bit.".to_owned(),
-            some => format!(" {some} flights are the same to the last bit."),
-        };
-        let changed = self.findings.len();
+        }
+        let differing = self.flights.iter().filter(|flight| !flight.is_identical()).count();
+        if differing == 0 {
+            return "No difference: all flights are the same to the last bit.".to_owned();
+        }
         let of = |kind: Kind| self.findings.iter().filter(|finding| finding.kind == kind).count();
         let broken: BTreeSet<usize> = self.broken.iter().flat_map(|broken| &broken.newly).copied().collect();
         let fail = match broken.len() {
             0 => String::new(),
-            1 => ", 1 flight fails that passed before".to_owned(),
-            count => format!(", {count} flights fail that passed before"),
+            1 => ", 1 flight breaks a property that it kept before".to_owned(),
+            count => format!(", {count} flights break a property that they kept before"),
         };
-        match changed {
-            0 if broken.is_empty() => format!("No difference.{same}"),
-            0 => format!("None of {} measures changed{fail}.{same}", self.compared),
-            _ => format!(
-                "{changed} of {} measures changed, {} worse, {} better{fail}.{same}",
+        let changed = match self.findings.len() {
+            0 => format!("No significant change of {} measures", self.compared),
+            changed => format!(
+                "{changed} of {} measures changed, {} worse, {} better",
                 self.compared,
                 of(Kind::Worse),
                 of(Kind::Better)
             ),
-        }
+        };
+        format!(
+            "{changed}{fail}. {differing} of {} differ.",
+            counted(self.flights.len(), "flight", "flights")
+        )
     }
+}
+
+/// Returns a number with its word.
+fn counted(count: usize, one: &str, several: &str) -> String {
+    if count == 1 { format!("1 {one}") } else { format!("{count} {several}") }
 }
 
 impl LabFlight {
     /// Returns `true` if both builds flew the same to the last bit.
     pub(super) fn is_identical(&self) -> bool {
-        self.base.as_ref().is_some_and(|base| base.problem.is_none() && base.hash == self.head.hash)
+        let is_same = |base: &CheckedFlight| base.problem.is_none() && base.hash == self.head.hash;
+        self.head.problem.is_none() && self.base.as_ref().is_some_and(is_same)
     }
 
     fn flown_s(&self) -> f64 {

@@ -19,6 +19,7 @@ macro_rules! scenarios {
 scenarios! {
     /// The scenarios of the programme of `lab`, beside the guide's and the missions.
     LAB_SCENARIOS "lab-" "lab"
+    "plans"
     "signs"
     "arming"
     "throttle"

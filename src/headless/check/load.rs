@@ -60,33 +60,32 @@ pub(super) fn load(args: &CheckArgs) -> Result<Loaded, AppError> {
     if problems.is_empty() { Ok(loaded) } else { Err(AppError::input(problems.join("\n"))) }
 }
 
-/// Reads the scenario with a name, as for `open`. A seed replaces those of the file.
-pub(crate) fn load_one(name: &str, seed: Option<u64>, names_any: bool) -> Result<Scenario, AppError> {
+/// Reads the scenario with a name, as for `open`. Seeds replace those of the file.
+pub(crate) fn load_one(name: &str, seeds: Option<&[u64]>, names_any: bool) -> Result<Scenario, AppError> {
     let (source, _) = source(name)?;
     // `open` shows only one of the flights, so the user's limit does not apply.
-    read(
-        &source,
-        seed.as_ref().map(std::slice::from_ref),
-        MAX_ALLOWED_FLIGHTS as usize,
-        names_any,
-        &mut Vec::new(),
-    )
+    read(&source, seeds, MAX_ALLOWED_FLIGHTS as usize, names_any, &mut Vec::new())
 }
 
-/// Reads a scenario, or a plan as a scenario with these lines.
-pub(crate) fn load_or_plan(path: &Path, lines: &str) -> Result<Scenario, AppError> {
+/// Reads a scenario, or a plan as a scenario with these lines. Seeds replace those of the file. Returns `true` for a plan.
+pub(crate) fn load_or_plan(
+    path: &Path,
+    lines: &str,
+    seeds: Option<&[u64]>,
+) -> Result<(Scenario, bool), AppError> {
     let name = path.display().to_string();
     let contents = input_file::read_plan(path)?;
     if std::str::from_utf8(&contents).is_ok_and(is_scenario) {
-        return load_one(&name, None, true);
+        return Ok((load_one(&name, seeds, true)?, false));
     }
     let file = path.file_name().unwrap_or_default().to_string_lossy();
     let text = format!("format = 1\n{lines}\n[plan]\nfile = {}\n", toml_text(&file));
-    let request =
-        Request { file: &name, text: &text, seeds: None, max_flights: 100, flights: Flights::Listed };
+    let request = Request { file: &name, text: &text, seeds, max_flights: 100, flights: Flights::Listed };
     let scenario =
         read_request(&request, &mut Beside { place: ScenarioFolder::of(path, true), read: &mut Vec::new() });
-    scenario.map_err(|errors| AppError::input(format::report(&errors).trim_end().to_owned()))
+    scenario
+        .map(|scenario| (scenario, true))
+        .map_err(|errors| AppError::input(format::report(&errors).trim_end().to_owned()))
 }
 
 /// Returns a text as a TOML string.

@@ -32,7 +32,8 @@ impl Pair<'_> {
     /// Flies an entry on both builds, one after the other. `None` if it was interrupted.
     pub(super) fn fly(self, entry: Entry, thread: usize) -> Option<Result<LabFlight, AppError>> {
         let (scenario, case, air) = self.programme.flight(entry)?;
-        let mut one = |firmware| self.one(firmware, (scenario, case, air), thread);
+        let mut one =
+            |firmware| self.one(firmware, (scenario, case, air), (self.programme.can_open(entry), thread));
         let base = match self.firmwares.0.as_ref().map(&mut one) {
             Some(None) => return None,
             Some(Some(flown)) => Some(flown),
@@ -47,7 +48,7 @@ impl Pair<'_> {
         self,
         firmware: &RemoteFirmware,
         (scenario, case, air): (&Scenario, &Case, &Air),
-        thread: usize,
+        (can_open, thread): (bool, usize),
     ) -> Option<Result<CheckedFlight, AppError>> {
         let started = Stopwatch::start();
         let checked = CheckedFlight {
@@ -60,7 +61,7 @@ impl Pair<'_> {
             seeds: case.airs.len(),
             seed_is_given: self.programme.has_own_seeds(),
             is_remote: true,
-            firmware_options: options_to_open(firmware),
+            firmware_options: options_to_open(firmware).filter(|_| can_open),
             ..CheckedFlight::default()
         };
         let flown = fly_case(firmware, case, air, self.interrupted, thread, false, &mut Vec::new());
@@ -89,7 +90,8 @@ impl Pair<'_> {
     fn keep(self, firmware: &RemoteFirmware, flight: &CheckedFlight, flown: &Flown) -> Result<(), AppError> {
         let Some(folder) = self.keep else { return Ok(()) };
         let side = if std::ptr::eq(firmware, &raw const self.firmwares.1) { "head" } else { "base" };
-        let name = format!("{} {} seed {}.{side}.csv", flight.scenario, flight.case, flight.seed);
+        let case = if flight.case.is_empty() { String::new() } else { format!(" {}", flight.case) };
+        let name = format!("{}{case} seed {}.{side}.csv", flight.scenario, flight.seed);
         // A case can have any characters.
         let name = name.replace(|c: char| !c.is_ascii_alphanumeric() && !" .,-_".contains(c), "_");
         let path = folder.join(name);

@@ -38,6 +38,7 @@ impl Outputs {
             .chain(&args.base)
             .chain(&args.head)
             .for_each(|path| kept.keep("an executable", path));
+        args.with.iter().for_each(|path| kept.keep("--with", path));
         for (option, path) in [
             ("--json", json),
             ("--junit", args.junit.as_ref()),

@@ -7,7 +7,8 @@ use crate::report::lab::{LabMeasure, common, measures_of_case};
 use crate::scenario::{Air, Case, LAB_SCENARIOS, MISSION, Scenario};
 use crate::sim::Noise;
 
-/// The scenarios of the test guide.
+/// The beginning of the names of the scenarios of the test guide, and their numbers.
+const OF_GUIDE: &str = "guide-";
 const GUIDE: std::ops::RangeInclusive<u32> = 1..=8;
 /// The number of random missions.
 const MISSIONS: u32 = 200;
@@ -30,6 +31,8 @@ pub(super) struct Programme {
     scenarios: Vec<Scenario>,
     entries: Vec<Entry>,
     measures: Vec<LabMeasure>,
+    /// The scenarios that were made of plans. No command opens their flights.
+    plans: Vec<usize>,
     /// `true` if the seeds are not those of the files.
     has_own_seeds: bool,
 }
@@ -37,15 +40,31 @@ pub(super) struct Programme {
 impl Programme {
     /// Reads the programme.
     pub(super) fn read(args: &LabArgs) -> Result<Self, AppError> {
-        let mut scenarios = Vec::new();
+        let (mut scenarios, mut plans) = (Vec::<Scenario>::new(), Vec::new());
         for path in &args.with {
-            scenarios.push(with_seeds(load_or_plan(path, OF_PLAN)?, args.seed));
+            let (scenario, is_plan) = reseeded(args.seed, |seeds| load_or_plan(path, OF_PLAN, seeds))?;
+            if scenarios.iter().any(|other| other.name == scenario.name) {
+                let name = &scenario.name;
+                return Err(AppError::input(format!(
+                    "--with: two files have the name {name}: rename one of them"
+                )));
+            }
+            if is_plan {
+                plans.push(scenarios.len());
+            }
+            scenarios.push(scenario);
         }
-        let guide = GUIDE.map(|number| format!("guide-{number}"));
+        let guide = GUIDE.map(|number| format!("{OF_GUIDE}{number}"));
         let topics = LAB_SCENARIOS.iter().map(|topic| topic.name.to_owned());
         let first = (args.seed - 1) * MISSIONS;
         for name in topics.chain(guide) {
-            scenarios.push(with_seeds(load_one(&name, None, false)?, args.seed));
+            if let Some(own) = scenarios.iter().find(|own| own.name == name) {
+                let file = &own.file;
+                return Err(AppError::input(format!(
+                    "--with {file}: the programme has a scenario {name}: rename it"
+                )));
+            }
+            scenarios.push(reseeded(args.seed, |seeds| Ok((load_one(&name, seeds, false)?, false)))?.0);
         }
         let topics = scenarios.len();
         for number in first..first + MISSIONS {
@@ -72,7 +91,7 @@ impl Programme {
                 "no flight has this text in its name: betadeck lab --list shows the names",
             ));
         }
-        Ok(Self { scenarios, entries, measures, has_own_seeds: args.seed != 1 })
+        Ok(Self { scenarios, entries, measures, plans, has_own_seeds: args.seed != 1 })
     }
 
     /// Returns the flights in their order.
@@ -90,6 +109,11 @@ impl Programme {
         self.has_own_seeds
     }
 
+    /// Returns `true` if a command can open the flight.
+    pub(super) fn can_open(&self, entry: Entry) -> bool {
+        !self.plans.contains(&entry.scenario)
+    }
+
     /// Returns the scenario, the case and the air of a flight.
     pub(super) fn flight(&self, entry: Entry) -> Option<(&Scenario, &Case, &Air)> {
         let scenario = self.scenarios.get(entry.scenario)?;
@@ -99,7 +123,8 @@ impl Programme {
 
     /// Returns the names of all flights, a line for each case.
     pub(super) fn list(&self) -> String {
-        let mut text = format!("{} flights\n", self.entries.len());
+        let count = self.entries.len();
+        let mut text = if count == 1 { "1 flight\n".to_owned() } else { format!("{count} flights\n") };
         for (index, scenario) in self.scenarios.iter().enumerate() {
             for (at, case) in scenario.cases.iter().enumerate() {
                 let is_of = |entry: &&Entry| (entry.scenario, entry.case) == (index, at);
@@ -116,15 +141,18 @@ impl Programme {
     }
 }
 
-/// Returns a scenario with other seeds than its own for a number above 1.
-fn with_seeds(mut scenario: Scenario, number: u32) -> Scenario {
-    for case in &mut scenario.cases {
-        let count = case.airs.len() as u64;
-        for air in &mut case.airs {
-            air.seed = air.seed.wrapping_add(u64::from(number - 1) * count);
-        }
+/// Reads a scenario, for a number above 1 with other seeds than its own.
+fn reseeded(
+    number: u32,
+    read: impl Fn(Option<&[u64]>) -> Result<(Scenario, bool), AppError>,
+) -> Result<(Scenario, bool), AppError> {
+    let own = read(None)?;
+    if number == 1 {
+        return Ok(own);
     }
-    scenario
+    let count = own.0.cases.iter().map(|case| case.airs.len() as u64).max().unwrap_or(1);
+    let first = 1000 * u64::from(number);
+    read(Some(&(first..first + count).collect::<Vec<u64>>()))
 }
 
 /// Returns the flights in rounds: one seed of each case of the first scenarios, then some missions. So each part of the

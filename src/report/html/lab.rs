@@ -65,7 +65,7 @@ pub fn lab_page(lab: &Lab, command: Option<&str>, program: &str) -> String {
         let mut page =
             Page::new("A programme of flights on a firmware by betadeck", &title, &verdict, &body, program);
         page.command = command.and_then(text::command);
-        page.note = "Measured from truth, in simulated time. Before: the median of the flights that differ; after: that with the median difference.";
+        page.note = "Measured from truth, in simulated time. Before: the median of the flights that differ; after: that with the difference.";
         page.html()
     })
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{ANSWERS, LabFlight};
+use super::{ANSWERS, LabFlight, properties};
 use crate::campaign::mcnemar;
 use crate::report::check::CheckedFlight;
 use crate::scenario::Outcome;
@@ -40,6 +40,11 @@ impl Broken {
                 || newly > mended && mcnemar(newly as u64, mended as u64).is_real())
     }
 
+    /// Returns `true` if every firmware keeps it in every flight; `false` for an expectation of a scenario.
+    pub(in crate::report) fn is_general(&self) -> bool {
+        self.label == ANSWERS || properties::LABELS.contains(&self.label.as_str())
+    }
+
     /// Returns the flight that shows it: the first one that breaks it now and did not before, else the first.
     pub(in crate::report) fn example(&self) -> Option<usize> {
         self.newly.first().or(self.flights.first()).copied()
@@ -53,7 +58,11 @@ pub(super) fn all(flights: &[LabFlight]) -> Vec<Broken> {
         let before = flight.base.as_ref().map(failures).unwrap_or_default();
         let now = failures(&flight.head);
         let has_base = flight.base.is_some();
-        for label in labels(&flight.head) {
+        let judged_before = flight.base.as_ref().map(labels).unwrap_or_default();
+        // Both sides must have judged it.
+        let judged =
+            labels(&flight.head).into_iter().filter(|label| !has_base || judged_before.contains(label));
+        for label in judged {
             let broken = found.entry(label).or_insert_with(|| Broken {
                 label: label.to_owned(),
                 judged: 0,

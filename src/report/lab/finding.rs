@@ -15,10 +15,10 @@ const SHARE: f64 = 0.01;
 pub(in crate::report) struct Finding {
     pub(in crate::report) measure: LabMeasure,
     pub(in crate::report) kind: Kind,
-    /// The median before, of the flights that differ, and this with the median difference. Flights of different kinds have
+    /// The median before, of the flights that differ, and this with the difference. Flights of different kinds have
     /// different values, so that a median after has little to do with the one before.
     pub(in crate::report) typical: [f64; 2],
-    /// The median of the differences of these flights.
+    /// The estimated difference of these flights.
     pub(in crate::report) difference: f64,
     /// The flights that differ in the direction of that median.
     pub(in crate::report) agreeing: usize,
@@ -55,7 +55,7 @@ struct Compared<'a> {
 /// Returns the measures that changed, the most important first, and the number of measures that were compared.
 ///
 /// A measure has changed if Wilcoxon's signed-rank test of the differences says so, after Holm's correction for the number
-/// of measures that could be significant at all, and if the median difference is one that a pilot notices.
+/// of measures that could be significant at all, and if the estimated difference is one that a pilot notices.
 pub(super) fn all(measures: &[LabMeasure], flights: &[LabFlight]) -> (Vec<Finding>, usize) {
     let mut compared: Vec<Compared<'_>> = measures.iter().map(|measure| compare(measure, flights)).collect();
     compared.retain(|compared| !compared.pairs.is_empty());
@@ -82,15 +82,10 @@ fn order(a: &Finding, b: &Finding) -> Ordering {
 }
 
 fn compare<'a>(measure: &'a LabMeasure, flights: &[LabFlight]) -> Compared<'a> {
-    let value = |flight: &CheckedFlight| {
-        let is_of = measure.scenario.as_ref().is_none_or(|scenario| *scenario == flight.scenario);
-        let found = flight.measures.iter().find(|(key, _)| is_of && *key == measure.key);
-        found.map(|(_, value)| *value).filter(|value| value.is_finite())
-    };
     let pairs: Vec<(usize, [f64; 2])> = flights
         .iter()
         .enumerate()
-        .filter_map(|(index, flight)| Some((index, [value(flight.base.as_ref()?)?, value(&flight.head)?])))
+        .filter_map(|(index, flight)| Some((index, pair(measure, flight.base.as_ref()?, &flight.head)?)))
         .collect();
     let differences = pairs.iter().map(|(index, [base, head])| (*index, head - base));
     let differing: Vec<(usize, f64)> = differences.filter(|(_, difference)| *difference != 0.0).collect();
@@ -98,10 +93,38 @@ fn compare<'a>(measure: &'a LabMeasure, flights: &[LabFlight]) -> Compared<'a> {
     Compared { measure, pairs, differing, p: signed_rank(&sizes).map_or(1.0, |found| found.p) }
 }
 
+/// Returns the values of both sides: the means over the waypoints for which both have one.
+fn pair(measure: &LabMeasure, base: &CheckedFlight, head: &CheckedFlight) -> Option<[f64; 2]> {
+    if measure.scenario.as_ref().is_some_and(|scenario| *scenario != head.scenario) {
+        return None;
+    }
+    let is_of = |key: &str| {
+        key.strip_prefix(measure.key.as_str()).is_some_and(|rest| rest.is_empty() || rest.starts_with(' '))
+    };
+    let (mut sums, mut count) = ([0.0; 2], 0_u32);
+    for (key, before) in base.measures.iter().filter(|(key, value)| is_of(key) && value.is_finite()) {
+        let after = head.measures.iter().find(|(other, value)| other == key && value.is_finite());
+        let Some((_, after)) = after else { continue };
+        sums = [sums[0] + before, sums[1] + after];
+        count += 1;
+    }
+    (count > 0).then(|| sums.map(|sum| sum / f64::from(count)))
+}
+
+/// Returns the Hodges–Lehmann estimate of a difference, the median of the means of all pairs of differences. It goes with the
+/// signed-rank test, also if a part of the flights hardly differs.
+fn estimate(differences: &[f64]) -> Option<f64> {
+    let means = differences.iter().enumerate().flat_map(|(index, one)| {
+        differences.get(index..).unwrap_or_default().iter().map(move |other| f64::midpoint(*one, *other))
+    });
+    median(means)
+}
+
 impl Compared<'_> {
     /// Returns the finding; `None` if a pilot would not notice the difference.
     fn finding(&self, p: f64) -> Option<Finding> {
-        let difference = median(self.differing.iter().map(|(_, difference)| *difference))?;
+        let sizes: Vec<f64> = self.differing.iter().map(|(_, difference)| *difference).collect();
+        let difference = estimate(&sizes)?;
         let differing = self.pairs.iter().filter(|(_, sides)| sides[0] != sides[1]);
         let before = median(differing.map(|(_, sides)| sides[0]))?;
         let typical = [before, before + difference];

@@ -5,7 +5,11 @@ use crate::report::markdown::{cell, code, line};
 
 /// Returns the document.
 pub(super) fn markdown(lab: &Lab, command: Option<&str>) -> String {
-    let mark = if lab.is_worse() { "❌" } else { "✅" };
+    let mark = match lab.is_worse() {
+        _ if lab.flights.is_empty() => "–",
+        true => "❌",
+        false => "✅",
+    };
     let mut text =
         format!("### {mark} {}\n\n{}\n\n{}.\n", line(&lab.title()), line(&lab.verdict()), line(&lab.flown()));
     if !lab.findings.is_empty() {

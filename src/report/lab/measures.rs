@@ -1,8 +1,6 @@
 //! The numbers that are compared: those that a scenario takes itself, and those that all flights have in common.
 
-use std::collections::BTreeMap;
-
-use crate::report::compare::{Measure, Track, measures};
+use crate::report::compare::{Track, measures};
 use crate::report::route::Route;
 use crate::scenario::{Better, Case};
 
@@ -65,15 +63,13 @@ pub fn measures_of_case(scenario: &str, case: &Case) -> impl Iterator<Item = Lab
     })
 }
 
-/// Returns the values of [`common`] in a flight. Of several legs or waypoints it is the mean of their sizes.
+/// Returns the values of [`common`] in a flight. The key of one at a waypoint has its index behind a blank.
 pub fn measures_of(route: &Route, track: &Track) -> Vec<(String, f64)> {
-    let mut sums: BTreeMap<&'static str, (f64, u32)> = BTreeMap::new();
-    for (measure, value) in measures(route, track).into_iter().filter(|(_, value)| value.is_finite()) {
-        let (key, _) = Measure::key(measure);
-        let (sum, count) = sums.entry(key).or_default();
-        *sum += value.abs();
-        *count += 1;
-    }
-    let known = COMMON.iter().filter_map(|(key, ..)| sums.get_key_value(key));
-    known.map(|(key, (sum, count))| ((*key).to_owned(), sum / f64::from(*count))).collect()
+    let found = measures(route, track).into_iter().filter(|(_, value)| value.is_finite());
+    let known = found.filter(|(measure, _)| COMMON.iter().any(|(key, ..)| *key == measure.key().0));
+    let named = known.map(|(measure, value)| match measure.key() {
+        (key, None) => (key.to_owned(), value.abs()),
+        (key, Some(wp)) => (format!("{key} {wp}"), value.abs()),
+    });
+    named.collect()
 }

@@ -12,6 +12,16 @@ use crate::telemetry::snapshot::SettingsView;
 /// The property that a flight without a problem keeps.
 pub const ANSWERS: &str = "the firmware answers and takes its settings";
 
+/// The other properties.
+pub(super) const LABELS: [&str; 6] = [
+    "it does not crash",
+    "the flight ends",
+    "it does not fly away",
+    "it is disarmed after a landing",
+    "it touches the ground only to land",
+    "the tilt stays at ap_max_angle",
+];
+
 /// The tilt beyond `ap_max_angle` that a loop may overshoot, degrees.
 const TILT_DEG: f64 = 5.0;
 /// The distance from all legs at which a craft has flown away, m: the most that the monitors of a firmware allow.
@@ -23,15 +33,16 @@ const SETTLED_S: f64 = 1.0;
 
 /// Judges a flight by the properties. `settings` are those of its craft.
 pub fn properties(flown: &Flown, route: &Route, settings: &SettingsView) -> Vec<Judgement> {
+    let [crashes, ends, flies_away, disarms, touches, tilts] = LABELS;
     let mut judgements = vec![
-        judgement("it does not crash", crash(flown)),
-        judgement("the flight ends", endless(flown)),
-        judgement("it does not fly away", flyaway(flown, route)),
-        judgement("it is disarmed after a landing", armed_on_ground(flown)),
+        judgement(crashes, crash(flown)),
+        judgement(ends, endless(flown)),
+        judgement(flies_away, flyaway(flown, route)),
+        judgement(disarms, armed_on_ground(flown)),
     ];
     if flown.trace.engaged_at.is_some() {
-        judgements.push(judgement("it touches the ground only to land", touch(flown)));
-        judgements.push(judgement("the tilt stays at ap_max_angle", tilt(flown, settings.max_angle_deg)));
+        judgements.push(judgement(touches, touch(flown)));
+        judgements.push(judgement(tilts, tilt(flown, settings.max_angle_deg)));
     }
     judgements
 }
@@ -94,11 +105,13 @@ fn touch(flown: &Flown) -> Option<(String, SimTime)> {
     Some((format!("it touched the ground at {}", trace.shown_time(contact.time)), contact.time))
 }
 
+/// Returns the greatest tilt beyond the limit, before a crash.
 fn tilt(flown: &Flown, limit_deg: f64) -> Option<(String, SimTime)> {
     let tilt = |sample: &&Sample| sample.value(Signal::Tilt);
+    let crashed = events(flown, EventName::Crash).next().map(|crash| crash.time);
     let engaged = flown.trace.samples.iter().filter(|sample| sample.has(Flag::Engaged));
-    let worst = engaged.max_by(|a, b| tilt(a).total_cmp(&tilt(b)))?;
-    let worst_deg = tilt(&worst);
-    (worst_deg > limit_deg + TILT_DEG)
-        .then(|| (format!("{worst_deg:.0}°, allowed are {limit_deg:.0}° and {TILT_DEG:.0}°"), worst.time))
+    let flying = engaged.filter(|sample| crashed.is_none_or(|crashed| sample.time < crashed));
+    let beyond = flying.filter(|sample| tilt(sample) > limit_deg + TILT_DEG);
+    let worst = beyond.max_by(|a, b| tilt(a).total_cmp(&tilt(b)))?;
+    Some((format!("{:.0}°, at most {limit_deg:.0}° + {TILT_DEG:.0}°", tilt(&worst)), worst.time))
 }

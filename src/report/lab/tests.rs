@@ -65,7 +65,7 @@ fn two_copies_of_one_build_do_not_differ() {
     let lab = lab(&(0..20).map(|n| (f64::from(n), f64::from(n))).collect::<Vec<_>>());
     assert!(!lab.is_worse());
     assert!(
-        lab.text().contains("No difference. All flights are the same to the last bit."),
+        lab.text().contains("No difference: all flights are the same to the last bit."),
         "{}",
         lab.text()
     );
@@ -89,6 +89,45 @@ fn a_change_in_a_part_of_the_flights_counts_by_that_part() {
 }
 
 #[test]
+fn a_change_that_shows_only_in_some_flights_counts_although_the_others_differ_a_little() {
+    let values = (0..200).map(|n| {
+        let noise = if n % 2 == 0 { 0.001 } else { -0.001 };
+        (5.0, if n < 120 { 5.0 + noise * f64::from(n + 1) / 100.0 } else { 6.5 + 0.001 * f64::from(n) })
+    });
+    let lab = lab(&values.collect::<Vec<_>>());
+    assert!(lab.is_worse() && lab.findings[0].difference > 0.3, "{:?}", lab.findings);
+}
+
+#[test]
+fn a_waypoint_that_only_one_build_reached_is_left_out() {
+    let measures =
+        |values: &[(&str, f64)]| values.iter().map(|(key, value)| ((*key).to_owned(), *value)).collect();
+    let flights = (1..=20).map(|seed| {
+        let by = 0.001 * seed as f64;
+        let base = CheckedFlight {
+            measures: measures(&[("overshoot_m 0", 1.0), ("overshoot_m 1", 9.0)]),
+            ..flight(seed, 1.0, &[])
+        };
+        let head =
+            CheckedFlight { measures: measures(&[("overshoot_m 0", 2.0 + by)]), ..flight(seed, 1.0, &[]) };
+        LabFlight { base: Some(base), head }
+    });
+    let lab = answer(flights.collect());
+    let finding = &lab.findings[0];
+    assert!(finding.kind == Kind::Worse && (finding.difference - 1.0).abs() < 0.05, "{finding:?}");
+}
+
+#[test]
+fn a_property_that_only_one_build_was_judged_by_says_nothing_about_the_change() {
+    let problem = CheckedFlight { problem: Some("not configured".to_owned()), ..flight(1, 1.0, &[]) };
+    let pair = |seed| LabFlight {
+        base: Some(CheckedFlight { seed, ..problem.clone() }),
+        head: flight(seed, 1.0, &[("stays inside the fence", false)]),
+    };
+    assert!(!answer(vec![pair(1), pair(2)]).is_worse());
+}
+
+#[test]
 fn a_smaller_value_is_better_or_worse_as_the_measure_says() {
     let kind = |better: Option<Better>, sign: f64| {
         let measure = LabMeasure { better, ..common().find(|one| one.key == "touchdown_speed_mps").unwrap() };
@@ -109,21 +148,23 @@ fn a_property_that_the_change_broke_is_worse_if_it_is_more_than_chance() {
     let fence = "stays inside the fence";
     let pair = |seed: u64, before: bool, after: bool| LabFlight {
         base: Some(flight(seed, 1.0, &[(fence, before)])),
-        head: flight(seed, 1.0, &[(fence, after)]),
+        head: flight(seed, 1.001, &[(fence, after)]),
     };
     let broken = answer(vec![pair(1, true, false), pair(2, true, true), pair(3, true, false)]);
     assert!(broken.is_worse());
     let text = broken.text();
-    assert!(text.contains("2 flights fail that passed before"), "{text}");
+    assert!(text.contains("2 flights break a property that they kept before"), "{text}");
     assert!(
-        text.contains("worse: stays inside the fence: 2 of 3 flights, before 0; lab-landing · seed 1"),
+        text.contains(
+            "worse: stays inside the fence: before 0 → 2 of 3 flights, 2 newly; lab-landing · seed 1"
+        ),
         "{text}"
     );
     // One flight more and one fewer is chance.
     let turned = answer(vec![pair(1, true, false), pair(2, false, true), pair(3, true, true)]);
     assert!(!turned.is_worse());
     assert!(
-        turned.text().contains("fails now: stays inside the fence: 1 of 3 flights, before 1"),
+        turned.text().contains("fails now: stays inside the fence: before 1 → 1 of 3 flights, 1 newly"),
         "{}",
         turned.text()
     );
@@ -144,7 +185,7 @@ fn a_build_alone_is_judged_by_the_properties() {
     let crashed = alone(vec![one(1, true), one(2, false)]);
     assert!(crashed.is_worse() && crashed.findings.is_empty());
     let text = crashed.text();
-    assert!(text.contains("1 property was broken."), "{text}");
+    assert!(text.contains("1 property and 0 expectations of scenarios were not met."), "{text}");
     assert!(
         text.contains(
             "broken: it does not crash: 1 of 2 flights; lab-landing · seed 2: it does not crash is not"
@@ -152,6 +193,10 @@ fn a_build_alone_is_judged_by_the_properties() {
         "{text}"
     );
     assert!(!alone(vec![one(1, true)]).is_worse());
+    let of_scenario = LabFlight { base: None, head: flight(3, 1.0, &[("COMPLETE in time", false)]) };
+    let listed = alone(vec![of_scenario]);
+    assert!(!listed.is_worse() && listed.text().contains("broken: COMPLETE in time"), "{}", listed.text());
+    assert!(alone(Vec::new()).text().contains("Nothing was flown."));
 }
 
 #[test]

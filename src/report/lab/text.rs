@@ -46,11 +46,17 @@ pub(super) fn broken_line(lab: &Lab, broken: &Broken) -> String {
     let (title, sentence) = example.map_or_else(Default::default, |flight| {
         (flight.head.title(), seen(&flight.head, &broken.label).0.to_owned())
     });
-    let (word, count) = match lab.base {
-        Some(_) if broken.is_worse() => ("worse", broken.newly.len()),
-        Some(_) => ("fails now", broken.newly.len()),
-        None => ("broken", broken.flights.len()),
-    };
-    let before = if lab.base.is_some() { format!(", before {}", broken.before) } else { String::new() };
-    format!("{word}: {}: {count} of {} flights{before}; {title}: {sentence}", broken.label, broken.judged)
+    let (all, now) = (broken.judged, broken.flights.len());
+    let label = &broken.label;
+    match lab.base {
+        None => format!("broken: {label}: {now} of {all} flights; {title}: {sentence}"),
+        Some(_) => {
+            let word = if broken.is_worse() { "worse" } else { "fails now" };
+            let newly = broken.newly.len();
+            format!(
+                "{word}: {label}: before {} → {now} of {all} flights, {newly} newly; {title}: {sentence}",
+                broken.before
+            )
+        }
+    }
 }

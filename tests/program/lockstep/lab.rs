@@ -77,7 +77,7 @@ fn two_copies_of_one_build_do_not_differ() {
     assert!(output.status.success(), "{}", text(&output));
     let said = text(&output);
     assert!(said.contains("old.elf → same.elf: 2 flights on each"), "{said}");
-    assert!(said.contains("No difference. All flights are the same to the last bit."), "{said}");
+    assert!(said.contains("No difference: all flights are the same to the last bit."), "{said}");
 }
 
 #[test]
@@ -89,7 +89,10 @@ fn a_build_that_lands_too_fast_is_worse_in_every_output() {
     let output = bench.lab(&["--base", "old.elf", "--head", &worse], &outputs);
     let said = text(&output);
     assert_eq!(output.status.code(), Some(1), "{said}");
-    assert!(said.contains("worse: greatest_sink <= 2 m/s: 2 of 2 flights, before 0; hop · seed 1"), "{said}");
+    assert!(
+        said.contains("worse: greatest_sink <= 2 m/s: before 0 → 2 of 2 flights, 2 newly; hop · seed 1"),
+        "{said}"
+    );
     assert!(said.contains("betadeck open hop.toml --seed 1"), "{said}");
     let read = |name: &str| std::fs::read_to_string(bench.path(name)).unwrap();
     let json: Value = serde_json::from_str(&read("l.json")).unwrap();
@@ -102,14 +105,15 @@ fn a_build_that_lands_too_fast_is_worse_in_every_output() {
         "{}",
         read("l.xml")
     );
-    assert!(read("kept/hop  seed 2.head.csv").starts_with("state,waypoint,"));
+    assert!(read("kept/hop seed 2.head.csv").starts_with("state,waypoint,"));
 }
 
 #[test]
 fn one_build_alone_is_judged_by_the_properties() {
     let bench = Bench::new();
     let bad = bench.lab(&[&format!("{WORSE}.elf")], &[]);
-    assert_eq!(bad.status.code(), Some(1), "{}", text(&bad));
+    // Its landings are too fast for the scenario, but break no property that every firmware keeps.
+    assert!(bad.status.success(), "{}", text(&bad));
     assert!(text(&bad).contains("broken: greatest_sink <= 2 m/s: 2 of 2 flights"), "{}", text(&bad));
 }
 

@@ -75,7 +75,7 @@ impl Kind {
             Some("serve" | "sitl" | "--plain") => Self::Runs,
             Some(
                 "fly" | "plan" | "convert" | "completions" | "man" | "check" | "campaign" | "forecast"
-                | "config" | "compare" | "doctor" | "examples" | "flights",
+                | "config" | "compare" | "lab" | "doctor" | "examples" | "flights",
             ) => Self::ByItself,
             _ if is_remote => Self::ScreenWithFirmware,
             _ => Self::Screen,
@@ -195,6 +195,8 @@ impl Desk {
         let (keys, codes): (&str, Vec<u32>) = match kind {
             // It reports what is wrong with this computer, if anything is.
             Kind::ByItself if line.contains(" doctor") => ("", vec![0, 1]),
+            // The firmware here is a script, which cannot run in simulated time.
+            Kind::ByItself if line.contains(" lab ") => ("", vec![3]),
             Kind::ByItself => ("", vec![in_comment.or(in_sentence).unwrap_or(0)]),
             Kind::Runs | Kind::RunsFirmware => ("\x03", vec![130]),
             Kind::Screen | Kind::ScreenWithFirmware => ("q", vec![0]),
