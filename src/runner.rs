@@ -162,6 +162,23 @@ impl Runner {
         Ok(end)
     }
 
+    /// Runs one round of at most one tick. What its caller decides after it depends on no clock: a longer round ends early if
+    /// the machine is busy.
+    ///
+    /// # Errors
+    /// Returns the reason why the flight does not go on.
+    pub fn single_round<F: Flying>(
+        &mut self,
+        flight: &mut F,
+        subscriber: &mut impl Subscriber<F>,
+        is_stopped: impl Fn() -> bool,
+    ) -> Result<Option<F::End>, Stopped> {
+        let slice = std::mem::replace(&mut self.slice, 1);
+        let end = self.round(flight, subscriber, is_stopped);
+        self.slice = slice;
+        end
+    }
+
     /// Runs one round. Returns the end if the flight is over.
     ///
     /// # Errors

@@ -275,7 +275,12 @@ impl RemoteRun {
         subscriber: &mut impl Subscriber<Vehicle>,
     ) -> Result<(), Stopped> {
         let interrupted = &self.interrupted;
-        self.runner.round(vehicle, subscriber, || interrupted.load(Ordering::Relaxed))?;
+        let is_stopped = || interrupted.load(Ordering::Relaxed);
+        if self.runner.link().is_some_and(RemoteLink::is_in_steps) {
+            self.runner.single_round(vehicle, subscriber, is_stopped)?;
+        } else {
+            self.runner.round(vehicle, subscriber, is_stopped)?;
+        }
         Ok(())
     }
 }

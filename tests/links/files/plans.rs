@@ -36,8 +36,9 @@ fn every_plan_is_listed_in_the_readme() {
     }
     for row in readme.lines().filter_map(|line| line.strip_prefix("| `")) {
         let file = row.split('`').next().unwrap_or_default();
-        let is_there =
-            folder().join(file).exists() || folder().join(format!("scenarios/{file}.toml")).exists();
+        let of_lab = file.strip_prefix("lab-").map(|name| format!("lab/{name}.toml"));
+        let places = [file.to_owned(), format!("scenarios/{file}.toml")].into_iter().chain(of_lab);
+        let is_there = places.map(|place| folder().join(place)).any(|path| path.exists());
         assert!(is_there, "plans/README.md lists {file}, which does not exist");
     }
 }
