@@ -32,7 +32,7 @@ pub(in crate::report) struct Finding {
     pub(in crate::report) example: usize,
 }
 
-/// What a change means for the pilot.
+/// The meaning of a change for the pilot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, strum::Display, strum::IntoStaticStr)]
 #[strum(serialize_all = "lowercase")]
 pub(in crate::report) enum Kind {

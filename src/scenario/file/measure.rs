@@ -67,7 +67,7 @@ fn better(table: &TomlTable<'_, '_>, reader: &mut Reader<'_, '_>) -> Option<Bett
     let value = table.get("better")?;
     let better = reader.text(value)?.parse().ok();
     if better.is_none() {
-        reader.problem(value.span(), "this is no direction", "write less or more");
+        reader.problem(value.span(), "unknown direction", "write less or more");
     }
     better
 }
