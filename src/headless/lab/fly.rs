@@ -83,9 +83,7 @@ impl Pair<'_> {
             }
         }
     }
-}
 
-impl Pair<'_> {
     /// Writes the signals of a flight, if they are wanted: `lab-landing calm seed 3.head.csv`.
     fn keep(self, firmware: &RemoteFirmware, flight: &CheckedFlight, flown: &Flown) -> Result<(), AppError> {
         let Some(folder) = self.keep else { return Ok(()) };

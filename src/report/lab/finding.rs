@@ -7,7 +7,7 @@ use crate::campaign::{Significance, signed_rank};
 use crate::report::check::CheckedFlight;
 use crate::scenario::Better;
 
-/// The share of the smaller median below which no change is reported.
+/// The share of the value before below which no change is reported.
 const SHARE: f64 = 0.01;
 
 /// A measure that changed.
@@ -20,7 +20,7 @@ pub(in crate::report) struct Finding {
     pub(in crate::report) typical: [f64; 2],
     /// The estimated difference of these flights.
     pub(in crate::report) difference: f64,
-    /// The flights that differ in the direction of that median.
+    /// The flights that differ in the direction of that difference.
     pub(in crate::report) agreeing: usize,
     /// The flights that differ.
     pub(in crate::report) differing: usize,
