@@ -5,8 +5,6 @@
 //!
 //! `docs/architecture.md` draws all modules and lists the modules that each of them may use.
 
-#![forbid(unsafe_code)]
-
 #[doc(hidden)]
 pub use betadeck_core::{
     autopilot, blackbox, campaign, design, firmware, flight, flight_log, geo, math, msp, pilot, plan,

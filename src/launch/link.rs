@@ -12,7 +12,7 @@ use crate::launch::folder::FirmwareFolder;
 use crate::link::conventions::FirmwareClock;
 use crate::link::lockstep::{Lockstep, LockstepConfig, LockstepPorts, NoReport};
 use crate::link::proto::sitl_feed::FeedConfig;
-use crate::link::{ChildConfig, FcPlace, FcStream, SitlChild, SitlPeer, SitlPorts};
+use crate::link::{ChildConfig, ChildEnd, FcPlace, FcStream, SitlChild, SitlPeer, SitlPorts};
 use crate::process::error::AppError;
 use crate::storage::state_file;
 use crate::vehicle::Vehicle;
@@ -179,22 +179,28 @@ fn boot(
 ) -> Result<Result<Lockstep, &'static str>, AppError> {
     let FirmwarePorts { tcp, udp: UdpPorts { motors, fdm, rc, .. }, .. } = firmware.ports;
     let ports = LockstepPorts { fdm, rc, motors, tcp };
-    let mut lockstep = Lockstep::start(LockstepConfig { child: config.clone(), ports, step })
-        .map_err(|error| AppError::environment(error.to_string()))?;
-    let started = Instant::now();
+    let start = |own_threads| {
+        Lockstep::start(LockstepConfig { child: config.clone(), ports, step, own_threads })
+            .map_err(|error| AppError::environment(error.to_string()))
+    };
+    let (mut lockstep, mut started) = (start(false)?, Instant::now());
     loop {
-        match lockstep.wait() {
+        let reason = match lockstep.wait() {
             Ok(_) if lockstep.listens() => return Ok(Ok(lockstep)),
             Ok(_) => return Ok(Err("it has opened no serial port of the number of --tcp-port")),
-            Err(NoReport::Replaced) => {}
-            Err(NoReport::Stopped) if started.elapsed() < BOOTS_WITHIN => {}
-            Err(NoReport::Stopped | NoReport::Silent | NoReport::Hung | NoReport::Faulty(_)) => {
-                return Ok(Err("it does not wait for its clock as a SITL of Betaflight does"));
-            }
-            Err(NoReport::Ended(end)) => {
-                return Err(AppError::environment(lockstep.why_ended(end)));
-            }
+            Err(NoReport::Replaced) => continue,
+            Err(NoReport::Stopped) if started.elapsed() < BOOTS_WITHIN => continue,
+            Err(reason) => reason,
+        };
+        // Its threads may depend on each other in a way that needs threads of their own.
+        if lockstep.has_guests() && !matches!(reason, NoReport::Ended(ChildEnd::Code(_))) {
+            (lockstep, started) = (start(true)?, Instant::now());
+            continue;
         }
+        return match reason {
+            NoReport::Ended(end) => Err(AppError::environment(lockstep.why_ended(end))),
+            _ => Ok(Err("it does not wait for its clock as a SITL of Betaflight does")),
+        };
     }
 }
 

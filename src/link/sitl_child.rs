@@ -10,7 +10,7 @@ pub mod lockstep;
 mod output;
 
 use std::path::PathBuf;
-use std::process::{Child, ExitStatus, Stdio};
+use std::process::{Child, ExitStatus};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
@@ -134,7 +134,7 @@ struct Keeper {
 impl Keeper {
     fn run(self) {
         while !self.is_stopped() {
-            let mut child = match launch::spawn(&self.config, Stdio::null(), None) {
+            let mut child = match launch::spawn(&self.config, None) {
                 Ok(child) => child,
                 Err(error) => return self.tell(ChildEvent::Failed(error.to_string())),
             };

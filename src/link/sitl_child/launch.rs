@@ -44,8 +44,8 @@ pub enum LaunchError {
 
 /// The variable by which the launcher gets the library to preload into the executable. The launcher itself runs without it.
 const LIBRARY: &str = "BETADECK_PRELOAD";
-/// The variable by which the launcher gets the path of a pipe that the executable inherits …
-const PIPE: &str = "BETADECK_PIPE";
+/// The variable by which the launcher gets the path of a file that the executable inherits, open to read and write …
+const FILE: &str = "BETADECK_FILE";
 /// … and the variable to whose value it adds a comma and the descriptor.
 const SETTINGS: &str = "BETADECK_SETTINGS";
 
@@ -60,22 +60,21 @@ pub(super) struct Preload {
 /// Starts the executable in its directory, with its output piped.
 pub(super) fn spawn(
     config: &ChildConfig,
-    input: Stdio,
-    preload: Option<(&Preload, &str)>,
+    preload: Option<(&Preload, &Path)>,
 ) -> Result<Child, LaunchError> {
     std::fs::create_dir_all(&config.directory)
         .map_err(|error| LaunchError::Directory { directory: config.directory.clone(), error })?;
     let mut command = Command::new(&config.launcher);
     command.arg(LAUNCH).arg(std::process::id().to_string()).arg(&config.program).args(&config.arguments);
     command.current_dir(&config.directory);
-    command.stdin(input).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
     for (name, _) in std::env::vars_os() {
         if name.to_str().is_some_and(|name| name.starts_with(OUR_VARIABLES)) {
             command.env_remove(name);
         }
     }
-    if let Some((Preload { library, variable, settings }, pipe)) = preload {
-        command.env(LIBRARY, library).env(PIPE, pipe).env(SETTINGS, variable).env(variable, settings);
+    if let Some((Preload { library, variable, settings }, file)) = preload {
+        command.env(LIBRARY, library).env(FILE, file).env(SETTINGS, variable).env(variable, settings);
     }
     #[cfg(unix)]
     // The terminal's interrupt is meant for this program, which ends the child itself.
@@ -110,12 +109,12 @@ fn exec_with_parent(parent: i32, program: &Path, arguments: &[OsString]) -> u8 {
     let _ = parent;
     let mut command = Command::new(program);
     command.args(arguments);
-    [LIBRARY, PIPE, SETTINGS].iter().for_each(|name| _ = command.env_remove(name));
+    [LIBRARY, FILE, SETTINGS].iter().for_each(|name| _ = command.env_remove(name));
     if let Some(library) = std::env::var_os(LIBRARY) {
         command.env("LD_PRELOAD", library);
     }
-    let _pipe = match inherited_pipe(&mut command) {
-        Ok(pipe) => pipe,
+    let _file = match inherited_file(&mut command) {
+        Ok(file) => file,
         Err(error) => {
             eprintln!("betadeck: cannot reach the program that starts the firmware: {error}");
             return NOT_EXECUTABLE as u8;
@@ -132,17 +131,17 @@ fn exec_with_parent(parent: i32, program: &Path, arguments: &[OsString]) -> u8 {
     (if error.kind() == io::ErrorKind::NotFound { NOT_FOUND } else { NOT_EXECUTABLE }) as u8
 }
 
-/// Opens the pipe that the executable inherits, if there is one, and adds its descriptor to the settings.
-fn inherited_pipe(command: &mut Command) -> io::Result<Option<File>> {
+/// Opens the file that the executable inherits, if there is one, and adds its descriptor to the settings.
+fn inherited_file(command: &mut Command) -> io::Result<Option<File>> {
     #[cfg(target_os = "linux")]
-    if let (Some(path), Some(name)) = (std::env::var_os(PIPE), std::env::var_os(SETTINGS)) {
+    if let (Some(path), Some(name)) = (std::env::var_os(FILE), std::env::var_os(SETTINGS)) {
         use std::os::fd::AsRawFd as _;
-        let pipe = File::options().write(true).open(path)?;
-        rustix::io::fcntl_setfd(&pipe, rustix::io::FdFlags::empty())?;
+        let file = File::options().read(true).write(true).open(path)?;
+        rustix::io::fcntl_setfd(&file, rustix::io::FdFlags::empty())?;
         let mut settings = std::env::var_os(&name).unwrap_or_default();
-        settings.push(format!(",{}", pipe.as_raw_fd()));
+        settings.push(format!(",{}", file.as_raw_fd()));
         command.env(name, settings);
-        return Ok(Some(pipe));
+        return Ok(Some(file));
     }
     let _ = command;
     Ok(None)

@@ -1,6 +1,6 @@
 //! An unmodified SITL executable in simulated time. A library that is preloaded into it gives it its clock and the packets
 //! of the simulator, so that it computes one step for each `Grant` and then waits. Its clock, its motors and its answers
-//! depend on what it was given only, and not on the machine.
+//! depend on what it was given only, and not on the machine. Grants and reports are in memory that both share.
 //!
 //! ```text
 //! this program ── Grant: state, RC, serial data to take in ──▶ library ── clock, select, recvfrom ──▶ executable
@@ -10,6 +10,7 @@
 
 mod frames;
 mod library;
+mod page;
 mod process;
 
 use std::io::{self, ErrorKind, Read as _, Write as _};
@@ -41,7 +42,7 @@ const SENT_MAX: u64 = 1 << 20;
 /// The longest wait for a connection to its serial port.
 const CONNECTS_WITHIN: Duration = Duration::from_secs(1);
 /// The looks for bytes that the executable says to have sent after which they count as not sent: 5 s.
-const BYTES_WITHIN: u32 = 100;
+const BYTES_WITHIN: u32 = 500;
 
 /// The ports for which the executable asks. It gets others, which the system chooses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -59,6 +60,8 @@ pub struct LockstepConfig {
     pub ports: LockstepPorts,
     /// The length of a step.
     pub step: Duration,
+    /// `true` if its threads run on their own. Otherwise its main thread runs their code, which is faster.
+    pub own_threads: bool,
 }
 
 /// The packets for one step.
@@ -72,8 +75,7 @@ pub struct StepInput {
 #[derive(Debug)]
 pub struct Lockstep {
     config: LockstepConfig,
-    preload: Preload,
-    _library: LoadedLibrary,
+    library: LoadedLibrary,
     events: Events,
     /// The start, from which simulated time counts for the number of lines that are shown.
     started: Instant,
@@ -113,17 +115,11 @@ impl Lockstep {
     pub fn start(config: LockstepConfig) -> Result<Self, LaunchError> {
         let library = LoadedLibrary::new()
             .map_err(|error| LaunchError::Start { program: config.child.program.clone(), error })?;
-        let LockstepPorts { fdm, rc, motors, tcp } = config.ports;
-        let (step_ns, boot_ns) = (config.step.as_nanos(), BOOT.as_nanos());
-        let settings = format!("{fdm},{rc},{motors},{tcp},{step_ns},{boot_ns}");
-        let preload = Preload { library: library.path(), variable: SETTINGS, settings };
-        let events = Events::default();
-        let process = Process::start(&config.child, &preload)?;
+        let process = Self::start_process(&config, &library)?;
         Ok(Self {
             config,
-            preload,
-            _library: library,
-            events,
+            library,
+            events: Events::default(),
             started: now(),
             process,
             serial: None,
@@ -139,13 +135,21 @@ impl Lockstep {
         })
     }
 
+    fn start_process(config: &LockstepConfig, library: &LoadedLibrary) -> Result<Process, LaunchError> {
+        let LockstepPorts { fdm, rc, motors, tcp } = config.ports;
+        let (step_ns, boot_ns) = (config.step.as_nanos(), BOOT.as_nanos());
+        let own_threads = u8::from(config.own_threads);
+        let settings = format!("{fdm},{rc},{motors},{tcp},{step_ns},{boot_ns},{own_threads}");
+        Process::start(&config.child, &Preload { library: library.path(), variable: SETTINGS, settings })
+    }
+
     /// Starts the executable again after its end.
     ///
     /// # Errors
     /// Returns an error if the system cannot start it.
     pub fn restart(&mut self) -> Result<(), LaunchError> {
         self.process.finish_output(&self.events, self.now());
-        self.process = Process::start(&self.config.child, &self.preload)?;
+        self.process = Self::start_process(&self.config, &self.library)?;
         self.run = 0;
         self.forget_process();
         Ok(())
@@ -293,6 +297,11 @@ impl Lockstep {
             self.totals.closed += 1;
             self.has_news = true;
         }
+    }
+
+    /// Returns `true` if its main thread runs the code of other threads.
+    pub fn has_guests(&self) -> bool {
+        self.process.has_guests()
     }
 
     /// Returns the length of a step.

@@ -32,14 +32,20 @@ pub(crate) fn config(folder: &Path) -> LockstepConfig {
         directory: folder.to_owned(),
         launcher: PathBuf::from(env!("CARGO_BIN_EXE_betadeck")),
     };
-    LockstepConfig { child, ports: PORTS, step: Duration::from_millis(1) }
+    LockstepConfig { child, ports: PORTS, step: Duration::from_millis(1), own_threads: false }
 }
 
 impl Flight {
     /// Starts a stand-in and waits until it has booted.
     pub(crate) fn start() -> Self {
+        Self::start_with(false)
+    }
+
+    /// Starts a stand-in whose threads run on their own if `own_threads`, and waits until it has booted.
+    pub(crate) fn start_with(own_threads: bool) -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let lockstep = Lockstep::start(config(folder.path())).unwrap();
+        let config = LockstepConfig { own_threads, ..config(folder.path()) };
+        let lockstep = Lockstep::start(config).unwrap();
         let mut flight = Self { lockstep, step: 0, log: Vec::new(), _folder: folder };
         flight.wait().unwrap();
         flight

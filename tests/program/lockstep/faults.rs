@@ -33,11 +33,6 @@ fn bytes_that_are_reported_but_never_come_are_a_fault() {
 }
 
 #[test]
-fn an_executable_that_reports_without_reading_its_grants_does_not_hold_the_program() {
-    assert_eq!(fault(after("flood")), "reports steps without reading the messages that grant them");
-}
-
-#[test]
 fn an_executable_that_sleeps_and_does_not_answer_is_silent_rather_than_stopped() {
     assert_eq!(after("sleep"), NoReport::Silent);
 }

@@ -7,7 +7,7 @@ use std::time::Duration;
 use serde_json::Value;
 
 use super::serial_port::answer_at_prompt;
-use super::stand_in::{ARGUMENT, PORTS_FILE};
+use super::stand_in::{ARGUMENT, OWN_THREADS_FILE, PORTS_FILE};
 use crate::doors::msp;
 use crate::doors::program::Program;
 use test_support::free_port;
@@ -27,11 +27,17 @@ struct Served {
 
 impl Served {
     fn start() -> Self {
+        Self::start_with(&[])
+    }
+
+    /// Starts a stand-in that finds these files in its folder.
+    fn start_with(files: &[&str]) -> Self {
         let state = tempfile::tempdir().unwrap();
         let [raw, motors, fdm, rc, tcp] = std::array::from_fn(|_| free_port());
         let folder = state.path().join("firmware");
         std::fs::create_dir(&folder).unwrap();
         std::fs::write(folder.join(PORTS_FILE), format!("{fdm},{rc},{motors},{tcp}")).unwrap();
+        files.iter().for_each(|file| std::fs::write(folder.join(file), "").unwrap());
         let executable = std::env::current_exe().unwrap();
         let mut program = Program::start(&[
             "serve",
@@ -81,7 +87,9 @@ impl Served {
 fn notice(program: &mut Program, words: &str) -> String {
     program.wait(words, |line| {
         let event: Value = serde_json::from_str(line).ok()?;
-        event["text"].as_str().filter(|text| text.contains(words)).map(str::to_owned)
+        let text = event["text"].as_str()?;
+        assert!(!text.contains("wall clock"), "{text}");
+        text.contains(words).then(|| text.to_owned())
     })
 }
 
@@ -125,4 +133,10 @@ fn a_client_of_the_doors_is_answered_by_the_child() {
     served.tcp.write_all(b"exit noreboot\r").unwrap();
     served.read_until("no reboot\r\n");
     assert_eq!(msp::ask(&mut served.tcp, 2, &[]).unwrap(), b"BTFL", "MSP goes on");
+}
+
+#[test]
+fn an_executable_whose_threads_must_run_on_their_own_flies_in_simulated_time_as_well() {
+    let mut served = Served::start_with(&[OWN_THREADS_FILE]);
+    assert_eq!(served.channels(), AT_REST);
 }

@@ -10,8 +10,10 @@
 
 use std::ffi::{CStr, c_char};
 use std::io::{ErrorKind, Read as _, Write as _};
+use std::mem::offset_of;
 use std::net::{TcpListener, TcpStream, UdpSocket};
 use std::os::fd::AsRawFd;
+use std::os::unix::fs::FileExt as _;
 use std::os::unix::process::CommandExt as _;
 use std::process::Command;
 use std::sync::Mutex;
@@ -19,13 +21,15 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::thread::ScopedJoinHandle;
 
 use super::flying::{self, FLYING};
-use super::frames::{MOTOR_BYTES, Report, SERIAL_PORTS};
+use super::frames::{MOTOR_BYTES, Page, REPORT_BYTES, Report, SERIAL_PORTS};
 use super::serial_port::{Effect, SerialPort};
 
 /// The file in its folder with its ports: states, RC, motors, serial.
 pub(crate) const PORTS_FILE: &str = "ports.txt";
 /// The file in its folder that makes it close its first connection, and sleep.
 pub(crate) const CLOSES_FILE: &str = "closes.txt";
+/// The file in its folder that makes it crash unless its threads run on their own.
+pub(crate) const OWN_THREADS_FILE: &str = "own-threads.txt";
 /// The argument that makes this test program the stand-in.
 pub(crate) const ARGUMENT: &str = "stand-in";
 
@@ -96,33 +100,35 @@ static BEGUN: AtomicU32 = AtomicU32::new(0);
 /// Begins as a thread that the machine lets run late.
 fn begin_late() {
     std::thread::sleep(std::time::Duration::from_millis(10));
+    let (own, process) = (std::fs::read_link("/proc/thread-self").unwrap(), std::process::id());
+    if own.ends_with(format!("task/{process}")) && std::path::Path::new(OWN_THREADS_FILE).exists() {
+        std::process::abort();
+    }
     BEGUN.fetch_add(1, Ordering::SeqCst);
 }
 
-/// Reports a step with so many bytes over the serial ports, as a program that does not keep to the messages.
-fn report(sent: u64) {
-    let target = |entry: &std::fs::DirEntry| {
-        std::fs::read_link(entry.path()).is_ok_and(|to| to.to_string_lossy().starts_with("pipe:"))
+/// Reports a step with so many bytes over the serial ports, as a program that does not keep to the messages, and sleeps.
+fn report(sent: u64) -> ! {
+    let is_page = |entry: &std::fs::DirEntry| {
+        std::fs::read_link(entry.path()).is_ok_and(|to| to.to_string_lossy().starts_with("/memfd:betadeck-page"))
     };
-    let is_reports = |entry: &std::fs::DirEntry| {
-        let number = entry.file_name().to_string_lossy().parse::<i32>().unwrap();
-        let flags = std::fs::read_to_string(format!("/proc/self/fdinfo/{number}")).unwrap_or_default();
-        number > 2
-            && target(entry)
-            && flags.lines().any(|line| line.starts_with("flags:") && line.ends_with('1'))
-    };
-    let entries: Vec<_> = std::fs::read_dir("/proc/self/fd").unwrap().flatten().collect();
-    let pipe = entries.iter().find(|entry| is_reports(entry)).unwrap().path();
-    let bytes = Report {
+    let page = std::fs::read_dir("/proc/self/fd").unwrap().flatten().find(is_page).unwrap().path();
+    let page = std::fs::File::options().read(true).write(true).open(page).unwrap();
+    let report = Report {
         now_ns: 0,
         motor_packets: 0,
         motors: [0; MOTOR_BYTES],
         run: 0,
         sent,
         ports: [1; SERIAL_PORTS],
+    };
+    let mut granted = [0; 4];
+    page.read_exact_at(&mut granted, offset_of!(Page, granted) as u64).unwrap();
+    page.write_all_at(&report.to_bytes(), (size_of::<Page>() - REPORT_BYTES) as u64).unwrap();
+    page.write_all_at(&granted, offset_of!(Page, reported) as u64).unwrap();
+    loop {
+        std::thread::park();
     }
-    .to_bytes();
-    std::fs::File::options().write(true).open(pipe).unwrap().write_all(&bytes).unwrap();
 }
 
 /// `true` once its threads must end.
@@ -130,9 +136,6 @@ static STOPS: AtomicBool = AtomicBool::new(false);
 
 /// `true` once the thread of the serial port must end its connection.
 static CLOSES: AtomicBool = AtomicBool::new(false);
-
-/// `true` once the thread of the states must take in no further state.
-static HOLDS: AtomicBool = AtomicBool::new(false);
 
 /// The newest packet of a port, and the number of packets.
 struct Newest<const N: usize>(Mutex<([u8; N], u64)>);
@@ -145,9 +148,6 @@ fn take_packets<const N: usize>(socket: &UdpSocket, newest: &Newest<N>) {
             continue;
         }
         let mut bytes = [0; N];
-        if HOLDS.load(Ordering::SeqCst) {
-            std::thread::park();
-        }
         let (mut from, mut from_size) = ([0_u8; 16], 16);
         // SAFETY: the bytes and the address are writable.
         let size = unsafe { recvfrom(fd, bytes.as_mut_ptr(), N, 0, from.as_mut_ptr(), &raw mut from_size) };
@@ -343,12 +343,6 @@ fn run() {
                     "crash" => std::process::abort(),
                     "overstate" => report(u64::MAX),
                     "promise" => report(100_000),
-                    "flood" => {
-                        HOLDS.store(true, Ordering::SeqCst);
-                        loop {
-                            report(0);
-                        }
-                    }
                     "sleep" => std::thread::park(),
                     "fork" => {
                         // SAFETY: the copy only sleeps.

@@ -45,6 +45,15 @@ fn the_same_input_gives_the_same_motors_and_answers_however_busy_the_machine_is(
 }
 
 #[test]
+fn threads_of_their_own_compute_what_the_main_thread_computes_for_them() {
+    let (guests, own) = (Flight::start_with(false), Flight::start_with(true));
+    assert!(guests.lockstep.has_guests());
+    assert!(!own.lockstep.has_guests());
+    assert!(guests.with_lines() == own.with_lines());
+    assert_eq!(Flight::start_with(true).with_prints(), Flight::start_with(false).with_prints());
+}
+
+#[test]
 fn what_it_prints_comes_at_the_same_step_however_busy_the_machine_is() {
     let first = Flight::start().with_prints();
     assert!(first.iter().filter(|(_, line)| line.starts_with("printed at ")).count() >= 7, "{first:?}");

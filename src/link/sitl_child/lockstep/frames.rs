@@ -1,6 +1,9 @@
-//! The two messages of lockstep, one each way per step. This file is compiled into the program and into the preloaded
-//! library, so it uses `core` only. All numbers are little-endian.
+//! The two messages of lockstep, one each way per step, and the memory that carries them. This file is compiled into the
+//! program and into the preloaded library, so it uses `core` only. All numbers are little-endian.
 #![allow(dead_code, unreachable_pub, reason = "each side uses one direction of each message")]
+
+use core::sync::atomic::AtomicU32;
+use core::sync::atomic::Ordering::{Relaxed, SeqCst};
 
 /// The size of a state packet, bytes.
 pub const FDM_BYTES: usize = 144;
@@ -14,6 +17,23 @@ pub const SERIAL_PORTS: usize = 8;
 pub const GRANT_BYTES: usize = 24 + RC_BYTES + FDM_BYTES;
 /// The size of a [`Report`], bytes.
 pub const REPORT_BYTES: usize = 48 + 2 * SERIAL_PORTS;
+
+/// The memory that the program and the executable share. Each side writes its message, then its number, and wakes the other
+/// side, which waits for a change of the number.
+#[repr(C)]
+pub struct Page {
+    /// The number of the newest grant. The boot is [`BOOT_GRANT`].
+    pub granted: AtomicU32,
+    /// The number of the grant whose step is over; 0 = the boot is not.
+    pub reported: AtomicU32,
+    /// The number of threads whose code the main thread of the executable runs.
+    pub guests: AtomicU32,
+    grant: [AtomicU32; GRANT_BYTES / 4],
+    report: [AtomicU32; REPORT_BYTES / 4],
+}
+
+/// The grant in which the executable boots.
+pub const BOOT_GRANT: u32 = 1;
 
 /// Allows the executable one step.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,6 +75,44 @@ pub struct Report {
 
 const HAS_RC: u8 = 1;
 const HAS_SERIAL: u8 = 2;
+
+impl Page {
+    /// Publishes a grant. Wake the executable next.
+    pub fn put_grant(&self, grant: &Grant) {
+        write(&self.grant, &grant.to_bytes());
+        self.granted.fetch_add(1, SeqCst);
+    }
+
+    /// Returns the newest grant.
+    pub fn grant(&self) -> Grant {
+        Grant::from_bytes(&read(&self.grant))
+    }
+
+    /// Publishes the report for the newest grant. Wake the program next.
+    pub fn put_report(&self, report: &Report) {
+        write(&self.report, &report.to_bytes());
+        self.reported.store(self.granted.load(SeqCst), SeqCst);
+    }
+
+    /// Returns the newest report.
+    pub fn report(&self) -> Report {
+        Report::from_bytes(&read(&self.report))
+    }
+}
+
+fn write(words: &[AtomicU32], bytes: &[u8]) {
+    for (word, bytes) in words.iter().zip(bytes.chunks_exact(4)) {
+        word.store(u32::from_le_bytes(array(bytes, 0)), Relaxed);
+    }
+}
+
+fn read<const N: usize>(words: &[AtomicU32]) -> [u8; N] {
+    let mut bytes = [0; N];
+    for (bytes, word) in bytes.chunks_exact_mut(4).zip(words) {
+        bytes.copy_from_slice(&word.load(Relaxed).to_le_bytes());
+    }
+    bytes
+}
 
 impl Grant {
     pub fn to_bytes(&self) -> [u8; GRANT_BYTES] {

@@ -90,11 +90,22 @@ impl LoadedLibrary {
     /// Returns the path at which a child process of this program finds it.
     pub(super) fn path(&self) -> PathBuf {
         #[cfg(target_os = "linux")]
-        {
-            use std::os::fd::AsRawFd as _;
-            PathBuf::from(format!("/proc/{}/fd/{}", std::process::id(), self.file.as_raw_fd()))
-        }
+        return path_for_child(&self.file);
         #[cfg(not(target_os = "linux"))]
+        PathBuf::new()
+    }
+}
+
+/// Returns the path at which a child process of this program finds an open file.
+pub(super) fn path_for_child(file: &File) -> PathBuf {
+    #[cfg(unix)]
+    {
+        use std::os::fd::AsRawFd as _;
+        PathBuf::from(format!("/proc/{}/fd/{}", std::process::id(), file.as_raw_fd()))
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = file;
         PathBuf::new()
     }
 }

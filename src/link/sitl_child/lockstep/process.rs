@@ -1,42 +1,35 @@
-//! The process of an executable in lockstep, and the pipes that carry grants and reports.
+//! The process of an executable in lockstep, and its side of the shared memory.
 
-use std::io::{ErrorKind, PipeReader, PipeWriter, Read as _, Write as _};
-use std::os::fd::{AsFd, AsRawFd as _};
-use std::process::{Child, Stdio};
+use std::os::fd::AsFd;
+use std::process::Child;
+use std::sync::atomic::Ordering::SeqCst;
 use std::time::{Duration, Instant};
 
-use super::frames::{Grant, REPORT_BYTES, Report};
+use super::frames::{BOOT_GRANT, Grant, Report};
+use super::page::SharedPage;
 use crate::link::sitl_child::events::Events;
 use crate::link::sitl_child::launch::{self, LaunchError, Preload};
 use crate::link::sitl_child::output::SteppedOutput;
 use crate::link::sitl_child::{ChildConfig, ChildEnd, group};
 
 /// The interval at which a wait for a report looks at the process.
-const LOOK: Duration = Duration::from_millis(50);
+const LOOK: Duration = Duration::from_millis(10);
 /// The processor time within a step after which the process counts as hung.
 const HUNG_AFTER: Duration = Duration::from_secs(2);
 /// The looks in a row at a process that sleeps after which it counts as silent: 10 s. Looks are counted rather than the
 /// time, because the machine may sleep, too.
-const SILENT_AFTER: u32 = 200;
+const SILENT_AFTER: u32 = 1000;
 
 /// A running executable. It ends when this is dropped.
 #[derive(Debug)]
 pub(super) struct Process {
     child: Child,
     output: SteppedOutput,
-    grants: PipeWriter,
-    reports: PipeReader,
-    /// The end of the executable, until it has opened its own. The end of the process then closes the pipe.
-    reports_end: Option<PipeWriter>,
-    /// The part of a report that has arrived.
-    bytes: [u8; REPORT_BYTES],
-    arrived: usize,
+    page: SharedPage,
     /// The processor time that it had used when this step first took long.
     used: Option<Duration>,
     /// The looks in a row at which it slept.
     asleep: u32,
-    /// `true` if it does not take the grants in.
-    is_full: bool,
 }
 
 /// The reason why there is no report.
@@ -59,25 +52,11 @@ pub enum NoReport {
 impl Process {
     pub(super) fn start(config: &ChildConfig, preload: &Preload) -> Result<Self, LaunchError> {
         let failed = |error| LaunchError::Start { program: config.program.clone(), error };
-        let (grants_end, grants) = std::io::pipe().map_err(failed)?;
-        let (reports, reports_end) = std::io::pipe().map_err(failed)?;
-        let pipe = format!("/proc/{}/fd/{}", std::process::id(), reports_end.as_raw_fd());
-        let mut child = launch::spawn(config, Stdio::from(grants_end), Some((preload, &pipe)))?;
+        let page = SharedPage::new().map_err(failed)?;
+        page.granted.store(BOOT_GRANT, SeqCst);
+        let mut child = launch::spawn(config, Some((preload, &page.path())))?;
         let output = SteppedOutput::of(&mut child).map_err(failed)?;
-        // A process that does not read its grants must not hold this thread.
-        rustix::io::ioctl_fionbio(&grants, true).map_err(|error| failed(error.into()))?;
-        Ok(Self {
-            child,
-            output,
-            grants,
-            reports,
-            reports_end: Some(reports_end),
-            bytes: [0; REPORT_BYTES],
-            arrived: 0,
-            used: None,
-            asleep: 0,
-            is_full: false,
-        })
+        Ok(Self { child, output, page, used: None, asleep: 0 })
     }
 
     /// Returns the number of the process.
@@ -85,11 +64,16 @@ impl Process {
         self.child.id()
     }
 
-    /// Sends a grant. A process that has ended takes none; the wait for its report says so.
+    /// Returns `true` if its main thread runs the code of other threads.
+    pub(super) fn has_guests(&self) -> bool {
+        self.page.guests.load(SeqCst) > 0
+    }
+
+    /// Gives the executable a grant. A process that has ended takes none; the wait for its report says so.
     pub(super) fn grant(&mut self, grant: &Grant) {
-        // The system takes a message of this size whole or not at all.
-        let written = self.grants.write(&grant.to_bytes());
-        self.is_full = written.is_err_and(|error| error.kind() == ErrorKind::WouldBlock);
+        self.page.put_grant(grant);
+        #[cfg(target_os = "linux")]
+        let _woken = rustix::thread::futex::wake(&self.page.granted, rustix::thread::futex::Flags::empty(), 1);
     }
 
     /// Waits until the executable waits for the next grant, for a short time at most.
@@ -97,30 +81,31 @@ impl Process {
     /// # Errors
     /// Returns the reason why there is no report.
     pub(super) fn wait(&mut self) -> Result<Report, NoReport> {
-        if self.is_full {
-            return Err(NoReport::Faulty("reports steps without reading the messages that grant them"));
-        }
-        loop {
-            if !is_readable(&self.reports) {
-                // A child that has printed much cannot go on until this is read.
-                self.output.read();
-                return Err(self.no_report());
+        let wanted = self.page.granted.load(SeqCst);
+        // A process that wakes this one without a report must not hold it, and an interrupted wait may be repeated.
+        for _ in 0..3 {
+            let seen = self.page.reported.load(SeqCst);
+            if seen == wanted {
+                (self.used, self.asleep) = (None, 0);
+                return Ok(self.page.report());
             }
-            match self.reports.read(&mut self.bytes[self.arrived..]) {
-                Ok(0) => return Err(NoReport::Ended(self.end())),
-                Ok(read) => {
-                    self.arrived += read;
-                    if self.arrived == REPORT_BYTES {
-                        self.arrived = 0;
-                        (self.used, self.asleep) = (None, 0);
-                        self.reports_end = None;
-                        return Ok(Report::from_bytes(&self.bytes));
-                    }
-                }
-                Err(error) if error.kind() == ErrorKind::Interrupted => {}
-                Err(_) => return Err(NoReport::Ended(self.end())),
-            }
+            self.wait_for_change(seen);
         }
+        // A child that has printed much cannot go on until this is read.
+        self.output.read();
+        Err(self.no_report())
+    }
+
+    /// Waits for a change of the number of reports, for [`LOOK`] at most.
+    fn wait_for_change(&self, seen: u32) {
+        #[cfg(target_os = "linux")]
+        {
+            use rustix::thread::futex::{Flags, Timespec, wait};
+            let longest = Timespec { tv_sec: 0, tv_nsec: LOOK.as_nanos() as i64 };
+            let _changed = wait(&self.page.reported, Flags::empty(), seen, Some(&longest));
+        }
+        #[cfg(not(target_os = "linux"))]
+        let _ = seen;
     }
 
     /// Reports the lines that it has printed up to the last report.
@@ -136,7 +121,6 @@ impl Process {
 
     /// Returns the reason why nothing has come from it for some time.
     pub(super) fn no_report(&mut self) -> NoReport {
-        // A copy of the process, or this program until the first report, may hold the pipe open after its end.
         if group::has_ended(&mut self.child).unwrap_or(true) {
             return NoReport::Ended(self.end());
         }
@@ -152,7 +136,7 @@ impl Process {
         }
     }
 
-    /// Waits for the end of a process that has closed its pipe, and returns it.
+    /// Waits for the end of a process, and returns it.
     fn end(&mut self) -> ChildEnd {
         group::reap(&mut self.child).map_or(ChildEnd::Code(-1), ChildEnd::from)
     }

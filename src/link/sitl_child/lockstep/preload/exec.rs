@@ -6,7 +6,7 @@ use core::sync::atomic::AtomicI32;
 use core::sync::atomic::Ordering::SeqCst;
 
 use super::libc::{SET_DESCRIPTOR_FLAGS, fcntl, getenv, getpid, real, setenv};
-use super::parent::{GRANTS, REPORTS};
+use super::parent::PAGE_FILE;
 use super::{PRELOAD, RUN, SETTINGS, is_active};
 
 /// The longest text that is kept, with its zero.
@@ -53,10 +53,10 @@ pub(crate) fn keep(settings: &CStr) {
             LIBRARY.set(CStr::from_ptr(library).to_bytes());
         }
     }
-    // The descriptors and the number of the run are added at the restart.
+    // The descriptor and the number of the run are added at the restart.
     let ends =
         settings.to_bytes().iter().enumerate().filter(|(_, byte)| **byte == b',').map(|(index, _)| index);
-    let end = ends.clone().nth(5).unwrap_or(settings.to_bytes().len());
+    let end = ends.clone().nth(6).unwrap_or(settings.to_bytes().len());
     START_SETTINGS.set(&settings.to_bytes()[..end]);
 }
 
@@ -69,8 +69,8 @@ fn stay_in_lockstep() {
     let mut text = [0; LONGEST + 32];
     let mut end = START_SETTINGS.get().iter().position(|byte| *byte == 0).unwrap_or(0);
     text[..end].copy_from_slice(&START_SETTINGS.get()[..end]);
-    let pipes = [&REPORTS, &GRANTS].map(|pipe| pipe.load(SeqCst));
-    for number in [pipes[0] as u32, pipes[1] as u32, RUN.load(SeqCst) + 1] {
+    let page = PAGE_FILE.load(SeqCst);
+    for number in [page as u32, RUN.load(SeqCst) + 1] {
         text[end] = b',';
         end += 1;
         let digits = number.checked_ilog10().unwrap_or(0);
@@ -81,9 +81,7 @@ fn stay_in_lockstep() {
     }
     // SAFETY: the texts end with a zero.
     unsafe {
-        for pipe in pipes {
-            fcntl(pipe, SET_DESCRIPTOR_FLAGS, 0);
-        }
+        fcntl(page, SET_DESCRIPTOR_FLAGS, 0);
         setenv(SETTINGS.as_ptr(), text.as_ptr().cast(), 1);
         setenv(PRELOAD.as_ptr(), LIBRARY.get().as_ptr().cast(), 1);
     }

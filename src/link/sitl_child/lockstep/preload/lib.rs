@@ -2,9 +2,9 @@
 //! library, so that exactly one thread runs at a time and every step begins with a message of the parent:
 //!
 //! ```text
-//! parent ──Grant──▶ state thread: RC thread and serial thread take their data in, then the state thread its own
-//!                   main thread runs until its clock has advanced by a step
-//! parent ◀─Report── main thread waits, and the state thread for the next grant
+//! parent ──Grant──▶ main thread: gives the RC thread, the serial thread and the state thread their turns, in which they
+//!                   take their data in, and runs until its clock has advanced by a step
+//! parent ◀─Report── main thread waits
 //! ```
 //!
 //! * The clock is a number. A sleep of the main thread advances it at once, up to the *horizon*; at the horizon the thread
@@ -14,21 +14,26 @@
 //!   report.
 //! * The serial ports are real TCP sockets at ports that the system chooses. Their thread runs only when a grant says so,
 //!   until it has taken in what the parent has sent and written what it has.
+//! * Grants and reports are in memory that the parent shares, and wake the other side by a futex. The code of the other
+//!   threads runs on the main thread (`guests`), or, if the parent says so, on threads of their own.
 //!
-//! `build.rs` compiles this file on its own. It uses `core` and the C library only, opens no file but `/dev/null`, and no
-//! socket: the two pipes to the parent are inherited. Linux on 64-bit processors.
+//! `build.rs` compiles this file on its own. It uses `core` and the C library only, and opens no file and no socket: the
+//! memory of the parent is inherited. Linux on 64-bit processors.
 #![no_std]
 
 mod clock;
 mod exec;
 #[path = "../frames.rs"]
 mod frames;
+mod guests;
 mod intake;
 mod libc;
+mod local;
 mod parent;
 mod serial;
 mod sockets;
 mod threads;
+mod turns;
 
 use core::ffi::{CStr, c_int};
 use core::sync::atomic::Ordering::SeqCst;
@@ -36,16 +41,14 @@ use core::sync::atomic::{AtomicU32, AtomicUsize};
 
 use clock::{HORIZON_NS, START_NS, STEP_NS};
 use intake::{FDM, RC};
-use libc::{
-    _exit, CLOSED_ON_EXEC, DUPLICATE_CLOSED_ON_EXEC, READ_WRITE, SET_DESCRIPTOR_FLAGS, close, dup2, fcntl,
-    getenv, open, pthread_self, unsetenv,
-};
-use parent::{GRANTS, MOTORS, REPORTS};
+use libc::{_exit, CLOSED_ON_EXEC, SET_DESCRIPTOR_FLAGS, fcntl, getenv, pthread_self, unsetenv};
+use parent::MOTORS;
 use serial::SERIAL;
+use threads::HAS_OWN_THREADS;
 
 /// The variable with the ports of the executable and the length of a step:
-/// `fdm,rc,motors,serial,step_ns,boot_ns,reports`, where `reports` is the descriptor of the pipe for the reports. After a
-/// restart by `exec`, the descriptor of the pipe with the grants and the number of the run follow.
+/// `fdm,rc,motors,serial,step_ns,boot_ns,own_threads,page`, where `own_threads` is 1 if its threads run on their own, and `page`
+/// is the descriptor of the shared memory. After a restart by `exec`, the number of the run follows.
 pub(crate) const SETTINGS: &CStr = c"BETADECK_LOCKSTEP";
 pub(crate) const PRELOAD: &CStr = c"LD_PRELOAD";
 
@@ -56,7 +59,7 @@ static MAIN_THREAD: AtomicUsize = AtomicUsize::new(0);
 #[unsafe(link_section = ".init_array")]
 static AT_START: extern "C" fn() = start;
 
-/// Reads the settings and takes over standard input, which is the pipe with the grants.
+/// Reads the settings and maps the shared memory.
 extern "C" fn start() {
     // SAFETY: the name ends with a zero, and the value, if any, too.
     let settings = unsafe {
@@ -72,7 +75,7 @@ extern "C" fn start() {
             *number = number.wrapping_mul(10).wrapping_add(u64::from(digit.wrapping_sub(b'0')));
         }
     }
-    let [fdm, rc, motors, serial, step_ns, boot_ns, reports, grants, run] = numbers;
+    let [fdm, rc, motors, serial, step_ns, boot_ns, own_threads, page, run] = numbers;
     exec::keep(settings);
     RUN.store(run as u32, SeqCst);
     FDM.port.store(fdm as u16, SeqCst);
@@ -81,30 +84,21 @@ extern "C" fn start() {
     SERIAL.port.store(serial as u16, SeqCst);
     STEP_NS.store(step_ns, SeqCst);
     HORIZON_NS.store(START_NS + boot_ns, SeqCst);
-    // SAFETY: descriptors are numbers, and the paths end with a zero. Programs that the executable starts inherit neither
-    // the library nor the pipes.
+    HAS_OWN_THREADS.store(own_threads != 0, SeqCst);
+    local::prepare();
+    // SAFETY: descriptors are numbers, and the names end with a zero. Programs that the executable starts inherit neither the
+    // library nor the memory.
     unsafe {
         MAIN_THREAD.store(pthread_self(), SeqCst);
-        fcntl(reports as c_int, SET_DESCRIPTOR_FLAGS, CLOSED_ON_EXEC);
-        REPORTS.store(reports as c_int, SeqCst);
-        let grants = if grants > 0 {
-            fcntl(grants as c_int, SET_DESCRIPTOR_FLAGS, CLOSED_ON_EXEC);
-            grants as c_int
-        } else {
-            let grants = fcntl(0, DUPLICATE_CLOSED_ON_EXEC, 100);
-            let empty = open(c"/dev/null".as_ptr(), READ_WRITE);
-            dup2(empty, 0);
-            close(empty);
-            grants
-        };
+        fcntl(page as c_int, SET_DESCRIPTOR_FLAGS, CLOSED_ON_EXEC);
         unsetenv(PRELOAD.as_ptr());
         unsetenv(SETTINGS.as_ptr());
-        GRANTS.store(grants, SeqCst);
     }
+    parent::open_page(page as c_int);
 }
 
 pub(crate) fn is_active() -> bool {
-    GRANTS.load(SeqCst) >= 0
+    parent::page().is_some()
 }
 
 pub(crate) fn is_main_thread() -> bool {

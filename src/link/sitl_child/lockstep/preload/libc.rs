@@ -36,12 +36,12 @@ pub(crate) const CLOCK_PROCESS: [c_int; 2] = [2, 3];
 pub(crate) const TIMER_ABSOLUTE: c_int = 1;
 pub(crate) const DESCRIPTORS: usize = 1024;
 pub(crate) const WORD_BITS: usize = 64;
-pub(crate) const DUPLICATE_CLOSED_ON_EXEC: c_int = 1030;
 pub(crate) const SET_DESCRIPTOR_FLAGS: c_int = 2;
 pub(crate) const CLOSED_ON_EXEC: c_int = 1;
-pub(crate) const READ_WRITE: c_int = 2;
-const FUTEX_WAIT_PRIVATE: c_int = 128;
-const FUTEX_WAKE_PRIVATE: c_int = 129;
+pub(crate) const READABLE_WRITABLE: c_int = 3;
+pub(crate) const MAP_SHARED: c_int = 1;
+const FUTEX_WAIT: c_int = 0;
+const FUTEX_WAKE: c_int = 1;
 #[cfg(target_arch = "x86_64")]
 pub(crate) const SYS_FUTEX: c_long = 202;
 #[cfg(target_arch = "aarch64")]
@@ -57,20 +57,54 @@ unsafe extern "C" {
     pub(crate) fn setenv(name: *const c_char, value: *const c_char, replace: c_int) -> c_int;
     pub(crate) fn unsetenv(name: *const c_char) -> c_int;
     pub(crate) fn fcntl(fd: c_int, command: c_int, ...) -> c_int;
-    pub(crate) fn open(path: *const c_char, flags: c_int, ...) -> c_int;
-    pub(crate) fn dup2(from: c_int, to: c_int) -> c_int;
-    pub(crate) fn close(fd: c_int) -> c_int;
-    pub(crate) fn read(fd: c_int, bytes: *mut c_void, size: usize) -> isize;
-    pub(crate) fn write(fd: c_int, bytes: *const c_void, size: usize) -> isize;
     pub(crate) fn syscall(number: c_long, ...) -> c_long;
     pub(crate) fn pthread_self() -> usize;
-    pub(crate) fn pthread_kill(thread: usize, signal: c_int) -> c_int;
-    pub(crate) fn signal(number: c_int, handler: usize) -> usize;
-    pub(crate) fn siginterrupt(number: c_int, interrupts: c_int) -> c_int;
+    pub(crate) fn mmap(
+        address: *mut c_void,
+        size: usize,
+        access: c_int,
+        flags: c_int,
+        fd: c_int,
+        offset: i64,
+    ) -> *mut c_void;
+    pub(crate) fn getauxval(kind: u64) -> u64;
+    pub(crate) fn getcontext(to: *mut Context) -> c_int;
+    pub(crate) fn setcontext(from: *const Context) -> c_int;
+    pub(crate) fn swapcontext(to: *mut Context, from: *const Context) -> c_int;
+    pub(crate) fn makecontext(context: *mut Context, function: *const c_void, count: c_int, ...);
     pub(crate) fn getpid() -> c_int;
     pub(crate) fn getsockname(fd: c_int, address: *mut Address, size: *mut u32) -> c_int;
     pub(crate) fn __errno_location() -> *mut c_int;
     pub(crate) fn _exit(code: c_int) -> !;
+}
+
+/// The registers and the stack of code that goes on later. Its beginning and a size that suffices on all processors.
+#[repr(C, align(16))]
+pub struct Context {
+    flags: usize,
+    next: *mut Self,
+    stack: *mut c_void,
+    stack_flags: c_int,
+    stack_size: usize,
+    rest: [usize; 1024],
+}
+
+impl Context {
+    pub(crate) const fn new() -> Self {
+        Self {
+            flags: 0,
+            next: core::ptr::null_mut(),
+            stack: core::ptr::null_mut(),
+            stack_flags: 0,
+            stack_size: 0,
+            rest: [0; 1024],
+        }
+    }
+
+    /// Sets the stack on which a new function runs.
+    pub(crate) fn use_stack<const N: usize>(&mut self, stack: *mut [u8; N]) {
+        (self.stack, self.stack_size) = (stack.cast(), N);
+    }
 }
 
 /// A function of the C library that this library replaces, found at its first use.
@@ -117,16 +151,24 @@ macro_rules! real {
 }
 pub(crate) use real;
 
+/// The threads that use a word to wait: those of this process, or also the parent's.
+#[derive(Clone, Copy)]
+pub(crate) enum Scope {
+    Shared = 0,
+    Private = 128,
+}
+
 /// Wakes all threads that wait for a change of the word.
-pub(crate) fn wake(word: &AtomicU32) {
+pub(crate) fn wake(word: &AtomicU32, scope: Scope) {
     // SAFETY: the kernel only compares the address.
-    unsafe { syscall(SYS_FUTEX, word.as_ptr(), FUTEX_WAKE_PRIVATE, c_int::MAX) };
+    unsafe { syscall(SYS_FUTEX, word.as_ptr(), FUTEX_WAKE | scope as c_int, c_int::MAX) };
 }
 
 /// Waits for a change of the word from this value.
-pub(crate) fn wait_for_change(word: &AtomicU32, value: u32) {
+pub(crate) fn wait_for_change(word: &AtomicU32, value: u32, scope: Scope) {
+    let forever = core::ptr::null::<Timespec>();
     // SAFETY: the word lives as long as the program.
-    unsafe { syscall(SYS_FUTEX, word.as_ptr(), FUTEX_WAIT_PRIVATE, value, core::ptr::null::<Timespec>()) };
+    unsafe { syscall(SYS_FUTEX, word.as_ptr(), FUTEX_WAIT | scope as c_int, value, forever) };
 }
 
 pub(crate) fn wait_until(word: &AtomicU32, value: u32) {
@@ -135,6 +177,6 @@ pub(crate) fn wait_until(word: &AtomicU32, value: u32) {
         if seen == value {
             return;
         }
-        wait_for_change(word, seen);
+        wait_for_change(word, seen, Scope::Private);
     }
 }

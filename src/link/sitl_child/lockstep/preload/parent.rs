@@ -1,21 +1,20 @@
 //! The reports to the parent and its grants.
 
-use core::ffi::c_int;
+use core::ptr::null_mut;
 use core::sync::atomic::Ordering::SeqCst;
-use core::sync::atomic::{AtomicI32, AtomicU16, AtomicU32};
+use core::sync::atomic::{AtomicI32, AtomicPtr, AtomicU16, AtomicU32};
 
 use super::RUN;
 use super::clock::NOW_NS;
-use super::frames::{FDM_BYTES, GRANT_BYTES, Grant, MOTOR_BYTES, Report};
-use super::intake::RC;
-use super::libc::{__errno_location, _exit, read, wait_for_change, wake, write};
+use super::frames::{MOTOR_BYTES, Page, Report};
+use super::intake::{FDM, RC};
+use super::libc::{MAP_SHARED, READABLE_WRITABLE, Scope, mmap, wait_for_change, wake};
 use super::serial::{SERIAL, serve_serial};
-use super::threads::{is_ending, note_wait_for_grant};
 
-/// The pipe with the grants; −1 = the library does nothing.
-pub(crate) static GRANTS: AtomicI32 = AtomicI32::new(-1);
-/// The pipe for the reports.
-pub(crate) static REPORTS: AtomicI32 = AtomicI32::new(-1);
+/// The memory that the parent shares; null = the library does nothing.
+static PAGE: AtomicPtr<Page> = AtomicPtr::new(null_mut());
+/// Its descriptor, which is kept for a restart by `exec`.
+pub(crate) static PAGE_FILE: AtomicI32 = AtomicI32::new(-1);
 
 /// The motor packets of the step.
 pub(crate) struct Motors {
@@ -31,81 +30,53 @@ pub(crate) static MOTORS: Motors = Motors {
     newest: [const { AtomicU32::new(0) }; MOTOR_BYTES / 4],
 };
 
-/// The number of grants that were read, and the number of those whose data are taken in.
-static READ: AtomicU32 = AtomicU32::new(0);
-static TAKEN: AtomicU32 = AtomicU32::new(0);
+/// Maps the memory of this descriptor.
+pub(crate) fn open_page(descriptor: i32) {
+    const FAILED: usize = usize::MAX;
+    // SAFETY: the system chooses an address that nothing uses.
+    let page = unsafe { mmap(null_mut(), size_of::<Page>(), READABLE_WRITABLE, MAP_SHARED, descriptor, 0) };
+    if page as usize != FAILED {
+        PAGE_FILE.store(descriptor, SeqCst);
+        PAGE.store(page.cast(), SeqCst);
+    }
+}
 
-/// Reports that the step is over, and waits until the data of the next grant are taken in.
+/// Returns the memory that the parent shares; `None` if the library does nothing.
+pub(crate) fn page() -> Option<&'static Page> {
+    // SAFETY: the mapping stays, and its numbers are atomic.
+    unsafe { PAGE.load(SeqCst).as_ref() }
+}
+
+/// Reports that the step is over, waits for the next grant, and has the threads of the executable take its data in.
 pub(crate) fn end_step() {
-    // Another thread takes the next grant in, perhaps before this thread waits for it.
-    let taken = TAKEN.load(SeqCst);
-    report();
-    while TAKEN.load(SeqCst) == taken {
-        wait_for_change(&TAKEN, taken);
+    let Some(page) = page() else { return };
+    let granted = page.granted.load(SeqCst);
+    page.put_report(&report());
+    wake(&page.reported, Scope::Shared);
+    while page.granted.load(SeqCst) == granted {
+        wait_for_change(&page.granted, granted, Scope::Shared);
     }
-}
-
-fn report() {
-    let mut motors = [0; MOTOR_BYTES];
-    for (bytes, word) in motors.chunks_exact_mut(4).zip(&MOTORS.newest) {
-        bytes.copy_from_slice(&word.load(SeqCst).to_ne_bytes());
-    }
-    let report = Report {
-        now_ns: NOW_NS.load(SeqCst),
-        motor_packets: MOTORS.packets.swap(0, SeqCst),
-        motors,
-        run: RUN.load(SeqCst),
-        sent: SERIAL.sent.load(SeqCst),
-        ports: core::array::from_fn(|port| SERIAL.ports[port].load(SeqCst)),
-    };
-    let bytes = report.to_bytes();
-    let mut done = 0;
-    while done < bytes.len() {
-        // SAFETY: the rest of the bytes is readable.
-        let written =
-            unsafe { write(REPORTS.load(SeqCst), bytes[done..].as_ptr().cast(), bytes.len() - done) };
-        done += moved(written);
-    }
-}
-
-/// Lets the main thread go on, waits for the next grant, and has its RC packet and serial data taken in. Returns its state;
-/// `None` if the thread must end. The thread of the states calls it when it has taken in the state before.
-pub(crate) fn next_state() -> Option<[u8; FDM_BYTES]> {
-    let read_before = READ.load(SeqCst);
-    if TAKEN.swap(read_before, SeqCst) != read_before {
-        wake(&TAKEN);
-    }
-    let mut bytes = [0; GRANT_BYTES];
-    let mut done = 0;
-    note_wait_for_grant(true);
-    while done < bytes.len() && !is_ending() {
-        // SAFETY: the rest of the bytes is writable.
-        let got = unsafe { read(GRANTS.load(SeqCst), bytes[done..].as_mut_ptr().cast(), bytes.len() - done) };
-        done += moved(got);
-    }
-    note_wait_for_grant(false);
-    if is_ending() {
-        return None;
-    }
-    READ.store(read_before.wrapping_add(1), SeqCst);
-    let grant = Grant::from_bytes(&bytes);
+    let grant = page.grant();
     if let Some(rc) = grant.rc {
         RC.deliver(&rc);
     }
     if let Some(totals) = grant.serial {
         serve_serial(totals);
     }
-    Some(grant.fdm)
+    FDM.deliver(&grant.fdm);
 }
 
-/// Returns the number of bytes that a system call moved; 0 if a signal interrupted it. Ends the process without a parent.
-fn moved(result: isize) -> usize {
-    const INTERRUPTED: c_int = 4;
-    // SAFETY: the address of the error of this thread is valid. `_exit` ends the process.
-    unsafe {
-        if result == 0 || result < 0 && *__errno_location() != INTERRUPTED {
-            _exit(0);
-        }
+fn report() -> Report {
+    let mut motors = [0; MOTOR_BYTES];
+    for (bytes, word) in motors.chunks_exact_mut(4).zip(&MOTORS.newest) {
+        bytes.copy_from_slice(&word.load(SeqCst).to_ne_bytes());
     }
-    result.max(0) as usize
+    Report {
+        now_ns: NOW_NS.load(SeqCst),
+        motor_packets: MOTORS.packets.swap(0, SeqCst),
+        motors,
+        run: RUN.load(SeqCst),
+        sent: SERIAL.sent.load(SeqCst),
+        ports: core::array::from_fn(|port| SERIAL.ports[port].load(SeqCst)),
+    }
 }

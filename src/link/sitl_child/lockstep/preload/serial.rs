@@ -2,11 +2,12 @@
 
 use core::ffi::{c_int, c_void};
 use core::sync::atomic::Ordering::SeqCst;
-use core::sync::atomic::{AtomicI32, AtomicU16, AtomicU32, AtomicU64};
+use core::sync::atomic::{AtomicBool, AtomicI32, AtomicU16, AtomicU32, AtomicU64};
 
 use super::frames::{SERIAL_PORTS, SerialTotals};
 use super::is_active;
-use super::libc::{Address, getsockname, real, wait_until, wake};
+use super::libc::{Address, getsockname, real};
+use super::turns::Place;
 
 /// The thread of the serial ports.
 pub(crate) struct Serial {
@@ -14,11 +15,10 @@ pub(crate) struct Serial {
     pub(crate) port: AtomicU16,
     pub(crate) listeners: [AtomicI32; SERIAL_PORTS],
     pub(crate) ports: [AtomicU16; SERIAL_PORTS],
-    /// The turns that the main thread has asked for, and those that are over.
-    pub(crate) wanted: AtomicU32,
-    pub(crate) done: AtomicU32,
-    /// The turn in which the thread has run through its loop once.
-    pub(crate) begun: AtomicU32,
+    /// The place at which it waits for its turn.
+    pub(crate) place: Place,
+    /// `true` during its turn.
+    pub(crate) has_turn: AtomicBool,
     pub(crate) expected: Totals,
     pub(crate) seen: Totals,
     pub(crate) sent: AtomicU64,
@@ -46,21 +46,21 @@ pub(crate) static SERIAL: Serial = Serial {
     port: AtomicU16::new(0),
     listeners: [const { AtomicI32::new(-1) }; SERIAL_PORTS],
     ports: [const { AtomicU16::new(0) }; SERIAL_PORTS],
-    wanted: AtomicU32::new(0),
-    done: AtomicU32::new(0),
-    begun: AtomicU32::new(0),
+    place: Place::new(),
+    has_turn: AtomicBool::new(false),
     expected: Totals::new(),
     seen: Totals::new(),
     sent: AtomicU64::new(0),
 };
+
 /// Lets the thread of the serial ports run until it has taken in these data and has nothing to write.
 pub(crate) fn serve_serial(totals: SerialTotals) {
     SERIAL.expected.connections.store(totals.connections, SeqCst);
     SERIAL.expected.closed.store(totals.closed, SeqCst);
     SERIAL.expected.bytes.store(totals.bytes, SeqCst);
-    let turn = SERIAL.wanted.fetch_add(1, SeqCst) + 1;
-    wake(&SERIAL.wanted);
-    wait_until(&SERIAL.done, turn);
+    SERIAL.place.wait_for_thread();
+    SERIAL.has_turn.store(true, SeqCst);
+    SERIAL.place.run();
 }
 
 /// Replaces the function of this name: counts the bytes of the serial ports.

@@ -7,11 +7,10 @@ use super::frames::{MOTOR_BYTES, SERIAL_PORTS};
 use super::intake::{FDM, Intake, RC};
 use super::libc::{
     __errno_location, Address, DESCRIPTORS, FAMILY_INTERNET, LOOPBACK, Set, TRY_AGAIN, Timeval, WORD_BITS,
-    real, wait_for_change, wake,
+    real,
 };
 use super::parent::MOTORS;
 use super::serial::SERIAL;
-use super::threads::{is_ending, note_wait_for_turn};
 use super::{is_active, is_main_thread};
 
 fn contains(set: *const Set, fd: c_int) -> bool {
@@ -63,30 +62,18 @@ pub unsafe extern "C" fn select(
     if !is_active() || is_main_thread() {
         return real!(select: fn(c_int, *mut Set, *mut Set, *mut Set, *mut Timeval) -> c_int; count, readable, writable, failed, timeout);
     }
-    note_wait_for_turn();
     let waits_for = |intake: &Intake| {
         let fd = intake.fd.load(SeqCst);
         fd >= 0 && count == fd + 1 && contains(readable, fd)
     };
-    if waits_for(&FDM) {
-        return c_int::from(FDM.wait_for_state());
-    }
-    if waits_for(&RC) {
-        return c_int::from(RC.wait());
+    if let Some(intake) = [&FDM, &RC].into_iter().find(|intake| waits_for(intake)) {
+        return c_int::from(intake.wait());
     }
     let sets = [readable, writable, failed].map(|set| Watched::new(set, count));
     loop {
-        if is_ending() {
-            sets.iter().for_each(|set| set.put(&[0; DESCRIPTORS / WORD_BITS]));
-            return 0;
-        }
-        let wanted = SERIAL.wanted.load(SeqCst);
-        if SERIAL.done.load(SeqCst) == wanted {
-            wait_for_change(&SERIAL.wanted, wanted);
-            continue;
-        }
-        if SERIAL.begun.swap(wanted, SeqCst) != wanted {
-            // A pass through its loop, in which it finds what the main thread has written.
+        if !SERIAL.has_turn.load(SeqCst) {
+            SERIAL.place.wait();
+            // A pass through its loop, in which it finds what the main thread has written, or that it must end.
             sets.iter().for_each(|set| set.put(&[0; DESCRIPTORS / WORD_BITS]));
             return 0;
         }
@@ -98,8 +85,7 @@ pub unsafe extern "C" fn select(
             return ready;
         }
         if is_complete {
-            SERIAL.done.store(wanted, SeqCst);
-            wake(&SERIAL.done);
+            SERIAL.has_turn.store(false, SeqCst);
         }
     }
 }

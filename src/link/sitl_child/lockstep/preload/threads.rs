@@ -3,15 +3,13 @@
 
 use core::ffi::{c_int, c_void};
 use core::sync::atomic::Ordering::SeqCst;
-use core::sync::atomic::{AtomicU32, AtomicUsize};
+use core::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize};
 
-use super::intake::RC;
-use super::is_main_thread;
-use super::libc::{CLOCK_REALTIME, Timespec, pthread_kill, pthread_self, real, siginterrupt, signal, wake};
+use super::intake::{FDM, RC};
+use super::libc::{CLOCK_REALTIME, Timespec, pthread_self, real};
 use super::serial::SERIAL;
+use super::{guests, is_main_thread};
 
-/// A signal that the executable does not use. It interrupts the read of the thread of the states.
-const SIGNAL: c_int = 23;
 const TIMED_OUT: c_int = 110;
 const MILLISECOND_NS: i64 = 1_000_000;
 const SECOND_NS: i64 = 1_000_000_000;
@@ -20,10 +18,11 @@ const SECOND_NS: i64 = 1_000_000_000;
 const LOOKS: u32 = 5000;
 const LOOK_NS: i64 = 50_000;
 
+/// `true` if the executable's threads run on their own.
+pub(crate) static HAS_OWN_THREADS: AtomicBool = AtomicBool::new(false);
+
 /// The thread for whose end the main thread waits; 0 = none.
 static JOINED: AtomicUsize = AtomicUsize::new(0);
-/// The thread that waits for a grant; 0 = none.
-static WAITING: AtomicUsize = AtomicUsize::new(0);
 
 /// The number of times that threads came to wait for their turn.
 static WAITS: AtomicU32 = AtomicU32::new(0);
@@ -45,6 +44,10 @@ pub unsafe extern "C" fn pthread_create(
     start: *const c_void,
     argument: *mut c_void,
 ) -> c_int {
+    let is_guest = is_main_thread() && !HAS_OWN_THREADS.load(SeqCst);
+    if let Some(result) = is_guest.then(|| guests::create(thread, attributes, start, argument)).flatten() {
+        return result;
+    }
     let before = WAITS.load(SeqCst);
     let result = real!(pthread_create: fn(*mut usize, *const c_void, *const c_void, *mut c_void) -> c_int; thread, attributes, start, argument);
     if result == 0 && is_main_thread() {
@@ -66,14 +69,6 @@ pub(crate) fn is_ending() -> bool {
     JOINED.load(SeqCst) == unsafe { pthread_self() }
 }
 
-/// Records that this thread waits for a grant, or does no longer.
-pub(crate) fn note_wait_for_grant(waits: bool) {
-    // SAFETY: has no conditions.
-    WAITING.store(if waits { unsafe { pthread_self() } } else { 0 }, SeqCst);
-}
-
-extern "C" fn interrupted(_: c_int) {}
-
 /// Replaces the function of this name: if the main thread waits for another thread, that thread goes on.
 ///
 /// # Safety
@@ -84,20 +79,10 @@ pub unsafe extern "C" fn pthread_join(thread: usize, result: *mut *mut c_void) -
         return real!(pthread_join: fn(usize, *mut *mut c_void) -> c_int; thread, result);
     }
     JOINED.store(thread, SeqCst);
-    // SAFETY: the handler does nothing.
-    unsafe {
-        signal(SIGNAL, interrupted as extern "C" fn(c_int) as usize);
-        siginterrupt(SIGNAL, 1);
-    }
+    guests::finish(thread);
     loop {
         // A wake-up before the thread waits has no effect, so it is repeated.
-        wake(&SERIAL.wanted);
-        RC.wake();
-        let waiting = WAITING.load(SeqCst);
-        if waiting == thread {
-            // SAFETY: a thread that waits exists.
-            unsafe { pthread_kill(waiting, SIGNAL) };
-        }
+        [&FDM.place, &RC.place, &SERIAL.place].map(|place| place.wake());
         let mut until = Timespec { s: 0, ns: 0 };
         real!(clock_gettime: fn(c_int, *mut Timespec) -> c_int; CLOCK_REALTIME, &raw mut until);
         until.ns += MILLISECOND_NS;
