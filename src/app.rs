@@ -36,7 +36,7 @@ use crate::link::launch_firmware;
 use crate::process::build::Build;
 use crate::process::error::{self, AppError};
 use crate::ui::keymap::Keymap;
-use crate::{headless, launch};
+use crate::{headless, storage};
 
 /// Runs the program with the given command line (program name first) and returns its exit code.
 pub fn run(arguments: impl IntoIterator<Item = OsString>, build: Build) -> u8 {
@@ -146,7 +146,7 @@ fn may_start_firmware(command: Option<&Command>) -> bool {
 
 fn dispatch(cli: Cli, keymap: Keymap) -> Result<u8, AppError> {
     if may_start_firmware(cli.command.as_ref()) {
-        launch::sweep();
+        storage::sweep();
     }
     match cli.command {
         None => tui::run(&cli.tui, keymap),

@@ -1,15 +1,12 @@
 //! The choice of the firmware from the options and the launcher's file, checked before any start.
 
 mod executable;
-mod folder;
 pub(crate) mod link;
 pub(crate) mod processor;
 pub(crate) mod reported;
 pub(crate) mod run;
 
 use std::path::{Path, PathBuf};
-
-pub(crate) use folder::{FirmwareFolder, sweep};
 
 use crate::args::{
     Betaloop, BetaloopError, DoorArgs, FdmDialect, FirmwareArgs, FirmwareChoice, FirmwareLinkArgs,
@@ -40,6 +37,8 @@ pub(crate) struct RemoteFirmware {
     pub(crate) lines: ProvisionLines,
     /// `true` if an earlier configuration may be changed without a question.
     pub(crate) may_write: bool,
+    /// `true` to keep what it is given in simulated time, so that the flight can be continued from an earlier instant.
+    pub(crate) keeps_inputs: bool,
 }
 
 impl RemoteFirmware {
@@ -240,6 +239,7 @@ fn check(
             },
         },
         may_write: link.yes,
+        keeps_inputs: false,
     }))
 }
 

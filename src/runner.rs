@@ -13,7 +13,6 @@ use std::time::{Duration, Instant};
 
 use crate::events::{Event, SessionEvent};
 use crate::fc::{EXCHANGE_PAUSE, RemoteLink, RemoteNotice};
-use crate::signals::SimTime;
 
 pub use pacer::{Pacer, SPEED_RANGE};
 pub use subscriber::{Flying, Subscriber, tick};
@@ -65,14 +64,14 @@ impl Runner {
         Self { slice, ..self }
     }
 
-    /// Returns the link to the remote flight controller, if there is one, for another runner.
-    pub fn into_link(self) -> Option<RemoteLink> {
-        self.link
-    }
-
     /// Returns the link to the remote flight controller, if there is one.
     pub fn link(&self) -> Option<&RemoteLink> {
         self.link.as_ref()
+    }
+
+    /// Returns the link to the remote flight controller, for its record.
+    pub fn link_mut(&mut self) -> Option<&mut RemoteLink> {
+        self.link.as_mut()
     }
 
     /// Returns the time of the link's protocol, for its deadlines: simulated time, or wall time.
@@ -138,28 +137,6 @@ impl Runner {
                 return Ok(end);
             }
         }
-    }
-
-    /// Flies until the vehicle has this time. Returns the end if the flight ended before.
-    ///
-    /// # Errors
-    /// Returns the reason why the flight did not get so far.
-    pub fn fly_until<F: Flying>(
-        &mut self,
-        flight: &mut F,
-        until: SimTime,
-        subscriber: &mut impl Subscriber<F>,
-        is_stopped: impl Fn() -> bool,
-    ) -> Result<Option<F::End>, Stopped> {
-        let slice = self.slice;
-        let mut end = None;
-        while end.is_none() && flight.vehicle().time() < until {
-            let left_us = until.0 - flight.vehicle().time().0;
-            self.slice = slice.min(left_us.div_ceil(self.step_us));
-            end = self.round(flight, subscriber, &is_stopped)?;
-        }
-        self.slice = slice;
-        Ok(end)
     }
 
     /// Runs one round of at most one tick. What its caller decides after it depends on no clock: a longer round ends early if

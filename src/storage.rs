@@ -20,11 +20,13 @@ use crate::firmware::config::{Configuration, correct};
 use crate::firmware::storage::{ImageError, decode, encode};
 
 mod files;
+mod firmware_folder;
 mod log_folder;
 pub mod state_file;
 
 pub use files::link_target;
 use files::{Files, read_image};
+pub use firmware_folder::{FirmwareFolder, sweep};
 pub use log_folder::{LogFolder, logs_in};
 
 /// Returns the files that a store in this directory uses or leaves, including missing ones. If the image is a

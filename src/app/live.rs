@@ -9,11 +9,11 @@ use crate::events::SessionEvent;
 use crate::fc::{RemoteEnds, RemoteLink};
 use crate::headless::setup;
 use crate::launch::link::OpenLink;
-use crate::launch::{FirmwareFolder, link};
+use crate::launch::{RemoteFirmware, link};
 use crate::link::{FcPlace, FcStream};
 use crate::process::error::AppError;
 use crate::session::{self, FlightFeed, FlownBefore, Handle, SessionConfig};
-use crate::storage::Store;
+use crate::storage::{FirmwareFolder, Store};
 use crate::vehicle::{Vehicle, VehicleCommand};
 
 /// The altitude to which the scripted pilot climbs before it engages, m.
@@ -48,8 +48,9 @@ pub(super) async fn start(
     feed: Option<FlightFeed>,
 ) -> Result<(Handle, Option<OpenDoors>, Option<FirmwareFolder>), AppError> {
     let state = setup::store_directory(args.flight)?;
-    let opened =
-        args.firmware.map(|firmware| link::open(firmware, &vehicle, state.as_deref())).transpose()?;
+    let firmware =
+        args.firmware.map(|firmware| RemoteFirmware { keeps_inputs: args.has_screen, ..firmware.clone() });
+    let opened = firmware.map(|firmware| link::open(&firmware, &vehicle, state.as_deref())).transpose()?;
     let mut first_events = Vec::new();
     let (doors, endpoints) = match doors::open(args, opened.as_ref().map(|opened| &opened.link)).await? {
         Some(opened) => {

@@ -8,13 +8,12 @@ use super::doors::LiveArgs;
 use super::screen::{self, LiveFlight, Screen, Source};
 use crate::args::{DoorArgs, FlightArgs, Instant, OpenArgs, PhysicsArgs, ReviewArgs};
 use crate::events::Event;
-use crate::fc::RemoteLink;
+use crate::fc::PastFlight;
 use crate::files::flight_recorder::RecordedStart;
 use crate::headless::{check, setup};
 use crate::launch;
 use crate::launch::run::{OnEvent, Stopped, unless_interrupted};
 use crate::launch::{Beside, RemoteFirmware, reported};
-use crate::link::conventions::FirmwareClock;
 use crate::plan::format::PlanFile;
 use crate::process::error;
 use crate::process::error::AppError;
@@ -23,7 +22,7 @@ use crate::recording::Setup;
 use crate::runner::{Runner, Subscriber};
 use crate::scenario::{self, Air, Case, CaseFlight, Scenario};
 use crate::screen_files::screen_file::{ScreenFile, ScreenStart, Subject};
-use crate::session::{FlownAgain, FlownBefore, FlyAgain, Progress, SessionView};
+use crate::session::{FlownBefore, FlyAgain, SessionView};
 use crate::signals::SimTime;
 use crate::storage::Store;
 use crate::text::did_you_mean;
@@ -84,14 +83,9 @@ pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
     };
     notices.extend(wanted.map(|wanted| wanted.compared(flown.hash)));
     let flown_hash = flown.hash;
-    let Flown { flight, timeline, recorded: Recorded { events, past }, .. } = flown;
-    let is_repeatable =
-        |firmware: &RemoteFirmware| firmware.executable.is_some() && firmware.clock == FirmwareClock::Sim;
-    let again = firmware.filter(is_repeatable).map(|firmware| {
-        let case = case.clone();
-        FlyAgain::new(move |until, progress| fly_again(&case, &air, &firmware, until, progress))
-    });
+    let Flown { flight, timeline, recorded: Recorded { events, past }, past_flight, .. } = flown;
     let end = flight.vehicle().time();
+    let again = past_flight.map(|past| FlyAgain::of(past, end));
     let kept = Kept::open(args, flown_hash, &mut notices);
     let show = kept.instant_or(instant(args.at, flight.trace().engaged_at, end)?, end);
     notices.push(format!("{name}, seed {}, was flown to its end: {}.", air.seed, ways_to_go(args.plain)));
@@ -234,6 +228,8 @@ struct Flown<'a> {
     flight: CaseFlight<'a>,
     timeline: Timeline,
     recorded: Recorded,
+    /// The flight of a firmware in simulated time, which can be flown again.
+    past_flight: Option<PastFlight>,
     /// Equal for flights that are the same to the last bit.
     hash: u64,
 }
@@ -254,7 +250,7 @@ fn fly<'a>(case: &'a Case, air: &Air) -> Result<Flown<'a>, AppError> {
         .map_err(|_| AppError::internal("the flight of a scenario stopped"))?;
     let (timeline, recorded) = subscribers;
     let hash = flight.hash();
-    Ok(Flown { flight, timeline, recorded, hash })
+    Ok(Flown { flight, timeline, recorded, past_flight: None, hash })
 }
 
 /// Runs a flight on a thread, which the flight may keep to one processor.
@@ -272,50 +268,16 @@ fn fly_remote<'a>(case: &'a Case, air: &Air, firmware: &RemoteFirmware) -> Resul
         .into());
     }
     error::tell("The firmware flies the case first.");
+    let firmware = RemoteFirmware { keeps_inputs: true, ..firmware.clone() };
     let mut tell =
         OnEvent(|event: &Event| reported::sentence(event).iter().for_each(|said| error::tell(said)));
-    let (mut remote, vehicle) = check::prepare(firmware, case, air, &interrupt_flag()?, 0, &mut tell)?;
+    let (mut remote, vehicle) = check::prepare(&firmware, case, air, &interrupt_flag()?, 0, &mut tell)?;
     let mut flight = CaseFlight::from_vehicle(case, vehicle).map_err(AppError::input)?;
     let mut subscribers = recording(&mut flight)?;
     remote.fly(&mut flight, &mut subscribers)?;
     let (timeline, recorded) = subscribers;
     let hash = remote.motor_hash().unwrap_or_else(|| flight.hash());
-    Ok(Flown { flight, timeline, recorded, hash })
-}
-
-/// Records how far a flight has come.
-struct Reached<'p>(&'p Progress);
-
-impl Subscriber<CaseFlight<'_>> for Reached<'_> {
-    fn after_tick(&mut self, flight: &CaseFlight<'_>) {
-        self.0.reach(flight.vehicle().time());
-    }
-}
-
-/// Flies the case again with the firmware, up to an instant.
-fn fly_again(
-    case: &Case,
-    air: &Air,
-    firmware: &RemoteFirmware,
-    until: SimTime,
-    progress: &Progress,
-) -> Result<FlownAgain, String> {
-    let fly = || -> Result<FlownAgain, Stopped> {
-        let (mut remote, vehicle) = check::prepare(firmware, case, air, &progress.stopped(), 0, &mut ())?;
-        let mut flight = CaseFlight::from_vehicle(case, vehicle).map_err(AppError::input)?;
-        remote.fly_until(&mut flight, until, &mut Reached(progress))?;
-        let (link, keeps) = remote.into_parts();
-        let link = link.filter(RemoteLink::is_in_steps).ok_or_else(|| {
-            AppError::environment(
-                "the firmware does not run in simulated time, so it cannot fly the same again",
-            )
-        })?;
-        Ok(FlownAgain { vehicle: flight.into_vehicle(), link, keeps })
-    };
-    fly().map_err(|stopped| match stopped {
-        Stopped::Failed(AppError { message, .. }) => message,
-        Stopped::Interrupted | Stopped::BySubscriber => "The flight was interrupted.".to_owned(),
-    })
+    Ok(Flown { flight, timeline, recorded, past_flight: remote.past(), hash })
 }
 
 /// Returns the start of the flight for its recording.

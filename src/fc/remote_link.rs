@@ -11,6 +11,7 @@
 //! [`RemoteLink::exchange`] is called between two steps and does not block. In simulated time it waits for the step of the
 //! executable, for a short time at most.
 
+use std::path::PathBuf;
 use std::task::{Context, Poll};
 use std::time::{Duration, Instant};
 
@@ -22,7 +23,7 @@ use super::stepped::{StepEvent, Stepped};
 use super::{Remote, RemoteNotice, RemoteState, rescue};
 use crate::geo::LocalFrame;
 use crate::link::endpoint::EndpointStatus;
-use crate::link::lockstep::Lockstep;
+use crate::link::lockstep::{Lockstep, NotAgain, PastRun};
 use crate::link::proto::sitl_feed::FeedConfig;
 use crate::link::{ChildEvent, FcStream, SitlChild, SitlPeer, StreamEvent};
 use crate::storage::state_file;
@@ -95,14 +96,30 @@ impl RemoteLink {
 
     /// Creates a link to an executable that has booted in simulated time.
     pub fn in_steps(name: String, lockstep: Lockstep, feed: FeedConfig, now: Instant) -> Self {
-        let place = format!("the serial port of process {}", lockstep.id());
+        Self::of_steps(name, lockstep.id(), Stepped::new(lockstep, feed), now)
+    }
+
+    fn of_steps(name: String, process: u32, steps: Stepped, now: Instant) -> Self {
+        let place = format!("the serial port of process {process}");
         let craft = Craft { name, place, bytes_per_s: None, is_fed: true, is_child: true, is_in_steps: true };
         Self {
-            remote: Remote::new(craft, Duration::ZERO),
-            ends: Ends::Steps(Stepped::new(lockstep, feed)),
+            remote: Remote::new(craft, steps.elapsed()),
+            ends: Ends::Steps(steps),
             started: now,
             notices: Vec::new(),
         }
+    }
+
+    /// Returns `true` if its flight since its boot can be flown again.
+    pub fn keeps_past(&self) -> bool {
+        matches!(&self.ends, Ends::Steps(steps) if steps.keeps_past())
+    }
+
+    /// Returns the flight of an executable in simulated time since its boot; `None` if its inputs are not kept.
+    pub fn past(&mut self) -> Option<PastFlight> {
+        let Ends::Steps(steps) = &mut self.ends else { return None };
+        let (run, feed) = steps.past()?;
+        Some(PastFlight { run, feed, name: self.remote.craft().name.clone(), elapsed: steps.elapsed() })
     }
 
     /// Returns the flight controller.
@@ -406,7 +423,7 @@ impl RemoteLink {
                 feed.as_mut().and_then(|feed| feed.check_at_rest(vehicle, is_ready, trusts_mag, since))
             }
             Ends::Steps(steps) => {
-                let dialect = steps.feed().dialect();
+                let dialect = steps.feed().config().dialect;
                 steps.self_check.look(dialect, vehicle, is_ready && steps.sends_motors, trusts_mag, since)
             }
         });
@@ -423,6 +440,41 @@ impl RemoteLink {
         if let Some(mailbox) = vehicle.remote_mut() {
             self.remote.deliver(mailbox, frame.as_ref(), simulated);
         }
+    }
+}
+
+/// The flight of an executable since its boot. It can be flown again to any of its steps.
+#[derive(Debug, Clone)]
+pub struct PastFlight {
+    run: PastRun,
+    feed: FeedConfig,
+    name: String,
+    /// The time of the link at the end.
+    elapsed: Duration,
+}
+
+impl PastFlight {
+    /// Lets a second process, in an empty folder, compute the flight up to `before_end` before its end. `goes_on` gets the
+    /// time that is left.
+    ///
+    /// # Errors
+    /// Returns the reason if that is before the boot, if the flight is not the same again, or if `goes_on` returns `false`.
+    pub fn fly(
+        self,
+        before_end: Duration,
+        folder: PathBuf,
+        now: Instant,
+        mut goes_on: impl FnMut(Duration) -> bool,
+    ) -> Result<RemoteLink, NotAgain> {
+        let step = self.run.step_length();
+        let back = (before_end.as_nanos() / step.as_nanos().max(1)) as u64;
+        let steps = self.run.steps.checked_sub(back).ok_or(NotAgain::BeforeBoot)?;
+        let left = |done: u64| step * u32::try_from(steps.saturating_sub(done)).unwrap_or(u32::MAX);
+        let (lockstep, newest) = self.run.compute(steps, folder, |done| goes_on(left(done)))?;
+        let elapsed = self.elapsed.saturating_sub(before_end);
+        let (process, newest) = (lockstep.id(), newest.as_ref().map(|packet| &packet[..]));
+        let steps = Stepped::resumed(lockstep, self.feed, elapsed, newest);
+        Ok(RemoteLink::of_steps(self.name, process, steps, now))
     }
 }
 

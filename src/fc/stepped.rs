@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use super::RemoteNotice;
 use super::self_check::SelfCheck;
 use crate::link::ChildEvent;
-use crate::link::lockstep::{Lockstep, NoReport, StepInput};
+use crate::link::lockstep::{Lockstep, NoReport, PastRun, StepInput};
 use crate::link::proto::rc;
 use crate::link::proto::sitl_feed::{FeedConfig, SitlFeed};
 use crate::signals::MotorCommand;
@@ -75,6 +75,29 @@ impl Stepped {
             next: None,
             events: VecDeque::new(),
         }
+    }
+
+    /// Continues with an executable that has computed this time before. `newest` is the newest state packet that it got.
+    pub(super) fn resumed(
+        lockstep: Lockstep,
+        feed: FeedConfig,
+        elapsed: Duration,
+        newest: Option<&[u8]>,
+    ) -> Self {
+        let mut steps = Self::new(lockstep, feed);
+        steps.elapsed = elapsed;
+        newest.into_iter().for_each(|packet| steps.feed.resume(packet));
+        steps
+    }
+
+    /// Returns `true` if the run of the executable is kept.
+    pub(super) fn keeps_past(&self) -> bool {
+        self.lockstep.as_ref().is_some_and(Lockstep::keeps_past)
+    }
+
+    /// Returns the run of the executable since its boot, if it is kept, with the settings of its feed.
+    pub(super) fn past(&mut self) -> Option<(PastRun, FeedConfig)> {
+        Some((self.lockstep.as_mut()?.past()?, self.feed.config()))
     }
 
     /// Returns the simulated time since the link began.

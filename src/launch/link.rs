@@ -8,12 +8,12 @@ use std::time::{Duration, Instant, SystemTime};
 use super::{FirmwarePorts, RemoteFirmware, on_the_wall_clock};
 use crate::args::UdpPorts;
 use crate::fc::{Provision, RemoteEnds, RemoteLink, starter_lines};
-use crate::launch::folder::FirmwareFolder;
 use crate::link::conventions::FirmwareClock;
 use crate::link::lockstep::{Lockstep, LockstepConfig, LockstepPorts, NoReport};
 use crate::link::proto::sitl_feed::FeedConfig;
 use crate::link::{ChildConfig, ChildEnd, FcPlace, FcStream, SitlChild, SitlPeer, SitlPorts};
 use crate::process::error::AppError;
+use crate::storage::FirmwareFolder;
 use crate::storage::state_file;
 use crate::vehicle::Vehicle;
 
@@ -180,7 +180,8 @@ fn boot(
     let FirmwarePorts { tcp, udp: UdpPorts { motors, fdm, rc, .. }, .. } = firmware.ports;
     let ports = LockstepPorts { fdm, rc, motors, tcp };
     let start = |own_threads| {
-        Lockstep::start(LockstepConfig { child: config.clone(), ports, step, own_threads })
+        let keeps_inputs = firmware.keeps_inputs;
+        Lockstep::start(LockstepConfig { child: config.clone(), ports, step, own_threads, keeps_inputs })
             .map_err(|error| AppError::environment(error.to_string()))
     };
     let (mut lockstep, mut started) = (start(false)?, Instant::now());

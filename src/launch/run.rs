@@ -1,6 +1,5 @@
 //! Prepares a remote firmware for a headless flight: starts it, waits for its setup, and uploads the plan.
 
-use std::any::Any;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,16 +10,17 @@ use super::RemoteFirmware;
 use super::link;
 use super::processor;
 use crate::events::Event;
-use crate::fc::{Patience, Remote, RemoteLink, RemoteState, Unready, Unset, Upload, UploadProgress};
+use crate::fc::{
+    PastFlight, Patience, Remote, RemoteLink, RemoteState, Unready, Unset, Upload, UploadProgress,
+};
 use crate::firmware::cli::CliReply;
-use crate::launch::folder::FirmwareFolder;
 use crate::launch::link::OpenLink;
 use crate::link::conventions::FirmwareClock;
 use crate::plan::{AltitudeError, FlightPlan};
 use crate::process::error::AppError;
 use crate::process::runtime;
 use crate::runner::{Flying, Runner, Subscriber};
-use crate::signals::SimTime;
+use crate::storage::FirmwareFolder;
 use crate::vehicle::{LateAnswer, Ticket, Vehicle};
 
 /// A remote firmware in operation. It ends on drop.
@@ -155,21 +155,9 @@ impl RemoteRun {
         Ok(self.runner.fly(flight, subscriber, || interrupted.load(Ordering::Relaxed))?)
     }
 
-    /// Flies until the vehicle has this time, or to the end of the flight.
-    pub(crate) fn fly_until<F: Flying>(
-        &mut self,
-        flight: &mut F,
-        until: SimTime,
-        subscriber: &mut impl Subscriber<F>,
-    ) -> Result<(), Stopped> {
-        let interrupted = &self.interrupted;
-        self.runner.fly_until(flight, until, subscriber, || interrupted.load(Ordering::Relaxed))?;
-        Ok(())
-    }
-
-    /// Returns the link to the firmware, and its folder and runtime, which must outlive the link.
-    pub(crate) fn into_parts(self) -> (Option<RemoteLink>, Box<dyn Any + Send>) {
-        (self.runner.into_link(), Box::new((self._directory, self._runtime)))
+    /// Returns the flight of a firmware in simulated time, if what it was given is kept.
+    pub(crate) fn past(&mut self) -> Option<PastFlight> {
+        self.runner.link_mut()?.past()
     }
 
     /// Returns the hash over the motor packets of a firmware in simulated time.

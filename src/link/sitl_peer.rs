@@ -197,7 +197,7 @@ impl SitlPeer {
 
     /// Returns the dialect of its packets.
     pub fn dialect(&self) -> Dialect {
-        self.feed.dialect()
+        self.feed.config().dialect
     }
 
     /// Returns its status as an endpoint.

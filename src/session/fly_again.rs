@@ -1,17 +1,17 @@
-//! A finished flight of a remote firmware, flown again from boot to an instant.
+//! A flight of a remote firmware, flown again from its boot to an instant by another process.
 
 use std::any::Any;
 use std::fmt;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, mpsc};
+use std::time::{Duration, Instant};
 
-use crate::fc::RemoteLink;
+use crate::fc::{PastFlight, RemoteLink};
 use crate::signals::SimTime;
-use crate::vehicle::Vehicle;
+use crate::storage::FirmwareFolder;
 
-/// The vehicle at an instant of a flight that was flown again, with the firmware that flies it.
+/// A firmware that has flown again to an instant.
 pub struct FlownAgain {
-    pub vehicle: Vehicle,
     pub link: RemoteLink,
     /// The folder and the runtime of the firmware. They must outlive `link`.
     pub keeps: Box<dyn Any + Send>,
@@ -19,7 +19,7 @@ pub struct FlownAgain {
 
 impl fmt::Debug for FlownAgain {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("FlownAgain").field("vehicle", &self.vehicle).finish_non_exhaustive()
+        f.debug_struct("FlownAgain").field("link", &self.link).finish_non_exhaustive()
     }
 }
 
@@ -44,7 +44,7 @@ impl Progress {
 
 type Fly = dyn Fn(SimTime, &Progress) -> Result<FlownAgain, String> + Send + Sync;
 
-/// Flies a finished flight again, with the same inputs, to an instant.
+/// Flies a flight again, with the same inputs, to an instant.
 #[derive(Clone)]
 pub struct FlyAgain(Arc<Fly>);
 
@@ -54,6 +54,26 @@ impl FlyAgain {
         fly: impl Fn(SimTime, &Progress) -> Result<FlownAgain, String> + Send + Sync + 'static,
     ) -> Self {
         Self(Arc::new(fly))
+    }
+
+    /// Returns a value that flies this flight, which ended at `end`.
+    pub fn of(past: PastFlight, end: SimTime) -> Self {
+        Self::new(move |until, progress| {
+            let folder = FirmwareFolder::make().map_err(|error| {
+                format!("The firmware cannot fly again: there is no folder for it: {error}.")
+            })?;
+            let before_end = Duration::from_micros(end.0.saturating_sub(until.0));
+            let place = folder.path().to_owned();
+            #[allow(clippy::disallowed_methods, reason = "the link counts from here on the wall clock")]
+            let now = Instant::now();
+            let goes_on = |left: Duration| {
+                progress.reach(SimTime(until.0.saturating_sub(left.as_micros() as u64)));
+                !progress.stopped.load(Ordering::Relaxed)
+            };
+            let link = past.clone().fly(before_end, place, now, goes_on);
+            let link = link.map_err(|reason| format!("The flight is not flown again: {reason}."))?;
+            Ok(FlownAgain { link, keeps: Box::new(folder) })
+        })
     }
 
     /// Starts the flight on a thread of its own. The present thread is unparked at its end.

@@ -9,7 +9,7 @@
 
 use super::fdm::{Packet, State, mirrored, pressure_pa};
 use super::servo;
-use crate::geo::offset_to_degrees;
+use crate::geo::{LatLon, offset_to_degrees};
 use crate::link::conventions::{Dialect, MotorOrder, Stamps};
 use crate::math;
 use crate::signals::{GpsSample, MotorCommand, SensorFrame, SimTime};
@@ -84,9 +84,30 @@ impl SitlFeed {
         }
     }
 
-    /// Returns the dialect of its packets.
-    pub fn dialect(&self) -> Dialect {
-        self.config.dialect
+    /// Returns its settings.
+    pub fn config(&self) -> FeedConfig {
+        self.config
+    }
+
+    /// Continues after this packet, for an executable that has answered for a while.
+    pub fn resume(&mut self, packet: &[u8]) {
+        let FeedConfig { dialect, home: (home_lat_deg, home_lon_deg, _), .. } = self.config;
+        let Ok(packet) = Packet::parse(packet) else { return };
+        let state = dialect.decode(&packet, dialect.usual_gravity());
+        let place = |centre_deg, value_deg| {
+            if dialect.mirrors() { mirrored(centre_deg, value_deg) } else { value_deg }
+        };
+        let sample = GpsSample {
+            fix: state.lat_deg != NO_FIX_DEG,
+            position: LatLon::from_degrees(
+                place(home_lat_deg, state.lat_deg),
+                place(home_lon_deg, state.lon_deg),
+            ),
+            vel_enu: state.vel_enu,
+            ..GpsSample::default()
+        };
+        (self.alt_amsl_m, self.gps) = (state.alt_m, Some((sample, self.frame.time)));
+        self.first_answer_us = Some(0);
     }
 
     /// Starts again for a restarted executable: its first position is the centre of the mirror again.

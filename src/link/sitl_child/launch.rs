@@ -58,10 +58,7 @@ pub(super) struct Preload {
 }
 
 /// Starts the executable in its directory, with its output piped.
-pub(super) fn spawn(
-    config: &ChildConfig,
-    preload: Option<(&Preload, &Path)>,
-) -> Result<Child, LaunchError> {
+pub(super) fn spawn(config: &ChildConfig, preload: Option<(&Preload, &Path)>) -> Result<Child, LaunchError> {
     std::fs::create_dir_all(&config.directory)
         .map_err(|error| LaunchError::Directory { directory: config.directory.clone(), error })?;
     let mut command = Command::new(&config.launcher);

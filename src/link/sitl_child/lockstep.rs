@@ -9,6 +9,7 @@
 //! ```
 
 mod frames;
+mod inputs;
 mod library;
 mod page;
 mod process;
@@ -19,6 +20,8 @@ use std::time::{Duration, Instant};
 
 pub use frames::{FDM_BYTES, MOTOR_BYTES, RC_BYTES};
 use frames::{Grant, Report, SerialTotals};
+use inputs::Inputs;
+pub use inputs::{NotAgain, PastRun};
 use library::LoadedLibrary;
 pub use library::{NoLockstep, check_lockstep};
 pub use process::NoReport;
@@ -62,6 +65,8 @@ pub struct LockstepConfig {
     pub step: Duration,
     /// `true` if its threads run on their own. Otherwise its main thread runs their code, which is faster.
     pub own_threads: bool,
+    /// `true` to keep what it is given, so that another process can compute the same.
+    pub keeps_inputs: bool,
 }
 
 /// The packets for one step.
@@ -80,6 +85,8 @@ pub struct Lockstep {
     /// The start, from which simulated time counts for the number of lines that are shown.
     started: Instant,
     process: Process,
+    /// What this run was given, if that is kept.
+    inputs: Option<Inputs>,
     serial: Option<Serial>,
     /// The totals over all connections to this process.
     totals: SerialTotals,
@@ -97,6 +104,13 @@ pub struct Lockstep {
     /// `true` if the thread of the serial ports has something to take in.
     has_news: bool,
     steps: u32,
+    /// The steps since its boot.
+    steps_of_run: u32,
+}
+
+/// Begins to keep the inputs of a process that starts, if they are wanted. Without a file they are not kept.
+fn begin_inputs(config: &LockstepConfig) -> Option<Inputs> {
+    config.keeps_inputs.then(|| Inputs::begin(&config.child.directory).ok()).flatten()
 }
 
 /// The connection to the first serial port.
@@ -115,10 +129,11 @@ impl Lockstep {
     pub fn start(config: LockstepConfig) -> Result<Self, LaunchError> {
         let library = LoadedLibrary::new()
             .map_err(|error| LaunchError::Start { program: config.child.program.clone(), error })?;
-        let process = Self::start_process(&config, &library)?;
+        let (process, inputs) = Self::start_process(&config, &library)?;
         Ok(Self {
             config,
             library,
+            inputs,
             events: Events::default(),
             started: now(),
             process,
@@ -132,15 +147,21 @@ impl Lockstep {
             run: 0,
             has_news: false,
             steps: 0,
+            steps_of_run: 0,
         })
     }
 
-    fn start_process(config: &LockstepConfig, library: &LoadedLibrary) -> Result<Process, LaunchError> {
+    fn start_process(
+        config: &LockstepConfig,
+        library: &LoadedLibrary,
+    ) -> Result<(Process, Option<Inputs>), LaunchError> {
         let LockstepPorts { fdm, rc, motors, tcp } = config.ports;
         let (step_ns, boot_ns) = (config.step.as_nanos(), BOOT.as_nanos());
         let own_threads = u8::from(config.own_threads);
         let settings = format!("{fdm},{rc},{motors},{tcp},{step_ns},{boot_ns},{own_threads}");
-        Process::start(&config.child, &Preload { library: library.path(), variable: SETTINGS, settings })
+        let preload = Preload { library: library.path(), variable: SETTINGS, settings };
+        let inputs = begin_inputs(config);
+        Ok((Process::start(&config.child, &preload)?, inputs))
     }
 
     /// Starts the executable again after its end.
@@ -149,7 +170,7 @@ impl Lockstep {
     /// Returns an error if the system cannot start it.
     pub fn restart(&mut self) -> Result<(), LaunchError> {
         self.process.finish_output(&self.events, self.now());
-        self.process = Self::start_process(&self.config, &self.library)?;
+        (self.process, self.inputs) = Self::start_process(&self.config, &self.library)?;
         self.run = 0;
         self.forget_process();
         Ok(())
@@ -158,6 +179,7 @@ impl Lockstep {
     /// Forgets what belongs to a process that has ended.
     fn forget_process(&mut self) {
         (self.serial, self.newest, self.incomplete, self.has_news) = (None, None, None, false);
+        self.steps_of_run = 0;
         (self.totals, self.read, self.is_lost) = (SerialTotals::default(), 0, false);
         self.received.clear();
     }
@@ -179,6 +201,7 @@ impl Lockstep {
         if is_replaced {
             self.run = report.run;
             self.forget_process();
+            self.inputs = begin_inputs(&self.config);
             self.newest = Some(report);
             return Err(NoReport::Replaced);
         }
@@ -191,6 +214,9 @@ impl Lockstep {
             return Err(self.noted(reason));
         }
         let motors = (report.motor_packets > 0).then_some(report.motors);
+        if let (Some(inputs), Some(motors)) = (&mut self.inputs, &motors) {
+            inputs.motors(motors);
+        }
         self.newest = Some(report);
         Ok(motors)
     }
@@ -246,9 +272,13 @@ impl Lockstep {
     /// Lets the executable compute one step. Call [`Self::wait`] next.
     pub fn step(&mut self, input: StepInput) {
         self.steps = self.steps.wrapping_add(1);
+        self.steps_of_run = self.steps_of_run.wrapping_add(1);
+        if let Some(inputs) = &mut self.inputs {
+            inputs.step(&input);
+        }
         self.write_waiting();
         let serves = std::mem::take(&mut self.has_news)
-            || self.serial.is_some() && self.steps.is_multiple_of(SERIAL_EVERY);
+            || self.serial.is_some() && self.steps_of_run.is_multiple_of(SERIAL_EVERY);
         let serial = serves.then_some(self.totals);
         self.process.grant(&Grant { fdm: input.fdm, rc: input.rc, serial });
     }
@@ -270,6 +300,9 @@ impl Lockstep {
         self.totals.connections += 1;
         self.has_news = true;
         self.serial = Some(Serial { stream, waiting: Vec::new() });
+        if let Some(inputs) = &mut self.inputs {
+            inputs.connected(true);
+        }
         Ok(true)
     }
 
@@ -296,6 +329,9 @@ impl Lockstep {
         if self.serial.take().is_some() {
             self.totals.closed += 1;
             self.has_news = true;
+            if let Some(inputs) = &mut self.inputs {
+                inputs.connected(false);
+            }
         }
     }
 
@@ -318,7 +354,20 @@ impl Lockstep {
     pub fn send(&mut self, bytes: &[u8]) {
         if let Some(serial) = &mut self.serial {
             serial.waiting.extend_from_slice(bytes);
+            if let Some(inputs) = &mut self.inputs {
+                inputs.serial(bytes);
+            }
         }
+    }
+
+    /// Returns `true` if its run can be computed again.
+    pub fn keeps_past(&self) -> bool {
+        self.inputs.is_some()
+    }
+
+    /// Returns its run since its boot, which can be computed again; `None` if its inputs are not kept.
+    pub fn past(&mut self) -> Option<PastRun> {
+        self.inputs.as_mut()?.run(&self.config).ok()
     }
 
     /// Returns the bytes that the executable has sent over the serial port up to its last report. Returns `None` after them

@@ -109,7 +109,7 @@ impl Session {
             upload: self.interface.upload_under_way(),
             is_piloted: self.vehicle.transmitter().pilot().is_some(),
             is_recorded: self.timeline.is_some(),
-            cannot_continue: is_pictures && self.again.is_none(),
+            cannot_continue: is_pictures && !self.can_fly_again(),
             has_ended: is_pictures && self.runner.link.is_none(),
             is_rewound: self.is_rewound(),
             is_replay: false,

@@ -15,7 +15,7 @@ use crate::session::ReplyTo;
 use crate::session::arming::ArmingWatch;
 use crate::session::command::{BEGINNING_LOST, CliOutput, REWOUND_FOR_CLIENTS, Seek};
 use crate::session::flight_feed::{FlightFeed, FlightPart};
-use crate::session::fly_again::{FlownAgain, FlyingAgain};
+use crate::session::fly_again::{FlownAgain, FlyAgain, FlyingAgain};
 use crate::session::policy::{NOT_FLOWN_AGAIN, NOT_RECORDED};
 use crate::session::seek::{Target, target};
 use crate::signals::SimTime;
@@ -103,7 +103,7 @@ impl Session {
             head_is_armed: self.vehicle.controller().is_armed(),
             rewound: timeline.shown().is_some(),
             is_pictures: timeline.is_pictures(),
-            cannot_continue: timeline.is_pictures() && self.again.is_none(),
+            cannot_continue: timeline.is_pictures() && !self.can_fly_again(),
             flying_again: self.flying_again.as_ref().map(FlyingAgain::progress),
             branch: timeline.branch(),
             branched_at: timeline.branched_at(),
@@ -318,7 +318,12 @@ impl Session {
         }
     }
 
-    /// Begins to fly the flight of a firmware that has ended again, up to the instant that is shown.
+    /// Returns `true` if a remote firmware can fly again to an earlier instant.
+    pub(super) fn can_fly_again(&self) -> bool {
+        self.again.is_some() || self.runner.link.as_ref().is_some_and(RemoteLink::keeps_past)
+    }
+
+    /// Begins to fly the flight of a remote firmware again, up to the instant that is shown.
     fn fly_again(&mut self) {
         let Some(until) = self.timeline.as_ref().and_then(Timeline::shown).map(Vehicle::time) else {
             self.notice(NOTHING_EARLIER);
@@ -329,20 +334,12 @@ impl Session {
             self.notice("Stopped: the flight is not flown again.");
             return;
         }
-        let Some(again) = &self.again else {
+        let end = self.vehicle.time();
+        let past = self.runner.link.as_mut().and_then(RemoteLink::past).map(|past| FlyAgain::of(past, end));
+        let Some(again) = past.or_else(|| self.again.clone()) else {
             self.notice(NOT_FLOWN_AGAIN);
             return;
         };
-        // Only the inputs of the scenario are flown again.
-        if let Some(timeline) = self.timeline.as_ref().filter(|timeline| timeline.branch() > 0)
-            && until > timeline.branched_at()
-        {
-            let branched_s = timeline.branched_at().as_secs_f64();
-            self.notice(format!(
-                "The firmware flies again only what the scenario does, up to {branched_s:.1} s: you flew on from there."
-            ));
-            return;
-        }
         match again.start(until) {
             Ok(flying) => {
                 self.flying_again = Some(flying);
@@ -364,7 +361,7 @@ impl Session {
         self.flying_again = None;
         self.changed = true;
         // Dropped in reverse order: the link before the folder of its firmware.
-        let FlownAgain { keeps, link, vehicle } = match result {
+        let FlownAgain { keeps, link } = match result {
             Ok(flown) => flown,
             Err(sentence) => return self.notice(sentence),
         };
@@ -375,19 +372,16 @@ impl Session {
             timeline.show(until, left);
             Some((timeline.continue_pictures()?, timeline.branch()))
         };
-        let Some((seen, branch)) = self.timeline.as_mut().and_then(branch_at) else {
+        let Some((mut vehicle, branch)) = self.timeline.as_mut().and_then(branch_at) else {
             return self.notice("The recording was left meanwhile: go back to an instant to fly on from.");
         };
-        let apart_m = apart_m(&seen, &vehicle);
+        // The events were reported when they happened.
+        vehicle.drain_events(drop);
         self.runner = Runner::new(vehicle.step_us(), self.usual_speed, Some(link)).with_slice(SLICE);
         self.keeps = Some(keeps);
         self.vehicle = vehicle;
         self.continue_on(branch, left, now);
-        if apart_m > 0.0 {
-            self.notice(format!(
-                "The firmware did not fly the same again: it is {apart_m:.3} m from the place that was shown."
-            ));
-        }
+        self.notice("Another process of the firmware flies on from here. What it saves is lost at the end.");
     }
 
     /// Continues the flight from the earlier instant that is shown. The clients of the links are
@@ -446,14 +440,6 @@ impl Subscriber<Vehicle> for Recorders<'_> {
         if let Some(feed) = self.feed {
             feed.look(vehicle);
         }
-    }
-}
-
-/// Returns the distance between two vehicles, m.
-fn apart_m(one: &Vehicle, other: &Vehicle) -> f64 {
-    match (one.truth(), other.truth()) {
-        (Some(one), Some(other)) => (one.pos_enu - other.pos_enu).norm(),
-        _ => 0.0,
     }
 }
 

@@ -370,9 +370,8 @@ fn the_flight_of_a_firmware_that_has_ended_is_flown_again_to_the_instant_that_is
             Instant::now(),
         )
     };
-    let (mut session, mut events) = after_a_flight(move |until, _| {
-        Ok(FlownAgain { vehicle: flown_until(until), link: link(), keeps: Box::new(()) })
-    });
+    let (mut session, _events) =
+        after_a_flight(move |_, _| Ok(FlownAgain { link: link(), keeps: Box::new(()) }));
     let shown = session.shown_vehicle().time();
     assert!(shown >= SimTime(1_000_000) && shown < session.vehicle.time());
     fly_on(&mut session);
@@ -380,8 +379,6 @@ fn the_flight_of_a_firmware_that_has_ended_is_flown_again_to_the_instant_that_is
     assert_eq!(session.vehicle.time(), shown);
     let timeline = session.timeline_view().unwrap();
     assert_eq!((timeline.branch, timeline.branched_at), (1, shown));
-    let differs = |event: Event| format!("{event:?}").contains("did not fly the same");
-    assert!(!std::iter::from_fn(|| events.try_recv().ok()).any(differs));
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use betadeck::link::lockstep::{
-    FDM_BYTES, Lockstep, LockstepConfig, LockstepPorts, NoReport, RC_BYTES, StepInput,
+    FDM_BYTES, Lockstep, LockstepConfig, LockstepPorts, NoReport, NotAgain, PastRun, RC_BYTES, StepInput,
 };
 use betadeck::link::{ChildConfig, ChildEvent};
 
@@ -32,7 +32,13 @@ pub(crate) fn config(folder: &Path) -> LockstepConfig {
         directory: folder.to_owned(),
         launcher: PathBuf::from(env!("CARGO_BIN_EXE_betadeck")),
     };
-    LockstepConfig { child, ports: PORTS, step: Duration::from_millis(1), own_threads: false }
+    LockstepConfig {
+        child,
+        ports: PORTS,
+        step: Duration::from_millis(1),
+        own_threads: false,
+        keeps_inputs: false,
+    }
 }
 
 impl Flight {
@@ -43,12 +49,30 @@ impl Flight {
 
     /// Starts a stand-in whose threads run on their own if `own_threads`, and waits until it has booted.
     pub(crate) fn start_with(own_threads: bool) -> Self {
+        Self::booted(|folder| Lockstep::start(LockstepConfig { own_threads, ..config(folder) }).unwrap())
+    }
+
+    /// Starts a stand-in that finds these files in its folder and whose inputs are kept, and waits until it has booted.
+    pub(crate) fn recorded(files: &[&str]) -> Self {
+        Self::booted(|folder| {
+            files.iter().for_each(|file| std::fs::write(folder.join(file), "").unwrap());
+            Lockstep::start(LockstepConfig { keeps_inputs: true, ..config(folder) }).unwrap()
+        })
+    }
+
+    fn booted(start: impl FnOnce(&Path) -> Lockstep) -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let config = LockstepConfig { own_threads, ..config(folder.path()) };
-        let lockstep = Lockstep::start(config).unwrap();
-        let mut flight = Self { lockstep, step: 0, log: Vec::new(), _folder: folder };
+        let mut flight = Self { lockstep: start(folder.path()), step: 0, log: Vec::new(), _folder: folder };
         flight.wait().unwrap();
         flight
+    }
+
+    /// Lets another stand-in compute the first steps of a run.
+    pub(crate) fn again(past: PastRun, steps: u64) -> Result<Self, NotAgain> {
+        let folder = tempfile::tempdir().unwrap();
+        let (lockstep, newest) = past.compute(steps, folder.path().to_owned(), |_| true)?;
+        assert_eq!(newest.is_some(), steps > 0);
+        Ok(Self { lockstep, step: steps, log: Vec::new(), _folder: folder })
     }
 
     /// Waits for the report of the step, however long the machine takes.

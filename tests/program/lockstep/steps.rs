@@ -3,9 +3,10 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use betadeck::link::ChildEnd;
-use betadeck::link::lockstep::NoReport;
+use betadeck::link::lockstep::{NoReport, NotAgain};
 
 use super::child::Flight;
+use super::stand_in::DIFFERS_FILE;
 
 /// Runs a part of a test while two threads take all processor time.
 fn beside_busy_loops<T>(run: impl FnOnce() -> T) -> T {
@@ -51,6 +52,56 @@ fn threads_of_their_own_compute_what_the_main_thread_computes_for_them() {
     assert!(!own.lockstep.has_guests());
     assert!(guests.with_lines() == own.with_lines());
     assert_eq!(Flight::start_with(true).with_prints(), Flight::start_with(false).with_prints());
+}
+
+#[test]
+fn another_process_computes_the_same_up_to_any_step_and_goes_on_like_the_first() {
+    let mut flight = Flight::recorded(&[]);
+    flight.run(3).unwrap();
+    assert!(flight.lockstep.connect().unwrap());
+    for line in 0..10 {
+        flight.lockstep.send(format!("line {line}\n").as_bytes());
+        flight.run(50).unwrap();
+    }
+    let past = flight.lockstep.past().unwrap();
+    assert_eq!(past.steps, 503);
+    for steps in [0, 4, 357] {
+        Flight::again(past.clone(), steps).unwrap();
+    }
+    let mut again = Flight::again(past.clone(), 503).unwrap();
+    flight.log.clear();
+    for flight in [&mut flight, &mut again] {
+        flight.lockstep.send(b"together\n");
+        flight.run(20).unwrap();
+    }
+    assert_eq!(flight.log.len(), 21, "20 packets and an answer");
+    assert!(flight.log == again.log);
+    // Its own run can be computed again, too.
+    let past = again.lockstep.past().unwrap();
+    assert_eq!(past.steps, 523);
+    Flight::again(past, 523).unwrap();
+}
+
+#[test]
+fn a_process_that_does_not_compute_the_same_is_noticed() {
+    let mut flight = Flight::recorded(&[DIFFERS_FILE]);
+    flight.run(20).unwrap();
+    let past = flight.lockstep.past().unwrap();
+    let differs = Flight::again(past.clone(), 20).err();
+    assert!(matches!(differs, Some(NotAgain::Differs(1))), "{differs:?}");
+}
+
+#[test]
+fn what_it_gets_is_kept_from_its_newest_boot_on() {
+    let mut flight = Flight::recorded(&[]);
+    flight.run(20).unwrap();
+    assert!(flight.lockstep.connect().unwrap());
+    flight.lockstep.send(b"exec\n");
+    assert_eq!(flight.run(100), Err(NoReport::Replaced));
+    flight.run(7).unwrap();
+    let past = flight.lockstep.past().unwrap();
+    assert_eq!(past.steps, 7);
+    Flight::again(past, 7).unwrap();
 }
 
 #[test]

@@ -1,5 +1,8 @@
 //! The memory that this program shares with an executable in lockstep.
-#![allow(unsafe_code, reason = "memory that two processes share is mapped with calls that the compiler cannot check")]
+#![allow(
+    unsafe_code,
+    reason = "memory that two processes share is mapped with calls that the compiler cannot check"
+)]
 
 use std::fs::File;
 use std::io;

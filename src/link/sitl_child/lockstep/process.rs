@@ -73,7 +73,8 @@ impl Process {
     pub(super) fn grant(&mut self, grant: &Grant) {
         self.page.put_grant(grant);
         #[cfg(target_os = "linux")]
-        let _woken = rustix::thread::futex::wake(&self.page.granted, rustix::thread::futex::Flags::empty(), 1);
+        let _woken =
+            rustix::thread::futex::wake(&self.page.granted, rustix::thread::futex::Flags::empty(), 1);
     }
 
     /// Waits until the executable waits for the next grant, for a short time at most.

@@ -18,7 +18,7 @@ const ATTEMPTS: usize = 10;
 
 /// A folder that is removed on drop.
 #[derive(Debug)]
-pub(crate) struct FirmwareFolder {
+pub struct FirmwareFolder {
     /// Removed on drop.
     _directory: TempDir,
     work: PathBuf,
@@ -27,7 +27,11 @@ pub(crate) struct FirmwareFolder {
 }
 
 impl FirmwareFolder {
-    pub(super) fn make() -> io::Result<Self> {
+    /// Makes a folder.
+    ///
+    /// # Errors
+    /// Returns the system's error.
+    pub fn make() -> io::Result<Self> {
         for _ in 0..ATTEMPTS {
             let for_owner = Permissions::from_mode(0o700);
             let directory = Builder::new().prefix(PREFIX).permissions(for_owner).tempdir()?;
@@ -42,13 +46,13 @@ impl FirmwareFolder {
     }
 
     /// Returns the path of the folder in which the firmware runs.
-    pub(super) fn path(&self) -> &Path {
+    pub fn path(&self) -> &Path {
         &self.work
     }
 }
 
 /// Removes the temporary folders of this user that a killed program left.
-pub(crate) fn sweep() {
+pub fn sweep() {
     let Ok(entries) = std::fs::read_dir(std::env::temp_dir()) else { return };
     let user = rustix::process::geteuid().as_raw();
     for entry in entries.flatten() {

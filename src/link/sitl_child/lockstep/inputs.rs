@@ -1,0 +1,222 @@
+//! All that an executable was given since its boot, from which another process computes the same. A flight in real parts
+//! cannot be cloned, so an earlier instant is reached by these inputs.
+
+use std::ffi::OsString;
+use std::fs::File;
+use std::io::{self, BufRead as _, BufReader, BufWriter, Read, Write as _};
+use std::os::unix::fs::FileExt as _;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::frames::{FDM_BYTES, MOTOR_BYTES};
+use super::{Lockstep, LockstepConfig, NoReport, StepInput};
+
+/// The most bytes that are kept of a run. A second has some 180 kB at 1000 steps a second.
+const MOST_BYTES: u64 = 2 << 30;
+/// The largest file of the executable's folder that belongs to its start, bytes.
+const MOST_FILE: u64 = 1 << 20;
+
+/// The kinds of entries. Each entry is its kind and its data.
+const STATE: u8 = 1;
+const RC: u8 = 2;
+const MOTORS: u8 = 3;
+/// Serial data: their number, 4 bytes little-endian, and they themselves.
+const SERIAL: u8 = 4;
+const CONNECTED: u8 = 5;
+const DISCONNECTED: u8 = 6;
+
+/// The inputs of a run and the motors that it answered, in a file without a name.
+#[derive(Debug)]
+pub(super) struct Inputs {
+    file: BufWriter<Arc<File>>,
+    folder: Arc<Vec<(OsString, Vec<u8>)>>,
+    bytes: u64,
+    steps: u64,
+    /// `false` once the file is full, or cannot be written.
+    grows: bool,
+}
+
+impl Inputs {
+    /// Begins with a process that starts in this folder.
+    ///
+    /// # Errors
+    /// Returns the system's error.
+    pub(super) fn begin(folder: &Path) -> io::Result<Self> {
+        let mut files = Vec::new();
+        for entry in std::fs::read_dir(folder)? {
+            let (entry, mut bytes) = (entry?, Vec::new());
+            let facts = entry.metadata()?;
+            if facts.is_file() && facts.len() <= MOST_FILE {
+                File::open(entry.path())?.take(MOST_FILE).read_to_end(&mut bytes)?;
+                files.push((entry.file_name(), bytes));
+            }
+        }
+        let file = BufWriter::with_capacity(1 << 16, Arc::new(tempfile::tempfile()?));
+        Ok(Self { file, folder: Arc::new(files), bytes: 0, steps: 0, grows: true })
+    }
+
+    pub(super) fn step(&mut self, input: &StepInput) {
+        if let Some(rc) = &input.rc {
+            self.add(RC, rc);
+        }
+        self.add(STATE, &input.fdm);
+        self.steps += u64::from(self.grows);
+    }
+
+    pub(super) fn motors(&mut self, packet: &[u8; MOTOR_BYTES]) {
+        self.add(MOTORS, packet);
+    }
+
+    pub(super) fn serial(&mut self, bytes: &[u8]) {
+        let size = u32::try_from(bytes.len()).unwrap_or_default().to_le_bytes();
+        self.add(SERIAL, &[&size, bytes].concat());
+    }
+
+    pub(super) fn connected(&mut self, is_connected: bool) {
+        self.add(if is_connected { CONNECTED } else { DISCONNECTED }, &[]);
+    }
+
+    fn add(&mut self, kind: u8, data: &[u8]) {
+        self.grows = self.grows
+            && self.bytes < MOST_BYTES
+            && self.file.write_all(&[kind]).and_then(|()| self.file.write_all(data)).is_ok();
+        self.bytes += if self.grows { 1 + data.len() as u64 } else { 0 };
+    }
+
+    /// Returns the run so far.
+    ///
+    /// # Errors
+    /// Returns the system's error.
+    pub(super) fn run(&mut self, config: &LockstepConfig) -> io::Result<PastRun> {
+        self.file.flush()?;
+        let (file, folder) = (Arc::clone(self.file.get_ref()), Arc::clone(&self.folder));
+        Ok(PastRun { config: config.clone(), file, folder, bytes: self.bytes, steps: self.steps })
+    }
+}
+
+/// A run of an executable whose steps can be computed again.
+#[derive(Debug, Clone)]
+pub struct PastRun {
+    config: LockstepConfig,
+    file: Arc<File>,
+    folder: Arc<Vec<(OsString, Vec<u8>)>>,
+    bytes: u64,
+    /// The steps since the boot that are kept.
+    pub steps: u64,
+}
+
+/// The reason why a run cannot be computed again. `Display` gives a sentence without a full stop.
+#[derive(Debug, thiserror::Error)]
+pub enum NotAgain {
+    #[error("the firmware cannot be started again: {0}")]
+    Start(String),
+    #[error("what it was given cannot be read: {0}")]
+    Read(#[from] io::Error),
+    #[error("the firmware does not compute the same again: its motors differ at step {0}")]
+    Differs(u64),
+    #[error("the firmware, started again, did not end its step {step}: {reason:?}")]
+    NoReport { step: u64, reason: NoReport },
+    #[error("the firmware has restarted since this instant, or betadeck has no record that goes so far")]
+    BeforeBoot,
+    #[error("it was stopped")]
+    Stopped,
+}
+
+impl PastRun {
+    /// Returns the length of a step.
+    pub fn step_length(&self) -> Duration {
+        self.config.step
+    }
+
+    /// Starts the executable in another folder and lets it compute its first `steps` steps again. `goes_on` gets the number
+    /// of steps so far. Returns the executable and its newest state packet.
+    ///
+    /// # Errors
+    /// Returns the reason if it cannot, or if `goes_on` returns `false`.
+    pub fn compute(
+        self,
+        steps: u64,
+        directory: PathBuf,
+        mut goes_on: impl FnMut(u64) -> bool,
+    ) -> Result<(Lockstep, Option<[u8; FDM_BYTES]>), NotAgain> {
+        for (name, bytes) in &*self.folder {
+            std::fs::write(directory.join(name), bytes)?;
+        }
+        let mut config = self.config;
+        config.child.directory = directory;
+        let mut lockstep = Lockstep::start(config).map_err(|error| NotAgain::Start(error.to_string()))?;
+        let mut inputs = BufReader::with_capacity(1 << 16, At { file: &self.file, at: 0, end: self.bytes });
+        let (mut step, mut rc, mut fdm, mut motors) = (0, None, None, None);
+        finish(&mut lockstep, step, &mut goes_on)?;
+        while !inputs.fill_buf()?.is_empty() {
+            match array::<1>(&mut inputs)? {
+                [MOTORS] if motors.take() != Some(array(&mut inputs)?) => {
+                    return Err(NotAgain::Differs(step));
+                }
+                [MOTORS] => {}
+                // The executable takes what follows in with the next step.
+                _ if step == steps => break,
+                [RC] => rc = Some(array(&mut inputs)?),
+                [STATE] => {
+                    let state = array(&mut inputs)?;
+                    lockstep.step(StepInput { fdm: state, rc: rc.take() });
+                    (step, fdm) = (step + 1, Some(state));
+                    motors = finish(&mut lockstep, step, &mut goes_on)?;
+                }
+                [CONNECTED] => drop(lockstep.connect()?),
+                [DISCONNECTED] => lockstep.disconnect(),
+                _ => {
+                    let size = u32::from_le_bytes(array(&mut inputs)?);
+                    let mut bytes = vec![0; size as usize];
+                    inputs.read_exact(&mut bytes)?;
+                    lockstep.send(&bytes);
+                }
+            }
+        }
+        Ok((lockstep, fdm))
+    }
+}
+
+/// Waits until the executable has ended its step, and returns its motors.
+fn finish(
+    lockstep: &mut Lockstep,
+    step: u64,
+    goes_on: &mut impl FnMut(u64) -> bool,
+) -> Result<Option<[u8; MOTOR_BYTES]>, NotAgain> {
+    loop {
+        if !goes_on(step) {
+            return Err(NotAgain::Stopped);
+        }
+        match lockstep.wait() {
+            Ok(motors) => {
+                let _bytes = lockstep.received();
+                return Ok(motors);
+            }
+            Err(NoReport::Stopped) => {}
+            Err(reason) => return Err(NotAgain::NoReport { step, reason }),
+        }
+    }
+}
+
+/// Reads a part of a file that another thread writes on.
+struct At<'f> {
+    file: &'f File,
+    at: u64,
+    end: u64,
+}
+
+impl Read for At<'_> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        let most = usize::try_from(self.end - self.at).unwrap_or(usize::MAX).min(bytes.len());
+        let read = self.file.read_at(&mut bytes[..most], self.at)?;
+        self.at += read as u64;
+        Ok(read)
+    }
+}
+
+fn array<const N: usize>(from: &mut impl Read) -> io::Result<[u8; N]> {
+    let mut bytes = [0; N];
+    from.read_exact(&mut bytes)?;
+    Ok(bytes)
+}
