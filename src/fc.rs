@@ -44,7 +44,7 @@ pub use patience::{NotReady, Patience, Unready};
 pub use permission::{Access, Denial, Impact, NOT_PERMITTED, NOTHING_MOVES, NOTHING_SIMULATED};
 pub use provision::{Provision, ProvisionLines, Unset, UnsetLine};
 pub use remote::Remote;
-pub use remote_link::{EXCHANGE_PAUSE, PastFlight, RemoteEnds, RemoteLink};
+pub use remote_link::{EXCHANGE_PAUSE, KeptFlight, RemoteEnds, RemoteLink};
 pub use rescue::NO_RETURN_SWITCH;
 pub use starter::{guide_settings, starter_lines};
 pub use upload::{LIST, Upload, UploadProgress, UploadReport, UploadView, plan_above_home, plan_of_list};

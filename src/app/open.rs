@@ -8,7 +8,7 @@ use super::doors::LiveArgs;
 use super::screen::{self, LiveFlight, Screen, Source};
 use crate::args::{DoorArgs, FlightArgs, Instant, OpenArgs, PhysicsArgs, ReviewArgs};
 use crate::events::Event;
-use crate::fc::PastFlight;
+use crate::fc::KeptFlight;
 use crate::files::flight_recorder::RecordedStart;
 use crate::headless::{check, setup};
 use crate::launch;
@@ -83,9 +83,9 @@ pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
     };
     notices.extend(wanted.map(|wanted| wanted.compared(flown.hash)));
     let flown_hash = flown.hash;
-    let Flown { flight, timeline, recorded: Recorded { events, past }, past_flight, .. } = flown;
+    let Flown { flight, timeline, recorded: Recorded { events, past }, kept_flight, .. } = flown;
     let end = flight.vehicle().time();
-    let again = past_flight.map(|past| FlyAgain::of(past, end));
+    let again = kept_flight.map(|past| FlyAgain::of(past, end));
     let kept = Kept::open(args, flown_hash, &mut notices);
     let show = kept.instant_or(instant(args.at, flight.trace().engaged_at, end)?, end);
     notices.push(format!("{name}, seed {}, was flown to its end: {}.", air.seed, ways_to_go(args.plain)));
@@ -229,7 +229,7 @@ struct Flown<'a> {
     timeline: Timeline,
     recorded: Recorded,
     /// The flight of a firmware in simulated time, which can be flown again.
-    past_flight: Option<PastFlight>,
+    kept_flight: Option<KeptFlight>,
     /// Equal for flights that are the same to the last bit.
     hash: u64,
 }
@@ -250,7 +250,7 @@ fn fly<'a>(case: &'a Case, air: &Air) -> Result<Flown<'a>, AppError> {
         .map_err(|_| AppError::internal("the flight of a scenario stopped"))?;
     let (timeline, recorded) = subscribers;
     let hash = flight.hash();
-    Ok(Flown { flight, timeline, recorded, past_flight: None, hash })
+    Ok(Flown { flight, timeline, recorded, kept_flight: None, hash })
 }
 
 /// Runs a flight on a thread, which the flight may keep to one processor.
@@ -277,7 +277,7 @@ fn fly_remote<'a>(case: &'a Case, air: &Air, firmware: &RemoteFirmware) -> Resul
     remote.fly(&mut flight, &mut subscribers)?;
     let (timeline, recorded) = subscribers;
     let hash = remote.motor_hash().unwrap_or_else(|| flight.hash());
-    Ok(Flown { flight, timeline, recorded, past_flight: remote.past(), hash })
+    Ok(Flown { flight, timeline, recorded, kept_flight: remote.past(), hash })
 }
 
 /// Returns the start of the flight for its recording.

@@ -29,7 +29,7 @@ pub(super) enum Purpose {
     Nothing,
 }
 
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Asked {
     waiting: BTreeMap<AskId, Purpose>,
     next: u64,

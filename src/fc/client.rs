@@ -46,7 +46,7 @@ const LEAVE_CLI: &[u8] = b"\nexit noreboot\n";
 /// Leaves the prompt. Releases that do not support the word restart.
 const LEAVE_PROMPT: &str = "exit noreboot";
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct FcClient {
     connected: bool,
     access: CliAccess,

@@ -6,7 +6,7 @@ use std::time::Duration;
 pub(super) const FIRST_ANSWER: Duration = Duration::from_secs(10);
 
 /// The number of answers, and the time since which the first one is awaited.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct FirstAnswer {
     /// The time of the first connection; for a program that is a child, at first the time of its start.
     since: Option<Duration>,

@@ -12,7 +12,7 @@ use super::refresh::Refresh;
 const MAX_UNANSWERED: u32 = 2;
 
 /// The phase of the life, with the data that only this phase has.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) enum Life {
     /// Its program is starting, or no connection was made yet.
     #[default]
@@ -31,7 +31,7 @@ pub(super) enum Life {
 }
 
 /// The newest connection.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Connection {
     /// The time of its beginning, until the notice that nothing answers.
     pub(super) since: Option<Duration>,

@@ -24,7 +24,7 @@ use settings::Settings;
 const SAME_ALT_M: f64 = 3.0;
 
 /// The known state of a flight controller.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Observer {
     identity: Identity,
     observation: Observation,

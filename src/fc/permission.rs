@@ -69,7 +69,7 @@ impl Access {
 }
 
 /// The permission for the current connection.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Permission {
     /// The number of the connection.
     connection: u32,

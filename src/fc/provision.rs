@@ -35,7 +35,7 @@ const UNKNOWN_NAME: &str = "INVALID NAME";
 const MAX_LOST: usize = 3;
 
 /// The configuration of one flight controller.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Provision {
     lines: ProvisionLines,
     wishes: Vec<Wish>,
@@ -57,7 +57,7 @@ pub struct Provision {
     lost: usize,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 enum Phase {
     /// Reading the remaining answers; `written` is `true` after the settings were written.
     Look {
@@ -73,7 +73,7 @@ enum Phase {
     Done(Result<(), String>),
 }
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 enum Asked {
     Question(Question),
     Wish(usize),

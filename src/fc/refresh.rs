@@ -10,7 +10,7 @@ use super::identify::{Question, how_it_is_set};
 const SETTLED: Duration = Duration::from_millis(500);
 
 /// The questions to ask again.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Refresh {
     due: Option<Duration>,
     left: VecDeque<Question>,

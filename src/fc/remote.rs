@@ -98,7 +98,7 @@ pub enum Event {
 }
 
 /// The protocol with a remote flight controller.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Remote {
     craft: Craft,
     client: FcClient,
@@ -116,6 +116,11 @@ pub struct Remote {
 }
 
 impl Remote {
+    /// Returns the same protocol at the serial port of another process that has computed the same.
+    pub fn at(self, place: String) -> Self {
+        Self { craft: Craft { place, ..self.craft }, ..self }
+    }
+
     /// Begins at `now`, which counts from any fixed instant. A program that is a child of this one starts now.
     pub fn new(craft: Craft, now: Duration) -> Self {
         let schedule = Schedule::new(craft.bytes_per_s);

@@ -11,7 +11,9 @@
 //! [`RemoteLink::exchange`] is called between two steps and does not block. In simulated time it waits for the step of the
 //! executable, for a short time at most.
 
+use std::collections::VecDeque;
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::task::{Context, Poll};
 use std::time::{Duration, Instant};
 
@@ -23,7 +25,7 @@ use super::stepped::{StepEvent, Stepped};
 use super::{Remote, RemoteNotice, RemoteState, rescue};
 use crate::geo::LocalFrame;
 use crate::link::endpoint::EndpointStatus;
-use crate::link::lockstep::{Lockstep, NotAgain, PastRun};
+use crate::link::lockstep::{KeptRun, Lockstep, NotAgain};
 use crate::link::proto::sitl_feed::FeedConfig;
 use crate::link::{ChildEvent, FcStream, SitlChild, SitlPeer, StreamEvent};
 use crate::storage::state_file;
@@ -40,6 +42,9 @@ const MAX_EVENTS: usize = 64;
 /// not hold up the craft. Unread data holds up the peer.
 const MAX_READ: usize = 64;
 const MAX_BYTES: usize = 8 * 1024;
+/// The steps between two copies of the protocol for flights from earlier instants, and the most copies.
+const KEPT_EVERY: u64 = 1000;
+const MOST_KEPT: usize = 3600;
 /// The greatest distance between the first fixes of two real craft for which the drawing keeps its origin, m.
 const SAME_FIELD_M: f64 = 1000.0;
 
@@ -62,6 +67,8 @@ pub struct RemoteLink {
     ends: Ends,
     started: Instant,
     notices: Vec<RemoteNotice>,
+    /// The protocol at earlier steps of this run of an executable whose inputs are kept, oldest first.
+    earlier: VecDeque<(u64, Arc<Remote>)>,
 }
 
 /// The ends of the link, by the clock of the flight controller.
@@ -91,23 +98,19 @@ impl RemoteLink {
             ends: Ends::Wall { stream, feed: peer.map(Feed::new), child },
             started: now,
             notices: Vec::new(),
+            earlier: VecDeque::new(),
         }
     }
 
     /// Creates a link to an executable that has booted in simulated time.
     pub fn in_steps(name: String, lockstep: Lockstep, feed: FeedConfig, now: Instant) -> Self {
-        Self::of_steps(name, lockstep.id(), Stepped::new(lockstep, feed), now)
+        let place = place_of(&lockstep);
+        let craft = Craft { name, place, bytes_per_s: None, is_fed: true, is_child: true, is_in_steps: true };
+        Self::of_steps(Remote::new(craft, Duration::ZERO), Stepped::new(lockstep, feed), now)
     }
 
-    fn of_steps(name: String, process: u32, steps: Stepped, now: Instant) -> Self {
-        let place = format!("the serial port of process {process}");
-        let craft = Craft { name, place, bytes_per_s: None, is_fed: true, is_child: true, is_in_steps: true };
-        Self {
-            remote: Remote::new(craft, steps.elapsed()),
-            ends: Ends::Steps(steps),
-            started: now,
-            notices: Vec::new(),
-        }
+    fn of_steps(remote: Remote, steps: Stepped, now: Instant) -> Self {
+        Self { remote, ends: Ends::Steps(steps), started: now, notices: Vec::new(), earlier: VecDeque::new() }
     }
 
     /// Returns `true` if its flight since its boot can be flown again.
@@ -116,10 +119,11 @@ impl RemoteLink {
     }
 
     /// Returns the flight of an executable in simulated time since its boot; `None` if its inputs are not kept.
-    pub fn past(&mut self) -> Option<PastFlight> {
+    pub fn past(&mut self) -> Option<KeptFlight> {
         let Ends::Steps(steps) = &mut self.ends else { return None };
         let (run, feed) = steps.past()?;
-        Some(PastFlight { run, feed, name: self.remote.craft().name.clone(), elapsed: steps.elapsed() })
+        let (steps, elapsed) = (steps.of_run(), steps.elapsed());
+        Some(KeptFlight { run, feed, steps, elapsed, earlier: self.earlier.clone() })
     }
 
     /// Returns the flight controller.
@@ -253,6 +257,7 @@ impl RemoteLink {
                 StepEvent::Connected => self.remote.handle(Input::Connected, since),
                 StepEvent::Received(bytes) => self.remote.handle(Input::Received(&bytes), since),
                 StepEvent::Ended { how, is_reboot } => {
+                    self.earlier.clear();
                     self.remote.handle(Input::Ended { how: &how, is_reboot }, since);
                     self.remote.handle(Input::Lost("it restarts"), since);
                 }
@@ -264,6 +269,20 @@ impl RemoteLink {
         self.follow_program(vehicle, since);
         self.take_events(vehicle);
         self.observe(vehicle, since);
+        self.keep_earlier();
+    }
+
+    /// Keeps the protocol once in a while, for a flight from an earlier instant.
+    fn keep_earlier(&mut self) {
+        let Ends::Steps(steps) = &self.ends else { return };
+        let step = steps.of_run();
+        let is_due = self.earlier.back().is_none_or(|(kept, _)| step >= kept + KEPT_EVERY);
+        if steps.keeps_past() && !steps.is_busy() && is_due {
+            if self.earlier.len() == MOST_KEPT {
+                self.earlier.pop_front();
+            }
+            self.earlier.push_back((step, Arc::new(self.remote.clone())));
+        }
     }
 
     fn step_event(&mut self) -> Option<StepEvent> {
@@ -443,24 +462,30 @@ impl RemoteLink {
     }
 }
 
-/// The flight of an executable since its boot. It can be flown again to any of its steps.
-#[derive(Debug, Clone)]
-pub struct PastFlight {
-    run: PastRun,
-    feed: FeedConfig,
-    name: String,
-    /// The time of the link at the end.
-    elapsed: Duration,
+/// Returns the address of the serial port of an executable in simulated time, for sentences.
+fn place_of(lockstep: &Lockstep) -> String {
+    format!("the serial port of process {}", lockstep.id())
 }
 
-impl PastFlight {
+/// The flight of an executable since its boot. It can be flown again to any of its steps.
+#[derive(Debug, Clone)]
+pub struct KeptFlight {
+    run: KeptRun,
+    feed: FeedConfig,
+    /// The steps of the run, and the time of the link after them.
+    steps: u64,
+    elapsed: Duration,
+    earlier: VecDeque<(u64, Arc<Remote>)>,
+}
+
+impl KeptFlight {
     /// Lets a second process, in an empty folder, compute the flight up to `before_end` before its end. `goes_on` gets the
     /// time that is left.
     ///
     /// # Errors
     /// Returns the reason if that is before the boot, if the flight is not the same again, or if `goes_on` returns `false`.
     pub fn fly(
-        self,
+        &self,
         before_end: Duration,
         folder: PathBuf,
         now: Instant,
@@ -468,14 +493,33 @@ impl PastFlight {
     ) -> Result<RemoteLink, NotAgain> {
         let step = self.run.step_length();
         let back = (before_end.as_nanos() / step.as_nanos().max(1)) as u64;
-        let steps = self.run.steps.checked_sub(back).ok_or(NotAgain::BeforeBoot)?;
-        let left = |done: u64| step * u32::try_from(steps.saturating_sub(done)).unwrap_or(u32::MAX);
-        let (lockstep, newest) = self.run.compute(steps, folder, |done| goes_on(left(done)))?;
-        let elapsed = self.elapsed.saturating_sub(before_end);
-        let (process, newest) = (lockstep.id(), newest.as_ref().map(|packet| &packet[..]));
-        let steps = Stepped::resumed(lockstep, self.feed, elapsed, newest);
-        Ok(RemoteLink::of_steps(self.name, process, steps, now))
+        let steps = self.steps.checked_sub(back).filter(|steps| *steps <= self.run.steps);
+        let before = |steps: u64| self.earlier.iter().rev().find(|(kept, _)| *kept <= steps);
+        let (steps, (kept, remote)) =
+            steps.and_then(|steps| Some((steps, before(steps)?))).ok_or(NotAgain::BeforeBoot)?;
+        let mut remote = Remote::clone(remote);
+        let time = |of: u64| self.elapsed.saturating_sub(times(step, self.steps.saturating_sub(of)));
+        let follow = |done: u64, bytes: &[u8]| {
+            if done > *kept {
+                // What it sends now was sent then.
+                remote.handle_timeout(time(done - 1));
+                while remote.poll_transmit().is_some() {}
+                if !bytes.is_empty() {
+                    remote.handle(Input::Received(bytes), time(done));
+                }
+                while remote.poll_event().is_some() {}
+            }
+            goes_on(times(step, steps.saturating_sub(done)))
+        };
+        let (lockstep, newest) = self.run.clone().compute(steps, folder, follow)?;
+        let remote = remote.at(place_of(&lockstep));
+        let newest = newest.as_ref().map(|packet| &packet[..]);
+        Ok(RemoteLink::of_steps(remote, Stepped::resumed(lockstep, self.feed, time(steps), newest), now))
     }
+}
+
+fn times(step: Duration, count: u64) -> Duration {
+    step * u32::try_from(count).unwrap_or(u32::MAX)
 }
 
 /// Returns `true` if a drawing around one place also shows the other undistorted.

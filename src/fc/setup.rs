@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use super::client::{Answer, Ask};
 use super::{Provision, RemoteNotice, Unset};
 
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Setup {
     running: Option<Provision>,
     unset: Option<Unset>,

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use super::RemoteNotice;
 use super::self_check::SelfCheck;
 use crate::link::ChildEvent;
-use crate::link::lockstep::{Lockstep, NoReport, PastRun, StepInput};
+use crate::link::lockstep::{KeptRun, Lockstep, NoReport, StepInput};
 use crate::link::proto::rc;
 use crate::link::proto::sitl_feed::{FeedConfig, SitlFeed};
 use crate::signals::MotorCommand;
@@ -77,7 +77,8 @@ impl Stepped {
         }
     }
 
-    /// Continues with an executable that has computed this time before. `newest` is the newest state packet that it got.
+    /// Continues with an executable that has computed this time before, over the same connection. `newest` is the newest
+    /// state packet that it got.
     pub(super) fn resumed(
         lockstep: Lockstep,
         feed: FeedConfig,
@@ -85,9 +86,14 @@ impl Stepped {
         newest: Option<&[u8]>,
     ) -> Self {
         let mut steps = Self::new(lockstep, feed);
-        steps.elapsed = elapsed;
+        (steps.elapsed, steps.is_connected, steps.sends_motors) = (elapsed, true, true);
         newest.into_iter().for_each(|packet| steps.feed.resume(packet));
         steps
+    }
+
+    /// Returns the number of steps since the boot of the executable.
+    pub(super) fn of_run(&self) -> u64 {
+        self.lockstep.as_ref().map_or(0, Lockstep::steps_of_run)
     }
 
     /// Returns `true` if the run of the executable is kept.
@@ -96,7 +102,7 @@ impl Stepped {
     }
 
     /// Returns the run of the executable since its boot, if it is kept, with the settings of its feed.
-    pub(super) fn past(&mut self) -> Option<(PastRun, FeedConfig)> {
+    pub(super) fn past(&mut self) -> Option<(KeptRun, FeedConfig)> {
         Some((self.lockstep.as_mut()?.past()?, self.feed.config()))
     }
 

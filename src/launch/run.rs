@@ -11,7 +11,7 @@ use super::link;
 use super::processor;
 use crate::events::Event;
 use crate::fc::{
-    PastFlight, Patience, Remote, RemoteLink, RemoteState, Unready, Unset, Upload, UploadProgress,
+    KeptFlight, Patience, Remote, RemoteLink, RemoteState, Unready, Unset, Upload, UploadProgress,
 };
 use crate::firmware::cli::CliReply;
 use crate::launch::link::OpenLink;
@@ -156,7 +156,7 @@ impl RemoteRun {
     }
 
     /// Returns the flight of a firmware in simulated time, if what it was given is kept.
-    pub(crate) fn past(&mut self) -> Option<PastFlight> {
+    pub(crate) fn past(&mut self) -> Option<KeptFlight> {
         self.runner.link_mut()?.past()
     }
 

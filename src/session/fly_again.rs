@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, mpsc};
 use std::time::{Duration, Instant};
 
-use crate::fc::{PastFlight, RemoteLink};
+use crate::fc::{KeptFlight, RemoteLink};
 use crate::signals::SimTime;
 use crate::storage::FirmwareFolder;
 
@@ -57,7 +57,7 @@ impl FlyAgain {
     }
 
     /// Returns a value that flies this flight, which ended at `end`.
-    pub fn of(past: PastFlight, end: SimTime) -> Self {
+    pub fn of(past: KeptFlight, end: SimTime) -> Self {
         Self::new(move |until, progress| {
             let folder = FirmwareFolder::make().map_err(|error| {
                 format!("The firmware cannot fly again: there is no folder for it: {error}.")
@@ -70,7 +70,7 @@ impl FlyAgain {
                 progress.reach(SimTime(until.0.saturating_sub(left.as_micros() as u64)));
                 !progress.stopped.load(Ordering::Relaxed)
             };
-            let link = past.clone().fly(before_end, place, now, goes_on);
+            let link = past.fly(before_end, place, now, goes_on);
             let link = link.map_err(|reason| format!("The flight is not flown again: {reason}."))?;
             Ok(FlownAgain { link, keeps: Box::new(folder) })
         })

@@ -39,7 +39,7 @@ mod plain;
 mod plans;
 mod portable;
 #[cfg(unix)]
-mod pty;
+pub(crate) mod pty;
 #[cfg(unix)]
 mod recordings;
 #[cfg(unix)]

@@ -4,6 +4,7 @@
 #![allow(clippy::disallowed_methods, reason = "other processes live by the wall clock")]
 
 mod child;
+mod commands;
 mod faults;
 pub(crate) mod flying;
 #[path = "../../src/link/sitl_child/lockstep/frames.rs"]

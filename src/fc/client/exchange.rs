@@ -9,7 +9,7 @@ use super::request::Request;
 use super::{Answer, line_text};
 
 /// The current exchange; one at a time.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) enum Exchange {
     /// A message of the client itself. Its answer shows that all earlier answers have come or never will.
     Synchronise(Request),

@@ -18,7 +18,7 @@ pub(super) const MAX_OUTPUT: usize = 256 * 1024;
 
 /// A line and its output. STX was sent; the line follows once STX is answered, because a flight controller
 /// that does not open its command line takes single letters for commands.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct FramedLine {
     pub(super) line: String,
     open: bool,

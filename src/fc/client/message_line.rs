@@ -17,7 +17,7 @@ const HEAD: usize = 3;
 const WAS_CUT: &str = "\r\n###ERROR: THE OUTPUT IS TOO LONG FOR A MESSAGE###\r\n";
 
 /// A line that was sent.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct MessageLine {
     line: String,
     request: Request,

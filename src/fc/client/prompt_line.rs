@@ -21,7 +21,7 @@ const GREETING: &str = "CLI";
 const LEFT: &str = "no reboot";
 
 /// A line and its output.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct PromptLine {
     pub(super) line: String,
     /// `true` once the prompt is open and the line was typed.

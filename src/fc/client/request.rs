@@ -23,7 +23,7 @@ const COMMANDS: [u16; 8] = [
 ];
 
 /// A message that was sent.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Request {
     frame: Frame,
     /// The time of the last transmission.

@@ -9,7 +9,7 @@ use crate::telemetry::{
 };
 
 /// The values of the last report.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct EventObserver {
     fix: bool,
     armed: bool,

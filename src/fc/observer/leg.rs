@@ -5,7 +5,7 @@ use crate::plan::FlightPlan;
 use crate::telemetry::{NavState, NavTelemetry};
 
 /// The legs of a mission.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct LegObserver {
     /// The place of the craft when the mission began, and the first waypoint.
     begun: Option<(LatLon, u8)>,

@@ -17,7 +17,7 @@ const TRUSTS_MAG: &str = "trust_mag";
 
 /// The settings that one flight controller has reported. An embedded firmware with the same settings shows
 /// their consequences.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Settings {
     twin: Option<Box<Firmware>>,
     /// `true` if the autopilot's settings were among them.

@@ -63,7 +63,7 @@ pub(super) fn questions(wishes: &[Wish]) -> VecDeque<Question> {
     questions
 }
 
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Held {
     /// `None` for a setting that the firmware does not have.
     settings: BTreeMap<String, Option<String>>,

@@ -21,7 +21,7 @@ use std::time::{Duration, Instant};
 pub use frames::{FDM_BYTES, MOTOR_BYTES, RC_BYTES};
 use frames::{Grant, Report, SerialTotals};
 use inputs::Inputs;
-pub use inputs::{NotAgain, PastRun};
+pub use inputs::{KeptRun, NotAgain};
 use library::LoadedLibrary;
 pub use library::{NoLockstep, check_lockstep};
 pub use process::NoReport;
@@ -360,13 +360,18 @@ impl Lockstep {
         }
     }
 
+    /// Returns the number of steps since its boot.
+    pub fn steps_of_run(&self) -> u64 {
+        u64::from(self.steps_of_run)
+    }
+
     /// Returns `true` if its run can be computed again.
     pub fn keeps_past(&self) -> bool {
         self.inputs.is_some()
     }
 
     /// Returns its run since its boot, which can be computed again; `None` if its inputs are not kept.
-    pub fn past(&mut self) -> Option<PastRun> {
+    pub fn past(&mut self) -> Option<KeptRun> {
         self.inputs.as_mut()?.run(&self.config).ok()
     }
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use betadeck::link::lockstep::{
-    FDM_BYTES, Lockstep, LockstepConfig, LockstepPorts, NoReport, NotAgain, PastRun, RC_BYTES, StepInput,
+    FDM_BYTES, KeptRun, Lockstep, LockstepConfig, LockstepPorts, NoReport, NotAgain, RC_BYTES, StepInput,
 };
 use betadeck::link::{ChildConfig, ChildEvent};
 
@@ -68,9 +68,9 @@ impl Flight {
     }
 
     /// Lets another stand-in compute the first steps of a run.
-    pub(crate) fn again(past: PastRun, steps: u64) -> Result<Self, NotAgain> {
+    pub(crate) fn again(past: KeptRun, steps: u64) -> Result<Self, NotAgain> {
         let folder = tempfile::tempdir().unwrap();
-        let (lockstep, newest) = past.compute(steps, folder.path().to_owned(), |_| true)?;
+        let (lockstep, newest) = past.compute(steps, folder.path().to_owned(), |_, _| true)?;
         assert_eq!(newest.is_some(), steps > 0);
         Ok(Self { lockstep, step: steps, log: Vec::new(), _folder: folder })
     }

@@ -10,7 +10,7 @@ use betadeck::firmware::{Firmware, FirmwareOptions};
 use betadeck::geo::LatLon;
 use betadeck::link::conventions::{Dialect, MotorOrder};
 use betadeck::link::proto::command_line::LineSource;
-use betadeck::link::proto::fdm::{Packet, State};
+use betadeck::link::proto::fdm::{Packet, State, mirrored};
 use betadeck::link::proto::serial_session::{SerialRequest, SerialSession};
 use betadeck::link::proto::{rc, servo};
 use betadeck::signals::{GpsSample, RcSource, SensorFrame, SimTime};
@@ -38,6 +38,8 @@ pub(super) fn run() {
     let (is_worse, is_slow) = (file.contains(WORSE), file.contains(SLOW));
     with_threads(PORTS, |parts, _threads| {
         let (mut sitl, mut states) = (Sitl::boot(is_worse), 0);
+        // The public executable, too, sends some before its first state.
+        parts.send_motors(&[0; 16]);
         loop {
             let (state, rc, count) = parts.newest();
             if count == std::mem::replace(&mut states, count) {
@@ -61,6 +63,8 @@ struct Sitl {
     interpreter: Interpreter,
     /// The steps since boot.
     steps: u64,
+    /// The first position, about which the others are mirrored on the wire: latitude and longitude, degrees.
+    centre: Option<(f64, f64)>,
     is_worse: bool,
 }
 
@@ -71,7 +75,7 @@ impl Sitl {
         let mut interpreter = Interpreter::new(CliMode::Framed);
         kept.lines().for_each(|line| drop(firmware.run_cli(&mut interpreter, line)));
         let session = SerialSession::default();
-        Self { firmware, session, interpreter: Interpreter::default(), steps: 0, is_worse }
+        Self { firmware, session, interpreter: Interpreter::default(), steps: 0, centre: None, is_worse }
     }
 
     /// Computes a step, and returns the motor packet.
@@ -88,11 +92,14 @@ impl Sitl {
         }
         let dialect = Dialect::SitlGz;
         let packet = Packet::parse(state).unwrap();
-        let motors = self.firmware.step(&self.sensors(&dialect.decode(&packet, dialect.usual_gravity())));
+        let sensors = self.sensors(&dialect.decode(&packet, dialect.usual_gravity()));
+        let motors = self.firmware.step(&sensors);
         servo::encode(MotorOrder::Native.arrange(servo::pulses_us(&motors)))
     }
 
-    fn sensors(&self, state: &State) -> SensorFrame {
+    fn sensors(&mut self, state: &State) -> SensorFrame {
+        let (lat_deg, lon_deg) = *self.centre.get_or_insert((state.lat_deg, state.lon_deg));
+        let (lat_deg, lon_deg) = (mirrored(lat_deg, state.lat_deg), mirrored(lon_deg, state.lon_deg));
         let is_due = |every: u64| self.steps.is_multiple_of(every);
         SensorFrame {
             time: SimTime(self.steps * STEP_US),
@@ -103,7 +110,7 @@ impl Sitl {
             gps: is_due(100).then(|| GpsSample {
                 fix: true,
                 sats: 12,
-                position: LatLon::new((state.lat_deg * 1e7) as i32, (state.lon_deg * 1e7) as i32),
+                position: LatLon::from_degrees(lat_deg, lon_deg),
                 alt_amsl_cm: (state.alt_m * 100.0) as i32,
                 vel_enu: state.vel_enu,
                 hdop: 0.0,

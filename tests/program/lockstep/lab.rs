@@ -30,13 +30,13 @@ max = "-climb"
 that = "greatest_sink <= 2 m/s"
 "#;
 
-/// Two copies of the stand-in, in a folder of their own.
-struct Bench {
+/// Copies of the stand-in, in a folder of their own.
+pub(super) struct Bench {
     folder: tempfile::TempDir,
 }
 
 impl Bench {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         let folder = tempfile::tempdir().unwrap();
         for name in ["old.elf", &format!("{SLOW}.elf"), &format!("{WORSE}.elf")] {
             let (from, to) = (std::env::current_exe().unwrap(), folder.path().join(name));
@@ -49,17 +49,21 @@ impl Bench {
         Self { folder }
     }
 
-    fn path(&self, name: &str) -> PathBuf {
+    pub(super) fn path(&self, name: &str) -> PathBuf {
         self.folder.path().join(name)
     }
 
     /// Runs the programme on these executables, with the hop only.
     fn lab(&self, executables: &[&str], more: &[&str]) -> Output {
+        let programme = ["--with", "hop.toml", "--filter", "hop", "--budget", "1h"];
+        self.run(&[&["lab"], executables, &programme, more].concat())
+    }
+
+    /// Runs a command on copies of the stand-in.
+    pub(super) fn run(&self, arguments: &[&str]) -> Output {
         Command::new(env!("CARGO_BIN_EXE_betadeck"))
-            .arg("lab")
-            .args(executables)
-            .args(["--firmware-arg", FLYING, "--with", "hop.toml", "--filter", "hop", "--budget", "1h"])
-            .args(more)
+            .args(arguments)
+            .args(["--firmware-arg", FLYING])
             .current_dir(self.folder.path())
             .env("HOME", self.folder.path())
             .output()
@@ -67,7 +71,7 @@ impl Bench {
     }
 }
 
-fn text(output: &Output) -> String {
+pub(super) fn text(output: &Output) -> String {
     format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
 }
 

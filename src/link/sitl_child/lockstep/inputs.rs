@@ -88,16 +88,16 @@ impl Inputs {
     ///
     /// # Errors
     /// Returns the system's error.
-    pub(super) fn run(&mut self, config: &LockstepConfig) -> io::Result<PastRun> {
+    pub(super) fn run(&mut self, config: &LockstepConfig) -> io::Result<KeptRun> {
         self.file.flush()?;
         let (file, folder) = (Arc::clone(self.file.get_ref()), Arc::clone(&self.folder));
-        Ok(PastRun { config: config.clone(), file, folder, bytes: self.bytes, steps: self.steps })
+        Ok(KeptRun { config: config.clone(), file, folder, bytes: self.bytes, steps: self.steps })
     }
 }
 
 /// A run of an executable whose steps can be computed again.
 #[derive(Debug, Clone)]
-pub struct PastRun {
+pub struct KeptRun {
     config: LockstepConfig,
     file: Arc<File>,
     folder: Arc<Vec<(OsString, Vec<u8>)>>,
@@ -123,14 +123,15 @@ pub enum NotAgain {
     Stopped,
 }
 
-impl PastRun {
+impl KeptRun {
     /// Returns the length of a step.
     pub fn step_length(&self) -> Duration {
         self.config.step
     }
 
     /// Starts the executable in another folder and lets it compute its first `steps` steps again. `goes_on` gets the number
-    /// of steps so far. Returns the executable and its newest state packet.
+    /// of steps so far and, after each of them, the bytes that it sent over the serial port. Returns the executable and its
+    /// newest state packet.
     ///
     /// # Errors
     /// Returns the reason if it cannot, or if `goes_on` returns `false`.
@@ -138,7 +139,7 @@ impl PastRun {
         self,
         steps: u64,
         directory: PathBuf,
-        mut goes_on: impl FnMut(u64) -> bool,
+        mut goes_on: impl FnMut(u64, &[u8]) -> bool,
     ) -> Result<(Lockstep, Option<[u8; FDM_BYTES]>), NotAgain> {
         for (name, bytes) in &*self.folder {
             std::fs::write(directory.join(name), bytes)?;
@@ -147,8 +148,8 @@ impl PastRun {
         config.child.directory = directory;
         let mut lockstep = Lockstep::start(config).map_err(|error| NotAgain::Start(error.to_string()))?;
         let mut inputs = BufReader::with_capacity(1 << 16, At { file: &self.file, at: 0, end: self.bytes });
-        let (mut step, mut rc, mut fdm, mut motors) = (0, None, None, None);
-        finish(&mut lockstep, step, &mut goes_on)?;
+        let mut motors = finish(&mut lockstep, 0, &mut goes_on)?;
+        let (mut step, mut rc, mut fdm) = (0, None, None);
         while !inputs.fill_buf()?.is_empty() {
             match array::<1>(&mut inputs)? {
                 [MOTORS] if motors.take() != Some(array(&mut inputs)?) => {
@@ -182,19 +183,21 @@ impl PastRun {
 fn finish(
     lockstep: &mut Lockstep,
     step: u64,
-    goes_on: &mut impl FnMut(u64) -> bool,
+    goes_on: &mut impl FnMut(u64, &[u8]) -> bool,
 ) -> Result<Option<[u8; MOTOR_BYTES]>, NotAgain> {
     loop {
-        if !goes_on(step) {
+        let (bytes, motors) = match lockstep.wait() {
+            Ok(motors) => (lockstep.received().unwrap_or_default(), Some(motors)),
+            Err(NoReport::Stopped) => (Vec::new(), None),
+            Err(reason) => return Err(NotAgain::NoReport { step, reason }),
+        };
+        if !goes_on(step, &bytes) {
             return Err(NotAgain::Stopped);
         }
-        match lockstep.wait() {
-            Ok(motors) => {
-                let _bytes = lockstep.received();
-                return Ok(motors);
-            }
-            Err(NoReport::Stopped) => {}
-            Err(reason) => return Err(NotAgain::NoReport { step, reason }),
+        if let Some(motors) = motors {
+            // What it prints was reported when the first process printed it.
+            while lockstep.take_event().is_some() {}
+            return Ok(motors);
         }
     }
 }

@@ -1,0 +1,120 @@
+//! The other commands on copies of the flying stand-in: `compare`, `check --bisect`, `campaign`, `open`, and the screen.
+
+use super::flying::{FLYING, WORSE};
+use super::lab::{Bench, text};
+use crate::binary::pty::Terminal;
+
+/// 20 m north, and down at 1 m/s.
+const PLAN: &str = r#"
+name = "north"
+settings = ["ap_landing_descent_rate = 100"]
+[home]
+lat_deg = 40.4635
+lon_deg = -79.5182
+alt_amsl_m = 300
+[[waypoint]]
+type = "LAND"
+lat_deg = 40.46368
+lon_deg = -79.5182
+alt_m = 4
+"#;
+
+fn bench() -> Bench {
+    let bench = Bench::new();
+    std::fs::write(bench.path("north.toml"), PLAN).unwrap();
+    bench
+}
+
+#[test]
+fn compare_shows_that_one_build_comes_down_faster() {
+    let worse = format!("./{WORSE}.elf");
+    let bench = bench();
+    let compare = |other: &str| {
+        text(&bench.run(&[
+            "compare",
+            "north.toml",
+            "--seeds",
+            "1..2",
+            "--firmware",
+            "./old.elf",
+            "--firmware",
+            other,
+        ]))
+    };
+    let said = compare(&worse);
+    let time = said.lines().find(|line| line.starts_with("time to the end")).expect(&said);
+    assert!(time.trim_end().ends_with('*'), "{said}");
+    let same = compare("./old.elf");
+    assert!(!same.lines().any(|line| line.trim_end().ends_with('*')), "{same}");
+}
+
+#[test]
+fn the_exit_code_for_bisect_says_that_a_build_is_good_or_bad_or_cannot_be_flown() {
+    let bench = bench();
+    for (build, code) in [("./old.elf", 0), (&format!("./{WORSE}.elf")[..], 1), ("./missing.elf", 125)] {
+        let output = bench.run(&["check", "hop.toml", "--bisect", "--firmware", build]);
+        assert_eq!(output.status.code(), Some(code), "{build}: {}", text(&output));
+    }
+}
+
+#[test]
+fn a_flight_of_a_campaign_opens_and_is_flown_on_by_another_process() {
+    let bench = bench();
+    let output = bench.run(&[
+        "campaign",
+        "north.toml",
+        "--flights",
+        "2",
+        "--vary",
+        "mass_pct=+-3",
+        "--out",
+        "run.jsonl",
+        "--firmware",
+        "./old.elf",
+    ]);
+    assert!(output.status.success(), "{}", text(&output));
+    let flight = format!("{}:2", bench.path("run.jsonl").display());
+    let mut terminal = Terminal::betadeck(160, 40, &["open", &flight, "--yes", "--at", "8"]);
+    terminal.until_shown("the same to the last bit");
+    terminal.send("b");
+    terminal.until_shown("flies on from here");
+    terminal.send(":speed 20\r");
+    terminal.until_shown("Disarmed: landed");
+}
+
+#[test]
+fn the_live_flight_of_an_executable_is_flown_on_from_an_earlier_instant_and_again_from_there() {
+    let bench = bench();
+    let (plan, build) = (bench.path("north.toml"), bench.path("old.elf"));
+    let mut terminal = Terminal::betadeck(
+        160,
+        40,
+        &[
+            plan.to_str().unwrap(),
+            "--firmware",
+            build.to_str().unwrap(),
+            "--firmware-arg",
+            FLYING,
+            "--fresh",
+            "--no-ports",
+            "--speed",
+            "8",
+        ],
+    );
+    terminal.until_shown("answers: Betaflight");
+    terminal.send("F");
+    terminal.until_shown("Disarmed: landed");
+    // The events before the touchdown, back to the flight.
+    terminal.send("{{");
+    terminal.until_shown("REWOUND");
+    terminal.send("b");
+    terminal.until_shown("flies on from here");
+    terminal.until("the landing on the new branch", |terminal| {
+        let screen = terminal.screen();
+        !screen.contains("REWOUND") && screen.contains("DISARMED")
+    });
+    terminal.send("{");
+    terminal.until_shown("REWOUND");
+    terminal.send("b");
+    terminal.until("the second branch", |terminal| !terminal.screen().contains("REWOUND"));
+}
