@@ -97,6 +97,11 @@ impl Timeline {
         self.replay.as_ref().map(Replay::vehicle)
     }
 
+    /// Returns the earlier instant that is shown. Of a picture it may be a little before the vehicle's time.
+    pub fn shown_at(&self) -> Option<SimTime> {
+        self.replay.as_ref().map(Replay::at)
+    }
+
     /// Returns the earliest instant that can be shown.
     pub fn first(&self) -> Option<SimTime> {
         self.recording.first()
@@ -125,7 +130,8 @@ impl Timeline {
             return Shown::Newest;
         }
         if self.is_pictures {
-            self.replay = self.recording.first_from(time).map(|picture| Replay::still(picture, time));
+            let picture = self.recording.first_from(time).or_else(|| self.recording.latest_before(time));
+            self.replay = picture.map(|picture| Replay::still(picture, time));
             return if self.replay.is_some() { Shown::Earlier } else { Shown::Newest };
         }
         // A short step forwards continues from the shown instant. Anything else starts from a frozen vehicle.

@@ -28,8 +28,9 @@ use crate::link::endpoint::EndpointStatus;
 use crate::link::lockstep::{KeptRun, Lockstep, NotAgain};
 use crate::link::proto::sitl_feed::FeedConfig;
 use crate::link::{ChildEvent, FcStream, SitlChild, SitlPeer, StreamEvent};
+use crate::signals::SimTime;
 use crate::storage::state_file;
-use crate::vehicle::{Vehicle, VehicleCommand};
+use crate::vehicle::{RemoteController, Vehicle, VehicleCommand};
 
 /// The wall time before the next question to a flight controller that is not ready.
 const QUESTION_PAUSE: Duration = Duration::from_millis(5);
@@ -42,8 +43,8 @@ const MAX_EVENTS: usize = 64;
 /// not hold up the craft. Unread data holds up the peer.
 const MAX_READ: usize = 64;
 const MAX_BYTES: usize = 8 * 1024;
-/// The steps between two copies of the protocol for flights from earlier instants, and the most copies.
-const KEPT_EVERY: u64 = 1000;
+/// The time between two copies of the protocol for flights from earlier instants, and the most copies.
+const KEPT_EVERY: Duration = Duration::from_secs(1);
 const MOST_KEPT: usize = 3600;
 /// The greatest distance between the first fixes of two real craft for which the drawing keeps its origin, m.
 const SAME_FIELD_M: f64 = 1000.0;
@@ -68,7 +69,17 @@ pub struct RemoteLink {
     started: Instant,
     notices: Vec<RemoteNotice>,
     /// The protocol at earlier steps of this run of an executable whose inputs are kept, oldest first.
-    earlier: VecDeque<(u64, Arc<Remote>)>,
+    earlier: VecDeque<Earlier>,
+    /// The time of the vehicle of the newest step.
+    stepped_at: SimTime,
+}
+
+/// The protocol after a step, and the time of the link then.
+#[derive(Debug, Clone)]
+struct Earlier {
+    step: u64,
+    elapsed: Duration,
+    remote: Arc<Remote>,
 }
 
 /// The ends of the link, by the clock of the flight controller.
@@ -99,6 +110,7 @@ impl RemoteLink {
             started: now,
             notices: Vec::new(),
             earlier: VecDeque::new(),
+            stepped_at: SimTime::ZERO,
         }
     }
 
@@ -110,7 +122,14 @@ impl RemoteLink {
     }
 
     fn of_steps(remote: Remote, steps: Stepped, now: Instant) -> Self {
-        Self { remote, ends: Ends::Steps(steps), started: now, notices: Vec::new(), earlier: VecDeque::new() }
+        Self {
+            remote,
+            ends: Ends::Steps(steps),
+            started: now,
+            notices: Vec::new(),
+            earlier: VecDeque::new(),
+            stepped_at: SimTime::ZERO,
+        }
     }
 
     /// Returns `true` if its flight since its boot can be flown again.
@@ -123,7 +142,7 @@ impl RemoteLink {
         let Ends::Steps(steps) = &mut self.ends else { return None };
         let (run, feed) = steps.past()?;
         let (steps, elapsed) = (steps.of_run(), steps.elapsed());
-        Some(KeptFlight { run, feed, steps, elapsed, earlier: self.earlier.clone() })
+        Some(KeptFlight { run, feed, steps, elapsed, end: self.stepped_at, earlier: self.earlier.clone() })
     }
 
     /// Returns the flight controller.
@@ -247,7 +266,11 @@ impl RemoteLink {
                 steps.send(&output);
             }
         }
+        let before = steps.of_run();
         steps.run(vehicle.remote_mut(), now);
+        if steps.of_run() > before {
+            self.stepped_at = vehicle.time();
+        }
         let since = steps.elapsed();
         if steps.sends_motors {
             self.remote.handle(Input::SentMotors, since);
@@ -275,13 +298,13 @@ impl RemoteLink {
     /// Keeps the protocol once in a while, for a flight from an earlier instant.
     fn keep_earlier(&mut self) {
         let Ends::Steps(steps) = &self.ends else { return };
-        let step = steps.of_run();
-        let is_due = self.earlier.back().is_none_or(|(kept, _)| step >= kept + KEPT_EVERY);
+        let (step, elapsed) = (steps.of_run(), steps.elapsed());
+        let is_due = self.earlier.back().is_none_or(|kept| elapsed >= kept.elapsed + KEPT_EVERY);
         if steps.keeps_past() && !steps.is_busy() && is_due {
             if self.earlier.len() == MOST_KEPT {
                 self.earlier.pop_front();
             }
-            self.earlier.push_back((step, Arc::new(self.remote.clone())));
+            self.earlier.push_back(Earlier { step, elapsed, remote: Arc::new(self.remote.clone()) });
         }
     }
 
@@ -472,49 +495,57 @@ fn place_of(lockstep: &Lockstep) -> String {
 pub struct KeptFlight {
     run: KeptRun,
     feed: FeedConfig,
-    /// The steps of the run, and the time of the link after them.
+    /// The steps of the run, and the times of the link and of the vehicle after them.
     steps: u64,
     elapsed: Duration,
-    earlier: VecDeque<(u64, Arc<Remote>)>,
+    end: SimTime,
+    earlier: VecDeque<Earlier>,
 }
 
 impl KeptFlight {
-    /// Lets a second process, in an empty folder, compute the flight up to `before_end` before its end. `goes_on` gets the
-    /// time that is left.
+    /// Lets a second process, in an empty folder, compute the flight up to this time of the vehicle. `goes_on` gets the time
+    /// of the vehicle so far.
     ///
     /// # Errors
     /// Returns the reason if that is before the boot, if the flight is not the same again, or if `goes_on` returns `false`.
     pub fn fly(
         &self,
-        before_end: Duration,
+        until: SimTime,
         folder: PathBuf,
         now: Instant,
-        mut goes_on: impl FnMut(Duration) -> bool,
+        mut goes_on: impl FnMut(SimTime) -> bool,
     ) -> Result<RemoteLink, NotAgain> {
         let step = self.run.step_length();
+        let before_end = Duration::from_micros(self.end.0.saturating_sub(until.0));
         let back = (before_end.as_nanos() / step.as_nanos().max(1)) as u64;
-        let steps = self.steps.checked_sub(back).filter(|steps| *steps <= self.run.steps);
-        let before = |steps: u64| self.earlier.iter().rev().find(|(kept, _)| *kept <= steps);
-        let (steps, (kept, remote)) =
-            steps.and_then(|steps| Some((steps, before(steps)?))).ok_or(NotAgain::BeforeBoot)?;
-        let mut remote = Remote::clone(remote);
+        let steps = self.steps.checked_sub(back).ok_or(NotAgain::BeforeBoot)?;
+        let kept = self.earlier.iter().rev().find(|kept| kept.step <= steps);
+        let kept = kept.filter(|_| steps <= self.run.steps).ok_or(NotAgain::NotKept)?;
+        let (mut remote, mut mailbox) = (Remote::clone(&kept.remote), RemoteController::default());
         let time = |of: u64| self.elapsed.saturating_sub(times(step, self.steps.saturating_sub(of)));
         let follow = |done: u64, bytes: &[u8]| {
-            if done > *kept {
-                // What it sends now was sent then.
+            if done > kept.step {
+                // What it sends and reports now was sent and reported then.
                 remote.handle_timeout(time(done - 1));
                 while remote.poll_transmit().is_some() {}
                 if !bytes.is_empty() {
                     remote.handle(Input::Received(bytes), time(done));
                 }
                 while remote.poll_event().is_some() {}
+                remote.deliver(&mut mailbox, None, None);
             }
-            goes_on(times(step, steps.saturating_sub(done)))
+            let left = times(step, steps.saturating_sub(done));
+            goes_on(SimTime(until.0.saturating_sub(left.as_micros() as u64)))
         };
         let (lockstep, newest) = self.run.clone().compute(steps, folder, follow)?;
-        let remote = remote.at(place_of(&lockstep));
+        let mut remote = remote.at(place_of(&lockstep));
+        let mut earlier = self.earlier.clone();
+        earlier.retain(|kept| kept.step <= steps);
+        // Requests since the copy are unknown here.
+        remote.outdate_settings(time(steps));
         let newest = newest.as_ref().map(|packet| &packet[..]);
-        Ok(RemoteLink::of_steps(remote, Stepped::resumed(lockstep, self.feed, time(steps), newest), now))
+        let steps = Stepped::resumed(lockstep, self.feed, time(steps), newest);
+        Ok(RemoteLink { stepped_at: until, earlier, ..RemoteLink::of_steps(remote, steps, now) })
     }
 }
 

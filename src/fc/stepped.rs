@@ -77,16 +77,17 @@ impl Stepped {
         }
     }
 
-    /// Continues with an executable that has computed this time before, over the same connection. `newest` is the newest
-    /// state packet that it got.
+    /// Continues with an executable that has computed this time before, over its connection, if it has one. `newest` is the
+    /// newest state packet that it got.
     pub(super) fn resumed(
         lockstep: Lockstep,
         feed: FeedConfig,
         elapsed: Duration,
         newest: Option<&[u8]>,
     ) -> Self {
+        let is_connected = lockstep.is_connected();
         let mut steps = Self::new(lockstep, feed);
-        (steps.elapsed, steps.is_connected, steps.sends_motors) = (elapsed, true, true);
+        (steps.elapsed, steps.is_connected, steps.sends_motors) = (elapsed, is_connected, true);
         newest.into_iter().for_each(|packet| steps.feed.resume(packet));
         steps
     }

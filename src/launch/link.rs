@@ -184,25 +184,26 @@ fn boot(
         Lockstep::start(LockstepConfig { child: config.clone(), ports, step, own_threads, keeps_inputs })
             .map_err(|error| AppError::environment(error.to_string()))
     };
-    let (mut lockstep, mut started) = (start(false)?, Instant::now());
-    loop {
-        let reason = match lockstep.wait() {
-            Ok(_) if lockstep.listens() => return Ok(Ok(lockstep)),
-            Ok(_) => return Ok(Err("it has opened no serial port of the number of --tcp-port")),
-            Err(NoReport::Replaced) => continue,
-            Err(NoReport::Stopped) if started.elapsed() < BOOTS_WITHIN => continue,
-            Err(reason) => reason,
+    for own_threads in [false, true] {
+        let (mut lockstep, started) = (start(own_threads)?, Instant::now());
+        let reason = loop {
+            match lockstep.wait() {
+                Ok(_) if lockstep.listens() => return Ok(Ok(lockstep)),
+                Ok(_) => return Ok(Err("it has opened no serial port of the number of --tcp-port")),
+                Err(NoReport::Replaced) => {}
+                Err(NoReport::Stopped) if started.elapsed() < BOOTS_WITHIN => {}
+                Err(reason) => break reason,
+            }
         };
         // Its threads may depend on each other in a way that needs threads of their own.
-        if lockstep.has_guests() && !matches!(reason, NoReport::Ended(ChildEnd::Code(_))) {
-            (lockstep, started) = (start(true)?, Instant::now());
-            continue;
+        let may_differ = lockstep.has_guests() && !matches!(reason, NoReport::Ended(ChildEnd::Code(_)));
+        match reason {
+            _ if may_differ => {}
+            NoReport::Ended(end) => return Err(AppError::environment(lockstep.why_ended(end))),
+            _ => break,
         }
-        return match reason {
-            NoReport::Ended(end) => Err(AppError::environment(lockstep.why_ended(end))),
-            _ => Ok(Err("it does not wait for its clock as a SITL of Betaflight does")),
-        };
     }
+    Ok(Err("it does not wait for its clock as a SITL of Betaflight does"))
 }
 
 /// Checks that the ports are free. The executable continues without a port that is taken, and would then receive

@@ -4,7 +4,7 @@ use std::any::Any;
 use std::fmt;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, mpsc};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use crate::fc::{KeptFlight, RemoteLink};
 use crate::signals::SimTime;
@@ -12,8 +12,9 @@ use crate::storage::FirmwareFolder;
 
 /// A firmware that has flown again to an instant.
 pub struct FlownAgain {
+    /// The link to the firmware, which continues from the instant.
     pub link: RemoteLink,
-    /// The folder and the runtime of the firmware. They must outlive `link`.
+    /// The folder of the firmware. It must outlive `link`.
     pub keeps: Box<dyn Any + Send>,
 }
 
@@ -56,21 +57,20 @@ impl FlyAgain {
         Self(Arc::new(fly))
     }
 
-    /// Returns a value that flies this flight, which ended at `end`.
-    pub fn of(past: KeptFlight, end: SimTime) -> Self {
+    /// Returns a value that flies this flight.
+    pub fn of(kept: KeptFlight) -> Self {
         Self::new(move |until, progress| {
             let folder = FirmwareFolder::make().map_err(|error| {
                 format!("The firmware cannot fly again: there is no folder for it: {error}.")
             })?;
-            let before_end = Duration::from_micros(end.0.saturating_sub(until.0));
-            let place = folder.path().to_owned();
+            let stopped = progress.stopped();
             #[allow(clippy::disallowed_methods, reason = "the link counts from here on the wall clock")]
             let now = Instant::now();
-            let goes_on = |left: Duration| {
-                progress.reach(SimTime(until.0.saturating_sub(left.as_micros() as u64)));
-                !progress.stopped.load(Ordering::Relaxed)
+            let goes_on = |time: SimTime| {
+                progress.reach(time);
+                !stopped.load(Ordering::Relaxed)
             };
-            let link = past.fly(before_end, place, now, goes_on);
+            let link = kept.fly(until, folder.path().to_owned(), now, goes_on);
             let link = link.map_err(|reason| format!("The flight is not flown again: {reason}."))?;
             Ok(FlownAgain { link, keeps: Box::new(folder) })
         })
@@ -82,16 +82,18 @@ impl FlyAgain {
         let (fly, waiting) = (Arc::clone(&self.0), std::thread::current());
         let progress = Arc::new(Progress::default());
         let followed = Arc::clone(&progress);
-        std::thread::Builder::new().name("fly-again".to_owned()).spawn(move || {
+        let thread = std::thread::Builder::new().name("fly-again".to_owned()).spawn(move || {
             let (kept, gone) = mpsc::channel::<()>();
-            let flown = fly(until, &followed)
-                .map(|flown| FlownAgain { keeps: Box::new((flown.keeps, kept)), ..flown });
+            let flown = fly(until, &followed);
+            // The record of the flight is not needed any more.
+            drop(fly);
+            let flown = flown.map(|flown| FlownAgain { keeps: Box::new((flown.keeps, kept)), ..flown });
             drop(done.send(flown));
             waiting.unpark();
             // A child process ends with the thread that started it, so the thread waits until nothing needs the child.
             let _gone = gone.recv();
         })?;
-        Ok(FlyingAgain { until, progress, result })
+        Ok(FlyingAgain { until, progress, result: Some(result), thread: Some(thread) })
     }
 }
 
@@ -106,12 +108,18 @@ impl fmt::Debug for FlyAgain {
 pub(super) struct FlyingAgain {
     until: SimTime,
     progress: Arc<Progress>,
-    result: mpsc::Receiver<Result<FlownAgain, String>>,
+    /// `None` once the result is taken.
+    result: Option<mpsc::Receiver<Result<FlownAgain, String>>>,
+    thread: Option<std::thread::JoinHandle<()>>,
 }
 
 impl Drop for FlyingAgain {
     fn drop(&mut self) {
         self.progress.stopped.store(true, Ordering::Relaxed);
+        // Without a receiver the thread ends, with the process and the folder of the firmware.
+        if self.result.take().is_some() {
+            drop(self.thread.take().map(std::thread::JoinHandle::join));
+        }
     }
 }
 
@@ -122,14 +130,15 @@ impl FlyingAgain {
     }
 
     /// Returns the instant and the result; `None` while the flight goes on.
-    pub(super) fn result(&self) -> Option<(SimTime, Result<FlownAgain, String>)> {
-        let result = match self.result.try_recv() {
+    pub(super) fn result(&mut self) -> Option<(SimTime, Result<FlownAgain, String>)> {
+        let result = match self.result.as_ref()?.try_recv() {
             Ok(result) => result,
             Err(mpsc::TryRecvError::Empty) => return None,
             Err(mpsc::TryRecvError::Disconnected) => {
                 Err("The flight could not be flown again: its thread has ended.".to_owned())
             }
         };
+        self.result = None;
         Some((self.until, result))
     }
 }

@@ -27,7 +27,7 @@ pub const NOT_RECORDED: &str = "The flight controller runs on the wall clock: it
 
 /// Refusal to continue the flight of a remote firmware from an earlier instant.
 pub const NOT_FLOWN_AGAIN: &str =
-    "The flight of a remote firmware is recorded as pictures: it can be looked at, not flown again.";
+    "The flight of this remote firmware is recorded as pictures: it can be looked at, not flown again.";
 
 /// Refusal of everything but the recording after the flight of a firmware that has ended.
 pub const FIRMWARE_ENDED: &str =

@@ -92,8 +92,8 @@ impl Remote {
         }
     }
 
-    /// Has the settings read again soon.
-    fn outdate_settings(&mut self, now: Duration) {
+    /// Has the settings and the plan read again soon.
+    pub(in crate::fc) fn outdate_settings(&mut self, now: Duration) {
         if let Some(connection) = self.life.connection_mut() {
             connection.refresh.request(now);
         }

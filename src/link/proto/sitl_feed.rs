@@ -61,6 +61,8 @@ pub struct SitlFeed {
     alt_amsl_m: f64,
     /// The newest GPS solution and the time of its delivery.
     gps: Option<(GpsSample, SimTime)>,
+    /// The position of the packet after which it continues, until the next measurement.
+    resumed_gps: Option<GpsSample>,
     /// The time of the first motor packet, µs of wall time.
     first_answer_us: Option<u64>,
     /// The time of the first packet that is still without an answer, µs of wall time.
@@ -78,6 +80,7 @@ impl SitlFeed {
             frame: SensorFrame::default(),
             alt_amsl_m,
             gps: None,
+            resumed_gps: None,
             first_answer_us: None,
             unanswered_us: None,
             sent_us: 0,
@@ -106,8 +109,7 @@ impl SitlFeed {
             vel_enu: state.vel_enu,
             ..GpsSample::default()
         };
-        (self.alt_amsl_m, self.gps) = (state.alt_m, Some((sample, self.frame.time)));
-        self.first_answer_us = Some(0);
+        (self.alt_amsl_m, self.resumed_gps, self.first_answer_us) = (state.alt_m, Some(sample), Some(0));
     }
 
     /// Starts again for a restarted executable: its first position is the centre of the mirror again.
@@ -121,7 +123,7 @@ impl SitlFeed {
         if let Some(pressure_pa) = frame.pressure_pa {
             self.alt_amsl_m = altitude_m(pressure_pa);
         }
-        if let Some(gps) = frame.gps {
+        if let Some(gps) = frame.gps.or(self.resumed_gps.take()) {
             self.gps = Some((gps, frame.time));
         }
     }

@@ -36,7 +36,7 @@ const SETTINGS: &str = "BETADECK_LOCKSTEP";
 /// The simulated time that is granted in advance for the boot. The executable waits for nothing during it.
 const BOOT: Duration = Duration::from_secs(3);
 /// The steps between two turns of the thread of the serial ports while there is nothing to send to it. Its data are then
-/// at most this much older. Each turn costs two changes of the thread.
+/// at most this much older. Each turn costs some system calls.
 const SERIAL_EVERY: u32 = 5;
 /// The steps between two reports of the lines that the executable prints.
 const OUTPUT_EVERY: u32 = 20;
@@ -44,8 +44,8 @@ const OUTPUT_EVERY: u32 = 20;
 const SENT_MAX: u64 = 1 << 20;
 /// The longest wait for a connection to its serial port.
 const CONNECTS_WITHIN: Duration = Duration::from_secs(1);
-/// The looks for bytes that the executable says to have sent after which they count as not sent: 5 s.
-const BYTES_WITHIN: u32 = 500;
+/// The looks for bytes that the executable says to have sent after which they count as not sent: 3 s.
+const BYTES_WITHIN: u32 = 300;
 
 /// The ports for which the executable asks. It gets others, which the system chooses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -160,6 +160,9 @@ impl Lockstep {
         let own_threads = u8::from(config.own_threads);
         let settings = format!("{fdm},{rc},{motors},{tcp},{step_ns},{boot_ns},{own_threads}");
         let preload = Preload { library: library.path(), variable: SETTINGS, settings };
+        let directory = &config.child.directory;
+        std::fs::create_dir_all(directory)
+            .map_err(|error| LaunchError::Directory { directory: directory.clone(), error })?;
         let inputs = begin_inputs(config);
         Ok((Process::start(&config.child, &preload)?, inputs))
     }
@@ -363,6 +366,11 @@ impl Lockstep {
     /// Returns the number of steps since its boot.
     pub fn steps_of_run(&self) -> u64 {
         u64::from(self.steps_of_run)
+    }
+
+    /// Returns `true` if its first serial port is connected.
+    pub fn is_connected(&self) -> bool {
+        self.serial.is_some()
     }
 
     /// Returns `true` if its run can be computed again.

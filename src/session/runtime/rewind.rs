@@ -275,7 +275,27 @@ impl Session {
 
     pub(super) fn seek(&mut self, seek: Seek, now: Duration) {
         self.flush_events();
-        let (shown, head, marks) = (self.shown_vehicle().time(), self.vehicle.time(), self.events.marks());
+        let shown = |session: &Self| {
+            let timeline = session.timeline.as_ref()?;
+            Some((timeline.shown()?.time(), timeline.shown_at()?))
+        };
+        let before = shown(self);
+        let mut last = before;
+        self.seek_once(seek, now);
+        // A picture may show several events, and one step back is a step to another picture.
+        while let (Seek::Back { .. }, Some((picture, at))) = (seek, shown(self))
+            && before.is_some_and(|(before, _)| before == picture)
+            && last.is_some_and(|(_, last)| at < last)
+        {
+            last = Some((picture, at));
+            self.seek_once(seek, now);
+        }
+    }
+
+    fn seek_once(&mut self, seek: Seek, now: Duration) {
+        let (head, marks) = (self.vehicle.time(), self.events.marks());
+        let at = self.timeline.as_ref().and_then(Timeline::shown_at);
+        let shown = at.filter(|_| matches!(seek, Seek::Back { .. })).unwrap_or(self.shown_vehicle().time());
         match (target(seek, shown, head, marks), seek) {
             (Target::Newest, _) => self.show_newest(now),
             (Target::Nowhere(sentence), _) => self.notice(sentence),
@@ -325,17 +345,16 @@ impl Session {
 
     /// Begins to fly the flight of a remote firmware again, up to the instant that is shown.
     fn fly_again(&mut self) {
-        let Some(until) = self.timeline.as_ref().and_then(Timeline::shown).map(Vehicle::time) else {
-            self.notice(NOTHING_EARLIER);
-            return;
-        };
         if self.flying_again.take().is_some() {
             self.changed = true;
             self.notice("Stopped: the flight is not flown again.");
             return;
         }
-        let end = self.vehicle.time();
-        let past = self.runner.link.as_mut().and_then(RemoteLink::past).map(|past| FlyAgain::of(past, end));
+        let Some(until) = self.timeline.as_ref().and_then(Timeline::shown).map(Vehicle::time) else {
+            self.notice(NOTHING_EARLIER);
+            return;
+        };
+        let past = self.runner.link.as_mut().and_then(RemoteLink::past).map(FlyAgain::of);
         let Some(again) = past.or_else(|| self.again.clone()) else {
             self.notice(NOT_FLOWN_AGAIN);
             return;
@@ -354,7 +373,7 @@ impl Session {
 
     /// Continues from the end of a flight that was flown again, once it is there.
     pub(super) fn take_flown_again(&mut self, now: Duration) {
-        let Some((until, result)) = self.flying_again.as_ref().and_then(FlyingAgain::result) else {
+        let Some((until, result)) = self.flying_again.as_mut().and_then(FlyingAgain::result) else {
             self.changed |= self.flying_again.is_some();
             return;
         };
@@ -370,6 +389,7 @@ impl Session {
         let branch_at = |timeline: &mut Timeline| {
             timeline.shown()?;
             timeline.show(until, left);
+            timeline.shown().filter(|picture| picture.time() == until)?;
             Some((timeline.continue_pictures()?, timeline.branch()))
         };
         let Some((mut vehicle, branch)) = self.timeline.as_mut().and_then(branch_at) else {
@@ -377,7 +397,9 @@ impl Session {
         };
         // The events were reported when they happened.
         vehicle.drain_events(drop);
-        self.runner = Runner::new(vehicle.step_us(), self.usual_speed, Some(link)).with_slice(SLICE);
+        let speed = self.runner.pacer.speed();
+        self.runner = Runner::new(vehicle.step_us(), speed, Some(link)).with_slice(SLICE);
+        self.again = None;
         self.keeps = Some(keeps);
         self.vehicle = vehicle;
         self.continue_on(branch, left, now);

@@ -12,7 +12,7 @@ use std::time::Duration;
 use betadeck::link::{FcStream, StreamEvent};
 
 /// The time limit of every wait. Nothing in these tests takes this long unless it hangs.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_secs(600);
 
 fn open(place: &str) -> FcStream {
     FcStream::open(place.parse().unwrap())

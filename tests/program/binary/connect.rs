@@ -12,7 +12,7 @@ use crate::binary::pty::Terminal;
 use crate::binary::support::Sandbox;
 
 /// The time after which an answer counts as missing.
-const NEVER: Duration = Duration::from_secs(60);
+const NEVER: Duration = Duration::from_secs(600);
 
 /// The embedded firmware at a TCP door. It is killed when dropped.
 pub(crate) struct Craft {

@@ -37,7 +37,7 @@ fn too_few_open_files_are_one_sentence_and_exit_code_3() {
                 .current_dir(sandbox.path("."))
                 .args(["-c", &script]);
             let output = assert_cmd::Command::from_std(shell)
-                .timeout(std::time::Duration::from_secs(60))
+                .timeout(std::time::Duration::from_secs(600))
                 .write_stdin("")
                 .output()
                 .expect("it runs");

@@ -10,7 +10,7 @@ use crate::binary::support::Sandbox;
 
 const PLAIN: [&str; 4] = ["--plain", "--fresh", "--no-ports", "--speed=max"];
 /// The time after which a line counts as missing.
-const NEVER: Duration = Duration::from_secs(60);
+const NEVER: Duration = Duration::from_secs(600);
 
 /// A running program that reads lines and answers them. It is killed when dropped.
 pub(crate) struct Dialogue {

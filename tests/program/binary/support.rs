@@ -11,7 +11,7 @@ use super::lines::Line;
 pub(crate) const PROGRAM: &str = env!("CARGO_BIN_EXE_betadeck");
 
 /// The time after which a run that does not end by itself counts as hung. Normal runs take far less.
-const HUNG: Duration = Duration::from_secs(60);
+const HUNG: Duration = Duration::from_secs(600);
 
 /// An empty home directory, which is also the working directory of the programs that run in it.
 pub(crate) struct Sandbox {

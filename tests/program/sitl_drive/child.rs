@@ -10,7 +10,7 @@ use tempfile::TempDir;
 use crate::sitl_drive::square;
 
 /// The time after which something that is waited for counts as missing.
-pub(crate) const NEVER: Duration = Duration::from_secs(120);
+pub(crate) const NEVER: Duration = Duration::from_secs(600);
 
 /// A running executable in a directory of its own; killed when dropped.
 pub(crate) struct Child {

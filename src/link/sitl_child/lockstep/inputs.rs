@@ -11,11 +11,13 @@ use std::time::Duration;
 
 use super::frames::{FDM_BYTES, MOTOR_BYTES};
 use super::{Lockstep, LockstepConfig, NoReport, StepInput};
+use crate::link::ChildEnd;
 
 /// The most bytes that are kept of a run. A second has some 180 kB at 1000 steps a second.
-const MOST_BYTES: u64 = 2 << 30;
-/// The largest file of the executable's folder that belongs to its start, bytes.
+const MOST_BYTES: u64 = 1 << 30;
+/// The largest file of the executable's folder that belongs to its start, bytes, and the most files.
 const MOST_FILE: u64 = 1 << 20;
+const MOST_FILES: usize = 64;
 
 /// The kinds of entries. Each entry is its kind and its data.
 const STATE: u8 = 1;
@@ -47,7 +49,7 @@ impl Inputs {
         for entry in std::fs::read_dir(folder)? {
             let (entry, mut bytes) = (entry?, Vec::new());
             let facts = entry.metadata()?;
-            if facts.is_file() && facts.len() <= MOST_FILE {
+            if facts.is_file() && facts.len() <= MOST_FILE && files.len() < MOST_FILES {
                 File::open(entry.path())?.take(MOST_FILE).read_to_end(&mut bytes)?;
                 files.push((entry.file_name(), bytes));
             }
@@ -115,10 +117,14 @@ pub enum NotAgain {
     Read(#[from] io::Error),
     #[error("the firmware does not compute the same again: its motors differ at step {0}")]
     Differs(u64),
-    #[error("the firmware, started again, did not end its step {step}: {reason:?}")]
-    NoReport { step: u64, reason: NoReport },
-    #[error("the firmware has restarted since this instant, or betadeck has no record that goes so far")]
+    #[error("the firmware, started again, ended {0}")]
+    Ended(ChildEnd),
+    #[error("the firmware, started again, did not end its step {0}")]
+    NoReport(u64),
+    #[error("the firmware has restarted since this instant")]
     BeforeBoot,
+    #[error("the record of what the firmware was given does not contain this instant")]
+    NotKept,
     #[error("it was stopped")]
     Stopped,
 }
@@ -158,6 +164,7 @@ impl KeptRun {
                 [MOTORS] => {}
                 // The executable takes what follows in with the next step.
                 _ if step == steps => break,
+                [STATE] if step > 0 && motors.is_some() => return Err(NotAgain::Differs(step)),
                 [RC] => rc = Some(array(&mut inputs)?),
                 [STATE] => {
                     let state = array(&mut inputs)?;
@@ -189,7 +196,8 @@ fn finish(
         let (bytes, motors) = match lockstep.wait() {
             Ok(motors) => (lockstep.received().unwrap_or_default(), Some(motors)),
             Err(NoReport::Stopped) => (Vec::new(), None),
-            Err(reason) => return Err(NotAgain::NoReport { step, reason }),
+            Err(NoReport::Ended(end)) => return Err(NotAgain::Ended(end)),
+            Err(_) => return Err(NotAgain::NoReport(step)),
         };
         if !goes_on(step, &bytes) {
             return Err(NotAgain::Stopped);

@@ -12,13 +12,14 @@ use crate::link::sitl_child::launch::{self, LaunchError, Preload};
 use crate::link::sitl_child::output::SteppedOutput;
 use crate::link::sitl_child::{ChildConfig, ChildEnd, group};
 
-/// The interval at which a wait for a report looks at the process.
+/// The longest part of a wait for a report, and the parts after which the process is looked at.
 const LOOK: Duration = Duration::from_millis(10);
+const PARTS: u32 = 3;
 /// The processor time within a step after which the process counts as hung.
 const HUNG_AFTER: Duration = Duration::from_secs(2);
 /// The looks in a row at a process that sleeps after which it counts as silent: 10 s. Looks are counted rather than the
 /// time, because the machine may sleep, too.
-const SILENT_AFTER: u32 = 1000;
+const SILENT_AFTER: u32 = 1000 / PARTS;
 
 /// A running executable. It ends when this is dropped.
 #[derive(Debug)]
@@ -84,7 +85,7 @@ impl Process {
     pub(super) fn wait(&mut self) -> Result<Report, NoReport> {
         let wanted = self.page.granted.load(SeqCst);
         // A process that wakes this one without a report must not hold it, and an interrupted wait may be repeated.
-        for _ in 0..3 {
+        for _ in 0..PARTS {
             let seen = self.page.reported.load(SeqCst);
             if seen == wanted {
                 (self.used, self.asleep) = (None, 0);

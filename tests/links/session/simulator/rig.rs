@@ -21,7 +21,7 @@ use nalgebra::Vector3;
 use tokio::sync::{mpsc, oneshot, watch};
 
 /// Nothing in these tests takes this long unless it hangs.
-pub(crate) const PATIENCE: Duration = Duration::from_secs(60);
+pub(crate) const PATIENCE: Duration = Duration::from_secs(600);
 
 /// The time by which states arrive ahead of the clock.
 pub(crate) const AHEAD: Duration = Duration::from_secs(600);

@@ -8,7 +8,7 @@ use super::{STANDING, lines, sandbox};
 use crate::binary::support::Sandbox;
 
 /// The time after which a program counts as hung.
-const NEVER: Duration = Duration::from_secs(300);
+const NEVER: Duration = Duration::from_secs(600);
 
 /// A process that is killed when its test ends.
 struct Guard(Child);

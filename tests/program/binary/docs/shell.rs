@@ -46,7 +46,7 @@ const FIRMWARES: [&str; 4] = ["remote.elf", "new.elf", "old.elf", "obj/main/beta
 const EXIT_CODES: [(&str, u32); 1] = [("betadeck fly square --wind 5@270 --rx-loss-at 20", 1)];
 
 /// The time after which a command counts as hung.
-const NEVER: Duration = Duration::from_secs(120);
+const NEVER: Duration = Duration::from_secs(600);
 
 /// The way in which a command ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

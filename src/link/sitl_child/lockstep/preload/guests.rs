@@ -9,7 +9,7 @@ use core::sync::atomic::Ordering::SeqCst;
 use core::sync::atomic::{AtomicBool, AtomicPtr, AtomicU32, AtomicUsize};
 
 use super::libc::{
-    Context, Scope, getcontext, makecontext, real, setcontext, swapcontext, wait_for_change, wait_until, wake,
+    Context, SET_MASK, SIGNAL_WORDS, Scope, getcontext, makecontext, pthread_sigmask, real, setcontext, swapcontext, wait_for_change, wait_until, wake,
 };
 use super::local::{local_data, set_local_data};
 use super::parent::page;
@@ -161,7 +161,11 @@ extern "C" fn begin(guest: *mut c_void) -> *mut c_void {
         let guest: &'static Guest = &*guest.cast();
         guest.local_data.store(local_data(), SeqCst);
         let contexts = guest.contexts.get();
+        // A handler on the sleeping thread would use the thread-local data of code that runs elsewhere.
+        let (every, mut before) = ([u64::MAX; SIGNAL_WORDS], [0; SIGNAL_WORDS]);
+        pthread_sigmask(SET_MASK, &raw const every, &raw mut before);
         getcontext(&raw mut (*contexts).sleep);
+        pthread_sigmask(SET_MASK, &raw const before, core::ptr::null_mut());
         (*contexts).sleep.use_stack(&raw mut (*contexts).stack);
         makecontext(&raw mut (*contexts).sleep, sleep as *const c_void, 1, guest);
         swapcontext(&raw mut (*contexts).code, &raw mut (*contexts).sleep);
@@ -182,7 +186,7 @@ extern "C" fn sleep(guest: &'static Guest) {
     guest.state.store(SLEEPING, SeqCst);
     wake(&guest.state, Scope::Private);
     while guest.state.load(SeqCst) != RETURNING {
-        wait_for_change(&guest.state, SLEEPING, Scope::Private);
+        wait_for_change(&guest.state, SLEEPING);
     }
     // SAFETY: the main thread has left the code for the last time.
     unsafe { setcontext(&raw const (*guest.contexts.get()).code) };

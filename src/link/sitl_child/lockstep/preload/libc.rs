@@ -47,6 +47,9 @@ pub(crate) const SYS_FUTEX: c_long = 202;
 #[cfg(target_arch = "aarch64")]
 pub(crate) const SYS_FUTEX: c_long = 98;
 pub(crate) const NEXT_DEFINITION: *mut c_void = -1_isize as *mut c_void;
+pub(crate) const SET_MASK: c_int = 2;
+/// The words of a set of signals.
+pub(crate) const SIGNAL_WORDS: usize = 16;
 pub(crate) const TRY_AGAIN: c_int = 11;
 
 pub(crate) type Set = [u64; DESCRIPTORS / WORD_BITS];
@@ -72,7 +75,13 @@ unsafe extern "C" {
     pub(crate) fn setcontext(from: *const Context) -> c_int;
     pub(crate) fn swapcontext(to: *mut Context, from: *const Context) -> c_int;
     pub(crate) fn makecontext(context: *mut Context, function: *const c_void, count: c_int, ...);
+    pub(crate) fn pthread_sigmask(
+        how: c_int,
+        set: *const [u64; SIGNAL_WORDS],
+        before: *mut [u64; SIGNAL_WORDS],
+    ) -> c_int;
     pub(crate) fn getpid() -> c_int;
+    pub(crate) fn getppid() -> c_int;
     pub(crate) fn getsockname(fd: c_int, address: *mut Address, size: *mut u32) -> c_int;
     pub(crate) fn __errno_location() -> *mut c_int;
     pub(crate) fn _exit(code: c_int) -> !;
@@ -164,11 +173,18 @@ pub(crate) fn wake(word: &AtomicU32, scope: Scope) {
     unsafe { syscall(SYS_FUTEX, word.as_ptr(), FUTEX_WAKE | scope as c_int, c_int::MAX) };
 }
 
-/// Waits for a change of the word from this value.
-pub(crate) fn wait_for_change(word: &AtomicU32, value: u32, scope: Scope) {
+/// Waits for a change of a word of this process from this value.
+pub(crate) fn wait_for_change(word: &AtomicU32, value: u32) {
     let forever = core::ptr::null::<Timespec>();
     // SAFETY: the word lives as long as the program.
-    unsafe { syscall(SYS_FUTEX, word.as_ptr(), FUTEX_WAIT | scope as c_int, value, forever) };
+    unsafe { syscall(SYS_FUTEX, word.as_ptr(), FUTEX_WAIT | Scope::Private as c_int, value, forever) };
+}
+
+/// Waits for a change of a word that the parent shares from this value, for a second at most.
+pub(crate) fn wait_for_grant(word: &AtomicU32, value: u32) {
+    let second = Timespec { s: 1, ns: 0 };
+    // SAFETY: the word lives as long as the program, and the time as long as the call.
+    unsafe { syscall(SYS_FUTEX, word.as_ptr(), FUTEX_WAIT | Scope::Shared as c_int, value, &raw const second) };
 }
 
 pub(crate) fn wait_until(word: &AtomicU32, value: u32) {
@@ -177,6 +193,6 @@ pub(crate) fn wait_until(word: &AtomicU32, value: u32) {
         if seen == value {
             return;
         }
-        wait_for_change(word, seen, Scope::Private);
+        wait_for_change(word, seen);
     }
 }

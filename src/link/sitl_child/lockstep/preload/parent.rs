@@ -8,13 +8,18 @@ use super::RUN;
 use super::clock::NOW_NS;
 use super::frames::{MOTOR_BYTES, Page, Report};
 use super::intake::{FDM, RC};
-use super::libc::{MAP_SHARED, READABLE_WRITABLE, Scope, mmap, wait_for_change, wake};
+use super::libc::{
+    _exit, MAP_SHARED, READABLE_WRITABLE, Scope, getppid, mmap, wait_for_grant, wake,
+};
 use super::serial::{SERIAL, serve_serial};
 
 /// The memory that the parent shares; null = the library does nothing.
 static PAGE: AtomicPtr<Page> = AtomicPtr::new(null_mut());
 /// Its descriptor, which is kept for a restart by `exec`.
 pub(crate) static PAGE_FILE: AtomicI32 = AtomicI32::new(-1);
+
+/// The process that gives the grants.
+static PARENT: AtomicI32 = AtomicI32::new(0);
 
 /// The motor packets of the step.
 pub(crate) struct Motors {
@@ -37,6 +42,8 @@ pub(crate) fn open_page(descriptor: i32) {
     let page = unsafe { mmap(null_mut(), size_of::<Page>(), READABLE_WRITABLE, MAP_SHARED, descriptor, 0) };
     if page as usize != FAILED {
         PAGE_FILE.store(descriptor, SeqCst);
+        // SAFETY: has no conditions.
+        PARENT.store(unsafe { getppid() }, SeqCst);
         PAGE.store(page.cast(), SeqCst);
     }
 }
@@ -54,7 +61,13 @@ pub(crate) fn end_step() {
     page.put_report(&report());
     wake(&page.reported, Scope::Shared);
     while page.granted.load(SeqCst) == granted {
-        wait_for_change(&page.granted, granted, Scope::Shared);
+        wait_for_grant(&page.granted, granted);
+        // SAFETY: has no conditions, and ends the process.
+        unsafe {
+            if getppid() != PARENT.load(SeqCst) {
+                _exit(0);
+            }
+        }
     }
     let grant = page.grant();
     if let Some(rc) = grant.rc {

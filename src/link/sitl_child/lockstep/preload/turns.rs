@@ -39,7 +39,7 @@ impl Place {
         }
         wake(&self.state, Scope::Private);
         while self.state.load(SeqCst) == WAITING && !is_ending() {
-            wait_for_change(&self.state, WAITING, Scope::Private);
+            wait_for_change(&self.state, WAITING);
         }
         self.state.store(EMPTY, SeqCst);
         !is_ending()
